@@ -1,0 +1,1 @@
+//! Feed plan over plan time.

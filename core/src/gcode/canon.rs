@@ -1,0 +1,146 @@
+//! What a G-code program asks for, once modes, units, offsets and expressions are resolved.
+//!
+//! Lengths in millimetres, feeds in mm/s, times in seconds, in machine-independent program coordinates.
+
+use std::sync::Arc;
+
+/// One step of a program, in program order.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Canon {
+    /// The tool moves.
+    Motion(Motion),
+    /// Something other than a motion happens.
+    Event(Event),
+}
+
+/// A motion from `start_mm` to `end_mm`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion {
+    /// Line of the program, from 1.
+    pub line: u32,
+    /// Whether the tool cuts.
+    pub kind: MotionKind,
+    /// Where the motion starts.
+    pub start_mm: [f64; 3],
+    /// Where it ends.
+    pub end_mm: [f64; 3],
+    /// The curve between the two.
+    pub shape: Shape,
+    /// Programmed feedrate, mm/s; not used by a rapid.
+    pub feed_mm_s: f64,
+    /// How the corner at the end of this motion is taken.
+    pub corner: Corner,
+}
+
+/// Whether a motion cuts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MotionKind {
+    /// G0: at the machine's rapid rate, not cutting.
+    Rapid,
+    /// G1, G2, G3 and splines: at the programmed feedrate.
+    Feed,
+}
+
+/// The curve of a motion.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// Straight.
+    Line,
+    /// Circular in `plane` about `center_mm`, with a linear motion along the plane's normal (helix).
+    Arc {
+        /// Plane of the circle.
+        plane: Plane,
+        /// Centre; its component along the plane's normal is the start's.
+        center_mm: [f64; 3],
+        /// Sign: positive is counter-clockwise seen from the positive normal. Magnitude: 1 is at most one full turn,
+        /// each further unit adds a full turn.
+        turns: i32,
+    },
+    /// Rational B-spline.
+    Spline(Arc<Spline>),
+}
+
+/// Plane of an arc: G17 is XY, G18 is ZX, G19 is YZ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Plane {
+    /// G17, normal +Z.
+    Xy,
+    /// G18, normal +Y.
+    Zx,
+    /// G19, normal +X.
+    Yz,
+}
+
+impl Plane {
+    /// Indices of the first axis, the second axis and the normal: a right-handed triple.
+    pub const fn axes(self) -> [usize; 3] {
+        match self {
+            Self::Xy => [0, 1, 2],
+            Self::Zx => [2, 0, 1],
+            Self::Yz => [1, 2, 0],
+        }
+    }
+}
+
+/// Non-uniform rational B-spline with `control_mm.len() + degree + 1` knots.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Spline {
+    /// Polynomial degree, at least 1.
+    pub degree: usize,
+    /// Knot values, non-decreasing.
+    pub knots: Vec<f64>,
+    /// Control points.
+    pub control_mm: Vec<[f64; 3]>,
+    /// One positive weight for each control point.
+    pub weights: Vec<f64>,
+}
+
+/// How a corner is taken.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Corner {
+    /// G61.1: a full stop at the end of every motion, corner or not.
+    ExactStop,
+    /// G61: the programmed path exactly, stopping where the direction changes.
+    ExactPath,
+    /// G64: corners at a speed, the path within `tolerance_mm` where one is given (P word).
+    Continuous {
+        /// P of G64.
+        tolerance_mm: Option<f64>,
+    },
+}
+
+/// Something other than a motion.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Event {
+    /// Line of the program, from 1.
+    pub line: u32,
+    /// What happens.
+    pub kind: EventKind,
+}
+
+/// What happens in an [`Event`].
+#[derive(Debug, Clone, PartialEq)]
+pub enum EventKind {
+    /// G4: the tool rests.
+    Dwell {
+        /// Seconds.
+        seconds: f64,
+    },
+    /// S word: commanded spindle speed, rev/min.
+    SpindleSpeed {
+        /// Revolutions per minute.
+        rpm: f64,
+    },
+    /// Any M-code, with its number: kept, timed and drawn by later stages.
+    MCode {
+        /// Number behind M.
+        code: u16,
+    },
+    /// T word: the tool that the next M6 loads.
+    ToolSelect {
+        /// Tool number.
+        tool: u32,
+    },
+    /// M2, M30 or % at the end.
+    ProgramEnd,
+}

@@ -1,0 +1,14 @@
+//! feedwright reads a G-code program and a machine file, predicts what the machine will really cut, and corrects the
+//! commanded feedrate, speed and geometry, so that the part comes out more accurate and sooner.
+//!
+//! Millimetres, seconds, radians and newton-metres everywhere; inches and mm/min end in [`gcode`].
+//!
+//! The modules stand in the order in which data flows; each uses only those above it.
+
+pub mod machine;
+pub mod gcode;
+pub mod path;
+pub mod feed;
+pub mod reference;
+pub mod trace;
+pub mod report;

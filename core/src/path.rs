@@ -1,0 +1,1 @@
+//! Path: exact curves by arc length.

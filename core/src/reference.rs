@@ -1,0 +1,1 @@
+//! Reference at the servo period.

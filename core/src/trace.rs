@@ -1,0 +1,37 @@
+//! What a run leaves behind: one [`Row`] per servo period, handed to every [`Sink`] that wants it.
+
+/// One servo period of a run. Two-axis runs leave the third component at zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Row {
+    /// Start of the servo period, s.
+    pub t_s: f64,
+    /// Arc length along the programmed path at `t_s`, mm.
+    pub s_mm: f64,
+    /// Line of the program whose motion is under way.
+    pub line: u32,
+    /// Planned feedrate at `s_mm`, mm/s.
+    pub feed_plan_mm_s: f64,
+    /// Whether the motion cuts; rapids and dwells do not.
+    pub cutting: bool,
+    /// Point of the programmed path at `s_mm`.
+    pub path_mm: [f64; 3],
+    /// Position command of this servo period, as the servo drive gets it.
+    pub cmd_mm: [f64; 3],
+    /// True position of the tool at the end of this servo period.
+    pub act_mm: [f64; 3],
+    /// Motor torque at the end of this servo period, N m.
+    pub torque_nm: [f64; 3],
+    /// Contour error of `act_mm`, mm: signed in the plane (left of travel is positive), magnitude in space.
+    pub contour_error_mm: f64,
+    /// Corrected reference as the controller asked for it, before limits of the drive.
+    pub corrected_mm: [f64; 3],
+}
+
+/// Takes the rows of a run in order.
+pub trait Sink {
+    /// Takes one row.
+    ///
+    /// # Errors
+    /// Where the sink writes to a file that takes no more.
+    fn row(&mut self, row: &Row) -> std::io::Result<()>;
+}
