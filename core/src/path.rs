@@ -149,7 +149,9 @@ pub enum PathError {
         value_mm: f64,
     },
     /// The motion does not start where the one before ended.
-    #[error("line {line}: the motion starts {gap_mm} mm away from the end of the one before, limit {MAX_GAP_MM:e} mm")]
+    #[error(
+        "line {line}: the motion starts {gap_mm} mm away from the end of the one before, limit {MAX_GAP_MM:e} mm"
+    )]
     Gap {
         /// Line of the program.
         line: u32,

@@ -1,5 +1,7 @@
 //! Plan times that have a closed form.
 
+#[expect(dead_code, reason = "each test uses its own part")]
+#[path = "common/programs.rs"]
 mod common;
 
 use common::{BLEND, LIMITS, arc, line, polyline};
@@ -13,7 +15,7 @@ use std::f64::consts::PI;
 const ROUNDING_S: f64 = 1e-11;
 
 fn plan_s(canon: Vec<Canon>, limits: &Limits) -> f64 {
-    let mut reference = Reference::new(canon, limits).unwrap();
+    let mut reference = Reference::new(canon, limits).expect("limits are sound");
     let end_s = reference.read_to_end_s();
     assert_eq!(reference.fault(), None);
     end_s
@@ -24,7 +26,11 @@ fn circle_takes_its_length_over_the_feed_and_one_ramp() {
     let circle = vec![arc([0.0; 3], [0.0; 3], [10.0, 0.0, 0.0], -1, 50.0)];
     let expected = 2.0 * PI * 10.0 / 50.0 + 0.5;
     assert!((plan_s(circle, &LIMITS) - expected).abs() < ROUNDING_S);
-    let mut contour = Reference::from_steps(contour("circle").unwrap().steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
+    let mut contour = Reference::from_steps(
+        contour("circle").unwrap().steps(50.0, BLEND).unwrap(),
+        &LIMITS,
+    )
+    .unwrap();
     assert!((contour.read_to_end_s() - expected).abs() < ROUNDING_S);
 }
 
@@ -82,7 +88,10 @@ fn rapid_runs_at_the_rapid_rate() {
 
 #[test]
 fn feed_is_capped_by_the_machine() {
-    let limits = Limits { max_feed_mm_s: 10.0, ..LIMITS };
+    let limits = Limits {
+        max_feed_mm_s: 10.0,
+        ..LIMITS
+    };
     let long = vec![line([0.0; 3], [10.0, 0.0, 0.0], 50.0, BLEND)];
     assert!((plan_s(long, &limits) - 1.1).abs() < ROUNDING_S);
 }
@@ -102,7 +111,10 @@ fn circle_in_chords_takes_as_long_as_the_circle() {
         .collect();
     let time = plan_s(polyline(&points, 50.0, BLEND), &LIMITS);
     // Between joints nothing bounds the speed but the joints ahead and behind: chords rise 0.3 mm2/s2 above 400.
-    assert!((time / (2.0 * PI / 20.0 + 0.2) - 1.0).abs() < 1e-3, "{time}");
+    assert!(
+        (time / (2.0 * PI / 20.0 + 0.2) - 1.0).abs() < 1e-3,
+        "{time}"
+    );
 }
 
 #[test]
@@ -137,7 +149,12 @@ fn dwell_stops_and_holds() {
     assert!(held.resting && !held.cutting && held.line == 6);
     assert_eq!(held.position_mm, [20.0, 0.0, 0.0]);
     let end = reference.at(1e9);
-    assert!(end.resting && end.position_mm == [30.0, 0.0, 0.0] && end.s_mm == 30.0 && end.feed_mm_s == 0.0);
+    assert!(
+        end.resting
+            && end.position_mm == [30.0, 0.0, 0.0]
+            && end.s_mm == 30.0
+            && end.feed_mm_s == 0.0
+    );
 }
 
 #[test]
@@ -145,7 +162,10 @@ fn empty_program_rests_at_the_origin() {
     let mut reference = Reference::new(vec![], &LIMITS).unwrap();
     assert!(reference.at(1.0).resting);
     assert_eq!(reference.end_s(), Some(0.0));
-    assert_eq!(reference.nearest([3.0, 4.0, 0.0], 0.0, 1.0).distance_mm, 5.0);
+    assert_eq!(
+        reference.nearest([3.0, 4.0, 0.0], 0.0, 1.0).distance_mm,
+        5.0
+    );
 }
 
 #[test]

@@ -62,7 +62,11 @@ impl<'p> Plan<'p> {
     ///
     /// # Errors
     /// Where a limit is none.
-    pub fn with_planner(steps: Steps<'p>, limits: &Limits, member: &Member) -> Result<Self, LimitsError> {
+    pub fn with_planner(
+        steps: Steps<'p>,
+        limits: &Limits,
+        member: &Member,
+    ) -> Result<Self, LimitsError> {
         limits.check()?;
         Ok(Self {
             steps,
@@ -122,7 +126,11 @@ impl<'p> Plan<'p> {
             planner.push(section);
             *count += 1;
         });
-        self.last = Some((side(end.tangent, piece.length_mm), piece.corner, piece.length_mm));
+        self.last = Some((
+            side(end.tangent, piece.length_mm),
+            piece.corner,
+            piece.length_mm,
+        ));
         self.pieces += 1;
         self.ready.push_back(Planned::Piece(piece));
         self.take_spans();
@@ -135,8 +143,14 @@ impl<'p> Plan<'p> {
             EventKind::SpindleSpeed { .. } | EventKind::ToolSelect { .. } => false,
         };
         let place = match &self.last {
-            Some((_, _, length_mm)) => Place { piece: self.pieces - 1, from_mm: *length_mm },
-            None => Place { piece: 0, from_mm: 0.0 },
+            Some((_, _, length_mm)) => Place {
+                piece: self.pieces - 1,
+                from_mm: *length_mm,
+            },
+            None => Place {
+                piece: 0,
+                from_mm: 0.0,
+            },
         };
         self.events.push_back((self.sections, event, place));
     }
@@ -153,27 +167,59 @@ impl<'p> Plan<'p> {
     fn take_spans(&mut self) {
         while let Some(span) = self.planner.pop() {
             self.happen_before(span.section);
-            let Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, .. } = span;
+            let Span {
+                piece,
+                from_mm,
+                duration_s,
+                speed_mm_s,
+                accel_mm_s2,
+                ..
+            } = span;
             let tau_s = self.clock.advance(duration_s);
-            let phase = Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, rest: None };
+            let phase = Phase {
+                tau_s,
+                duration_s,
+                piece,
+                from_mm,
+                speed_mm_s,
+                accel_mm_s2,
+                rest: None,
+            };
             self.ready.push_back(Planned::Phase(phase));
         }
     }
 
     /// Hands out the events that come before a section.
     fn happen_before(&mut self, section: u64) {
-        while self.events.front().is_some_and(|(before, ..)| *before <= section) {
-            let Some((_, event, place)) = self.events.pop_front() else { return };
+        while self
+            .events
+            .front()
+            .is_some_and(|(before, ..)| *before <= section)
+        {
+            let Some((_, event, place)) = self.events.pop_front() else {
+                return;
+            };
             let rest = match event.kind {
                 EventKind::Dwell { seconds } if seconds > 0.0 => Some((seconds, event.line)),
                 _ => None,
             };
-            self.ready.push_back(Planned::Event(TimedEvent { tau_s: self.clock.total(), event }));
+            self.ready.push_back(Planned::Event(TimedEvent {
+                tau_s: self.clock.total(),
+                event,
+            }));
             if let Some((duration_s, line)) = rest {
                 let tau_s = self.clock.advance(duration_s);
                 let Place { piece, from_mm } = place;
                 let (speed_mm_s, accel_mm_s2, rest) = (0.0, 0.0, Some(line));
-                let phase = Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, rest };
+                let phase = Phase {
+                    tau_s,
+                    duration_s,
+                    piece,
+                    from_mm,
+                    speed_mm_s,
+                    accel_mm_s2,
+                    rest,
+                };
                 self.ready.push_back(Planned::Phase(phase));
             }
         }

@@ -2,7 +2,7 @@
 //!
 //! On a line or an arc the bound `f = min(feed^2, a_n / curvature)` on the square of the speed is constant: one section. On
 //! other curves the piece is halved until the straight line between the bounds at both ends of a section lies no more than
-//! [`OVER`] above `f`, so that v^2 times curvature keeps a_n to 0.1 %, and no more than [`UNDER`] below it, so that no time
+//! `OVER` above `f`, so that v^2 times curvature keeps a_n to 0.1 %, and no more than `UNDER` below it, so that no time
 //! is given away. Neighbouring sections that are both bounded by the same feedrate alone are joined.
 
 use super::{Limits, Section};
@@ -20,14 +20,26 @@ const MIN_SECTION_MM: f64 = 1e-6;
 
 /// Bound on the square of the speed on a piece without its curvature, mm2/s2.
 fn feed_cap(piece: &Piece, limits: &Limits) -> f64 {
-    let feed = if piece.cutting { piece.feed_mm_s.min(limits.max_feed_mm_s) } else { limits.rapid_mm_s };
+    let feed = if piece.cutting {
+        piece.feed_mm_s.min(limits.max_feed_mm_s)
+    } else {
+        limits.rapid_mm_s
+    };
     feed * feed
 }
 
 /// Hands the sections of a piece to `push`, in order; `joint_cap` belongs to the first.
-pub fn sections(piece: &Piece, number: u64, joint_cap: f64, limits: &Limits, mut push: impl FnMut(Section)) {
+pub fn sections(
+    piece: &Piece,
+    number: u64,
+    joint_cap: f64,
+    limits: &Limits,
+    mut push: impl FnMut(Section),
+) {
     let feed = feed_cap(piece, limits);
-    let bound = |curvature: f64| feed.min(limits.normal_accel_mm_s2 / curvature.clamp(0.0, MAX_CURVATURE_1_MM));
+    let bound = |curvature: f64| {
+        feed.min(limits.normal_accel_mm_s2 / curvature.clamp(0.0, MAX_CURVATURE_1_MM))
+    };
     match &piece.curve {
         Curve::Line(_) | Curve::Arc(_) => {
             let cap = bound(piece.curve.curvature(0.0));
@@ -42,19 +54,34 @@ pub fn sections(piece: &Piece, number: u64, joint_cap: f64, limits: &Limits, mut
         }
         Curve::Smooth(smooth) => {
             let mut joined: Option<Section> = None;
-            divide(smooth, |s_mm| bound(smooth.curvature(s_mm)), |from_mm, to_mm, start_cap, end_cap| {
-                let flat = start_cap == feed && end_cap == feed;
-                if let Some(open) = &mut joined {
-                    if flat && open.start_cap == feed && open.end_cap == feed {
-                        open.length_mm = to_mm - open.from_mm;
-                        return;
+            divide(
+                smooth,
+                |s_mm| bound(smooth.curvature(s_mm)),
+                |from_mm, to_mm, start_cap, end_cap| {
+                    let flat = start_cap == feed && end_cap == feed;
+                    if let Some(open) = &mut joined {
+                        if flat && open.start_cap == feed && open.end_cap == feed {
+                            open.length_mm = to_mm - open.from_mm;
+                            return;
+                        }
+                        push(*open);
                     }
-                    push(*open);
-                }
-                let joint_cap = if joined.is_none() { joint_cap } else { f64::INFINITY };
-                let length_mm = to_mm - from_mm;
-                joined = Some(Section { piece: number, from_mm, length_mm, joint_cap, start_cap, end_cap });
-            });
+                    let joint_cap = if joined.is_none() {
+                        joint_cap
+                    } else {
+                        f64::INFINITY
+                    };
+                    let length_mm = to_mm - from_mm;
+                    joined = Some(Section {
+                        piece: number,
+                        from_mm,
+                        length_mm,
+                        joint_cap,
+                        start_cap,
+                        end_cap,
+                    });
+                },
+            );
             if let Some(open) = joined {
                 push(open);
             }

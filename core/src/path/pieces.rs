@@ -6,7 +6,9 @@
 use super::arcs::{Request, arcs};
 use super::line::Line;
 use super::vector::{Vector, distance};
-use super::{Curve, MAX_COORDINATE_MM, MAX_GAP_MM, MIN_FEED_MM_S, MIN_LENGTH_MM, PathError, Piece, Step};
+use super::{
+    Curve, MAX_COORDINATE_MM, MAX_GAP_MM, MIN_FEED_MM_S, MIN_LENGTH_MM, PathError, Piece, Step,
+};
 use crate::gcode::canon::{Canon, Event, EventKind, Motion, MotionKind, Shape};
 use std::collections::VecDeque;
 
@@ -23,7 +25,13 @@ pub struct Pieces<I> {
 impl<I: Iterator<Item = Canon>> Pieces<I> {
     /// The path of `source`.
     pub fn new(source: I) -> Self {
-        Self { source, here_mm: None, length: ArcLength::default(), ready: VecDeque::new(), failed: false }
+        Self {
+            source,
+            here_mm: None,
+            length: ArcLength::default(),
+            ready: VecDeque::new(),
+            failed: false,
+        }
     }
 
     fn motion(&mut self, motion: &Motion) -> Result<(), PathError> {
@@ -34,7 +42,11 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
                     self.keep(motion, here_mm, Curve::Line(line), motion.end_mm);
                 }
             }
-            Shape::Arc { plane, center_mm, turns } => {
+            Shape::Arc {
+                plane,
+                center_mm,
+                turns,
+            } => {
                 let request = Request {
                     line: motion.line,
                     start_mm: here_mm,
@@ -48,13 +60,19 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
                     self.keep(motion, start_mm, Curve::Arc(arc), end_mm);
                 }
                 // The last arc ends there up to rounding: later pieces start at the programmed point itself.
-                if self.here_mm.is_some_and(|here| distance(here, motion.end_mm) < MIN_LENGTH_MM) {
+                if self
+                    .here_mm
+                    .is_some_and(|here| distance(here, motion.end_mm) < MIN_LENGTH_MM)
+                {
                     self.here_mm = Some(motion.end_mm);
                 }
             }
             Shape::Spline(_) => {
                 let what = "splines have no path yet".to_owned();
-                return Err(PathError::Spline { line: motion.line, what });
+                return Err(PathError::Spline {
+                    line: motion.line,
+                    what,
+                });
             }
         }
         Ok(())
@@ -67,14 +85,24 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
             Shape::Arc { center_mm, .. } => *center_mm,
             _ => motion.end_mm,
         };
-        for value_mm in motion.start_mm.into_iter().chain(motion.end_mm).chain(center) {
-            // Written so that NaN fails too.
-            if !(value_mm.abs() <= MAX_COORDINATE_MM) {
+        for value_mm in motion
+            .start_mm
+            .into_iter()
+            .chain(motion.end_mm)
+            .chain(center)
+        {
+            // NaN is in no range.
+            if !(-MAX_COORDINATE_MM..=MAX_COORDINATE_MM).contains(&value_mm) {
                 return Err(PathError::Coordinate { line, value_mm });
             }
         }
-        if motion.kind == MotionKind::Feed && !(motion.feed_mm_s >= MIN_FEED_MM_S) {
-            return Err(PathError::Feed { line, feed_mm_s: motion.feed_mm_s });
+        if motion.kind == MotionKind::Feed
+            && !(MIN_FEED_MM_S..=f64::MAX).contains(&motion.feed_mm_s)
+        {
+            return Err(PathError::Feed {
+                line,
+                feed_mm_s: motion.feed_mm_s,
+            });
         }
         let here_mm = self.here_mm.unwrap_or(motion.start_mm);
         let gap_mm = distance(here_mm, motion.start_mm);
@@ -117,7 +145,9 @@ impl<I: Iterator<Item = Canon>> Iterator for Pieces<I> {
             }
             let outcome = match self.source.next()? {
                 Canon::Motion(motion) => self.motion(&motion),
-                Canon::Event(event) => check_event(&event).map(|()| self.ready.push_back(Step::Event(event))),
+                Canon::Event(event) => {
+                    check_event(&event).map(|()| self.ready.push_back(Step::Event(event)))
+                }
             };
             if let Err(error) = outcome {
                 self.failed = true;
@@ -130,8 +160,11 @@ impl<I: Iterator<Item = Canon>> Iterator for Pieces<I> {
 
 fn check_event(event: &Event) -> Result<(), PathError> {
     match event.kind {
-        EventKind::Dwell { seconds } if !(seconds >= 0.0 && seconds.is_finite()) => {
-            Err(PathError::Dwell { line: event.line, seconds })
+        EventKind::Dwell { seconds } if !(0.0..=f64::MAX).contains(&seconds) => {
+            Err(PathError::Dwell {
+                line: event.line,
+                seconds,
+            })
         }
         _ => Ok(()),
     }
@@ -169,7 +202,15 @@ mod tests {
 
     fn motion(start_mm: Vector, end_mm: Vector, shape: Shape) -> Canon {
         let corner = Corner::Continuous { tolerance_mm: None };
-        Canon::Motion(Motion { line: 1, kind: MotionKind::Feed, start_mm, end_mm, shape, feed_mm_s: 10.0, corner })
+        Canon::Motion(Motion {
+            line: 1,
+            kind: MotionKind::Feed,
+            start_mm,
+            end_mm,
+            shape,
+            feed_mm_s: 10.0,
+            corner,
+        })
     }
 
     fn pieces(motions: Vec<Canon>) -> Result<Vec<Piece>, PathError> {
@@ -192,7 +233,9 @@ mod tests {
         let mut last: Option<Piece> = None;
         let mut total = 0.0;
         for step in Pieces::new(steps) {
-            let Ok(Step::Piece(piece)) = step else { panic!() };
+            let Ok(Step::Piece(piece)) = step else {
+                panic!()
+            };
             if let Some(before) = &last {
                 let end = before.curve.at(before.length_mm).position_mm;
                 assert!(distance(end, piece.start_mm) < 1e-15);
@@ -206,7 +249,11 @@ mod tests {
 
     #[test]
     fn equal_points_make_no_piece() {
-        assert!(pieces(vec![motion([1.0; 3], [1.0; 3], Shape::Line)]).unwrap().is_empty());
+        assert!(
+            pieces(vec![motion([1.0; 3], [1.0; 3], Shape::Line)])
+                .unwrap()
+                .is_empty()
+        );
     }
 
     #[test]
@@ -224,10 +271,17 @@ mod tests {
 
     #[test]
     fn a_line_after_an_arc_starts_at_the_programmed_point() {
-        let arc = Shape::Arc { plane: Plane::Xy, center_mm: [0.0; 3], turns: 1 };
+        let arc = Shape::Arc {
+            plane: Plane::Xy,
+            center_mm: [0.0; 3],
+            turns: 1,
+        };
         let end = [0.0, 10.0, 0.0];
-        let pieces =
-            pieces(vec![motion([10.0, 0.0, 0.0], end, arc), motion(end, [0.0; 3], Shape::Line)]).unwrap();
+        let pieces = pieces(vec![
+            motion([10.0, 0.0, 0.0], end, arc),
+            motion(end, [0.0; 3], Shape::Line),
+        ])
+        .unwrap();
         assert_eq!(pieces[1].start_mm, end);
         assert_eq!(pieces[1].curve.at(5.0).tangent, [0.0, -1.0, 0.0]);
     }

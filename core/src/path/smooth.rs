@@ -3,7 +3,7 @@
 //! The curve `C(u)` is exact; only the parameter `u(s)` at a given arc length is approximated. The domain is cut into cells;
 //! within a cell `u(s)` is the quintic polynomial that matches `u`, `u' = 1/|C'|` and `u'' = -(C'.C'')/|C'|^4` at both
 //! ends. Lengths of cells come from 5-point Gauss-Legendre quadrature of `|C'|`; a cell is halved until quadrature and
-//! polynomial are right to [`CELL_TOLERANCE_MM`] and the tangent turns little enough for the nearest point to be unique.
+//! polynomial are right to `CELL_TOLERANCE_MM` and the tangent turns little enough for the nearest point to be unique.
 
 use super::Point;
 use super::vector::{Vector, angle, cross, distance, dot, norm, scale, sub};
@@ -92,7 +92,12 @@ impl Smooth {
             }
         }
         let bins = bins(&cells, s_mm);
-        Self { shape, cells, bins, length_mm: s_mm }
+        Self {
+            shape,
+            cells,
+            bins,
+            length_mm: s_mm,
+        }
     }
 
     /// Length, mm.
@@ -103,7 +108,10 @@ impl Smooth {
     /// Position and tangent at `s_mm`.
     pub fn at(&self, s_mm: f64) -> Point {
         let jet = self.jet_at(s_mm);
-        Point { position_mm: jet.position_mm, tangent: unit(jet.first) }
+        Point {
+            position_mm: jet.position_mm,
+            tangent: unit(jet.first),
+        }
     }
 
     /// Curvature at `s_mm`, 1/mm.
@@ -133,7 +141,9 @@ impl Smooth {
     }
 
     fn cell_end_mm(&self, index: usize) -> f64 {
-        self.cells.get(index + 1).map_or(self.length_mm, |cell| cell.s_mm)
+        self.cells
+            .get(index + 1)
+            .map_or(self.length_mm, |cell| cell.s_mm)
     }
 
     /// Arc length of the nearest point between the bounds.
@@ -151,12 +161,18 @@ impl Smooth {
         let first = self.cell_of(lo_mm);
         let last = self.cell_of(hi_mm);
         let middle = self.cell_of(s_mm).clamp(first, last);
-        let mut best = Best { s_mm, distance_mm: f64::INFINITY };
+        let mut best = Best {
+            s_mm,
+            distance_mm: f64::INFINITY,
+        };
         self.offer(middle, point_mm, lo_mm, hi_mm, &mut best);
 
-        let sharpest = self.cells[first..=last].iter().fold(0.0, |k: f64, cell| k.max(cell.curvature_1_mm));
+        let sharpest = self.cells[first..=last]
+            .iter()
+            .fold(0.0, |k: f64, cell| k.max(cell.curvature_1_mm));
         // 1.5: the curvature was sampled, not bounded.
-        let inside = best.s_mm > self.cells[middle].s_mm.max(lo_mm) && best.s_mm < self.cell_end_mm(middle).min(hi_mm);
+        let inside = best.s_mm > self.cells[middle].s_mm.max(lo_mm)
+            && best.s_mm < self.cell_end_mm(middle).min(hi_mm);
         if 1.5 * sharpest * (best.distance_mm + hi_mm - lo_mm) < 1.0 && inside {
             return best.s_mm;
         }
@@ -206,7 +222,8 @@ impl Smooth {
             // d/ds of half the squared distance, and an approximation of its derivative that is right near the curve.
             let first = dot(away, jet.first) / speed;
             let second = 1.0
-                + (dot(away, jet.second) - first * dot(jet.first, jet.second) / speed) / (speed * speed);
+                + (dot(away, jet.second) - first * dot(jet.first, jet.second) / speed)
+                    / (speed * speed);
             (first, second, norm(away))
         };
         let at_lo = slope(lo);
@@ -299,7 +316,8 @@ fn make_cell(shape: &dyn Parametric, s_mm: f64, lo: f64, hi: f64) -> (Cell, f64,
     };
     let mut good = (gauss(shape, lo, hi) - length_mm).abs() <= CELL_TOLERANCE_MM;
     for i in 1..4 {
-        let miss_mm = (cell.parameter(s_mm + lengths[i]) - quarter(i as u32)).abs() * norm(jets[i].first);
+        let miss_mm =
+            (cell.parameter(s_mm + lengths[i]) - quarter(i as u32)).abs() * norm(jets[i].first);
         good &= miss_mm <= CELL_TOLERANCE_MM + 1e-15 * s_mm;
     }
     for i in 0..4 {
@@ -325,7 +343,13 @@ fn hermite(lo: f64, hi: f64, length: f64, at_lo: &Jet, at_hi: &Jet) -> [f64; 5] 
     let quartic = -15.0 * value + 7.0 * slope - bend;
     let quintic = 6.0 * value - 3.0 * slope + 0.5 * bend;
     let h3 = h * h * h;
-    [a1, 0.5 * a2, cubic / h3, quartic / (h3 * h), quintic / (h3 * h * h)]
+    [
+        a1,
+        0.5 * a2,
+        cubic / h3,
+        quartic / (h3 * h),
+        quintic / (h3 * h * h),
+    ]
 }
 
 fn bins(cells: &[Cell], length_mm: f64) -> Vec<u32> {

@@ -36,7 +36,9 @@ impl Window {
             self.phases.pop_front();
             self.hint = self.hint.saturating_sub(1);
         }
-        let Some(first) = self.phases.front() else { return };
+        let Some(first) = self.phases.front() else {
+            return;
+        };
         while self.first_piece < first.piece && self.pieces.len() > 1 {
             self.pieces.pop_front();
             self.first_piece += 1;
@@ -45,9 +47,13 @@ impl Window {
 
     #[inline]
     pub(super) fn at(&mut self, tau_s: f64) -> Sample {
-        let Some((phase, index)) = self.phase_at(tau_s) else { return Sample::nowhere() };
+        let Some((phase, index)) = self.phase_at(tau_s) else {
+            return Sample::nowhere();
+        };
         let ended = index + 1 == self.phases.len() && tau_s >= phase.tau_s + phase.duration_s;
-        let Some(piece) = self.piece(phase.piece) else { return Sample::nowhere() };
+        let Some(piece) = self.piece(phase.piece) else {
+            return Sample::nowhere();
+        };
         let along = along(&phase, tau_s);
         let local_mm = local_mm(&phase, piece, along);
         let at = piece.curve.at(local_mm);
@@ -56,7 +62,11 @@ impl Window {
             position_mm: at.position_mm,
             tangent: at.tangent,
             s_mm: piece.s_mm + local_mm,
-            feed_mm_s: if resting { 0.0 } else { (phase.speed_mm_s + phase.accel_mm_s2 * along).max(0.0) },
+            feed_mm_s: if resting {
+                0.0
+            } else {
+                (phase.speed_mm_s + phase.accel_mm_s2 * along).max(0.0)
+            },
             line: phase.rest.unwrap_or(piece.line),
             cutting: piece.cutting && !resting,
             resting,
@@ -65,7 +75,8 @@ impl Window {
 
     #[inline]
     pub(super) fn nearest(&mut self, point_mm: [f64; 3], tau_lo_s: f64, tau_hi_s: f64) -> Foot {
-        let (Some((lo, _)), Some((hi, _))) = (self.phase_at(tau_lo_s), self.phase_at(tau_hi_s)) else {
+        let (Some((lo, _)), Some((hi, _))) = (self.phase_at(tau_lo_s), self.phase_at(tau_hi_s))
+        else {
             return Foot::nowhere(point_mm);
         };
         let (Some(first), Some(last)) = (self.piece(lo.piece), self.piece(hi.piece)) else {
@@ -78,26 +89,43 @@ impl Window {
             return super::foot(first, first.curve.nearest(point_mm, lo_mm, hi_mm), point_mm);
         }
         let index = |piece: u64| (piece - self.first_piece) as usize;
-        nearest(&self.pieces, Range { first: index(lo.piece), last: index(hi.piece), lo_mm, hi_mm }, point_mm)
+        nearest(
+            &self.pieces,
+            Range {
+                first: index(lo.piece),
+                last: index(hi.piece),
+                lo_mm,
+                hi_mm,
+            },
+            point_mm,
+        )
     }
 
     fn piece(&self, number: u64) -> Option<&Piece> {
-        self.pieces.get(number.checked_sub(self.first_piece)? as usize)
+        self.pieces
+            .get(number.checked_sub(self.first_piece)? as usize)
     }
 
     /// The last phase that starts at `tau_s` or before, or else the first.
     #[inline]
     fn phase_at(&mut self, tau_s: f64) -> Option<(Phase, usize)> {
         let holds = |index: usize| {
-            self.phases.get(index).is_some_and(|phase| phase.tau_s <= tau_s)
-                && self.phases.get(index + 1).is_none_or(|next| next.tau_s > tau_s)
+            self.phases
+                .get(index)
+                .is_some_and(|phase| phase.tau_s <= tau_s)
+                && self
+                    .phases
+                    .get(index + 1)
+                    .is_none_or(|next| next.tau_s > tau_s)
         };
         let index = if holds(self.hint) {
             self.hint
         } else if holds(self.hint + 1) {
             self.hint + 1
         } else {
-            self.phases.partition_point(|phase| phase.tau_s <= tau_s).saturating_sub(1)
+            self.phases
+                .partition_point(|phase| phase.tau_s <= tau_s)
+                .saturating_sub(1)
         };
         self.hint = index;
         self.phases.get(index).map(|phase| (*phase, index))
@@ -112,7 +140,8 @@ fn along(phase: &Phase, tau_s: f64) -> f64 {
 
 #[inline]
 fn local_mm(phase: &Phase, piece: &Piece, along: f64) -> f64 {
-    (phase.from_mm + along * (phase.speed_mm_s + 0.5 * phase.accel_mm_s2 * along)).min(piece.length_mm)
+    (phase.from_mm + along * (phase.speed_mm_s + 0.5 * phase.accel_mm_s2 * along))
+        .min(piece.length_mm)
 }
 
 impl Sample {
