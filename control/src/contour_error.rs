@@ -1,0 +1,244 @@
+//! Contour error in real time: the distance of the tool from the line through the two stored reference knots nearest it.
+//!
+//! ```text
+//! eps_c = e_y cos(theta) - e_x sin(theta)   if x2 >= x1,   its negative if x2 < x1             (1)
+//! theta = atan((y2 - y1) / (x2 - x1))                                                          (2)
+//! ```
+//!
+//! with e = P2 - P: positive where the path lies to the left of the tool.
+//!
+//! Source: Lee and Jeon (1999); Lee, Cho and Jeon (2005), section 2.2, eqs 1 and 2.
+//!
+//! Departures: the foot is clamped to the stretch between the knots, so that the tool has a nearest point beside a
+//! corner too; where the tangents of the two knots differ by a corner, the stretch goes through the corner; in space
+//! the error is a vector, and eq. 1 is its component along the left normal in the plane.
+//!
+//! The window of variable size: the search starts at the age where it ended last time and looks as far to both sides as
+//! the tool can be, given how far it was off and how fast the reference moves. [`MAX_ENTRIES`] bounds it.
+
+use crate::vector::{add_scaled, dot, norm, scale, sub};
+use crate::window::{Knot, REGISTER_KNOTS, Register};
+
+/// Entries looked at on either side of the start, at the least: covers the motion of one servo period.
+const LEAST_REACH: usize = 4;
+/// Entries looked at on either side, at the most.
+const MOST_REACH: usize = 48;
+/// The most register entries that one estimate looks at.
+pub const MAX_ENTRIES: usize = 2 * MOST_REACH + 1;
+/// The window reaches this many times the last distance to both sides: the nearest point beyond a right-angled corner
+/// is no further along the path than 2.4 times the distance.
+const REACH_OF_ERROR: f64 = 3.0;
+/// Cosine of the turn between neighbouring knots above which there is a corner between them (0.1 rad: a curve turns so
+/// much in one servo period only where its radius is below ten steps).
+const CORNER_COSINE: f64 = 0.995;
+
+/// The nearest point of the path, as known from the register.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContourError<const N: usize> {
+    /// From the tool to the nearest point of the path (desired minus actual), mm.
+    pub vector_mm: [f64; N],
+    /// Unit direction of travel at the nearest point.
+    pub tangent: [f64; N],
+    /// Register entries looked at.
+    pub entries: usize,
+}
+
+impl<const N: usize> ContourError<N> {
+    /// No error, nothing known.
+    pub const NONE: Self = Self { vector_mm: [0.0; N], tangent: [0.0; N], entries: 0 };
+
+    /// Eq. 1 in its own sign: positive where the path lies to the left of the tool, in the plane of the first two
+    /// axes; mm.
+    pub fn signed_mm(&self) -> f64 {
+        self.tangent[0] * self.vector_mm[1] - self.tangent[1] * self.vector_mm[0]
+    }
+}
+
+/// The estimator: remembers where in the register the tool was.
+#[derive(Debug, Clone, Default)]
+pub struct Estimator {
+    age: usize,
+    distance_mm: f64,
+    spacing_mm: f64,
+}
+
+impl Estimator {
+    /// The contour error of a tool at `tool_mm`.
+    #[inline]
+    pub fn estimate<const N: usize>(&mut self, register: &Register<N>, tool_mm: [f64; N]) -> ContourError<N> {
+        if register.is_empty() {
+            return ContourError::NONE;
+        }
+        let reach = self.reach();
+        let newest = self.age.min(register.len() - 1).saturating_sub(reach);
+        let oldest = (self.age + reach).min(register.len() - 1);
+        let (age, entries) = nearest_knot(register, tool_mm, newest, oldest);
+        let foot = nearest_foot(register, tool_mm, age);
+        self.age = age;
+        self.distance_mm = norm(foot.vector_mm);
+        self.spacing_mm = spacing(register, age);
+        ContourError { entries, ..foot }
+    }
+
+    /// Forgets where the tool was.
+    pub fn reset(&mut self) {
+        *self = Self::default();
+    }
+
+    /// Entries to look at on either side of the last.
+    fn reach(&self) -> usize {
+        if self.spacing_mm <= 0.0 {
+            return MOST_REACH;
+        }
+        let entries = REACH_OF_ERROR * self.distance_mm / self.spacing_mm;
+        // A float that is too large, or not a number, saturates here.
+        LEAST_REACH + (entries as usize).min(MOST_REACH - LEAST_REACH)
+    }
+}
+
+/// Age of the nearest knot in a range of ages, widened while the nearest stands at an end of the range.
+fn nearest_knot<const N: usize>(
+    register: &Register<N>,
+    tool_mm: [f64; N],
+    newest: usize,
+    oldest: usize,
+) -> (usize, usize) {
+    let square = |age: usize| {
+        let d = sub(register.knot(age).position_mm, tool_mm);
+        dot(d, d)
+    };
+    let (mut best, mut best_square) = (newest, square(newest));
+    for age in newest + 1..=oldest {
+        let s = square(age);
+        if s < best_square {
+            (best, best_square) = (age, s);
+        }
+    }
+    let mut entries = oldest - newest + 1;
+    let mut step = |from: usize, to: Option<usize>| -> Option<usize> {
+        let to = to.filter(|&to| to < register.len() && entries < MAX_ENTRIES)?;
+        entries += 1;
+        (square(to) < square(from)).then_some(to)
+    };
+    if best == oldest {
+        while let Some(next) = step(best, best.checked_add(1)) {
+            best = next;
+        }
+    }
+    if best == newest {
+        while let Some(next) = step(best, best.checked_sub(1)) {
+            best = next;
+        }
+    }
+    (best, entries)
+}
+
+/// Distance between the knot of this age and the next older one, mm.
+fn spacing<const N: usize>(register: &Register<N>, age: usize) -> f64 {
+    let older = (age + 1).min(register.len().saturating_sub(1));
+    let newer = older.saturating_sub(1);
+    norm(sub(register.knot(newer).position_mm, register.knot(older).position_mm))
+}
+
+/// The nearest point on the stretches before and after the knot of this age.
+fn nearest_foot<const N: usize>(register: &Register<N>, tool_mm: [f64; N], age: usize) -> ContourError<N> {
+    let knot = register.knot(age);
+    let mut best = foot_on(knot.position_mm, knot.position_mm, knot.tangent, tool_mm);
+    let mut consider = |from: &Knot<N>, to: &Knot<N>| {
+        for foot in feet_between(from, to, tool_mm) {
+            if dot(foot.vector_mm, foot.vector_mm) < dot(best.vector_mm, best.vector_mm) {
+                best = foot;
+            }
+        }
+    };
+    if age + 1 < register.len().min(REGISTER_KNOTS) {
+        consider(register.knot(age + 1), knot);
+    }
+    if age > 0 {
+        consider(knot, register.knot(age - 1));
+    }
+    best
+}
+
+/// The nearest points on the path between two knots: the chord, or where there is a corner the two sides of it.
+fn feet_between<const N: usize>(from: &Knot<N>, to: &Knot<N>, tool_mm: [f64; N]) -> [ContourError<N>; 2] {
+    let (p, q) = (from.position_mm, to.position_mm);
+    let cosine = dot(from.tangent, to.tangent);
+    let chord = sub(q, p);
+    if cosine < CORNER_COSINE && cosine > -CORNER_COSINE {
+        // The corner is where the two tangent lines meet: p + a t1, with a from the component of the chord across t2.
+        let across = |v: [f64; N]| add_scaled(v, -dot(v, to.tangent), to.tangent);
+        let (t, c) = (across(from.tangent), across(chord));
+        let a = (dot(c, t) / dot(t, t)).clamp(0.0, norm(chord));
+        let corner = add_scaled(p, a, from.tangent);
+        return [foot_on(p, corner, from.tangent, tool_mm), foot_on(corner, q, to.tangent, tool_mm)];
+    }
+    let length = norm(chord);
+    let direction = if length > 0.0 { scale(1.0 / length, chord) } else { to.tangent };
+    [foot_on(p, q, direction, tool_mm); 2]
+}
+
+/// The nearest point on the stretch from `p` to `q`, which runs along the unit vector `direction`.
+fn foot_on<const N: usize>(p: [f64; N], q: [f64; N], direction: [f64; N], tool_mm: [f64; N]) -> ContourError<N> {
+    let along = dot(sub(tool_mm, p), direction).clamp(0.0, norm(sub(q, p)));
+    let foot = add_scaled(p, along, direction);
+    ContourError { vector_mm: sub(foot, tool_mm), tangent: direction, entries: 0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Eqs 1 and 2 as they are printed.
+    fn printed([x1, y1]: [f64; 2], [x2, y2]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
+        let theta = libm::atan((y2 - y1) / (x2 - x1));
+        let (ex, ey) = (x2 - x, y2 - y);
+        let eps = ey * libm::cos(theta) - ex * libm::sin(theta);
+        if x2 >= x1 { eps } else { -eps }
+    }
+
+    fn circle_register(step_rad: f64, knots: i32) -> Register<2> {
+        let mut register = Register::default();
+        for i in 0..knots {
+            let a = f64::from(i) * step_rad;
+            let (sin, cos) = (libm::sin(a), libm::cos(a));
+            register.push(Knot {
+                position_mm: [10.0 * (1.0 - cos), 10.0 * sin],
+                tangent: [sin, cos],
+                feed_mm_s: 50.0,
+            });
+        }
+        register
+    }
+
+    #[test]
+    fn agrees_with_the_printed_equations_in_all_quadrants() {
+        let step = 0.005;
+        for knots in (30..1200).step_by(7) {
+            let register = circle_register(step, knots);
+            let a = (f64::from(knots) - 20.3) * step;
+            let tool = [10.0 - 9.97 * libm::cos(a), 9.97 * libm::sin(a)];
+            let error = Estimator::default().estimate(&register, tool);
+            let on = |i: i32| {
+                let a = f64::from(i) * step;
+                [10.0 * (1.0 - libm::cos(a)), 10.0 * libm::sin(a)]
+            };
+            let eps = printed(on(knots - 21), on(knots - 20), tool);
+            assert!((error.signed_mm() - eps).abs() < 1e-9, "{knots}: {} {eps}", error.signed_mm());
+            assert!((norm(error.vector_mm) - 0.03).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn a_corner_between_two_knots_is_not_cut_off() {
+        let mut register = Register::default();
+        for i in 0..40 {
+            register.push(Knot { position_mm: [-0.995 + 0.05 * f64::from(i).min(19.0), 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0 });
+        }
+        for i in 0..20 {
+            register.push(Knot { position_mm: [0.0, 0.005 + 0.05 * f64::from(i)], tangent: [0.0, 1.0], feed_mm_s: 50.0 });
+        }
+        let error = Estimator::default().estimate(&register, [0.03, -0.04]);
+        assert!((norm(error.vector_mm) - 0.05).abs() < 1e-12, "{error:?}");
+    }
+}
