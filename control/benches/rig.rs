@@ -1,0 +1,75 @@
+//! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
+
+use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
+use feedwright_control::identifier::{Identifier, Inputs};
+use feedwright_control::{Controller, Knot, Measured, Reference, Tick, Window};
+
+/// The circle of eq. 11 at 50 mm/s.
+pub(crate) struct Circle;
+
+impl<const N: usize> Reference<N> for Circle {
+    fn knot(&mut self, tau_s: f64) -> Knot<N> {
+        let (sin, cos) = (5.0 * tau_s).sin_cos();
+        let mut knot = Knot { feed_mm_s: 50.0, ..Knot::REST };
+        (knot.position_mm[0], knot.position_mm[1]) = (10.0 * (1.0 - cos), 10.0 * sin);
+        (knot.tangent[0], knot.tangent[1]) = (sin, cos);
+        knot
+    }
+}
+
+/// Weights and inputs of the order that training gives, without symmetry.
+pub(crate) fn network<const N: usize>() -> (Identifier<N>, Inputs<N>) {
+    let mut state = 1_u32;
+    let mut next = move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state) / f64::from(u32::MAX) - 0.5
+    };
+    let hidden = std::array::from_fn(|_| std::array::from_fn(|_| std::array::from_fn(|_| next())));
+    let output = std::array::from_fn(|_| std::array::from_fn(|_| next()));
+    let inputs = std::array::from_fn(|_| std::array::from_fn(|_| 2.0 * next()));
+    (Identifier { hidden, output }, inputs)
+}
+
+/// The paper's controller with an untrained network: the work does not depend on the weights.
+pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
+    TwoDimensional::new(network().0, Settings::DEFAULT)
+}
+
+/// A tick run by hand: the controller alone, or the whole with reference and contour error.
+pub(crate) struct Rig<const N: usize> {
+    /// The tick.
+    tick: Tick<N>,
+    /// Its controller.
+    controller: TwoDimensional<N>,
+    periods: u32,
+}
+
+impl<const N: usize> Rig<N> {
+    /// Warmed up by a lap.
+    pub(crate) fn new() -> Self {
+        let controller = paper::<N>();
+        let mut rig = Self { tick: Tick::new(0.001, controller.schedule(), 0.5), controller, periods: 0 };
+        for _ in 0..1000 {
+            rig.servo_period();
+        }
+        rig
+    }
+
+    /// One servo period; the tool lags by 20 ms and is 20 um inside.
+    pub(crate) fn servo_period(&mut self) -> [f64; N] {
+        let mut tool: Knot<N> = Circle.knot(f64::from(self.periods) * 0.001 - 0.02);
+        tool.position_mm[0] += 0.02 * tool.tangent[1];
+        self.periods += 1;
+        self.tick.step(&mut Circle, &mut self.controller, tool.position_mm).command_mm
+    }
+}
+
+/// One decision of the paper's controller: learn, invert in five steps, command.
+pub(crate) fn decide<const N: usize>(
+    controller: &mut TwoDimensional<N>,
+    window: &Window<'_, N>,
+    measured: &Measured<N>,
+) -> [f64; N] {
+    controller.observe(measured);
+    controller.command(window, measured).offset_mm
+}
