@@ -2,6 +2,8 @@
 
 use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
 use feedwright_control::identifier::{Identifier, Inputs};
+use feedwright_control::contour_error::{ContourError, Estimator};
+use feedwright_control::window::{Preview, Register};
 use feedwright_control::{Controller, Knot, Measured, Reference, Tick, Window};
 
 /// The circle of eq. 11 at 50 mm/s.
@@ -61,6 +63,46 @@ impl<const N: usize> Rig<N> {
         tool.position_mm[0] += 0.02 * tool.tangent[1];
         self.periods += 1;
         self.tick.step(&mut Circle, &mut self.controller, tool.position_mm).command_mm
+    }
+}
+
+/// A register filled by the circle, its preview, and the tool that lags behind by 20 ms and is 20 um inside.
+pub(crate) struct Surroundings<const N: usize> {
+    register: Register<N>,
+    preview: Preview<N>,
+    /// Where the tool is.
+    pub(crate) tool_mm: [f64; N],
+}
+
+impl<const N: usize> Surroundings<N> {
+    /// After 0.3 s.
+    pub(crate) fn new() -> Self {
+        let mut register = Register::default();
+        for i in 0..300 {
+            register.push(Circle.knot(f64::from(i) * 0.001));
+        }
+        let mut preview = Preview::new(0.001);
+        preview.fill(&mut Circle, 0.299, 0.1);
+        let mut tool: Knot<N> = Circle.knot(0.279);
+        tool.position_mm[0] += 0.02 * tool.tangent[1];
+        Self { register, preview, tool_mm: tool.position_mm }
+    }
+
+    /// What the controller sees.
+    pub(crate) fn window(&self) -> Window<'_, N> {
+        Window {
+            register: &self.register,
+            preview: &self.preview,
+            tau_s: 0.299,
+            feed_period_s: 0.01,
+            offset_mm: [0.0; N],
+        }
+    }
+
+    /// What is measured.
+    pub(crate) fn measured(&self) -> Measured<N> {
+        let contour: ContourError<N> = Estimator::default().estimate(&self.window(), self.tool_mm);
+        Measured { position_mm: self.tool_mm, contour }
     }
 }
 

@@ -5,47 +5,27 @@
 mod rig;
 
 use divan::{Bencher, black_box};
-use feedwright_control::contour_error::{ContourError, Estimator};
-use feedwright_control::window::Register;
-use feedwright_control::{Knot, Measured, Reference, Window};
+use feedwright_control::contour_error::Estimator;
 
 fn main() {
     divan::main();
 }
 
-/// A register filled by the circle, the window at its end, and the tool that lags behind.
-fn surroundings<const N: usize>() -> (Register<N>, [Knot<N>; 2], Measured<N>) {
-    let mut register = Register::default();
-    for i in 0..300 {
-        register.push(rig::Circle.knot(f64::from(i) * 0.001));
-    }
-    let preview = [rig::Circle.knot(0.299), rig::Circle.knot(0.309)];
-    let mut tool: Knot<N> = rig::Circle.knot(0.279);
-    tool.position_mm[0] += 0.02;
-    let contour = Estimator::default().estimate(&register, tool.position_mm);
-    (register, preview, Measured { position_mm: tool.position_mm, contour })
-}
-
 /// Five inversion steps and one back-propagation.
 #[divan::bench(consts = [2, 3])]
 fn paper_tick<const N: usize>(bencher: Bencher<'_, '_>) {
-    let (register, preview, measured) = surroundings::<N>();
+    let surroundings = rig::Surroundings::<N>::new();
+    let (window, measured) = (surroundings.window(), surroundings.measured());
     let mut controller = rig::paper();
-    bencher.bench_local(|| {
-        let window = Window { register: &register, preview: &preview, feed_period_s: 0.01, offset_mm: [0.0; N] };
-        rig::decide(&mut controller, black_box(&window), black_box(&measured))
-    });
+    bencher.bench_local(|| rig::decide(&mut controller, black_box(&window), black_box(&measured)));
 }
 
 #[divan::bench(consts = [2, 3])]
 fn contour_error<const N: usize>(bencher: Bencher<'_, '_>) {
-    let (register, _, measured) = surroundings::<N>();
+    let surroundings = rig::Surroundings::<N>::new();
+    let window = surroundings.window();
     let mut estimator = Estimator::default();
-    let mut last = ContourError::NONE;
-    bencher.bench_local(|| {
-        last = estimator.estimate(black_box(&register), black_box(measured.position_mm));
-        last.entries
-    });
+    bencher.bench_local(|| estimator.estimate(black_box(&window), black_box(surroundings.tool_mm)));
 }
 
 #[divan::bench(consts = [2, 3])]

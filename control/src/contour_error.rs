@@ -17,14 +17,14 @@
 //! the tool can be, given how far it was off and how fast the reference moves. [`MAX_ENTRIES`] bounds it.
 
 use crate::vector::{add_scaled, dot, norm, scale, sub};
-use crate::window::{Knot, REGISTER_KNOTS, Register};
+use crate::window::{Knot, Window};
 
-/// Entries looked at on either side of the start, at the least: covers the motion of one servo period.
-const LEAST_REACH: usize = 4;
+/// Entries looked at on either side of the start, at the least: covers a feed period in which the lag changes.
+const LEAST_REACH: i32 = 12;
 /// Entries looked at on either side, at the most.
-const MOST_REACH: usize = 48;
+const MOST_REACH: i32 = 48;
 /// The most register entries that one estimate looks at.
-pub const MAX_ENTRIES: usize = 2 * MOST_REACH + 1;
+pub const MAX_ENTRIES: usize = 2 * MOST_REACH as usize + 1;
 /// The window reaches this many times the last distance to both sides: the nearest point beyond a right-angled corner
 /// is no further along the path than 2.4 times the distance.
 const REACH_OF_ERROR: f64 = 3.0;
@@ -54,10 +54,10 @@ impl<const N: usize> ContourError<N> {
     }
 }
 
-/// The estimator: remembers where in the register the tool was.
+/// The estimator: remembers where among the knots the tool was.
 #[derive(Debug, Clone, Default)]
 pub struct Estimator {
-    age: usize,
+    index: i32,
     distance_mm: f64,
     spacing_mm: f64,
 }
@@ -65,18 +65,16 @@ pub struct Estimator {
 impl Estimator {
     /// The contour error of a tool at `tool_mm`.
     #[inline]
-    pub fn estimate<const N: usize>(&mut self, register: &Register<N>, tool_mm: [f64; N]) -> ContourError<N> {
-        if register.is_empty() {
-            return ContourError::NONE;
-        }
+    pub fn estimate<const N: usize>(&mut self, window: &Window<'_, N>, tool_mm: [f64; N]) -> ContourError<N> {
+        let [first, last] = window.range();
+        let start = self.index.clamp(first, last);
         let reach = self.reach();
-        let newest = self.age.min(register.len() - 1).saturating_sub(reach);
-        let oldest = (self.age + reach).min(register.len() - 1);
-        let (age, entries) = nearest_knot(register, tool_mm, newest, oldest);
-        let foot = nearest_foot(register, tool_mm, age);
-        self.age = age;
+        let (index, entries) = nearest_knot(window, tool_mm, (start - reach).max(first), (start + reach).min(last));
+        let foot = nearest_foot(window, tool_mm, index);
+        self.index = index;
         self.distance_mm = norm(foot.vector_mm);
-        self.spacing_mm = spacing(register, age);
+        let before = (index - 1).max(first);
+        self.spacing_mm = norm(sub(window.knot(before + 1).position_mm, window.knot(before).position_mm));
         ContourError { entries, ..foot }
     }
 
@@ -86,76 +84,58 @@ impl Estimator {
     }
 
     /// Entries to look at on either side of the last.
-    fn reach(&self) -> usize {
+    fn reach(&self) -> i32 {
         if self.spacing_mm <= 0.0 {
             return MOST_REACH;
         }
-        let entries = REACH_OF_ERROR * self.distance_mm / self.spacing_mm;
         // A float that is too large, or not a number, saturates here.
-        LEAST_REACH + (entries as usize).min(MOST_REACH - LEAST_REACH)
+        LEAST_REACH + ((REACH_OF_ERROR * self.distance_mm / self.spacing_mm) as i32).min(MOST_REACH - LEAST_REACH)
     }
 }
 
-/// Age of the nearest knot in a range of ages, widened while the nearest stands at an end of the range.
-fn nearest_knot<const N: usize>(
-    register: &Register<N>,
-    tool_mm: [f64; N],
-    newest: usize,
-    oldest: usize,
-) -> (usize, usize) {
-    let square = |age: usize| {
-        let d = sub(register.knot(age).position_mm, tool_mm);
+/// Index of the nearest knot in a range, which is widened while the nearest stands at an end of it.
+fn nearest_knot<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, to: i32) -> (i32, usize) {
+    let square = |index: i32| {
+        let d = sub(window.knot(index).position_mm, tool_mm);
         dot(d, d)
     };
-    let (mut best, mut best_square) = (newest, square(newest));
-    for age in newest + 1..=oldest {
-        let s = square(age);
+    let (mut best, mut best_square) = (from, square(from));
+    for index in from + 1..=to {
+        let s = square(index);
         if s < best_square {
-            (best, best_square) = (age, s);
+            (best, best_square) = (index, s);
         }
     }
-    let mut entries = oldest - newest + 1;
-    let mut step = |from: usize, to: Option<usize>| -> Option<usize> {
-        let to = to.filter(|&to| to < register.len() && entries < MAX_ENTRIES)?;
-        entries += 1;
-        (square(to) < square(from)).then_some(to)
-    };
-    if best == oldest {
-        while let Some(next) = step(best, best.checked_add(1)) {
-            best = next;
-        }
-    }
-    if best == newest {
-        while let Some(next) = step(best, best.checked_sub(1)) {
-            best = next;
+    let mut entries = (to - from + 1) as usize;
+    let [first, last] = window.range();
+    let direction = if best == from { -1 } else { 1 };
+    if best == from || best == to {
+        while entries < MAX_ENTRIES && (first..=last).contains(&(best + direction)) {
+            entries += 1;
+            let s = square(best + direction);
+            if s >= best_square {
+                break;
+            }
+            (best, best_square) = (best + direction, s);
         }
     }
     (best, entries)
 }
 
-/// Distance between the knot of this age and the next older one, mm.
-fn spacing<const N: usize>(register: &Register<N>, age: usize) -> f64 {
-    let older = (age + 1).min(register.len().saturating_sub(1));
-    let newer = older.saturating_sub(1);
-    norm(sub(register.knot(newer).position_mm, register.knot(older).position_mm))
-}
-
-/// The nearest point on the stretches before and after the knot of this age.
-fn nearest_foot<const N: usize>(register: &Register<N>, tool_mm: [f64; N], age: usize) -> ContourError<N> {
-    let knot = register.knot(age);
+/// The nearest point on the stretches before and after the knot of this index.
+fn nearest_foot<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], index: i32) -> ContourError<N> {
+    let [first, last] = window.range();
+    let knot = window.knot(index);
     let mut best = foot_on(knot.position_mm, knot.position_mm, knot.tangent, tool_mm);
-    let mut consider = |from: &Knot<N>, to: &Knot<N>| {
-        for foot in feet_between(from, to, tool_mm) {
+    for (before, after) in [(index - 1, index), (index, index + 1)] {
+        if before < first || after > last {
+            continue;
+        }
+        for foot in feet_between(window.knot(before), window.knot(after), tool_mm) {
             if dot(foot.vector_mm, foot.vector_mm) < dot(best.vector_mm, best.vector_mm) {
                 best = foot;
             }
         }
-    };
-    if age + 1 < register.len().min(REGISTER_KNOTS) {
-        consider(register.knot(age + 1), knot);
-    }
-    if age > 0 {
-        consider(knot, register.knot(age - 1));
     }
     best
 }
@@ -188,6 +168,7 @@ fn foot_on<const N: usize>(p: [f64; N], q: [f64; N], direction: [f64; N], tool_m
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::window::{Preview, Register};
 
     /// Eqs 1 and 2 as they are printed.
     fn printed([x1, y1]: [f64; 2], [x2, y2]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
@@ -197,32 +178,47 @@ mod tests {
         if x2 >= x1 { eps } else { -eps }
     }
 
-    fn circle_register(step_rad: f64, knots: i32) -> Register<2> {
-        let mut register = Register::default();
-        for i in 0..knots {
-            let a = f64::from(i) * step_rad;
-            let (sin, cos) = (libm::sin(a), libm::cos(a));
-            register.push(Knot {
-                position_mm: [10.0 * (1.0 - cos), 10.0 * sin],
-                tangent: [sin, cos],
-                feed_mm_s: 50.0,
-            });
+    /// Knots of a path, all of them pushed, and the window at the last.
+    struct Behind {
+        register: Register<2>,
+        preview: Preview<2>,
+    }
+
+    impl Behind {
+        fn new(knots: impl Iterator<Item = Knot<2>>) -> Self {
+            let mut behind = Self { register: Register::default(), preview: Preview::new(0.001) };
+            for knot in knots {
+                behind.register.push(knot);
+            }
+            behind
         }
-        register
+
+        fn estimate(&self, tool_mm: [f64; 2]) -> ContourError<2> {
+            let window = Window {
+                register: &self.register,
+                preview: &self.preview,
+                tau_s: 0.0,
+                feed_period_s: 0.01,
+                offset_mm: [0.0; 2],
+            };
+            Estimator::default().estimate(&window, tool_mm)
+        }
+    }
+
+    fn on_circle(a: f64) -> Knot<2> {
+        let (sin, cos) = (libm::sin(a), libm::cos(a));
+        Knot { position_mm: [10.0 * (1.0 - cos), 10.0 * sin], tangent: [sin, cos], feed_mm_s: 50.0 }
     }
 
     #[test]
     fn agrees_with_the_printed_equations_in_all_quadrants() {
         let step = 0.005;
         for knots in (30..1200).step_by(7) {
-            let register = circle_register(step, knots);
+            let behind = Behind::new((0..knots).map(|i| on_circle(f64::from(i) * step)));
             let a = (f64::from(knots) - 20.3) * step;
             let tool = [10.0 - 9.97 * libm::cos(a), 9.97 * libm::sin(a)];
-            let error = Estimator::default().estimate(&register, tool);
-            let on = |i: i32| {
-                let a = f64::from(i) * step;
-                [10.0 * (1.0 - libm::cos(a)), 10.0 * libm::sin(a)]
-            };
+            let error = behind.estimate(tool);
+            let on = |i: i32| on_circle(f64::from(i) * step).position_mm;
             let eps = printed(on(knots - 21), on(knots - 20), tool);
             assert!((error.signed_mm() - eps).abs() < 1e-9, "{knots}: {} {eps}", error.signed_mm());
             assert!((norm(error.vector_mm) - 0.03).abs() < 1e-4);
@@ -231,14 +227,16 @@ mod tests {
 
     #[test]
     fn a_corner_between_two_knots_is_not_cut_off() {
-        let mut register = Register::default();
-        for i in 0..40 {
-            register.push(Knot { position_mm: [-0.995 + 0.05 * f64::from(i).min(19.0), 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0 });
-        }
-        for i in 0..20 {
-            register.push(Knot { position_mm: [0.0, 0.005 + 0.05 * f64::from(i)], tangent: [0.0, 1.0], feed_mm_s: 50.0 });
-        }
-        let error = Estimator::default().estimate(&register, [0.03, -0.04]);
+        let in_x = (0..20).map(|i| Knot { position_mm: [-0.995 + 0.05 * f64::from(i), 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0 });
+        let in_y = (0..20).map(|i| Knot { position_mm: [0.0, 0.005 + 0.05 * f64::from(i)], tangent: [0.0, 1.0], feed_mm_s: 50.0 });
+        let error = Behind::new(in_x.chain(in_y)).estimate([0.03, -0.04]);
         assert!((norm(error.vector_mm) - 0.05).abs() < 1e-12, "{error:?}");
+    }
+
+    #[test]
+    fn a_tool_nowhere_gives_an_error_that_is_not_a_number_in_bounded_work() {
+        let behind = Behind::new((0..300).map(|i| on_circle(f64::from(i) * 0.005)));
+        let error = behind.estimate([f64::NAN, 0.0]);
+        assert!(error.entries <= MAX_ENTRIES && !norm(error.vector_mm).is_finite());
     }
 }

@@ -24,8 +24,8 @@ use crate::window::Window;
 pub struct Schedule {
     /// Servo periods in a feed period, at least 1.
     pub servo_periods: u32,
-    /// Knots of preview, at most [`crate::window::PREVIEW_KNOTS`].
-    pub preview: usize,
+    /// Feed periods of preview; together at most [`crate::window::PREVIEW_KNOTS`] servo periods.
+    pub preview: u32,
 }
 
 /// What is known of the machine at the start of a feed period.

@@ -27,6 +27,8 @@ pub enum Gradient {
     Printed,
     /// The true gradient of eq. 7 through the network.
     Exact,
+    /// None: the first term of eq. 7 is zero, as in Fig. 7 of the paper.
+    Absent,
 }
 
 /// Settings of an inversion.
@@ -54,6 +56,7 @@ pub fn error_gradient<const N: usize>(net: &Identifier<N>, forward: &Forward<N>,
     core::array::from_fn(|axis| match which {
         Gradient::Printed => -forward.error[axis] * jacobian[axis][axis],
         Gradient::Exact => (0..N).map(|o| forward.error[o] * jacobian[o][axis]).sum(),
+        Gradient::Absent => 0.0,
     })
 }
 

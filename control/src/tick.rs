@@ -6,7 +6,7 @@
 use crate::contour_error::{ContourError, Estimator};
 use crate::controller::{Command, Controller, Measured, Schedule};
 use crate::vector::{add_scaled, limit_norm, sub};
-use crate::window::{Knot, PREVIEW_KNOTS, Reference, Register, Window};
+use crate::window::{Knot, Preview, Reference, Register, Window};
 
 /// Slowest and fastest that any controller may run the plan: a program always ends, and no command leaps.
 const RATE_RANGE: [f64; 2] = [0.1, 3.0];
@@ -33,7 +33,7 @@ pub struct Tick<const N: usize> {
     register: Register<N>,
     estimator: Estimator,
     contour: ContourError<N>,
-    preview: [Knot<N>; PREVIEW_KNOTS + 1],
+    preview: Preview<N>,
     /// Plan time, offset and rate at the start of the feed period; the offset at its end.
     tau_s: f64,
     offset_from_mm: [f64; N],
@@ -49,14 +49,11 @@ impl<const N: usize> Tick<N> {
         Self {
             servo_s,
             max_deviation_mm,
-            schedule: Schedule {
-                servo_periods: schedule.servo_periods.max(1),
-                preview: schedule.preview.min(PREVIEW_KNOTS),
-            },
+            schedule: Schedule { servo_periods: schedule.servo_periods.max(1), ..schedule },
             register: Register::default(),
             estimator: Estimator::default(),
             contour: ContourError::NONE,
-            preview: [Knot::REST; PREVIEW_KNOTS + 1],
+            preview: Preview::new(servo_s),
             tau_s: 0.0,
             offset_from_mm: [0.0; N],
             command: Command::AS_PLANNED,
@@ -80,9 +77,9 @@ impl<const N: usize> Tick<N> {
         let tau_s = self.tau_s + f64::from(self.phase) * self.servo_s * self.command.rate;
         let path = reference.knot(tau_s);
         self.register.push(path);
+        self.preview.fill(reference, tau_s, f64::from(self.schedule.preview) * self.feed_period_s());
         if decided {
-            self.contour = self.estimator.estimate(&self.register, tool_mm);
-            self.decide(reference, controller, path, tool_mm);
+            self.decide(controller, tool_mm);
         }
         let part = f64::from(self.phase) / f64::from(self.schedule.servo_periods);
         let offset_mm = add_scaled(self.offset_from_mm, part, sub(self.command.offset_mm, self.offset_from_mm));
@@ -95,25 +92,22 @@ impl<const N: usize> Tick<N> {
         &self.contour
     }
 
-    fn decide<R, C>(&mut self, reference: &mut R, controller: &mut C, path: Knot<N>, tool_mm: [f64; N])
-    where
-        R: Reference<N> + ?Sized,
-        C: Controller<N> + ?Sized,
-    {
-        let feed_period_s = f64::from(self.schedule.servo_periods) * self.servo_s;
-        self.preview[0] = path;
-        for i in 1..=self.schedule.preview {
-            self.preview[i] = reference.knot(self.tau_s + i as f64 * feed_period_s);
-        }
-        let measured = Measured { position_mm: tool_mm, contour: self.contour };
-        controller.observe(&measured);
+    fn decide<C: Controller<N> + ?Sized>(&mut self, controller: &mut C, tool_mm: [f64; N]) {
         let window = Window {
             register: &self.register,
-            preview: &self.preview[..=self.schedule.preview],
-            feed_period_s,
+            preview: &self.preview,
+            tau_s: self.tau_s,
+            feed_period_s: self.feed_period_s(),
             offset_mm: self.offset_from_mm,
         };
+        self.contour = self.estimator.estimate(&window, tool_mm);
+        let measured = Measured { position_mm: tool_mm, contour: self.contour };
+        controller.observe(&measured);
         self.command = self.admit(controller.command(&window, &measured));
+    }
+
+    fn feed_period_s(&self) -> f64 {
+        f64::from(self.schedule.servo_periods) * self.servo_s
     }
 
     /// The command, held within the limits; what is not a number goes on as planned, beside the path where it is.

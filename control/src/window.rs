@@ -3,13 +3,14 @@
 //! Source: Lee, Cho and Jeon (2005), section 2.2: "previously stored N reference position data in a shift register".
 //! Departure: a knot also carries the tangent, so that a corner between two knots is not cut off.
 
-use crate::vector::{norm, sub};
+use crate::vector::{add_scaled, norm, sub};
 
 /// Reference knots that the shift register holds. At a servo period of 1 ms they reach 0.26 s back, thirteen time
 /// constants of a position loop of 50 1/s; a tool that lags further behind than that is not following.
 pub const REGISTER_KNOTS: usize = 256;
-/// Most knots that a controller can ask for ahead of the current one.
-pub const PREVIEW_KNOTS: usize = 32;
+/// Reference knots that the preview holds. At a servo period of 1 ms they reach as far ahead as the register reaches
+/// back, more than twice the settling time of such a loop.
+pub const PREVIEW_KNOTS: usize = 256;
 /// A knot nearer than this to the last is not stored again, mm: at rest the register keeps its history.
 const SAME_PLACE_MM: f64 = 1e-7;
 
@@ -82,31 +83,100 @@ impl<const N: usize> Register<N> {
     }
 }
 
+/// Reference knots ahead, on a grid of plan time with the servo period as its step.
+#[derive(Debug, Clone)]
+pub struct Preview<const N: usize> {
+    knots: [Knot<N>; PREVIEW_KNOTS],
+    /// Grid point that is looked up next; the ring holds the [`PREVIEW_KNOTS`] before it.
+    next: u64,
+    step_s: f64,
+}
+
+impl<const N: usize> Preview<N> {
+    /// Empty, with a grid of `step_s` seconds.
+    pub fn new(step_s: f64) -> Self {
+        Self { knots: [Knot::REST; PREVIEW_KNOTS], next: 0, step_s }
+    }
+
+    /// Looks knots up until the grid reaches `ahead_s` beyond `tau_s`; at most [`PREVIEW_KNOTS`] of them.
+    #[inline]
+    pub fn fill<R: Reference<N> + ?Sized>(&mut self, reference: &mut R, tau_s: f64, ahead_s: f64) {
+        // One more than the last grid point that a look between two points needs.
+        let end = ((tau_s + ahead_s) / self.step_s) as u64 + 2;
+        self.next = self.next.max(end.saturating_sub(PREVIEW_KNOTS as u64));
+        while self.next < end {
+            self.knots[(self.next % PREVIEW_KNOTS as u64) as usize] = reference.knot(self.next as f64 * self.step_s);
+            self.next += 1;
+        }
+    }
+
+    /// The knot at plan time `tau_s`, between two grid points.
+    #[inline]
+    pub fn at(&self, tau_s: f64) -> Knot<N> {
+        let place = (tau_s / self.step_s).max(0.0);
+        let before = place as u64;
+        let part = place - before as f64;
+        let (a, b) = (self.grid(before), self.grid(before + 1));
+        let between = |p: [f64; N], q: [f64; N]| add_scaled(p, part, sub(q, p));
+        Knot {
+            position_mm: between(a.position_mm, b.position_mm),
+            tangent: if part < 0.5 { a.tangent } else { b.tangent },
+            feed_mm_s: a.feed_mm_s + part * (b.feed_mm_s - a.feed_mm_s),
+        }
+    }
+
+    /// The knot of a grid point; the nearest that the ring holds where it does not hold it.
+    #[inline]
+    pub fn grid(&self, point: u64) -> &Knot<N> {
+        let held = point.clamp(self.next.saturating_sub(PREVIEW_KNOTS as u64), self.next.saturating_sub(1));
+        &self.knots[(held % PREVIEW_KNOTS as u64) as usize]
+    }
+}
+
 /// What a controller sees of the path at the start of a feed period.
 #[derive(Debug, Clone, Copy)]
 pub struct Window<'a, const N: usize> {
-    /// Knots behind, one a servo period.
+    /// Knots behind, one a servo period; the newest is the current one.
     pub register: &'a Register<N>,
-    /// Knots ahead, one a feed period at the planned feed: `preview[0]` is the current one. As many as
-    /// [`crate::Schedule::preview`] asks for, plus one.
-    pub preview: &'a [Knot<N>],
+    /// Knots ahead, as far as [`crate::Schedule::preview`] asks for.
+    pub preview: &'a Preview<N>,
+    /// Plan time of the current knot, s.
+    pub tau_s: f64,
     /// Feed period, s.
     pub feed_period_s: f64,
     /// Offset of the command from the path at the current knot, mm.
     pub offset_mm: [f64; N],
 }
 
-impl<const N: usize> Window<'_, N> {
+impl<'a, const N: usize> Window<'a, N> {
     /// The current knot.
     #[inline]
     pub fn now(&self) -> Knot<N> {
-        self.ahead(0)
+        *self.register.knot(0)
     }
 
-    /// The knot `periods` feed periods ahead at the planned feed, or the farthest one there is.
+    /// The knot `periods` feed periods ahead at the planned feed.
     #[inline]
     pub fn ahead(&self, periods: usize) -> Knot<N> {
-        self.preview.get(periods).or(self.preview.last()).copied().unwrap_or(Knot::REST)
+        self.preview.at(self.tau_s + periods as f64 * self.feed_period_s)
+    }
+
+    /// The sequence of knots: 0 is the current one, negative behind it, positive ahead of it.
+    #[inline]
+    pub fn knot(&self, index: i32) -> &'a Knot<N> {
+        if index <= 0 {
+            self.register.knot(index.unsigned_abs() as usize)
+        } else {
+            self.preview.grid((self.tau_s / self.preview.step_s) as u64 + u64::from(index.unsigned_abs()))
+        }
+    }
+
+    /// The first and the last index of that sequence.
+    #[inline]
+    pub fn range(&self) -> [i32; 2] {
+        let now = (self.tau_s / self.preview.step_s) as u64;
+        let ahead = self.preview.next.saturating_sub(now + 1).min(PREVIEW_KNOTS as u64 - 1);
+        [1 - self.register.len().max(1) as i32, ahead as i32]
     }
 }
 
