@@ -1,7 +1,8 @@
 //! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
 
 use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
-use feedwright_control::identifier::{Identifier, Inputs};
+use feedwright_control::identifier::Inputs;
+use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::contour_error::{ContourError, Estimator};
 use feedwright_control::window::{Preview, Register};
 use feedwright_control::{Controller, Knot, Measured, Reference, Tick, Window};
@@ -20,7 +21,7 @@ impl<const N: usize> Reference<N> for Circle {
 }
 
 /// Weights and inputs of the order that training gives, without symmetry.
-pub(crate) fn network<const N: usize>() -> (Identifier<N>, Inputs<N>) {
+pub(crate) fn network<const N: usize>() -> (ContourIdentifier<N>, Inputs<N>) {
     let mut state = 1_u32;
     let mut next = move || {
         state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -29,7 +30,7 @@ pub(crate) fn network<const N: usize>() -> (Identifier<N>, Inputs<N>) {
     let hidden = std::array::from_fn(|_| std::array::from_fn(|_| std::array::from_fn(|_| next())));
     let output = std::array::from_fn(|_| std::array::from_fn(|_| next()));
     let inputs = std::array::from_fn(|_| std::array::from_fn(|_| 2.0 * next()));
-    (Identifier { hidden, output }, inputs)
+    (ContourIdentifier { hidden, output }, inputs)
 }
 
 /// The paper's controller with an untrained network: the work does not depend on the weights.

@@ -15,7 +15,8 @@
 //!
 //! All quantities are scaled as in [`crate::identifier`].
 
-use crate::identifier::{Forward, Identifier, Inputs};
+use crate::identifier::Inputs;
+use crate::identifier::contour::{ContourIdentifier, Forward};
 use crate::vector::{add_scaled, dot, limit_norm, norm, scale};
 
 /// Which gradient of the error term the inversion follows.
@@ -51,7 +52,7 @@ const LEAST_FEED: f64 = 0.02;
 
 /// dE/dF of the error term in eq. 7.
 #[inline]
-pub fn error_gradient<const N: usize>(net: &Identifier<N>, forward: &Forward<N>, which: Gradient) -> [f64; N] {
+pub fn error_gradient<const N: usize>(net: &ContourIdentifier<N>, forward: &Forward<N>, which: Gradient) -> [f64; N] {
     let jacobian = net.jacobian(forward);
     core::array::from_fn(|axis| match which {
         Gradient::Printed => -forward.error[axis] * jacobian[axis][axis],
@@ -70,7 +71,7 @@ pub fn time_gradient<const N: usize>(feed: [f64; N], rho: f64) -> [f64; N] {
 /// Inverts in all components: both the speed and the geometry change. `inputs` hold F(0) on entry and the result
 /// on return.
 #[inline]
-pub fn invert<const N: usize>(net: &Identifier<N>, inputs: &mut Inputs<N>, settings: &Settings) {
+pub fn invert<const N: usize>(net: &ContourIdentifier<N>, inputs: &mut Inputs<N>, settings: &Settings) {
     descend(net, inputs, settings, |gradient| gradient);
 }
 
@@ -78,7 +79,7 @@ pub fn invert<const N: usize>(net: &Identifier<N>, inputs: &mut Inputs<N>, setti
 ///
 /// Source: Yoon and Jeon (2000).
 #[inline]
-pub fn invert_magnitude<const N: usize>(net: &Identifier<N>, inputs: &mut Inputs<N>, settings: &Settings) {
+pub fn invert_magnitude<const N: usize>(net: &ContourIdentifier<N>, inputs: &mut Inputs<N>, settings: &Settings) {
     let feed = inputs.map(|axis| axis[0]);
     let length = norm(feed);
     if length < LEAST_FEED {
@@ -89,7 +90,7 @@ pub fn invert_magnitude<const N: usize>(net: &Identifier<N>, inputs: &mut Inputs
 }
 
 fn descend<const N: usize>(
-    net: &Identifier<N>,
+    net: &ContourIdentifier<N>,
     inputs: &mut Inputs<N>,
     settings: &Settings,
     project: impl Fn([f64; N]) -> [f64; N],

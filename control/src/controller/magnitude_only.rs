@@ -4,7 +4,7 @@
 
 use super::two_dimensional::{Loop, Settings};
 use super::{Command, Controller, Measured, Schedule};
-use crate::identifier::Identifier;
+use crate::identifier::contour::ContourIdentifier;
 use crate::inversion;
 use crate::window::Window;
 
@@ -14,7 +14,7 @@ pub struct MagnitudeOnly<const N: usize>(Loop<N>);
 
 impl<const N: usize> MagnitudeOnly<N> {
     /// With an identifier that is trained on the machine.
-    pub fn new(trained: Identifier<N>, settings: Settings) -> Self {
+    pub fn new(trained: ContourIdentifier<N>, settings: Settings) -> Self {
         Self(Loop::new(trained, settings))
     }
 }

@@ -14,7 +14,8 @@
 //! 10 mm the chord alone misses the path by 3 um); rates and offsets are limited.
 
 use super::{Command, Controller, Measured, Schedule};
-use crate::identifier::{FEED_SCALE_MM_S, History, Identifier, Inputs};
+use crate::identifier::contour::ContourIdentifier;
+use crate::identifier::{ERROR_SCALE_MM, FEED_SCALE_MM_S, History, Inputs};
 use crate::inversion::{self, Gradient};
 use crate::vector::{add_scaled, dot, norm, scale, sub};
 use crate::window::Window;
@@ -48,15 +49,15 @@ const LEAST_FEED_MM_S: f64 = 0.05;
 /// The state that every inverting controller keeps between ticks: identifier, delays, and what was asked for last.
 #[derive(Debug, Clone)]
 pub(super) struct Loop<const N: usize> {
-    trained: Identifier<N>,
-    net: Identifier<N>,
+    trained: ContourIdentifier<N>,
+    net: ContourIdentifier<N>,
     history: History<N>,
     last: Option<Inputs<N>>,
     settings: Settings,
 }
 
 impl<const N: usize> Loop<N> {
-    pub(super) fn new(trained: Identifier<N>, settings: Settings) -> Self {
+    pub(super) fn new(trained: ContourIdentifier<N>, settings: Settings) -> Self {
         Self { net: trained.clone(), trained, history: History::default(), last: None, settings }
     }
 
@@ -78,7 +79,7 @@ impl<const N: usize> Loop<N> {
         }
         if let Some(inputs) = self.last {
             if self.settings.learning_step > 0.0 {
-                let target = error_mm.map(|e| e / crate::identifier::ERROR_SCALE_MM);
+                let target = error_mm.map(|e| e / ERROR_SCALE_MM);
                 self.net.learn(&inputs, target, self.settings.learning_step);
             }
             self.history.push(inputs.map(|axis| axis[0] * FEED_SCALE_MM_S), error_mm);
@@ -89,7 +90,7 @@ impl<const N: usize> Loop<N> {
     pub(super) fn command(
         &mut self,
         window: &Window<'_, N>,
-        invert: impl Fn(&Identifier<N>, &mut Inputs<N>, &inversion::Settings),
+        invert: impl Fn(&ContourIdentifier<N>, &mut Inputs<N>, &inversion::Settings),
     ) -> Command<N> {
         let period_s = window.feed_period_s;
         let planned = scale(1.0 / period_s, sub(window.ahead(1).position_mm, window.now().position_mm));
@@ -118,7 +119,7 @@ pub struct TwoDimensional<const N: usize>(Loop<N>);
 
 impl<const N: usize> TwoDimensional<N> {
     /// With an identifier that is trained on the machine.
-    pub fn new(trained: Identifier<N>, settings: Settings) -> Self {
+    pub fn new(trained: ContourIdentifier<N>, settings: Settings) -> Self {
         Self(Loop::new(trained, settings))
     }
 }
