@@ -28,6 +28,8 @@ pub const MAX_ENTRIES: usize = 2 * MOST_REACH as usize + 1;
 /// The window reaches this many times the last distance to both sides: the nearest point beyond a right-angled corner
 /// is no further along the path than 2.4 times the distance.
 const REACH_OF_ERROR: f64 = 3.0;
+/// Entries that [`locate`] looks at on either side: the lag changes by less than that in a feed period.
+const LOCATE_REACH: i32 = 6;
 /// Cosine of the turn between neighbouring knots above which there is a corner between them (0.1 rad: a curve turns so
 /// much in one servo period only where its radius is below ten steps).
 const CORNER_COSINE: f64 = 0.995;
@@ -39,13 +41,15 @@ pub struct ContourError<const N: usize> {
     pub vector_mm: [f64; N],
     /// Unit direction of travel at the nearest point.
     pub tangent: [f64; N],
-    /// Register entries looked at.
+    /// Index of the nearest knot, as in [`Window::knot`].
+    pub index: i32,
+    /// Entries of the window looked at.
     pub entries: usize,
 }
 
 impl<const N: usize> ContourError<N> {
     /// No error, nothing known.
-    pub const NONE: Self = Self { vector_mm: [0.0; N], tangent: [0.0; N], entries: 0 };
+    pub const NONE: Self = Self { vector_mm: [0.0; N], tangent: [0.0; N], index: 0, entries: 0 };
 
     /// Eq. 1 in its own sign: positive where the path lies to the left of the tool, in the plane of the first two
     /// axes; mm.
@@ -75,7 +79,7 @@ impl Estimator {
         self.distance_mm = norm(foot.vector_mm);
         let before = (index - 1).max(first);
         self.spacing_mm = norm(sub(window.knot(before + 1).position_mm, window.knot(before).position_mm));
-        ContourError { entries, ..foot }
+        ContourError { index, entries, ..foot }
     }
 
     /// Forgets where the tool was.
@@ -91,6 +95,16 @@ impl Estimator {
         // A float that is too large, or not a number, saturates here.
         LEAST_REACH + ((REACH_OF_ERROR * self.distance_mm / self.spacing_mm) as i32).min(MOST_REACH - LEAST_REACH)
     }
+}
+
+/// The contour error of a tool whose nearest knot is near the index `near`, as predictions along a path know it.
+#[inline]
+pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i32) -> ContourError<N> {
+    let [first, last] = window.range();
+    let near = near.clamp(first, last);
+    let (from, to) = ((near - LOCATE_REACH).max(first), (near + LOCATE_REACH).min(last));
+    let (index, entries) = nearest_knot(window, tool_mm, from, to);
+    ContourError { index, entries, ..nearest_foot(window, tool_mm, index) }
 }
 
 /// Index of the nearest knot in a range, which is widened while the nearest stands at an end of it.
@@ -162,7 +176,7 @@ fn feet_between<const N: usize>(from: &Knot<N>, to: &Knot<N>, tool_mm: [f64; N])
 fn foot_on<const N: usize>(p: [f64; N], q: [f64; N], direction: [f64; N], tool_mm: [f64; N]) -> ContourError<N> {
     let along = dot(sub(tool_mm, p), direction).clamp(0.0, norm(sub(q, p)));
     let foot = add_scaled(p, along, direction);
-    ContourError { vector_mm: sub(foot, tool_mm), tangent: direction, entries: 0 }
+    ContourError { vector_mm: sub(foot, tool_mm), tangent: direction, index: 0, entries: 0 }
 }
 
 #[cfg(test)]

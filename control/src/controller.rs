@@ -14,6 +14,7 @@
 
 pub mod magnitude_only;
 pub mod open_loop;
+pub mod receding_horizon;
 pub mod two_dimensional;
 
 use crate::contour_error::ContourError;

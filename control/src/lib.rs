@@ -12,6 +12,7 @@ pub mod window;
 pub mod contour_error;
 pub mod identifier;
 pub mod inversion;
+pub mod horizon;
 pub mod controller;
 pub mod tick;
 

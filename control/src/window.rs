@@ -149,6 +149,12 @@ pub struct Window<'a, const N: usize> {
 }
 
 impl<'a, const N: usize> Window<'a, N> {
+    /// Servo period, s.
+    #[inline]
+    pub fn servo_s(&self) -> f64 {
+        self.preview.step_s
+    }
+
     /// The current knot.
     #[inline]
     pub fn now(&self) -> Knot<N> {
