@@ -1,6 +1,8 @@
 //! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
 
 use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
+use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
+use feedwright_control::identifier::servo::ServoIdentifier;
 use feedwright_control::identifier::Inputs;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::contour_error::{ContourError, Estimator};
@@ -36,6 +38,15 @@ pub(crate) fn network<const N: usize>() -> (ContourIdentifier<N>, Inputs<N>) {
 /// The paper's controller with an untrained network: the work does not depend on the weights.
 pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
     TwoDimensional::new(network().0, Settings::DEFAULT)
+}
+
+/// The receding horizon over a servo like that of tnv40: what least squares give for one axis, for all axes.
+pub(crate) fn horizon<const N: usize>() -> RecedingHorizon<N> {
+    let mut net = ServoIdentifier { hidden: network::<N>().0.hidden, ..ServoIdentifier::IDEAL };
+    for axis in 0..N {
+        net.linear[axis][axis] = [0.244, -0.101, -0.00186, 0.2785, -0.4166];
+    }
+    RecedingHorizon::new(net, receding_horizon::Settings::DEFAULT)
 }
 
 /// A tick run by hand: the controller alone, or the whole with reference and contour error.
@@ -83,7 +94,7 @@ impl<const N: usize> Surroundings<N> {
             register.push(Circle.knot(f64::from(i) * 0.001));
         }
         let mut preview = Preview::new(0.001);
-        preview.fill(&mut Circle, 0.299, 0.1);
+        preview.fill(&mut Circle, 0.299, 0.15);
         let mut tool: Knot<N> = Circle.knot(0.279);
         tool.position_mm[0] += 0.02 * tool.tangent[1];
         Self { register, preview, tool_mm: tool.position_mm }
@@ -107,9 +118,9 @@ impl<const N: usize> Surroundings<N> {
     }
 }
 
-/// One decision of the paper's controller: learn, invert in five steps, command.
+/// One decision: observe, command.
 pub(crate) fn decide<const N: usize>(
-    controller: &mut TwoDimensional<N>,
+    controller: &mut impl Controller<N>,
     window: &Window<'_, N>,
     measured: &Measured<N>,
 ) -> [f64; N] {

@@ -20,6 +20,15 @@ fn paper_tick<const N: usize>(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| rig::decide(&mut controller, black_box(&window), black_box(&measured)));
 }
 
+/// One Gauss-Newton step over twenty knots.
+#[divan::bench(consts = [2, 3])]
+fn horizon_tick<const N: usize>(bencher: Bencher<'_, '_>) {
+    let surroundings = rig::Surroundings::<N>::new();
+    let (window, measured) = (surroundings.window(), surroundings.measured());
+    let mut controller = rig::horizon();
+    bencher.bench_local(|| rig::decide(&mut controller, black_box(&window), black_box(&measured)));
+}
+
 #[divan::bench(consts = [2, 3])]
 fn contour_error<const N: usize>(bencher: Bencher<'_, '_>) {
     let surroundings = rig::Surroundings::<N>::new();
