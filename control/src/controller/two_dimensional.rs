@@ -38,7 +38,7 @@ impl Settings {
     pub const DEFAULT: Self = Self {
         servo_periods: 10,
         inversion: inversion::Settings { rho: 0.001, eta: 0.3, steps: 5, step_limit: 0.1, gradient: Gradient::Printed },
-        learning_step: 0.01,
+        learning_step: 0.003,
         rate_range: [0.5, 1.5],
     };
 }
