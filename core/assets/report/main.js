@@ -12,7 +12,7 @@ function start() {
   const [low, high] = extent(model);
   const threeD = model.axes === 3 && high[2] - low[2] > 1e-6;
   const state = {
-    camera: new Camera(low, high, threeD ? "3d" : "xy"),
+    camera: new Camera(model.outline ? model.outline.points : model.runs[0].foot, threeD ? "3d" : "xy"),
     gain: defaultGain(model, low, high),
     scale_um: Math.max(1e-3, ...model.runs.map((r) => r.max_um)),
     focus: null, shown: [model.runs.length - 1], views: [], pinned: false,
@@ -98,13 +98,18 @@ function start() {
   const setTheme = setUpTheme($("theme"), repaint);
 
   $("key").append(...model.runs.flatMap((r) => [swatch(r.index), `${r.name}  `]));
+  if (model.tolerance_um) {
+    const dash = document.createElement("span");
+    dash.className = "dash";
+    $("key").append(dash, `tolerance ${formatNumber(model.tolerance_um)} \u00b5m`);
+  }
   connectPlaces(state, actions, showChoice);
   new ResizeObserver(() => { state.views.forEach((v) => v.resize()); actions.redraw(); }).observe($("views"));
 
   if (options.get("theme")) setTheme(options.get("theme"));
   if (options.get("view") && threeD) viewChoice(options.get("view"));
-  layOut();
-  if (options.get("show")) showChoice(options.get("show"));
+  const roomy = innerWidth >= 700 && model.runs.length === 2;
+  showChoice(options.get("show") || (roomy ? "side" : String(state.shown[0])));
   setGain(Number(options.get("gain")) || state.gain);
   drawLegend(state.scale_um);
 }

@@ -1,6 +1,9 @@
 // The curves, drawn by uPlot: every plot has all runs, plots over the same quantity share cursor and range.
 
-const PLOT_HEIGHT = 190;
+const PLOT_HEIGHT = 180;
+
+// Shares below this many per cent are not drawn: logarithms need an end.
+const LEAST_SHARE = 0.01;
 
 class Plots {
   constructor(model, container, actions) {
@@ -53,10 +56,10 @@ class Plots {
     return {
       width: Math.max(200, plot.body.clientWidth), height: PLOT_HEIGHT, padding: [10, 8, 0, 0],
       legend: { show: false },
-      scales: { x: { time: false }, y: { range: definition.range } },
+      scales: { x: { time: false }, y: { range: definition.range, distr: definition.logarithmic ? 3 : 1 } },
       axes: [
         { ...axis, label: definition.x, size: 26, values, space: 60 },
-        { ...axis, size: 50, values, space: 28 },
+        { ...axis, size: 50, values, space: 28, filter: definition.logarithmic ? decades : undefined },
       ],
       series: [{}, ...definition.series.map((s) => ({
         stroke: s.run === undefined ? "transparent" : runColor(s.run) , width: s.width ?? 1.5, dash: s.dash,
@@ -107,7 +110,7 @@ class Plots {
     const i = u.cursor.idx;
     if (i === null || i === undefined) return;
     plot.live.replaceChildren(...this.model.runs.flatMap((run, r) =>
-      [swatch(run.index), ` ${formatNumber(u.data[r + 1][i] ?? 0)} % `]), `at ${formatNumber(u.data[0][i])} \u00b5m`);
+      [swatch(run.index), ` ${formatNumber(u.data[r + 1][i] < LEAST_SHARE ? 0 : u.data[r + 1][i])} % `]), `at ${formatNumber(u.data[0][i])} \u00b5m`);
   }
 
   ranged(plot, u) {
@@ -138,6 +141,11 @@ class Plots {
       }
     });
   }
+}
+
+// Of the ticks of a logarithmic axis, the powers of ten.
+function decades(u, splits) {
+  return splits.map((v) => (Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9 ? v : null));
 }
 
 function tickText(v) {
@@ -186,7 +194,8 @@ function errorPlot(model, kind, title, x) {
   }
   const tolerance = model.tolerance_um;
   const levels = [{ value: 0 }];
-  if (tolerance) levels.push({ value: tolerance, dash: true }, { value: -tolerance, dash: true });
+  if (tolerance) levels.push({ value: tolerance, dash: true });
+  if (tolerance && model.axes === 2) levels.push({ value: -tolerance, dash: true });
   return {
     kind, title, x, unit: "\u00b5m", data: uPlot.join(tables), series, bands, levels,
     read: (r, i) => (r.cutting[i] ? formatNumber(r.error_um[i]) : "rapid"),
@@ -230,9 +239,9 @@ function histogramPlot(model) {
   const first = Math.min(...keys) - 1, last = Math.max(...keys) + 1, numbers = [];
   for (let b = first; b <= last; b++) numbers.push(b);
   return {
-    kind: "bins", title: "Distribution of the contour error, % of cutting time", x: "Contour error, \u00b5m",
-    data: [numbers.map((b) => b * width), ...binned.map((bins) => numbers.map((b) => bins.get(b) || 0))],
+    kind: "bins", title: "Distribution of the contour error, % of cutting time, logarithmic", x: "Contour error, \u00b5m",
+    data: [numbers.map((b) => b * width), ...binned.map((bins) => numbers.map((b) => Math.max(bins.get(b) || 0, LEAST_SHARE / 2)))],
     series: model.runs.map((r) => ({ run: r.index, fill: true })), paths: uPlot.paths.stepped({ align: 1 }),
-    range: (u, low, high) => [0, (high || 1) * 1.08],
+    logarithmic: true, range: () => [LEAST_SHARE, 100],
   };
 }

@@ -1,7 +1,8 @@
 //! Outline: the programmed path as a polyline of bounded length.
 //!
 //! Rows come at every servo period, far denser than a drawing needs. A vertex stays where the path would otherwise leave
-//! its chord by more than a tolerance; when the vertices are too many, the tolerance doubles and they are thinned again.
+//! its chord by more than a tolerance; when the vertices are too many, the tolerance doubles and they are thinned again, so
+//! that the outline is within twice the last tolerance of the path.
 
 /// Most vertices kept. A page holds one outline; this many are some 150 kB of it.
 const MAX_VERTICES: usize = 20_000;
@@ -71,7 +72,11 @@ impl Outline {
         if newest == vertex {
             return;
         }
-        let fits = newest.cutting == vertex.cutting
+        // A change between rapid and cut is a vertex, unless it is lost in the tolerance: a record that never thinned
+        // out would never be bounded.
+        let same_kind = newest.cutting == vertex.cutting
+            || self.near(newest.point_mm, newest.point_mm, vertex.point_mm);
+        let fits = same_kind
             && self.open.len() < MAX_SPAN
             && self
                 .open
@@ -140,6 +145,8 @@ mod tests {
         }
         assert!(outline.vertices().count() <= MAX_VERTICES + 1);
         let vertices: Vec<_> = outline.vertices().map(|v| v.point_mm).collect();
+        // Thinned again and again, with tolerances that add up to less than twice the last.
+        outline.tolerance_mm *= 2.0;
         let mut i = 0;
         for k in 0..200_000 {
             let p = at(k);
@@ -155,5 +162,18 @@ mod tests {
             );
         }
         assert!(outline.tolerance_mm < 0.02, "{}", outline.tolerance_mm);
+    }
+
+    #[test]
+    fn endless_changes_between_rapid_and_cut_stay_bounded() {
+        let mut outline = Outline::default();
+        for k in 0..100_000_u32 {
+            let (hole, depth) = (f64::from(k / 2), f64::from(k % 2));
+            outline.push(Vertex {
+                point_mm: [hole, 0.0, depth],
+                cutting: k % 2 == 0,
+            });
+        }
+        assert!(outline.vertices().count() <= MAX_VERTICES + 1);
     }
 }

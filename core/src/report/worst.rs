@@ -2,7 +2,7 @@
 //!
 //! A place is a peak of |contour error|: it is over when the error has fallen below [`PEAK_ENDS`] times the peak, and
 //! the next begins when it rises again by the same factor above the least since. Of peaks closer than
-//! [`APART_MM`] and [`APART_S`] to one that is larger, only the larger counts. Memory does not grow with the run.
+//! [`APART_MM`] or [`APART_S`] to one that is larger, only the larger counts. Memory does not grow with the run.
 
 use serde::Serialize;
 
@@ -14,6 +14,9 @@ const PLACES: usize = 10;
 /// A peak is over when the error is this fraction of it. Nearer to 1, ripple on one bump makes many places of it;
 /// nearer to 0, neighbouring corners join.
 const PEAK_ENDS: f64 = 0.7;
+
+/// Peaks smaller than this fraction of the largest are not told: they are not what is wrong with the part.
+const LEAST_SHARE: f64 = 0.01;
 
 /// Peaks nearer to each other than this along the path are one place, mm.
 const APART_MM: f64 = 0.5;
@@ -110,7 +113,15 @@ impl WorstFinder {
             t_s: p.t_s,
             s_mm: p.s_mm,
         };
-        last.found.iter().map(place).collect()
+        let least_mm = last
+            .found
+            .first()
+            .map_or(0.0, |p| LEAST_SHARE * p.error_mm.abs());
+        last.found
+            .iter()
+            .filter(|p| p.error_mm.abs() >= least_mm)
+            .map(place)
+            .collect()
     }
 
     fn close(&mut self, peak: Peak) {
