@@ -15,8 +15,8 @@ use crate::trace::{Outcome, Row, Sink};
 
 /// A following error beyond this ends the run as diverged, mm: no machine of this class has so much travel.
 const DIVERGED_MM: f64 = 1000.0;
-/// The tool has arrived when it is this near the last command, mm.
-const ARRIVED_MM: f64 = 0.001;
+/// The tool has arrived when it is this near a command at rest, mm: a usual in-position width.
+const ARRIVED_MM: f64 = 0.01;
 /// Longest wait for the tool to arrive, s: friction may hold it off for good.
 const ARRIVAL_S: f64 = 0.25;
 /// The tool lags behind the reference by no more than this many time constants of its slowest position loop.
@@ -93,13 +93,14 @@ pub fn simulate<const N: usize>(
             break;
         }
         let sample = reference.at(setpoint.tau_s);
-        let foot = reference.nearest(spread(tool_mm), setpoint.tau_s - lag_s, setpoint.tau_s + LEAD_S);
+        let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
+        let foot = reference.nearest(spread(tool_mm), tau_s - lag_s, tau_s + LEAD_S);
         let row = Row {
             t_s,
             s_mm: sample.s_mm,
             line: sample.line,
             feed_plan_mm_s: sample.feed_mm_s,
-            cutting: sample.cutting,
+            cutting: foot.cutting && !(sample.resting && following_mm <= ARRIVED_MM),
             path_mm: sample.position_mm,
             cmd_mm: spread(setpoint.command_mm),
             act_mm: spread(tool_mm),
@@ -110,7 +111,7 @@ pub fn simulate<const N: usize>(
         for sink in sinks.iter_mut() {
             sink.row(&row)?;
         }
-        reference.forget_before(setpoint.tau_s - lag_s);
+        reference.forget_before(tau_s - lag_s);
         if let Some(ended_s) = ended
             && (following_mm <= ARRIVED_MM || t_s >= ended_s + ARRIVAL_S)
         {

@@ -13,7 +13,7 @@ pub struct Row {
     pub line: u32,
     /// Planned feedrate at `s_mm`, mm/s.
     pub feed_plan_mm_s: f64,
-    /// Whether the motion cuts; rapids and dwells do not.
+    /// Whether the tool is where the program cuts: not on a rapid, and not at rest where it has arrived.
     pub cutting: bool,
     /// Point of the programmed path at `s_mm`.
     pub path_mm: [f64; 3],

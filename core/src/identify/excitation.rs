@@ -20,7 +20,8 @@ pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, r
     let mut samples = Vec::new();
     for lap in 0..programme.laps {
         let motion = circle::<N>(programme, lap, rng);
-        let mut reference = Reference::new(std::iter::once(Canon::Motion(motion)), &(&machine.limits).into()).expect("TEMP");
+        let mut reference = Reference::new(std::iter::once(Canon::Motion(motion)), &(&machine.limits).into())
+            .expect("the limits of a machine file are checked when it is read");
         let mut excitation = Excitation {
             offset_mm: if lap % UNDISTURBED_EVERY == 0 { 0.0 } else { programme.offset_mm },
             renewal_periods: programme.renewal_periods,
@@ -32,8 +33,8 @@ pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, r
             last_knot_mm: None,
             samples: &mut samples,
         };
-        // Without sinks nothing can fail to be written, and a lap that diverges simply ends.
-        let _ = simulate(machine, &mut reference, &mut excitation, &mut []);
+        // A lap that diverges simply ends.
+        simulate(machine, &mut reference, &mut excitation, &mut []).expect("without sinks nothing is written");
     }
     samples
 }
