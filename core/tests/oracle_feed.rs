@@ -6,7 +6,7 @@ mod common;
 
 use common::{BLEND, LIMITS, arc, line, polyline};
 use feedwright::feed::Limits;
-use feedwright::gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
+use feedwright::gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Others, Shape};
 use feedwright::path::contour::contour;
 use feedwright::reference::Reference;
 use std::f64::consts::PI;
@@ -82,6 +82,7 @@ fn rapid_runs_at_the_rapid_rate() {
         shape: Shape::Line,
         feed_mm_s: f64::NAN,
         corner: BLEND,
+        others: Others::default(),
     };
     assert!((plan_s(vec![Canon::Motion(rapid)], &LIMITS) - 4.0).abs() < ROUNDING_S);
 }

@@ -12,7 +12,7 @@
 use super::pieces::Pieces;
 use super::smooth::{Jet, Parametric, Smooth};
 use super::{Curve, PathError, Piece, Step};
-use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Plane, Shape};
+use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -109,6 +109,7 @@ impl Contour {
                     },
                     feed_mm_s,
                     corner,
+                    others: Others::default(),
                 }));
                 Pieces::new(canon.into_iter()).collect()
             }
@@ -145,6 +146,7 @@ fn lines(points: &[[f64; 2]], feed_mm_s: f64, corner: Corner) -> Vec<Canon> {
                 shape: Shape::Line,
                 feed_mm_s,
                 corner,
+                others: Others::default(),
             })
         })
         .collect()
