@@ -182,7 +182,8 @@ mod tests {
         figure.panels[0].curves[0].points = circle;
         figure.panels[0].equal_axes = true;
         let svg = figure.to_svg();
-        let path = svg
+        let curves = svg.split("stroke-linejoin").nth(1).unwrap();
+        let path = curves
             .split("<path d=\"M")
             .nth(1)
             .and_then(|s| s.split('"').next())

@@ -1,10 +1,7 @@
 //! Range and ticks of an axis.
 
-/// Part of the data's span left free at either end of an axis that is not given.
-const MARGIN: f64 = 0.04;
-
-/// A range with room around the data; `values` that are not finite do not count.
-pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+/// The range of the data with `margin` times its span left free at either end; `values` that are not finite do not count.
+pub(super) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for v in values.filter(|v| v.is_finite()) {
         low = low.min(v);
@@ -17,7 +14,7 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
     let span = (high - low)
         .max(1e-9 * low.abs().max(high.abs()))
         .max(1e-12);
-    [low - MARGIN * span, high + MARGIN * span]
+    [low - margin * span, low + (1.0 + margin) * span]
 }
 
 /// Ticks at multiples of 1, 2 or 5 times a power of ten, about `wanted` of them, with their texts.
