@@ -53,13 +53,6 @@ fn write_summary_row(
             "<small class=\"alarm\">diverged at {}</small>",
             duration(*at_s)
         ),
-        Outcome::Stopped { at_s, reason } => {
-            format!(
-                "<small class=\"alarm\">stopped at {}: {}</small>",
-                duration(*at_s),
-                escaped(reason)
-            )
-        }
     };
     write!(
         out,

@@ -17,14 +17,6 @@ pub(super) fn verdict(report: &Report) -> String {
                 duration(*at_s)
             );
         }
-        Outcome::Stopped { at_s, reason } => {
-            return format!(
-                "{} stopped at {}: {}.",
-                name(last),
-                duration(*at_s),
-                escaped(reason)
-            );
-        }
     }
     let first = &report.runs[0].summary;
     let numbers = if report.runs.len() == 1 {
