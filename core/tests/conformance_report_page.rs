@@ -1,16 +1,15 @@
 //! What every report page keeps to: complete without scripts, no request, nothing from a program becomes markup, equal
 //! reports give equal bytes, bounded size.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use feedwright::report::{
-    Outcome, Report, Run, RunFacts, Series, Statistics, TimelineEvent, write_html,
-};
+use feedwright::report::{Outcome, Report, Run, RunFacts, Series, Statistics, TimelineEvent, write_html};
 use feedwright::trace::{Row, Sink};
 
-const HOSTILE: &str =
-    "</script><script>document.title='x'</script><img src=x onerror=alert(1)>\"'&\u{2028}<!--";
+const HOSTILE: &str = "</script><script>document.title='x'</script><img src=x onerror=alert(1)>\"'&\u{2028}<!--";
 
 /// Largest page for two controllers and three axes at full resolution, bytes.
 const LARGEST_PAGE: usize = 3_000_000;
@@ -20,9 +19,7 @@ fn run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Run {
     // Noise of a linear congruential generator: smooth signals would make the page smaller than a real one.
     let mut state = 1u64;
     let mut noise = || {
-        state = state
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
     };
     for k in 0..rows {
@@ -55,17 +52,8 @@ fn run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Run {
         time_s: rows as f64 * 1e-3,
         outcome: Outcome::Completed,
     };
-    let event = TimelineEvent {
-        t_s: 0.1,
-        duration_s: 0.5,
-        line: 3,
-        label: HOSTILE.to_owned(),
-    };
-    Run {
-        summary: statistics.summary(facts, |_| HOSTILE.to_owned()),
-        series,
-        events: vec![event],
-    }
+    let event = TimelineEvent { t_s: 0.1, duration_s: 0.5, line: 3, label: HOSTILE.to_owned() };
+    Run { summary: statistics.summary(facts, |_| HOSTILE.to_owned()), series, events: vec![event] }
 }
 
 fn report(axes: usize, rows: usize) -> Report {
@@ -75,10 +63,7 @@ fn report(axes: usize, rows: usize) -> Report {
         machine: vec![(HOSTILE.to_owned(), HOSTILE.to_owned())],
         settings: vec![(HOSTILE.to_owned(), HOSTILE.to_owned())],
         tolerance_um: Some(10.0),
-        runs: vec![
-            run(HOSTILE, axes, rows, 0.03),
-            run("corrected", axes, rows, 0.005),
-        ],
+        runs: vec![run(HOSTILE, axes, rows, 0.03), run("corrected", axes, rows, 0.005)],
     }
 }
 
@@ -107,17 +92,8 @@ fn column(value: &serde_json::Value, unit: f64) -> Vec<f64> {
 #[test]
 fn program_text_never_becomes_markup() {
     let page = page(&report(2, 500));
-    assert_eq!(
-        (
-            page.matches("<script").count(),
-            page.matches("</script>").count()
-        ),
-        (3, 3)
-    );
-    assert_eq!(
-        (page.matches("<img").count(), page.matches("<!--").count()),
-        (0, 0)
-    );
+    assert_eq!((page.matches("<script").count(), page.matches("</script>").count()), (3, 3));
+    assert_eq!((page.matches("<img").count(), page.matches("<!--").count()), (0, 0));
     assert_eq!(island(&page)["meta"]["runs"][0]["controller"], HOSTILE);
 }
 
@@ -125,14 +101,7 @@ fn program_text_never_becomes_markup() {
 fn nothing_is_fetched() {
     let page = page(&report(2, 500));
     assert!(page.contains("default-src 'none'"));
-    for reference in [
-        " src=\"",
-        "@import",
-        "url(",
-        "href=\"http",
-        "fetch(",
-        "XMLHttpRequest",
-    ] {
+    for reference in [" src=\"", "@import", "url(", "href=\"http", "fetch(", "XMLHttpRequest"] {
         assert!(!page.contains(reference), "{reference}");
     }
 }
@@ -146,14 +115,8 @@ fn the_numbers_are_there_without_scripts() {
     for run in &report.runs {
         assert!(run.summary.worst.len() >= 5, "{:?}", run.summary.worst);
         for place in &run.summary.worst {
-            assert!(
-                markup.contains(&format!("{:.2}</td>", place.error_um)),
-                "{place:?}"
-            );
-            assert!(
-                markup.contains(&format!("<td>{:.3}</td>", place.t_s)),
-                "{place:?}"
-            );
+            assert!(markup.contains(&format!("{:.2}</td>", place.error_um)), "{place:?}");
+            assert!(markup.contains(&format!("<td>{:.3}</td>", place.t_s)), "{place:?}");
         }
     }
     assert!(markup.contains("Peak torque Z") && markup.contains("µm"));
@@ -175,13 +138,7 @@ fn the_data_are_the_series() {
         let times = column(&columns["t"], unit("time_s"));
         let errors = column(&columns["e"], unit("error_mm"));
         let foot_z = column(&columns["fz"], unit("point_mm"));
-        assert!(
-            columns
-                .as_object()
-                .unwrap()
-                .values()
-                .all(|c| c.as_array().unwrap().len() == points.len())
-        );
+        assert!(columns.as_object().unwrap().values().all(|c| c.as_array().unwrap().len() == points.len()));
         for (i, p) in points.iter().enumerate() {
             assert!((times[i] - p.t_s).abs() <= 0.51 * unit("time_s"));
             assert!((errors[i] - p.error_mm).abs() <= 0.51 * unit("error_mm"));
@@ -195,19 +152,13 @@ fn a_full_record_is_a_page_of_bounded_size() {
     let report = report(3, Series::MAX_POINTS);
     assert_eq!(report.runs[0].series.points().len(), Series::MAX_POINTS);
     let size = page(&report).len();
-    println!(
-        "two controllers, three axes, {} points each: {size} bytes",
-        Series::MAX_POINTS
-    );
+    println!("two controllers, three axes, {} points each: {size} bytes", Series::MAX_POINTS);
     assert!(size < LARGEST_PAGE, "{size}");
 }
 
 #[test]
 fn a_report_without_runs_or_rows_is_still_a_page() {
-    let empty = Report {
-        runs: vec![],
-        ..report(2, 1)
-    };
+    let empty = Report { runs: vec![], ..report(2, 1) };
     assert!(page(&empty).contains("No run was made"));
     let mut bare = report(2, 1);
     bare.runs[1].series = Series::new();
@@ -224,17 +175,9 @@ fn the_scripts_run_in_a_browser() {
     let browsers = ["chromium", "chromium-browser", "google-chrome"];
     let Some(mut child) = browsers.iter().find_map(|browser| {
         Command::new(browser)
-            .args([
-                "--headless",
-                "--no-sandbox",
-                "--disable-gpu",
-                "--no-first-run",
-            ])
+            .args(["--headless", "--no-sandbox", "--disable-gpu", "--no-first-run"])
             .arg("--disable-background-networking")
-            .arg(format!(
-                "--user-data-dir={}",
-                directory.path().join("profile").display()
-            ))
+            .arg(format!("--user-data-dir={}", directory.path().join("profile").display()))
             .args(["--virtual-time-budget=5000", "--dump-dom"])
             .arg(format!("file://{}", file.display()))
             .stdout(std::fs::File::create(directory.path().join("dom.html")).unwrap())

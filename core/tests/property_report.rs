@@ -1,5 +1,7 @@
 //! Properties of the bounded record and of the statistics, whatever the rows.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 use feedwright::report::{RunFacts, Series, Statistics};
 use feedwright::trace::{Row, Sink};
 use proptest::prelude::*;
@@ -18,9 +20,7 @@ fn rows(spikes: &[(usize, f64)], rapids: &[(usize, usize)]) -> Vec<Row> {
                 s_mm: 10.0 * t_s,
                 line: 1 + k as u32 / 500,
                 feed_plan_mm_s: 10.0,
-                cutting: !rapids
-                    .iter()
-                    .any(|&(start, length)| (start..start + length).contains(&k)),
+                cutting: !rapids.iter().any(|&(start, length)| (start..start + length).contains(&k)),
                 path_mm,
                 cmd_mm: path_mm,
                 act_mm: path_mm,

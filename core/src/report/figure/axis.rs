@@ -11,9 +11,7 @@ pub(super) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] 
         return [0.0, 1.0];
     }
     // A constant still needs a span, and one that its own rounding does not swallow.
-    let span = (high - low)
-        .max(1e-9 * low.abs().max(high.abs()))
-        .max(1e-12);
+    let span = (high - low).max(1e-9 * low.abs().max(high.abs())).max(1e-12);
     [low - margin * span, low + (1.0 + margin) * span]
 }
 
@@ -45,10 +43,7 @@ mod tests {
     #[test]
     fn ticks_are_round_and_inside() {
         let texts = |r, n| ticks(r, n).into_iter().map(|t| t.1).collect::<Vec<_>>();
-        assert_eq!(
-            texts([-20.0, 31.0], 5.0),
-            ["−20", "−10", "0", "10", "20", "30"]
-        );
+        assert_eq!(texts([-20.0, 31.0], 5.0), ["−20", "−10", "0", "10", "20", "30"]);
         assert_eq!(texts([0.0, 1.76], 4.0), ["0.0", "0.5", "1.0", "1.5"]);
         assert_eq!(texts([0.0, 0.001], 2.0), ["0.0000", "0.0005", "0.0010"]);
     }
