@@ -26,7 +26,7 @@ pub struct Figure {
 pub struct Panel {
     /// Text above the area, as in "(a) Contour error"; may be empty.
     pub title: String,
-    /// Title of the horizontal axis with its unit, as in "Time [s]".
+    /// Title of the horizontal axis with its unit, as in "Time \[s\]".
     pub x_title: String,
     /// Title of the vertical axis with its unit.
     pub y_title: String,
