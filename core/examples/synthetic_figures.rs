@@ -9,15 +9,8 @@ use std::io::{self, BufWriter};
 use feedwright::report::figure::{COLORS, CaptionedFigure, Curve, Figure, Line, Panel, write_page};
 
 fn curve(label: &str, color: usize, line: Line, count: u32, at: impl Fn(f64) -> [f64; 2]) -> Curve {
-    let points = (0..=count)
-        .map(|k| at(f64::from(k) / f64::from(count)))
-        .collect();
-    Curve {
-        label: label.to_owned(),
-        points,
-        line,
-        color: COLORS[color].to_owned(),
-    }
+    let points = (0..=count).map(|k| at(f64::from(k) / f64::from(count))).collect();
+    Curve { label: label.to_owned(), points, line, color: COLORS[color].to_owned() }
 }
 
 fn panel(title: &str, x_title: &str, y_title: &str, curves: Vec<Curve>) -> Panel {
@@ -31,14 +24,7 @@ fn panel(title: &str, x_title: &str, y_title: &str, curves: Vec<Curve>) -> Panel
 }
 
 fn main() -> io::Result<()> {
-    let error = |size: f64| {
-        move |u: f64| {
-            [
-                1.76 * u,
-                size * (40.0 * u).sin() * (1.0 + 0.3 * (170.0 * u).sin()),
-            ]
-        }
-    };
+    let error = |size: f64| move |u: f64| [1.76 * u, size * (40.0 * u).sin() * (1.0 + 0.3 * (170.0 * u).sin())];
     let wobbly = |deviation: f64| {
         move |u: f64| {
             let r = 10.0 + deviation * (10.0 * TAU * u).sin();
@@ -61,11 +47,8 @@ fn main() -> io::Result<()> {
         curve("without correction", 1, Line::Dashed, 20_000, error(25.0)),
         curve("with correction", 2, Line::Solid, 20_000, error(5.0)),
     ];
-    let torque = |k: f64| {
-        vec![curve("with correction", 2, Line::Solid, 2000, move |u| {
-            [1.76 * u, 0.2 * (k * u).sin()]
-        })]
-    };
+    let torque =
+        |k: f64| vec![curve("with correction", 2, Line::Solid, 2000, move |u| [1.76 * u, 0.2 * (k * u).sin()])];
     let figures = [
         CaptionedFigure {
             figure: Figure { panels: vec![whole, detail], columns: 2, aspect: 1.0 },
@@ -86,13 +69,6 @@ fn main() -> io::Result<()> {
             caption: "Contour error and torque over time.".to_owned(),
         },
     ];
-    let file = std::env::args()
-        .nth(1)
-        .unwrap_or_else(|| "figures.report.html".to_owned());
-    write_page(
-        &mut BufWriter::new(File::create(file)?),
-        "Figures",
-        "Made-up curves.",
-        &figures,
-    )
+    let file = std::env::args().nth(1).unwrap_or_else(|| "figures.report.html".to_owned());
+    write_page(&mut BufWriter::new(File::create(file)?), "Figures", "Made-up curves.", &figures)
 }

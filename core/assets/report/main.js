@@ -42,7 +42,7 @@ function start() {
       state.views.forEach((v) => v.drawMark());
     },
   };
-  const plots = new Plots(model, $("plots"), actions);
+  const plots = new Plots(model, $("plots"), document.querySelector(".path-panel"), actions);
 
   function showFocus(lead, i) {
     plots.showFocus(state.focus);
@@ -112,6 +112,7 @@ function start() {
   showChoice(options.get("show") || (roomy ? "side" : String(state.shown[0])));
   setGain(Number(options.get("gain")) || state.gain);
   drawLegend(state.scale_um);
+  root.dataset.ready = "";
 }
 
 // A row of buttons of which one is pressed. Returns a function that presses one.
@@ -134,32 +135,30 @@ function segments(container, choices, chosen, changed) {
   return press;
 }
 
-// Rows of the worst places, reachable by keyboard: choosing one shows it on the path and in the curves.
+// Rows of the worst places, each with a button for the keyboard: choosing one shows it on the path and in the curves.
 function connectPlaces(state, actions, showChoice) {
   for (const row of document.querySelectorAll("tr[data-place]")) {
     const run = Number(row.dataset.run), place = model.runs[run].worst[Number(row.dataset.place)];
-    row.tabIndex = 0;
+    const button = document.createElement("button");
+    button.type = "button";
+    button.append(row.cells[0].textContent);
+    button.setAttribute("aria-label", `Show place ${row.cells[0].textContent} on the path`);
+    row.cells[0].replaceChildren(button);
     const choose = () => {
       document.querySelectorAll("tr[data-place].chosen").forEach((r) => r.classList.remove("chosen"));
       row.classList.add("chosen");
       if (!state.shown.includes(run)) showChoice(String(run));
       const { camera } = state, i = nearestIndex(model.runs[run].t, place.t_s);
-      camera.center = model.runs[run].foot.map((c) => c[i]);
-      const whole = camera.scale;
+      const before = camera.scale, { foot, deviation } = model.runs[run];
       camera.fit();
-      camera.scale = Math.max(whole, camera.scale * 4);
-      camera.center = model.runs[run].foot.map((c) => c[i]);
+      camera.scale = Math.max(before, camera.scale * 4);
+      camera.center = foot.map((c, k) => c[i] + state.gain / 2 * deviation[k][i]);
       actions.focus("t", model.runs[run].t[i], run, i);
       state.pinned = { ...state.focus, lead: run };
       actions.redraw();
       document.querySelector(".path-panel").scrollIntoView({ block: "nearest", behavior: "smooth" });
     };
     row.addEventListener("click", choose);
-    row.addEventListener("keydown", (event) => {
-      if (event.key !== "Enter" && event.key !== " ") return;
-      event.preventDefault();
-      choose();
-    });
   }
 }
 

@@ -6,10 +6,11 @@ const PLOT_HEIGHT = 180;
 const LEAST_SHARE = 0.01;
 
 class Plots {
-  constructor(model, container, actions) {
+  // `beside` takes the plot that has no place along the path.
+  constructor(model, container, beside, actions) {
     Object.assign(this, { model, actions, busy: false });
     this.plots = definitions(model).map((definition) => {
-      const figure = container.appendChild(document.createElement("figure"));
+      const figure = (definition.kind === "bins" ? beside : container).appendChild(document.createElement("figure"));
       figure.className = "plot";
       const caption = figure.appendChild(document.createElement("figcaption"));
       const title = caption.appendChild(document.createElement("b"));
@@ -19,7 +20,9 @@ class Plots {
       return { definition, live, body: figure.appendChild(document.createElement("div")), u: null };
     });
     this.build();
-    new ResizeObserver(() => this.resize()).observe(container);
+    const observer = new ResizeObserver(() => this.resize());
+    observer.observe(container);
+    observer.observe(beside);
   }
 
   // Makes the charts anew, in the colours of the theme.

@@ -26,7 +26,7 @@ pub struct Figure {
 pub struct Panel {
     /// Text above the area, as in "(a) Contour error"; may be empty.
     pub title: String,
-    /// Title of the horizontal axis with its unit, as in "Time [s]".
+    /// Title of the horizontal axis with its unit, as in "Time \[s\]".
     pub x_title: String,
     /// Title of the vertical axis with its unit.
     pub y_title: String,
@@ -69,9 +69,7 @@ pub enum Line {
 
 /// Colours that stay apart for the colour-blind and in grey print: black, vermilion, blue, green, purple, orange. After
 /// Okabe and Ito, "Color Universal Design", 2008, darkened where thin lines need it.
-pub const COLORS: [&str; 6] = [
-    "#111111", "#c8500a", "#0067a8", "#00805f", "#a8568a", "#c98a00",
-];
+pub const COLORS: [&str; 6] = ["#111111", "#c8500a", "#0067a8", "#00805f", "#a8568a", "#c98a00"];
 
 /// A figure with what stands below it.
 #[derive(Debug, Clone, Default)]
@@ -128,22 +126,9 @@ mod tests {
     use super::*;
 
     fn sine() -> Figure {
-        let points = (0..=100)
-            .map(|k| [f64::from(k) * 0.02, 30.0 * (f64::from(k) * 0.1).sin()])
-            .collect();
-        let curve = Curve {
-            label: "a <b>".to_owned(),
-            points,
-            color: COLORS[0].to_owned(),
-            ..Curve::default()
-        };
-        Figure {
-            panels: vec![Panel {
-                curves: vec![curve],
-                ..Panel::default()
-            }],
-            ..Figure::default()
-        }
+        let points = (0..=100).map(|k| [f64::from(k) * 0.02, 30.0 * (f64::from(k) * 0.1).sin()]).collect();
+        let curve = Curve { label: "a <b>".to_owned(), points, color: COLORS[0].to_owned(), ..Curve::default() };
+        Figure { panels: vec![Panel { curves: vec![curve], ..Panel::default() }], ..Figure::default() }
     }
 
     #[test]
@@ -154,49 +139,28 @@ mod tests {
 
     #[test]
     fn a_figure_without_points_is_still_a_figure() {
-        let empty = Figure {
-            panels: vec![Panel::default()],
-            ..Figure::default()
-        };
+        let empty = Figure { panels: vec![Panel::default()], ..Figure::default() };
         let mut broken = sine();
         broken.panels[0].curves[0].points = vec![[f64::NAN, 1.0], [f64::INFINITY, 0.0], [1.0, 1.0]];
         for svg in [empty.to_svg(), broken.to_svg(), Figure::default().to_svg()] {
-            assert!(
-                !svg.contains("NaN") && !svg.contains("inf") && svg.ends_with("</svg>\n"),
-                "{svg}"
-            );
+            assert!(!svg.contains("NaN") && !svg.contains("inf") && svg.ends_with("</svg>\n"), "{svg}");
         }
     }
 
     #[test]
     fn equal_axes_draw_a_circle_round() {
-        let circle = (0..=360)
-            .map(|k| {
-                [
-                    f64::from(k).to_radians().cos(),
-                    f64::from(k).to_radians().sin(),
-                ]
-            })
-            .collect();
+        let circle = (0..=360).map(|k| [f64::from(k).to_radians().cos(), f64::from(k).to_radians().sin()]).collect();
         let mut figure = sine();
         figure.panels[0].curves[0].points = circle;
         figure.panels[0].equal_axes = true;
         let svg = figure.to_svg();
-        let path = svg
-            .split("<path d=\"M")
-            .nth(1)
-            .and_then(|s| s.split('"').next())
-            .unwrap();
+        let curves = svg.split("stroke-linejoin").nth(1).unwrap();
+        let path = curves.split("<path d=\"M").nth(1).and_then(|s| s.split('"').next()).unwrap();
         let numbers: Vec<f64> = path.split(['L', ' ']).map(|n| n.parse().unwrap()).collect();
         let span = |axis: usize| {
             let values = numbers.iter().skip(axis).step_by(2).copied();
             values.clone().fold(f64::MIN, f64::max) - values.fold(f64::MAX, f64::min)
         };
-        assert!(
-            (span(0) - span(1)).abs() < 0.5,
-            "{} by {}",
-            span(0),
-            span(1)
-        );
+        assert!((span(0) - span(1)).abs() < 0.5, "{} by {}", span(0), span(1));
     }
 }

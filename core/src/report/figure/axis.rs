@@ -1,10 +1,7 @@
 //! Range and ticks of an axis.
 
-/// Part of the data's span left free at either end of an axis that is not given.
-const MARGIN: f64 = 0.04;
-
-/// A range with room around the data; `values` that are not finite do not count.
-pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+/// The range of the data with `margin` times its span left free at either end; `values` that are not finite do not count.
+pub(super) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for v in values.filter(|v| v.is_finite()) {
         low = low.min(v);
@@ -14,10 +11,8 @@ pub(super) fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
         return [0.0, 1.0];
     }
     // A constant still needs a span, and one that its own rounding does not swallow.
-    let span = (high - low)
-        .max(1e-9 * low.abs().max(high.abs()))
-        .max(1e-12);
-    [low - MARGIN * span, high + MARGIN * span]
+    let span = (high - low).max(1e-9 * low.abs().max(high.abs())).max(1e-12);
+    [low - margin * span, low + (1.0 + margin) * span]
 }
 
 /// Ticks at multiples of 1, 2 or 5 times a power of ten, about `wanted` of them, with their texts.
@@ -48,10 +43,7 @@ mod tests {
     #[test]
     fn ticks_are_round_and_inside() {
         let texts = |r, n| ticks(r, n).into_iter().map(|t| t.1).collect::<Vec<_>>();
-        assert_eq!(
-            texts([-20.0, 31.0], 5.0),
-            ["−20", "−10", "0", "10", "20", "30"]
-        );
+        assert_eq!(texts([-20.0, 31.0], 5.0), ["−20", "−10", "0", "10", "20", "30"]);
         assert_eq!(texts([0.0, 1.76], 4.0), ["0.0", "0.5", "1.0", "1.5"]);
         assert_eq!(texts([0.0, 0.001], 2.0), ["0.0000", "0.0005", "0.0010"]);
     }
