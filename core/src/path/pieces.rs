@@ -210,7 +210,7 @@ mod tests {
             shape,
             feed_mm_s: 10.0,
             corner,
-            others: Others::default(),
+            others: crate::gcode::canon::Others::default(),
         })
     }
 

@@ -5,8 +5,10 @@
 //! ends. Lengths of cells come from 5-point Gauss-Legendre quadrature of `|C'|`; a cell is halved until quadrature and
 //! polynomial are right to `CELL_TOLERANCE_MM` and the tangent turns little enough for the nearest point to be unique.
 
+mod nearest;
+
 use super::Point;
-use super::vector::{Vector, angle, cross, distance, dot, norm, scale, sub};
+use super::vector::{Vector, angle, cross, dot, norm, scale};
 use std::fmt::Debug;
 
 /// Arc length within a cell is right to this: a tenth of what the path promises, and far above rounding.
@@ -17,13 +19,6 @@ const CELL_TURN_RAD: f64 = 0.3;
 
 /// Halvings before a cell is taken as it is: at a cusp, where no cell is short enough, 2^-40 of a span is below 1 pm.
 const MAX_HALVINGS: u32 = 40;
-
-/// Distances that differ by less are equal, and a foot wins over the end of a cell: rounding of a distance must not move the
-/// foot.
-const TIE_MM: f64 = 1e-12;
-
-/// Steps for a foot: halvings alone would need about 40.
-const MAX_NEWTON_STEPS: usize = 100;
 
 /// Curvature above this is a corner, not a curve: a radius of 1 nm.
 pub const MAX_CURVATURE_1_MM: f64 = 1e6;
@@ -42,20 +37,24 @@ pub struct Jet {
     pub second: Vector,
 }
 
-/// A curve over a parameter.
+/// A curve in spans, each over a parameter `u` from 0 to 1.
+///
+/// Within a span all derivatives exist; where two spans meet, position and direction agree, the rest may jump.
 pub trait Parametric: Debug + Send + Sync {
-    /// Parameters at which to cut, ascending: the domain's ends and all places where a derivative jumps.
-    fn breaks(&self) -> Vec<f64>;
+    /// Number of spans.
+    fn spans(&self) -> usize;
 
-    /// Position and derivatives at `u`.
-    fn jet(&self, u: f64) -> Jet;
+    /// Position and derivatives at `u` of a span.
+    fn jet(&self, span: usize, u: f64) -> Jet;
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Cell {
     s_mm: f64,
-    u: f64,
-    /// Coefficients of `u(s) - u` in powers 1 to 5 of `s - s_mm`.
+    span: usize,
+    /// Parameters at both ends.
+    u: [f64; 2],
+    /// Coefficients of `u(s) - u[0]` in powers 1 to 5 of `s - s_mm`.
     powers: [f64; 5],
     /// Largest curvature seen in the cell.
     curvature_1_mm: f64,
@@ -76,18 +75,19 @@ impl Smooth {
     pub fn new(shape: Box<dyn Parametric>) -> Self {
         let mut cells = Vec::new();
         let mut s_mm = 0.0;
-        let breaks = shape.breaks();
-        for pair in breaks.windows(2) {
-            let mut todo = vec![(pair[0], pair[1], 0)];
-            while let Some((lo, hi, halvings)) = todo.pop() {
-                let (cell, length_mm, good) = make_cell(shape.as_ref(), s_mm, lo, hi);
+        for span in 0..shape.spans() {
+            let mut todo = vec![([0.0, 1.0], 0)];
+            while let Some((u, halvings)) = todo.pop() {
+                let (cell, length_mm, good) = make_cell(shape.as_ref(), s_mm, span, u);
                 if good || halvings >= MAX_HALVINGS {
-                    cells.push(cell);
-                    s_mm += length_mm;
+                    if length_mm > 0.0 {
+                        cells.push(cell);
+                        s_mm += length_mm;
+                    }
                 } else {
-                    let middle = 0.5 * (lo + hi);
-                    todo.push((middle, hi, halvings + 1));
-                    todo.push((lo, middle, halvings + 1));
+                    let middle = 0.5 * (u[0] + u[1]);
+                    todo.push(([middle, u[1]], halvings + 1));
+                    todo.push(([u[0], middle], halvings + 1));
                 }
             }
         }
@@ -107,10 +107,30 @@ impl Smooth {
 
     /// Position and tangent at `s_mm`.
     pub fn at(&self, s_mm: f64) -> Point {
-        let jet = self.jet_at(s_mm);
+        let cell = &self.cells[self.cell_of(s_mm)];
+        let u = cell.parameter(s_mm);
+        let jet = self.shape.jet(cell.span, u);
+        let speed = norm(jet.first);
+        let tangent = if speed > MIN_SPEED_MM {
+            scale(1.0 / speed, jet.first)
+        } else {
+            self.tangent_of_cusp(cell.span, u)
+        };
         Point {
             position_mm: jet.position_mm,
-            tangent: unit(jet.first),
+            tangent,
+        }
+    }
+
+    /// Where |C'| vanishes, the direction is that of a point a little further inside the span.
+    #[cold]
+    fn tangent_of_cusp(&self, span: usize, u: f64) -> Vector {
+        let inside = self.shape.jet(span, u + 1e-6 * (0.5 - u)).first;
+        let speed = norm(inside);
+        if speed > 0.0 {
+            scale(1.0 / speed, inside)
+        } else {
+            [1.0, 0.0, 0.0]
         }
     }
 
@@ -125,8 +145,11 @@ impl Smooth {
     }
 
     fn jet_at(&self, s_mm: f64) -> Jet {
-        let cell = &self.cells[self.cell_of(s_mm)];
-        self.shape.jet(cell.parameter(s_mm))
+        self.jet_in(&self.cells[self.cell_of(s_mm)], s_mm)
+    }
+
+    fn jet_in(&self, cell: &Cell, s_mm: f64) -> Jet {
+        self.shape.jet(cell.span, cell.parameter(s_mm))
     }
 
     fn cell_of(&self, s_mm: f64) -> usize {
@@ -145,138 +168,15 @@ impl Smooth {
             .get(index + 1)
             .map_or(self.length_mm, |cell| cell.s_mm)
     }
-
-    /// Arc length of the nearest point between the bounds.
-    ///
-    /// Walks to a foot first. Where the range is so short and the point so near that the distance is convex over it
-    /// (curvature times the largest possible distance below 1), that foot is the answer; otherwise all other cells are
-    /// searched, skipping those that the point's distance from their ends puts out of reach.
-    pub fn nearest(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
-        let mut s_mm = 0.5 * (lo_mm + hi_mm);
-        for _ in 0..3 {
-            let here = self.at(s_mm);
-            let step = dot(sub(point_mm, here.position_mm), here.tangent);
-            s_mm = (s_mm + step).min(hi_mm).max(lo_mm);
-        }
-        let first = self.cell_of(lo_mm);
-        let last = self.cell_of(hi_mm);
-        let middle = self.cell_of(s_mm).clamp(first, last);
-        let mut best = Best {
-            s_mm,
-            distance_mm: f64::INFINITY,
-        };
-        self.offer(middle, point_mm, lo_mm, hi_mm, &mut best);
-
-        let sharpest = self.cells[first..=last]
-            .iter()
-            .fold(0.0, |k: f64, cell| k.max(cell.curvature_1_mm));
-        // 1.5: the curvature was sampled, not bounded.
-        let inside = best.s_mm > self.cells[middle].s_mm.max(lo_mm)
-            && best.s_mm < self.cell_end_mm(middle).min(hi_mm);
-        if 1.5 * sharpest * (best.distance_mm + hi_mm - lo_mm) < 1.0 && inside {
-            return best.s_mm;
-        }
-        let mut cell = middle;
-        while cell < last {
-            let end_mm = self.cell_end_mm(cell);
-            let reach_mm = end_mm + self.distance(point_mm, end_mm) - best.distance_mm;
-            cell += 1;
-            while cell < last && self.cell_end_mm(cell) < reach_mm {
-                cell += 1;
-            }
-            if hi_mm >= reach_mm {
-                self.offer(cell, point_mm, lo_mm, hi_mm, &mut best);
-            }
-        }
-        let mut cell = middle;
-        while cell > first {
-            let start_mm = self.cells[cell].s_mm;
-            let reach_mm = start_mm - (self.distance(point_mm, start_mm) - best.distance_mm);
-            cell -= 1;
-            while cell > first && self.cells[cell].s_mm > reach_mm {
-                cell -= 1;
-            }
-            if lo_mm <= reach_mm {
-                self.offer(cell, point_mm, lo_mm, hi_mm, &mut best);
-            }
-        }
-        best.s_mm
-    }
-
-    fn distance(&self, point_mm: Vector, s_mm: f64) -> f64 {
-        distance(self.jet_at(s_mm).position_mm, point_mm)
-    }
-
-    /// Nearest point within one cell: where `(C - p).C'` changes from negative to positive, or an end.
-    fn offer(&self, index: usize, point_mm: Vector, lo_mm: f64, hi_mm: f64, best: &mut Best) {
-        let cell = &self.cells[index];
-        let mut lo = cell.s_mm.max(lo_mm);
-        let mut hi = self.cell_end_mm(index).min(hi_mm);
-        if lo > hi {
-            return;
-        }
-        let slope = |s_mm: f64| {
-            let jet = self.shape.jet(cell.parameter(s_mm));
-            let away = sub(jet.position_mm, point_mm);
-            let speed = norm(jet.first).max(MIN_SPEED_MM);
-            // d/ds of half the squared distance, and an approximation of its derivative that is right near the curve.
-            let first = dot(away, jet.first) / speed;
-            let second = 1.0
-                + (dot(away, jet.second) - first * dot(jet.first, jet.second) / speed)
-                    / (speed * speed);
-            (first, second, norm(away))
-        };
-        let at_lo = slope(lo);
-        let at_hi = slope(hi);
-        if at_lo.0 >= 0.0 || at_hi.0 <= 0.0 {
-            for (s_mm, distance_mm) in [(lo, at_lo.2), (hi, at_hi.2)] {
-                if distance_mm < best.distance_mm - TIE_MM {
-                    *best = Best { s_mm, distance_mm };
-                }
-            }
-            return;
-        }
-        let mut s_mm = lo + (hi - lo) * at_lo.0 / (at_lo.0 - at_hi.0);
-        for _ in 0..MAX_NEWTON_STEPS {
-            let (first, second, _) = slope(s_mm);
-            if first < 0.0 {
-                lo = s_mm;
-            } else {
-                hi = s_mm;
-            }
-            let newton = s_mm - first / second;
-            let inside = newton > lo && newton < hi;
-            let next = if inside { newton } else { 0.5 * (lo + hi) };
-            let moved = (next - s_mm).abs();
-            s_mm = next;
-            // Quadratic convergence: after a step this small the error is of the order of its square.
-            if inside && moved < 1e-7 || moved < 1e-12 {
-                break;
-            }
-        }
-        let distance_mm = slope(s_mm).2;
-        if distance_mm <= best.distance_mm + TIE_MM {
-            *best = Best { s_mm, distance_mm };
-        }
-    }
-}
-
-/// Nearest point so far.
-struct Best {
-    s_mm: f64,
-    distance_mm: f64,
 }
 
 impl Cell {
     fn parameter(&self, s_mm: f64) -> f64 {
         let d = s_mm - self.s_mm;
         let [a, b, c, e, f] = self.powers;
-        self.u + d * (a + d * (b + d * (c + d * (e + d * f))))
+        let u = self.u[0] + d * (a + d * (b + d * (c + d * (e + d * f))));
+        u.min(self.u[1]).max(self.u[0])
     }
-}
-
-fn unit(a: Vector) -> Vector {
-    scale(1.0 / norm(a).max(MIN_SPEED_MM), a)
 }
 
 fn curvature(jet: &Jet) -> f64 {
@@ -285,7 +185,7 @@ fn curvature(jet: &Jet) -> f64 {
 }
 
 /// Length of the curve between two parameters, 5-point Gauss-Legendre.
-fn gauss(shape: &dyn Parametric, lo: f64, hi: f64) -> f64 {
+fn gauss(shape: &dyn Parametric, span: usize, lo: f64, hi: f64) -> f64 {
     let root = (10.0f64 / 7.0).sqrt();
     let near = (5.0 - 2.0 * root).sqrt() / 3.0;
     let far = (5.0 + 2.0 * root).sqrt() / 3.0;
@@ -293,28 +193,30 @@ fn gauss(shape: &dyn Parametric, lo: f64, hi: f64) -> f64 {
     let (near_weight, far_weight) = ((322.0 + weight) / 900.0, (322.0 - weight) / 900.0);
     let half = 0.5 * (hi - lo);
     let middle = 0.5 * (hi + lo);
-    let speed = |x: f64| norm(shape.jet(middle + half * x).first);
+    let speed = |x: f64| norm(shape.jet(span, middle + half * x).first);
     half * (128.0 / 225.0 * speed(0.0)
         + near_weight * (speed(near) + speed(-near))
         + far_weight * (speed(far) + speed(-far)))
 }
 
 /// The cell between two parameters, its length, and whether it is good enough.
-fn make_cell(shape: &dyn Parametric, s_mm: f64, lo: f64, hi: f64) -> (Cell, f64, bool) {
+fn make_cell(shape: &dyn Parametric, s_mm: f64, span: usize, u: [f64; 2]) -> (Cell, f64, bool) {
+    let [lo, hi] = u;
     let quarter = |i: u32| lo + (hi - lo) * 0.25 * f64::from(i);
     let mut lengths = [0.0; 5];
     for i in 0..4 {
-        lengths[i + 1] = lengths[i] + gauss(shape, quarter(i as u32), quarter(i as u32 + 1));
+        lengths[i + 1] = lengths[i] + gauss(shape, span, quarter(i as u32), quarter(i as u32 + 1));
     }
     let length_mm = lengths[4];
-    let jets = [0, 1, 2, 3, 4].map(|i| shape.jet(quarter(i)));
+    let jets = [0, 1, 2, 3, 4].map(|i| shape.jet(span, quarter(i)));
     let cell = Cell {
         s_mm,
-        u: lo,
+        span,
+        u,
         powers: hermite(lo, hi, length_mm, &jets[0], &jets[4]),
         curvature_1_mm: jets.iter().map(curvature).fold(0.0, f64::max),
     };
-    let mut good = (gauss(shape, lo, hi) - length_mm).abs() <= CELL_TOLERANCE_MM;
+    let mut good = (gauss(shape, span, lo, hi) - length_mm).abs() <= CELL_TOLERANCE_MM;
     for i in 1..4 {
         let miss_mm =
             (cell.parameter(s_mm + lengths[i]) - quarter(i as u32)).abs() * norm(jets[i].first);
