@@ -5,10 +5,10 @@
 //!
 //! The modules stand in the order in which data flows; each uses only those above it.
 
-pub mod machine;
-pub mod gcode;
-pub mod path;
 pub mod feed;
+pub mod gcode;
+pub mod machine;
+pub mod path;
 pub mod reference;
-pub mod trace;
 pub mod report;
+pub mod trace;
