@@ -144,7 +144,7 @@ fn missing_unknown_and_mistyped_keys_are_reported() {
             .contains("name has to be a text in quotes, but is an integer")
     );
     assert!(fault_after("name = \"tnv40\"", "name = \" \"").contains("name is empty"));
-    assert!(fault_after("[axis.z]", "[axis.w]").contains("unknown table 'w' in [axis]"));
+    assert!(fault_after("\n[axis.z]", "\n[axis.w]").contains("unknown table 'w' in [axis]"));
     assert!(
         fault_after("[period]", "[[period]]")
             .contains("period has to be a table [period], but is an array")
