@@ -79,8 +79,13 @@ impl<'t, 'i> Table<'t, 'i> {
                 message: format!("{key} is no number that can be represented"),
                 hint: Some(format!(
                     "it must lie between {} and {} {unit}",
+<<<<<<< HEAD
                     range.start(),
                     range.end()
+=======
+                    shown(*range.start()),
+                    shown(*range.end())
+>>>>>>> shell
                 )),
             }),
         }
@@ -298,7 +303,29 @@ fn out_of_range(
         } else {
             "not finite"
         },
+<<<<<<< HEAD
         message: format!("{key} is {number} {unit}; it must lie between {low} and {high} {unit}"),
         hint,
     }
 }
+=======
+        message: format!(
+            "{key} is {} {unit}; it must lie between {} and {} {unit}",
+            shown(number),
+            shown(*low),
+            shown(*high)
+        ),
+        hint,
+    }
+}
+
+/// A number for people: plain where that is short, with an exponent where it would be a row of zeros.
+fn shown(number: f64) -> String {
+    let plain = number == 0.0 || !number.is_finite() || (1e-3..1e6).contains(&number.abs());
+    if plain {
+        format!("{number}")
+    } else {
+        format!("{number:e}")
+    }
+}
+>>>>>>> shell
