@@ -122,7 +122,7 @@ fn circle_in_chords_takes_as_long_as_the_circle() {
 fn dwell_stops_and_holds() {
     let event = |line, kind| Canon::Event(Event { line, kind });
     let program = vec![
-        event(1, EventKind::MCode { code: 3 }),
+        event(1, EventKind::MCode { code: 3, p: None, q: None }),
         event(2, EventKind::Dwell { seconds: 0.25 }),
         line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND),
         event(4, EventKind::SpindleSpeed { rpm: 1000.0 }),

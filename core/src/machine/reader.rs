@@ -79,13 +79,8 @@ impl<'t, 'i> Table<'t, 'i> {
                 message: format!("{key} is no number that can be represented"),
                 hint: Some(format!(
                     "it must lie between {} and {} {unit}",
-<<<<<<< HEAD
-                    range.start(),
-                    range.end()
-=======
                     shown(*range.start()),
                     shown(*range.end())
->>>>>>> shell
                 )),
             }),
         }
@@ -303,12 +298,6 @@ fn out_of_range(
         } else {
             "not finite"
         },
-<<<<<<< HEAD
-        message: format!("{key} is {number} {unit}; it must lie between {low} and {high} {unit}"),
-        hint,
-    }
-}
-=======
         message: format!(
             "{key} is {} {unit}; it must lie between {} and {} {unit}",
             shown(number),
@@ -328,4 +317,3 @@ fn shown(number: f64) -> String {
         format!("{number:e}")
     }
 }
->>>>>>> shell
