@@ -28,7 +28,7 @@ impl Settings {
     /// Values that serve every shape and machine tried.
     pub const DEFAULT: Self = Self {
         servo_periods: 5,
-        horizon: horizon::Settings { knots: 20, rate_weight: 1e-7, change_weight: 0.0, rate_limit_mm_s: 20.0 },
+        horizon: horizon::Settings { knots: 10, rate_weight: 1e-7, change_weight: 0.0, rate_limit_mm_s: 20.0 },
         innovation_gain: 0.3,
         tangential_leak: 0.05,
     };
