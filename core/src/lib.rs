@@ -8,6 +8,7 @@
 pub mod feed;
 pub mod gcode;
 pub mod machine;
+pub mod output;
 pub mod path;
 pub mod reference;
 pub mod report;

@@ -1,5 +1,7 @@
 //! What a run leaves behind: one [`Row`] per servo period, handed to every [`Sink`] that wants it.
 
+pub mod csv;
+
 /// One servo period of a run. Two-axis runs leave the third component at zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {

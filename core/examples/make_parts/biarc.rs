@@ -38,9 +38,9 @@ pub(crate) fn approximate(curve: &impl Curve, from: f64, to: f64) -> Vec<ArcMove
             while bad - good > 1e-3 * bad {
                 let middle = 0.5 * (good + bad);
                 if error(curve, at, at + middle) <= TOLERANCE_MM {
-                    good = middle
+                    good = middle;
                 } else {
-                    bad = middle
+                    bad = middle;
                 }
             }
             step = good;
