@@ -6,6 +6,10 @@
 
 mod error;
 
+pub mod gcode_writer;
+mod polyline;
+mod stab;
+
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};

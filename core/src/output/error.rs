@@ -85,7 +85,7 @@ impl OutputError {
                 hint = Some(format!(
                     "create the directory first: mkdir -p {}",
                     folder.display()
-                ))
+                ));
             }
             io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
                 hint = Some(format!(
@@ -101,7 +101,7 @@ impl OutputError {
                 ));
             }
             io::ErrorKind::NotADirectory => {
-                hint = Some(format!("{} is a file, not a directory", folder.display()))
+                hint = Some(format!("{} is a file, not a directory", folder.display()));
             }
             _ => {}
         }
