@@ -126,7 +126,7 @@ impl<W: Write> Sink for GcodeWriter<W> {
     fn row(&mut self, row: &Row) -> io::Result<()> {
         let mut point = row.corrected_mm;
         point[self.axes..].fill(0.0);
-        if let Some(wrong) = point.iter().find(|c| !(c.abs() <= LARGEST_MM)) {
+        if let Some(wrong) = point.iter().find(|c| c.is_nan() || c.abs() > LARGEST_MM) {
             let text = format!(
                 "corrected position of {wrong} mm at {} s: no program can hold it",
                 row.t_s

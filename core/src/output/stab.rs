@@ -112,7 +112,7 @@ impl Disc {
         let along = (d * d + self.radius * self.radius - other.radius * other.radius) / (2.0 * d);
         let across_sq = self.radius * self.radius - along * along;
         // Circles that touch cross in one point twice.
-        if !(across_sq >= -SLACK * self.radius * self.radius) {
+        if across_sq.is_nan() || across_sq < -SLACK * self.radius * self.radius {
             return None;
         }
         let across = across_sq.max(0.0).sqrt();
