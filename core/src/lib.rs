@@ -5,11 +5,16 @@
 //!
 //! The modules stand in the order in which data flows; each uses only those above it.
 
-pub mod feed;
-pub mod gcode;
 pub mod machine;
-pub mod output;
+pub mod gcode;
 pub mod path;
+pub mod feed;
 pub mod reference;
-pub mod report;
+pub mod plant;
 pub mod trace;
+pub mod output;
+pub mod simulate;
+pub mod identify;
+pub mod controllers;
+pub mod report;
+pub mod paper;

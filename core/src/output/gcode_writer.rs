@@ -52,11 +52,7 @@ impl<W: Write> GcodeWriter<W> {
         for note in notes {
             writeln!(out, "({})", comment(note))?;
         }
-        writeln!(
-            out,
-            "(straight blocks within {} um of the setpoints; mm, mm/min)",
-            TOLERANCE_MM * 1e3
-        )?;
+        writeln!(out, "(straight blocks within {} um of the setpoints; mm, mm/min)", TOLERANCE_MM * 1e3)?;
         // G64 P: a control that stopped at every joint of these short blocks would be slow and mark the part.
         writeln!(out, "G21 G17 G90 G94 G64 P{TOLERANCE_MM}")?;
         Ok(Self {
@@ -66,11 +62,7 @@ impl<W: Write> GcodeWriter<W> {
             cutting: false,
             last: None,
             speeds: Vec::new(),
-            print: Printer {
-                at_mm: [0.0; 3],
-                named: [false; 3],
-                feed: String::new(),
-            },
+            print: Printer { at_mm: [0.0; 3], named: [false; 3], feed: String::new() },
         })
     }
 
@@ -83,7 +75,10 @@ impl<W: Write> GcodeWriter<W> {
         match event {
             EventKind::Dwell { seconds } => writeln!(self.out, "G4 P{seconds}"),
             EventKind::SpindleSpeed { rpm } => writeln!(self.out, "S{rpm}"),
-            EventKind::MCode { code } => writeln!(self.out, "M{code}"),
+            EventKind::MCode { code, p, q } => {
+                let word = |letter, value: Option<f64>| value.map_or_else(String::new, |value| format!(" {letter}{value}"));
+                writeln!(self.out, "M{code}{}{}", word('P', *p), word('Q', *q))
+            }
             EventKind::ToolSelect { tool } => writeln!(self.out, "T{tool}"),
             // The end is written by `finish`, whether the program had one or not.
             EventKind::ProgramEnd => Ok(()),
@@ -103,20 +98,14 @@ impl<W: Write> GcodeWriter<W> {
 
     fn flush_blocks(&mut self) -> io::Result<()> {
         let mut segments = Vec::new();
-        self.simplifier
-            .finish(&mut |segment| segments.push(segment));
+        self.simplifier.finish(&mut |segment| segments.push(segment));
         self.write_blocks(&segments)
     }
 
     fn write_blocks(&mut self, segments: &[Segment]) -> io::Result<()> {
         for segment in segments {
             let fastest_mm_s = self.speeds.drain(..segment.points).fold(0.0, f64::max);
-            self.print.block(
-                &mut self.out,
-                self.axes,
-                segment.end_mm,
-                self.cutting.then_some(fastest_mm_s),
-            )?;
+            self.print.block(&mut self.out, self.axes, segment.end_mm, self.cutting.then_some(fastest_mm_s))?;
         }
         Ok(())
     }
@@ -127,10 +116,7 @@ impl<W: Write> Sink for GcodeWriter<W> {
         let mut point = row.corrected_mm;
         point[self.axes..].fill(0.0);
         if let Some(wrong) = point.iter().find(|c| c.is_nan() || c.abs() > LARGEST_MM) {
-            let text = format!(
-                "corrected position of {wrong} mm at {} s: no program can hold it",
-                row.t_s
-            );
+            let text = format!("corrected position of {wrong} mm at {} s: no program can hold it", row.t_s);
             return Err(io::Error::new(io::ErrorKind::InvalidData, text));
         }
         if row.cutting != self.cutting {
@@ -147,21 +133,14 @@ impl<W: Write> Sink for GcodeWriter<W> {
         }
         self.last = Some((row.t_s, point));
         let mut segments = Vec::new();
-        self.simplifier
-            .push(point, &mut |segment| segments.push(segment));
+        self.simplifier.push(point, &mut |segment| segments.push(segment));
         self.write_blocks(&segments)
     }
 }
 
 impl Printer {
     /// One block to `end_mm`: G1 at a feed, or G0 without.
-    fn block(
-        &mut self,
-        out: &mut impl Write,
-        axes: usize,
-        end_mm: [f64; 3],
-        feed_mm_s: Option<f64>,
-    ) -> io::Result<()> {
+    fn block(&mut self, out: &mut impl Write, axes: usize, end_mm: [f64; 3], feed_mm_s: Option<f64>) -> io::Result<()> {
         let moves = [0, 1, 2].map(|axis| end_mm[axis] != self.at_mm[axis]);
         if !moves.contains(&true) {
             return Ok(());
@@ -173,13 +152,7 @@ impl Printer {
         }
         let level = moves[0] || moves[1];
         let wanted = [0, 1, 2].map(|axis| moves[axis] || (!self.named[axis] && axis < 2 && level));
-        self.words(
-            out,
-            if feed_mm_s.is_some() { "G1" } else { "G0" },
-            axes,
-            wanted,
-            end_mm,
-        )?;
+        self.words(out, if feed_mm_s.is_some() { "G1" } else { "G0" }, axes, wanted, end_mm)?;
         self.at_mm = end_mm;
         if let Some(feed_mm_s) = feed_mm_s {
             // Rounded up to 0.1 mm/min, so that the other control may go as fast as this one did; what is above a tenth by
@@ -205,12 +178,7 @@ impl Printer {
         for axis in (0..axes).filter(|&axis| wanted[axis]) {
             let digits = format!("{:.DECIMALS$}", at_mm[axis]);
             let digits = digits.trim_end_matches('0').trim_end_matches('.');
-            write!(
-                out,
-                " {}{}",
-                ['X', 'Y', 'Z'][axis],
-                if digits == "-0" { "0" } else { digits }
-            )?;
+            write!(out, " {}{}", ['X', 'Y', 'Z'][axis], if digits == "-0" { "0" } else { digits })?;
             self.named[axis] = true;
         }
         Ok(())
@@ -220,11 +188,7 @@ impl Printer {
 /// Text that can stand within the parentheses of a comment on any control.
 fn comment(note: &str) -> String {
     let plain = |c: char| {
-        if c.is_ascii_graphic() && !matches!(c, '(' | ')' | '%') || c == ' ' {
-            c
-        } else {
-            '?'
-        }
+        if c.is_ascii_graphic() && !matches!(c, '(' | ')' | '%') || c == ' ' { c } else { '?' }
     };
     note.chars().map(plain).collect()
 }

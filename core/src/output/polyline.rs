@@ -34,13 +34,7 @@ pub(super) struct Segment {
 
 impl Simplifier {
     pub(super) fn new(tolerance_mm: f64, steps_per_mm: f64) -> Self {
-        Self {
-            tolerance_mm,
-            steps_per_mm,
-            anchor: None,
-            pending: Vec::new(),
-            fits: None,
-        }
+        Self { tolerance_mm, steps_per_mm, anchor: None, pending: Vec::new(), fits: None }
     }
 
     /// Takes the next point; hands segments that are finished to `emit`.
@@ -60,19 +54,14 @@ impl Simplifier {
     pub(super) fn finish(&mut self, emit: &mut impl FnMut(Segment)) {
         while !self.pending.is_empty() {
             self.advance(self.pending.len(), emit);
-            if self
-                .fits
-                .is_some_and(|(covered, _)| covered == self.pending.len())
-            {
+            if self.fits.is_some_and(|(covered, _)| covered == self.pending.len()) {
                 self.close(emit);
             }
         }
     }
 
     fn next_try(&self) -> usize {
-        self.fits
-            .map_or(1, |(covered, _)| 2 * covered)
-            .min(MAX_POINTS)
+        self.fits.map_or(1, |(covered, _)| 2 * covered).min(MAX_POINTS)
     }
 
     /// Tries a prefix of `length`; where it does not fit, or is the longest allowed, finishes the longest that does.
@@ -101,10 +90,7 @@ impl Simplifier {
 
     /// Emits the longest fitting prefix; a single point always fits, by a vertex upon it.
     fn close(&mut self, emit: &mut impl FnMut(Segment)) {
-        let (points, end_mm) = self
-            .fits
-            .take()
-            .unwrap_or_else(|| (1, self.printed(self.pending[0])));
+        let (points, end_mm) = self.fits.take().unwrap_or_else(|| (1, self.printed(self.pending[0])));
         self.pending.drain(..points);
         // A prefix that stays within the tolerance of the last vertex needs no motion.
         emit(Segment { end_mm, points });
@@ -117,9 +103,7 @@ impl Simplifier {
         let points = &self.pending[..length];
         let next = self.pending.get(length).copied();
         let last = points[length - 1];
-        let on_point = || {
-            Some(self.printed(last)).filter(|end| passes(anchor, *end, points, self.tolerance_mm))
-        };
+        let on_point = || Some(self.printed(last)).filter(|end| passes(anchor, *end, points, self.tolerance_mm));
         if next.is_none_or(|next| self.is_corner(length, next))
             && let Some(end) = on_point()
         {
@@ -135,11 +119,7 @@ impl Simplifier {
 
     fn is_corner(&self, length: usize, next: P3) -> bool {
         let last = self.pending[length - 1];
-        let before = if length > 1 {
-            self.pending[length - 2]
-        } else {
-            self.anchor.unwrap_or(last)
-        };
+        let before = if length > 1 { self.pending[length - 2] } else { self.anchor.unwrap_or(last) };
         let (arriving, leaving) = (sub(last, before), sub(next, last));
         dot(arriving, leaving) < CORNER_COS * norm(arriving) * norm(leaving)
     }
@@ -172,12 +152,7 @@ mod tests {
         let printed = points[0].map(|c| (c * STEPS).round() / STEPS);
         let (mut at, mut covered) = (printed, 1);
         for segment in segments {
-            assert!(passes(
-                at,
-                segment.end_mm,
-                &points[covered..covered + segment.points],
-                TOLERANCE
-            ));
+            assert!(passes(at, segment.end_mm, &points[covered..covered + segment.points], TOLERANCE));
             at = segment.end_mm;
             covered += segment.points;
         }
@@ -186,10 +161,7 @@ mod tests {
 
     /// Fewest segments of any polyline whose vertices are printed points of the path, by dynamic programming.
     fn optimum_on_points(points: &[P3]) -> usize {
-        let printed: Vec<P3> = points
-            .iter()
-            .map(|p| p.map(|c| (c * STEPS).round() / STEPS))
-            .collect();
+        let printed: Vec<P3> = points.iter().map(|p| p.map(|c| (c * STEPS).round() / STEPS)).collect();
         let mut fewest = vec![0; points.len()];
         for j in 1..points.len() {
             fewest[j] = (0..j)
@@ -202,31 +174,15 @@ mod tests {
     }
 
     fn circle(count: usize, radius: f64, step: f64) -> Vec<P3> {
-        (0..count)
-            .map(|k| (k as f64 * step / radius).sin_cos())
-            .map(|(s, c)| [radius * c, radius * s, 0.0])
-            .collect()
+        (0..count).map(|k| (k as f64 * step / radius).sin_cos()).map(|(s, c)| [radius * c, radius * s, 0.0]).collect()
     }
 
     #[test]
     fn a_straight_line_is_one_block_and_a_corner_is_exact() {
-        let line: Vec<P3> = (0..=5000)
-            .map(|k| [f64::from(k) * 0.05, f64::from(k) * 0.01, 0.0])
-            .collect();
-        assert_eq!(
-            simplified(&line),
-            [Segment {
-                end_mm: [250.0, 50.0, 0.0],
-                points: 5000
-            }]
-        );
-        let corner: Vec<P3> = (0..=100)
-            .map(|k| [f64::from(k.min(50)), f64::from((k - 50).max(0)), 0.0])
-            .collect();
-        let ends: Vec<P3> = simplified(&corner)
-            .iter()
-            .map(|segment| segment.end_mm)
-            .collect();
+        let line: Vec<P3> = (0..=5000).map(|k| [f64::from(k) * 0.05, f64::from(k) * 0.01, 0.0]).collect();
+        assert_eq!(simplified(&line), [Segment { end_mm: [250.0, 50.0, 0.0], points: 5000 }]);
+        let corner: Vec<P3> = (0..=100).map(|k| [f64::from(k.min(50)), f64::from((k - 50).max(0)), 0.0]).collect();
+        let ends: Vec<P3> = simplified(&corner).iter().map(|segment| segment.end_mm).collect();
         assert_eq!(ends, [[50.0, 0.0, 0.0], [50.0, 50.0, 0.0]]);
     }
 
@@ -240,29 +196,19 @@ mod tests {
         let longest = 2.0 * (4.0 * radius * TOLERANCE).sqrt();
         let fewest = (step * 20_000.0 / longest).ceil() as usize;
         // Whole points and the printed step cost up to one point in 200 at either end.
-        assert!(
-            segments.len() <= fewest + fewest / 50 + 1,
-            "{} blocks, at best {fewest}",
-            segments.len()
-        );
+        assert!(segments.len() <= fewest + fewest / 50 + 1, "{} blocks, at best {fewest}", segments.len());
     }
 
     #[test]
     fn standing_still_needs_no_motion() {
         let still = vec![[1.0, 2.0, 3.0]; 300];
         let segments = simplified(&still);
-        assert!(
-            segments
-                .iter()
-                .all(|segment| segment.end_mm == [1.0, 2.0, 3.0])
-        );
+        assert!(segments.iter().all(|segment| segment.end_mm == [1.0, 2.0, 3.0]));
     }
 
     #[test]
     fn a_long_line_is_split_to_bound_the_memory() {
-        let line: Vec<P3> = (0..=40_000)
-            .map(|k| [f64::from(k) * 0.05, 0.0, 0.0])
-            .collect();
+        let line: Vec<P3> = (0..=40_000).map(|k| [f64::from(k) * 0.05, 0.0, 0.0]).collect();
         let segments = simplified(&line);
         assert_guarantee(&line, &segments);
         assert_eq!(segments.len(), 3);
@@ -280,11 +226,7 @@ mod tests {
             let segments = simplified(&points);
             assert_guarantee(&points, &segments);
             let best = optimum_on_points(&points);
-            assert!(
-                segments.len() <= best + 1,
-                "case {case}: {} against {best}",
-                segments.len()
-            );
+            assert!(segments.len() <= best + 1, "case {case}: {} against {best}", segments.len());
             ours += segments.len();
             optimum += best;
         }

@@ -29,10 +29,7 @@ pub(super) fn stab(anchor: P3, points: &[P3], next: Option<P3>, r: f64) -> Optio
     let length = norm(reach);
     // Within reach of the anchor there is no direction; the polyline simply does not move on.
     if length <= r {
-        return points
-            .iter()
-            .all(|p| norm(sub(*p, anchor)) <= r)
-            .then_some(anchor);
+        return points.iter().all(|p| norm(sub(*p, anchor)) <= r).then_some(anchor);
     }
     let frame = Frame::along(scale(reach, 1.0 / length));
     // From the far end to the near one: far discs are small, so that few of the others still matter.
@@ -46,14 +43,9 @@ pub(super) fn stab(anchor: P3, points: &[P3], next: Option<P3>, r: f64) -> Optio
         if x <= 0.0 {
             return None;
         }
-        discs.push(Disc {
-            center: [y / x, z / x],
-            radius: r / x,
-        });
+        discs.push(Disc { center: [y / x, z / x], radius: r / x });
     }
-    let goal = next
-        .and_then(|next| frame.away_from(sub(next, anchor)))
-        .unwrap_or([1.0, 0.0]);
+    let goal = next.and_then(|next| frame.away_from(sub(next, anchor))).unwrap_or([1.0, 0.0]);
     let [alpha, beta] = extreme(&discs, goal)?;
     let direction = frame.direction(alpha, beta);
     Some([0, 1, 2].map(|i| anchor[i] + length * direction[i]))
@@ -63,11 +55,7 @@ pub(super) fn stab(anchor: P3, points: &[P3], next: Option<P3>, r: f64) -> Optio
 pub(super) fn passes(a: P3, b: P3, points: &[P3], r: f64) -> bool {
     let along = sub(b, a);
     let length = norm(along);
-    let unit = if length > 0.0 {
-        scale(along, 1.0 / length)
-    } else {
-        [0.0; 3]
-    };
+    let unit = if length > 0.0 { scale(along, 1.0 / length) } else { [0.0; 3] };
     // The smallest parameter that the points so far allow.
     let mut reached = 0.0_f64;
     let in_order = points.iter().all(|p| {
@@ -96,18 +84,12 @@ impl Disc {
     }
 
     fn top(&self, goal: [f64; 2]) -> [f64; 2] {
-        [
-            self.center[0] + self.radius * goal[0],
-            self.center[1] + self.radius * goal[1],
-        ]
+        [self.center[0] + self.radius * goal[0], self.center[1] + self.radius * goal[1]]
     }
 
     /// Where two circles cross.
     fn crossings(&self, other: &Self) -> Option<[[f64; 2]; 2]> {
-        let v = [
-            other.center[0] - self.center[0],
-            other.center[1] - self.center[1],
-        ];
+        let v = [other.center[0] - self.center[0], other.center[1] - self.center[1]];
         let d = v[0].hypot(v[1]);
         let along = (d * d + self.radius * self.radius - other.radius * other.radius) / (2.0 * d);
         let across_sq = self.radius * self.radius - along * along;
@@ -118,10 +100,7 @@ impl Disc {
         let across = across_sq.max(0.0).sqrt();
         let e = [v[0] / d, v[1] / d];
         let foot = [self.center[0] + along * e[0], self.center[1] + along * e[1]];
-        Some([
-            [foot[0] - across * e[1], foot[1] + across * e[0]],
-            [foot[0] + across * e[1], foot[1] - across * e[0]],
-        ])
+        Some([[foot[0] - across * e[1], foot[1] + across * e[0]], [foot[0] + across * e[1], foot[1] - across * e[0]]])
     }
 }
 
@@ -148,9 +127,7 @@ fn extreme_on(disc: &Disc, others: &[Disc], goal: [f64; 2]) -> Option<[f64; 2]> 
         let height = |c: &[f64; 2]| c[0] * goal[0] + c[1] * goal[1];
         let mut crossings = disc.crossings(other)?;
         crossings.sort_by(|a, b| height(b).total_cmp(&height(a)));
-        best = crossings
-            .into_iter()
-            .find(|c| others[..j].iter().all(|before| before.holds(*c)))?;
+        best = crossings.into_iter().find(|c| others[..j].iter().all(|before| before.holds(*c)))?;
     }
     Some(best)
 }
@@ -166,17 +143,9 @@ impl Frame {
     fn along(u: P3) -> Self {
         // Across u in the XY plane where there is such a direction, so that a plane path stays plane.
         let level = u[0].hypot(u[1]);
-        let v = if level > 1e-6 {
-            [-u[1] / level, u[0] / level, 0.0]
-        } else {
-            [1.0, 0.0, 0.0]
-        };
+        let v = if level > 1e-6 { [-u[1] / level, u[0] / level, 0.0] } else { [1.0, 0.0, 0.0] };
         let v = unit(sub(v, scale(u, dot(u, v))));
-        Self {
-            u,
-            v,
-            w: cross(u, v),
-        }
+        Self { u, v, w: cross(u, v) }
     }
 
     fn coordinates(&self, p: P3) -> P3 {
@@ -216,11 +185,7 @@ fn unit(a: P3) -> P3 {
 }
 
 fn cross(a: P3, b: P3) -> P3 {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 #[cfg(test)]
@@ -229,10 +194,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn disc(x: f64, y: f64, radius: f64) -> Disc {
-        Disc {
-            center: [x, y],
-            radius,
-        }
+        Disc { center: [x, y], radius }
     }
 
     #[test]
@@ -241,20 +203,12 @@ mod tests {
         let [x, y] = extreme(&discs, [0.0, 1.0]).unwrap();
         assert!(x.abs() < 1e-12 && (y - 4.0).abs() < 1e-12);
         assert_eq!(extreme(&discs, [1.0, 0.0]), Some([2.0, 0.0]));
-        assert_eq!(
-            extreme(&[disc(-3.0, 0.0, 2.0), disc(3.0, 0.0, 2.0)], [0.0, 1.0]),
-            None
-        );
+        assert_eq!(extreme(&[disc(-3.0, 0.0, 2.0), disc(3.0, 0.0, 2.0)], [0.0, 1.0]), None);
     }
 
     #[test]
     fn order_matters_not_only_distance() {
-        let there_and_back = [
-            [1.0, 0.0, 0.0],
-            [2.0, 0.0, 0.0],
-            [1.0, 0.0, 0.0],
-            [3.0, 0.0, 0.0],
-        ];
+        let there_and_back = [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [1.0, 0.0, 0.0], [3.0, 0.0, 0.0]];
         assert!(!passes([0.0; 3], [3.0, 0.0, 0.0], &there_and_back, 0.4));
         assert!(passes([0.0; 3], [3.0, 0.0, 0.0], &there_and_back, 0.5));
         assert!(!passes([0.0; 3], [2.0, 0.0, 0.0], &[[3.0, 0.0, 0.0]], 0.5));

@@ -43,10 +43,7 @@ struct Block {
 fn read(text: &str, mut at: [f64; 3]) -> Vec<Block> {
     let mut feed_mm_min = 0.0;
     let mut blocks = Vec::new();
-    for line in text
-        .lines()
-        .filter(|line| line.starts_with("G0") || line.starts_with("G1"))
-    {
+    for line in text.lines().filter(|line| line.starts_with("G0") || line.starts_with("G1")) {
         for word in line.split_whitespace().skip(1) {
             let value: f64 = word[1..].parse().unwrap();
             match &word[..1] {
@@ -54,11 +51,7 @@ fn read(text: &str, mut at: [f64; 3]) -> Vec<Block> {
                 axis => at["XYZ".find(axis).unwrap()] = value,
             }
         }
-        blocks.push(Block {
-            cutting: line.starts_with("G1"),
-            end: at,
-            feed_mm_min,
-        });
+        blocks.push(Block { cutting: line.starts_with("G1"), end: at, feed_mm_min });
     }
     blocks
 }
@@ -82,8 +75,7 @@ fn within_frechet(p: &[[f64; 3]], q: &[[f64; 3]], limit: f64) -> bool {
         (low <= 1.0 && high >= 0.0).then_some((low.max(0.0), high.min(1.0)))
     };
     let (n, m) = (p.len() - 1, q.len() - 1);
-    let close =
-        |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2]) <= limit;
+    let close = |a: [f64; 3], b: [f64; 3]| (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2]) <= limit;
     if !close(p[0], q[0]) || !close(p[n], q[m]) {
         return false;
     }
@@ -96,24 +88,19 @@ fn within_frechet(p: &[[f64; 3]], q: &[[f64; 3]], limit: f64) -> bool {
     let mut corner_reached = true;
     for i in 0..n {
         let mut next = Vec::with_capacity(m);
-        let mut bottom =
-            free(q[0], p[i], p[i + 1]).filter(|(low, _)| corner_reached && *low <= 0.0);
+        let mut bottom = free(q[0], p[i], p[i + 1]).filter(|(low, _)| corner_reached && *low <= 0.0);
         corner_reached = bottom.is_some_and(|(_, high)| high >= 1.0);
         for j in 0..m {
             let right_free = free(p[i + 1], q[j], q[j + 1]);
             let top_free = free(q[j + 1], p[i], p[i + 1]);
             let right = match (bottom, left[j], right_free) {
                 (Some(_), _, free) => free,
-                (None, Some((from, _)), Some((low, high))) if from <= high => {
-                    Some((low.max(from), high))
-                }
+                (None, Some((from, _)), Some((low, high))) if from <= high => Some((low.max(from), high)),
                 _ => None,
             };
             bottom = match (left[j], bottom, top_free) {
                 (Some(_), _, free) => free,
-                (None, Some((from, _)), Some((low, high))) if from <= high => {
-                    Some((low.max(from), high))
-                }
+                (None, Some((from, _)), Some((low, high))) if from <= high => Some((low.max(from), high)),
                 _ => None,
             };
             next.push(right);
@@ -130,10 +117,7 @@ fn assert_close_both_ways(points: &[([f64; 3], bool)], text: &str) {
     if path.len() == 1 {
         path.push(path[0]);
     }
-    assert!(
-        within_frechet(&setpoints, &path, TOLERANCE_MM + ROUNDING_MM),
-        "the path leaves the setpoints:\n{text}"
-    );
+    assert!(within_frechet(&setpoints, &path, TOLERANCE_MM + ROUNDING_MM), "the path leaves the setpoints:\n{text}");
 }
 
 #[test]
@@ -150,24 +134,15 @@ fn the_oracle_itself_tells_near_from_far() {
 fn a_drilling_cycle_keeps_its_rapids_events_and_order() {
     let mut writer = GcodeWriter::new(Vec::new(), 3, &["part (copy) 100%"]).unwrap();
     let mut k = 0;
-    let mut go =
-        |writer: &mut GcodeWriter<Vec<u8>>, from: [f64; 3], to: [f64; 3], cutting: bool| {
-            for step in 1..=100 {
-                let share = f64::from(step) / 100.0;
-                writer
-                    .row(&row(
-                        k,
-                        [0, 1, 2].map(|i| from[i] + share * (to[i] - from[i])),
-                        cutting,
-                    ))
-                    .unwrap();
-                k += 1;
-            }
-        };
-    writer
-        .event(&EventKind::SpindleSpeed { rpm: 8000.0 })
-        .unwrap();
-    writer.event(&EventKind::MCode { code: 3 }).unwrap();
+    let mut go = |writer: &mut GcodeWriter<Vec<u8>>, from: [f64; 3], to: [f64; 3], cutting: bool| {
+        for step in 1..=100 {
+            let share = f64::from(step) / 100.0;
+            writer.row(&row(k, [0, 1, 2].map(|i| from[i] + share * (to[i] - from[i])), cutting)).unwrap();
+            k += 1;
+        }
+    };
+    writer.event(&EventKind::SpindleSpeed { rpm: 8000.0 }).unwrap();
+    writer.event(&EventKind::MCode { code: 3, p: None, q: None }).unwrap();
     go(&mut writer, [0.0; 3], [0.0, 0.0, 5.0], false);
     go(&mut writer, [0.0, 0.0, 5.0], [20.0, 0.0, 5.0], false);
     go(&mut writer, [20.0, 0.0, 5.0], [20.0, 0.0, -2.0], true);
@@ -184,9 +159,7 @@ fn a_drilling_cycle_keeps_its_rapids_events_and_order() {
 
 #[test]
 fn a_program_that_starts_cutting_names_its_start_first() {
-    let points: Vec<([f64; 3], bool)> = (0..50)
-        .map(|k| ([1.0 + 0.05 * f64::from(k), 2.0, 0.0], true))
-        .collect();
+    let points: Vec<([f64; 3], bool)> = (0..50).map(|k| ([1.0 + 0.05 * f64::from(k), 2.0, 0.0], true)).collect();
     let text = program(2, &points);
     assert!(text.contains("\nG0 X1 Y2\nG1 X3.45 F3000\nM2\n"), "{text}");
 }
@@ -212,12 +185,7 @@ fn a_circle_at_50_mm_s_takes_few_blocks() {
     // The longest chord between circles 1 um inside and outside is 0.4 mm; the room for rounding keeps the eighth setpoint of
     // 0.05 mm out of it. So seven go into a block, and a rapid names the start.
     assert_eq!(blocks.len(), 1 + 1256_usize.div_ceil(7));
-    assert!(
-        blocks
-            .iter()
-            .skip(1)
-            .all(|block| (block.feed_mm_min - 3000.0).abs() <= 0.1)
-    );
+    assert!(blocks.iter().skip(1).all(|block| (block.feed_mm_min - 3000.0).abs() <= 0.1));
 }
 
 proptest! {
