@@ -17,4 +17,5 @@ pub mod simulate;
 pub mod identify;
 pub mod controllers;
 pub mod report;
+pub mod pipeline;
 pub mod paper;

@@ -10,7 +10,7 @@
 use std::io::{self, Write};
 
 use super::polyline::{Segment, Simplifier};
-use crate::gcode::canon::EventKind;
+use crate::gcode::canon::{Event, EventKind};
 use crate::trace::{Row, Sink};
 
 /// Largest distance between the setpoints and the printed path, in either direction, mm.
@@ -48,9 +48,9 @@ impl<W: Write> GcodeWriter<W> {
     ///
     /// # Errors
     /// Where `out` takes no more.
-    pub fn new(mut out: W, axes: usize, notes: &[&str]) -> io::Result<Self> {
+    pub fn new(mut out: W, axes: usize, notes: &[impl AsRef<str>]) -> io::Result<Self> {
         for note in notes {
-            writeln!(out, "({})", comment(note))?;
+            writeln!(out, "({})", comment(note.as_ref()))?;
         }
         writeln!(out, "(straight blocks within {} um of the setpoints; mm, mm/min)", TOLERANCE_MM * 1e3)?;
         // G64 P: a control that stopped at every joint of these short blocks would be slow and mark the part.
@@ -64,25 +64,6 @@ impl<W: Write> GcodeWriter<W> {
             speeds: Vec::new(),
             print: Printer { at_mm: [0.0; 3], named: [false; 3], feed: String::new() },
         })
-    }
-
-    /// Writes an event after the motion so far.
-    ///
-    /// # Errors
-    /// Where the output takes no more.
-    pub fn event(&mut self, event: &EventKind) -> io::Result<()> {
-        self.flush_blocks()?;
-        match event {
-            EventKind::Dwell { seconds } => writeln!(self.out, "G4 P{seconds}"),
-            EventKind::SpindleSpeed { rpm } => writeln!(self.out, "S{rpm}"),
-            EventKind::MCode { code, p, q } => {
-                let word = |letter, value: Option<f64>| value.map_or_else(String::new, |value| format!(" {letter}{value}"));
-                writeln!(self.out, "M{code}{}{}", word('P', *p), word('Q', *q))
-            }
-            EventKind::ToolSelect { tool } => writeln!(self.out, "T{tool}"),
-            // The end is written by `finish`, whether the program had one or not.
-            EventKind::ProgramEnd => Ok(()),
-        }
     }
 
     /// Writes the remaining blocks and M2, and gives back what was written to.
@@ -135,6 +116,23 @@ impl<W: Write> Sink for GcodeWriter<W> {
         let mut segments = Vec::new();
         self.simplifier.push(point, &mut |segment| segments.push(segment));
         self.write_blocks(&segments)
+    }
+
+    /// Writes the event behind the motion so far.
+    fn event(&mut self, _t_s: f64, event: &Event) -> io::Result<()> {
+        self.flush_blocks()?;
+        match &event.kind {
+            EventKind::Dwell { seconds } => writeln!(self.out, "G4 P{seconds}"),
+            EventKind::SpindleSpeed { rpm } => writeln!(self.out, "S{rpm}"),
+            EventKind::MCode { code, p, q } => {
+                let word =
+                    |letter, value: Option<f64>| value.map_or_else(String::new, |value| format!(" {letter}{value}"));
+                writeln!(self.out, "M{code}{}{}", word('P', *p), word('Q', *q))
+            }
+            EventKind::ToolSelect { tool } => writeln!(self.out, "T{tool}"),
+            // The end is written by `finish`, whether the program had one or not.
+            EventKind::ProgramEnd => Ok(()),
+        }
     }
 }
 

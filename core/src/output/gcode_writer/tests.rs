@@ -133,6 +133,7 @@ fn the_oracle_itself_tells_near_from_far() {
 #[test]
 fn a_drilling_cycle_keeps_its_rapids_events_and_order() {
     let mut writer = GcodeWriter::new(Vec::new(), 3, &["part (copy) 100%"]).unwrap();
+    let event = |writer: &mut GcodeWriter<Vec<u8>>, kind| writer.event(0.0, &Event { line: 1, kind }).unwrap();
     let mut k = 0;
     let mut go = |writer: &mut GcodeWriter<Vec<u8>>, from: [f64; 3], to: [f64; 3], cutting: bool| {
         for step in 1..=100 {
@@ -141,14 +142,14 @@ fn a_drilling_cycle_keeps_its_rapids_events_and_order() {
             k += 1;
         }
     };
-    writer.event(&EventKind::SpindleSpeed { rpm: 8000.0 }).unwrap();
-    writer.event(&EventKind::MCode { code: 3, p: None, q: None }).unwrap();
+    event(&mut writer, EventKind::SpindleSpeed { rpm: 8000.0 });
+    event(&mut writer, EventKind::MCode { code: 3, p: None, q: None });
     go(&mut writer, [0.0; 3], [0.0, 0.0, 5.0], false);
     go(&mut writer, [0.0, 0.0, 5.0], [20.0, 0.0, 5.0], false);
     go(&mut writer, [20.0, 0.0, 5.0], [20.0, 0.0, -2.0], true);
-    writer.event(&EventKind::Dwell { seconds: 0.5 }).unwrap();
+    event(&mut writer, EventKind::Dwell { seconds: 0.5 });
     go(&mut writer, [20.0, 0.0, -2.0], [20.0, 0.0, 5.0], false);
-    writer.event(&EventKind::ProgramEnd).unwrap();
+    event(&mut writer, EventKind::ProgramEnd);
     let text = String::from_utf8(writer.finish().unwrap()).unwrap();
     assert_eq!(
         text,
@@ -166,7 +167,7 @@ fn a_program_that_starts_cutting_names_its_start_first() {
 
 #[test]
 fn a_position_that_is_no_number_is_an_error_and_not_a_block() {
-    let mut writer = GcodeWriter::new(Vec::new(), 2, &[]).unwrap();
+    let mut writer = GcodeWriter::new(Vec::new(), 2, &[""; 0]).unwrap();
     for wrong in [f64::NAN, f64::INFINITY, 1e300] {
         let error = writer.row(&row(0, [0.0, wrong, 0.0], true)).unwrap_err();
         assert!(error.to_string().contains("no program can hold it"));
