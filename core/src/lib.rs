@@ -5,7 +5,6 @@
 //!
 //! The modules stand in the order in which data flows; each uses only those above it.
 
-pub mod output;
 pub mod machine;
 pub mod gcode;
 pub mod path;
@@ -13,6 +12,7 @@ pub mod feed;
 pub mod reference;
 pub mod plant;
 pub mod trace;
+pub mod output;
 pub mod simulate;
 pub mod identify;
 pub mod controllers;

@@ -144,17 +144,13 @@ impl Machine {
     /// round-trip form of numbers make it canonical.
     pub fn fingerprint(&self) -> String {
         let content = serde_json::json!([self.period, self.limits, self.axes]);
-        blake3::hash(content.to_string().as_bytes())
-            .to_hex()
-            .to_string()
+        blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
     }
 }
 
 /// Whether `--machine` means a file rather than the name of a built-in machine.
 pub fn is_path(name_or_path: &Path) -> bool {
-    name_or_path
-        .extension()
-        .is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+    name_or_path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
         || name_or_path.components().count() != 1
 }
 
@@ -165,22 +161,13 @@ fn read_text(path: &Path) -> Result<String, MachineError> {
     let unreadable = |source| MachineError::unreadable(path, source);
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(unreadable)?;
-    file.take(MAX_FILE_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(unreadable)?;
+    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
     if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(MachineError::TooLarge {
-            path: path.to_owned(),
-            limit_bytes: MAX_FILE_BYTES,
-        });
+        return Err(MachineError::TooLarge { path: path.to_owned(), limit_bytes: MAX_FILE_BYTES });
     }
     String::from_utf8(bytes).map_err(|error| {
         let offset = error.utf8_error().valid_up_to();
-        MachineError::NotText {
-            path: path.to_owned(),
-            offset,
-            byte: error.as_bytes()[offset],
-        }
+        MachineError::NotText { path: path.to_owned(), offset, byte: error.as_bytes()[offset] }
     })
 }
 

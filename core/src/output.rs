@@ -6,6 +6,9 @@
 
 mod error;
 
+pub mod gcode_writer;
+mod polyline;
+mod stab;
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -20,10 +23,7 @@ pub use error::{OutputError, Step};
 const BUFFER_BYTES: usize = 64 << 10;
 
 /// Output files under way in this process, so that an interrupt can remove them.
-static LIVE: Mutex<Live> = Mutex::new(Live {
-    closed: false,
-    files: Vec::new(),
-});
+static LIVE: Mutex<Live> = Mutex::new(Live { closed: false, files: Vec::new() });
 
 struct Live {
     /// Set by an interrupt: nothing is created or renamed any more.
@@ -63,52 +63,28 @@ impl OutputFile {
     /// missing or cannot be written to.
     pub fn create(path: &Path, inputs: &[&Path]) -> Result<Self, OutputError> {
         let target = resolve(path)?;
-        if let Some(input) = inputs
-            .iter()
-            .find(|input| fs::canonicalize(input).is_ok_and(|input| input == target))
-        {
-            return Err(OutputError::IsInput {
-                path: path.to_owned(),
-                input: input.to_path_buf(),
-            });
+        if let Some(input) = inputs.iter().find(|input| fs::canonicalize(input).is_ok_and(|input| input == target)) {
+            return Err(OutputError::IsInput { path: path.to_owned(), input: input.to_path_buf() });
         }
         let mut live = live();
         if live.closed {
-            return Err(OutputError::Interrupted {
-                path: path.to_owned(),
-            });
+            return Err(OutputError::Interrupted { path: path.to_owned() });
         }
         if live.files.iter().any(|file| file.target == target) {
-            return Err(OutputError::Twice {
-                path: path.to_owned(),
-            });
+            return Err(OutputError::Twice { path: path.to_owned() });
         }
         let folder = target.parent().unwrap_or(Path::new("/")).to_owned();
         let failed = |error| OutputError::io(Step::Create, path, &folder, error);
         let (file, temporary) = if fs::metadata(&target).is_ok_and(|found| !found.is_file()) {
-            (
-                File::options().write(true).open(&target).map_err(failed)?,
-                None,
-            )
+            (File::options().write(true).open(&target).map_err(failed)?, None)
         } else {
             let (file, temporary) = create_beside(&target, &folder).map_err(failed)?;
             (file, Some(temporary))
         };
-        live.files.push(LiveFile {
-            target: target.clone(),
-            temporary: temporary.as_ref().map(|path| path.to_path_buf()),
-        });
-        let named = Named {
-            file,
-            shown: path.to_owned(),
-            folder,
-        };
-        Ok(Self {
-            shown: path.to_owned(),
-            target,
-            out: BufWriter::with_capacity(BUFFER_BYTES, named),
-            temporary,
-        })
+        live.files
+            .push(LiveFile { target: target.clone(), temporary: temporary.as_ref().map(|path| path.to_path_buf()) });
+        let named = Named { file, shown: path.to_owned(), folder };
+        Ok(Self { shown: path.to_owned(), target, out: BufWriter::with_capacity(BUFFER_BYTES, named), temporary })
     }
 
     /// Where the file will stand, as it was given.
@@ -121,14 +97,10 @@ impl OutputFile {
     /// # Errors
     /// Where the last bytes or the renaming fail; nothing is left then.
     pub fn commit(mut self) -> Result<(), OutputError> {
-        self.out
-            .flush()
-            .map_err(|error| OutputError::from_io(error, &self.shown))?;
+        self.out.flush().map_err(|error| OutputError::from_io(error, &self.shown))?;
         let live = live();
         if live.closed {
-            return Err(OutputError::Interrupted {
-                path: self.shown.clone(),
-            });
+            return Err(OutputError::Interrupted { path: self.shown.clone() });
         }
         if let Some(temporary) = self.temporary.take() {
             // The lock is held: an interrupt comes before the renaming or finds nothing left to remove.
@@ -154,7 +126,10 @@ impl Write for OutputFile {
 
 impl Drop for OutputFile {
     fn drop(&mut self) {
-        live().files.retain(|file| file.target != self.target);
+        let mut live = live();
+        // Removed under the lock: an interrupt finds the file in the list, or gone.
+        self.temporary = None;
+        live.files.retain(|file| file.target != self.target);
     }
 }
 
@@ -165,10 +140,7 @@ impl Write for Named {
                 return error;
             }
             let kind = error.kind();
-            io::Error::new(
-                kind,
-                OutputError::io(Step::Write, &self.shown, &self.folder, error),
-            )
+            io::Error::new(kind, OutputError::io(Step::Write, &self.shown, &self.folder, error))
         })
     }
 
@@ -196,26 +168,16 @@ fn live() -> MutexGuard<'static, Live> {
 /// The real place of `path`, which need not exist yet.
 fn resolve(path: &Path) -> Result<PathBuf, OutputError> {
     if fs::metadata(path).is_ok_and(|found| found.is_dir()) {
-        return Err(OutputError::IsDirectory {
-            path: path.to_owned(),
-        });
+        return Err(OutputError::IsDirectory { path: path.to_owned() });
     }
     if let Ok(target) = fs::canonicalize(path) {
         return Ok(target);
     }
     // A path such as "out/" or ".." names no file.
-    let Some(name) = path
-        .file_name()
-        .filter(|_| !path.as_os_str().as_encoded_bytes().ends_with(b"/"))
-    else {
-        return Err(OutputError::IsDirectory {
-            path: path.to_owned(),
-        });
+    let Some(name) = path.file_name().filter(|_| !path.as_os_str().as_encoded_bytes().ends_with(b"/")) else {
+        return Err(OutputError::IsDirectory { path: path.to_owned() });
     };
-    let folder = path
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty())
-        .unwrap_or(Path::new("."));
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match fs::canonicalize(folder) {
         Ok(folder) => Ok(folder.join(name)),
         Err(error) => Err(OutputError::io(Step::Create, path, folder, error)),

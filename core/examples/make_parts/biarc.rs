@@ -38,9 +38,9 @@ pub(crate) fn approximate(curve: &impl Curve, from: f64, to: f64) -> Vec<ArcMove
             while bad - good > 1e-3 * bad {
                 let middle = 0.5 * (good + bad);
                 if error(curve, at, at + middle) <= TOLERANCE_MM {
-                    good = middle
+                    good = middle;
                 } else {
-                    bad = middle
+                    bad = middle;
                 }
             }
             step = good;
@@ -59,24 +59,10 @@ fn pair(curve: &impl Curve, from: f64, to: f64) -> [ArcMove; 2] {
     let t = [t0[0] + t1[0], t0[1] + t1[1]];
     // |v - d t|^2 = 4 d^2, the positive root.
     let (a, b, c) = (dot(t, t) - 4.0, -2.0 * dot(v, t), dot(v, v));
-    let d = if a.abs() < 1e-12 {
-        -c / b
-    } else {
-        (-b - (b * b - 4.0 * a * c).sqrt()) / (2.0 * a)
-    };
-    let joint = [
-        0.5 * (p0[0] + d * t0[0] + p1[0] - d * t1[0]),
-        0.5 * (p0[1] + d * t0[1] + p1[1] - d * t1[1]),
-    ];
+    let d = if a.abs() < 1e-12 { -c / b } else { (-b - (b * b - 4.0 * a * c).sqrt()) / (2.0 * a) };
+    let joint = [0.5 * (p0[0] + d * t0[0] + p1[0] - d * t1[0]), 0.5 * (p0[1] + d * t0[1] + p1[1] - d * t1[1])];
     let back = arc(p1, [-t1[0], -t1[1]], joint);
-    [
-        arc(p0, t0, joint),
-        ArcMove {
-            end: p1,
-            center: back.center,
-            clockwise: !back.clockwise,
-        },
-    ]
+    [arc(p0, t0, joint), ArcMove { end: p1, center: back.center, clockwise: !back.clockwise }]
 }
 
 /// The arc that leaves `start` along `tangent` and ends at `end`.
@@ -86,11 +72,7 @@ fn arc(start: P, tangent: P, end: P) -> ArcMove {
     let twice_height = 2.0 * dot(v, normal);
     // A sagitta below the printed nanometre: the arc would be no different from a line.
     if twice_height.abs() / 8.0 < 1e-6 {
-        return ArcMove {
-            end,
-            center: None,
-            clockwise: false,
-        };
+        return ArcMove { end, center: None, clockwise: false };
     }
     let radius = dot(v, v) / twice_height;
     ArcMove {
@@ -110,11 +92,7 @@ fn error(curve: &impl Curve, from: f64, to: f64) -> f64 {
     (1..SAMPLES)
         .map(|i| {
             let p = curve.point(from + (to - from) * i as f64 / SAMPLES as f64);
-            if dot(sub(p, start), along) < joint {
-                distance(p, start, &first)
-            } else {
-                distance(p, first.end, &second)
-            }
+            if dot(sub(p, start), along) < joint { distance(p, start, &first) } else { distance(p, first.end, &second) }
         })
         .fold(0.0, f64::max)
 }

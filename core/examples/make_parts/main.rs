@@ -15,10 +15,7 @@ fn main() -> ExitCode {
         eprintln!("usage: make_parts DIRECTORY");
         return ExitCode::from(2);
     };
-    for (name, text) in shapes::all()
-        .into_iter()
-        .chain([("pocket.ngc", pocket::program())])
-    {
+    for (name, text) in shapes::all().into_iter().chain([("pocket.ngc", pocket::program())]) {
         let path = Path::new(&folder).join(name);
         if let Err(error) = std::fs::write(&path, &text) {
             eprintln!("cannot write {}: {error}", path.display());

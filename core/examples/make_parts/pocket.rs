@@ -32,10 +32,7 @@ const FINISH: u32 = 1200;
 
 /// The program.
 pub(crate) fn program() -> String {
-    let mut program = Program {
-        text: String::new(),
-        number: 10,
-    };
+    let mut program = Program { text: String::new(), number: 10 };
     program.head();
     program.rough();
     program.floor();
@@ -51,7 +48,9 @@ struct Program {
 
 impl Program {
     fn head(&mut self) {
-        self.comment("Pocket 80 x 50 x 6 mm with corners of R = 8 mm, aluminium; origin: centre of the pocket, top of the part");
+        self.comment(
+            "Pocket 80 x 50 x 6 mm with corners of R = 8 mm, aluminium; origin: centre of the pocket, top of the part",
+        );
         self.comment("T1: end mill of 10 mm, 3 flutes, 8000 rev/min");
         self.comment("4 roughing levels of 1.5 mm with helix entries, floor raster, wall finish; 0.3 mm stock on the wall, 0.2 mm on the floor");
         self.block("G21 G17 G90 G94 G64 P0.01");
@@ -68,15 +67,8 @@ impl Program {
         let levels = (rough_depth_mm / LEVEL_MM).ceil() as u32;
         for level in 1..=levels {
             let z = (-LEVEL_MM * f64::from(level)).max(-rough_depth_mm);
-            self.comment(&format!(
-                "roughing level {level} of {levels}, {}",
-                word('Z', z)
-            ));
-            let above = if level == 1 {
-                0.0
-            } else {
-                -LEVEL_MM * f64::from(level - 1)
-            };
+            self.comment(&format!("roughing level {level} of {levels}, {}", word('Z', z)));
+            let above = if level == 1 { 0.0 } else { -LEVEL_MM * f64::from(level - 1) };
             self.entry(above + NEAR_MM, z);
             let wall = CUTTER_RADIUS_MM + WALL_STOCK_MM;
             let passes = ((HALF_MM[1] - wall - HELIX_MM[0]) / STEPOVER_MM).ceil() as u32;
@@ -106,11 +98,7 @@ impl Program {
                 word('I', -radius)
             ));
         }
-        self.block(&format!(
-            "G3 {} Y0 {} J0 F{ROUGH}",
-            word('X', radius),
-            word('I', -radius)
-        ));
+        self.block(&format!("G3 {} Y0 {} J0 F{ROUGH}", word('X', radius), word('I', -radius)));
     }
 
     /// A closed rectangle with rounded corners, counter-clockwise (climb milling) from the middle of its lower side.
@@ -126,19 +114,9 @@ impl Program {
             ([-x, -straight[1]], [-straight[0], -y], [corner, 0.0]),
         ];
         for (start, end, center) in corners {
-            self.block(&format!(
-                "G1 {} {}",
-                word('X', start[0]),
-                word('Y', start[1])
-            ));
-            let (end, center) = (
-                [word('X', end[0]), word('Y', end[1])],
-                [word('I', center[0]), word('J', center[1])],
-            );
-            self.block(&format!(
-                "G3 {} {} {} {}",
-                end[0], end[1], center[0], center[1]
-            ));
+            self.block(&format!("G1 {} {}", word('X', start[0]), word('Y', start[1])));
+            let (end, center) = ([word('X', end[0]), word('Y', end[1])], [word('I', center[0]), word('J', center[1])]);
+            self.block(&format!("G3 {} {} {} {}", end[0], end[1], center[0], center[1]));
         }
         self.block(&format!("G1 X0 {}", word('Y', -y)));
     }
@@ -154,15 +132,8 @@ impl Program {
         let reach = HALF_MM[0] - wall - step / 2.0;
         let y = |row: f64| -height / 2.0 + row * step;
         self.block(&format!("G0 {} {}", word('X', -reach), word('Y', y(0.0))));
-        self.block(&format!(
-            "G0 {}",
-            word('Z', NEAR_MM - DEPTH_MM + FLOOR_STOCK_MM)
-        ));
-        self.block(&format!(
-            "G1 {} {} F{ENTRY}",
-            word('X', reach),
-            word('Z', -DEPTH_MM)
-        ));
+        self.block(&format!("G0 {}", word('Z', NEAR_MM - DEPTH_MM + FLOOR_STOCK_MM)));
+        self.block(&format!("G1 {} {} F{ENTRY}", word('X', reach), word('Z', -DEPTH_MM)));
         self.block(&format!("G1 {} F{ROUGH}", word('X', -reach)));
         let mut side = -1.0;
         for row in 1..=rows as u32 {
@@ -184,31 +155,16 @@ impl Program {
         self.comment("wall finish");
         let half = HALF_MM.map(|half| half - CUTTER_RADIUS_MM);
         let lead = 4.0;
-        self.block(&format!(
-            "G0 {} {}",
-            word('X', -lead),
-            word('Y', lead - half[1])
-        ));
+        self.block(&format!("G0 {} {}", word('X', -lead), word('Y', lead - half[1])));
         self.block(&format!("G0 {}", word('Z', NEAR_MM - DEPTH_MM)));
         self.block(&format!("G1 {} F{ENTRY}", word('Z', -DEPTH_MM)));
-        self.block(&format!(
-            "G3 X0 {} {} J0 F{FINISH}",
-            word('Y', -half[1]),
-            word('I', lead)
-        ));
+        self.block(&format!("G3 X0 {} {} J0 F{FINISH}", word('Y', -half[1]), word('I', lead)));
         let before = self.text.len();
         self.contour(half, CORNER_MM - CUTTER_RADIUS_MM, FINISH);
         // The lead-in has reached the contour's first point already.
-        let first_block_end = self.text[before..]
-            .find('\n')
-            .map_or(before, |newline| before + newline + 1);
+        let first_block_end = self.text[before..].find('\n').map_or(before, |newline| before + newline + 1);
         self.text.replace_range(before..first_block_end, "");
-        self.block(&format!(
-            "G3 {} {} I0 {}",
-            word('X', lead),
-            word('Y', lead - half[1]),
-            word('J', lead)
-        ));
+        self.block(&format!("G3 {} {} I0 {}", word('X', lead), word('Y', lead - half[1]), word('J', lead)));
         self.block(&format!("G0 {}", word('Z', CLEAR_MM)));
     }
 
@@ -224,8 +180,7 @@ impl Program {
     }
 
     fn block(&mut self, words: &str) {
-        writeln!(self.text, "N{} {words}", self.number)
-            .expect("a string takes all that is written");
+        writeln!(self.text, "N{} {words}", self.number).expect("a string takes all that is written");
         self.number += 5;
     }
 }

@@ -46,22 +46,9 @@ impl Curve for Star {
 pub(crate) fn all() -> Vec<(&'static str, String)> {
     vec![
         ("circle.ngc", circle()),
-        (
-            "ellipse.ngc",
-            curve("Ellipse: x = 20 cos a, y = 10 sin a", &Ellipse, 4),
-        ),
-        (
-            "eight.ngc",
-            curve("Figure eight: x = 15 sin a, y = 10 sin 2a", &Eight, 4),
-        ),
-        (
-            "star.ngc",
-            curve(
-                "Rounded five-pointed star: 12 + 4 cos 5a times cos a, sin a",
-                &Star,
-                10,
-            ),
-        ),
+        ("ellipse.ngc", curve("Ellipse: x = 20 cos a, y = 10 sin a", &Ellipse, 4)),
+        ("eight.ngc", curve("Figure eight: x = 15 sin a, y = 10 sin 2a", &Eight, 4)),
+        ("star.ngc", curve("Rounded five-pointed star: 12 + 4 cos 5a times cos a, sin a", &Star, 10)),
         ("square.ngc", square()),
         ("slot.ngc", slot()),
     ]
@@ -82,9 +69,7 @@ fn circle() -> String {
 /// A closed curve over 0..2 pi, cut into `sections` equal parts of the parameter so that its symmetry shows in the arcs.
 fn curve(title: &str, curve: &impl Curve, sections: u32) -> String {
     let section = |i: u32| 2.0 * PI * f64::from(i) / f64::from(sections);
-    let moves: Vec<_> = (0..sections)
-        .flat_map(|i| approximate(curve, section(i), section(i + 1)))
-        .collect();
+    let moves: Vec<_> = (0..sections).flat_map(|i| approximate(curve, section(i), section(i + 1))).collect();
     let mut at = curve.point(0.0);
     let mut text = format!(
         "({title}, a from 0 to 360 degrees, mm)\n\

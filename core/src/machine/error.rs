@@ -107,42 +107,28 @@ impl MachineError {
         } else {
             match nearest(name, &names) {
                 Some(near) => format!("did you mean '{near}'?"),
-                None => {
-                    "a machine of your own is a file: give its path, ending in .toml".to_owned()
-                }
+                None => "a machine of your own is a file: give its path, ending in .toml".to_owned(),
             }
         };
-        Self::UnknownName {
-            name: name.to_owned(),
-            known: names.join(", "),
-            hint,
-        }
+        Self::UnknownName { name: name.to_owned(), known: names.join(", "), hint }
     }
 
     /// The operating system does not give the file.
     pub(super) fn unreadable(path: &Path, source: io::Error) -> Self {
         let hint = match source.kind() {
-            io::ErrorKind::NotFound => Some(
-                "a name without .toml means a built-in machine; 'feedwright machines' lists them"
-                    .to_owned(),
-            ),
+            io::ErrorKind::NotFound => {
+                Some("a name without .toml means a built-in machine; 'feedwright machines' lists them".to_owned())
+            }
             io::ErrorKind::IsADirectory => Some("give a file of that directory".to_owned()),
             _ => None,
         };
-        Self::Unreadable {
-            path: path.to_owned(),
-            source,
-            hint,
-        }
+        Self::Unreadable { path: path.to_owned(), source, hint }
     }
 
     /// The faults of a text, sorted by place.
     pub(super) fn invalid(file: &str, text: &str, mut faults: Vec<Fault>) -> Self {
         faults.sort_by_key(|fault| (fault.at.start, fault.at.end));
-        let problems = faults
-            .into_iter()
-            .map(|fault| Problem::locate(fault, text))
-            .collect();
+        let problems = faults.into_iter().map(|fault| Problem::locate(fault, text)).collect();
         Self::Invalid {
             file: file.to_owned(),
             text: NamedSource::new(file, text.to_owned()).with_language("toml"),

@@ -20,10 +20,7 @@ const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
 pub(super) fn machine(text: &str) -> Result<Machine, Vec<Fault>> {
     let (document, syntax_errors) = DeTable::parse_recoverable(text);
     if !syntax_errors.is_empty() {
-        return Err(syntax_errors
-            .iter()
-            .map(|error| syntax_fault(error, text))
-            .collect());
+        return Err(syntax_errors.iter().map(|error| syntax_fault(error, text)).collect());
     }
     let mut faults = Vec::new();
     let mut root = Table::root(&document);
@@ -36,11 +33,7 @@ pub(super) fn machine(text: &str) -> Result<Machine, Vec<Fault>> {
         axes: axes(root.table("axis", &mut faults), &mut faults),
     };
     root.finish(&mut faults);
-    if faults.is_empty() {
-        Ok(machine)
-    } else {
-        Err(faults)
-    }
+    if faults.is_empty() { Ok(machine) } else { Err(faults) }
 }
 
 fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
@@ -49,8 +42,7 @@ fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
     let ratio = servo_s / mechanics_s;
     // A value that has a fault of its own is NaN here and gets no second one.
     let is_whole = (ratio - ratio.round()).abs() <= WHOLE_RATIO_TOLERANCE * ratio;
-    if ratio.is_finite() && (!is_whole || !(1.0..=MAX_MECHANICS_PER_SERVO).contains(&ratio.round()))
-    {
+    if ratio.is_finite() && (!is_whole || !(1.0..=MAX_MECHANICS_PER_SERVO).contains(&ratio.round())) {
         let steps = ratio.round().clamp(1.0, MAX_MECHANICS_PER_SERVO);
         faults.push(Fault {
             at: table.place("mechanics_s"),
@@ -62,11 +54,7 @@ fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
         });
     }
     table.finish(faults);
-    Period {
-        servo_s,
-        mechanics_s,
-        mechanics_per_servo: ratio.round() as u32,
-    }
+    Period { servo_s, mechanics_s, mechanics_per_servo: ratio.round() as u32 }
 }
 
 fn limits(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Limits {
@@ -84,10 +72,7 @@ fn limits(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Limits {
 
 fn axes(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Vec<Axis> {
     let [x, y, z] = AXIS_NAMES;
-    let mut axes: Vec<Axis> = [x, y]
-        .into_iter()
-        .map(|name| axis(table.table(name, faults), faults))
-        .collect();
+    let mut axes: Vec<Axis> = [x, y].into_iter().map(|name| axis(table.table(name, faults), faults)).collect();
     if let Some(present) = table.optional_table(z, faults) {
         axes.push(axis(present, faults));
     }
@@ -99,19 +84,9 @@ fn axis(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Axis {
     let axis = Axis {
         lead_mm_per_rev: table.number("lead_mm_per_rev", "mm/rev", 0.01..=1e3, faults),
         inertia_kg_m2: table.number("inertia_kg_m2", "kg m2", 1e-9..=1e3, faults),
-        viscous_friction_nm_s: table.number(
-            "viscous_friction_nm_s",
-            "N m s/rad",
-            0.0..=1e4,
-            faults,
-        ),
+        viscous_friction_nm_s: table.number("viscous_friction_nm_s", "N m s/rad", 0.0..=1e4, faults),
         coulomb_friction_nm: table.number("coulomb_friction_nm", "N m", 0.0..=1e5, faults),
-        coulomb_smoothing_rad_s: table.number(
-            "coulomb_smoothing_rad_s",
-            "rad/s",
-            1e-6..=1e3,
-            faults,
-        ),
+        coulomb_smoothing_rad_s: table.number("coulomb_smoothing_rad_s", "rad/s", 1e-6..=1e3, faults),
         disturbance_nm: table.number("disturbance_nm", "N m", 0.0..=1e5, faults),
         disturbance_hz: table.number("disturbance_hz", "Hz", 0.0..=1e5, faults),
         kp_1_s: table.number("kp_1_s", "1/s", 1e-3..=1e5, faults),
@@ -126,10 +101,5 @@ fn axis(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Axis {
 fn syntax_fault(error: &toml::de::Error, text: &str) -> Fault {
     let at = error.span().unwrap_or(0..0);
     let at = at.start.min(text.len())..at.end.min(text.len());
-    Fault {
-        at,
-        label: "here",
-        message: format!("not TOML: {}", error.message()),
-        hint: None,
-    }
+    Fault { at, label: "here", message: format!("not TOML: {}", error.message()), hint: None }
 }

@@ -16,12 +16,7 @@ const SUGGESTION_SIMILARITY: f64 = 0.75;
 pub(super) fn nearest<'a>(word: &str, candidates: &[&'a str]) -> Option<&'a str> {
     candidates
         .iter()
-        .map(|candidate| {
-            (
-                strsim::jaro_winkler(&word.to_lowercase(), candidate),
-                *candidate,
-            )
-        })
+        .map(|candidate| (strsim::jaro_winkler(&word.to_lowercase(), candidate), *candidate))
         .filter(|(similarity, _)| *similarity >= SUGGESTION_SIMILARITY)
         .max_by(|a, b| a.0.total_cmp(&b.0))
         .map(|(_, candidate)| candidate)
@@ -41,12 +36,7 @@ pub(super) struct Table<'t, 'i> {
 impl<'t, 'i> Table<'t, 'i> {
     /// The file itself.
     pub(super) fn root(entries: &'t Spanned<DeTable<'i>>) -> Self {
-        Self {
-            name: String::new(),
-            at: 0..0,
-            entries: Some(entries.get_ref()),
-            asked: Vec::new(),
-        }
+        Self { name: String::new(), at: 0..0, entries: Some(entries.get_ref()), asked: Vec::new() }
     }
 
     /// A number in `unit` within `range`; NaN and a fault where it is not.
@@ -62,9 +52,9 @@ impl<'t, 'i> Table<'t, 'i> {
         };
         let number = match value.get_ref() {
             DeValue::Float(float) => float.as_str().parse().ok(),
-            DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-                .ok()
-                .map(|whole| whole as f64),
+            DeValue::Integer(integer) => {
+                i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|whole| whole as f64)
+            }
             other => {
                 faults.push(wrong_type(value.span(), key, "a number", other));
                 return f64::NAN;
@@ -77,11 +67,7 @@ impl<'t, 'i> Table<'t, 'i> {
                 at: value.span(),
                 label: "too large",
                 message: format!("{key} is no number that can be represented"),
-                hint: Some(format!(
-                    "it must lie between {} and {} {unit}",
-                    shown(*range.start()),
-                    shown(*range.end())
-                )),
+                hint: Some(format!("it must lie between {} and {} {unit}", shown(*range.start()), shown(*range.end()))),
             }),
         }
         f64::NAN
@@ -95,12 +81,7 @@ impl<'t, 'i> Table<'t, 'i> {
         match value.get_ref() {
             DeValue::String(text) if !text.trim().is_empty() => text.trim().to_owned(),
             DeValue::String(_) => {
-                faults.push(Fault {
-                    at: value.span(),
-                    label: "empty",
-                    message: format!("{key} is empty"),
-                    hint: None,
-                });
+                faults.push(Fault { at: value.span(), label: "empty", message: format!("{key} is empty"), hint: None });
                 String::new()
             }
             other => {
@@ -120,54 +101,31 @@ impl<'t, 'i> Table<'t, 'i> {
                     at: self.at.clone(),
                     label: "missing below here",
                     message: format!("table [{name}] is missing"),
-                    hint: self
-                        .near_unknown(key)
-                        .map(|near| format!("is [{}] meant to be it?", self.dotted(near))),
+                    hint: self.near_unknown(key).map(|near| format!("is [{}] meant to be it?", self.dotted(near))),
                 });
             }
-            Self {
-                name,
-                at: self.at.clone(),
-                entries: None,
-                asked: Vec::new(),
-            }
+            Self { name, at: self.at.clone(), entries: None, asked: Vec::new() }
         })
     }
 
     /// A table that may be left out.
-    pub(super) fn optional_table(
-        &mut self,
-        key: &'static str,
-        faults: &mut Vec<Fault>,
-    ) -> Option<Self> {
+    pub(super) fn optional_table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<Self> {
         self.asked.push(key);
         let value = self.entries?.get(key)?;
         let name = self.dotted(key);
         let entries = match value.get_ref() {
             DeValue::Table(entries) => Some(entries),
             other => {
-                faults.push(wrong_type(
-                    value.span(),
-                    key,
-                    &format!("a table [{name}]"),
-                    other,
-                ));
+                faults.push(wrong_type(value.span(), key, &format!("a table [{name}]"), other));
                 None
             }
         };
-        Some(Self {
-            name,
-            at: value.span(),
-            entries,
-            asked: Vec::new(),
-        })
+        Some(Self { name, at: value.span(), entries, asked: Vec::new() })
     }
 
     /// Place of a key's value, for faults between values; the table's where the key is missing.
     pub(super) fn place(&self, key: &str) -> Range<usize> {
-        self.entries
-            .and_then(|entries| entries.get(key))
-            .map_or_else(|| self.at.clone(), Spanned::span)
+        self.entries.and_then(|entries| entries.get(key)).map_or_else(|| self.at.clone(), Spanned::span)
     }
 
     /// Reports the keys that nobody asked for.
@@ -177,16 +135,8 @@ impl<'t, 'i> Table<'t, 'i> {
             if self.asked.contains(&word) {
                 continue;
             }
-            let kind = if value.get_ref().is_table() {
-                "table"
-            } else {
-                "key"
-            };
-            let home = if self.name.is_empty() {
-                "the file".to_owned()
-            } else {
-                format!("[{}]", self.name)
-            };
+            let kind = if value.get_ref().is_table() { "table" } else { "key" };
+            let home = if self.name.is_empty() { "the file".to_owned() } else { format!("[{}]", self.name) };
             let hint = match nearest(word, &self.asked) {
                 Some(near) => format!("did you mean '{near}'?"),
                 None => format!("{home} holds {}", self.asked.join(", ")),
@@ -201,26 +151,16 @@ impl<'t, 'i> Table<'t, 'i> {
     }
 
     /// The value of a key that has to be there; a fault where it is not.
-    fn required(
-        &mut self,
-        key: &'static str,
-        faults: &mut Vec<Fault>,
-    ) -> Option<&'t Spanned<DeValue<'i>>> {
+    fn required(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<&'t Spanned<DeValue<'i>>> {
         self.asked.push(key);
         let value = self.entries?.get(key);
         if value.is_none() {
-            let home = if self.name.is_empty() {
-                String::new()
-            } else {
-                format!(" from [{}]", self.name)
-            };
+            let home = if self.name.is_empty() { String::new() } else { format!(" from [{}]", self.name) };
             faults.push(Fault {
                 at: self.at.clone(),
                 label: "missing here",
                 message: format!("{key} is missing{home}"),
-                hint: self
-                    .near_unknown(key)
-                    .map(|near| format!("is '{near}' meant to be it?")),
+                hint: self.near_unknown(key).map(|near| format!("is '{near}' meant to be it?")),
             });
         }
         value
@@ -229,21 +169,14 @@ impl<'t, 'i> Table<'t, 'i> {
     /// A key of the text that nobody asked for yet and that looks like `key`.
     fn near_unknown(&self, key: &str) -> Option<&'t str> {
         let entries = self.entries?;
-        let unknown: Vec<&str> = entries
-            .keys()
-            .map(|key| key.get_ref().as_ref())
-            .filter(|word| !self.asked.contains(word))
-            .collect();
+        let unknown: Vec<&str> =
+            entries.keys().map(|key| key.get_ref().as_ref()).filter(|word| !self.asked.contains(word)).collect();
         // Stricter than `nearest` alone: a key that is asked for later is unknown only until then.
         nearest(key, &unknown).filter(|near| strsim::damerau_levenshtein(key, near) <= 2)
     }
 
     fn dotted(&self, key: &str) -> String {
-        if self.name.is_empty() {
-            key.to_owned()
-        } else {
-            format!("{}.{key}", self.name)
-        }
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
     }
 }
 
@@ -257,30 +190,17 @@ fn wrong_type(at: Range<usize>, key: &str, wanted: &str, got: &DeValue<'_>) -> F
     Fault {
         at,
         label: "wrong type",
-        message: format!(
-            "{key} has to be {wanted}, but is {}",
-            article(got.type_str())
-        ),
+        message: format!("{key} has to be {wanted}, but is {}", article(got.type_str())),
         hint,
     }
 }
 
 fn article(kind: &str) -> String {
-    let article = if kind.starts_with(['a', 'e', 'i', 'o', 'u']) {
-        "an"
-    } else {
-        "a"
-    };
+    let article = if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
     format!("{article} {kind}")
 }
 
-fn out_of_range(
-    at: Range<usize>,
-    key: &str,
-    number: f64,
-    unit: &str,
-    range: &RangeInclusive<f64>,
-) -> Fault {
+fn out_of_range(at: Range<usize>, key: &str, number: f64, unit: &str, range: &RangeInclusive<f64>) -> Fault {
     let (low, high) = (range.start(), range.end());
     let hint = if !number.is_finite() {
         Some("write a finite number".to_owned())
@@ -293,11 +213,7 @@ fn out_of_range(
     };
     Fault {
         at,
-        label: if number.is_finite() {
-            "out of range"
-        } else {
-            "not finite"
-        },
+        label: if number.is_finite() { "out of range" } else { "not finite" },
         message: format!(
             "{key} is {} {unit}; it must lie between {} and {} {unit}",
             shown(number),
@@ -311,9 +227,5 @@ fn out_of_range(
 /// A number for people: plain where that is short, with an exponent where it would be a row of zeros.
 fn shown(number: f64) -> String {
     let plain = number == 0.0 || !number.is_finite() || (1e-3..1e6).contains(&number.abs());
-    if plain {
-        format!("{number}")
-    } else {
-        format!("{number:e}")
-    }
+    if plain { format!("{number}") } else { format!("{number:e}") }
 }

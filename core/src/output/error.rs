@@ -82,16 +82,10 @@ impl OutputError {
         let (mut free_bytes, mut hint) = (None, None);
         match source.kind() {
             io::ErrorKind::NotFound => {
-                hint = Some(format!(
-                    "create the directory first: mkdir -p {}",
-                    folder.display()
-                ))
+                hint = Some(format!("create the directory first: mkdir -p {}", folder.display()));
             }
             io::ErrorKind::PermissionDenied | io::ErrorKind::ReadOnlyFilesystem => {
-                hint = Some(format!(
-                    "the file is made in {}, which has to be writable",
-                    folder.display()
-                ));
+                hint = Some(format!("the file is made in {}, which has to be writable", folder.display()));
             }
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
                 free_bytes = free_bytes_in(folder);
@@ -101,17 +95,11 @@ impl OutputError {
                 ));
             }
             io::ErrorKind::NotADirectory => {
-                hint = Some(format!("{} is a file, not a directory", folder.display()))
+                hint = Some(format!("{} is a file, not a directory", folder.display()));
             }
             _ => {}
         }
-        Self::Io {
-            step,
-            path: path.to_owned(),
-            free_bytes,
-            source,
-            hint,
-        }
+        Self::Io { step, path: path.to_owned(), free_bytes, source, hint }
     }
 
     /// The error that [`super::OutputFile`] put into an `io::Error`, out of which writers above it hand it back; `path` is named
@@ -119,13 +107,7 @@ impl OutputError {
     pub fn from_io(error: io::Error, path: &Path) -> Self {
         match error.downcast::<Self>() {
             Ok(inner) => inner,
-            Err(source) => Self::Io {
-                step: Step::Write,
-                path: path.to_owned(),
-                free_bytes: None,
-                source,
-                hint: None,
-            },
+            Err(source) => Self::Io { step: Step::Write, path: path.to_owned(), free_bytes: None, source, hint: None },
         }
     }
 }

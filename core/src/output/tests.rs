@@ -5,18 +5,14 @@ use miette::Diagnostic;
 use super::*;
 
 fn names(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-        .collect();
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
     names.sort();
     names
 }
 
 fn refusal(path: &Path, inputs: &[&Path]) -> OutputError {
-    OutputFile::create(path, inputs)
-        .err()
-        .expect("the output is refused")
+    OutputFile::create(path, inputs).err().expect("the output is refused")
 }
 
 #[test]
@@ -61,31 +57,12 @@ fn a_panic_leaves_nothing() {
 #[test]
 fn targets_that_are_no_files_are_refused() {
     let folder = tempfile::tempdir().unwrap();
-    assert!(matches!(
-        refusal(folder.path(), &[]),
-        OutputError::IsDirectory { .. }
-    ));
-    assert!(matches!(
-        refusal(&folder.path().join("new/"), &[]),
-        OutputError::IsDirectory { .. }
-    ));
+    assert!(matches!(refusal(folder.path(), &[]), OutputError::IsDirectory { .. }));
+    assert!(matches!(refusal(&folder.path().join("new/"), &[]), OutputError::IsDirectory { .. }));
     let missing = refusal(&folder.path().join("none/trace.csv"), &[]);
-    assert!(
-        missing
-            .help()
-            .unwrap()
-            .to_string()
-            .starts_with("create the directory first: mkdir -p "),
-        "{missing}"
-    );
+    assert!(missing.help().unwrap().to_string().starts_with("create the directory first: mkdir -p "), "{missing}");
     fs::write(folder.path().join("file"), "").unwrap();
-    assert!(matches!(
-        refusal(&folder.path().join("file/trace.csv"), &[]),
-        OutputError::Io {
-            step: Step::Create,
-            ..
-        }
-    ));
+    assert!(matches!(refusal(&folder.path().join("file/trace.csv"), &[]), OutputError::Io { step: Step::Create, .. }));
 }
 
 #[test]
@@ -93,27 +70,14 @@ fn inputs_are_never_replaced_even_through_links() {
     let folder = tempfile::tempdir().unwrap();
     let input = folder.path().join("part.ngc");
     fs::write(&input, "G0 X1").unwrap();
-    assert!(matches!(
-        refusal(&input, &[&input]),
-        OutputError::IsInput { .. }
-    ));
-    let detour = folder
-        .path()
-        .join("../")
-        .join(folder.path().file_name().unwrap())
-        .join("part.ngc");
-    assert!(matches!(
-        refusal(&detour, &[&input]),
-        OutputError::IsInput { .. }
-    ));
+    assert!(matches!(refusal(&input, &[&input]), OutputError::IsInput { .. }));
+    let detour = folder.path().join("../").join(folder.path().file_name().unwrap()).join("part.ngc");
+    assert!(matches!(refusal(&detour, &[&input]), OutputError::IsInput { .. }));
     #[cfg(unix)]
     {
         let link = folder.path().join("link.ngc");
         std::os::unix::fs::symlink(&input, &link).unwrap();
-        assert!(matches!(
-            refusal(&link, &[&input]),
-            OutputError::IsInput { .. }
-        ));
+        assert!(matches!(refusal(&link, &[&input]), OutputError::IsInput { .. }));
     }
 }
 
@@ -132,10 +96,7 @@ fn two_outputs_do_not_share_a_target() {
 fn a_link_is_followed_and_permissions_are_kept() {
     use std::os::unix::fs::PermissionsExt;
     let folder = tempfile::tempdir().unwrap();
-    let (real, link) = (
-        folder.path().join("real.csv"),
-        folder.path().join("link.csv"),
-    );
+    let (real, link) = (folder.path().join("real.csv"), folder.path().join("link.csv"));
     fs::write(&real, "old").unwrap();
     fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
     std::os::unix::fs::symlink(&real, &link).unwrap();
@@ -144,10 +105,7 @@ fn a_link_is_followed_and_permissions_are_kept() {
     file.commit().unwrap();
     assert_eq!(fs::read(&real).unwrap(), b"new");
     assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-    assert_eq!(
-        fs::metadata(&real).unwrap().permissions().mode() & 0o777,
-        0o640
-    );
+    assert_eq!(fs::metadata(&real).unwrap().permissions().mode() & 0o777, 0o640);
 }
 
 #[cfg(target_os = "linux")]
@@ -157,18 +115,9 @@ fn a_full_device_is_reported_by_name() {
     let error = file.write_all(&vec![0; 2 * BUFFER_BYTES]).unwrap_err();
     let error = OutputError::from_io(error, Path::new("elsewhere"));
     let text = error.to_string();
-    assert!(
-        text.starts_with("cannot write /dev/full: No space left on device"),
-        "{text}"
-    );
+    assert!(text.starts_with("cannot write /dev/full: No space left on device"), "{text}");
     assert!(text.contains("bytes are free there"), "{text}");
-    assert!(
-        error
-            .help()
-            .unwrap()
-            .to_string()
-            .starts_with("make room in /dev")
-    );
+    assert!(error.help().unwrap().to_string().starts_with("make room in /dev"));
 }
 
 #[cfg(target_os = "linux")]
@@ -189,14 +138,8 @@ fn a_full_disk_leaves_neither_file_nor_temporary() {
     let error = (0..64).find_map(|_| file.write_all(&[b'x'; 8192]).err());
     drop(file);
     let left = names(folder.path());
-    std::process::Command::new("umount")
-        .arg(folder.path())
-        .status()
-        .unwrap();
+    std::process::Command::new("umount").arg(folder.path()).status().unwrap();
     let error = OutputError::from_io(error.expect("256 KiB do not fit into 64 KiB"), &path);
-    assert!(
-        matches!(&error, OutputError::Io { free_bytes: Some(free), .. } if *free < 65536),
-        "{error:?}"
-    );
+    assert!(matches!(&error, OutputError::Io { free_bytes: Some(free), .. } if *free < 65536), "{error:?}");
     assert!(left.is_empty(), "{left:?}");
 }

@@ -7,6 +7,7 @@ use serde::Serialize;
 
 use super::job::{Error, Job};
 use crate::gcode::canon::{Event, EventKind};
+use crate::output::gcode_writer::GcodeWriter;
 use crate::output::{OutputError, OutputFile};
 use crate::report::{Report, RunSummary, TimelineEvent, write_html};
 use crate::trace::csv::{SetpointWriter, TraceWriter};
@@ -68,6 +69,7 @@ pub(super) struct Files {
     json: Option<OutputFile>,
     trace: Option<TraceWriter<OutputFile>>,
     setpoints: Option<SetpointWriter<OutputFile>>,
+    gcode: Option<GcodeWriter<OutputFile>>,
 }
 
 impl Files {
@@ -78,18 +80,24 @@ impl Files {
         let start = |path: &Option<PathBuf>| path.as_deref().map(|path| OutputFile::create(path, &inputs)).transpose();
         let form = outputs.out.as_deref().map(Outputs::form).transpose()?;
         let out = |wanted: Form| start(&outputs.out.clone().filter(|_| form == Some(wanted)));
+        let note = format!("corrected by feedwright, controller {}", job.controller.name);
+        let notes = [job.part_name(), format!("for the machine {}", job.machine.name), note];
         Ok(Self {
             report: start(&outputs.report)?,
             json: start(&outputs.json)?,
             trace: start(&outputs.trace)?.map(|output| TraceWriter::new(output, axes)).transpose()?,
             setpoints: out(Form::Setpoints)?.map(|output| SetpointWriter::new(output, axes)).transpose()?,
+            gcode: out(Form::Gcode)?.map(|output| GcodeWriter::new(output, axes, &notes)).transpose()?,
         })
     }
 
     /// Writes the rest and moves all files to their places.
     pub(super) fn finish(self, job: &Job, report: &Report) -> Result<(), Error> {
         let mut complete = Vec::new();
-        let named = |path: &Path| { let path = path.to_owned(); move |cause| OutputError::from_io(cause, &path) };
+        let named = |path: &Path| {
+            let path = path.to_owned();
+            move |cause| OutputError::from_io(cause, &path)
+        };
         if let Some(mut output) = self.report {
             write_html(&mut output, report).map_err(named(output.path()))?;
             complete.push(output);
@@ -100,6 +108,7 @@ impl Files {
         }
         complete.extend(self.trace.map(TraceWriter::finish).transpose()?);
         complete.extend(self.setpoints.map(SetpointWriter::finish).transpose()?);
+        complete.extend(self.gcode.map(GcodeWriter::finish).transpose()?);
         complete.into_iter().try_for_each(OutputFile::commit)?;
         Ok(())
     }
@@ -108,7 +117,12 @@ impl Files {
 impl Sink for Files {
     fn row(&mut self, row: &Row) -> io::Result<()> {
         self.trace.as_mut().map_or(Ok(()), |sink| sink.row(row))?;
-        self.setpoints.as_mut().map_or(Ok(()), |sink| sink.row(row))
+        self.setpoints.as_mut().map_or(Ok(()), |sink| sink.row(row))?;
+        self.gcode.as_mut().map_or(Ok(()), |sink| sink.row(row))
+    }
+
+    fn event(&mut self, t_s: f64, event: &Event) -> io::Result<()> {
+        self.gcode.as_mut().map_or(Ok(()), |sink| sink.event(t_s, event))
     }
 }
 
