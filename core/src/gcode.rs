@@ -18,6 +18,7 @@ mod length;
 mod lexer;
 mod machine_codes;
 mod offsets;
+mod owords;
 mod parameters;
 mod reader;
 mod settings;
@@ -27,6 +28,7 @@ mod state;
 mod summary;
 mod tools;
 mod travel;
+mod variables;
 
 pub use diagnostic::{Diagnostic, Severity};
 pub use reader::{ReadError, Reader};

@@ -175,6 +175,11 @@ pub enum EventKind {
         /// Tool number.
         tool: u32,
     },
+    /// A message to the operator: (MSG, ...), (PRINT, ...), (DEBUG, ...).
+    Message {
+        /// The text, with the values of its parameters.
+        text: String,
+    },
     /// M2, M30 or % at the end.
     ProgramEnd,
 }

@@ -4,7 +4,6 @@ use super::arc::Round;
 use super::block::Block;
 use super::codes::{Group, spelled};
 use super::diagnostic::{Fault, Read};
-use super::expression::Target;
 use super::state::{Interpreter, Position};
 
 impl Interpreter {
@@ -52,22 +51,6 @@ impl Interpreter {
         if let Some(word) = block.code(Group::SpindleMode) {
             self.modal.constant_surface =
                 (word.number == 960).then(|| block.get(b'd').unwrap_or(0.0));
-        }
-        Ok(())
-    }
-
-    pub(super) fn assign(&mut self, target: &Target, value: f64) -> Read<()> {
-        match target {
-            Target::Numbered(index) => self.parameters.set(*index, value),
-            Target::Named(name) => {
-                if !self.parameters.set_named(name, value) {
-                    return Err(Fault::new(
-                        "gcode::parameter",
-                        0..1,
-                        "the program has too many named parameters",
-                    ));
-                }
-            }
         }
         Ok(())
     }

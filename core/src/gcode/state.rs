@@ -7,6 +7,7 @@ use super::diagnostic::Fault;
 use super::expression::Values;
 use super::parameters::{self as numbers, Parameters};
 use super::settings::{Dialect, Settings};
+use super::variables::Saved;
 
 /// Millimetres of an inch.
 pub(super) const INCH_MM: f64 = 25.4;
@@ -166,6 +167,8 @@ pub(super) struct Interpreter {
     pub(super) returned: Option<f64>,
     /// Depth of subroutine calls.
     pub(super) call_level: usize,
+    /// What M70 and M73 have put away.
+    pub(super) saved: Vec<Saved>,
 }
 
 impl Interpreter {
@@ -190,6 +193,7 @@ impl Interpreter {
             ended: false,
             returned: None,
             call_level: 0,
+            saved: Vec::new(),
         }
     }
 
