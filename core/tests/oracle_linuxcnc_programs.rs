@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use feedwright::gcode::canon::{Canon, Motion, MotionKind, Plane, Shape};
-use feedwright::gcode::{Dialect, Reader, Settings};
+use feedwright::gcode::{Dialect, Reader, Settings, ToolTable};
 
 /// Largest distance between our points and LinuxCNC's, mm: its inches and our millimetres differ by rounding only.
 const SAME_POINT_MM: f64 = 1e-6;
@@ -54,10 +54,16 @@ fn programs() -> Vec<PathBuf> {
     found
 }
 
+/// Tools without length, an eighth of an inch thick; `rs274` alone counts in inches.
+fn tool_table() -> String {
+    (1..=99).map(|tool| format!("T{tool} P{tool} Z0 D0.125 ;\n")).collect()
+}
+
 /// What `rs274` says: `None` where it accepts.
-fn verdict(path: &Path) -> Option<String> {
+fn verdict(path: &Path, tools: &Path) -> Option<String> {
     let output = Command::new("timeout")
-        .args(["20", "rs274", "-g"])
+        .args(["5", "rs274", "-g", "-t"])
+        .arg(tools)
         .arg(path)
         .current_dir(path.parent().unwrap())
         .output()
@@ -93,7 +99,7 @@ fn theirs(paths: &[PathBuf]) -> Vec<Theirs> {
 
 fn ours(path: &Path) -> (Vec<Motion>, Option<String>) {
     let settings =
-        Settings { dialect: Some(Dialect::LinuxCnc), max_idle_lines: 1_000_000, max_motions: 3_000_000, ..Settings::default() };
+        Settings { dialect: Some(Dialect::LinuxCnc), max_idle_lines: 1_000_000, max_motions: 3_000_000, tools: ToolTable::parse(&tool_table(), 25.4).unwrap(), ..Settings::default() };
     let mut motions = Vec::new();
     let reader = match Reader::open(path, settings) {
         Ok(reader) => reader,
@@ -201,13 +207,15 @@ fn linuxcnc_reads_the_same() {
     }
     let paths = programs();
     assert!(!paths.is_empty(), "no programs to compare");
+    let tools = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(tools.path(), tool_table()).unwrap();
     let theirs = theirs(&paths);
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     let mut failures = Vec::new();
     for (path, theirs) in paths.iter().zip(&theirs) {
         let shown = path.display();
         let known = DIFFERENCES.iter().find(|row| shown.to_string().contains(row.0));
-        let refused = verdict(path);
+        let refused = verdict(path, tools.path());
         let (motions, fault) = ours(path);
         let failure = match (&refused, &fault) {
             (Some(_), Some(_)) => {

@@ -127,11 +127,6 @@ impl Flow {
         self.skip.is_some()
     }
 
-    /// Depth of calls.
-    pub(super) const fn depth(&self) -> usize {
-        self.frames.len()
-    }
-
     /// What the end of the file leaves open: the line that began it and the message.
     pub(super) fn unfinished(&self) -> Option<(u32, String)> {
         if let Some(skip) = &self.skip {
@@ -178,6 +173,9 @@ impl Flow {
         // Whatever else is wrong in a passed line does not matter: it is not carried out.
         let Ok(head) = read_head(&mut evaluator) else { return Ok(None) };
         if head.label != skip.label {
+            if skip.purpose == Purpose::Definition && head.keyword == Keyword::Sub {
+                return Err(Fault::new("gcode::o_word", head.at, format!("a subroutine is defined inside {}", shown(&skip.label))));
+            }
             return Ok(None);
         }
         let evaluates = matches!(

@@ -120,7 +120,15 @@ pub(super) fn read_head<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<Hea
 /// Reads bracketed arguments up to the end of the line or a comment.
 pub(super) fn read_arguments<V: Values>(evaluator: &mut Evaluator<'_, V>, head: &Head) -> Read<Arguments> {
     let mut arguments = Arguments { values: [0.0; LOCALS], count: 0 };
-    while evaluator.cursor.peek() == b'[' {
+    loop {
+        match evaluator.cursor.peek() {
+            b'[' => {}
+            b'(' => {
+                super::block::read_comment(&mut evaluator.cursor)?;
+                continue;
+            }
+            _ => break,
+        }
         if arguments.count == LOCALS {
             let at = evaluator.cursor.at;
             return Err(Fault::new("gcode::o_word", at..at + 1, format!("more than {LOCALS} arguments")));

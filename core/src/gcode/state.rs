@@ -3,10 +3,12 @@
 use std::collections::VecDeque;
 
 use super::canon::{Canon, Corner, Event, EventKind, Plane};
+use super::cycles::Cycle;
 use super::diagnostic::Fault;
 use super::expression::Values;
 use super::parameters::{self as numbers, Parameters};
 use super::settings::{Dialect, Settings};
+use super::splines::Collected;
 use super::variables::Saved;
 
 /// Millimetres of an inch.
@@ -69,7 +71,8 @@ impl Modal {
             feed_mode: FeedMode::PerMinute,
             feed: 0.0,
             corner: Corner::Continuous { tolerance_mm: None },
-            retract_to_r: false,
+            // As LinuxCNC begins, though its manual says otherwise.
+            retract_to_r: true,
             diameter: false,
             spindle_speed: 0.0,
             spindle_turns: 0,
@@ -147,6 +150,12 @@ pub(super) struct Interpreter {
     pub(super) extruder_mm: f64,
     /// M83: E words are distances.
     pub(super) extruder_relative: bool,
+    /// What canned cycles keep from line to line.
+    pub(super) cycle: Cycle,
+    /// The NURBS that is being collected.
+    pub(super) collected: Option<Collected>,
+    /// P and Q of the last G5, if the line before was one.
+    pub(super) last_bezier_end: Option<[f64; 2]>,
     /// Tool in the spindle.
     pub(super) tool: u32,
     /// T word.
@@ -183,6 +192,9 @@ impl Interpreter {
             here: [0.0; 9],
             extruder_mm: 0.0,
             extruder_relative: false,
+            cycle: Cycle::default(),
+            collected: None,
+            last_bezier_end: None,
             tool: 0,
             next_tool: 0,
             out: VecDeque::new(),

@@ -23,7 +23,7 @@ import tempfile
 import gcode
 
 INCH = 25.4
-SECONDS = 10  # Some programs loop for ever, and sometimes the interpreter waits for ever.
+SECONDS = 3  # Some programs loop for ever, and sometimes the interpreter waits for ever.
 AXES = range(9)
 ROTARY = (3, 4, 5)
 PLANES = {1: (0, (0, 1, 2)), 3: (1, (2, 0, 1)), 2: (2, (1, 2, 0))}
