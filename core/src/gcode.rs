@@ -22,6 +22,7 @@ mod machine_codes;
 mod offsets;
 mod owords;
 mod parameters;
+mod plane;
 mod reader;
 mod settings;
 mod source;

@@ -358,6 +358,8 @@ impl Interpreter {
     pub(super) fn end_program(&mut self) {
         if !self.ended {
             self.ended = true;
+            self.compensation = None;
+            self.release();
             self.event(EventKind::ProgramEnd);
         }
     }

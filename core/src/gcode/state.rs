@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 
 use super::canon::{Canon, Corner, Event, EventKind, Plane};
+use super::compensation::Compensation;
 use super::cycles::Cycle;
 use super::diagnostic::Fault;
 use super::expression::Values;
@@ -150,6 +151,10 @@ pub(super) struct Interpreter {
     pub(super) extruder_mm: f64,
     /// M83: E words are distances.
     pub(super) extruder_relative: bool,
+    /// Cutter compensation, if it is on.
+    pub(super) compensation: Option<Compensation>,
+    /// Steps that wait until compensation knows where the first of them ends.
+    pub(super) held: Vec<Canon>,
     /// What canned cycles keep from line to line.
     pub(super) cycle: Cycle,
     /// The NURBS that is being collected.
@@ -192,6 +197,8 @@ impl Interpreter {
             here: [0.0; 9],
             extruder_mm: 0.0,
             extruder_relative: false,
+            compensation: None,
+            held: Vec::new(),
             cycle: Cycle::default(),
             collected: None,
             last_bezier_end: None,
@@ -211,10 +218,17 @@ impl Interpreter {
 
     /// Hands out an event of the line under way.
     pub(super) fn event(&mut self, kind: EventKind) {
-        self.out.push_back(Canon::Event(Event {
-            line: self.line,
-            kind,
-        }));
+        self.push(Canon::Event(Event { line: self.line, kind }));
+    }
+
+    /// Hands out a step, behind those that are held back.
+    #[inline]
+    pub(super) fn push(&mut self, step: Canon) {
+        if self.held.is_empty() {
+            self.out.push_back(step);
+        } else {
+            self.held.push(step);
+        }
     }
 
     /// Finds the programmed position again after offsets have changed: the machine has not moved.
@@ -260,7 +274,7 @@ impl Interpreter {
                 Plane::Zx => 180.0,
                 Plane::Yz => 190.0,
             },
-            b"_ccomp" => 400.0,
+            b"_ccomp" => if self.compensates() { 410.0 } else { 400.0 },
             b"_metric" => truth(modal.unit_mm == 1.0),
             b"_imperial" => truth(modal.unit_mm != 1.0),
             b"_absolute" => truth(!modal.incremental),
