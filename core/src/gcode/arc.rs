@@ -1,7 +1,8 @@
 //! G2 and G3: arcs, full circles and helices, by centre (I J K) or by radius (R).
 //!
-//! The programmed centre is handed on; a later stage re-centres within the tolerance that is checked here. The rule is LinuxCNC's:
-//! the radii at start and end may differ by 0.005 mm (0.0005 inch), or by 0.1 % of the radius, but never by more than 0.5 mm (0.05 inch).
+//! The programmed centre is handed on; a later stage re-centres within the tolerance that is checked here. The rule is
+//! LinuxCNC 2.9's, found by trying arcs on it: the radii at start and end may differ by 0.02 sqrt(2) mm (0.002 sqrt(2) inch), or by
+//! 0.1 % of the larger radius, but never by more than a hundred times the former.
 
 use super::block::Block;
 use super::canon::{Plane, Shape};
@@ -11,9 +12,9 @@ use super::state::{INCH_MM, Interpreter, Position};
 use super::travel::{Speed, others};
 
 /// Difference of the radii that is always accepted, mm and inch.
-const RADIUS_SLACK: [f64; 2] = [0.005, 0.0005];
+const RADIUS_SLACK: [f64; 2] = [0.02 * std::f64::consts::SQRT_2, 0.002 * std::f64::consts::SQRT_2];
 /// Difference of the radii that is never accepted, mm and inch.
-const RADIUS_SLACK_MOST: [f64; 2] = [0.5, 0.05];
+const RADIUS_SLACK_MOST: [f64; 2] = [2.0 * std::f64::consts::SQRT_2, 0.2 * std::f64::consts::SQRT_2];
 /// Between the two, the difference must be below this share of the radius.
 const RADIUS_SLACK_SHARE: f64 = 1e-3;
 /// R may be shorter than half the chord by this much; the arc is then a half circle. mm and inch.

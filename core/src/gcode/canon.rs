@@ -175,6 +175,18 @@ pub enum EventKind {
         /// Tool number.
         tool: u32,
     },
+    /// A message to the operator: (MSG, ...), (PRINT, ...), (DEBUG, ...).
+    Message {
+        /// The text, with the values of its parameters.
+        text: String,
+    },
+    /// Spindle and feed are coupled from here on: threads and rigid tapping.
+    SpindleSync {
+        /// Way per revolution; `None` ends the coupling.
+        pitch_mm: Option<f64>,
+    },
+    /// The next motion ends where a probe trips; here it goes all the way.
+    Probe,
     /// M2, M30 or % at the end.
     ProgramEnd,
 }

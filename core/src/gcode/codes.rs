@@ -63,6 +63,8 @@ const fn bits(letters: &[u8]) -> u32 {
 pub(super) const AXES: u32 = bits(b"xyzabcuvw@^");
 /// The axes in the order of positions.
 pub(super) const AXIS_LETTERS: [u8; 9] = *b"xyzabcuvw";
+/// I J K.
+pub(super) const ARC_CENTER: u32 = bits(b"ijk");
 /// Letters that any line may have: their meaning does not depend on a G-code.
 pub(super) const ALWAYS: u32 = bits(b"fstngmo");
 

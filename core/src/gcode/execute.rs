@@ -34,8 +34,7 @@ impl Interpreter {
         self.modes(block)?;
         self.non_modal(block)?;
         self.motion(block)?;
-        self.stop(block);
-        Ok(())
+        self.stop(block)
     }
 
     /// The motion code that the block carries out, if it moves.
@@ -49,7 +48,8 @@ impl Interpreter {
             || block
                 .code(Group::ToolLength)
                 .is_some_and(|word| matches!(word.number, 431 | 432));
-        (!taken && (block.has_axes() || (self.dialect == Dialect::Printer && block.has(b'e'))))
+        let is_center = matches!(self.modal.motion, 20 | 30) && block.set & codes::ARC_CENTER != 0 && block.code(Group::NonModal).is_none();
+        (!taken && (block.has_axes() || is_center || (self.dialect == Dialect::Printer && block.has(b'e'))))
             .then_some(self.modal.motion)
     }
 
@@ -313,6 +313,15 @@ impl Interpreter {
                 format!("G53 goes with G0 or G1, not with {}", codes::spelled(code)),
             ));
         }
+        if !matches!(code, 730 | 740 | 810..=890) {
+            self.end_cycles();
+        }
+        if self.collected.is_some() && !matches!(code, 52 | 53 | 62) {
+            self.check_no_curve(block)?;
+        }
+        if code != 50 {
+            self.last_bezier_end = None;
+        }
         match code {
             0 | 10 => self.straight(block, code),
             20 | 30 => self.arc(block, code == 30),
@@ -322,7 +331,7 @@ impl Interpreter {
         }
     }
 
-    fn stop(&mut self, block: &Block) {
+    fn stop(&mut self, block: &Block) -> Read<()> {
         for word in &block.m {
             match word.number {
                 0 | 1 | 60 => self.event(EventKind::MCode {
@@ -337,16 +346,20 @@ impl Interpreter {
                         q: None,
                     });
                     self.end_program();
+                    self.check_no_curve(block)?;
                 }
                 _ => {}
             }
         }
+        Ok(())
     }
 
     /// Hands out the end of the program.
     pub(super) fn end_program(&mut self) {
         if !self.ended {
             self.ended = true;
+            self.compensation = None;
+            self.release();
             self.event(EventKind::ProgramEnd);
         }
     }

@@ -100,6 +100,10 @@ impl Interpreter {
                 let tool = self.integer(block, b'q', 0, 999_999)?;
                 self.load_tool(tool as u32);
             }
+            70 => self.save_modes(false),
+            71 => self.forget_modes(),
+            72 => self.restore_modes(),
+            73 => self.save_modes(true),
             82 if self.dialect == Dialect::Printer => self.extruder_relative = false,
             83 if self.dialect == Dialect::Printer => self.extruder_relative = true,
             _ => {}

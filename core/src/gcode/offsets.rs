@@ -36,7 +36,7 @@ impl Interpreter {
     }
 
     /// Takes the offsets of the active system from the parameters.
-    fn load_system(&mut self) {
+    pub(super) fn load_system(&mut self) {
         let first = system_first(self.frame.system);
         self.frame.system_offset = self.parameters.nine(first);
         self.frame.rotation_deg = self.parameters.get(first + 9);

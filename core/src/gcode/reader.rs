@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::io;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -9,10 +10,10 @@ use thiserror::Error;
 
 use super::block::{Block, Style};
 use super::canon::Canon;
-use super::diagnostic::{Diagnostic, Fault, Severity};
+use super::diagnostic::{Diagnostic, Fault, Read, Severity};
 use super::dialect;
 use super::flow::Flow;
-use super::lexer::Cursor;
+use super::lexer::{Cursor, END};
 use super::settings::{Dialect, Settings};
 use super::source::{LONGEST_LINE_BYTES, Line, Source};
 use super::state::Interpreter;
@@ -193,7 +194,7 @@ impl Reader {
         let range = match line {
             Line::End => return self.end_of_file(),
             Line::Text(range) => range,
-            Line::TooLong(range) => {
+            Line::TooLong(_) => {
                 let fault = Fault::new(
                     "gcode::line_length",
                     0..1,
@@ -201,33 +202,37 @@ impl Reader {
                         "the line is longer than {LONGEST_LINE_BYTES} bytes: this is no G-code"
                     ),
                 );
-                return Err(self.diagnose(Severity::Error, *fault, range));
+                return Err(self.diagnose(Severity::Error, *fault));
             }
         };
         self.lines += 1;
         self.interpreter.line = self.flow.source().line;
-        let result = self.carry_out(range.clone());
-        for warning in std::mem::take(&mut self.interpreter.warnings) {
-            let warning = self.diagnose(Severity::Warning, warning, range.clone());
-            self.warn(warning);
+        let result = self.carry_out(range);
+        if !self.interpreter.warnings.is_empty() {
+            self.take_warnings();
         }
-        result.map_err(|fault| self.diagnose(Severity::Error, *fault, range))?;
+        result.map_err(|fault| self.diagnose(Severity::Error, *fault))?;
         self.watch()
     }
 
+    fn take_warnings(&mut self) {
+        for warning in std::mem::take(&mut self.interpreter.warnings) {
+            let warning = self.diagnose(Severity::Warning, warning);
+            self.warn(warning);
+        }
+    }
+
     #[inline]
-    fn carry_out(&mut self, range: std::ops::Range<usize>) -> Result<(), Box<Fault>> {
+    fn carry_out(&mut self, range: Range<usize>) -> Read<()> {
+        if self.flow.is_skipping() {
+            return self.flow.passed_line(range, &self.interpreter);
+        }
         self.block.clear();
-        let Self {
-            flow,
-            interpreter,
-            block,
-            ..
-        } = self;
-        let bytes = flow.source().bytes(range);
+        let Self { flow, interpreter, block, .. } = self;
+        let bytes = flow.source_ref().bytes(range.clone());
         let mut cursor = Cursor::new(bytes);
         match cursor.peek() {
-            super::lexer::END => return Ok(()),
+            END => return Ok(()),
             b'%' => {
                 let at = cursor.at..cursor.at + 1;
                 return self.percent(at);
@@ -246,16 +251,51 @@ impl Reader {
         if cursor.eat(b'n') {
             cursor.number()?;
         }
+        if cursor.peek() == b'o' {
+            let at = cursor.at;
+            return flow.line(range, at, interpreter);
+        }
         block.read(cursor, interpreter, self.style)?;
+        if let Some(comment) = &block.comment {
+            interpreter.comment(&bytes[comment.clone()]);
+        }
         interpreter.execute(block)?;
         for (target, value) in block.assignments.drain(..) {
             interpreter.assign(&target, value)?;
+        }
+        if block.m.is_empty() { Ok(()) } else { self.calls() }
+    }
+
+    /// M98 and M99 come after all else of their line.
+    fn calls(&mut self) -> Read<()> {
+        let Self { flow, interpreter, block, .. } = self;
+        for word in &block.m {
+            let at = word.at();
+            match word.number {
+                98 => {
+                    let Some(number) = block.get(b'p') else {
+                        return Err(Fault::new("gcode::m98", at, "M98 calls a subroutine, but P with its number is missing"));
+                    };
+                    let times = if block.has(b'l') { interpreter.integer(block, b'l', 0, i64::from(u32::MAX))? } else { 1 };
+                    if !(0.0..1e15).contains(&number) {
+                        return Err(Fault::new("gcode::m98", block.at(b'p'), format!("P{number} is no number of a subroutine")));
+                    }
+                    flow.call_number(number.round() as u64, times as u32, &at, interpreter)?;
+                }
+                99 => {
+                    if flow.return_number(&at, interpreter)? {
+                        // A control would begin again for the next part.
+                        interpreter.end_program();
+                    }
+                }
+                _ => {}
+            }
         }
         Ok(())
     }
 
     /// A line with `%`: the first opens the program, the next ends it.
-    fn percent(&mut self, at: std::ops::Range<usize>) -> Result<(), Box<Fault>> {
+    fn percent(&mut self, at: Range<usize>) -> Read<()> {
         match self.percent {
             Percent::NotSeen => self.percent = Percent::Open,
             Percent::Open => {
@@ -277,6 +317,13 @@ impl Reader {
 
     /// The text ends, perhaps without having said so.
     fn end_of_file(&mut self) -> Result<(), Box<Diagnostic>> {
+        if let Some((line, message)) = self.flow.unfinished() {
+            self.state = State::Done;
+            let mut diagnostic = self.of_file("gcode::o_word", message);
+            diagnostic.line = line;
+            self.interpreter.end_program();
+            return Err(diagnostic);
+        }
         if !self.interpreter.ended {
             let quiet = matches!(self.interpreter.dialect, Dialect::Grbl | Dialect::Printer);
             if !quiet {
@@ -317,21 +364,22 @@ impl Reader {
         Err(diagnostic)
     }
 
-    fn diagnose(
-        &mut self,
-        severity: Severity,
-        fault: Fault,
-        range: std::ops::Range<usize>,
-    ) -> Box<Diagnostic> {
-        let line = self.interpreter.line.max(self.flow.source().line);
+    /// The fault with its place; reads the line again, because looking for a subroutine may have moved the buffer on.
+    #[cold]
+    fn diagnose(&mut self, severity: Severity, fault: Fault) -> Box<Diagnostic> {
         let source = self.flow.source();
-        Box::new(Diagnostic::of_line(
-            severity,
-            fault,
-            source.name.clone(),
-            line,
-            source.bytes(range),
-        ))
+        let (begin, here) = (source.line_start, source.here());
+        let name = source.name.clone();
+        let found = source.jump(begin).and_then(|()| source.next_line());
+        let bytes = match found {
+            Ok(Line::Text(range) | Line::TooLong(range)) => source.bytes(range),
+            _ => &[],
+        };
+        let diagnostic = Diagnostic::of_line(severity, fault, name, begin.lines_before.saturating_add(1), bytes);
+        if source.jump(here).is_err() {
+            self.state = State::Done;
+        }
+        Box::new(diagnostic)
     }
 
     fn of_file(&mut self, code: &'static str, message: String) -> Box<Diagnostic> {

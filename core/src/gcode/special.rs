@@ -1,73 +1,40 @@
-//! Motions other than G0-G3, cutter compensation, spindle modes.
+//! Motions other than G0-G3, by their files; spindle modes.
 
-use super::arc::Round;
 use super::block::Block;
 use super::codes::{Group, spelled};
 use super::diagnostic::{Fault, Read};
-use super::expression::Target;
-use super::state::{Interpreter, Position};
+use super::state::Interpreter;
 
 impl Interpreter {
+    /// Carries out a motion code other than G0-G3 and G80.
     pub(super) fn special_motion(&mut self, block: &Block, code: u16) -> Read<()> {
-        let at = block
-            .code(Group::Motion)
-            .map_or(block.whole(), |word| word.at());
-        Err(Fault::new(
-            "gcode::unsupported",
-            at,
-            format!("{} is not read yet", spelled(code)),
-        ))
-    }
-
-    pub(super) fn compensation_mode(&mut self, block: &Block) -> Read<()> {
-        match block.code(Group::CutterCompensation) {
-            Some(word) if word.number != 400 => Err(Fault::new(
-                "gcode::unsupported",
-                word.at(),
-                format!("{} is not read yet", spelled(word.number)),
-            )),
-            _ => Ok(()),
+        if self.compensates() && !matches!(code, 52 | 53 | 50 | 51) {
+            let message = format!("{} cannot run with cutter compensation", spelled(code));
+            return Err(Fault::new("gcode::compensation", block.whole(), message).hint("end it with G40 first"));
+        }
+        match code {
+            50 | 51 => self.bezier(block, code),
+            52 => self.nurbs_point(block),
+            53 => self.nurbs_end(block),
+            62 => self.nurbs_with_knots(block),
+            330 | 331 => self.synchronized(block, code),
+            382..=385 => self.probe(block),
+            730 | 740 | 810..=890 => self.cycle(block, code),
+            760 => self.thread(block),
+            _ => {
+                let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
+                Err(Fault::new("gcode::unsupported", at, format!("the lathe cycle {} is not read by this version", spelled(code))))
+            }
         }
     }
 
-    pub(super) fn compensated_straight(
-        &mut self,
-        _block: &Block,
-        _target: &Position,
-        _is_feed: bool,
-    ) -> Read<bool> {
-        Ok(false)
-    }
-
-    pub(super) fn compensated_arc(
-        &mut self,
-        _block: &Block,
-        _target: &Position,
-        _round: Round,
-    ) -> Read<bool> {
-        Ok(false)
-    }
-
+    /// G96 with its highest speed, G97.
     pub(super) fn spindle_mode(&mut self, block: &Block) -> Read<()> {
         if let Some(word) = block.code(Group::SpindleMode) {
-            self.modal.constant_surface =
-                (word.number == 960).then(|| block.get(b'd').unwrap_or(0.0));
-        }
-        Ok(())
-    }
-
-    pub(super) fn assign(&mut self, target: &Target, value: f64) -> Read<()> {
-        match target {
-            Target::Numbered(index) => self.parameters.set(*index, value),
-            Target::Named(name) => {
-                if !self.parameters.set_named(name, value) {
-                    return Err(Fault::new(
-                        "gcode::parameter",
-                        0..1,
-                        "the program has too many named parameters",
-                    ));
-                }
+            if block.get(b'd').is_some_and(|most| most < 0.0) {
+                return Err(Fault::new("gcode::spindle", block.at(b'd'), "the highest spindle speed D must not be negative"));
             }
+            self.modal.constant_surface = (word.number == 960).then(|| block.get(b'd').unwrap_or(f64::INFINITY));
         }
         Ok(())
     }

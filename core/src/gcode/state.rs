@@ -3,10 +3,14 @@
 use std::collections::VecDeque;
 
 use super::canon::{Canon, Corner, Event, EventKind, Plane};
+use super::compensation::Compensation;
+use super::cycles::Cycle;
 use super::diagnostic::Fault;
 use super::expression::Values;
 use super::parameters::{self as numbers, Parameters};
 use super::settings::{Dialect, Settings};
+use super::splines::Collected;
+use super::variables::Saved;
 
 /// Millimetres of an inch.
 pub(super) const INCH_MM: f64 = 25.4;
@@ -68,7 +72,8 @@ impl Modal {
             feed_mode: FeedMode::PerMinute,
             feed: 0.0,
             corner: Corner::Continuous { tolerance_mm: None },
-            retract_to_r: false,
+            // As LinuxCNC begins, though its manual says otherwise.
+            retract_to_r: true,
             diameter: false,
             spindle_speed: 0.0,
             spindle_turns: 0,
@@ -146,6 +151,16 @@ pub(super) struct Interpreter {
     pub(super) extruder_mm: f64,
     /// M83: E words are distances.
     pub(super) extruder_relative: bool,
+    /// Cutter compensation, if it is on.
+    pub(super) compensation: Option<Compensation>,
+    /// Steps that wait until compensation knows where the first of them ends.
+    pub(super) held: Vec<Canon>,
+    /// What canned cycles keep from line to line.
+    pub(super) cycle: Cycle,
+    /// The NURBS that is being collected.
+    pub(super) collected: Option<Collected>,
+    /// P and Q of the last G5, if the line before was one.
+    pub(super) last_bezier_end: Option<[f64; 2]>,
     /// Tool in the spindle.
     pub(super) tool: u32,
     /// T word.
@@ -166,6 +181,8 @@ pub(super) struct Interpreter {
     pub(super) returned: Option<f64>,
     /// Depth of subroutine calls.
     pub(super) call_level: usize,
+    /// What M70 and M73 have put away.
+    pub(super) saved: Vec<Saved>,
 }
 
 impl Interpreter {
@@ -180,6 +197,11 @@ impl Interpreter {
             here: [0.0; 9],
             extruder_mm: 0.0,
             extruder_relative: false,
+            compensation: None,
+            held: Vec::new(),
+            cycle: Cycle::default(),
+            collected: None,
+            last_bezier_end: None,
             tool: 0,
             next_tool: 0,
             out: VecDeque::new(),
@@ -190,15 +212,23 @@ impl Interpreter {
             ended: false,
             returned: None,
             call_level: 0,
+            saved: Vec::new(),
         }
     }
 
     /// Hands out an event of the line under way.
     pub(super) fn event(&mut self, kind: EventKind) {
-        self.out.push_back(Canon::Event(Event {
-            line: self.line,
-            kind,
-        }));
+        self.push(Canon::Event(Event { line: self.line, kind }));
+    }
+
+    /// Hands out a step, behind those that are held back.
+    #[inline]
+    pub(super) fn push(&mut self, step: Canon) {
+        if self.held.is_empty() {
+            self.out.push_back(step);
+        } else {
+            self.held.push(step);
+        }
     }
 
     /// Finds the programmed position again after offsets have changed: the machine has not moved.
@@ -244,7 +274,7 @@ impl Interpreter {
                 Plane::Zx => 180.0,
                 Plane::Yz => 190.0,
             },
-            b"_ccomp" => 400.0,
+            b"_ccomp" => if self.compensates() { 410.0 } else { 400.0 },
             b"_metric" => truth(modal.unit_mm == 1.0),
             b"_imperial" => truth(modal.unit_mm != 1.0),
             b"_absolute" => truth(!modal.incremental),

@@ -18,6 +18,15 @@ pub(super) enum Speed {
     Programmed,
 }
 
+impl Speed {
+    pub(super) const fn kind(self) -> MotionKind {
+        match self {
+            Self::Rapid => MotionKind::Rapid,
+            Self::Programmed => MotionKind::Feed,
+        }
+    }
+}
+
 impl Interpreter {
     /// G0 and G1.
     pub(super) fn straight(&mut self, block: &Block, code: u16) -> Read<()> {
@@ -81,13 +90,9 @@ impl Interpreter {
         feed_mm_s: f64,
         others: Others,
     ) {
-        let kind = if speed == Speed::Rapid {
-            MotionKind::Rapid
-        } else {
-            MotionKind::Feed
-        };
+        let kind = speed.kind();
         self.motions += 1;
-        self.out.push_back(Canon::Motion(Motion {
+        self.push(Canon::Motion(Motion {
             line: self.line,
             kind,
             start_mm: [start[0], start[1], start[2]],

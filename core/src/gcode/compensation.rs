@@ -1,0 +1,262 @@
+//! Cutter compensation, G40-G42.1: the path of a tool of radius r that stays left (G41) or right (G42) of the programmed contour.
+//!
+//! Lines move aside by r, arcs get the radius R - r or R + r. At an outer corner the tool rolls round the corner on an arc of radius r; at an
+//! inner corner both motions end where their offset curves meet. What is known of a motion's end only when the next one is read is held
+//! back. The first motion ends beside its end point, the motion behind G40 leaves from there. All in machine coordinates of the plane.
+
+use super::arc::Round;
+use super::block::Block;
+use super::canon::{Canon, Motion, Plane, Shape};
+use super::codes::{Group, spelled};
+use super::diagnostic::{Fault, Read};
+use super::plane::{Curve, Point, add, cross, dot, left_of, length, minus, scaled, unit};
+use super::state::{Interpreter, Position};
+use super::travel::{Speed, others};
+
+/// Corners flatter than this, rad, count as smooth: the offset curves are joined as they are, apart by less than r/800. LinuxCNC's limit.
+const SMOOTH_WITHIN_RAD: f64 = 0.05;
+
+/// Compensation under way.
+#[derive(Debug, Clone)]
+pub(super) struct Compensation {
+    /// 1 left, -1 right.
+    side: f64,
+    radius_mm: f64,
+    /// The offset curve of the last motion in the plane, and its direction at its end; none before the entry.
+    last: Option<(Curve, Point)>,
+}
+
+impl Interpreter {
+    /// Whether cutter compensation is on.
+    pub(super) const fn compensates(&self) -> bool {
+        self.compensation.is_some()
+    }
+
+    /// G40, G41, G41.1, G42, G42.1.
+    pub(super) fn compensation_mode(&mut self, block: &Block) -> Read<()> {
+        let Some(word) = block.code(Group::CutterCompensation) else {
+            return if self.compensates() { self.check_compensated(block) } else { Ok(()) };
+        };
+        if word.number == 400 {
+            self.compensation = None;
+            self.release();
+            return Ok(());
+        }
+        if self.compensates() {
+            return Err(Fault::new("gcode::compensation", word.at(), "cutter compensation is already on").hint("end it with G40 first"));
+        }
+        if self.modal.plane == Plane::Yz {
+            return Err(Fault::new("gcode::compensation", word.at(), "cutter compensation needs the plane G17 or G18, not G19"));
+        }
+        let left = if word.number < 420 { 1.0 } else { -1.0 };
+        let diameter = if matches!(word.number, 411 | 421) {
+            match block.get(b'd') {
+                Some(diameter) => diameter * self.modal.unit_mm,
+                None => return Err(Fault::new("gcode::compensation", word.at(), format!("{} needs the diameter D", spelled(word.number)))),
+            }
+        } else {
+            let tool = if block.has(b'd') { self.integer(block, b'd', 0, 999_999)? as u32 } else { self.tool };
+            match self.settings.tools.get(tool) {
+                Some(entry) => entry.diameter_mm,
+                None if tool == 0 => 0.0,
+                None => {
+                    let at = if block.has(b'd') { block.at(b'd') } else { word.at() };
+                    return Err(Fault::new("gcode::compensation", at, format!("tool {tool} is not in the tool table: its radius is not known"))
+                        .hint(format!("give a tool table, or write {}.1 D with the diameter", spelled(word.number))));
+                }
+            }
+        };
+        // A negative diameter is the other side.
+        let side = if diameter < 0.0 { -left } else { left };
+        self.compensation = Some(Compensation { side, radius_mm: 0.5 * diameter.abs(), last: None });
+        Ok(())
+    }
+
+    /// Codes that make no sense while the tool is beside the contour.
+    fn check_compensated(&self, block: &Block) -> Read<()> {
+        let forbidden = block.g.iter().find(|word| matches!(word.number, 100 | 170..=190 | 280 | 300 | 520 | 530 | 540..=593 | 920..=923));
+        match forbidden {
+            Some(word) if !(matches!(word.number, 170 | 180) && self.is_plane(word.number)) => {
+                Err(Fault::new("gcode::compensation", word.at(), format!("{} cannot be used while cutter compensation is on", spelled(word.number)))
+                    .hint("end it with G40 first"))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn is_plane(&self, number: u16) -> bool {
+        (number == 180) == (self.modal.plane == Plane::Zx)
+    }
+
+    /// Hands out the motions that were held back.
+    pub(super) fn release(&mut self) {
+        self.out.extend(self.held.drain(..));
+    }
+
+    /// A straight motion; false where compensation is off.
+    pub(super) fn compensated_straight(&mut self, block: &Block, target: &Position, is_feed: bool) -> Read<bool> {
+        let Some(compensation) = self.compensation.clone() else { return Ok(false) };
+        let speed = if is_feed { Speed::Programmed } else { Speed::Rapid };
+        let [first, second, _] = self.modal.plane.axes();
+        let goal = self.frame.to_machine(target);
+        let (from, to) = (self.programmed_point(), [goal[first], goal[second]]);
+        let from = if compensation.last.is_none() { [self.here[first], self.here[second]] } else { from };
+        self.at = *target;
+        let way = minus(to, from);
+        let mut machine = goal;
+        if length(way) == 0.0 {
+            // Along the normal only: the tool stays where it is beside the contour.
+            (machine[first], machine[second]) = (self.here[first], self.here[second]);
+            self.line_to(block, machine, speed, 0.0)?;
+            return Ok(true);
+        }
+        let along = unit(way);
+        let aside = scaled(left_of(along), compensation.side * compensation.radius_mm);
+        let end = add(to, aside);
+        if compensation.last.is_none() {
+            if length(way) <= compensation.radius_mm {
+                let (way, radius) = (length(way), compensation.radius_mm);
+                return Err(Fault::new("gcode::compensation", block.whole(), format!("the entry into cutter compensation is {way:.4} mm long: it must be longer than the tool's radius of {radius:.4} mm")));
+            }
+        } else {
+            let curve = Curve::Line { start: add(from, aside), end };
+            self.corner_to(block, &compensation, from, along, &curve, speed)?;
+        }
+        (machine[first], machine[second]) = (end[0], end[1]);
+        let start = [self.here[first], self.here[second]];
+        self.hold_motion(block, machine, speed, Shape::Line)?;
+        self.set_last(Curve::Line { start, end }, along);
+        Ok(true)
+    }
+
+    /// An arc; false where compensation is off.
+    pub(super) fn compensated_arc(&mut self, block: &Block, target: &Position, round: Round) -> Read<bool> {
+        let Some(compensation) = self.compensation.clone() else { return Ok(false) };
+        let plane = self.modal.plane;
+        let [first, second, _] = plane.axes();
+        let goal = self.frame.to_machine(target);
+        let mut center = self.at;
+        (center[first], center[second]) = (round.center[0], round.center[1]);
+        let center = self.frame.to_machine(&center);
+        let center = [center[first], center[second]];
+        let (from, to) = (self.programmed_point(), [goal[first], goal[second]]);
+        let turn = f64::from(round.turns.signum());
+        let radius = length(minus(to, center));
+        let offset_radius = radius - turn * compensation.side * compensation.radius_mm;
+        if offset_radius <= 0.0 {
+            let message = format!("the arc's radius of {radius:.4} mm must exceed the tool's radius of {:.4} mm", compensation.radius_mm);
+            return Err(Fault::new("gcode::compensation", block.whole(), message));
+        }
+        let end = add(center, scaled(minus(to, center), offset_radius / radius));
+        let end_along = scaled(left_of(unit(minus(to, center))), turn);
+        self.at = *target;
+        let center = if compensation.last.is_none() {
+            entry_center([self.here[first], self.here[second]], to, end, compensation.radius_mm)
+                .ok_or_else(|| Fault::new("gcode::compensation", block.whole(), "the entry arc cannot reach the compensated end"))?
+        } else {
+            let start_along = scaled(left_of(unit(minus(from, center))), turn);
+            let start = add(center, scaled(unit(minus(from, center)), offset_radius));
+            let curve = Curve::Arc { start, end, center, turn };
+            self.corner_to(block, &compensation, from, start_along, &curve, Speed::Programmed)?;
+            center
+        };
+        let mut machine = goal;
+        (machine[first], machine[second]) = (end[0], end[1]);
+        let start = [self.here[first], self.here[second]];
+        let mut center_mm = [self.here[0], self.here[1], self.here[2]];
+        (center_mm[first], center_mm[second]) = (center[0], center[1]);
+        self.hold_motion(block, machine, Speed::Programmed, Shape::Arc { plane, center_mm, turns: round.turns })?;
+        self.set_last(Curve::Arc { start, end, center, turn }, end_along);
+        Ok(true)
+    }
+
+    /// The programmed position in the plane, machine coordinates.
+    fn programmed_point(&self) -> Point {
+        let [first, second, _] = self.modal.plane.axes();
+        let machine = self.frame.to_machine(&self.at);
+        [machine[first], machine[second]]
+    }
+
+    fn set_last(&mut self, curve: Curve, along: Point) {
+        if let Some(compensation) = &mut self.compensation {
+            compensation.last = Some((curve, along));
+        }
+    }
+
+    /// Joins the held motion to `next`, which begins at the programmed `corner` in the direction `along`.
+    fn corner_to(&mut self, block: &Block, compensation: &Compensation, corner: Point, along: Point, next: &Curve, speed: Speed) -> Read<()> {
+        let Some((before, before_along)) = &compensation.last else { return Ok(()) };
+        let angle = cross(*before_along, along).atan2(dot(*before_along, along)) * compensation.side;
+        let reverses = angle.abs() > std::f64::consts::PI - SMOOTH_WITHIN_RAD;
+        if angle > SMOOTH_WITHIN_RAD && !reverses {
+            let meeting = before.meet(next, corner).filter(|&point| before.ends_at(point) && next.begins_at(point)).ok_or_else(|| {
+                Fault::new("gcode::compensation", block.whole(), format!("the tool of radius {:.4} mm does not fit into the inner corner before this motion: it would cut into the contour", compensation.radius_mm))
+                    .hint("a smaller tool, a larger radius in the corner, or a longer motion")
+            })?;
+            self.move_held_end(meeting);
+        } else if angle < -SMOOTH_WITHIN_RAD || reverses {
+            self.release();
+            let [first, second, _] = self.modal.plane.axes();
+            let aside = scaled(left_of(along), compensation.side * compensation.radius_mm);
+            let mut machine = self.here;
+            (machine[first], machine[second]) = (corner[0] + aside[0], corner[1] + aside[1]);
+            let mut center_mm = [self.here[0], self.here[1], self.here[2]];
+            (center_mm[first], center_mm[second]) = (corner[0], corner[1]);
+            let turns = if compensation.side > 0.0 { -1 } else { 1 };
+            let shape = Shape::Arc { plane: self.modal.plane, center_mm, turns };
+            self.hold_motion(block, machine, if self.modal.feed > 0.0 { Speed::Programmed } else { speed }, shape)?;
+        }
+        self.release();
+        Ok(())
+    }
+
+    /// Ends the held motion, and what follows it along the normal, at another point of the plane.
+    fn move_held_end(&mut self, point: Point) {
+        let [first, second, _] = self.modal.plane.axes();
+        let mut is_first = true;
+        for step in &mut self.held {
+            let Canon::Motion(motion) = step else { continue };
+            if !is_first {
+                (motion.start_mm[first], motion.start_mm[second]) = (point[0], point[1]);
+            }
+            (motion.end_mm[first], motion.end_mm[second]) = (point[0], point[1]);
+            is_first = false;
+        }
+        (self.here[first], self.here[second]) = (point[0], point[1]);
+    }
+
+    /// Moves to `machine`, but keeps the motion back until its end is known.
+    fn hold_motion(&mut self, block: &Block, machine: Position, speed: Speed, shape: Shape) -> Read<()> {
+        let start = std::mem::replace(&mut self.here, machine);
+        let mut motion = Motion {
+            line: self.line,
+            kind: speed.kind(),
+            start_mm: [start[0], start[1], start[2]],
+            end_mm: [machine[0], machine[1], machine[2]],
+            shape,
+            feed_mm_s: 0.0,
+            corner: self.modal.corner,
+            others: others(&start, &machine, 0.0),
+        };
+        if speed == Speed::Programmed {
+            motion.feed_mm_s = self.feed_for(block, motion.length_mm())?;
+        }
+        self.motions += 1;
+        self.held.push(Canon::Motion(motion));
+        Ok(())
+    }
+}
+
+/// Centre of an entry arc: on the normal of the contour at its end, equally far from the start and from the compensated end.
+fn entry_center(start: Point, contour_end: Point, end: Point, radius: f64) -> Option<Point> {
+    if radius == 0.0 {
+        return None;
+    }
+    let normal = unit(minus(end, contour_end));
+    let chord = minus(start, end);
+    let along = dot(chord, normal);
+    // |start - (end + t n)| = |t|
+    let t = if along == 0.0 { return None } else { dot(chord, chord) / (2.0 * along) };
+    Some(add(end, scaled(normal, t)))
+}
+

@@ -1,0 +1,278 @@
+//! Canned cycles G73, G74 and G81-G89: one hole a line, along the normal of the plane.
+//!
+//! Every cycle first goes to R if it is below, then over the hole at that height, then to R; what happens between R and the bottom is the
+//! cycle's own. Z, R, Q and P stay until another code ends the cycle. NISTIR 6556, section 3.5.16, and LinuxCNC for G73, G74 and pecking.
+
+use super::block::Block;
+use super::canon::{Corner, EventKind};
+use super::codes::{AXIS_LETTERS, bit, spelled};
+use super::diagnostic::{Fault, Read};
+use super::state::{INCH_MM, Interpreter, Position};
+use super::travel::Speed;
+
+/// Distance that a peck backs off or stays above the last depth, mm and inch.
+const PECK_CLEARANCE: [f64; 2] = [0.254, 0.010];
+/// Pecks of one hole: more would be a mistake in Q (a micrometre of it gives this many in ten metres).
+const MOST_PECKS: f64 = 1e7;
+/// Holes of one line (L).
+const MOST_REPEATS: i64 = 100_000;
+
+/// What a cycle keeps for the next line, mm and seconds.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Cycle {
+    /// The code; 0 before the first.
+    code: u16,
+    bottom: f64,
+    clearance: f64,
+    peck: Option<f64>,
+    dwell_s: Option<f64>,
+    /// Height at which the series of cycles began (G98).
+    began_at: f64,
+}
+
+/// One hole.
+struct Hole {
+    normal: usize,
+    bottom: f64,
+    clearance: f64,
+}
+
+impl Interpreter {
+    /// One line of a canned cycle.
+    pub(super) fn cycle(&mut self, block: &Block, code: u16) -> Read<()> {
+        self.check_cycle(block, code)?;
+        let [first, second, normal] = self.modal.plane.axes();
+        let letter = AXIS_LETTERS[normal];
+        let mut kept = self.cycle;
+        let is_series = kept.code != 0;
+        if kept.code != code {
+            if !block.has(b'r') {
+                return Err(Fault::new("gcode::cycle", block.whole(), format!("R (height to begin at) is missing for {}", spelled(code))));
+            }
+            if !block.has(letter) {
+                let name = char::from(letter).to_ascii_uppercase();
+                return Err(Fault::new("gcode::cycle", block.whole(), format!("{name} (bottom of the hole) is missing for {}", spelled(code))));
+            }
+            kept = Cycle { code, began_at: if is_series { kept.began_at } else { self.at[normal] }, ..Cycle::default() };
+        }
+        self.cycle_words(block, &mut kept, normal)?;
+        let incremental = self.modal.incremental;
+        let height = self.at[normal];
+        let clearance = if incremental { height + kept.clearance } else { kept.clearance };
+        let bottom = if incremental { clearance + kept.bottom } else { kept.bottom };
+        if clearance < bottom {
+            let message = format!("R = {clearance} mm lies below the bottom of the hole at {bottom} mm");
+            return Err(Fault::new("gcode::cycle", block.at_any(bit(b'r') | bit(letter)), message));
+        }
+        let repeats = if block.has(b'l') { self.integer(block, b'l', 1, MOST_REPEATS)? } else { 1 };
+        if self.modal.feed <= 0.0 {
+            self.feed_for(block, 0.0)?;
+        }
+        self.cycle = kept;
+        let corner = self.modal.corner;
+        if matches!(corner, Corner::Continuous { .. }) {
+            self.modal.corner = Corner::ExactPath;
+        }
+        let hole = Hole { normal, bottom, clearance };
+        let retract = if self.modal.retract_to_r { clearance } else { clearance.max(kept.began_at) };
+        let drilled = self.drill_all(block, &hole, [first, second], retract, repeats);
+        self.modal.corner = corner;
+        drilled
+    }
+
+    fn check_cycle(&self, block: &Block, code: u16) -> Read<()> {
+        let others = block.set & (bit(b'a') | bit(b'b') | bit(b'c') | bit(b'u') | bit(b'v') | bit(b'w'));
+        if others != 0 {
+            return Err(Fault::new("gcode::cycle", block.at_any(others), format!("{} moves X, Y and Z only", spelled(code))));
+        }
+        if !block.has_axes() {
+            return Err(Fault::new("gcode::cycle", block.whole(), format!("{} has no axis word", spelled(code))));
+        }
+        Ok(())
+    }
+
+    /// Words that stay for the following holes.
+    fn cycle_words(&self, block: &Block, kept: &mut Cycle, normal: usize) -> Read<()> {
+        let letter = AXIS_LETTERS[normal];
+        if let Some(value) = block.get(b'r') {
+            kept.clearance = self.length(block, b'r', normal, value)?;
+        }
+        if let Some(value) = block.get(letter) {
+            kept.bottom = self.length(block, letter, normal, value)?;
+        }
+        if let Some(value) = block.get(b'q') {
+            if value <= 0.0 {
+                return Err(Fault::new("gcode::cycle", block.at(b'q'), format!("the depth of a peck Q{value} must be above 0")));
+            }
+            kept.peck = Some(value * self.modal.unit_mm);
+        }
+        if let Some(value) = block.get(b'p') {
+            if value < 0.0 {
+                return Err(Fault::new("gcode::cycle", block.at(b'p'), format!("the dwell P{value} must not be negative")));
+            }
+            kept.dwell_s = Some(value);
+        }
+        let missing = match kept.code {
+            730 | 830 if kept.peck.is_none() => "Q (depth of a peck)",
+            820 | 860 | 880 | 890 if kept.dwell_s.is_none() => "P (dwell in seconds)",
+            870 if block.set & (bit(b'i') | bit(b'j') | bit(b'k')) != bit(b'i') | bit(b'j') | bit(b'k') => "I, J or K",
+            _ => return Ok(()),
+        };
+        Err(Fault::new("gcode::cycle", block.whole(), format!("{missing} is missing for {}", spelled(kept.code))))
+    }
+
+    fn drill_all(&mut self, block: &Block, hole: &Hole, plane: [usize; 2], retract: f64, repeats: i64) -> Read<()> {
+        if self.at[hole.normal] < hole.clearance {
+            self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
+        }
+        for _ in 0..repeats {
+            let mut target = self.at;
+            for axis in plane {
+                let letter = AXIS_LETTERS[axis];
+                if let Some(value) = block.get(letter) {
+                    let value = self.length(block, letter, axis, value)?;
+                    target[axis] = if self.modal.incremental { self.at[axis] + value } else { value };
+                }
+            }
+            self.go(block, target, Speed::Rapid)?;
+            self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
+            self.drill(block, hole, plane)?;
+            self.along(block, hole.normal, retract, Speed::Rapid)?;
+        }
+        Ok(())
+    }
+
+    /// From R to the bottom and, where the cycle feeds out, back to R.
+    fn drill(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
+        let &Hole { normal, bottom, clearance } = hole;
+        let cycle = self.cycle;
+        match cycle.code {
+            730 | 830 => return self.peck(block, hole),
+            870 => return self.back_bore(block, hole, plane),
+            _ => self.along(block, normal, bottom, Speed::Programmed)?,
+        }
+        let turning = self.modal.spindle_turns;
+        match cycle.code {
+            740 | 840 => {
+                let wanted = if cycle.code == 840 { 1 } else { -1 };
+                if turning != wanted {
+                    let (code, how) = if wanted == 1 { ("G84", "M3") } else { ("G74", "M4") };
+                    return Err(Fault::new("gcode::cycle", block.whole(), format!("{code} taps with the spindle turning by {how}, which it does not")));
+                }
+                self.spindle(-wanted);
+                self.pause(cycle.dwell_s.unwrap_or(0.0));
+                self.along(block, normal, clearance, Speed::Programmed)?;
+                self.spindle(wanted);
+            }
+            820 => self.pause(cycle.dwell_s.unwrap_or(0.0)),
+            850 => self.along(block, normal, clearance, Speed::Programmed)?,
+            860 | 880 => {
+                if turning == 0 {
+                    return Err(Fault::new("gcode::cycle", block.whole(), format!("{} needs a turning spindle (M3 or M4)", spelled(cycle.code))));
+                }
+                self.pause(cycle.dwell_s.unwrap_or(0.0));
+                self.spindle(0);
+                if cycle.code == 860 {
+                    self.along(block, normal, clearance, Speed::Rapid)?;
+                } else {
+                    self.event(EventKind::MCode { code: 0, p: None, q: None }); // The operator retracts by hand.
+                }
+                self.spindle(turning);
+            }
+            890 => {
+                self.pause(cycle.dwell_s.unwrap_or(0.0));
+                self.along(block, normal, clearance, Speed::Programmed)?;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// G83 retracts to R after each peck, G73 only breaks the chip.
+    fn peck(&mut self, block: &Block, hole: &Hole) -> Read<()> {
+        let &Hole { normal, bottom, clearance } = hole;
+        let step = self.cycle.peck.unwrap_or(clearance - bottom);
+        if (clearance - bottom) / step > MOST_PECKS {
+            return Err(Fault::new("gcode::cycle", block.at(b'q'), format!("a peck of {step} mm needs more than {MOST_PECKS} pecks")));
+        }
+        let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };
+        let mut depth = clearance - step;
+        while depth > bottom {
+            self.along(block, normal, depth, Speed::Programmed)?;
+            if self.cycle.code == 830 {
+                self.along(block, normal, clearance, Speed::Rapid)?;
+            }
+            self.along(block, normal, depth + above, Speed::Rapid)?;
+            depth -= step;
+        }
+        self.along(block, normal, bottom, Speed::Programmed)
+    }
+
+    /// G87: beside the hole down with the spindle stopped, into its axis, up with the spindle turning to K, and out the same way.
+    fn back_bore(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
+        let &Hole { normal, bottom, clearance } = hole;
+        let turning = self.modal.spindle_turns;
+        if turning == 0 {
+            return Err(Fault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)"));
+        }
+        let scale = self.modal.unit_mm;
+        let word = |axis: usize| block.get(b"ijk"[axis]).unwrap_or(0.0) * scale;
+        let center = self.at;
+        let mut beside = center;
+        for axis in plane {
+            beside[axis] += word(axis);
+        }
+        let up_to = if self.modal.incremental { bottom + word(normal) } else { word(normal) };
+        self.go(block, beside, Speed::Rapid)?;
+        self.spindle(0);
+        self.along(block, normal, bottom, Speed::Rapid)?;
+        let mut inside = center;
+        inside[normal] = bottom;
+        self.go(block, inside, Speed::Rapid)?;
+        self.spindle(turning);
+        self.along(block, normal, up_to, Speed::Programmed)?;
+        self.along(block, normal, bottom, Speed::Programmed)?;
+        self.spindle(0);
+        beside[normal] = bottom;
+        self.go(block, beside, Speed::Rapid)?;
+        self.along(block, normal, clearance, Speed::Rapid)?;
+        self.go(block, center, Speed::Rapid)?;
+        self.spindle(turning);
+        Ok(())
+    }
+
+    /// Straight along one axis.
+    pub(super) fn along(&mut self, block: &Block, axis: usize, to: f64, speed: Speed) -> Read<()> {
+        let mut target = self.at;
+        target[axis] = to;
+        self.go(block, target, speed)
+    }
+
+    /// Straight to a point in program coordinates.
+    pub(super) fn go(&mut self, block: &Block, target: Position, speed: Speed) -> Read<()> {
+        self.at = target;
+        self.line_to(block, self.frame.to_machine(&target), speed, 0.0)
+    }
+
+    /// Turns the spindle the other way or stops it.
+    pub(super) fn spindle(&mut self, turns: i8) {
+        self.modal.spindle_turns = turns;
+        let code = match turns {
+            1 => 3,
+            -1 => 4,
+            _ => 5,
+        };
+        self.event(EventKind::MCode { code, p: None, q: None });
+    }
+
+    fn pause(&mut self, seconds: f64) {
+        if seconds > 0.0 {
+            self.event(EventKind::Dwell { seconds });
+        }
+    }
+
+    /// Any other motion ends the series.
+    pub(super) fn end_cycles(&mut self) {
+        self.cycle.code = 0;
+    }
+}

@@ -1,0 +1,158 @@
+//! Points, lines and arcs of a plane, as far as cutter compensation needs them.
+
+/// A point or a vector.
+pub(super) type Point = [f64; 2];
+
+pub(super) fn add(a: Point, b: Point) -> Point {
+    [a[0] + b[0], a[1] + b[1]]
+}
+
+pub(super) fn minus(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+pub(super) fn scaled(a: Point, by: f64) -> Point {
+    [a[0] * by, a[1] * by]
+}
+
+pub(super) fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+pub(super) fn cross(a: Point, b: Point) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+pub(super) fn length(a: Point) -> f64 {
+    a[0].hypot(a[1])
+}
+
+/// The vector at length 1; zero stays zero.
+pub(super) fn unit(a: Point) -> Point {
+    let length = length(a);
+    if length > 0.0 { scaled(a, 1.0 / length) } else { a }
+}
+
+/// The vector turned left by a quarter.
+pub(super) fn left_of(a: Point) -> Point {
+    [-a[1], a[0]]
+}
+
+/// Slack of a comparison of lengths, mm: far below anything cut, far above rounding.
+const SLACK_MM: f64 = 1e-9;
+
+/// A line or an arc.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Curve {
+    Line {
+        start: Point,
+        end: Point,
+    },
+    /// `turn` is 1 counter-clockwise, -1 clockwise; up to one full turn.
+    Arc {
+        start: Point,
+        end: Point,
+        center: Point,
+        turn: f64,
+    },
+}
+
+impl Curve {
+    /// Where two curves (or their continuations) meet, nearest to a point.
+    pub(super) fn meet(&self, other: &Self, near: Point) -> Option<Point> {
+        let candidates = match (*self, *other) {
+            (Self::Line { start: a, end: b }, Self::Line { start: c, end: d }) => line_line(a, minus(b, a), c, minus(d, c)),
+            (Self::Line { start, end }, Self::Arc { start: on, center, .. }) | (Self::Arc { start: on, center, .. }, Self::Line { start, end }) => {
+                line_circle(start, unit(minus(end, start)), center, length(minus(on, center)))
+            }
+            (Self::Arc { start: a, center: c, .. }, Self::Arc { start: b, center: d, .. }) => {
+                circle_circle(c, length(minus(a, c)), d, length(minus(b, d)))
+            }
+        };
+        candidates.into_iter().flatten().min_by(|a, b| length(minus(*a, near)).total_cmp(&length(minus(*b, near))))
+    }
+
+    /// Whether the curve, shortened at its end, can end at `point`.
+    pub(super) fn ends_at(&self, point: Point) -> bool {
+        match *self {
+            Self::Line { start, end } => dot(minus(point, start), unit(minus(end, start))) >= -SLACK_MM,
+            Self::Arc { start, end, center, turn } => {
+                let sweep = sweep(start, end, center, turn);
+                let to_point = sweep_within(start, point, center, turn);
+                to_point <= sweep + 1e-9
+            }
+        }
+    }
+
+    /// Whether the curve, shortened at its start, can begin at `point`.
+    pub(super) fn begins_at(&self, point: Point) -> bool {
+        match *self {
+            Self::Line { start, end } => Self::Line { start: end, end: start }.ends_at(point),
+            Self::Arc { start, end, center, turn } => Self::Arc { start: end, end: start, center, turn: -turn }.ends_at(point),
+        }
+    }
+}
+
+/// Angle from start to end in the sense of `turn`, above 0 and up to a full turn.
+fn sweep(start: Point, end: Point, center: Point, turn: f64) -> f64 {
+    let angle = sweep_within(start, end, center, turn);
+    if angle < 1e-9 { std::f64::consts::TAU } else { angle }
+}
+
+/// The same from 0.
+fn sweep_within(start: Point, end: Point, center: Point, turn: f64) -> f64 {
+    let (a, b) = (minus(start, center), minus(end, center));
+    let angle = turn * cross(a, b).atan2(dot(a, b));
+    if angle < -1e-12 { angle + std::f64::consts::TAU } else { angle.max(0.0) }
+}
+
+fn line_line(a: Point, along: Point, c: Point, other: Point) -> [Option<Point>; 2] {
+    let determinant = cross(along, other);
+    if determinant == 0.0 {
+        return [None, None];
+    }
+    let t = cross(minus(c, a), other) / determinant;
+    [Some(add(a, scaled(along, t))), None]
+}
+
+fn line_circle(a: Point, along: Point, center: Point, radius: f64) -> [Option<Point>; 2] {
+    let foot = add(a, scaled(along, dot(minus(center, a), along)));
+    let distance = length(minus(center, foot));
+    if distance > radius + SLACK_MM {
+        return [None, None];
+    }
+    let half = (radius * radius - distance * distance).max(0.0).sqrt();
+    [Some(add(foot, scaled(along, half))), Some(add(foot, scaled(along, -half)))]
+}
+
+fn circle_circle(c: Point, r: f64, d: Point, q: f64) -> [Option<Point>; 2] {
+    let apart = minus(d, c);
+    let distance = length(apart);
+    if distance == 0.0 || distance > r + q + SLACK_MM || distance < (r - q).abs() - SLACK_MM {
+        return [None, None];
+    }
+    let x = (distance * distance + r * r - q * q) / (2.0 * distance);
+    let y = (r * r - x * x).max(0.0).sqrt();
+    let along = unit(apart);
+    let foot = add(c, scaled(along, x));
+    [Some(add(foot, scaled(left_of(along), y))), Some(add(foot, scaled(left_of(along), -y)))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_meet_where_they_should() {
+        let floor = Curve::Line { start: [0.0, 0.0], end: [4.0, 0.0] };
+        let wall = Curve::Line { start: [3.0, -1.0], end: [3.0, 5.0] };
+        assert_eq!(floor.meet(&wall, [0.0, 0.0]).unwrap(), [3.0, 0.0]);
+        let circle = Curve::Arc { start: [5.0, 0.0], end: [0.0, 5.0], center: [0.0, 0.0], turn: 1.0 };
+        assert_eq!(circle.meet(&floor, [4.0, 1.0]).unwrap(), [5.0, 0.0]);
+        let other = Curve::Arc { start: [11.0, 0.0], end: [6.0, 5.0], center: [6.0, 0.0], turn: 1.0 };
+        let point = circle.meet(&other, [3.0, 9.0]).unwrap();
+        assert!((point[0] - 3.0).abs() < 1e-12 && (point[1] - 4.0).abs() < 1e-12);
+        assert!(circle.ends_at(point) && !circle.ends_at([3.0, -4.0]));
+        assert!(floor.begins_at([1.0, 0.0]) && !floor.begins_at([4.5, 0.0]));
+    }
+}

@@ -1,0 +1,126 @@
+//! Assignments, messages, and what a subroutine call saves.
+
+use super::canon::EventKind;
+use super::diagnostic::{Fault, Read};
+use super::expression::{Evaluator, Target, Values};
+use super::lexer::Cursor;
+use super::state::{Frame, Interpreter, Modal};
+
+/// Modes that M70 or M73 has put away.
+#[derive(Debug, Clone)]
+pub(super) struct Saved {
+    modal: Modal,
+    frame: Frame,
+    /// M73: they come back when the subroutine returns.
+    automatic: bool,
+    level: usize,
+}
+
+impl Interpreter {
+    /// `#target = value`, in effect from the next line on.
+    pub(super) fn assign(&mut self, target: &Target, value: f64) -> Read<()> {
+        let read_only = |name: &str| Err(Fault::new("gcode::parameter", 0..usize::MAX, format!("{name} can only be read")));
+        match target {
+            Target::Numbered(index @ (5400..=5413 | 5420..=5428)) => return read_only(&format!("#{index}")),
+            Target::Numbered(index) => self.parameters.set(*index, value),
+            Target::Named(name) => {
+                let shown = String::from_utf8_lossy(name);
+                if self.parameters.named(name).is_none() && (self.named(name).is_some() || name.starts_with(b"_ini[") || name.starts_with(b"_hal[")) {
+                    return read_only(&format!("#<{shown}>"));
+                }
+                if !self.parameters.set_named(name, value) {
+                    return Err(Fault::new("gcode::parameter", 0..usize::MAX, format!("no room for #<{shown}>: the program has too many named parameters")));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Comments that speak to the operator.
+    #[cold]
+    pub(super) fn comment(&mut self, text: &[u8]) {
+        let text = text.trim_ascii();
+        let after = |keyword: &[u8]| -> Option<&[u8]> {
+            let (start, rest) = text.split_at_checked(keyword.len())?;
+            (start.eq_ignore_ascii_case(keyword)).then_some(rest)
+        };
+        let text = if let Some(rest) = after(b"msg,") {
+            String::from_utf8_lossy(rest).into_owned()
+        } else if let Some(rest) = after(b"print,").or_else(|| after(b"debug,")) {
+            self.with_values(rest)
+        } else {
+            return;
+        };
+        self.event(EventKind::Message { text });
+    }
+
+    /// The text with the values of its parameters.
+    fn with_values(&self, text: &[u8]) -> String {
+        let mut shown = Vec::new();
+        let mut at = 0;
+        while let Some(&byte) = text.get(at) {
+            if byte != b'#' {
+                shown.push(byte);
+                at += 1;
+                continue;
+            }
+            let mut cursor = Cursor::new(text);
+            cursor.at = at;
+            let mut evaluator = Evaluator::new(cursor, self);
+            match evaluator.value() {
+                Ok(value) => shown.extend_from_slice(format!("{value:.6}").as_bytes()),
+                Err(_) => shown.extend_from_slice(b"######"),
+            }
+            at = evaluator.cursor.at.max(at + 1);
+        }
+        String::from_utf8_lossy(&shown).into_owned()
+    }
+
+    /// A subroutine has been entered.
+    pub(super) fn entered(&mut self, level: usize) {
+        self.call_level = level;
+        self.returned = None;
+    }
+
+    /// A subroutine has returned to `level`.
+    pub(super) fn left(&mut self, level: usize) {
+        self.call_level = level;
+        while let Some(saved) = self.saved.pop_if(|saved| saved.level > level) {
+            if saved.automatic {
+                self.restore(&saved);
+            }
+        }
+        self.returned = None;
+    }
+
+    /// M70, M73: puts the modes away; one set for each call level.
+    pub(super) fn save_modes(&mut self, automatic: bool) {
+        let saved = Saved { modal: self.modal.clone(), frame: self.frame.clone(), automatic, level: self.call_level };
+        self.forget_modes();
+        self.saved.push(saved);
+    }
+
+    /// M71.
+    pub(super) fn forget_modes(&mut self) {
+        let level = self.call_level;
+        self.saved.pop_if(|saved| saved.level == level);
+    }
+
+    /// M72.
+    pub(super) fn restore_modes(&mut self) {
+        let level = self.call_level;
+        if let Some(saved) = self.saved.last().filter(|saved| saved.level == level).cloned() {
+            self.restore(&saved);
+        }
+    }
+
+    /// Modes come back; a motion mode does not, and offsets that G10 and G92 have changed stay.
+    fn restore(&mut self, saved: &Saved) {
+        let motion = self.modal.motion;
+        self.modal = saved.modal.clone();
+        self.modal.motion = motion;
+        self.frame.system = saved.frame.system;
+        self.frame.tool = saved.frame.tool;
+        self.load_system();
+    }
+}
