@@ -9,6 +9,7 @@
 //! | `line.rs` | straight line |
 //! | `arc.rs` | circular arc and helix |
 //! | `smooth.rs` | any smooth parametric curve, by a table of arc length |
+//! | `spline.rs` | rational B-spline, as smooth curves |
 //! | `contour.rs` | the closed-form contours of the benchmark |
 //! | `pieces.rs` | motions to pieces |
 //! | `arcs.rs` | an arc motion to arcs that meet both of its ends |
@@ -20,6 +21,7 @@ pub mod contour;
 pub mod line;
 pub mod pieces;
 pub mod smooth;
+pub mod spline;
 pub(crate) mod vector;
 
 use crate::gcode::canon::{Corner, Event};

@@ -5,12 +5,14 @@
 
 use super::arcs::{Request, arcs};
 use super::line::Line;
+use super::spline::curves;
 use super::vector::{Vector, distance};
 use super::{
     Curve, MAX_COORDINATE_MM, MAX_GAP_MM, MIN_FEED_MM_S, MIN_LENGTH_MM, PathError, Piece, Step,
 };
 use crate::gcode::canon::{Canon, Event, EventKind, Motion, MotionKind, Shape};
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// Steps of a path from what the program asks for.
 pub struct Pieces<I> {
@@ -67,12 +69,14 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
                     self.here_mm = Some(motion.end_mm);
                 }
             }
-            Shape::Spline(_) => {
-                let what = "splines have no path yet".to_owned();
-                return Err(PathError::Spline {
-                    line: motion.line,
-                    what,
-                });
+            Shape::Spline(spline) => {
+                let mut at_mm = here_mm;
+                for (start_mm, smooth) in curves(spline, motion.line)? {
+                    Self::join(motion.line, at_mm, start_mm)?;
+                    at_mm = smooth.at(smooth.length_mm()).position_mm;
+                    self.keep(motion, start_mm, Curve::Smooth(Arc::new(smooth)), at_mm);
+                }
+                Self::join(motion.line, at_mm, motion.end_mm)?;
             }
         }
         Ok(())
@@ -105,11 +109,17 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
             });
         }
         let here_mm = self.here_mm.unwrap_or(motion.start_mm);
-        let gap_mm = distance(here_mm, motion.start_mm);
+        Self::join(line, here_mm, motion.start_mm)?;
+        Ok(here_mm)
+    }
+
+    /// Two points that should be one.
+    fn join(line: u32, a_mm: Vector, b_mm: Vector) -> Result<(), PathError> {
+        let gap_mm = distance(a_mm, b_mm);
         if gap_mm > MAX_GAP_MM {
             return Err(PathError::Gap { line, gap_mm });
         }
-        Ok(here_mm)
+        Ok(())
     }
 
     fn keep(&mut self, motion: &Motion, start_mm: Vector, curve: Curve, end_mm: Vector) {
