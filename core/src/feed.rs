@@ -20,6 +20,7 @@ pub mod sections;
 pub mod trapezoid;
 
 use crate::gcode::canon::Event;
+use crate::machine;
 
 /// What bounds the speed, the same in all directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,6 +47,18 @@ pub struct LimitsError {
     pub value: f64,
     /// What it must be.
     pub bound: &'static str,
+}
+
+impl From<&machine::Limits> for Limits {
+    fn from(limits: &machine::Limits) -> Self {
+        Self {
+            rapid_mm_s: limits.rapid_mm_s,
+            max_feed_mm_s: limits.max_feed_mm_s,
+            tangential_accel_mm_s2: limits.tangential_accel_mm_s2,
+            normal_accel_mm_s2: limits.normal_accel_mm_s2,
+            corner_jump_mm_s: limits.corner_jump_mm_s,
+        }
+    }
 }
 
 impl Limits {

@@ -1,3 +1,35 @@
 //! G-code: text to canonical motions and events, in millimetres and seconds.
+//!
+//! A line passes through the files in this order: [`Reader`] takes it from its source, `lexer` and `expression` turn its bytes into values,
+//! `block` collects them as words, `execute` applies them to the modes in RS-274's order, `travel`, `arc` and their neighbours move, and the
+//! result is [`canon`].
 
 pub mod canon;
+
+mod arc;
+mod block;
+mod codes;
+mod diagnostic;
+mod dialect;
+mod execute;
+mod expression;
+mod flow;
+mod length;
+mod lexer;
+mod machine_codes;
+mod offsets;
+mod parameters;
+mod reader;
+mod settings;
+mod source;
+mod special;
+mod state;
+mod summary;
+mod tools;
+mod travel;
+
+pub use diagnostic::{Diagnostic, Severity};
+pub use reader::{ReadError, Reader};
+pub use settings::{Dialect, Settings};
+pub use summary::{CheckError, Summary, check, summarize};
+pub use tools::{Tool, ToolTable};

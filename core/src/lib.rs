@@ -5,10 +5,15 @@
 //!
 //! The modules stand in the order in which data flows; each uses only those above it.
 
-pub mod feed;
-pub mod gcode;
 pub mod machine;
+pub mod gcode;
 pub mod path;
+pub mod feed;
 pub mod reference;
-pub mod report;
+pub mod plant;
 pub mod trace;
+pub mod simulate;
+pub mod identify;
+pub mod controllers;
+pub mod report;
+pub mod paper;

@@ -20,8 +20,10 @@ mod worst;
 pub use html::write_html;
 pub use series::{Point, Series};
 pub use statistics::{Histogram, Statistics};
-pub use summary::{Outcome, RunFacts, RunSummary};
+pub use summary::{RunFacts, RunSummary};
 pub use worst::WorstPlace;
+
+pub use crate::trace::Outcome;
 
 /// Everything that the page shows.
 #[derive(Debug, Clone)]

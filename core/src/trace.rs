@@ -1,5 +1,7 @@
 //! What a run leaves behind: one [`Row`] per servo period, handed to every [`Sink`] that wants it.
 
+use serde::Serialize;
+
 /// One servo period of a run. Two-axis runs leave the third component at zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
@@ -11,7 +13,7 @@ pub struct Row {
     pub line: u32,
     /// Planned feedrate at `s_mm`, mm/s.
     pub feed_plan_mm_s: f64,
-    /// Whether the motion cuts; rapids and dwells do not.
+    /// Whether the tool is where the program cuts: not on a rapid, and not at rest where it has arrived.
     pub cutting: bool,
     /// Point of the programmed path at `s_mm`.
     pub path_mm: [f64; 3],
@@ -25,6 +27,20 @@ pub struct Row {
     pub contour_error_mm: f64,
     /// Corrected reference as the controller asked for it, before limits of the drive.
     pub corrected_mm: [f64; 3],
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Outcome {
+    /// The program was cut to its end.
+    #[default]
+    Completed,
+    /// The servo loop is unstable: the tool left the command by more than a metre, or is nowhere.
+    Diverged {
+        /// When, s.
+        at_s: f64,
+    },
 }
 
 /// Takes the rows of a run in order.

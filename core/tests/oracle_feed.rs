@@ -6,7 +6,7 @@ mod common;
 
 use common::{BLEND, LIMITS, arc, line, polyline};
 use feedwright::feed::Limits;
-use feedwright::gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
+use feedwright::gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Others, Shape};
 use feedwright::path::contour::contour;
 use feedwright::reference::Reference;
 use std::f64::consts::PI;
@@ -82,6 +82,7 @@ fn rapid_runs_at_the_rapid_rate() {
         shape: Shape::Line,
         feed_mm_s: f64::NAN,
         corner: BLEND,
+        others: Others::default(),
     };
     assert!((plan_s(vec![Canon::Motion(rapid)], &LIMITS) - 4.0).abs() < ROUNDING_S);
 }
@@ -121,7 +122,7 @@ fn circle_in_chords_takes_as_long_as_the_circle() {
 fn dwell_stops_and_holds() {
     let event = |line, kind| Canon::Event(Event { line, kind });
     let program = vec![
-        event(1, EventKind::MCode { code: 3 }),
+        event(1, EventKind::MCode { code: 3, p: None, q: None }),
         event(2, EventKind::Dwell { seconds: 0.25 }),
         line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND),
         event(4, EventKind::SpindleSpeed { rpm: 1000.0 }),

@@ -5,7 +5,7 @@
 mod common;
 
 use common::{BLEND, Random, distance};
-use feedwright::gcode::canon::{Canon, Motion, MotionKind, Plane, Shape};
+use feedwright::gcode::canon::{Canon, Motion, MotionKind, Others, Plane, Shape};
 use feedwright::path::contour::{CONTOURS, contour};
 use feedwright::path::pieces::Pieces;
 use feedwright::path::{Curve, Piece, Step};
@@ -46,6 +46,7 @@ fn arc(plane: Plane, radius: f64, from: f64, sweep: f64, rise: f64, turns: i32) 
         },
         feed_mm_s: 10.0,
         corner: BLEND,
+        others: Others::default(),
     };
     let mut pieces = pieces(vec![Canon::Motion(motion)]);
     assert_eq!(pieces.len(), 1, "radii are equal to rounding");

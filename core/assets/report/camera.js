@@ -4,9 +4,9 @@ const PLANES = { xy: ["X", "Y"], xz: ["X", "Z"], yz: ["Y", "Z"] };
 const TAU = 2 * Math.PI;
 
 class Camera {
-  constructor(low, high, view) {
-    this.low = low;
-    this.high = high;
+  // `points`: columns of the points that the whole part has.
+  constructor(points, view) {
+    this.points = points;
     this.setView(view);
   }
 
@@ -40,16 +40,25 @@ class Camera {
 
   // Shows the whole part with a margin for the enlarged deviation.
   fit() {
-    let [x, y] = [0, 0];
-    this.center = this.low.map((v, k) => (v + this.high[k]) / 2);
-    for (let corner = 0; corner < 8; corner++) {
-      const p = this.low.map((v, k) => ((corner >> k) & 1 ? this.high[k] : v) - this.center[k]);
-      x = Math.max(x, Math.abs(dot(p, this.right)));
-      y = Math.max(y, Math.abs(dot(p, this.up)));
-    }
-    const room = 0.8;
-    this.scale = Math.min(room * this.width / 2 / Math.max(x, 1e-6), room * this.height / 2 / Math.max(y, 1e-6));
+    const across = this.range(this.right), upwards = this.range(this.up);
+    const [x, y] = [across, upwards].map(([low, high]) => (low + high) / 2);
+    this.center = this.right.map((r, k) => x * r + y * this.up[k]);
+    const [width, height] = [across, upwards].map(([low, high]) => Math.max(high - low, 1e-6));
+    const margin = Math.min(120, 0.24 * Math.min(this.width, this.height));
+    this.scale = Math.min((this.width - margin) / width, (this.height - margin) / height);
     this.fitted = true;
+  }
+
+  // Least and largest component of the points along a unit vector.
+  range(direction) {
+    const [x, y, z] = this.points;
+    let [low, high] = [Infinity, -Infinity];
+    for (let i = 0; i < x.length; i++) {
+      const component = x[i] * direction[0] + y[i] * direction[1] + z[i] * direction[2];
+      low = Math.min(low, component);
+      high = Math.max(high, component);
+    }
+    return [low, high];
   }
 
   x(px, py, pz) {
@@ -74,8 +83,4 @@ class Camera {
     this.scale = scale;
     this.pan(dx, dy);
   }
-}
-
-function dot(a, b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }

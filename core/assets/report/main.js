@@ -12,7 +12,7 @@ function start() {
   const [low, high] = extent(model);
   const threeD = model.axes === 3 && high[2] - low[2] > 1e-6;
   const state = {
-    camera: new Camera(low, high, threeD ? "3d" : "xy"),
+    camera: new Camera(model.outline ? model.outline.points : model.runs[0].foot, threeD ? "3d" : "xy"),
     gain: defaultGain(model, low, high),
     scale_um: Math.max(1e-3, ...model.runs.map((r) => r.max_um)),
     focus: null, shown: [model.runs.length - 1], views: [], pinned: false,
@@ -42,7 +42,7 @@ function start() {
       state.views.forEach((v) => v.drawMark());
     },
   };
-  const plots = new Plots(model, $("plots"), actions);
+  const plots = new Plots(model, $("plots"), document.querySelector(".path-panel"), actions);
 
   function showFocus(lead, i) {
     plots.showFocus(state.focus);
@@ -98,15 +98,21 @@ function start() {
   const setTheme = setUpTheme($("theme"), repaint);
 
   $("key").append(...model.runs.flatMap((r) => [swatch(r.index), `${r.name}  `]));
+  if (model.tolerance_um) {
+    const dash = document.createElement("span");
+    dash.className = "dash";
+    $("key").append(dash, `tolerance ${formatNumber(model.tolerance_um)} \u00b5m`);
+  }
   connectPlaces(state, actions, showChoice);
   new ResizeObserver(() => { state.views.forEach((v) => v.resize()); actions.redraw(); }).observe($("views"));
 
   if (options.get("theme")) setTheme(options.get("theme"));
   if (options.get("view") && threeD) viewChoice(options.get("view"));
-  layOut();
-  if (options.get("show")) showChoice(options.get("show"));
+  const roomy = innerWidth >= 700 && model.runs.length === 2;
+  showChoice(options.get("show") || (roomy ? "side" : String(state.shown[0])));
   setGain(Number(options.get("gain")) || state.gain);
   drawLegend(state.scale_um);
+  root.dataset.ready = "";
 }
 
 // A row of buttons of which one is pressed. Returns a function that presses one.
@@ -129,32 +135,30 @@ function segments(container, choices, chosen, changed) {
   return press;
 }
 
-// Rows of the worst places, reachable by keyboard: choosing one shows it on the path and in the curves.
+// Rows of the worst places, each with a button for the keyboard: choosing one shows it on the path and in the curves.
 function connectPlaces(state, actions, showChoice) {
   for (const row of document.querySelectorAll("tr[data-place]")) {
     const run = Number(row.dataset.run), place = model.runs[run].worst[Number(row.dataset.place)];
-    row.tabIndex = 0;
+    const button = document.createElement("button");
+    button.type = "button";
+    button.append(row.cells[0].textContent);
+    button.setAttribute("aria-label", `Show place ${row.cells[0].textContent} on the path`);
+    row.cells[0].replaceChildren(button);
     const choose = () => {
       document.querySelectorAll("tr[data-place].chosen").forEach((r) => r.classList.remove("chosen"));
       row.classList.add("chosen");
       if (!state.shown.includes(run)) showChoice(String(run));
       const { camera } = state, i = nearestIndex(model.runs[run].t, place.t_s);
-      camera.center = model.runs[run].foot.map((c) => c[i]);
-      const whole = camera.scale;
+      const before = camera.scale, { foot, deviation } = model.runs[run];
       camera.fit();
-      camera.scale = Math.max(whole, camera.scale * 4);
-      camera.center = model.runs[run].foot.map((c) => c[i]);
+      camera.scale = Math.max(before, camera.scale * 4);
+      camera.center = foot.map((c, k) => c[i] + state.gain / 2 * deviation[k][i]);
       actions.focus("t", model.runs[run].t[i], run, i);
       state.pinned = { ...state.focus, lead: run };
       actions.redraw();
       document.querySelector(".path-panel").scrollIntoView({ block: "nearest", behavior: "smooth" });
     };
     row.addEventListener("click", choose);
-    row.addEventListener("keydown", (event) => {
-      if (event.key !== "Enter" && event.key !== " ") return;
-      event.preventDefault();
-      choose();
-    });
   }
 }
 

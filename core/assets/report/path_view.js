@@ -161,7 +161,7 @@ function drawGrid(g, camera) {
         g.moveTo(x, 0);
         g.lineTo(x, camera.height);
         g.textAlign = "center";
-        if (x > 34 && x < camera.width - 40) g.fillText(text(k * step), x, camera.height - 7);
+        if (x > 34 && x < camera.width - 58) g.fillText(text(k * step), x, camera.height - 7);
       } else {
         const y = Math.round(camera.height / 2 - at) + 0.5;
         g.moveTo(0, y);

@@ -1,12 +1,16 @@
 // The curves, drawn by uPlot: every plot has all runs, plots over the same quantity share cursor and range.
 
-const PLOT_HEIGHT = 190;
+const PLOT_HEIGHT = 180;
+
+// Shares below this many per cent are not drawn: logarithms need an end.
+const LEAST_SHARE = 0.01;
 
 class Plots {
-  constructor(model, container, actions) {
+  // `beside` takes the plot that has no place along the path.
+  constructor(model, container, beside, actions) {
     Object.assign(this, { model, actions, busy: false });
     this.plots = definitions(model).map((definition) => {
-      const figure = container.appendChild(document.createElement("figure"));
+      const figure = (definition.kind === "bins" ? beside : container).appendChild(document.createElement("figure"));
       figure.className = "plot";
       const caption = figure.appendChild(document.createElement("figcaption"));
       const title = caption.appendChild(document.createElement("b"));
@@ -16,7 +20,9 @@ class Plots {
       return { definition, live, body: figure.appendChild(document.createElement("div")), u: null };
     });
     this.build();
-    new ResizeObserver(() => this.resize()).observe(container);
+    const observer = new ResizeObserver(() => this.resize());
+    observer.observe(container);
+    observer.observe(beside);
   }
 
   // Makes the charts anew, in the colours of the theme.
@@ -53,10 +59,10 @@ class Plots {
     return {
       width: Math.max(200, plot.body.clientWidth), height: PLOT_HEIGHT, padding: [10, 8, 0, 0],
       legend: { show: false },
-      scales: { x: { time: false }, y: { range: definition.range } },
+      scales: { x: { time: false }, y: { range: definition.range, distr: definition.logarithmic ? 3 : 1 } },
       axes: [
         { ...axis, label: definition.x, size: 26, values, space: 60 },
-        { ...axis, size: 50, values, space: 28 },
+        { ...axis, size: 50, values, space: 28, filter: definition.logarithmic ? decades : undefined },
       ],
       series: [{}, ...definition.series.map((s) => ({
         stroke: s.run === undefined ? "transparent" : runColor(s.run) , width: s.width ?? 1.5, dash: s.dash,
@@ -107,7 +113,7 @@ class Plots {
     const i = u.cursor.idx;
     if (i === null || i === undefined) return;
     plot.live.replaceChildren(...this.model.runs.flatMap((run, r) =>
-      [swatch(run.index), ` ${formatNumber(u.data[r + 1][i] ?? 0)} % `]), `at ${formatNumber(u.data[0][i])} \u00b5m`);
+      [swatch(run.index), ` ${formatNumber(u.data[r + 1][i] < LEAST_SHARE ? 0 : u.data[r + 1][i])} % `]), `at ${formatNumber(u.data[0][i])} \u00b5m`);
   }
 
   ranged(plot, u) {
@@ -138,6 +144,11 @@ class Plots {
       }
     });
   }
+}
+
+// Of the ticks of a logarithmic axis, the powers of ten.
+function decades(u, splits) {
+  return splits.map((v) => (Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9 ? v : null));
 }
 
 function tickText(v) {
@@ -186,7 +197,8 @@ function errorPlot(model, kind, title, x) {
   }
   const tolerance = model.tolerance_um;
   const levels = [{ value: 0 }];
-  if (tolerance) levels.push({ value: tolerance, dash: true }, { value: -tolerance, dash: true });
+  if (tolerance) levels.push({ value: tolerance, dash: true });
+  if (tolerance && model.axes === 2) levels.push({ value: -tolerance, dash: true });
   return {
     kind, title, x, unit: "\u00b5m", data: uPlot.join(tables), series, bands, levels,
     read: (r, i) => (r.cutting[i] ? formatNumber(r.error_um[i]) : "rapid"),
@@ -230,9 +242,9 @@ function histogramPlot(model) {
   const first = Math.min(...keys) - 1, last = Math.max(...keys) + 1, numbers = [];
   for (let b = first; b <= last; b++) numbers.push(b);
   return {
-    kind: "bins", title: "Distribution of the contour error, % of cutting time", x: "Contour error, \u00b5m",
-    data: [numbers.map((b) => b * width), ...binned.map((bins) => numbers.map((b) => bins.get(b) || 0))],
+    kind: "bins", title: "Distribution of the contour error, % of cutting time, logarithmic", x: "Contour error, \u00b5m",
+    data: [numbers.map((b) => b * width), ...binned.map((bins) => numbers.map((b) => Math.max(bins.get(b) || 0, LEAST_SHARE / 2)))],
     series: model.runs.map((r) => ({ run: r.index, fill: true })), paths: uPlot.paths.stepped({ align: 1 }),
-    range: (u, low, high) => [0, (high || 1) * 1.08],
+    logarithmic: true, range: () => [LEAST_SHARE, 100],
   };
 }

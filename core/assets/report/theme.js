@@ -18,18 +18,16 @@ function isDark() {
   return chosen ? chosen === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
 }
 
-// Viridis, whose lightness rises evenly, so that it also reads in grey and with colour blindness.
-const VIRIDIS = [
-  [68, 1, 84], [72, 40, 120], [62, 74, 137], [49, 104, 142], [38, 130, 142],
-  [31, 158, 137], [53, 183, 121], [110, 206, 88], [181, 222, 43], [253, 231, 37],
-];
+// Colours from no error to the largest. Their lightness leaves that of the background evenly, so that the scale also
+// reads in grey and with colour blindness: blue to dark purple on light, blue through green to yellow on dark.
+const ON_LIGHT = [[138, 176, 222], [127, 143, 208], [138, 104, 186], [141, 63, 159], [124, 18, 119], [62, 0, 66]];
+const ON_DARK = [[62, 98, 170], [44, 128, 160], [38, 158, 140], [74, 190, 110], [160, 218, 57], [253, 231, 37]];
 
-// Small errors stand near to the background, large ones far from it.
 function errorColor(fraction) {
   const f = Math.min(1, Math.max(0, fraction));
-  const place = (isDark() ? 0.22 + 0.78 * f : 0.86 * (1 - f)) * (VIRIDIS.length - 1);
-  const i = Math.min(VIRIDIS.length - 2, Math.floor(place)), w = place - i;
-  const mix = VIRIDIS[i].map((c, k) => Math.round(c + w * (VIRIDIS[i + 1][k] - c)));
+  const map = isDark() ? ON_DARK : ON_LIGHT, place = f * (map.length - 1);
+  const i = Math.min(map.length - 2, Math.floor(place)), w = place - i;
+  const mix = map[i].map((c, k) => Math.round(c + w * (map[i + 1][k] - c)));
   return `rgb(${mix.join(",")})`;
 }
 

@@ -139,7 +139,7 @@ impl<'p> Plan<'p> {
     fn event(&mut self, event: Event) {
         self.stop |= match event.kind {
             EventKind::Dwell { .. } | EventKind::ProgramEnd => true,
-            EventKind::MCode { code } => !CODES_THAT_DO_NOT_STOP.contains(&code),
+            EventKind::MCode { code, .. } => !CODES_THAT_DO_NOT_STOP.contains(&code),
             EventKind::SpindleSpeed { .. } | EventKind::ToolSelect { .. } => false,
         };
         let place = match &self.last {

@@ -4,8 +4,11 @@
 
 use std::sync::Arc;
 
+use serde::Serialize;
+
 /// One step of a program, in program order.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Canon {
     /// The tool moves.
     Motion(Motion),
@@ -14,7 +17,7 @@ pub enum Canon {
 }
 
 /// A motion from `start_mm` to `end_mm`.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Motion {
     /// Line of the program, from 1.
     pub line: u32,
@@ -30,10 +33,31 @@ pub struct Motion {
     pub feed_mm_s: f64,
     /// How the corner at the end of this motion is taken.
     pub corner: Corner,
+    /// What moves along with X, Y and Z.
+    #[serde(skip_serializing_if = "Others::is_none")]
+    pub others: Others,
+}
+
+/// What moves along with X, Y and Z during a motion; `Others::default()` is nothing.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Others {
+    /// Filament pushed during the motion (E of 3D printers), mm; negative pulls back.
+    pub extruder_mm: f64,
+    /// Start and end of A, B, C in degrees and U, V, W in mm; present only where one of them moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub axes: Option<Box<[[f64; 6]; 2]>>,
+}
+
+impl Others {
+    /// Whether nothing else moves.
+    pub fn is_none(&self) -> bool {
+        self.extruder_mm == 0.0 && self.axes.is_none()
+    }
 }
 
 /// Whether a motion cuts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum MotionKind {
     /// G0: at the machine's rapid rate, not cutting.
     Rapid,
@@ -42,7 +66,8 @@ pub enum MotionKind {
 }
 
 /// The curve of a motion.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Shape {
     /// Straight.
     Line,
@@ -61,7 +86,8 @@ pub enum Shape {
 }
 
 /// Plane of an arc: G17 is XY, G18 is ZX, G19 is YZ.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Plane {
     /// G17, normal +Z.
     Xy,
@@ -83,7 +109,7 @@ impl Plane {
 }
 
 /// Non-uniform rational B-spline with `control_mm.len() + degree + 1` knots.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Spline {
     /// Polynomial degree, at least 1.
     pub degree: usize,
@@ -96,7 +122,8 @@ pub struct Spline {
 }
 
 /// How a corner is taken.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Corner {
     /// G61.1: a full stop at the end of every motion, corner or not.
     ExactStop,
@@ -110,7 +137,7 @@ pub enum Corner {
 }
 
 /// Something other than a motion.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Event {
     /// Line of the program, from 1.
     pub line: u32,
@@ -119,7 +146,8 @@ pub struct Event {
 }
 
 /// What happens in an [`Event`].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum EventKind {
     /// G4: the tool rests.
     Dwell {
@@ -135,6 +163,12 @@ pub enum EventKind {
     MCode {
         /// Number behind M.
         code: u16,
+        /// Its P word.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        p: Option<f64>,
+        /// Its Q word.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        q: Option<f64>,
     },
     /// T word: the tool that the next M6 loads.
     ToolSelect {

@@ -13,7 +13,7 @@ use super::pieces::Pieces;
 use super::smooth::{Jet, Parametric, Smooth};
 use super::vector::scale;
 use super::{Curve, PathError, Piece, Step};
-use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Plane, Shape};
+use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -110,6 +110,7 @@ impl Contour {
                     },
                     feed_mm_s,
                     corner,
+                    others: Others::default(),
                 }));
                 Pieces::new(canon.into_iter()).collect()
             }
@@ -146,6 +147,7 @@ fn lines(points: &[[f64; 2]], feed_mm_s: f64, corner: Corner) -> Vec<Canon> {
                 shape: Shape::Line,
                 feed_mm_s,
                 corner,
+                others: Others::default(),
             })
         })
         .collect()

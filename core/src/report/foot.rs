@@ -40,15 +40,8 @@ impl FootFinder {
         let (segment, foot_mm) = self.nearest(row.act_mm);
         self.segment = segment;
         let from_foot_mm = sub(row.act_mm, foot_mm);
-        let deviation_mm = if row.cutting {
-            self.scaled(from_foot_mm, row.contour_error_mm)
-        } else {
-            from_foot_mm
-        };
-        Foot {
-            foot_mm,
-            deviation_mm,
-        }
+        let deviation_mm = if row.cutting { self.scaled(from_foot_mm, row.contour_error_mm) } else { from_foot_mm };
+        Foot { foot_mm, deviation_mm }
     }
 
     fn push(&mut self, point_mm: [f64; 3]) {
@@ -71,10 +64,7 @@ impl FootFinder {
         let first = self.segment.saturating_sub(SEGMENTS_BACK).min(last);
         let mut best = (f64::INFINITY, first, self.points_mm[first]);
         for i in first..=last {
-            let (start, along) = (
-                self.points_mm[i],
-                sub(self.points_mm[i + 1], self.points_mm[i]),
-            );
+            let (start, along) = (self.points_mm[i], sub(self.points_mm[i + 1], self.points_mm[i]));
             let end = if i == last { f64::INFINITY } else { 1.0 };
             let u = (dot(sub(point_mm, start), along) / dot(along, along)).clamp(0.0, end);
             let foot = [0, 1, 2].map(|k| start[k] + u * along[k]);
@@ -99,15 +89,7 @@ impl FootFinder {
         }
         let along = sub(self.points_mm[i + 1], self.points_mm[i]);
         let length = along[0].hypot(along[1]);
-        if length > 0.0 {
-            [
-                -along[1] * error_mm / length,
-                along[0] * error_mm / length,
-                0.0,
-            ]
-        } else {
-            [0.0; 3]
-        }
+        if length > 0.0 { [-along[1] * error_mm / length, along[0] * error_mm / length, 0.0] } else { [0.0; 3] }
     }
 }
 
@@ -134,21 +116,15 @@ mod tests {
                 let behind = (angle - lag).max(0.0);
                 let found = finder.find(&Row {
                     path_mm: [radius * angle.cos(), radius * angle.sin(), 0.0],
-                    act_mm: [
-                        (radius - error) * behind.cos(),
-                        (radius - error) * behind.sin(),
-                        0.0,
-                    ],
+                    act_mm: [(radius - error) * behind.cos(), (radius - error) * behind.sin(), 0.0],
                     contour_error_mm: error,
                     ..row(f64::from(k) * 1e-3)
                 });
                 if k > 300 {
                     // Half a chord of 50 µm seen from the centre: the polyline's normal is off by at most 2.5 mrad.
-                    let sideways = found.deviation_mm[0] * -behind.sin()
-                        + found.deviation_mm[1] * behind.cos();
+                    let sideways = found.deviation_mm[0] * -behind.sin() + found.deviation_mm[1] * behind.cos();
                     assert!(sideways.abs() < error * 3e-3, "lag {lag}: {sideways}");
-                    let radial =
-                        found.deviation_mm[0] * behind.cos() + found.deviation_mm[1] * behind.sin();
+                    let radial = found.deviation_mm[0] * behind.cos() + found.deviation_mm[1] * behind.sin();
                     assert!((radial + error).abs() < 1e-6, "lag {lag}: {radial}");
                 }
             }
@@ -159,23 +135,12 @@ mod tests {
     fn the_foot_passes_a_reversal() {
         let mut finder = FootFinder::default();
         let path = |k: i32| {
-            if k < 100 {
-                0.05 * f64::from(k)
-            } else {
-                0.05 * f64::from(200 - k)
-            }
+            if k < 100 { 0.05 * f64::from(k) } else { 0.05 * f64::from(200 - k) }
         };
         for k in 0..200 {
             let act = [path((k - 20).max(0)), 0.01, 0.0];
-            let found = finder.find(&Row {
-                path_mm: [path(k), 0.0, 0.0],
-                act_mm: act,
-                ..row(f64::from(k) * 1e-3)
-            });
-            assert!(
-                (found.foot_mm[0] - act[0]).abs() < 1e-9,
-                "row {k}: {found:?}"
-            );
+            let found = finder.find(&Row { path_mm: [path(k), 0.0, 0.0], act_mm: act, ..row(f64::from(k) * 1e-3) });
+            assert!((found.foot_mm[0] - act[0]).abs() < 1e-9, "row {k}: {found:?}");
         }
     }
 
@@ -183,12 +148,7 @@ mod tests {
     fn a_tool_on_the_path_deviates_to_the_side_that_the_sign_says() {
         let mut finder = FootFinder::default();
         finder.find(&row(0.0));
-        let on_path = Row {
-            path_mm: [1.0, 0.0, 0.0],
-            act_mm: [1.0, 0.0, 0.0],
-            contour_error_mm: 1e-4,
-            ..row(1e-3)
-        };
+        let on_path = Row { path_mm: [1.0, 0.0, 0.0], act_mm: [1.0, 0.0, 0.0], contour_error_mm: 1e-4, ..row(1e-3) };
         assert_eq!(finder.find(&on_path).deviation_mm, [0.0, 1e-4, 0.0]);
     }
 }

@@ -40,15 +40,10 @@ pub fn write_html(out: &mut impl Write, report: &Report) -> io::Result<()> {
     out.write_all(DRAWINGS.as_bytes())?;
     tables::write_worst(out, report)?;
     tables::write_notes(out, report)?;
-    out.write_all(
-        b"</main>\n<footer>Simulated and written by feedwright. Charts: uPlot (MIT).</footer>\n",
-    )?;
+    out.write_all(b"</main>\n<footer>Simulated and written by feedwright. Charts: uPlot (MIT).</footer>\n")?;
     out.write_all(b"<script type=\"application/json\" id=\"data\">")?;
     island::write(out, report)?;
-    write!(
-        out,
-        "</script>\n<script>{UPLOT_JS}</script>\n<script>(() => {{\n\"use strict\";\n"
-    )?;
+    write!(out, "</script>\n<script>{UPLOT_JS}</script>\n<script>(() => {{\n\"use strict\";\n")?;
     for script in SCRIPTS {
         out.write_all(script.as_bytes())?;
     }

@@ -87,22 +87,10 @@ fn run_meta(run: &Run) -> serde_json::Value {
 fn write_outline(out: &mut impl Write, run: &Run) -> io::Result<()> {
     let vertices: Vec<_> = run.series.outline().collect();
     let mut object = Object::begin(out)?;
-    for (k, name) in ["x", "y", "z"]
-        .into_iter()
-        .enumerate()
-        .take(run.summary.axes)
-    {
-        object.column(
-            name,
-            units::POINT_MM,
-            vertices.iter().map(|v| v.point_mm[k]),
-        )?;
+    for (k, name) in ["x", "y", "z"].into_iter().enumerate().take(run.summary.axes) {
+        object.column(name, units::POINT_MM, vertices.iter().map(|v| v.point_mm[k]))?;
     }
-    object.column(
-        "cutting",
-        1.0,
-        vertices.iter().map(|v| f64::from(u8::from(v.cutting))),
-    )?;
+    object.column("cutting", 1.0, vertices.iter().map(|v| f64::from(u8::from(v.cutting))))?;
     object.end()
 }
 
@@ -121,26 +109,10 @@ fn write_run(out: &mut impl Write, run: &Run) -> io::Result<()> {
     object.column("feed", units::FEED_MM_S, column(|p| p.feed_act_mm_s))?;
     object.column("line", 1.0, column(|p| f64::from(p.line)))?;
     object.column("cutting", 1.0, column(|p| f64::from(u8::from(p.cutting))))?;
-    for (k, axis) in ["x", "y", "z"]
-        .into_iter()
-        .enumerate()
-        .take(run.summary.axes)
-    {
-        object.column(
-            &format!("f{axis}"),
-            units::POINT_MM,
-            points.iter().map(|p| p.foot_mm[k]),
-        )?;
-        object.column(
-            &format!("d{axis}"),
-            units::ERROR_MM,
-            points.iter().map(|p| p.deviation_mm[k]),
-        )?;
-        object.column(
-            &format!("torque_{axis}"),
-            units::TORQUE_NM,
-            points.iter().map(|p| p.torque_nm[k]),
-        )?;
+    for (k, axis) in ["x", "y", "z"].into_iter().enumerate().take(run.summary.axes) {
+        object.column(&format!("f{axis}"), units::POINT_MM, points.iter().map(|p| p.foot_mm[k]))?;
+        object.column(&format!("d{axis}"), units::ERROR_MM, points.iter().map(|p| p.deviation_mm[k]))?;
+        object.column(&format!("torque_{axis}"), units::TORQUE_NM, points.iter().map(|p| p.torque_nm[k]))?;
     }
     object.end()
 }
@@ -157,12 +129,7 @@ impl<'a, W: Write> Object<'a, W> {
         Ok(Self { out, separator: "" })
     }
 
-    fn column(
-        &mut self,
-        name: &str,
-        unit: f64,
-        values: impl Iterator<Item = f64>,
-    ) -> io::Result<()> {
+    fn column(&mut self, name: &str, unit: f64, values: impl Iterator<Item = f64>) -> io::Result<()> {
         write!(self.out, "{}\"{name}\":[", self.separator)?;
         self.separator = ",";
         let mut before = 0;
@@ -206,9 +173,6 @@ mod tests {
     fn no_string_ends_the_script() {
         let text = inert(&json!({"a": "</script><!--\u{2028}&"}));
         assert!(!text.contains(['<', '>', '&', '\u{2028}']), "{text}");
-        assert_eq!(
-            serde_json::from_str::<serde_json::Value>(&text).unwrap()["a"],
-            "</script><!--\u{2028}&"
-        );
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap()["a"], "</script><!--\u{2028}&");
     }
 }

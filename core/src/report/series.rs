@@ -122,12 +122,7 @@ impl Series {
 impl Sink for Series {
     /// Rows with a number that is not finite are left out: only a run that diverged has them.
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let numbers = [
-            row.path_mm,
-            row.act_mm,
-            row.torque_nm,
-            [row.t_s, row.s_mm, row.contour_error_mm],
-        ];
+        let numbers = [row.path_mm, row.act_mm, row.torque_nm, [row.t_s, row.s_mm, row.contour_error_mm]];
         if !numbers.iter().flatten().all(|x| x.is_finite()) || !row.feed_plan_mm_s.is_finite() {
             return Ok(());
         }
@@ -136,10 +131,7 @@ impl Sink for Series {
             None => (0.0, 0.0),
         };
         self.previous = Some((row.t_s, row.act_mm));
-        self.outline.push(Vertex {
-            point_mm: row.path_mm,
-            cutting: row.cutting,
-        });
+        self.outline.push(Vertex { point_mm: row.path_mm, cutting: row.cutting });
         let foot = self.feet.find(row);
         self.push(Bucket {
             point: Point {
@@ -169,11 +161,7 @@ impl Bucket {
     fn point(&self) -> Point {
         Point {
             feed_plan_mm_s: self.plan_sum_mm_s / self.rows as f64,
-            feed_act_mm_s: if self.span_s > 0.0 {
-                self.travel_mm / self.span_s
-            } else {
-                0.0
-            },
+            feed_act_mm_s: if self.span_s > 0.0 { self.travel_mm / self.span_s } else { 0.0 },
             ..self.point
         }
     }
@@ -235,12 +223,7 @@ pub(super) mod tests {
         let mut series = Series::new();
         for k in 0..70_000 {
             let t = f64::from(k) * 1e-3;
-            series
-                .row(&Row {
-                    act_mm: [30.0 * t, 40.0 * t, 0.0],
-                    ..row(t)
-                })
-                .unwrap();
+            series.row(&Row { act_mm: [30.0 * t, 40.0 * t, 0.0], ..row(t) }).unwrap();
         }
         assert_eq!(series.rows_per_point(), 4);
         for point in series.points() {
@@ -254,37 +237,17 @@ pub(super) mod tests {
         for k in 0..=Series::MAX_POINTS {
             let cutting = k % 2 == 0;
             let error = if cutting { 0.001 } else { 5.0 };
-            series
-                .row(&Row {
-                    cutting,
-                    contour_error_mm: error,
-                    ..row(k as f64)
-                })
-                .unwrap();
+            series.row(&Row { cutting, contour_error_mm: error, ..row(k as f64) }).unwrap();
         }
-        assert!(
-            series
-                .points()
-                .all(|p| p.cutting && p.error_max_mm == 0.001)
-        );
+        assert!(series.points().all(|p| p.cutting && p.error_max_mm == 0.001));
     }
 
     #[test]
     fn rows_that_are_not_finite_are_left_out() {
         let mut series = Series::new();
         series.row(&row(0.0)).unwrap();
-        series
-            .row(&Row {
-                act_mm: [f64::NAN, 0.0, 0.0],
-                ..row(1.0)
-            })
-            .unwrap();
-        series
-            .row(&Row {
-                contour_error_mm: f64::INFINITY,
-                ..row(2.0)
-            })
-            .unwrap();
+        series.row(&Row { act_mm: [f64::NAN, 0.0, 0.0], ..row(1.0) }).unwrap();
+        series.row(&Row { contour_error_mm: f64::INFINITY, ..row(2.0) }).unwrap();
         assert_eq!(series.points().len(), 1);
     }
 }

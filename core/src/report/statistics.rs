@@ -104,11 +104,7 @@ impl Statistics {
 
     /// Root mean square of the contour error over the rows that cut, µm; 0 without such rows.
     pub fn rms_um(&self) -> f64 {
-        if self.cutting_rows == 0 {
-            0.0
-        } else {
-            (self.square_sum_mm2 / self.cutting_rows as f64).sqrt() * 1e3
-        }
+        if self.cutting_rows == 0 { 0.0 } else { (self.square_sum_mm2 / self.cutting_rows as f64).sqrt() * 1e3 }
     }
 
     /// Largest |contour error| over the rows that cut, µm.
@@ -151,19 +147,11 @@ impl Statistics {
         let first = self.counts.iter().position(|&n| n > 0);
         let last = self.counts.iter().rposition(|&n| n > 0);
         let (Some(first), Some(last)) = (first, last) else {
-            return Histogram {
-                bin_um: self.bin_um,
-                first_bin: 0,
-                counts: Vec::new(),
-            };
+            return Histogram { bin_um: self.bin_um, first_bin: 0, counts: Vec::new() };
         };
         let side = BINS_PER_SIDE as i64;
         let counts = self.counts[first..=last].to_vec();
-        let mut histogram = Histogram {
-            bin_um: self.bin_um,
-            first_bin: first as i64 - side,
-            counts,
-        };
+        let mut histogram = Histogram { bin_um: self.bin_um, first_bin: first as i64 - side, counts };
         while histogram.counts.len() > SHOWN_BINS {
             histogram = histogram.widened();
         }
@@ -183,11 +171,7 @@ impl Histogram {
             }
             counts[wide] += count;
         }
-        Self {
-            bin_um: self.bin_um * 2.0,
-            first_bin,
-            counts,
-        }
+        Self { bin_um: self.bin_um * 2.0, first_bin, counts }
     }
 }
 
@@ -195,12 +179,7 @@ impl Sink for Statistics {
     fn row(&mut self, row: &Row) -> io::Result<()> {
         let numbers = [row.path_mm, row.act_mm, row.corrected_mm, row.torque_nm];
         let scalars = [row.t_s, row.s_mm, row.contour_error_mm];
-        if !numbers
-            .iter()
-            .flatten()
-            .chain(&scalars)
-            .all(|x| x.is_finite())
-        {
+        if !numbers.iter().flatten().chain(&scalars).all(|x| x.is_finite()) {
             return Ok(());
         }
         self.rows += 1;
@@ -226,21 +205,14 @@ mod tests {
     fn statistics_of(errors_um: &[f64]) -> Statistics {
         let mut statistics = Statistics::new();
         for (k, error) in errors_um.iter().enumerate() {
-            statistics
-                .row(&Row {
-                    contour_error_mm: error * 1e-3,
-                    ..row(k as f64 * 1e-3)
-                })
-                .unwrap();
+            statistics.row(&Row { contour_error_mm: error * 1e-3, ..row(k as f64 * 1e-3) }).unwrap();
         }
         statistics
     }
 
     #[test]
     fn rms_of_a_sine_is_its_amplitude_over_root_two() {
-        let sine: Vec<f64> = (0..1000)
-            .map(|k| 10.0 * (f64::from(k) * std::f64::consts::TAU / 1000.0).sin())
-            .collect();
+        let sine: Vec<f64> = (0..1000).map(|k| 10.0 * (f64::from(k) * std::f64::consts::TAU / 1000.0).sin()).collect();
         let statistics = statistics_of(&sine);
         assert!((statistics.rms_um() - 10.0 / 2f64.sqrt()).abs() < 1e-9);
         assert!((statistics.max_um() - 10.0).abs() < 1e-12);
@@ -249,45 +221,25 @@ mod tests {
     #[test]
     fn rapids_count_for_torque_but_not_for_the_error() {
         let mut statistics = statistics_of(&[1.0, -1.0]);
-        let rapid = Row {
-            cutting: false,
-            contour_error_mm: 9.0,
-            torque_nm: [0.0, -2.0, 0.0],
-            ..row(1.0)
-        };
+        let rapid = Row { cutting: false, contour_error_mm: 9.0, torque_nm: [0.0, -2.0, 0.0], ..row(1.0) };
         statistics.row(&rapid).unwrap();
-        let facts = RunFacts {
-            axes: 2,
-            ..RunFacts::default()
-        };
+        let facts = RunFacts { axes: 2, ..RunFacts::default() };
         let summary = statistics.summary(facts, |_| String::new());
         assert!((summary.rms_um - 1.0).abs() < 1e-12 && (summary.max_um - 1.0).abs() < 1e-12);
         assert_eq!(summary.peak_torque_nm, [0.0, 2.0, 0.0]);
-        assert!(
-            (summary.cutting_time_s - 1e-3).abs() < 1e-15,
-            "{}",
-            summary.cutting_time_s
-        );
+        assert!((summary.cutting_time_s - 1e-3).abs() < 1e-15, "{}", summary.cutting_time_s);
     }
 
     #[test]
     fn the_histogram_agrees_with_counting_by_hand() {
-        let errors: Vec<f64> = (0..4000)
-            .map(|k| 37.0 * (f64::from(k) * 0.7).sin() - 5.0)
-            .collect();
+        let errors: Vec<f64> = (0..4000).map(|k| 37.0 * (f64::from(k) * 0.7).sin() - 5.0).collect();
         let statistics = statistics_of(&errors);
         let histogram = statistics.histogram();
-        assert!(
-            histogram.counts.len() <= SHOWN_BINS && histogram.counts.len() > SHOWN_BINS / 2 - 2
-        );
+        assert!(histogram.counts.len() <= SHOWN_BINS && histogram.counts.len() > SHOWN_BINS / 2 - 2);
         for (bin, &count) in (histogram.first_bin..).zip(&histogram.counts) {
             // The same arithmetic as the row's: the error in mm, back to µm.
             let inside = |e: &&f64| ((**e * 1e-3) * 1e3 / histogram.bin_um).floor() as i64 == bin;
-            assert_eq!(
-                count,
-                errors.iter().filter(inside).count() as u64,
-                "bin {bin}"
-            );
+            assert_eq!(count, errors.iter().filter(inside).count() as u64, "bin {bin}");
         }
         assert_eq!(histogram.counts.iter().sum::<u64>(), 4000);
     }

@@ -4,27 +4,7 @@ use serde::Serialize;
 
 use super::statistics::Histogram;
 use super::worst::WorstPlace;
-
-/// How a run ended.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
-pub enum Outcome {
-    /// The program was cut to its end.
-    #[default]
-    Completed,
-    /// The tool ran away from the path; the numbers are of the time before.
-    Diverged {
-        /// When, s.
-        at_s: f64,
-    },
-    /// The run ended early for another reason.
-    Stopped {
-        /// When, s.
-        at_s: f64,
-        /// Why, as the end of a sentence: "the time limit was reached".
-        reason: String,
-    },
-}
+use crate::trace::Outcome;
 
 /// What [`Statistics`](super::Statistics) cannot see in the rows of a run.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -2,7 +2,7 @@
 //!
 //! A place is a peak of |contour error|: it is over when the error has fallen below [`PEAK_ENDS`] times the peak, and
 //! the next begins when it rises again by the same factor above the least since. Of peaks closer than
-//! [`APART_MM`] and [`APART_S`] to one that is larger, only the larger counts. Memory does not grow with the run.
+//! [`APART_MM`] or [`APART_S`] to one that is larger, only the larger counts. Memory does not grow with the run.
 
 use serde::Serialize;
 
@@ -14,6 +14,9 @@ const PLACES: usize = 10;
 /// A peak is over when the error is this fraction of it. Nearer to 1, ripple on one bump makes many places of it;
 /// nearer to 0, neighbouring corners join.
 const PEAK_ENDS: f64 = 0.7;
+
+/// Peaks smaller than this fraction of the largest are not told: they are not what is wrong with the part.
+const LEAST_SHARE: f64 = 0.01;
 
 /// Peaks nearer to each other than this along the path are one place, mm.
 const APART_MM: f64 = 0.5;
@@ -66,11 +69,7 @@ pub(super) struct WorstFinder {
 
 impl Default for WorstFinder {
     fn default() -> Self {
-        Self {
-            slope: Slope::Falling { least_mm: 0.0 },
-            pending: None,
-            found: Vec::new(),
-        }
+        Self { slope: Slope::Falling { least_mm: 0.0 }, pending: None, found: Vec::new() }
     }
 }
 
@@ -110,7 +109,8 @@ impl WorstFinder {
             t_s: p.t_s,
             s_mm: p.s_mm,
         };
-        last.found.iter().map(place).collect()
+        let least_mm = last.found.first().map_or(0.0, |p| LEAST_SHARE * p.error_mm.abs());
+        last.found.iter().filter(|p| p.error_mm.abs() >= least_mm).map(place).collect()
     }
 
     fn close(&mut self, peak: Peak) {
@@ -129,9 +129,7 @@ impl WorstFinder {
     }
 
     fn keep(&mut self, peak: Peak) {
-        let rank = self
-            .found
-            .partition_point(|p| p.error_mm.abs() >= peak.error_mm.abs());
+        let rank = self.found.partition_point(|p| p.error_mm.abs() >= peak.error_mm.abs());
         self.found.insert(rank, peak);
         self.found.truncate(PLACES);
     }
@@ -139,13 +137,7 @@ impl WorstFinder {
 
 impl Peak {
     fn of(row: &Row) -> Self {
-        Self {
-            error_mm: row.contour_error_mm,
-            line: row.line,
-            position_mm: row.act_mm,
-            t_s: row.t_s,
-            s_mm: row.s_mm,
-        }
+        Self { error_mm: row.contour_error_mm, line: row.line, position_mm: row.act_mm, t_s: row.t_s, s_mm: row.s_mm }
     }
 
     fn is_near(&self, other: &Self) -> bool {
@@ -162,12 +154,7 @@ mod tests {
         let mut finder = WorstFinder::default();
         for (k, error) in errors.enumerate() {
             let t_s = k as f64 * 1e-3;
-            finder.row(&Row {
-                contour_error_mm: error,
-                s_mm: step_mm * k as f64,
-                line: k as u32,
-                ..row(t_s)
-            });
+            finder.row(&Row { contour_error_mm: error, s_mm: step_mm * k as f64, line: k as u32, ..row(t_s) });
         }
         finder.places(|line| format!("N{line}"))
     }
@@ -186,10 +173,7 @@ mod tests {
         let places = places_of((0..1200).map(|k| bumps(k, 12)), 0.05);
         let lines: Vec<u32> = places.iter().map(|p| p.line).collect();
         assert_eq!(lines, [1150, 1050, 950, 850, 750, 650, 550, 450, 350, 250]);
-        assert!(
-            (places[0].error_um + 12.0).abs() < 1e-9 && (places[1].error_um - 11.0).abs() < 1e-9,
-            "{places:?}"
-        );
+        assert!((places[0].error_um + 12.0).abs() < 1e-9 && (places[1].error_um - 11.0).abs() < 1e-9, "{places:?}");
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Motions and limits for the tests of path, feed and reference.
 
 use feedwright::feed::Limits;
-use feedwright::gcode::canon::{Canon, Corner, Motion, MotionKind, Plane, Shape};
+use feedwright::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
 
 pub(crate) const LIMITS: Limits = Limits {
     rapid_mm_s: 100.0,
@@ -23,6 +23,7 @@ pub(crate) fn line(start_mm: [f64; 3], end_mm: [f64; 3], feed_mm_s: f64, corner:
         shape: Shape::Line,
         feed_mm_s,
         corner,
+        others: Others::default(),
     })
 }
 
@@ -47,6 +48,7 @@ pub(crate) fn arc(
         shape,
         feed_mm_s,
         corner: BLEND,
+        others: Others::default(),
     })
 }
 

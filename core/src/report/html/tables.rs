@@ -12,13 +12,7 @@ const SHOWN_EVENTS: usize = 200;
 
 /// A row for each controller.
 pub(super) fn write_summary(out: &mut impl Write, report: &Report) -> io::Result<()> {
-    let axes = report
-        .runs
-        .iter()
-        .map(|r| r.summary.axes)
-        .max()
-        .unwrap_or(2)
-        .min(3);
+    let axes = report.runs.iter().map(|r| r.summary.axes).max().unwrap_or(2).min(3);
     out.write_all(
         b"<section aria-labelledby=\"h-summary\">\n<h2 id=\"h-summary\">Summary</h2>\n<div class=\"scroll\"><table class=\"summary\" role=\"table\">\n\
           <thead role=\"rowgroup\"><tr role=\"row\"><th scope=\"col\">Controller</th><th scope=\"col\">RMS error<i>\xc2\xb5m</i></th>\
@@ -49,17 +43,7 @@ fn write_summary_row(
 ) -> io::Result<()> {
     let note = match &run.outcome {
         Outcome::Completed => String::new(),
-        Outcome::Diverged { at_s } => format!(
-            "<small class=\"alarm\">diverged at {}</small>",
-            duration(*at_s)
-        ),
-        Outcome::Stopped { at_s, reason } => {
-            format!(
-                "<small class=\"alarm\">stopped at {}: {}</small>",
-                duration(*at_s),
-                escaped(reason)
-            )
-        }
+        Outcome::Diverged { at_s } => format!("<small class=\"alarm\">diverged at {}</small>", duration(*at_s)),
     };
     write!(
         out,
@@ -70,37 +54,21 @@ fn write_summary_row(
     let mut cell = |label: &str, text: String, value: fn(&RunSummary, usize) -> f64, k: usize| {
         let ratio = first.and_then(|f| change(value(f, k), value(run, k)));
         let ratio = ratio.map_or(String::new(), |r| format!("<small>{r}</small>"));
-        write!(
-            out,
-            "<td role=\"cell\" data-label=\"{label}\">{text}{ratio}</td>"
-        )
+        write!(out, "<td role=\"cell\" data-label=\"{label}\">{text}{ratio}</td>")
     };
     cell("RMS error, µm", number(run.rms_um), |r, _| r.rms_um, 0)?;
     cell("Largest error, µm", number(run.max_um), |r, _| r.max_um, 0)?;
     cell("Machining time", duration(run.time_s), |r, _| r.time_s, 0)?;
-    cell(
-        "Command deviation, µm",
-        number(run.max_deviation_um),
-        |r, _| r.max_deviation_um,
-        0,
-    )?;
+    cell("Command deviation, µm", number(run.max_deviation_um), |r, _| r.max_deviation_um, 0)?;
     for (k, axis) in AXES.iter().enumerate().take(axes) {
         let label = format!("Peak torque {axis}, N m");
-        cell(
-            &label,
-            fixed(run.peak_torque_nm[k], 3),
-            |r, k| r.peak_torque_nm[k],
-            k,
-        )?;
+        cell(&label, fixed(run.peak_torque_nm[k], 3), |r, k| r.peak_torque_nm[k], k)?;
     }
     out.write_all(b"</tr>\n")
 }
 
 fn swatch(index: usize) -> String {
-    format!(
-        "<span class=\"swatch\" style=\"--run: var(--run-{})\"></span>",
-        index % 6
-    )
+    format!("<span class=\"swatch\" style=\"--run: var(--run-{})\"></span>", index % 6)
 }
 
 /// The events of a run on a strip as long as the run, and as a list.
@@ -108,17 +76,9 @@ fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()>
     if run.events.is_empty() {
         return Ok(());
     }
-    let end_s = run
-        .events
-        .iter()
-        .map(|e| e.t_s + e.duration_s)
-        .fold(run.summary.time_s, f64::max);
+    let end_s = run.events.iter().map(|e| e.t_s + e.duration_s).fold(run.summary.time_s, f64::max);
     let percent = |t_s: f64| {
-        if end_s > 0.0 {
-            (t_s / end_s * 100.0).clamp(0.0, 100.0)
-        } else {
-            0.0
-        }
+        if end_s > 0.0 { (t_s / end_s * 100.0).clamp(0.0, 100.0) } else { 0.0 }
     };
     write!(
         out,
@@ -130,43 +90,21 @@ fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()>
     for event in run.events.iter().take(SHOWN_EVENTS) {
         let (left, width) = (percent(event.t_s), percent(event.duration_s));
         let hint = escaped(&event_text(event));
-        write!(
-            out,
-            "<i style=\"left:{left:.3}%;width:{width:.3}%\" title=\"{hint}\"></i>"
-        )?;
+        write!(out, "<i style=\"left:{left:.3}%;width:{width:.3}%\" title=\"{hint}\"></i>")?;
     }
     out.write_all(b"</span></summary><ol>")?;
     for event in run.events.iter().take(SHOWN_EVENTS) {
-        write!(
-            out,
-            "<li data-t=\"{:.5}\">{}</li>",
-            event.t_s,
-            escaped(&event_text(event))
-        )?;
+        write!(out, "<li data-t=\"{:.5}\">{}</li>", event.t_s, escaped(&event_text(event)))?;
     }
-    if let Some(more) = run
-        .events
-        .len()
-        .checked_sub(SHOWN_EVENTS)
-        .filter(|&n| n > 0)
-    {
+    if let Some(more) = run.events.len().checked_sub(SHOWN_EVENTS).filter(|&n| n > 0) {
         write!(out, "<li>and {more} more</li>")?;
     }
     out.write_all(b"</ol></details>\n")
 }
 
 fn event_text(event: &TimelineEvent) -> String {
-    let at = format!(
-        "{}  line {}  {}",
-        duration(event.t_s),
-        event.line,
-        event.label
-    );
-    if event.duration_s > 0.0 {
-        format!("{at}, {}", duration(event.duration_s))
-    } else {
-        at
-    }
+    let at = format!("{}  line {}  {}", duration(event.t_s), event.line, event.label);
+    if event.duration_s > 0.0 { format!("{at}, {}", duration(event.duration_s)) } else { at }
 }
 
 /// The worst places, a table for each controller.
@@ -187,7 +125,9 @@ pub(super) fn write_worst(out: &mut impl Write, report: &Report) -> io::Result<(
         for axis in &AXES[..axes] {
             write!(out, "<th scope=\"col\">{axis}<i>mm</i></th>")?;
         }
-        out.write_all(b"<th scope=\"col\">Time<i>s</i></th><th scope=\"col\">Arc length<i>mm</i></th></tr></thead>\n<tbody>\n")?;
+        out.write_all(
+            b"<th scope=\"col\">Time<i>s</i></th><th scope=\"col\">Arc length<i>mm</i></th></tr></thead>\n<tbody>\n",
+        )?;
         for (rank, place) in run.summary.worst.iter().enumerate() {
             write_place(out, i, rank, place, axes)?;
         }
@@ -199,13 +139,7 @@ pub(super) fn write_worst(out: &mut impl Write, report: &Report) -> io::Result<(
     out.write_all(b"</div></section>\n")
 }
 
-fn write_place(
-    out: &mut impl Write,
-    run: usize,
-    rank: usize,
-    place: &WorstPlace,
-    axes: usize,
-) -> io::Result<()> {
+fn write_place(out: &mut impl Write, run: usize, rank: usize, place: &WorstPlace, axes: usize) -> io::Result<()> {
     let text = escaped(place.text.trim());
     write!(
         out,
@@ -218,12 +152,7 @@ fn write_place(
     for k in 0..axes {
         write!(out, "<td>{}</td>", fixed(place.position_mm[k], 3))?;
     }
-    writeln!(
-        out,
-        "<td>{}</td><td>{}</td></tr>",
-        fixed(place.t_s, 3),
-        fixed(place.s_mm, 2)
-    )
+    writeln!(out, "<td>{}</td><td>{}</td></tr>", fixed(place.t_s, 3), fixed(place.s_mm, 2))
 }
 
 /// How to read the page, the settings and the machine.
@@ -236,11 +165,7 @@ pub(super) fn write_notes(out: &mut impl Write, report: &Report) -> io::Result<(
     for run in &report.runs {
         let summary = &run.summary;
         let per_point = run.series.rows_per_point();
-        let thinned = if per_point > 1 {
-            format!("; a drawn point stands for {per_point}")
-        } else {
-            String::new()
-        };
+        let thinned = if per_point > 1 { format!("; a drawn point stands for {per_point}") } else { String::new() };
         facts.push((
             summary.controller.clone(),
             format!(

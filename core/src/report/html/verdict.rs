@@ -11,19 +11,7 @@ pub(super) fn verdict(report: &Report) -> String {
     match &last.outcome {
         Outcome::Completed => {}
         Outcome::Diverged { at_s } => {
-            return format!(
-                "{} diverged at {}: the tool ran away from the path.",
-                name(last),
-                duration(*at_s)
-            );
-        }
-        Outcome::Stopped { at_s, reason } => {
-            return format!(
-                "{} stopped at {}: {}.",
-                name(last),
-                duration(*at_s),
-                escaped(reason)
-            );
+            return format!("{} diverged at {}: the tool ran away from the path.", name(last), duration(*at_s));
         }
     }
     let first = &report.runs[0].summary;
@@ -58,12 +46,6 @@ fn name(run: &RunSummary) -> String {
 
 /// "18.0 µm → 2.40 µm (−87 %)".
 fn step(before: f64, after: f64, text: &dyn Fn(f64) -> String) -> String {
-    let change = change(before, after).map_or(String::new(), |c| {
-        format!(" <span class=\"change\">({c})</span>")
-    });
-    format!(
-        "<span class=\"step\">{} → <b>{}</b>{change}</span>",
-        text(before),
-        text(after)
-    )
+    let change = change(before, after).map_or(String::new(), |c| format!(" <span class=\"change\">({c})</span>"));
+    format!("<span class=\"step\">{} → <b>{}</b>{change}</span>", text(before), text(after))
 }

@@ -1,0 +1,285 @@
+//! G2 and G3: arcs, full circles and helices, by centre (I J K) or by radius (R).
+//!
+//! The programmed centre is handed on; a later stage re-centres within the tolerance that is checked here. The rule is LinuxCNC's:
+//! the radii at start and end may differ by 0.005 mm (0.0005 inch), or by 0.1 % of the radius, but never by more than 0.5 mm (0.05 inch).
+
+use super::block::Block;
+use super::canon::{Plane, Shape};
+use super::codes::{bit, letter, slot as slot_of};
+use super::diagnostic::{Fault, Read};
+use super::state::{INCH_MM, Interpreter, Position};
+use super::travel::{Speed, others};
+
+/// Difference of the radii that is always accepted, mm and inch.
+const RADIUS_SLACK: [f64; 2] = [0.005, 0.0005];
+/// Difference of the radii that is never accepted, mm and inch.
+const RADIUS_SLACK_MOST: [f64; 2] = [0.5, 0.05];
+/// Between the two, the difference must be below this share of the radius.
+const RADIUS_SLACK_SHARE: f64 = 1e-3;
+/// R may be shorter than half the chord by this much; the arc is then a half circle. mm and inch.
+const CHORD_SLACK: [f64; 2] = [0.001, 0.000_05];
+/// Full turns that P may ask for; a thread has fewer, and the turns are an i32 later.
+const MOST_TURNS: i64 = 1_000_000;
+
+/// Letters of the centre along X, Y, Z.
+const CENTER_LETTERS: [u8; 3] = *b"ijk";
+
+/// An arc in the plane's own two coordinates.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Round {
+    pub(super) center: [f64; 2],
+    /// As in [`Shape::Arc`].
+    pub(super) turns: i32,
+}
+
+impl Interpreter {
+    /// G2 (`counter_clockwise` false) and G3.
+    pub(super) fn arc(&mut self, block: &Block, counter_clockwise: bool) -> Read<()> {
+        let extruder_mm = self.extruder_word(block);
+        let target = self.target(block)?;
+        let round = match self.round(block, &target, counter_clockwise) {
+            Ok(round) => round,
+            Err(fault) => {
+                // What follows is checked from where this arc was meant to end.
+                self.at = target;
+                self.here = self.frame.to_machine(&target);
+                return Err(fault);
+            }
+        };
+        if self.compensated_arc(block, &target, round)? {
+            return Ok(());
+        }
+        let fed = self.arc_to(block, &target, round, extruder_mm);
+        self.at = target;
+        fed
+    }
+
+    /// Moves along an arc given in program coordinates.
+    pub(super) fn arc_to(
+        &mut self,
+        block: &Block,
+        target: &Position,
+        round: Round,
+        extruder_mm: f64,
+    ) -> Read<()> {
+        let plane = self.modal.plane;
+        let [first, second, _] = plane.axes();
+        if self.frame.rotation_deg != 0.0 && plane != Plane::Xy {
+            return Err(Fault::new(
+                "gcode::rotation",
+                block.whole(),
+                "an arc outside the XY plane cannot run in a rotated coordinate system",
+            )
+            .hint("rotation is R of G10 L2; write G10 L2 P0 R0 to end it"));
+        }
+        let mut center = self.frame.to_program(&self.here);
+        center[first] = round.center[0];
+        center[second] = round.center[1];
+        let center = self.frame.to_machine(&center);
+        let machine = self.frame.to_machine(target);
+        let start = std::mem::replace(&mut self.here, machine);
+        let length_mm = arc_length(&start, &machine, &center, plane, round.turns);
+        let feed_mm_s = self.feed_for(block, length_mm)?;
+        let others = others(&start, &machine, extruder_mm);
+        let shape = Shape::Arc {
+            plane,
+            center_mm: [center[0], center[1], center[2]],
+            turns: round.turns,
+        };
+        self.push_motion(Speed::Programmed, &start, shape, feed_mm_s, others);
+        Ok(())
+    }
+
+    /// Centre and turns from the words of the block.
+    fn round(&self, block: &Block, target: &Position, counter_clockwise: bool) -> Read<Round> {
+        let turns = if block.has(b'p') {
+            self.integer(block, b'p', 1, MOST_TURNS)? as i32
+        } else {
+            1
+        };
+        let turns = if counter_clockwise { turns } else { -turns };
+        let [first, second, normal] = self.modal.plane.axes();
+        let offsets = bit(b'i') | bit(b'j') | bit(b'k');
+        let center = if block.has(b'r') {
+            if block.set & offsets != 0 {
+                return Err(Fault::new(
+                    "gcode::arc_format",
+                    block.at_any(offsets),
+                    "an arc has a radius R or a centre I J K, not both",
+                ));
+            }
+            self.center_by_radius(block, target, counter_clockwise)?
+        } else {
+            if block.has(CENTER_LETTERS[normal]) {
+                let (wrong, plane) = (
+                    letter(slot_of(CENTER_LETTERS[normal])),
+                    ["G19 (YZ)", "G18 (ZX)", "G17 (XY)"][normal],
+                );
+                let [one, two] = [first, second].map(|axis| letter(slot_of(CENTER_LETTERS[axis])));
+                let message = format!("{wrong} lies outside the arc's plane {plane}");
+                return Err(Fault::new(
+                    "gcode::arc_plane",
+                    block.at(CENTER_LETTERS[normal]),
+                    message,
+                )
+                .hint(format!(
+                    "the centre of this plane is {} and {}, or choose another plane",
+                    one.min(two),
+                    one.max(two)
+                )));
+            }
+            if block.set & offsets == 0 {
+                return Err(Fault::new(
+                    "gcode::arc_format",
+                    block.whole(),
+                    "the arc has neither a radius R nor a centre I J K",
+                ));
+            }
+            self.center_by_offsets(block, target, [first, second])?
+        };
+        Ok(Round { center, turns })
+    }
+
+    fn center_by_offsets(
+        &self,
+        block: &Block,
+        target: &Position,
+        plane: [usize; 2],
+    ) -> Read<[f64; 2]> {
+        let mut center = plane.map(|axis| self.at[axis]);
+        for (slot, axis) in plane.into_iter().enumerate() {
+            let name = CENTER_LETTERS[axis];
+            match block.get(name) {
+                Some(value) => {
+                    let value = value * self.modal.unit_mm;
+                    if value.abs() > self.settings.coordinate_limit_mm {
+                        return Err(self.too_far(block, name, value));
+                    }
+                    center[slot] = if self.modal.arc_absolute {
+                        value
+                    } else {
+                        center[slot] + value
+                    };
+                }
+                None if self.modal.arc_absolute => {
+                    let message = format!(
+                        "{} is missing: with G90.1 the centre needs both coordinates",
+                        letter(slot_of(name))
+                    );
+                    return Err(Fault::new("gcode::arc_format", block.whole(), message));
+                }
+                None => {}
+            }
+        }
+        let radius_to =
+            |point: &Position| (point[plane[0]] - center[0]).hypot(point[plane[1]] - center[1]);
+        let (at_start, at_end) = (radius_to(&self.at), radius_to(target));
+        let difference = (at_start - at_end).abs();
+        let largest = at_start.max(at_end);
+        if largest == 0.0 {
+            return Err(Fault::new(
+                "gcode::arc_radius",
+                block.whole(),
+                "the arc's radius is 0 mm: centre, start and end are one point",
+            ));
+        }
+        if difference > self.slack(RADIUS_SLACK_MOST)
+            || (difference > self.slack(RADIUS_SLACK) && difference > RADIUS_SLACK_SHARE * largest)
+        {
+            let limit = (RADIUS_SLACK_SHARE * largest)
+                .clamp(self.slack(RADIUS_SLACK), self.slack(RADIUS_SLACK_MOST));
+            let message = format!(
+                "the arc does not close: its radius is {at_start:.6} mm at the start and {at_end:.6} mm at the end, {difference:.6} mm apart; the limit is {limit:.6} mm"
+            );
+            let fault = Fault::new("gcode::arc_radius", block.whole(), message);
+            return Err(if self.modal.arc_absolute {
+                fault.hint(
+                    "G90.1 is active: I J K are the centre itself, not its distance from the start",
+                )
+            } else {
+                fault.hint("I J K are distances from the start to the centre (G91.1); the line before may have ended elsewhere")
+            });
+        }
+        Ok(center)
+    }
+
+    fn center_by_radius(
+        &self,
+        block: &Block,
+        target: &Position,
+        counter_clockwise: bool,
+    ) -> Read<[f64; 2]> {
+        let [first, second, _] = self.modal.plane.axes();
+        let at = block.at(b'r');
+        let radius = block.get(b'r').unwrap_or(0.0) * self.modal.unit_mm;
+        if radius.abs() > self.settings.coordinate_limit_mm {
+            return Err(self.too_far(block, b'r', radius));
+        }
+        let chord = [
+            target[first] - self.at[first],
+            target[second] - self.at[second],
+        ];
+        let length = chord[0].hypot(chord[1]);
+        if length == 0.0 {
+            return Err(Fault::new(
+                "gcode::arc_radius",
+                at,
+                "an arc with R must end elsewhere than it starts",
+            )
+            .hint("write a full circle with I J K"));
+        }
+        let half = 0.5 * length;
+        if half > radius.abs() + self.slack(CHORD_SLACK) {
+            let message = format!(
+                "R = {:.6} mm is too small to reach the end: it must be at least half the distance, {half:.6} mm",
+                radius.abs()
+            );
+            return Err(Fault::new("gcode::arc_radius", at, message));
+        }
+        let height = (radius * radius - half * half).max(0.0).sqrt();
+        // Left of the chord for a counter-clockwise arc of up to half a circle; a negative R is the longer way round.
+        let side = if counter_clockwise == (radius > 0.0) {
+            height
+        } else {
+            -height
+        };
+        let left = [-chord[1] / length, chord[0] / length];
+        Ok([
+            0.5 * (self.at[first] + target[first]) + side * left[0],
+            0.5 * (self.at[second] + target[second]) + side * left[1],
+        ])
+    }
+
+    /// A tolerance in mm: RS-274 gives each for both units.
+    fn slack(&self, [in_mm, in_inch]: [f64; 2]) -> f64 {
+        if self.modal.unit_mm == 1.0 {
+            in_mm
+        } else {
+            in_inch * INCH_MM
+        }
+    }
+}
+
+/// Length of an arc or helix, mm.
+pub(super) fn arc_length(
+    start: &Position,
+    end: &Position,
+    center: &Position,
+    plane: Plane,
+    turns: i32,
+) -> f64 {
+    let [first, second, normal] = plane.axes();
+    let from = [start[first] - center[first], start[second] - center[second]];
+    let to = [end[first] - center[first], end[second] - center[second]];
+    let sign = f64::from(turns.signum());
+    let mut angle =
+        sign * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
+    if angle <= FULL_TURN_WITHIN_RAD {
+        angle += std::f64::consts::TAU;
+    }
+    angle += std::f64::consts::TAU * f64::from(turns.abs() - 1);
+    (angle * from[0].hypot(from[1])).hypot(end[normal] - start[normal])
+}
+
+/// An arc that ends within this angle of its start is a full turn (LinuxCNC's CIRCLE_FUZZ).
+pub(super) const FULL_TURN_WITHIN_RAD: f64 = 1e-6;

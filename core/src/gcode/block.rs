@@ -1,0 +1,415 @@
+//! One line of a program as words with values, before it is carried out.
+
+use std::ops::Range;
+
+use super::codes::{self, AXES, GROUPS, Group, bit, letter, slot};
+use super::diagnostic::{Fault, Read};
+use super::expression::{Evaluator, INTEGER_WITHIN, Target, Values};
+use super::lexer::{Cursor, END, shown};
+
+/// Letters, `@` and `^`.
+const LETTERS: usize = 28;
+/// Distance from a tenth at which a G-code still is that tenth: expressions such as `G[54+0.1]` do not come out exactly.
+const TENTH_WITHIN: f64 = 1e-3;
+
+/// A G- or M-code on the line.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Word {
+    /// Ten times the G-code, or the M-code.
+    pub(super) number: u16,
+    start: u32,
+    end: u32,
+}
+
+impl Word {
+    pub(super) fn at(&self) -> Range<usize> {
+        self.start as usize..self.end as usize
+    }
+}
+
+/// The words of a line. Used again for every line, so that reading a line allocates nothing.
+#[derive(Debug)]
+pub(super) struct Block {
+    /// Bit set of the letters that the line has; G, M, N and O do not count.
+    pub(super) set: u32,
+    value: [f64; LETTERS],
+    place: [(u32, u32); LETTERS],
+    /// G-codes in written order.
+    pub(super) g: Vec<Word>,
+    group: [Option<Word>; GROUPS],
+    /// M-codes in written order.
+    pub(super) m: Vec<Word>,
+    /// Assignments in written order; they take effect after the line.
+    pub(super) assignments: Vec<(Target, f64)>,
+    /// Text of the last comment, without its brackets.
+    pub(super) comment: Option<Range<usize>>,
+    /// End of the line's text outside comments.
+    pub(super) end: usize,
+}
+
+/// Ways to read a line that depend on the dialect.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Style {
+    /// `*` begins a checksum, as printers have it.
+    pub(super) checksum: bool,
+}
+
+impl Block {
+    pub(super) fn new() -> Self {
+        Self {
+            set: 0,
+            value: [0.0; LETTERS],
+            place: [(0, 0); LETTERS],
+            g: Vec::new(),
+            group: [None; GROUPS],
+            m: Vec::new(),
+            assignments: Vec::new(),
+            comment: None,
+            end: 0,
+        }
+    }
+
+    /// Forgets the last line.
+    #[inline]
+    pub(super) fn clear(&mut self) {
+        self.set = 0;
+        if !self.g.is_empty() {
+            self.g.clear();
+            self.group = [None; GROUPS];
+        }
+        self.m.clear();
+        self.assignments.clear();
+        self.comment = None;
+    }
+
+    /// Value of a letter (lower case) if the line has it.
+    #[inline]
+    pub(super) fn get(&self, letter: u8) -> Option<f64> {
+        (self.set & bit(letter) != 0).then(|| self.value[slot(letter)])
+    }
+
+    /// Whether the line has the letter.
+    #[inline]
+    pub(super) const fn has(&self, letter: u8) -> bool {
+        self.set & bit(letter) != 0
+    }
+
+    /// Where the word of a letter stands.
+    pub(super) fn at(&self, letter: u8) -> Range<usize> {
+        let (start, end) = self.place[slot(letter)];
+        start as usize..end as usize
+    }
+
+    /// Where the first word of a set of letters stands.
+    pub(super) fn at_any(&self, letters: u32) -> Range<usize> {
+        let first = (0..LETTERS)
+            .filter(|slot| self.set & letters & (1 << slot) != 0)
+            .min_by_key(|&slot| self.place[slot].0);
+        first.map_or(self.whole(), |slot| {
+            self.place[slot].0 as usize..self.place[slot].1 as usize
+        })
+    }
+
+    /// All words of the line.
+    pub(super) const fn whole(&self) -> Range<usize> {
+        0..self.end
+    }
+
+    /// Whether the line has a word of an axis.
+    #[inline]
+    pub(super) const fn has_axes(&self) -> bool {
+        self.set & AXES != 0
+    }
+
+    /// The G-code of a group.
+    #[inline]
+    pub(super) const fn code(&self, group: Group) -> Option<Word> {
+        self.group[group as usize]
+    }
+
+    /// Reads the words from the cursor to the end of the line.
+    pub(super) fn read<V: Values>(
+        &mut self,
+        cursor: Cursor<'_>,
+        values: &V,
+        style: Style,
+    ) -> Read<()> {
+        let mut evaluator = Evaluator::new(cursor, values);
+        self.end = evaluator.cursor.at;
+        loop {
+            let byte = evaluator.cursor.peek();
+            let start = evaluator.cursor.at;
+            match byte {
+                END => return Ok(()),
+                b'g' => self.read_g(&mut evaluator, start)?,
+                b'm' => self.read_m(&mut evaluator, start)?,
+                b'n' | b'o' => return Err(misplaced(byte, start)),
+                b'a'..=b'z' | b'@' | b'^' => self.read_word(&mut evaluator, byte, start)?,
+                b'(' => self.comment = Some(read_comment(&mut evaluator.cursor)?),
+                b';' => {
+                    self.comment = Some(start + 1..evaluator.cursor.bytes.len());
+                    evaluator.cursor.finish();
+                    return Ok(());
+                }
+                b'#' => self.read_assignment(&mut evaluator, start)?,
+                b'*' if style.checksum => return Ok(()),
+                _ => return Err(strange(evaluator.cursor.bytes, start)),
+            }
+            if byte != b'(' {
+                self.end = evaluator.cursor.at;
+            }
+        }
+    }
+
+    #[inline]
+    fn read_word<V: Values>(
+        &mut self,
+        evaluator: &mut Evaluator<'_, V>,
+        byte: u8,
+        start: usize,
+    ) -> Read<()> {
+        evaluator.cursor.bump();
+        let value = evaluator.value()?;
+        let slot = slot(byte);
+        let place = (start as u32, evaluator.cursor.at as u32);
+        if self.set & (1 << slot) != 0 {
+            let message = format!("the line already has a word {}", letter(slot));
+            return Err(
+                Fault::new("gcode::repeated", start..evaluator.cursor.at, message)
+                    .hint("split the line in two"),
+            );
+        }
+        self.set |= 1 << slot;
+        self.value[slot] = value;
+        self.place[slot] = place;
+        Ok(())
+    }
+
+    #[inline]
+    fn read_g<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
+        evaluator.cursor.bump();
+        let value = evaluator.value()?;
+        let end = evaluator.cursor.at;
+        let tenths = (value * 10.0).round();
+        let is_tenth =
+            (value * 10.0 - tenths).abs() < TENTH_WITHIN && (0.0..1000.0).contains(&tenths);
+        let Some(code) = is_tenth.then(|| codes::find(tenths as u16)).flatten() else {
+            return Err(unknown_g(value, start..end));
+        };
+        let word = Word {
+            number: code.number,
+            start: start as u32,
+            end: end as u32,
+        };
+        if let Some(other) = self.group[code.group as usize].replace(word) {
+            let message = format!(
+                "{} and {} exclude each other on one line",
+                codes::spelled(other.number),
+                codes::spelled(code.number)
+            );
+            return Err(Fault::new("gcode::modal_group", start..end, message)
+                .hint("write them on two lines"));
+        }
+        self.g.push(word);
+        Ok(())
+    }
+
+    fn read_m<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
+        evaluator.cursor.bump();
+        let value = evaluator.value()?;
+        let end = evaluator.cursor.at;
+        let number = value.round();
+        if (value - number).abs() > INTEGER_WITHIN || !(0.0..=9999.0).contains(&number) {
+            return Err(Fault::new(
+                "gcode::m_code",
+                start..end,
+                format!("M{value} is no M-code: the number must be an integer from 0 to 9999"),
+            ));
+        }
+        self.m.push(Word {
+            number: number as u16,
+            start: start as u32,
+            end: end as u32,
+        });
+        Ok(())
+    }
+
+    fn read_assignment<V: Values>(
+        &mut self,
+        evaluator: &mut Evaluator<'_, V>,
+        start: usize,
+    ) -> Read<()> {
+        let target = evaluator.target()?;
+        if !evaluator.cursor.eat(b'=') {
+            let at = evaluator.cursor.at;
+            return Err(Fault::new(
+                "gcode::assignment",
+                start..at,
+                "a parameter here must be assigned to: `=` is missing",
+            ));
+        }
+        let value = evaluator.value()?;
+        self.assignments.push((target, value));
+        Ok(())
+    }
+}
+
+/// Reads `( text )`; returns the place of the text.
+pub(super) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
+    let start = cursor.at;
+    let inside = &cursor.bytes[start + 1..];
+    match memchr::memchr2(b'(', b')', inside) {
+        Some(length) if inside[length] == b')' => {
+            cursor.at = start + length + 2;
+            Ok(start + 1..start + 1 + length)
+        }
+        Some(length) => {
+            let at = start + 1 + length;
+            Err(Fault::new(
+                "gcode::comment",
+                at..at + 1,
+                "a comment begins inside a comment",
+            )
+            .hint("close the first comment with `)` before the second `(`"))
+        }
+        None => Err(Fault::new(
+            "gcode::comment",
+            start..cursor.bytes.len(),
+            "the comment is not closed: `)` is missing",
+        )),
+    }
+}
+
+#[cold]
+fn misplaced(byte: u8, start: usize) -> Box<Fault> {
+    let what = if byte == b'n' {
+        "the line number N"
+    } else {
+        "an O-word"
+    };
+    Fault::new(
+        "gcode::misplaced",
+        start..start + 1,
+        format!("{what} must stand at the beginning of the line"),
+    )
+}
+
+#[cold]
+fn unknown_g(value: f64, at: Range<usize>) -> Box<Fault> {
+    let tenths = (value * 10.0).round();
+    let spelled = if (value * 10.0 - tenths).abs() < TENTH_WITHIN {
+        format!("G{}", tenths / 10.0)
+    } else {
+        format!("G{value}")
+    };
+    Fault::new(
+        "gcode::unknown_g",
+        at,
+        format!("{spelled} is not a G-code that this reader knows"),
+    )
+    .hint(format!("the nearest known: {}", codes::nearest(value)))
+}
+
+/// A byte that has no meaning here.
+#[cold]
+fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
+    let byte = bytes[start];
+    if byte.is_ascii() {
+        let fault = Fault::new(
+            "gcode::character",
+            start..start + 1,
+            format!("`{}` has no meaning here", shown(byte)),
+        );
+        return match byte {
+            b'/' => fault.hint("a `/` that deletes the line stands first on it"),
+            b')' => fault.hint("the comment that ends here has no `(`"),
+            b'[' => fault.hint("a bracket stands behind a letter or a function"),
+            0 => fault.hint("the file holds bytes that are no text"),
+            _ => fault,
+        };
+    }
+    // Up to four bytes make one character; what follows may be the beginning of another.
+    let longest = &bytes[start..bytes.len().min(start + 4)];
+    let valid = longest
+        .utf8_chunks()
+        .next()
+        .map_or("", |chunk| chunk.valid());
+    match valid.chars().next() {
+        Some(character) => {
+            let at = start..start + character.len_utf8();
+            Fault::new(
+                "gcode::character",
+                at,
+                format!("`{character}` has no meaning outside a comment"),
+            )
+        }
+        None => Fault::new(
+            "gcode::utf8",
+            start..start + 1,
+            format!("byte {byte:#04x} is not UTF-8 text"),
+        )
+        .hint("save the file as UTF-8 or plain ASCII"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Nothing;
+
+    impl Values for Nothing {
+        fn numbered(&self, _index: usize) -> f64 {
+            0.0
+        }
+
+        fn named(&self, _name: &[u8]) -> Option<f64> {
+            None
+        }
+    }
+
+    fn read(text: &str) -> Read<Block> {
+        let mut block = Block::new();
+        block
+            .read(Cursor::new(text.as_bytes()), &Nothing, Style::default())
+            .map(|()| block)
+    }
+
+    #[test]
+    fn words_may_stand_in_any_order_and_spacing() {
+        let block = read("g 1 x1.5(note)Y-[1+1] f 1 0 0 ; rest").unwrap();
+        assert_eq!(
+            (
+                block.get(b'x'),
+                block.get(b'y'),
+                block.get(b'f'),
+                block.get(b'z')
+            ),
+            (Some(1.5), Some(-2.0), Some(100.0), None)
+        );
+        assert_eq!(block.code(Group::Motion).unwrap().number, 10);
+        assert_eq!(block.comment, Some(31..36));
+        assert_eq!(block.at(b'x'), 4..8);
+    }
+
+    #[test]
+    fn faults_have_their_place() {
+        let fault = |text: &str| read(text).map(|_| ()).unwrap_err();
+        assert_eq!(fault("G1 X1 X2").at, 6..8);
+        assert_eq!(fault("G0 G1").at, 3..5);
+        assert_eq!(fault("G1.7 X2").at, 0..4);
+        assert_eq!(fault("G1.7 X2").hint.unwrap(), "the nearest known: G2");
+        assert_eq!(fault("X1 (open").at, 3..8);
+        assert_eq!(
+            fault("X1 é").message,
+            "`é` has no meaning outside a comment"
+        );
+        assert_eq!(fault("X1 $").at, 3..4);
+        assert!(fault("X").message.contains("end of the line"));
+        assert!(
+            fault("X1 Qb")
+                .message
+                .contains("neither a number nor a function")
+        );
+    }
+}

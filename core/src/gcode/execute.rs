@@ -1,0 +1,353 @@
+//! Carries out one block: first its modes, in the order that RS-274 fixes, then its motion, then its stop.
+//!
+//! Order: NISTIR 6556, table 8: feed mode, F, S, T, tool change, spindle, coolant, overrides, dwell, plane, units, compensation,
+//! tool length, coordinate system, path control, distance modes, return level, offsets, motion, stop.
+
+use super::block::{Block, Word};
+use super::canon::{Corner, EventKind, Plane};
+use super::codes::{self, ALWAYS, Group};
+use super::diagnostic::{Fault, Read};
+use super::expression::INTEGER_WITHIN;
+use super::settings::Dialect;
+use super::state::{FeedMode, INCH_MM, Interpreter};
+
+/// Non-modal codes that use the axis words of their line.
+const USES_AXES: [u16; 5] = [100, 280, 300, 520, 920];
+
+impl Interpreter {
+    /// Carries out `block`.
+    pub(super) fn execute(&mut self, block: &Block) -> Read<()> {
+        // Hot path: a line with axis words and nothing that changes a mode.
+        if block.g.is_empty()
+            && block.m.is_empty()
+            && block.set & !(codes::AXES | codes::bit(b'f') | codes::bit(b'e')) == 0
+            && self.modal.feed_mode == FeedMode::PerMinute
+        {
+            self.feed_word(block)?;
+            return self.motion(block);
+        }
+        self.feed_mode(block)?;
+        self.feed_word(block)?;
+        self.spindle_words(block)?;
+        self.tool_words(block)?;
+        self.machine_codes(block)?;
+        self.modes(block)?;
+        self.non_modal(block)?;
+        self.motion(block)?;
+        self.stop(block);
+        Ok(())
+    }
+
+    /// The motion code that the block carries out, if it moves.
+    fn active_motion(&self, block: &Block) -> Option<u16> {
+        if let Some(word) = block.code(Group::Motion) {
+            return Some(word.number);
+        }
+        let taken = block
+            .code(Group::NonModal)
+            .is_some_and(|word| USES_AXES.contains(&word.number))
+            || block
+                .code(Group::ToolLength)
+                .is_some_and(|word| matches!(word.number, 431 | 432));
+        (!taken && (block.has_axes() || (self.dialect == Dialect::Printer && block.has(b'e'))))
+            .then_some(self.modal.motion)
+    }
+
+    /// Refuses words that no code of the line gives a meaning to.
+    fn check_words(&self, block: &Block, motion: Option<u16>) -> Read<()> {
+        let mut known = ALWAYS;
+        if self.dialect == Dialect::Printer {
+            known |= codes::bit(b'e');
+        }
+        for word in &block.g {
+            known |= codes::find(word.number).map_or(0, |code| code.letters);
+        }
+        for word in &block.m {
+            known |= self.m_letters(word.number);
+        }
+        if let Some(code) = motion.and_then(codes::find) {
+            known |= code.letters;
+        }
+        let unknown = block.set & !known;
+        if unknown == 0 {
+            return Ok(());
+        }
+        let slot = unknown.trailing_zeros() as usize;
+        let at = block.at_any(unknown);
+        let word = codes::letter(slot);
+        if unknown & codes::AXES != 0 {
+            return Err(self.axes_without_motion(block, motion));
+        }
+        let with = motion.map_or_else(|| "this line".to_owned(), codes::spelled);
+        Err(Fault::new(
+            "gcode::unused_word",
+            at,
+            format!("{word} has no meaning with {with}"),
+        ))
+    }
+
+    #[cold]
+    fn axes_without_motion(&self, block: &Block, motion: Option<u16>) -> Box<Fault> {
+        let at = block.at_any(codes::AXES);
+        if motion == Some(800) && block.code(Group::Motion).is_some() {
+            return Fault::new(
+                "gcode::no_motion_mode",
+                at,
+                "G80 ends motion modes and takes no axis words",
+            );
+        }
+        Fault::new(
+            "gcode::no_motion_mode",
+            at,
+            "axis words, but no code such as G0 or G1 says how to move",
+        )
+        .hint("write G0, G1, G2 or G3 on this line or one before it")
+    }
+
+    fn feed_mode(&mut self, block: &Block) -> Read<()> {
+        if let Some(word) = block.code(Group::FeedMode) {
+            let mode = match word.number {
+                930 => FeedMode::Inverse,
+                950 => FeedMode::PerRevolution,
+                _ => FeedMode::PerMinute,
+            };
+            if mode != self.modal.feed_mode {
+                self.modal.feed_mode = mode;
+                // The old F had another meaning.
+                self.modal.feed = 0.0;
+            }
+        }
+        Ok(())
+    }
+
+    #[inline]
+    fn feed_word(&mut self, block: &Block) -> Read<()> {
+        let Some(feed) = block.get(b'f') else {
+            return Ok(());
+        };
+        if feed < 0.0 {
+            return Err(Fault::new(
+                "gcode::feed",
+                block.at(b'f'),
+                format!("feed F{feed} is negative; the smallest is 0"),
+            ));
+        }
+        // F comes before G20 and G21 of the same line: it still has the old unit.
+        self.modal.feed = if self.modal.feed_mode == FeedMode::Inverse {
+            feed
+        } else {
+            feed * self.modal.unit_mm
+        };
+        Ok(())
+    }
+
+    fn spindle_words(&mut self, block: &Block) -> Read<()> {
+        let Some(speed) = block.get(b's') else {
+            return Ok(());
+        };
+        if self.dialect == Dialect::Printer {
+            return Ok(()); // Temperatures, seconds of G4, servo angles: S belongs to another code of the line.
+        }
+        if speed < 0.0 {
+            return Err(Fault::new(
+                "gcode::spindle",
+                block.at(b's'),
+                format!("spindle speed S{speed} is negative; the smallest is 0"),
+            ));
+        }
+        self.modal.spindle_speed = speed;
+        if self.modal.constant_surface.is_none() {
+            self.event(EventKind::SpindleSpeed { rpm: speed });
+        }
+        Ok(())
+    }
+
+    fn tool_words(&mut self, block: &Block) -> Read<()> {
+        if block.has(b't') {
+            let tool = self.integer(block, b't', 0, 999_999)?;
+            self.next_tool = tool as u32;
+            self.event(EventKind::ToolSelect {
+                tool: self.next_tool,
+            });
+        }
+        Ok(())
+    }
+
+    /// A word that must hold an integer within limits.
+    pub(super) fn integer(&self, block: &Block, letter: u8, low: i64, high: i64) -> Read<i64> {
+        let value = block.get(letter).unwrap_or(0.0);
+        let name = codes::letter(codes::slot(letter));
+        let at = block.at(letter);
+        if (value - value.round()).abs() > INTEGER_WITHIN {
+            return Err(Fault::new(
+                "gcode::integer",
+                at,
+                format!("{name}{value} is not an integer"),
+            ));
+        }
+        let rounded = value.round() as i64;
+        if !(low..=high).contains(&rounded) {
+            return Err(Fault::new(
+                "gcode::range",
+                at,
+                format!("{name}{rounded} is out of range: {low} to {high}"),
+            ));
+        }
+        Ok(rounded)
+    }
+
+    /// Modes that a G-code of the line changes.
+    fn modes(&mut self, block: &Block) -> Read<()> {
+        if block.g.is_empty() {
+            return Ok(());
+        }
+        if let Some(word) = block.code(Group::NonModal)
+            && word.number == 40
+        {
+            self.dwell(block, word)?;
+        }
+        if let Some(word) = block.code(Group::Plane) {
+            self.modal.plane = match word.number {
+                180 => Plane::Zx,
+                190 => Plane::Yz,
+                _ => Plane::Xy,
+            };
+        }
+        if let Some(word) = block.code(Group::Units) {
+            self.modal.unit_mm = if word.number == 200 { INCH_MM } else { 1.0 };
+        }
+        if let Some(word) = block.code(Group::Diameter) {
+            self.modal.diameter = word.number == 70;
+        }
+        self.compensation_mode(block)?;
+        self.tool_length(block)?;
+        self.coordinate_system(block)?;
+        if let Some(word) = block.code(Group::Corner) {
+            self.modal.corner = self.corner(block, word)?;
+        }
+        if let Some(word) = block.code(Group::Distance) {
+            self.modal.incremental = word.number == 910;
+            self.extruder_relative = self.modal.incremental;
+        }
+        if let Some(word) = block.code(Group::ArcDistance) {
+            self.modal.arc_absolute = word.number == 901;
+        }
+        if let Some(word) = block.code(Group::Return) {
+            self.modal.retract_to_r = word.number == 990;
+        }
+        self.spindle_mode(block)
+    }
+
+    fn corner(&self, block: &Block, word: Word) -> Read<Corner> {
+        Ok(match word.number {
+            610 => Corner::ExactPath,
+            611 => Corner::ExactStop,
+            _ => {
+                let tolerance = block.get(b'p').map(|p| p * self.modal.unit_mm);
+                if tolerance.is_some_and(|p| p < 0.0) {
+                    return Err(Fault::new(
+                        "gcode::range",
+                        block.at(b'p'),
+                        "the tolerance P of G64 is negative; the smallest is 0",
+                    ));
+                }
+                Corner::Continuous {
+                    tolerance_mm: tolerance.filter(|&p| p > 0.0),
+                }
+            }
+        })
+    }
+
+    fn dwell(&mut self, block: &Block, word: Word) -> Read<()> {
+        let printer = self.dialect == Dialect::Printer;
+        let seconds = match (block.get(b'p'), block.get(b's')) {
+            (_, Some(seconds)) if printer => seconds,
+            (Some(milliseconds), _) if printer => milliseconds * 1e-3,
+            (Some(seconds), _) => seconds,
+            (None, _) if printer => 0.0,
+            (None, _) => {
+                return Err(
+                    Fault::new("gcode::dwell", word.at(), "the dwell G4 has no time")
+                        .hint("write G4 P with seconds"),
+                );
+            }
+        };
+        if seconds < 0.0 {
+            return Err(Fault::new(
+                "gcode::dwell",
+                block.at_any(codes::bit(b'p') | codes::bit(b's')),
+                format!("the dwell of {seconds} s is negative; the smallest is 0 s"),
+            ));
+        }
+        self.event(EventKind::Dwell { seconds });
+        Ok(())
+    }
+
+    fn motion(&mut self, block: &Block) -> Read<()> {
+        let motion = self.active_motion(block);
+        self.check_words(block, motion)?;
+        let Some(code) = motion else { return Ok(()) };
+        if let Some(word) = block.code(Group::Motion) {
+            if let Some(other) = block
+                .code(Group::NonModal)
+                .filter(|other| USES_AXES.contains(&other.number) && block.has_axes())
+            {
+                let message = format!(
+                    "{} and {} would both use the axis words",
+                    codes::spelled(word.number),
+                    codes::spelled(other.number)
+                );
+                return Err(Fault::new("gcode::modal_group", other.at(), message)
+                    .hint("write them on two lines"));
+            }
+            self.modal.motion = code;
+        }
+        if block
+            .code(Group::NonModal)
+            .is_some_and(|word| word.number == 530)
+            && !matches!(code, 0 | 10)
+        {
+            return Err(Fault::new(
+                "gcode::g53",
+                block.whole(),
+                format!("G53 goes with G0 or G1, not with {}", codes::spelled(code)),
+            ));
+        }
+        match code {
+            0 | 10 => self.straight(block, code),
+            20 | 30 => self.arc(block, code == 30),
+            800 if block.has_axes() => Err(self.axes_without_motion(block, motion)),
+            800 => Ok(()),
+            _ => self.special_motion(block, code),
+        }
+    }
+
+    fn stop(&mut self, block: &Block) {
+        for word in &block.m {
+            match word.number {
+                0 | 1 | 60 => self.event(EventKind::MCode {
+                    code: word.number,
+                    p: None,
+                    q: None,
+                }),
+                2 | 30 => {
+                    self.event(EventKind::MCode {
+                        code: word.number,
+                        p: None,
+                        q: None,
+                    });
+                    self.end_program();
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Hands out the end of the program.
+    pub(super) fn end_program(&mut self) {
+        if !self.ended {
+            self.ended = true;
+            self.event(EventKind::ProgramEnd);
+        }
+    }
+}

@@ -1,0 +1,496 @@
+//! Values of words: numbers, parameters, functions and bracketed expressions, evaluated while they are read.
+//!
+//! Grammar (binding tightest first; operators of one row from left to right):
+//!
+//! ```text
+//! value      = number | '#' index | '[' expression ']' | ('+'|'-') value | function '[' expression ']'
+//! function   = abs acos asin atan[..]/[..] cos exists exp fix fup ln round sin sqrt tan      (angles in degrees)
+//! operators  = **   then * / mod   then + -   then eq ne gt ge lt le   then and or xor
+//! index      = value | '<' name '>'
+//! ```
+//!
+//! Rules: T. R. Kramer, F. M. Proctor, E. Messina, The NIST RS274NGC Interpreter - Version 3, NISTIR 6556 (2000), section 3.3,
+//! with the named parameters and comparisons that LinuxCNC added.
+
+use super::diagnostic::{Fault, Read};
+use super::lexer::{Cursor, END, shown};
+use super::parameters::PARAMETERS;
+
+/// Brackets, signs and `#` inside each other. Each level costs stack; no written program has more than a dozen.
+const DEEPEST: u32 = 200;
+/// Two values closer than this are equal to EQ and NE, as in LinuxCNC.
+const EQUAL_WITHIN: f64 = 1e-4;
+/// An index or number this close to an integer is that integer, as in LinuxCNC.
+pub(super) const INTEGER_WITHIN: f64 = 1e-4;
+
+/// Where parameter values come from.
+pub(super) trait Values {
+    /// Value of `#index`, `index` from 1 to 5602.
+    fn numbered(&self, index: usize) -> f64;
+    /// Value of `#<name>`, lower case without blanks.
+    fn named(&self, name: &[u8]) -> Option<f64>;
+}
+
+/// What stands behind `#`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum Target {
+    /// A number.
+    Numbered(usize),
+    /// A name, lower case without blanks.
+    Named(Vec<u8>),
+}
+
+/// Reads values at a cursor.
+#[derive(Debug)]
+pub(super) struct Evaluator<'a, V> {
+    pub(super) cursor: Cursor<'a>,
+    values: &'a V,
+    depth: u32,
+}
+
+/// An operator between two values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Operator {
+    Power,
+    Times,
+    Over,
+    Modulo,
+    Plus,
+    Minus,
+    Equal,
+    Unequal,
+    Greater,
+    AtLeast,
+    Less,
+    AtMost,
+    And,
+    Or,
+    Xor,
+}
+
+/// Every operator with its spelling and binding strength. `**` stands before `*`.
+const OPERATORS: [(&[u8], Operator, u8); 15] = [
+    (b"**", Operator::Power, 5),
+    (b"*", Operator::Times, 4),
+    (b"/", Operator::Over, 4),
+    (b"mod", Operator::Modulo, 4),
+    (b"+", Operator::Plus, 3),
+    (b"-", Operator::Minus, 3),
+    (b"eq", Operator::Equal, 2),
+    (b"ne", Operator::Unequal, 2),
+    (b"gt", Operator::Greater, 2),
+    (b"ge", Operator::AtLeast, 2),
+    (b"lt", Operator::Less, 2),
+    (b"le", Operator::AtMost, 2),
+    (b"and", Operator::And, 1),
+    (b"or", Operator::Or, 1),
+    (b"xor", Operator::Xor, 1),
+];
+
+/// Functions of one argument; `atan` and `exists` have a syntax of their own.
+const FUNCTIONS: [&[u8]; 14] = [
+    b"abs", b"acos", b"asin", b"atan", b"cos", b"exists", b"exp", b"fix", b"fup", b"ln", b"round",
+    b"sin", b"sqrt", b"tan",
+];
+
+impl<'a, V: Values> Evaluator<'a, V> {
+    pub(super) const fn new(cursor: Cursor<'a>, values: &'a V) -> Self {
+        Self {
+            cursor,
+            values,
+            depth: 0,
+        }
+    }
+
+    /// A value.
+    #[inline]
+    pub(super) fn value(&mut self) -> Read<f64> {
+        let first = self.cursor.peek();
+        if first.is_ascii_digit() || first == b'.' {
+            self.cursor.number()
+        } else {
+            self.other_value(first)
+        }
+    }
+
+    fn other_value(&mut self, first: u8) -> Read<f64> {
+        let start = self.cursor.at;
+        match first {
+            b'[' => self.bracketed(),
+            b'#' => {
+                let target = self.target()?;
+                self.parameter(&target, start)
+            }
+            b'+' | b'-' => {
+                let mut ahead = self.cursor.clone();
+                ahead.bump();
+                let next = ahead.peek();
+                if next.is_ascii_digit() || next == b'.' {
+                    return self.cursor.number();
+                }
+                self.cursor.bump();
+                let value = self.deeper(start, Self::value)?;
+                Ok(if first == b'-' { -value } else { value })
+            }
+            b'a'..=b'z' => self.function(),
+            _ => self.cursor.number(),
+        }
+    }
+
+    /// `[ expression ]`.
+    pub(super) fn bracketed(&mut self) -> Read<f64> {
+        let start = self.cursor.at;
+        if !self.cursor.eat(b'[') {
+            let found = self.cursor.peek();
+            return Err(Fault::new(
+                "gcode::bracket",
+                start..start + 1,
+                format!("`[` is missing: `{}` stands in its place", text_of(found)),
+            ));
+        }
+        let value = self.deeper(start, |evaluator| evaluator.expression(1))?;
+        if !self.cursor.eat(b']') {
+            let found = self.cursor.peek();
+            let at = self.cursor.at;
+            let message = format!(
+                "`]` or an operator is missing: {} stands in its place",
+                text_of(found)
+            );
+            return Err(Fault::new("gcode::bracket", at..at + 1, message));
+        }
+        Ok(value)
+    }
+
+    /// Values joined by operators that bind at least as tightly as `weakest`.
+    fn expression(&mut self, weakest: u8) -> Read<f64> {
+        let start = self.cursor.at;
+        let mut left = self.value()?;
+        while let Some((operator, strength, after)) = self.operator_ahead() {
+            if strength < weakest {
+                break;
+            }
+            self.cursor.at = after;
+            let right = self.deeper(start, |evaluator| evaluator.expression(strength + 1))?;
+            left = operator.apply(left, right).map_err(|message| {
+                Fault::new("gcode::expression", start..self.cursor.at, message)
+            })?;
+            if !left.is_finite() {
+                return Err(not_finite(start..self.cursor.at));
+            }
+        }
+        Ok(left)
+    }
+
+    fn operator_ahead(&mut self) -> Option<(Operator, u8, usize)> {
+        if matches!(self.cursor.peek(), b']' | END) {
+            return None;
+        }
+        let mut ahead = self.cursor.clone();
+        OPERATORS
+            .iter()
+            .find(|(spelling, ..)| ahead.eat_word(spelling))
+            .map(|&(_, operator, strength)| (operator, strength, ahead.at))
+    }
+
+    fn function(&mut self) -> Read<f64> {
+        let start = self.cursor.at;
+        let Some(name) = FUNCTIONS
+            .into_iter()
+            .find(|name| self.cursor.eat_word(name))
+        else {
+            return Err(self.unknown_function(start));
+        };
+        if name == b"exists" {
+            return self.exists();
+        }
+        let argument = self.bracketed()?;
+        let value = if name == b"atan" {
+            if !self.cursor.eat(b'/') {
+                let message = "atan needs two arguments: a `/` and a second bracket are missing";
+                return Err(
+                    Fault::new("gcode::expression", start..self.cursor.at, message)
+                        .hint("write atan[y]/[x]"),
+                );
+            }
+            argument.atan2(self.bracketed()?).to_degrees()
+        } else {
+            apply_function(name, argument).map_err(|message| {
+                Fault::new("gcode::expression", start..self.cursor.at, message)
+            })?
+        };
+        if value.is_finite() {
+            Ok(value)
+        } else {
+            Err(not_finite(start..self.cursor.at))
+        }
+    }
+
+    #[cold]
+    fn unknown_function(&mut self, start: usize) -> Box<Fault> {
+        let letters: Vec<u8> = self
+            .cursor
+            .rest()
+            .iter()
+            .copied()
+            .take_while(u8::is_ascii_alphabetic)
+            .map(|byte| byte.to_ascii_lowercase())
+            .take(12)
+            .collect();
+        let name = String::from_utf8_lossy(&letters).into_owned();
+        let fault = Fault::new(
+            "gcode::number",
+            start..start + letters.len(),
+            format!("a value is missing: `{name}` is neither a number nor a function"),
+        );
+        let nearest = FUNCTIONS
+            .iter()
+            .map(|known| String::from_utf8_lossy(known))
+            .find(|known| letters.len() > 1 && strsim::levenshtein(known, &name) <= 1);
+        match nearest {
+            Some(known) => fault.hint(format!("did you mean `{known}[...]`?")),
+            None => fault,
+        }
+    }
+
+    /// `exists[#<name>]`: 1 or 0.
+    fn exists(&mut self) -> Read<f64> {
+        let start = self.cursor.at;
+        if self.cursor.eat(b'[') && self.cursor.peek() == b'#' {
+            let target = self.target()?;
+            if let Target::Named(name) = &target
+                && self.cursor.eat(b']')
+            {
+                return Ok(f64::from(u8::from(self.values.named(name).is_some())));
+            }
+        }
+        Err(Fault::new(
+            "gcode::expression",
+            start..self.cursor.at + 1,
+            "exists takes the name of a parameter",
+        )
+        .hint("write exists[#<name>]"))
+    }
+
+    /// What stands behind the `#` under the cursor.
+    pub(super) fn target(&mut self) -> Read<Target> {
+        let start = self.cursor.at;
+        self.cursor.bump();
+        if self.cursor.eat(b'<') {
+            return Ok(Target::Named(self.name(start)?));
+        }
+        let index = self.deeper(start, Self::value)?;
+        let rounded = index.round();
+        let at = start..self.cursor.at;
+        if (index - rounded).abs() > INTEGER_WITHIN {
+            return Err(Fault::new(
+                "gcode::parameter",
+                at,
+                format!("parameter number {index} is not an integer"),
+            ));
+        }
+        if !(1.0..PARAMETERS as f64).contains(&rounded) {
+            let message = format!(
+                "parameter #{rounded} does not exist: the numbers go from 1 to {}",
+                PARAMETERS - 1
+            );
+            return Err(Fault::new("gcode::parameter", at, message));
+        }
+        Ok(Target::Numbered(rounded as usize))
+    }
+
+    /// The name up to `>`, lower case without blanks.
+    pub(super) fn name(&mut self, start: usize) -> Read<Vec<u8>> {
+        let mut name = Vec::new();
+        loop {
+            match self.cursor.peek() {
+                b'>' => break,
+                END => {
+                    return Err(Fault::new(
+                        "gcode::parameter",
+                        start..self.cursor.at,
+                        "the name is not closed: `>` is missing",
+                    ));
+                }
+                byte => name.push(byte),
+            }
+            self.cursor.bump();
+        }
+        self.cursor.bump();
+        if name.is_empty() {
+            Err(Fault::new(
+                "gcode::parameter",
+                start..self.cursor.at,
+                "the name is empty",
+            ))
+        } else {
+            Ok(name)
+        }
+    }
+
+    fn parameter(&self, target: &Target, start: usize) -> Read<f64> {
+        match target {
+            Target::Numbered(index) => Ok(self.values.numbered(*index)),
+            Target::Named(name) => self.values.named(name).ok_or_else(|| {
+                let name = String::from_utf8_lossy(name);
+                Fault::new("gcode::parameter", start..self.cursor.at, format!("parameter #<{name}> has no value here"))
+                    .hint("assign it first; names without a leading underscore are local to their subroutine")
+            }),
+        }
+    }
+
+    fn deeper<T>(&mut self, start: usize, read: impl FnOnce(&mut Self) -> Read<T>) -> Read<T> {
+        if self.depth == DEEPEST {
+            let message = format!("more than {DEEPEST} brackets, signs or # inside each other");
+            return Err(Fault::new(
+                "gcode::depth",
+                start..self.cursor.at + 1,
+                message,
+            ));
+        }
+        self.depth += 1;
+        let result = read(self);
+        self.depth -= 1;
+        result
+    }
+}
+
+impl Operator {
+    fn apply(self, left: f64, right: f64) -> Result<f64, String> {
+        let truth = |value: bool| Ok(f64::from(u8::from(value)));
+        let (is_left, is_right) = (left != 0.0, right != 0.0);
+        match self {
+            Self::Power if left < 0.0 && right.fract() != 0.0 => Err(format!(
+                "{left} cannot be raised to {right}: a negative base needs an integer exponent"
+            )),
+            Self::Power => Ok(left.powf(right)),
+            Self::Times => Ok(left * right),
+            Self::Over | Self::Modulo if right == 0.0 => Err(format!("{left} is divided by zero")),
+            Self::Over => Ok(left / right),
+            Self::Modulo => Ok(left.rem_euclid(right)),
+            Self::Plus => Ok(left + right),
+            Self::Minus => Ok(left - right),
+            Self::Equal => truth((left - right).abs() < EQUAL_WITHIN),
+            Self::Unequal => truth((left - right).abs() >= EQUAL_WITHIN),
+            Self::Greater => truth(left > right),
+            Self::AtLeast => truth(left >= right),
+            Self::Less => truth(left < right),
+            Self::AtMost => truth(left <= right),
+            Self::And => truth(is_left && is_right),
+            Self::Or => truth(is_left || is_right),
+            Self::Xor => truth(is_left != is_right),
+        }
+    }
+}
+
+fn apply_function(name: &[u8], x: f64) -> Result<f64, String> {
+    let outside = |range: &str| {
+        Err(format!(
+            "{}[{x}] does not exist: the argument must be {range}",
+            String::from_utf8_lossy(name)
+        ))
+    };
+    match name {
+        b"abs" => Ok(x.abs()),
+        b"acos" | b"asin" if x.abs() > 1.0 => outside("between -1 and 1"),
+        b"acos" => Ok(x.acos().to_degrees()),
+        b"asin" => Ok(x.asin().to_degrees()),
+        b"cos" => Ok(x.to_radians().cos()),
+        b"exp" => Ok(x.exp()),
+        b"fix" => Ok(x.floor()),
+        b"fup" => Ok(x.ceil()),
+        b"ln" if x <= 0.0 => outside("positive"),
+        b"ln" => Ok(x.ln()),
+        b"round" => Ok(x.round()),
+        b"sin" => Ok(x.to_radians().sin()),
+        b"sqrt" if x < 0.0 => outside("zero or positive"),
+        b"sqrt" => Ok(x.sqrt()),
+        _ => Ok(x.to_radians().tan()),
+    }
+}
+
+#[cold]
+fn not_finite(at: std::ops::Range<usize>) -> Box<Fault> {
+    Fault::new("gcode::expression", at, "the result is not a finite number")
+}
+
+fn text_of(byte: u8) -> String {
+    if byte == END {
+        "the end of the line".to_owned()
+    } else {
+        format!("`{}`", shown(byte))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Fixed;
+
+    impl Values for Fixed {
+        fn numbered(&self, index: usize) -> f64 {
+            index as f64 * 10.0
+        }
+
+        fn named(&self, name: &[u8]) -> Option<f64> {
+            (name == b"known").then_some(4.0)
+        }
+    }
+
+    fn value(text: &str) -> f64 {
+        Evaluator::new(Cursor::new(text.as_bytes()), &Fixed)
+            .value()
+            .unwrap()
+    }
+
+    fn message(text: &str) -> String {
+        Evaluator::new(Cursor::new(text.as_bytes()), &Fixed)
+            .value()
+            .unwrap_err()
+            .message
+    }
+
+    #[test]
+    fn operators_bind_as_in_rs274() {
+        assert_eq!(value("[2 + 3 * 2 ** 2 mod 5]"), 4.0);
+        assert_eq!(value("[2 ** 3 ** 2]"), 64.0);
+        assert_eq!(value("[10 - 2 - 3]"), 5.0);
+        assert_eq!(value("[1 + 1 EQ 2 AND 3 GT 2]"), 1.0);
+        assert_eq!(value("[-7 MOD 3]"), 2.0);
+        assert_eq!(value("[1 EQ 1.00005]"), 1.0);
+    }
+
+    #[test]
+    fn functions_are_in_degrees() {
+        assert!((value("sin[30]") - 0.5).abs() < 1e-15);
+        assert_eq!(value("atan[1]/[-1]"), 135.0);
+        assert_eq!(value("fix[-2.3]"), -3.0);
+        assert_eq!(value("fup[-2.3]"), -2.0);
+        assert_eq!(value("round[-2.5]"), -3.0);
+        assert_eq!(value("EXISTS[#<known>] "), 1.0);
+        assert_eq!(value("exists[#<un known>]"), 0.0);
+    }
+
+    #[test]
+    fn parameters_and_signs_nest() {
+        assert_eq!(value("#3"), 30.0);
+        assert_eq!(value("##3"), 300.0);
+        assert_eq!(value("#[1+2]"), 30.0);
+        assert_eq!(value("-[#<kNoWn> * 2]"), -8.0);
+        assert_eq!(value("- -5"), 5.0);
+        assert_eq!(value("-#2"), -20.0);
+    }
+
+    #[test]
+    fn impossible_values_are_explained() {
+        assert!(message("[1/0]").contains("divided by zero"));
+        assert!(message("sqrt[-1]").contains("zero or positive"));
+        assert!(message("#5603").contains("does not exist"));
+        assert!(message("#1.5").contains("not an integer"));
+        assert!(message("#<foo>").contains("no value"));
+        assert!(message("[10**400]").contains("finite"));
+        assert!(message("[1+2").contains("`]`"));
+        assert!(message(&"[".repeat(100_000)).contains("more than 200"));
+        assert!(message(&"-".repeat(100_000)).contains("more than 200"));
+    }
+}

@@ -1,0 +1,124 @@
+//! M-codes: those with a meaning to the interpreter change its state, all become events in program order.
+
+use super::block::Block;
+use super::canon::EventKind;
+use super::codes::bit;
+use super::diagnostic::{Fault, Read};
+use super::settings::Dialect;
+use super::state::Interpreter;
+
+/// M-codes of one group exclude each other on a line.
+const GROUPS: [&[u16]; 7] = [
+    &[0, 1, 2, 30, 60],
+    &[6, 61],
+    &[3, 4, 5],
+    &[7, 9],
+    &[8, 9],
+    &[48, 49],
+    &[70, 71, 72, 73],
+];
+
+impl Interpreter {
+    /// Letters that an M-code takes.
+    pub(super) fn m_letters(&self, number: u16) -> u32 {
+        if self.dialect == Dialect::Printer {
+            return u32::MAX; // Every firmware has words of its own.
+        }
+        match number {
+            19 => bit(b'r') | bit(b'q') | bit(b'p'),
+            50..=53 | 62..=65 => bit(b'p'),
+            61 => bit(b'q'),
+            66 => bit(b'p') | bit(b'e') | bit(b'l') | bit(b'q'),
+            67 | 68 => bit(b'e') | bit(b'q'),
+            97..=98 => bit(b'p') | bit(b'l') | bit(b'q'),
+            99 => bit(b'p'),
+            100..=199 => bit(b'p') | bit(b'q'),
+            _ if self.dialect == Dialect::Fanuc => bit(b'p') | bit(b'q') | bit(b'r'),
+            _ => 0,
+        }
+    }
+
+    /// Carries out the M-codes except stops, in RS-274's order: tool, spindle, coolant, overrides, the rest.
+    pub(super) fn machine_codes(&mut self, block: &Block) -> Read<()> {
+        if block.m.is_empty() {
+            return Ok(());
+        }
+        self.check_machine_codes(block)?;
+        for wanted in 0..4 {
+            for word in &block.m {
+                if order(word.number) == wanted {
+                    self.machine_code(block, word.number)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn check_machine_codes(&self, block: &Block) -> Read<()> {
+        for (n, word) in block.m.iter().enumerate() {
+            let clash = block.m[..n].iter().find(|other| {
+                other.number == word.number
+                    || GROUPS
+                        .iter()
+                        .any(|group| group.contains(&other.number) && group.contains(&word.number))
+            });
+            if let Some(other) = clash {
+                let message = format!(
+                    "M{} and M{} exclude each other on one line",
+                    other.number, word.number
+                );
+                return Err(Fault::new("gcode::modal_group", word.at(), message)
+                    .hint("write them on two lines"));
+            }
+            let known = matches!(word.number, 0..=9 | 19 | 30 | 48..=53 | 60..=68 | 70..=73 | 98 | 99 | 100..=199);
+            if !known && self.dialect == Dialect::LinuxCnc {
+                return Err(Fault::new("gcode::unknown_m", word.at(), format!("M{} is not an M-code that LinuxCNC knows", word.number))
+                    .hint("user M-codes go from M100 to M199; another control's program needs another dialect"));
+            }
+        }
+        Ok(())
+    }
+
+    fn machine_code(&mut self, block: &Block, number: u16) -> Read<()> {
+        let modal = &mut self.modal;
+        match number {
+            0 | 1 | 2 | 30 | 60 | 98 | 99 => return Ok(()), // Stops come last, calls are flow.
+            3 => modal.spindle_turns = 1,
+            4 => modal.spindle_turns = -1,
+            5 => modal.spindle_turns = 0,
+            7 => modal.mist = true,
+            8 => modal.flood = true,
+            9 => (modal.mist, modal.flood) = (false, false),
+            48 => (modal.feed_override, modal.speed_override) = (true, true),
+            49 => (modal.feed_override, modal.speed_override) = (false, false),
+            50 => modal.feed_override = block.get(b'p') != Some(0.0),
+            51 => modal.speed_override = block.get(b'p') != Some(0.0),
+            52 => modal.adaptive_feed = block.get(b'p') != Some(0.0),
+            53 => modal.feed_hold = block.get(b'p') != Some(0.0),
+            6 => self.load_tool(self.next_tool),
+            61 => {
+                let tool = self.integer(block, b'q', 0, 999_999)?;
+                self.load_tool(tool as u32);
+            }
+            82 if self.dialect == Dialect::Printer => self.extruder_relative = false,
+            83 if self.dialect == Dialect::Printer => self.extruder_relative = true,
+            _ => {}
+        }
+        self.event(EventKind::MCode {
+            code: number,
+            p: block.get(b'p'),
+            q: block.get(b'q'),
+        });
+        Ok(())
+    }
+}
+
+/// When an M-code acts relative to the others of its line.
+const fn order(number: u16) -> u8 {
+    match number {
+        6 | 61 => 0,
+        3..=5 | 19 => 1,
+        7..=9 => 2,
+        _ => 3,
+    }
+}

@@ -1,0 +1,388 @@
+//! A program as an iterator of canonical steps, line by line.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use thiserror::Error;
+
+use super::block::{Block, Style};
+use super::canon::Canon;
+use super::diagnostic::{Diagnostic, Fault, Severity};
+use super::dialect;
+use super::flow::Flow;
+use super::lexer::Cursor;
+use super::settings::{Dialect, Settings};
+use super::source::{LONGEST_LINE_BYTES, Line, Source};
+use super::state::Interpreter;
+
+/// Why a program cannot be read at all.
+#[derive(Debug, Error, miette::Diagnostic)]
+pub enum ReadError {
+    /// No such file, no permission, or the disk fails.
+    #[error("{path}: the program cannot be read: {cause}")]
+    Io {
+        /// As the user named it.
+        path: PathBuf,
+        /// What the system says.
+        #[source]
+        cause: io::Error,
+    },
+    /// A folder instead of a file.
+    #[error("{path}: this is a folder, not a G-code program")]
+    Directory {
+        /// As the user named it.
+        path: PathBuf,
+    },
+    /// Bytes that no text has.
+    #[error("{name}: byte {offset} is NUL: this is no G-code program but a binary file")]
+    #[diagnostic(help("G-code is plain text; a slicer or CAM system exports it"))]
+    Binary {
+        /// As the user named it.
+        name: Arc<str>,
+        /// Offset of the first NUL byte.
+        offset: usize,
+    },
+    /// Nothing in it.
+    #[error("{name}: the program is empty")]
+    Empty {
+        /// As the user named it.
+        name: Arc<str>,
+    },
+    /// Another language.
+    #[error("{name}: line {line} is {language}, which this reader does not read: `{text}`")]
+    #[diagnostic(help(
+        "export the program as ISO G-code (RS-274), for instance with a LinuxCNC or Fanuc post-processor"
+    ))]
+    Refused {
+        /// As the user named it.
+        name: Arc<str>,
+        /// The control whose language it is.
+        language: &'static str,
+        /// The line that shows it, from 1.
+        line: u32,
+        /// Its text.
+        text: String,
+    },
+}
+
+/// Reads a program and hands out its canonical steps as it goes; memory does not grow with the program.
+///
+/// After a fault the reader goes on with the next line, so that one run shows all faults.
+#[derive(Debug)]
+pub struct Reader {
+    flow: Flow,
+    interpreter: Interpreter,
+    block: Block,
+    style: Style,
+    warnings: Vec<Diagnostic>,
+    faults: usize,
+    idle_lines: u64,
+    motions_seen: u64,
+    lines: u64,
+    percent: Percent,
+    state: State,
+    dialect_reason: &'static str,
+}
+
+/// Where the program stands between its `%` lines.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Percent {
+    /// Nothing but comments so far.
+    NotSeen,
+    /// The program began with `%` and must end with one.
+    Open,
+    /// The program began without.
+    Absent,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum State {
+    Running,
+    Done,
+}
+
+impl Reader {
+    /// Opens the program in a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is no G-code program.
+    pub fn open(path: &Path, settings: Settings) -> Result<Self, ReadError> {
+        let io_error = |cause| ReadError::Io {
+            path: path.to_owned(),
+            cause,
+        };
+        if fs::metadata(path).map_err(io_error)?.is_dir() {
+            return Err(ReadError::Directory {
+                path: path.to_owned(),
+            });
+        }
+        let name: Arc<str> = path.display().to_string().into();
+        let source =
+            Source::from_file(name, fs::File::open(path).map_err(io_error)?).map_err(io_error)?;
+        Self::new(source, path.parent().map(Path::to_owned), settings)
+    }
+
+    /// Reads the program in `text`; `name` stands for the file in messages.
+    ///
+    /// # Errors
+    /// Text that is no G-code program.
+    pub fn from_text(
+        name: &str,
+        text: impl Into<Vec<u8>>,
+        settings: Settings,
+    ) -> Result<Self, ReadError> {
+        Self::new(Source::from_text(name.into(), text.into()), None, settings)
+    }
+
+    fn new(source: Source, folder: Option<PathBuf>, settings: Settings) -> Result<Self, ReadError> {
+        let choice = dialect::choose(source.head(), &source.name)?;
+        let (dialect, dialect_reason) = match settings.dialect {
+            Some(dialect) => (dialect, "set"),
+            None => choice,
+        };
+        Ok(Self {
+            flow: Flow::new(source, folder, &settings),
+            interpreter: Interpreter::new(settings, dialect),
+            block: Block::new(),
+            style: Style {
+                checksum: dialect == Dialect::Printer,
+            },
+            warnings: Vec::new(),
+            faults: 0,
+            idle_lines: 0,
+            motions_seen: 0,
+            lines: 0,
+            percent: Percent::NotSeen,
+            state: State::Running,
+            dialect_reason,
+        })
+    }
+
+    /// The dialect that the program is read as, and why it was chosen.
+    pub const fn dialect(&self) -> (Dialect, &'static str) {
+        (self.interpreter.dialect, self.dialect_reason)
+    }
+
+    /// Warnings so far, at most as many as [`Settings::max_errors`].
+    pub fn warnings(&self) -> &[Diagnostic] {
+        &self.warnings
+    }
+
+    /// The file's name as the user gave it.
+    pub(super) fn name(&mut self) -> Arc<str> {
+        self.flow.source().name.clone()
+    }
+
+    /// Lines carried out so far; those of loops and subroutines count each time.
+    pub const fn lines(&self) -> u64 {
+        self.lines
+    }
+
+    /// Carries out one line.
+    fn step(&mut self) -> Result<(), Box<Diagnostic>> {
+        let line = match self.flow.source().next_line() {
+            Ok(line) => line,
+            Err(error) => {
+                self.state = State::Done;
+                let message = format!("the program cannot be read on: {error}");
+                return Err(self.of_file("gcode::read", message));
+            }
+        };
+        let range = match line {
+            Line::End => return self.end_of_file(),
+            Line::Text(range) => range,
+            Line::TooLong(range) => {
+                let fault = Fault::new(
+                    "gcode::line_length",
+                    0..1,
+                    format!(
+                        "the line is longer than {LONGEST_LINE_BYTES} bytes: this is no G-code"
+                    ),
+                );
+                return Err(self.diagnose(Severity::Error, *fault, range));
+            }
+        };
+        self.lines += 1;
+        self.interpreter.line = self.flow.source().line;
+        let result = self.carry_out(range.clone());
+        for warning in std::mem::take(&mut self.interpreter.warnings) {
+            let warning = self.diagnose(Severity::Warning, warning, range.clone());
+            self.warn(warning);
+        }
+        result.map_err(|fault| self.diagnose(Severity::Error, *fault, range))?;
+        self.watch()
+    }
+
+    #[inline]
+    fn carry_out(&mut self, range: std::ops::Range<usize>) -> Result<(), Box<Fault>> {
+        self.block.clear();
+        let Self {
+            flow,
+            interpreter,
+            block,
+            ..
+        } = self;
+        let bytes = flow.source().bytes(range);
+        let mut cursor = Cursor::new(bytes);
+        match cursor.peek() {
+            super::lexer::END => return Ok(()),
+            b'%' => {
+                let at = cursor.at..cursor.at + 1;
+                return self.percent(at);
+            }
+            b'/' => {
+                if interpreter.settings.block_delete {
+                    return Ok(());
+                }
+                cursor.bump();
+            }
+            _ => {}
+        }
+        if self.percent == Percent::NotSeen {
+            self.percent = Percent::Absent;
+        }
+        if cursor.eat(b'n') {
+            cursor.number()?;
+        }
+        block.read(cursor, interpreter, self.style)?;
+        interpreter.execute(block)?;
+        for (target, value) in block.assignments.drain(..) {
+            interpreter.assign(&target, value)?;
+        }
+        Ok(())
+    }
+
+    /// A line with `%`: the first opens the program, the next ends it.
+    fn percent(&mut self, at: std::ops::Range<usize>) -> Result<(), Box<Fault>> {
+        match self.percent {
+            Percent::NotSeen => self.percent = Percent::Open,
+            Percent::Open => {
+                self.percent = Percent::Absent;
+                self.interpreter.end_program();
+            }
+            Percent::Absent => {
+                let fault = Fault::new(
+                    "gcode::percent",
+                    at,
+                    "`%` ends the program, but no `%` begins it",
+                );
+                self.interpreter.warnings.push(*fault);
+                self.interpreter.end_program();
+            }
+        }
+        Ok(())
+    }
+
+    /// The text ends, perhaps without having said so.
+    fn end_of_file(&mut self) -> Result<(), Box<Diagnostic>> {
+        if !self.interpreter.ended {
+            let quiet = matches!(self.interpreter.dialect, Dialect::Grbl | Dialect::Printer);
+            if !quiet {
+                let mut warning = self.of_file(
+                    "gcode::program_end",
+                    "the program ends without M2, M30 or %".to_owned(),
+                );
+                warning.severity = Severity::Warning;
+                self.warn(warning);
+            }
+            self.interpreter.end_program();
+        }
+        Ok(())
+    }
+
+    /// Stops programs that never end.
+    fn watch(&mut self) -> Result<(), Box<Diagnostic>> {
+        if self.interpreter.motions != self.motions_seen {
+            self.motions_seen = self.interpreter.motions;
+            self.idle_lines = 0;
+        }
+        self.idle_lines += 1;
+        let settings = &self.interpreter.settings;
+        let message = if self.idle_lines > settings.max_idle_lines {
+            format!(
+                "endless loop: {} lines in a row were carried out without a motion",
+                settings.max_idle_lines
+            )
+        } else if self.interpreter.motions > settings.max_motions {
+            format!("the program has more than {} motions", settings.max_motions)
+        } else {
+            return Ok(());
+        };
+        self.state = State::Done;
+        let mut diagnostic = self.of_file("gcode::endless", message);
+        diagnostic.line = self.interpreter.line;
+        diagnostic.hint = Some("the limits are settings of the reader".to_owned());
+        Err(diagnostic)
+    }
+
+    fn diagnose(
+        &mut self,
+        severity: Severity,
+        fault: Fault,
+        range: std::ops::Range<usize>,
+    ) -> Box<Diagnostic> {
+        let line = self.interpreter.line.max(self.flow.source().line);
+        let source = self.flow.source();
+        Box::new(Diagnostic::of_line(
+            severity,
+            fault,
+            source.name.clone(),
+            line,
+            source.bytes(range),
+        ))
+    }
+
+    fn of_file(&mut self, code: &'static str, message: String) -> Box<Diagnostic> {
+        Box::new(Diagnostic::of_file(
+            Severity::Error,
+            code,
+            self.flow.source().name.clone(),
+            message,
+        ))
+    }
+
+    fn warn(&mut self, warning: Box<Diagnostic>) {
+        if self.warnings.len() < self.interpreter.settings.max_errors {
+            self.warnings.push(*warning);
+        }
+    }
+
+    /// Counts a fault; past the limit the faults become one line at the end.
+    fn count(&mut self, diagnostic: Box<Diagnostic>) -> Option<Box<Diagnostic>> {
+        self.faults += 1;
+        (self.faults <= self.interpreter.settings.max_errors).then_some(diagnostic)
+    }
+
+    /// After the last line: how many faults were not shown.
+    fn rest(&mut self) -> Option<Box<Diagnostic>> {
+        let more = self
+            .faults
+            .saturating_sub(self.interpreter.settings.max_errors);
+        self.faults = 0;
+        (more > 0).then(|| self.of_file("gcode::more", format!("and {more} more errors")))
+    }
+}
+
+impl Iterator for Reader {
+    type Item = Result<Canon, Diagnostic>;
+
+    #[inline]
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(canon) = self.interpreter.out.pop_front() {
+                return Some(Ok(canon));
+            }
+            if self.state == State::Done || self.interpreter.ended {
+                self.state = State::Done;
+                return self.rest().map(|rest| Err(*rest));
+            }
+            if let Err(diagnostic) = self.step()
+                && let Some(shown) = self.count(diagnostic)
+            {
+                return Some(Err(*shown));
+            }
+        }
+    }
+}
