@@ -25,14 +25,14 @@ fn chords(count: u32) -> impl Iterator<Item = Canon> + Send {
 
 fn reference(name: &str) -> Reference<'static> {
     let reference = match name {
-        "line" => Reference::new(
-            vec![line([0.0; 3], [100.0, 50.0, 0.0], 50.0, BLEND)],
+        "line" => Reference::new(vec![line([0.0; 3], [100.0, 50.0, 0.0], 50.0, BLEND)], &LIMITS),
+        "10 um chords" => Reference::new(chords(10_000), &LIMITS),
+        _ => Reference::from_steps(
+            contour(name).expect("a name of the table").steps(50.0, BLEND).expect("a feed"),
             &LIMITS,
         ),
-        "10 um chords" => Reference::new(chords(10_000), &LIMITS),
-        _ => Reference::from_steps(contour(name).unwrap().steps(50.0, BLEND).unwrap(), &LIMITS),
     };
-    reference.unwrap()
+    reference.expect("limits are sound")
 }
 
 /// 1000 servo periods, three looks each: here and up to 50 ms ahead.
@@ -69,11 +69,7 @@ fn nearest(bencher: Bencher<'_, '_>, name: &str) {
     bencher.counter(ItemsCount::new(1000usize)).bench_local(|| {
         points
             .iter()
-            .map(|&(tau_s, point)| {
-                reference
-                    .nearest(point, tau_s - 0.05, tau_s + 0.05)
-                    .distance_mm
-            })
+            .map(|&(tau_s, point)| reference.nearest(point, tau_s - 0.05, tau_s + 0.05).distance_mm)
             .sum::<f64>()
     });
 }
@@ -82,7 +78,7 @@ fn nearest(bencher: Bencher<'_, '_>, name: &str) {
 #[divan::bench(args = [1_000, 10_000, 100_000])]
 fn plan_chords(bencher: Bencher<'_, '_>, count: u32) {
     bencher.counter(ItemsCount::new(count)).bench_local(|| {
-        let mut reference = Reference::new(chords(count), &LIMITS).unwrap();
+        let mut reference = Reference::new(chords(count), &LIMITS).expect("limits are sound");
         let mut tau_s = 0.0;
         while reference.end_s().is_none() {
             reference.at(tau_s);

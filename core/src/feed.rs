@@ -76,20 +76,12 @@ impl Limits {
         // From 1e-6 to 1e9 nothing under- or overflows, and no machine lies outside.
         for (name, value) in positive {
             if !(1e-6..=1e9).contains(&value) {
-                return Err(LimitsError {
-                    name,
-                    value,
-                    bound: "from 1e-6 to 1e9",
-                });
+                return Err(LimitsError { name, value, bound: "from 1e-6 to 1e9" });
             }
         }
         if !(0.0..=1e9).contains(&self.corner_jump_mm_s) {
             let value = self.corner_jump_mm_s;
-            return Err(LimitsError {
-                name: "corner_jump_mm_s",
-                value,
-                bound: "from 0 to 1e9",
-            });
+            return Err(LimitsError { name: "corner_jump_mm_s", value, bound: "from 0 to 1e9" });
         }
         Ok(())
     }

@@ -79,10 +79,7 @@ impl<'p> Reference<'p> {
         source: impl IntoIterator<Item = Canon, IntoIter: Send + 'p>,
         limits: &Limits,
     ) -> Result<Self, LimitsError> {
-        Ok(Self::from_plan(Plan::new(
-            Box::new(Pieces::new(source.into_iter())),
-            limits,
-        )?))
+        Ok(Self::from_plan(Plan::new(Box::new(Pieces::new(source.into_iter())), limits)?))
     }
 
     /// The reference of a path, such as a [contour](crate::path::contour).
@@ -93,21 +90,12 @@ impl<'p> Reference<'p> {
         steps: impl IntoIterator<Item = Step, IntoIter: Send + 'p>,
         limits: &Limits,
     ) -> Result<Self, LimitsError> {
-        Ok(Self::from_plan(Plan::new(
-            Box::new(steps.into_iter().map(Ok)),
-            limits,
-        )?))
+        Ok(Self::from_plan(Plan::new(Box::new(steps.into_iter().map(Ok)), limits)?))
     }
 
     /// The reference of a plan.
     pub fn from_plan(plan: Plan<'p>) -> Self {
-        Self {
-            plan,
-            window: Window::default(),
-            events: VecDeque::new(),
-            planned_s: 0.0,
-            ended: false,
-        }
+        Self { plan, window: Window::default(), events: VecDeque::new(), planned_s: 0.0, ended: false }
     }
 
     /// Where the reference is at `tau_s`; before the start (or what has been forgotten) at the first point, behind the end
@@ -126,8 +114,7 @@ impl<'p> Reference<'p> {
         if tau_hi_s >= self.planned_s && !self.ended {
             self.read_until(tau_hi_s);
         }
-        self.window
-            .nearest(point_mm, tau_lo_s, tau_hi_s.max(tau_lo_s))
+        self.window.nearest(point_mm, tau_lo_s, tau_hi_s.max(tau_lo_s))
     }
 
     /// Total plan time, s, once the end of the program has been read.
@@ -151,11 +138,7 @@ impl<'p> Reference<'p> {
         if until_s >= self.planned_s && !self.ended {
             self.read_until(until_s);
         }
-        if self.events.front()?.tau_s <= until_s {
-            self.events.pop_front()
-        } else {
-            None
-        }
+        if self.events.front()?.tau_s <= until_s { self.events.pop_front() } else { None }
     }
 
     /// Drops what ends before `tau_s`: pieces, phases, and events that nobody has taken.
@@ -203,11 +186,7 @@ fn foot(piece: &Piece, local_mm: f64, point_mm: [f64; 3]) -> Foot {
         tangent: at.tangent,
         line: piece.line,
         distance_mm,
-        signed_mm: if left < 0.0 {
-            -distance_mm
-        } else {
-            distance_mm
-        },
+        signed_mm: if left < 0.0 { -distance_mm } else { distance_mm },
         cutting: piece.cutting,
     }
 }

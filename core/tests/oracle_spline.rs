@@ -5,7 +5,7 @@
 mod common;
 
 use common::{BLEND, LIMITS, Random, distance};
-use feedwright::gcode::canon::{Canon, Motion, MotionKind, Shape, Spline};
+use feedwright::gcode::canon::{Canon, Motion, MotionKind, Others, Shape, Spline};
 use feedwright::path::pieces::Pieces;
 use feedwright::path::{Piece, Step};
 use feedwright::reference::Reference;
@@ -14,12 +14,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 fn numbers(value: &Value) -> Vec<f64> {
-    value
-        .as_array()
-        .expect("array")
-        .iter()
-        .map(|x| x.as_f64().expect("number"))
-        .collect()
+    value.as_array().expect("array").iter().map(|x| x.as_f64().expect("number")).collect()
 }
 
 fn vector(value: &Value) -> [f64; 3] {
@@ -28,12 +23,7 @@ fn vector(value: &Value) -> [f64; 3] {
 }
 
 fn points(value: &Value) -> Vec<[f64; 3]> {
-    value
-        .as_array()
-        .expect("array")
-        .iter()
-        .map(vector)
-        .collect()
+    value.as_array().expect("array").iter().map(vector).collect()
 }
 
 fn motion(spline: Spline, start_mm: [f64; 3], end_mm: [f64; 3]) -> Canon {
@@ -45,6 +35,7 @@ fn motion(spline: Spline, start_mm: [f64; 3], end_mm: [f64; 3]) -> Canon {
         shape: Shape::Spline(Arc::new(spline)),
         feed_mm_s: 50.0,
         corner: BLEND,
+        others: Others::default(),
     })
 }
 
@@ -73,27 +64,14 @@ fn splines_agree_with_25_digits() {
         assert_eq!(pieces.len(), 1, "{name}");
         let curve = &pieces[0].curve;
         let length = case["length_mm"].as_f64().unwrap();
-        assert!(
-            (curve.length_mm() - length).abs() < 1e-9,
-            "{name}: {} {length}",
-            curve.length_mm()
-        );
+        assert!((curve.length_mm() - length).abs() < 1e-9, "{name}: {} {length}", curve.length_mm());
         for sample in case["samples"].as_array().unwrap() {
             let s_mm = sample["s_mm"].as_f64().unwrap();
             let at = curve.at(s_mm);
-            assert!(
-                distance(at.position_mm, vector(&sample["position_mm"])) < 1e-9,
-                "{name} {s_mm}"
-            );
-            assert!(
-                distance(at.tangent, vector(&sample["tangent"])) < 1e-9,
-                "{name} {s_mm}"
-            );
+            assert!(distance(at.position_mm, vector(&sample["position_mm"])) < 1e-9, "{name} {s_mm}");
+            assert!(distance(at.tangent, vector(&sample["tangent"])) < 1e-9, "{name} {s_mm}");
             let curvature = sample["curvature_1_mm"].as_f64().unwrap();
-            assert!(
-                (curve.curvature(s_mm) / curvature - 1.0).abs() < 1e-8,
-                "{name} {s_mm}"
-            );
+            assert!((curve.curvature(s_mm) / curvature - 1.0).abs() < 1e-8, "{name} {s_mm}");
         }
     }
 }
@@ -106,8 +84,7 @@ fn ends(spline: &Spline) -> ([f64; 3], [f64; 3]) {
         }
         let part = |over: f64, under: f64| if under > 0.0 { over / under } else { 0.0 };
         part(u - knots[i], knots[i + p] - knots[i]) * basis(i, p - 1, u, knots, span)
-            + part(knots[i + p + 1] - u, knots[i + p + 1] - knots[i + 1])
-                * basis(i + 1, p - 1, u, knots, span)
+            + part(knots[i + p + 1] - u, knots[i + p + 1] - knots[i + 1]) * basis(i + 1, p - 1, u, knots, span)
     }
     let count = spline.control_mm.len();
     let at = |u: f64, span: usize| {
@@ -121,15 +98,12 @@ fn ends(spline: &Spline) -> ([f64; 3], [f64; 3]) {
         }
         [0, 1, 2].map(|k| sum[k] / sum[3])
     };
-    (
-        at(spline.knots[spline.degree], spline.degree),
-        at(spline.knots[count], count - 1),
-    )
+    (at(spline.knots[spline.degree], spline.degree), at(spline.knots[count], count - 1))
 }
 
 fn butterfly() -> Option<Spline> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("../../shared/corpus/curves/butterfly_nurbs_degree3_51cp.json");
+    let path =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus/curves/butterfly_nurbs_degree3_51cp.json");
     let Ok(text) = std::fs::read_to_string(&path) else {
         eprintln!("SKIPPED: {} is missing", path.display());
         return None;
@@ -172,37 +146,18 @@ fn butterfly_keeps_the_normal_limit_and_its_feet() {
     let mut random = Random(4);
     for _ in 0..50_000 {
         let here = reference.at(random.between(0.0, end_s));
-        let piece = &pieces[pieces
-            .partition_point(|piece| piece.s_mm <= here.s_mm)
-            .max(1)
-            - 1];
+        let piece = &pieces[pieces.partition_point(|piece| piece.s_mm <= here.s_mm).max(1) - 1];
         let normal = here.feed_mm_s.powi(2) * piece.curve.curvature(here.s_mm - piece.s_mm);
         assert!(normal <= 400.0 * 1.001, "{normal} at {}", here.s_mm);
     }
     for _ in 0..300 {
         let tau = random.between(0.0, end_s);
-        let point = reference
-            .at(tau)
-            .position_mm
-            .map(|x| x + random.between(-0.02, 0.02));
+        let point = reference.at(tau).position_mm.map(|x| x + random.between(-0.02, 0.02));
         let foot = reference.nearest(point, tau - 0.05, tau + 0.05);
         let brute = (0..=20_000)
-            .map(|i| {
-                distance(
-                    reference.at(tau - 0.05 + 5e-6 * f64::from(i)).position_mm,
-                    point,
-                )
-            })
+            .map(|i| distance(reference.at(tau - 0.05 + 5e-6 * f64::from(i)).position_mm, point))
             .fold(f64::INFINITY, f64::min);
-        assert!(
-            foot.distance_mm <= brute + 1e-12,
-            "{} {brute}",
-            foot.distance_mm
-        );
-        assert!(
-            foot.distance_mm >= brute - 50.0 * 5e-6,
-            "{} {brute}",
-            foot.distance_mm
-        );
+        assert!(foot.distance_mm <= brute + 1e-12, "{} {brute}", foot.distance_mm);
+        assert!(foot.distance_mm >= brute - 50.0 * 5e-6, "{} {brute}", foot.distance_mm);
     }
 }

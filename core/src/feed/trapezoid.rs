@@ -86,10 +86,7 @@ impl Trapezoid {
 
     /// Last joint whose speed is final.
     fn last_final(&self) -> usize {
-        self.waiting
-            .iter()
-            .rposition(|waiting| waiting.forward <= waiting.backward)
-            .unwrap_or(0)
+        self.waiting.iter().rposition(|waiting| waiting.forward <= waiting.backward).unwrap_or(0)
     }
 
     /// Makes spans of the first `count` sections.
@@ -97,10 +94,7 @@ impl Trapezoid {
         for i in 0..count {
             let waiting = self.waiting[i];
             let before = waiting.forward.min(waiting.backward);
-            let after = self
-                .waiting
-                .get(i + 1)
-                .map_or(0.0, |next| next.forward.min(next.backward));
+            let after = self.waiting.get(i + 1).map_or(0.0, |next| next.forward.min(next.backward));
             self.spans(self.first + i as u64, &waiting.section, before, after);
         }
         self.waiting.drain(..count);
@@ -130,16 +124,8 @@ impl Trapezoid {
         let two_a = 2.0 * self.accel_mm_s2;
         let slope = (section.end_cap - section.start_cap) / length;
         // Where the line up meets the bound, and how far from the end the line down does.
-        let up = if two_a > slope {
-            (section.start_cap - before) / (two_a - slope)
-        } else {
-            f64::INFINITY
-        };
-        let down = if two_a > -slope {
-            (section.end_cap - after) / (two_a + slope)
-        } else {
-            f64::INFINITY
-        };
+        let up = if two_a > slope { (section.start_cap - before) / (two_a - slope) } else { f64::INFINITY };
+        let down = if two_a > -slope { (section.end_cap - after) / (two_a + slope) } else { f64::INFINITY };
         let (up, top) = if up + down <= length {
             (up.max(0.0), length - down.max(0.0))
         } else {
@@ -154,11 +140,7 @@ impl Trapezoid {
             if along <= 0.0 {
                 continue;
             }
-            let end = if to < length {
-                (speed * speed + slope * along).max(0.0).sqrt()
-            } else {
-                after.sqrt()
-            };
+            let end = if to < length { (speed * speed + slope * along).max(0.0).sqrt() } else { after.sqrt() };
             let duration_s = 2.0 * along / (speed + end);
             if duration_s > 0.0 && duration_s.is_finite() {
                 self.ready.push_back(Span {
@@ -179,24 +161,13 @@ impl FeedPlanner for Trapezoid {
     fn push(&mut self, section: Section) {
         let (cap, forward) = match self.waiting.back() {
             Some(last) => {
-                let cap = section
-                    .joint_cap
-                    .min(last.section.end_cap)
-                    .min(section.start_cap);
-                (
-                    cap,
-                    cap.min(self.gain(last.forward, last.section.length_mm)),
-                )
+                let cap = section.joint_cap.min(last.section.end_cap).min(section.start_cap);
+                (cap, cap.min(self.gain(last.forward, last.section.length_mm)))
             }
             // Only the very first section finds nobody waiting: a commit always keeps the last section.
             None => (0.0, 0.0),
         };
-        self.waiting.push_back(Waiting {
-            section,
-            cap,
-            forward,
-            backward: 0.0,
-        });
+        self.waiting.push_back(Waiting { section, cap, forward, backward: 0.0 });
         if self.waiting.len() >= self.next_pass {
             self.backward_pass();
             let count = self.last_final();

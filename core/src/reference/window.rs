@@ -62,11 +62,7 @@ impl Window {
             position_mm: at.position_mm,
             tangent: at.tangent,
             s_mm: piece.s_mm + local_mm,
-            feed_mm_s: if resting {
-                0.0
-            } else {
-                (phase.speed_mm_s + phase.accel_mm_s2 * along).max(0.0)
-            },
+            feed_mm_s: if resting { 0.0 } else { (phase.speed_mm_s + phase.accel_mm_s2 * along).max(0.0) },
             line: phase.rest.unwrap_or(piece.line),
             cutting: piece.cutting && !resting,
             resting,
@@ -75,8 +71,7 @@ impl Window {
 
     #[inline]
     pub(super) fn nearest(&mut self, point_mm: [f64; 3], tau_lo_s: f64, tau_hi_s: f64) -> Foot {
-        let (Some((lo, _)), Some((hi, _))) = (self.phase_at(tau_lo_s), self.phase_at(tau_hi_s))
-        else {
+        let (Some((lo, _)), Some((hi, _))) = (self.phase_at(tau_lo_s), self.phase_at(tau_hi_s)) else {
             return Foot::nowhere(point_mm);
         };
         let (Some(first), Some(last)) = (self.piece(lo.piece), self.piece(hi.piece)) else {
@@ -89,43 +84,26 @@ impl Window {
             return super::foot(first, first.curve.nearest(point_mm, lo_mm, hi_mm), point_mm);
         }
         let index = |piece: u64| (piece - self.first_piece) as usize;
-        nearest(
-            &self.pieces,
-            Range {
-                first: index(lo.piece),
-                last: index(hi.piece),
-                lo_mm,
-                hi_mm,
-            },
-            point_mm,
-        )
+        nearest(&self.pieces, Range { first: index(lo.piece), last: index(hi.piece), lo_mm, hi_mm }, point_mm)
     }
 
     fn piece(&self, number: u64) -> Option<&Piece> {
-        self.pieces
-            .get(number.checked_sub(self.first_piece)? as usize)
+        self.pieces.get(number.checked_sub(self.first_piece)? as usize)
     }
 
     /// The last phase that starts at `tau_s` or before, or else the first.
     #[inline]
     fn phase_at(&mut self, tau_s: f64) -> Option<(Phase, usize)> {
         let holds = |index: usize| {
-            self.phases
-                .get(index)
-                .is_some_and(|phase| phase.tau_s <= tau_s)
-                && self
-                    .phases
-                    .get(index + 1)
-                    .is_none_or(|next| next.tau_s > tau_s)
+            self.phases.get(index).is_some_and(|phase| phase.tau_s <= tau_s)
+                && self.phases.get(index + 1).is_none_or(|next| next.tau_s > tau_s)
         };
         let index = if holds(self.hint) {
             self.hint
         } else if holds(self.hint + 1) {
             self.hint + 1
         } else {
-            self.phases
-                .partition_point(|phase| phase.tau_s <= tau_s)
-                .saturating_sub(1)
+            self.phases.partition_point(|phase| phase.tau_s <= tau_s).saturating_sub(1)
         };
         self.hint = index;
         self.phases.get(index).map(|phase| (*phase, index))
@@ -140,8 +118,7 @@ fn along(phase: &Phase, tau_s: f64) -> f64 {
 
 #[inline]
 fn local_mm(phase: &Phase, piece: &Piece, along: f64) -> f64 {
-    (phase.from_mm + along * (phase.speed_mm_s + 0.5 * phase.accel_mm_s2 * along))
-        .min(piece.length_mm)
+    (phase.from_mm + along * (phase.speed_mm_s + 0.5 * phase.accel_mm_s2 * along)).min(piece.length_mm)
 }
 
 impl Sample {
