@@ -12,12 +12,14 @@
 //! | `sections.rs` | a piece of the path to sections |
 //! | `joint.rs` | the speed at a joint of two pieces |
 //! | `trapezoid.rs` | member: constant accelerations, time-optimal |
+//! | `unlimited.rs` | null member: every section at its bound |
 //! | `plan.rs` | pieces, spans and events on the clock |
 
 pub mod joint;
 pub mod plan;
 pub mod sections;
 pub mod trapezoid;
+pub mod unlimited;
 
 use crate::gcode::canon::Event;
 use crate::machine;
@@ -176,8 +178,20 @@ pub struct Member {
 }
 
 /// All planners; the first is the one to take when nobody chooses.
-pub const MEMBERS: &[Member] = &[Member {
-    name: "trapezoid",
-    about: "constant tangential acceleration, time-optimal",
-    make: |limits| Box::new(trapezoid::Trapezoid::new(limits.tangential_accel_mm_s2)),
-}];
+pub const MEMBERS: &[Member] = &[
+    Member {
+        name: "trapezoid",
+        about: "constant tangential acceleration, time-optimal",
+        make: |limits| Box::new(trapezoid::Trapezoid::new(limits.tangential_accel_mm_s2)),
+    },
+    Member {
+        name: "unlimited",
+        about: "no bound on tangential acceleration: the least time that any plan can take",
+        make: |_| Box::new(unlimited::Unlimited::default()),
+    },
+];
+
+/// The planner of that name.
+pub fn planner(name: &str) -> Option<&'static Member> {
+    MEMBERS.iter().find(|member| member.name == name)
+}

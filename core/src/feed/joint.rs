@@ -10,6 +10,8 @@
 //!   lines is taken as the corner that it is.
 //! * Jump. The velocity vector jumps by `2 v sin(theta / 2)`, in continuous mode (G64) at most by `corner_jump_mm_s`. A joint
 //!   with `theta` below [`TANGENT_TOLERANCE_RAD`] is tangent-continuous, it has no such limit.
+//! * Tolerance. The P word of G64 allows the tool to cut a corner by as much. It is read and not used: the path is followed
+//!   exactly, corners included, so that the contour error is what is left of the program's own geometry.
 //! * Stop. G61.1 stops at every joint, G61 at those that are not tangent-continuous.
 
 use super::Limits;
