@@ -112,6 +112,18 @@ fn sign_is_left_of_travel() {
     assert!(reference.nearest([10.0, 9.9, 0.0], 0.0, 2.0).signed_mm < 0.0);
 }
 
+#[test]
+fn before_the_start_is_the_start() {
+    for tau in [-1.0, f64::NAN, f64::NEG_INFINITY] {
+        let mut reference = Reference::new(program(5, 10, 3.0), &LIMITS).unwrap();
+        let first = reference.at(tau);
+        assert_eq!(first, reference.at(0.0));
+        assert!(first.cutting && !first.resting);
+        let mut reference = Reference::new(program(5, 10, 3.0), &LIMITS).unwrap();
+        assert_eq!(reference.nearest([0.1, 0.0, 0.0], tau, tau).s_mm, 0.0);
+    }
+}
+
 /// Chords of a wavy line, endless in effect.
 fn tiny_segments(count: u32) -> impl Iterator<Item = Canon> + Send {
     let at = |i: u32| [0.002 * f64::from(i), (0.002 * f64::from(i)).sin(), 0.0];

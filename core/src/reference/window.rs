@@ -6,6 +6,9 @@ use crate::feed::Phase;
 use crate::path::Piece;
 use std::collections::VecDeque;
 
+/// Times that a servo period looks at: two or three samples, and both ends of the range for the nearest point.
+const HINTS: usize = 6;
+
 /// Pieces and phases in order, the oldest forgotten.
 #[derive(Debug, Default)]
 pub(super) struct Window {
@@ -13,8 +16,9 @@ pub(super) struct Window {
     /// Number of the first piece kept.
     first_piece: u64,
     phases: VecDeque<Phase>,
-    /// Index of the phase found last: where to look first, never what to answer.
-    hint: usize,
+    /// Indices of phases found before: where to look first, never what to answer. A control loop looks at a few times that
+    /// move on together; each comes to have a hint of its own.
+    hints: [usize; HINTS],
 }
 
 impl Window {
@@ -34,7 +38,9 @@ impl Window {
     pub(super) fn forget_before(&mut self, tau_s: f64) {
         while self.phases.len() > 1 && self.phases[1].tau_s <= tau_s {
             self.phases.pop_front();
-            self.hint = self.hint.saturating_sub(1);
+            for hint in &mut self.hints {
+                *hint = hint.saturating_sub(1);
+            }
         }
         let Some(first) = self.phases.front() else {
             return;
@@ -92,21 +98,33 @@ impl Window {
     }
 
     /// The last phase that starts at `tau_s` or before, or else the first.
+    ///
+    /// Looks ahead from the hint nearest before, in steps that double, and then halves.
     #[inline]
     fn phase_at(&mut self, tau_s: f64) -> Option<(Phase, usize)> {
-        let holds = |index: usize| {
-            self.phases.get(index).is_some_and(|phase| phase.tau_s <= tau_s)
-                && self.phases.get(index + 1).is_none_or(|next| next.tau_s > tau_s)
-        };
-        let index = if holds(self.hint) {
-            self.hint
-        } else if holds(self.hint + 1) {
-            self.hint + 1
-        } else {
-            self.phases.partition_point(|phase| phase.tau_s <= tau_s).saturating_sub(1)
-        };
-        self.hint = index;
-        self.phases.get(index).map(|phase| (*phase, index))
+        let starts_by = |index: usize| self.phases.get(index).is_some_and(|phase| phase.tau_s <= tau_s);
+        let mut slot = None;
+        let mut lo = 0;
+        for (candidate, &hint) in self.hints.iter().enumerate() {
+            if hint >= lo && starts_by(hint) {
+                (slot, lo) = (Some(candidate), hint);
+            }
+        }
+        let mut step = 1;
+        while starts_by(lo + step) {
+            lo += step;
+            step *= 2;
+        }
+        while step > 1 {
+            step /= 2;
+            if starts_by(lo + step) {
+                lo += step;
+            }
+        }
+        if let Some(slot) = slot {
+            self.hints[slot] = lo;
+        }
+        self.phases.get(lo).map(|phase| (*phase, lo))
     }
 }
 
