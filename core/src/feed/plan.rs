@@ -92,11 +92,6 @@ impl<'p> Plan<'p> {
         self.fault.as_ref()
     }
 
-    /// Plan time of all that has been handed out or is ready, s.
-    pub fn planned_s(&self) -> f64 {
-        self.clock.total()
-    }
-
     fn read_step(&mut self) {
         match self.steps.next() {
             Some(Ok(Step::Piece(piece))) => self.piece(piece),
