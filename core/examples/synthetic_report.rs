@@ -80,8 +80,7 @@ fn run(job: &Job, name: &str, lag_s: [f64; 3]) -> io::Result<Run> {
         machine: "made-up lag".to_owned(),
         part: job.name.to_owned(),
         axes: job.axes,
-        time_s,
-        ..RunFacts::default()
+        run: feedwright::simulate::Run { time_s, ..Default::default() },
     };
     let text = |line: u32| format!("N{line} G1 X1 Y2 (</script><img src=x onerror=alert(1)> & \"quoted\")");
     let event =

@@ -5,6 +5,7 @@
 //!
 //! The modules stand in the order in which data flows; each uses only those above it.
 
+pub mod output;
 pub mod machine;
 pub mod gcode;
 pub mod path;
@@ -16,4 +17,5 @@ pub mod simulate;
 pub mod identify;
 pub mod controllers;
 pub mod report;
+pub mod pipeline;
 pub mod paper;

@@ -25,7 +25,7 @@ const LAG_TIME_CONSTANTS: f64 = 8.0;
 const LEAD_S: f64 = 0.05;
 
 /// What a run says about itself beyond its rows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Run {
     /// How it ended.
     pub outcome: Outcome,
@@ -56,13 +56,7 @@ pub fn simulate<const N: usize>(
     let mut tick = Tick::<N>::new(servo_s, controller.schedule(), machine.limits.max_deviation_mm);
     let mut plant = Plant::<N>::new(machine, start_mm);
     let mut tool_mm = start_mm;
-    let mut run = Run {
-        outcome: Outcome::Completed,
-        time_s: 0.0,
-        arrival_s: 0.0,
-        most_entries: 0,
-        ticks: TickTimes::default(),
-    };
+    let mut run = Run::default();
     let mut ended: Option<f64> = None;
     let mut last_tau_s = 0.0;
     for n in 0_u64.. {
@@ -108,6 +102,11 @@ pub fn simulate<const N: usize>(
             contour_error_mm: if N == 2 { foot.signed_mm } else { foot.distance_mm },
             corrected_mm: spread(setpoint.command_mm),
         };
+        while let Some(timed) = reference.next_event(setpoint.tau_s) {
+            for sink in sinks.iter_mut() {
+                sink.event(t_s, &timed.event)?;
+            }
+        }
         for sink in sinks.iter_mut() {
             sink.row(&row)?;
         }

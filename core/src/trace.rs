@@ -1,6 +1,10 @@
 //! What a run leaves behind: one [`Row`] per servo period, handed to every [`Sink`] that wants it.
 
+pub mod csv;
+
 use serde::Serialize;
+
+use crate::gcode::canon::Event;
 
 /// One servo period of a run. Two-axis runs leave the third component at zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,4 +54,13 @@ pub trait Sink {
     /// # Errors
     /// Where the sink writes to a file that takes no more.
     fn row(&mut self, row: &Row) -> std::io::Result<()>;
+
+    /// Takes an event of the program, at the time at which the command came to it, before the rows from then on.
+    ///
+    /// # Errors
+    /// As [`Sink::row`].
+    fn event(&mut self, t_s: f64, event: &Event) -> std::io::Result<()> {
+        let _ = (t_s, event);
+        Ok(())
+    }
 }

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::statistics::Histogram;
 use super::worst::WorstPlace;
+use crate::simulate::Run;
 use crate::trace::Outcome;
 
 /// What [`Statistics`](super::Statistics) cannot see in the rows of a run.
@@ -17,10 +18,8 @@ pub struct RunFacts {
     pub part: String,
     /// Axes of the machine, 2 or 3.
     pub axes: usize,
-    /// Machining time: when the command has ended, s.
-    pub time_s: f64,
-    /// How the run ended.
-    pub outcome: Outcome,
+    /// What the loop says about the run.
+    pub run: Run,
 }
 
 /// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions.
@@ -52,10 +51,15 @@ pub struct RunSummary {
     pub cutting_time_s: f64,
     /// Servo periods simulated.
     pub rows: u64,
-    /// Mean computing time of one controller tick, ns, where it was measured. Not shown on the page, which must not
-    /// depend on the computer.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tick_ns: Option<f64>,
+    /// When the tool has arrived at the end, s.
+    pub arrival_s: f64,
+    /// Computing time of the ticks in which the controller decides, us: half of them take less. Not shown on the page,
+    /// which must not depend on the computer.
+    pub tick_median_us: f64,
+    /// 99.9 % of them take less, us.
+    pub tick_p999_us: f64,
+    /// The most register entries that one estimate of the contour error looked at.
+    pub most_register_entries: usize,
     /// Largest contour errors, largest first, each place once.
     pub worst: Vec<WorstPlace>,
     /// Distribution of the contour error.

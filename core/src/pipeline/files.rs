@@ -1,0 +1,183 @@
+//! The files that a job writes, all of them or none.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::job::{Error, Job};
+use crate::gcode::canon::{Event, EventKind};
+use crate::output::{OutputError, OutputFile};
+use crate::report::{Report, RunSummary, TimelineEvent, write_html};
+use crate::trace::csv::{SetpointWriter, TraceWriter};
+use crate::trace::{Row, Sink};
+
+/// Where to write what; `None` is not written.
+#[derive(Debug, Clone, Default)]
+pub struct Outputs {
+    /// The page.
+    pub report: Option<PathBuf>,
+    /// All results as JSON.
+    pub json: Option<PathBuf>,
+    /// One row per servo period of the last run.
+    pub trace: Option<PathBuf>,
+    /// The corrected command of the last run: setpoints (`.csv`) or G-code (`.ngc`).
+    pub out: Option<PathBuf>,
+}
+
+/// What `--out` writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Setpoints,
+    Gcode,
+}
+
+impl Outputs {
+    fn form(path: &Path) -> Result<Form, Error> {
+        let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+        match ending.as_deref() {
+            Some("csv") => Ok(Form::Setpoints),
+            Some("ngc" | "nc" | "gcode" | "tap") => Ok(Form::Gcode),
+            _ => Err(Error::Ending { path: path.to_owned() }),
+        }
+    }
+}
+
+impl Job {
+    /// Refuses values out of range, and outputs of no known form.
+    pub(super) fn check_values(&self) -> Result<(), Error> {
+        let positive = |name, value: Option<f64>, unit, bounds| match value {
+            Some(value) if !(value > 0.0 && value <= 1e6) => Err(Error::Value { name, value, unit, bounds }),
+            _ => Ok(()),
+        };
+        positive("--feed", self.feed_mm_s, "mm/s", "above 0 and up to 1e6 mm/s")?;
+        positive("--tolerance", self.tolerance_um, "um", "above 0 and up to 1e6 um")?;
+        if let Some(value) = self.choices.rho.filter(|rho| !(0.0..=0.1).contains(rho)) {
+            return Err(Error::Value { name: "--rho", value, unit: "(scaled)", bounds: "from 0 to 0.1" });
+        }
+        if let Some(out) = &self.outputs.out {
+            Outputs::form(out)?;
+        }
+        Ok(())
+    }
+}
+
+/// The files of a job while they are written.
+pub(super) struct Files {
+    report: Option<OutputFile>,
+    json: Option<OutputFile>,
+    trace: Option<TraceWriter<OutputFile>>,
+    setpoints: Option<SetpointWriter<OutputFile>>,
+}
+
+impl Files {
+    /// Starts all of them, so that a place that cannot be written is known before the part is cut.
+    pub(super) fn create(job: &Job, axes: usize) -> Result<Self, Error> {
+        let outputs = &job.outputs;
+        let inputs: Vec<&Path> = job.inputs.iter().chain([&job.part]).map(PathBuf::as_path).collect();
+        let start = |path: &Option<PathBuf>| path.as_deref().map(|path| OutputFile::create(path, &inputs)).transpose();
+        let form = outputs.out.as_deref().map(Outputs::form).transpose()?;
+        let out = |wanted: Form| start(&outputs.out.clone().filter(|_| form == Some(wanted)));
+        Ok(Self {
+            report: start(&outputs.report)?,
+            json: start(&outputs.json)?,
+            trace: start(&outputs.trace)?.map(|output| TraceWriter::new(output, axes)).transpose()?,
+            setpoints: out(Form::Setpoints)?.map(|output| SetpointWriter::new(output, axes)).transpose()?,
+        })
+    }
+
+    /// Writes the rest and moves all files to their places.
+    pub(super) fn finish(self, job: &Job, report: &Report) -> Result<(), Error> {
+        let mut complete = Vec::new();
+        let named = |path: &Path| { let path = path.to_owned(); move |cause| OutputError::from_io(cause, &path) };
+        if let Some(mut output) = self.report {
+            write_html(&mut output, report).map_err(named(output.path()))?;
+            complete.push(output);
+        }
+        if let Some(mut output) = self.json {
+            write_json(&mut output, job, report).map_err(named(output.path()))?;
+            complete.push(output);
+        }
+        complete.extend(self.trace.map(TraceWriter::finish).transpose()?);
+        complete.extend(self.setpoints.map(SetpointWriter::finish).transpose()?);
+        complete.into_iter().try_for_each(OutputFile::commit)?;
+        Ok(())
+    }
+}
+
+impl Sink for Files {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        self.trace.as_mut().map_or(Ok(()), |sink| sink.row(row))?;
+        self.setpoints.as_mut().map_or(Ok(()), |sink| sink.row(row))
+    }
+}
+
+/// All results: `runs` and what they were made with.
+#[derive(Serialize)]
+struct Results<'a> {
+    version: &'static str,
+    part: &'a str,
+    tolerance_um: Option<f64>,
+    within_tolerance: bool,
+    settings: std::collections::BTreeMap<&'a str, &'a str>,
+    machine: &'a crate::machine::Machine,
+    runs: Vec<&'a RunSummary>,
+}
+
+fn write_json(out: &mut impl io::Write, job: &Job, report: &Report) -> io::Result<()> {
+    let results = Results {
+        version: env!("CARGO_PKG_VERSION"),
+        part: &report.part,
+        tolerance_um: job.tolerance_um,
+        within_tolerance: job.within_tolerance(report),
+        settings: report.settings.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect(),
+        machine: &job.machine,
+        runs: report.runs.iter().map(|run| &run.summary).collect(),
+    };
+    serde_json::to_writer_pretty(&mut *out, &results)?;
+    out.write_all(b"\n")
+}
+
+/// Most events that the page shows: more than that nobody reads, and a program may have millions.
+const MOST_EVENTS: usize = 500;
+
+/// The events of a run, for the page.
+#[derive(Debug, Default)]
+pub(super) struct Timeline {
+    pub(super) events: Vec<TimelineEvent>,
+}
+
+impl Sink for Timeline {
+    fn row(&mut self, _: &Row) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn event(&mut self, t_s: f64, event: &Event) -> io::Result<()> {
+        let duration_s = if let EventKind::Dwell { seconds } = event.kind { seconds } else { 0.0 };
+        if self.events.len() < MOST_EVENTS {
+            self.events.push(TimelineEvent { t_s, duration_s, line: event.line, label: label(&event.kind) });
+        }
+        Ok(())
+    }
+}
+
+fn label(kind: &EventKind) -> String {
+    match kind {
+        EventKind::Dwell { seconds } => format!("dwell {seconds} s"),
+        EventKind::SpindleSpeed { rpm } => format!("spindle speed {rpm} rev/min"),
+        EventKind::MCode { code, .. } => match code {
+            0 => "M0 program stop".to_owned(),
+            1 => "M1 optional stop".to_owned(),
+            3 => "M3 spindle clockwise".to_owned(),
+            4 => "M4 spindle counter-clockwise".to_owned(),
+            5 => "M5 spindle stop".to_owned(),
+            6 => "M6 tool change".to_owned(),
+            7 => "M7 mist coolant".to_owned(),
+            8 => "M8 flood coolant".to_owned(),
+            9 => "M9 coolant off".to_owned(),
+            other => format!("M{other}"),
+        },
+        EventKind::ToolSelect { tool } => format!("T{tool} selected"),
+        EventKind::ProgramEnd => "program end".to_owned(),
+    }
+}
