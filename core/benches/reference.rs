@@ -7,15 +7,16 @@ mod common;
 use common::{BLEND, LIMITS, Random, line};
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use feedwright::gcode::canon::Canon;
+use feedwright::gcode::canon::{Canon, Motion, MotionKind, Others, Shape, Spline};
 use feedwright::path::contour::contour;
 use feedwright::reference::Reference;
+use std::sync::Arc;
 
 fn main() {
     divan::main();
 }
 
-const NAMES: [&str; 5] = ["line", "circle", "ellipse", "star", "10 um chords"];
+const NAMES: [&str; 6] = ["line", "circle", "ellipse", "star", "spline", "10 um chords"];
 
 /// Chords of 10 um of a gentle wave.
 fn chords(count: u32) -> impl Iterator<Item = Canon> + Send {
@@ -23,16 +24,35 @@ fn chords(count: u32) -> impl Iterator<Item = Canon> + Send {
     (0..count).map(move |i| line(at(i), at(i + 1), 50.0, BLEND))
 }
 
+/// A cubic spline through a wave of 5 mm, 100 mm long.
+fn wave() -> Canon {
+    const POINTS: usize = 40;
+    let control_mm: Vec<[f64; 3]> =
+        (0..POINTS).map(|i| i as f64).map(|i| [2.5 * i, 5.0 * (0.5 * i).sin(), 0.0]).collect();
+    let knots = (0..POINTS + 4).map(|i| (i.clamp(3, POINTS) - 3) as f64).collect();
+    Canon::Motion(Motion {
+        line: 1,
+        kind: MotionKind::Feed,
+        start_mm: control_mm[0],
+        end_mm: control_mm[POINTS - 1],
+        shape: Shape::Spline(Arc::new(Spline { degree: 3, knots, control_mm, weights: vec![1.0; POINTS] })),
+        feed_mm_s: 50.0,
+        corner: BLEND,
+        others: Others::default(),
+    })
+}
+
 fn reference(name: &str) -> Reference<'static> {
     let reference = match name {
-        "line" => Reference::new(
-            vec![line([0.0; 3], [100.0, 50.0, 0.0], 50.0, BLEND)],
+        "line" => Reference::new(vec![line([0.0; 3], [100.0, 50.0, 0.0], 50.0, BLEND)], &LIMITS),
+        "spline" => Reference::new([wave()], &LIMITS),
+        "10 um chords" => Reference::new(chords(10_000), &LIMITS),
+        _ => Reference::from_steps(
+            contour(name).expect("a name of the table").steps(50.0, BLEND).expect("a feed"),
             &LIMITS,
         ),
-        "10 um chords" => Reference::new(chords(10_000), &LIMITS),
-        _ => Reference::from_steps(contour(name).unwrap().steps(50.0, BLEND).unwrap(), &LIMITS),
     };
-    reference.unwrap()
+    reference.expect("limits are sound")
 }
 
 /// 1000 servo periods, three looks each: here and up to 50 ms ahead.
@@ -69,11 +89,7 @@ fn nearest(bencher: Bencher<'_, '_>, name: &str) {
     bencher.counter(ItemsCount::new(1000usize)).bench_local(|| {
         points
             .iter()
-            .map(|&(tau_s, point)| {
-                reference
-                    .nearest(point, tau_s - 0.05, tau_s + 0.05)
-                    .distance_mm
-            })
+            .map(|&(tau_s, point)| reference.nearest(point, tau_s - 0.05, tau_s + 0.05).distance_mm)
             .sum::<f64>()
     });
 }
@@ -82,7 +98,7 @@ fn nearest(bencher: Bencher<'_, '_>, name: &str) {
 #[divan::bench(args = [1_000, 10_000, 100_000])]
 fn plan_chords(bencher: Bencher<'_, '_>, count: u32) {
     bencher.counter(ItemsCount::new(count)).bench_local(|| {
-        let mut reference = Reference::new(chords(count), &LIMITS).unwrap();
+        let mut reference = Reference::new(chords(count), &LIMITS).expect("limits are sound");
         let mut tau_s = 0.0;
         while reference.end_s().is_none() {
             reference.at(tau_s);
@@ -94,7 +110,7 @@ fn plan_chords(bencher: Bencher<'_, '_>, count: u32) {
 }
 
 /// Tables of arc length and sections of a smooth curve.
-#[divan::bench(args = ["ellipse", "eight", "star"])]
+#[divan::bench(args = ["ellipse", "eight", "star", "spline"])]
 fn plan_contour(name: &str) -> f64 {
     reference(name).read_to_end_s()
 }

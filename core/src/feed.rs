@@ -12,12 +12,14 @@
 //! | `sections.rs` | a piece of the path to sections |
 //! | `joint.rs` | the speed at a joint of two pieces |
 //! | `trapezoid.rs` | member: constant accelerations, time-optimal |
+//! | `unlimited.rs` | null member: every section at its bound |
 //! | `plan.rs` | pieces, spans and events on the clock |
 
 pub mod joint;
 pub mod plan;
 pub mod sections;
 pub mod trapezoid;
+pub mod unlimited;
 
 use crate::gcode::canon::Event;
 use crate::machine;
@@ -76,20 +78,12 @@ impl Limits {
         // From 1e-6 to 1e9 nothing under- or overflows, and no machine lies outside.
         for (name, value) in positive {
             if !(1e-6..=1e9).contains(&value) {
-                return Err(LimitsError {
-                    name,
-                    value,
-                    bound: "from 1e-6 to 1e9",
-                });
+                return Err(LimitsError { name, value, bound: "from 1e-6 to 1e9" });
             }
         }
         if !(0.0..=1e9).contains(&self.corner_jump_mm_s) {
             let value = self.corner_jump_mm_s;
-            return Err(LimitsError {
-                name: "corner_jump_mm_s",
-                value,
-                bound: "from 0 to 1e9",
-            });
+            return Err(LimitsError { name: "corner_jump_mm_s", value, bound: "from 0 to 1e9" });
         }
         Ok(())
     }
@@ -184,8 +178,20 @@ pub struct Member {
 }
 
 /// All planners; the first is the one to take when nobody chooses.
-pub const MEMBERS: &[Member] = &[Member {
-    name: "trapezoid",
-    about: "constant tangential acceleration, time-optimal",
-    make: |limits| Box::new(trapezoid::Trapezoid::new(limits.tangential_accel_mm_s2)),
-}];
+pub const MEMBERS: &[Member] = &[
+    Member {
+        name: "trapezoid",
+        about: "constant tangential acceleration, time-optimal",
+        make: |limits| Box::new(trapezoid::Trapezoid::new(limits.tangential_accel_mm_s2)),
+    },
+    Member {
+        name: "unlimited",
+        about: "no bound on tangential acceleration: the least time that any plan can take",
+        make: |_| Box::new(unlimited::Unlimited::default()),
+    },
+];
+
+/// The planner of that name.
+pub fn planner(name: &str) -> Option<&'static Member> {
+    MEMBERS.iter().find(|member| member.name == name)
+}

@@ -9,6 +9,7 @@
 //! | `line.rs` | straight line |
 //! | `arc.rs` | circular arc and helix |
 //! | `smooth.rs` | any smooth parametric curve, by a table of arc length |
+//! | `spline.rs` | rational B-spline, as smooth curves |
 //! | `contour.rs` | the closed-form contours of the benchmark |
 //! | `pieces.rs` | motions to pieces |
 //! | `arcs.rs` | an arc motion to arcs that meet both of its ends |
@@ -20,6 +21,7 @@ pub mod contour;
 pub mod line;
 pub mod pieces;
 pub mod smooth;
+pub mod spline;
 pub(crate) mod vector;
 
 use crate::gcode::canon::{Corner, Event};
@@ -39,6 +41,9 @@ pub const MAX_GAP_MM: f64 = 1e-6;
 
 /// Feedrates below this are refused: 1 mm would take eleven days.
 pub const MIN_FEED_MM_S: f64 = 1e-6;
+
+/// The tool rests for no longer than this at a time, s: thirty years, beyond which plan time would lose its milliseconds.
+pub const MAX_REST_S: f64 = 1e9;
 
 /// Arc length of a nearest point is exact to this.
 pub const NEAREST_TOLERANCE_MM: f64 = 1e-9;
@@ -131,6 +136,13 @@ pub enum Step {
     Piece(Piece),
     /// Something else happens.
     Event(Event),
+    /// The tool stands still while something else moves: a rotary axis, an extruder.
+    Rest {
+        /// Line of the program.
+        line: u32,
+        /// How long.
+        seconds: f64,
+    },
 }
 
 /// Steps in program order; the first error ends the path.
@@ -149,9 +161,7 @@ pub enum PathError {
         value_mm: f64,
     },
     /// The motion does not start where the one before ended.
-    #[error(
-        "line {line}: the motion starts {gap_mm} mm away from the end of the one before, limit {MAX_GAP_MM:e} mm"
-    )]
+    #[error("line {line}: the motion starts {gap_mm} mm away from the end of the one before, limit {MAX_GAP_MM:e} mm")]
     Gap {
         /// Line of the program.
         line: u32,
@@ -190,8 +200,8 @@ pub enum PathError {
         /// What is wrong with it.
         what: String,
     },
-    /// A dwell of negative or no duration.
-    #[error("line {line}: dwell of {seconds} s is not a duration")]
+    /// A dwell that is negative, endless, or not a number.
+    #[error("line {line}: a dwell of {seconds} s is not between 0 and {MAX_REST_S:e} s")]
     Dwell {
         /// Line of the program.
         line: u32,

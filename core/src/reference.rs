@@ -79,10 +79,7 @@ impl<'p> Reference<'p> {
         source: impl IntoIterator<Item = Canon, IntoIter: Send + 'p>,
         limits: &Limits,
     ) -> Result<Self, LimitsError> {
-        Ok(Self::from_plan(Plan::new(
-            Box::new(Pieces::new(source.into_iter())),
-            limits,
-        )?))
+        Ok(Self::from_plan(Plan::new(Box::new(Pieces::new(source.into_iter())), limits)?))
     }
 
     /// The reference of a path, such as a [contour](crate::path::contour).
@@ -93,41 +90,27 @@ impl<'p> Reference<'p> {
         steps: impl IntoIterator<Item = Step, IntoIter: Send + 'p>,
         limits: &Limits,
     ) -> Result<Self, LimitsError> {
-        Ok(Self::from_plan(Plan::new(
-            Box::new(steps.into_iter().map(Ok)),
-            limits,
-        )?))
+        Ok(Self::from_plan(Plan::new(Box::new(steps.into_iter().map(Ok)), limits)?))
     }
 
     /// The reference of a plan.
     pub fn from_plan(plan: Plan<'p>) -> Self {
-        Self {
-            plan,
-            window: Window::default(),
-            events: VecDeque::new(),
-            planned_s: 0.0,
-            ended: false,
-        }
+        Self { plan, window: Window::default(), events: VecDeque::new(), planned_s: 0.0, ended: false }
     }
 
     /// Where the reference is at `tau_s`; before the start (or what has been forgotten) at the first point, behind the end
     /// at the last.
     #[inline]
     pub fn at(&mut self, tau_s: f64) -> Sample {
-        if tau_s >= self.planned_s && !self.ended {
-            self.read_until(tau_s);
-        }
+        self.read_until(tau_s);
         self.window.at(tau_s)
     }
 
     /// The point of the path nearest to `point_mm` among those that the reference passes from `tau_lo_s` to `tau_hi_s`.
     #[inline]
     pub fn nearest(&mut self, point_mm: [f64; 3], tau_lo_s: f64, tau_hi_s: f64) -> Foot {
-        if tau_hi_s >= self.planned_s && !self.ended {
-            self.read_until(tau_hi_s);
-        }
-        self.window
-            .nearest(point_mm, tau_lo_s, tau_hi_s.max(tau_lo_s))
+        self.read_until(tau_hi_s);
+        self.window.nearest(point_mm, tau_lo_s, tau_hi_s.max(tau_lo_s))
     }
 
     /// Total plan time, s, once the end of the program has been read.
@@ -148,14 +131,8 @@ impl<'p> Reference<'p> {
 
     /// Takes the next event that happens at `until_s` or before, in order.
     pub fn next_event(&mut self, until_s: f64) -> Option<TimedEvent> {
-        if until_s >= self.planned_s && !self.ended {
-            self.read_until(until_s);
-        }
-        if self.events.front()?.tau_s <= until_s {
-            self.events.pop_front()
-        } else {
-            None
-        }
+        self.read_until(until_s);
+        if self.events.front()?.tau_s <= until_s { self.events.pop_front() } else { None }
     }
 
     /// Drops what ends before `tau_s`: pieces, phases, and events that nobody has taken.
@@ -171,9 +148,18 @@ impl<'p> Reference<'p> {
         self.window.kept()
     }
 
-    #[cold]
+    /// Reads until all phases up to `tau_s` are known, and at least the first: what comes before the start, NaN too, looks at
+    /// that one.
+    #[inline]
     fn read_until(&mut self, tau_s: f64) {
-        // NaN reads nothing.
+        let tau_s = tau_s.max(0.0);
+        if self.planned_s <= tau_s && !self.ended {
+            self.read_on(tau_s);
+        }
+    }
+
+    #[cold]
+    fn read_on(&mut self, tau_s: f64) {
         while self.planned_s <= tau_s && !self.ended {
             match self.plan.next() {
                 Some(Planned::Piece(piece)) => self.window.push_piece(piece),
@@ -203,11 +189,7 @@ fn foot(piece: &Piece, local_mm: f64, point_mm: [f64; 3]) -> Foot {
         tangent: at.tangent,
         line: piece.line,
         distance_mm,
-        signed_mm: if left < 0.0 {
-            -distance_mm
-        } else {
-            distance_mm
-        },
+        signed_mm: if left < 0.0 { -distance_mm } else { distance_mm },
         cutting: piece.cutting,
     }
 }

@@ -26,11 +26,7 @@ fn circle_takes_its_length_over_the_feed_and_one_ramp() {
     let circle = vec![arc([0.0; 3], [0.0; 3], [10.0, 0.0, 0.0], -1, 50.0)];
     let expected = 2.0 * PI * 10.0 / 50.0 + 0.5;
     assert!((plan_s(circle, &LIMITS) - expected).abs() < ROUNDING_S);
-    let mut contour = Reference::from_steps(
-        contour("circle").unwrap().steps(50.0, BLEND).unwrap(),
-        &LIMITS,
-    )
-    .unwrap();
+    let mut contour = Reference::from_steps(contour("circle").unwrap().steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
     assert!((contour.read_to_end_s() - expected).abs() < ROUNDING_S);
 }
 
@@ -89,10 +85,7 @@ fn rapid_runs_at_the_rapid_rate() {
 
 #[test]
 fn feed_is_capped_by_the_machine() {
-    let limits = Limits {
-        max_feed_mm_s: 10.0,
-        ..LIMITS
-    };
+    let limits = Limits { max_feed_mm_s: 10.0, ..LIMITS };
     let long = vec![line([0.0; 3], [10.0, 0.0, 0.0], 50.0, BLEND)];
     assert!((plan_s(long, &limits) - 1.1).abs() < ROUNDING_S);
 }
@@ -106,16 +99,11 @@ fn straight_line_in_a_thousand_blocks_is_a_straight_line() {
 #[test]
 fn circle_in_chords_takes_as_long_as_the_circle() {
     // Radius 1 mm: the normal limit holds the feed at 20 mm/s, hidden in the joints of 2000 chords.
-    let points: Vec<[f64; 3]> = (0..=2000)
-        .map(|i| 2.0 * PI * f64::from(i) / 2000.0)
-        .map(|a: f64| [1.0 - a.cos(), a.sin(), 0.0])
-        .collect();
+    let points: Vec<[f64; 3]> =
+        (0..=2000).map(|i| 2.0 * PI * f64::from(i) / 2000.0).map(|a: f64| [1.0 - a.cos(), a.sin(), 0.0]).collect();
     let time = plan_s(polyline(&points, 50.0, BLEND), &LIMITS);
     // Between joints nothing bounds the speed but the joints ahead and behind: chords rise 0.3 mm2/s2 above 400.
-    assert!(
-        (time / (2.0 * PI / 20.0 + 0.2) - 1.0).abs() < 1e-3,
-        "{time}"
-    );
+    assert!((time / (2.0 * PI / 20.0 + 0.2) - 1.0).abs() < 1e-3, "{time}");
 }
 
 #[test]
@@ -150,12 +138,7 @@ fn dwell_stops_and_holds() {
     assert!(held.resting && !held.cutting && held.line == 6);
     assert_eq!(held.position_mm, [20.0, 0.0, 0.0]);
     let end = reference.at(1e9);
-    assert!(
-        end.resting
-            && end.position_mm == [30.0, 0.0, 0.0]
-            && end.s_mm == 30.0
-            && end.feed_mm_s == 0.0
-    );
+    assert!(end.resting && end.position_mm == [30.0, 0.0, 0.0] && end.s_mm == 30.0 && end.feed_mm_s == 0.0);
 }
 
 #[test]
@@ -163,20 +146,36 @@ fn empty_program_rests_at_the_origin() {
     let mut reference = Reference::new(vec![], &LIMITS).unwrap();
     assert!(reference.at(1.0).resting);
     assert_eq!(reference.end_s(), Some(0.0));
-    assert_eq!(
-        reference.nearest([3.0, 4.0, 0.0], 0.0, 1.0).distance_mm,
-        5.0
-    );
+    assert_eq!(reference.nearest([3.0, 4.0, 0.0], 0.0, 1.0).distance_mm, 5.0);
 }
 
 #[test]
 fn a_fault_ends_the_path_where_it_occurs() {
-    let program = vec![
-        line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND),
-        line([10.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0], 10.0, BLEND),
-    ];
+    let program =
+        vec![line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND), line([10.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0], 10.0, BLEND)];
     let mut reference = Reference::new(program, &LIMITS).unwrap();
     assert!((reference.read_to_end_s() - 1.1).abs() < ROUNDING_S);
     assert!(reference.fault().is_some());
     assert_eq!(reference.at(5.0).position_mm, [10.0, 0.0, 0.0]);
+}
+
+#[test]
+fn the_tool_rests_while_something_else_moves() {
+    let others = Others { extruder_mm: -2.0, axes: None };
+    let turn = Others { extruder_mm: 0.0, axes: Some(Box::new([[0.0; 6], [90.0, 0.0, 0.0, 0.0, 0.0, 0.0]])) };
+    let standing = |others, feed_mm_s| {
+        let Canon::Motion(motion) = line([10.0, 0.0, 0.0], [10.0, 0.0, 0.0], feed_mm_s, BLEND) else { panic!() };
+        Canon::Motion(Motion { others, line: 9, ..motion })
+    };
+    let program = vec![
+        line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND),
+        standing(others, 40.0),
+        standing(turn, 30.0),
+        line([10.0, 0.0, 0.0], [20.0, 0.0, 0.0], 10.0, BLEND),
+    ];
+    let mut reference = Reference::new(program, &LIMITS).unwrap();
+    // 2 mm of filament at 40 mm/s, 90 degrees at 30 degrees/s.
+    assert!((reference.read_to_end_s() - (1.1 + 0.05 + 3.0 + 1.1)).abs() < ROUNDING_S);
+    let standing = reference.at(2.0);
+    assert!(standing.resting && standing.line == 9 && standing.position_mm == [10.0, 0.0, 0.0]);
 }

@@ -10,6 +10,8 @@
 //!   lines is taken as the corner that it is.
 //! * Jump. The velocity vector jumps by `2 v sin(theta / 2)`, in continuous mode (G64) at most by `corner_jump_mm_s`. A joint
 //!   with `theta` below [`TANGENT_TOLERANCE_RAD`] is tangent-continuous, it has no such limit.
+//! * Tolerance. The P word of G64 allows the tool to cut a corner by as much. It is read and not used: the path is followed
+//!   exactly, corners included, so that the contour error is what is left of the program's own geometry.
 //! * Stop. G61.1 stops at every joint, G61 at those that are not tangent-continuous.
 
 use super::Limits;
@@ -43,9 +45,7 @@ pub fn joint_cap(before: &Side, after: &Side, corner: Corner, limits: &Limits) -
         Corner::ExactStop => 0.0,
         _ if theta < TANGENT_TOLERANCE_RAD => f64::INFINITY,
         Corner::ExactPath => 0.0,
-        Corner::Continuous { .. } => {
-            (limits.corner_jump_mm_s / (2.0 * (0.5 * theta).sin())).powi(2)
-        }
+        Corner::Continuous { .. } => (limits.corner_jump_mm_s / (2.0 * (0.5 * theta).sin())).powi(2),
     };
     let (l1, l2) = (before.length_mm, after.length_mm);
     let length_mm = 0.5 * (l1.min(LENGTH_RATIO * l2) + l2.min(LENGTH_RATIO * l1));
@@ -68,11 +68,7 @@ mod tests {
     const BLEND: Corner = Corner::Continuous { tolerance_mm: None };
 
     fn side(direction: f64, length_mm: f64) -> Side {
-        Side {
-            tangent: [direction.cos(), direction.sin(), 0.0],
-            curvature_1_mm: 0.0,
-            length_mm,
-        }
+        Side { tangent: [direction.cos(), direction.sin(), 0.0], curvature_1_mm: 0.0, length_mm }
     }
 
     #[test]
@@ -88,10 +84,7 @@ mod tests {
     fn exact_modes_stop() {
         let straight = (side(0.0, 10.0), side(1e-4, 10.0));
         let bent = (side(0.0, 10.0), side(0.1, 10.0));
-        assert_eq!(
-            joint_cap(&straight.0, &straight.1, Corner::ExactStop, &LIMITS),
-            0.0
-        );
+        assert_eq!(joint_cap(&straight.0, &straight.1, Corner::ExactStop, &LIMITS), 0.0);
         assert!(joint_cap(&straight.0, &straight.1, Corner::ExactPath, &LIMITS) > 2500.0);
         assert_eq!(joint_cap(&bent.0, &bent.1, Corner::ExactPath, &LIMITS), 0.0);
         assert!(joint_cap(&bent.0, &bent.1, BLEND, &LIMITS) > 0.0);
@@ -103,12 +96,7 @@ mod tests {
         // Angles at the centre of two neighbouring chords.
         for (a, b) in [(1e-4, 1e-4), (0.01, 0.02), (0.01, 0.03)] {
             let chord = |angle: f64| 2.0 * radius * (0.5 * angle).sin();
-            let cap = joint_cap(
-                &side(0.0, chord(a)),
-                &side(0.5 * (a + b), chord(b)),
-                BLEND,
-                &LIMITS,
-            );
+            let cap = joint_cap(&side(0.0, chord(a)), &side(0.5 * (a + b), chord(b)), BLEND, &LIMITS);
             assert!((cap / (400.0 * radius) - 1.0).abs() < 1e-4, "{a} {b} {cap}");
         }
     }

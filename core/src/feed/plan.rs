@@ -35,18 +35,25 @@ pub struct Plan<'p> {
     sections: u64,
     /// The next piece starts from rest.
     stop: bool,
-    /// Events with the number of the section that they come before, and where the tool is then.
-    events: VecDeque<(u64, Event, Place)>,
+    /// What happens between pieces, in order.
+    between: VecDeque<Between>,
     clock: ArcLength,
     ready: VecDeque<Planned>,
     fault: Option<PathError>,
     finished: bool,
 }
 
-#[derive(Debug, Clone, Copy)]
-struct Place {
+/// Something between two pieces.
+#[derive(Debug, Clone)]
+struct Between {
+    /// Number of the section that it comes before.
+    section: u64,
+    /// Where the tool is then.
     piece: u64,
     from_mm: f64,
+    event: Option<Event>,
+    /// How long the tool rests, s, and for which line.
+    rest: Option<(f64, u32)>,
 }
 
 impl<'p> Plan<'p> {
@@ -62,11 +69,7 @@ impl<'p> Plan<'p> {
     ///
     /// # Errors
     /// Where a limit is none.
-    pub fn with_planner(
-        steps: Steps<'p>,
-        limits: &Limits,
-        member: &Member,
-    ) -> Result<Self, LimitsError> {
+    pub fn with_planner(steps: Steps<'p>, limits: &Limits, member: &Member) -> Result<Self, LimitsError> {
         limits.check()?;
         Ok(Self {
             steps,
@@ -76,7 +79,7 @@ impl<'p> Plan<'p> {
             pieces: 0,
             sections: 0,
             stop: true,
-            events: VecDeque::new(),
+            between: VecDeque::new(),
             clock: ArcLength::default(),
             ready: VecDeque::new(),
             fault: None,
@@ -89,15 +92,14 @@ impl<'p> Plan<'p> {
         self.fault.as_ref()
     }
 
-    /// Plan time of all that has been handed out or is ready, s.
-    pub fn planned_s(&self) -> f64 {
-        self.clock.total()
-    }
-
     fn read_step(&mut self) {
         match self.steps.next() {
             Some(Ok(Step::Piece(piece))) => self.piece(piece),
             Some(Ok(Step::Event(event))) => self.event(event),
+            Some(Ok(Step::Rest { line, seconds })) => {
+                self.stop = true;
+                self.between(None, Some((seconds, line)));
+            }
             Some(Err(error)) => {
                 self.fault = Some(error);
                 self.finish();
@@ -108,11 +110,8 @@ impl<'p> Plan<'p> {
 
     fn piece(&mut self, piece: Piece) {
         let end = piece.curve.at(piece.length_mm);
-        let side = |tangent, s_mm| Side {
-            tangent,
-            curvature_1_mm: piece.curve.curvature(s_mm),
-            length_mm: piece.length_mm,
-        };
+        let side =
+            |tangent, s_mm| Side { tangent, curvature_1_mm: piece.curve.curvature(s_mm), length_mm: piece.length_mm };
         let cap = match &self.last {
             Some((before, corner, _)) if !self.stop => {
                 let after = side(piece.curve.at(0.0).tangent, 0.0);
@@ -126,11 +125,7 @@ impl<'p> Plan<'p> {
             planner.push(section);
             *count += 1;
         });
-        self.last = Some((
-            side(end.tangent, piece.length_mm),
-            piece.corner,
-            piece.length_mm,
-        ));
+        self.last = Some((side(end.tangent, piece.length_mm), piece.corner, piece.length_mm));
         self.pieces += 1;
         self.ready.push_back(Planned::Piece(piece));
         self.take_spans();
@@ -142,17 +137,20 @@ impl<'p> Plan<'p> {
             EventKind::MCode { code, .. } => !CODES_THAT_DO_NOT_STOP.contains(&code),
             EventKind::SpindleSpeed { .. } | EventKind::ToolSelect { .. } => false,
         };
-        let place = match &self.last {
-            Some((_, _, length_mm)) => Place {
-                piece: self.pieces - 1,
-                from_mm: *length_mm,
-            },
-            None => Place {
-                piece: 0,
-                from_mm: 0.0,
-            },
+        let rest = match event.kind {
+            EventKind::Dwell { seconds } => Some((seconds, event.line)),
+            _ => None,
         };
-        self.events.push_back((self.sections, event, place));
+        self.between(Some(event), rest);
+    }
+
+    fn between(&mut self, event: Option<Event>, rest: Option<(f64, u32)>) {
+        // Before the first piece the tool is at the start of it.
+        let (piece, from_mm) = match &self.last {
+            Some((_, _, length_mm)) => (self.pieces - 1, *length_mm),
+            None => (0, 0.0),
+        };
+        self.between.push_back(Between { section: self.sections, piece, from_mm, event, rest });
     }
 
     fn finish(&mut self) {
@@ -167,59 +165,26 @@ impl<'p> Plan<'p> {
     fn take_spans(&mut self) {
         while let Some(span) = self.planner.pop() {
             self.happen_before(span.section);
-            let Span {
-                piece,
-                from_mm,
-                duration_s,
-                speed_mm_s,
-                accel_mm_s2,
-                ..
-            } = span;
+            let Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, .. } = span;
             let tau_s = self.clock.advance(duration_s);
-            let phase = Phase {
-                tau_s,
-                duration_s,
-                piece,
-                from_mm,
-                speed_mm_s,
-                accel_mm_s2,
-                rest: None,
-            };
+            let phase = Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, rest: None };
             self.ready.push_back(Planned::Phase(phase));
         }
     }
 
-    /// Hands out the events that come before a section.
+    /// Hands out what comes before a section.
     fn happen_before(&mut self, section: u64) {
-        while self
-            .events
-            .front()
-            .is_some_and(|(before, ..)| *before <= section)
-        {
-            let Some((_, event, place)) = self.events.pop_front() else {
+        while self.between.front().is_some_and(|between| between.section <= section) {
+            let Some(Between { piece, from_mm, event, rest, .. }) = self.between.pop_front() else {
                 return;
             };
-            let rest = match event.kind {
-                EventKind::Dwell { seconds } if seconds > 0.0 => Some((seconds, event.line)),
-                _ => None,
-            };
-            self.ready.push_back(Planned::Event(TimedEvent {
-                tau_s: self.clock.total(),
-                event,
-            }));
-            if let Some((duration_s, line)) = rest {
+            if let Some(event) = event {
+                self.ready.push_back(Planned::Event(TimedEvent { tau_s: self.clock.total(), event }));
+            }
+            if let Some((duration_s, line)) = rest.filter(|(seconds, _)| *seconds > 0.0) {
                 let tau_s = self.clock.advance(duration_s);
-                let Place { piece, from_mm } = place;
                 let (speed_mm_s, accel_mm_s2, rest) = (0.0, 0.0, Some(line));
-                let phase = Phase {
-                    tau_s,
-                    duration_s,
-                    piece,
-                    from_mm,
-                    speed_mm_s,
-                    accel_mm_s2,
-                    rest,
-                };
+                let phase = Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, rest };
                 self.ready.push_back(Planned::Phase(phase));
             }
         }

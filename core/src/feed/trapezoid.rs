@@ -14,13 +14,14 @@
 //! exact from there on back; if it is not, F rose to it at full acceleration from a cap, and B is not below F on the way.
 //! So all sections before the last such joint are committed, to the last bit what unlimited look-ahead gives. The pass
 //! runs each time the number of waiting sections has doubled, which makes the work linear; it stays bounded because
-//! the waiting length cannot exceed the braking distance for long. Should [`MAX_WAITING`] sections be
-//! shorter than that, the first half is committed so that the motion could stop at the end of the last: slower, and safe.
+//! the waiting length cannot exceed the braking distance for long. Should half of [`MAX_WAITING`] sections be shorter than
+//! that, half of those that wait are committed so that the motion could stop at the end of the last: slower, and safe.
 
 use super::{FeedPlanner, Section, Span};
 use std::collections::VecDeque;
 
-/// Sections that may wait; 16 times those that wait in the finest programs known (1 um blocks, 50 mm/s, 0.3 g), and 6 MB.
+/// Sections that may wait: twice two and a half times the braking distance from 50 mm/s at 100 mm/s2 (12.5 mm) in blocks of 1 um, finer than
+/// any program of use, and 5 MB. Fewer would slow such programs down, more would only cost memory.
 pub const MAX_WAITING: usize = 65_536;
 
 /// Sections to collect before the first backward pass; fewer would run it too often for nothing.
@@ -86,10 +87,7 @@ impl Trapezoid {
 
     /// Last joint whose speed is final.
     fn last_final(&self) -> usize {
-        self.waiting
-            .iter()
-            .rposition(|waiting| waiting.forward <= waiting.backward)
-            .unwrap_or(0)
+        self.waiting.iter().rposition(|waiting| waiting.forward <= waiting.backward).unwrap_or(0)
     }
 
     /// Makes spans of the first `count` sections.
@@ -97,17 +95,14 @@ impl Trapezoid {
         for i in 0..count {
             let waiting = self.waiting[i];
             let before = waiting.forward.min(waiting.backward);
-            let after = self
-                .waiting
-                .get(i + 1)
-                .map_or(0.0, |next| next.forward.min(next.backward));
+            let after = self.waiting.get(i + 1).map_or(0.0, |next| next.forward.min(next.backward));
             self.spans(self.first + i as u64, &waiting.section, before, after);
         }
         self.waiting.drain(..count);
         self.first += count as u64;
     }
 
-    /// The look-ahead is full: commits the first half as if the motion ended behind the last section, and goes on
+    /// The look-ahead is full: commits half as if the motion ended behind the last section, and goes on
     /// from the speed that this gives.
     fn commit_half(&mut self) {
         let count = self.waiting.len() / 2;
@@ -130,16 +125,8 @@ impl Trapezoid {
         let two_a = 2.0 * self.accel_mm_s2;
         let slope = (section.end_cap - section.start_cap) / length;
         // Where the line up meets the bound, and how far from the end the line down does.
-        let up = if two_a > slope {
-            (section.start_cap - before) / (two_a - slope)
-        } else {
-            f64::INFINITY
-        };
-        let down = if two_a > -slope {
-            (section.end_cap - after) / (two_a + slope)
-        } else {
-            f64::INFINITY
-        };
+        let up = if two_a > slope { (section.start_cap - before) / (two_a - slope) } else { f64::INFINITY };
+        let down = if two_a > -slope { (section.end_cap - after) / (two_a + slope) } else { f64::INFINITY };
         let (up, top) = if up + down <= length {
             (up.max(0.0), length - down.max(0.0))
         } else {
@@ -154,11 +141,7 @@ impl Trapezoid {
             if along <= 0.0 {
                 continue;
             }
-            let end = if to < length {
-                (speed * speed + slope * along).max(0.0).sqrt()
-            } else {
-                after.sqrt()
-            };
+            let end = if to < length { (speed * speed + slope * along).max(0.0).sqrt() } else { after.sqrt() };
             let duration_s = 2.0 * along / (speed + end);
             if duration_s > 0.0 && duration_s.is_finite() {
                 self.ready.push_back(Span {
@@ -179,30 +162,19 @@ impl FeedPlanner for Trapezoid {
     fn push(&mut self, section: Section) {
         let (cap, forward) = match self.waiting.back() {
             Some(last) => {
-                let cap = section
-                    .joint_cap
-                    .min(last.section.end_cap)
-                    .min(section.start_cap);
-                (
-                    cap,
-                    cap.min(self.gain(last.forward, last.section.length_mm)),
-                )
+                let cap = section.joint_cap.min(last.section.end_cap).min(section.start_cap);
+                (cap, cap.min(self.gain(last.forward, last.section.length_mm)))
             }
             // Only the very first section finds nobody waiting: a commit always keeps the last section.
             None => (0.0, 0.0),
         };
-        self.waiting.push_back(Waiting {
-            section,
-            cap,
-            forward,
-            backward: 0.0,
-        });
+        self.waiting.push_back(Waiting { section, cap, forward, backward: 0.0 });
         if self.waiting.len() >= self.next_pass {
+            let full = self.waiting.len() >= self.max_waiting;
             self.backward_pass();
-            let count = self.last_final();
-            if count > 0 {
-                self.commit(count);
-            } else if self.waiting.len() >= self.max_waiting {
+            self.commit(self.last_final());
+            // Short of half the room, the next pass would come too soon, and the work would no longer be linear.
+            if full && self.waiting.len() > self.max_waiting / 2 {
                 self.commit_half();
             }
             self.next_pass = (2 * self.waiting.len() + BATCH).min(self.max_waiting);

@@ -38,13 +38,7 @@ impl Arc {
     /// The arc that starts at `start_mm`, turns by `sweep_rad` (positive is counter-clockwise seen from the plane's positive
     /// normal) about the centre at `to_center_mm` (first and second axis of `plane`) from the start, and rises by
     /// `rise_mm`.
-    pub(super) fn new(
-        start_mm: Vector,
-        to_center_mm: [f64; 2],
-        plane: Plane,
-        sweep_rad: f64,
-        rise_mm: f64,
-    ) -> Self {
+    pub(super) fn new(start_mm: Vector, to_center_mm: [f64; 2], plane: Plane, sweep_rad: f64, rise_mm: f64) -> Self {
         let [first, second, normal] = plane.axes();
         let radius_mm = to_center_mm[0].hypot(to_center_mm[1]);
         let inward = [to_center_mm[0] / radius_mm, to_center_mm[1] / radius_mm];
@@ -103,16 +97,11 @@ impl Arc {
         let mut position_mm = [0.0; 3];
         let mut tangent = [0.0; 3];
         for k in 0..3 {
-            position_mm[k] = self.start_mm[k]
-                + across * self.tangent0[k]
-                + inward * self.normal0[k]
-                + s_mm * self.rise[k];
+            position_mm[k] =
+                self.start_mm[k] + across * self.tangent0[k] + inward * self.normal0[k] + s_mm * self.rise[k];
             tangent[k] = forward * self.tangent0[k] + sideways * self.normal0[k] + self.rise[k];
         }
-        Point {
-            position_mm,
-            tangent,
-        }
+        Point { position_mm, tangent }
     }
 
     /// Arc length of the nearest point between the bounds.
@@ -124,8 +113,7 @@ impl Arc {
         let outward = self.radius_mm - dot(from_start, self.normal0);
         let bearing = across.atan2(outward);
         let s_mm = if self.rise == [0.0; 3] {
-            nearest_angle(bearing, self.turn_rad_mm * lo_mm, self.turn_rad_mm * hi_mm)
-                / self.turn_rad_mm
+            nearest_angle(bearing, self.turn_rad_mm * lo_mm, self.turn_rad_mm * hi_mm) / self.turn_rad_mm
         } else {
             self.nearest_on_helix(point_mm, bearing, across.hypot(outward), lo_mm, hi_mm)
         };
@@ -137,14 +125,7 @@ impl Arc {
     /// and `z` the value of `x` at which the helix is as high as the point. The best turn is the one nearest in height;
     /// if its minimum lies outside the bounds, the best is a minimum of the nearest turn inside them, or a bound.
     #[cold]
-    fn nearest_on_helix(
-        &self,
-        point_mm: Vector,
-        bearing: f64,
-        rho: f64,
-        lo_mm: f64,
-        hi_mm: f64,
-    ) -> f64 {
+    fn nearest_on_helix(&self, point_mm: Vector, bearing: f64, rho: f64, lo_mm: f64, hi_mm: f64) -> f64 {
         let rise_mm_mm = self.rise[0] + self.rise[1] + self.rise[2];
         let per_rad = rise_mm_mm / self.turn_rad_mm;
         let height = dot(sub(point_mm, self.start_mm), self.rise) / rise_mm_mm;
@@ -210,11 +191,7 @@ fn turn_minimum(pull: f64, level: f64) -> Option<f64> {
     for _ in 0..MAX_NEWTON_STEPS {
         let (sin, cos) = f64::sin_cos(x);
         let slope = 1.0 + pull * cos;
-        let next = if slope > 0.0 {
-            x + (target - x - pull * sin) / slope
-        } else {
-            crest
-        };
+        let next = if slope > 0.0 { x + (target - x - pull * sin) / slope } else { crest };
         let next = next.min(crest);
         // Monotone from the left: as soon as it no longer advances, it is there.
         if next <= x {
@@ -231,12 +208,8 @@ pub(super) fn recenter(chord: [f64; 2], to_center: [f64; 2], sense: f64) -> ([f6
     let length = chord[0].hypot(chord[1]);
     // Unit normal of the chord on the side of the centre.
     let side = [-sense * chord[1] / length, sense * chord[0] / length];
-    let height =
-        (to_center[0] - 0.5 * chord[0]) * side[0] + (to_center[1] - 0.5 * chord[1]) * side[1];
-    let center = [
-        0.5 * chord[0] + height * side[0],
-        0.5 * chord[1] + height * side[1],
-    ];
+    let height = (to_center[0] - 0.5 * chord[0]) * side[0] + (to_center[1] - 0.5 * chord[1]) * side[1];
+    let center = [0.5 * chord[0] + height * side[0], 0.5 * chord[1] + height * side[1]];
     (center, sense * 2.0 * (0.5 * length).atan2(height))
 }
 
@@ -249,9 +222,7 @@ mod tests {
     fn recentering_puts_both_ends_on_the_circle() {
         // Quarter circle of radius 10 whose centre misses by 0.01 mm.
         let (center, sweep) = recenter([-10.0, 10.0], [-10.01, 0.003], 1.0);
-        assert!(
-            (center[0].hypot(center[1]) - (center[0] + 10.0).hypot(center[1] - 10.0)).abs() < 1e-14
-        );
+        assert!((center[0].hypot(center[1]) - (center[0] + 10.0).hypot(center[1] - 10.0)).abs() < 1e-14);
         assert!((sweep - PI / 2.0).abs() < 2e-3);
         let arc = Arc::new([10.0, 0.0, 0.0], center, Plane::Xy, sweep, 0.0);
         assert!(arc.end_error_mm([0.0, 10.0, 0.0]) < 1e-14);
@@ -269,19 +240,9 @@ mod tests {
 
     #[test]
     fn a_turn_minimum_is_a_root() {
-        for (pull, level) in [
-            (0.3, 1.0),
-            (5.0, 2.0),
-            (40.0, -3.0),
-            (1.0, 3.1),
-            (1e-9, -2.0),
-            (1e6, 0.0),
-        ] {
+        for (pull, level) in [(0.3, 1.0), (5.0, 2.0), (40.0, -3.0), (1.0, 3.1), (1e-9, -2.0), (1e6, 0.0)] {
             let x = turn_minimum(pull, level).unwrap();
-            assert!(
-                (x + pull * x.sin() - level).abs() < 1e-9 * (1.0 + pull),
-                "{pull} {level} {x}"
-            );
+            assert!((x + pull * x.sin() - level).abs() < 1e-9 * (1.0 + pull), "{pull} {level} {x}");
         }
         assert!(turn_minimum(0.5, 4.0).is_none());
     }

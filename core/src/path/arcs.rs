@@ -37,26 +37,13 @@ pub(super) struct Request {
 
 /// Arcs of a motion, in order, each with its start.
 pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
-    let Request {
-        line,
-        start_mm,
-        end_mm,
-        plane,
-        center_mm,
-        turns,
-    } = *request;
+    let Request { line, start_mm, end_mm, plane, center_mm, turns } = *request;
     if turns == 0 {
         return Err(PathError::ArcTurns { line });
     }
     let [first, second, normal] = plane.axes();
-    let from = [
-        start_mm[first] - center_mm[first],
-        start_mm[second] - center_mm[second],
-    ];
-    let to = [
-        end_mm[first] - center_mm[first],
-        end_mm[second] - center_mm[second],
-    ];
+    let from = [start_mm[first] - center_mm[first], start_mm[second] - center_mm[second]];
+    let to = [end_mm[first] - center_mm[first], end_mm[second] - center_mm[second]];
     let radius_from = from[0].hypot(from[1]);
     let radius_to = to[0].hypot(to[1]);
     let radius_mm = radius_from.min(radius_to);
@@ -65,13 +52,8 @@ pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
     }
 
     let sense = f64::from(turns.signum());
-    let between =
-        sense * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
-    let last_turn = if between * radius_mm > FULL_TURN_MM {
-        between
-    } else {
-        between + TAU
-    };
+    let between = sense * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
+    let last_turn = if between * radius_mm > FULL_TURN_MM { between } else { between + TAU };
     let whole_turns = f64::from(turns.unsigned_abs() - 1);
     let sweep = last_turn + TAU * whole_turns;
     let rise_per_rad = (end_mm[normal] - start_mm[normal]) / sweep;
@@ -81,18 +63,12 @@ pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
         let chord = [end[first] - start[first], end[second] - start[second]];
         let to_center = [center[first] - start[first], center[second] - start[second]];
         let (to_center, sweep) = recenter(chord, to_center, sense);
-        (
-            start,
-            Arc::new(start, to_center, plane, sweep, end[normal] - start[normal]),
-        )
+        (start, Arc::new(start, to_center, plane, sweep, end[normal] - start[normal]))
     };
     // Turns by `sweep` about the programmed centre.
     let turning = |start: Vector, sweep: f64| {
         let to_center = [-from[0], -from[1]];
-        (
-            start,
-            Arc::new(start, to_center, plane, sense * sweep, rise_per_rad * sweep),
-        )
+        (start, Arc::new(start, to_center, plane, sense * sweep, rise_per_rad * sweep))
     };
 
     let equal = (radius_from - radius_to).abs() <= EQUAL_RADII_MM;
@@ -125,26 +101,13 @@ mod tests {
     use proptest::prelude::*;
 
     fn request(start_mm: Vector, end_mm: Vector, center_mm: Vector, turns: i32) -> Request {
-        Request {
-            line: 1,
-            start_mm,
-            end_mm,
-            plane: Plane::Xy,
-            center_mm,
-            turns,
-        }
+        Request { line: 1, start_mm, end_mm, plane: Plane::Xy, center_mm, turns }
     }
 
     #[test]
     fn equal_ends_make_a_full_circle() {
         for turns in [1, -1] {
-            let arcs = arcs(&request(
-                [10.0, 0.0, 0.0],
-                [10.0, 0.0, 0.0],
-                [0.0; 3],
-                turns,
-            ))
-            .unwrap();
+            let arcs = arcs(&request([10.0, 0.0, 0.0], [10.0, 0.0, 0.0], [0.0; 3], turns)).unwrap();
             assert_eq!(arcs.len(), 1);
             assert!((arcs[0].1.length_mm() - 20.0 * PI).abs() < 1e-12);
             let quarter = arcs[0].1.at(5.0 * PI).position_mm;

@@ -44,31 +44,13 @@ pub const CONTOURS: &[Contour] = &[
         about: "circle of radius 10 mm, from the origin, clockwise",
         outline: Outline::Circle(&[[0.0, 0.0]], [10.0, 0.0], -1),
     },
-    Contour {
-        name: "ellipse",
-        about: "half axes 20 and 10 mm",
-        outline: Outline::Curve(ellipse),
-    },
-    Contour {
-        name: "eight",
-        about: "figure of eight, 30 x 20 mm",
-        outline: Outline::Curve(eight),
-    },
-    Contour {
-        name: "star",
-        about: "five soft points, radius 8 to 16 mm",
-        outline: Outline::Curve(star),
-    },
+    Contour { name: "ellipse", about: "half axes 20 and 10 mm", outline: Outline::Curve(ellipse) },
+    Contour { name: "eight", about: "figure of eight, 30 x 20 mm", outline: Outline::Curve(eight) },
+    Contour { name: "star", about: "five soft points, radius 8 to 16 mm", outline: Outline::Curve(star) },
     Contour {
         name: "square",
         about: "20 x 20 mm, sharp corners",
-        outline: Outline::Polygon(&[
-            [0.0, 0.0],
-            [20.0, 0.0],
-            [20.0, 20.0],
-            [0.0, 20.0],
-            [0.0, 0.0],
-        ]),
+        outline: Outline::Polygon(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0], [0.0, 0.0]]),
     },
     Contour {
         name: "line-line-circle",
@@ -92,9 +74,7 @@ impl Contour {
             return Err(PathError::Feed { line: 1, feed_mm_s });
         }
         match self.outline {
-            Outline::Polygon(points) => {
-                Pieces::new(lines(points, feed_mm_s, corner).into_iter()).collect()
-            }
+            Outline::Polygon(points) => Pieces::new(lines(points, feed_mm_s, corner).into_iter()).collect(),
             Outline::Circle(points, center, turns) => {
                 let mut canon = lines(points, feed_mm_s, corner);
                 let at = space(points[points.len() - 1]);
@@ -103,11 +83,7 @@ impl Contour {
                     kind: MotionKind::Feed,
                     start_mm: at,
                     end_mm: at,
-                    shape: Shape::Arc {
-                        plane: Plane::Xy,
-                        center_mm: space(center),
-                        turns,
-                    },
+                    shape: Shape::Arc { plane: Plane::Xy, center_mm: space(center), turns },
                     feed_mm_s,
                     corner,
                     others: Others::default(),
@@ -214,10 +190,6 @@ fn star(a: f64) -> Jet {
     Jet {
         position_mm: [r * cos, r * sin, 0.0],
         first: [dr * cos - r * sin, dr * sin + r * cos, 0.0],
-        second: [
-            (ddr - r) * cos - 2.0 * dr * sin,
-            (ddr - r) * sin + 2.0 * dr * cos,
-            0.0,
-        ],
+        second: [(ddr - r) * cos - 2.0 * dr * sin, (ddr - r) * sin + 2.0 * dr * cos, 0.0],
     }
 }

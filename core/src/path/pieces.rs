@@ -5,12 +5,12 @@
 
 use super::arcs::{Request, arcs};
 use super::line::Line;
+use super::spline::curves;
 use super::vector::{Vector, distance};
-use super::{
-    Curve, MAX_COORDINATE_MM, MAX_GAP_MM, MIN_FEED_MM_S, MIN_LENGTH_MM, PathError, Piece, Step,
-};
+use super::{Curve, MAX_COORDINATE_MM, MAX_GAP_MM, MAX_REST_S, MIN_FEED_MM_S, MIN_LENGTH_MM, PathError, Piece, Step};
 use crate::gcode::canon::{Canon, Event, EventKind, Motion, MotionKind, Shape};
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// Steps of a path from what the program asks for.
 pub struct Pieces<I> {
@@ -25,28 +25,19 @@ pub struct Pieces<I> {
 impl<I: Iterator<Item = Canon>> Pieces<I> {
     /// The path of `source`.
     pub fn new(source: I) -> Self {
-        Self {
-            source,
-            here_mm: None,
-            length: ArcLength::default(),
-            ready: VecDeque::new(),
-            failed: false,
-        }
+        Self { source, here_mm: None, length: ArcLength::default(), ready: VecDeque::new(), failed: false }
     }
 
     fn motion(&mut self, motion: &Motion) -> Result<(), PathError> {
         let here_mm = self.check(motion)?;
+        let ready = self.ready.len();
         match &motion.shape {
             Shape::Line => {
                 if let Some(line) = Line::new(here_mm, motion.end_mm) {
                     self.keep(motion, here_mm, Curve::Line(line), motion.end_mm);
                 }
             }
-            Shape::Arc {
-                plane,
-                center_mm,
-                turns,
-            } => {
+            Shape::Arc { plane, center_mm, turns } => {
                 let request = Request {
                     line: motion.line,
                     start_mm: here_mm,
@@ -60,20 +51,22 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
                     self.keep(motion, start_mm, Curve::Arc(arc), end_mm);
                 }
                 // The last arc ends there up to rounding: later pieces start at the programmed point itself.
-                if self
-                    .here_mm
-                    .is_some_and(|here| distance(here, motion.end_mm) < MIN_LENGTH_MM)
-                {
+                if self.here_mm.is_some_and(|here| distance(here, motion.end_mm) < MIN_LENGTH_MM) {
                     self.here_mm = Some(motion.end_mm);
                 }
             }
-            Shape::Spline(_) => {
-                let what = "splines have no path yet".to_owned();
-                return Err(PathError::Spline {
-                    line: motion.line,
-                    what,
-                });
+            Shape::Spline(spline) => {
+                let mut at_mm = here_mm;
+                for (start_mm, smooth) in curves(spline, motion.line)? {
+                    Self::join(motion.line, at_mm, start_mm)?;
+                    at_mm = smooth.at(smooth.length_mm()).position_mm;
+                    self.keep(motion, start_mm, Curve::Smooth(Arc::new(smooth)), at_mm);
+                }
+                Self::join(motion.line, at_mm, motion.end_mm)?;
             }
+        }
+        if self.ready.len() == ready && !motion.others.is_none() {
+            self.ready.push_back(Step::Rest { line: motion.line, seconds: standing_s(motion) });
         }
         Ok(())
     }
@@ -85,31 +78,27 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
             Shape::Arc { center_mm, .. } => *center_mm,
             _ => motion.end_mm,
         };
-        for value_mm in motion
-            .start_mm
-            .into_iter()
-            .chain(motion.end_mm)
-            .chain(center)
-        {
+        for value_mm in motion.start_mm.into_iter().chain(motion.end_mm).chain(center) {
             // NaN is in no range.
             if !(-MAX_COORDINATE_MM..=MAX_COORDINATE_MM).contains(&value_mm) {
                 return Err(PathError::Coordinate { line, value_mm });
             }
         }
-        if motion.kind == MotionKind::Feed
-            && !(MIN_FEED_MM_S..=f64::MAX).contains(&motion.feed_mm_s)
-        {
-            return Err(PathError::Feed {
-                line,
-                feed_mm_s: motion.feed_mm_s,
-            });
+        if motion.kind == MotionKind::Feed && !(MIN_FEED_MM_S..=f64::MAX).contains(&motion.feed_mm_s) {
+            return Err(PathError::Feed { line, feed_mm_s: motion.feed_mm_s });
         }
         let here_mm = self.here_mm.unwrap_or(motion.start_mm);
-        let gap_mm = distance(here_mm, motion.start_mm);
+        Self::join(line, here_mm, motion.start_mm)?;
+        Ok(here_mm)
+    }
+
+    /// Two points that should be one.
+    fn join(line: u32, a_mm: Vector, b_mm: Vector) -> Result<(), PathError> {
+        let gap_mm = distance(a_mm, b_mm);
         if gap_mm > MAX_GAP_MM {
             return Err(PathError::Gap { line, gap_mm });
         }
-        Ok(here_mm)
+        Ok(())
     }
 
     fn keep(&mut self, motion: &Motion, start_mm: Vector, curve: Curve, end_mm: Vector) {
@@ -145,9 +134,7 @@ impl<I: Iterator<Item = Canon>> Iterator for Pieces<I> {
             }
             let outcome = match self.source.next()? {
                 Canon::Motion(motion) => self.motion(&motion),
-                Canon::Event(event) => {
-                    check_event(&event).map(|()| self.ready.push_back(Step::Event(event)))
-                }
+                Canon::Event(event) => check_event(&event).map(|()| self.ready.push_back(Step::Event(event))),
             };
             if let Err(error) = outcome {
                 self.failed = true;
@@ -158,13 +145,25 @@ impl<I: Iterator<Item = Canon>> Iterator for Pieces<I> {
     }
 }
 
+/// How long something else moves while X, Y and Z stand still. The feedrate refers to U, V, W in mm if they move, else to
+/// A, B, C in degrees, else to the extruder; a rapid has no rate of its own here and takes no time.
+fn standing_s(motion: &Motion) -> f64 {
+    if motion.kind == MotionKind::Rapid {
+        return 0.0;
+    }
+    let along = |from: usize| {
+        let [start, end] = motion.others.axes.as_deref().unwrap_or(&[[0.0; 6]; 2]);
+        distance([start[from], start[from + 1], start[from + 2]], [end[from], end[from + 1], end[from + 2]])
+    };
+    let ways = [along(3), along(0), motion.others.extruder_mm.abs()];
+    let seconds = ways.into_iter().find(|&way| way > 0.0).unwrap_or(0.0) / motion.feed_mm_s;
+    seconds.min(MAX_REST_S)
+}
+
 fn check_event(event: &Event) -> Result<(), PathError> {
     match event.kind {
-        EventKind::Dwell { seconds } if !(0.0..=f64::MAX).contains(&seconds) => {
-            Err(PathError::Dwell {
-                line: event.line,
-                seconds,
-            })
+        EventKind::Dwell { seconds } if !(0.0..=MAX_REST_S).contains(&seconds) => {
+            Err(PathError::Dwell { line: event.line, seconds })
         }
         _ => Ok(()),
     }
@@ -219,7 +218,7 @@ mod tests {
             .map(|step| {
                 step.map(|step| match step {
                     Step::Piece(piece) => piece,
-                    Step::Event(event) => panic!("{event:?}"),
+                    other => panic!("{other:?}"),
                 })
             })
             .collect()
@@ -234,9 +233,7 @@ mod tests {
         let mut last: Option<Piece> = None;
         let mut total = 0.0;
         for step in Pieces::new(steps) {
-            let Ok(Step::Piece(piece)) = step else {
-                panic!()
-            };
+            let Ok(Step::Piece(piece)) = step else { panic!() };
             if let Some(before) = &last {
                 let end = before.curve.at(before.length_mm).position_mm;
                 assert!(distance(end, piece.start_mm) < 1e-15);
@@ -250,11 +247,7 @@ mod tests {
 
     #[test]
     fn equal_points_make_no_piece() {
-        assert!(
-            pieces(vec![motion([1.0; 3], [1.0; 3], Shape::Line)])
-                .unwrap()
-                .is_empty()
-        );
+        assert!(pieces(vec![motion([1.0; 3], [1.0; 3], Shape::Line)]).unwrap().is_empty());
     }
 
     #[test]
@@ -263,26 +256,16 @@ mod tests {
             let error = pieces(vec![motion([0.0; 3], [value, 0.0, 0.0], Shape::Line)]).unwrap_err();
             assert!(matches!(error, PathError::Coordinate { .. }), "{error}");
         }
-        let gap = vec![
-            motion([0.0; 3], [1.0, 0.0, 0.0], Shape::Line),
-            motion([1.1, 0.0, 0.0], [2.0, 0.0, 0.0], Shape::Line),
-        ];
+        let gap =
+            vec![motion([0.0; 3], [1.0, 0.0, 0.0], Shape::Line), motion([1.1, 0.0, 0.0], [2.0, 0.0, 0.0], Shape::Line)];
         assert!(matches!(pieces(gap).unwrap_err(), PathError::Gap { .. }));
     }
 
     #[test]
     fn a_line_after_an_arc_starts_at_the_programmed_point() {
-        let arc = Shape::Arc {
-            plane: Plane::Xy,
-            center_mm: [0.0; 3],
-            turns: 1,
-        };
+        let arc = Shape::Arc { plane: Plane::Xy, center_mm: [0.0; 3], turns: 1 };
         let end = [0.0, 10.0, 0.0];
-        let pieces = pieces(vec![
-            motion([10.0, 0.0, 0.0], end, arc),
-            motion(end, [0.0; 3], Shape::Line),
-        ])
-        .unwrap();
+        let pieces = pieces(vec![motion([10.0, 0.0, 0.0], end, arc), motion(end, [0.0; 3], Shape::Line)]).unwrap();
         assert_eq!(pieces[1].start_mm, end);
         assert_eq!(pieces[1].curve.at(5.0).tangent, [0.0, -1.0, 0.0]);
     }

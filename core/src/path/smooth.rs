@@ -20,6 +20,13 @@ const CELL_TURN_RAD: f64 = 0.3;
 /// Halvings before a cell is taken as it is: at a cusp, where no cell is short enough, 2^-40 of a span is below 1 pm.
 const MAX_HALVINGS: u32 = 40;
 
+/// A cell no longer than this many times the rounding of its coordinates shows rounding rather than a curve.
+const ROUNDINGS: f64 = 1e3;
+
+/// Cells of one span before the rest is taken as it is: hundreds of times more than any curve of use needs, and an end to
+/// those that no table fits.
+const MAX_CELLS_OF_SPAN: usize = 1 << 14;
+
 /// Curvature above this is a corner, not a curve: a radius of 1 nm.
 pub const MAX_CURVATURE_1_MM: f64 = 1e6;
 
@@ -77,9 +84,10 @@ impl Smooth {
         let mut s_mm = 0.0;
         for span in 0..shape.spans() {
             let mut todo = vec![([0.0, 1.0], 0)];
+            let most = cells.len() + MAX_CELLS_OF_SPAN;
             while let Some((u, halvings)) = todo.pop() {
                 let (cell, length_mm, good) = make_cell(shape.as_ref(), s_mm, span, u);
-                if good || halvings >= MAX_HALVINGS {
+                if good || halvings >= MAX_HALVINGS || cells.len() >= most {
                     if length_mm > 0.0 {
                         cells.push(cell);
                         s_mm += length_mm;
@@ -92,12 +100,7 @@ impl Smooth {
             }
         }
         let bins = bins(&cells, s_mm);
-        Self {
-            shape,
-            cells,
-            bins,
-            length_mm: s_mm,
-        }
+        Self { shape, cells, bins, length_mm: s_mm }
     }
 
     /// Length, mm.
@@ -111,15 +114,9 @@ impl Smooth {
         let u = cell.parameter(s_mm);
         let jet = self.shape.jet(cell.span, u);
         let speed = norm(jet.first);
-        let tangent = if speed > MIN_SPEED_MM {
-            scale(1.0 / speed, jet.first)
-        } else {
-            self.tangent_of_cusp(cell.span, u)
-        };
-        Point {
-            position_mm: jet.position_mm,
-            tangent,
-        }
+        let tangent =
+            if speed > MIN_SPEED_MM { scale(1.0 / speed, jet.first) } else { self.tangent_of_cusp(cell.span, u) };
+        Point { position_mm: jet.position_mm, tangent }
     }
 
     /// Where |C'| vanishes, the direction is that of a point a little further inside the span.
@@ -127,11 +124,7 @@ impl Smooth {
     fn tangent_of_cusp(&self, span: usize, u: f64) -> Vector {
         let inside = self.shape.jet(span, u + 1e-6 * (0.5 - u)).first;
         let speed = norm(inside);
-        if speed > 0.0 {
-            scale(1.0 / speed, inside)
-        } else {
-            [1.0, 0.0, 0.0]
-        }
+        if speed > 0.0 { scale(1.0 / speed, inside) } else { [1.0, 0.0, 0.0] }
     }
 
     /// Curvature at `s_mm`, 1/mm.
@@ -139,9 +132,19 @@ impl Smooth {
         curvature(&self.jet_at(s_mm))
     }
 
-    /// Arc lengths at which the table's cells start: between two of them the curve is gentle.
-    pub fn cells_mm(&self) -> impl Iterator<Item = f64> + '_ {
-        self.cells.iter().map(|cell| cell.s_mm)
+    /// Number of cells of the table; within each, the curve is gentle.
+    pub fn cells(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Arc lengths at both ends of a cell.
+    pub fn cell_mm(&self, index: usize) -> (f64, f64) {
+        (self.cells[index].s_mm, self.cell_end_mm(index))
+    }
+
+    /// Curvature at `s_mm` seen from a cell: where two cells meet, it may differ.
+    pub fn curvature_in(&self, index: usize, s_mm: f64) -> f64 {
+        curvature(&self.jet_in(&self.cells[index], s_mm))
     }
 
     fn jet_at(&self, s_mm: f64) -> Jet {
@@ -164,9 +167,7 @@ impl Smooth {
     }
 
     fn cell_end_mm(&self, index: usize) -> f64 {
-        self.cells
-            .get(index + 1)
-            .map_or(self.length_mm, |cell| cell.s_mm)
+        self.cells.get(index + 1).map_or(self.length_mm, |cell| cell.s_mm)
     }
 }
 
@@ -216,11 +217,16 @@ fn make_cell(shape: &dyn Parametric, s_mm: f64, span: usize, u: [f64; 2]) -> (Ce
         powers: hermite(lo, hi, length_mm, &jets[0], &jets[4]),
         curvature_1_mm: jets.iter().map(curvature).fold(0.0, f64::max),
     };
-    let mut good = (gauss(shape, span, lo, hi) - length_mm).abs() <= CELL_TOLERANCE_MM;
+    let extent_mm = jets[0].position_mm.iter().fold(0.0, |extent: f64, x| extent.max(x.abs()));
+    let rounding_mm = f64::EPSILON * extent_mm;
+    let tolerance_mm = CELL_TOLERANCE_MM.max(ROUNDINGS * rounding_mm);
+    if length_mm <= tolerance_mm {
+        return (cell, length_mm, true);
+    }
+    let mut good = (gauss(shape, span, lo, hi) - length_mm).abs() <= tolerance_mm;
     for i in 1..4 {
-        let miss_mm =
-            (cell.parameter(s_mm + lengths[i]) - quarter(i as u32)).abs() * norm(jets[i].first);
-        good &= miss_mm <= CELL_TOLERANCE_MM + 1e-15 * s_mm;
+        let miss_mm = (cell.parameter(s_mm + lengths[i]) - quarter(i as u32)).abs() * norm(jets[i].first);
+        good &= miss_mm <= tolerance_mm + 1e-15 * s_mm;
     }
     for i in 0..4 {
         good &= angle(jets[i].first, jets[i + 1].first) <= 0.25 * CELL_TURN_RAD;
@@ -245,13 +251,7 @@ fn hermite(lo: f64, hi: f64, length: f64, at_lo: &Jet, at_hi: &Jet) -> [f64; 5] 
     let quartic = -15.0 * value + 7.0 * slope - bend;
     let quintic = 6.0 * value - 3.0 * slope + 0.5 * bend;
     let h3 = h * h * h;
-    [
-        a1,
-        0.5 * a2,
-        cubic / h3,
-        quartic / (h3 * h),
-        quintic / (h3 * h * h),
-    ]
+    [a1, 0.5 * a2, cubic / h3, quartic / (h3 * h), quintic / (h3 * h * h)]
 }
 
 fn bins(cells: &[Cell], length_mm: f64) -> Vec<u32> {

@@ -28,20 +28,13 @@ pub(super) struct Range {
 /// Nearest point within the range; of two equally near, the one found first.
 pub(super) fn nearest(pieces: &VecDeque<Piece>, range: Range, point_mm: [f64; 3]) -> Foot {
     let Range { first, last, .. } = range;
-    let middle = if last - first < 4 {
-        (first + last) / 2
-    } else {
-        walk(pieces, range, point_mm)
-    };
+    let middle = if last - first < 4 { (first + last) / 2 } else { walk(pieces, range, point_mm) };
     let mut best = offer(pieces, range, middle, point_mm);
     let mut index = middle;
     while index < last {
         let joint = &pieces[index + 1];
-        let reach_mm =
-            joint.s_mm + distance(joint.start_mm, point_mm) - best.distance_mm - SLACK_MM;
-        index = skip(pieces, index + 1, last, |piece| {
-            piece.s_mm + piece.length_mm < reach_mm
-        });
+        let reach_mm = joint.s_mm + distance(joint.start_mm, point_mm) - best.distance_mm - SLACK_MM;
+        index = skip(pieces, index + 1, last, |piece| piece.s_mm + piece.length_mm < reach_mm);
         if pieces[index].s_mm + pieces[index].length_mm >= reach_mm {
             take(&mut best, offer(pieces, range, index, point_mm));
         }
@@ -49,8 +42,7 @@ pub(super) fn nearest(pieces: &VecDeque<Piece>, range: Range, point_mm: [f64; 3]
     let mut index = middle;
     while index > first {
         let joint = &pieces[index];
-        let reach_mm =
-            joint.s_mm - distance(joint.start_mm, point_mm) + best.distance_mm + SLACK_MM;
+        let reach_mm = joint.s_mm - distance(joint.start_mm, point_mm) + best.distance_mm + SLACK_MM;
         index -= 1;
         while index > first && pieces[index].s_mm > reach_mm {
             index = back(pieces, index, first, reach_mm);
@@ -70,26 +62,13 @@ fn take(best: &mut Foot, other: Foot) {
 
 fn offer(pieces: &VecDeque<Piece>, range: Range, index: usize, point_mm: [f64; 3]) -> Foot {
     let piece = &pieces[index];
-    let lo_mm = if index == range.first {
-        range.lo_mm
-    } else {
-        0.0
-    };
-    let hi_mm = if index == range.last {
-        range.hi_mm
-    } else {
-        piece.length_mm
-    };
+    let lo_mm = if index == range.first { range.lo_mm } else { 0.0 };
+    let hi_mm = if index == range.last { range.hi_mm } else { piece.length_mm };
     foot(piece, piece.curve.nearest(point_mm, lo_mm, hi_mm), point_mm)
 }
 
 /// First piece from `index` on for which `out` does not hold, at most `last`; `out` holds up to some piece and not beyond.
-fn skip(
-    pieces: &VecDeque<Piece>,
-    index: usize,
-    last: usize,
-    out: impl Fn(&Piece) -> bool,
-) -> usize {
+fn skip(pieces: &VecDeque<Piece>, index: usize, last: usize, out: impl Fn(&Piece) -> bool) -> usize {
     let mut step = 1;
     let mut lo = index;
     // Gallop, then halve.
@@ -143,18 +122,11 @@ fn walk(pieces: &VecDeque<Piece>, range: Range, point_mm: [f64; 3]) -> usize {
     for _ in 0..WALK_STEPS {
         let piece = &pieces[index];
         let at = piece.curve.at(0.5 * piece.length_mm);
-        let s_mm =
-            piece.s_mm + 0.5 * piece.length_mm + dot(sub(point_mm, at.position_mm), at.tangent);
+        let s_mm = piece.s_mm + 0.5 * piece.length_mm + dot(sub(point_mm, at.position_mm), at.tangent);
         let next = if s_mm < piece.s_mm {
-            if index == first {
-                first
-            } else {
-                back(pieces, index, first, s_mm)
-            }
+            if index == first { first } else { back(pieces, index, first, s_mm) }
         } else {
-            skip(pieces, index, last, |piece| {
-                piece.s_mm + piece.length_mm < s_mm
-            })
+            skip(pieces, index, last, |piece| piece.s_mm + piece.length_mm < s_mm)
         };
         if next == index {
             break;

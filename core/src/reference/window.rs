@@ -6,6 +6,9 @@ use crate::feed::Phase;
 use crate::path::Piece;
 use std::collections::VecDeque;
 
+/// Times that a servo period looks at: two or three samples, and both ends of the range for the nearest point.
+const HINTS: usize = 6;
+
 /// Pieces and phases in order, the oldest forgotten.
 #[derive(Debug, Default)]
 pub(super) struct Window {
@@ -13,8 +16,9 @@ pub(super) struct Window {
     /// Number of the first piece kept.
     first_piece: u64,
     phases: VecDeque<Phase>,
-    /// Index of the phase found last: where to look first, never what to answer.
-    hint: usize,
+    /// Indices of phases found before: where to look first, never what to answer. A control loop looks at a few times that
+    /// move on together; each comes to have a hint of its own.
+    hints: [usize; HINTS],
 }
 
 impl Window {
@@ -34,7 +38,9 @@ impl Window {
     pub(super) fn forget_before(&mut self, tau_s: f64) {
         while self.phases.len() > 1 && self.phases[1].tau_s <= tau_s {
             self.phases.pop_front();
-            self.hint = self.hint.saturating_sub(1);
+            for hint in &mut self.hints {
+                *hint = hint.saturating_sub(1);
+            }
         }
         let Some(first) = self.phases.front() else {
             return;
@@ -62,11 +68,7 @@ impl Window {
             position_mm: at.position_mm,
             tangent: at.tangent,
             s_mm: piece.s_mm + local_mm,
-            feed_mm_s: if resting {
-                0.0
-            } else {
-                (phase.speed_mm_s + phase.accel_mm_s2 * along).max(0.0)
-            },
+            feed_mm_s: if resting { 0.0 } else { (phase.speed_mm_s + phase.accel_mm_s2 * along).max(0.0) },
             line: phase.rest.unwrap_or(piece.line),
             cutting: piece.cutting && !resting,
             resting,
@@ -75,8 +77,7 @@ impl Window {
 
     #[inline]
     pub(super) fn nearest(&mut self, point_mm: [f64; 3], tau_lo_s: f64, tau_hi_s: f64) -> Foot {
-        let (Some((lo, _)), Some((hi, _))) = (self.phase_at(tau_lo_s), self.phase_at(tau_hi_s))
-        else {
+        let (Some((lo, _)), Some((hi, _))) = (self.phase_at(tau_lo_s), self.phase_at(tau_hi_s)) else {
             return Foot::nowhere(point_mm);
         };
         let (Some(first), Some(last)) = (self.piece(lo.piece), self.piece(hi.piece)) else {
@@ -89,46 +90,41 @@ impl Window {
             return super::foot(first, first.curve.nearest(point_mm, lo_mm, hi_mm), point_mm);
         }
         let index = |piece: u64| (piece - self.first_piece) as usize;
-        nearest(
-            &self.pieces,
-            Range {
-                first: index(lo.piece),
-                last: index(hi.piece),
-                lo_mm,
-                hi_mm,
-            },
-            point_mm,
-        )
+        nearest(&self.pieces, Range { first: index(lo.piece), last: index(hi.piece), lo_mm, hi_mm }, point_mm)
     }
 
     fn piece(&self, number: u64) -> Option<&Piece> {
-        self.pieces
-            .get(number.checked_sub(self.first_piece)? as usize)
+        self.pieces.get(number.checked_sub(self.first_piece)? as usize)
     }
 
     /// The last phase that starts at `tau_s` or before, or else the first.
+    ///
+    /// Looks ahead from the hint nearest before, in steps that double, and then halves.
     #[inline]
     fn phase_at(&mut self, tau_s: f64) -> Option<(Phase, usize)> {
-        let holds = |index: usize| {
-            self.phases
-                .get(index)
-                .is_some_and(|phase| phase.tau_s <= tau_s)
-                && self
-                    .phases
-                    .get(index + 1)
-                    .is_none_or(|next| next.tau_s > tau_s)
-        };
-        let index = if holds(self.hint) {
-            self.hint
-        } else if holds(self.hint + 1) {
-            self.hint + 1
-        } else {
-            self.phases
-                .partition_point(|phase| phase.tau_s <= tau_s)
-                .saturating_sub(1)
-        };
-        self.hint = index;
-        self.phases.get(index).map(|phase| (*phase, index))
+        let starts_by = |index: usize| self.phases.get(index).is_some_and(|phase| phase.tau_s <= tau_s);
+        let mut slot = None;
+        let mut lo = 0;
+        for (candidate, &hint) in self.hints.iter().enumerate() {
+            if hint >= lo && starts_by(hint) {
+                (slot, lo) = (Some(candidate), hint);
+            }
+        }
+        let mut step = 1;
+        while starts_by(lo + step) {
+            lo += step;
+            step *= 2;
+        }
+        while step > 1 {
+            step /= 2;
+            if starts_by(lo + step) {
+                lo += step;
+            }
+        }
+        if let Some(slot) = slot {
+            self.hints[slot] = lo;
+        }
+        self.phases.get(lo).map(|phase| (*phase, lo))
     }
 }
 
@@ -140,8 +136,7 @@ fn along(phase: &Phase, tau_s: f64) -> f64 {
 
 #[inline]
 fn local_mm(phase: &Phase, piece: &Piece, along: f64) -> f64 {
-    (phase.from_mm + along * (phase.speed_mm_s + 0.5 * phase.accel_mm_s2 * along))
-        .min(piece.length_mm)
+    (phase.from_mm + along * (phase.speed_mm_s + 0.5 * phase.accel_mm_s2 * along)).min(piece.length_mm)
 }
 
 impl Sample {

@@ -41,8 +41,7 @@ struct Slope {
 impl Smooth {
     /// Arc length of the nearest point between the bounds.
     pub fn nearest(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
-        self.sole_foot(point_mm, lo_mm, hi_mm)
-            .unwrap_or_else(|| self.search(point_mm, lo_mm, hi_mm))
+        self.sole_foot(point_mm, lo_mm, hi_mm).unwrap_or_else(|| self.search(point_mm, lo_mm, hi_mm))
     }
 
     /// The foot, where the distance is convex over the range.
@@ -51,19 +50,13 @@ impl Smooth {
         for _ in 0..FREE_NEWTON_STEPS {
             let slope = self.slope(&self.cells[self.cell_of(s_mm)], s_mm, point_mm);
             // Far from convex, Newton runs away; the tangent does not.
-            let step = if slope.second > 0.25 {
-                slope.first / slope.second
-            } else {
-                slope.first
-            };
+            let step = if slope.second > 0.25 { slope.first / slope.second } else { slope.first };
             let next = (s_mm - step).min(hi_mm).max(lo_mm);
             let moved_mm = (next - s_mm).abs();
             s_mm = next;
             if moved_mm < LAST_STEP_MM {
                 let reach_mm = (hi_mm - s_mm).max(s_mm - lo_mm);
-                return self
-                    .is_convex(lo_mm, hi_mm, reach_mm, slope.distance_mm + LAST_STEP_MM)
-                    .then_some(s_mm);
+                return self.is_convex(lo_mm, hi_mm, reach_mm, slope.distance_mm + LAST_STEP_MM).then_some(s_mm);
             }
         }
         None
@@ -71,9 +64,7 @@ impl Smooth {
 
     fn is_convex(&self, lo_mm: f64, hi_mm: f64, reach_mm: f64, distance_mm: f64) -> bool {
         let cells = &self.cells[self.cell_of(lo_mm)..=self.cell_of(hi_mm)];
-        let sharpest = cells
-            .iter()
-            .fold(0.0, |k: f64, cell| k.max(cell.curvature_1_mm));
+        let sharpest = cells.iter().fold(0.0, |k: f64, cell| k.max(cell.curvature_1_mm));
         let curvature = CURVATURE_MARGIN * sharpest;
         curvature * reach_mm < FRAC_PI_2 && (curvature * reach_mm).cos() > curvature * distance_mm
     }
@@ -90,10 +81,7 @@ impl Smooth {
         let first = self.cell_of(lo_mm);
         let last = self.cell_of(hi_mm);
         let middle = self.cell_of(s_mm).clamp(first, last);
-        let mut best = Best {
-            s_mm,
-            distance_mm: f64::INFINITY,
-        };
+        let mut best = Best { s_mm, distance_mm: f64::INFINITY };
         self.offer(middle, point_mm, lo_mm, hi_mm, &mut best);
         let mut cell = middle;
         while cell < last {
@@ -128,11 +116,7 @@ impl Smooth {
         let speed = norm(jet.first).max(MIN_SPEED_MM);
         let first = dot(away, jet.first) / speed;
         let bend = dot(away, jet.second) - first * dot(jet.first, jet.second) / speed;
-        Slope {
-            first,
-            second: 1.0 + bend / (speed * speed),
-            distance_mm: norm(away),
-        }
+        Slope { first, second: 1.0 + bend / (speed * speed), distance_mm: norm(away) }
     }
 
     fn distance(&self, point_mm: Vector, s_mm: f64) -> f64 {
