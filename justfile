@@ -21,10 +21,9 @@ bench:
 
 # Regenerate the table and the figures of README.md and of examples/.
 tables: paper
-    cargo run --release -p feedwright --example readme_table
     cp target/paper/figure_10.svg docs/paper_circle.svg
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
-    cargo run --release -p feedwright --example paper_table
+    cargo run --release -p feedwright --example tables
 
 # Instructions of one piece of work in the servo thread, counted by callgrind (Debian: valgrind).
 instructions:

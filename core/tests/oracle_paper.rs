@@ -5,8 +5,9 @@
 
 use std::sync::OnceLock;
 
+use feedwright::identify::Programme;
 use feedwright::identify::cache::identified;
-use feedwright::identify::{Programme, Training, identify};
+use feedwright::identify::contour::{Training, identify};
 use feedwright::machine::Machine;
 use feedwright::paper::{Paper, experiment};
 
