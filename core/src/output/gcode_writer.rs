@@ -130,10 +130,19 @@ impl<W: Write> Sink for GcodeWriter<W> {
                 writeln!(self.out, "M{code}{}{}", word('P', *p), word('Q', *q))
             }
             EventKind::ToolSelect { tool } => writeln!(self.out, "T{tool}"),
+            EventKind::Message { text } => writeln!(self.out, "(MSG, {})", text.replace(['(', ')', '\n', '\r'], " ")),
+            EventKind::SpindleSync { .. } => Err(inexpressible(event.line, "a motion coupled to the spindle")),
+            EventKind::Probe => Err(inexpressible(event.line, "a probing motion")),
             // The end is written by `finish`, whether the program had one or not.
             EventKind::ProgramEnd => Ok(()),
         }
     }
+}
+
+/// What the program asks for at `line` is more than positions and feeds.
+fn inexpressible(line: u32, what: &str) -> io::Error {
+    let message = format!("line {line} is {what}, which corrected G1 blocks cannot express; write setpoints (.csv) instead");
+    io::Error::new(io::ErrorKind::Unsupported, message)
 }
 
 impl Printer {
