@@ -28,8 +28,9 @@ pub const MAX_ENTRIES: usize = 2 * MOST_REACH as usize + 1;
 /// The window reaches this many times the last distance to both sides: the nearest point beyond a right-angled corner
 /// is no further along the path than 2.4 times the distance.
 const REACH_OF_ERROR: f64 = 3.0;
-/// Entries that [`locate`] looks at on either side: the lag changes by less than that in a feed period.
-const LOCATE_REACH: i32 = 6;
+/// Entries that [`locate`] looks at on either side: between standstill and full acceleration the lag of a servo changes
+/// by a third of its time constant.
+const LOCATE_REACH: i32 = 8;
 /// Cosine of the turn between neighbouring knots above which there is a corner between them (0.1 rad: a curve turns so
 /// much in one servo period only where its radius is below ten steps).
 const CORNER_COSINE: f64 = 0.995;
@@ -97,14 +98,21 @@ impl Estimator {
     }
 }
 
-/// The contour error of a tool whose nearest knot is near the index `near`, as predictions along a path know it.
+/// The contour error of a predicted tool whose nearest knot is near the index `near`: the nearest point within
+/// [`LOCATE_REACH`] knots. It does not look further, so that beside a corner a tool belongs to the side that its time
+/// belongs to, and not to the one that happens to be nearer.
 #[inline]
 pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i32) -> ContourError<N> {
     let [first, last] = window.range();
     let near = near.clamp(first, last);
-    let (from, to) = ((near - LOCATE_REACH).max(first), (near + LOCATE_REACH).min(last));
-    let (index, entries) = nearest_knot(window, tool_mm, from, to);
-    ContourError { index, entries, ..nearest_foot(window, tool_mm, index) }
+    let (mut index, mut least) = (near, f64::INFINITY);
+    for candidate in (near - LOCATE_REACH).max(first)..=(near + LOCATE_REACH).min(last) {
+        let d = sub(window.knot(candidate).position_mm, tool_mm);
+        if dot(d, d) < least {
+            (index, least) = (candidate, dot(d, d));
+        }
+    }
+    ContourError { index, ..nearest_foot(window, tool_mm, index) }
 }
 
 /// Index of the nearest knot in a range, which is widened while the nearest stands at an end of it.

@@ -17,7 +17,7 @@
 //!
 //! Everything is of fixed size: at most [`MOST_KNOTS`] knots, N - 1 unknowns each.
 
-use crate::contour_error::{ContourError, locate};
+use crate::contour_error::locate;
 use crate::identifier::FEED_SCALE_MM_S;
 use crate::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
 use crate::vector::{add_scaled, dot, norm, reject, scale, sub};
@@ -60,13 +60,13 @@ impl<const N: usize> Default for Plan<N> {
 
 /// What is known when a plan is made.
 #[derive(Debug, Clone, Copy)]
-pub struct State<'a, const N: usize> {
+pub struct State<const N: usize> {
     /// Feedrates and following errors up to the current knot, scaled.
     pub delays: Delays<N>,
     /// What the identifier misses of the growth of the following error, mm: added to every prediction.
     pub bias_mm: [f64; N],
-    /// Contour error of the tool now: where the search for the nearest points starts.
-    pub contour: &'a ContourError<N>,
+    /// How far the tool is behind the command, s: where the search for the nearest points starts.
+    pub lag_s: f64,
 }
 
 /// The first step of a plan.
@@ -100,7 +100,7 @@ impl<const N: usize> Plan<N> {
         &mut self,
         net: &ServoIdentifier<N>,
         window: &Window<'_, N>,
-        state: &State<'_, N>,
+        state: &State<N>,
         settings: &Settings,
     ) -> Step<N> {
         let knots = settings.knots.clamp(1, MOST_KNOTS);
@@ -137,11 +137,10 @@ impl<const N: usize> Plan<N> {
         &self,
         net: &ServoIdentifier<N>,
         window: &Window<'_, N>,
-        state: &State<'_, N>,
+        state: &State<N>,
         knots: usize,
     ) -> Rollout<N> {
         let period_s = window.feed_period_s;
-        let per_period = (period_s / window.servo_s() + 0.5) as i32;
         let mut rollout = Rollout {
             error: [[0.0; MOST_NORMALS]; MOST_KNOTS],
             at_foot: [[[0.0; N]; MOST_NORMALS]; MOST_KNOTS],
@@ -151,7 +150,6 @@ impl<const N: usize> Plan<N> {
         let mut offset_mm = window.offset_mm;
         let mut command_mm = add_scaled(window.now().position_mm, 1.0, offset_mm);
         let mut normal = self.normal;
-        let mut place = state.contour.index;
         for i in 0..knots {
             let knot = window.ahead(i + 1);
             rollout.at_knot[i] = normals_of(knot.tangent, normal);
@@ -164,8 +162,8 @@ impl<const N: usize> Plan<N> {
             delays.push(feed, error);
             command_mm = next_mm;
             let tool_mm = add_scaled(command_mm, -FOLLOWING_SCALE_MM, error);
-            let contour = locate(window, tool_mm, place + per_period);
-            place = contour.index;
+            let behind_s = (i + 1) as f64 * period_s - state.lag_s;
+            let contour = locate(window, tool_mm, libm::round(behind_s / window.servo_s()) as i32);
             rollout.at_foot[i] = normals_of(contour.tangent, normal);
             rollout.error[i] = core::array::from_fn(|d| -dot(contour.vector_mm, rollout.at_foot[i][d]));
         }

@@ -4,12 +4,14 @@
 
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::open_loop::OpenLoop;
+use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
 use feedwright_control::{Controller, inversion};
 use serde::Serialize;
 
 use crate::identify::cache::identified;
-use crate::identify::{Identified, Programme, Training};
+use crate::identify::contour::{Identified, Training};
+use crate::identify::{Programme, servo};
 use crate::machine::Machine;
 
 /// One row of the table.
@@ -63,10 +65,17 @@ pub const CONTROLLERS: &[Entry] = &[
         identifies: true,
         two_dimensional
     ),
+    entry!(
+        "receding-horizon",
+        "geometry planned over 20 knots ahead through an identified servo, speed as planned",
+        "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
+        identifies: true,
+        receding_horizon
+    ),
 ];
 
 /// The best there is.
-pub const BEST: &str = "two-dimensional";
+pub const BEST: &str = "receding-horizon";
 /// What others are compared against.
 pub const BASELINE: &str = "open-loop";
 
@@ -133,6 +142,11 @@ fn magnitude_only<const N: usize>(setup: &mut Setup<'_>) -> Box<dyn Controller<N
 fn two_dimensional<const N: usize>(setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
     let settings = chosen(Settings::DEFAULT, setup);
     Box::new(TwoDimensional::new(trained(setup).net, settings))
+}
+
+fn receding_horizon<const N: usize>(setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
+    let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
+    Box::new(RecedingHorizon::new(identified.net, receding_horizon::Settings::DEFAULT))
 }
 
 fn chosen(mut settings: Settings, setup: &Setup<'_>) -> Settings {

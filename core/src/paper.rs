@@ -16,7 +16,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
-use crate::identify::{Programme, Training, cache::identified};
+use crate::identify::cache::identified;
+use crate::identify::contour::{Identified, Training};
+use crate::identify::Programme;
 use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::report::Statistics;
@@ -129,7 +131,7 @@ fn cut_all(machine: &Machine, seed: u64) -> SeedResult {
 }
 
 /// The identifier as the paper trains it: on the circle.
-fn train(machine: &Machine, seed: u64) -> crate::identify::Identified<2> {
+fn train(machine: &Machine, seed: u64) -> Identified<2> {
     identified(machine, &Programme::paper(), &Training::default(), seed, &mut |_| {})
 }
 

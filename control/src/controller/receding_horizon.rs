@@ -98,7 +98,7 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
         self.take_in(command_mm, measured, window.feed_period_s);
-        let state = State { delays: self.delays, bias_mm: self.bias_mm, contour: &measured.contour };
+        let state = State { delays: self.delays, bias_mm: self.bias_mm, lag_s: self.net.lag_s() };
         let step = self.plan.improve(&self.net, window, &state, &self.settings.horizon);
         let next = window.ahead(1);
         let along = dot(step.offset_mm, next.tangent);

@@ -35,6 +35,17 @@ impl<const N: usize> ServoIdentifier<N> {
     pub const IDEAL: Self =
         Self { linear: [[[0.0; INPUTS]; N]; N], hidden: [[[0.0; HIDDEN]; INPUTS]; N], output: [[0.0; HIDDEN]; N] };
 
+    /// How far the tool is behind the command at constant feedrate, s: the mean over the axes of e / F where L I = 0.
+    pub fn lag_s(&self) -> f64 {
+        let mut sum = 0.0;
+        for axis in 0..N {
+            let [f0, f1, f2, e0, e1] = self.linear[axis][axis];
+            let lag = -(f0 + f1 + f2) / (e0 + e1) * FOLLOWING_SCALE_MM / super::FEED_SCALE_MM_S;
+            sum += if lag.is_finite() { lag } else { 0.0 };
+        }
+        sum / N as f64
+    }
+
     /// e(k+1) - e(k), mm.
     #[inline]
     pub fn predict(&self, inputs: &Inputs<N>) -> [f64; N] {

@@ -9,7 +9,8 @@ use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::{HIDDEN, INPUTS};
 use serde::{Deserialize, Serialize};
 
-use super::{Identified, Programme, Training, identify};
+use super::Programme;
+use super::contour::{Identified, Training, identify};
 use crate::machine::Machine;
 
 /// Raised whenever the same key would stand for other weights: a change of the plant, the planner or the training.
