@@ -6,7 +6,8 @@
 use std::sync::OnceLock;
 
 use feedwright::identify::cache::identified;
-use feedwright::identify::{Programme, Training, identify};
+use feedwright::identify::Programme;
+use feedwright::identify::contour::{Training, identify};
 use feedwright::machine::Machine;
 use feedwright::paper::{Paper, experiment};
 
