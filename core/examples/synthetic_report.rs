@@ -9,7 +9,7 @@ use std::io::{self, BufWriter};
 use std::path::Path;
 
 use feedwright::report::{Report, Run, RunFacts, Series, Statistics, TimelineEvent, write_html};
-use feedwright::trace::{Row, Sink};
+use feedwright::trace::{Commanded, Row, Sink};
 
 const DT_S: f64 = 1e-3;
 
@@ -133,6 +133,7 @@ fn row(
         line: 4 + (foot_s_mm / job.block_mm) as u32,
         feed_plan_mm_s: job.feed_mm_s,
         cutting: s_mm > 0.04 * job.length_mm.min(200.0),
+        commanded: Commanded::Cut,
         path_mm,
         cmd_mm: path_mm,
         act_mm,

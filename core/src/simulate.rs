@@ -11,7 +11,7 @@ use feedwright_control::{Knot, Tick};
 use crate::machine::Machine;
 use crate::plant::{Measurement, Plant};
 use crate::reference::{Reference, Sample};
-use crate::trace::{Outcome, Row, Sink};
+use crate::trace::{Commanded, Outcome, Row, Sink};
 
 /// A following error beyond this ends the run as diverged, mm: no machine of this class has so much travel.
 const DIVERGED_MM: f64 = 1000.0;
@@ -95,6 +95,11 @@ pub fn simulate<const N: usize>(
             line: sample.line,
             feed_plan_mm_s: sample.feed_mm_s,
             cutting: foot.cutting && !(sample.resting && following_mm <= ARRIVED_MM),
+            commanded: match (sample.resting, sample.cutting) {
+                (true, _) => Commanded::Rest,
+                (false, true) => Commanded::Cut,
+                (false, false) => Commanded::Rapid,
+            },
             path_mm: sample.position_mm,
             cmd_mm: spread(setpoint.command_mm),
             act_mm: spread(tool_mm),

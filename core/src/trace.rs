@@ -6,6 +6,17 @@ use serde::Serialize;
 
 use crate::gcode::canon::Event;
 
+/// What the command of a servo period does. The tool follows it by some ten milliseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Commanded {
+    /// It moves at a programmed feedrate.
+    Cut,
+    /// It moves at the machine's rapid rate.
+    Rapid,
+    /// It rests: in a dwell, or behind the end.
+    Rest,
+}
+
 /// One servo period of a run. Two-axis runs leave the third component at zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
@@ -19,6 +30,8 @@ pub struct Row {
     pub feed_plan_mm_s: f64,
     /// Whether the tool is where the program cuts: not on a rapid, and not at rest where it has arrived.
     pub cutting: bool,
+    /// What the command does.
+    pub commanded: Commanded,
     /// Point of the programmed path at `s_mm`.
     pub path_mm: [f64; 3],
     /// Position command of this servo period, as the servo drive gets it.

@@ -7,7 +7,7 @@ use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use feedwright::report::{Outcome, Report, Run, RunFacts, Series, Statistics, TimelineEvent, write_html};
-use feedwright::trace::{Row, Sink};
+use feedwright::trace::{Commanded, Row, Sink};
 
 const HOSTILE: &str = "</script><script>document.title='x'</script><img src=x onerror=alert(1)>\"'&\u{2028}<!--";
 
@@ -34,6 +34,7 @@ fn run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Run {
             line: 10 + k as u32 / 100,
             feed_plan_mm_s: 40.0,
             cutting: k > rows / 50,
+            commanded: Commanded::Cut,
             path_mm,
             cmd_mm: path_mm,
             act_mm,

@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 use feedwright::report::{RunFacts, Series, Statistics};
-use feedwright::trace::{Row, Sink};
+use feedwright::trace::{Commanded, Row, Sink};
 use proptest::prelude::*;
 
 /// Rows enough for a record to halve twice.
@@ -21,6 +21,7 @@ fn rows(spikes: &[(usize, f64)], rapids: &[(usize, usize)]) -> Vec<Row> {
                 line: 1 + k as u32 / 500,
                 feed_plan_mm_s: 10.0,
                 cutting: !rapids.iter().any(|&(start, length)| (start..start + length).contains(&k)),
+                commanded: Commanded::Cut,
                 path_mm,
                 cmd_mm: path_mm,
                 act_mm: path_mm,

@@ -133,9 +133,9 @@ impl<'p> Plan<'p> {
 
     fn event(&mut self, event: Event) {
         self.stop |= match event.kind {
-            EventKind::Dwell { .. } | EventKind::ProgramEnd => true,
+            EventKind::Dwell { .. } | EventKind::SpindleSync { .. } | EventKind::Probe | EventKind::ProgramEnd => true,
             EventKind::MCode { code, .. } => !CODES_THAT_DO_NOT_STOP.contains(&code),
-            EventKind::SpindleSpeed { .. } | EventKind::ToolSelect { .. } => false,
+            EventKind::SpindleSpeed { .. } | EventKind::ToolSelect { .. } | EventKind::Message { .. } => false,
         };
         let rest = match event.kind {
             EventKind::Dwell { seconds } => Some((seconds, event.line)),

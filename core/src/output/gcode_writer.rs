@@ -1,8 +1,10 @@
 //! `--out FILE.ngc`: the corrected path as a G-code program that another control can run.
 //!
 //! The setpoints of a run become straight blocks, as few as a tolerance of [`TOLERANCE_MM`] allows (`polyline`: that close as
-//! a Fréchet distance, printed decimals included). Cutting motion is G1, the rest G0; a block's feed is the largest commanded
-//! in it, since acceleration belongs to the other control. Events stand where they happened.
+//! a Fréchet distance, printed decimals included). Cutting motion is G1 along the corrected path; a block's feed is the
+//! largest commanded in it, since acceleration belongs to the other control. Rapids are G0 along the programmed path: their
+//! correction belongs to this machine's rapid rate. A cut starts with a G0 to its first setpoint, some micrometres beside the
+//! programmed point. Rests move nothing. Events stand where they happened.
 //!
 //! The start of the run is where the machine already stands, so it is not commanded: an axis is first named when it moves,
 //! X and Y together, and all are named before the first cut. A program that begins with a retract still does.
@@ -11,7 +13,7 @@ use std::io::{self, Write};
 
 use super::polyline::{Segment, Simplifier};
 use crate::gcode::canon::{Event, EventKind};
-use crate::trace::{Row, Sink};
+use crate::trace::{Commanded, Row, Sink};
 
 /// Largest distance between the setpoints and the printed path, in either direction, mm.
 pub const TOLERANCE_MM: f64 = 1e-3;
@@ -28,7 +30,8 @@ pub struct GcodeWriter<W> {
     out: W,
     axes: usize,
     simplifier: Simplifier,
-    cutting: bool,
+    /// What moved last; a rest does not.
+    commanded: Commanded,
     /// The last setpoint and its time.
     last: Option<(f64, [f64; 3])>,
     /// Commanded speed up to each point that no block covers yet, mm/s.
@@ -59,7 +62,7 @@ impl<W: Write> GcodeWriter<W> {
             out,
             axes,
             simplifier: Simplifier::new(TOLERANCE_MM, STEPS_PER_MM),
-            cutting: false,
+            commanded: Commanded::Rest,
             last: None,
             speeds: Vec::new(),
             print: Printer { at_mm: [0.0; 3], named: [false; 3], feed: String::new() },
@@ -77,6 +80,37 @@ impl<W: Write> GcodeWriter<W> {
         Ok(self.out)
     }
 
+    fn push(&mut self, t_s: f64, point: [f64; 3]) -> io::Result<()> {
+        match self.last.replace((t_s, point)) {
+            Some((before_s, before)) => {
+                let travel = [0, 1, 2].map(|i| point[i] - before[i]);
+                self.speeds.push(travel[0].hypot(travel[1]).hypot(travel[2]) / (t_s - before_s));
+            }
+            None => self.print.at_mm = self.simplifier.printed(point),
+        }
+        let mut segments = Vec::new();
+        self.simplifier.push(point, &mut |segment| segments.push(segment));
+        self.write_blocks(&segments)
+    }
+
+    /// Steps aside by a rapid: from the programmed start of a cut to as far beside it as the first setpoint `point` is beside
+    /// the path. Names the axes that no block has named yet, so that the cut starts from known coordinates.
+    fn start_cut(&mut self, row: &Row, point: [f64; 3]) -> io::Result<()> {
+        let aside = match self.last {
+            Some((_, programmed)) => {
+                [0, 1, 2].map(|i| if i < self.axes { programmed[i] + point[i] - row.path_mm[i] } else { 0.0 })
+            }
+            None => point,
+        };
+        self.last = Some((self.last.map_or(row.t_s, |(t_s, _)| t_s), aside));
+        let (axes, at_mm) = (self.axes, self.simplifier.restart(aside));
+        if self.print.named == [false; 3] {
+            self.print.at_mm = at_mm;
+        }
+        self.print.block(&mut self.out, axes, at_mm, None)?;
+        self.print.name_all(&mut self.out, axes)
+    }
+
     fn flush_blocks(&mut self) -> io::Result<()> {
         let mut segments = Vec::new();
         self.simplifier.finish(&mut |segment| segments.push(segment));
@@ -86,7 +120,12 @@ impl<W: Write> GcodeWriter<W> {
     fn write_blocks(&mut self, segments: &[Segment]) -> io::Result<()> {
         for segment in segments {
             let fastest_mm_s = self.speeds.drain(..segment.points).fold(0.0, f64::max);
-            self.print.block(&mut self.out, self.axes, segment.end_mm, self.cutting.then_some(fastest_mm_s))?;
+            self.print.block(
+                &mut self.out,
+                self.axes,
+                segment.end_mm,
+                (self.commanded == Commanded::Cut).then_some(fastest_mm_s),
+            )?;
         }
         Ok(())
     }
@@ -94,28 +133,25 @@ impl<W: Write> GcodeWriter<W> {
 
 impl<W: Write> Sink for GcodeWriter<W> {
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let mut point = row.corrected_mm;
+        if row.commanded != self.commanded && row.commanded != Commanded::Rest {
+            self.flush_blocks()?;
+        }
+        let mut point = match row.commanded {
+            Commanded::Rest => return Ok(()),
+            Commanded::Rapid => row.path_mm,
+            Commanded::Cut => row.corrected_mm,
+        };
+        let starts = row.commanded == Commanded::Cut && self.commanded != Commanded::Cut;
+        self.commanded = row.commanded;
         point[self.axes..].fill(0.0);
         if let Some(wrong) = point.iter().find(|c| c.is_nan() || c.abs() > LARGEST_MM) {
-            let text = format!("corrected position of {wrong} mm at {} s: no program can hold it", row.t_s);
+            let text = format!("position of {wrong} mm at {} s: no program can hold it", row.t_s);
             return Err(io::Error::new(io::ErrorKind::InvalidData, text));
         }
-        if row.cutting != self.cutting {
-            self.flush_blocks()?;
-            self.cutting = row.cutting;
+        if starts {
+            self.start_cut(row, point)?;
         }
-        match self.last {
-            None => self.print.at_mm = point.map(|c| (c * STEPS_PER_MM).round() / STEPS_PER_MM),
-            Some((before_s, before)) => {
-                let travel = [0, 1, 2].map(|i| point[i] - before[i]);
-                let travel_mm = travel[0].hypot(travel[1]).hypot(travel[2]);
-                self.speeds.push(travel_mm / (row.t_s - before_s));
-            }
-        }
-        self.last = Some((row.t_s, point));
-        let mut segments = Vec::new();
-        self.simplifier.push(point, &mut |segment| segments.push(segment));
-        self.write_blocks(&segments)
+        self.push(row.t_s, point)
     }
 
     /// Writes the event behind the motion so far.
@@ -130,10 +166,19 @@ impl<W: Write> Sink for GcodeWriter<W> {
                 writeln!(self.out, "M{code}{}{}", word('P', *p), word('Q', *q))
             }
             EventKind::ToolSelect { tool } => writeln!(self.out, "T{tool}"),
+            EventKind::Message { text } => writeln!(self.out, "(MSG, {})", text.replace(['(', ')', '\n', '\r'], " ")),
+            EventKind::SpindleSync { .. } => Err(inexpressible(event.line, "a motion coupled to the spindle")),
+            EventKind::Probe => Err(inexpressible(event.line, "a probing motion")),
             // The end is written by `finish`, whether the program had one or not.
             EventKind::ProgramEnd => Ok(()),
         }
     }
+}
+
+/// What the program asks for at `line` is more than positions and feeds.
+fn inexpressible(line: u32, what: &str) -> io::Error {
+    let message = format!("line {line} is {what}, which corrected G1 blocks cannot express; write setpoints (.csv) instead");
+    io::Error::new(io::ErrorKind::Unsupported, message)
 }
 
 impl Printer {
@@ -142,11 +187,6 @@ impl Printer {
         let moves = [0, 1, 2].map(|axis| end_mm[axis] != self.at_mm[axis]);
         if !moves.contains(&true) {
             return Ok(());
-        }
-        if feed_mm_s.is_some() && self.named[..axes].contains(&false) {
-            let unnamed = self.named.map(|named| !named);
-            self.words(out, "G0", axes, unnamed, self.at_mm)?;
-            writeln!(out)?;
         }
         let level = moves[0] || moves[1];
         let wanted = [0, 1, 2].map(|axis| moves[axis] || (!self.named[axis] && axis < 2 && level));
@@ -162,6 +202,16 @@ impl Printer {
             }
         }
         writeln!(out)
+    }
+
+    /// Names the axes that no block has named yet: a cut starts from known coordinates.
+    fn name_all(&mut self, out: &mut impl Write, axes: usize) -> io::Result<()> {
+        if self.named[..axes].contains(&false) {
+            let unnamed = self.named.map(|named| !named);
+            self.words(out, "G0", axes, unnamed, self.at_mm)?;
+            writeln!(out)?;
+        }
+        Ok(())
     }
 
     fn words(

@@ -50,6 +50,13 @@ impl Simplifier {
         }
     }
 
+    /// A new polyline from `point` on, which has no points that wait; gives its vertex.
+    pub(super) fn restart(&mut self, point: P3) -> P3 {
+        let vertex = self.printed(point);
+        self.anchor = Some(vertex);
+        vertex
+    }
+
     /// No more points: covers those that wait.
     pub(super) fn finish(&mut self, emit: &mut impl FnMut(Segment)) {
         while !self.pending.is_empty() {
@@ -124,7 +131,8 @@ impl Simplifier {
         dot(arriving, leaving) < CORNER_COS * norm(arriving) * norm(leaving)
     }
 
-    fn printed(&self, point: P3) -> P3 {
+    /// A point as it is printed.
+    pub(super) fn printed(&self, point: P3) -> P3 {
         point.map(|c| (c * self.steps_per_mm).round() / self.steps_per_mm)
     }
 }

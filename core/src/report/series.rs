@@ -209,6 +209,7 @@ pub(super) mod tests {
             line: 1,
             feed_plan_mm_s: 0.0,
             cutting: true,
+            commanded: crate::trace::Commanded::Cut,
             path_mm: [0.0; 3],
             cmd_mm: [0.0; 3],
             act_mm: [0.0; 3],

@@ -138,6 +138,7 @@ impl Text {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::trace::Commanded;
     use proptest::prelude::*;
 
     fn row(values: [f64; 8], line: u32, cutting: bool) -> Row {
@@ -148,6 +149,7 @@ mod tests {
             line,
             feed_plan_mm_s: values[2],
             cutting,
+            commanded: Commanded::Cut,
             path_mm: triple(0),
             cmd_mm: triple(1),
             act_mm: triple(2),

@@ -15,6 +15,7 @@ fn row(k: usize, corrected_mm: [f64; 3], cutting: bool) -> Row {
         line: 1,
         feed_plan_mm_s: 0.0,
         cutting,
+        commanded: if cutting { Commanded::Cut } else { Commanded::Rapid },
         path_mm: corrected_mm,
         cmd_mm: corrected_mm,
         act_mm: corrected_mm,
@@ -156,6 +157,33 @@ fn a_drilling_cycle_keeps_its_rapids_events_and_order() {
         "(part ?copy? 100?)\n(straight blocks within 1 um of the setpoints; mm, mm/min)\nG21 G17 G90 G94 G64 P0.001\n\
          S8000\nM3\nG0 Z5\nG0 X20 Y0\nG1 Z-2 F4200\nG4 P0.5\nG0 Z5\nM2\n"
     );
+}
+
+#[test]
+fn cuts_follow_the_correction_rapids_the_program_and_rests_nothing() {
+    let mut writer = GcodeWriter::new(Vec::new(), 2, &["test"]).unwrap();
+    let offset = |k: usize| 0.004 * (0.3 * k as f64).sin();
+    for k in 0..400 {
+        let x = 0.05 * k.min(300) as f64;
+        let commanded = match k {
+            0..100 => Commanded::Rapid,
+            300.. => Commanded::Rest,
+            _ => Commanded::Cut,
+        };
+        let row =
+            Row { commanded, path_mm: [x, 0.0, 0.0], corrected_mm: [x, offset(k), 0.0], ..row(k, [0.0; 3], false) };
+        writer.row(&row).unwrap();
+    }
+    let text = String::from_utf8(writer.finish().unwrap()).unwrap();
+    let blocks = read(&text, [0.0; 3]);
+    assert_eq!(blocks[0].end, [4.95, 0.0, 0.0]);
+    // Aside before the cut, as far as its first setpoint lies beside the path.
+    assert_eq!((blocks[1].end, blocks[1].cutting), ([4.95, (offset(100) * 1e5).round() / 1e5, 0.0], false));
+    let cut: Vec<[f64; 3]> = blocks[1..].iter().map(|block| block.end).collect();
+    let setpoints = (100..300).map(|k| [0.05 * k as f64, offset(k), 0.0]);
+    let corrected: Vec<[f64; 3]> = std::iter::once(cut[0]).chain(setpoints).collect();
+    assert!(blocks[2..].iter().all(|block| block.cutting));
+    assert!(within_frechet(&corrected, &cut, TOLERANCE_MM + ROUNDING_MM));
 }
 
 #[test]
