@@ -184,7 +184,10 @@ fn a_file_that_grows_too_large() {
     let before = folder.content();
     let mut command = Command::new("sh");
     // Blocks of 512 bytes; the signal that comes with the limit is ignored, so that the write fails.
-    command.args(["-c", "trap '' XFSZ; ulimit -f 200; exec \"$0\" run circle.ngc --controller open-loop --trace t.csv --out s.csv"]);
+    command.args([
+        "-c",
+        "trap '' XFSZ; ulimit -f 200; exec \"$0\" run circle.ngc --controller open-loop --trace t.csv --out s.csv",
+    ]);
     command.arg(env!("CARGO_BIN_EXE_feedwright")).current_dir(folder.path());
     Ran::from(command.output().unwrap()).refused(&["t.csv", "File too large"]);
     assert_eq!(before, folder.content());
@@ -281,7 +284,9 @@ fn a_machine_that_diverges_is_a_result() {
     folder.machine("wild.toml", &[("kp_1_s = 50", "kp_1_s = 1e5"), ("torque_limit_nm = 30", "torque_limit_nm = 1e6")]);
     for controller in ["open-loop", "magnitude-only", "two-dimensional"] {
         let outputs = ["--json", "r.json", "--trace", "t.csv", "--out", "s.csv", "--report", "r.html"];
-        let ran = folder.run(&[&["run", "circle.ngc", "--machine", "wild.toml", "--controller", controller], &outputs[..]].concat());
+        let ran = folder.run(
+            &[&["run", "circle.ngc", "--machine", "wild.toml", "--controller", controller], &outputs[..]].concat(),
+        );
         assert_eq!(ran.code, Some(1), "{ran:?}");
         assert!(ran.stdout.contains("diverged at 0.0") && ran.stdout.contains("unstable"), "{ran:?}");
         assert!(!ran.stdout.contains("NaN") && !ran.stdout.contains("inf"), "{ran:?}");

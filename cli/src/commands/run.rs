@@ -61,7 +61,11 @@ fn find(name: &str) -> Result<&'static Entry> {
 fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     let runs = &outcome.report.runs;
-    writeln!(out, "{:<18} {:>9} {:>10} {:>10} {:>8} {:>8} {:>8}", "", "time s", "RMS um", "max um", "time", "RMS", "max")?;
+    writeln!(
+        out,
+        "{:<18} {:>9} {:>10} {:>10} {:>8} {:>8} {:>8}",
+        "", "time s", "RMS um", "max um", "time", "RMS", "max"
+    )?;
     for run in runs {
         let (now, first) = (&run.summary, &runs[0].summary);
         let ratio = |value: fn(&RunSummary) -> f64| value(now) / value(first);

@@ -193,7 +193,9 @@ fn label(kind: &EventKind) -> String {
         },
         EventKind::ToolSelect { tool } => format!("T{tool} selected"),
         EventKind::Message { text } => text.clone(),
-        EventKind::SpindleSync { pitch_mm: Some(pitch_mm) } => format!("feed coupled to the spindle, {pitch_mm} mm/rev"),
+        EventKind::SpindleSync { pitch_mm: Some(pitch_mm) } => {
+            format!("feed coupled to the spindle, {pitch_mm} mm/rev")
+        }
         EventKind::SpindleSync { pitch_mm: None } => "feed free of the spindle".to_owned(),
         EventKind::Probe => "probe".to_owned(),
         EventKind::ProgramEnd => "program end".to_owned(),
