@@ -14,16 +14,6 @@ pub(crate) const INTERRUPTED: u8 = 130;
 /// Width of messages where there is no terminal to ask.
 const WIDTH: usize = 120;
 
-/// How miette shows reports: plain text where stderr is no terminal or `NO_COLOR` is set.
-pub(crate) fn set_up() {
-    let plain = !std::io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
-    // The hook can be set once only, and this is where.
-    let _ = miette::set_hook(Box::new(move |_| {
-        let theme = if plain { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
-        Box::new(GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_links(false))
-    }));
-}
-
 /// Shows an error; a reader of stdout that went away is none.
 pub(crate) fn fail(report: &Report) -> ExitCode {
     let broken_pipe = report
@@ -31,12 +21,28 @@ pub(crate) fn fail(report: &Report) -> ExitCode {
         .filter_map(|cause| cause.downcast_ref::<std::io::Error>())
         .any(|cause| cause.kind() == std::io::ErrorKind::BrokenPipe);
     if !broken_pipe {
-        eprintln!("{report:?}");
+        show(report);
     }
     ExitCode::from(ERROR)
 }
 
 /// Shows a warning.
 pub(crate) fn warn(report: Report) {
-    eprintln!("{report:?}");
+    show(&report);
+}
+
+/// Plain text where stderr is no terminal or `NO_COLOR` is set. Causes that the message tells already are not told twice.
+fn show(report: &Report) {
+    let plain = !std::io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
+    let theme = if plain { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
+    let mut handler = GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_links(false);
+    let message = report.to_string();
+    if report.chain().skip(1).all(|cause| message.contains(&cause.to_string())) {
+        handler = handler.without_cause_chain();
+    }
+    let mut text = String::new();
+    match handler.render_report(&mut text, report.as_ref()) {
+        Ok(()) => eprintln!("{}", text.trim_end()),
+        Err(_) => eprintln!("error: {message}"),
+    }
 }

@@ -53,9 +53,7 @@ fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure]) -> Result<()
         start(&name, &|file| file.write_all(figure.figure.to_svg().as_bytes()))?;
     }
     start("paper.html", &|file| write_page(file, "Two-dimensional feedrate control", INTRODUCTION, figures))?;
-    for file in complete {
-        file.commit()?;
-    }
+    OutputFile::commit_all(complete)?;
     Ok(())
 }
 

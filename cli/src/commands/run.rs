@@ -54,7 +54,12 @@ fn report_of(part: &Path) -> PathBuf {
 fn find(name: &str) -> Result<&'static Entry> {
     Entry::find(name).ok_or_else(|| {
         let names: Vec<&str> = CONTROLLERS.iter().map(|entry| entry.name).collect();
-        miette!(help = format!("hint: {}", names.join(", ")), "there is no controller called `{name}`")
+        let meant = Entry::meant_by(name).map_or(String::new(), |meant| format!("did you mean '{meant}'? "));
+        miette!(
+            help = format!("{meant}'feedwright controllers' says what each does"),
+            "no controller is called '{name}'; there are {}",
+            names.join(", ")
+        )
     })
 }
 
@@ -79,6 +84,12 @@ fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
         if let Ending::Diverged { at_s } = now.outcome {
             writeln!(out, "{:<18} diverged at {at_s:.3} s: the servo loop of this machine is unstable", "")?;
         }
+    }
+    if let [first, .., last] = &runs[..]
+        && last.summary.max_um > first.summary.max_um
+    {
+        let (worse, better) = (&last.summary.controller, &first.summary.controller);
+        writeln!(out, "{worse} is worse than {better} here: nothing is gained by correcting this part on this machine")?;
     }
     if let (Some(tolerance_um), Some(last)) = (job.tolerance_um, runs.last()) {
         let verdict = if outcome.within_tolerance { "within" } else { "out of" };
