@@ -1,9 +1,9 @@
 //! Errors and warnings on stderr, and the exit codes that go with them.
 
-use std::io::IsTerminal;
+use std::io::{self, IsTerminal};
 use std::process::ExitCode;
 
-use miette::{GraphicalReportHandler, GraphicalTheme, Report};
+use miette::{GraphicalReportHandler, GraphicalTheme, Report, Result, miette};
 
 /// The result is out of tolerance.
 pub(crate) const OUT_OF_TOLERANCE: u8 = 1;
@@ -14,16 +14,20 @@ pub(crate) const INTERRUPTED: u8 = 130;
 /// Width of messages where there is no terminal to ask.
 const WIDTH: usize = 120;
 
-/// Shows an error; a reader of stdout that went away is none.
+/// Shows an error.
 pub(crate) fn fail(report: &Report) -> ExitCode {
-    let broken_pipe = report
-        .chain()
-        .filter_map(|cause| cause.downcast_ref::<std::io::Error>())
-        .any(|cause| cause.kind() == std::io::ErrorKind::BrokenPipe);
-    if !broken_pipe {
-        show(report);
-    }
+    show(report);
     ExitCode::from(ERROR)
+}
+
+/// The exit code after something was printed on stdout. A reader that went away (`| head`) has seen enough: no error.
+pub(crate) fn printed(result: io::Result<()>, code: ExitCode) -> Result<ExitCode> {
+    match result {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(miette!("cannot write to the standard output: {error}"))
+        }
+        _ => Ok(code),
+    }
 }
 
 /// Shows a warning.
@@ -33,7 +37,7 @@ pub(crate) fn warn(report: Report) {
 
 /// Plain text where stderr is no terminal or `NO_COLOR` is set. Causes that the message tells already are not told twice.
 fn show(report: &Report) {
-    let plain = !std::io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
+    let plain = !io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
     let theme = if plain { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
     let mut handler = GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_links(false);
     let message = report.to_string();

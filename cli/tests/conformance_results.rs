@@ -208,6 +208,34 @@ fn a_reader_that_goes_away_is_no_error() {
     child.stdout.take().unwrap().read_exact(&mut first).unwrap();
     let ran = Ran::from(child.wait_with_output().unwrap());
     assert_eq!(ran.stderr, "", "{ran:?}");
+    // Closed before the first byte: the verdict is still that of the run.
+    let reader_gone = |arguments: &[&str]| {
+        let mut child = folder.command().args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        Ran::from(child.wait_with_output().unwrap())
+    };
+    for arguments in [
+        &["machines"][..],
+        &["controllers"],
+        &["check", "circle.ngc"],
+        &["run", "circle.ngc", "--controller", "open-loop"],
+    ] {
+        let ran = reader_gone(arguments);
+        assert_eq!((ran.code, &ran.stderr[..]), (Some(0), ""), "{arguments:?}");
+    }
+    let ran = reader_gone(&["run", "circle.ngc", "--controller", "open-loop", "--tolerance", "0.1"]);
+    assert_eq!((ran.code, &ran.stderr[..]), (Some(1), ""));
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_standard_output_that_takes_nothing_is_an_error() {
+    let folder = Folder::new();
+    for arguments in [&["machines"][..], &["canon", "circle.ngc"], &["check", "circle.ngc"]] {
+        let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
+        let output = folder.command().args(arguments).stdout(full).output().unwrap();
+        Ran::from(output).refused(&["standard output", "No space left on device"]);
+    }
 }
 
 #[test]
@@ -225,7 +253,11 @@ fn an_interrupted_run_leaves_nothing() {
             let _ = Command::new("kill").args(["-KILL", &child.id().to_string()]).status();
             panic!("no row was written");
         }
-        if !Command::new("kill").args([&format!("-{signal}"), &child.id().to_string()]).status().is_ok_and(|s| s.success()) {
+        if !Command::new("kill")
+            .args([&format!("-{signal}"), &child.id().to_string()])
+            .status()
+            .is_ok_and(|s| s.success())
+        {
             return skipped("there is no `kill` to interrupt a run with");
         }
         let ran = Ran::from(child.wait_with_output().unwrap());
@@ -242,7 +274,10 @@ fn wait_until_it_writes(folder: &Folder) -> bool {
     let start = Instant::now();
     while start.elapsed() < Duration::from_secs(30) {
         let under_way = std::fs::read_dir(folder.path()).unwrap().filter_map(Result::ok);
-        if under_way.filter(|e| e.file_name().to_string_lossy().starts_with('.')).any(|e| e.metadata().is_ok_and(|m| m.len() > 0)) {
+        if under_way
+            .filter(|e| e.file_name().to_string_lossy().starts_with('.'))
+            .any(|e| e.metadata().is_ok_and(|m| m.len() > 0))
+        {
             return true;
         }
         std::thread::sleep(Duration::from_millis(5));
