@@ -30,6 +30,8 @@ const DIFFERENCES: &[(&str, &str)] = &[
     ("geometry/xyzc", "user M-codes need no file"),
     ("macros/m106", "a subroutine without its end is refused"),
     ("ncfiles/smartprobe", "a dry run of a probe goes all the way"),
+    ("ncfiles/useful-subroutines", "an inner arc of the tool's own radius leaves no path"),
+    ("inside-corners", "arcs with unequal radii are re-centred before they are offset: 0.5 um"),
     ("g84__g18__g99", "LinuxCNC 2.9 swaps the axes of G84 outside G17"),
     ("g84__g19__g99", "LinuxCNC 2.9 swaps the axes of G84 outside G17"),
     ("g71-endless-loop2", "G70-G72 are not read"),
@@ -164,7 +166,12 @@ fn compare(ours: &[Motion], theirs: &Theirs) -> Option<String> {
             moves
         })
         .peekable();
+    let mut returns = false;
     for (number, motion) in ours.iter().enumerate() {
+        if std::mem::take(&mut returns) {
+            // Their rigid tap comes back by itself.
+            continue;
+        }
         if motion.shape == Shape::Line && motion.others.axes.is_none() && apart(&motion.start_mm, &motion.end_mm) <= NO_MOTION_MM {
             continue;
         }
@@ -213,6 +220,7 @@ fn compare(ours: &[Motion], theirs: &Theirs) -> Option<String> {
         if !(apart(&end, &point(&value[2])) <= SAME_POINT_MM) {
             return place("another end", value);
         }
+        returns = kind == "tap";
     }
     moves.next().map(|value| format!("they move on: {value}"))
 }

@@ -126,7 +126,8 @@ impl Interpreter {
             self.corner_to(block, &compensation, from, along, &curve, speed)?;
         }
         (machine[first], machine[second]) = (end[0], end[1]);
-        let start = [self.here[first], self.here[second]];
+        // An entry that leads into an inner corner ends as if its whole length had been beside the contour.
+        let start = if compensation.last.is_none() { add(from, aside) } else { [self.here[first], self.here[second]] };
         self.hold_motion(block, machine, speed, Shape::Line)?;
         self.set_last(Curve::Line { start, end }, along);
         Ok(true)
