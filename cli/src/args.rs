@@ -3,9 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand};
-use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Entry};
 
 /// Predict the contour error of a CNC program on a machine, and correct it.
 #[derive(Debug, Parser)]
@@ -24,7 +22,7 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
     Paper(PaperArgs),
-    /// Report all mistakes of G-code programs and machine files.
+    /// Report all mistakes of G-code programs.
     Check(CheckArgs),
     /// Print the canonical motions of a program, one JSON object a line, in mm and s.
     Canon(CanonArgs),
@@ -42,11 +40,11 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "tnv40")]
     pub(crate) machine: OsString,
     /// Controller; `feedwright controllers` lists them.
-    #[arg(long, value_name = "NAME", default_value = BEST, value_parser = controller(), hide_possible_values = true)]
-    pub(crate) controller: &'static Entry,
+    #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BEST)]
+    pub(crate) controller: String,
     /// Controller to compare against.
-    #[arg(long, value_name = "NAME", default_value = BASELINE, value_parser = controller(), hide_possible_values = true)]
-    pub(crate) against: &'static Entry,
+    #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BASELINE)]
+    pub(crate) against: String,
     /// Feedrate in place of every programmed one, mm/s.
     #[arg(long, value_name = "MM_S")]
     pub(crate) feed: Option<f64>,
@@ -88,7 +86,7 @@ pub(crate) struct PaperArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// G-code programs, and machine files (.toml).
+    /// G-code programs.
     #[arg(required = true)]
     pub(crate) files: Vec<PathBuf>,
 }
@@ -97,10 +95,4 @@ pub(crate) struct CheckArgs {
 pub(crate) struct CanonArgs {
     /// G-code program.
     pub(crate) file: PathBuf,
-}
-
-/// A row of the table of controllers by its name; a wrong name gets the right ones, and the nearest.
-fn controller() -> impl TypedValueParser<Value = &'static Entry> {
-    PossibleValuesParser::new(CONTROLLERS.iter().map(|entry| entry.name))
-        .try_map(|name| Entry::find(&name).ok_or("there is no such controller"))
 }

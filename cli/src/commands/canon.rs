@@ -1,32 +1,26 @@
 //! `feedwright canon`: canonical motions and events, one JSON object a line.
 
-use std::io::{self, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::process::ExitCode;
 
 use feedwright::gcode::{Reader, Settings};
-use miette::Result;
+use miette::{IntoDiagnostic, Result};
 
 use crate::args::CanonArgs;
-use crate::message::{fail, shown};
+use crate::message::fail;
 
 pub(crate) fn run(args: &CanonArgs) -> Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
-    let reader = Reader::open(&args.file, Settings::default())?;
-    shown(print(reader, &mut code))?;
-    Ok(code)
-}
-
-/// Prints until the program ends or nobody reads any more.
-fn print(reader: Reader, code: &mut ExitCode) -> io::Result<()> {
-    let mut out = BufWriter::new(io::stdout().lock());
-    for step in reader {
+    let mut out = BufWriter::new(std::io::stdout().lock());
+    for step in Reader::open(&args.file, Settings::default())? {
         match step {
             Ok(step) => {
-                serde_json::to_writer(&mut out, &step)?;
-                out.write_all(b"\n")?;
+                serde_json::to_writer(&mut out, &step).into_diagnostic()?;
+                out.write_all(b"\n").into_diagnostic()?;
             }
-            Err(fault) => *code = fail(&fault.into()),
+            Err(fault) => code = fail(&fault.into()),
         }
     }
-    out.flush()
+    out.flush().into_diagnostic()?;
+    Ok(code)
 }

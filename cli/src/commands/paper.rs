@@ -5,13 +5,12 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use feedwright::machine::Machine;
-use feedwright::output::{OutputError, OutputFile};
+use feedwright::output::OutputFile;
 use feedwright::paper::{self, Paper, figures::figures};
 use feedwright::report::figure::{CaptionedFigure, write_page};
-use miette::{Result, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::args::PaperArgs;
-use crate::message::shown;
 use crate::progress::Bar;
 
 /// Introduction of the page.
@@ -22,7 +21,8 @@ const INTRODUCTION: &str = "The experiments of S. S. Lee, J. H. Cho and G. J. Je
 pub(crate) fn run(args: &PaperArgs, quiet: bool) -> Result<ExitCode> {
     let machine = Machine::load(&args.machine)?;
     std::fs::create_dir_all(&args.out)
-        .map_err(|cause| miette!("cannot make the folder {}: {cause}", args.out.display()))?;
+        .into_diagnostic()
+        .wrap_err_with(|| format!("cannot make the folder {}", args.out.display()))?;
     let seeds: Vec<u64> = (1..=args.seeds).collect();
     let bar = Bar::new(quiet, args.seeds);
     bar.say("training and cutting");
@@ -31,7 +31,7 @@ pub(crate) fn run(args: &PaperArgs, quiet: bool) -> Result<ExitCode> {
     let figures = figures(&machine, seeds[0]);
     bar.clear();
     write(&args.out, &paper, &figures)?;
-    shown(print(&args.out, &paper))?;
+    print(&args.out, &paper).into_diagnostic()?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -40,7 +40,7 @@ fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure]) -> Result<()
     let mut complete = Vec::new();
     let mut start = |name: &str, write: &dyn Fn(&mut OutputFile) -> std::io::Result<()>| -> Result<()> {
         let mut file = OutputFile::create(&folder.join(name), &[])?;
-        write(&mut file).map_err(|error| OutputError::from_io(error, file.path()))?;
+        write(&mut file).into_diagnostic()?;
         complete.push(file);
         Ok(())
     };

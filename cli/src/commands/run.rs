@@ -4,15 +4,15 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use feedwright::controllers::Choices;
+use feedwright::controllers::{CONTROLLERS, Choices, Entry};
 use feedwright::gcode;
 use feedwright::machine::{self, Machine};
 use feedwright::pipeline::{self, Job, Outcome, Outputs};
 use feedwright::report::{Outcome as Ending, RunSummary};
-use miette::Result;
+use miette::{IntoDiagnostic, Result, miette};
 
 use crate::args::RunArgs;
-use crate::message::{OUT_OF_TOLERANCE, shown, warn};
+use crate::message::{OUT_OF_TOLERANCE, warn};
 use crate::progress::Bar;
 
 pub(crate) fn run(args: RunArgs, quiet: bool) -> Result<ExitCode> {
@@ -24,7 +24,7 @@ pub(crate) fn run(args: RunArgs, quiet: bool) -> Result<ExitCode> {
     for warning in outcome.warnings.iter().cloned() {
         warn(warning.into());
     }
-    shown(print(&job, &outcome))?;
+    print(&job, &outcome).into_diagnostic()?;
     Ok(if outcome.within_tolerance { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) })
 }
 
@@ -32,8 +32,8 @@ fn job(args: RunArgs) -> Result<Job> {
     let report = args.report.unwrap_or_else(|| report_of(&args.part));
     Ok(Job {
         machine: Machine::load(&args.machine)?,
-        controller: args.controller,
-        against: args.against,
+        controller: find(&args.controller)?,
+        against: find(&args.against)?,
         feed_mm_s: args.feed,
         choices: Choices { rho: args.rho, seed: args.seed },
         tolerance_um: args.tolerance,
@@ -51,9 +51,11 @@ fn report_of(part: &Path) -> PathBuf {
     PathBuf::from(name)
 }
 
-/// A ratio for the table; a dash where there is none, as after a run that diverged at once.
-fn ratio(value: f64, base: f64) -> String {
-    if value.is_finite() && base > 0.0 { format!("{:.3}", value / base) } else { "-".to_owned() }
+fn find(name: &str) -> Result<&'static Entry> {
+    Entry::find(name).ok_or_else(|| {
+        let names: Vec<&str> = CONTROLLERS.iter().map(|entry| entry.name).collect();
+        miette!(help = format!("hint: {}", names.join(", ")), "there is no controller called `{name}`")
+    })
 }
 
 fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
@@ -66,10 +68,10 @@ fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
     )?;
     for run in runs {
         let (now, first) = (&run.summary, &runs[0].summary);
-        let ratio = |value: fn(&RunSummary) -> f64| ratio(value(now), value(first));
+        let ratio = |value: fn(&RunSummary) -> f64| value(now) / value(first);
         writeln!(
             out,
-            "{:<18} {:>9.3} {:>10.2} {:>10.2} {:>8} {:>8} {:>8}",
+            "{:<18} {:>9.3} {:>10.2} {:>10.2} {:>8.3} {:>8.3} {:>8.3}",
             now.controller,
             now.time_s,
             now.rms_um,
