@@ -104,7 +104,7 @@ pub enum Error {
     Limits(#[from] LimitsError),
     /// The program moves an axis that the machine does not have.
     #[error("{} moves Z, and the machine `{machine}` has no [axis.z]", part.display())]
-    #[diagnostic(help("hint: give the machine file a section [axis.z], or choose a machine with three axes"))]
+    #[diagnostic(help("give the machine file a section [axis.z], or choose a machine with three axes"))]
     NoZ {
         /// The program.
         part: PathBuf,
@@ -112,20 +112,23 @@ pub enum Error {
         machine: String,
     },
     /// A value on the command line is out of its range.
-    #[error("{name} is {value} {unit}, it must lie {bounds}")]
+    #[error("{name} is {}{unit}; it must lie {bounds}", shown(*value))]
     Value {
         /// Name of the option.
         name: &'static str,
         /// Its value.
         value: f64,
-        /// Its unit.
+        /// Its unit after a space, where it has one.
         unit: &'static str,
         /// The range in words.
-        bounds: &'static str,
+        bounds: String,
+        /// Remedy.
+        #[help]
+        hint: Option<&'static str>,
     },
     /// `--out` with an ending that says nothing.
     #[error("{} does not say what to write", path.display())]
-    #[diagnostic(help("hint: the ending decides: .csv for setpoints, .ngc for G-code"))]
+    #[diagnostic(help("the ending decides: .csv for setpoints, .ngc for G-code"))]
     Ending {
         /// The place.
         path: PathBuf,
@@ -142,6 +145,12 @@ pub enum Error {
         /// What the system says.
         cause: std::io::Error,
     },
+}
+
+/// A number for people: with an exponent where it would be a row of zeros.
+fn shown(value: f64) -> String {
+    let plain = value == 0.0 || !value.is_finite() || (1e-5..1e9).contains(&value.abs());
+    if plain { value.to_string() } else { format!("{value:e}") }
 }
 
 impl Job {
