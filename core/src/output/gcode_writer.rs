@@ -12,7 +12,8 @@
 use std::io::{self, Write};
 
 use super::polyline::{Segment, Simplifier};
-use crate::gcode::canon::{Event, EventKind};
+use crate::feed::TimedEvent;
+use crate::gcode::canon::EventKind;
 use crate::trace::{Commanded, Row, Sink};
 
 /// Largest distance between the setpoints and the printed path, in either direction, mm.
@@ -155,8 +156,9 @@ impl<W: Write> Sink for GcodeWriter<W> {
     }
 
     /// Writes the event behind the motion so far.
-    fn event(&mut self, _t_s: f64, event: &Event) -> io::Result<()> {
+    fn event(&mut self, _t_s: f64, timed: &TimedEvent) -> io::Result<()> {
         self.flush_blocks()?;
+        let event = &timed.event;
         match &event.kind {
             EventKind::Dwell { seconds } => writeln!(self.out, "G4 P{seconds}"),
             EventKind::SpindleSpeed { rpm } => writeln!(self.out, "S{rpm}"),
