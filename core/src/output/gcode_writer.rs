@@ -162,6 +162,8 @@ impl<W: Write> Sink for GcodeWriter<W> {
         match &event.kind {
             EventKind::Dwell { seconds } => writeln!(self.out, "G4 P{seconds}"),
             EventKind::SpindleSpeed { rpm } => writeln!(self.out, "S{rpm}"),
+            // The end is written by `finish`, whether the program had one or not.
+            EventKind::ProgramEnd | EventKind::MCode { code: 2 | 30, .. } => Ok(()),
             EventKind::MCode { code, p, q } => {
                 let word =
                     |letter, value: Option<f64>| value.map_or_else(String::new, |value| format!(" {letter}{value}"));
@@ -171,8 +173,6 @@ impl<W: Write> Sink for GcodeWriter<W> {
             EventKind::Message { text } => writeln!(self.out, "(MSG, {})", text.replace(['(', ')', '\n', '\r'], " ")),
             EventKind::SpindleSync { .. } => Err(inexpressible(event.line, "a motion coupled to the spindle")),
             EventKind::Probe => Err(inexpressible(event.line, "a probing motion")),
-            // The end is written by `finish`, whether the program had one or not.
-            EventKind::ProgramEnd => Ok(()),
         }
     }
 }
