@@ -136,7 +136,8 @@ fn a_module_uses_only_modules_above_it() {
                     uses_seen += 1;
                     if other > place {
                         let file = file.strip_prefix(&src).unwrap().display();
-                        violations.push(format!("{folder}/src/{file}:{line}: {module} uses {name}, which stands below it"));
+                        violations
+                            .push(format!("{folder}/src/{file}:{line}: {module} uses {name}, which stands below it"));
                     }
                 }
             }
@@ -170,6 +171,7 @@ fn uses_are_found_wherever_they_stand() {
 
 #[test]
 fn comments_and_strings_use_nothing() {
-    let text = "//! [`crate::path`]\n/* crate::feed */ let s = \"\\\" crate::plant // \"; let c = '\"'; crate::trace::Row";
+    let text =
+        "//! [`crate::path`]\n/* crate::feed */ let s = \"\\\" crate::plant // \"; let c = '\"'; crate::trace::Row";
     assert_eq!(used(text, 1), [(2, "trace".to_owned())]);
 }

@@ -5,8 +5,8 @@
 
 use std::sync::OnceLock;
 
-use feedwright::identify::cache::identified;
 use feedwright::identify::Programme;
+use feedwright::identify::cache::identified;
 use feedwright::identify::contour::{Training, identify};
 use feedwright::machine::Machine;
 use feedwright::paper::{Paper, experiment};
