@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand};
 
 /// Predict the contour error of a CNC program on a machine, and correct it.
 #[derive(Debug, Parser)]
-#[command(version, about, max_term_width = 110)]
+#[command(version, max_term_width = 110)]
 pub(crate) struct Cli {
     /// Show no progress.
     #[arg(short, long, global = true)]
@@ -46,13 +46,13 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BASELINE)]
     pub(crate) against: String,
     /// Feedrate in place of every programmed one, mm/s.
-    #[arg(long, value_name = "MM_S")]
+    #[arg(long, value_name = "MM_S", allow_negative_numbers = true)]
     pub(crate) feed: Option<f64>,
     /// Weight of the machining time against the error; 0 to 0.1, for controllers that invert the paper's index.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub(crate) rho: Option<f64>,
     /// Largest contour error allowed, um: exit code 1 where it is exceeded.
-    #[arg(long, value_name = "UM")]
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
     /// Write one row per servo period.
     #[arg(long, value_name = "FILE.csv")]

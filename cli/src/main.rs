@@ -16,7 +16,6 @@ use args::{Cli, Command};
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    message::set_up();
     if let Err(error) = ctrlc::set_handler(interrupted) {
         eprintln!("warning: an interrupt may leave unfinished files behind: {error}");
     }

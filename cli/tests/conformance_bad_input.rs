@@ -9,6 +9,19 @@ use std::process::Command;
 
 use common::{Folder, Ran, skipped};
 
+/// The machine of the paper.
+const TNV40: &str = include_str!("../../machines/tnv40.toml");
+
+/// Writes `name`, the machine of the paper with some of its text replaced; each replacement is to be found.
+fn machine(folder: &Folder, name: &str, replacements: &[(&str, &str)]) {
+    let mut text = TNV40.to_owned();
+    for (from, to) in replacements {
+        assert!(text.contains(from), "{from} is not in the machine file");
+        text = text.replace(from, to);
+    }
+    folder.file(name, text);
+}
+
 /// Runs and checks that it is refused with all of `says`, and that the folder is as it was.
 fn refuses<S: AsRef<OsStr> + std::fmt::Debug>(folder: &Folder, arguments: &[S], says: &[&str]) {
     let before = folder.content();
@@ -67,10 +80,10 @@ fn all_mistakes_of_a_program_are_told_in_one_go() {
 #[test]
 fn a_machine_that_is_none() {
     let folder = Folder::new();
-    folder.machine("nan.toml", &[("servo_s = 0.001", "servo_s = nan"), ("rapid_mm_s = 400", "rapid_mm_s = inf")]);
-    folder.machine("negative.toml", &[("inertia_kg_m2 = 0.0103", "inertia_kg_m2 = -0.0103")]);
-    folder.machine("key.toml", &[("inertia_kg_m2 = 0.0103", "inertia_kgm2 = 0.0103")]);
-    folder.machine("syntax.toml", &[("servo_s = 0.001", "servo_s = ")]);
+    machine(&folder, "nan.toml", &[("servo_s = 0.001", "servo_s = nan"), ("rapid_mm_s = 400", "rapid_mm_s = inf")]);
+    machine(&folder, "negative.toml", &[("inertia_kg_m2 = 0.0103", "inertia_kg_m2 = -0.0103")]);
+    machine(&folder, "key.toml", &[("inertia_kg_m2 = 0.0103", "inertia_kgm2 = 0.0103")]);
+    machine(&folder, "syntax.toml", &[("servo_s = 0.001", "servo_s = ")]);
     folder.file("latin.toml", b"name = \"Fr\xe4se\"\n");
     for (machine, says) in [
         ("nan.toml", &["2 faults", "servo_s is NaN", "nan.toml:12:11", "rapid_mm_s is inf", "mm/s", "finite"][..]),
@@ -89,8 +102,8 @@ fn a_machine_that_is_none() {
 #[test]
 fn a_program_in_space_on_a_machine_of_two_axes() {
     let folder = Folder::new();
-    let z = common::TNV40.find("# The paper simulates X and Y only").unwrap();
-    folder.file("plane.toml", &common::TNV40[..z]);
+    let z = TNV40.find("# The paper simulates X and Y only").unwrap();
+    folder.file("plane.toml", &TNV40[..z]);
     folder.file("space.ngc", "G21 G90\nG1 X1 Z1 F100\nM2\n");
     refuses(&folder, &["space.ngc", "--machine", "plane.toml"], &["space.ngc", "Z", "[axis.z]", "three axes"]);
 }
@@ -123,7 +136,7 @@ fn a_value_out_of_its_range() {
 fn a_place_that_cannot_be_written() {
     let folder = Folder::new();
     std::fs::create_dir(folder.path().join("folder")).unwrap();
-    folder.file("machine.toml", common::TNV40);
+    folder.file("machine.toml", TNV40);
     for (output, says) in [
         (&["--out", "setpoints.txt"][..], &["setpoints.txt", ".csv", ".ngc"][..]),
         (&["--out", "setpoints"], &["setpoints", ".csv", ".ngc"]),
@@ -184,7 +197,10 @@ fn a_file_that_grows_too_large() {
     let before = folder.content();
     let mut command = Command::new("sh");
     // Blocks of 512 bytes; the signal that comes with the limit is ignored, so that the write fails.
-    command.args(["-c", "trap '' XFSZ; ulimit -f 200; exec \"$0\" run circle.ngc --controller open-loop --trace t.csv --out s.csv"]);
+    command.args([
+        "-c",
+        "trap '' XFSZ; ulimit -f 200; exec \"$0\" run circle.ngc --controller open-loop --trace t.csv --out s.csv",
+    ]);
     command.arg(env!("CARGO_BIN_EXE_feedwright")).current_dir(folder.path());
     Ran::from(command.output().unwrap()).refused(&["t.csv", "File too large"]);
     assert_eq!(before, folder.content());
@@ -260,7 +276,7 @@ fn names_that_are_no_text_work() {
     let folder = Folder::new();
     let name = |bytes: &'static [u8]| OsStr::from_bytes(bytes);
     folder.file(name(b"fr\xe4se.ngc"), common::CIRCLE);
-    folder.file(name(b"fr\xe4se.toml"), common::TNV40);
+    folder.file(name(b"fr\xe4se.toml"), TNV40);
     let arguments = [
         name(b"fr\xe4se.ngc"),
         OsStr::new("--machine"),
@@ -278,10 +294,16 @@ fn names_that_are_no_text_work() {
 #[test]
 fn a_machine_that_diverges_is_a_result() {
     let folder = Folder::new();
-    folder.machine("wild.toml", &[("kp_1_s = 50", "kp_1_s = 1e5"), ("torque_limit_nm = 30", "torque_limit_nm = 1e6")]);
+    machine(
+        &folder,
+        "wild.toml",
+        &[("kp_1_s = 50", "kp_1_s = 1e5"), ("torque_limit_nm = 30", "torque_limit_nm = 1e6")],
+    );
     for controller in ["open-loop", "magnitude-only", "two-dimensional"] {
         let outputs = ["--json", "r.json", "--trace", "t.csv", "--out", "s.csv", "--report", "r.html"];
-        let ran = folder.run(&[&["run", "circle.ngc", "--machine", "wild.toml", "--controller", controller], &outputs[..]].concat());
+        let ran = folder.run(
+            &[&["run", "circle.ngc", "--machine", "wild.toml", "--controller", controller], &outputs[..]].concat(),
+        );
         assert_eq!(ran.code, Some(1), "{ran:?}");
         assert!(ran.stdout.contains("diverged at 0.0") && ran.stdout.contains("unstable"), "{ran:?}");
         assert!(!ran.stdout.contains("NaN") && !ran.stdout.contains("inf"), "{ran:?}");

@@ -1,11 +1,11 @@
 //! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
 
-use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
+use feedwright_control::contour_error::{ContourError, Estimator};
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
-use feedwright_control::identifier::servo::ServoIdentifier;
+use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
 use feedwright_control::identifier::Inputs;
 use feedwright_control::identifier::contour::ContourIdentifier;
-use feedwright_control::contour_error::{ContourError, Estimator};
+use feedwright_control::identifier::servo::ServoIdentifier;
 use feedwright_control::window::{Preview, Register};
 use feedwright_control::{Controller, Knot, Measured, Reference, Tick, Window};
 

@@ -249,8 +249,16 @@ mod tests {
 
     #[test]
     fn a_corner_between_two_knots_is_not_cut_off() {
-        let in_x = (0..20).map(|i| Knot { position_mm: [-0.995 + 0.05 * f64::from(i), 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0 });
-        let in_y = (0..20).map(|i| Knot { position_mm: [0.0, 0.005 + 0.05 * f64::from(i)], tangent: [0.0, 1.0], feed_mm_s: 50.0 });
+        let in_x = (0..20).map(|i| Knot {
+            position_mm: [-0.995 + 0.05 * f64::from(i), 0.0],
+            tangent: [1.0, 0.0],
+            feed_mm_s: 50.0,
+        });
+        let in_y = (0..20).map(|i| Knot {
+            position_mm: [0.0, 0.005 + 0.05 * f64::from(i)],
+            tangent: [0.0, 1.0],
+            feed_mm_s: 50.0,
+        });
         let error = Behind::new(in_x.chain(in_y)).estimate([0.03, -0.04]);
         assert!((norm(error.vector_mm) - 0.05).abs() < 1e-12, "{error:?}");
     }

@@ -133,13 +133,7 @@ impl<const N: usize> Plan<N> {
         (0..n).fold(offset_mm, |o, normal| add_scaled(o, period_s * self.rates[knot * n + normal], along[normal]))
     }
 
-    fn roll_out(
-        &self,
-        net: &ServoIdentifier<N>,
-        window: &Window<'_, N>,
-        state: &State<N>,
-        knots: usize,
-    ) -> Rollout<N> {
+    fn roll_out(&self, net: &ServoIdentifier<N>, window: &Window<'_, N>, state: &State<N>, knots: usize) -> Rollout<N> {
         let period_s = window.feed_period_s;
         let mut rollout = Rollout {
             error: [[0.0; MOST_NORMALS]; MOST_KNOTS],
@@ -202,11 +196,7 @@ fn normals_of<const N: usize>(tangent: [f64; N], hint: [f64; N]) -> Normals<N> {
 }
 
 /// R(m): displacement of the tool, mm, m knots after a feedrate of 1 mm/s along an axis for one knot: [m][tool][feed].
-fn tool_response<const N: usize>(
-    net: &ServoIdentifier<N>,
-    period_s: f64,
-    knots: usize,
-) -> [[[f64; N]; N]; MOST_KNOTS] {
+fn tool_response<const N: usize>(net: &ServoIdentifier<N>, period_s: f64, knots: usize) -> [[[f64; N]; N]; MOST_KNOTS] {
     let mut response = [[[0.0; N]; N]; MOST_KNOTS];
     for axis in 0..N {
         let mut delays = Delays::<N>::REST;

@@ -98,11 +98,8 @@ fn descend<const N: usize>(
     for _ in 0..settings.steps {
         let feed = inputs.map(|axis| axis[0]);
         let forward = net.predict(inputs);
-        let gradient = add_scaled(
-            error_gradient(net, &forward, settings.gradient),
-            1.0,
-            time_gradient(feed, settings.rho),
-        );
+        let gradient =
+            add_scaled(error_gradient(net, &forward, settings.gradient), 1.0, time_gradient(feed, settings.rho));
         let step = limit_norm(scale(-settings.eta, project(gradient)), settings.step_limit);
         for axis in 0..N {
             inputs[axis][0] += step[axis];

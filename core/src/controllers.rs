@@ -12,7 +12,7 @@ use serde::Serialize;
 use crate::identify::cache::identified;
 use crate::identify::contour::{Identified, Training};
 use crate::identify::{Programme, servo};
-use crate::machine::Machine;
+use crate::machine::{Machine, nearest};
 
 /// One row of the table.
 pub struct Entry {
@@ -102,6 +102,12 @@ impl Entry {
     /// Finds a row by its name.
     pub fn find(name: &str) -> Option<&'static Self> {
         CONTROLLERS.iter().find(|entry| entry.name == name)
+    }
+
+    /// The name that was probably meant by one that is none.
+    pub fn meant_by(name: &str) -> Option<&'static str> {
+        let names: Vec<&'static str> = CONTROLLERS.iter().map(|entry| entry.name).collect();
+        nearest(name, &names)
     }
 }
 

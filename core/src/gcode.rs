@@ -15,6 +15,7 @@ mod diagnostic;
 mod dialect;
 mod execute;
 mod expression;
+mod firmware;
 mod flow;
 mod length;
 mod lexer;

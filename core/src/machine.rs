@@ -14,6 +14,7 @@ use std::path::Path;
 use serde::Serialize;
 
 pub use error::{MachineError, Problem};
+pub(crate) use reader::nearest;
 
 /// Machines that need no file: name and text.
 pub const BUILT_IN: &[(&str, &str)] = &[("tnv40", include_str!("../../machines/tnv40.toml"))];

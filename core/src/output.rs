@@ -92,6 +92,18 @@ impl OutputFile {
         &self.shown
     }
 
+    /// All files of a run are complete: they take their places. The last bytes of all are written before the first moves,
+    /// so that a disk that is full at the very end leaves no part of the results either.
+    ///
+    /// # Errors
+    /// As [`Self::commit`], for the first that fails.
+    pub fn commit_all(mut files: Vec<Self>) -> Result<(), OutputError> {
+        for file in &mut files {
+            file.out.flush().map_err(|error| OutputError::from_io(error, &file.shown))?;
+        }
+        files.into_iter().try_for_each(Self::commit)
+    }
+
     /// The file is complete: it takes its place.
     ///
     /// # Errors
@@ -184,6 +196,12 @@ fn resolve(path: &Path) -> Result<PathBuf, OutputError> {
     }
 }
 
+/// The error without the name of the hidden file, which nobody asked for.
+fn of_the_system(error: io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(|inner| inner.source()).and_then(|inner| inner.downcast_ref::<io::Error>());
+    inner.and_then(io::Error::raw_os_error).map_or(error, io::Error::from_raw_os_error)
+}
+
 fn create_beside(target: &Path, folder: &Path) -> io::Result<(File, TempPath)> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".feedwright-").suffix(".part");
@@ -196,7 +214,7 @@ fn create_beside(target: &Path, folder: &Path) -> io::Result<(File, TempPath)> {
     }
     #[cfg(not(unix))]
     let _ = target;
-    Ok(builder.tempfile_in(folder)?.into_parts())
+    Ok(builder.tempfile_in(folder).map_err(of_the_system)?.into_parts())
 }
 
 #[cfg(test)]

@@ -16,9 +16,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use crate::identify::Programme;
 use crate::identify::cache::identified;
 use crate::identify::contour::{Identified, Training};
-use crate::identify::Programme;
 use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::report::Statistics;
@@ -121,11 +121,7 @@ fn cut_all(machine: &Machine, seed: u64) -> SeedResult {
         open_loop: Numbers { rho: None, ..cut(machine, &mut OpenLoop, &mut [], 0.0) },
         magnitude_only: cut_magnitude_only(machine, net, rho_for_time(machine, net, two_dimensional.time_s)),
         magnitude_only_same_rho: cut_magnitude_only(machine, net, settings.inversion.rho),
-        two_dimensional_exact_gradient: cut_two_dimensional(
-            machine,
-            net,
-            with_gradient(settings, Gradient::Exact),
-        ),
+        two_dimensional_exact_gradient: cut_two_dimensional(machine, net, with_gradient(settings, Gradient::Exact)),
         two_dimensional,
     }
 }

@@ -62,9 +62,8 @@ impl<const N: usize> Plant<N> {
     /// last.
     pub fn new(machine: &Machine, start_mm: [f64; N]) -> Self {
         let axes = &machine.axes;
-        let each = |value: fn(&Axis) -> f64| -> [f64; N] {
-            std::array::from_fn(|i| value(&axes[i.min(axes.len() - 1)]))
-        };
+        let each =
+            |value: fn(&Axis) -> f64| -> [f64; N] { std::array::from_fn(|i| value(&axes[i.min(axes.len() - 1)])) };
         let rad_per_mm = each(|a| TAU / a.lead_mm_per_rev);
         let disturbance_rad_s = each(|a| TAU * a.disturbance_hz);
         let mechanics_s = machine.period.mechanics_s;

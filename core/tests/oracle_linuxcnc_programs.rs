@@ -17,7 +17,27 @@ const SAME_POINT_MM: f64 = 1e-6;
 const NO_MOTION_MM: f64 = 1e-9;
 
 /// Programs that are read differently on purpose: part of the path, and why.
-const DIFFERENCES: &[(&str, &str)] = &[];
+const DIFFERENCES: &[(&str, &str)] = &[
+    ("linuxcnc-nurbs/G6_", "G6.2 came with LinuxCNC 2.10"),
+    ("camotics/compass.ngc", "a % that ends a program without a % at its beginning is a warning"),
+    ("iniparam-failassign", "parameters of an INI file cannot be assigned"),
+    ("ncfiles/cone.ngc", "rs274 alone has no axes U V W"),
+    ("foam/foam.ngc", "rs274 alone has no axes U V W"),
+    ("external_offsets/dyn_demo", "user M-codes need no file"),
+    ("external_offsets/eoffsets", "user M-codes need no file"),
+    ("external_offsets/jwp_z", "user M-codes need no file"),
+    ("external_offsets/opa_demo", "user M-codes need no file"),
+    ("geometry/xyzc", "user M-codes need no file"),
+    ("macros/m106", "a subroutine without its end is refused"),
+    ("ncfiles/smartprobe", "a dry run of a probe goes all the way"),
+    ("ncfiles/useful-subroutines", "an inner arc of the tool's own radius leaves no path"),
+    ("inside-corners", "arcs with unequal radii are re-centred before they are offset: 0.5 um"),
+    ("g84__g18__g99", "LinuxCNC 2.9 swaps the axes of G84 outside G17"),
+    ("g84__g19__g99", "LinuxCNC 2.9 swaps the axes of G84 outside G17"),
+    ("g71-endless-loop2", "G70-G72 are not read"),
+    ("g72-missing-iteration", "G70-G72 are not read"),
+    ("lathe_g7", "G70-G72 are not read"),
+];
 
 #[derive(Debug)]
 struct Theirs {
@@ -146,7 +166,12 @@ fn compare(ours: &[Motion], theirs: &Theirs) -> Option<String> {
             moves
         })
         .peekable();
+    let mut returns = false;
     for (number, motion) in ours.iter().enumerate() {
+        if std::mem::take(&mut returns) {
+            // Their rigid tap comes back by itself.
+            continue;
+        }
         if motion.shape == Shape::Line && motion.others.axes.is_none() && apart(&motion.start_mm, &motion.end_mm) <= NO_MOTION_MM {
             continue;
         }
@@ -195,6 +220,7 @@ fn compare(ours: &[Motion], theirs: &Theirs) -> Option<String> {
         if !(apart(&end, &point(&value[2])) <= SAME_POINT_MM) {
             return place("another end", value);
         }
+        returns = kind == "tap";
     }
     moves.next().map(|value| format!("they move on: {value}"))
 }

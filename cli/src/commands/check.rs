@@ -1,17 +1,22 @@
 //! `feedwright check`: all mistakes of programs, as a compiler tells them.
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use feedwright::gcode::{self, CheckError, Settings};
-use miette::{IntoDiagnostic, Report, Result};
+use miette::{Report, Result};
 
 use crate::args::CheckArgs;
-use crate::message::{fail, warn};
+use crate::message::{fail, printed, warn};
 
 pub(crate) fn run(args: &CheckArgs) -> Result<ExitCode> {
     let mut code = ExitCode::SUCCESS;
-    let mut out = std::io::stdout().lock();
+    let result = print(args, &mut code);
+    printed(result, code)
+}
+
+fn print(args: &CheckArgs, code: &mut ExitCode) -> io::Result<()> {
+    let mut out = io::stdout().lock();
     for file in &args.files {
         match gcode::check(file, Settings::default()) {
             Ok(summary) => {
@@ -27,16 +32,15 @@ pub(crate) fn run(args: &CheckArgs) -> Result<ExitCode> {
                     summary.feed_mm,
                     summary.rapid_mm,
                     summary.dialect.0
-                )
-                .into_diagnostic()?;
+                )?;
             }
-            Err(CheckError::Read(error)) => code = fail(&error.into()),
+            Err(CheckError::Read(error)) => *code = fail(&error.into()),
             Err(CheckError::Faults(faults)) => {
                 for fault in faults {
-                    code = fail(&Report::new(fault));
+                    *code = fail(&Report::new(fault));
                 }
             }
         }
     }
-    Ok(code)
+    Ok(())
 }

@@ -1,26 +1,32 @@
 //! `feedwright machines` and `feedwright controllers`.
 
-use std::io::Write;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use feedwright::controllers::{BEST, CONTROLLERS};
 use feedwright::machine::{BUILT_IN, Machine};
-use miette::{IntoDiagnostic, Result};
+use miette::Result;
+
+use crate::message::printed;
 
 pub(crate) fn machines() -> Result<ExitCode> {
-    let mut out = std::io::stdout().lock();
+    let mut lines = String::new();
     for (name, text) in BUILT_IN {
         let machine = Machine::parse(&format!("{name}.toml"), text)?;
-        writeln!(out, "{name:<10} {} axes  {}", machine.axis_count(), machine.description).into_diagnostic()?;
+        lines += &format!("{name:<10} {} axes  {}\n", machine.axis_count(), machine.description);
     }
-    Ok(ExitCode::SUCCESS)
+    print(&lines)
 }
 
 pub(crate) fn controllers() -> Result<ExitCode> {
-    let mut out = std::io::stdout().lock();
+    let mut lines = String::new();
     for entry in CONTROLLERS {
         let best = if entry.name == BEST { " (default)" } else { "" };
-        writeln!(out, "{:<18} {}; {}{best}", entry.name, entry.summary, entry.source).into_diagnostic()?;
+        lines += &format!("{:<18} {}; {}{best}\n", entry.name, entry.summary, entry.source);
     }
-    Ok(ExitCode::SUCCESS)
+    print(&lines)
+}
+
+fn print(lines: &str) -> Result<ExitCode> {
+    printed(io::stdout().write_all(lines.as_bytes()), ExitCode::SUCCESS)
 }

@@ -11,6 +11,7 @@ use feedwright::report::figure::{CaptionedFigure, write_page};
 use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::args::PaperArgs;
+use crate::message::printed;
 use crate::progress::Bar;
 
 /// Introduction of the page.
@@ -31,8 +32,7 @@ pub(crate) fn run(args: &PaperArgs, quiet: bool) -> Result<ExitCode> {
     let figures = figures(&machine, seeds[0]);
     bar.clear();
     write(&args.out, &paper, &figures)?;
-    print(&args.out, &paper).into_diagnostic()?;
-    Ok(ExitCode::SUCCESS)
+    printed(print(&args.out, &paper), ExitCode::SUCCESS)
 }
 
 /// Writes everything, and moves it to its place only when all is written.
@@ -53,9 +53,7 @@ fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure]) -> Result<()
         start(&name, &|file| file.write_all(figure.figure.to_svg().as_bytes()))?;
     }
     start("paper.html", &|file| write_page(file, "Two-dimensional feedrate control", INTRODUCTION, figures))?;
-    for file in complete {
-        file.commit()?;
-    }
+    OutputFile::commit_all(complete)?;
     Ok(())
 }
 

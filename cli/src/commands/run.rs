@@ -9,10 +9,10 @@ use feedwright::gcode;
 use feedwright::machine::{self, Machine};
 use feedwright::pipeline::{self, Job, Outcome, Outputs};
 use feedwright::report::{Outcome as Ending, RunSummary};
-use miette::{IntoDiagnostic, Result, miette};
+use miette::{Result, miette};
 
 use crate::args::RunArgs;
-use crate::message::{OUT_OF_TOLERANCE, warn};
+use crate::message::{OUT_OF_TOLERANCE, printed, warn};
 use crate::progress::Bar;
 
 pub(crate) fn run(args: RunArgs, quiet: bool) -> Result<ExitCode> {
@@ -24,8 +24,8 @@ pub(crate) fn run(args: RunArgs, quiet: bool) -> Result<ExitCode> {
     for warning in outcome.warnings.iter().cloned() {
         warn(warning.into());
     }
-    print(&job, &outcome).into_diagnostic()?;
-    Ok(if outcome.within_tolerance { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) })
+    let code = if outcome.within_tolerance { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
+    printed(print(&job, &outcome), code)
 }
 
 fn job(args: RunArgs) -> Result<Job> {
@@ -54,14 +54,23 @@ fn report_of(part: &Path) -> PathBuf {
 fn find(name: &str) -> Result<&'static Entry> {
     Entry::find(name).ok_or_else(|| {
         let names: Vec<&str> = CONTROLLERS.iter().map(|entry| entry.name).collect();
-        miette!(help = format!("hint: {}", names.join(", ")), "there is no controller called `{name}`")
+        let meant = Entry::meant_by(name).map_or(String::new(), |meant| format!("did you mean '{meant}'? "));
+        miette!(
+            help = format!("{meant}'feedwright controllers' says what each does"),
+            "no controller is called '{name}'; there are {}",
+            names.join(", ")
+        )
     })
 }
 
 fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     let runs = &outcome.report.runs;
-    writeln!(out, "{:<18} {:>9} {:>10} {:>10} {:>8} {:>8} {:>8}", "", "time s", "RMS um", "max um", "time", "RMS", "max")?;
+    writeln!(
+        out,
+        "{:<18} {:>9} {:>10} {:>10} {:>8} {:>8} {:>8}",
+        "", "time s", "RMS um", "max um", "time", "RMS", "max"
+    )?;
     for run in runs {
         let (now, first) = (&run.summary, &runs[0].summary);
         let ratio = |value: fn(&RunSummary) -> f64| value(now) / value(first);
@@ -79,6 +88,15 @@ fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
         if let Ending::Diverged { at_s } = now.outcome {
             writeln!(out, "{:<18} diverged at {at_s:.3} s: the servo loop of this machine is unstable", "")?;
         }
+    }
+    if let [first, .., last] = &runs[..]
+        && last.summary.max_um > first.summary.max_um
+    {
+        let (worse, better) = (&last.summary.controller, &first.summary.controller);
+        writeln!(
+            out,
+            "{worse} is worse than {better} here: nothing is gained by correcting this part on this machine"
+        )?;
     }
     if let (Some(tolerance_um), Some(last)) = (job.tolerance_um, runs.last()) {
         let verdict = if outcome.within_tolerance { "within" } else { "out of" };

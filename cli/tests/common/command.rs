@@ -1,7 +1,5 @@
 //! Runs the command as a user does: in a folder of its own, looking at nothing but files, exit code and what is printed.
 
-#![expect(dead_code, reason = "every test file uses a part of this")]
-
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
@@ -11,9 +9,6 @@ use tempfile::TempDir;
 
 /// A part that every test may cut: a circle of 2 mm radius at 20 mm/s, done in under a second of machining.
 pub(crate) const CIRCLE: &str = "G21 G17 G90 G94 G64\nG0 X0 Y0\nG2 X0 Y0 I2 J0 F1200\nM2\n";
-
-/// The machine of the paper, for tests that change a value of it.
-pub(crate) const TNV40: &str = include_str!("../../../machines/tnv40.toml");
 
 /// A working folder.
 pub(crate) struct Folder(TempDir);
@@ -40,16 +35,6 @@ impl Folder {
 
     pub(crate) fn text(&self, name: impl AsRef<Path>) -> String {
         String::from_utf8(self.read(name)).unwrap()
-    }
-
-    /// Writes `name`, the machine of the paper with some of its text replaced; each replacement is to be found.
-    pub(crate) fn machine(&self, name: &str, replacements: &[(&str, &str)]) {
-        let mut text = TNV40.to_owned();
-        for (from, to) in replacements {
-            assert!(text.contains(from), "{from} is not in the machine file");
-            text = text.replace(from, to);
-        }
-        self.file(name, text);
     }
 
     /// Everything in the folder, hidden or not, with its content.

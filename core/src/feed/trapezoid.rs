@@ -74,7 +74,7 @@ impl Trapezoid {
         before + 2.0 * self.accel_mm_s2 * length_mm
     }
 
-    fn backward_pass(&mut self) -> f64 {
+    fn backward_pass(&mut self) {
         // At rest behind the last section.
         let mut after = 0.0;
         for i in (0..self.waiting.len()).rev() {
@@ -82,7 +82,6 @@ impl Trapezoid {
             after = waiting.cap.min(self.gain(after, waiting.section.length_mm));
             self.waiting[i].backward = after;
         }
-        after
     }
 
     /// Last joint whose speed is final.

@@ -16,6 +16,9 @@ use super::travel::{Speed, others};
 /// Corners flatter than this, rad, count as smooth: the offset curves are joined as they are, apart by less than r/800. LinuxCNC's limit.
 const SMOOTH_WITHIN_RAD: f64 = 0.05;
 
+/// An entry may be shorter than the radius by rounding, mm.
+const ENTRY_SLACK_MM: f64 = 1e-9;
+
 /// Compensation under way.
 #[derive(Debug, Clone)]
 pub(super) struct Compensation {
@@ -104,7 +107,7 @@ impl Interpreter {
         self.at = *target;
         let way = minus(to, from);
         let mut machine = goal;
-        if length(way) == 0.0 {
+        if length(way) == 0.0 && (compensation.last.is_some() || compensation.radius_mm == 0.0) {
             // Along the normal only: the tool stays where it is beside the contour.
             (machine[first], machine[second]) = (self.here[first], self.here[second]);
             self.line_to(block, machine, speed, 0.0)?;
@@ -114,16 +117,17 @@ impl Interpreter {
         let aside = scaled(left_of(along), compensation.side * compensation.radius_mm);
         let end = add(to, aside);
         if compensation.last.is_none() {
-            if length(way) <= compensation.radius_mm {
+            if length(way) < compensation.radius_mm - ENTRY_SLACK_MM {
                 let (way, radius) = (length(way), compensation.radius_mm);
-                return Err(Fault::new("gcode::compensation", block.whole(), format!("the entry into cutter compensation is {way:.4} mm long: it must be longer than the tool's radius of {radius:.4} mm")));
+                return Err(Fault::new("gcode::compensation", block.whole(), format!("the entry into cutter compensation is {way:.4} mm long: it must be as long as the tool's radius of {radius:.4} mm")));
             }
         } else {
             let curve = Curve::Line { start: add(from, aside), end };
             self.corner_to(block, &compensation, from, along, &curve, speed)?;
         }
         (machine[first], machine[second]) = (end[0], end[1]);
-        let start = [self.here[first], self.here[second]];
+        // An entry that leads into an inner corner ends as if its whole length had been beside the contour.
+        let start = if compensation.last.is_none() { add(from, aside) } else { [self.here[first], self.here[second]] };
         self.hold_motion(block, machine, speed, Shape::Line)?;
         self.set_last(Curve::Line { start, end }, along);
         Ok(true)
@@ -150,8 +154,8 @@ impl Interpreter {
         let end = add(center, scaled(minus(to, center), offset_radius / radius));
         let end_along = scaled(left_of(unit(minus(to, center))), turn);
         self.at = *target;
-        let center = if compensation.last.is_none() {
-            entry_center([self.here[first], self.here[second]], to, end, compensation.radius_mm)
+        let center = if compensation.last.is_none() && compensation.radius_mm > 0.0 {
+            entry_center([self.here[first], self.here[second]], to, end)
                 .ok_or_else(|| Fault::new("gcode::compensation", block.whole(), "the entry arc cannot reach the compensated end"))?
         } else {
             let start_along = scaled(left_of(unit(minus(from, center))), turn);
@@ -185,7 +189,10 @@ impl Interpreter {
 
     /// Joins the held motion to `next`, which begins at the programmed `corner` in the direction `along`.
     fn corner_to(&mut self, block: &Block, compensation: &Compensation, corner: Point, along: Point, next: &Curve, speed: Speed) -> Read<()> {
-        let Some((before, before_along)) = &compensation.last else { return Ok(()) };
+        let Some((before, before_along)) = compensation.last.as_ref().filter(|_| compensation.radius_mm > 0.0) else {
+            self.release();
+            return Ok(());
+        };
         let angle = cross(*before_along, along).atan2(dot(*before_along, along)) * compensation.side;
         let reverses = angle.abs() > std::f64::consts::PI - SMOOTH_WITHIN_RAD;
         if angle > SMOOTH_WITHIN_RAD && !reverses {
@@ -248,10 +255,7 @@ impl Interpreter {
 }
 
 /// Centre of an entry arc: on the normal of the contour at its end, equally far from the start and from the compensated end.
-fn entry_center(start: Point, contour_end: Point, end: Point, radius: f64) -> Option<Point> {
-    if radius == 0.0 {
-        return None;
-    }
+fn entry_center(start: Point, contour_end: Point, end: Point) -> Option<Point> {
     let normal = unit(minus(end, contour_end));
     let chord = minus(start, end);
     let along = dot(chord, normal);

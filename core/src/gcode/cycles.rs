@@ -57,8 +57,7 @@ impl Interpreter {
         }
         self.cycle_words(block, &mut kept, normal)?;
         let incremental = self.modal.incremental;
-        let height = self.at[normal];
-        let clearance = if incremental { height + kept.clearance } else { kept.clearance };
+        let clearance = if incremental { kept.began_at + kept.clearance } else { kept.clearance };
         let bottom = if incremental { clearance + kept.bottom } else { kept.bottom };
         if clearance < bottom {
             let message = format!("R = {clearance} mm lies below the bottom of the hole at {bottom} mm");
@@ -126,14 +125,8 @@ impl Interpreter {
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
         }
         for _ in 0..repeats {
-            let mut target = self.at;
-            for axis in plane {
-                let letter = AXIS_LETTERS[axis];
-                if let Some(value) = block.get(letter) {
-                    let value = self.length(block, letter, axis, value)?;
-                    target[axis] = if self.modal.incremental { self.at[axis] + value } else { value };
-                }
-            }
+            let mut target = self.target(block)?;
+            target[hole.normal] = self.at[hole.normal];
             self.go(block, target, Speed::Rapid)?;
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
             self.drill(block, hole, plane)?;

@@ -4,6 +4,7 @@ use super::block::Block;
 use super::canon::EventKind;
 use super::codes::bit;
 use super::diagnostic::{Fault, Read};
+use super::parameters::INPUT;
 use super::settings::Dialect;
 use super::state::Interpreter;
 
@@ -79,7 +80,41 @@ impl Interpreter {
         Ok(())
     }
 
+    /// Words that an M-code cannot do without.
+    fn check_words_of(&self, block: &Block, number: u16) -> Read<()> {
+        if self.dialect != Dialect::LinuxCnc {
+            return Ok(());
+        }
+        let needed: &[u8] = match number {
+            61 => b"q",
+            62..=65 => b"p",
+            67 | 68 => b"eq",
+            _ => b"",
+        };
+        for &letter in needed {
+            if !block.has(letter) {
+                let name = char::from(letter).to_ascii_uppercase();
+                return Err(Fault::new("gcode::m_code", block.whole(), format!("M{number} needs its word {name}")));
+            }
+        }
+        if number != 66 {
+            return Ok(());
+        }
+        if block.has(b'p') == block.has(b'e') {
+            return Err(Fault::new("gcode::m_code", block.whole(), "M66 waits for a digital input P or an analog input E: exactly one of them"));
+        }
+        let mode = if block.has(b'l') { self.integer(block, b'l', 0, 4)? } else { 0 };
+        if mode != 0 && block.get(b'q').unwrap_or(0.0) <= 0.0 {
+            return Err(Fault::new("gcode::m_code", block.whole(), format!("M66 L{mode} waits and needs a time limit Q above 0 s")));
+        }
+        if mode != 0 && block.has(b'e') {
+            return Err(Fault::new("gcode::m_code", block.at(b'e'), "M66 reads an analog input at once: only L0 goes with E"));
+        }
+        Ok(())
+    }
+
     fn machine_code(&mut self, block: &Block, number: u16) -> Read<()> {
+        self.check_words_of(block, number)?;
         let modal = &mut self.modal;
         match number {
             0 | 1 | 2 | 30 | 60 | 98 | 99 => return Ok(()), // Stops come last, calls are flow.
@@ -100,6 +135,8 @@ impl Interpreter {
                 let tool = self.integer(block, b'q', 0, 999_999)?;
                 self.load_tool(tool as u32);
             }
+            // No input is connected: it reads as low, as on a machine at rest.
+            66 => self.parameters.set(INPUT, 0.0),
             70 => self.save_modes(false),
             71 => self.forget_modes(),
             72 => self.restore_modes(),

@@ -41,6 +41,9 @@ pub(super) fn left_of(a: Point) -> Point {
 /// Slack of a comparison of lengths, mm: far below anything cut, far above rounding.
 const SLACK_MM: f64 = 1e-9;
 
+/// The same for angles, rad.
+const SLACK_RAD: f64 = 1e-9;
+
 /// A line or an arc.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Curve {
@@ -79,7 +82,7 @@ impl Curve {
             Self::Arc { start, end, center, turn } => {
                 let sweep = sweep(start, end, center, turn);
                 let to_point = sweep_within(start, point, center, turn);
-                to_point <= sweep + 1e-9
+                to_point <= sweep + SLACK_RAD
             }
         }
     }
@@ -96,14 +99,14 @@ impl Curve {
 /// Angle from start to end in the sense of `turn`, above 0 and up to a full turn.
 fn sweep(start: Point, end: Point, center: Point, turn: f64) -> f64 {
     let angle = sweep_within(start, end, center, turn);
-    if angle < 1e-9 { std::f64::consts::TAU } else { angle }
+    if angle < SLACK_RAD { std::f64::consts::TAU } else { angle }
 }
 
 /// The same from 0.
 fn sweep_within(start: Point, end: Point, center: Point, turn: f64) -> f64 {
     let (a, b) = (minus(start, center), minus(end, center));
     let angle = turn * cross(a, b).atan2(dot(a, b));
-    if angle < -1e-12 { angle + std::f64::consts::TAU } else { angle.max(0.0) }
+    if angle < -SLACK_RAD { angle + std::f64::consts::TAU } else { angle.max(0.0) }
 }
 
 fn line_line(a: Point, along: Point, c: Point, other: Point) -> [Option<Point>; 2] {

@@ -9,9 +9,10 @@ use std::sync::Arc;
 use thiserror::Error;
 
 use super::block::{Block, Style};
-use super::canon::Canon;
+use super::canon::{Canon, EventKind};
 use super::diagnostic::{Diagnostic, Fault, Read, Severity};
 use super::dialect;
+use super::firmware;
 use super::flow::Flow;
 use super::lexer::{Cursor, END};
 use super::settings::{Dialect, Settings};
@@ -247,6 +248,15 @@ impl Reader {
         }
         if self.percent == Percent::NotSeen {
             self.percent = Percent::Absent;
+        }
+        if matches!(interpreter.dialect, Dialect::Grbl | Dialect::Printer)
+            && let Some(command) = firmware::command(bytes, interpreter.dialect)
+        {
+            if command == firmware::Command::Acts {
+                interpreter.warnings.push(*firmware::warning(bytes));
+            }
+            interpreter.event(EventKind::Message { text: String::from_utf8_lossy(bytes.trim_ascii()).into_owned() });
+            return Ok(());
         }
         if cursor.eat(b'n') {
             cursor.number()?;

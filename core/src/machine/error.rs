@@ -71,7 +71,8 @@ pub enum MachineError {
 
 /// A fault in the text of a machine file.
 #[derive(Debug, Clone, PartialEq, Eq, Error, Diagnostic)]
-#[error("{line}:{column}: {message}")]
+#[error("{message}")]
+#[diagnostic(code(machine::file))]
 pub struct Problem {
     /// What is wrong: key, value, limit, unit.
     pub message: String,

@@ -19,11 +19,16 @@ fn faults_after(from: &str, to: &str) -> Vec<Problem> {
     }
 }
 
+/// Place and message.
+fn placed(fault: &Problem) -> String {
+    format!("{}:{}: {fault}", fault.line, fault.column)
+}
+
 /// The only fault after the replacement: its text, with the hint.
 fn fault_after(from: &str, to: &str) -> String {
     let faults = faults_after(from, to);
     assert_eq!(faults.len(), 1, "{faults:?}");
-    format!("{} / {}", faults[0], faults[0].hint.as_deref().unwrap_or("no hint"))
+    format!("{} / {}", placed(&faults[0]), faults[0].hint.as_deref().unwrap_or("no hint"))
 }
 
 #[test]
@@ -87,7 +92,7 @@ fn values_out_of_range_name_place_value_limit_and_unit() {
 #[test]
 fn missing_unknown_and_mistyped_keys_are_reported() {
     assert_eq!(
-        faults_after("kp_1_s = 50", "kp_l_s = 50").iter().map(|fault| format!("{fault}")).collect::<Vec<_>>(),
+        faults_after("kp_1_s = 50", "kp_l_s = 50").iter().map(placed).collect::<Vec<_>>(),
         ["23:1: kp_1_s is missing from [axis.x]", "31:1: unknown key 'kp_l_s' in [axis.x]"]
     );
     assert!(fault_after("kd = 0", "kd = 0\ninertia_kgm2 = 1").ends_with("/ did you mean 'inertia_kg_m2'?"));
@@ -108,7 +113,7 @@ fn missing_unknown_and_mistyped_keys_are_reported() {
 fn a_missing_table_is_one_fault_not_one_for_every_key() {
     let faults = faults_after("[limits]", "[limit]");
     let texts: Vec<String> =
-        faults.iter().map(|fault| format!("{fault} / {}", fault.hint.clone().unwrap_or_default())).collect();
+        faults.iter().map(|fault| format!("{} / {}", placed(fault), fault.hint.clone().unwrap_or_default())).collect();
     assert_eq!(
         texts,
         [

@@ -81,6 +81,10 @@ impl OutputError {
     pub(super) fn io(step: Step, path: &Path, folder: &Path, source: io::Error) -> Self {
         let (mut free_bytes, mut hint) = (None, None);
         match source.kind() {
+            // Some folders exist and take no files.
+            io::ErrorKind::NotFound if folder.is_dir() => {}
+            // A device has no room of its own, whatever is free around it.
+            io::ErrorKind::StorageFull if path.exists() && !path.is_file() => {}
             io::ErrorKind::NotFound => {
                 hint = Some(format!("create the directory first: mkdir -p {}", folder.display()));
             }

@@ -177,7 +177,8 @@ impl<W: Write> Sink for GcodeWriter<W> {
 
 /// What the program asks for at `line` is more than positions and feeds.
 fn inexpressible(line: u32, what: &str) -> io::Error {
-    let message = format!("line {line} is {what}, which corrected G1 blocks cannot express; write setpoints (.csv) instead");
+    let message =
+        format!("line {line} is {what}, which corrected G1 blocks cannot express; write setpoints (.csv) instead");
     io::Error::new(io::ErrorKind::Unsupported, message)
 }
 

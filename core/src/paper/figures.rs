@@ -93,9 +93,8 @@ fn figure_8(open: &Drawn, magnitude: &Drawn, same_rho: &Drawn, both: &Drawn) -> 
 }
 
 fn figure_9(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
-    let feed = |label: &str, drawn: &Drawn, color: usize, line: Line| {
-        curve(label, drawn.curves.feed.clone(), color, line)
-    };
+    let feed =
+        |label: &str, drawn: &Drawn, color: usize, line: Line| curve(label, drawn.curves.feed.clone(), color, line);
     captioned(
         "Figure 9",
         "Magnitude of the commanded feedrate. The magnitudes are much the same; what differs is the direction.",

@@ -26,6 +26,11 @@ pub struct Outputs {
     pub out: Option<PathBuf>,
 }
 
+/// A tolerance of a metre is a mistaken unit.
+const MOST_TOLERANCE_UM: f64 = 1e6;
+/// As the inversion has it.
+const MOST_RHO: f64 = 0.1;
+
 /// What `--out` writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Form {
@@ -47,14 +52,23 @@ impl Outputs {
 impl Job {
     /// Refuses values out of range, and outputs of no known form.
     pub(super) fn check_values(&self) -> Result<(), Error> {
-        let positive = |name, value: Option<f64>, unit, bounds| match value {
-            Some(value) if !(value > 0.0 && value <= 1e6) => Err(Error::Value { name, value, unit, bounds }),
-            _ => Ok(()),
-        };
-        positive("--feed", self.feed_mm_s, "mm/s", "above 0 and up to 1e6 mm/s")?;
-        positive("--tolerance", self.tolerance_um, "um", "above 0 and up to 1e6 um")?;
-        if let Some(value) = self.choices.rho.filter(|rho| !(0.0..=0.1).contains(rho)) {
-            return Err(Error::Value { name: "--rho", value, unit: "(scaled)", bounds: "from 0 to 0.1" });
+        let positive = |value: &f64, limit: f64| *value > 0.0 && *value <= limit;
+        // A feed that the machine lowers to its limit is not the feed that was asked for.
+        let most_mm_s = self.machine.limits.max_feed_mm_s;
+        if let Some(value) = self.feed_mm_s.filter(|feed| !positive(feed, most_mm_s)) {
+            let bounds = format!("above 0 and up to {most_mm_s} mm/s, the machine's max_feed_mm_s");
+            let hint = Some("the unit is mm/s: F3000 in a program, which is mm/min, is --feed 50");
+            return Err(Error::Value { name: "--feed", value, unit: " mm/s", bounds, hint });
+        }
+        if let Some(value) = self.tolerance_um.filter(|tolerance| !positive(tolerance, MOST_TOLERANCE_UM)) {
+            let bounds = format!("above 0 and up to {MOST_TOLERANCE_UM} um");
+            let hint = Some("the unit is um: 0.01 mm is --tolerance 10");
+            return Err(Error::Value { name: "--tolerance", value, unit: " um", bounds, hint });
+        }
+        if let Some(value) = self.choices.rho.filter(|rho| !(0.0..=MOST_RHO).contains(rho)) {
+            let bounds = format!("from 0 to {MOST_RHO}");
+            let hint = Some("0 looks at the contour error only; more weighs the machining time more");
+            return Err(Error::Value { name: "--rho", value, unit: "", bounds, hint });
         }
         if let Some(out) = &self.outputs.out {
             Outputs::form(out)?;
@@ -109,7 +123,7 @@ impl Files {
         complete.extend(self.trace.map(TraceWriter::finish).transpose()?);
         complete.extend(self.setpoints.map(SetpointWriter::finish).transpose()?);
         complete.extend(self.gcode.map(GcodeWriter::finish).transpose()?);
-        complete.into_iter().try_for_each(OutputFile::commit)?;
+        OutputFile::commit_all(complete)?;
         Ok(())
     }
 }
@@ -193,7 +207,9 @@ fn label(kind: &EventKind) -> String {
         },
         EventKind::ToolSelect { tool } => format!("T{tool} selected"),
         EventKind::Message { text } => text.clone(),
-        EventKind::SpindleSync { pitch_mm: Some(pitch_mm) } => format!("feed coupled to the spindle, {pitch_mm} mm/rev"),
+        EventKind::SpindleSync { pitch_mm: Some(pitch_mm) } => {
+            format!("feed coupled to the spindle, {pitch_mm} mm/rev")
+        }
         EventKind::SpindleSync { pitch_mm: None } => "feed free of the spindle".to_owned(),
         EventKind::Probe => "probe".to_owned(),
         EventKind::ProgramEnd => "program end".to_owned(),

@@ -104,7 +104,7 @@ pub enum Error {
     Limits(#[from] LimitsError),
     /// The program moves an axis that the machine does not have.
     #[error("{} moves Z, and the machine `{machine}` has no [axis.z]", part.display())]
-    #[diagnostic(help("hint: give the machine file a section [axis.z], or choose a machine with three axes"))]
+    #[diagnostic(help("give the machine file a section [axis.z], or choose a machine with three axes"))]
     NoZ {
         /// The program.
         part: PathBuf,
@@ -112,20 +112,23 @@ pub enum Error {
         machine: String,
     },
     /// A value on the command line is out of its range.
-    #[error("{name} is {value} {unit}, it must lie {bounds}")]
+    #[error("{name} is {}{unit}; it must lie {bounds}", shown(*value))]
     Value {
         /// Name of the option.
         name: &'static str,
         /// Its value.
         value: f64,
-        /// Its unit.
+        /// Its unit after a space, where it has one.
         unit: &'static str,
         /// The range in words.
-        bounds: &'static str,
+        bounds: String,
+        /// Remedy.
+        #[help]
+        hint: Option<&'static str>,
     },
     /// `--out` with an ending that says nothing.
     #[error("{} does not say what to write", path.display())]
-    #[diagnostic(help("hint: the ending decides: .csv for setpoints, .ngc for G-code"))]
+    #[diagnostic(help("the ending decides: .csv for setpoints, .ngc for G-code"))]
     Ending {
         /// The place.
         path: PathBuf,
@@ -144,10 +147,20 @@ pub enum Error {
     },
 }
 
+/// A number for people: with an exponent where it would be a row of zeros.
+fn shown(value: f64) -> String {
+    let plain = value == 0.0 || !value.is_finite() || (1e-5..1e9).contains(&value.abs());
+    if plain { value.to_string() } else { format!("{value:e}") }
+}
+
 impl Job {
     /// The controllers in the order in which they cut: the one that is asked for last, and once.
     pub(super) fn controllers(&self) -> Vec<&'static Entry> {
-        if self.against.name == self.controller.name { vec![self.controller] } else { vec![self.against, self.controller] }
+        if self.against.name == self.controller.name {
+            vec![self.controller]
+        } else {
+            vec![self.against, self.controller]
+        }
     }
 
     /// Two axes where the program stays in the XY plane and the third would only stand still.
@@ -241,7 +254,8 @@ fn describe(machine: &Machine) -> Vec<(String, String)> {
         ("period".to_owned(), serde_json::json!(machine.period)),
         ("limits".to_owned(), serde_json::json!(machine.limits)),
     ];
-    let axes = ["x", "y", "z"].iter().zip(&machine.axes).map(|(name, axis)| (format!("axis.{name}"), serde_json::json!(axis)));
+    let axes =
+        ["x", "y", "z"].iter().zip(&machine.axes).map(|(name, axis)| (format!("axis.{name}"), serde_json::json!(axis)));
     for (section, values) in sections.into_iter().chain(axes) {
         for (key, value) in values.as_object().into_iter().flatten() {
             lines.push((format!("{section}.{key}"), value.to_string()));

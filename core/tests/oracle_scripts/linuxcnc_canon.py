@@ -118,10 +118,10 @@ class Recorder:
         return False
 
     def get_tool(self, number):
-        return (number,) + (0.0,) * 12 + (0,)
+        return (number,) + (0.0,) * 9 + (0.125, 0.0, 0.0, 0)
 
 
-TOOL_WORDS = re.compile(rb"(?i)\bT\s*\d+|\bM\s*0?6(?!\d)|G\s*43\s*(?=H)|\bH\s*\d+|G\s*43(?![.\d])")
+TOOL_WORDS = re.compile(rb"(?i)\bT\s*\d+|\bM\s*0?6(?!\d)|G\s*43(?![.\d])\s*(H\s*\d+)?")
 
 
 def without_tools(line):
