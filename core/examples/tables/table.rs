@@ -72,8 +72,9 @@ fn results() -> Result<String> {
         write!(table, "| {name} | {:.2} s |", runs[0].time_s)?;
         for run in &runs {
             write!(table, " {:.1} / {:.1}", run.rms_um, run.max_um)?;
-            if run.time_s != runs[0].time_s {
-                write!(table, " in {:.2}", run.time_s / runs[0].time_s)?;
+            let ratio = format!("{:.2}", run.time_s / runs[0].time_s);
+            if ratio != "1.00" {
+                write!(table, " in {ratio}")?;
             }
             write!(table, " |")?;
         }
