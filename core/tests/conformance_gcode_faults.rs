@@ -1,4 +1,5 @@
 //! Every fault of a program names its place, its value and its limit; the reader goes on behind it.
+#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
 
 use std::io::Write;
 

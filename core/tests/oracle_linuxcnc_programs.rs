@@ -3,6 +3,7 @@
 //! The numbers come from LinuxCNC itself: `rs274` accepts or refuses, and `oracle_scripts/linuxcnc_canon.py` runs its interpreter in full
 //! precision. Programs are those of the corpus beside the repository and those that the package installs. Differences that remain are
 //! listed in `docs/gcode-differences.md` and in [`DIFFERENCES`].
+#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
