@@ -1,3 +1,39 @@
-//! The `feedwright` command.
+//! The `feedwright` command: arguments in, calls of the library, messages out. It converts and never computes.
+//!
+//! Data go to stdout, messages and progress to stderr. Exit codes: 0 within tolerance, 1 out of tolerance, 2 any error,
+//! 130 interrupted.
 
-fn main() {}
+mod args;
+mod commands;
+mod message;
+mod progress;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Cli, Command};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    if let Err(error) = ctrlc::set_handler(interrupted) {
+        eprintln!("warning: an interrupt may leave unfinished files behind: {error}");
+    }
+    let quiet = cli.quiet;
+    let result = match cli.command {
+        Command::Run(args) => commands::run::run(args, quiet),
+        Command::Paper(args) => commands::paper::run(&args, quiet),
+        Command::Check(args) => commands::check::run(&args),
+        Command::Canon(args) => commands::canon::run(&args),
+        Command::Machines => commands::list::machines(),
+        Command::Controllers => commands::list::controllers(),
+    };
+    result.unwrap_or_else(|report| message::fail(&report))
+}
+
+/// Ctrl-C and a request to terminate: nothing half-written stays.
+fn interrupted() {
+    feedwright::output::abandon_all();
+    eprintln!("interrupted; no file was written");
+    std::process::exit(message::INTERRUPTED.into());
+}

@@ -1,4 +1,21 @@
 //! What runs in a servo thread: reference window, contour error, identifier, inversion, controllers.
 //!
-//! Nothing here allocates, panics, locks, reads a clock or does I/O in a tick, and the same input gives the same bits.
+//! Nothing here allocates, panics, locks, reads a clock or does I/O in a tick; the time of a tick is bounded, and the
+//! same input gives the same bits. `N` is the number of axes throughout, 2 or 3. Lengths in mm, times in s.
+//!
+//! The modules stand in the order in which data flows through a tick; each uses only those above it.
 #![no_std]
+
+pub mod vector;
+pub mod activation;
+pub mod window;
+pub mod contour_error;
+pub mod identifier;
+pub mod inversion;
+pub mod horizon;
+pub mod controller;
+pub mod tick;
+
+pub use controller::{Command, Controller, Measured, Schedule};
+pub use tick::{Setpoint, Tick};
+pub use window::{Knot, Reference, Window};

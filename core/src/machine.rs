@@ -1,1 +1,176 @@
-//! Machine files.
+//! Machine files: what the simulated or real machine is, read from TOML and checked value by value.
+//!
+//! A machine is a file; `machines/tnv40.toml` explains every key beside its value. [`Machine::load`] takes the name of a
+//! machine that is built in or the path of a file. A later part of a machine (a compliant transmission, an encoder) is an
+//! optional table of the file: one struct here, one `Option` field in [`Machine`] or [`Axis`], one reader in `layout`.
+
+mod error;
+mod layout;
+mod reader;
+
+use std::ffi::OsStr;
+use std::path::Path;
+
+use serde::Serialize;
+
+pub use error::{MachineError, Problem};
+pub(crate) use reader::nearest;
+
+/// Machines that need no file: name and text.
+pub const BUILT_IN: &[(&str, &str)] = &[("tnv40", include_str!("../../machines/tnv40.toml"))];
+
+/// Names of the axes, in the order of every `[f64; 3]` of this library.
+pub const AXIS_NAMES: [&str; 3] = ["x", "y", "z"];
+
+/// A machine file is a page of text; a larger file is some other file.
+const MAX_FILE_BYTES: u64 = 1 << 20;
+
+/// A machine, every value checked.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Machine {
+    /// Short name, as in tables and results.
+    pub name: String,
+    /// One line for people.
+    pub description: String,
+    /// Where the values come from.
+    pub source: String,
+    /// Periods of the control and of its simulation.
+    pub period: Period,
+    /// What the machine may be asked for.
+    pub limits: Limits,
+    /// Two or three axes: x, y and perhaps z.
+    pub axes: Vec<Axis>,
+}
+
+/// Periods of the control and of its simulation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Period {
+    /// Period of the position loop, s.
+    pub servo_s: f64,
+    /// Period of the speed loop and of the integration of the mechanics, s.
+    pub mechanics_s: f64,
+    /// Mechanics steps in a servo period: `servo_s / mechanics_s`, a whole number.
+    pub mechanics_per_servo: u32,
+}
+
+/// What the machine may be asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Limits {
+    /// Speed of a rapid motion, mm/s.
+    pub rapid_mm_s: f64,
+    /// Highest cutting feed, mm/s.
+    pub max_feed_mm_s: f64,
+    /// Acceleration along the path, mm/s2.
+    pub tangential_accel_mm_s2: f64,
+    /// Acceleration across the path in a curve, mm/s2.
+    pub normal_accel_mm_s2: f64,
+    /// Jump of the velocity vector allowed at a corner, mm/s; 0 stops there.
+    pub corner_jump_mm_s: f64,
+    /// Largest distance of the corrected command from the programmed path, mm.
+    pub max_deviation_mm: f64,
+}
+
+/// A servo axis: mechanics at the motor shaft and the two control loops.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Axis {
+    /// Travel for one motor turn, mm.
+    pub lead_mm_per_rev: f64,
+    /// Inertia at the motor shaft, kg m2.
+    pub inertia_kg_m2: f64,
+    /// Viscous friction, N m s/rad.
+    pub viscous_friction_nm_s: f64,
+    /// Coulomb friction torque, N m.
+    pub coulomb_friction_nm: f64,
+    /// Speed over which the Coulomb torque turns its sign, rad/s.
+    pub coulomb_smoothing_rad_s: f64,
+    /// Amplitude of the disturbance torque, N m.
+    pub disturbance_nm: f64,
+    /// Frequency of the disturbance torque, Hz.
+    pub disturbance_hz: f64,
+    /// Proportional gain of the position loop, 1/s.
+    pub kp_1_s: f64,
+    /// Derivative gain of the position loop, dimensionless: rad/s of command for a rad/s of error rate.
+    pub kd: f64,
+    /// Gain of the speed loop, N m s/rad.
+    pub kv_nm_s_per_rad: f64,
+    /// Torque at which the drive saturates, N m.
+    pub torque_limit_nm: f64,
+}
+
+impl Machine {
+    /// A machine by the name of one that is built in, or by the path of a machine file.
+    ///
+    /// Whatever ends in `.toml` or contains a path separator is a path.
+    ///
+    /// # Errors
+    /// No such name or file, a file that cannot be read or is not text, and every fault found in its text.
+    pub fn load(name_or_path: &OsStr) -> Result<Self, MachineError> {
+        let path = Path::new(name_or_path);
+        if is_path(path) {
+            return Self::read(path);
+        }
+        let name = name_or_path.to_string_lossy();
+        BUILT_IN
+            .iter()
+            .find(|(known, _)| *known == name)
+            .map(|(known, text)| Self::parse(&format!("{known}.toml"), text))
+            .unwrap_or_else(|| Err(MachineError::unknown_name(&name, path.is_file())))
+    }
+
+    /// A machine from a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is not text, and every fault found in its text.
+    pub fn read(path: &Path) -> Result<Self, MachineError> {
+        let text = read_text(path)?;
+        Self::parse(&path.display().to_string(), &text)
+    }
+
+    /// A machine from the text of a machine file; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// Every fault found in the text, in one go.
+    pub fn parse(file: &str, text: &str) -> Result<Self, MachineError> {
+        layout::machine(text).map_err(|problems| MachineError::invalid(file, text, problems))
+    }
+
+    /// Two or three.
+    pub fn axis_count(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// Content of the machine as a hexadecimal key for caches: equal for machines that behave equally, whatever their names.
+    ///
+    /// Hashed is the JSON of everything but `name`, `description` and `source`; field order and the shortest
+    /// round-trip form of numbers make it canonical.
+    pub fn fingerprint(&self) -> String {
+        let content = serde_json::json!([self.period, self.limits, self.axes]);
+        blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+    }
+}
+
+/// Whether `--machine` means a file rather than the name of a built-in machine.
+pub fn is_path(name_or_path: &Path) -> bool {
+    name_or_path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+        || name_or_path.components().count() != 1
+}
+
+/// Reads a file of text no larger than a machine file can be.
+fn read_text(path: &Path) -> Result<String, MachineError> {
+    use std::io::Read;
+
+    let unreadable = |source| MachineError::unreadable(path, source);
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(unreadable)?;
+    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 > MAX_FILE_BYTES {
+        return Err(MachineError::TooLarge { path: path.to_owned(), limit_bytes: MAX_FILE_BYTES });
+    }
+    String::from_utf8(bytes).map_err(|error| {
+        let offset = error.utf8_error().valid_up_to();
+        MachineError::NotText { path: path.to_owned(), offset, byte: error.as_bytes()[offset] }
+    })
+}
+
+#[cfg(test)]
+mod tests;

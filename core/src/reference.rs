@@ -1,1 +1,195 @@
-//! Reference at the servo period.
+//! Reference: the point of the path at each plan time, and the point of the path nearest to a given point.
+//!
+//! Plan time `tau` runs in seconds from 0 at the start of the program. [`Reference`] reads as much of the program as it is
+//! asked for, keeps what has not been forgotten, and looks up.
+//!
+//! | File | What |
+//! |---|---|
+//! | `reference/window.rs` | pieces and phases that are kept, and looking them up by time and arc length |
+//! | `reference/nearest.rs` | nearest point over several pieces |
+
+mod nearest;
+mod window;
+
+use crate::feed::plan::{Plan, Planned};
+use crate::feed::{Limits, LimitsError, Phase, TimedEvent};
+use crate::gcode::canon::Canon;
+use crate::path::pieces::Pieces;
+use crate::path::{PathError, Piece, Step};
+use std::collections::VecDeque;
+use window::Window;
+
+/// Where the reference is at a plan time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Point of the path, mm.
+    pub position_mm: [f64; 3],
+    /// Unit tangent; at rest that of the motion before, at the start that of the first motion.
+    pub tangent: [f64; 3],
+    /// Arc length from the start of the path, mm.
+    pub s_mm: f64,
+    /// Planned feedrate, mm/s.
+    pub feed_mm_s: f64,
+    /// Line of the program that is under way; in a dwell, the dwell's.
+    pub line: u32,
+    /// Whether the motion cuts; rapids, dwells and rests do not.
+    pub cutting: bool,
+    /// In a dwell, or behind the end.
+    pub resting: bool,
+}
+
+/// A point of the path nearest to another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Foot {
+    /// Arc length from the start of the path, mm.
+    pub s_mm: f64,
+    /// The point, mm.
+    pub position_mm: [f64; 3],
+    /// Unit tangent there.
+    pub tangent: [f64; 3],
+    /// Line of the program.
+    pub line: u32,
+    /// Distance, mm.
+    pub distance_mm: f64,
+    /// Distance with a sign: positive where the other point lies left of travel in the XY plane.
+    pub signed_mm: f64,
+    /// Whether the motion cuts.
+    pub cutting: bool,
+}
+
+/// The plan of a program, looked up by plan time.
+///
+/// Everything that is looked up depends on the program, the limits and the arguments only, not on earlier calls, as long as
+/// it has not been forgotten. Without [`Reference::forget_before`], what has been read stays in memory.
+pub struct Reference<'p> {
+    plan: Plan<'p>,
+    window: Window,
+    events: VecDeque<TimedEvent>,
+    /// Plan time up to which all phases are in the window, s.
+    planned_s: f64,
+    ended: bool,
+}
+
+impl<'p> Reference<'p> {
+    /// The reference of a program.
+    ///
+    /// # Errors
+    /// Where a limit is none. Errors of the program end it early: see [`Reference::fault`].
+    pub fn new(
+        source: impl IntoIterator<Item = Canon, IntoIter: Send + 'p>,
+        limits: &Limits,
+    ) -> Result<Self, LimitsError> {
+        Ok(Self::from_plan(Plan::new(Box::new(Pieces::new(source.into_iter())), limits)?))
+    }
+
+    /// The reference of a path, such as a [contour](crate::path::contour).
+    ///
+    /// # Errors
+    /// Where a limit is none.
+    pub fn from_steps(
+        steps: impl IntoIterator<Item = Step, IntoIter: Send + 'p>,
+        limits: &Limits,
+    ) -> Result<Self, LimitsError> {
+        Ok(Self::from_plan(Plan::new(Box::new(steps.into_iter().map(Ok)), limits)?))
+    }
+
+    /// The reference of a plan.
+    pub fn from_plan(plan: Plan<'p>) -> Self {
+        Self { plan, window: Window::default(), events: VecDeque::new(), planned_s: 0.0, ended: false }
+    }
+
+    /// Where the reference is at `tau_s`; before the start (or what has been forgotten) at the first point, behind the end
+    /// at the last.
+    #[inline]
+    pub fn at(&mut self, tau_s: f64) -> Sample {
+        self.read_until(tau_s);
+        self.window.at(tau_s)
+    }
+
+    /// The point of the path nearest to `point_mm` among those that the reference passes from `tau_lo_s` to `tau_hi_s`.
+    #[inline]
+    pub fn nearest(&mut self, point_mm: [f64; 3], tau_lo_s: f64, tau_hi_s: f64) -> Foot {
+        self.read_until(tau_hi_s);
+        self.window.nearest(point_mm, tau_lo_s, tau_hi_s.max(tau_lo_s))
+    }
+
+    /// Total plan time, s, once the end of the program has been read.
+    pub fn end_s(&self) -> Option<f64> {
+        self.ended.then_some(self.planned_s)
+    }
+
+    /// Reads the whole program and returns its plan time, s. What is read stays in memory: not for endless programs.
+    pub fn read_to_end_s(&mut self) -> f64 {
+        self.read_until(f64::INFINITY);
+        self.planned_s
+    }
+
+    /// Why the path ends before the program does, once the end of the path has been read.
+    pub const fn fault(&self) -> Option<&PathError> {
+        self.plan.fault()
+    }
+
+    /// Takes the next event that happens at `until_s` or before, in order.
+    pub fn next_event(&mut self, until_s: f64) -> Option<TimedEvent> {
+        self.read_until(until_s);
+        if self.events.front()?.tau_s <= until_s { self.events.pop_front() } else { None }
+    }
+
+    /// Drops what ends before `tau_s`: pieces, phases, and events that nobody has taken.
+    pub fn forget_before(&mut self, tau_s: f64) {
+        self.window.forget_before(tau_s);
+        while self.events.front().is_some_and(|event| event.tau_s < tau_s) {
+            self.events.pop_front();
+        }
+    }
+
+    /// Number of pieces and phases in memory.
+    pub fn kept(&self) -> (usize, usize) {
+        self.window.kept()
+    }
+
+    /// Reads until all phases up to `tau_s` are known, and at least the first: what comes before the start, NaN too, looks at
+    /// that one.
+    #[inline]
+    fn read_until(&mut self, tau_s: f64) {
+        let tau_s = tau_s.max(0.0);
+        if self.planned_s <= tau_s && !self.ended {
+            self.read_on(tau_s);
+        }
+    }
+
+    #[cold]
+    fn read_on(&mut self, tau_s: f64) {
+        while self.planned_s <= tau_s && !self.ended {
+            match self.plan.next() {
+                Some(Planned::Piece(piece)) => self.window.push_piece(piece),
+                Some(Planned::Phase(phase)) => self.push_phase(phase),
+                Some(Planned::Event(event)) => self.events.push_back(event),
+                None => self.ended = true,
+            }
+        }
+    }
+
+    fn push_phase(&mut self, phase: Phase) {
+        self.planned_s = phase.tau_s + phase.duration_s;
+        self.window.push_phase(phase);
+    }
+}
+
+/// Left of travel in the XY plane is positive.
+#[inline]
+fn foot(piece: &Piece, local_mm: f64, point_mm: [f64; 3]) -> Foot {
+    let at = piece.curve.at(local_mm);
+    let away = [0, 1, 2].map(|k| point_mm[k] - at.position_mm[k]);
+    let distance_mm = (away[0] * away[0] + away[1] * away[1] + away[2] * away[2]).sqrt();
+    let left = at.tangent[0] * away[1] - at.tangent[1] * away[0];
+    Foot {
+        s_mm: piece.s_mm + local_mm,
+        position_mm: at.position_mm,
+        tangent: at.tangent,
+        line: piece.line,
+        distance_mm,
+        signed_mm: if left < 0.0 { -distance_mm } else { distance_mm },
+        cutting: piece.cutting,
+    }
+}

@@ -1,1 +1,67 @@
-//! Report.
+//! Report: what a run came to, as numbers ([`RunSummary`]), as one HTML page ([`write_html`]) and as figures ([`figure`]).
+//!
+//! A run hands its rows to two sinks of bounded memory: [`Statistics`] sees every row and keeps exact sums, [`Series`]
+//! keeps a thinned record to draw. The page is one file without references to anything outside it, and equal
+//! reports give equal bytes.
+//!
+//! Only rows that cut count for the contour error; rapids and dwells are recorded and drawn, but not judged.
+
+pub mod figure;
+mod foot;
+mod html;
+mod island;
+mod outline;
+mod series;
+mod statistics;
+mod summary;
+mod text;
+mod worst;
+
+pub use html::write_html;
+pub use series::{Point, Series};
+pub use statistics::{Histogram, Statistics};
+pub use summary::{RunFacts, RunSummary};
+pub use worst::WorstPlace;
+
+pub use crate::trace::Outcome;
+
+/// Everything that the page shows.
+#[derive(Debug, Clone)]
+pub struct Report {
+    /// Heading of the page.
+    pub title: String,
+    /// Name of the part, as the program calls it.
+    pub part: String,
+    /// Description of the machine: name and value, in the order in which they are shown.
+    pub machine: Vec<(String, String)>,
+    /// Settings of the run: name and value, in the order in which they are shown.
+    pub settings: Vec<(String, String)>,
+    /// Largest contour error that the part allows, µm, where one was asked for.
+    pub tolerance_um: Option<f64>,
+    /// One for each controller. The first is what the others are compared with; the last is the one that is judged.
+    pub runs: Vec<Run>,
+}
+
+/// One controller's run.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// Its numbers.
+    pub summary: RunSummary,
+    /// Its record.
+    pub series: Series,
+    /// Events of the program in the time of this run; may be empty.
+    pub events: Vec<TimelineEvent>,
+}
+
+/// A tool change, dwell or other event of the program at the time at which the run came to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimelineEvent {
+    /// When it began, s.
+    pub t_s: f64,
+    /// How long it took, s; 0 for an event without duration.
+    pub duration_s: f64,
+    /// Line of the program, from 1.
+    pub line: u32,
+    /// What happened, as in "tool 3" or "dwell".
+    pub label: String,
+}

@@ -1,5 +1,22 @@
 //! What a run leaves behind: one [`Row`] per servo period, handed to every [`Sink`] that wants it.
 
+pub mod csv;
+
+use serde::Serialize;
+
+use crate::gcode::canon::Event;
+
+/// What the command of a servo period does. The tool follows it by some ten milliseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Commanded {
+    /// It moves at a programmed feedrate.
+    Cut,
+    /// It moves at the machine's rapid rate.
+    Rapid,
+    /// It rests: in a dwell, or behind the end.
+    Rest,
+}
+
 /// One servo period of a run. Two-axis runs leave the third component at zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Row {
@@ -11,8 +28,10 @@ pub struct Row {
     pub line: u32,
     /// Planned feedrate at `s_mm`, mm/s.
     pub feed_plan_mm_s: f64,
-    /// Whether the motion cuts; rapids and dwells do not.
+    /// Whether the tool is where the program cuts: not on a rapid, and not at rest where it has arrived.
     pub cutting: bool,
+    /// What the command does.
+    pub commanded: Commanded,
     /// Point of the programmed path at `s_mm`.
     pub path_mm: [f64; 3],
     /// Position command of this servo period, as the servo drive gets it.
@@ -27,6 +46,20 @@ pub struct Row {
     pub corrected_mm: [f64; 3],
 }
 
+/// How a run ended.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Outcome {
+    /// The program was cut to its end.
+    #[default]
+    Completed,
+    /// The servo loop is unstable: the tool left the command by more than a metre, or is nowhere.
+    Diverged {
+        /// When, s.
+        at_s: f64,
+    },
+}
+
 /// Takes the rows of a run in order.
 pub trait Sink {
     /// Takes one row.
@@ -34,4 +67,13 @@ pub trait Sink {
     /// # Errors
     /// Where the sink writes to a file that takes no more.
     fn row(&mut self, row: &Row) -> std::io::Result<()>;
+
+    /// Takes an event of the program, at the time at which the command came to it, before the rows from then on.
+    ///
+    /// # Errors
+    /// As [`Sink::row`].
+    fn event(&mut self, t_s: f64, event: &Event) -> std::io::Result<()> {
+        let _ = (t_s, event);
+        Ok(())
+    }
 }

@@ -1,0 +1,98 @@
+//! The command line.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Predict the contour error of a CNC program on a machine, and correct it.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 110)]
+pub(crate) struct Cli {
+    /// Show no progress.
+    #[arg(short, long, global = true)]
+    pub(crate) quiet: bool,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Cut a part on a simulated machine, open loop and with a controller, and write the report.
+    Run(RunArgs),
+    /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
+    Paper(PaperArgs),
+    /// Report all mistakes of G-code programs.
+    Check(CheckArgs),
+    /// Print the canonical motions of a program, one JSON object a line, in mm and s.
+    Canon(CanonArgs),
+    /// List the built-in machines.
+    Machines,
+    /// List the controllers.
+    Controllers,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    /// G-code program.
+    pub(crate) part: PathBuf,
+    /// Built-in machine, or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "tnv40")]
+    pub(crate) machine: OsString,
+    /// Controller; `feedwright controllers` lists them.
+    #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BEST)]
+    pub(crate) controller: String,
+    /// Controller to compare against.
+    #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BASELINE)]
+    pub(crate) against: String,
+    /// Feedrate in place of every programmed one, mm/s.
+    #[arg(long, value_name = "MM_S", allow_negative_numbers = true)]
+    pub(crate) feed: Option<f64>,
+    /// Weight of the machining time against the error; 0 to 0.1, for controllers that invert the paper's index.
+    #[arg(long, allow_negative_numbers = true)]
+    pub(crate) rho: Option<f64>,
+    /// Largest contour error allowed, um: exit code 1 where it is exceeded.
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Write one row per servo period.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) trace: Option<PathBuf>,
+    /// Write all results.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+    /// Write the corrected command: setpoints per servo period (.csv), or a program for another control (.ngc).
+    #[arg(long, value_name = "FILE.csv|FILE.ngc")]
+    pub(crate) out: Option<PathBuf>,
+    /// Place of the report [default: PART.report.html beside where you are].
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) report: Option<PathBuf>,
+    /// Seed of the identifier's training.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PaperArgs {
+    /// Folder for the figures, the page and paper.json; made where it is missing.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Built-in machine, or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "tnv40")]
+    pub(crate) machine: OsString,
+    /// Number of seeds, from 1.
+    #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
+    pub(crate) seeds: u64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    /// G-code programs.
+    #[arg(required = true)]
+    pub(crate) files: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CanonArgs {
+    /// G-code program.
+    pub(crate) file: PathBuf,
+}

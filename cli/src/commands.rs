@@ -1,0 +1,7 @@
+//! One file per command.
+
+pub(crate) mod canon;
+pub(crate) mod check;
+pub(crate) mod list;
+pub(crate) mod paper;
+pub(crate) mod run;

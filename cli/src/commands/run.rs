@@ -1,0 +1,110 @@
+//! `feedwright run`: a job from the arguments, a table from its outcome.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use feedwright::controllers::{CONTROLLERS, Choices, Entry};
+use feedwright::gcode;
+use feedwright::machine::{self, Machine};
+use feedwright::pipeline::{self, Job, Outcome, Outputs};
+use feedwright::report::{Outcome as Ending, RunSummary};
+use miette::{Result, miette};
+
+use crate::args::RunArgs;
+use crate::message::{OUT_OF_TOLERANCE, printed, warn};
+use crate::progress::Bar;
+
+pub(crate) fn run(args: RunArgs, quiet: bool) -> Result<ExitCode> {
+    let job = job(args)?;
+    let mut bar = Bar::of_job(quiet);
+    let outcome = pipeline::run(&job, &mut bar);
+    bar.clear();
+    let outcome = outcome?;
+    for warning in outcome.warnings.iter().cloned() {
+        warn(warning.into());
+    }
+    let code = if outcome.within_tolerance { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
+    printed(print(&job, &outcome), code)
+}
+
+fn job(args: RunArgs) -> Result<Job> {
+    let report = args.report.unwrap_or_else(|| report_of(&args.part));
+    Ok(Job {
+        machine: Machine::load(&args.machine)?,
+        controller: find(&args.controller)?,
+        against: find(&args.against)?,
+        feed_mm_s: args.feed,
+        choices: Choices { rho: args.rho, seed: args.seed },
+        tolerance_um: args.tolerance,
+        reader: gcode::Settings::default(),
+        inputs: Some(PathBuf::from(args.machine)).filter(|path| machine::is_path(path)).into_iter().collect(),
+        outputs: Outputs { report: Some(report), json: args.json, trace: args.trace, out: args.out },
+        part: args.part,
+    })
+}
+
+/// `parts/star.ngc` gives `star.report.html`, in the folder where the user is.
+fn report_of(part: &Path) -> PathBuf {
+    let mut name = part.file_stem().unwrap_or_default().to_owned();
+    name.push(".report.html");
+    PathBuf::from(name)
+}
+
+fn find(name: &str) -> Result<&'static Entry> {
+    Entry::find(name).ok_or_else(|| {
+        let names: Vec<&str> = CONTROLLERS.iter().map(|entry| entry.name).collect();
+        let meant = Entry::meant_by(name).map_or(String::new(), |meant| format!("did you mean '{meant}'? "));
+        miette!(
+            help = format!("{meant}'feedwright controllers' says what each does"),
+            "no controller is called '{name}'; there are {}",
+            names.join(", ")
+        )
+    })
+}
+
+fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let runs = &outcome.report.runs;
+    writeln!(
+        out,
+        "{:<18} {:>9} {:>10} {:>10} {:>8} {:>8} {:>8}",
+        "", "time s", "RMS um", "max um", "time", "RMS", "max"
+    )?;
+    for run in runs {
+        let (now, first) = (&run.summary, &runs[0].summary);
+        let ratio = |value: fn(&RunSummary) -> f64| value(now) / value(first);
+        writeln!(
+            out,
+            "{:<18} {:>9.3} {:>10.2} {:>10.2} {:>8.3} {:>8.3} {:>8.3}",
+            now.controller,
+            now.time_s,
+            now.rms_um,
+            now.max_um,
+            ratio(|s| s.time_s),
+            ratio(|s| s.rms_um),
+            ratio(|s| s.max_um)
+        )?;
+        if let Ending::Diverged { at_s } = now.outcome {
+            writeln!(out, "{:<18} diverged at {at_s:.3} s: the servo loop of this machine is unstable", "")?;
+        }
+    }
+    if let [first, .., last] = &runs[..]
+        && last.summary.max_um > first.summary.max_um
+    {
+        let (worse, better) = (&last.summary.controller, &first.summary.controller);
+        writeln!(
+            out,
+            "{worse} is worse than {better} here: nothing is gained by correcting this part on this machine"
+        )?;
+    }
+    if let (Some(tolerance_um), Some(last)) = (job.tolerance_um, runs.last()) {
+        let verdict = if outcome.within_tolerance { "within" } else { "out of" };
+        writeln!(out, "{verdict} tolerance: max {:.2} um, allowed {tolerance_um} um", last.summary.max_um)?;
+    }
+    let outputs = &job.outputs;
+    for path in [&outputs.report, &outputs.json, &outputs.trace, &outputs.out].into_iter().flatten() {
+        writeln!(out, "wrote {}", path.display())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,52 @@
+//! Errors and warnings on stderr, and the exit codes that go with them.
+
+use std::io::{self, IsTerminal};
+use std::process::ExitCode;
+
+use miette::{GraphicalReportHandler, GraphicalTheme, Report, Result, miette};
+
+/// The result is out of tolerance.
+pub(crate) const OUT_OF_TOLERANCE: u8 = 1;
+/// Something is wrong with what was asked for.
+const ERROR: u8 = 2;
+/// As shells have it for SIGINT.
+pub(crate) const INTERRUPTED: u8 = 130;
+/// Width of messages where there is no terminal to ask.
+const WIDTH: usize = 120;
+
+/// Shows an error.
+pub(crate) fn fail(report: &Report) -> ExitCode {
+    show(report);
+    ExitCode::from(ERROR)
+}
+
+/// The exit code after something was printed on stdout. A reader that went away (`| head`) has seen enough: no error.
+pub(crate) fn printed(result: io::Result<()>, code: ExitCode) -> Result<ExitCode> {
+    match result {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(miette!("cannot write to the standard output: {error}"))
+        }
+        _ => Ok(code),
+    }
+}
+
+/// Shows a warning.
+pub(crate) fn warn(report: Report) {
+    show(&report);
+}
+
+/// Plain text where stderr is no terminal or `NO_COLOR` is set. Causes that the message tells already are not told twice.
+fn show(report: &Report) {
+    let plain = !io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
+    let theme = if plain { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
+    let mut handler = GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_links(false);
+    let message = report.to_string();
+    if report.chain().skip(1).all(|cause| message.contains(&cause.to_string())) {
+        handler = handler.without_cause_chain();
+    }
+    let mut text = String::new();
+    match handler.render_report(&mut text, report.as_ref()) {
+        Ok(()) => eprintln!("{}", text.trim_end()),
+        Err(_) => eprintln!("error: {message}"),
+    }
+}

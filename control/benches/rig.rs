@@ -1,0 +1,129 @@
+//! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
+
+use feedwright_control::contour_error::{ContourError, Estimator};
+use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
+use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
+use feedwright_control::identifier::Inputs;
+use feedwright_control::identifier::contour::ContourIdentifier;
+use feedwright_control::identifier::servo::ServoIdentifier;
+use feedwright_control::window::{Preview, Register};
+use feedwright_control::{Controller, Knot, Measured, Reference, Tick, Window};
+
+/// The circle of eq. 11 at 50 mm/s.
+pub(crate) struct Circle;
+
+impl<const N: usize> Reference<N> for Circle {
+    fn knot(&mut self, tau_s: f64) -> Knot<N> {
+        let (sin, cos) = (5.0 * tau_s).sin_cos();
+        let mut knot = Knot { feed_mm_s: 50.0, ..Knot::REST };
+        (knot.position_mm[0], knot.position_mm[1]) = (10.0 * (1.0 - cos), 10.0 * sin);
+        (knot.tangent[0], knot.tangent[1]) = (sin, cos);
+        knot
+    }
+}
+
+/// Weights and inputs of the order that training gives, without symmetry.
+pub(crate) fn network<const N: usize>() -> (ContourIdentifier<N>, Inputs<N>) {
+    let mut state = 1_u32;
+    let mut next = move || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        f64::from(state) / f64::from(u32::MAX) - 0.5
+    };
+    let hidden = std::array::from_fn(|_| std::array::from_fn(|_| std::array::from_fn(|_| next())));
+    let output = std::array::from_fn(|_| std::array::from_fn(|_| next()));
+    let inputs = std::array::from_fn(|_| std::array::from_fn(|_| 2.0 * next()));
+    (ContourIdentifier { hidden, output }, inputs)
+}
+
+/// The paper's controller with an untrained network: the work does not depend on the weights.
+pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
+    TwoDimensional::new(network().0, Settings::DEFAULT)
+}
+
+/// The receding horizon over a servo like that of tnv40: what least squares give for one axis, for all axes.
+pub(crate) fn horizon<const N: usize>() -> RecedingHorizon<N> {
+    let mut net = ServoIdentifier { hidden: network::<N>().0.hidden, ..ServoIdentifier::IDEAL };
+    for axis in 0..N {
+        net.linear[axis][axis] = [0.244, -0.101, -0.00186, 0.2785, -0.4166];
+    }
+    RecedingHorizon::new(net, receding_horizon::Settings::DEFAULT)
+}
+
+/// A tick run by hand: the controller alone, or the whole with reference and contour error.
+pub(crate) struct Rig<const N: usize> {
+    /// The tick.
+    tick: Tick<N>,
+    /// Its controller.
+    controller: TwoDimensional<N>,
+    periods: u32,
+}
+
+impl<const N: usize> Rig<N> {
+    /// Warmed up by a lap.
+    pub(crate) fn new() -> Self {
+        let controller = paper::<N>();
+        let mut rig = Self { tick: Tick::new(0.001, controller.schedule(), 0.5), controller, periods: 0 };
+        for _ in 0..1000 {
+            rig.servo_period();
+        }
+        rig
+    }
+
+    /// One servo period; the tool lags by 20 ms and is 20 um inside.
+    pub(crate) fn servo_period(&mut self) -> [f64; N] {
+        let mut tool: Knot<N> = Circle.knot(f64::from(self.periods) * 0.001 - 0.02);
+        tool.position_mm[0] += 0.02 * tool.tangent[1];
+        self.periods += 1;
+        self.tick.step(&mut Circle, &mut self.controller, tool.position_mm).command_mm
+    }
+}
+
+/// A register filled by the circle, its preview, and the tool that lags behind by 20 ms and is 20 um inside.
+pub(crate) struct Surroundings<const N: usize> {
+    register: Register<N>,
+    preview: Preview<N>,
+    /// Where the tool is.
+    pub(crate) tool_mm: [f64; N],
+}
+
+impl<const N: usize> Surroundings<N> {
+    /// After 0.3 s.
+    pub(crate) fn new() -> Self {
+        let mut register = Register::default();
+        for i in 0..300 {
+            register.push(Circle.knot(f64::from(i) * 0.001));
+        }
+        let mut preview = Preview::new(0.001);
+        preview.fill(&mut Circle, 0.299, 0.15);
+        let mut tool: Knot<N> = Circle.knot(0.279);
+        tool.position_mm[0] += 0.02 * tool.tangent[1];
+        Self { register, preview, tool_mm: tool.position_mm }
+    }
+
+    /// What the controller sees.
+    pub(crate) fn window(&self) -> Window<'_, N> {
+        Window {
+            register: &self.register,
+            preview: &self.preview,
+            tau_s: 0.299,
+            feed_period_s: 0.01,
+            offset_mm: [0.0; N],
+        }
+    }
+
+    /// What is measured.
+    pub(crate) fn measured(&self) -> Measured<N> {
+        let contour: ContourError<N> = Estimator::default().estimate(&self.window(), self.tool_mm);
+        Measured { position_mm: self.tool_mm, contour }
+    }
+}
+
+/// One decision: observe, command.
+pub(crate) fn decide<const N: usize>(
+    controller: &mut impl Controller<N>,
+    window: &Window<'_, N>,
+    measured: &Measured<N>,
+) -> [f64; N] {
+    controller.observe(measured);
+    controller.command(window, measured).offset_mm
+}

@@ -1,0 +1,22 @@
+//! Open loop: the path as planned. The null member of the family.
+
+use super::{Command, Controller, Measured, Schedule};
+use crate::window::Window;
+
+/// Commands the programmed path at the planned feed.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct OpenLoop;
+
+impl<const N: usize> Controller<N> for OpenLoop {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: 1, preview: 0 }
+    }
+
+    fn reset(&mut self) {}
+
+    fn observe(&mut self, _: &Measured<N>) {}
+
+    fn command(&mut self, _: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
+        Command::AS_PLANNED
+    }
+}

@@ -1,0 +1,110 @@
+//! The servo identifier: predicts how the following error grows, whatever the path.
+//!
+//! ```text
+//! e(k+1) - e(k) = L I + c W_o f(W_h I)
+//! ```
+//!
+//! e = P' - P is the following error (command minus tool) of each axis; I are the inputs F(k), F(k-1), F(k-2), e(k), e(k-1)
+//! of all axes. L is a linear skip connection: a servo is mostly linear, and the network adds what is not (friction).
+//! The dynamics of e do not depend on the path, so the network learns the machine and not the contours it was shown;
+//! the contour error then is exact geometry.
+//!
+//! Source: the input structure of Lee, Cho and Jeon (2005), section 3.2, on another output; skip connections from
+//! inputs to outputs are classical (Rumelhart, Hinton and Williams 1986).
+
+use super::{HIDDEN, INPUTS, Inputs};
+use crate::activation::bipolar_sigmoid;
+
+/// The following error that the network sees as 1: the lag of a 50 1/s position loop at 50 mm/s.
+pub const FOLLOWING_SCALE_MM: f64 = 1.0;
+
+/// The weights. Feedrates are scaled by [`super::FEED_SCALE_MM_S`], following errors by [`FOLLOWING_SCALE_MM`]; the
+/// output is in mm.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ServoIdentifier<const N: usize> {
+    /// L as [output][axis][input of that axis].
+    pub linear: [[[f64; INPUTS]; N]; N],
+    /// W_h as [axis][input of that axis][hidden node].
+    pub hidden: [[[f64; HIDDEN]; INPUTS]; N],
+    /// c W_o as [output][hidden node], mm.
+    pub output: [[f64; HIDDEN]; N],
+}
+
+impl<const N: usize> ServoIdentifier<N> {
+    /// The following error of an ideal servo grows with nothing: the null member.
+    pub const IDEAL: Self =
+        Self { linear: [[[0.0; INPUTS]; N]; N], hidden: [[[0.0; HIDDEN]; INPUTS]; N], output: [[0.0; HIDDEN]; N] };
+
+    /// How far the tool is behind the command at constant feedrate, s: the mean over the axes of e / F where L I = 0.
+    pub fn lag_s(&self) -> f64 {
+        let mut sum = 0.0;
+        for axis in 0..N {
+            let [f0, f1, f2, e0, e1] = self.linear[axis][axis];
+            let lag = -(f0 + f1 + f2) / (e0 + e1) * FOLLOWING_SCALE_MM / super::FEED_SCALE_MM_S;
+            sum += if lag.is_finite() { lag } else { 0.0 };
+        }
+        sum / N as f64
+    }
+
+    /// e(k+1) - e(k), mm.
+    #[inline]
+    pub fn predict(&self, inputs: &Inputs<N>) -> [f64; N] {
+        let mut net = [0.0; HIDDEN];
+        for axis in 0..N {
+            for input in 0..INPUTS {
+                for j in 0..HIDDEN {
+                    net[j] += self.hidden[axis][input][j] * inputs[axis][input];
+                }
+            }
+        }
+        let hidden = bipolar_sigmoid(net);
+        let mut increment = self.predict_linear(inputs);
+        for o in 0..N {
+            for j in 0..HIDDEN {
+                increment[o] += self.output[o][j] * hidden[j];
+            }
+        }
+        increment
+    }
+
+    /// The part of [`Self::predict`] that the linear connection makes, mm.
+    #[inline]
+    pub fn predict_linear(&self, inputs: &Inputs<N>) -> [f64; N] {
+        let mut increment = [0.0; N];
+        for o in 0..N {
+            for axis in 0..N {
+                for input in 0..INPUTS {
+                    increment[o] += self.linear[o][axis][input] * inputs[axis][input];
+                }
+            }
+        }
+        increment
+    }
+}
+
+/// The delays between ticks: feedrates and following errors, scaled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Delays<const N: usize> {
+    /// F(k-1), F(k-2).
+    pub feed: [[f64; N]; 2],
+    /// e(k), e(k-1).
+    pub error: [[f64; N]; 2],
+}
+
+impl<const N: usize> Delays<N> {
+    /// At rest.
+    pub const REST: Self = Self { feed: [[0.0; N]; 2], error: [[0.0; N]; 2] };
+
+    /// The inputs for F(k), scaled.
+    #[inline]
+    pub fn inputs(&self, feed: [f64; N]) -> Inputs<N> {
+        core::array::from_fn(|a| [feed[a], self.feed[0][a], self.feed[1][a], self.error[0][a], self.error[1][a]])
+    }
+
+    /// Moves on by one knot: F(k) was commanded and e(k+1) is, or is predicted to be, the following error.
+    #[inline]
+    pub fn push(&mut self, feed: [f64; N], error: [f64; N]) {
+        self.feed = [feed, self.feed[0]];
+        self.error = [error, self.error[0]];
+    }
+}

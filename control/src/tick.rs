@@ -1,0 +1,120 @@
+//! The tick: from the reference and a measurement to the position command of one servo period.
+//!
+//! The same code runs around a simulated plant and in a servo thread. Once a feed period the controller observes and
+//! decides; in every servo period the command moves on along the path and between the two offsets.
+
+use crate::contour_error::{ContourError, Estimator};
+use crate::controller::{Command, Controller, Measured, Schedule};
+use crate::vector::{add_scaled, limit_norm, sub};
+use crate::window::{Knot, Preview, Reference, Register, Window};
+
+/// Slowest and fastest that any controller may run the plan: a program always ends, and no command leaps.
+const RATE_RANGE: [f64; 2] = [0.1, 3.0];
+
+/// The command of one servo period.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Setpoint<const N: usize> {
+    /// Plan time of the reference, s.
+    pub tau_s: f64,
+    /// Point of the programmed path.
+    pub path: Knot<N>,
+    /// Position command, mm.
+    pub command_mm: [f64; N],
+    /// Whether the controller decided in this servo period.
+    pub decided: bool,
+}
+
+/// The state between servo periods.
+#[derive(Debug, Clone)]
+pub struct Tick<const N: usize> {
+    servo_s: f64,
+    max_deviation_mm: f64,
+    schedule: Schedule,
+    register: Register<N>,
+    estimator: Estimator,
+    contour: ContourError<N>,
+    preview: Preview<N>,
+    /// Plan time, offset and rate at the start of the feed period; the offset at its end.
+    tau_s: f64,
+    offset_from_mm: [f64; N],
+    command: Command<N>,
+    /// Servo periods since the start of the feed period.
+    phase: u32,
+}
+
+impl<const N: usize> Tick<N> {
+    /// At the start of a program, for a controller with this schedule and a servo period of `servo_s` seconds. The
+    /// command never leaves the path by more than `max_deviation_mm`.
+    pub fn new(servo_s: f64, schedule: Schedule, max_deviation_mm: f64) -> Self {
+        Self {
+            servo_s,
+            max_deviation_mm,
+            schedule: Schedule { servo_periods: schedule.servo_periods.max(1), ..schedule },
+            register: Register::default(),
+            estimator: Estimator::default(),
+            contour: ContourError::NONE,
+            preview: Preview::new(servo_s),
+            tau_s: 0.0,
+            offset_from_mm: [0.0; N],
+            command: Command::AS_PLANNED,
+            phase: 0,
+        }
+    }
+
+    /// One servo period: the tool is at `tool_mm` at its start. Always the same work, but for the decision.
+    #[inline]
+    pub fn step<R, C>(&mut self, reference: &mut R, controller: &mut C, tool_mm: [f64; N]) -> Setpoint<N>
+    where
+        R: Reference<N> + ?Sized,
+        C: Controller<N> + ?Sized,
+    {
+        if self.phase == self.schedule.servo_periods {
+            self.tau_s += f64::from(self.phase) * self.servo_s * self.command.rate;
+            self.offset_from_mm = self.command.offset_mm;
+            self.phase = 0;
+        }
+        let decided = self.phase == 0;
+        let tau_s = self.tau_s + f64::from(self.phase) * self.servo_s * self.command.rate;
+        let path = reference.knot(tau_s);
+        self.register.push(path);
+        self.preview.fill(reference, tau_s, f64::from(self.schedule.preview) * self.feed_period_s());
+        if decided {
+            self.decide(controller, tool_mm);
+        }
+        let part = f64::from(self.phase) / f64::from(self.schedule.servo_periods);
+        let offset_mm = add_scaled(self.offset_from_mm, part, sub(self.command.offset_mm, self.offset_from_mm));
+        self.phase += 1;
+        Setpoint { tau_s, path, command_mm: add_scaled(path.position_mm, 1.0, offset_mm), decided }
+    }
+
+    /// The contour error at the last decision.
+    pub fn contour(&self) -> &ContourError<N> {
+        &self.contour
+    }
+
+    fn decide<C: Controller<N> + ?Sized>(&mut self, controller: &mut C, tool_mm: [f64; N]) {
+        let window = Window {
+            register: &self.register,
+            preview: &self.preview,
+            tau_s: self.tau_s,
+            feed_period_s: self.feed_period_s(),
+            offset_mm: self.offset_from_mm,
+        };
+        self.contour = self.estimator.estimate(&window, tool_mm);
+        let measured = Measured { position_mm: tool_mm, contour: self.contour };
+        controller.observe(&measured);
+        self.command = self.admit(controller.command(&window, &measured));
+    }
+
+    fn feed_period_s(&self) -> f64 {
+        f64::from(self.schedule.servo_periods) * self.servo_s
+    }
+
+    /// The command, held within the limits; what is not a number goes on as planned, beside the path where it is.
+    fn admit(&self, command: Command<N>) -> Command<N> {
+        let rate = if command.rate.is_finite() { command.rate.clamp(RATE_RANGE[0], RATE_RANGE[1]) } else { 1.0 };
+        let finite = command.offset_mm.iter().all(|o| o.is_finite());
+        let offset_mm = if finite { command.offset_mm } else { self.offset_from_mm };
+        Command { rate, offset_mm: limit_norm(offset_mm, self.max_deviation_mm) }
+    }
+}

@@ -1,0 +1,54 @@
+//! Arithmetic on `[f64; N]`, N axes.
+
+/// `a - b`.
+#[inline]
+pub fn sub<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    core::array::from_fn(|i| a[i] - b[i])
+}
+
+/// `a + k b`.
+#[inline]
+pub fn add_scaled<const N: usize>(a: [f64; N], k: f64, b: [f64; N]) -> [f64; N] {
+    core::array::from_fn(|i| a[i] + k * b[i])
+}
+
+/// `k a`.
+#[inline]
+pub fn scale<const N: usize>(k: f64, a: [f64; N]) -> [f64; N] {
+    core::array::from_fn(|i| k * a[i])
+}
+
+/// Scalar product.
+#[inline]
+pub fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
+    let mut sum = 0.0;
+    for i in 0..N {
+        sum += a[i] * b[i];
+    }
+    sum
+}
+
+/// Euclidean length.
+#[inline]
+pub fn norm<const N: usize>(a: [f64; N]) -> f64 {
+    libm::sqrt(dot(a, a))
+}
+
+/// `a` without its component along the unit vector `direction`.
+#[inline]
+pub fn reject<const N: usize>(a: [f64; N], direction: [f64; N]) -> [f64; N] {
+    add_scaled(a, -dot(a, direction), direction)
+}
+
+/// `a`, shortened to `limit` where it is longer. Not a number becomes zero.
+#[inline]
+pub fn limit_norm<const N: usize>(a: [f64; N], limit: f64) -> [f64; N] {
+    let length = norm(a);
+    if length <= limit {
+        a
+    } else if length.is_finite() {
+        scale(limit / length, a)
+    } else {
+        [0.0; N]
+    }
+}

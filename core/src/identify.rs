@@ -1,0 +1,62 @@
+//! Identification: from the machine to the trained weights of an identifier.
+//!
+//! The machine (simulated here) cuts an identification programme: laps of circles at random feeds, two thirds of them
+//! with random offsets of the command from the path, so that the data tell the effect of the feedrate from that of the
+//! path. [`contour`] trains the paper's network on it, [`servo`] the servo identifier; [`cache`] keeps what was trained.
+
+pub mod contour;
+pub mod servo;
+pub mod cache;
+mod excitation;
+
+use rand_xoshiro::Xoshiro256PlusPlus;
+use serde::Serialize;
+
+/// The generator behind everything random here: the same seed gives the same bits on every platform.
+type Rng = Xoshiro256PlusPlus;
+
+/// What the machine cuts to be identified.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Programme {
+    /// Radii of the circles, in turn, mm.
+    pub radii_mm: Vec<f64>,
+    /// Sense of the circles, in turn: -1 is clockwise.
+    pub turns: Vec<i32>,
+    /// Range of the feedrates, mm/s.
+    pub feed_mm_s: [f64; 2],
+    /// Number of laps.
+    pub laps: u32,
+    /// Largest random offset of the command in each axis, mm.
+    pub offset_mm: f64,
+    /// Feed periods after which the offset is drawn anew.
+    pub renewal_periods: u32,
+    /// Servo periods in a feed period: as in the controller that will use the identifier.
+    pub servo_periods: u32,
+}
+
+impl Programme {
+    /// The circle of eq. 11.
+    pub fn paper() -> Self {
+        Self {
+            radii_mm: vec![10.0],
+            turns: vec![-1],
+            feed_mm_s: [30.0, 70.0],
+            laps: 60,
+            offset_mm: 0.06,
+            renewal_periods: 3,
+            servo_periods: 10,
+        }
+    }
+
+    /// Circles from tight to wide, none of them a test contour: for programs of any shape. All in one sense, as the
+    /// paper's: with both, the paper's network finds that turning explains less of the error, and its gain is too weak.
+    pub fn general() -> Self {
+        Self { radii_mm: vec![3.0, 6.0, 12.0, 24.0], ..Self::paper() }
+    }
+
+    /// For the servo identifier, whose dynamics do not depend on the path: both senses, a wider range of feeds, knots
+    /// half as far apart.
+    pub fn servo() -> Self {
+        Self { turns: vec![-1, 1, 1], feed_mm_s: [10.0, 70.0], servo_periods: 5, renewal_periods: 4, ..Self::general() }
+    }
+}

@@ -1,0 +1,108 @@
+//! Training of the paper's identifier: plain back-propagation over the shuffled samples.
+//!
+//! Source: Lee, Cho and Jeon (2005), section 3.2, eq. 6. The paper does not say on what the network was trained.
+
+use feedwright_control::identifier::contour::ContourIdentifier;
+use feedwright_control::identifier::{ERROR_SCALE_MM, HIDDEN, History, INPUTS, Inputs};
+use feedwright_control::vector::{scale, sub};
+use rand::{RngExt, SeedableRng, seq::SliceRandom};
+use serde::Serialize;
+
+use super::excitation::{Lap, record};
+use super::{Programme, Rng};
+use crate::machine::Machine;
+
+/// How the network is trained.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Training {
+    /// Passes over the samples.
+    pub epochs: u32,
+    /// Step of back-propagation in the first epoch.
+    pub step: f64,
+    /// Factor on the step from epoch to epoch.
+    pub decay: f64,
+    /// The weights start uniformly within this distance of zero.
+    pub initial_weight: f64,
+}
+
+impl Default for Training {
+    /// 300 epochs bring the fit to the level of the disturbance (about 4 um RMS on tnv40); the decay makes the last
+    /// steps a hundredth of the first.
+    fn default() -> Self {
+        Self { epochs: 300, step: 0.05, decay: 0.985, initial_weight: 0.5 }
+    }
+}
+
+/// One sample: what the network sees, and the error that followed, both scaled.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Sample<const N: usize> {
+    inputs: Inputs<N>,
+    error: [f64; N],
+}
+
+/// A trained identifier and how well it fits.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Identified<const N: usize> {
+    /// The network.
+    pub net: ContourIdentifier<N>,
+    /// RMS of the prediction error over the last epoch, um per axis.
+    pub fit_um: f64,
+    /// Samples it was trained on.
+    pub samples: usize,
+}
+
+/// Cuts the programme on the machine and trains a network on what it sees. `progress` gets the part done, 0 to 1.
+pub fn identify<const N: usize>(
+    machine: &Machine,
+    programme: &Programme,
+    training: &Training,
+    seed: u64,
+    progress: &mut dyn FnMut(f64),
+) -> Identified<N> {
+    let mut rng = Rng::seed_from_u64(seed);
+    let period_s = f64::from(programme.servo_periods) * machine.period.servo_s;
+    let laps = record::<N>(machine, programme, &mut rng);
+    let samples = laps.iter().flat_map(|lap| samples(lap, period_s)).collect();
+    train(samples, training, &mut rng, progress)
+}
+
+/// What the network would have seen from knot to knot of a lap.
+fn samples<const N: usize>(lap: &Lap<N>, period_s: f64) -> Vec<Sample<N>> {
+    let mut history = History::default();
+    lap.windows(2)
+        .map(|pair| {
+            let feed_mm_s = scale(1.0 / period_s, sub(pair[1].command_mm, pair[0].command_mm));
+            let error_mm = pair[1].contour_mm;
+            let inputs = history.inputs(feed_mm_s);
+            history.push(feed_mm_s, error_mm);
+            Sample { inputs, error: error_mm.map(|e| e / ERROR_SCALE_MM) }
+        })
+        .collect()
+}
+
+/// Plain back-propagation over the shuffled samples.
+fn train<const N: usize>(
+    mut samples: Vec<Sample<N>>,
+    training: &Training,
+    rng: &mut Rng,
+    progress: &mut dyn FnMut(f64),
+) -> Identified<N> {
+    let mut net = initial(training.initial_weight, rng);
+    let mut step = training.step;
+    let mut cost = 0.0;
+    for epoch in 0..training.epochs {
+        samples.shuffle(rng);
+        cost = samples.iter().map(|s| net.learn(&s.inputs, s.error, step)).sum();
+        step *= training.decay;
+        progress(f64::from(epoch + 1) / f64::from(training.epochs));
+    }
+    let mean_square = 2.0 * cost / (samples.len() * N).max(1) as f64;
+    let fit_um = mean_square.sqrt() * ERROR_SCALE_MM * 1e3;
+    Identified { net, fit_um, samples: samples.len() }
+}
+
+fn initial<const N: usize>(width: f64, rng: &mut Rng) -> ContourIdentifier<N> {
+    let mut row = || -> [f64; HIDDEN] { std::array::from_fn(|_| rng.random_range(-width..=width)) };
+    let hidden = std::array::from_fn(|_| -> [[f64; HIDDEN]; INPUTS] { std::array::from_fn(|_| row()) });
+    ContourIdentifier { hidden, output: std::array::from_fn(|_| row()) }
+}

@@ -1,0 +1,111 @@
+//! The identification programme, cut: laps of circles under a controller that disturbs the command and records.
+
+use feedwright_control::controller::{Command, Controller, Measured, Schedule};
+use feedwright_control::vector::add_scaled;
+use feedwright_control::window::Window;
+use rand::RngExt;
+
+use super::{Programme, Rng};
+use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use crate::machine::Machine;
+use crate::reference::Reference;
+use crate::simulate::simulate;
+
+/// Every third lap runs undisturbed: the network sees the plain circle as well.
+const UNDISTURBED_EVERY: u32 = 3;
+
+/// One lap, knot by knot.
+pub(super) type Lap<const N: usize> = Vec<Knot<N>>;
+
+/// What was commanded and measured at the start of a feed period.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Knot<const N: usize> {
+    /// Command, mm.
+    pub(super) command_mm: [f64; N],
+    /// Tool, mm.
+    pub(super) tool_mm: [f64; N],
+    /// Contour error, desired minus actual, mm.
+    pub(super) contour_mm: [f64; N],
+}
+
+/// Cuts all laps.
+pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, rng: &mut Rng) -> Vec<Lap<N>> {
+    (0..programme.laps)
+        .map(|lap| {
+            let motion = circle::<N>(programme, lap, rng);
+            let mut reference = Reference::new(std::iter::once(Canon::Motion(motion)), &(&machine.limits).into())
+                .expect("the limits of a machine file are checked when it is read");
+            let undisturbed = lap.is_multiple_of(UNDISTURBED_EVERY);
+            let mut excitation = Excitation {
+                programme,
+                reach_mm: if undisturbed { 0.0 } else { programme.offset_mm },
+                rng,
+                offset_mm: [0.0; N],
+                lap: Vec::new(),
+            };
+            // A lap that diverges simply ends.
+            simulate(machine, &mut reference, &mut excitation, &mut []).expect("without sinks nothing is written");
+            excitation.lap
+        })
+        .collect()
+}
+
+/// One lap: radii, senses and planes in turn, feed and starting point at random.
+fn circle<const N: usize>(programme: &Programme, lap: u32, rng: &mut Rng) -> Motion {
+    let lap_index = lap as usize;
+    let radius = programme.radii_mm[lap_index % programme.radii_mm.len()];
+    let plane = match (N, lap % 3) {
+        (3, 1) => Plane::Zx,
+        (3, 2) => Plane::Yz,
+        _ => Plane::Xy,
+    };
+    let [first, second, _] = plane.axes();
+    let [slow, fast] = programme.feed_mm_s;
+    let angle: f64 = rng.random_range(0.0..std::f64::consts::TAU);
+    let mut center_mm = [0.0; 3];
+    (center_mm[first], center_mm[second]) = (radius * angle.cos(), radius * angle.sin());
+    Motion {
+        line: lap + 1,
+        kind: MotionKind::Feed,
+        start_mm: [0.0; 3],
+        end_mm: [0.0; 3],
+        shape: Shape::Arc { plane, center_mm, turns: programme.turns[lap_index % programme.turns.len()] },
+        feed_mm_s: rng.random_range(slow..=fast),
+        corner: Corner::ExactStop,
+        others: Others::default(),
+    }
+}
+
+/// Open loop with random offsets; records.
+struct Excitation<'a, const N: usize> {
+    programme: &'a Programme,
+    reach_mm: f64,
+    rng: &'a mut Rng,
+    offset_mm: [f64; N],
+    lap: Lap<N>,
+}
+
+impl<const N: usize> Controller<N> for Excitation<'_, N> {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: self.programme.servo_periods, preview: 0 }
+    }
+
+    fn reset(&mut self) {
+        self.lap.clear();
+    }
+
+    fn observe(&mut self, _: &Measured<N>) {}
+
+    fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
+        if self.lap.len().is_multiple_of(self.programme.renewal_periods as usize) {
+            let reach = self.reach_mm;
+            self.offset_mm = std::array::from_fn(|_| self.rng.random_range(-reach..=reach));
+        }
+        self.lap.push(Knot {
+            command_mm: add_scaled(window.now().position_mm, 1.0, window.offset_mm),
+            tool_mm: measured.position_mm,
+            contour_mm: measured.contour.vector_mm,
+        });
+        Command { rate: 1.0, offset_mm: self.offset_mm }
+    }
+}

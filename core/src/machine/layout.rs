@@ -1,0 +1,105 @@
+//! The layout of a machine file: its tables, keys, units and ranges.
+//!
+//! Ranges are wide: they keep out what no machine has (a negative inertia, a unit mistaken by a factor of a million), not
+//! what is unusual. A machine that is tuned badly is a result of the simulation, not a fault of its file.
+
+use toml::de::DeTable;
+
+use super::error::Fault;
+use super::reader::Table;
+use super::{AXIS_NAMES, Axis, Limits, Machine, Period};
+
+/// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
+/// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.
+const WHOLE_RATIO_TOLERANCE: f64 = 1e-12;
+
+/// More mechanics steps than this within a servo period are a mistaken unit, and nobody could wait for them.
+const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
+
+/// The machine that a text describes, or every fault in it.
+pub(super) fn machine(text: &str) -> Result<Machine, Vec<Fault>> {
+    let (document, syntax_errors) = DeTable::parse_recoverable(text);
+    if !syntax_errors.is_empty() {
+        return Err(syntax_errors.iter().map(|error| syntax_fault(error, text)).collect());
+    }
+    let mut faults = Vec::new();
+    let mut root = Table::root(&document);
+    let machine = Machine {
+        name: root.text("name", &mut faults),
+        description: root.text("description", &mut faults),
+        source: root.text("source", &mut faults),
+        period: period(root.table("period", &mut faults), &mut faults),
+        limits: limits(root.table("limits", &mut faults), &mut faults),
+        axes: axes(root.table("axis", &mut faults), &mut faults),
+    };
+    root.finish(&mut faults);
+    if faults.is_empty() { Ok(machine) } else { Err(faults) }
+}
+
+fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
+    let servo_s = table.number("servo_s", "s", 1e-5..=0.1, faults);
+    let mechanics_s = table.number("mechanics_s", "s", 1e-7..=0.1, faults);
+    let ratio = servo_s / mechanics_s;
+    // A value that has a fault of its own is NaN here and gets no second one.
+    let is_whole = (ratio - ratio.round()).abs() <= WHOLE_RATIO_TOLERANCE * ratio;
+    if ratio.is_finite() && (!is_whole || !(1.0..=MAX_MECHANICS_PER_SERVO).contains(&ratio.round())) {
+        let steps = ratio.round().clamp(1.0, MAX_MECHANICS_PER_SERVO);
+        faults.push(Fault {
+            at: table.place("mechanics_s"),
+            label: "does not divide servo_s",
+            message: format!(
+                "servo_s is {ratio} times mechanics_s ({servo_s} s / {mechanics_s} s); it must be a whole multiple from 1 to {MAX_MECHANICS_PER_SERVO}"
+            ),
+            hint: Some(format!("mechanics_s = {} s gives {steps} steps", servo_s / steps)),
+        });
+    }
+    table.finish(faults);
+    Period { servo_s, mechanics_s, mechanics_per_servo: ratio.round() as u32 }
+}
+
+fn limits(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Limits {
+    let limits = Limits {
+        rapid_mm_s: table.number("rapid_mm_s", "mm/s", 0.01..=1e4, faults),
+        max_feed_mm_s: table.number("max_feed_mm_s", "mm/s", 0.01..=1e4, faults),
+        tangential_accel_mm_s2: table.number("tangential_accel_mm_s2", "mm/s2", 0.1..=1e6, faults),
+        normal_accel_mm_s2: table.number("normal_accel_mm_s2", "mm/s2", 0.1..=1e6, faults),
+        corner_jump_mm_s: table.number("corner_jump_mm_s", "mm/s", 0.0..=1e4, faults),
+        max_deviation_mm: table.number("max_deviation_mm", "mm", 0.0..=100.0, faults),
+    };
+    table.finish(faults);
+    limits
+}
+
+fn axes(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Vec<Axis> {
+    let [x, y, z] = AXIS_NAMES;
+    let mut axes: Vec<Axis> = [x, y].into_iter().map(|name| axis(table.table(name, faults), faults)).collect();
+    if let Some(present) = table.optional_table(z, faults) {
+        axes.push(axis(present, faults));
+    }
+    table.finish(faults);
+    axes
+}
+
+fn axis(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Axis {
+    let axis = Axis {
+        lead_mm_per_rev: table.number("lead_mm_per_rev", "mm/rev", 0.01..=1e3, faults),
+        inertia_kg_m2: table.number("inertia_kg_m2", "kg m2", 1e-9..=1e3, faults),
+        viscous_friction_nm_s: table.number("viscous_friction_nm_s", "N m s/rad", 0.0..=1e4, faults),
+        coulomb_friction_nm: table.number("coulomb_friction_nm", "N m", 0.0..=1e5, faults),
+        coulomb_smoothing_rad_s: table.number("coulomb_smoothing_rad_s", "rad/s", 1e-6..=1e3, faults),
+        disturbance_nm: table.number("disturbance_nm", "N m", 0.0..=1e5, faults),
+        disturbance_hz: table.number("disturbance_hz", "Hz", 0.0..=1e5, faults),
+        kp_1_s: table.number("kp_1_s", "1/s", 1e-3..=1e5, faults),
+        kd: table.number("kd", "(no unit)", 0.0..=1e3, faults),
+        kv_nm_s_per_rad: table.number("kv_nm_s_per_rad", "N m s/rad", 1e-9..=1e6, faults),
+        torque_limit_nm: table.number("torque_limit_nm", "N m", 1e-6..=1e6, faults),
+    };
+    table.finish(faults);
+    axis
+}
+
+fn syntax_fault(error: &toml::de::Error, text: &str) -> Fault {
+    let at = error.span().unwrap_or(0..0);
+    let at = at.start.min(text.len())..at.end.min(text.len());
+    Fault { at, label: "here", message: format!("not TOML: {}", error.message()), hint: None }
+}

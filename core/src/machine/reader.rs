@@ -1,0 +1,231 @@
+//! Reads tables of a TOML text key by key and collects every fault, instead of stopping at the first.
+//!
+//! The keys that are asked for are the keys that are known: what nobody asked for is reported by [`Table::finish`].
+
+use std::ops::{Range, RangeInclusive};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::error::Fault;
+
+/// Two names further apart than this (Jaro-Winkler, 1 is equal) share little more than letters: no suggestion then.
+const SUGGESTION_SIMILARITY: f64 = 0.75;
+
+/// The candidate that `word` was probably meant to be.
+pub(crate) fn nearest<'a>(word: &str, candidates: &[&'a str]) -> Option<&'a str> {
+    candidates
+        .iter()
+        .map(|candidate| (strsim::jaro_winkler(&word.to_lowercase(), candidate), *candidate))
+        .filter(|(similarity, _)| *similarity >= SUGGESTION_SIMILARITY)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(_, candidate)| candidate)
+}
+
+/// A table under reading.
+pub(super) struct Table<'t, 'i> {
+    /// Dotted name, empty for the file itself.
+    name: String,
+    /// Place of the table's header, where a missing key is reported.
+    at: Range<usize>,
+    /// What it holds; a table that is missing holds nothing and reports nothing.
+    entries: Option<&'t DeTable<'i>>,
+    asked: Vec<&'static str>,
+}
+
+impl<'t, 'i> Table<'t, 'i> {
+    /// The file itself.
+    pub(super) fn root(entries: &'t Spanned<DeTable<'i>>) -> Self {
+        Self { name: String::new(), at: 0..0, entries: Some(entries.get_ref()), asked: Vec::new() }
+    }
+
+    /// A number in `unit` within `range`; NaN and a fault where it is not.
+    pub(super) fn number(
+        &mut self,
+        key: &'static str,
+        unit: &str,
+        range: RangeInclusive<f64>,
+        faults: &mut Vec<Fault>,
+    ) -> f64 {
+        let Some(value) = self.required(key, faults) else {
+            return f64::NAN;
+        };
+        let number = match value.get_ref() {
+            DeValue::Float(float) => float.as_str().parse().ok(),
+            DeValue::Integer(integer) => {
+                i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|whole| whole as f64)
+            }
+            other => {
+                faults.push(wrong_type(value.span(), key, "a number", other));
+                return f64::NAN;
+            }
+        };
+        match number {
+            Some(number) if range.contains(&number) => return number,
+            Some(number) => faults.push(out_of_range(value.span(), key, number, unit, &range)),
+            None => faults.push(Fault {
+                at: value.span(),
+                label: "too large",
+                message: format!("{key} is no number that can be represented"),
+                hint: Some(format!("it must lie between {} and {} {unit}", shown(*range.start()), shown(*range.end()))),
+            }),
+        }
+        f64::NAN
+    }
+
+    /// A text that is not blank; empty and a fault where it is.
+    pub(super) fn text(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> String {
+        let Some(value) = self.required(key, faults) else {
+            return String::new();
+        };
+        match value.get_ref() {
+            DeValue::String(text) if !text.trim().is_empty() => text.trim().to_owned(),
+            DeValue::String(_) => {
+                faults.push(Fault { at: value.span(), label: "empty", message: format!("{key} is empty"), hint: None });
+                String::new()
+            }
+            other => {
+                faults.push(wrong_type(value.span(), key, "a text in quotes", other));
+                String::new()
+            }
+        }
+    }
+
+    /// A table that has to be there; a fault where it is not.
+    pub(super) fn table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Self {
+        let present = self.optional_table(key, faults);
+        present.unwrap_or_else(|| {
+            let name = self.dotted(key);
+            if self.entries.is_some() {
+                faults.push(Fault {
+                    at: self.at.clone(),
+                    label: "missing below here",
+                    message: format!("table [{name}] is missing"),
+                    hint: self.near_unknown(key).map(|near| format!("is [{}] meant to be it?", self.dotted(near))),
+                });
+            }
+            Self { name, at: self.at.clone(), entries: None, asked: Vec::new() }
+        })
+    }
+
+    /// A table that may be left out.
+    pub(super) fn optional_table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<Self> {
+        self.asked.push(key);
+        let value = self.entries?.get(key)?;
+        let name = self.dotted(key);
+        let entries = match value.get_ref() {
+            DeValue::Table(entries) => Some(entries),
+            other => {
+                faults.push(wrong_type(value.span(), key, &format!("a table [{name}]"), other));
+                None
+            }
+        };
+        Some(Self { name, at: value.span(), entries, asked: Vec::new() })
+    }
+
+    /// Place of a key's value, for faults between values; the table's where the key is missing.
+    pub(super) fn place(&self, key: &str) -> Range<usize> {
+        self.entries.and_then(|entries| entries.get(key)).map_or_else(|| self.at.clone(), Spanned::span)
+    }
+
+    /// Reports the keys that nobody asked for.
+    pub(super) fn finish(self, faults: &mut Vec<Fault>) {
+        for (key, value) in self.entries.into_iter().flatten() {
+            let word: &str = key.get_ref();
+            if self.asked.contains(&word) {
+                continue;
+            }
+            let kind = if value.get_ref().is_table() { "table" } else { "key" };
+            let home = if self.name.is_empty() { "the file".to_owned() } else { format!("[{}]", self.name) };
+            let hint = match nearest(word, &self.asked) {
+                Some(near) => format!("did you mean '{near}'?"),
+                None => format!("{home} holds {}", self.asked.join(", ")),
+            };
+            faults.push(Fault {
+                at: key.span(),
+                label: "unknown",
+                message: format!("unknown {kind} '{word}' in {home}"),
+                hint: Some(hint),
+            });
+        }
+    }
+
+    /// The value of a key that has to be there; a fault where it is not.
+    fn required(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<&'t Spanned<DeValue<'i>>> {
+        self.asked.push(key);
+        let value = self.entries?.get(key);
+        if value.is_none() {
+            let home = if self.name.is_empty() { String::new() } else { format!(" from [{}]", self.name) };
+            faults.push(Fault {
+                at: self.at.clone(),
+                label: "missing here",
+                message: format!("{key} is missing{home}"),
+                hint: self.near_unknown(key).map(|near| format!("is '{near}' meant to be it?")),
+            });
+        }
+        value
+    }
+
+    /// A key of the text that nobody asked for yet and that looks like `key`.
+    fn near_unknown(&self, key: &str) -> Option<&'t str> {
+        let entries = self.entries?;
+        let unknown: Vec<&str> =
+            entries.keys().map(|key| key.get_ref().as_ref()).filter(|word| !self.asked.contains(word)).collect();
+        // Stricter than `nearest` alone: a key that is asked for later is unknown only until then.
+        nearest(key, &unknown).filter(|near| strsim::damerau_levenshtein(key, near) <= 2)
+    }
+
+    fn dotted(&self, key: &str) -> String {
+        if self.name.is_empty() { key.to_owned() } else { format!("{}.{key}", self.name) }
+    }
+}
+
+fn wrong_type(at: Range<usize>, key: &str, wanted: &str, got: &DeValue<'_>) -> Fault {
+    let hint = match got {
+        DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
+            Some(format!("without the quotes: {key} = {}", text.trim()))
+        }
+        _ => None,
+    };
+    Fault {
+        at,
+        label: "wrong type",
+        message: format!("{key} has to be {wanted}, but is {}", article(got.type_str())),
+        hint,
+    }
+}
+
+fn article(kind: &str) -> String {
+    let article = if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+    format!("{article} {kind}")
+}
+
+fn out_of_range(at: Range<usize>, key: &str, number: f64, unit: &str, range: &RangeInclusive<f64>) -> Fault {
+    let (low, high) = (range.start(), range.end());
+    let hint = if !number.is_finite() {
+        Some("write a finite number".to_owned())
+    } else if range.contains(&-number) {
+        Some(format!("is the sign wrong? {} {unit} is allowed", -number))
+    } else if number == 0.0 {
+        None
+    } else {
+        Some(format!("is the unit right? this key is in {unit}"))
+    };
+    Fault {
+        at,
+        label: if number.is_finite() { "out of range" } else { "not finite" },
+        message: format!(
+            "{key} is {} {unit}; it must lie between {} and {} {unit}",
+            shown(number),
+            shown(*low),
+            shown(*high)
+        ),
+        hint,
+    }
+}
+
+/// A number for people: plain where that is short, with an exponent where it would be a row of zeros.
+fn shown(number: f64) -> String {
+    let plain = number == 0.0 || !number.is_finite() || (1e-3..1e6).contains(&number.abs());
+    if plain { format!("{number}") } else { format!("{number:e}") }
+}

@@ -1,0 +1,221 @@
+//! What a machine file may hold, and what is said about one that holds something else.
+
+use miette::Diagnostic;
+
+use super::*;
+
+const TNV40: &str = BUILT_IN[0].1;
+
+fn tnv40() -> Machine {
+    Machine::load(OsStr::new("tnv40")).unwrap()
+}
+
+/// The faults that the tnv40 file has once `from` is replaced by `to`.
+fn faults_after(from: &str, to: &str) -> Vec<Problem> {
+    assert!(TNV40.contains(from), "the file has no '{from}'");
+    match Machine::parse("broken.toml", &TNV40.replacen(from, to, 1)) {
+        Err(MachineError::Invalid { problems, .. }) => problems,
+        other => panic!("expected faults, got {other:?}"),
+    }
+}
+
+/// Place and message.
+fn placed(fault: &Problem) -> String {
+    format!("{}:{}: {fault}", fault.line, fault.column)
+}
+
+/// The only fault after the replacement: its text, with the hint.
+fn fault_after(from: &str, to: &str) -> String {
+    let faults = faults_after(from, to);
+    assert_eq!(faults.len(), 1, "{faults:?}");
+    format!("{} / {}", placed(&faults[0]), faults[0].hint.as_deref().unwrap_or("no hint"))
+}
+
+#[test]
+fn tnv40_holds_the_values_of_table_1() {
+    let machine = tnv40();
+    let table_1 =
+        |axis: &Axis| (axis.inertia_kg_m2, axis.viscous_friction_nm_s, axis.coulomb_friction_nm, axis.disturbance_nm);
+    assert_eq!(table_1(&machine.axes[0]), (0.0103, 0.0336, 0.2, 0.1));
+    assert_eq!(table_1(&machine.axes[1]), (0.012, 0.0308, 0.3, 0.1));
+    assert_eq!(machine.axes[2], machine.axes[1], "the paper has no z: it is assumed like y");
+    assert_eq!(machine.period.mechanics_per_servo, 10);
+    assert_eq!(machine.axis_count(), 3);
+}
+
+#[test]
+fn every_built_in_machine_reads_under_its_own_name() {
+    for (name, text) in BUILT_IN {
+        assert_eq!(Machine::parse(name, text).unwrap().name, *name);
+    }
+}
+
+#[test]
+fn every_value_carries_its_source() {
+    for (number, line) in TNV40.lines().enumerate() {
+        if line.contains(" = ") && !line.contains('"') && !line.starts_with('#') {
+            assert!(line.contains(" # "), "line {} has no comment: {line}", number + 1);
+        }
+    }
+}
+
+#[test]
+fn a_machine_without_z_has_two_axes() {
+    let (text, _) = TNV40.split_once("# The paper simulates X and Y only").unwrap();
+    assert_eq!(Machine::parse("two.toml", text).unwrap().axis_count(), 2);
+}
+
+#[test]
+fn values_out_of_range_name_place_value_limit_and_unit() {
+    assert_eq!(
+        fault_after("inertia_kg_m2 = 0.0103", "inertia_kg_m2 = -0.0103"),
+        "25:17: inertia_kg_m2 is -0.0103 kg m2; it must lie between 1e-9 and 1000 kg m2 / is the sign wrong? 0.0103 kg m2 is allowed"
+    );
+    assert_eq!(
+        fault_after("servo_s = 0.001 ", "servo_s = 0 "),
+        "12:11: servo_s is 0 s; it must lie between 1e-5 and 0.1 s / no hint"
+    );
+    for (value, shown) in [("nan", "NaN"), ("inf", "inf"), ("-inf", "-inf"), ("+nan", "NaN")] {
+        let fault = fault_after("kp_1_s = 50", &format!("kp_1_s = {value}"));
+        assert!(
+            fault.contains(&format!("kp_1_s is {shown} 1/s")) && fault.ends_with("/ write a finite number"),
+            "{fault}"
+        );
+    }
+    assert!(
+        fault_after("torque_limit_nm = 30", "torque_limit_nm = 30e9").contains("is the unit right? this key is in N m")
+    );
+    assert!(fault_after("torque_limit_nm = 30", "torque_limit_nm = 99999999999999999999").contains("torque_limit_nm"));
+    assert!(fault_after("torque_limit_nm = 30", "torque_limit_nm = 1e999").contains("torque_limit_nm"));
+}
+
+#[test]
+fn missing_unknown_and_mistyped_keys_are_reported() {
+    assert_eq!(
+        faults_after("kp_1_s = 50", "kp_l_s = 50").iter().map(placed).collect::<Vec<_>>(),
+        ["23:1: kp_1_s is missing from [axis.x]", "31:1: unknown key 'kp_l_s' in [axis.x]"]
+    );
+    assert!(fault_after("kd = 0", "kd = 0\ninertia_kgm2 = 1").ends_with("/ did you mean 'inertia_kg_m2'?"));
+    assert!(fault_after("kd = 0", "kd = 0\nqqq = 1").contains("[axis.x] holds lead_mm_per_rev, "));
+    assert_eq!(
+        fault_after("kd = 0 ", "kd = \"0\" "),
+        "32:6: kd has to be a number, but is a string / without the quotes: kd = 0"
+    );
+    assert!(
+        fault_after("name = \"tnv40\"", "name = 40").contains("name has to be a text in quotes, but is an integer")
+    );
+    assert!(fault_after("name = \"tnv40\"", "name = \" \"").contains("name is empty"));
+    assert!(fault_after("\n[axis.z]", "\n[axis.w]").contains("unknown table 'w' in [axis]"));
+    assert!(fault_after("[period]", "[[period]]").contains("period has to be a table [period], but is an array"));
+}
+
+#[test]
+fn a_missing_table_is_one_fault_not_one_for_every_key() {
+    let faults = faults_after("[limits]", "[limit]");
+    let texts: Vec<String> =
+        faults.iter().map(|fault| format!("{} / {}", placed(fault), fault.hint.clone().unwrap_or_default())).collect();
+    assert_eq!(
+        texts,
+        [
+            "1:1: table [limits] is missing / is [limit] meant to be it?",
+            "15:2: unknown table 'limit' in the file / did you mean 'limits'?"
+        ]
+    );
+}
+
+#[test]
+fn all_faults_come_in_one_go_in_the_order_of_the_text() {
+    let text = TNV40
+        .replacen("servo_s = 0.001", "servo_s = true", 1)
+        .replacen("rapid_mm_s = 400", "rapid_mm_s = -1", 1)
+        .replacen("kd = 0", "kdd = 0", 1);
+    let Err(MachineError::Invalid { problems, .. }) = Machine::parse("broken.toml", &text) else { panic!() };
+    assert_eq!(problems.iter().map(|problem| problem.line).collect::<Vec<_>>(), [12, 16, 23, 32]);
+}
+
+#[test]
+fn the_servo_period_is_a_whole_multiple_of_the_mechanics_period() {
+    let fault = fault_after("mechanics_s = 0.0001", "mechanics_s = 0.0003");
+    assert!(fault.contains("whole multiple") && fault.contains("s gives 3 steps"), "{fault}");
+    assert!(fault_after("mechanics_s = 0.0001", "mechanics_s = 0.01").contains("gives 1 steps"));
+}
+
+#[test]
+fn whole_ratios_survive_the_rounding_of_decimal_numbers() {
+    for steps in 1..=1000_u32 {
+        let servo_s = 0.003;
+        let text = TNV40.replacen("servo_s = 0.001", &format!("servo_s = {servo_s}"), 1).replacen(
+            "mechanics_s = 0.0001",
+            &format!("mechanics_s = {}", servo_s / f64::from(steps)),
+            1,
+        );
+        assert_eq!(Machine::parse("fine.toml", &text).unwrap().period.mechanics_per_servo, steps);
+    }
+}
+
+#[test]
+fn broken_toml_shows_where() {
+    let fault = fault_after("[limits]", "[limits");
+    assert!(fault.starts_with("15:") && fault.contains("not TOML"), "{fault}");
+    assert!(matches!(Machine::parse("x.toml", "kp = = 1\nname = \"a\nb = \"c"), Err(MachineError::Invalid { .. })));
+}
+
+#[test]
+fn empty_text_names_everything_that_is_missing() {
+    let Err(MachineError::Invalid { problems, .. }) = Machine::parse("empty.toml", "") else { panic!() };
+    let text: Vec<String> = problems.iter().map(|problem| problem.message.clone()).collect();
+    assert_eq!(
+        text,
+        [
+            "name is missing",
+            "description is missing",
+            "source is missing",
+            "table [period] is missing",
+            "table [limits] is missing",
+            "table [axis] is missing"
+        ]
+    );
+}
+
+#[test]
+fn unknown_names_list_the_known_ones() {
+    let error = Machine::load(OsStr::new("tnv4")).unwrap_err();
+    assert_eq!(error.to_string(), "no machine is called 'tnv4'; there is tnv40");
+    assert_eq!(error.help().unwrap().to_string(), "did you mean 'tnv40'?");
+    assert!(Machine::load(OsStr::new("lathe")).unwrap_err().help().unwrap().to_string().contains("ending in .toml"));
+}
+
+#[test]
+fn files_that_are_no_machine_files_say_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).unwrap();
+        path
+    };
+    let load = |path: &Path| Machine::load(path.as_os_str());
+    assert!(matches!(load(&folder.path().join("none.toml")), Err(MachineError::Unreadable { hint: Some(_), .. })));
+    assert!(matches!(load(folder.path()), Err(MachineError::Unreadable { .. })));
+    assert!(matches!(
+        load(&write("binary.toml", b"name = \"\xff\"")),
+        Err(MachineError::NotText { offset: 8, byte: 0xff, .. })
+    ));
+    assert!(matches!(
+        load(&write("large.toml", &vec![b'#'; (MAX_FILE_BYTES + 1) as usize])),
+        Err(MachineError::TooLarge { .. })
+    ));
+    let mine = write("mine.toml", TNV40.replace("name = \"tnv40\"", "name = \"mine\"").as_bytes());
+    assert_eq!(load(&mine).unwrap().name, "mine");
+}
+
+#[test]
+fn fingerprint_follows_the_content_and_nothing_else() {
+    let parse = |from: &str, to: &str| Machine::parse("x", &TNV40.replacen(from, to, 1)).unwrap().fingerprint();
+    let original = tnv40().fingerprint();
+    assert_eq!(original.len(), 64);
+    assert_eq!(parse("name = \"tnv40\"", "name = \"other\""), original);
+    assert_eq!(parse("kp_1_s = 50", "kp_1_s = 50.0"), original);
+    assert_ne!(parse("kp_1_s = 50", "kp_1_s = 50.000000000000007"), original);
+    let (two_axes, _) = TNV40.split_once("# The paper simulates X and Y only").unwrap();
+    assert_ne!(Machine::parse("x", two_axes).unwrap().fingerprint(), original);
+}

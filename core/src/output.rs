@@ -1,0 +1,221 @@
+//! Output files that are there whole or not at all.
+//!
+//! An [`OutputFile`] is written to a temporary file beside its target and renamed by [`OutputFile::commit`]. Dropped before
+//! that (an error, a panic), it leaves nothing; [`abandon_all`] does the same from a Ctrl-C handler. The data is not forced
+//! to the disk: it survives the end of the process, not of the power.
+
+mod error;
+
+pub mod gcode_writer;
+mod polyline;
+mod stab;
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::TempPath;
+
+pub use error::{OutputError, Step};
+
+/// Rows of a trace are 150-300 bytes: a few hundred rows for one call of the operating system.
+const BUFFER_BYTES: usize = 64 << 10;
+
+/// Output files under way in this process, so that an interrupt can remove them.
+static LIVE: Mutex<Live> = Mutex::new(Live { closed: false, files: Vec::new() });
+
+struct Live {
+    /// Set by an interrupt: nothing is created or renamed any more.
+    closed: bool,
+    files: Vec<LiveFile>,
+}
+
+struct LiveFile {
+    target: PathBuf,
+    /// `None` where the target is written directly.
+    temporary: Option<PathBuf>,
+}
+
+/// A file under way to its target.
+pub struct OutputFile {
+    /// As the user gave it, for messages.
+    shown: PathBuf,
+    /// Where it will stand, symbolic links resolved.
+    target: PathBuf,
+    out: BufWriter<Named>,
+    /// `None` for a target that is no regular file (a pipe, a device): that is written directly.
+    temporary: Option<TempPath>,
+}
+
+/// A file whose errors name it.
+struct Named {
+    file: File,
+    shown: PathBuf,
+    folder: PathBuf,
+}
+
+impl OutputFile {
+    /// Starts a file that shall stand at `path` when it is complete; `inputs` are files of this run that it must not replace.
+    ///
+    /// # Errors
+    /// A target that is a directory, that is one of `inputs` or that another output of this run goes to; a directory that is
+    /// missing or cannot be written to.
+    pub fn create(path: &Path, inputs: &[&Path]) -> Result<Self, OutputError> {
+        let target = resolve(path)?;
+        if let Some(input) = inputs.iter().find(|input| fs::canonicalize(input).is_ok_and(|input| input == target)) {
+            return Err(OutputError::IsInput { path: path.to_owned(), input: input.to_path_buf() });
+        }
+        let mut live = live();
+        if live.closed {
+            return Err(OutputError::Interrupted { path: path.to_owned() });
+        }
+        if live.files.iter().any(|file| file.target == target) {
+            return Err(OutputError::Twice { path: path.to_owned() });
+        }
+        let folder = target.parent().unwrap_or(Path::new("/")).to_owned();
+        let failed = |error| OutputError::io(Step::Create, path, &folder, error);
+        let (file, temporary) = if fs::metadata(&target).is_ok_and(|found| !found.is_file()) {
+            (File::options().write(true).open(&target).map_err(failed)?, None)
+        } else {
+            let (file, temporary) = create_beside(&target, &folder).map_err(failed)?;
+            (file, Some(temporary))
+        };
+        live.files
+            .push(LiveFile { target: target.clone(), temporary: temporary.as_ref().map(|path| path.to_path_buf()) });
+        let named = Named { file, shown: path.to_owned(), folder };
+        Ok(Self { shown: path.to_owned(), target, out: BufWriter::with_capacity(BUFFER_BYTES, named), temporary })
+    }
+
+    /// Where the file will stand, as it was given.
+    pub fn path(&self) -> &Path {
+        &self.shown
+    }
+
+    /// All files of a run are complete: they take their places. The last bytes of all are written before the first moves,
+    /// so that a disk that is full at the very end leaves no part of the results either.
+    ///
+    /// # Errors
+    /// As [`Self::commit`], for the first that fails.
+    pub fn commit_all(mut files: Vec<Self>) -> Result<(), OutputError> {
+        for file in &mut files {
+            file.out.flush().map_err(|error| OutputError::from_io(error, &file.shown))?;
+        }
+        files.into_iter().try_for_each(Self::commit)
+    }
+
+    /// The file is complete: it takes its place.
+    ///
+    /// # Errors
+    /// Where the last bytes or the renaming fail; nothing is left then.
+    pub fn commit(mut self) -> Result<(), OutputError> {
+        self.out.flush().map_err(|error| OutputError::from_io(error, &self.shown))?;
+        let live = live();
+        if live.closed {
+            return Err(OutputError::Interrupted { path: self.shown.clone() });
+        }
+        if let Some(temporary) = self.temporary.take() {
+            // The lock is held: an interrupt comes before the renaming or finds nothing left to remove.
+            temporary.persist(&self.target).map_err(|failed| {
+                let folder = &self.out.get_ref().folder;
+                OutputError::io(Step::Rename, &self.shown, folder, failed.error)
+            })?;
+        }
+        drop(live);
+        Ok(())
+    }
+}
+
+impl Write for OutputFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.out.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.out.flush()
+    }
+}
+
+impl Drop for OutputFile {
+    fn drop(&mut self) {
+        let mut live = live();
+        // Removed under the lock: an interrupt finds the file in the list, or gone.
+        self.temporary = None;
+        live.files.retain(|file| file.target != self.target);
+    }
+}
+
+impl Write for Named {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes).map_err(|error| {
+            if error.kind() == io::ErrorKind::Interrupted {
+                return error;
+            }
+            let kind = error.kind();
+            io::Error::new(kind, OutputError::io(Step::Write, &self.shown, &self.folder, error))
+        })
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+/// Removes every unfinished output of this process and lets none be started or finished after it: for an interrupt handler
+/// that is about to end the process.
+pub fn abandon_all() {
+    let mut live = live();
+    live.closed = true;
+    for temporary in live.files.drain(..).filter_map(|file| file.temporary) {
+        // The process ends: there is nobody left who could do more about a file that cannot be removed.
+        let _ = fs::remove_file(temporary);
+    }
+}
+
+/// The list of live files stays consistent whatever panics while it is locked.
+fn live() -> MutexGuard<'static, Live> {
+    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The real place of `path`, which need not exist yet.
+fn resolve(path: &Path) -> Result<PathBuf, OutputError> {
+    if fs::metadata(path).is_ok_and(|found| found.is_dir()) {
+        return Err(OutputError::IsDirectory { path: path.to_owned() });
+    }
+    if let Ok(target) = fs::canonicalize(path) {
+        return Ok(target);
+    }
+    // A path such as "out/" or ".." names no file.
+    let Some(name) = path.file_name().filter(|_| !path.as_os_str().as_encoded_bytes().ends_with(b"/")) else {
+        return Err(OutputError::IsDirectory { path: path.to_owned() });
+    };
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    match fs::canonicalize(folder) {
+        Ok(folder) => Ok(folder.join(name)),
+        Err(error) => Err(OutputError::io(Step::Create, path, folder, error)),
+    }
+}
+
+/// The error without the name of the hidden file, which nobody asked for.
+fn of_the_system(error: io::Error) -> io::Error {
+    let inner = error.get_ref().and_then(|inner| inner.source()).and_then(|inner| inner.downcast_ref::<io::Error>());
+    inner.and_then(io::Error::raw_os_error).map_or(error, io::Error::from_raw_os_error)
+}
+
+fn create_beside(target: &Path, folder: &Path) -> io::Result<(File, TempPath)> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".feedwright-").suffix(".part");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // A file that is replaced keeps its permissions; a new one gets what the user's umask leaves.
+        let mode = fs::metadata(target).map_or(0o666, |found| found.permissions().mode());
+        builder.permissions(fs::Permissions::from_mode(mode & 0o777));
+    }
+    #[cfg(not(unix))]
+    let _ = target;
+    Ok(builder.tempfile_in(folder).map_err(of_the_system)?.into_parts())
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,195 @@
+//! The closed-form contours of the benchmark, exact and by arc length.
+//!
+//! | Name | Definition, mm, `a` from 0 to 2 pi |
+//! |---|---|
+//! | circle | `R (1 - cos a, sin a)`, R = 10 (Lee, Cho, Jeon 2005, eq. 11) |
+//! | ellipse | `(20 cos a, 10 sin a)` |
+//! | eight | `(15 sin a, 10 sin 2a)` |
+//! | star | `(12 + 4 cos 5a) (cos a, sin a)` |
+//! | square | 20 x 20, sharp corners, counter-clockwise |
+//! | line-line-circle | (0,0) (40,30) (60,30), then a full circle about (90,30), counter-clockwise |
+
+use super::pieces::Pieces;
+use super::smooth::{Jet, Parametric, Smooth};
+use super::vector::scale;
+use super::{Curve, PathError, Piece, Step};
+use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// A contour with a name.
+#[derive(Debug, Clone, Copy)]
+pub struct Contour {
+    /// Name.
+    pub name: &'static str,
+    /// What it is, for lists.
+    pub about: &'static str,
+    outline: Outline,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Outline {
+    /// Corner points.
+    Polygon(&'static [[f64; 2]]),
+    /// Corner points, then a full turn about a centre; negative is clockwise.
+    Circle(&'static [[f64; 2]], [f64; 2], i32),
+    /// A closed curve.
+    Curve(fn(f64) -> Jet),
+}
+
+/// All contours.
+pub const CONTOURS: &[Contour] = &[
+    Contour {
+        name: "circle",
+        about: "circle of radius 10 mm, from the origin, clockwise",
+        outline: Outline::Circle(&[[0.0, 0.0]], [10.0, 0.0], -1),
+    },
+    Contour { name: "ellipse", about: "half axes 20 and 10 mm", outline: Outline::Curve(ellipse) },
+    Contour { name: "eight", about: "figure of eight, 30 x 20 mm", outline: Outline::Curve(eight) },
+    Contour { name: "star", about: "five soft points, radius 8 to 16 mm", outline: Outline::Curve(star) },
+    Contour {
+        name: "square",
+        about: "20 x 20 mm, sharp corners",
+        outline: Outline::Polygon(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0], [0.0, 0.0]]),
+    },
+    Contour {
+        name: "line-line-circle",
+        about: "two lines and a circle of radius 30 mm",
+        outline: Outline::Circle(&[[0.0, 0.0], [40.0, 30.0], [60.0, 30.0]], [90.0, 30.0], 1),
+    },
+];
+
+/// The contour of that name.
+pub fn contour(name: &str) -> Option<&'static Contour> {
+    CONTOURS.iter().find(|contour| contour.name == name)
+}
+
+impl Contour {
+    /// The contour as steps of a path, all cutting, at `feed_mm_s`, corners taken as `corner` says; lines count from 1.
+    ///
+    /// # Errors
+    /// Where the feedrate is none.
+    pub fn steps(&self, feed_mm_s: f64, corner: Corner) -> Result<Vec<Step>, PathError> {
+        if !(super::MIN_FEED_MM_S..=f64::MAX).contains(&feed_mm_s) {
+            return Err(PathError::Feed { line: 1, feed_mm_s });
+        }
+        match self.outline {
+            Outline::Polygon(points) => Pieces::new(lines(points, feed_mm_s, corner).into_iter()).collect(),
+            Outline::Circle(points, center, turns) => {
+                let mut canon = lines(points, feed_mm_s, corner);
+                let at = space(points[points.len() - 1]);
+                canon.push(Canon::Motion(Motion {
+                    line: points.len() as u32,
+                    kind: MotionKind::Feed,
+                    start_mm: at,
+                    end_mm: at,
+                    shape: Shape::Arc { plane: Plane::Xy, center_mm: space(center), turns },
+                    feed_mm_s,
+                    corner,
+                    others: Others::default(),
+                }));
+                Pieces::new(canon.into_iter()).collect()
+            }
+            Outline::Curve(jet) => {
+                let smooth = Smooth::new(Box::new(Closed { jet }));
+                Ok(vec![Step::Piece(Piece {
+                    start_mm: jet(0.0).position_mm,
+                    length_mm: smooth.length_mm(),
+                    curve: Curve::Smooth(Arc::new(smooth)),
+                    s_mm: 0.0,
+                    line: 1,
+                    cutting: true,
+                    feed_mm_s,
+                    corner,
+                })])
+            }
+        }
+    }
+}
+
+fn space(point: [f64; 2]) -> [f64; 3] {
+    [point[0], point[1], 0.0]
+}
+
+fn lines(points: &[[f64; 2]], feed_mm_s: f64, corner: Corner) -> Vec<Canon> {
+    let ends = points.windows(2);
+    ends.zip(1..)
+        .map(|(ends, line)| {
+            Canon::Motion(Motion {
+                line,
+                kind: MotionKind::Feed,
+                start_mm: space(ends[0]),
+                end_mm: space(ends[1]),
+                shape: Shape::Line,
+                feed_mm_s,
+                corner,
+                others: Others::default(),
+            })
+        })
+        .collect()
+}
+
+/// Parts of a closed curve to begin with, so many that the first test of a cell is not fooled by the curve's symmetry.
+const SPANS: usize = 16;
+
+/// A closed curve over the angle `a`.
+struct Closed {
+    jet: fn(f64) -> Jet,
+}
+
+impl std::fmt::Debug for Closed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Closed")
+    }
+}
+
+impl Parametric for Closed {
+    fn spans(&self) -> usize {
+        SPANS
+    }
+
+    fn jet(&self, span: usize, u: f64) -> Jet {
+        let per_span = TAU / SPANS as f64;
+        let jet = (self.jet)(per_span * (span as f64 + u));
+        Jet {
+            position_mm: jet.position_mm,
+            first: scale(per_span, jet.first),
+            second: scale(per_span * per_span, jet.second),
+        }
+    }
+}
+
+fn ellipse(a: f64) -> Jet {
+    let (sin, cos) = a.sin_cos();
+    Jet {
+        position_mm: [20.0 * cos, 10.0 * sin, 0.0],
+        first: [-20.0 * sin, 10.0 * cos, 0.0],
+        second: [-20.0 * cos, -10.0 * sin, 0.0],
+    }
+}
+
+fn eight(a: f64) -> Jet {
+    let (sin, cos) = a.sin_cos();
+    let (sin2, cos2) = (2.0 * sin * cos, 1.0 - 2.0 * sin * sin);
+    Jet {
+        position_mm: [15.0 * sin, 10.0 * sin2, 0.0],
+        first: [15.0 * cos, 20.0 * cos2, 0.0],
+        second: [-15.0 * sin, -40.0 * sin2, 0.0],
+    }
+}
+
+fn star(a: f64) -> Jet {
+    let (sin, cos) = a.sin_cos();
+    // (cos a + i sin a)^5, which is several times faster than another sine and cosine.
+    let (cos2, sin2) = (cos * cos - sin * sin, 2.0 * cos * sin);
+    let (cos4, sin4) = (cos2 * cos2 - sin2 * sin2, 2.0 * cos2 * sin2);
+    let (cos5, sin5) = (cos4 * cos - sin4 * sin, sin4 * cos + cos4 * sin);
+    let r = 12.0 + 4.0 * cos5;
+    let dr = -20.0 * sin5;
+    let ddr = -100.0 * cos5;
+    Jet {
+        position_mm: [r * cos, r * sin, 0.0],
+        first: [dr * cos - r * sin, dr * sin + r * cos, 0.0],
+        second: [(ddr - r) * cos - 2.0 * dr * sin, (ddr - r) * sin + 2.0 * dr * cos, 0.0],
+    }
+}

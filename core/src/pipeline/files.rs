@@ -1,0 +1,217 @@
+//! The files that a job writes, all of them or none.
+
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde::Serialize;
+
+use super::job::{Error, Job};
+use crate::gcode::canon::{Event, EventKind};
+use crate::output::gcode_writer::GcodeWriter;
+use crate::output::{OutputError, OutputFile};
+use crate::report::{Report, RunSummary, TimelineEvent, write_html};
+use crate::trace::csv::{SetpointWriter, TraceWriter};
+use crate::trace::{Row, Sink};
+
+/// Where to write what; `None` is not written.
+#[derive(Debug, Clone, Default)]
+pub struct Outputs {
+    /// The page.
+    pub report: Option<PathBuf>,
+    /// All results as JSON.
+    pub json: Option<PathBuf>,
+    /// One row per servo period of the last run.
+    pub trace: Option<PathBuf>,
+    /// The corrected command of the last run: setpoints (`.csv`) or G-code (`.ngc`).
+    pub out: Option<PathBuf>,
+}
+
+/// A tolerance of a metre is a mistaken unit.
+const MOST_TOLERANCE_UM: f64 = 1e6;
+/// As the inversion has it.
+const MOST_RHO: f64 = 0.1;
+
+/// What `--out` writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Setpoints,
+    Gcode,
+}
+
+impl Outputs {
+    fn form(path: &Path) -> Result<Form, Error> {
+        let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+        match ending.as_deref() {
+            Some("csv") => Ok(Form::Setpoints),
+            Some("ngc" | "nc" | "gcode" | "tap") => Ok(Form::Gcode),
+            _ => Err(Error::Ending { path: path.to_owned() }),
+        }
+    }
+}
+
+impl Job {
+    /// Refuses values out of range, and outputs of no known form.
+    pub(super) fn check_values(&self) -> Result<(), Error> {
+        let positive = |value: &f64, limit: f64| *value > 0.0 && *value <= limit;
+        // A feed that the machine lowers to its limit is not the feed that was asked for.
+        let most_mm_s = self.machine.limits.max_feed_mm_s;
+        if let Some(value) = self.feed_mm_s.filter(|feed| !positive(feed, most_mm_s)) {
+            let bounds = format!("above 0 and up to {most_mm_s} mm/s, the machine's max_feed_mm_s");
+            let hint = Some("the unit is mm/s: F3000 in a program, which is mm/min, is --feed 50");
+            return Err(Error::Value { name: "--feed", value, unit: " mm/s", bounds, hint });
+        }
+        if let Some(value) = self.tolerance_um.filter(|tolerance| !positive(tolerance, MOST_TOLERANCE_UM)) {
+            let bounds = format!("above 0 and up to {MOST_TOLERANCE_UM} um");
+            let hint = Some("the unit is um: 0.01 mm is --tolerance 10");
+            return Err(Error::Value { name: "--tolerance", value, unit: " um", bounds, hint });
+        }
+        if let Some(value) = self.choices.rho.filter(|rho| !(0.0..=MOST_RHO).contains(rho)) {
+            let bounds = format!("from 0 to {MOST_RHO}");
+            let hint = Some("0 looks at the contour error only; more weighs the machining time more");
+            return Err(Error::Value { name: "--rho", value, unit: "", bounds, hint });
+        }
+        if let Some(out) = &self.outputs.out {
+            Outputs::form(out)?;
+        }
+        Ok(())
+    }
+}
+
+/// The files of a job while they are written.
+pub(super) struct Files {
+    report: Option<OutputFile>,
+    json: Option<OutputFile>,
+    trace: Option<TraceWriter<OutputFile>>,
+    setpoints: Option<SetpointWriter<OutputFile>>,
+    gcode: Option<GcodeWriter<OutputFile>>,
+}
+
+impl Files {
+    /// Starts all of them, so that a place that cannot be written is known before the part is cut.
+    pub(super) fn create(job: &Job, axes: usize) -> Result<Self, Error> {
+        let outputs = &job.outputs;
+        let inputs: Vec<&Path> = job.inputs.iter().chain([&job.part]).map(PathBuf::as_path).collect();
+        let start = |path: &Option<PathBuf>| path.as_deref().map(|path| OutputFile::create(path, &inputs)).transpose();
+        let form = outputs.out.as_deref().map(Outputs::form).transpose()?;
+        let out = |wanted: Form| start(&outputs.out.clone().filter(|_| form == Some(wanted)));
+        let note = format!("corrected by feedwright, controller {}", job.controller.name);
+        let notes = [job.part_name(), format!("for the machine {}", job.machine.name), note];
+        Ok(Self {
+            report: start(&outputs.report)?,
+            json: start(&outputs.json)?,
+            trace: start(&outputs.trace)?.map(|output| TraceWriter::new(output, axes)).transpose()?,
+            setpoints: out(Form::Setpoints)?.map(|output| SetpointWriter::new(output, axes)).transpose()?,
+            gcode: out(Form::Gcode)?.map(|output| GcodeWriter::new(output, axes, &notes)).transpose()?,
+        })
+    }
+
+    /// Writes the rest and moves all files to their places.
+    pub(super) fn finish(self, job: &Job, report: &Report) -> Result<(), Error> {
+        let mut complete = Vec::new();
+        let named = |path: &Path| {
+            let path = path.to_owned();
+            move |cause| OutputError::from_io(cause, &path)
+        };
+        if let Some(mut output) = self.report {
+            write_html(&mut output, report).map_err(named(output.path()))?;
+            complete.push(output);
+        }
+        if let Some(mut output) = self.json {
+            write_json(&mut output, job, report).map_err(named(output.path()))?;
+            complete.push(output);
+        }
+        complete.extend(self.trace.map(TraceWriter::finish).transpose()?);
+        complete.extend(self.setpoints.map(SetpointWriter::finish).transpose()?);
+        complete.extend(self.gcode.map(GcodeWriter::finish).transpose()?);
+        OutputFile::commit_all(complete)?;
+        Ok(())
+    }
+}
+
+impl Sink for Files {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        self.trace.as_mut().map_or(Ok(()), |sink| sink.row(row))?;
+        self.setpoints.as_mut().map_or(Ok(()), |sink| sink.row(row))?;
+        self.gcode.as_mut().map_or(Ok(()), |sink| sink.row(row))
+    }
+
+    fn event(&mut self, t_s: f64, event: &Event) -> io::Result<()> {
+        self.gcode.as_mut().map_or(Ok(()), |sink| sink.event(t_s, event))
+    }
+}
+
+/// All results: `runs` and what they were made with.
+#[derive(Serialize)]
+struct Results<'a> {
+    version: &'static str,
+    part: &'a str,
+    tolerance_um: Option<f64>,
+    within_tolerance: bool,
+    settings: std::collections::BTreeMap<&'a str, &'a str>,
+    machine: &'a crate::machine::Machine,
+    runs: Vec<&'a RunSummary>,
+}
+
+fn write_json(out: &mut impl io::Write, job: &Job, report: &Report) -> io::Result<()> {
+    let results = Results {
+        version: env!("CARGO_PKG_VERSION"),
+        part: &report.part,
+        tolerance_um: job.tolerance_um,
+        within_tolerance: job.within_tolerance(report),
+        settings: report.settings.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect(),
+        machine: &job.machine,
+        runs: report.runs.iter().map(|run| &run.summary).collect(),
+    };
+    serde_json::to_writer_pretty(&mut *out, &results)?;
+    out.write_all(b"\n")
+}
+
+/// Most events that the page shows: more than that nobody reads, and a program may have millions.
+const MOST_EVENTS: usize = 500;
+
+/// The events of a run, for the page.
+#[derive(Debug, Default)]
+pub(super) struct Timeline {
+    pub(super) events: Vec<TimelineEvent>,
+}
+
+impl Sink for Timeline {
+    fn row(&mut self, _: &Row) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn event(&mut self, t_s: f64, event: &Event) -> io::Result<()> {
+        let duration_s = if let EventKind::Dwell { seconds } = event.kind { seconds } else { 0.0 };
+        if self.events.len() < MOST_EVENTS {
+            self.events.push(TimelineEvent { t_s, duration_s, line: event.line, label: label(&event.kind) });
+        }
+        Ok(())
+    }
+}
+
+fn label(kind: &EventKind) -> String {
+    match kind {
+        EventKind::Dwell { seconds } => format!("dwell {seconds} s"),
+        EventKind::SpindleSpeed { rpm } => format!("spindle speed {rpm} rev/min"),
+        EventKind::MCode { code, .. } => match code {
+            0 => "M0 program stop".to_owned(),
+            1 => "M1 optional stop".to_owned(),
+            3 => "M3 spindle clockwise".to_owned(),
+            4 => "M4 spindle counter-clockwise".to_owned(),
+            5 => "M5 spindle stop".to_owned(),
+            6 => "M6 tool change".to_owned(),
+            7 => "M7 mist coolant".to_owned(),
+            8 => "M8 flood coolant".to_owned(),
+            9 => "M9 coolant off".to_owned(),
+            other => format!("M{other}"),
+        },
+        EventKind::ToolSelect { tool } => format!("T{tool} selected"),
+        EventKind::Message { text } => text.clone(),
+        EventKind::SpindleSync { pitch_mm: Some(pitch_mm) } => {
+            format!("feed coupled to the spindle, {pitch_mm} mm/rev")
+        }
+        EventKind::SpindleSync { pitch_mm: None } => "feed free of the spindle".to_owned(),
+        EventKind::Probe => "probe".to_owned(),
+        EventKind::ProgramEnd => "program end".to_owned(),
+    }
+}

@@ -1,0 +1,172 @@
+//! Pieces and phases that are kept, looked up by plan time and by arc length.
+
+use super::nearest::{Range, nearest};
+use super::{Foot, Sample};
+use crate::feed::Phase;
+use crate::path::Piece;
+use std::collections::VecDeque;
+
+/// Times that a servo period looks at: two or three samples, and both ends of the range for the nearest point.
+const HINTS: usize = 6;
+
+/// Pieces and phases in order, the oldest forgotten.
+#[derive(Debug, Default)]
+pub(super) struct Window {
+    pieces: VecDeque<Piece>,
+    /// Number of the first piece kept.
+    first_piece: u64,
+    phases: VecDeque<Phase>,
+    /// Indices of phases found before: where to look first, never what to answer. A control loop looks at a few times that
+    /// move on together; each comes to have a hint of its own.
+    hints: [usize; HINTS],
+}
+
+impl Window {
+    pub(super) fn push_piece(&mut self, piece: Piece) {
+        self.pieces.push_back(piece);
+    }
+
+    pub(super) fn push_phase(&mut self, phase: Phase) {
+        self.phases.push_back(phase);
+    }
+
+    pub(super) fn kept(&self) -> (usize, usize) {
+        (self.pieces.len(), self.phases.len())
+    }
+
+    /// Drops phases that end before `tau_s` and pieces that no phase kept needs; the last of each stays.
+    pub(super) fn forget_before(&mut self, tau_s: f64) {
+        while self.phases.len() > 1 && self.phases[1].tau_s <= tau_s {
+            self.phases.pop_front();
+            for hint in &mut self.hints {
+                *hint = hint.saturating_sub(1);
+            }
+        }
+        let Some(first) = self.phases.front() else {
+            return;
+        };
+        while self.first_piece < first.piece && self.pieces.len() > 1 {
+            self.pieces.pop_front();
+            self.first_piece += 1;
+        }
+    }
+
+    #[inline]
+    pub(super) fn at(&mut self, tau_s: f64) -> Sample {
+        let Some((phase, index)) = self.phase_at(tau_s) else {
+            return Sample::nowhere();
+        };
+        let ended = index + 1 == self.phases.len() && tau_s >= phase.tau_s + phase.duration_s;
+        let Some(piece) = self.piece(phase.piece) else {
+            return Sample::nowhere();
+        };
+        let along = along(&phase, tau_s);
+        let local_mm = local_mm(&phase, piece, along);
+        let at = piece.curve.at(local_mm);
+        let resting = ended || phase.rest.is_some();
+        Sample {
+            position_mm: at.position_mm,
+            tangent: at.tangent,
+            s_mm: piece.s_mm + local_mm,
+            feed_mm_s: if resting { 0.0 } else { (phase.speed_mm_s + phase.accel_mm_s2 * along).max(0.0) },
+            line: phase.rest.unwrap_or(piece.line),
+            cutting: piece.cutting && !resting,
+            resting,
+        }
+    }
+
+    #[inline]
+    pub(super) fn nearest(&mut self, point_mm: [f64; 3], tau_lo_s: f64, tau_hi_s: f64) -> Foot {
+        let (Some((lo, _)), Some((hi, _))) = (self.phase_at(tau_lo_s), self.phase_at(tau_hi_s)) else {
+            return Foot::nowhere(point_mm);
+        };
+        let (Some(first), Some(last)) = (self.piece(lo.piece), self.piece(hi.piece)) else {
+            return Foot::nowhere(point_mm);
+        };
+        let lo_mm = local_mm(&lo, first, along(&lo, tau_lo_s));
+        let hi_mm = local_mm(&hi, last, along(&hi, tau_hi_s));
+        if lo.piece == hi.piece {
+            let hi_mm = hi_mm.max(lo_mm);
+            return super::foot(first, first.curve.nearest(point_mm, lo_mm, hi_mm), point_mm);
+        }
+        let index = |piece: u64| (piece - self.first_piece) as usize;
+        nearest(&self.pieces, Range { first: index(lo.piece), last: index(hi.piece), lo_mm, hi_mm }, point_mm)
+    }
+
+    fn piece(&self, number: u64) -> Option<&Piece> {
+        self.pieces.get(number.checked_sub(self.first_piece)? as usize)
+    }
+
+    /// The last phase that starts at `tau_s` or before, or else the first.
+    ///
+    /// Looks ahead from the hint nearest before, in steps that double, and then halves.
+    #[inline]
+    fn phase_at(&mut self, tau_s: f64) -> Option<(Phase, usize)> {
+        let starts_by = |index: usize| self.phases.get(index).is_some_and(|phase| phase.tau_s <= tau_s);
+        let mut slot = None;
+        let mut lo = 0;
+        for (candidate, &hint) in self.hints.iter().enumerate() {
+            if hint >= lo && starts_by(hint) {
+                (slot, lo) = (Some(candidate), hint);
+            }
+        }
+        let mut step = 1;
+        while starts_by(lo + step) {
+            lo += step;
+            step *= 2;
+        }
+        while step > 1 {
+            step /= 2;
+            if starts_by(lo + step) {
+                lo += step;
+            }
+        }
+        if let Some(slot) = slot {
+            self.hints[slot] = lo;
+        }
+        self.phases.get(lo).map(|phase| (*phase, lo))
+    }
+}
+
+/// Time since the start of the phase, kept within it; NaN counts as its start.
+#[inline]
+fn along(phase: &Phase, tau_s: f64) -> f64 {
+    (tau_s - phase.tau_s).max(0.0).min(phase.duration_s)
+}
+
+#[inline]
+fn local_mm(phase: &Phase, piece: &Piece, along: f64) -> f64 {
+    (phase.from_mm + along * (phase.speed_mm_s + 0.5 * phase.accel_mm_s2 * along)).min(piece.length_mm)
+}
+
+impl Sample {
+    /// A program without motion rests at the origin.
+    const fn nowhere() -> Self {
+        Self {
+            position_mm: [0.0; 3],
+            tangent: [1.0, 0.0, 0.0],
+            s_mm: 0.0,
+            feed_mm_s: 0.0,
+            line: 0,
+            cutting: false,
+            resting: true,
+        }
+    }
+}
+
+impl Foot {
+    /// A program without motion has its origin only.
+    fn nowhere(point_mm: [f64; 3]) -> Self {
+        let [x, y, z] = point_mm;
+        let distance_mm = (x * x + y * y + z * z).sqrt();
+        Self {
+            s_mm: 0.0,
+            position_mm: [0.0; 3],
+            tangent: [1.0, 0.0, 0.0],
+            line: 0,
+            distance_mm,
+            signed_mm: if y < 0.0 { -distance_mm } else { distance_mm },
+            cutting: false,
+        }
+    }
+}

@@ -1,0 +1,50 @@
+//! Range and ticks of an axis.
+
+/// The range of the data with `margin` times its span left free at either end; `values` that are not finite do not count.
+pub(super) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] {
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for v in values.filter(|v| v.is_finite()) {
+        low = low.min(v);
+        high = high.max(v);
+    }
+    if low > high {
+        return [0.0, 1.0];
+    }
+    // A constant still needs a span, and one that its own rounding does not swallow.
+    let span = (high - low).max(1e-9 * low.abs().max(high.abs())).max(1e-12);
+    [low - margin * span, low + (1.0 + margin) * span]
+}
+
+/// Ticks at multiples of 1, 2 or 5 times a power of ten, about `wanted` of them, with their texts.
+pub(super) fn ticks([low, high]: [f64; 2], wanted: f64) -> Vec<(f64, String)> {
+    let raw = (high - low) / wanted.max(1.0);
+    let power = 10f64.powf(raw.log10().floor());
+    let step = match raw / power {
+        x if x < 1.5 => power,
+        x if x < 3.5 => 2.0 * power,
+        x if x < 7.5 => 5.0 * power,
+        _ => 10.0 * power,
+    };
+    let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
+    let first = (low / step - 1e-9).ceil() as i64;
+    let last = (high / step + 1e-9).floor() as i64;
+    (first..=last)
+        .map(|k| {
+            let value = k as f64 * step;
+            (value, crate::report::text::fixed(value, decimals))
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        let texts = |r, n| ticks(r, n).into_iter().map(|t| t.1).collect::<Vec<_>>();
+        assert_eq!(texts([-20.0, 31.0], 5.0), ["−20", "−10", "0", "10", "20", "30"]);
+        assert_eq!(texts([0.0, 1.76], 4.0), ["0.0", "0.5", "1.0", "1.5"]);
+        assert_eq!(texts([0.0, 0.001], 2.0), ["0.0000", "0.0005", "0.0010"]);
+    }
+}

@@ -1,0 +1,95 @@
+//! The page: one HTML file, readable without a network and without scripts.
+//!
+//! Headings, verdict and tables are written here, so that the numbers are there before any script runs; the drawings
+//! are made in the browser by `assets/report/*.js` from the data that [`island`] writes. A content security policy in
+//! the page forbids every request.
+
+use std::io::{self, Write};
+
+use super::Report;
+use super::island;
+use super::text::escaped;
+
+mod tables;
+mod verdict;
+
+const PAGE_CSS: &str = include_str!("../../assets/report/page.css");
+const UPLOT_CSS: &str = include_str!("../../assets/vendor/uplot/uPlot.min.css");
+const UPLOT_JS: &str = include_str!("../../assets/vendor/uplot/uPlot.iife.min.js");
+
+/// The page's scripts in the order in which they build on each other; they share one function scope.
+const SCRIPTS: [&str; 6] = [
+    include_str!("../../assets/report/data.js"),
+    include_str!("../../assets/report/theme.js"),
+    include_str!("../../assets/report/camera.js"),
+    include_str!("../../assets/report/path_view.js"),
+    include_str!("../../assets/report/plots.js"),
+    include_str!("../../assets/report/main.js"),
+];
+
+/// Writes `report` as one HTML page that refers to nothing outside it.
+///
+/// # Errors
+/// Where `out` takes no more.
+pub fn write_html(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    write_head(out, report)?;
+    out.write_all(b"<body>\n")?;
+    write_header(out, report)?;
+    out.write_all(b"<main>\n")?;
+    tables::write_summary(out, report)?;
+    out.write_all(DRAWINGS.as_bytes())?;
+    tables::write_worst(out, report)?;
+    tables::write_notes(out, report)?;
+    out.write_all(b"</main>\n<footer>Simulated and written by feedwright. Charts: uPlot (MIT).</footer>\n")?;
+    out.write_all(b"<script type=\"application/json\" id=\"data\">")?;
+    island::write(out, report)?;
+    write!(out, "</script>\n<script>{UPLOT_JS}</script>\n<script>(() => {{\n\"use strict\";\n")?;
+    for script in SCRIPTS {
+        out.write_all(script.as_bytes())?;
+    }
+    out.write_all(b"})();\n</script>\n</body>\n</html>\n")
+}
+
+fn write_head(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    write!(
+        out,
+        r#"<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="color-scheme" content="light dark">
+<meta name="generator" content="feedwright {version}">
+<link rel="icon" href="data:,">
+<title>{title}</title>
+<style>{UPLOT_CSS}
+{PAGE_CSS}</style>
+</head>
+"#,
+        version = env!("CARGO_PKG_VERSION"),
+        title = escaped(&report.title),
+    )
+}
+
+fn write_header(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    let machine = report.runs.first().map_or("", |run| &run.summary.machine);
+    write!(
+        out,
+        r#"<header>
+<div class="top"><p class="brand">feedwright <span>contour report</span></p>
+<button type="button" id="theme" class="quiet needs-script">Theme: auto</button></div>
+<h1>{title}</h1>
+<p class="subject"><span>Part <b>{part}</b></span> <span>Machine <b>{machine}</b></span></p>
+<p class="verdict">{verdict}</p>
+</header>
+"#,
+        title = escaped(&report.title),
+        part = escaped(&report.part),
+        machine = escaped(machine),
+        verdict = verdict::verdict(report),
+    )
+}
+
+/// The places that the scripts fill.
+const DRAWINGS: &str = include_str!("../../assets/report/drawings.html");

@@ -1,0 +1,194 @@
+//! The page's tables, written without scripts.
+
+use std::io::{self, Write};
+
+use crate::report::text::{change, duration, escaped, fixed, number, signed};
+use crate::report::{Outcome, Report, Run, RunSummary, TimelineEvent, WorstPlace};
+
+const AXES: [&str; 3] = ["X", "Y", "Z"];
+
+/// Events drawn on the strip; the rest is told by number. More would be a solid bar.
+const SHOWN_EVENTS: usize = 200;
+
+/// A row for each controller.
+pub(super) fn write_summary(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    let axes = report.runs.iter().map(|r| r.summary.axes).max().unwrap_or(2).min(3);
+    out.write_all(
+        b"<section aria-labelledby=\"h-summary\">\n<h2 id=\"h-summary\">Summary</h2>\n<div class=\"scroll\"><table class=\"summary\" role=\"table\">\n\
+          <thead role=\"rowgroup\"><tr role=\"row\"><th scope=\"col\">Controller</th><th scope=\"col\">RMS error<i>\xc2\xb5m</i></th>\
+          <th scope=\"col\">Largest error<i>\xc2\xb5m</i></th><th scope=\"col\">Machining time</th>\
+          <th scope=\"col\">Command deviation<i>\xc2\xb5m</i></th>",
+    )?;
+    for axis in &AXES[..axes] {
+        write!(out, "<th scope=\"col\">Peak torque {axis}<i>N m</i></th>")?;
+    }
+    out.write_all(b"</tr></thead>\n<tbody role=\"rowgroup\">\n")?;
+    let first = report.runs.first().map(|run| &run.summary);
+    for (i, run) in report.runs.iter().enumerate() {
+        write_summary_row(out, i, &run.summary, first.filter(|_| i > 0), axes)?;
+    }
+    out.write_all(b"</tbody></table></div>\n")?;
+    for (i, run) in report.runs.iter().enumerate() {
+        write_events(out, i, run)?;
+    }
+    out.write_all(b"</section>\n")
+}
+
+fn write_summary_row(
+    out: &mut impl Write,
+    index: usize,
+    run: &RunSummary,
+    first: Option<&RunSummary>,
+    axes: usize,
+) -> io::Result<()> {
+    let note = match &run.outcome {
+        Outcome::Completed => String::new(),
+        Outcome::Diverged { at_s } => format!("<small class=\"alarm\">diverged at {}</small>", duration(*at_s)),
+    };
+    write!(
+        out,
+        "<tr role=\"row\"><th scope=\"row\" role=\"rowheader\">{}{}{note}</th>",
+        swatch(index),
+        escaped(&run.controller)
+    )?;
+    let mut cell = |label: &str, text: String, value: fn(&RunSummary, usize) -> f64, k: usize| {
+        let ratio = first.and_then(|f| change(value(f, k), value(run, k)));
+        let ratio = ratio.map_or(String::new(), |r| format!("<small>{r}</small>"));
+        write!(out, "<td role=\"cell\" data-label=\"{label}\">{text}{ratio}</td>")
+    };
+    cell("RMS error, µm", number(run.rms_um), |r, _| r.rms_um, 0)?;
+    cell("Largest error, µm", number(run.max_um), |r, _| r.max_um, 0)?;
+    cell("Machining time", duration(run.time_s), |r, _| r.time_s, 0)?;
+    cell("Command deviation, µm", number(run.max_deviation_um), |r, _| r.max_deviation_um, 0)?;
+    for (k, axis) in AXES.iter().enumerate().take(axes) {
+        let label = format!("Peak torque {axis}, N m");
+        cell(&label, fixed(run.peak_torque_nm[k], 3), |r, k| r.peak_torque_nm[k], k)?;
+    }
+    out.write_all(b"</tr>\n")
+}
+
+fn swatch(index: usize) -> String {
+    format!("<span class=\"swatch\" style=\"--run: var(--run-{})\"></span>", index % 6)
+}
+
+/// The events of a run on a strip as long as the run, and as a list.
+fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()> {
+    if run.events.is_empty() {
+        return Ok(());
+    }
+    let end_s = run.events.iter().map(|e| e.t_s + e.duration_s).fold(run.summary.time_s, f64::max);
+    let percent = |t_s: f64| {
+        if end_s > 0.0 { (t_s / end_s * 100.0).clamp(0.0, 100.0) } else { 0.0 }
+    };
+    write!(
+        out,
+        "<details class=\"events\"><summary>{}<span>{} program events, {}</span><span class=\"strip\" aria-hidden=\"true\">",
+        swatch(index),
+        run.events.len(),
+        escaped(&run.summary.controller)
+    )?;
+    for event in run.events.iter().take(SHOWN_EVENTS) {
+        let (left, width) = (percent(event.t_s), percent(event.duration_s));
+        let hint = escaped(&event_text(event));
+        write!(out, "<i style=\"left:{left:.3}%;width:{width:.3}%\" title=\"{hint}\"></i>")?;
+    }
+    out.write_all(b"</span></summary><ol>")?;
+    for event in run.events.iter().take(SHOWN_EVENTS) {
+        write!(out, "<li data-t=\"{:.5}\">{}</li>", event.t_s, escaped(&event_text(event)))?;
+    }
+    if let Some(more) = run.events.len().checked_sub(SHOWN_EVENTS).filter(|&n| n > 0) {
+        write!(out, "<li>and {more} more</li>")?;
+    }
+    out.write_all(b"</ol></details>\n")
+}
+
+fn event_text(event: &TimelineEvent) -> String {
+    let at = format!("{}  line {}  {}", duration(event.t_s), event.line, event.label);
+    if event.duration_s > 0.0 { format!("{at}, {}", duration(event.duration_s)) } else { at }
+}
+
+/// The worst places, a table for each controller.
+pub(super) fn write_worst(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    out.write_all(
+        b"<section aria-labelledby=\"h-worst\">\n<h2 id=\"h-worst\">Worst places</h2>\n\
+          <p class=\"hint needs-script\">Choose a place to see it on the path.</p>\n<div class=\"pair\">\n",
+    )?;
+    for (i, run) in report.runs.iter().enumerate() {
+        let axes = run.summary.axes.clamp(2, 3);
+        write!(
+            out,
+            "<div><h3>{}{}</h3>\n<div class=\"scroll\"><table class=\"worst\"><thead><tr><th scope=\"col\">#</th>\
+             <th scope=\"col\">Error<i>µm</i></th><th scope=\"col\">Line</th><th scope=\"col\" class=\"code\">Program</th>",
+            swatch(i),
+            escaped(&run.summary.controller)
+        )?;
+        for axis in &AXES[..axes] {
+            write!(out, "<th scope=\"col\">{axis}<i>mm</i></th>")?;
+        }
+        out.write_all(
+            b"<th scope=\"col\">Time<i>s</i></th><th scope=\"col\">Arc length<i>mm</i></th></tr></thead>\n<tbody>\n",
+        )?;
+        for (rank, place) in run.summary.worst.iter().enumerate() {
+            write_place(out, i, rank, place, axes)?;
+        }
+        if run.summary.worst.is_empty() {
+            out.write_all(b"<tr><td colspan=\"9\" class=\"empty\">No contour error where the tool cuts.</td></tr>\n")?;
+        }
+        out.write_all(b"</tbody></table></div></div>\n")?;
+    }
+    out.write_all(b"</div></section>\n")
+}
+
+fn write_place(out: &mut impl Write, run: usize, rank: usize, place: &WorstPlace, axes: usize) -> io::Result<()> {
+    let text = escaped(place.text.trim());
+    write!(
+        out,
+        "<tr data-run=\"{run}\" data-place=\"{rank}\"><th scope=\"row\">{}</th><td>{}</td><td>{}</td>\
+         <td class=\"code\"><code title=\"{text}\">{text}</code></td>",
+        rank + 1,
+        signed(place.error_um, 2),
+        place.line,
+    )?;
+    for k in 0..axes {
+        write!(out, "<td>{}</td>", fixed(place.position_mm[k], 3))?;
+    }
+    writeln!(out, "<td>{}</td><td>{}</td></tr>", fixed(place.t_s, 3), fixed(place.s_mm, 2))
+}
+
+/// How to read the page, the settings and the machine.
+pub(super) fn write_notes(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    out.write_all(NOTES.as_bytes())?;
+    out.write_all(b"<div class=\"pair\">\n")?;
+    write_list(out, "Settings", &report.settings)?;
+    write_list(out, "Machine", &report.machine)?;
+    let mut facts = Vec::new();
+    for run in &report.runs {
+        let summary = &run.summary;
+        let per_point = run.series.rows_per_point();
+        let thinned = if per_point > 1 { format!("; a drawn point stands for {per_point}") } else { String::new() };
+        facts.push((
+            summary.controller.clone(),
+            format!(
+                "{} servo periods{thinned}; {} mm cut in {}",
+                summary.rows,
+                fixed(summary.cutting_length_mm, 2),
+                duration(summary.cutting_time_s)
+            ),
+        ));
+    }
+    write_list(out, "Runs", &facts)?;
+    out.write_all(b"</div></details></section>\n")
+}
+
+const NOTES: &str = include_str!("../../../assets/report/notes.html");
+
+fn write_list(out: &mut impl Write, heading: &str, entries: &[(String, String)]) -> io::Result<()> {
+    if entries.is_empty() {
+        return Ok(());
+    }
+    write!(out, "<div><h3>{heading}</h3><dl>")?;
+    for (name, value) in entries {
+        write!(out, "<dt>{}</dt><dd>{}</dd>", escaped(name), escaped(value))?;
+    }
+    out.write_all(b"</dl></div>\n")
+}

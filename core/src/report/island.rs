@@ -1,0 +1,178 @@
+//! The page's data: one JSON object in a script element that browsers do not run.
+//!
+//! Every column is an array of integers, the first value and then the differences, in the units of [`units`]:
+//! differences of smooth signals are short, and sums of integers come back without drift.
+
+use std::io::{self, Write};
+
+use serde_json::json;
+
+use super::series::Point;
+use super::{Report, Run};
+
+/// What one count of a column stands for.
+mod units {
+    pub(super) const TIME_S: f64 = 1e-5;
+    pub(super) const LENGTH_MM: f64 = 1e-3;
+    /// Coordinates of the path: a tenth of the smallest contour error worth drawing.
+    pub(super) const POINT_MM: f64 = 1e-4;
+    pub(super) const ERROR_MM: f64 = 1e-5;
+    pub(super) const FEED_MM_S: f64 = 1e-2;
+    pub(super) const TORQUE_NM: f64 = 1e-4;
+}
+
+/// Writes the object.
+pub(super) fn write(out: &mut impl Write, report: &Report) -> io::Result<()> {
+    write!(out, "{{\"meta\":{},\"outline\":", inert(&meta(report)))?;
+    match report.runs.first() {
+        Some(run) => write_outline(out, run)?,
+        None => out.write_all(b"null")?,
+    }
+    out.write_all(b",\"runs\":[")?;
+    for (i, run) in report.runs.iter().enumerate() {
+        if i > 0 {
+            out.write_all(b",")?;
+        }
+        write_run(out, run)?;
+    }
+    out.write_all(b"]}")
+}
+
+/// JSON without characters that end a script element or a line of script: they occur in strings only, where an escape
+/// says the same.
+fn inert(value: &serde_json::Value) -> String {
+    let mut out = String::new();
+    for c in value.to_string().chars() {
+        match c {
+            '<' => out.push_str("\\u003c"),
+            '>' => out.push_str("\\u003e"),
+            '&' => out.push_str("\\u0026"),
+            '\u{2028}' => out.push_str("\\u2028"),
+            '\u{2029}' => out.push_str("\\u2029"),
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+fn meta(report: &Report) -> serde_json::Value {
+    let runs: Vec<_> = report.runs.iter().map(run_meta).collect();
+    json!({
+        "axes": report.runs.iter().map(|r| r.summary.axes).max().unwrap_or(2),
+        "tolerance_um": report.tolerance_um,
+        "units": {
+            "time_s": units::TIME_S, "length_mm": units::LENGTH_MM, "point_mm": units::POINT_MM,
+            "error_mm": units::ERROR_MM, "feed_mm_s": units::FEED_MM_S, "torque_nm": units::TORQUE_NM,
+        },
+        "runs": runs,
+    })
+}
+
+fn run_meta(run: &Run) -> serde_json::Value {
+    let summary = &run.summary;
+    let worst: Vec<_> = summary
+        .worst
+        .iter()
+        .map(|w| json!({"t_s": w.t_s, "s_mm": w.s_mm, "error_um": w.error_um, "position_mm": w.position_mm}))
+        .collect();
+    json!({
+        "controller": summary.controller,
+        "max_um": summary.max_um,
+        "rows_per_point": run.series.rows_per_point(),
+        "histogram": summary.histogram,
+        "worst": worst,
+    })
+}
+
+fn write_outline(out: &mut impl Write, run: &Run) -> io::Result<()> {
+    let vertices: Vec<_> = run.series.outline().collect();
+    let mut object = Object::begin(out)?;
+    for (k, name) in ["x", "y", "z"].into_iter().enumerate().take(run.summary.axes) {
+        object.column(name, units::POINT_MM, vertices.iter().map(|v| v.point_mm[k]))?;
+    }
+    object.column("cutting", 1.0, vertices.iter().map(|v| f64::from(u8::from(v.cutting))))?;
+    object.end()
+}
+
+fn write_run(out: &mut impl Write, run: &Run) -> io::Result<()> {
+    let points: Vec<Point> = run.series.points().collect();
+    let column = |value: fn(&Point) -> f64| points.iter().map(value);
+    let mut object = Object::begin(out)?;
+    object.column("t", units::TIME_S, column(|p| p.t_s))?;
+    object.column("s", units::LENGTH_MM, column(|p| p.s_mm))?;
+    object.column("e", units::ERROR_MM, column(|p| p.error_mm))?;
+    if run.series.rows_per_point() > 1 {
+        object.column("lo", units::ERROR_MM, column(|p| p.error_min_mm))?;
+        object.column("hi", units::ERROR_MM, column(|p| p.error_max_mm))?;
+    }
+    object.column("plan", units::FEED_MM_S, column(|p| p.feed_plan_mm_s))?;
+    object.column("feed", units::FEED_MM_S, column(|p| p.feed_act_mm_s))?;
+    object.column("line", 1.0, column(|p| f64::from(p.line)))?;
+    object.column("cutting", 1.0, column(|p| f64::from(u8::from(p.cutting))))?;
+    for (k, axis) in ["x", "y", "z"].into_iter().enumerate().take(run.summary.axes) {
+        object.column(&format!("f{axis}"), units::POINT_MM, points.iter().map(|p| p.foot_mm[k]))?;
+        object.column(&format!("d{axis}"), units::ERROR_MM, points.iter().map(|p| p.deviation_mm[k]))?;
+        object.column(&format!("torque_{axis}"), units::TORQUE_NM, points.iter().map(|p| p.torque_nm[k]))?;
+    }
+    object.end()
+}
+
+/// A JSON object of columns, written as it comes.
+struct Object<'a, W> {
+    out: &'a mut W,
+    separator: &'static str,
+}
+
+impl<'a, W: Write> Object<'a, W> {
+    fn begin(out: &'a mut W) -> io::Result<Self> {
+        out.write_all(b"{")?;
+        Ok(Self { out, separator: "" })
+    }
+
+    fn column(&mut self, name: &str, unit: f64, values: impl Iterator<Item = f64>) -> io::Result<()> {
+        write!(self.out, "{}\"{name}\":[", self.separator)?;
+        self.separator = ",";
+        let mut before = 0;
+        for (i, value) in values.enumerate() {
+            // Saturates: what is out of range of an i64 is out of any drawing, too.
+            let count = (value / unit).round() as i64;
+            if i > 0 {
+                self.out.write_all(b",")?;
+            }
+            write!(self.out, "{}", count.wrapping_sub(before))?;
+            before = count;
+        }
+        self.out.write_all(b"]")
+    }
+
+    fn end(self) -> io::Result<()> {
+        self.out.write_all(b"}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_add_up_to_the_values() {
+        let values = [1.2345, -7.0, 0.000_04, 1e3, 1e3];
+        let mut out = Vec::new();
+        let mut object = Object::begin(&mut out).unwrap();
+        object.column("x", 1e-4, values.iter().copied()).unwrap();
+        object.end().unwrap();
+        let parsed: serde_json::Value = serde_json::from_slice(&out).unwrap();
+        let mut sum = 0;
+        for (difference, value) in parsed["x"].as_array().unwrap().iter().zip(values) {
+            sum += difference.as_i64().unwrap();
+            assert!((sum as f64 * 1e-4 - value).abs() <= 0.5e-4, "{value}");
+        }
+    }
+
+    #[test]
+    fn no_string_ends_the_script() {
+        let text = inert(&json!({"a": "</script><!--\u{2028}&"}));
+        assert!(!text.contains(['<', '>', '&', '\u{2028}']), "{text}");
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap()["a"], "</script><!--\u{2028}&");
+    }
+}

@@ -1,0 +1,249 @@
+//! Statistics: the numbers of a run, from every row, in bounded memory.
+//!
+//! - RMS contour error: sqrt(sum of e² / n) over the n rows that cut.
+//! - Largest contour error: the largest |e| over the rows that cut.
+//! - Largest deviation of the command: the largest |corrected - path| over all rows.
+//! - Peak torque: the largest |torque| of each axis over all rows.
+//! - Cutting length and time: what arc length and time advance by while rows cut.
+//!
+//! A row with a number that is not finite counts nowhere: only a run that diverged has them, and its outcome says so.
+
+use std::io;
+
+use serde::Serialize;
+
+use super::summary::{RunFacts, RunSummary};
+use super::worst::WorstFinder;
+use crate::trace::{Row, Sink};
+
+/// Bins on either side of zero while counting.
+const BINS_PER_SIDE: usize = 512;
+
+/// Width of a bin to begin with, µm. It doubles until all errors fit, so that a full histogram has 256 to 512 bins on a
+/// side.
+const FIRST_BIN_UM: f64 = 1e-3;
+
+/// Most bins of a finished [`Histogram`]: what a plot can show.
+const SHOWN_BINS: usize = 96;
+
+/// How often each contour error occurs in the rows that cut. Bin `i` of `counts` holds errors from
+/// `(first_bin + i) * bin_um` up to the next multiple.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Histogram {
+    /// Width of a bin, µm: 0.001 times a power of two, so that histograms of several runs can be brought to one width.
+    pub bin_um: f64,
+    /// Number of the first bin; the bin from 0 upwards has number 0.
+    pub first_bin: i64,
+    /// Rows in each bin.
+    pub counts: Vec<u64>,
+}
+
+/// Streaming statistics of a run.
+#[derive(Debug, Clone)]
+pub struct Statistics {
+    rows: u64,
+    cutting_rows: u64,
+    square_sum_mm2: f64,
+    max_mm: f64,
+    max_deviation_mm: f64,
+    peak_torque_nm: [f64; 3],
+    cutting_length_mm: f64,
+    cutting_time_s: f64,
+    previous: Option<(f64, f64)>,
+    bin_um: f64,
+    counts: Vec<u64>,
+    worst: WorstFinder,
+}
+
+impl Default for Statistics {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Statistics {
+    /// Before the first row.
+    pub fn new() -> Self {
+        Self {
+            rows: 0,
+            cutting_rows: 0,
+            square_sum_mm2: 0.0,
+            max_mm: 0.0,
+            max_deviation_mm: 0.0,
+            peak_torque_nm: [0.0; 3],
+            cutting_length_mm: 0.0,
+            cutting_time_s: 0.0,
+            previous: None,
+            bin_um: FIRST_BIN_UM,
+            counts: vec![0; 2 * BINS_PER_SIDE],
+            worst: WorstFinder::default(),
+        }
+    }
+
+    /// The summary of the run; `text` gives the text of a program line.
+    pub fn summary(&self, facts: RunFacts, text: impl FnMut(u32) -> String) -> RunSummary {
+        RunSummary {
+            controller: facts.controller,
+            machine: facts.machine,
+            part: facts.part,
+            axes: facts.axes,
+            outcome: facts.run.outcome,
+            time_s: facts.run.time_s,
+            rms_um: self.rms_um(),
+            max_um: self.max_um(),
+            max_deviation_um: self.max_deviation_mm * 1e3,
+            peak_torque_nm: self.peak_torque_nm,
+            cutting_length_mm: self.cutting_length_mm,
+            cutting_time_s: self.cutting_time_s,
+            rows: self.rows,
+            arrival_s: facts.run.arrival_s,
+            tick_median_us: facts.run.ticks.quantile_us(0.5),
+            tick_p999_us: facts.run.ticks.quantile_us(0.999),
+            most_register_entries: facts.run.most_entries,
+            worst: self.worst.places(text),
+            histogram: self.histogram(),
+        }
+    }
+
+    /// Root mean square of the contour error over the rows that cut, µm; 0 without such rows.
+    pub fn rms_um(&self) -> f64 {
+        if self.cutting_rows == 0 { 0.0 } else { (self.square_sum_mm2 / self.cutting_rows as f64).sqrt() * 1e3 }
+    }
+
+    /// Largest |contour error| over the rows that cut, µm.
+    pub fn max_um(&self) -> f64 {
+        self.max_mm * 1e3
+    }
+
+    fn cut(&mut self, row: &Row) {
+        let error_mm = row.contour_error_mm;
+        self.cutting_rows += 1;
+        self.square_sum_mm2 += error_mm * error_mm;
+        self.max_mm = self.max_mm.max(error_mm.abs());
+        self.worst.row(row);
+        if let Some((t_s, s_mm)) = self.previous {
+            self.cutting_time_s += row.t_s - t_s;
+            self.cutting_length_mm += (row.s_mm - s_mm).max(0.0);
+        }
+        self.count(error_mm * 1e3);
+    }
+
+    fn count(&mut self, error_um: f64) {
+        let side = BINS_PER_SIDE as f64;
+        while !(-side..side).contains(&(error_um / self.bin_um).floor()) {
+            self.widen();
+        }
+        let bin = (error_um / self.bin_um).floor() + side;
+        self.counts[bin as usize] += 1;
+    }
+
+    /// Doubles the width of the bins. With zero between two bins, pairs join without remainder on either side.
+    fn widen(&mut self) {
+        let narrow = std::mem::replace(&mut self.counts, vec![0; 2 * BINS_PER_SIDE]);
+        for (i, count) in narrow.into_iter().enumerate() {
+            self.counts[i / 2 + BINS_PER_SIDE / 2] += count;
+        }
+        self.bin_um *= 2.0;
+    }
+
+    fn histogram(&self) -> Histogram {
+        let first = self.counts.iter().position(|&n| n > 0);
+        let last = self.counts.iter().rposition(|&n| n > 0);
+        let (Some(first), Some(last)) = (first, last) else {
+            return Histogram { bin_um: self.bin_um, first_bin: 0, counts: Vec::new() };
+        };
+        let side = BINS_PER_SIDE as i64;
+        let counts = self.counts[first..=last].to_vec();
+        let mut histogram = Histogram { bin_um: self.bin_um, first_bin: first as i64 - side, counts };
+        while histogram.counts.len() > SHOWN_BINS {
+            histogram = histogram.widened();
+        }
+        histogram
+    }
+}
+
+impl Histogram {
+    /// The same counts in bins of twice the width.
+    pub fn widened(&self) -> Self {
+        let first_bin = self.first_bin.div_euclid(2);
+        let mut counts = Vec::with_capacity(self.counts.len() / 2 + 1);
+        for (bin, &count) in (self.first_bin..).zip(&self.counts) {
+            let wide = (bin.div_euclid(2) - first_bin) as usize;
+            if wide == counts.len() {
+                counts.push(0);
+            }
+            counts[wide] += count;
+        }
+        Self { bin_um: self.bin_um * 2.0, first_bin, counts }
+    }
+}
+
+impl Sink for Statistics {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        let numbers = [row.path_mm, row.act_mm, row.corrected_mm, row.torque_nm];
+        let scalars = [row.t_s, row.s_mm, row.contour_error_mm];
+        if !numbers.iter().flatten().chain(&scalars).all(|x| x.is_finite()) {
+            return Ok(());
+        }
+        self.rows += 1;
+        for k in 0..3 {
+            self.peak_torque_nm[k] = self.peak_torque_nm[k].max(row.torque_nm[k].abs());
+        }
+        let (c, p) = (row.corrected_mm, row.path_mm);
+        let deviation_mm = (c[0] - p[0]).hypot(c[1] - p[1]).hypot(c[2] - p[2]);
+        self.max_deviation_mm = self.max_deviation_mm.max(deviation_mm);
+        if row.cutting {
+            self.cut(row);
+        }
+        self.previous = Some((row.t_s, row.s_mm));
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::series::tests::row;
+
+    fn statistics_of(errors_um: &[f64]) -> Statistics {
+        let mut statistics = Statistics::new();
+        for (k, error) in errors_um.iter().enumerate() {
+            statistics.row(&Row { contour_error_mm: error * 1e-3, ..row(k as f64 * 1e-3) }).unwrap();
+        }
+        statistics
+    }
+
+    #[test]
+    fn rms_of_a_sine_is_its_amplitude_over_root_two() {
+        let sine: Vec<f64> = (0..1000).map(|k| 10.0 * (f64::from(k) * std::f64::consts::TAU / 1000.0).sin()).collect();
+        let statistics = statistics_of(&sine);
+        assert!((statistics.rms_um() - 10.0 / 2f64.sqrt()).abs() < 1e-9);
+        assert!((statistics.max_um() - 10.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn rapids_count_for_torque_but_not_for_the_error() {
+        let mut statistics = statistics_of(&[1.0, -1.0]);
+        let rapid = Row { cutting: false, contour_error_mm: 9.0, torque_nm: [0.0, -2.0, 0.0], ..row(1.0) };
+        statistics.row(&rapid).unwrap();
+        let facts = RunFacts { axes: 2, ..RunFacts::default() };
+        let summary = statistics.summary(facts, |_| String::new());
+        assert!((summary.rms_um - 1.0).abs() < 1e-12 && (summary.max_um - 1.0).abs() < 1e-12);
+        assert_eq!(summary.peak_torque_nm, [0.0, 2.0, 0.0]);
+        assert!((summary.cutting_time_s - 1e-3).abs() < 1e-15, "{}", summary.cutting_time_s);
+    }
+
+    #[test]
+    fn the_histogram_agrees_with_counting_by_hand() {
+        let errors: Vec<f64> = (0..4000).map(|k| 37.0 * (f64::from(k) * 0.7).sin() - 5.0).collect();
+        let statistics = statistics_of(&errors);
+        let histogram = statistics.histogram();
+        assert!(histogram.counts.len() <= SHOWN_BINS && histogram.counts.len() > SHOWN_BINS / 2 - 2);
+        for (bin, &count) in (histogram.first_bin..).zip(&histogram.counts) {
+            // The same arithmetic as the row's: the error in mm, back to µm.
+            let inside = |e: &&f64| ((**e * 1e-3) * 1e3 / histogram.bin_um).floor() as i64 == bin;
+            assert_eq!(count, errors.iter().filter(inside).count() as u64, "bin {bin}");
+        }
+        assert_eq!(histogram.counts.iter().sum::<u64>(), 4000);
+    }
+}

@@ -1,0 +1,67 @@
+//! The numbers of one run, as the page's tables and `--json` give them.
+
+use serde::Serialize;
+
+use super::statistics::Histogram;
+use super::worst::WorstPlace;
+use crate::simulate::Run;
+use crate::trace::Outcome;
+
+/// What [`Statistics`](super::Statistics) cannot see in the rows of a run.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RunFacts {
+    /// Name of the controller.
+    pub controller: String,
+    /// Name of the machine.
+    pub machine: String,
+    /// Name of the part.
+    pub part: String,
+    /// Axes of the machine, 2 or 3.
+    pub axes: usize,
+    /// What the loop says about the run.
+    pub run: Run,
+}
+
+/// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunSummary {
+    /// Name of the controller.
+    pub controller: String,
+    /// Name of the machine.
+    pub machine: String,
+    /// Name of the part.
+    pub part: String,
+    /// Axes of the machine, 2 or 3.
+    pub axes: usize,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// Machining time: when the command has ended, s.
+    pub time_s: f64,
+    /// Root mean square of the contour error over the rows that cut, µm.
+    pub rms_um: f64,
+    /// Largest contour error of the rows that cut, µm.
+    pub max_um: f64,
+    /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.
+    pub max_deviation_um: f64,
+    /// Largest torque of each axis, N m.
+    pub peak_torque_nm: [f64; 3],
+    /// Arc length that was cut, mm.
+    pub cutting_length_mm: f64,
+    /// Time during which the tool cut, s.
+    pub cutting_time_s: f64,
+    /// Servo periods simulated.
+    pub rows: u64,
+    /// When the tool has arrived at the end, s.
+    pub arrival_s: f64,
+    /// Computing time of the ticks in which the controller decides, us: half of them take less. Not shown on the page,
+    /// which must not depend on the computer.
+    pub tick_median_us: f64,
+    /// 99.9 % of them take less, us.
+    pub tick_p999_us: f64,
+    /// The most register entries that one estimate of the contour error looked at.
+    pub most_register_entries: usize,
+    /// Largest contour errors, largest first, each place once.
+    pub worst: Vec<WorstPlace>,
+    /// Distribution of the contour error.
+    pub histogram: Histogram,
+}

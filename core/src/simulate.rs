@@ -1,0 +1,194 @@
+//! The closed loop: reference, controller and plant, one servo period after the other.
+//!
+//! Row n: at t = n Ts the tick makes the position command from the reference and the tool position; the plant holds it for
+//! one servo period; the contour error is that of the tool at its end, against the exact path.
+
+use std::time::Instant;
+
+use feedwright_control::controller::Controller;
+use feedwright_control::{Knot, Tick};
+
+use crate::machine::Machine;
+use crate::plant::{Measurement, Plant};
+use crate::reference::{Reference, Sample};
+use crate::trace::{Commanded, Outcome, Row, Sink};
+
+/// A following error beyond this ends the run as diverged, mm: no machine of this class has so much travel.
+const DIVERGED_MM: f64 = 1000.0;
+/// The tool has arrived when it is this near a command at rest, mm: a usual in-position width.
+const ARRIVED_MM: f64 = 0.01;
+/// Longest wait for the tool to arrive, s: friction may hold it off for good.
+const ARRIVAL_S: f64 = 0.25;
+/// The tool lags behind the reference by no more than this many time constants of its slowest position loop.
+const LAG_TIME_CONSTANTS: f64 = 8.0;
+/// How far the tool can be ahead of the reference, in plan time, s.
+const LEAD_S: f64 = 0.05;
+
+/// What a run says about itself beyond its rows.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Run {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// Machining time: when the command has ended, s.
+    pub time_s: f64,
+    /// When the tool has arrived there, s.
+    pub arrival_s: f64,
+    /// The most register entries that one contour error estimate looked at.
+    pub most_entries: usize,
+    /// Time of the ticks in which the controller decided.
+    pub ticks: TickTimes,
+}
+
+/// Cuts the whole reference with a controller; every row goes to every sink.
+///
+/// # Errors
+/// What a sink says when it takes no more.
+pub fn simulate<const N: usize>(
+    machine: &Machine,
+    reference: &mut Reference<'_>,
+    controller: &mut dyn Controller<N>,
+    sinks: &mut [&mut dyn Sink],
+) -> std::io::Result<Run> {
+    let servo_s = machine.period.servo_s;
+    let lag_s = LAG_TIME_CONSTANTS / machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
+    let start_mm = first(reference.at(0.0).position_mm);
+    controller.reset();
+    let mut tick = Tick::<N>::new(servo_s, controller.schedule(), machine.limits.max_deviation_mm);
+    let mut plant = Plant::<N>::new(machine, start_mm);
+    let mut tool_mm = start_mm;
+    let mut run = Run::default();
+    let mut ended: Option<f64> = None;
+    let mut last_tau_s = 0.0;
+    for n in 0_u64.. {
+        let t_s = n as f64 * servo_s;
+        let clock = Instant::now();
+        let setpoint = tick.step(&mut Axes(reference), controller, tool_mm);
+        if setpoint.decided {
+            run.ticks.add(clock.elapsed().as_nanos());
+            run.most_entries = run.most_entries.max(tick.contour().entries);
+        }
+        if ended.is_none()
+            && let Some(end_s) = reference.end_s()
+            && setpoint.tau_s >= end_s
+        {
+            ended = Some(t_s);
+            run.time_s = crossing(t_s, servo_s, last_tau_s, setpoint.tau_s, end_s);
+        }
+        last_tau_s = setpoint.tau_s;
+        let Measurement { position_mm, torque_nm } = plant.step(setpoint.command_mm);
+        tool_mm = position_mm;
+        let following_mm = distance(tool_mm, setpoint.command_mm);
+        if following_mm.is_nan() || following_mm > DIVERGED_MM {
+            run.outcome = Outcome::Diverged { at_s: t_s };
+            run.arrival_s = t_s;
+            if ended.is_none() {
+                run.time_s = t_s;
+            }
+            break;
+        }
+        let sample = reference.at(setpoint.tau_s);
+        let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
+        let foot = reference.nearest(spread(tool_mm), tau_s - lag_s, tau_s + LEAD_S);
+        let row = Row {
+            t_s,
+            s_mm: sample.s_mm,
+            line: sample.line,
+            feed_plan_mm_s: sample.feed_mm_s,
+            cutting: foot.cutting && !(sample.resting && following_mm <= ARRIVED_MM),
+            commanded: match (sample.resting, sample.cutting) {
+                (true, _) => Commanded::Rest,
+                (false, true) => Commanded::Cut,
+                (false, false) => Commanded::Rapid,
+            },
+            path_mm: sample.position_mm,
+            cmd_mm: spread(setpoint.command_mm),
+            act_mm: spread(tool_mm),
+            torque_nm: spread(torque_nm),
+            contour_error_mm: if N == 2 { foot.signed_mm } else { foot.distance_mm },
+            corrected_mm: spread(setpoint.command_mm),
+        };
+        while let Some(timed) = reference.next_event(setpoint.tau_s) {
+            for sink in sinks.iter_mut() {
+                sink.event(t_s, &timed.event)?;
+            }
+        }
+        for sink in sinks.iter_mut() {
+            sink.row(&row)?;
+        }
+        reference.forget_before(tau_s - lag_s);
+        if let Some(ended_s) = ended
+            && (following_mm <= ARRIVED_MM || t_s >= ended_s + ARRIVAL_S)
+        {
+            run.arrival_s = t_s + servo_s;
+            break;
+        }
+    }
+    Ok(run)
+}
+
+/// When plan time passed `end_s` between the last servo period and this one.
+fn crossing(t_s: f64, servo_s: f64, last_tau_s: f64, tau_s: f64, end_s: f64) -> f64 {
+    if tau_s > last_tau_s { t_s - servo_s * (tau_s - end_s) / (tau_s - last_tau_s) } else { t_s }
+}
+
+/// The path as the tick sees it: the first N axes.
+struct Axes<'a, 'p>(&'a mut Reference<'p>);
+
+impl<const N: usize> feedwright_control::Reference<N> for Axes<'_, '_> {
+    fn knot(&mut self, tau_s: f64) -> Knot<N> {
+        let Sample { position_mm, tangent, feed_mm_s, .. } = self.0.at(tau_s);
+        Knot { position_mm: first(position_mm), tangent: first(tangent), feed_mm_s }
+    }
+}
+
+fn first<const N: usize>(v: [f64; 3]) -> [f64; N] {
+    std::array::from_fn(|i| v[i])
+}
+
+fn spread<const N: usize>(v: [f64; N]) -> [f64; 3] {
+    std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
+}
+
+fn distance<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
+    feedwright_control::vector::norm(feedwright_control::vector::sub(a, b))
+}
+
+/// Buckets an octave in the histogram of tick times: a quantile is good to 5 %.
+const BUCKETS_AN_OCTAVE: usize = 8;
+/// 2^32 ns is over four seconds.
+const OCTAVES: usize = 32;
+
+/// A histogram of tick times, logarithmic, of fixed size.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TickTimes {
+    counts: Box<[u64; BUCKETS_AN_OCTAVE * OCTAVES]>,
+    total: u64,
+}
+
+impl Default for TickTimes {
+    fn default() -> Self {
+        Self { counts: Box::new([0; BUCKETS_AN_OCTAVE * OCTAVES]), total: 0 }
+    }
+}
+
+impl TickTimes {
+    fn add(&mut self, ns: u128) {
+        let octaves = (ns.max(1) as f64).log2();
+        let bucket = (octaves * BUCKETS_AN_OCTAVE as f64) as usize;
+        self.counts[bucket.min(self.counts.len() - 1)] += 1;
+        self.total += 1;
+    }
+
+    /// The time that this part of the ticks stays below, us; zero without ticks.
+    pub fn quantile_us(&self, part: f64) -> f64 {
+        let wanted = part * self.total as f64;
+        let mut seen = 0;
+        for (bucket, count) in self.counts.iter().enumerate() {
+            seen += count;
+            if *count > 0 && seen as f64 >= wanted {
+                return ((bucket as f64 + 0.5) / BUCKETS_AN_OCTAVE as f64).exp2() * 1e-3;
+            }
+        }
+        0.0
+    }
+}

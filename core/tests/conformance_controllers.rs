@@ -1,0 +1,131 @@
+//! Every row of the table of controllers keeps the contract, in the plane and in space.
+
+use std::sync::OnceLock;
+
+use feedwright::controllers::{CONTROLLERS, Choices, Make, Setup};
+use feedwright::machine::Machine;
+use feedwright_control::{Controller, Knot, Reference, Tick};
+
+/// Deviation that the tick admits here, mm.
+const MAX_DEVIATION_MM: f64 = 0.2;
+
+/// The circle of eq. 11 at 50 mm/s, in the first two axes.
+struct Circle;
+
+impl<const N: usize> Reference<N> for Circle {
+    fn knot(&mut self, tau_s: f64) -> Knot<N> {
+        let (sin, cos) = (5.0 * tau_s).sin_cos();
+        let mut knot = Knot { feed_mm_s: 50.0, ..Knot::REST };
+        (knot.position_mm[0], knot.position_mm[1]) = (10.0 * (1.0 - cos), 10.0 * sin);
+        (knot.tangent[0], knot.tangent[1]) = (sin, cos);
+        knot
+    }
+}
+
+/// A path that stands still.
+struct Rest;
+
+impl<const N: usize> Reference<N> for Rest {
+    fn knot(&mut self, _: f64) -> Knot<N> {
+        let mut knot = Knot { position_mm: [3.0; N], ..Knot::REST };
+        knot.tangent[0] = 1.0;
+        knot
+    }
+}
+
+fn machine() -> &'static Machine {
+    static MACHINE: OnceLock<Machine> = OnceLock::new();
+    MACHINE.get_or_init(|| Machine::load("tnv40".as_ref()).unwrap())
+}
+
+/// Calls a check with every controller of the table, in two and in three axes.
+macro_rules! for_every_controller {
+    ($check:ident) => {
+        for entry in CONTROLLERS {
+            let choices = Choices::default();
+            let mut setup = Setup { machine: machine(), choices: &choices, progress: &mut |_| {} };
+            $check::<2>(entry.name, &mut *Make::<2>::make(entry, &mut setup));
+            $check::<3>(entry.name, &mut *Make::<3>::make(entry, &mut setup));
+        }
+    };
+}
+
+/// Commands of a run along a path; the tool lags by 20 ms and is 20 um off, or wherever `tool` puts it.
+fn commands<const N: usize>(
+    reference: &mut dyn Reference<N>,
+    controller: &mut dyn Controller<N>,
+    tool: impl Fn(u32, [f64; N]) -> [f64; N],
+) -> Vec<[f64; N]> {
+    let mut tick = Tick::new(0.001, controller.schedule(), MAX_DEVIATION_MM);
+    (0..600)
+        .map(|n| {
+            let lagging = reference.knot(f64::from(n) * 0.001 - 0.02).position_mm;
+            tick.step(reference, controller, tool(n, lagging)).command_mm
+        })
+        .collect()
+}
+
+fn off<const N: usize>(_: u32, mut lagging: [f64; N]) -> [f64; N] {
+    lagging[0] += 0.02;
+    lagging
+}
+
+#[test]
+fn rest_stays_at_rest() {
+    fn check<const N: usize>(name: &str, controller: &mut dyn Controller<N>) {
+        for command in commands(&mut Rest, controller, |_, lagging| lagging) {
+            assert_eq!(command, [3.0; N], "{name}");
+        }
+    }
+    for_every_controller!(check);
+}
+
+#[test]
+fn the_same_input_gives_the_same_bits_after_a_reset() {
+    fn check<const N: usize>(name: &str, controller: &mut dyn Controller<N>) {
+        let first = commands(&mut Circle, controller, off);
+        controller.reset();
+        let second = commands(&mut Circle, controller, off);
+        assert_eq!(first, second, "{name}");
+    }
+    for_every_controller!(check);
+}
+
+#[test]
+fn a_lost_or_absurd_measurement_gives_a_command_within_the_limits() {
+    fn check<const N: usize>(name: &str, controller: &mut dyn Controller<N>) {
+        let absurd = |n: u32, mut tool: [f64; N]| {
+            tool[0] = match n % 150 {
+                50 => f64::NAN,
+                70..90 => f64::INFINITY,
+                100 => 1e300,
+                120 => tool[0] - 1e3,
+                _ => tool[0],
+            };
+            tool
+        };
+        let mut path = Circle;
+        for (n, command) in commands(&mut path, controller, absurd).into_iter().enumerate() {
+            // The rate may differ from the plan's, so the path is the circle, not the point of this instant.
+            let radius = (command[0] - 10.0).hypot(command[1]);
+            let beside = command[2..].iter().fold(radius - 10.0, |d, z| d.hypot(*z));
+            assert!(beside.abs() <= MAX_DEVIATION_MM + 1e-9, "{name}, {n}: {command:?}");
+        }
+    }
+    for_every_controller!(check);
+}
+
+#[test]
+fn a_tick_allocates_nothing() {
+    fn check<const N: usize>(name: &str, controller: &mut dyn Controller<N>) {
+        let mut tick = Tick::new(0.001, controller.schedule(), MAX_DEVIATION_MM);
+        let counted = allocation_counter::measure(|| {
+            for n in 0..600 {
+                let lagging: Knot<N> = Circle.knot(f64::from(n) * 0.001 - 0.02);
+                std::hint::black_box(tick.step(&mut Circle, controller, off(n, lagging.position_mm)));
+            }
+        });
+        assert_eq!(counted.count_total, 0, "{name}");
+    }
+    for_every_controller!(check);
+}

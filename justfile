@@ -1,0 +1,60 @@
+# `just check` before every commit; `just --list` for the rest.
+
+# What .ci/run runs, without installing anything.
+check:
+    cargo fmt --all --check
+    cargo clippy --workspace --all-targets --locked -- -D warnings
+    env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
+    cargo test --workspace --locked
+
+# Cut a part and write its report.
+run part="parts/star.ngc" *options:
+    cargo run --release -- run {{ part }} {{ options }}
+
+# The experiments of the paper: figures, page and paper.json.
+paper out="target/paper":
+    cargo run --release -- paper --out {{ out }}
+
+# Times of ticks and of the reference.
+bench:
+    cargo bench --workspace
+
+# Regenerate the table and the figures of README.md and of examples/.
+tables: paper
+    cp target/paper/figure_10.svg docs/paper_circle.svg
+    cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
+    cargo run --release -p feedwright --example tables
+
+# Instructions of one piece of work in the servo thread, counted by callgrind (Debian: valgrind).
+instructions:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    cargo build --release --quiet -p feedwright-control --example instructions
+    counted() {
+        valgrind --tool=callgrind --callgrind-out-file=/dev/null target/release/examples/instructions "$1" "$2" 2>&1 |
+            sed -n 's/.*Collected : //p'
+    }
+    for work in paper-tick horizon-tick servo-period learn; do
+        few=$(counted "$work" 1000)
+        many=$(counted "$work" 3000)
+        printf '%-14s %8d instructions\n' "$work" $(((many - few) / 2000))
+    done
+
+# How much faster than the machine `run` is, from file to report, on one core, with a trained identifier.
+speed part="parts/pocket.ngc":
+    #!/usr/bin/env bash
+    set -euo pipefail
+    cargo build --release --quiet
+    folder=$(mktemp --directory)
+    trap 'rm -r "$folder"' EXIT
+    command=(taskset --cpu-list 0 target/release/feedwright --quiet run "{{ part }}" --json "$folder/run.json" --report "$folder/run.html")
+    "${command[@]}" >"$folder/table.txt" # Trains, where that has not been done.
+    start=$(date +%s.%N)
+    "${command[@]}"
+    end=$(date +%s.%N)
+    python3 - "$folder/run.json" "$start" "$end" <<'PYTHON'
+    import json, sys
+    machining_s = json.load(open(sys.argv[1]))["runs"][-1]["time_s"]
+    wall_s = float(sys.argv[3]) - float(sys.argv[2])
+    print(f"machining {machining_s:.2f} s, run {wall_s:.3f} s: {machining_s / wall_s:.0f} times faster, and it cuts twice")
+    PYTHON
