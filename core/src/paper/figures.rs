@@ -12,10 +12,9 @@ use crate::report::figure::{COLORS, CaptionedFigure, Curve, Figure, Line, Panel}
 
 /// The weights of Fig. 7: from none to the paper's choice.
 const RHO_OF_FIGURE_7: [f64; 4] = [0.0, 0.0001, 0.001, 0.01];
-/// Enlargement of the deviation in Fig. 10, as in the paper.
-const ENLARGEMENT: f64 = 500.0;
-/// Share of the paper's enlarged deviation that a plot of 20 mm width bears.
-const SCALE_TITLE: &str = "deviation x 500, drawn at a tenth";
+/// Enlargement of the deviation in Fig. 10. At the paper's 500 a deviation of 25 um is drawn longer than the radius of the
+/// circle, and the tool's path turns inside out.
+const ENLARGEMENT: f64 = 50.0;
 
 /// A cut and what it came to.
 struct Drawn {
@@ -57,14 +56,21 @@ fn figure_7(magnitude: &Drawn, time_only: &[Drawn]) -> CaptionedFigure {
     let mut curves = vec![error("magnitude only", magnitude, 0, Line::Dashed)];
     for (i, drawn) in time_only.iter().enumerate() {
         let rho = drawn.numbers.rho.unwrap_or_default();
-        let label = format!("rho = {rho}: {:.2} s, max {:.1} µm", drawn.numbers.time_s, drawn.numbers.max_um);
+        let label = format!("ρ = {rho}");
         curves.push(error(&label, drawn, i + 1, Line::Solid));
     }
+    let times: Vec<String> = time_only
+        .iter()
+        .map(|drawn| format!("{:.2} s and {:.1} µm", drawn.numbers.time_s, drawn.numbers.max_um))
+        .collect();
     captioned(
         "Figure 7",
-        "Contour error for several weights of the machining time, with the first term of eq. 7 set to zero: a larger rho \
-         is faster and less accurate. (The sign of the term is that of the derivative of eq. 7; as printed in eqs 9 and \
-         10 a larger rho would be slower.)",
+        &format!(
+            "Contour error for several weights of the machining time, with the first term of eq. 7 set to zero: a larger \
+             ρ is faster and less accurate ({}). The sign of the term is that of the derivative of eq. 7; as printed in \
+             eqs 9 and 10 a larger ρ would be slower.",
+            times.join(", ")
+        ),
         vec![panel("", "Time [s]", "Contour error [µm]", curves)],
     )
 }
@@ -135,7 +141,7 @@ fn figure_10(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
         ..captioned(
             "Figure 10",
             &format!(
-                "Desired trajectories on the x-y plane ({SCALE_TITLE}): the command of the two-dimensional method leaves \
+                "Desired trajectories on the x-y plane (deviation {ENLARGEMENT} times enlarged): the command of the two-dimensional method leaves \
                  the programmed path so that the tool does not."
             ),
             Vec::new(),
@@ -150,7 +156,7 @@ fn enlarged(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         .map(|&[x, y]| {
             let (dx, dy) = (x - RADIUS_MM, y);
             let radius = dx.hypot(dy);
-            let drawn = RADIUS_MM + 0.1 * ENLARGEMENT * (radius - RADIUS_MM);
+            let drawn = RADIUS_MM + ENLARGEMENT * (radius - RADIUS_MM);
             [RADIUS_MM + dx / radius * drawn, dy / radius * drawn]
         })
         .collect()
