@@ -22,7 +22,7 @@ pub(crate) enum Command {
     Run(RunArgs),
     /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
     Paper(PaperArgs),
-    /// Report all mistakes of G-code programs.
+    /// Report all mistakes of G-code programs and machine files.
     Check(CheckArgs),
     /// Print the canonical motions of a program, one JSON object a line, in mm and s.
     Canon(CanonArgs),
@@ -86,7 +86,7 @@ pub(crate) struct PaperArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// G-code programs.
+    /// G-code programs, and machine files (.toml).
     #[arg(required = true)]
     pub(crate) files: Vec<PathBuf>,
 }

@@ -46,7 +46,19 @@ fn show(report: &Report) {
     }
     let mut text = String::new();
     match handler.render_report(&mut text, report.as_ref()) {
-        Ok(()) => eprintln!("{}", text.trim_end()),
+        Ok(()) => eprintln!("{}", with_hints(text.trim_end())),
         Err(_) => eprintln!("error: {message}"),
     }
+}
+
+/// miette labels a remedy `help:` without a way to choose; ours are hints.
+fn with_hints(text: &str) -> String {
+    let label = |line: &str| match line.split_once("  help: ") {
+        // The label stands at the start of its line, perhaps behind a colour; program text may contain anything.
+        Some((before, rest)) if before.trim().is_empty() || before.starts_with('\u{1b}') => {
+            format!("{before}  hint: {}", rest.strip_prefix("hint: ").unwrap_or(rest))
+        }
+        _ => line.to_owned(),
+    };
+    text.lines().map(label).collect::<Vec<_>>().join("\n")
 }

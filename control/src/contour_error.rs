@@ -31,6 +31,9 @@ const REACH_OF_ERROR: f64 = 3.0;
 /// Entries that [`locate`] looks at on either side: between standstill and full acceleration the lag of a servo changes
 /// by a third of its time constant.
 const LOCATE_REACH: i32 = 8;
+/// Where the path runs back along itself, an old stretch is as near as the one that the tool is on, and following it leads
+/// out of the register: of feet whose distances differ by less than this, the newer counts, mm.
+const AS_NEAR_MM: f64 = 1e-4;
 /// Cosine of the turn between neighbouring knots above which there is a corner between them (0.1 rad: a curve turns so
 /// much in one servo period only where its radius is below ten steps).
 const CORNER_COSINE: f64 = 0.995;
@@ -74,13 +77,15 @@ impl Estimator {
         let [first, last] = window.range();
         let start = self.index.clamp(first, last);
         let reach = self.reach();
-        let (index, entries) = nearest_knot(window, tool_mm, (start - reach).max(first), (start + reach).min(last));
-        let foot = nearest_foot(window, tool_mm, index);
-        self.index = index;
-        self.distance_mm = norm(foot.vector_mm);
-        let before = (index - 1).max(first);
+        // On towards the current knot in any case: a tool that lags turns short of a point where the path turns back, and
+        // goes on from there on a newer stretch, which need not begin near the old one.
+        let to = (start + reach).max((start + MOST_REACH).min(0)).min(last);
+        let error = nearest(window, tool_mm, (start - reach).max(first), to);
+        self.index = error.index;
+        self.distance_mm = norm(error.vector_mm);
+        let before = (error.index - 1).max(first);
         self.spacing_mm = norm(sub(window.knot(before + 1).position_mm, window.knot(before).position_mm));
-        ContourError { index, entries, ..foot }
+        error
     }
 
     /// Forgets where the tool was.
@@ -115,14 +120,45 @@ pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i
     ContourError { index, ..nearest_foot(window, tool_mm, index) }
 }
 
-/// Index of the nearest knot in a range, which is widened while the nearest stands at an end of it.
-fn nearest_knot<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, to: i32) -> (i32, usize) {
+/// The nearest point of the path near the knots of a range; of two as near, the newer.
+#[inline]
+fn nearest<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, to: i32) -> ContourError<N> {
+    let Found { nearest, newest, entries } = nearest_knots(window, tool_mm, from, to);
+    let at = |index: i32| ContourError { index, entries, ..nearest_foot(window, tool_mm, index) };
+    let foot = at(nearest);
+    if newest != nearest {
+        let newer = at(newest);
+        if norm(newer.vector_mm) <= norm(foot.vector_mm) + AS_NEAR_MM {
+            return newer;
+        }
+    }
+    foot
+}
+
+/// Knots of a range at which the distance has a minimum.
+struct Found {
+    /// The least.
+    nearest: i32,
+    /// The newest.
+    newest: i32,
+    /// Entries looked at.
+    entries: usize,
+}
+
+/// Finds the nearest knot in a range, which is widened while the nearest stands at an end of it.
+#[inline]
+fn nearest_knots<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, to: i32) -> Found {
     let square = |index: i32| {
         let d = sub(window.knot(index).position_mm, tool_mm);
         dot(d, d)
     };
-    let (mut best, mut best_square) = (from, square(from));
-    for index in from + 1..=to {
+    let (mut newest, mut newest_square) = (to, square(to));
+    while newest > from && square(newest - 1) < newest_square {
+        newest -= 1;
+        newest_square = square(newest);
+    }
+    let (mut best, mut best_square) = (newest, newest_square);
+    for index in (from..newest).rev() {
         let s = square(index);
         if s < best_square {
             (best, best_square) = (index, s);
@@ -141,7 +177,7 @@ fn nearest_knot<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from:
             (best, best_square) = (best + direction, s);
         }
     }
-    (best, entries)
+    Found { nearest: best, newest, entries }
 }
 
 /// The nearest point on the stretches before and after the knot of this index.
@@ -261,6 +297,34 @@ mod tests {
         });
         let error = Behind::new(in_x.chain(in_y)).estimate([0.03, -0.04]);
         assert!((norm(error.vector_mm) - 0.05).abs() < 1e-12, "{error:?}");
+    }
+
+    #[test]
+    fn a_path_that_runs_back_along_itself_is_followed_where_the_tool_is() {
+        let there_and_back = |i: i32| {
+            let (x, back) =
+                if i <= 300 { (0.05 * f64::from(i), 1.0) } else { (0.05 * f64::from(600 - i) + 0.01, -1.0) };
+            Knot { position_mm: [x, 0.0], tangent: [back, 0.0], feed_mm_s: 50.0 }
+        };
+        let mut behind = Behind::new((0..300).map(there_and_back));
+        let mut estimator = Estimator::default();
+        for i in 300..560 {
+            behind.register.push(there_and_back(i));
+            if (319..=322).contains(&i) {
+                continue;
+            }
+            let [x, _] = there_and_back(i - 20).position_mm;
+            let window = Window {
+                register: &behind.register,
+                preview: &behind.preview,
+                tau_s: 0.0,
+                feed_period_s: 0.001,
+                offset_mm: [0.0; 2],
+            };
+            let error = estimator.estimate(&window, [x + 0.013, 0.02]);
+            assert!((norm(error.vector_mm) - 0.02).abs() < 1e-9, "{i}: {error:?}");
+            assert!(i < 323 || error.tangent[0] == -1.0, "{i}: {error:?}");
+        }
     }
 
     #[test]

@@ -18,12 +18,112 @@ const SLOW: Duration = Duration::from_secs(2);
 
 /// Pieces of the language that mutations put in.
 const PIECES: &[&str] = &[
-    "G0", "G1", "G2", "G3", "G5", "G5.1", "G5.2", "G5.3", "G6.2", "G10", "G28", "G33", "G33.1", "G38.2", "G40", "G41.1", "G42.1", "G43", "G53", "G54",
-    "G59.3", "G64", "G73", "G76", "G81", "G83", "G87", "G90", "G91", "G92", "G93", "G95", "G98", "M2", "M3", "M6", "M66", "M70", "M72", "M98", "M99", "X", "Y", "Z",
-    "A", "U", "I", "J", "K", "R", "P", "Q", "L", "F", "S", "T", "D", "E", "H", "-", "1", "0", "0.5", "1e9", "999999999999", "#1", "#<a>", "#5220", "=", "[", "]",
-    "**", "/", "MOD", "sin[", "atan[1]/[", "exists[#<a>]", "o1 sub", "o1 endsub", "o1 call", "o1 if [1]", "o1 else", "o1 endif", "o2 while [#1 lt 3]",
-    "o2 endwhile", "o3 do", "o3 while [0]", "o4 repeat [3]", "o4 endrepeat", "o2 break", "o4 continue", "o1 return", "O5", "%", "(", ")", ";", "\n", "\r\n", "\0",
-    "\u{e9}", "@", "^", "$", "*7", "N10",
+    "G0",
+    "G1",
+    "G2",
+    "G3",
+    "G5",
+    "G5.1",
+    "G5.2",
+    "G5.3",
+    "G6.2",
+    "G10",
+    "G28",
+    "G33",
+    "G33.1",
+    "G38.2",
+    "G40",
+    "G41.1",
+    "G42.1",
+    "G43",
+    "G53",
+    "G54",
+    "G59.3",
+    "G64",
+    "G73",
+    "G76",
+    "G81",
+    "G83",
+    "G87",
+    "G90",
+    "G91",
+    "G92",
+    "G93",
+    "G95",
+    "G98",
+    "M2",
+    "M3",
+    "M6",
+    "M66",
+    "M70",
+    "M72",
+    "M98",
+    "M99",
+    "X",
+    "Y",
+    "Z",
+    "A",
+    "U",
+    "I",
+    "J",
+    "K",
+    "R",
+    "P",
+    "Q",
+    "L",
+    "F",
+    "S",
+    "T",
+    "D",
+    "E",
+    "H",
+    "-",
+    "1",
+    "0",
+    "0.5",
+    "1e9",
+    "999999999999",
+    "#1",
+    "#<a>",
+    "#5220",
+    "=",
+    "[",
+    "]",
+    "**",
+    "/",
+    "MOD",
+    "sin[",
+    "atan[1]/[",
+    "exists[#<a>]",
+    "o1 sub",
+    "o1 endsub",
+    "o1 call",
+    "o1 if [1]",
+    "o1 else",
+    "o1 endif",
+    "o2 while [#1 lt 3]",
+    "o2 endwhile",
+    "o3 do",
+    "o3 while [0]",
+    "o4 repeat [3]",
+    "o4 endrepeat",
+    "o2 break",
+    "o4 continue",
+    "o1 return",
+    "O5",
+    "%",
+    "(",
+    ")",
+    ";",
+    "\n",
+    "\r\n",
+    "\0",
+    "\u{e9}",
+    "@",
+    "^",
+    "$",
+    "*7",
+    "N10",
 ];
 
 /// A small generator of pseudo-random numbers (splitmix64, S. Vigna): the runs must be the same everywhere.
@@ -45,9 +145,16 @@ impl Random {
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
-    let seconds: u64 = arguments.next().and_then(|text| text.parse().ok()).unwrap_or(10);
-    let seed: u64 = arguments.next().and_then(|text| text.parse().ok()).unwrap_or(1);
-    let mut seeds: Vec<Vec<u8>> = vec![b"G21\nF100\no1 sub\nG1 X#1\no1 endsub\no1 call [1]\nG2 X2 I1\nM2\n".to_vec()];
+    let seconds: u64 = arguments
+        .next()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(10);
+    let seed: u64 = arguments
+        .next()
+        .and_then(|text| text.parse().ok())
+        .unwrap_or(1);
+    let mut seeds: Vec<Vec<u8>> =
+        vec![b"G21\nF100\no1 sub\nG1 X#1\no1 endsub\no1 call [1]\nG2 X2 I1\nM2\n".to_vec()];
     for path in arguments {
         collect(Path::new(&path), &mut seeds);
     }
@@ -73,7 +180,9 @@ fn main() -> ExitCode {
 /// Adds the beginnings of all files below `path`.
 fn collect(path: &Path, seeds: &mut Vec<Vec<u8>>) {
     let mut entries: Vec<PathBuf> = match std::fs::read_dir(path) {
-        Ok(entries) => entries.filter_map(|entry| Some(entry.ok()?.path())).collect(),
+        Ok(entries) => entries
+            .filter_map(|entry| Some(entry.ok()?.path()))
+            .collect(),
         Err(_) => {
             if let Ok(mut bytes) = std::fs::read(path) {
                 bytes.truncate(MOST_BYTES);
@@ -122,17 +231,29 @@ fn mutated(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
 fn try_program(text: &[u8]) -> Result<(), String> {
     let begin = Instant::now();
     let result = std::panic::catch_unwind(|| {
-        let settings = Settings { max_idle_lines: 20_000, max_motions: 20_000, ..Settings::default() };
-        let Ok(reader) = Reader::from_text("mutated", text, settings) else { return Ok(()) };
+        let settings = Settings {
+            max_idle_lines: 20_000,
+            max_motions: 20_000,
+            ..Settings::default()
+        };
+        let Ok(reader) = Reader::from_text("mutated", text, settings) else {
+            return Ok(());
+        };
         let lines = text.split(|&byte| byte == b'\n').count();
         let mut before: Option<[f64; 3]> = None;
         let mut faults = false;
         for step in reader {
             match step {
-                Err(fault) if fault.line as usize > lines => return Err(format!("a fault behind the end: {fault:?}")),
+                Err(fault) if fault.line as usize > lines => {
+                    return Err(format!("a fault behind the end: {fault:?}"));
+                }
                 Err(_) => faults = true,
                 Ok(Canon::Motion(motion)) => {
-                    let numbers = motion.start_mm.iter().chain(&motion.end_mm).chain([&motion.feed_mm_s]);
+                    let numbers = motion
+                        .start_mm
+                        .iter()
+                        .chain(&motion.end_mm)
+                        .chain([&motion.feed_mm_s]);
                     if numbers.clone().any(|value| !value.is_finite()) {
                         return Err(format!("a number is not finite: {motion:?}"));
                     }

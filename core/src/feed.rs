@@ -147,6 +147,8 @@ pub struct Phase {
 pub struct TimedEvent {
     /// Plan time, s.
     pub tau_s: f64,
+    /// How long the tool rests for it, s.
+    pub duration_s: f64,
     /// What happens.
     pub event: Event,
 }

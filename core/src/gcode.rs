@@ -30,6 +30,7 @@ mod source;
 mod special;
 mod splines;
 mod state;
+mod subroutines;
 mod summary;
 mod threads;
 mod tools;

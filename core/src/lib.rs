@@ -7,6 +7,7 @@
 
 pub mod machine;
 pub mod gcode;
+pub mod plc;
 pub mod path;
 pub mod feed;
 pub mod reference;

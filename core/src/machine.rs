@@ -38,6 +38,8 @@ pub struct Machine {
     pub period: Period,
     /// What the machine may be asked for.
     pub limits: Limits,
+    /// PLC and spindle.
+    pub plc: Durations,
     /// Two or three axes: x, y and perhaps z.
     pub axes: Vec<Axis>,
 }
@@ -68,6 +70,19 @@ pub struct Limits {
     pub corner_jump_mm_s: f64,
     /// Largest distance of the corrected command from the programmed path, mm.
     pub max_deviation_mm: f64,
+}
+
+/// How long PLC and spindle hold the motion up: table `[plc]`, all zero without it.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Durations {
+    /// M6, with the spindle at rest.
+    pub tool_change_s: f64,
+    /// M7, M8, M9: until the coolant flows, or has stopped.
+    pub coolant_s: f64,
+    /// M60: pallet shuttle.
+    pub pallet_change_s: f64,
+    /// Rate at which the spindle changes its speed, rev/min in a second; 0 is at once.
+    pub spindle_rev_min_s: f64,
 }
 
 /// A servo axis: mechanics at the motor shaft and the two control loops.

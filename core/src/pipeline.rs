@@ -10,6 +10,7 @@ use feedwright_control::Controller;
 
 use crate::controllers::{Entry, Make, Setup};
 use crate::gcode::{self, Summary};
+use crate::plc::Plc;
 use crate::reference::Reference;
 use crate::report::{Report, Run, RunFacts, Series, Statistics};
 use crate::simulate::simulate;
@@ -75,7 +76,8 @@ fn cut_once<const N: usize>(
     files: Option<&mut Files>,
     progress: &mut dyn Progress,
 ) -> Result<Run, Error> {
-    let mut reference = Reference::new(job.program()?, &(&job.machine.limits).into())?;
+    let plc = Plc::new(job.machine.plc);
+    let mut reference = Reference::new(job.program()?, &(&job.machine.limits).into())?.with_plc(plc);
     let (mut statistics, mut series, mut timeline) = (Statistics::new(), Series::new(), Timeline::default());
     let mut told = job::Told::new(progress, summary);
     let mut sinks: Vec<&mut dyn Sink> = vec![&mut statistics, &mut series, &mut timeline, &mut told];

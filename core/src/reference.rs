@@ -16,6 +16,7 @@ use crate::feed::{Limits, LimitsError, Phase, TimedEvent};
 use crate::gcode::canon::Canon;
 use crate::path::pieces::Pieces;
 use crate::path::{PathError, Piece, Step};
+use crate::plc::Plc;
 use std::collections::VecDeque;
 use window::Window;
 
@@ -96,6 +97,13 @@ impl<'p> Reference<'p> {
     /// The reference of a plan.
     pub fn from_plan(plan: Plan<'p>) -> Self {
         Self { plan, window: Window::default(), events: VecDeque::new(), planned_s: 0.0, ended: false }
+    }
+
+    /// The reference of a machine whose PLC and spindle hold the motion up. Before anything was looked up.
+    #[must_use]
+    pub fn with_plc(mut self, plc: Plc) -> Self {
+        self.plan = self.plan.with_plc(plc);
+        self
     }
 
     /// Where the reference is at `tau_s`; before the start (or what has been forgotten) at the first point, behind the end

@@ -109,7 +109,7 @@ pub fn simulate<const N: usize>(
         };
         while let Some(timed) = reference.next_event(setpoint.tau_s) {
             for sink in sinks.iter_mut() {
-                sink.event(t_s, &timed.event)?;
+                sink.event(t_s, &timed)?;
             }
         }
         for sink in sinks.iter_mut() {

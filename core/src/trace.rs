@@ -4,7 +4,7 @@ pub mod csv;
 
 use serde::Serialize;
 
-use crate::gcode::canon::Event;
+use crate::feed::TimedEvent;
 
 /// What the command of a servo period does. The tool follows it by some ten milliseconds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,7 +72,7 @@ pub trait Sink {
     ///
     /// # Errors
     /// As [`Sink::row`].
-    fn event(&mut self, t_s: f64, event: &Event) -> std::io::Result<()> {
+    fn event(&mut self, t_s: f64, event: &TimedEvent) -> std::io::Result<()> {
         let _ = (t_s, event);
         Ok(())
     }

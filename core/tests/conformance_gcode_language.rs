@@ -1,4 +1,5 @@
 //! What programs mean: end points, shapes and events, against values worked out by hand.
+#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
 
 use feedwright::gcode::canon::{Canon, Corner, EventKind, Motion, MotionKind, Plane, Shape};
 use feedwright::gcode::{Reader, Settings, summarize};

@@ -110,7 +110,7 @@ fn files(src: &Path, module: &str) -> Vec<(PathBuf, usize)> {
     fn walk(folder: &Path, depth: usize, found: &mut Vec<(PathBuf, usize)>) {
         let Ok(entries) = std::fs::read_dir(folder) else { return };
         for entry in entries {
-            let path = entry.unwrap().path();
+            let path = entry.expect("the folder can be read").path();
             if path.is_dir() {
                 walk(&path, depth + 1, found);
             } else if path.extension().is_some_and(|ending| ending == "rs") {

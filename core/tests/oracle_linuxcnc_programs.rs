@@ -3,6 +3,7 @@
 //! The numbers come from LinuxCNC itself: `rs274` accepts or refuses, and `oracle_scripts/linuxcnc_canon.py` runs its interpreter in full
 //! precision. Programs are those of the corpus beside the repository and those that the package installs. Differences that remain are
 //! listed in `docs/gcode-differences.md` and in [`DIFFERENCES`].
+#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,8 +20,14 @@ const NO_MOTION_MM: f64 = 1e-9;
 /// Programs that are read differently on purpose: part of the path, and why.
 const DIFFERENCES: &[(&str, &str)] = &[
     ("linuxcnc-nurbs/G6_", "G6.2 came with LinuxCNC 2.10"),
-    ("camotics/compass.ngc", "a % that ends a program without a % at its beginning is a warning"),
-    ("iniparam-failassign", "parameters of an INI file cannot be assigned"),
+    (
+        "camotics/compass.ngc",
+        "a % that ends a program without a % at its beginning is a warning",
+    ),
+    (
+        "iniparam-failassign",
+        "parameters of an INI file cannot be assigned",
+    ),
     ("ncfiles/cone.ngc", "rs274 alone has no axes U V W"),
     ("foam/foam.ngc", "rs274 alone has no axes U V W"),
     ("external_offsets/dyn_demo", "user M-codes need no file"),
@@ -29,11 +36,26 @@ const DIFFERENCES: &[(&str, &str)] = &[
     ("external_offsets/opa_demo", "user M-codes need no file"),
     ("geometry/xyzc", "user M-codes need no file"),
     ("macros/m106", "a subroutine without its end is refused"),
-    ("ncfiles/smartprobe", "a dry run of a probe goes all the way"),
-    ("ncfiles/useful-subroutines", "an inner arc of the tool's own radius leaves no path"),
-    ("inside-corners", "arcs with unequal radii are re-centred before they are offset: 0.5 um"),
-    ("g84__g18__g99", "LinuxCNC 2.9 swaps the axes of G84 outside G17"),
-    ("g84__g19__g99", "LinuxCNC 2.9 swaps the axes of G84 outside G17"),
+    (
+        "ncfiles/smartprobe",
+        "a dry run of a probe goes all the way",
+    ),
+    (
+        "ncfiles/useful-subroutines",
+        "an inner arc of the tool's own radius leaves no path",
+    ),
+    (
+        "inside-corners",
+        "arcs with unequal radii are re-centred before they are offset: 0.5 um",
+    ),
+    (
+        "g84__g18__g99",
+        "LinuxCNC 2.9 swaps the axes of G84 outside G17",
+    ),
+    (
+        "g84__g19__g99",
+        "LinuxCNC 2.9 swaps the axes of G84 outside G17",
+    ),
     ("g71-endless-loop2", "G70-G72 are not read"),
     ("g72-missing-iteration", "G70-G72 are not read"),
     ("lathe_g7", "G70-G72 are not read"),
@@ -47,8 +69,12 @@ struct Theirs {
 }
 
 fn programs_below(folder: &Path, found: &mut Vec<PathBuf>) {
-    let Ok(entries) = std::fs::read_dir(folder) else { return };
-    let mut entries: Vec<PathBuf> = entries.filter_map(|entry| Some(entry.ok()?.path())).collect();
+    let Ok(entries) = std::fs::read_dir(folder) else {
+        return;
+    };
+    let mut entries: Vec<PathBuf> = entries
+        .filter_map(|entry| Some(entry.ok()?.path()))
+        .collect();
     entries.sort();
     for path in entries {
         if path.is_dir() && !path.is_symlink() {
@@ -64,8 +90,15 @@ fn programs_below(folder: &Path, found: &mut Vec<PathBuf>) {
 
 fn programs() -> Vec<PathBuf> {
     let mut found = Vec::new();
-    programs_below(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus/gcode"), &mut found);
-    for folder in ["/usr/share/linuxcnc/ncfiles", "/usr/share/doc/linuxcnc/examples", "/usr/share/axis"] {
+    programs_below(
+        &Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus/gcode"),
+        &mut found,
+    );
+    for folder in [
+        "/usr/share/linuxcnc/ncfiles",
+        "/usr/share/doc/linuxcnc/examples",
+        "/usr/share/axis",
+    ] {
         programs_below(Path::new(folder), &mut found);
     }
     if let Ok(only) = std::env::var("FEEDWRIGHT_ORACLE_ONLY") {
@@ -76,7 +109,9 @@ fn programs() -> Vec<PathBuf> {
 
 /// Tools without length, an eighth of an inch thick; `rs274` alone counts in inches.
 fn tool_table() -> String {
-    (1..=99).map(|tool| format!("T{tool} P{tool} Z0 D0.125 ;\n")).collect()
+    (1..=99)
+        .map(|tool| format!("T{tool} P{tool} Z0 D0.125 ;\n"))
+        .collect()
 }
 
 /// What `rs274` says: `None` where it accepts.
@@ -91,24 +126,44 @@ fn verdict(path: &Path, tools: &Path) -> Option<String> {
     if output.status.success() {
         return None;
     }
-    let text = String::from_utf8_lossy(&output.stderr).into_owned() + &format!(" [{:?}]", output.status.code());
+    let text = String::from_utf8_lossy(&output.stderr).into_owned()
+        + &format!(" [{:?}]", output.status.code());
     // Our reader only warns about a missing end.
-    if text.contains("File ended with no percent sign") { None } else { Some(text.replace('\n', " | ")) }
+    if text.contains("File ended with no percent sign") {
+        None
+    } else {
+        Some(text.replace('\n', " | "))
+    }
 }
 
 fn theirs(paths: &[PathBuf]) -> Vec<Theirs> {
     let folder = tempfile::tempdir().unwrap();
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle_scripts/linuxcnc_canon.py");
-    Command::new("/usr/bin/python3").arg(script).arg(folder.path()).args(paths).status().unwrap();
+    let script =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle_scripts/linuxcnc_canon.py");
+    Command::new("/usr/bin/python3")
+        .arg(script)
+        .arg(folder.path())
+        .args(paths)
+        .status()
+        .unwrap();
     (0..paths.len())
         .map(|number| {
-            let text = std::fs::read_to_string(folder.path().join(format!("{number}.json"))).unwrap_or_default();
-            let mut theirs = Theirs { moves: Vec::new(), refused: None, complete: false };
+            let text = std::fs::read_to_string(folder.path().join(format!("{number}.json")))
+                .unwrap_or_default();
+            let mut theirs = Theirs {
+                moves: Vec::new(),
+                refused: None,
+                complete: false,
+            };
             for line in text.lines() {
-                let Ok(value) = serde_json::from_str::<serde_json::Value>(line) else { continue };
+                let Ok(value) = serde_json::from_str::<serde_json::Value>(line) else {
+                    continue;
+                };
                 match value[0].as_str() {
                     Some("end") => theirs.complete = true,
-                    Some("error") => theirs.refused = Some(format!("line {}: {}", value[1], value[2])),
+                    Some("error") => {
+                        theirs.refused = Some(format!("line {}: {}", value[1], value[2]))
+                    }
                     _ => theirs.moves.push(value),
                 }
             }
@@ -118,8 +173,13 @@ fn theirs(paths: &[PathBuf]) -> Vec<Theirs> {
 }
 
 fn ours(path: &Path) -> (Vec<Motion>, Option<String>) {
-    let settings =
-        Settings { dialect: Some(Dialect::LinuxCnc), max_idle_lines: 1_000_000, max_motions: 3_000_000, tools: ToolTable::parse(&tool_table(), 25.4).unwrap(), ..Settings::default() };
+    let settings = Settings {
+        dialect: Some(Dialect::LinuxCnc),
+        max_idle_lines: 1_000_000,
+        max_motions: 3_000_000,
+        tools: ToolTable::parse(&tool_table(), 25.4).unwrap(),
+        ..Settings::default()
+    };
     let mut motions = Vec::new();
     let reader = match Reader::open(path, settings) {
         Ok(reader) => reader,
@@ -129,7 +189,12 @@ fn ours(path: &Path) -> (Vec<Motion>, Option<String>) {
         match step {
             Ok(Canon::Motion(motion)) => motions.push(motion),
             Ok(Canon::Event(_)) => {}
-            Err(fault) => return (motions, Some(format!("line {}: {}", fault.line, fault.message))),
+            Err(fault) => {
+                return (
+                    motions,
+                    Some(format!("line {}: {}", fault.line, fault.message)),
+                );
+            }
         }
     }
     (motions, None)
@@ -149,7 +214,10 @@ fn end_of(motion: &Motion) -> [f64; 9] {
 }
 
 fn apart(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    a.iter()
+        .zip(b)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max)
 }
 
 /// The first difference between the motions, if there is one.
@@ -172,7 +240,10 @@ fn compare(ours: &[Motion], theirs: &Theirs) -> Option<String> {
             // Their rigid tap comes back by itself.
             continue;
         }
-        if motion.shape == Shape::Line && motion.others.axes.is_none() && apart(&motion.start_mm, &motion.end_mm) <= NO_MOTION_MM {
+        if motion.shape == Shape::Line
+            && motion.others.axes.is_none()
+            && apart(&motion.start_mm, &motion.end_mm) <= NO_MOTION_MM
+        {
             continue;
         }
         let mut end = end_of(motion);
@@ -180,8 +251,15 @@ fn compare(ours: &[Motion], theirs: &Theirs) -> Option<String> {
             others = axes[1];
         }
         end[3..].copy_from_slice(&others);
-        let place = |what: &str, value: &serde_json::Value| Some(format!("motion {number}, line {}: {what}; ours {motion:?}, theirs {value}", motion.line));
-        let Some(value) = moves.next() else { return place("they have no more motions", &serde_json::Value::Null) };
+        let place = |what: &str, value: &serde_json::Value| {
+            Some(format!(
+                "motion {number}, line {}: {what}; ours {motion:?}, theirs {value}",
+                motion.line
+            ))
+        };
+        let Some(value) = moves.next() else {
+            return place("they have no more motions", &serde_json::Value::Null);
+        };
         let kind = value[0].as_str().unwrap_or("");
         match &motion.shape {
             Shape::Spline(_) => {
@@ -194,14 +272,21 @@ fn compare(ours: &[Motion], theirs: &Theirs) -> Option<String> {
                 }
                 continue;
             }
-            Shape::Arc { plane, center_mm, turns } => {
+            Shape::Arc {
+                plane,
+                center_mm,
+                turns,
+            } => {
                 let number = match plane {
                     Plane::Xy => 0,
                     Plane::Zx => 1,
                     Plane::Yz => 2,
                 };
                 let [first, second, _] = plane.axes();
-                let center = [value[4][0].as_f64().unwrap_or(f64::NAN), value[4][1].as_f64().unwrap_or(f64::NAN)];
+                let center = [
+                    value[4][0].as_f64().unwrap_or(f64::NAN),
+                    value[4][1].as_f64().unwrap_or(f64::NAN),
+                ];
                 if kind != "arc" || value[3] != number || value[5] != *turns {
                     return place("another shape", value);
                 }
@@ -228,7 +313,9 @@ fn compare(ours: &[Motion], theirs: &Theirs) -> Option<String> {
 #[test]
 fn linuxcnc_reads_the_same() {
     if Command::new("rs274").arg("-h").output().is_err() {
-        eprintln!("SKIPPED: LinuxCNC is not installed; on Debian: apt-get install --no-install-recommends linuxcnc-uspace");
+        eprintln!(
+            "SKIPPED: LinuxCNC is not installed; on Debian: apt-get install --no-install-recommends linuxcnc-uspace"
+        );
         return;
     }
     let paths = programs();
@@ -240,7 +327,9 @@ fn linuxcnc_reads_the_same() {
     let mut failures = Vec::new();
     for (path, theirs) in paths.iter().zip(&theirs) {
         let shown = path.display();
-        let known = DIFFERENCES.iter().find(|row| shown.to_string().contains(row.0));
+        let known = DIFFERENCES
+            .iter()
+            .find(|row| shown.to_string().contains(row.0));
         let refused = verdict(path, tools.path());
         let (motions, fault) = ours(path);
         let failure = match (&refused, &fault) {
@@ -264,11 +353,18 @@ fn linuxcnc_reads_the_same() {
         };
         match (failure, known) {
             (Some(failure), None) => failures.push(format!("{shown}: {failure}")),
-            (None, Some(_)) => failures.push(format!("{shown}: listed as a difference, but there is none")),
+            (None, Some(_)) => failures.push(format!(
+                "{shown}: listed as a difference, but there is none"
+            )),
             (Some(_), Some(_)) => *counts.entry("known differences").or_default() += 1,
             (None, None) => {}
         }
     }
     eprintln!("{counts:?}");
-    assert!(failures.is_empty(), "{} differences:\n{}", failures.len(), failures.join("\n"));
+    assert!(
+        failures.is_empty(),
+        "{} differences:\n{}",
+        failures.len(),
+        failures.join("\n")
+    );
 }

@@ -48,12 +48,14 @@ fn part(name: &str) -> PathBuf {
 
 /// The arcs of a part that consists of G2 and G3 with I and J only.
 fn arcs(name: &str) -> Vec<Arc> {
-    let text = std::fs::read_to_string(part(name)).unwrap();
+    let text = std::fs::read_to_string(part(name)).expect("the part is in the repository");
     let mut at = [0.0, 0.0];
     let mut arcs = Vec::new();
     for line in text.lines().filter(|line| !line.starts_with('(')) {
-        let words: Vec<(char, f64)> =
-            line.split_whitespace().map(|word| (word.chars().next().unwrap(), word[1..].parse().unwrap())).collect();
+        let words: Vec<(char, f64)> = line
+            .split_whitespace()
+            .map(|word| (word.chars().next().unwrap_or(' '), word[1..].parse().expect("a number behind the letter")))
+            .collect();
         let value = |letter| words.iter().find(|word| word.0 == letter).map(|word| word.1);
         assert!(words[0] != ('G', 1.0), "{name} has a line: {line}");
         let end = [value('X').unwrap_or(at[0]), value('Y').unwrap_or(at[1])];
@@ -79,7 +81,7 @@ fn arcs(name: &str) -> Vec<Arc> {
 fn nearest(curve: fn(f64) -> [f64; 2], p: [f64; 2], from: f64) -> (f64, f64) {
     let at = |a: f64| distance(curve(a), p);
     let tries = (-20..=60).map(|i| from + f64::from(i) * 1e-3);
-    let best = tries.min_by(|a, b| at(*a).total_cmp(&at(*b))).unwrap();
+    let best = tries.min_by(|a, b| at(*a).total_cmp(&at(*b))).expect("there are candidates");
     let (mut low, mut high) = (best - 2e-3, best + 2e-3);
     for _ in 0..60 {
         let (a, b) = (high - 0.618 * (high - low), low + 0.618 * (high - low));

@@ -58,7 +58,8 @@ fn the_machine_file_and_the_command_give_the_tool_positions() {
             let file = folder.path().join("trace.csv");
             assert_eq!(trace(&part, entry, &file), axes);
             let script = root().join("core/tests/oracle_scripts/resimulate.py");
-            let output = Command::new(python).arg(script).arg(root().join("machines/tnv40.toml")).arg(&file).output().unwrap();
+            let output =
+                Command::new(python).arg(script).arg(root().join("machines/tnv40.toml")).arg(&file).output().unwrap();
             let said = String::from_utf8_lossy(&output.stdout);
             let failed = String::from_utf8_lossy(&output.stderr);
             assert!(output.status.success(), "{}, {}: {said}{failed}", part.display(), entry.name);

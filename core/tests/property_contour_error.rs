@@ -21,10 +21,11 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 const PROMISED_MM: f64 = 1e-3;
 /// How far a tool is put beside the lagging reference, mm.
 const OFFSET_MM: f64 = 0.1;
+/// Servo periods in which a tool gets from one random place to the next: it is fast, but no tool is somewhere else in no
+/// time.
+const DRAWN_EVERY: u32 = 50;
 /// How far the tool lags behind the reference, s: kp = 50 1/s, and friction.
 const LAG_S: f64 = 0.022;
-/// Machining time that is looked at in each program, s.
-const LONGEST_S: f64 = 20.0;
 /// Step of the dense sampling, s: 5 um at 50 mm/s, before the refinement.
 const DENSE_S: f64 = 1e-4;
 
@@ -73,7 +74,7 @@ impl Controller<3> for Recorder {
 enum Tool {
     /// Where an open loop leaves it.
     Machine(Box<Plant<3>>),
-    /// At random beside the lagging reference, for as long as the machine cuts.
+    /// Wandering at random beside the lagging reference.
     Random(Xoshiro256PlusPlus),
 }
 
@@ -89,14 +90,16 @@ fn check(part: &PathBuf, machine: &Machine, schedule: Schedule, mut tool: Tool) 
     let mut tick = Tick::<3>::new(servo_s, schedule, machine.limits.max_deviation_mm);
     let mut tool_mm = reference.at(0.0).position_mm;
     let (mut checked, mut worst_mm) = (0, 0.0_f64);
+    let (mut from_mm, mut to_mm) = ([0.0; 3], [0.0; 3]);
     for n in 0_u32.. {
         let tau_s = f64::from(n) * servo_s;
-        if tau_s > LONGEST_S || reference.end_s().is_some_and(|end_s| tau_s > end_s + LAG_S) {
+        if reference.end_s().is_some_and(|end_s| tau_s > end_s + LAG_S) {
             break;
         }
         let setpoint = tick.step(&mut Axes(&mut reference), &mut recorder, tool_mm);
         if let Some(measured) = recorder.measured.take() {
-            let ahead_s = f64::from(schedule.preview * schedule.servo_periods) * servo_s;
+            // The window ends one knot behind what the schedule asks for.
+            let ahead_s = f64::from(schedule.preview * schedule.servo_periods + 1) * servo_s;
             let exact = reference.nearest(tool_mm, tau_s - reach_s, tau_s + ahead_s);
             let estimate = feedwright_control::vector::norm(measured.contour.vector_mm);
             let off_mm = (estimate - exact.distance_mm).abs();
@@ -116,8 +119,13 @@ fn check(part: &PathBuf, machine: &Machine, schedule: Schedule, mut tool: Tool) 
         tool_mm = match &mut tool {
             Tool::Machine(plant) => plant.step(setpoint.command_mm).position_mm,
             Tool::Random(rng) => {
+                if n % DRAWN_EVERY == 0 {
+                    from_mm = to_mm;
+                    to_mm = [0.0; 3].map(|_: f64| rng.random_range(-OFFSET_MM..=OFFSET_MM) / 3.0_f64.sqrt());
+                }
+                let part = f64::from(n % DRAWN_EVERY) / f64::from(DRAWN_EVERY);
                 let lagging_mm = reference.at(tau_s + servo_s - LAG_S).position_mm;
-                lagging_mm.map(|x| x + rng.random_range(-OFFSET_MM..=OFFSET_MM) / 3.0_f64.sqrt())
+                std::array::from_fn(|i| lagging_mm[i] + from_mm[i] + part * (to_mm[i] - from_mm[i]))
             }
         };
     }
@@ -126,7 +134,13 @@ fn check(part: &PathBuf, machine: &Machine, schedule: Schedule, mut tool: Tool) 
 }
 
 /// The exact distance against the nearest of many points, refined between the neighbours of the best.
-fn against_sampling(reference: &mut Reference<'_>, tool_mm: [f64; 3], [lo_s, hi_s]: [f64; 2], exact: &Foot, name: &str) {
+fn against_sampling(
+    reference: &mut Reference<'_>,
+    tool_mm: [f64; 3],
+    [lo_s, hi_s]: [f64; 2],
+    exact: &Foot,
+    name: &str,
+) {
     let mut distance = |tau_s: f64| {
         let p = reference.at(tau_s).position_mm;
         (p[0] - tool_mm[0]).hypot(p[1] - tool_mm[1]).hypot(p[2] - tool_mm[2])

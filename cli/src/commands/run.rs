@@ -63,6 +63,11 @@ fn find(name: &str) -> Result<&'static Entry> {
     })
 }
 
+/// A ratio for the table; a dash where there is none, as after a run that diverged at once.
+fn ratio(value: f64, base: f64) -> String {
+    if value.is_finite() && base > 0.0 { format!("{:.3}", value / base) } else { "-".to_owned() }
+}
+
 fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     let runs = &outcome.report.runs;
@@ -73,10 +78,10 @@ fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
     )?;
     for run in runs {
         let (now, first) = (&run.summary, &runs[0].summary);
-        let ratio = |value: fn(&RunSummary) -> f64| value(now) / value(first);
+        let ratio = |value: fn(&RunSummary) -> f64| ratio(value(now), value(first));
         writeln!(
             out,
-            "{:<18} {:>9.3} {:>10.2} {:>10.2} {:>8.3} {:>8.3} {:>8.3}",
+            "{:<18} {:>9.3} {:>10.2} {:>10.2} {:>8} {:>8} {:>8}",
             now.controller,
             now.time_s,
             now.rms_um,

@@ -6,6 +6,7 @@ use super::{FeedPlanner, Limits, LimitsError, MEMBERS, Member, Phase, Span, Time
 use crate::gcode::canon::{Corner, Event, EventKind};
 use crate::path::pieces::ArcLength;
 use crate::path::{PathError, Piece, Step, Steps};
+use crate::plc::Plc;
 use std::collections::VecDeque;
 
 /// M-codes that take effect with the next motion and so do not interrupt it: digital and analogue outputs synchronised with
@@ -27,6 +28,7 @@ pub enum Planned {
 pub struct Plan<'p> {
     steps: Steps<'p>,
     limits: Limits,
+    plc: Plc,
     planner: Box<dyn FeedPlanner>,
     /// Where the last piece ends, and how its corner is taken.
     last: Option<(Side, Corner, f64)>,
@@ -74,6 +76,7 @@ impl<'p> Plan<'p> {
         Ok(Self {
             steps,
             limits: *limits,
+            plc: Plc::default(),
             planner: (member.make)(limits),
             last: None,
             pieces: 0,
@@ -85,6 +88,13 @@ impl<'p> Plan<'p> {
             fault: None,
             finished: false,
         })
+    }
+
+    /// The plan of a machine whose PLC and spindle hold the motion up.
+    #[must_use]
+    pub fn with_plc(mut self, plc: Plc) -> Self {
+        self.plc = plc;
+        self
     }
 
     /// Why the path ends early, if it does; known once the plan has ended.
@@ -137,10 +147,9 @@ impl<'p> Plan<'p> {
             EventKind::MCode { code, .. } => !CODES_THAT_DO_NOT_STOP.contains(&code),
             EventKind::SpindleSpeed { .. } | EventKind::ToolSelect { .. } | EventKind::Message { .. } => false,
         };
-        let rest = match event.kind {
-            EventKind::Dwell { seconds } => Some((seconds, event.line)),
-            _ => None,
-        };
+        let seconds = self.plc.takes_s(&event.kind);
+        let rest = (seconds > 0.0).then_some((seconds, event.line));
+        self.stop |= rest.is_some();
         self.between(Some(event), rest);
     }
 
@@ -179,7 +188,11 @@ impl<'p> Plan<'p> {
                 return;
             };
             if let Some(event) = event {
-                self.ready.push_back(Planned::Event(TimedEvent { tau_s: self.clock.total(), event }));
+                self.ready.push_back(Planned::Event(TimedEvent {
+                    tau_s: self.clock.total(),
+                    duration_s: rest.map_or(0.0, |(seconds, _)| seconds),
+                    event,
+                }));
             }
             if let Some((duration_s, line)) = rest.filter(|(seconds, _)| *seconds > 0.0) {
                 let tau_s = self.clock.advance(duration_s);

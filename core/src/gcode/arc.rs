@@ -12,9 +12,15 @@ use super::state::{INCH_MM, Interpreter, Position};
 use super::travel::{Speed, others};
 
 /// Difference of the radii that is always accepted, mm and inch.
-const RADIUS_SLACK: [f64; 2] = [0.02 * std::f64::consts::SQRT_2, 0.002 * std::f64::consts::SQRT_2];
+const RADIUS_SLACK: [f64; 2] = [
+    0.02 * std::f64::consts::SQRT_2,
+    0.002 * std::f64::consts::SQRT_2,
+];
 /// Difference of the radii that is never accepted, mm and inch.
-const RADIUS_SLACK_MOST: [f64; 2] = [2.0 * std::f64::consts::SQRT_2, 0.2 * std::f64::consts::SQRT_2];
+const RADIUS_SLACK_MOST: [f64; 2] = [
+    2.0 * std::f64::consts::SQRT_2,
+    0.2 * std::f64::consts::SQRT_2,
+];
 /// Between the two, the difference must be below this share of the radius.
 const RADIUS_SLACK_SHARE: f64 = 1e-3;
 /// R may be shorter than half the chord by this much; the arc is then a half circle. mm and inch.

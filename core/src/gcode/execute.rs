@@ -48,9 +48,14 @@ impl Interpreter {
             || block
                 .code(Group::ToolLength)
                 .is_some_and(|word| matches!(word.number, 431 | 432));
-        let is_center = matches!(self.modal.motion, 20 | 30) && block.set & codes::ARC_CENTER != 0 && block.code(Group::NonModal).is_none();
-        (!taken && (block.has_axes() || is_center || (self.dialect == Dialect::Printer && block.has(b'e'))))
-            .then_some(self.modal.motion)
+        let is_center = matches!(self.modal.motion, 20 | 30)
+            && block.set & codes::ARC_CENTER != 0
+            && block.code(Group::NonModal).is_none();
+        (!taken
+            && (block.has_axes()
+                || is_center
+                || (self.dialect == Dialect::Printer && block.has(b'e'))))
+        .then_some(self.modal.motion)
     }
 
     /// Refuses words that no code of the line gives a meaning to.

@@ -94,21 +94,41 @@ impl Interpreter {
         for &letter in needed {
             if !block.has(letter) {
                 let name = char::from(letter).to_ascii_uppercase();
-                return Err(Fault::new("gcode::m_code", block.whole(), format!("M{number} needs its word {name}")));
+                return Err(Fault::new(
+                    "gcode::m_code",
+                    block.whole(),
+                    format!("M{number} needs its word {name}"),
+                ));
             }
         }
         if number != 66 {
             return Ok(());
         }
         if block.has(b'p') == block.has(b'e') {
-            return Err(Fault::new("gcode::m_code", block.whole(), "M66 waits for a digital input P or an analog input E: exactly one of them"));
+            return Err(Fault::new(
+                "gcode::m_code",
+                block.whole(),
+                "M66 waits for a digital input P or an analog input E: exactly one of them",
+            ));
         }
-        let mode = if block.has(b'l') { self.integer(block, b'l', 0, 4)? } else { 0 };
+        let mode = if block.has(b'l') {
+            self.integer(block, b'l', 0, 4)?
+        } else {
+            0
+        };
         if mode != 0 && block.get(b'q').unwrap_or(0.0) <= 0.0 {
-            return Err(Fault::new("gcode::m_code", block.whole(), format!("M66 L{mode} waits and needs a time limit Q above 0 s")));
+            return Err(Fault::new(
+                "gcode::m_code",
+                block.whole(),
+                format!("M66 L{mode} waits and needs a time limit Q above 0 s"),
+            ));
         }
         if mode != 0 && block.has(b'e') {
-            return Err(Fault::new("gcode::m_code", block.at(b'e'), "M66 reads an analog input at once: only L0 goes with E"));
+            return Err(Fault::new(
+                "gcode::m_code",
+                block.at(b'e'),
+                "M66 reads an analog input at once: only L0 goes with E",
+            ));
         }
         Ok(())
     }

@@ -90,8 +90,16 @@ impl Interpreter {
             return Ok(tool.offset);
         }
         if number != 0 && !self.settings.tools.tools.is_empty() {
-            let at = if block.has(b'h') { block.at(b'h') } else { word.at() };
-            return Err(Fault::new("gcode::tool", at, format!("tool {number} is not in the tool table")));
+            let at = if block.has(b'h') {
+                block.at(b'h')
+            } else {
+                word.at()
+            };
+            return Err(Fault::new(
+                "gcode::tool",
+                at,
+                format!("tool {number} is not in the tool table"),
+            ));
         }
         if number != 0 {
             let at = if block.has(b'h') {

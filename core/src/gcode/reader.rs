@@ -219,7 +219,7 @@ impl Reader {
     fn take_warnings(&mut self) {
         for warning in std::mem::take(&mut self.interpreter.warnings) {
             let warning = self.diagnose(Severity::Warning, warning);
-            self.warn(warning);
+            self.warn(*warning);
         }
     }
 
@@ -229,7 +229,12 @@ impl Reader {
             return self.flow.passed_line(range, &self.interpreter);
         }
         self.block.clear();
-        let Self { flow, interpreter, block, .. } = self;
+        let Self {
+            flow,
+            interpreter,
+            block,
+            ..
+        } = self;
         let bytes = flow.source_ref().bytes(range.clone());
         let mut cursor = Cursor::new(bytes);
         match cursor.peek() {
@@ -255,7 +260,9 @@ impl Reader {
             if command == firmware::Command::Acts {
                 interpreter.warnings.push(*firmware::warning(bytes));
             }
-            interpreter.event(EventKind::Message { text: String::from_utf8_lossy(bytes.trim_ascii()).into_owned() });
+            interpreter.event(EventKind::Message {
+                text: String::from_utf8_lossy(bytes.trim_ascii()).into_owned(),
+            });
             return Ok(());
         }
         if cursor.eat(b'n') {
@@ -273,31 +280,48 @@ impl Reader {
         for (target, value) in block.assignments.drain(..) {
             interpreter.assign(&target, value)?;
         }
-        if block.m.is_empty() { Ok(()) } else { self.calls() }
+        if block.m.is_empty() {
+            Ok(())
+        } else {
+            self.calls()
+        }
     }
 
     /// M98 and M99 come after all else of their line.
     fn calls(&mut self) -> Read<()> {
-        let Self { flow, interpreter, block, .. } = self;
+        let Self {
+            flow,
+            interpreter,
+            block,
+            ..
+        } = self;
         for word in &block.m {
             let at = word.at();
             match word.number {
                 98 => {
                     let Some(number) = block.get(b'p') else {
-                        return Err(Fault::new("gcode::m98", at, "M98 calls a subroutine, but P with its number is missing"));
+                        return Err(Fault::new(
+                            "gcode::m98",
+                            at,
+                            "M98 calls a subroutine, but P with its number is missing",
+                        ));
                     };
-                    let times = if block.has(b'l') { interpreter.integer(block, b'l', 0, i64::from(u32::MAX))? } else { 1 };
+                    let times = if block.has(b'l') {
+                        interpreter.integer(block, b'l', 0, i64::from(u32::MAX))?
+                    } else {
+                        1
+                    };
                     if !(0.0..1e15).contains(&number) {
-                        return Err(Fault::new("gcode::m98", block.at(b'p'), format!("P{number} is no number of a subroutine")));
+                        return Err(Fault::new(
+                            "gcode::m98",
+                            block.at(b'p'),
+                            format!("P{number} is no number of a subroutine"),
+                        ));
                     }
                     flow.call_number(number.round() as u64, times as u32, &at, interpreter)?;
                 }
-                99 => {
-                    if flow.return_number(&at, interpreter)? {
-                        // A control would begin again for the next part.
-                        interpreter.end_program();
-                    }
-                }
+                // A control would begin again for the next part.
+                99 if flow.return_number(&at, interpreter)? => interpreter.end_program(),
                 _ => {}
             }
         }
@@ -342,7 +366,7 @@ impl Reader {
                     "the program ends without M2, M30 or %".to_owned(),
                 );
                 warning.severity = Severity::Warning;
-                self.warn(warning);
+                self.warn(*warning);
             }
             self.interpreter.end_program();
         }
@@ -385,7 +409,13 @@ impl Reader {
             Ok(Line::Text(range) | Line::TooLong(range)) => source.bytes(range),
             _ => &[],
         };
-        let diagnostic = Diagnostic::of_line(severity, fault, name, begin.lines_before.saturating_add(1), bytes);
+        let diagnostic = Diagnostic::of_line(
+            severity,
+            fault,
+            name,
+            begin.lines_before.saturating_add(1),
+            bytes,
+        );
         if source.jump(here).is_err() {
             self.state = State::Done;
         }
@@ -401,9 +431,9 @@ impl Reader {
         ))
     }
 
-    fn warn(&mut self, warning: Box<Diagnostic>) {
+    fn warn(&mut self, warning: Diagnostic) {
         if self.warnings.len() < self.interpreter.settings.max_errors {
-            self.warnings.push(*warning);
+            self.warnings.push(warning);
         }
     }
 
@@ -434,7 +464,8 @@ impl Iterator for Reader {
             }
             if self.state == State::Done || self.interpreter.ended {
                 self.state = State::Done;
-                return self.rest().map(|rest| Err(*rest));
+                let rest = self.rest()?;
+                return Some(Err(*rest));
             }
             if let Err(diagnostic) = self.step()
                 && let Some(shown) = self.count(diagnostic)

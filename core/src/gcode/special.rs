@@ -8,9 +8,10 @@ use super::state::Interpreter;
 impl Interpreter {
     /// Carries out a motion code other than G0-G3 and G80.
     pub(super) fn special_motion(&mut self, block: &Block, code: u16) -> Read<()> {
-        if self.compensates() && !matches!(code, 52 | 53 | 50 | 51) {
+        if self.compensates() && !matches!(code, 50..=53) {
             let message = format!("{} cannot run with cutter compensation", spelled(code));
-            return Err(Fault::new("gcode::compensation", block.whole(), message).hint("end it with G40 first"));
+            return Err(Fault::new("gcode::compensation", block.whole(), message)
+                .hint("end it with G40 first"));
         }
         match code {
             50 | 51 => self.bezier(block, code),
@@ -22,8 +23,17 @@ impl Interpreter {
             730 | 740 | 810..=890 => self.cycle(block, code),
             760 => self.thread(block),
             _ => {
-                let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
-                Err(Fault::new("gcode::unsupported", at, format!("the lathe cycle {} is not read by this version", spelled(code))))
+                let at = block
+                    .code(Group::Motion)
+                    .map_or(block.whole(), |word| word.at());
+                Err(Fault::new(
+                    "gcode::unsupported",
+                    at,
+                    format!(
+                        "the lathe cycle {} is not read by this version",
+                        spelled(code)
+                    ),
+                ))
             }
         }
     }
@@ -32,9 +42,14 @@ impl Interpreter {
     pub(super) fn spindle_mode(&mut self, block: &Block) -> Read<()> {
         if let Some(word) = block.code(Group::SpindleMode) {
             if block.get(b'd').is_some_and(|most| most < 0.0) {
-                return Err(Fault::new("gcode::spindle", block.at(b'd'), "the highest spindle speed D must not be negative"));
+                return Err(Fault::new(
+                    "gcode::spindle",
+                    block.at(b'd'),
+                    "the highest spindle speed D must not be negative",
+                ));
             }
-            self.modal.constant_surface = (word.number == 960).then(|| block.get(b'd').unwrap_or(f64::INFINITY));
+            self.modal.constant_surface =
+                (word.number == 960).then(|| block.get(b'd').unwrap_or(f64::INFINITY));
         }
         Ok(())
     }

@@ -218,7 +218,10 @@ impl Interpreter {
 
     /// Hands out an event of the line under way.
     pub(super) fn event(&mut self, kind: EventKind) {
-        self.push(Canon::Event(Event { line: self.line, kind }));
+        self.push(Canon::Event(Event {
+            line: self.line,
+            kind,
+        }));
     }
 
     /// Hands out a step, behind those that are held back.
@@ -274,7 +277,13 @@ impl Interpreter {
                 Plane::Zx => 180.0,
                 Plane::Yz => 190.0,
             },
-            b"_ccomp" => if self.compensates() { 410.0 } else { 400.0 },
+            b"_ccomp" => {
+                if self.compensates() {
+                    410.0
+                } else {
+                    400.0
+                }
+            }
             b"_metric" => truth(modal.unit_mm == 1.0),
             b"_imperial" => truth(modal.unit_mm != 1.0),
             b"_absolute" => truth(!modal.incremental),

@@ -80,7 +80,7 @@ fn parse_tool(words: &str, unit_mm: f64) -> Result<(u32, Tool), String> {
                 tool.orientation = u8::try_from(whole()?)
                     .ok()
                     .filter(|&q| q <= 9)
-                    .ok_or_else(|| format!("`{word}`: 0 to 9"))?
+                    .ok_or_else(|| format!("`{word}`: 0 to 9"))?;
             }
             _ => {
                 let axis = AXIS_LETTERS

@@ -7,7 +7,7 @@ use toml::de::DeTable;
 
 use super::error::Fault;
 use super::reader::Table;
-use super::{AXIS_NAMES, Axis, Limits, Machine, Period};
+use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Period};
 
 /// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
 /// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.
@@ -30,6 +30,7 @@ pub(super) fn machine(text: &str) -> Result<Machine, Vec<Fault>> {
         source: root.text("source", &mut faults),
         period: period(root.table("period", &mut faults), &mut faults),
         limits: limits(root.table("limits", &mut faults), &mut faults),
+        plc: root.optional_table("plc", &mut faults).map(|table| plc(table, &mut faults)).unwrap_or_default(),
         axes: axes(root.table("axis", &mut faults), &mut faults),
     };
     root.finish(&mut faults);
@@ -68,6 +69,17 @@ fn limits(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Limits {
     };
     table.finish(faults);
     limits
+}
+
+fn plc(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Durations {
+    let durations = Durations {
+        tool_change_s: table.number("tool_change_s", "s", 0.0..=1e4, faults),
+        coolant_s: table.number("coolant_s", "s", 0.0..=1e4, faults),
+        pallet_change_s: table.number("pallet_change_s", "s", 0.0..=1e5, faults),
+        spindle_rev_min_s: table.number("spindle_rev_min_s", "rev/min/s", 0.0..=1e7, faults),
+    };
+    table.finish(faults);
+    durations
 }
 
 fn axes(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Vec<Axis> {

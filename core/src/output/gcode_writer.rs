@@ -12,7 +12,8 @@
 use std::io::{self, Write};
 
 use super::polyline::{Segment, Simplifier};
-use crate::gcode::canon::{Event, EventKind};
+use crate::feed::TimedEvent;
+use crate::gcode::canon::EventKind;
 use crate::trace::{Commanded, Row, Sink};
 
 /// Largest distance between the setpoints and the printed path, in either direction, mm.
@@ -155,11 +156,14 @@ impl<W: Write> Sink for GcodeWriter<W> {
     }
 
     /// Writes the event behind the motion so far.
-    fn event(&mut self, _t_s: f64, event: &Event) -> io::Result<()> {
+    fn event(&mut self, _t_s: f64, timed: &TimedEvent) -> io::Result<()> {
         self.flush_blocks()?;
+        let event = &timed.event;
         match &event.kind {
             EventKind::Dwell { seconds } => writeln!(self.out, "G4 P{seconds}"),
             EventKind::SpindleSpeed { rpm } => writeln!(self.out, "S{rpm}"),
+            // The end is written by `finish`, whether the program had one or not.
+            EventKind::ProgramEnd | EventKind::MCode { code: 2 | 30, .. } => Ok(()),
             EventKind::MCode { code, p, q } => {
                 let word =
                     |letter, value: Option<f64>| value.map_or_else(String::new, |value| format!(" {letter}{value}"));
@@ -169,8 +173,6 @@ impl<W: Write> Sink for GcodeWriter<W> {
             EventKind::Message { text } => writeln!(self.out, "(MSG, {})", text.replace(['(', ')', '\n', '\r'], " ")),
             EventKind::SpindleSync { .. } => Err(inexpressible(event.line, "a motion coupled to the spindle")),
             EventKind::Probe => Err(inexpressible(event.line, "a probing motion")),
-            // The end is written by `finish`, whether the program had one or not.
-            EventKind::ProgramEnd => Ok(()),
         }
     }
 }

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use serde::Serialize;
 
 use super::job::{Error, Job};
-use crate::gcode::canon::{Event, EventKind};
+use crate::feed::TimedEvent;
+use crate::gcode::canon::EventKind;
 use crate::output::gcode_writer::GcodeWriter;
 use crate::output::{OutputError, OutputFile};
 use crate::report::{Report, RunSummary, TimelineEvent, write_html};
@@ -135,7 +136,7 @@ impl Sink for Files {
         self.gcode.as_mut().map_or(Ok(()), |sink| sink.row(row))
     }
 
-    fn event(&mut self, t_s: f64, event: &Event) -> io::Result<()> {
+    fn event(&mut self, t_s: f64, event: &TimedEvent) -> io::Result<()> {
         self.gcode.as_mut().map_or(Ok(()), |sink| sink.event(t_s, event))
     }
 }
@@ -180,10 +181,15 @@ impl Sink for Timeline {
         Ok(())
     }
 
-    fn event(&mut self, t_s: f64, event: &Event) -> io::Result<()> {
-        let duration_s = if let EventKind::Dwell { seconds } = event.kind { seconds } else { 0.0 };
+    fn event(&mut self, t_s: f64, event: &TimedEvent) -> io::Result<()> {
         if self.events.len() < MOST_EVENTS {
-            self.events.push(TimelineEvent { t_s, duration_s, line: event.line, label: label(&event.kind) });
+            let TimedEvent { duration_s, event, .. } = event;
+            self.events.push(TimelineEvent {
+                t_s,
+                duration_s: *duration_s,
+                line: event.line,
+                label: label(&event.kind),
+            });
         }
         Ok(())
     }

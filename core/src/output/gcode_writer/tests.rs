@@ -3,6 +3,7 @@
 use proptest::prelude::*;
 
 use super::*;
+use crate::gcode::canon::Event;
 
 /// Half the printed step on three axes is inside the tolerance already; this is for rounding of the test's own sums.
 const ROUNDING_MM: f64 = 1e-9;
@@ -134,7 +135,10 @@ fn the_oracle_itself_tells_near_from_far() {
 #[test]
 fn a_drilling_cycle_keeps_its_rapids_events_and_order() {
     let mut writer = GcodeWriter::new(Vec::new(), 3, &["part (copy) 100%"]).unwrap();
-    let event = |writer: &mut GcodeWriter<Vec<u8>>, kind| writer.event(0.0, &Event { line: 1, kind }).unwrap();
+    let event = |writer: &mut GcodeWriter<Vec<u8>>, kind| {
+        let event = Event { line: 1, kind };
+        writer.event(0.0, &TimedEvent { tau_s: 0.0, duration_s: 0.0, event }).unwrap();
+    };
     let mut k = 0;
     let mut go = |writer: &mut GcodeWriter<Vec<u8>>, from: [f64; 3], to: [f64; 3], cutting: bool| {
         for step in 1..=100 {

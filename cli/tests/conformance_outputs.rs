@@ -1,0 +1,60 @@
+//! The corrected program, and what an interrupt leaves: nothing.
+
+#[path = "common/command.rs"]
+#[expect(dead_code, reason = "every test file uses a part of this")]
+mod common;
+
+use std::process::Stdio;
+use std::time::Duration;
+
+use common::{Folder, Ran};
+
+#[test]
+fn the_corrected_program_reads_back_with_its_events_in_place() {
+    let folder = Folder::new();
+    folder.file("part.ngc", "G21 G90 F1200\nS800 M3\nG0 X2\nG1 X6\nG3 X6 Y4 I0 J2\nG4 P0.1\nG1 X2\nM5\nM2\n");
+    folder.run_open_loop(&["part.ngc", "--out", "out.ngc"]).succeeded();
+    let text = folder.text("out.ngc");
+    let line = |start: &str| text.lines().position(|line| line.starts_with(start));
+    let order = ["(part.ngc)", "G21 G17 G90", "S800", "M3", "G0 X", "G1 X", "G4 P0.1", "M5", "M2"].map(line);
+    assert!(order.iter().all(Option::is_some) && order.is_sorted(), "{order:?} in\n{text}");
+    assert!(text.contains(" F1200\n") && text.ends_with("M5\nM2\n") && text.matches("M2").count() == 1, "{text}");
+    folder.run(&["check", "out.ngc"]).succeeded();
+}
+
+#[test]
+fn check_reads_machine_files_too() {
+    let folder = Folder::new();
+    let tnv40 = include_str!("../../machines/tnv40.toml");
+    folder.file("fine.toml", tnv40);
+    folder.file("bad.toml", tnv40.replace("kd = 0 ", "kd = nan "));
+    assert!(folder.run(&["check", "fine.toml"]).succeeded().stdout.contains("machine tnv40, 3 axes"));
+    folder.run(&["check", "bad.toml"]).refused(&["3 faults", "bad.toml:32:6", "hint: write a finite number"]);
+}
+
+/// The program takes minutes to cut; the interrupt comes once its hidden files stand there.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_leaves_no_file() {
+    for signal in ["-INT", "-TERM"] {
+        let folder = Folder::new();
+        let laps = "G1 X400\nG1 Y400\nG1 X0\nG1 Y0\n".repeat(20_000);
+        folder.file("long.ngc", format!("G21 G90 F600\n{laps}M2\n"));
+        let before = folder.content();
+        let outputs = ["--trace", "t.csv", "--out", "o.ngc", "--json", "r.json", "--report", "r.html"];
+        let mut command = folder.command();
+        command.args(["run", "long.ngc", "--controller", "open-loop"]).args(outputs);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let files = || std::fs::read_dir(folder.path()).unwrap().count();
+        // A process gives no other sign of having begun its files than the files.
+        while files() < before.len() + 4 {
+            assert!(child.try_wait().unwrap().is_none(), "it ended before its files were begun");
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        let sent = std::process::Command::new("kill").arg(signal).arg(child.id().to_string()).status();
+        assert!(sent.unwrap().success());
+        let ran = Ran::from(child.wait_with_output().unwrap());
+        assert_eq!((ran.code, ran.stdout.as_str()), (Some(130), ""), "{ran:?}");
+        assert_eq!(folder.content(), before, "something is left");
+    }
+}

@@ -1,0 +1,93 @@
+//! The PLC and the spindle unit: how long tool changes, spindle and coolant hold the motion up.
+//!
+//! The CNC system of Lee, Cho and Jeon (2005), Fig. 1, has both beside the axes. Durations come from the machine file; a
+//! spindle speeds up and slows down at a constant rate.
+
+use crate::gcode::canon::EventKind;
+use crate::machine::Durations;
+
+/// The state that durations depend on.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Plc {
+    durations: Durations,
+    /// Programmed speed, rev/min.
+    speed_rev_min: f64,
+    /// Speed of the spindle, rev/min; negative is counter-clockwise.
+    spindle_rev_min: f64,
+}
+
+impl Plc {
+    /// At rest, with these durations.
+    pub const fn new(durations: Durations) -> Self {
+        Self { durations, speed_rev_min: 0.0, spindle_rev_min: 0.0 }
+    }
+
+    /// How long the tool waits for what happens, s. Time that an operator takes (M0, M1) is none of the machine's.
+    pub fn takes_s(&mut self, kind: &EventKind) -> f64 {
+        match kind {
+            EventKind::Dwell { seconds } => *seconds,
+            EventKind::SpindleSpeed { rpm } => {
+                self.speed_rev_min = *rpm;
+                // A change of S under way goes on while the tool moves.
+                self.spindle_rev_min = self.spindle_rev_min.signum() * if self.runs() { *rpm } else { 0.0 };
+                0.0
+            }
+            EventKind::MCode { code: 3, .. } => self.spin_to(self.speed_rev_min),
+            EventKind::MCode { code: 4, .. } => self.spin_to(-self.speed_rev_min),
+            EventKind::MCode { code: 5, .. } => self.spin_to(0.0),
+            EventKind::MCode { code: 6, .. } => self.spin_to(0.0) + self.durations.tool_change_s,
+            EventKind::MCode { code: 7..=9, .. } => self.durations.coolant_s,
+            EventKind::MCode { code: 60, .. } => self.durations.pallet_change_s,
+            _ => 0.0,
+        }
+    }
+
+    fn runs(&self) -> bool {
+        self.spindle_rev_min != 0.0
+    }
+
+    /// Time to reach a speed, s.
+    fn spin_to(&mut self, wanted_rev_min: f64) -> f64 {
+        let change = (wanted_rev_min - self.spindle_rev_min).abs();
+        self.spindle_rev_min = wanted_rev_min;
+        if self.durations.spindle_rev_min_s > 0.0 { change / self.durations.spindle_rev_min_s } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const DURATIONS: Durations =
+        Durations { tool_change_s: 5.0, coolant_s: 0.5, pallet_change_s: 10.0, spindle_rev_min_s: 2000.0 };
+
+    fn m(code: u16) -> EventKind {
+        EventKind::MCode { code, p: None, q: None }
+    }
+
+    #[test]
+    fn the_spindle_spins_up_reverses_and_stops_at_its_rate() {
+        let mut plc = Plc::new(DURATIONS);
+        assert_eq!(plc.takes_s(&EventKind::SpindleSpeed { rpm: 6000.0 }), 0.0);
+        assert_eq!(plc.takes_s(&m(3)), 3.0);
+        assert_eq!(plc.takes_s(&m(3)), 0.0);
+        assert_eq!(plc.takes_s(&m(4)), 6.0);
+        assert_eq!(plc.takes_s(&m(5)), 3.0);
+    }
+
+    #[test]
+    fn a_tool_change_waits_for_the_spindle_to_stop() {
+        let mut plc = Plc::new(DURATIONS);
+        plc.takes_s(&EventKind::SpindleSpeed { rpm: 4000.0 });
+        plc.takes_s(&m(3));
+        assert_eq!(plc.takes_s(&m(6)), 7.0);
+        assert_eq!(plc.takes_s(&m(6)), 5.0);
+    }
+
+    #[test]
+    fn coolant_pallet_and_the_rest_take_what_the_file_says() {
+        let mut plc = Plc::new(DURATIONS);
+        assert_eq!([7, 8, 9, 60, 0, 1].map(|code| plc.takes_s(&m(code))), [0.5, 0.5, 0.5, 10.0, 0.0, 0.0]);
+        assert_eq!(Plc::default().takes_s(&m(6)), 0.0);
+    }
+}
