@@ -2,6 +2,8 @@
 //!
 //! Golden: that they have not changed says nothing on whether they are right; `oracle_paper` does.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 #[path = "../examples/tables/table.rs"]
 mod table;
 

@@ -3,6 +3,8 @@
 //! The bounds are not this program's own numbers: they come from a prototype of the same equations, written before it in
 //! another language, and from the closed form of the feed plan.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 use std::sync::OnceLock;
 
 use feedwright::identify::Programme;

@@ -14,7 +14,7 @@ use super::contour::{Identified, Training, identify};
 use crate::machine::Machine;
 
 /// Raised whenever the same key would stand for other weights: a change of the plant, the planner or the training.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 #[derive(Serialize, Deserialize)]
 struct Stored {
