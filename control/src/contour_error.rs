@@ -17,7 +17,7 @@
 //! the tool can be, given how far it was off and how fast the reference moves. [`MAX_ENTRIES`] bounds it.
 
 use crate::vector::{add_scaled, dot, norm, scale, sub};
-use crate::window::{Knot, REGISTER_KNOTS, Window};
+use crate::window::{Knot, Window};
 
 /// Entries looked at on either side of the start, at the least: covers a feed period in which the lag changes.
 const LEAST_REACH: i32 = 12;
@@ -30,6 +30,8 @@ pub const MAX_ENTRIES: usize = 2 * MOST_REACH as usize + 1;
 const REACH_OF_ERROR: f64 = 3.0;
 /// Entries that [`locate`] looks at on either side: the lag changes by less than that in a feed period.
 const LOCATE_REACH: i32 = 6;
+/// A tool that stands becomes older by the knots of a feed period, rounded, and by as much as it trembles; entries.
+const STANDING: i32 = 2;
 /// Where the path runs back along itself, an old stretch is as near as the one that the tool is on, and following it leads
 /// out of the register: of feet whose distances differ by less than this, the newer counts, mm.
 const AS_NEAR_MM: f64 = 1e-4;
@@ -67,6 +69,8 @@ pub struct Estimator {
     index: i32,
     distance_mm: f64,
     spacing_mm: f64,
+    /// Whether the tool seemed to move back along the path.
+    backwards: bool,
 }
 
 impl Estimator {
@@ -74,15 +78,16 @@ impl Estimator {
     #[inline]
     pub fn estimate<const N: usize>(&mut self, window: &Window<'_, N>, tool_mm: [f64; N]) -> ContourError<N> {
         let [first, last] = window.range();
-        // A tool that far behind is not following: the search is on an old stretch beside the one that is cut, and about to
-        // leave the register with it.
-        let lost = self.index < MOST_REACH - REGISTER_KNOTS as i32;
-        let start = if lost { 0 } else { self.index.clamp(first, last) };
+        let start = if self.backwards { 0 } else { self.index }.clamp(first, last);
         let reach = self.reach();
         // On towards the current knot in any case: a tool that lags turns short of a point where the path turns back, and
         // goes on from there on a newer stretch, which need not begin near the old one.
         let to = (start + reach).max((start + MOST_REACH).min(0)).min(last);
         let error = nearest(window, tool_mm, (start - reach).max(first), to);
+        // No tool moves back along its path: where it seems to, an older stretch beside the one that is cut was found, and
+        // following that would lead out of the register. The next search begins at the current knot again.
+        let pushed = (window.feed_period_s / window.servo_s()) as i32;
+        self.backwards = error.index < self.index - pushed - STANDING;
         self.index = error.index;
         self.distance_mm = norm(error.vector_mm);
         let before = (error.index - 1).max(first);
