@@ -1,5 +1,7 @@
 //! What the command hands over: exit codes, files, tables, and that nothing but the arguments decides on them.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 #[path = "common/command.rs"]
 mod common;
 
@@ -283,4 +285,18 @@ fn wait_until_it_writes(folder: &Folder) -> bool {
         std::thread::sleep(Duration::from_millis(5));
     }
     false
+}
+
+/// Position gains three times those of the paper: whatever the table says of it, a correction that spoils the part is called
+/// that.
+#[test]
+fn a_controller_that_makes_it_worse_is_named() {
+    let folder = Folder::new();
+    let text = include_str!("../../machines/tnv40.toml").replace("kp_1_s = 50", "kp_1_s = 150");
+    folder.file("stiff.toml", text);
+    let ran = folder.run(&["run", "circle.ngc", "--machine", "stiff.toml", "--json", "r.json"]).succeeded();
+    let results = results(&folder);
+    let of = |run: usize, key: &str| results["runs"][run][key].as_f64().unwrap();
+    let worse = of(1, "rms_um") > of(0, "rms_um") && of(1, "max_um") > of(0, "max_um");
+    assert_eq!(ran.stdout.contains("two-dimensional is worse than open-loop"), worse, "{ran:?}");
 }

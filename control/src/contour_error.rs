@@ -31,6 +31,8 @@ const REACH_OF_ERROR: f64 = 3.0;
 /// Entries that [`locate`] looks at on either side: between standstill and full acceleration the lag of a servo changes
 /// by a third of its time constant.
 const LOCATE_REACH: i32 = 8;
+/// A tool that stands becomes older by the knots of a feed period, rounded, and by as much as it trembles; entries.
+const STANDING: i32 = 2;
 /// Where the path runs back along itself, an old stretch is as near as the one that the tool is on, and following it leads
 /// out of the register: of feet whose distances differ by less than this, the newer counts, mm.
 const AS_NEAR_MM: f64 = 1e-4;
@@ -68,6 +70,8 @@ pub struct Estimator {
     index: i32,
     distance_mm: f64,
     spacing_mm: f64,
+    /// Whether the tool seemed to move back along the path.
+    backwards: bool,
 }
 
 impl Estimator {
@@ -75,12 +79,16 @@ impl Estimator {
     #[inline]
     pub fn estimate<const N: usize>(&mut self, window: &Window<'_, N>, tool_mm: [f64; N]) -> ContourError<N> {
         let [first, last] = window.range();
-        let start = self.index.clamp(first, last);
+        let start = if self.backwards { 0 } else { self.index }.clamp(first, last);
         let reach = self.reach();
         // On towards the current knot in any case: a tool that lags turns short of a point where the path turns back, and
         // goes on from there on a newer stretch, which need not begin near the old one.
         let to = (start + reach).max((start + MOST_REACH).min(0)).min(last);
         let error = nearest(window, tool_mm, (start - reach).max(first), to);
+        // No tool moves back along its path: where it seems to, an older stretch beside the one that is cut was found, and
+        // following that would lead out of the register. The next search begins at the current knot again.
+        let pushed = (window.feed_period_s / window.servo_s()) as i32;
+        self.backwards = error.index < self.index - pushed - STANDING;
         self.index = error.index;
         self.distance_mm = norm(error.vector_mm);
         let before = (error.index - 1).max(first);
@@ -120,34 +128,30 @@ pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i
     ContourError { index, ..nearest_foot(window, tool_mm, index) }
 }
 
-/// The nearest point of the path near the knots of a range; of two as near, the newer.
+/// The nearest point of the path near the knots of a range, which is widened while the nearest stands at an end of it. Of
+/// two points as near, the newer.
 #[inline]
 fn nearest<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, to: i32) -> ContourError<N> {
-    let Found { nearest, newest, entries } = nearest_knots(window, tool_mm, from, to);
-    let at = |index: i32| ContourError { index, entries, ..nearest_foot(window, tool_mm, index) };
-    let foot = at(nearest);
-    if newest != nearest {
-        let newer = at(newest);
-        if norm(newer.vector_mm) <= norm(foot.vector_mm) + AS_NEAR_MM {
-            return newer;
-        }
-    }
-    foot
+    let minima = minima(window, tool_mm, from, to);
+    let at = |index: i32| ContourError { index, entries: minima.entries, ..nearest_foot(window, tool_mm, index) };
+    let newest = at(minima.newest);
+    // The nearer knot need not have the nearer foot: where the path turns back, both stretches are looked at.
+    let older = minima.older.map_or(newest, at);
+    if norm(newest.vector_mm) <= norm(older.vector_mm) + AS_NEAR_MM { newest } else { older }
 }
 
-/// Knots of a range at which the distance has a minimum.
-struct Found {
-    /// The least.
-    nearest: i32,
+/// Knots at which the distance of the tool has a minimum.
+struct Minima {
     /// The newest.
     newest: i32,
+    /// The least of those behind it.
+    older: Option<i32>,
     /// Entries looked at.
     entries: usize,
 }
 
-/// Finds the nearest knot in a range, which is widened while the nearest stands at an end of it.
 #[inline]
-fn nearest_knots<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, to: i32) -> Found {
+fn minima<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from: i32, to: i32) -> Minima {
     let square = |index: i32| {
         let d = sub(window.knot(index).position_mm, tool_mm);
         dot(d, d)
@@ -157,15 +161,19 @@ fn nearest_knots<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from
         newest -= 1;
         newest_square = square(newest);
     }
-    let (mut best, mut best_square) = (newest, newest_square);
+    let (mut older, mut older_square) = (None, f64::INFINITY);
+    let mut last_square = newest_square;
     for index in (from..newest).rev() {
         let s = square(index);
-        if s < best_square {
-            (best, best_square) = (index, s);
+        if s < last_square && s < older_square {
+            (older, older_square) = (Some(index), s);
         }
+        last_square = s;
     }
     let mut entries = (to - from + 1) as usize;
     let [first, last] = window.range();
+    let nearer_older = older.filter(|_| older_square < newest_square);
+    let (mut best, mut best_square) = nearer_older.map_or((newest, newest_square), |older| (older, older_square));
     let direction = if best == from { -1 } else { 1 };
     if best == from || best == to {
         while entries < MAX_ENTRIES && (first..=last).contains(&(best + direction)) {
@@ -177,7 +185,12 @@ fn nearest_knots<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], from
             (best, best_square) = (best + direction, s);
         }
     }
-    Found { nearest: best, newest, entries }
+    if nearer_older.is_some() {
+        older = Some(best);
+    } else {
+        newest = best;
+    }
+    Minima { newest, older, entries }
 }
 
 /// The nearest point on the stretches before and after the knot of this index.

@@ -9,7 +9,7 @@ use std::sync::OnceLock;
 
 use feedwright::identify::Programme;
 use feedwright::identify::cache::identified;
-use feedwright::identify::contour::{Training, identify};
+use feedwright::identify::contour::{Recording, Training};
 use feedwright::machine::Machine;
 use feedwright::paper::{Paper, experiment};
 
@@ -86,6 +86,6 @@ fn open_loop_errs_as_the_prototype_does() {
 fn the_cache_holds_what_training_gives() {
     let (machine, programme, training) = (machine(), Programme::paper(), Training::default());
     let cached = identified::<2>(&machine, &programme, &training, 1, &mut |_| {});
-    let trained = identify::<2>(&machine, &programme, &training, 1, &mut |_| {});
+    let trained = Recording::<2>::new(&machine, &programme, 1).train(&training, &mut |_| {});
     assert!(cached == trained, "hint: raise FORMAT in core/src/identify/cache.rs");
 }

@@ -3,6 +3,8 @@
 //!
 //! The script: `oracle_scripts/resimulate.py`, written from the servo law.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

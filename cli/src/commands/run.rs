@@ -95,13 +95,11 @@ fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
         }
     }
     if let [first, .., last] = &runs[..]
+        && last.summary.rms_um > first.summary.rms_um
         && last.summary.max_um > first.summary.max_um
     {
         let (worse, better) = (&last.summary.controller, &first.summary.controller);
-        writeln!(
-            out,
-            "{worse} is worse than {better} here: nothing is gained by correcting this part on this machine"
-        )?;
+        writeln!(out, "{worse} is worse than {better} for this part on this machine: do not use its command")?;
     }
     if let (Some(tolerance_um), Some(last)) = (job.tolerance_um, runs.last()) {
         let verdict = if outcome.within_tolerance { "within" } else { "out of" };

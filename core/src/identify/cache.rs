@@ -1,4 +1,5 @@
-//! Trained identifiers are kept by content: the same machine, programme, training and seed find the same weights.
+//! Trained identifiers are kept by content: the same recording and training find the same weights. The recording is made
+//! anew each time, which takes a fraction of the training, so that no change of machine, plant or planner finds old weights.
 //!
 //! One small JSON file each, in the user's cache folder, or in `$FEEDWRIGHT_CACHE` where that is set. A file that cannot
 //! be read or does not hold a network is trained anew; one that cannot be written is not an error.
@@ -10,11 +11,11 @@ use feedwright_control::identifier::{HIDDEN, INPUTS};
 use serde::{Deserialize, Serialize};
 
 use super::Programme;
-use super::contour::{Identified, Training, identify};
+use super::contour::{Identified, Recording, Training};
 use crate::machine::Machine;
 
-/// Raised whenever the same key would stand for other weights: a change of the plant, the planner or the training.
-const FORMAT: u32 = 3;
+/// Raised whenever the same recording gives other weights: a change of the network or of its training.
+const FORMAT: u32 = 4;
 
 #[derive(Serialize, Deserialize)]
 struct Stored {
@@ -32,11 +33,12 @@ pub fn identified<const N: usize>(
     seed: u64,
     progress: &mut dyn FnMut(f64),
 ) -> Identified<N> {
-    let file = folder().map(|folder| folder.join(format!("{}.json", key::<N>(machine, programme, training, seed))));
+    let recording = Recording::<N>::new(machine, programme, seed);
+    let file = folder().map(|folder| folder.join(format!("{}.json", key(&recording, training))));
     if let Some(found) = file.as_ref().and_then(load) {
         return found;
     }
-    let identified = identify(machine, programme, training, seed, progress);
+    let identified = recording.train(training, progress);
     if let Some(file) = file {
         // A cache that cannot be written costs time, nothing else.
         let _ = store(&file, &identified);
@@ -51,8 +53,8 @@ fn folder() -> Option<PathBuf> {
     }
 }
 
-fn key<const N: usize>(machine: &Machine, programme: &Programme, training: &Training, seed: u64) -> String {
-    let content = serde_json::json!([FORMAT, N, machine.fingerprint(), programme, training, seed]);
+fn key<const N: usize>(recording: &Recording<N>, training: &Training) -> String {
+    let content = serde_json::json!([FORMAT, N, recording.fingerprint(), training]);
     blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
 }
 

@@ -51,19 +51,40 @@ pub struct Identified<const N: usize> {
     pub samples: usize,
 }
 
-/// Cuts the programme on the machine and trains a network on what it sees. `progress` gets the part done, 0 to 1.
-pub fn identify<const N: usize>(
-    machine: &Machine,
-    programme: &Programme,
-    training: &Training,
-    seed: u64,
-    progress: &mut dyn FnMut(f64),
-) -> Identified<N> {
-    let mut rng = Rng::seed_from_u64(seed);
-    let period_s = f64::from(programme.servo_periods) * machine.period.servo_s;
-    let laps = record::<N>(machine, programme, &mut rng);
-    let samples = laps.iter().flat_map(|lap| samples(lap, period_s)).collect();
-    train(samples, training, &mut rng, progress)
+/// What a machine showed while it cut the programme: all that a training needs, so that equal recordings give equal
+/// weights.
+#[derive(Debug, Clone)]
+pub struct Recording<const N: usize> {
+    samples: Vec<Sample<N>>,
+    rng: Rng,
+}
+
+impl<const N: usize> Recording<N> {
+    /// Cuts the programme on the machine.
+    pub fn new(machine: &Machine, programme: &Programme, seed: u64) -> Self {
+        let mut rng = Rng::seed_from_u64(seed);
+        let period_s = f64::from(programme.servo_periods) * machine.period.servo_s;
+        let laps = record::<N>(machine, programme, &mut rng);
+        Self { samples: laps.iter().flat_map(|lap| samples(lap, period_s)).collect(), rng }
+    }
+
+    /// A hash of its content.
+    pub fn fingerprint(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        for sample in &self.samples {
+            for number in sample.inputs.as_flattened().iter().chain(&sample.error) {
+                hasher.update(&number.to_le_bytes());
+            }
+        }
+        hasher.update(format!("{:?}", self.rng).as_bytes());
+        hasher.finalize().to_hex().to_string()
+    }
+
+    /// Trains a network on it by plain back-propagation. `progress` gets the part done, 0 to 1.
+    pub fn train(self, training: &Training, progress: &mut dyn FnMut(f64)) -> Identified<N> {
+        let Self { samples, mut rng } = self;
+        train(samples, training, &mut rng, progress)
+    }
 }
 
 /// What the network would have seen from knot to knot of a lap.
