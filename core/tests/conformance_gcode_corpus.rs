@@ -1,7 +1,5 @@
 //! Programs of other controls, read in the dialect that is chosen for them: which are refused, and that nothing but dialect is the reason.
 
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use std::path::Path;
 
 use feedwright::gcode::{CheckError, Settings, check};

@@ -115,3 +115,31 @@ fn text_outside_comments_must_be_readable() {
     let Err(CheckError::Faults(faults)) = summarize(reader) else { panic!("accepted") };
     assert!(faults[0].message.contains("not UTF-8"));
 }
+
+#[test]
+fn hostile_programs_end_with_a_place() {
+    let settings = || Settings { max_idle_lines: 1_000_000, ..Settings::default() };
+    let first = |text: &[u8]| {
+        let reader = Reader::from_text("part.ngc", text, settings()).unwrap();
+        match summarize(reader) {
+            Err(CheckError::Faults(faults)) => faults[0].clone(),
+            other => panic!("{other:?}"),
+        }
+    };
+    let long = first(&[b"G0 X1\n".to_vec(), vec![b'1'; 10 << 20], b"\nM2\n".to_vec()].concat());
+    assert_eq!((long.line, long.text.len() < 1000), (2, true));
+    assert!(long.message.contains("longer than 65536 bytes"));
+    let deep = first(format!("G0 X{}\nM2", "[".repeat(60_000)).as_bytes());
+    assert!(deep.message.contains("inside each other") && deep.line == 1);
+    let calls = first(b"G0 X1\no1 sub\no1 call\no1 endsub\no1 call\nM2");
+    assert_eq!((calls.line, calls.message.contains("calls inside each other")), (3, true));
+    let names: String = (0..200_000).map(|n| format!("#<n{n}>=1\n")).collect();
+    let names = first(names.as_bytes());
+    assert_eq!((names.line, names.message.contains("too many named parameters")), (100_001, true));
+    let nul = first(&[b"G0 X1\n".repeat(20_000), b"G0 \0 X2\nM2\n".to_vec()].concat());
+    assert_eq!((nul.line, nul.column, nul.message.contains("0x00")), (20_001, 4, true));
+    let number = first(format!("G0 X{}\nM2", "9".repeat(400)).as_bytes());
+    assert!(number.message.contains("beyond what any control can hold"));
+    let endless = first(b"G0 X1\nM98 P1\nM2\nO1\no2 while [1]\no2 endwhile\nM99\n");
+    assert!(endless.message.contains("endless loop"));
+}
