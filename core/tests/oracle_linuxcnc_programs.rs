@@ -92,7 +92,7 @@ fn tool_table() -> String {
 /// What `rs274` says: `None` where it accepts.
 fn verdict(path: &Path, tools: &Path) -> Option<String> {
     let output = Command::new("timeout")
-        .args(["5", "rs274", "-g", "-t"])
+        .args(["2", "rs274", "-g", "-t"])
         .arg(tools)
         .arg(path)
         .current_dir(path.parent().unwrap())
