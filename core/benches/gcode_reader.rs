@@ -21,26 +21,18 @@ fn print_program(lines: usize) -> String {
 
 /// A milling program with parameters and a loop.
 fn loop_program(rounds: usize) -> String {
-    format!(
-        "F600\n#1=0\no1 repeat [{rounds}]\n#1=[#1+0.1]\nG1 X[10*cos[#1]] Y[10*sin[#1]] Z-#1\no1 endrepeat\nM2\n"
-    )
+    format!("F600\n#1=0\no1 repeat [{rounds}]\n#1=[#1+0.1]\nG1 X[10*cos[#1]] Y[10*sin[#1]] Z-#1\no1 endrepeat\nM2\n")
 }
 
 fn read(text: &str, dialect: Dialect) -> usize {
-    let settings = Settings {
-        dialect: Some(dialect),
-        ..Settings::default()
-    };
-    Reader::from_text("bench", text, settings)
-        .map_or(0, |reader| reader.filter(Result::is_ok).count())
+    let settings = Settings { dialect: Some(dialect), ..Settings::default() };
+    Reader::from_text("bench", text, settings).map_or(0, |reader| reader.filter(Result::is_ok).count())
 }
 
 #[divan::bench]
 fn print_lines(bencher: Bencher<'_, '_>) {
     let text = print_program(100_000);
-    bencher
-        .counter(BytesCount::of_str(&text))
-        .bench(|| read(divan::black_box(&text), Dialect::Printer));
+    bencher.counter(BytesCount::of_str(&text)).bench(|| read(divan::black_box(&text), Dialect::Printer));
 }
 
 #[divan::bench]
@@ -52,7 +44,5 @@ fn expressions_in_a_loop(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn damaged_lines(bencher: Bencher<'_, '_>) {
     let text = "G1 X1 Y$ ; damaged\n".repeat(10_000);
-    bencher
-        .counter(BytesCount::of_str(&text))
-        .bench(|| read(divan::black_box(&text), Dialect::LinuxCnc));
+    bencher.counter(BytesCount::of_str(&text)).bench(|| read(divan::black_box(&text), Dialect::LinuxCnc));
 }

@@ -145,16 +145,9 @@ impl Random {
 
 fn main() -> ExitCode {
     let mut arguments = std::env::args().skip(1);
-    let seconds: u64 = arguments
-        .next()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(10);
-    let seed: u64 = arguments
-        .next()
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(1);
-    let mut seeds: Vec<Vec<u8>> =
-        vec![b"G21\nF100\no1 sub\nG1 X#1\no1 endsub\no1 call [1]\nG2 X2 I1\nM2\n".to_vec()];
+    let seconds: u64 = arguments.next().and_then(|text| text.parse().ok()).unwrap_or(10);
+    let seed: u64 = arguments.next().and_then(|text| text.parse().ok()).unwrap_or(1);
+    let mut seeds: Vec<Vec<u8>> = vec![b"G21\nF100\no1 sub\nG1 X#1\no1 endsub\no1 call [1]\nG2 X2 I1\nM2\n".to_vec()];
     for path in arguments {
         collect(Path::new(&path), &mut seeds);
     }
@@ -180,9 +173,7 @@ fn main() -> ExitCode {
 /// Adds the beginnings of all files below `path`.
 fn collect(path: &Path, seeds: &mut Vec<Vec<u8>>) {
     let mut entries: Vec<PathBuf> = match std::fs::read_dir(path) {
-        Ok(entries) => entries
-            .filter_map(|entry| Some(entry.ok()?.path()))
-            .collect(),
+        Ok(entries) => entries.filter_map(|entry| Some(entry.ok()?.path())).collect(),
         Err(_) => {
             if let Ok(mut bytes) = std::fs::read(path) {
                 bytes.truncate(MOST_BYTES);
@@ -231,11 +222,7 @@ fn mutated(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
 fn try_program(text: &[u8]) -> Result<(), String> {
     let begin = Instant::now();
     let result = std::panic::catch_unwind(|| {
-        let settings = Settings {
-            max_idle_lines: 20_000,
-            max_motions: 20_000,
-            ..Settings::default()
-        };
+        let settings = Settings { max_idle_lines: 20_000, max_motions: 20_000, ..Settings::default() };
         let Ok(reader) = Reader::from_text("mutated", text, settings) else {
             return Ok(());
         };
@@ -249,11 +236,7 @@ fn try_program(text: &[u8]) -> Result<(), String> {
                 }
                 Err(_) => faults = true,
                 Ok(Canon::Motion(motion)) => {
-                    let numbers = motion
-                        .start_mm
-                        .iter()
-                        .chain(&motion.end_mm)
-                        .chain([&motion.feed_mm_s]);
+                    let numbers = motion.start_mm.iter().chain(&motion.end_mm).chain([&motion.feed_mm_s]);
                     if numbers.clone().any(|value| !value.is_finite()) {
                         return Err(format!("a number is not finite: {motion:?}"));
                     }

@@ -17,20 +17,8 @@ fn faults(text: &str) -> Vec<Diagnostic> {
 const TABLE: &[(&str, u32, u32, u32, &str)] = &[
     ("G0 X1\nG1.7 X2", 2, 1, 4, "G1.7 is not a G-code"),
     ("G0 X1\n  G115 X2", 2, 3, 4, "G115 is not a G-code"),
-    (
-        "F100 G2 X10 Y0 I5.6 J0",
-        1,
-        1,
-        22,
-        "5.600000 mm at the start and 4.400000 mm at the end",
-    ),
-    (
-        "F100 G2 X10 Y0 R4.9",
-        1,
-        16,
-        4,
-        "at least half the distance, 5.000000 mm",
-    ),
+    ("F100 G2 X10 Y0 I5.6 J0", 1, 1, 22, "5.600000 mm at the start and 4.400000 mm at the end"),
+    ("F100 G2 X10 Y0 R4.9", 1, 16, 4, "at least half the distance, 5.000000 mm"),
     ("G1 X10", 1, 1, 6, "no feed F"),
     ("G1 F0 X10", 1, 4, 2, "F0 moves nothing"),
     ("G0 X1e300", 1, 6, 4, "E has no meaning with G0"),
@@ -43,13 +31,7 @@ const TABLE: &[(&str, u32, u32, u32, &str)] = &[
     ("X1", 1, 1, 2, "no code such as G0 or G1"),
     ("G80 X1", 1, 5, 2, "G80"),
     ("F1 G2 X1 I1 R1", 1, 10, 2, "not both"),
-    (
-        "F1 G2 X1 I.5 K1",
-        1,
-        14,
-        2,
-        "K lies outside the arc's plane G17",
-    ),
+    ("F1 G2 X1 I.5 K1", 1, 14, 2, "K lies outside the arc's plane G17"),
     ("F1 G2 X1", 1, 1, 8, "neither a radius R nor a centre"),
     ("F1 G2 X0 R1", 1, 10, 2, "elsewhere than it starts"),
     ("F1 G90.1 G2 X1 I.5", 1, 1, 18, "J is missing"),
@@ -74,42 +56,23 @@ fn every_fault_has_its_place() {
     for &(text, line, column, span, part) in TABLE {
         let found = faults(text);
         let first = &found[0];
-        assert_eq!(
-            (first.line, first.column, first.span),
-            (line, column, span),
-            "{text:?}: {first:?}"
-        );
+        assert_eq!((first.line, first.column, first.span), (line, column, span), "{text:?}: {first:?}");
         assert!(first.message.contains(part), "{text:?}: {}", first.message);
     }
 }
 
 #[test]
 fn nothing_behind_the_end_is_read() {
-    let reader = Reader::from_text(
-        "part.ngc",
-        "G0 X1\nM2\n\0 not read \u{fffd}",
-        Settings::default(),
-    );
+    let reader = Reader::from_text("part.ngc", "G0 X1\nM2\n\0 not read \u{fffd}", Settings::default());
     assert!(matches!(reader, Err(ReadError::Binary { .. })));
-    let reader = Reader::from_text(
-        "part.ngc",
-        "G0 X1\nM2\n not read \u{fffd}",
-        Settings::default(),
-    )
-    .unwrap();
+    let reader = Reader::from_text("part.ngc", "G0 X1\nM2\n not read \u{fffd}", Settings::default()).unwrap();
     assert_eq!(summarize(reader).unwrap().motions, 1);
 }
 
 #[test]
 fn all_faults_come_in_one_go_and_are_limited() {
     let text = "G0 X1 $\nG0 X1\nG0 X$\nG0 Y1 $\n";
-    assert_eq!(
-        faults(text)
-            .iter()
-            .map(|fault| fault.line)
-            .collect::<Vec<_>>(),
-        [1, 3, 4]
-    );
+    assert_eq!(faults(text).iter().map(|fault| fault.line).collect::<Vec<_>>(), [1, 3, 4]);
     let many = faults(&"!\n".repeat(250));
     assert_eq!(many.len(), 101);
     assert_eq!(many[100].message, "and 150 more errors");
@@ -123,25 +86,14 @@ fn a_program_without_motion_is_an_error() {
 #[test]
 fn files_that_are_no_program_are_named() {
     let missing = check("does/not/exist.ngc".as_ref(), Settings::default());
-    let Err(CheckError::Read(error @ ReadError::Io { .. })) = missing else {
-        panic!("{missing:?}")
-    };
+    let Err(CheckError::Read(error @ ReadError::Io { .. })) = missing else { panic!("{missing:?}") };
     assert!(error.to_string().contains("does/not/exist.ngc"));
     let folder = tempfile::tempdir().unwrap();
-    assert!(matches!(
-        check(folder.path(), Settings::default()),
-        Err(CheckError::Read(ReadError::Directory { .. }))
-    ));
+    assert!(matches!(check(folder.path(), Settings::default()), Err(CheckError::Read(ReadError::Directory { .. }))));
     let mut file = tempfile::NamedTempFile::new().unwrap();
-    assert!(matches!(
-        check(file.path(), Settings::default()),
-        Err(CheckError::Read(ReadError::Empty { .. }))
-    ));
+    assert!(matches!(check(file.path(), Settings::default()), Err(CheckError::Read(ReadError::Empty { .. }))));
     file.write_all(b"\x7fELF\0\0").unwrap();
-    assert!(matches!(
-        check(file.path(), Settings::default()),
-        Err(CheckError::Read(ReadError::Binary { .. }))
-    ));
+    assert!(matches!(check(file.path(), Settings::default()), Err(CheckError::Read(ReadError::Binary { .. }))));
 }
 
 #[test]
@@ -157,17 +109,37 @@ fn miette_shows_line_and_caret() {
 
 #[test]
 fn text_outside_comments_must_be_readable() {
-    let reader = Reader::from_text(
-        "part.ngc",
-        b"G0 X1 (caf\xe9)\nM2".as_slice(),
-        Settings::default(),
-    )
-    .unwrap();
+    let reader = Reader::from_text("part.ngc", b"G0 X1 (caf\xe9)\nM2".as_slice(), Settings::default()).unwrap();
     assert_eq!(summarize(reader).unwrap().motions, 1);
-    let reader =
-        Reader::from_text("part.ngc", b"G0 X1\xe9\nM2".as_slice(), Settings::default()).unwrap();
-    let Err(CheckError::Faults(faults)) = summarize(reader) else {
-        panic!("accepted")
-    };
+    let reader = Reader::from_text("part.ngc", b"G0 X1\xe9\nM2".as_slice(), Settings::default()).unwrap();
+    let Err(CheckError::Faults(faults)) = summarize(reader) else { panic!("accepted") };
     assert!(faults[0].message.contains("not UTF-8"));
+}
+
+#[test]
+fn hostile_programs_end_with_a_place() {
+    let settings = || Settings { max_idle_lines: 1_000_000, ..Settings::default() };
+    let first = |text: &[u8]| {
+        let reader = Reader::from_text("part.ngc", text, settings()).unwrap();
+        match summarize(reader) {
+            Err(CheckError::Faults(faults)) => faults[0].clone(),
+            other => panic!("{other:?}"),
+        }
+    };
+    let long = first(&[b"G0 X1\n".to_vec(), vec![b'1'; 10 << 20], b"\nM2\n".to_vec()].concat());
+    assert_eq!((long.line, long.text.len() < 1000), (2, true));
+    assert!(long.message.contains("longer than 65536 bytes"));
+    let deep = first(format!("G0 X{}\nM2", "[".repeat(60_000)).as_bytes());
+    assert!(deep.message.contains("inside each other") && deep.line == 1);
+    let calls = first(b"G0 X1\no1 sub\no1 call\no1 endsub\no1 call\nM2");
+    assert_eq!((calls.line, calls.message.contains("calls inside each other")), (3, true));
+    let names: String = (0..200_000).map(|n| format!("#<n{n}>=1\n")).collect();
+    let names = first(names.as_bytes());
+    assert_eq!((names.line, names.message.contains("too many named parameters")), (100_001, true));
+    let nul = first(&[b"G0 X1\n".repeat(20_000), b"G0 \0 X2\nM2\n".to_vec()].concat());
+    assert_eq!((nul.line, nul.column, nul.message.contains("0x00")), (20_001, 4, true));
+    let number = first(format!("G0 X{}\nM2", "9".repeat(400)).as_bytes());
+    assert!(number.message.contains("beyond what any control can hold"));
+    let endless = first(b"G0 X1\nM98 P1\nM2\nO1\no2 while [1]\no2 endwhile\nM99\n");
+    assert!(endless.message.contains("endless loop"));
 }

@@ -9,11 +9,7 @@ use proptest::prelude::*;
 
 /// Reads all of `text`; returns the steps and the faults.
 fn read(text: &[u8]) -> (Vec<Canon>, Vec<Diagnostic>) {
-    let settings = Settings {
-        max_idle_lines: 10_000,
-        max_motions: 100_000,
-        ..Settings::default()
-    };
+    let settings = Settings { max_idle_lines: 10_000, max_motions: 100_000, ..Settings::default() };
     let Ok(reader) = Reader::from_text("test", text, settings) else {
         return (Vec::new(), Vec::new());
     };
@@ -41,10 +37,7 @@ fn assert_inside(text: &[u8], faults: &[Diagnostic]) {
         miette::GraphicalReportHandler::new_themed(miette::GraphicalTheme::unicode_nocolor())
             .render_report(&mut shown, fault)
             .unwrap();
-        assert!(
-            shown.contains(&fault.message[..fault.message.len().min(5)]),
-            "{shown}"
-        );
+        assert!(shown.contains(&fault.message[..fault.message.len().min(5)]), "{shown}");
     }
 }
 
@@ -77,10 +70,7 @@ proptest! {
 }
 
 fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {
-    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
+    let mut entries: Vec<PathBuf> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     entries.sort();
     for path in entries {
         if path.is_dir() {
@@ -95,28 +85,18 @@ fn files_below(folder: &Path, files: &mut Vec<PathBuf>) {
 fn every_file_of_the_corpus_is_answered() {
     let corpus = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/corpus");
     if !corpus.is_dir() {
-        eprintln!(
-            "SKIPPED: no corpus of foreign programs at {}",
-            corpus.display()
-        );
+        eprintln!("SKIPPED: no corpus of foreign programs at {}", corpus.display());
         return;
     }
     let mut files = Vec::new();
     files_below(&corpus, &mut files);
     assert!(!files.is_empty());
     for file in files {
-        let settings = Settings {
-            max_idle_lines: 100_000,
-            max_motions: 1_000_000,
-            ..Settings::default()
-        };
+        let settings = Settings { max_idle_lines: 100_000, max_motions: 1_000_000, ..Settings::default() };
         let Ok(reader) = Reader::open(&file, settings) else {
             continue;
         };
         let faults: Vec<Diagnostic> = reader.filter_map(Result::err).collect();
-        assert_inside(
-            &std::fs::read(&file).unwrap(),
-            &faults[..faults.len().min(5)],
-        );
+        assert_inside(&std::fs::read(&file).unwrap(), &faults[..faults.len().min(5)]);
     }
 }

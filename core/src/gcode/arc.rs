@@ -12,15 +12,9 @@ use super::state::{INCH_MM, Interpreter, Position};
 use super::travel::{Speed, others};
 
 /// Difference of the radii that is always accepted, mm and inch.
-const RADIUS_SLACK: [f64; 2] = [
-    0.02 * std::f64::consts::SQRT_2,
-    0.002 * std::f64::consts::SQRT_2,
-];
+const RADIUS_SLACK: [f64; 2] = [0.02 * std::f64::consts::SQRT_2, 0.002 * std::f64::consts::SQRT_2];
 /// Difference of the radii that is never accepted, mm and inch.
-const RADIUS_SLACK_MOST: [f64; 2] = [
-    2.0 * std::f64::consts::SQRT_2,
-    0.2 * std::f64::consts::SQRT_2,
-];
+const RADIUS_SLACK_MOST: [f64; 2] = [2.0 * std::f64::consts::SQRT_2, 0.2 * std::f64::consts::SQRT_2];
 /// Between the two, the difference must be below this share of the radius.
 const RADIUS_SLACK_SHARE: f64 = 1e-3;
 /// R may be shorter than half the chord by this much; the arc is then a half circle. mm and inch.
@@ -62,13 +56,7 @@ impl Interpreter {
     }
 
     /// Moves along an arc given in program coordinates.
-    pub(super) fn arc_to(
-        &mut self,
-        block: &Block,
-        target: &Position,
-        round: Round,
-        extruder_mm: f64,
-    ) -> Read<()> {
+    pub(super) fn arc_to(&mut self, block: &Block, target: &Position, round: Round, extruder_mm: f64) -> Read<()> {
         let plane = self.modal.plane;
         let [first, second, _] = plane.axes();
         if self.frame.rotation_deg != 0.0 && plane != Plane::Xy {
@@ -88,22 +76,14 @@ impl Interpreter {
         let length_mm = arc_length(&start, &machine, &center, plane, round.turns);
         let feed_mm_s = self.feed_for(block, length_mm)?;
         let others = others(&start, &machine, extruder_mm);
-        let shape = Shape::Arc {
-            plane,
-            center_mm: [center[0], center[1], center[2]],
-            turns: round.turns,
-        };
+        let shape = Shape::Arc { plane, center_mm: [center[0], center[1], center[2]], turns: round.turns };
         self.push_motion(Speed::Programmed, &start, shape, feed_mm_s, others);
         Ok(())
     }
 
     /// Centre and turns from the words of the block.
     fn round(&self, block: &Block, target: &Position, counter_clockwise: bool) -> Read<Round> {
-        let turns = if block.has(b'p') {
-            self.integer(block, b'p', 1, MOST_TURNS)? as i32
-        } else {
-            1
-        };
+        let turns = if block.has(b'p') { self.integer(block, b'p', 1, MOST_TURNS)? as i32 } else { 1 };
         let turns = if counter_clockwise { turns } else { -turns };
         let [first, second, normal] = self.modal.plane.axes();
         let offsets = bit(b'i') | bit(b'j') | bit(b'k');
@@ -118,18 +98,11 @@ impl Interpreter {
             self.center_by_radius(block, target, counter_clockwise)?
         } else {
             if block.has(CENTER_LETTERS[normal]) {
-                let (wrong, plane) = (
-                    letter(slot_of(CENTER_LETTERS[normal])),
-                    ["G19 (YZ)", "G18 (ZX)", "G17 (XY)"][normal],
-                );
+                let (wrong, plane) =
+                    (letter(slot_of(CENTER_LETTERS[normal])), ["G19 (YZ)", "G18 (ZX)", "G17 (XY)"][normal]);
                 let [one, two] = [first, second].map(|axis| letter(slot_of(CENTER_LETTERS[axis])));
                 let message = format!("{wrong} lies outside the arc's plane {plane}");
-                return Err(Fault::new(
-                    "gcode::arc_plane",
-                    block.at(CENTER_LETTERS[normal]),
-                    message,
-                )
-                .hint(format!(
+                return Err(Fault::new("gcode::arc_plane", block.at(CENTER_LETTERS[normal]), message).hint(format!(
                     "the centre of this plane is {} and {}, or choose another plane",
                     one.min(two),
                     one.max(two)
@@ -147,12 +120,7 @@ impl Interpreter {
         Ok(Round { center, turns })
     }
 
-    fn center_by_offsets(
-        &self,
-        block: &Block,
-        target: &Position,
-        plane: [usize; 2],
-    ) -> Read<[f64; 2]> {
+    fn center_by_offsets(&self, block: &Block, target: &Position, plane: [usize; 2]) -> Read<[f64; 2]> {
         let mut center = plane.map(|axis| self.at[axis]);
         for (slot, axis) in plane.into_iter().enumerate() {
             let name = CENTER_LETTERS[axis];
@@ -162,24 +130,17 @@ impl Interpreter {
                     if value.abs() > self.settings.coordinate_limit_mm {
                         return Err(self.too_far(block, name, value));
                     }
-                    center[slot] = if self.modal.arc_absolute {
-                        value
-                    } else {
-                        center[slot] + value
-                    };
+                    center[slot] = if self.modal.arc_absolute { value } else { center[slot] + value };
                 }
                 None if self.modal.arc_absolute => {
-                    let message = format!(
-                        "{} is missing: with G90.1 the centre needs both coordinates",
-                        letter(slot_of(name))
-                    );
+                    let message =
+                        format!("{} is missing: with G90.1 the centre needs both coordinates", letter(slot_of(name)));
                     return Err(Fault::new("gcode::arc_format", block.whole(), message));
                 }
                 None => {}
             }
         }
-        let radius_to =
-            |point: &Position| (point[plane[0]] - center[0]).hypot(point[plane[1]] - center[1]);
+        let radius_to = |point: &Position| (point[plane[0]] - center[0]).hypot(point[plane[1]] - center[1]);
         let (at_start, at_end) = (radius_to(&self.at), radius_to(target));
         let difference = (at_start - at_end).abs();
         let largest = at_start.max(at_end);
@@ -193,16 +154,13 @@ impl Interpreter {
         if difference > self.slack(RADIUS_SLACK_MOST)
             || (difference > self.slack(RADIUS_SLACK) && difference > RADIUS_SLACK_SHARE * largest)
         {
-            let limit = (RADIUS_SLACK_SHARE * largest)
-                .clamp(self.slack(RADIUS_SLACK), self.slack(RADIUS_SLACK_MOST));
+            let limit = (RADIUS_SLACK_SHARE * largest).clamp(self.slack(RADIUS_SLACK), self.slack(RADIUS_SLACK_MOST));
             let message = format!(
                 "the arc does not close: its radius is {at_start:.6} mm at the start and {at_end:.6} mm at the end, {difference:.6} mm apart; the limit is {limit:.6} mm"
             );
             let fault = Fault::new("gcode::arc_radius", block.whole(), message);
             return Err(if self.modal.arc_absolute {
-                fault.hint(
-                    "G90.1 is active: I J K are the centre itself, not its distance from the start",
-                )
+                fault.hint("G90.1 is active: I J K are the centre itself, not its distance from the start")
             } else {
                 fault.hint("I J K are distances from the start to the centre (G91.1); the line before may have ended elsewhere")
             });
@@ -210,30 +168,18 @@ impl Interpreter {
         Ok(center)
     }
 
-    fn center_by_radius(
-        &self,
-        block: &Block,
-        target: &Position,
-        counter_clockwise: bool,
-    ) -> Read<[f64; 2]> {
+    fn center_by_radius(&self, block: &Block, target: &Position, counter_clockwise: bool) -> Read<[f64; 2]> {
         let [first, second, _] = self.modal.plane.axes();
         let at = block.at(b'r');
         let radius = block.get(b'r').unwrap_or(0.0) * self.modal.unit_mm;
         if radius.abs() > self.settings.coordinate_limit_mm {
             return Err(self.too_far(block, b'r', radius));
         }
-        let chord = [
-            target[first] - self.at[first],
-            target[second] - self.at[second],
-        ];
+        let chord = [target[first] - self.at[first], target[second] - self.at[second]];
         let length = chord[0].hypot(chord[1]);
         if length == 0.0 {
-            return Err(Fault::new(
-                "gcode::arc_radius",
-                at,
-                "an arc with R must end elsewhere than it starts",
-            )
-            .hint("write a full circle with I J K"));
+            return Err(Fault::new("gcode::arc_radius", at, "an arc with R must end elsewhere than it starts")
+                .hint("write a full circle with I J K"));
         }
         let half = 0.5 * length;
         if half > radius.abs() + self.slack(CHORD_SLACK) {
@@ -245,11 +191,7 @@ impl Interpreter {
         }
         let height = (radius * radius - half * half).max(0.0).sqrt();
         // Left of the chord for a counter-clockwise arc of up to half a circle; a negative R is the longer way round.
-        let side = if counter_clockwise == (radius > 0.0) {
-            height
-        } else {
-            -height
-        };
+        let side = if counter_clockwise == (radius > 0.0) { height } else { -height };
         let left = [-chord[1] / length, chord[0] / length];
         Ok([
             0.5 * (self.at[first] + target[first]) + side * left[0],
@@ -259,28 +201,17 @@ impl Interpreter {
 
     /// A tolerance in mm: RS-274 gives each for both units.
     fn slack(&self, [in_mm, in_inch]: [f64; 2]) -> f64 {
-        if self.modal.unit_mm == 1.0 {
-            in_mm
-        } else {
-            in_inch * INCH_MM
-        }
+        if self.modal.unit_mm == 1.0 { in_mm } else { in_inch * INCH_MM }
     }
 }
 
 /// Length of an arc or helix, mm.
-pub(super) fn arc_length(
-    start: &Position,
-    end: &Position,
-    center: &Position,
-    plane: Plane,
-    turns: i32,
-) -> f64 {
+pub(super) fn arc_length(start: &Position, end: &Position, center: &Position, plane: Plane, turns: i32) -> f64 {
     let [first, second, normal] = plane.axes();
     let from = [start[first] - center[first], start[second] - center[second]];
     let to = [end[first] - center[first], end[second] - center[second]];
     let sign = f64::from(turns.signum());
-    let mut angle =
-        sign * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
+    let mut angle = sign * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
     if angle <= FULL_TURN_WITHIN_RAD {
         angle += std::f64::consts::TAU;
     }

@@ -43,6 +43,8 @@ pub(super) struct Block {
     pub(super) assignments: Vec<(Target, f64)>,
     /// Text of the last comment, without its brackets.
     pub(super) comment: Option<Range<usize>>,
+    /// Whether a letter may stand without a value where it only names an axis.
+    bare_words: bool,
     /// End of the line's text outside comments.
     pub(super) end: usize,
 }
@@ -50,8 +52,8 @@ pub(super) struct Block {
 /// Ways to read a line that depend on the dialect.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Style {
-    /// `*` begins a checksum, as printers have it.
-    pub(super) checksum: bool,
+    /// Printers: `*` begins a checksum, and some letters stand alone.
+    pub(super) printer: bool,
 }
 
 impl Block {
@@ -65,6 +67,7 @@ impl Block {
             m: Vec::new(),
             assignments: Vec::new(),
             comment: None,
+            bare_words: false,
             end: 0,
         }
     }
@@ -102,12 +105,9 @@ impl Block {
 
     /// Where the first word of a set of letters stands.
     pub(super) fn at_any(&self, letters: u32) -> Range<usize> {
-        let first = (0..LETTERS)
-            .filter(|slot| self.set & letters & (1 << slot) != 0)
-            .min_by_key(|&slot| self.place[slot].0);
-        first.map_or(self.whole(), |slot| {
-            self.place[slot].0 as usize..self.place[slot].1 as usize
-        })
+        let first =
+            (0..LETTERS).filter(|slot| self.set & letters & (1 << slot) != 0).min_by_key(|&slot| self.place[slot].0);
+        first.map_or(self.whole(), |slot| self.place[slot].0 as usize..self.place[slot].1 as usize)
     }
 
     /// All words of the line.
@@ -128,14 +128,10 @@ impl Block {
     }
 
     /// Reads the words from the cursor to the end of the line.
-    pub(super) fn read<V: Values>(
-        &mut self,
-        cursor: Cursor<'_>,
-        values: &V,
-        style: Style,
-    ) -> Read<()> {
+    pub(super) fn read<V: Values>(&mut self, cursor: Cursor<'_>, values: &V, style: Style) -> Read<()> {
         let mut evaluator = Evaluator::new(cursor, values);
         self.end = evaluator.cursor.at;
+        self.bare_words = style.printer;
         loop {
             let byte = evaluator.cursor.peek();
             let start = evaluator.cursor.at;
@@ -152,7 +148,7 @@ impl Block {
                     return Ok(());
                 }
                 b'#' => self.read_assignment(&mut evaluator, start)?,
-                b'*' if style.checksum => return Ok(()),
+                b'*' if style.printer => return Ok(()),
                 _ => return Err(strange(evaluator.cursor.bytes, start)),
             }
             if byte != b'(' {
@@ -161,22 +157,23 @@ impl Block {
         }
     }
 
+    /// Printers write `G28 X Y` and `M84 E`: a letter that only names an axis.
+    #[cold]
+    fn is_bare(&self, cursor: &mut Cursor<'_>) -> bool {
+        let names_axes = !self.m.is_empty() || self.g.iter().any(|word| word.number == 280);
+        names_axes && matches!(cursor.peek(), b'a'..=b'z' | b';' | b'*' | END)
+    }
+
     #[inline]
-    fn read_word<V: Values>(
-        &mut self,
-        evaluator: &mut Evaluator<'_, V>,
-        byte: u8,
-        start: usize,
-    ) -> Read<()> {
+    fn read_word<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, byte: u8, start: usize) -> Read<()> {
         evaluator.cursor.bump();
-        let value = evaluator.value()?;
+        let value = if self.bare_words && self.is_bare(&mut evaluator.cursor) { 0.0 } else { evaluator.value()? };
         let slot = slot(byte);
         let place = (start as u32, evaluator.cursor.at as u32);
         if self.set & (1 << slot) != 0 {
             let message = format!("the line already has a word {}", letter(slot));
             return Err(
-                Fault::new("gcode::repeated", start..evaluator.cursor.at, message)
-                    .hint("split the line in two"),
+                Fault::new("gcode::repeated", start..evaluator.cursor.at, message).hint("split the line in two")
             );
         }
         self.set |= 1 << slot;
@@ -191,24 +188,18 @@ impl Block {
         let value = evaluator.value()?;
         let end = evaluator.cursor.at;
         let tenths = (value * 10.0).round();
-        let is_tenth =
-            (value * 10.0 - tenths).abs() < TENTH_WITHIN && (0.0..1000.0).contains(&tenths);
+        let is_tenth = (value * 10.0 - tenths).abs() < TENTH_WITHIN && (0.0..1000.0).contains(&tenths);
         let Some(code) = is_tenth.then(|| codes::find(tenths as u16)).flatten() else {
             return Err(unknown_g(value, start..end));
         };
-        let word = Word {
-            number: code.number,
-            start: start as u32,
-            end: end as u32,
-        };
+        let word = Word { number: code.number, start: start as u32, end: end as u32 };
         if let Some(other) = self.group[code.group as usize].replace(word) {
             let message = format!(
                 "{} and {} exclude each other on one line",
                 codes::spelled(other.number),
                 codes::spelled(code.number)
             );
-            return Err(Fault::new("gcode::modal_group", start..end, message)
-                .hint("write them on two lines"));
+            return Err(Fault::new("gcode::modal_group", start..end, message).hint("write them on two lines"));
         }
         self.g.push(word);
         Ok(())
@@ -226,19 +217,11 @@ impl Block {
                 format!("M{value} is no M-code: the number must be an integer from 0 to 9999"),
             ));
         }
-        self.m.push(Word {
-            number: number as u16,
-            start: start as u32,
-            end: end as u32,
-        });
+        self.m.push(Word { number: number as u16, start: start as u32, end: end as u32 });
         Ok(())
     }
 
-    fn read_assignment<V: Values>(
-        &mut self,
-        evaluator: &mut Evaluator<'_, V>,
-        start: usize,
-    ) -> Read<()> {
+    fn read_assignment<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
         let target = evaluator.target()?;
         if !evaluator.cursor.eat(b'=') {
             let at = evaluator.cursor.at;
@@ -265,49 +248,28 @@ pub(super) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
         }
         Some(length) => {
             let at = start + 1 + length;
-            Err(Fault::new(
-                "gcode::comment",
-                at..at + 1,
-                "a comment begins inside a comment",
-            )
-            .hint("close the first comment with `)` before the second `(`"))
+            Err(Fault::new("gcode::comment", at..at + 1, "a comment begins inside a comment")
+                .hint("close the first comment with `)` before the second `(`"))
         }
-        None => Err(Fault::new(
-            "gcode::comment",
-            start..cursor.bytes.len(),
-            "the comment is not closed: `)` is missing",
-        )),
+        None => {
+            Err(Fault::new("gcode::comment", start..cursor.bytes.len(), "the comment is not closed: `)` is missing"))
+        }
     }
 }
 
 #[cold]
 fn misplaced(byte: u8, start: usize) -> Box<Fault> {
-    let what = if byte == b'n' {
-        "the line number N"
-    } else {
-        "an O-word"
-    };
-    Fault::new(
-        "gcode::misplaced",
-        start..start + 1,
-        format!("{what} must stand at the beginning of the line"),
-    )
+    let what = if byte == b'n' { "the line number N" } else { "an O-word" };
+    Fault::new("gcode::misplaced", start..start + 1, format!("{what} must stand at the beginning of the line"))
 }
 
 #[cold]
 fn unknown_g(value: f64, at: Range<usize>) -> Box<Fault> {
     let tenths = (value * 10.0).round();
-    let spelled = if (value * 10.0 - tenths).abs() < TENTH_WITHIN {
-        format!("G{}", tenths / 10.0)
-    } else {
-        format!("G{value}")
-    };
-    Fault::new(
-        "gcode::unknown_g",
-        at,
-        format!("{spelled} is not a G-code that this reader knows"),
-    )
-    .hint(format!("the nearest known: {}", codes::nearest(value)))
+    let spelled =
+        if (value * 10.0 - tenths).abs() < TENTH_WITHIN { format!("G{}", tenths / 10.0) } else { format!("G{value}") };
+    Fault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"))
+        .hint(format!("the nearest known: {}", codes::nearest(value)))
 }
 
 /// A byte that has no meaning here.
@@ -315,11 +277,7 @@ fn unknown_g(value: f64, at: Range<usize>) -> Box<Fault> {
 fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
     let byte = bytes[start];
     if byte.is_ascii() {
-        let fault = Fault::new(
-            "gcode::character",
-            start..start + 1,
-            format!("`{}` has no meaning here", shown(byte)),
-        );
+        let fault = Fault::new("gcode::character", start..start + 1, format!("`{}` has no meaning here", shown(byte)));
         return match byte {
             b'/' => fault.hint("a `/` that deletes the line stands first on it"),
             b')' => fault.hint("the comment that ends here has no `(`"),
@@ -330,25 +288,14 @@ fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
     }
     // Up to four bytes make one character; what follows may be the beginning of another.
     let longest = &bytes[start..bytes.len().min(start + 4)];
-    let valid = longest
-        .utf8_chunks()
-        .next()
-        .map_or("", |chunk| chunk.valid());
+    let valid = longest.utf8_chunks().next().map_or("", |chunk| chunk.valid());
     match valid.chars().next() {
         Some(character) => {
             let at = start..start + character.len_utf8();
-            Fault::new(
-                "gcode::character",
-                at,
-                format!("`{character}` has no meaning outside a comment"),
-            )
+            Fault::new("gcode::character", at, format!("`{character}` has no meaning outside a comment"))
         }
-        None => Fault::new(
-            "gcode::utf8",
-            start..start + 1,
-            format!("byte {byte:#04x} is not UTF-8 text"),
-        )
-        .hint("save the file as UTF-8 or plain ASCII"),
+        None => Fault::new("gcode::utf8", start..start + 1, format!("byte {byte:#04x} is not UTF-8 text"))
+            .hint("save the file as UTF-8 or plain ASCII"),
     }
 }
 
@@ -370,21 +317,14 @@ mod tests {
 
     fn read(text: &str) -> Read<Block> {
         let mut block = Block::new();
-        block
-            .read(Cursor::new(text.as_bytes()), &Nothing, Style::default())
-            .map(|()| block)
+        block.read(Cursor::new(text.as_bytes()), &Nothing, Style::default()).map(|()| block)
     }
 
     #[test]
     fn words_may_stand_in_any_order_and_spacing() {
         let block = read("g 1 x1.5(note)Y-[1+1] f 1 0 0 ; rest").unwrap();
         assert_eq!(
-            (
-                block.get(b'x'),
-                block.get(b'y'),
-                block.get(b'f'),
-                block.get(b'z')
-            ),
+            (block.get(b'x'), block.get(b'y'), block.get(b'f'), block.get(b'z')),
             (Some(1.5), Some(-2.0), Some(100.0), None)
         );
         assert_eq!(block.code(Group::Motion).unwrap().number, 10);
@@ -400,16 +340,9 @@ mod tests {
         assert_eq!(fault("G1.7 X2").at, 0..4);
         assert_eq!(fault("G1.7 X2").hint.unwrap(), "the nearest known: G2");
         assert_eq!(fault("X1 (open").at, 3..8);
-        assert_eq!(
-            fault("X1 é").message,
-            "`é` has no meaning outside a comment"
-        );
+        assert_eq!(fault("X1 é").message, "`é` has no meaning outside a comment");
         assert_eq!(fault("X1 $").at, 3..4);
         assert!(fault("X").message.contains("end of the line"));
-        assert!(
-            fault("X1 Qb")
-                .message
-                .contains("neither a number nor a function")
-        );
+        assert!(fault("X1 Qb").message.contains("neither a number nor a function"));
     }
 }

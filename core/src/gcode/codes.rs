@@ -79,24 +79,16 @@ pub(super) struct Code {
 }
 
 const fn code(number: u16, group: Group, letters: &[u8]) -> Code {
-    Code {
-        number,
-        group,
-        letters: bits(letters),
-    }
+    Code { number, group, letters: bits(letters) }
 }
 
 const fn axes(number: u16, group: Group, letters: &[u8]) -> Code {
-    Code {
-        number,
-        group,
-        letters: bits(letters) | AXES,
-    }
+    Code { number, group, letters: bits(letters) | AXES }
 }
 
 use Group::{
-    ArcDistance, Coordinates, Corner, CutterCompensation, Diameter, Distance, FeedMode, Motion,
-    NonModal, Plane, Return, SpindleMode, ToolLength, Units,
+    ArcDistance, Coordinates, Corner, CutterCompensation, Diameter, Distance, FeedMode, Motion, NonModal, Plane,
+    Return, SpindleMode, ToolLength, Units,
 };
 
 /// Every code.
@@ -215,11 +207,7 @@ pub(super) fn find(number: u16) -> Option<&'static Code> {
 
 /// The code as written: `G38.2`.
 pub(super) fn spelled(number: u16) -> String {
-    if number.is_multiple_of(10) {
-        format!("G{}", number / 10)
-    } else {
-        format!("G{}.{}", number / 10, number % 10)
-    }
+    if number.is_multiple_of(10) { format!("G{}", number / 10) } else { format!("G{}.{}", number / 10, number % 10) }
 }
 
 /// The known codes closest to an unknown number, as a hint.
@@ -236,10 +224,7 @@ pub(super) fn nearest(number: f64) -> String {
             best.push(row.number);
         }
     }
-    best.into_iter()
-        .map(spelled)
-        .collect::<Vec<_>>()
-        .join(" and ")
+    best.into_iter().map(spelled).collect::<Vec<_>>().join(" and ")
 }
 
 #[cfg(test)]

@@ -38,11 +38,7 @@ impl Interpreter {
     /// G40, G41, G41.1, G42, G42.1.
     pub(super) fn compensation_mode(&mut self, block: &Block) -> Read<()> {
         let Some(word) = block.code(Group::CutterCompensation) else {
-            return if self.compensates() {
-                self.check_compensated(block)
-            } else {
-                Ok(())
-            };
+            return if self.compensates() { self.check_compensated(block) } else { Ok(()) };
         };
         if word.number == 400 {
             self.compensation = None;
@@ -50,12 +46,8 @@ impl Interpreter {
             return Ok(());
         }
         if self.compensates() {
-            return Err(Fault::new(
-                "gcode::compensation",
-                word.at(),
-                "cutter compensation is already on",
-            )
-            .hint("end it with G40 first"));
+            return Err(Fault::new("gcode::compensation", word.at(), "cutter compensation is already on")
+                .hint("end it with G40 first"));
         }
         if self.modal.plane == Plane::Yz {
             return Err(Fault::new(
@@ -77,57 +69,40 @@ impl Interpreter {
                 }
             }
         } else {
-            let tool = if block.has(b'd') {
-                self.integer(block, b'd', 0, 999_999)? as u32
-            } else {
-                self.tool
-            };
+            let tool = if block.has(b'd') { self.integer(block, b'd', 0, 999_999)? as u32 } else { self.tool };
             match self.settings.tools.get(tool) {
                 Some(entry) => entry.diameter_mm,
                 None if tool == 0 => 0.0,
                 None => {
-                    let at = if block.has(b'd') {
-                        block.at(b'd')
-                    } else {
-                        word.at()
-                    };
+                    let at = if block.has(b'd') { block.at(b'd') } else { word.at() };
                     return Err(Fault::new(
                         "gcode::compensation",
                         at,
                         format!("tool {tool} is not in the tool table: its radius is not known"),
                     )
-                    .hint(format!(
-                        "give a tool table, or write {}.1 D with the diameter",
-                        spelled(word.number)
-                    )));
+                    .hint(format!("give a tool table, or write {}.1 D with the diameter", spelled(word.number))));
                 }
             }
         };
         // A negative diameter is the other side.
         let side = if diameter < 0.0 { -left } else { left };
-        self.compensation = Some(Compensation {
-            side,
-            radius_mm: 0.5 * diameter.abs(),
-            last: None,
-        });
+        self.compensation = Some(Compensation { side, radius_mm: 0.5 * diameter.abs(), last: None });
         Ok(())
     }
 
     /// Codes that make no sense while the tool is beside the contour.
     fn check_compensated(&self, block: &Block) -> Read<()> {
-        let forbidden = block.g.iter().find(|word| matches!(word.number, 100 | 170..=190 | 280 | 300 | 520 | 530 | 540..=593 | 920..=923));
+        let forbidden = block
+            .g
+            .iter()
+            .find(|word| matches!(word.number, 100 | 170..=190 | 280 | 300 | 520 | 530 | 540..=593 | 920..=923));
         match forbidden {
-            Some(word) if !(matches!(word.number, 170 | 180) && self.is_plane(word.number)) => {
-                Err(Fault::new(
-                    "gcode::compensation",
-                    word.at(),
-                    format!(
-                        "{} cannot be used while cutter compensation is on",
-                        spelled(word.number)
-                    ),
-                )
-                .hint("end it with G40 first"))
-            }
+            Some(word) if !(matches!(word.number, 170 | 180) && self.is_plane(word.number)) => Err(Fault::new(
+                "gcode::compensation",
+                word.at(),
+                format!("{} cannot be used while cutter compensation is on", spelled(word.number)),
+            )
+            .hint("end it with G40 first")),
             _ => Ok(()),
         }
     }
@@ -142,28 +117,15 @@ impl Interpreter {
     }
 
     /// A straight motion; false where compensation is off.
-    pub(super) fn compensated_straight(
-        &mut self,
-        block: &Block,
-        target: &Position,
-        is_feed: bool,
-    ) -> Read<bool> {
+    pub(super) fn compensated_straight(&mut self, block: &Block, target: &Position, is_feed: bool) -> Read<bool> {
         let Some(compensation) = self.compensation.clone() else {
             return Ok(false);
         };
-        let speed = if is_feed {
-            Speed::Programmed
-        } else {
-            Speed::Rapid
-        };
+        let speed = if is_feed { Speed::Programmed } else { Speed::Rapid };
         let [first, second, _] = self.modal.plane.axes();
         let goal = self.frame.to_machine(target);
         let (from, to) = (self.programmed_point(), [goal[first], goal[second]]);
-        let from = if compensation.last.is_none() {
-            [self.here[first], self.here[second]]
-        } else {
-            from
-        };
+        let from = if compensation.last.is_none() { [self.here[first], self.here[second]] } else { from };
         self.at = *target;
         let way = minus(to, from);
         let mut machine = goal;
@@ -188,31 +150,19 @@ impl Interpreter {
                 ));
             }
         } else {
-            let curve = Curve::Line {
-                start: add(from, aside),
-                end,
-            };
+            let curve = Curve::Line { start: add(from, aside), end };
             self.corner_to(block, &compensation, from, along, &curve, speed)?;
         }
         (machine[first], machine[second]) = (end[0], end[1]);
         // An entry that leads into an inner corner ends as if its whole length had been beside the contour.
-        let start = if compensation.last.is_none() {
-            add(from, aside)
-        } else {
-            [self.here[first], self.here[second]]
-        };
+        let start = if compensation.last.is_none() { add(from, aside) } else { [self.here[first], self.here[second]] };
         self.hold_motion(block, machine, speed, Shape::Line)?;
         self.set_last(Curve::Line { start, end }, along);
         Ok(true)
     }
 
     /// An arc; false where compensation is off.
-    pub(super) fn compensated_arc(
-        &mut self,
-        block: &Block,
-        target: &Position,
-        round: Round,
-    ) -> Read<bool> {
+    pub(super) fn compensated_arc(&mut self, block: &Block, target: &Position, round: Round) -> Read<bool> {
         let Some(compensation) = self.compensation.clone() else {
             return Ok(false);
         };
@@ -239,29 +189,13 @@ impl Interpreter {
         self.at = *target;
         let center = if compensation.last.is_none() && compensation.radius_mm > 0.0 {
             entry_center([self.here[first], self.here[second]], to, end).ok_or_else(|| {
-                Fault::new(
-                    "gcode::compensation",
-                    block.whole(),
-                    "the entry arc cannot reach the compensated end",
-                )
+                Fault::new("gcode::compensation", block.whole(), "the entry arc cannot reach the compensated end")
             })?
         } else {
             let start_along = scaled(left_of(unit(minus(from, center))), turn);
             let start = add(center, scaled(unit(minus(from, center)), offset_radius));
-            let curve = Curve::Arc {
-                start,
-                end,
-                center,
-                turn,
-            };
-            self.corner_to(
-                block,
-                &compensation,
-                from,
-                start_along,
-                &curve,
-                Speed::Programmed,
-            )?;
+            let curve = Curve::Arc { start, end, center, turn };
+            self.corner_to(block, &compensation, from, start_along, &curve, Speed::Programmed)?;
             center
         };
         let mut machine = goal;
@@ -269,25 +203,8 @@ impl Interpreter {
         let start = [self.here[first], self.here[second]];
         let mut center_mm = [self.here[0], self.here[1], self.here[2]];
         (center_mm[first], center_mm[second]) = (center[0], center[1]);
-        self.hold_motion(
-            block,
-            machine,
-            Speed::Programmed,
-            Shape::Arc {
-                plane,
-                center_mm,
-                turns: round.turns,
-            },
-        )?;
-        self.set_last(
-            Curve::Arc {
-                start,
-                end,
-                center,
-                turn,
-            },
-            end_along,
-        );
+        self.hold_motion(block, machine, Speed::Programmed, Shape::Arc { plane, center_mm, turns: round.turns })?;
+        self.set_last(Curve::Arc { start, end, center, turn }, end_along);
         Ok(true)
     }
 
@@ -314,23 +231,15 @@ impl Interpreter {
         next: &Curve,
         speed: Speed,
     ) -> Read<()> {
-        let Some((before, before_along)) = compensation
-            .last
-            .as_ref()
-            .filter(|_| compensation.radius_mm > 0.0)
-        else {
+        let Some((before, before_along)) = compensation.last.as_ref().filter(|_| compensation.radius_mm > 0.0) else {
             self.release();
             return Ok(());
         };
-        let angle =
-            cross(*before_along, along).atan2(dot(*before_along, along)) * compensation.side;
+        let angle = cross(*before_along, along).atan2(dot(*before_along, along)) * compensation.side;
         let reverses = angle.abs() > std::f64::consts::PI - SMOOTH_WITHIN_RAD;
         // Back the way it came: which side is inner shows in how the curves bend beside each other.
-        let is_inner = if reverses {
-            compensation.side * (before.bend() + next.bend()) < 0.0
-        } else {
-            angle > SMOOTH_WITHIN_RAD
-        };
+        let is_inner =
+            if reverses { compensation.side * (before.bend() + next.bend()) < 0.0 } else { angle > SMOOTH_WITHIN_RAD };
         if is_inner {
             let meeting = before.meet(next, corner).ok_or_else(|| {
                 Fault::new("gcode::compensation", block.whole(), format!("the tool of radius {:.4} mm does not fit into the inner corner before this motion: it would cut into the contour", compensation.radius_mm))
@@ -346,21 +255,8 @@ impl Interpreter {
             let mut center_mm = [self.here[0], self.here[1], self.here[2]];
             (center_mm[first], center_mm[second]) = (corner[0], corner[1]);
             let turns = if compensation.side > 0.0 { -1 } else { 1 };
-            let shape = Shape::Arc {
-                plane: self.modal.plane,
-                center_mm,
-                turns,
-            };
-            self.hold_motion(
-                block,
-                machine,
-                if self.modal.feed > 0.0 {
-                    Speed::Programmed
-                } else {
-                    speed
-                },
-                shape,
-            )?;
+            let shape = Shape::Arc { plane: self.modal.plane, center_mm, turns };
+            self.hold_motion(block, machine, if self.modal.feed > 0.0 { Speed::Programmed } else { speed }, shape)?;
         }
         self.release();
         Ok(())
@@ -384,13 +280,7 @@ impl Interpreter {
     }
 
     /// Moves to `machine`, but keeps the motion back until its end is known.
-    fn hold_motion(
-        &mut self,
-        block: &Block,
-        machine: Position,
-        speed: Speed,
-        shape: Shape,
-    ) -> Read<()> {
+    fn hold_motion(&mut self, block: &Block, machine: Position, speed: Speed, shape: Shape) -> Read<()> {
         let start = std::mem::replace(&mut self.here, machine);
         let mut motion = Motion {
             line: self.line,

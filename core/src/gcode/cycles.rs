@@ -58,48 +58,21 @@ impl Interpreter {
                 return Err(Fault::new(
                     "gcode::cycle",
                     block.whole(),
-                    format!(
-                        "{name} (bottom of the hole) is missing for {}",
-                        spelled(code)
-                    ),
+                    format!("{name} (bottom of the hole) is missing for {}", spelled(code)),
                 ));
             }
-            kept = Cycle {
-                code,
-                began_at: if is_series {
-                    kept.began_at
-                } else {
-                    self.at[normal]
-                },
-                ..Cycle::default()
-            };
+            kept =
+                Cycle { code, began_at: if is_series { kept.began_at } else { self.at[normal] }, ..Cycle::default() };
         }
         self.cycle_words(block, &mut kept, normal)?;
         let incremental = self.modal.incremental;
-        let clearance = if incremental {
-            kept.began_at + kept.clearance
-        } else {
-            kept.clearance
-        };
-        let bottom = if incremental {
-            clearance + kept.bottom
-        } else {
-            kept.bottom
-        };
+        let clearance = if incremental { kept.began_at + kept.clearance } else { kept.clearance };
+        let bottom = if incremental { clearance + kept.bottom } else { kept.bottom };
         if clearance < bottom {
-            let message =
-                format!("R = {clearance} mm lies below the bottom of the hole at {bottom} mm");
-            return Err(Fault::new(
-                "gcode::cycle",
-                block.at_any(bit(b'r') | bit(letter)),
-                message,
-            ));
+            let message = format!("R = {clearance} mm lies below the bottom of the hole at {bottom} mm");
+            return Err(Fault::new("gcode::cycle", block.at_any(bit(b'r') | bit(letter)), message));
         }
-        let repeats = if block.has(b'l') {
-            self.integer(block, b'l', 1, MOST_REPEATS)?
-        } else {
-            1
-        };
+        let repeats = if block.has(b'l') { self.integer(block, b'l', 1, MOST_REPEATS)? } else { 1 };
         if self.modal.feed <= 0.0 {
             self.feed_for(block, 0.0)?;
         }
@@ -108,24 +81,15 @@ impl Interpreter {
         if matches!(corner, Corner::Continuous { .. }) {
             self.modal.corner = Corner::ExactPath;
         }
-        let hole = Hole {
-            normal,
-            bottom,
-            clearance,
-        };
-        let retract = if self.modal.retract_to_r {
-            clearance
-        } else {
-            clearance.max(kept.began_at)
-        };
+        let hole = Hole { normal, bottom, clearance };
+        let retract = if self.modal.retract_to_r { clearance } else { clearance.max(kept.began_at) };
         let drilled = self.drill_all(block, &hole, [first, second], retract, repeats);
         self.modal.corner = corner;
         drilled
     }
 
     fn check_cycle(&self, block: &Block, code: u16) -> Read<()> {
-        let others =
-            block.set & (bit(b'a') | bit(b'b') | bit(b'c') | bit(b'u') | bit(b'v') | bit(b'w'));
+        let others = block.set & (bit(b'a') | bit(b'b') | bit(b'c') | bit(b'u') | bit(b'v') | bit(b'w'));
         if others != 0 {
             return Err(Fault::new(
                 "gcode::cycle",
@@ -134,11 +98,7 @@ impl Interpreter {
             ));
         }
         if !block.has_axes() {
-            return Err(Fault::new(
-                "gcode::cycle",
-                block.whole(),
-                format!("{} has no axis word", spelled(code)),
-            ));
+            return Err(Fault::new("gcode::cycle", block.whole(), format!("{} has no axis word", spelled(code))));
         }
         Ok(())
     }
@@ -175,28 +135,13 @@ impl Interpreter {
         let missing = match kept.code {
             730 | 830 if kept.peck.is_none() => "Q (depth of a peck)",
             820 | 860 | 880 | 890 if kept.dwell_s.is_none() => "P (dwell in seconds)",
-            870 if block.set & (bit(b'i') | bit(b'j') | bit(b'k'))
-                != bit(b'i') | bit(b'j') | bit(b'k') =>
-            {
-                "I, J or K"
-            }
+            870 if block.set & (bit(b'i') | bit(b'j') | bit(b'k')) != bit(b'i') | bit(b'j') | bit(b'k') => "I, J or K",
             _ => return Ok(()),
         };
-        Err(Fault::new(
-            "gcode::cycle",
-            block.whole(),
-            format!("{missing} is missing for {}", spelled(kept.code)),
-        ))
+        Err(Fault::new("gcode::cycle", block.whole(), format!("{missing} is missing for {}", spelled(kept.code))))
     }
 
-    fn drill_all(
-        &mut self,
-        block: &Block,
-        hole: &Hole,
-        plane: [usize; 2],
-        retract: f64,
-        repeats: i64,
-    ) -> Read<()> {
+    fn drill_all(&mut self, block: &Block, hole: &Hole, plane: [usize; 2], retract: f64, repeats: i64) -> Read<()> {
         if self.at[hole.normal] < hole.clearance {
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
         }
@@ -213,11 +158,7 @@ impl Interpreter {
 
     /// From R to the bottom and, where the cycle feeds out, back to R.
     fn drill(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
-        let &Hole {
-            normal,
-            bottom,
-            clearance,
-        } = hole;
+        let &Hole { normal, bottom, clearance } = hole;
         let cycle = self.cycle;
         match cycle.code {
             730 | 830 => return self.peck(block, hole),
@@ -229,11 +170,7 @@ impl Interpreter {
             740 | 840 => {
                 let wanted = if cycle.code == 840 { 1 } else { -1 };
                 if turning != wanted {
-                    let (code, how) = if wanted == 1 {
-                        ("G84", "M3")
-                    } else {
-                        ("G74", "M4")
-                    };
+                    let (code, how) = if wanted == 1 { ("G84", "M3") } else { ("G74", "M4") };
                     return Err(Fault::new(
                         "gcode::cycle",
                         block.whole(),
@@ -260,11 +197,7 @@ impl Interpreter {
                 if cycle.code == 860 {
                     self.along(block, normal, clearance, Speed::Rapid)?;
                 } else {
-                    self.event(EventKind::MCode {
-                        code: 0,
-                        p: None,
-                        q: None,
-                    }); // The operator retracts by hand.
+                    self.event(EventKind::MCode { code: 0, p: None, q: None }); // The operator retracts by hand.
                 }
                 self.spindle(turning);
             }
@@ -279,11 +212,7 @@ impl Interpreter {
 
     /// G83 retracts to R after each peck, G73 only breaks the chip.
     fn peck(&mut self, block: &Block, hole: &Hole) -> Read<()> {
-        let &Hole {
-            normal,
-            bottom,
-            clearance,
-        } = hole;
+        let &Hole { normal, bottom, clearance } = hole;
         let step = self.cycle.peck.unwrap_or(clearance - bottom);
         if (clearance - bottom) / step > MOST_PECKS {
             return Err(Fault::new(
@@ -292,11 +221,7 @@ impl Interpreter {
                 format!("a peck of {step} mm needs more than {MOST_PECKS} pecks"),
             ));
         }
-        let above = if self.modal.unit_mm == 1.0 {
-            PECK_CLEARANCE[0]
-        } else {
-            PECK_CLEARANCE[1] * INCH_MM
-        };
+        let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };
         let mut depth = clearance - step;
         while depth > bottom {
             self.along(block, normal, depth, Speed::Programmed)?;
@@ -306,23 +231,17 @@ impl Interpreter {
             self.along(block, normal, depth + above, Speed::Rapid)?;
             depth -= step;
         }
-        self.along(block, normal, bottom, Speed::Programmed)
+        self.along(block, normal, bottom, Speed::Programmed)?;
+        self.pause(self.cycle.dwell_s.unwrap_or(0.0));
+        Ok(())
     }
 
     /// G87: beside the hole down with the spindle stopped, into its axis, up with the spindle turning to K, and out the same way.
     fn back_bore(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
-        let &Hole {
-            normal,
-            bottom,
-            clearance,
-        } = hole;
+        let &Hole { normal, bottom, clearance } = hole;
         let turning = self.modal.spindle_turns;
         if turning == 0 {
-            return Err(Fault::new(
-                "gcode::cycle",
-                block.whole(),
-                "G87 needs a turning spindle (M3 or M4)",
-            ));
+            return Err(Fault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)"));
         }
         let scale = self.modal.unit_mm;
         let word = |axis: usize| block.get(b"ijk"[axis]).unwrap_or(0.0) * scale;
@@ -331,11 +250,7 @@ impl Interpreter {
         for axis in plane {
             beside[axis] += word(axis);
         }
-        let up_to = if self.modal.incremental {
-            bottom + word(normal)
-        } else {
-            word(normal)
-        };
+        let up_to = if self.modal.incremental { bottom + word(normal) } else { word(normal) };
         self.go(block, beside, Speed::Rapid)?;
         self.spindle(0);
         self.along(block, normal, bottom, Speed::Rapid)?;
@@ -375,11 +290,7 @@ impl Interpreter {
             -1 => 4,
             _ => 5,
         };
-        self.event(EventKind::MCode {
-            code,
-            p: None,
-            q: None,
-        });
+        self.event(EventKind::MCode { code, p: None, q: None });
     }
 
     fn pause(&mut self, seconds: f64) {

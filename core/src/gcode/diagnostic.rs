@@ -48,42 +48,16 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// A fault of the file as a whole.
-    pub(super) fn of_file(
-        severity: Severity,
-        code: &'static str,
-        file: Arc<str>,
-        message: String,
-    ) -> Self {
-        Self {
-            severity,
-            code,
-            file,
-            line: 0,
-            column: 0,
-            span: 0,
-            message,
-            hint: None,
-            text: String::new(),
-            mark: 0..0,
-        }
+    pub(super) fn of_file(severity: Severity, code: &'static str, file: Arc<str>, message: String) -> Self {
+        Self { severity, code, file, line: 0, column: 0, span: 0, message, hint: None, text: String::new(), mark: 0..0 }
     }
 
     /// The fault `fault` of the line `bytes`.
-    pub(super) fn of_line(
-        severity: Severity,
-        fault: Fault,
-        file: Arc<str>,
-        line: u32,
-        bytes: &[u8],
-    ) -> Self {
+    pub(super) fn of_line(severity: Severity, fault: Fault, file: Arc<str>, line: u32, bytes: &[u8]) -> Self {
         let start = fault.at.start.min(bytes.len());
         let end = fault.at.end.clamp(start, bytes.len());
         // The window begins a third of the excerpt before the fault, so that the caret keeps some context on both sides.
-        let from = if bytes.len() <= EXCERPT_BYTES {
-            0
-        } else {
-            start.saturating_sub(EXCERPT_BYTES / 3)
-        };
+        let from = if bytes.len() <= EXCERPT_BYTES { 0 } else { start.saturating_sub(EXCERPT_BYTES / 3) };
         let to = bytes.len().min(from + EXCERPT_BYTES);
         let before = printable(&bytes[from..start]);
         let inside = printable(&bytes[start..end.min(to)]);
@@ -108,10 +82,7 @@ impl Diagnostic {
 
 /// The bytes as one row of text: what is not UTF-8 becomes U+FFFD, control characters become blanks.
 fn printable(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes)
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect()
+    String::from_utf8_lossy(bytes).chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
 }
 
 impl fmt::Display for Diagnostic {
@@ -135,9 +106,7 @@ impl miette::Diagnostic for Diagnostic {
     }
 
     fn help<'a>(&'a self) -> Option<Box<dyn fmt::Display + 'a>> {
-        self.hint
-            .as_ref()
-            .map(|hint| Box::new(hint) as Box<dyn fmt::Display>)
+        self.hint.as_ref().map(|hint| Box::new(hint) as Box<dyn fmt::Display>)
     }
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
@@ -147,9 +116,8 @@ impl miette::Diagnostic for Diagnostic {
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         (self.line > 0).then(|| {
             let span: SourceSpan = (self.mark.start, self.mark.len().max(1)).into();
-            Box::new(std::iter::once(LabeledSpan::new_primary_with_span(
-                None, span,
-            ))) as Box<dyn Iterator<Item = LabeledSpan>>
+            Box::new(std::iter::once(LabeledSpan::new_primary_with_span(None, span)))
+                as Box<dyn Iterator<Item = LabeledSpan>>
         })
     }
 }
@@ -191,17 +159,8 @@ pub(super) type Read<T> = Result<T, Box<Fault>>;
 impl Fault {
     /// A fault at the bytes `at` of the line.
     #[cold]
-    pub(super) fn new(
-        code: &'static str,
-        at: Range<usize>,
-        message: impl Into<String>,
-    ) -> Box<Self> {
-        Box::new(Self {
-            code,
-            at,
-            message: message.into(),
-            hint: None,
-        })
+    pub(super) fn new(code: &'static str, at: Range<usize>, message: impl Into<String>) -> Box<Self> {
+        Box::new(Self { code, at, message: message.into(), hint: None })
     }
 
     /// Adds the likely remedy.

@@ -15,10 +15,7 @@ pub(super) fn choose(head: &[u8], name: &Arc<str>) -> Result<(Dialect, &'static 
     }
     let head = &head[..head.len().min(LOOK_BYTES)];
     if let Some(offset) = memchr::memchr(0, head) {
-        return Err(ReadError::Binary {
-            name: name.clone(),
-            offset,
-        });
+        return Err(ReadError::Binary { name: name.clone(), offset });
     }
     let mut choice = (Dialect::LinuxCnc, "nothing points to another control");
     for (number, line) in (1..).zip(head.split(|&byte| byte == b'\n')) {
@@ -26,12 +23,7 @@ pub(super) fn choose(head: &[u8], name: &Arc<str>) -> Result<(Dialect, &'static 
         let text = text.trim();
         if let Some(language) = foreign(text) {
             let text = text.chars().take(80).collect();
-            return Err(ReadError::Refused {
-                name: name.clone(),
-                language,
-                line: number,
-                text,
-            });
+            return Err(ReadError::Refused { name: name.clone(), language, line: number, text });
         }
         if choice.0 == Dialect::LinuxCnc
             && let Some(found) = sign_of(text)
@@ -48,24 +40,12 @@ fn foreign(text: &str) -> Option<&'static str> {
     let is_heidenhain = upper.starts_with("BEGIN PGM ")
         || upper.split_once(' ').is_some_and(|(number, rest)| {
             number.bytes().all(|byte| byte.is_ascii_digit())
-                && (rest.starts_with("BEGIN PGM ")
-                    || rest.starts_with("BLK FORM ")
-                    || rest.starts_with("TOOL CALL "))
+                && (rest.starts_with("BEGIN PGM ") || rest.starts_with("BLK FORM ") || rest.starts_with("TOOL CALL "))
         });
     if is_heidenhain {
         return Some("Heidenhain Klartext");
     }
-    let siemens = [
-        "%_N_",
-        ";$PATH=",
-        "DEF REAL ",
-        "DEF INT ",
-        "MSG(\"",
-        "WORKPIECE(",
-        "TRANS X",
-        "CYCLE8",
-        "EXTCALL",
-    ];
+    let siemens = ["%_N_", ";$PATH=", "DEF REAL ", "DEF INT ", "MSG(\"", "WORKPIECE(", "TRANS X", "CYCLE8", "EXTCALL"];
     if siemens.iter().any(|start| upper.starts_with(start)) {
         return Some("Siemens Sinumerik");
     }
@@ -96,11 +76,7 @@ fn sign_of(text: &str) -> Option<(Dialect, &'static str)> {
     }
     if first == b'O'
         && bytes.len() > 1
-        && bytes[1..]
-            .iter()
-            .take_while(|byte| byte.is_ascii_digit())
-            .count()
-            >= 4
+        && bytes[1..].iter().take_while(|byte| byte.is_ascii_digit()).count() >= 4
         && !text.to_ascii_lowercase().contains("sub")
     {
         return Some((Dialect::Fanuc, "the program has an O-number"));
@@ -112,15 +88,10 @@ fn sign_of(text: &str) -> Option<(Dialect, &'static str)> {
     let mut words = code.split_ascii_whitespace();
     let command = words.next()?.to_ascii_uppercase();
     match command.as_str() {
-        "M82" | "M83" | "M104" | "M106" | "M107" | "M109" | "M140" | "M190" | "M201" | "M203"
-        | "M204" | "M205" | "M900" => Some((Dialect::Printer, "M-codes of a 3D printer")),
+        "M82" | "M83" | "M104" | "M106" | "M107" | "M109" | "M140" | "M190" | "M201" | "M203" | "M204" | "M205"
+        | "M900" => Some((Dialect::Printer, "M-codes of a 3D printer")),
         "G0" | "G1" | "G00" | "G01" | "G92"
-            if words.any(|word| {
-                matches!(
-                    word.as_bytes(),
-                    [b'E' | b'e', b'0'..=b'9' | b'.' | b'-', ..]
-                )
-            }) =>
+            if words.any(|word| matches!(word.as_bytes(), [b'E' | b'e', b'0'..=b'9' | b'.' | b'-', ..])) =>
         {
             Some((Dialect::Printer, "motions with an E word"))
         }
@@ -148,11 +119,7 @@ mod tests {
 
     #[test]
     fn other_languages_are_refused_by_name() {
-        let refused = |text: &str| {
-            choose(text.as_bytes(), &"test".into())
-                .unwrap_err()
-                .to_string()
-        };
+        let refused = |text: &str| choose(text.as_bytes(), &"test".into()).unwrap_err().to_string();
         assert!(refused("0 BEGIN PGM PART MM\n1 BLK FORM 0.1 Z").contains("Heidenhain"));
         assert!(refused("%_N_PART_MPF\nG0").contains("Siemens"));
         assert!(refused("\0\x01").contains("NUL"));

@@ -42,20 +42,17 @@ impl Interpreter {
         if let Some(word) = block.code(Group::Motion) {
             return Some(word.number);
         }
-        let taken = block
-            .code(Group::NonModal)
-            .is_some_and(|word| USES_AXES.contains(&word.number))
-            || block
-                .code(Group::ToolLength)
-                .is_some_and(|word| matches!(word.number, 431 | 432));
+        // Printers: `M201 X500` sets a limit and moves nothing.
+        if self.dialect == Dialect::Printer && !block.m.is_empty() {
+            return None;
+        }
+        let taken = block.code(Group::NonModal).is_some_and(|word| USES_AXES.contains(&word.number))
+            || block.code(Group::ToolLength).is_some_and(|word| matches!(word.number, 431 | 432));
         let is_center = matches!(self.modal.motion, 20 | 30)
             && block.set & codes::ARC_CENTER != 0
             && block.code(Group::NonModal).is_none();
-        (!taken
-            && (block.has_axes()
-                || is_center
-                || (self.dialect == Dialect::Printer && block.has(b'e'))))
-        .then_some(self.modal.motion)
+        (!taken && (block.has_axes() || is_center || (self.dialect == Dialect::Printer && block.has(b'e'))))
+            .then_some(self.modal.motion)
     }
 
     /// Refuses words that no code of the line gives a meaning to.
@@ -73,6 +70,9 @@ impl Interpreter {
         if let Some(code) = motion.and_then(codes::find) {
             known |= code.letters;
         }
+        if self.dialect == Dialect::Fanuc && motion == Some(830) {
+            known |= codes::bit(b'p'); // Dwell at the bottom.
+        }
         let unknown = block.set & !known;
         if unknown == 0 {
             return Ok(());
@@ -84,29 +84,17 @@ impl Interpreter {
             return Err(self.axes_without_motion(block, motion));
         }
         let with = motion.map_or_else(|| "this line".to_owned(), codes::spelled);
-        Err(Fault::new(
-            "gcode::unused_word",
-            at,
-            format!("{word} has no meaning with {with}"),
-        ))
+        Err(Fault::new("gcode::unused_word", at, format!("{word} has no meaning with {with}")))
     }
 
     #[cold]
     fn axes_without_motion(&self, block: &Block, motion: Option<u16>) -> Box<Fault> {
         let at = block.at_any(codes::AXES);
         if motion == Some(800) && block.code(Group::Motion).is_some() {
-            return Fault::new(
-                "gcode::no_motion_mode",
-                at,
-                "G80 ends motion modes and takes no axis words",
-            );
+            return Fault::new("gcode::no_motion_mode", at, "G80 ends motion modes and takes no axis words");
         }
-        Fault::new(
-            "gcode::no_motion_mode",
-            at,
-            "axis words, but no code such as G0 or G1 says how to move",
-        )
-        .hint("write G0, G1, G2 or G3 on this line or one before it")
+        Fault::new("gcode::no_motion_mode", at, "axis words, but no code such as G0 or G1 says how to move")
+            .hint("write G0, G1, G2 or G3 on this line or one before it")
     }
 
     fn feed_mode(&mut self, block: &Block) -> Read<()> {
@@ -138,11 +126,7 @@ impl Interpreter {
             ));
         }
         // F comes before G20 and G21 of the same line: it still has the old unit.
-        self.modal.feed = if self.modal.feed_mode == FeedMode::Inverse {
-            feed
-        } else {
-            feed * self.modal.unit_mm
-        };
+        self.modal.feed = if self.modal.feed_mode == FeedMode::Inverse { feed } else { feed * self.modal.unit_mm };
         Ok(())
     }
 
@@ -171,9 +155,7 @@ impl Interpreter {
         if block.has(b't') {
             let tool = self.integer(block, b't', 0, 999_999)?;
             self.next_tool = tool as u32;
-            self.event(EventKind::ToolSelect {
-                tool: self.next_tool,
-            });
+            self.event(EventKind::ToolSelect { tool: self.next_tool });
         }
         Ok(())
     }
@@ -184,19 +166,11 @@ impl Interpreter {
         let name = codes::letter(codes::slot(letter));
         let at = block.at(letter);
         if (value - value.round()).abs() > INTEGER_WITHIN {
-            return Err(Fault::new(
-                "gcode::integer",
-                at,
-                format!("{name}{value} is not an integer"),
-            ));
+            return Err(Fault::new("gcode::integer", at, format!("{name}{value} is not an integer")));
         }
         let rounded = value.round() as i64;
         if !(low..=high).contains(&rounded) {
-            return Err(Fault::new(
-                "gcode::range",
-                at,
-                format!("{name}{rounded} is out of range: {low} to {high}"),
-            ));
+            return Err(Fault::new("gcode::range", at, format!("{name}{rounded} is out of range: {low} to {high}")));
         }
         Ok(rounded)
     }
@@ -256,9 +230,7 @@ impl Interpreter {
                         "the tolerance P of G64 is negative; the smallest is 0",
                     ));
                 }
-                Corner::Continuous {
-                    tolerance_mm: tolerance.filter(|&p| p > 0.0),
-                }
+                Corner::Continuous { tolerance_mm: tolerance.filter(|&p| p > 0.0) }
             }
         })
     }
@@ -272,8 +244,7 @@ impl Interpreter {
             (None, _) if printer => 0.0,
             (None, _) => {
                 return Err(
-                    Fault::new("gcode::dwell", word.at(), "the dwell G4 has no time")
-                        .hint("write G4 P with seconds"),
+                    Fault::new("gcode::dwell", word.at(), "the dwell G4 has no time").hint("write G4 P with seconds")
                 );
             }
         };
@@ -293,25 +264,25 @@ impl Interpreter {
         self.check_words(block, motion)?;
         let Some(code) = motion else { return Ok(()) };
         if let Some(word) = block.code(Group::Motion) {
-            if let Some(other) = block
-                .code(Group::NonModal)
-                .filter(|other| USES_AXES.contains(&other.number) && block.has_axes())
+            // `G80 G28 Z0`: G28 takes the axis words. Fanuc: in `G0 G28 Z0` too, and G0 is only remembered.
+            let taken = block.code(Group::NonModal).is_some_and(|other| USES_AXES.contains(&other.number));
+            if taken && (code == 800 || self.dialect == Dialect::Fanuc) {
+                self.modal.motion = code;
+                return Ok(());
+            }
+            if let Some(other) =
+                block.code(Group::NonModal).filter(|other| USES_AXES.contains(&other.number) && block.has_axes())
             {
                 let message = format!(
                     "{} and {} would both use the axis words",
                     codes::spelled(word.number),
                     codes::spelled(other.number)
                 );
-                return Err(Fault::new("gcode::modal_group", other.at(), message)
-                    .hint("write them on two lines"));
+                return Err(Fault::new("gcode::modal_group", other.at(), message).hint("write them on two lines"));
             }
             self.modal.motion = code;
         }
-        if block
-            .code(Group::NonModal)
-            .is_some_and(|word| word.number == 530)
-            && !matches!(code, 0 | 10)
-        {
+        if block.code(Group::NonModal).is_some_and(|word| word.number == 530) && !matches!(code, 0 | 10) {
             return Err(Fault::new(
                 "gcode::g53",
                 block.whole(),
@@ -339,17 +310,9 @@ impl Interpreter {
     fn stop(&mut self, block: &Block) -> Read<()> {
         for word in &block.m {
             match word.number {
-                0 | 1 | 60 => self.event(EventKind::MCode {
-                    code: word.number,
-                    p: None,
-                    q: None,
-                }),
+                0 | 1 | 60 => self.event(EventKind::MCode { code: word.number, p: None, q: None }),
                 2 | 30 => {
-                    self.event(EventKind::MCode {
-                        code: word.number,
-                        p: None,
-                        q: None,
-                    });
+                    self.event(EventKind::MCode { code: word.number, p: None, q: None });
                     self.end_program();
                     self.check_no_curve(block)?;
                 }

@@ -89,28 +89,20 @@ const OPERATORS: [(&[u8], Operator, u8); 15] = [
 
 /// Functions of one argument; `atan` and `exists` have a syntax of their own.
 const FUNCTIONS: [&[u8]; 14] = [
-    b"abs", b"acos", b"asin", b"atan", b"cos", b"exists", b"exp", b"fix", b"fup", b"ln", b"round",
-    b"sin", b"sqrt", b"tan",
+    b"abs", b"acos", b"asin", b"atan", b"cos", b"exists", b"exp", b"fix", b"fup", b"ln", b"round", b"sin", b"sqrt",
+    b"tan",
 ];
 
 impl<'a, V: Values> Evaluator<'a, V> {
     pub(super) const fn new(cursor: Cursor<'a>, values: &'a V) -> Self {
-        Self {
-            cursor,
-            values,
-            depth: 0,
-        }
+        Self { cursor, values, depth: 0 }
     }
 
     /// A value.
     #[inline]
     pub(super) fn value(&mut self) -> Read<f64> {
         let first = self.cursor.peek();
-        if first.is_ascii_digit() || first == b'.' {
-            self.cursor.number()
-        } else {
-            self.other_value(first)
-        }
+        if first.is_ascii_digit() || first == b'.' { self.cursor.number() } else { self.other_value(first) }
     }
 
     fn other_value(&mut self, first: u8) -> Read<f64> {
@@ -152,10 +144,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
         if !self.cursor.eat(b']') {
             let found = self.cursor.peek();
             let at = self.cursor.at;
-            let message = format!(
-                "`]` or an operator is missing: {} stands in its place",
-                text_of(found)
-            );
+            let message = format!("`]` or an operator is missing: {} stands in its place", text_of(found));
             return Err(Fault::new("gcode::bracket", at..at + 1, message));
         }
         Ok(value)
@@ -171,9 +160,9 @@ impl<'a, V: Values> Evaluator<'a, V> {
             }
             self.cursor.at = after;
             let right = self.deeper(start, |evaluator| evaluator.expression(strength + 1))?;
-            left = operator.apply(left, right).map_err(|message| {
-                Fault::new("gcode::expression", start..self.cursor.at, message)
-            })?;
+            left = operator
+                .apply(left, right)
+                .map_err(|message| Fault::new("gcode::expression", start..self.cursor.at, message))?;
             if !left.is_finite() {
                 return Err(not_finite(start..self.cursor.at));
             }
@@ -194,10 +183,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
 
     fn function(&mut self) -> Read<f64> {
         let start = self.cursor.at;
-        let Some(name) = FUNCTIONS
-            .into_iter()
-            .find(|name| self.cursor.eat_word(name))
-        else {
+        let Some(name) = FUNCTIONS.into_iter().find(|name| self.cursor.eat_word(name)) else {
             return Err(self.unknown_function(start));
         };
         if name == b"exists" {
@@ -207,22 +193,14 @@ impl<'a, V: Values> Evaluator<'a, V> {
         let value = if name == b"atan" {
             if !self.cursor.eat(b'/') {
                 let message = "atan needs two arguments: a `/` and a second bracket are missing";
-                return Err(
-                    Fault::new("gcode::expression", start..self.cursor.at, message)
-                        .hint("write atan[y]/[x]"),
-                );
+                return Err(Fault::new("gcode::expression", start..self.cursor.at, message).hint("write atan[y]/[x]"));
             }
             argument.atan2(self.bracketed()?).to_degrees()
         } else {
-            apply_function(name, argument).map_err(|message| {
-                Fault::new("gcode::expression", start..self.cursor.at, message)
-            })?
+            apply_function(name, argument)
+                .map_err(|message| Fault::new("gcode::expression", start..self.cursor.at, message))?
         };
-        if value.is_finite() {
-            Ok(value)
-        } else {
-            Err(not_finite(start..self.cursor.at))
-        }
+        if value.is_finite() { Ok(value) } else { Err(not_finite(start..self.cursor.at)) }
     }
 
     #[cold]
@@ -263,12 +241,8 @@ impl<'a, V: Values> Evaluator<'a, V> {
                 return Ok(f64::from(u8::from(self.values.named(name).is_some())));
             }
         }
-        Err(Fault::new(
-            "gcode::expression",
-            start..self.cursor.at + 1,
-            "exists takes the name of a parameter",
-        )
-        .hint("write exists[#<name>]"))
+        Err(Fault::new("gcode::expression", start..self.cursor.at + 1, "exists takes the name of a parameter")
+            .hint("write exists[#<name>]"))
     }
 
     /// What stands behind the `#` under the cursor.
@@ -282,17 +256,10 @@ impl<'a, V: Values> Evaluator<'a, V> {
         let rounded = index.round();
         let at = start..self.cursor.at;
         if (index - rounded).abs() > INTEGER_WITHIN {
-            return Err(Fault::new(
-                "gcode::parameter",
-                at,
-                format!("parameter number {index} is not an integer"),
-            ));
+            return Err(Fault::new("gcode::parameter", at, format!("parameter number {index} is not an integer")));
         }
         if !(1.0..PARAMETERS as f64).contains(&rounded) {
-            let message = format!(
-                "parameter #{rounded} does not exist: the numbers go from 1 to {}",
-                PARAMETERS - 1
-            );
+            let message = format!("parameter #{rounded} does not exist: the numbers go from 1 to {}", PARAMETERS - 1);
             return Err(Fault::new("gcode::parameter", at, message));
         }
         Ok(Target::Numbered(rounded as usize))
@@ -317,11 +284,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
         }
         self.cursor.bump();
         if name.is_empty() {
-            Err(Fault::new(
-                "gcode::parameter",
-                start..self.cursor.at,
-                "the name is empty",
-            ))
+            Err(Fault::new("gcode::parameter", start..self.cursor.at, "the name is empty"))
         } else {
             Ok(name)
         }
@@ -341,11 +304,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
     fn deeper<T>(&mut self, start: usize, read: impl FnOnce(&mut Self) -> Read<T>) -> Read<T> {
         if self.depth == DEEPEST {
             let message = format!("more than {DEEPEST} brackets, signs or # inside each other");
-            return Err(Fault::new(
-                "gcode::depth",
-                start..self.cursor.at + 1,
-                message,
-            ));
+            return Err(Fault::new("gcode::depth", start..self.cursor.at + 1, message));
         }
         self.depth += 1;
         let result = read(self);
@@ -359,9 +318,9 @@ impl Operator {
         let truth = |value: bool| Ok(f64::from(u8::from(value)));
         let (is_left, is_right) = (left != 0.0, right != 0.0);
         match self {
-            Self::Power if left < 0.0 && right.fract() != 0.0 => Err(format!(
-                "{left} cannot be raised to {right}: a negative base needs an integer exponent"
-            )),
+            Self::Power if left < 0.0 && right.fract() != 0.0 => {
+                Err(format!("{left} cannot be raised to {right}: a negative base needs an integer exponent"))
+            }
             Self::Power => Ok(left.powf(right)),
             Self::Times => Ok(left * right),
             Self::Over | Self::Modulo if right == 0.0 => Err(format!("{left} is divided by zero")),
@@ -384,10 +343,7 @@ impl Operator {
 
 fn apply_function(name: &[u8], x: f64) -> Result<f64, String> {
     let outside = |range: &str| {
-        Err(format!(
-            "{}[{x}] does not exist: the argument must be {range}",
-            String::from_utf8_lossy(name)
-        ))
+        Err(format!("{}[{x}] does not exist: the argument must be {range}", String::from_utf8_lossy(name)))
     };
     match name {
         b"abs" => Ok(x.abs()),
@@ -414,11 +370,7 @@ fn not_finite(at: std::ops::Range<usize>) -> Box<Fault> {
 }
 
 fn text_of(byte: u8) -> String {
-    if byte == END {
-        "the end of the line".to_owned()
-    } else {
-        format!("`{}`", shown(byte))
-    }
+    if byte == END { "the end of the line".to_owned() } else { format!("`{}`", shown(byte)) }
 }
 
 #[cfg(test)]
@@ -438,16 +390,11 @@ mod tests {
     }
 
     fn value(text: &str) -> f64 {
-        Evaluator::new(Cursor::new(text.as_bytes()), &Fixed)
-            .value()
-            .unwrap()
+        Evaluator::new(Cursor::new(text.as_bytes()), &Fixed).value().unwrap()
     }
 
     fn message(text: &str) -> String {
-        Evaluator::new(Cursor::new(text.as_bytes()), &Fixed)
-            .value()
-            .unwrap_err()
-            .message
+        Evaluator::new(Cursor::new(text.as_bytes()), &Fixed).value().unwrap_err().message
     }
 
     #[test]

@@ -13,21 +13,16 @@ pub(super) enum Command {
 }
 
 /// G-codes of printers that set the machine to work by itself: nozzle cleaning, parking, bed probing and alignment.
-const PRINTER_ACTS: [&[u8]; 12] = [
-    b"g11", b"g12", b"g26", b"g27", b"g29", b"g30", b"g32", b"g33", b"g34", b"g35", b"g60", b"g425",
-];
+const PRINTER_ACTS: [&[u8]; 12] =
+    [b"g11", b"g12", b"g26", b"g27", b"g29", b"g30", b"g32", b"g33", b"g34", b"g35", b"g60", b"g425"];
 /// M-codes of printers that are followed by text.
-const PRINTER_TEXT: [&[u8]; 8] = [
-    b"m16", b"m23", b"m28", b"m32", b"m117", b"m118", b"m862", b"m928",
-];
+const PRINTER_TEXT: [&[u8]; 8] = [b"m16", b"m23", b"m28", b"m32", b"m117", b"m118", b"m862", b"m928"];
 
 /// Whether a line is a command to the firmware of this dialect.
 pub(super) fn command(line: &[u8], dialect: Dialect) -> Option<Command> {
     let line = line.trim_ascii();
     match dialect {
-        Dialect::Grbl
-            if line.first() == Some(&b'$') && !line.to_ascii_lowercase().starts_with(b"$j") =>
-        {
+        Dialect::Grbl if line.first() == Some(&b'$') && !line.to_ascii_lowercase().starts_with(b"$j") => {
             Some(Command::Speaks)
         }
         Dialect::Printer => printer_command(line),
@@ -39,10 +34,8 @@ fn printer_command(line: &[u8]) -> Option<Command> {
     if !line.first()?.is_ascii_alphabetic() {
         return None;
     }
-    let end = line
-        .iter()
-        .position(|byte| byte.is_ascii_whitespace() || matches!(byte, b';' | b'.'))
-        .unwrap_or(line.len());
+    let end =
+        line.iter().position(|byte| byte.is_ascii_whitespace() || matches!(byte, b';' | b'.')).unwrap_or(line.len());
     let word = line[..end].to_ascii_lowercase();
     if PRINTER_ACTS.contains(&word.as_slice()) {
         return Some(Command::Acts);
@@ -51,20 +44,13 @@ fn printer_command(line: &[u8]) -> Option<Command> {
         return Some(Command::Speaks);
     }
     // A macro has a name of letters: `START_PRINT BED=60`; words of G-code have a digit or a sign behind the first letter.
-    let named = word.len() > 2
-        && word
-            .iter()
-            .take(3)
-            .all(|byte| byte.is_ascii_alphabetic() || *byte == b'_');
+    let named = word.len() > 2 && word.iter().take(3).all(|byte| byte.is_ascii_alphabetic() || *byte == b'_');
     named.then_some(Command::Acts)
 }
 
 /// The warning for a command whose motions are not known.
 pub(super) fn warning(line: &[u8]) -> Box<Fault> {
-    let shown = String::from_utf8_lossy(line.trim_ascii())
-        .chars()
-        .take(40)
-        .collect::<String>();
+    let shown = String::from_utf8_lossy(line.trim_ascii()).chars().take(40).collect::<String>();
     Fault::new(
         "gcode::firmware",
         0..line.len(),

@@ -63,15 +63,8 @@ pub(super) struct Flow {
 
 impl Flow {
     pub(super) fn new(source: Source, folder: Option<PathBuf>, settings: &Settings) -> Self {
-        let folders = folder
-            .into_iter()
-            .chain(settings.subroutine_paths.iter().cloned())
-            .collect();
-        let unit = Unit {
-            source,
-            path: None,
-            subroutines: None,
-        };
+        let folders = folder.into_iter().chain(settings.subroutine_paths.iter().cloned()).collect();
+        let unit = Unit { source, path: None, subroutines: None };
         Self {
             units: vec![unit],
             current: 0,
@@ -106,30 +99,17 @@ impl Flow {
             let wanted = match skip.purpose {
                 Purpose::Branch | Purpose::EndOfBranches => "endif",
                 Purpose::Definition => "endsub",
-                Purpose::EndOfLoop | Purpose::NextRound => {
-                    "end of its loop (endwhile, while or endrepeat)"
-                }
+                Purpose::EndOfLoop | Purpose::NextRound => "end of its loop (endwhile, while or endrepeat)",
             };
             return Some((skip.line, format!("{} has no {wanted}", shown(&skip.label))));
         }
         let frame = self.frames.last()?;
-        let wanted = if frame.manner == Manner::Fanuc {
-            "M99"
-        } else {
-            "endsub"
-        };
-        Some((
-            frame.body.lines_before,
-            format!("the subroutine {} has no {wanted}", shown(&frame.label)),
-        ))
+        let wanted = if frame.manner == Manner::Fanuc { "M99" } else { "endsub" };
+        Some((frame.body.lines_before, format!("the subroutine {} has no {wanted}", shown(&frame.label))))
     }
 
     /// A line that is passed over: does it end the passing?
-    pub(super) fn passed_line(
-        &mut self,
-        range: std::ops::Range<usize>,
-        interpreter: &Interpreter,
-    ) -> Read<()> {
+    pub(super) fn passed_line(&mut self, range: std::ops::Range<usize>, interpreter: &Interpreter) -> Read<()> {
         let Some((head, arguments)) = self.passed_head(range, interpreter)? else {
             return Ok(());
         };
@@ -138,8 +118,7 @@ impl Flow {
             return Ok(());
         };
         match (skip.purpose, head.keyword) {
-            (Purpose::Branch, Keyword::ElseIf)
-                if arguments.is_some_and(|arguments| arguments.values[0] == 0.0) => {}
+            (Purpose::Branch, Keyword::ElseIf) if arguments.is_some_and(|arguments| arguments.values[0] == 0.0) => {}
             (Purpose::Branch, Keyword::ElseIf | Keyword::Else | Keyword::EndIf)
             | (Purpose::EndOfBranches, Keyword::EndIf)
             | (Purpose::Definition, Keyword::EndSub) => {
@@ -189,32 +168,20 @@ impl Flow {
             (skip.purpose, head.keyword),
             (Purpose::Branch, Keyword::ElseIf) | (Purpose::NextRound, Keyword::While)
         );
-        let arguments = if evaluates {
-            Some(read_arguments(&mut evaluator, &head)?)
-        } else {
-            None
-        };
+        let arguments = if evaluates { Some(read_arguments(&mut evaluator, &head)?) } else { None };
         Ok(Some((head, arguments)))
     }
 
     /// A line that is an O-word: reads it at `at` and carries it out.
-    pub(super) fn line(
-        &mut self,
-        range: std::ops::Range<usize>,
-        at: usize,
-        interpreter: &mut Interpreter,
-    ) -> Read<()> {
+    pub(super) fn line(&mut self, range: std::ops::Range<usize>, at: usize, interpreter: &mut Interpreter) -> Read<()> {
         let (head, arguments) = {
             let mut cursor = Cursor::new(self.source_ref().bytes(range));
             cursor.at = at;
             let mut evaluator = Evaluator::new(cursor, &*interpreter);
             let head = read_head(&mut evaluator)?;
             // The condition of an `elseif` behind a taken branch is not evaluated.
-            let arguments = if head.keyword == Keyword::ElseIf {
-                None
-            } else {
-                Some(read_arguments(&mut evaluator, &head)?)
-            };
+            let arguments =
+                if head.keyword == Keyword::ElseIf { None } else { Some(read_arguments(&mut evaluator, &head)?) };
             if arguments.is_some() {
                 read_rest(&mut evaluator.cursor)?;
             }
@@ -223,9 +190,7 @@ impl Flow {
         let line = self.source_ref().line;
         match (head.keyword, arguments) {
             (Keyword::Call, Some(arguments)) => self.call(&head, &arguments, interpreter),
-            (Keyword::Return | Keyword::EndSub, Some(arguments)) => {
-                self.leave(&head, &arguments, interpreter)
-            }
+            (Keyword::Return | Keyword::EndSub, Some(arguments)) => self.leave(&head, &arguments, interpreter),
             _ => self.carry_out(&head, arguments, line),
         }
     }
@@ -235,17 +200,9 @@ impl Flow {
         let value = arguments.map_or(0.0, |arguments| arguments.values[0]);
         let is_true = value != 0.0;
         match head.keyword {
-            Keyword::Number
-            | Keyword::EndIf
-            | Keyword::Call
-            | Keyword::Return
-            | Keyword::EndSub => {}
+            Keyword::Number | Keyword::EndIf | Keyword::Call | Keyword::Return | Keyword::EndSub => {}
             Keyword::Sub => {
-                if self
-                    .frames
-                    .last()
-                    .is_some_and(|frame| frame.manner == Manner::Fanuc && frame.label == head.label)
-                {
+                if self.frames.last().is_some_and(|frame| frame.manner == Manner::Fanuc && frame.label == head.label) {
                     return Err(Fault::new(
                         "gcode::o_word",
                         head.at.clone(),
@@ -286,20 +243,13 @@ impl Flow {
     }
 
     fn pass(&mut self, head: &Head, purpose: Purpose, line: u32) {
-        self.skip = Some(Skip {
-            label: head.label.clone(),
-            purpose,
-            line,
-        });
+        self.skip = Some(Skip { label: head.label.clone(), purpose, line });
     }
 
     fn begin_loop(&mut self, head: &Head, repeats: u64) -> Read<()> {
         let base = self.frames.last().map_or(0, |frame| frame.loops);
         // A loop that was left by a jump ends when it begins anew.
-        if let Some(old) = self.loops[base..]
-            .iter()
-            .position(|turn| turn.label == head.label)
-        {
+        if let Some(old) = self.loops[base..].iter().position(|turn| turn.label == head.label) {
             self.loops.truncate(base + old);
         }
         if self.loops.len() >= base + self.max_depth {
@@ -311,28 +261,15 @@ impl Flow {
         }
         let source = self.source_ref();
         let (begin, body) = (source.line_start, source.here());
-        self.loops.push(Loop {
-            label: head.label.clone(),
-            kind: head.keyword,
-            begin,
-            body,
-            repeats,
-        });
+        self.loops.push(Loop { label: head.label.clone(), kind: head.keyword, begin, body, repeats });
         Ok(())
     }
 
     /// The innermost loop, which must have the label; inner ones that were left behind end.
     fn find_loop(&mut self, head: &Head) -> Read<&mut Loop> {
         let base = self.frames.last().map_or(0, |frame| frame.loops);
-        let Some(found) = self.loops[base..]
-            .iter()
-            .rposition(|turn| turn.label == head.label)
-        else {
-            let message = format!(
-                "{}: no loop {} is under way here",
-                head.keyword.spelled(),
-                head.shown()
-            );
+        let Some(found) = self.loops[base..].iter().rposition(|turn| turn.label == head.label) else {
+            let message = format!("{}: no loop {} is under way here", head.keyword.spelled(), head.shown());
             return Err(Fault::new("gcode::o_word", head.at.clone(), message));
         };
         self.loops.truncate(base + found + 1);
@@ -342,9 +279,7 @@ impl Flow {
     /// `while` begins a loop, or ends one that began with `do`.
     fn meet_while(&mut self, head: &Head, is_true: bool, line: u32) -> Read<()> {
         let base = self.frames.last().map_or(0, |frame| frame.loops);
-        let ends_do = self.loops[base..]
-            .iter()
-            .any(|turn| turn.label == head.label && turn.kind == Keyword::Do);
+        let ends_do = self.loops[base..].iter().any(|turn| turn.label == head.label && turn.kind == Keyword::Do);
         if ends_do {
             let body = self.find_loop(head)?.body;
             if is_true {
@@ -382,9 +317,7 @@ impl Flow {
     }
 
     fn jump(&mut self, mark: Mark, head: &Head) -> Read<()> {
-        self.source()
-            .jump(mark)
-            .map_err(|error| cannot_read(head.at.clone(), &error))
+        self.source().jump(mark).map_err(|error| cannot_read(head.at.clone(), &error))
     }
 }
 
@@ -401,9 +334,5 @@ pub(super) fn at_o_word(cursor: &mut Cursor<'_>) -> bool {
 
 #[cold]
 pub(super) fn cannot_read(at: std::ops::Range<usize>, error: &io::Error) -> Box<Fault> {
-    Fault::new(
-        "gcode::read",
-        at,
-        format!("the program cannot be read on: {error}"),
-    )
+    Fault::new("gcode::read", at, format!("the program cannot be read on: {error}"))
 }

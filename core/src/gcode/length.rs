@@ -12,17 +12,9 @@ impl Motion {
     pub fn length_mm(&self) -> f64 {
         match &self.shape {
             Shape::Line => norm(self.start_mm, self.end_mm),
-            Shape::Arc {
-                plane,
-                center_mm,
-                turns,
-            } => arc_length(
-                &nine(self.start_mm),
-                &nine(self.end_mm),
-                &nine(*center_mm),
-                *plane,
-                *turns,
-            ),
+            Shape::Arc { plane, center_mm, turns } => {
+                arc_length(&nine(self.start_mm), &nine(self.end_mm), &nine(*center_mm), *plane, *turns)
+            }
             Shape::Spline(spline) => spline.length_mm(),
         }
     }
@@ -46,10 +38,7 @@ impl Spline {
             .unwrap_or(self.degree);
         let mut points: Vec<[f64; 4]> = (0..=self.degree)
             .map(|n| {
-                let (p, w) = (
-                    self.control_mm[span - self.degree + n],
-                    self.weights[span - self.degree + n],
-                );
+                let (p, w) = (self.control_mm[span - self.degree + n], self.weights[span - self.degree + n]);
                 [p[0] * w, p[1] * w, p[2] * w, w]
             })
             .collect();
@@ -57,11 +46,7 @@ impl Spline {
             for n in (level..=self.degree).rev() {
                 let low = self.knots[span - self.degree + n];
                 let high = self.knots[span + 1 + n - level];
-                let share = if high > low {
-                    (u - low) / (high - low)
-                } else {
-                    0.0
-                };
+                let share = if high > low { (u - low) / (high - low) } else { 0.0 };
                 for axis in 0..4 {
                     points[n][axis] = (1.0 - share) * points[n - 1][axis] + share * points[n][axis];
                 }

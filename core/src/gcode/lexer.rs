@@ -11,8 +11,8 @@ pub(super) const END: u8 = b'\n';
 
 /// Powers of ten that f64 holds exactly.
 const EXACT_POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
-    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
+    1e21, 1e22,
 ];
 /// Largest mantissa below which every integer is exact in f64.
 const EXACT_MANTISSA: u64 = 1 << 53;
@@ -101,9 +101,7 @@ impl<'a> Cursor<'a> {
         loop {
             let byte = self.raw();
             if byte.is_ascii_digit() {
-                mantissa = mantissa
-                    .wrapping_mul(10)
-                    .wrapping_add(u64::from(byte - b'0'));
+                mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
                 digits += 1;
                 decimals += usize::from(point);
             } else if byte == b'.' && !point {
@@ -124,13 +122,11 @@ impl<'a> Cursor<'a> {
         if digits == 0 {
             return Err(self.not_a_number(start));
         }
-        let value =
-            if digits <= SAFE_DIGITS && mantissa <= EXACT_MANTISSA && decimals < EXACT_POWERS.len()
-            {
-                mantissa as f64 / EXACT_POWERS[decimals]
-            } else {
-                self.long_number(start)?
-            };
+        let value = if digits <= SAFE_DIGITS && mantissa <= EXACT_MANTISSA && decimals < EXACT_POWERS.len() {
+            mantissa as f64 / EXACT_POWERS[decimals]
+        } else {
+            self.long_number(start)?
+        };
         Ok(if negative { -value } else { value })
     }
 
@@ -155,17 +151,9 @@ impl<'a> Cursor<'a> {
     #[cold]
     fn not_a_number(&mut self, start: usize) -> Box<Fault> {
         let found = self.peek();
-        let what = if found == END {
-            "the end of the line".to_owned()
-        } else {
-            format!("`{}`", shown(found))
-        };
+        let what = if found == END { "the end of the line".to_owned() } else { format!("`{}`", shown(found)) };
         let end = if found == END { self.at } else { self.at + 1 };
-        Fault::new(
-            "gcode::number",
-            start..end.max(start),
-            format!("a number is missing: {what} stands in its place"),
-        )
+        Fault::new("gcode::number", start..end.max(start), format!("a number is missing: {what} stands in its place"))
     }
 }
 
@@ -177,11 +165,7 @@ pub(super) const fn is_blank(byte: u8) -> bool {
 
 /// A byte as a message shows it.
 pub(super) fn shown(byte: u8) -> String {
-    if byte.is_ascii_graphic() {
-        char::from(byte).to_string()
-    } else {
-        format!("byte {byte:#04x}")
-    }
+    if byte.is_ascii_graphic() { char::from(byte).to_string() } else { format!("byte {byte:#04x}") }
 }
 
 #[cfg(test)]
@@ -210,11 +194,7 @@ mod tests {
             "9007199254740993",
             "0.30000000000000004",
         ] {
-            assert_eq!(
-                Cursor::new(text.as_bytes()).number().unwrap(),
-                text.parse::<f64>().unwrap(),
-                "{text}"
-            );
+            assert_eq!(Cursor::new(text.as_bytes()).number().unwrap(), text.parse::<f64>().unwrap(), "{text}");
         }
     }
 

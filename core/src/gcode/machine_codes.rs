@@ -9,15 +9,7 @@ use super::settings::Dialect;
 use super::state::Interpreter;
 
 /// M-codes of one group exclude each other on a line.
-const GROUPS: [&[u16]; 7] = [
-    &[0, 1, 2, 30, 60],
-    &[6, 61],
-    &[3, 4, 5],
-    &[7, 9],
-    &[8, 9],
-    &[48, 49],
-    &[70, 71, 72, 73],
-];
+const GROUPS: [&[u16]; 7] = [&[0, 1, 2, 30, 60], &[6, 61], &[3, 4, 5], &[7, 9], &[8, 9], &[48, 49], &[70, 71, 72, 73]];
 
 impl Interpreter {
     /// Letters that an M-code takes.
@@ -59,22 +51,20 @@ impl Interpreter {
         for (n, word) in block.m.iter().enumerate() {
             let clash = block.m[..n].iter().find(|other| {
                 other.number == word.number
-                    || GROUPS
-                        .iter()
-                        .any(|group| group.contains(&other.number) && group.contains(&word.number))
+                    || GROUPS.iter().any(|group| group.contains(&other.number) && group.contains(&word.number))
             });
             if let Some(other) = clash {
-                let message = format!(
-                    "M{} and M{} exclude each other on one line",
-                    other.number, word.number
-                );
-                return Err(Fault::new("gcode::modal_group", word.at(), message)
-                    .hint("write them on two lines"));
+                let message = format!("M{} and M{} exclude each other on one line", other.number, word.number);
+                return Err(Fault::new("gcode::modal_group", word.at(), message).hint("write them on two lines"));
             }
             let known = matches!(word.number, 0..=9 | 19 | 30 | 48..=53 | 60..=68 | 70..=73 | 98 | 99 | 100..=199);
             if !known && self.dialect == Dialect::LinuxCnc {
-                return Err(Fault::new("gcode::unknown_m", word.at(), format!("M{} is not an M-code that LinuxCNC knows", word.number))
-                    .hint("user M-codes go from M100 to M199; another control's program needs another dialect"));
+                return Err(Fault::new(
+                    "gcode::unknown_m",
+                    word.at(),
+                    format!("M{} is not an M-code that LinuxCNC knows", word.number),
+                )
+                .hint("user M-codes go from M100 to M199; another control's program needs another dialect"));
             }
         }
         Ok(())
@@ -94,11 +84,7 @@ impl Interpreter {
         for &letter in needed {
             if !block.has(letter) {
                 let name = char::from(letter).to_ascii_uppercase();
-                return Err(Fault::new(
-                    "gcode::m_code",
-                    block.whole(),
-                    format!("M{number} needs its word {name}"),
-                ));
+                return Err(Fault::new("gcode::m_code", block.whole(), format!("M{number} needs its word {name}")));
             }
         }
         if number != 66 {
@@ -111,11 +97,7 @@ impl Interpreter {
                 "M66 waits for a digital input P or an analog input E: exactly one of them",
             ));
         }
-        let mode = if block.has(b'l') {
-            self.integer(block, b'l', 0, 4)?
-        } else {
-            0
-        };
+        let mode = if block.has(b'l') { self.integer(block, b'l', 0, 4)? } else { 0 };
         if mode != 0 && block.get(b'q').unwrap_or(0.0) <= 0.0 {
             return Err(Fault::new(
                 "gcode::m_code",
@@ -165,11 +147,7 @@ impl Interpreter {
             83 if self.dialect == Dialect::Printer => self.extruder_relative = true,
             _ => {}
         }
-        self.event(EventKind::MCode {
-            code: number,
-            p: block.get(b'p'),
-            q: block.get(b'q'),
-        });
+        self.event(EventKind::MCode { code: number, p: block.get(b'p'), q: block.get(b'q') });
         Ok(())
     }
 }

@@ -59,11 +59,7 @@ impl Interpreter {
             }
             number => {
                 let offset = self.tool_offset(block, word)?;
-                let base = if number == 432 {
-                    self.frame.tool
-                } else {
-                    [0.0; 9]
-                };
+                let base = if number == 432 { self.frame.tool } else { [0.0; 9] };
                 self.frame.tool = std::array::from_fn(|axis| base[axis] + offset[axis]);
             }
         }
@@ -72,11 +68,7 @@ impl Interpreter {
     }
 
     fn tool_offset(&mut self, block: &Block, word: Word) -> Read<Position> {
-        let number = if block.has(b'h') {
-            self.integer(block, b'h', 0, 999_999)? as u32
-        } else {
-            self.tool
-        };
+        let number = if block.has(b'h') { self.integer(block, b'h', 0, 999_999)? as u32 } else { self.tool };
         if word.number == 432 && !block.has(b'h') {
             let mut offset = [0.0; 9];
             for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
@@ -90,28 +82,14 @@ impl Interpreter {
             return Ok(tool.offset);
         }
         if number != 0 && !self.settings.tools.tools.is_empty() {
-            let at = if block.has(b'h') {
-                block.at(b'h')
-            } else {
-                word.at()
-            };
-            return Err(Fault::new(
-                "gcode::tool",
-                at,
-                format!("tool {number} is not in the tool table"),
-            ));
+            let at = if block.has(b'h') { block.at(b'h') } else { word.at() };
+            return Err(Fault::new("gcode::tool", at, format!("tool {number} is not in the tool table")));
         }
         if number != 0 {
-            let at = if block.has(b'h') {
-                block.at(b'h')
-            } else {
-                word.at()
-            };
-            let message =
-                format!("tool {number} is not in the tool table: its length counts as 0 mm");
+            let at = if block.has(b'h') { block.at(b'h') } else { word.at() };
+            let message = format!("tool {number} is not in the tool table: its length counts as 0 mm");
             let fault = Fault::new("gcode::tool", at, message);
-            self.warnings
-                .push(*fault.hint("give a tool table, or nothing if the program's Z is the tip"));
+            self.warnings.push(*fault.hint("give a tool table, or nothing if the program's Z is the tip"));
         }
         Ok([0.0; 9])
     }
@@ -121,14 +99,8 @@ impl Interpreter {
         self.tool = number;
         let tool = self.settings.tools.get(number).copied().unwrap_or_default();
         self.parameters.set(numbers::TOOL_FIRST, f64::from(number));
-        self.parameters
-            .set_nine(numbers::TOOL_FIRST + 1, tool.offset);
-        let rest = [
-            tool.diameter_mm,
-            tool.front_angle_deg,
-            tool.back_angle_deg,
-            f64::from(tool.orientation),
-        ];
+        self.parameters.set_nine(numbers::TOOL_FIRST + 1, tool.offset);
+        let rest = [tool.diameter_mm, tool.front_angle_deg, tool.back_angle_deg, f64::from(tool.orientation)];
         for (n, value) in rest.into_iter().enumerate() {
             self.parameters.set(numbers::TOOL_FIRST + 10 + n, value);
         }
@@ -139,10 +111,9 @@ impl Interpreter {
         let Some(word) = block.code(Group::NonModal) else {
             return Ok(());
         };
-        if matches!(word.number, 280 | 300 | 520 | 920 | 100)
-            && block
-                .code(Group::Motion)
-                .is_some_and(|motion| motion.number != 800)
+        if self.dialect != Dialect::Fanuc
+            && matches!(word.number, 280 | 300 | 520 | 920 | 100)
+            && block.code(Group::Motion).is_some_and(|motion| motion.number != 800)
             && block.has_axes()
         {
             return Ok(()); // The motion refuses the line.
@@ -213,20 +184,13 @@ impl Interpreter {
             if printer {
                 return Ok(());
             }
-            return Err(Fault::new(
-                "gcode::no_axes",
-                word.at(),
-                format!("{} has no axis word", spelled(word.number)),
-            ));
+            return Err(Fault::new("gcode::no_axes", word.at(), format!("{} has no axis word", spelled(word.number))));
         }
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
                 let value = self.length(block, letter, axis, value)?;
-                self.frame.g92[axis] = if word.number == 520 {
-                    value
-                } else {
-                    self.frame.g92[axis] + self.at[axis] - value
-                };
+                self.frame.g92[axis] =
+                    if word.number == 520 { value } else { self.frame.g92[axis] + self.at[axis] - value };
             }
         }
         self.parameters.set_nine(numbers::G92_FIRST, self.frame.g92);
@@ -237,16 +201,11 @@ impl Interpreter {
 
     /// G92.1 forgets the shift, G92.2 suspends it, G92.3 takes it up again.
     fn shift_mode(&mut self, number: u16) {
-        self.frame.g92 = if number == 923 {
-            self.parameters.nine(numbers::G92_FIRST)
-        } else {
-            [0.0; 9]
-        };
+        self.frame.g92 = if number == 923 { self.parameters.nine(numbers::G92_FIRST) } else { [0.0; 9] };
         if number == 921 {
             self.parameters.set_nine(numbers::G92_FIRST, [0.0; 9]);
         }
-        self.parameters
-            .set(numbers::G92_ACTIVE, f64::from(u8::from(number == 923)));
+        self.parameters.set(numbers::G92_ACTIVE, f64::from(u8::from(number == 923)));
         self.offsets_changed();
     }
 
@@ -283,11 +242,7 @@ impl Interpreter {
         let first = system_first(system);
         if let Some(rotation) = block.get(b'r') {
             if by_position {
-                return Err(Fault::new(
-                    "gcode::g10",
-                    block.at(b'r'),
-                    "R (rotation) goes with G10 L2, not with L20",
-                ));
+                return Err(Fault::new("gcode::g10", block.at(b'r'), "R (rotation) goes with G10 L2, not with L20"));
             }
             self.parameters.set(first + 9, rotation);
         }
@@ -303,19 +258,14 @@ impl Interpreter {
             if let Some(value) = block.get(letter) {
                 let value = self.length(block, letter, axis, value)?;
                 named[axis] = value;
-                offset[axis] = if self.modal.incremental && !by_position {
-                    offset[axis] + value
-                } else {
-                    value
-                };
+                offset[axis] = if self.modal.incremental && !by_position { offset[axis] + value } else { value };
             }
         }
         if by_position {
             // The origin that gives the current position these coordinates.
             let from_zero = frame.to_machine(&named);
             for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
-                let turned =
-                    frame.rotation_deg != 0.0 && axis < 2 && (block.has(b'x') || block.has(b'y'));
+                let turned = frame.rotation_deg != 0.0 && axis < 2 && (block.has(b'x') || block.has(b'y'));
                 offset[axis] = if block.has(letter) || turned {
                     self.here[axis] - from_zero[axis]
                 } else {
@@ -353,11 +303,7 @@ impl Interpreter {
         let shifted = frame.to_machine(&named);
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if block.has(letter) {
-                tool.offset[axis] = if kind == 1 {
-                    named[axis]
-                } else {
-                    self.here[axis] - shifted[axis]
-                };
+                tool.offset[axis] = if kind == 1 { named[axis] } else { self.here[axis] - shifted[axis] };
             }
         }
         if let Some(radius) = block.get(b'r') {

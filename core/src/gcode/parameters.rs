@@ -50,12 +50,7 @@ impl Parameters {
     pub(super) fn new() -> Self {
         let mut numbered = vec![0.0; PARAMETERS];
         numbered[SYSTEM] = 1.0;
-        Self {
-            numbered,
-            globals: HashMap::new(),
-            locals: vec![HashMap::new()],
-            names: 0,
-        }
+        Self { numbered, globals: HashMap::new(), locals: vec![HashMap::new()], names: 0 }
     }
 
     /// Value of `#index`; `index` is below [`PARAMETERS`].
@@ -86,11 +81,7 @@ impl Parameters {
     }
 
     fn scope(&self, name: &[u8]) -> &HashMap<Vec<u8>, f64> {
-        if name.first() == Some(&b'_') {
-            &self.globals
-        } else {
-            self.locals.last().unwrap_or(&self.globals)
-        }
+        if name.first() == Some(&b'_') { &self.globals } else { self.locals.last().unwrap_or(&self.globals) }
     }
 
     /// Sets or makes the parameter called `name`; false when there are too many.
@@ -146,15 +137,9 @@ mod tests {
         parameters.set_named(b"_g", 2.0);
         let saved = parameters.enter([5.0; LOCALS]);
         assert_eq!((parameters.get(1), parameters.get(31)), (5.0, 8.0));
-        assert_eq!(
-            (parameters.named(b"a"), parameters.named(b"_g")),
-            (None, Some(2.0))
-        );
+        assert_eq!((parameters.named(b"a"), parameters.named(b"_g")), (None, Some(2.0)));
         parameters.leave(saved);
-        assert_eq!(
-            (parameters.get(1), parameters.named(b"a")),
-            (7.0, Some(1.0))
-        );
+        assert_eq!((parameters.get(1), parameters.named(b"a")), (7.0, Some(1.0)));
     }
 
     #[test]

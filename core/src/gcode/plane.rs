@@ -30,11 +30,7 @@ pub(super) fn length(a: Point) -> f64 {
 /// The vector at length 1; zero stays zero.
 pub(super) fn unit(a: Point) -> Point {
     let length = length(a);
-    if length > 0.0 {
-        scaled(a, 1.0 / length)
-    } else {
-        a
-    }
+    if length > 0.0 { scaled(a, 1.0 / length) } else { a }
 }
 
 /// The vector turned left by a quarter.
@@ -71,35 +67,13 @@ impl Curve {
             (Self::Line { start: a, end: b }, Self::Line { start: c, end: d }) => {
                 line_line(a, minus(b, a), c, minus(d, c))
             }
-            (
-                Self::Line { start, end },
-                Self::Arc {
-                    start: on, center, ..
-                },
-            )
-            | (
-                Self::Arc {
-                    start: on, center, ..
-                },
-                Self::Line { start, end },
-            ) => line_circle(
-                start,
-                unit(minus(end, start)),
-                center,
-                length(minus(on, center)),
-            ),
-            (
-                Self::Arc {
-                    start: a,
-                    center: c,
-                    ..
-                },
-                Self::Arc {
-                    start: b,
-                    center: d,
-                    ..
-                },
-            ) => circle_circle(c, length(minus(a, c)), d, length(minus(b, d))),
+            (Self::Line { start, end }, Self::Arc { start: on, center, .. })
+            | (Self::Arc { start: on, center, .. }, Self::Line { start, end }) => {
+                line_circle(start, unit(minus(end, start)), center, length(minus(on, center)))
+            }
+            (Self::Arc { start: a, center: c, .. }, Self::Arc { start: b, center: d, .. }) => {
+                circle_circle(c, length(minus(a, c)), d, length(minus(b, d)))
+            }
         };
         let fits = |point: &Point| self.ends_at(*point) && other.begins_at(*point);
         candidates
@@ -113,27 +87,15 @@ impl Curve {
     pub(super) fn bend(&self) -> f64 {
         match *self {
             Self::Line { .. } => 0.0,
-            Self::Arc {
-                start,
-                center,
-                turn,
-                ..
-            } => turn / length(minus(start, center)),
+            Self::Arc { start, center, turn, .. } => turn / length(minus(start, center)),
         }
     }
 
     /// Whether the curve, shortened at its end, can end at `point`.
     pub(super) fn ends_at(&self, point: Point) -> bool {
         match *self {
-            Self::Line { start, end } => {
-                dot(minus(point, start), unit(minus(end, start))) >= -SLACK_MM
-            }
-            Self::Arc {
-                start,
-                end,
-                center,
-                turn,
-            } => {
+            Self::Line { start, end } => dot(minus(point, start), unit(minus(end, start))) >= -SLACK_MM,
+            Self::Arc { start, end, center, turn } => {
                 let sweep = sweep(start, end, center, turn);
                 let to_point = sweep_within(start, point, center, turn);
                 to_point <= sweep + SLACK_RAD
@@ -144,23 +106,10 @@ impl Curve {
     /// Whether the curve, shortened at its start, can begin at `point`.
     pub(super) fn begins_at(&self, point: Point) -> bool {
         match *self {
-            Self::Line { start, end } => Self::Line {
-                start: end,
-                end: start,
+            Self::Line { start, end } => Self::Line { start: end, end: start }.ends_at(point),
+            Self::Arc { start, end, center, turn } => {
+                Self::Arc { start: end, end: start, center, turn: -turn }.ends_at(point)
             }
-            .ends_at(point),
-            Self::Arc {
-                start,
-                end,
-                center,
-                turn,
-            } => Self::Arc {
-                start: end,
-                end: start,
-                center,
-                turn: -turn,
-            }
-            .ends_at(point),
         }
     }
 }
@@ -168,22 +117,14 @@ impl Curve {
 /// Angle from start to end in the sense of `turn`, above 0 and up to a full turn.
 fn sweep(start: Point, end: Point, center: Point, turn: f64) -> f64 {
     let angle = sweep_within(start, end, center, turn);
-    if angle < SLACK_RAD {
-        std::f64::consts::TAU
-    } else {
-        angle
-    }
+    if angle < SLACK_RAD { std::f64::consts::TAU } else { angle }
 }
 
 /// The same from 0.
 fn sweep_within(start: Point, end: Point, center: Point, turn: f64) -> f64 {
     let (a, b) = (minus(start, center), minus(end, center));
     let angle = turn * cross(a, b).atan2(dot(a, b));
-    if angle < -SLACK_RAD {
-        angle + std::f64::consts::TAU
-    } else {
-        angle.max(0.0)
-    }
+    if angle < -SLACK_RAD { angle + std::f64::consts::TAU } else { angle.max(0.0) }
 }
 
 fn line_line(a: Point, along: Point, c: Point, other: Point) -> [Option<Point>; 2] {
@@ -202,10 +143,7 @@ fn line_circle(a: Point, along: Point, center: Point, radius: f64) -> [Option<Po
         return [None, None];
     }
     let half = (radius * radius - distance * distance).max(0.0).sqrt();
-    [
-        Some(add(foot, scaled(along, half))),
-        Some(add(foot, scaled(along, -half))),
-    ]
+    [Some(add(foot, scaled(along, half))), Some(add(foot, scaled(along, -half)))]
 }
 
 fn circle_circle(c: Point, r: f64, d: Point, q: f64) -> [Option<Point>; 2] {
@@ -218,10 +156,7 @@ fn circle_circle(c: Point, r: f64, d: Point, q: f64) -> [Option<Point>; 2] {
     let y = (r * r - x * x).max(0.0).sqrt();
     let along = unit(apart);
     let foot = add(c, scaled(along, x));
-    [
-        Some(add(foot, scaled(left_of(along), y))),
-        Some(add(foot, scaled(left_of(along), -y))),
-    ]
+    [Some(add(foot, scaled(left_of(along), y))), Some(add(foot, scaled(left_of(along), -y)))]
 }
 
 #[cfg(test)]
@@ -230,41 +165,17 @@ mod tests {
 
     #[test]
     fn curves_meet_where_they_should() {
-        let floor = Curve::Line {
-            start: [0.0, 0.0],
-            end: [4.0, 0.0],
-        };
-        let wall = Curve::Line {
-            start: [3.0, -1.0],
-            end: [3.0, 5.0],
-        };
+        let floor = Curve::Line { start: [0.0, 0.0], end: [4.0, 0.0] };
+        let wall = Curve::Line { start: [3.0, -1.0], end: [3.0, 5.0] };
         assert_eq!(floor.meet(&wall, [0.0, 0.0]).unwrap(), [3.0, 0.0]);
-        let circle = Curve::Arc {
-            start: [5.0, 0.0],
-            end: [0.0, 5.0],
-            center: [0.0, 0.0],
-            turn: 1.0,
-        };
+        let circle = Curve::Arc { start: [5.0, 0.0], end: [0.0, 5.0], center: [0.0, 0.0], turn: 1.0 };
         assert_eq!(
             floor
-                .meet(
-                    &Curve::Arc {
-                        start: [3.0, 0.0],
-                        end: [0.0, 3.0],
-                        center: [0.0, 0.0],
-                        turn: 1.0
-                    },
-                    [4.0, 1.0]
-                )
+                .meet(&Curve::Arc { start: [3.0, 0.0], end: [0.0, 3.0], center: [0.0, 0.0], turn: 1.0 }, [4.0, 1.0])
                 .unwrap(),
             [3.0, 0.0]
         );
-        let other = Curve::Arc {
-            start: [1.0, 0.0],
-            end: [6.0, 5.0],
-            center: [6.0, 0.0],
-            turn: -1.0,
-        };
+        let other = Curve::Arc { start: [1.0, 0.0], end: [6.0, 5.0], center: [6.0, 0.0], turn: -1.0 };
         let point = circle.meet(&other, [3.0, 9.0]).unwrap();
         assert!((point[0] - 3.0).abs() < 1e-12 && (point[1] - 4.0).abs() < 1e-12);
         assert!(circle.ends_at(point) && !circle.ends_at([3.0, -4.0]));

@@ -111,18 +111,12 @@ impl Reader {
     /// # Errors
     /// A file that cannot be read or is no G-code program.
     pub fn open(path: &Path, settings: Settings) -> Result<Self, ReadError> {
-        let io_error = |cause| ReadError::Io {
-            path: path.to_owned(),
-            cause,
-        };
+        let io_error = |cause| ReadError::Io { path: path.to_owned(), cause };
         if fs::metadata(path).map_err(io_error)?.is_dir() {
-            return Err(ReadError::Directory {
-                path: path.to_owned(),
-            });
+            return Err(ReadError::Directory { path: path.to_owned() });
         }
         let name: Arc<str> = path.display().to_string().into();
-        let source =
-            Source::from_file(name, fs::File::open(path).map_err(io_error)?).map_err(io_error)?;
+        let source = Source::from_file(name, fs::File::open(path).map_err(io_error)?).map_err(io_error)?;
         Self::new(source, path.parent().map(Path::to_owned), settings)
     }
 
@@ -130,11 +124,7 @@ impl Reader {
     ///
     /// # Errors
     /// Text that is no G-code program.
-    pub fn from_text(
-        name: &str,
-        text: impl Into<Vec<u8>>,
-        settings: Settings,
-    ) -> Result<Self, ReadError> {
+    pub fn from_text(name: &str, text: impl Into<Vec<u8>>, settings: Settings) -> Result<Self, ReadError> {
         Self::new(Source::from_text(name.into(), text.into()), None, settings)
     }
 
@@ -148,9 +138,7 @@ impl Reader {
             flow: Flow::new(source, folder, &settings),
             interpreter: Interpreter::new(settings, dialect),
             block: Block::new(),
-            style: Style {
-                checksum: dialect == Dialect::Printer,
-            },
+            style: Style { printer: dialect == Dialect::Printer },
             warnings: Vec::new(),
             faults: 0,
             idle_lines: 0,
@@ -199,9 +187,7 @@ impl Reader {
                 let fault = Fault::new(
                     "gcode::line_length",
                     0..1,
-                    format!(
-                        "the line is longer than {LONGEST_LINE_BYTES} bytes: this is no G-code"
-                    ),
+                    format!("the line is longer than {LONGEST_LINE_BYTES} bytes: this is no G-code"),
                 );
                 return Err(self.diagnose(Severity::Error, *fault));
             }
@@ -229,12 +215,7 @@ impl Reader {
             return self.flow.passed_line(range, &self.interpreter);
         }
         self.block.clear();
-        let Self {
-            flow,
-            interpreter,
-            block,
-            ..
-        } = self;
+        let Self { flow, interpreter, block, .. } = self;
         let bytes = flow.source_ref().bytes(range.clone());
         let mut cursor = Cursor::new(bytes);
         match cursor.peek() {
@@ -260,9 +241,7 @@ impl Reader {
             if command == firmware::Command::Acts {
                 interpreter.warnings.push(*firmware::warning(bytes));
             }
-            interpreter.event(EventKind::Message {
-                text: String::from_utf8_lossy(bytes.trim_ascii()).into_owned(),
-            });
+            interpreter.event(EventKind::Message { text: String::from_utf8_lossy(bytes.trim_ascii()).into_owned() });
             return Ok(());
         }
         if cursor.eat(b'n') {
@@ -280,21 +259,12 @@ impl Reader {
         for (target, value) in block.assignments.drain(..) {
             interpreter.assign(&target, value)?;
         }
-        if block.m.is_empty() {
-            Ok(())
-        } else {
-            self.calls()
-        }
+        if block.m.is_empty() { Ok(()) } else { self.calls() }
     }
 
     /// M98 and M99 come after all else of their line.
     fn calls(&mut self) -> Read<()> {
-        let Self {
-            flow,
-            interpreter,
-            block,
-            ..
-        } = self;
+        let Self { flow, interpreter, block, .. } = self;
         for word in &block.m {
             let at = word.at();
             match word.number {
@@ -306,11 +276,8 @@ impl Reader {
                             "M98 calls a subroutine, but P with its number is missing",
                         ));
                     };
-                    let times = if block.has(b'l') {
-                        interpreter.integer(block, b'l', 0, i64::from(u32::MAX))?
-                    } else {
-                        1
-                    };
+                    let times =
+                        if block.has(b'l') { interpreter.integer(block, b'l', 0, i64::from(u32::MAX))? } else { 1 };
                     if !(0.0..1e15).contains(&number) {
                         return Err(Fault::new(
                             "gcode::m98",
@@ -337,11 +304,7 @@ impl Reader {
                 self.interpreter.end_program();
             }
             Percent::Absent => {
-                let fault = Fault::new(
-                    "gcode::percent",
-                    at,
-                    "`%` ends the program, but no `%` begins it",
-                );
+                let fault = Fault::new("gcode::percent", at, "`%` ends the program, but no `%` begins it");
                 self.interpreter.warnings.push(*fault);
                 self.interpreter.end_program();
             }
@@ -361,10 +324,8 @@ impl Reader {
         if !self.interpreter.ended {
             let quiet = matches!(self.interpreter.dialect, Dialect::Grbl | Dialect::Printer);
             if !quiet {
-                let mut warning = self.of_file(
-                    "gcode::program_end",
-                    "the program ends without M2, M30 or %".to_owned(),
-                );
+                let mut warning =
+                    self.of_file("gcode::program_end", "the program ends without M2, M30 or %".to_owned());
                 warning.severity = Severity::Warning;
                 self.warn(*warning);
             }
@@ -382,10 +343,7 @@ impl Reader {
         self.idle_lines += 1;
         let settings = &self.interpreter.settings;
         let message = if self.idle_lines > settings.max_idle_lines {
-            format!(
-                "endless loop: {} lines in a row were carried out without a motion",
-                settings.max_idle_lines
-            )
+            format!("endless loop: {} lines in a row were carried out without a motion", settings.max_idle_lines)
         } else if self.interpreter.motions > settings.max_motions {
             format!("the program has more than {} motions", settings.max_motions)
         } else {
@@ -409,13 +367,7 @@ impl Reader {
             Ok(Line::Text(range) | Line::TooLong(range)) => source.bytes(range),
             _ => &[],
         };
-        let diagnostic = Diagnostic::of_line(
-            severity,
-            fault,
-            name,
-            begin.lines_before.saturating_add(1),
-            bytes,
-        );
+        let diagnostic = Diagnostic::of_line(severity, fault, name, begin.lines_before.saturating_add(1), bytes);
         if source.jump(here).is_err() {
             self.state = State::Done;
         }
@@ -423,12 +375,7 @@ impl Reader {
     }
 
     fn of_file(&mut self, code: &'static str, message: String) -> Box<Diagnostic> {
-        Box::new(Diagnostic::of_file(
-            Severity::Error,
-            code,
-            self.flow.source().name.clone(),
-            message,
-        ))
+        Box::new(Diagnostic::of_file(Severity::Error, code, self.flow.source().name.clone(), message))
     }
 
     fn warn(&mut self, warning: Diagnostic) {
@@ -445,9 +392,7 @@ impl Reader {
 
     /// After the last line: how many faults were not shown.
     fn rest(&mut self) -> Option<Box<Diagnostic>> {
-        let more = self
-            .faults
-            .saturating_sub(self.interpreter.settings.max_errors);
+        let more = self.faults.saturating_sub(self.interpreter.settings.max_errors);
         self.faults = 0;
         (more > 0).then(|| self.of_file("gcode::more", format!("and {more} more errors")))
     }

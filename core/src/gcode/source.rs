@@ -67,20 +67,8 @@ impl Source {
     }
 
     fn new(name: Arc<str>, file: Option<File>, buffer: Vec<u8>) -> Self {
-        let line_start = Mark {
-            offset: 0,
-            lines_before: 0,
-        };
-        Self {
-            name,
-            file,
-            buffer,
-            buffer_start: 0,
-            next: 0,
-            at_end: false,
-            line_start,
-            line: 0,
-        }
+        let line_start = Mark { offset: 0, lines_before: 0 };
+        Self { name, file, buffer, buffer_start: 0, next: 0, at_end: false, line_start, line: 0 }
     }
 
     /// UTF-8 files from other systems begin with three bytes that are no text.
@@ -111,11 +99,7 @@ impl Source {
                 self.begin_line();
                 self.next += length + 1;
                 let range = start..start + length;
-                return Ok(if length > LONGEST_LINE_BYTES {
-                    Line::TooLong(head_of(range))
-                } else {
-                    Line::Text(range)
-                });
+                return Ok(if length > LONGEST_LINE_BYTES { Line::TooLong(head_of(range)) } else { Line::Text(range) });
             }
             if self.at_end {
                 return Ok(self.last_line());
@@ -135,18 +119,11 @@ impl Source {
         }
         self.begin_line();
         self.next = self.buffer.len();
-        if range.len() > LONGEST_LINE_BYTES {
-            Line::TooLong(head_of(range))
-        } else {
-            Line::Text(range)
-        }
+        if range.len() > LONGEST_LINE_BYTES { Line::TooLong(head_of(range)) } else { Line::Text(range) }
     }
 
     fn begin_line(&mut self) {
-        self.line_start = Mark {
-            offset: self.buffer_start + self.next as u64,
-            lines_before: self.line,
-        };
+        self.line_start = Mark { offset: self.buffer_start + self.next as u64, lines_before: self.line };
         self.line = self.line.saturating_add(1);
     }
 
@@ -186,9 +163,7 @@ impl Source {
         self.buffer.drain(..self.next);
         self.buffer_start += self.next as u64;
         self.next = 0;
-        let read = file
-            .take(CHUNK_BYTES as u64)
-            .read_to_end(&mut self.buffer)?;
+        let read = file.take(CHUNK_BYTES as u64).read_to_end(&mut self.buffer)?;
         self.at_end = read == 0;
         Ok(())
     }
@@ -211,18 +186,12 @@ impl Source {
 
     /// Where the next line begins.
     pub(super) fn here(&self) -> Mark {
-        Mark {
-            offset: self.buffer_start + self.next as u64,
-            lines_before: self.line,
-        }
+        Mark { offset: self.buffer_start + self.next as u64, lines_before: self.line }
     }
 
     /// Goes back to the first line.
     pub(super) fn rewind(&mut self) -> io::Result<()> {
-        self.jump(Mark {
-            offset: 0,
-            lines_before: 0,
-        })?;
+        self.jump(Mark { offset: 0, lines_before: 0 })?;
         if self.buffer.is_empty() && !self.at_end {
             self.refill()?;
         }
@@ -258,24 +227,17 @@ mod tests {
 
     #[test]
     fn lines_across_chunks_are_whole() {
-        let text: Vec<u8> = (0..60_000)
-            .flat_map(|n| format!("N{n} X{n}\n").into_bytes())
-            .collect();
+        let text: Vec<u8> = (0..60_000).flat_map(|n| format!("N{n} X{n}\n").into_bytes()).collect();
         assert!(text.len() > 2 * CHUNK_BYTES);
         let from_file = lines(&mut file_with(&text));
-        assert_eq!(
-            from_file,
-            lines(&mut Source::from_text("test".into(), text))
-        );
+        assert_eq!(from_file, lines(&mut Source::from_text("test".into(), text)));
         assert_eq!(from_file.len(), 60_000);
         assert_eq!(from_file[59_999], (60_000, b"N59999 X59999".to_vec()));
     }
 
     #[test]
     fn a_jump_returns_to_the_line() {
-        let text: Vec<u8> = (0..60_000)
-            .flat_map(|n| format!("N{n} X{n}\n").into_bytes())
-            .collect();
+        let text: Vec<u8> = (0..60_000).flat_map(|n| format!("N{n} X{n}\n").into_bytes()).collect();
         let mut source = file_with(&text);
         for _ in 0..10 {
             source.next_line().unwrap();
@@ -283,9 +245,7 @@ mod tests {
         let mark = source.line_start;
         while source.next_line().unwrap() != Line::End {}
         source.jump(mark).unwrap();
-        let Line::Text(range) = source.next_line().unwrap() else {
-            panic!("no line")
-        };
+        let Line::Text(range) = source.next_line().unwrap() else { panic!("no line") };
         assert_eq!((source.line, source.bytes(range)), (10, &b"N9 X9"[..]));
     }
 
@@ -295,17 +255,11 @@ mod tests {
         text.extend_from_slice(b"\nG0\nG1");
         let mut source = file_with(&text);
         assert!(matches!(source.next_line().unwrap(), Line::TooLong(_)));
-        assert_eq!(
-            lines(&mut source),
-            [(2, b"G0".to_vec()), (3, b"G1".to_vec())]
-        );
+        assert_eq!(lines(&mut source), [(2, b"G0".to_vec()), (3, b"G1".to_vec())]);
     }
 
     #[test]
     fn a_byte_order_mark_is_no_text() {
-        assert_eq!(
-            lines(&mut file_with(b"\xef\xbb\xbfG0\n")),
-            [(1, b"G0".to_vec())]
-        );
+        assert_eq!(lines(&mut file_with(b"\xef\xbb\xbfG0\n")), [(1, b"G0".to_vec())]);
     }
 }

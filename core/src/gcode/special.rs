@@ -10,8 +10,7 @@ impl Interpreter {
     pub(super) fn special_motion(&mut self, block: &Block, code: u16) -> Read<()> {
         if self.compensates() && !matches!(code, 50..=53) {
             let message = format!("{} cannot run with cutter compensation", spelled(code));
-            return Err(Fault::new("gcode::compensation", block.whole(), message)
-                .hint("end it with G40 first"));
+            return Err(Fault::new("gcode::compensation", block.whole(), message).hint("end it with G40 first"));
         }
         match code {
             50 | 51 => self.bezier(block, code),
@@ -23,16 +22,11 @@ impl Interpreter {
             730 | 740 | 810..=890 => self.cycle(block, code),
             760 => self.thread(block),
             _ => {
-                let at = block
-                    .code(Group::Motion)
-                    .map_or(block.whole(), |word| word.at());
+                let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
                 Err(Fault::new(
                     "gcode::unsupported",
                     at,
-                    format!(
-                        "the lathe cycle {} is not read by this version",
-                        spelled(code)
-                    ),
+                    format!("the lathe cycle {} is not read by this version", spelled(code)),
                 ))
             }
         }
@@ -48,8 +42,7 @@ impl Interpreter {
                     "the highest spindle speed D must not be negative",
                 ));
             }
-            self.modal.constant_surface =
-                (word.number == 960).then(|| block.get(b'd').unwrap_or(f64::INFINITY));
+            self.modal.constant_surface = (word.number == 960).then(|| block.get(b'd').unwrap_or(f64::INFINITY));
         }
         Ok(())
     }

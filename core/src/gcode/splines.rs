@@ -45,18 +45,13 @@ impl Interpreter {
             ));
         }
         let pair = |one: u8, two: u8| {
-            (block.has(one) || block.has(two))
-                .then(|| [one, two].map(|letter| block.get(letter).unwrap_or(0.0) * unit))
+            (block.has(one) || block.has(two)).then(|| [one, two].map(|letter| block.get(letter).unwrap_or(0.0) * unit))
         };
         let first = match (pair(b'i', b'j'), self.last_bezier_end) {
             (Some(offset), _) => offset,
             (None, Some([p, q])) if code == 50 => [-p, -q],
             _ => {
-                return Err(Fault::new(
-                    "gcode::spline",
-                    block.whole(),
-                    "I and J (first control point) are missing",
-                ));
+                return Err(Fault::new("gcode::spline", block.whole(), "I and J (first control point) are missing"));
             }
         };
         let start = self.at;
@@ -79,16 +74,8 @@ impl Interpreter {
         let degree = points.len() - 1;
         let mut knots = vec![0.0; degree + 1];
         knots.resize(2 * (degree + 1), 1.0);
-        let control_mm = points
-            .iter()
-            .map(|point| self.machine_point(point))
-            .collect();
-        let spline = Spline {
-            degree,
-            knots,
-            control_mm,
-            weights: vec![1.0; degree + 1],
-        };
+        let control_mm = points.iter().map(|point| self.machine_point(point)).collect();
+        let spline = Spline { degree, knots, control_mm, weights: vec![1.0; degree + 1] };
         self.spline_to(block, spline, target)?;
         self.last_bezier_end = end_offset;
         // The next line needs its own G5.
@@ -101,41 +88,20 @@ impl Interpreter {
         self.check_spline(block, 52)?;
         let has_point = block.has(b'x') || block.has(b'y');
         if self.collected.is_none() {
-            let order = if block.has(b'l') {
-                self.integer(block, b'l', ORDERS.0, ORDERS.1)? as usize
-            } else {
-                3
-            };
+            let order = if block.has(b'l') { self.integer(block, b'l', ORDERS.0, ORDERS.1)? as usize } else { 3 };
             let first = self.machine_point(&self.at);
-            let weight = if has_point {
-                1.0
-            } else {
-                self.weight(block, b'p')?
-            };
-            self.collected = Some(Collected {
-                code: 52,
-                order,
-                points: vec![first],
-                weights: vec![weight],
-                knots: Vec::new(),
-            });
+            let weight = if has_point { 1.0 } else { self.weight(block, b'p')? };
+            self.collected =
+                Some(Collected { code: 52, order, points: vec![first], weights: vec![weight], knots: Vec::new() });
             if !has_point {
                 return Ok(());
             }
         }
         if !(block.has(b'x') && block.has(b'y')) {
-            return Err(Fault::new(
-                "gcode::spline",
-                block.whole(),
-                "a control point of G5.2 needs both X and Y",
-            ));
+            return Err(Fault::new("gcode::spline", block.whole(), "a control point of G5.2 needs both X and Y"));
         }
         if !block.has(b'p') {
-            return Err(Fault::new(
-                "gcode::spline",
-                block.whole(),
-                "a control point of G5.2 needs its weight P",
-            ));
+            return Err(Fault::new("gcode::spline", block.whole(), "a control point of G5.2 needs its weight P"));
         }
         let weight = self.weight(block, b'p')?;
         let target = self.target(block)?;
@@ -144,81 +110,49 @@ impl Interpreter {
 
     /// G5.3: the curve of G5.2 is complete.
     pub(super) fn nurbs_end(&mut self, block: &Block) -> Read<()> {
-        let Some(collected) = self
-            .collected
-            .take()
-            .filter(|collected| collected.code == 52)
-        else {
-            return Err(Fault::new(
-                "gcode::spline",
-                block.whole(),
-                "G5.3 ends a curve that no G5.2 began",
-            ));
+        let Some(collected) = self.collected.take().filter(|collected| collected.code == 52) else {
+            return Err(Fault::new("gcode::spline", block.whole(), "G5.3 ends a curve that no G5.2 began"));
         };
         let (count, order) = (collected.points.len(), collected.order);
         if count < order {
             return Err(Fault::new(
                 "gcode::spline",
                 block.whole(),
-                format!(
-                    "a curve of order {order} needs at least {order} control points, this has {count}"
-                ),
+                format!("a curve of order {order} needs at least {order} control points, this has {count}"),
             ));
         }
         let spans = count - order + 1;
-        let knots = (0..count + order)
-            .map(|n| (n + 1).saturating_sub(order).min(spans) as f64)
-            .collect();
+        let knots = (0..count + order).map(|n| (n + 1).saturating_sub(order).min(spans) as f64).collect();
         self.modal.motion = 800;
-        let spline = Spline {
-            degree: order - 1,
-            knots,
-            control_mm: collected.points,
-            weights: collected.weights,
-        };
+        let spline = Spline { degree: order - 1, knots, control_mm: collected.points, weights: collected.weights };
         self.spline_to(block, spline, self.at)
     }
 
     /// One line of G6.2: a control point with weight R and knot K, or a closing knot alone.
     pub(super) fn nurbs_with_knots(&mut self, block: &Block) -> Read<()> {
         let Some(knot) = block.get(b'k') else {
-            return Err(Fault::new(
-                "gcode::spline",
-                block.whole(),
-                "every line of G6.2 needs its knot K",
-            ));
+            return Err(Fault::new("gcode::spline", block.whole(), "every line of G6.2 needs its knot K"));
         };
         if self.collected.is_none() {
             if !block.has(b'p') {
-                return Err(Fault::new(
-                    "gcode::spline",
-                    block.whole(),
-                    "the first line of G6.2 needs the order P",
-                ));
+                return Err(Fault::new("gcode::spline", block.whole(), "the first line of G6.2 needs the order P"));
             }
             let order = self.integer(block, b'p', ORDERS.0, ORDERS.1)? as usize;
             let target = self.target(block)?;
             let (first, here) = (self.machine_point(&target), self.machine_point(&self.at));
-            let away = (0..3)
-                .map(|axis| (first[axis] - here[axis]).powi(2))
-                .sum::<f64>()
-                .sqrt();
+            let away = (0..3).map(|axis| (first[axis] - here[axis]).powi(2)).sum::<f64>().sqrt();
             if away > START_WITHIN_MM {
-                return Err(Fault::new("gcode::spline", block.whole(), format!("the curve begins {away:.4} mm from the position; the limit is {START_WITHIN_MM} mm"))
-                    .hint("move to the first control point before G6.2"));
+                return Err(Fault::new(
+                    "gcode::spline",
+                    block.whole(),
+                    format!("the curve begins {away:.4} mm from the position; the limit is {START_WITHIN_MM} mm"),
+                )
+                .hint("move to the first control point before G6.2"));
             }
-            self.collected = Some(Collected {
-                code: 62,
-                order,
-                points: Vec::new(),
-                weights: Vec::new(),
-                knots: Vec::new(),
-            });
+            self.collected =
+                Some(Collected { code: 62, order, points: Vec::new(), weights: Vec::new(), knots: Vec::new() });
         }
-        let last = self
-            .collected
-            .as_ref()
-            .and_then(|collected| collected.knots.last().copied());
+        let last = self.collected.as_ref().and_then(|collected| collected.knots.last().copied());
         if last.is_some_and(|last| knot < last) {
             return Err(Fault::new(
                 "gcode::spline",
@@ -227,11 +161,7 @@ impl Interpreter {
             ));
         }
         if block.has_axes() {
-            let weight = if block.has(b'r') {
-                self.weight(block, b'r')?
-            } else {
-                1.0
-            };
+            let weight = if block.has(b'r') { self.weight(block, b'r')? } else { 1.0 };
             let target = self.target(block)?;
             self.collect(block, target, weight)?;
         }
@@ -264,12 +194,7 @@ impl Interpreter {
                 ),
             ));
         }
-        let spline = Spline {
-            degree: order - 1,
-            knots,
-            control_mm: collected.points,
-            weights: collected.weights,
-        };
+        let spline = Spline { degree: order - 1, knots, control_mm: collected.points, weights: collected.weights };
         self.spline_to(block, spline, self.at)
     }
 
@@ -278,18 +203,11 @@ impl Interpreter {
         match self.collected.take() {
             None => Ok(()),
             Some(collected) => {
-                let end = if collected.code == 52 {
-                    "G5.3"
-                } else {
-                    "its last knots K"
-                };
+                let end = if collected.code == 52 { "G5.3" } else { "its last knots K" };
                 Err(Fault::new(
                     "gcode::spline",
                     block.whole(),
-                    format!(
-                        "the curve of {} is not complete: {end} is missing",
-                        spelled(collected.code)
-                    ),
+                    format!("the curve of {} is not complete: {end} is missing", spelled(collected.code)),
                 ))
             }
         }
@@ -365,13 +283,7 @@ impl Interpreter {
         }
         let feed_mm_s = self.feed_for(block, spline.length_mm())?;
         let others = others(&start, &machine, 0.0);
-        self.push_motion(
-            Speed::Programmed,
-            &start,
-            Shape::Spline(Arc::new(spline)),
-            feed_mm_s,
-            others,
-        );
+        self.push_motion(Speed::Programmed, &start, Shape::Spline(Arc::new(spline)), feed_mm_s, others);
         Ok(())
     }
 }

@@ -103,13 +103,7 @@ pub(super) struct Frame {
 
 impl Frame {
     const fn new() -> Self {
-        Self {
-            system: 1,
-            system_offset: [0.0; 9],
-            rotation_deg: 0.0,
-            g92: [0.0; 9],
-            tool: [0.0; 9],
-        }
+        Self { system: 1, system_offset: [0.0; 9], rotation_deg: 0.0, g92: [0.0; 9], tool: [0.0; 9] }
     }
 
     pub(super) fn to_machine(&self, program: &Position) -> Position {
@@ -218,10 +212,7 @@ impl Interpreter {
 
     /// Hands out an event of the line under way.
     pub(super) fn event(&mut self, kind: EventKind) {
-        self.push(Canon::Event(Event {
-            line: self.line,
-            kind,
-        }));
+        self.push(Canon::Event(Event { line: self.line, kind }));
     }
 
     /// Hands out a step, behind those that are held back.
@@ -253,20 +244,12 @@ impl Interpreter {
     fn predefined(&self, name: &[u8]) -> Option<f64> {
         let modal = &self.modal;
         let truth = |value: bool| f64::from(u8::from(value));
-        let axis = |letter: u8| {
-            super::codes::AXIS_LETTERS
-                .iter()
-                .position(|&axis| axis == letter)
-        };
+        let axis = |letter: u8| super::codes::AXIS_LETTERS.iter().position(|&axis| axis == letter);
         Some(match name {
             [b'_', letter] if axis(*letter).is_some() => self.shown_position(axis(*letter)?),
             [b'_', b'a', b'b', b's', b'_', letter] if axis(*letter).is_some() => {
                 let index = axis(*letter)?;
-                if (3..6).contains(&index) {
-                    self.here[index]
-                } else {
-                    self.here[index] / modal.unit_mm
-                }
+                if (3..6).contains(&index) { self.here[index] } else { self.here[index] / modal.unit_mm }
             }
             b"_vmajor" => 2.9,
             b"_vminor" => 0.0,
@@ -318,16 +301,8 @@ impl Interpreter {
             b"_rpm" => modal.spindle_speed,
             b"_current_tool" => f64::from(self.tool),
             b"_selected_tool" => f64::from(self.next_tool),
-            b"_current_pocket" => self
-                .settings
-                .tools
-                .get(self.tool)
-                .map_or(0.0, |tool| f64::from(tool.pocket)),
-            b"_selected_pocket" => self
-                .settings
-                .tools
-                .get(self.next_tool)
-                .map_or(-1.0, |tool| f64::from(tool.pocket)),
+            b"_current_pocket" => self.settings.tools.get(self.tool).map_or(0.0, |tool| f64::from(tool.pocket)),
+            b"_selected_pocket" => self.settings.tools.get(self.next_tool).map_or(-1.0, |tool| f64::from(tool.pocket)),
             b"_value" => self.returned.unwrap_or(0.0),
             b"_value_returned" => truth(self.returned.is_some()),
             b"_task" => 0.0,

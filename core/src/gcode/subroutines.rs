@@ -59,12 +59,7 @@ pub(super) struct Frame {
 
 impl Flow {
     /// `O1 call [..]`.
-    pub(super) fn call(
-        &mut self,
-        head: &Head,
-        arguments: &Arguments,
-        interpreter: &mut Interpreter,
-    ) -> Read<()> {
+    pub(super) fn call(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
         let (unit, manner, body) = self.find_subroutine(&head.label, &head.at)?;
         if manner == Manner::Fanuc {
             let number = String::from_utf8_lossy(&head.label).into_owned();
@@ -113,11 +108,7 @@ impl Flow {
             return Err(Fault::new(
                 "gcode::o_word",
                 at.clone(),
-                format!(
-                    "{} has `sub`: it is called by `{} call`, not by M98",
-                    shown(&label),
-                    shown(&label)
-                ),
+                format!("{} has `sub`: it is called by `{} call`, not by M98", shown(&label), shown(&label)),
             ));
         }
         self.check_depth(at)?;
@@ -137,10 +128,7 @@ impl Flow {
     }
 
     fn enter(&mut self, frame: Frame, unit: usize, at: &std::ops::Range<usize>) -> Read<()> {
-        self.units[unit]
-            .source
-            .jump(frame.body)
-            .map_err(|error| cannot_read(at.clone(), &error))?;
+        self.units[unit].source.jump(frame.body).map_err(|error| cannot_read(at.clone(), &error))?;
         self.current = unit;
         self.frames.push(frame);
         Ok(())
@@ -153,21 +141,13 @@ impl Flow {
         Err(Fault::new(
             "gcode::depth",
             at.clone(),
-            format!(
-                "more than {} subroutine calls inside each other",
-                self.max_depth
-            ),
+            format!("more than {} subroutine calls inside each other", self.max_depth),
         )
         .hint("does a subroutine call itself?"))
     }
 
     /// `endsub`, `return`.
-    pub(super) fn leave(
-        &mut self,
-        head: &Head,
-        arguments: &Arguments,
-        interpreter: &mut Interpreter,
-    ) -> Read<()> {
+    pub(super) fn leave(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
         let fault = |message: &str| Err(Fault::new("gcode::o_word", head.at.clone(), message));
         match self.frames.last() {
             None => return fault("this is not inside a subroutine"),
@@ -189,11 +169,7 @@ impl Flow {
     }
 
     /// M99: returns true where there is nothing to return from.
-    pub(super) fn return_number(
-        &mut self,
-        at: &std::ops::Range<usize>,
-        interpreter: &mut Interpreter,
-    ) -> Read<bool> {
+    pub(super) fn return_number(&mut self, at: &std::ops::Range<usize>, interpreter: &mut Interpreter) -> Read<bool> {
         let Some(frame) = self.frames.last_mut() else {
             return Ok(true);
         };
@@ -207,20 +183,14 @@ impl Flow {
         if frame.repeats > 0 {
             frame.repeats -= 1;
             let body = frame.body;
-            self.source()
-                .jump(body)
-                .map_err(|error| cannot_read(at.clone(), &error))?;
+            self.source().jump(body).map_err(|error| cannot_read(at.clone(), &error))?;
             return Ok(false);
         }
         self.pop_frame(at, interpreter)?;
         Ok(false)
     }
 
-    fn pop_frame(
-        &mut self,
-        at: &std::ops::Range<usize>,
-        interpreter: &mut Interpreter,
-    ) -> Read<()> {
+    fn pop_frame(&mut self, at: &std::ops::Range<usize>, interpreter: &mut Interpreter) -> Read<()> {
         let Some(frame) = self.frames.pop() else {
             return Ok(());
         };
@@ -230,17 +200,11 @@ impl Flow {
         self.loops.truncate(frame.loops);
         interpreter.left(self.frames.len());
         self.current = frame.unit;
-        self.source()
-            .jump(frame.back)
-            .map_err(|error| cannot_read(at.clone(), &error))
+        self.source().jump(frame.back).map_err(|error| cannot_read(at.clone(), &error))
     }
 
     /// File, manner and first line of a subroutine: in the file under way, in the program, in a file of its name.
-    fn find_subroutine(
-        &mut self,
-        label: &[u8],
-        at: &std::ops::Range<usize>,
-    ) -> Read<(usize, Manner, Mark)> {
+    fn find_subroutine(&mut self, label: &[u8], at: &std::ops::Range<usize>) -> Read<(usize, Manner, Mark)> {
         for unit in [self.current, 0] {
             if let Some((manner, mark)) = self.index(unit, at)?.get(label).copied() {
                 return Ok((unit, manner, mark));
@@ -249,22 +213,12 @@ impl Flow {
         let name = format!("{}.ngc", String::from_utf8_lossy(label));
         let is_plain = Path::new(&name).components().count() == 1 && !name.starts_with('.');
         let path = is_plain
-            .then(|| {
-                self.folders
-                    .iter()
-                    .map(|folder| folder.join(&name))
-                    .find(|path| path.is_file())
-            })
+            .then(|| self.folders.iter().map(|folder| folder.join(&name)).find(|path| path.is_file()))
             .flatten();
         let Some(path) = path else {
-            let fault = Fault::new(
-                "gcode::o_word",
-                at.clone(),
-                format!("the subroutine {} is defined nowhere", shown(label)),
-            );
-            return Err(fault.hint(format!(
-                "define it in this program, or put {name} into a folder of subroutines"
-            )));
+            let fault =
+                Fault::new("gcode::o_word", at.clone(), format!("the subroutine {} is defined nowhere", shown(label)));
+            return Err(fault.hint(format!("define it in this program, or put {name} into a folder of subroutines")));
         };
         let unit = self.open(&path, at)?;
         match self.index(unit, at)?.get(label).copied() {
@@ -278,11 +232,7 @@ impl Flow {
     }
 
     fn open(&mut self, path: &Path, at: &std::ops::Range<usize>) -> Read<usize> {
-        if let Some(unit) = self
-            .units
-            .iter()
-            .position(|unit| unit.path.as_deref() == Some(path))
-        {
+        if let Some(unit) = self.units.iter().position(|unit| unit.path.as_deref() == Some(path)) {
             return Ok(unit);
         }
         if self.units.len() > MOST_FILES {
@@ -296,36 +246,23 @@ impl Flow {
         let source = File::open(path)
             .and_then(|file| Source::from_file(name, file))
             .map_err(|error| cannot_read(at.clone(), &error))?;
-        self.units.push(Unit {
-            source,
-            path: Some(path.to_owned()),
-            subroutines: None,
-        });
+        self.units.push(Unit { source, path: Some(path.to_owned()), subroutines: None });
         Ok(self.units.len() - 1)
     }
 
     /// The subroutines of a file, found by one pass over it at the first call.
-    fn index(
-        &mut self,
-        unit: usize,
-        at: &std::ops::Range<usize>,
-    ) -> Read<&HashMap<Vec<u8>, (Manner, Mark)>> {
+    fn index(&mut self, unit: usize, at: &std::ops::Range<usize>) -> Read<&HashMap<Vec<u8>, (Manner, Mark)>> {
         let unit = &mut self.units[unit];
         if unit.subroutines.is_none() {
             let here = unit.source.here();
             let line_start = unit.source.line_start;
-            let found = find_definitions(&mut unit.source)
-                .and_then(|found| unit.source.jump(here).map(|()| found));
+            let found = find_definitions(&mut unit.source).and_then(|found| unit.source.jump(here).map(|()| found));
             unit.source.line_start = line_start;
             unit.subroutines = Some(found.map_err(|error| cannot_read(at.clone(), &error))?);
         }
-        unit.subroutines.as_ref().ok_or_else(|| {
-            Fault::new(
-                "gcode::o_word",
-                at.clone(),
-                "the subroutines cannot be found",
-            )
-        })
+        unit.subroutines
+            .as_ref()
+            .ok_or_else(|| Fault::new("gcode::o_word", at.clone(), "the subroutines cannot be found"))
     }
 }
 
@@ -366,4 +303,3 @@ fn find_definitions(source: &mut Source) -> io::Result<HashMap<Vec<u8>, (Manner,
         }
     }
 }
-

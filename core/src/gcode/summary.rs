@@ -76,12 +76,7 @@ pub fn summarize(mut reader: Reader) -> Result<Summary, CheckError> {
     }
     if summary.motions == 0 && faults.is_empty() {
         let message = "the program has no motion".to_owned();
-        faults.push(Diagnostic::of_file(
-            Severity::Error,
-            "gcode::no_motion",
-            reader.name(),
-            message,
-        ));
+        faults.push(Diagnostic::of_file(Severity::Error, "gcode::no_motion", reader.name(), message));
     }
     if !faults.is_empty() {
         return Err(CheckError::Faults(faults));
@@ -107,11 +102,7 @@ impl Summary {
         }
         match &motion.shape {
             Shape::Line => {}
-            Shape::Arc {
-                plane,
-                center_mm,
-                turns,
-            } => {
+            Shape::Arc { plane, center_mm, turns } => {
                 let [first, second, _] = plane.axes();
                 self.moves[first] = true;
                 self.moves[second] = true;
@@ -144,15 +135,9 @@ impl Summary {
 fn arc_extremes(motion: &Motion, center: [f64; 3], plane: [usize; 2], turns: i32) -> Vec<[f64; 3]> {
     use std::f64::consts::{FRAC_PI_2, TAU};
     let [first, second] = plane;
-    let angle_of =
-        |point: [f64; 3]| (point[second] - center[second]).atan2(point[first] - center[first]);
-    let radius =
-        (motion.start_mm[first] - center[first]).hypot(motion.start_mm[second] - center[second]);
-    let (from, to) = if turns > 0 {
-        (motion.start_mm, motion.end_mm)
-    } else {
-        (motion.end_mm, motion.start_mm)
-    };
+    let angle_of = |point: [f64; 3]| (point[second] - center[second]).atan2(point[first] - center[first]);
+    let radius = (motion.start_mm[first] - center[first]).hypot(motion.start_mm[second] - center[second]);
+    let (from, to) = if turns > 0 { (motion.start_mm, motion.end_mm) } else { (motion.end_mm, motion.start_mm) };
     let begin = angle_of(from);
     let sweep = (angle_of(to) - begin).rem_euclid(TAU);
     let whole = turns.abs() > 1 || sweep < super::arc::FULL_TURN_WITHIN_RAD;

@@ -29,9 +29,7 @@ impl Interpreter {
         let target = self.target(block)?;
         let start = self.at;
         let pitch_mm = pitch * self.modal.unit_mm;
-        self.event(EventKind::SpindleSync {
-            pitch_mm: Some(pitch_mm),
-        });
+        self.event(EventKind::SpindleSync { pitch_mm: Some(pitch_mm) });
         self.paced(block, target, pitch_mm)?;
         if code == 331 {
             // Rigid tapping comes back the same way.
@@ -49,10 +47,7 @@ impl Interpreter {
             return Err(Fault::new(
                 "gcode::thread",
                 block.whole(),
-                format!(
-                    "{} needs a turning spindle: M3 or M4, and S above 0 rev/min",
-                    spelled(code)
-                ),
+                format!("{} needs a turning spindle: M3 or M4, and S above 0 rev/min", spelled(code)),
             ));
         }
         Ok(())
@@ -70,33 +65,21 @@ impl Interpreter {
 
     /// G38.2 to G38.5. Nobody can know where the probe will trip: the motion goes all the way, as in a dry run.
     pub(super) fn probe(&mut self, block: &Block) -> Read<()> {
-        let at = block
-            .code(Group::Motion)
-            .map_or(block.whole(), |word| word.at());
+        let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
         if !block.has_axes() {
-            return Err(Fault::new(
-                "gcode::probe",
-                at,
-                "a probing motion has no axis word",
-            ));
+            return Err(Fault::new("gcode::probe", at, "a probing motion has no axis word"));
         }
         let rotary = bit(b'a') | bit(b'b') | bit(b'c');
         let target = self.target(block)?;
         if block.set & rotary != 0 && (3..6).any(|axis| target[axis] != self.at[axis]) {
-            return Err(Fault::new(
-                "gcode::probe",
-                block.at_any(rotary),
-                "a probing motion cannot turn a rotary axis",
-            ));
+            return Err(Fault::new("gcode::probe", block.at_any(rotary), "a probing motion cannot turn a rotary axis"));
         }
         let way = distance(&self.at, &target);
         if way < PROBE_LEAST_MM {
             return Err(Fault::new(
                 "gcode::probe",
                 at,
-                format!(
-                    "the probing way of {way:.3} mm is too short: at least {PROBE_LEAST_MM} mm"
-                ),
+                format!("the probing way of {way:.3} mm is too short: at least {PROBE_LEAST_MM} mm"),
             ));
         }
         self.event(EventKind::Probe);
@@ -112,44 +95,21 @@ impl Interpreter {
         let unit = self.modal.unit_mm;
         let need = |letter: u8| {
             let name = char::from(letter).to_ascii_uppercase();
-            block.get(letter).ok_or_else(|| {
-                Fault::new(
-                    "gcode::thread",
-                    block.whole(),
-                    format!("{name} is missing for G76"),
-                )
-            })
+            block
+                .get(letter)
+                .ok_or_else(|| Fault::new("gcode::thread", block.whole(), format!("{name} is missing for G76")))
         };
-        let (pitch, offset, first, full) = (
-            need(b'p')? * unit,
-            need(b'i')? * unit,
-            need(b'j')? * unit,
-            need(b'k')? * unit,
-        );
+        let (pitch, offset, first, full) =
+            (need(b'p')? * unit, need(b'i')? * unit, need(b'j')? * unit, need(b'k')? * unit);
         let degression = block.get(b'r').unwrap_or(1.0);
-        let springs = if block.has(b'h') {
-            self.integer(block, b'h', 0, 1000)?
-        } else {
-            0
-        };
-        let (taper, taper_at) = (
-            block.get(b'e').unwrap_or(0.0) * unit,
-            if block.has(b'l') {
-                self.integer(block, b'l', 0, 3)?
-            } else {
-                0
-            },
-        );
+        let springs = if block.has(b'h') { self.integer(block, b'h', 0, 1000)? } else { 0 };
+        let (taper, taper_at) =
+            (block.get(b'e').unwrap_or(0.0) * unit, if block.has(b'l') { self.integer(block, b'l', 0, 3)? } else { 0 });
         let angle = block.get(b'q').unwrap_or(0.0);
         let target = self.target(block)?;
-        let bad =
-            |letter: u8, message: &str| Err(Fault::new("gcode::thread", block.at(letter), message));
+        let bad = |letter: u8, message: &str| Err(Fault::new("gcode::thread", block.at(letter), message));
         if self.modal.plane != super::canon::Plane::Zx {
-            return Err(Fault::new(
-                "gcode::thread",
-                block.whole(),
-                "G76 needs the plane G18",
-            ));
+            return Err(Fault::new("gcode::thread", block.whole(), "G76 needs the plane G18"));
         }
         if pitch <= 0.0 {
             return bad(b'p', "the pitch P must be above 0");
@@ -185,49 +145,30 @@ impl Interpreter {
         for _ in 0..=springs {
             self.thread_pass(block, &thread, full)?;
         }
-        self.go(
-            block,
-            thread.at(thread.start[0], thread.end_z),
-            Speed::Rapid,
-        )
+        self.go(block, thread.at(thread.start[0], thread.end_z), Speed::Rapid)
     }
 
     /// One pass at `depth` below the peaks: in, along the thread with its tapers, out.
     fn thread_pass(&mut self, block: &Block, thread: &Thread, depth: f64) -> Read<()> {
         let inward = if thread.offset > 0.0 { 1.0 } else { -1.0 };
-        let direction = if thread.end_z < thread.start[2] {
-            -1.0
-        } else {
-            1.0
-        };
+        let direction = if thread.end_z < thread.start[2] { -1.0 } else { 1.0 };
         // The compound slide: a deeper pass begins and ends further along.
         let begin_z = thread.start[2] + direction * depth * thread.tangent;
         let end_z = thread.end_z - direction * (thread.full - depth) * thread.tangent;
         let safe_x = thread.start[0] - inward * (thread.full - depth);
         let bottom = thread.start[0] + thread.offset + inward * depth;
         let top = bottom - inward * thread.full;
-        let taper_pitch =
-            thread.pitch * thread.taper.hypot(thread.full) / thread.taper.max(f64::MIN_POSITIVE);
-        let (first_taper, last_taper) = (
-            thread.taper > 0.0 && thread.taper_at & 1 != 0,
-            thread.taper > 0.0 && thread.taper_at & 2 != 0,
-        );
+        let taper_pitch = thread.pitch * thread.taper.hypot(thread.full) / thread.taper.max(f64::MIN_POSITIVE);
+        let (first_taper, last_taper) =
+            (thread.taper > 0.0 && thread.taper_at & 1 != 0, thread.taper > 0.0 && thread.taper_at & 2 != 0);
 
         self.go(block, thread.at(safe_x, begin_z), Speed::Rapid)?;
         let entry_x = if first_taper { top } else { bottom };
         self.go(block, thread.at(entry_x, begin_z), Speed::Rapid)?;
         if first_taper {
-            self.coupled(
-                block,
-                thread.at(bottom, begin_z + direction * thread.taper),
-                taper_pitch,
-            )?;
+            self.coupled(block, thread.at(bottom, begin_z + direction * thread.taper), taper_pitch)?;
         }
-        let straight_end = if last_taper {
-            end_z - direction * thread.taper
-        } else {
-            end_z
-        };
+        let straight_end = if last_taper { end_z - direction * thread.taper } else { end_z };
         self.coupled(block, thread.at(bottom, straight_end), thread.pitch)?;
         if last_taper {
             self.coupled(block, thread.at(top, end_z), taper_pitch)?;
@@ -237,9 +178,7 @@ impl Interpreter {
     }
 
     fn coupled(&mut self, block: &Block, target: Position, pitch_mm: f64) -> Read<()> {
-        self.event(EventKind::SpindleSync {
-            pitch_mm: Some(pitch_mm),
-        });
+        self.event(EventKind::SpindleSync { pitch_mm: Some(pitch_mm) });
         self.paced(block, target, pitch_mm)
     }
 }

@@ -60,9 +60,7 @@ fn parse_tool(words: &str, unit_mm: f64) -> Result<(u32, Tool), String> {
     for word in words.split_whitespace() {
         let letter = word.bytes().next().unwrap_or(b' ').to_ascii_lowercase();
         let rest = word.get(1..).unwrap_or("");
-        let value: f64 = rest
-            .parse()
-            .map_err(|_| format!("`{word}`: a number is missing"))?;
+        let value: f64 = rest.parse().map_err(|_| format!("`{word}`: a number is missing"))?;
         let whole = || -> Result<u32, String> {
             if value >= 0.0 && value.fract() == 0.0 && value <= f64::from(u32::MAX) {
                 Ok(value as u32)
@@ -77,27 +75,19 @@ fn parse_tool(words: &str, unit_mm: f64) -> Result<(u32, Tool), String> {
             b'i' => tool.front_angle_deg = value,
             b'j' => tool.back_angle_deg = value,
             b'q' => {
-                tool.orientation = u8::try_from(whole()?)
-                    .ok()
-                    .filter(|&q| q <= 9)
-                    .ok_or_else(|| format!("`{word}`: 0 to 9"))?;
+                tool.orientation =
+                    u8::try_from(whole()?).ok().filter(|&q| q <= 9).ok_or_else(|| format!("`{word}`: 0 to 9"))?;
             }
             _ => {
                 let axis = AXIS_LETTERS
                     .iter()
                     .position(|&axis| axis == letter)
                     .ok_or_else(|| format!("`{word}`: unknown word"))?;
-                tool.offset[axis] = if (3..6).contains(&axis) {
-                    value
-                } else {
-                    value * unit_mm
-                };
+                tool.offset[axis] = if (3..6).contains(&axis) { value } else { value * unit_mm };
             }
         }
     }
-    number
-        .map(|number| (number, tool))
-        .ok_or_else(|| "the tool number T is missing".to_owned())
+    number.map(|number| (number, tool)).ok_or_else(|| "the tool number T is missing".to_owned())
 }
 
 #[cfg(test)]
@@ -106,40 +96,20 @@ mod tests {
 
     #[test]
     fn a_table_in_inches_is_read() {
-        let table = ToolTable::parse(
-            "T1 P3 Z+0.511 D0.125 ; mill\n; nothing\nT20 I30 J150 Q2 A5",
-            25.4,
-        )
-        .unwrap();
+        let table = ToolTable::parse("T1 P3 Z+0.511 D0.125 ; mill\n; nothing\nT20 I30 J150 Q2 A5", 25.4).unwrap();
         let first = table.get(1).unwrap();
-        assert_eq!(
-            (first.offset[2], first.diameter_mm, first.pocket),
-            (0.511 * 25.4, 0.125 * 25.4, 3)
-        );
+        assert_eq!((first.offset[2], first.diameter_mm, first.pocket), (0.511 * 25.4, 0.125 * 25.4, 3));
         let second = table.get(20).unwrap();
         assert_eq!(
-            (
-                second.front_angle_deg,
-                second.back_angle_deg,
-                second.orientation,
-                second.offset[3]
-            ),
+            (second.front_angle_deg, second.back_angle_deg, second.orientation, second.offset[3]),
             (30.0, 150.0, 2, 5.0)
         );
     }
 
     #[test]
     fn faults_name_line_and_word() {
-        assert_eq!(
-            ToolTable::parse("T1\nT2 Z1,5", 1.0).unwrap_err(),
-            (2, "`Z1,5`: a number is missing".to_owned())
-        );
-        assert!(
-            ToolTable::parse("P1", 1.0)
-                .unwrap_err()
-                .1
-                .contains("tool number")
-        );
+        assert_eq!(ToolTable::parse("T1\nT2 Z1,5", 1.0).unwrap_err(), (2, "`Z1,5`: a number is missing".to_owned()));
+        assert!(ToolTable::parse("P1", 1.0).unwrap_err().1.contains("tool number"));
         assert!(ToolTable::parse("é", 1.0).is_err());
     }
 }

@@ -34,25 +34,15 @@ impl Interpreter {
         if !block.has_axes() && extruder_mm == 0.0 {
             return Ok(());
         }
-        let is_g53 = block
-            .code(Group::NonModal)
-            .is_some_and(|word| word.number == 530);
-        let target = if is_g53 {
-            self.machine_target(block)?
-        } else {
-            self.target(block)?
-        };
+        let is_g53 = block.code(Group::NonModal).is_some_and(|word| word.number == 530);
+        let target = if is_g53 { self.machine_target(block)? } else { self.target(block)? };
         // Printers move at F with G0 too.
         let is_feed = code == 10 || (self.dialect == Dialect::Printer && self.modal.feed > 0.0);
         if self.compensated_straight(block, &target, is_feed)? {
             return Ok(());
         }
         let machine = self.frame.to_machine(&target);
-        let speed = if is_feed {
-            Speed::Programmed
-        } else {
-            Speed::Rapid
-        };
+        let speed = if is_feed { Speed::Programmed } else { Speed::Rapid };
         let fed = self.line_to(block, machine, speed, extruder_mm);
         self.at = target;
         fed
@@ -60,13 +50,7 @@ impl Interpreter {
 
     /// Moves straight to `machine`; the programmed position is the caller's business.
     #[inline]
-    pub(super) fn line_to(
-        &mut self,
-        block: &Block,
-        machine: Position,
-        speed: Speed,
-        extruder_mm: f64,
-    ) -> Read<()> {
+    pub(super) fn line_to(&mut self, block: &Block, machine: Position, speed: Speed, extruder_mm: f64) -> Read<()> {
         let start = std::mem::replace(&mut self.here, machine);
         let others = others(&start, &machine, extruder_mm);
         if others.is_none() && start[..3] == machine[..3] {
@@ -82,14 +66,7 @@ impl Interpreter {
 
     /// Hands out the motion from `start` to the current position.
     #[inline]
-    pub(super) fn push_motion(
-        &mut self,
-        speed: Speed,
-        start: &Position,
-        shape: Shape,
-        feed_mm_s: f64,
-        others: Others,
-    ) {
+    pub(super) fn push_motion(&mut self, speed: Speed, start: &Position, shape: Shape, feed_mm_s: f64, others: Others) {
         let kind = speed.kind();
         self.motions += 1;
         self.push(Canon::Motion(Motion {
@@ -116,13 +93,11 @@ impl Interpreter {
                 "F is missing: with G93 (inverse time) every feed motion needs its own",
             )),
             FeedMode::Inverse if feed > 0.0 => Ok(length_mm * feed / MINUTE_S),
-            FeedMode::PerRevolution if feed > 0.0 && self.modal.spindle_speed == 0.0 => {
-                Err(Fault::new(
-                    "gcode::feed",
-                    block.whole(),
-                    "with G95 (feed per revolution) the spindle needs a speed S above 0 rev/min",
-                ))
-            }
+            FeedMode::PerRevolution if feed > 0.0 && self.modal.spindle_speed == 0.0 => Err(Fault::new(
+                "gcode::feed",
+                block.whole(),
+                "with G95 (feed per revolution) the spindle needs a speed S above 0 rev/min",
+            )),
             FeedMode::PerRevolution if feed > 0.0 => Ok(feed * self.modal.spindle_speed / MINUTE_S),
             // Printers start with a feed of their own.
             _ if self.dialect == Dialect::Printer => Ok(PRINTER_FEED_MM_S),
@@ -137,18 +112,13 @@ impl Interpreter {
             return Ok(0.0);
         }
         self.missing_feed_reported = true;
-        let at = if block.has(b'f') {
-            block.at(b'f')
-        } else {
-            block.whole()
-        };
+        let at = if block.has(b'f') { block.at(b'f') } else { block.whole() };
         let message = if block.has(b'f') {
             "the feed F0 moves nothing: a feed motion needs F above 0"
         } else {
             "a feed motion, but no feed F was given so far"
         };
-        Err(Fault::new("gcode::feed", at, message)
-            .hint("add F with the feed per minute to this line or one before it"))
+        Err(Fault::new("gcode::feed", at, message).hint("add F with the feed per minute to this line or one before it"))
     }
 
     /// Where the axis words lead, in program coordinates.
@@ -161,11 +131,7 @@ impl Interpreter {
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
                 let value = self.length(block, letter, axis, value)?;
-                target[axis] = if self.modal.incremental {
-                    self.at[axis] + value
-                } else {
-                    value
-                };
+                target[axis] = if self.modal.incremental { self.at[axis] + value } else { value };
             }
         }
         self.check_range(block, &target)?;
@@ -232,38 +198,20 @@ impl Interpreter {
     fn polar_target(&self, block: &Block, target: &mut Position) -> Read<()> {
         let at = block.at_any(bit(b'@') | bit(b'^'));
         if block.set & (bit(b'x') | bit(b'y')) != 0 {
-            return Err(Fault::new(
-                "gcode::polar",
-                at,
-                "polar coordinates @ and ^ exclude X and Y",
-            ));
+            return Err(Fault::new("gcode::polar", at, "polar coordinates @ and ^ exclude X and Y"));
         }
         let [first, second, _] = self.modal.plane.axes();
-        let (old_radius, old_angle) = (
-            self.at[0].hypot(self.at[1]),
-            self.at[1].atan2(self.at[0]).to_degrees(),
-        );
+        let (old_radius, old_angle) = (self.at[0].hypot(self.at[1]), self.at[1].atan2(self.at[0]).to_degrees());
         if [first, second] != [0, 1] {
-            return Err(Fault::new(
-                "gcode::polar",
-                at,
-                "polar coordinates need the XY plane G17",
-            ));
+            return Err(Fault::new("gcode::polar", at, "polar coordinates need the XY plane G17"));
         }
         let radius = block.get(b'@').map(|radius| radius * self.modal.unit_mm);
         let angle = block.get(b'^');
         if angle.is_none() && old_radius == 0.0 {
-            return Err(Fault::new(
-                "gcode::polar",
-                at,
-                "at the origin the angle ^ is needed",
-            ));
+            return Err(Fault::new("gcode::polar", at, "at the origin the angle ^ is needed"));
         }
         let (radius, angle) = if self.modal.incremental {
-            (
-                old_radius + radius.unwrap_or(0.0),
-                old_angle + angle.unwrap_or(0.0),
-            )
+            (old_radius + radius.unwrap_or(0.0), old_angle + angle.unwrap_or(0.0))
         } else {
             (radius.unwrap_or(old_radius), angle.unwrap_or(old_angle))
         };
@@ -279,11 +227,7 @@ impl Interpreter {
             return 0.0;
         };
         let value = value * self.modal.unit_mm;
-        let pushed = if self.extruder_relative {
-            value
-        } else {
-            value - self.extruder_mm
-        };
+        let pushed = if self.extruder_relative { value } else { value - self.extruder_mm };
         self.extruder_mm += pushed;
         pushed
     }
@@ -304,13 +248,6 @@ pub(super) fn others(start: &Position, end: &Position, extruder_mm: f64) -> Othe
 
 /// Length that F refers to: of X Y Z if they move, else of U V W, else degrees of A B C.
 pub(super) fn distance(start: &Position, end: &Position) -> f64 {
-    let along = |axes: std::ops::Range<usize>| {
-        axes.map(|axis| (end[axis] - start[axis]).powi(2))
-            .sum::<f64>()
-            .sqrt()
-    };
-    [along(0..3), along(6..9), along(3..6)]
-        .into_iter()
-        .find(|&length| length > 0.0)
-        .unwrap_or(0.0)
+    let along = |axes: std::ops::Range<usize>| axes.map(|axis| (end[axis] - start[axis]).powi(2)).sum::<f64>().sqrt();
+    [along(0..3), along(6..9), along(3..6)].into_iter().find(|&length| length > 0.0).unwrap_or(0.0)
 }

@@ -19,13 +19,8 @@ pub(super) struct Saved {
 impl Interpreter {
     /// `#target = value`, in effect from the next line on.
     pub(super) fn assign(&mut self, target: &Target, value: f64) -> Read<()> {
-        let read_only = |name: &str| {
-            Err(Fault::new(
-                "gcode::parameter",
-                0..usize::MAX,
-                format!("{name} can only be read"),
-            ))
-        };
+        let read_only =
+            |name: &str| Err(Fault::new("gcode::parameter", 0..usize::MAX, format!("{name} can only be read")));
         match target {
             Target::Numbered(index @ (5400..=5413 | 5420..=5428)) => {
                 return read_only(&format!("#{index}"));
@@ -34,9 +29,7 @@ impl Interpreter {
             Target::Named(name) => {
                 let shown = String::from_utf8_lossy(name);
                 if self.parameters.named(name).is_none()
-                    && (self.named(name).is_some()
-                        || name.starts_with(b"_ini[")
-                        || name.starts_with(b"_hal["))
+                    && (self.named(name).is_some() || name.starts_with(b"_ini[") || name.starts_with(b"_hal["))
                 {
                     return read_only(&format!("#<{shown}>"));
                 }
@@ -44,9 +37,7 @@ impl Interpreter {
                     return Err(Fault::new(
                         "gcode::parameter",
                         0..usize::MAX,
-                        format!(
-                            "no room for #<{shown}>: the program has too many named parameters"
-                        ),
+                        format!("no room for #<{shown}>: the program has too many named parameters"),
                     ));
                 }
             }
@@ -113,12 +104,7 @@ impl Interpreter {
 
     /// M70, M73: puts the modes away; one set for each call level.
     pub(super) fn save_modes(&mut self, automatic: bool) {
-        let saved = Saved {
-            modal: self.modal.clone(),
-            frame: self.frame.clone(),
-            automatic,
-            level: self.call_level,
-        };
+        let saved = Saved { modal: self.modal.clone(), frame: self.frame.clone(), automatic, level: self.call_level };
         self.forget_modes();
         self.saved.push(saved);
     }
@@ -132,12 +118,7 @@ impl Interpreter {
     /// M72.
     pub(super) fn restore_modes(&mut self) {
         let level = self.call_level;
-        if let Some(saved) = self
-            .saved
-            .last()
-            .filter(|saved| saved.level == level)
-            .cloned()
-        {
+        if let Some(saved) = self.saved.last().filter(|saved| saved.level == level).cloned() {
             self.restore(&saved);
         }
     }

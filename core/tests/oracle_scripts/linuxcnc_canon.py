@@ -23,7 +23,7 @@ import tempfile
 import gcode
 
 INCH = 25.4
-SECONDS = 3  # Some programs loop for ever, and sometimes the interpreter waits for ever.
+SECONDS = 2  # Some programs loop for ever, and sometimes the interpreter waits for ever.
 AXES = range(9)
 ROTARY = (3, 4, 5)
 PLANES = {1: (0, (0, 1, 2)), 3: (1, (2, 0, 1)), 2: (2, (1, 2, 0))}
@@ -121,13 +121,17 @@ class Recorder:
         return (number,) + (0.0,) * 9 + (0.125, 0.0, 0.0, 0)
 
 
-TOOL_WORDS = re.compile(rb"(?i)\bT\s*\d+|\bM\s*0?6(?!\d)|G\s*43(?![.\d])\s*(H\s*\d+)?")
+TOOL_WORDS = re.compile(rb"(?i)\bT\s*\d+|\bM\s*0?6(?!\d)|G\s*43(?![.\d])")
+LENGTH_WORD = re.compile(rb"(?i)H\s*\d+")
 
 
 def without_tools(line):
     """The line without tool words; comments stay as they are."""
     code = re.split(rb"[(;]", line, maxsplit=1)[0]
-    return TOOL_WORDS.sub(b"", code) + line[len(code):]
+    stripped = TOOL_WORDS.sub(b"", code)
+    if stripped != code:
+        stripped = LENGTH_WORD.sub(b"", stripped)
+    return stripped + line[len(code):]
 
 
 def run(path, output):
@@ -137,6 +141,7 @@ def run(path, output):
         path = os.path.join(folder, "program.ngc")
         with open(path, "wb") as stripped:
             stripped.writelines(lines)
+            stripped.write(b"\nM2\n")  # Both readers take a program without an end; here it would be an error.
         variables = os.path.join(folder, "variables")
         open(variables, "w").close()
         recorder = Recorder(output, variables)
@@ -147,7 +152,7 @@ def run(path, output):
 
 
 def main():
-    folder, *files = sys.argv[1:]
+    folder, *files = [os.path.abspath(path) for path in sys.argv[1:]]
     for number, path in enumerate(files):
         child = os.fork()
         if child == 0:
