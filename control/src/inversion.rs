@@ -22,9 +22,10 @@ use crate::vector::{add_scaled, dot, limit_norm, norm, scale};
 /// Which gradient of the error term the inversion follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Gradient {
-    /// As in eqs 9 and 10: the diagonal, with the printed sign. The network cannot tell a turning path from a command
-    /// that leaves the path, so it learns an effect of F on eps that is opposite to the effect of a correction; the
-    /// printed sign puts that right, and the Jacobian serves as the gain of an integrating correction.
+    /// As in eqs 9 and 10: the diagonal, with the printed sign. Nearly all of F is the path going on, which makes no
+    /// error, and the path is not among the inputs; so the network cannot tell it from a command that leaves the path,
+    /// and learns the wrong sign for F(k). The printed sign puts that right: the Jacobian serves as the gain of an
+    /// integrating correction.
     Printed,
     /// The true gradient of eq. 7 through the network.
     Exact,

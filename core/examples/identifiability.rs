@@ -5,7 +5,7 @@
 
 use feedwright::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
 use feedwright::identify::Programme;
-use feedwright::identify::contour::{Training, identify};
+use feedwright::identify::contour::{Recording, Training};
 use feedwright::machine::Machine;
 use feedwright::reference::Reference;
 use feedwright::report::Statistics;
@@ -140,7 +140,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|");
     for (name, programme) in programmes {
         for seed in 1..=3 {
-            let trained = identify::<2>(&machine, &programme, &Training::default(), seed, &mut |_| {});
+            let trained = Recording::<2>::new(&machine, &programme, seed).train(&Training::default(), &mut |_| {});
             let [now, one, two, ..] = effect_as_learnt(&trained.net, &plain);
             println!(
                 "| {name} | {seed} | {:.1} | {now:.2} | {one:.2} | {two:.2} | {:.2} | {} | {} |",

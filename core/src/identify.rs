@@ -49,7 +49,7 @@ impl Programme {
     }
 
     /// Circles from tight to wide, none of them a test contour: for programs of any shape. All in one sense, as the
-    /// paper's: with both, the paper's network finds that turning explains less of the error, and its gain is too weak.
+    /// paper's: with both, the derivative that the inversion takes for its gain comes out four times smaller.
     pub fn general() -> Self {
         Self { radii_mm: vec![3.0, 6.0, 12.0, 24.0], ..Self::paper() }
     }
