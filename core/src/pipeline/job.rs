@@ -156,7 +156,11 @@ fn shown(value: f64) -> String {
 impl Job {
     /// The controllers in the order in which they cut: the one that is asked for last, and once.
     pub(super) fn controllers(&self) -> Vec<&'static Entry> {
-        if self.against.name == self.controller.name { vec![self.controller] } else { vec![self.against, self.controller] }
+        if self.against.name == self.controller.name {
+            vec![self.controller]
+        } else {
+            vec![self.against, self.controller]
+        }
     }
 
     /// Two axes where the program stays in the XY plane and the third would only stand still.
@@ -250,7 +254,8 @@ fn describe(machine: &Machine) -> Vec<(String, String)> {
         ("period".to_owned(), serde_json::json!(machine.period)),
         ("limits".to_owned(), serde_json::json!(machine.limits)),
     ];
-    let axes = ["x", "y", "z"].iter().zip(&machine.axes).map(|(name, axis)| (format!("axis.{name}"), serde_json::json!(axis)));
+    let axes =
+        ["x", "y", "z"].iter().zip(&machine.axes).map(|(name, axis)| (format!("axis.{name}"), serde_json::json!(axis)));
     for (section, values) in sections.into_iter().chain(axes) {
         for (key, value) in values.as_object().into_iter().flatten() {
             lines.push((format!("{section}.{key}"), value.to_string()));
