@@ -116,8 +116,8 @@ fn a_full_device_is_reported_by_name() {
     let error = OutputError::from_io(error, Path::new("elsewhere"));
     let text = error.to_string();
     assert!(text.starts_with("cannot write /dev/full: No space left on device"), "{text}");
-    assert!(text.contains("bytes are free there"), "{text}");
-    assert!(error.help().unwrap().to_string().starts_with("make room in /dev"));
+    // What is free in the folder around a device says nothing about it.
+    assert!(!text.contains("bytes are free there") && error.help().is_none(), "{text}");
 }
 
 #[cfg(target_os = "linux")]
