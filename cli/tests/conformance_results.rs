@@ -250,19 +250,19 @@ fn an_interrupted_run_leaves_nothing() {
         let before = folder.content();
         let mut command = folder.command();
         command.args(["run", "long.ngc", "--controller", "open-loop"]).args(ALL_OUTPUTS);
-        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        if !wait_until_it_writes(&folder) {
-            let _ = Command::new("kill").args(["-KILL", &child.id().to_string()]).status();
-            panic!("no row was written");
-        }
-        if !Command::new("kill")
-            .args([&format!("-{signal}"), &child.id().to_string()])
-            .status()
-            .is_ok_and(|s| s.success())
-        {
-            return skipped("there is no `kill` to interrupt a run with");
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let writes = wait_until_it_writes(&folder);
+        let id = child.id().to_string();
+        let signalled =
+            Command::new("kill").args([&format!("-{signal}"), &id]).status().is_ok_and(|status| status.success());
+        if !signalled {
+            child.kill().unwrap();
         }
         let ran = Ran::from(child.wait_with_output().unwrap());
+        if !signalled {
+            return skipped("there is no `kill` to interrupt a run with");
+        }
+        assert!(writes, "no row was written: {ran:?}");
         assert_eq!(ran.code, Some(130), "{signal}: {ran:?}");
         assert_eq!(ran.stdout, "");
         assert!(ran.stderr.contains("interrupted") && ran.stderr.contains("no file was written"), "{ran:?}");

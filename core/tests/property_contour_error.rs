@@ -5,7 +5,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use feedwright::feed::Limits;
 use feedwright::gcode::{Reader, Settings};
@@ -84,7 +84,7 @@ enum Tool {
 }
 
 /// Follows a program and checks every estimate.
-fn check(part: &PathBuf, machine: &Machine, schedule: Schedule, mut tool: Tool) {
+fn check(part: &Path, machine: &Machine, schedule: Schedule, mut tool: Tool) {
     let name = part.file_name().unwrap().to_string_lossy();
     let limits = Limits::from(&machine.limits);
     let program = || Reader::open(part, Settings::default()).unwrap().map(Result::unwrap);
