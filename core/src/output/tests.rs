@@ -116,13 +116,8 @@ fn a_full_device_is_reported_by_name() {
     let error = OutputError::from_io(error, Path::new("elsewhere"));
     let text = error.to_string();
     assert!(text.starts_with("cannot write /dev/full: No space left on device"), "{text}");
-<<<<<<< HEAD
-    // A device has no room of its own that could be made.
-    assert!(!text.contains("free there") && error.help().is_none(), "{text}");
-=======
     // What is free in the folder around a device says nothing about it.
     assert!(!text.contains("bytes are free there") && error.help().is_none(), "{text}");
->>>>>>> tests
 }
 
 #[cfg(target_os = "linux")]
