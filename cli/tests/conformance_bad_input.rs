@@ -1,8 +1,6 @@
 //! Whatever is wrong with what the command gets: exit code 2, a message that names place, value, limit, unit and remedy,
 //! nothing on stdout, no panic, and a folder in which nothing has changed.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 #[path = "common/command.rs"]
 mod common;
 

@@ -112,7 +112,7 @@ impl Estimator {
 }
 
 /// The contour error of a predicted tool whose nearest knot is near the index `near`: the nearest point within
-/// [`LOCATE_REACH`] knots. It does not look further, so that beside a corner a tool belongs to the side that its time
+/// eight knots. It does not look further, so that beside a corner a tool belongs to the side that its time
 /// belongs to, and not to the one that happens to be nearer.
 #[inline]
 pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i32) -> ContourError<N> {

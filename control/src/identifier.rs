@@ -17,7 +17,7 @@ pub const FEED_SCALE_MM_S: f64 = 50.0;
 /// smaller, and the output saturates.
 pub const ERROR_SCALE_MM: f64 = 0.1;
 
-/// What the network sees: [axis][F(k), F(k-1), F(k-2), eps(k-1), eps(k-2)], scaled.
+/// What the network sees, indexed by axis and F(k), F(k-1), F(k-2), eps(k-1), eps(k-2); scaled.
 pub type Inputs<const N: usize> = [[f64; INPUTS]; N];
 
 /// The delayed feedrates and errors of the last knots: what turns a sequence into [`Inputs`].

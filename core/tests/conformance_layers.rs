@@ -1,8 +1,6 @@
 //! The order of the modules in `lib.rs` is the order in which data flows: a module uses only modules above it, and a crate
 //! only crates below it.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::{Path, PathBuf};
 
 /// Crates of the workspace: folder, and which of ours it depends on, outside of tests.

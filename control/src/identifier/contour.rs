@@ -25,9 +25,9 @@ use crate::activation::{bipolar_sigmoid, slope};
 /// The weights.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContourIdentifier<const N: usize> {
-    /// W_ji as [axis][input of that axis][hidden node].
+    /// W_ji, indexed by axis, input of that axis, and hidden node.
     pub hidden: [[[f64; HIDDEN]; INPUTS]; N],
-    /// W_oj as [output][hidden node].
+    /// W_oj, indexed by output and hidden node.
     pub output: [[f64; HIDDEN]; N],
 }
 
@@ -70,7 +70,7 @@ impl<const N: usize> ContourIdentifier<N> {
         Forward { hidden, error: bipolar_sigmoid(net_o) }
     }
 
-    /// d eps_hat_o / d F_axis(k), as [o][axis]: the chain rule through eqs 3 to 5.
+    /// d eps_hat_o / d F_axis(k), indexed by o and axis: the chain rule through eqs 3 to 5.
     #[inline]
     pub fn jacobian(&self, forward: &Forward<N>) -> [[f64; N]; N] {
         let hidden_slope = forward.hidden.map(slope);

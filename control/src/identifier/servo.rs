@@ -22,11 +22,11 @@ pub const FOLLOWING_SCALE_MM: f64 = 1.0;
 /// output is in mm.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServoIdentifier<const N: usize> {
-    /// L as [output][axis][input of that axis].
+    /// L, indexed by output, axis, and input of that axis.
     pub linear: [[[f64; INPUTS]; N]; N],
-    /// W_h as [axis][input of that axis][hidden node].
+    /// W_h, indexed by axis, input of that axis, and hidden node.
     pub hidden: [[[f64; HIDDEN]; INPUTS]; N],
-    /// c W_o as [output][hidden node], mm.
+    /// c W_o, indexed by output and hidden node, mm.
     pub output: [[f64; HIDDEN]; N],
 }
 
