@@ -13,8 +13,11 @@ use crate::plant::{Measurement, Plant};
 use crate::reference::{Reference, Sample};
 use crate::trace::{Commanded, Outcome, Row, Sink};
 
-/// A following error beyond this ends the run as diverged, mm: no machine of this class has so much travel.
-const DIVERGED_MM: f64 = 1000.0;
+/// A stable loop of gain Kp lags by v / Kp. Where the command is this many times the lag of a rapid away, or
+/// [`LOST_MM`] where that is more, the tool does not follow any more.
+const LOST_LAGS: f64 = 4.0;
+/// As [`LOST_LAGS`], for loops so stiff that they hardly lag, mm.
+const LOST_MM: f64 = 2.0;
 /// The tool has arrived when it is this near a command at rest, mm: a usual in-position width.
 const ARRIVED_MM: f64 = 0.01;
 /// Longest wait for the tool to arrive, s: friction may hold it off for good.
@@ -50,7 +53,9 @@ pub fn simulate<const N: usize>(
     sinks: &mut [&mut dyn Sink],
 ) -> std::io::Result<Run> {
     let servo_s = machine.period.servo_s;
-    let lag_s = LAG_TIME_CONSTANTS / machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
+    let slowest_s = 1.0 / machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
+    let lag_s = LAG_TIME_CONSTANTS * slowest_s;
+    let lost_mm = LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s);
     let start_mm = first(reference.at(0.0).position_mm);
     controller.reset();
     let mut tick = Tick::<N>::new(servo_s, controller.schedule(), machine.limits.max_deviation_mm);
@@ -78,7 +83,7 @@ pub fn simulate<const N: usize>(
         let Measurement { position_mm, torque_nm } = plant.step(setpoint.command_mm);
         tool_mm = position_mm;
         let following_mm = distance(tool_mm, setpoint.command_mm);
-        if following_mm.is_nan() || following_mm > DIVERGED_MM {
+        if following_mm.is_nan() || following_mm > lost_mm {
             run.outcome = Outcome::Diverged { at_s: t_s };
             run.arrival_s = t_s;
             if ended.is_none() {

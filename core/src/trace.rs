@@ -53,7 +53,8 @@ pub enum Outcome {
     /// The program was cut to its end.
     #[default]
     Completed,
-    /// The servo loop is unstable: the tool left the command by more than a metre, or is nowhere.
+    /// The servo loop is unstable: the tool left the command by several times what a stable loop
+    /// lags, or is nowhere.
     Diverged {
         /// When, s.
         at_s: f64,
