@@ -2,7 +2,7 @@
 
 use feedwright_control::contour_error::{ContourError, Estimator};
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
-use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
+use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
 use feedwright_control::identifier::Inputs;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::servo::ServoIdentifier;

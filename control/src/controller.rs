@@ -12,6 +12,7 @@
 //!
 //! To add a controller: one file here and one row in the table of the library.
 
+pub mod inverting;
 pub mod magnitude_only;
 pub mod open_loop;
 pub mod receding_horizon;

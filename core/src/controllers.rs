@@ -5,7 +5,7 @@
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
-use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
+use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
 use feedwright_control::{Controller, inversion};
 use serde::Serialize;
 

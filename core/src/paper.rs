@@ -9,7 +9,7 @@ pub mod figures;
 use feedwright_control::Controller;
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::open_loop::OpenLoop;
-use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
+use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::inversion::Gradient;
 use rayon::prelude::*;

@@ -2,7 +2,7 @@
 
 use feedwright_control::Controller;
 use feedwright_control::controller::open_loop::OpenLoop;
-use feedwright_control::controller::two_dimensional::{Settings, TwoDimensional};
+use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
 use feedwright_control::inversion::Gradient;
 
 use super::curves::Curves;

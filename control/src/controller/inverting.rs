@@ -1,0 +1,132 @@
+//! What the controllers that invert the paper's identifier share: learn, invert, and turn the result into a command.
+//!
+//! ```text
+//! F(0)(k)   = (P*(tau + T) - P*(tau)) / T
+//! F(k)      = F(0)(k) after at most five inversion steps, eqs 7 to 10
+//! P'(k+1)   = P'(k) + F(k) T
+//! ```
+//!
+//! Source: Lee, Cho and Jeon (2005), section 3 and Fig. 5. The anchoring of F(0) to the original path keeps P' from
+//! drifting: the part of F - F(0) along F(0) changes the speed, the part across it the offset P' - P*, and nothing else
+//! moves either.
+//!
+//! Departures: between two knots the command follows the path instead of its chord (at 50 mm/s, 10 ms and a radius of
+//! 10 mm the chord alone misses the path by 3 um); rates and offsets are limited; offsets that lie along the path, or
+//! where the tool rests, leak away.
+
+use core::marker::PhantomData;
+
+use super::{Command, Controller, Measured, Schedule};
+use crate::identifier::contour::ContourIdentifier;
+use crate::identifier::{ERROR_SCALE_MM, FEED_SCALE_MM_S, History, Inputs};
+use crate::inversion::{self, Gradient};
+use crate::vector::{add_scaled, dot, norm, scale, sub};
+use crate::window::Window;
+
+/// Settings of the controllers that invert the identifier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Servo periods in a feed period; 1 to 100.
+    pub servo_periods: u32,
+    /// The inversion.
+    pub inversion: inversion::Settings,
+    /// Step of back-propagation while cutting, scaled units; 0 (frozen) to 0.5.
+    pub learning_step: f64,
+    /// Slowest and fastest the controller may run, as a multiple of the planned feedrate.
+    pub rate_range: [f64; 2],
+}
+
+impl Settings {
+    /// The paper's setting where it names one, the prototype's otherwise.
+    pub const DEFAULT: Self = Self {
+        servo_periods: 10,
+        inversion: inversion::Settings { rho: 0.001, eta: 0.3, steps: 5, step_limit: 0.1, gradient: Gradient::Printed },
+        learning_step: 0.003,
+        rate_range: [0.5, 1.2],
+    };
+}
+
+/// Below this planned feedrate, mm/s, the machine is held to the plan: at rest there is no direction to correct in.
+const LEAST_FEED_MM_S: f64 = 0.05;
+
+/// Part of the offset along the path that is taken back in each feed period. Offsets are made across the path; where the
+/// path has turned since, what is left of them along it corrects nothing, and without this the tool would end a circle
+/// of 10 mm radius a tenth of a millimetre short.
+const TANGENTIAL_LEAK: f64 = 0.05;
+/// Part of the offset that is taken back in each feed period at rest: a tool at rest has no error to correct.
+const REST_LEAK: f64 = 0.3;
+
+/// How a controller inverts: the only thing in which the members differ.
+pub trait Invert {
+    /// Improves F(0), which `inputs` hold on entry, in place.
+    fn invert<const N: usize>(net: &ContourIdentifier<N>, inputs: &mut Inputs<N>, settings: &inversion::Settings);
+}
+
+/// A controller that inverts the paper's identifier. Between ticks it keeps the identifier, the delays, and what was asked
+/// for last.
+#[derive(Debug, Clone)]
+pub struct Inverting<const N: usize, I> {
+    trained: ContourIdentifier<N>,
+    net: ContourIdentifier<N>,
+    history: History<N>,
+    last: Option<Inputs<N>>,
+    settings: Settings,
+    how: PhantomData<I>,
+}
+
+impl<const N: usize, I> Inverting<N, I> {
+    /// With an identifier that is trained on the machine.
+    pub fn new(trained: ContourIdentifier<N>, settings: Settings) -> Self {
+        Self { net: trained.clone(), trained, history: History::default(), last: None, settings, how: PhantomData }
+    }
+}
+
+impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: self.settings.servo_periods, preview: 1 }
+    }
+
+    fn reset(&mut self) {
+        self.net.clone_from(&self.trained);
+        self.history = History::default();
+        self.last = None;
+    }
+
+    /// One step of back-propagation on the last command and its outcome, then both move into the delays.
+    fn observe(&mut self, measured: &Measured<N>) {
+        let error_mm = measured.contour.vector_mm;
+        if !norm(error_mm).is_finite() {
+            return;
+        }
+        if let Some(inputs) = self.last {
+            if self.settings.learning_step > 0.0 {
+                let target = error_mm.map(|e| e / ERROR_SCALE_MM);
+                self.net.learn(&inputs, target, self.settings.learning_step);
+            }
+            self.history.push(inputs.map(|axis| axis[0] * FEED_SCALE_MM_S), error_mm);
+        }
+    }
+
+    /// Inverts from the planned feedrate and turns the result into a rate and a new offset.
+    fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
+        let period_s = window.feed_period_s;
+        let planned = scale(1.0 / period_s, sub(window.ahead(1).position_mm, window.now().position_mm));
+        let planned_feed = norm(planned);
+        let mut inputs = self.history.inputs(planned);
+        if planned_feed < LEAST_FEED_MM_S {
+            self.last = Some(inputs);
+            return Command { rate: 1.0, offset_mm: scale(1.0 - REST_LEAK, window.offset_mm) };
+        }
+        I::invert(&self.net, &mut inputs, &self.settings.inversion);
+        let direction = scale(1.0 / planned_feed, planned);
+        let change = sub(inputs.map(|axis| axis[0] * FEED_SCALE_MM_S), planned);
+        let along = dot(change, direction);
+        let across = add_scaled(change, -along, direction);
+        let [slowest, fastest] = self.settings.rate_range;
+        let rate = (1.0 + along / planned_feed).clamp(slowest, fastest);
+        let feed = add_scaled(across, rate, planned);
+        self.last = Some(self.history.inputs(feed));
+        let stale = TANGENTIAL_LEAK * dot(window.offset_mm, direction);
+        Command { rate, offset_mm: add_scaled(add_scaled(window.offset_mm, period_s, across), -stale, direction) }
+    }
+}
