@@ -5,6 +5,7 @@
 #[path = "common/command.rs"]
 mod common;
 
+use feedwright::controllers::{BASELINE, BEST};
 use std::io::Read;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -45,7 +46,7 @@ fn the_json_has_the_documented_numbers_of_every_run() {
     let results = results(&folder);
     let runs = results["runs"].as_array().unwrap();
     let names: Vec<&str> = runs.iter().map(|run| run["controller"].as_str().unwrap()).collect();
-    assert_eq!(names, ["open-loop", "two-dimensional"]);
+    assert_eq!(names, [BASELINE, BEST]);
     for run in runs {
         assert_eq!((run["machine"].as_str(), run["part"].as_str()), (Some("tnv40"), Some("circle.ngc")));
         assert_eq!(run["outcome"]["kind"], "completed");
