@@ -19,6 +19,10 @@ use super::settings::{Dialect, Settings};
 use super::source::{LONGEST_LINE_BYTES, Line, Source};
 use super::state::Interpreter;
 
+/// Faults after which a program is not read any further. Subroutines that call themselves twice and err each time make
+/// faults without end from a few lines.
+const HOPELESS_FAULTS: usize = 100_000;
+
 /// Why a program cannot be read at all.
 #[derive(Debug, Error, miette::Diagnostic)]
 pub enum ReadError {
@@ -393,8 +397,9 @@ impl Reader {
     /// After the last line: how many faults were not shown.
     fn rest(&mut self) -> Option<Box<Diagnostic>> {
         let more = self.faults.saturating_sub(self.interpreter.settings.max_errors);
+        let unread = if self.faults >= HOPELESS_FAULTS { "; the rest of the program was not read" } else { "" };
         self.faults = 0;
-        (more > 0).then(|| self.of_file("gcode::more", format!("and {more} more errors")))
+        (more > 0).then(|| self.of_file("gcode::more", format!("and {more} more errors{unread}")))
     }
 }
 
@@ -407,7 +412,7 @@ impl Iterator for Reader {
             if let Some(canon) = self.interpreter.out.pop_front() {
                 return Some(Ok(canon));
             }
-            if self.state == State::Done || self.interpreter.ended {
+            if self.state == State::Done || self.interpreter.ended || self.faults >= HOPELESS_FAULTS {
                 self.state = State::Done;
                 let rest = self.rest()?;
                 return Some(Err(*rest));
