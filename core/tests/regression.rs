@@ -1,7 +1,5 @@
 //! What went wrong once, as small as it could be made.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use feedwright::gcode::{Reader, Settings};
 
 /// Found by mutation: each call made two more and an error, and the reader counted millions of them.
