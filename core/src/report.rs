@@ -23,7 +23,7 @@ pub use statistics::{Histogram, Statistics};
 pub use summary::{RunFacts, RunSummary};
 pub use worst::WorstPlace;
 
-pub use crate::trace::Outcome;
+pub use crate::trace::{FadedOut, Outcome};
 
 /// Everything that the page shows.
 #[derive(Debug, Clone)]

@@ -88,6 +88,7 @@ impl Statistics {
             part: facts.part,
             axes: facts.axes,
             outcome: facts.run.outcome,
+            faded_out: facts.run.faded_out,
             time_s: facts.run.time_s,
             rms_um: self.rms_um(),
             max_um: self.max_um(),
