@@ -60,6 +60,10 @@ pub trait Controller<const N: usize> {
     fn schedule(&self) -> Schedule;
     /// Back to the state after construction.
     fn reset(&mut self);
+    /// The same part is cut once more: what was learnt of it is kept.
+    fn next_lap(&mut self) {
+        self.reset();
+    }
     /// Learns from what the last command led to. Called once a feed period, before [`Self::command`].
     fn observe(&mut self, measured: &Measured<N>);
     /// By how much the last prediction missed what was measured, mm; 0 where there was none. [`crate::safety`] reads it

@@ -23,12 +23,28 @@ pub struct Entry {
     pub summary: &'static str,
     /// Author, year.
     pub source: &'static str,
-    /// Whether it needs an identifier trained on the machine.
-    pub identifies: bool,
+    /// What it knows of the machine.
+    pub knows: Knows,
+    /// Laps of the same part that it cuts; all but the last are practice.
+    pub laps: u32,
     /// What can be tuned.
     pub parameters: &'static [Parameter],
     plane: Maker<2>,
     space: Maker<3>,
+}
+
+/// What a controller knows of the machine before it cuts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Knows {
+    /// Nothing.
+    Nothing,
+    /// What was identified from a recording.
+    Identified,
+    /// The parameters of its model.
+    ExactModel,
+    /// What went wrong in earlier laps of the same part.
+    EarlierLaps,
 }
 
 /// Makes a controller from a setup and the values of its parameters.
@@ -51,12 +67,13 @@ const fn parameter(name: &'static str, range: [f64; 2], default: f64) -> Paramet
 
 /// A row from a function that is generic over the number of axes.
 macro_rules! entry {
-    ($name:literal, $summary:literal, $source:literal, identifies: $identifies:literal, [$($parameter:expr),*], $make:ident) => {
+    ($name:literal, $summary:literal, $source:literal, $knows:ident, laps: $laps:literal, [$($parameter:expr),*], $make:ident) => {
         Entry {
             name: $name,
             summary: $summary,
             source: $source,
-            identifies: $identifies,
+            knows: Knows::$knows,
+            laps: $laps,
             parameters: &[$($parameter),*],
             plane: $make::<2>,
             space: $make::<3>,
@@ -77,7 +94,8 @@ pub const CONTROLLERS: &[Entry] = &[
         "open-loop",
         "the programmed path at the planned feed",
         "what every open-source control does",
-        identifies: false,
+        Nothing,
+        laps: 1,
         [],
         open_loop
     ),
@@ -85,7 +103,8 @@ pub const CONTROLLERS: &[Entry] = &[
         "magnitude-only",
         "inversion of the identifier, speed along the path only",
         "Yoon and Jeon (2000)",
-        identifies: true,
+        Identified,
+        laps: 1,
         [RHO, ETA],
         magnitude_only
     ),
@@ -93,7 +112,8 @@ pub const CONTROLLERS: &[Entry] = &[
         "two-dimensional",
         "inversion of the identifier, speed and geometry",
         "Lee, Cho and Jeon (2005)",
-        identifies: true,
+        Identified,
+        laps: 1,
         [RHO, ETA],
         two_dimensional
     ),
@@ -101,7 +121,8 @@ pub const CONTROLLERS: &[Entry] = &[
         "receding-horizon",
         "geometry planned over 10 knots ahead through an identified servo, speed as planned",
         "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
-        identifies: true,
+        Identified,
+        laps: 1,
         [RATE_WEIGHT, INNOVATION_GAIN],
         receding_horizon
     ),

@@ -14,7 +14,7 @@ mod outline;
 mod series;
 mod statistics;
 mod summary;
-mod text;
+pub(crate) mod text;
 mod worst;
 
 pub use html::write_html;

@@ -45,11 +45,25 @@ pub struct Run {
     pub ticks: TickTimes,
 }
 
-/// Cuts the whole reference with a controller; every row goes to every sink.
+/// Cuts the whole reference with a controller that begins anew; every row goes to every sink.
 ///
 /// # Errors
 /// What a sink says when it takes no more.
 pub fn simulate<const N: usize>(
+    machine: &Machine,
+    reference: &mut Reference<'_>,
+    controller: &mut dyn Controller<N>,
+    sinks: &mut [&mut dyn Sink],
+) -> std::io::Result<Run> {
+    controller.reset();
+    simulate_lap(machine, reference, controller, sinks)
+}
+
+/// As [`simulate`], with a controller that remembers the laps before.
+///
+/// # Errors
+/// What a sink says when it takes no more.
+pub fn simulate_lap<const N: usize>(
     machine: &Machine,
     reference: &mut Reference<'_>,
     controller: &mut dyn Controller<N>,
@@ -60,7 +74,6 @@ pub fn simulate<const N: usize>(
     let lag_s = LAG_TIME_CONSTANTS * slowest_s;
     let lost_mm = LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s);
     let start_mm = first(reference.at(0.0).position_mm);
-    controller.reset();
     let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s);
     let mut tick = Tick::<N>::new(servo_s, controller.schedule(), bounds);
     let mut plant = Plant::<N>::new(machine, start_mm);

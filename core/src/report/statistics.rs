@@ -111,6 +111,16 @@ impl Statistics {
         if self.cutting_rows == 0 { 0.0 } else { (self.square_sum_mm2 / self.cutting_rows as f64).sqrt() * 1e3 }
     }
 
+    /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.
+    pub fn max_deviation_um(&self) -> f64 {
+        self.max_deviation_mm * 1e3
+    }
+
+    /// Largest torque of each axis, N m.
+    pub fn peak_torque_nm(&self) -> [f64; 3] {
+        self.peak_torque_nm
+    }
+
     /// Largest |contour error| over the rows that cut, µm.
     pub fn max_um(&self) -> f64 {
         self.max_mm * 1e3
