@@ -19,7 +19,9 @@
 
 use crate::contour_error::locate;
 use crate::identifier::FEED_SCALE_MM_S;
+use crate::identifier::residual::Residual;
 use crate::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
+use crate::least_squares::cholesky;
 use crate::vector::{add_scaled, dot, norm, reject, scale, sub};
 use crate::window::Window;
 
@@ -63,8 +65,8 @@ impl<const N: usize> Default for Plan<N> {
 pub struct State<const N: usize> {
     /// Feedrates and following errors up to the current knot, scaled.
     pub delays: Delays<N>,
-    /// What the identifier misses of the growth of the following error, mm: added to every prediction.
-    pub bias_mm: [f64; N],
+    /// What the identifier misses of the growth of the following error in each axis: added to every prediction.
+    pub residual: [Residual; N],
     /// How far the tool is behind the command, s: where the search for the nearest points starts.
     pub lag_s: f64,
 }
@@ -141,6 +143,7 @@ impl<const N: usize> Plan<N> {
             at_knot: [[[0.0; N]; MOST_NORMALS]; MOST_KNOTS],
         };
         let mut delays = state.delays;
+        let mut residual = state.residual;
         let mut offset_mm = window.offset_mm;
         let mut command_mm = add_scaled(window.now().position_mm, 1.0, offset_mm);
         let mut normal = self.normal;
@@ -151,7 +154,8 @@ impl<const N: usize> Plan<N> {
             offset_mm = self.moved(offset_mm, &rollout.at_knot[i], i, period_s);
             let next_mm = add_scaled(knot.position_mm, 1.0, offset_mm);
             let feed = scale(1.0 / (period_s * FEED_SCALE_MM_S), sub(next_mm, command_mm));
-            let grown = add_scaled(net.predict(&delays.inputs(feed)), 1.0, state.bias_mm);
+            let missed = core::array::from_fn(|axis| residual[axis].next());
+            let grown = add_scaled(net.predict(&delays.inputs(feed)), 1.0, missed);
             let error = add_scaled(delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown);
             delays.push(feed, error);
             command_mm = next_mm;
@@ -263,37 +267,4 @@ fn solve<const N: usize>(
     }
     cholesky(&mut matrix, &mut right, unknowns);
     right
-}
-
-/// Solves A x = b in place for the lower half of a symmetric positive A.
-fn cholesky(a: &mut [[f64; MOST_UNKNOWNS]; MOST_UNKNOWNS], b: &mut [f64; MOST_UNKNOWNS], n: usize) {
-    for r in 0..n {
-        for c in 0..r {
-            let mut sum = a[r][c];
-            for k in 0..c {
-                sum -= a[r][k] * a[c][k];
-            }
-            a[r][c] = sum * a[c][c];
-        }
-        let mut square = a[r][r];
-        for k in 0..r {
-            square -= a[r][k] * a[r][k];
-        }
-        // The diagonal holds the reciprocal: one division a row.
-        a[r][r] = 1.0 / libm::sqrt(square);
-    }
-    for r in 0..n {
-        let mut sum = b[r];
-        for k in 0..r {
-            sum -= a[r][k] * b[k];
-        }
-        b[r] = sum * a[r][r];
-    }
-    for r in (0..n).rev() {
-        let mut sum = b[r];
-        for k in r + 1..n {
-            sum -= a[k][r] * b[k];
-        }
-        b[r] = sum * a[r][r];
-    }
 }

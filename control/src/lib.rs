@@ -8,6 +8,7 @@
 
 pub mod vector;
 pub mod activation;
+pub mod least_squares;
 pub mod window;
 pub mod contour_error;
 pub mod identifier;

@@ -86,7 +86,7 @@ const ETA: Parameter = parameter("eta", [1e-3, 10.0], Settings::DEFAULT.inversio
 const RATE_WEIGHT: Parameter =
     parameter("rate_weight_s2", [1e-9, 1e-4], receding_horizon::Settings::DEFAULT.horizon.rate_weight);
 const INNOVATION_GAIN: Parameter =
-    parameter("innovation_gain", [0.0, 1.0], receding_horizon::Settings::DEFAULT.innovation_gain);
+    parameter("innovation_gain", [0.0, 1.0], receding_horizon::Settings::DEFAULT.adaptation.residual.gain);
 
 /// All controllers.
 pub const CONTROLLERS: &[Entry] = &[
@@ -216,7 +216,17 @@ fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Bo
     let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
     let mut settings = receding_horizon::Settings::DEFAULT;
     settings.servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
-    (settings.horizon.rate_weight, settings.innovation_gain) = (values[0], values[1]);
+    (settings.horizon.rate_weight, settings.adaptation.residual.gain) = (values[0], values[1]);
+    let hack: Vec<f64> = std::env::var("FW").unwrap_or_default().split(',').filter_map(|x| x.parse().ok()).collect();
+    if hack.len() > 6 {
+        settings.horizon.rate_weight = hack[0];
+        settings.horizon.change_weight = hack[1];
+        settings.adaptation.forgetting = hack[2];
+        settings.adaptation.noise_mm = hack[3];
+        settings.adaptation.spread_mm = hack[4];
+        settings.adaptation.judging = hack[5];
+        settings.adaptation.residual.noise_mm = hack[6];
+    }
     Box::new(RecedingHorizon::new(identified.net, settings))
 }
 

@@ -17,7 +17,14 @@ pub use error::{MachineError, Problem};
 pub(crate) use reader::nearest;
 
 /// Machines that need no file: name and text.
-pub const BUILT_IN: &[(&str, &str)] = &[("tnv40", include_str!("../../machines/tnv40.toml"))];
+pub const BUILT_IN: &[(&str, &str)] = &[
+    ("tnv40", include_str!("../../machines/tnv40.toml")),
+    ("heavy", include_str!("../../machines/heavy.toml")),
+    ("sticky", include_str!("../../machines/sticky.toml")),
+    ("rough", include_str!("../../machines/rough.toml")),
+    ("soft", include_str!("../../machines/soft.toml")),
+    ("coarse", include_str!("../../machines/coarse.toml")),
+];
 
 /// Names of the axes, in the order of every `[f64; 3]` of this library.
 pub const AXIS_NAMES: [&str; 3] = ["x", "y", "z"];
@@ -120,6 +127,38 @@ pub struct Axis {
     pub kv_nm_s_per_rad: f64,
     /// Torque at which the drive saturates, N m.
     pub torque_limit_nm: f64,
+    /// Delay between the position loop and the drive, s.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub drive_delay_s: f64,
+    /// Bits of the torque command over the range from minus to plus [`Self::torque_limit_nm`]; none is without steps.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub torque_bits: Option<u32>,
+    /// Step of the position encoder, um of travel; 0 is without steps.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub encoder_step_um: f64,
+    /// Ball screw; none is rigid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub transmission: Option<Transmission>,
+}
+
+/// The ball screw between motor and table: `[axis.x.transmission]`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Transmission {
+    /// Part of the axis's inertia that is on the table's side.
+    pub table_share: f64,
+    /// Resonance of the table on the screw while the motor is held, Hz.
+    pub resonance_hz: f64,
+    /// Its damping ratio.
+    pub damping_ratio: f64,
+    /// Backlash, um of travel.
+    pub backlash_um: f64,
+    /// Whether the position is measured at the table (a linear scale) instead of the motor.
+    pub scale_on_table: bool,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
+fn is_zero(value: &f64) -> bool {
+    *value == 0.0
 }
 
 impl Machine {
@@ -156,7 +195,29 @@ impl Machine {
     /// # Errors
     /// Every fault found in the text, in one go.
     pub fn parse(file: &str, text: &str) -> Result<Self, MachineError> {
-        layout::machine(text).map_err(|problems| MachineError::invalid(file, text, problems))
+        let invalid = |problems| MachineError::invalid(file, text, problems);
+        let Some(base) = layout::base(text).map_err(invalid)? else {
+            return layout::machine(text, None).map_err(invalid);
+        };
+        // The base is a machine of its own: its faults are reported in its own text.
+        let (base_file, base_text) = Self::base_text(file, &base)?;
+        if layout::base(&base_text).is_ok_and(|base| base.is_some()) {
+            return Err(invalid(vec![layout::chained(text, &base)]));
+        }
+        layout::machine(&base_text, None).map_err(|faults| MachineError::invalid(&base_file, &base_text, faults))?;
+        layout::machine(text, Some(&base_text)).map_err(invalid)
+    }
+
+    /// Name and text of a base: a built-in machine, or a file beside the one that names it.
+    fn base_text(file: &str, base: &str) -> Result<(String, String), MachineError> {
+        if let Some((name, text)) = BUILT_IN.iter().find(|(name, _)| *name == base) {
+            return Ok((format!("{name}.toml"), (*text).to_owned()));
+        }
+        if !is_path(Path::new(base)) {
+            return Err(MachineError::unknown_name(base, false));
+        }
+        let path = Path::new(file).parent().unwrap_or(Path::new("")).join(base);
+        Ok((path.display().to_string(), read_text(&path)?))
     }
 
     /// Two or three.

@@ -10,21 +10,37 @@
 //! integrated by semi-implicit Euler: w first, then the angle with the new w. `cmd` is held for one servo period; t, and
 //! with it the disturbance, is taken at the start of each mechanics period; the axis starts at rest.
 //!
+//! A machine file may add what a real axis has on top, each in its own file:
+//!
+//! | File | What |
+//! |---|---|
+//! | `plant/transmission.rs` | motor and table as two masses: stiffness, damping, backlash of the ball screw |
+//! | `plant/drive.rs` | delay of the reference speed, steps of the torque command |
+//!
+//! and encoder steps: what is measured, by the position loop and by the controller, is a whole number of them.
+//!
 //! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6. The paper names the parts and the values of Table 1;
 //! the laws are written out as usual for such a loop, and the values that the paper leaves open stand, with their
 //! reasons, in the machine file.
+
+mod drive;
+mod transmission;
 
 use std::f64::consts::TAU;
 
 use feedwright_control::activation::tanh;
 
 use crate::machine::{Axis, Machine};
+use drive::{Delay, in_steps, torque_step_nm};
+use transmission::Joint;
 
 /// What the machine did in one servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement<const N: usize> {
     /// True position of the tool at the end of the servo period, mm.
     pub position_mm: [f64; N],
+    /// The position as it is measured, mm.
+    pub measured_mm: [f64; N],
     /// Motor torque at the end of the servo period, N m.
     pub torque_nm: [f64; N],
 }
@@ -55,6 +71,42 @@ pub struct Plant<const N: usize> {
     angle_rad: [f64; N],
     speed_rad_s: [f64; N],
     last_error_rad: [f64; N],
+    /// What a rigid axis with an ideal drive and encoder does not have; none where no axis has any of it.
+    real: Option<Box<[Real; N]>>,
+}
+
+/// What an axis has on top of the ideal one, and its state.
+#[derive(Debug, Clone)]
+struct Real {
+    encoder_step_rad: f64,
+    delay: Delay,
+    torque_step_nm: f64,
+    joint: Option<Joint>,
+    scale_on_table: bool,
+    /// Angle of the table at the motor shaft, rad, and its speed, rad/s; those of the motor where there is no joint.
+    table_rad: f64,
+    table_rad_s: f64,
+}
+
+impl Real {
+    fn new(axis: &Axis, machine: &Machine, angle_rad: f64) -> Self {
+        Self {
+            encoder_step_rad: axis.encoder_step_um * 1e-3 * TAU / axis.lead_mm_per_rev,
+            delay: Delay::new(axis, &machine.period),
+            torque_step_nm: torque_step_nm(axis),
+            joint: axis.transmission.as_ref().map(|transmission| Joint::new(axis, transmission)),
+            scale_on_table: axis.transmission.is_some_and(|transmission| transmission.scale_on_table),
+            table_rad: angle_rad,
+            table_rad_s: 0.0,
+        }
+    }
+
+    fn is_ideal(axis: &Axis) -> bool {
+        axis.encoder_step_um == 0.0
+            && axis.drive_delay_s == 0.0
+            && axis.torque_bits.is_none()
+            && axis.transmission.is_none()
+    }
 }
 
 impl<const N: usize> Plant<N> {
@@ -67,6 +119,9 @@ impl<const N: usize> Plant<N> {
         let rad_per_mm = each(|a| TAU / a.lead_mm_per_rev);
         let disturbance_rad_s = each(|a| TAU * a.disturbance_hz);
         let mechanics_s = machine.period.mechanics_s;
+        let angle_rad: [f64; N] = std::array::from_fn(|i| start_mm[i] * rad_per_mm[i]);
+        let axis = |i: usize| &axes[i.min(axes.len() - 1)];
+        let real = (0..N).any(|i| !Real::is_ideal(axis(i)));
         Self {
             servo_s: machine.period.servo_s,
             mechanics_s,
@@ -87,20 +142,45 @@ impl<const N: usize> Plant<N> {
                 [cos, sin]
             }),
             inverse_inertia: each(|a| 1.0 / a.inertia_kg_m2),
-            angle_rad: std::array::from_fn(|i| start_mm[i] * rad_per_mm[i]),
+            angle_rad,
             speed_rad_s: [0.0; N],
             last_error_rad: [0.0; N],
+            real: real.then(|| Box::new(std::array::from_fn(|i| Real::new(axis(i), machine, angle_rad[i])))),
         }
     }
 
     /// Where the tool is, mm.
     pub fn position_mm(&self) -> [f64; N] {
-        std::array::from_fn(|i| self.angle_rad[i] / self.rad_per_mm[i])
+        match &self.real {
+            Some(real) => std::array::from_fn(|i| real[i].table_rad / self.rad_per_mm[i]),
+            None => std::array::from_fn(|i| self.angle_rad[i] / self.rad_per_mm[i]),
+        }
+    }
+
+    /// The position as it is measured, rad at the motor shaft.
+    fn measured_rad(&self) -> [f64; N] {
+        let Some(real) = &self.real else { return self.angle_rad };
+        std::array::from_fn(|i| {
+            let at = if real[i].scale_on_table { real[i].table_rad } else { self.angle_rad[i] };
+            in_steps(at, real[i].encoder_step_rad)
+        })
     }
 
     /// One servo period at the position command `command_mm`.
     pub fn step(&mut self, command_mm: [f64; N]) -> Measurement<N> {
         let reference_rad_s = self.position_loop(command_mm);
+        let torque_nm = if self.real.is_some() { self.turn_real(reference_rad_s) } else { self.turn(reference_rad_s) };
+        self.period += 1;
+        let measured_rad = self.measured_rad();
+        Measurement {
+            position_mm: self.position_mm(),
+            measured_mm: std::array::from_fn(|i| measured_rad[i] / self.rad_per_mm[i]),
+            torque_nm,
+        }
+    }
+
+    /// The mechanics of one servo period; the torque at its end.
+    fn turn(&mut self, reference_rad_s: [f64; N]) -> [f64; N] {
         let mut disturbance = self.disturbance_at_start();
         let mut torque_nm = [0.0; N];
         for _ in 0..self.substeps {
@@ -118,14 +198,55 @@ impl<const N: usize> Plant<N> {
                 disturbance[i] = [c * dc - s * ds, s * dc + c * ds];
             }
         }
-        self.period += 1;
-        Measurement { position_mm: self.position_mm(), torque_nm }
+        torque_nm
+    }
+
+    /// As [`Self::turn`], of real axes.
+    fn turn_real(&mut self, reference_rad_s: [f64; N]) -> [f64; N] {
+        let mut disturbance = self.disturbance_at_start();
+        let mut torque_nm = [0.0; N];
+        let Some(real) = &mut self.real else { return torque_nm };
+        for (axis, reference_rad_s) in real.iter_mut().zip(reference_rad_s) {
+            axis.delay.send(reference_rad_s);
+        }
+        let dt_s = self.mechanics_s;
+        for substep in 0..self.substeps {
+            for (i, axis) in real.iter_mut().enumerate() {
+                let limit = self.torque_limit_nm[i];
+                let w = self.speed_rad_s[i];
+                let wanted = (self.kv[i] * (axis.delay.arrived(substep) - w)).clamp(-limit, limit);
+                torque_nm[i] = in_steps(wanted, axis.torque_step_nm);
+                let sliding = if axis.joint.is_some() { axis.table_rad_s } else { w };
+                let [sign] = tanh([sliding * self.inverse_smoothing_s[i]]);
+                let load = self.viscous_nm_s[i] * sliding
+                    + self.coulomb_nm[i] * sign
+                    + self.disturbance_nm[i] * disturbance[i][1];
+                match &axis.joint {
+                    Some(joint) => {
+                        let through = joint.torque_nm(self.angle_rad[i] - axis.table_rad, w - axis.table_rad_s);
+                        self.speed_rad_s[i] += dt_s * joint.inverse_motor_inertia * (torque_nm[i] - through);
+                        axis.table_rad_s += dt_s * joint.inverse_table_inertia * (through - load);
+                        self.angle_rad[i] += dt_s * self.speed_rad_s[i];
+                        axis.table_rad += dt_s * axis.table_rad_s;
+                    }
+                    None => {
+                        self.speed_rad_s[i] += dt_s * self.inverse_inertia[i] * (torque_nm[i] - load);
+                        self.angle_rad[i] += dt_s * self.speed_rad_s[i];
+                        (axis.table_rad, axis.table_rad_s) = (self.angle_rad[i], self.speed_rad_s[i]);
+                    }
+                }
+                let ([c, s], [dc, ds]) = (disturbance[i], self.disturbance_turn[i]);
+                disturbance[i] = [c * dc - s * ds, s * dc + c * ds];
+            }
+        }
+        torque_nm
     }
 
     /// The PD position loop: reference speed of the motor, rad/s, held for the servo period.
     fn position_loop(&mut self, command_mm: [f64; N]) -> [f64; N] {
+        let measured_rad = self.measured_rad();
         std::array::from_fn(|i| {
-            let error = command_mm[i] * self.rad_per_mm[i] - self.angle_rad[i];
+            let error = command_mm[i] * self.rad_per_mm[i] - measured_rad[i];
             let rate = (error - self.last_error_rad[i]) / self.servo_s;
             self.last_error_rad[i] = error;
             self.kp_1_s[i] * error + self.kd[i] * rate

@@ -77,14 +77,14 @@ pub fn simulate_lap<const N: usize>(
     let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s);
     let mut tick = Tick::<N>::new(servo_s, controller.schedule(), bounds);
     let mut plant = Plant::<N>::new(machine, start_mm);
-    let mut tool_mm = start_mm;
+    let mut seen_mm = start_mm;
     let mut run = Run::default();
     let mut ended: Option<f64> = None;
     let mut last_tau_s = 0.0;
     for n in 0_u64.. {
         let t_s = n as f64 * servo_s;
         let clock = Instant::now();
-        let setpoint = tick.step(&mut Axes(reference), controller, tool_mm);
+        let setpoint = tick.step(&mut Axes(reference), controller, seen_mm);
         if setpoint.decided {
             run.ticks.add(clock.elapsed().as_nanos());
             run.most_entries = run.most_entries.max(tick.contour().entries);
@@ -100,8 +100,9 @@ pub fn simulate_lap<const N: usize>(
             run.time_s = crossing(t_s, servo_s, last_tau_s, setpoint.tau_s, end_s);
         }
         last_tau_s = setpoint.tau_s;
-        let Measurement { position_mm, torque_nm } = plant.step(setpoint.command_mm);
-        tool_mm = position_mm;
+        let Measurement { position_mm, measured_mm, torque_nm } = plant.step(setpoint.command_mm);
+        let tool_mm = position_mm;
+        seen_mm = measured_mm;
         let following_mm = distance(tool_mm, setpoint.command_mm);
         if following_mm.is_nan() || following_mm > lost_mm {
             run.outcome = Outcome::Diverged { at_s: t_s };

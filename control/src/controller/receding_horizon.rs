@@ -1,12 +1,13 @@
 //! Receding-horizon inversion of the servo identifier: the geometry of the command is planned over many knots ahead.
 //!
-//! Each feed period: take the innovation (measured minus predicted following error) into the bias, improve the plan by
-//! one step of [`crate::horizon`], command its first step. The speed along the path stays as planned.
+//! Each feed period: take in what the identifier missed, improve the plan by one step
+//! of [`crate::horizon`], command its first step. The speed along the path stays as planned.
 
 use super::{Command, Controller, Measured, Schedule};
 use crate::horizon::{self, Plan, State};
-use crate::identifier::FEED_SCALE_MM_S;
+use crate::identifier::adaptation::{self, Adaptation};
 use crate::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
+use crate::identifier::{FEED_SCALE_MM_S, Inputs};
 use crate::vector::{add_scaled, dot, norm, scale, sub};
 use crate::window::Window;
 
@@ -20,8 +21,8 @@ pub struct Settings {
     pub servo_periods: u32,
     /// The inversion.
     pub horizon: horizon::Settings,
-    /// Part of an innovation that goes into the bias; 0 (none) to 1.
-    pub innovation_gain: f64,
+    /// Adaptation of the identifier.
+    pub adaptation: adaptation::Settings,
     /// Part of the offset along the path that is taken back in each feed period; 0 to 1. Offsets are made across the
     /// path; where the path has turned since, what is left of them along it only shifts the tool in time.
     pub tangential_leak: f64,
@@ -31,8 +32,8 @@ impl Settings {
     /// Values that serve every shape and machine tried.
     pub const DEFAULT: Self = Self {
         servo_periods: 5,
-        horizon: horizon::Settings { knots: 10, rate_weight: 1e-7, change_weight: 0.0, rate_limit_mm_s: 20.0 },
-        innovation_gain: 0.3,
+        horizon: horizon::Settings { knots: 10, rate_weight: 1e-8, change_weight: 0.0, rate_limit_mm_s: 20.0 },
+        adaptation: adaptation::Settings::DEFAULT,
         tangential_leak: 0.05,
     };
 }
@@ -40,19 +41,19 @@ impl Settings {
 /// Receding-horizon inversion.
 #[derive(Debug, Clone)]
 pub struct RecedingHorizon<const N: usize> {
-    net: ServoIdentifier<N>,
+    net: Adaptation<N>,
     settings: Settings,
     plan: Plan<N>,
     delays: Delays<N>,
-    bias_mm: [f64; N],
     missed_mm: f64,
-    /// The command of the last knot, mm, and the following error predicted for this one.
+    /// The command of the last knot, mm, and the following error that was foreseen for this one.
     last: Option<Last<N>>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Last<const N: usize> {
     command_mm: [f64; N],
+    inputs: Inputs<N>,
     predicted_mm: [f64; N],
 }
 
@@ -60,11 +61,10 @@ impl<const N: usize> RecedingHorizon<N> {
     /// With an identifier that is trained on a machine.
     pub fn new(net: ServoIdentifier<N>, settings: Settings) -> Self {
         Self {
-            net,
+            net: Adaptation::new(net, settings.adaptation),
             settings,
             plan: Plan::default(),
             delays: Delays::REST,
-            bias_mm: [0.0; N],
             missed_mm: 0.0,
             last: None,
         }
@@ -84,9 +84,9 @@ impl<const N: usize> RecedingHorizon<N> {
         let error = scale(1.0 / FOLLOWING_SCALE_MM, following_mm);
         match self.last {
             Some(last) => {
-                let innovation = sub(following_mm, last.predicted_mm);
-                self.missed_mm = norm(innovation);
-                self.bias_mm = add_scaled(self.bias_mm, self.settings.innovation_gain, innovation);
+                let before_mm = scale(FOLLOWING_SCALE_MM, self.delays.error[0]);
+                self.net.learn(&last.inputs, sub(following_mm, before_mm));
+                self.missed_mm = norm(sub(following_mm, last.predicted_mm));
                 self.delays.push(Self::feed(last.command_mm, command_mm, period_s), error);
             }
             None => self.delays.error = [error; 2],
@@ -101,8 +101,8 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
 
     fn reset(&mut self) {
         self.plan.reset();
+        self.net.reset();
         self.delays = Delays::REST;
-        self.bias_mm = [0.0; N];
         self.missed_mm = 0.0;
         self.last = None;
     }
@@ -116,16 +116,17 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
         self.take_in(command_mm, measured, window.feed_period_s);
-        let state = State { delays: self.delays, bias_mm: self.bias_mm, lag_s: self.net.lag_s() };
-        let step = self.plan.improve(&self.net, window, &state, &self.settings.horizon);
+        let state = State { delays: self.delays, residual: self.net.residual(), lag_s: self.net.net().lag_s() };
+        let step = self.plan.improve(self.net.net(), window, &state, &self.settings.horizon);
         let next = window.ahead(1);
         let along = dot(step.offset_mm, next.tangent);
         let offset_mm = add_scaled(step.offset_mm, -self.settings.tangential_leak * along, next.tangent);
         let next_mm = add_scaled(next.position_mm, 1.0, offset_mm);
         let inputs = self.delays.inputs(Self::feed(command_mm, next_mm, window.feed_period_s));
-        let grown_mm = add_scaled(self.net.predict(&inputs), 1.0, self.bias_mm);
-        let predicted_mm = add_scaled(grown_mm, FOLLOWING_SCALE_MM, self.delays.error[0]);
-        self.last = Some(Last { command_mm, predicted_mm });
+        let modelled_mm = add_scaled(self.net.net().predict(&inputs), FOLLOWING_SCALE_MM, self.delays.error[0]);
+        let mut residual = self.net.residual();
+        let predicted_mm = core::array::from_fn(|axis| modelled_mm[axis] + residual[axis].next());
+        self.last = Some(Last { command_mm, inputs, predicted_mm });
         Command { rate: 1.0, offset_mm }
     }
 }

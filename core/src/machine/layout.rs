@@ -3,11 +3,13 @@
 //! Ranges are wide: they keep out what no machine has (a negative inertia, a unit mistaken by a factor of a million), not
 //! what is unusual. A machine that is tuned badly is a result of the simulation, not a fault of its file.
 
+use std::f64::consts::TAU;
+
 use toml::de::DeTable;
 
 use super::error::Fault;
 use super::reader::Table;
-use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Period};
+use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Period, Transmission};
 
 /// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
 /// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.
@@ -16,22 +18,53 @@ const WHOLE_RATIO_TOLERANCE: f64 = 1e-12;
 /// More mechanics steps than this within a servo period are a mistaken unit, and nobody could wait for them.
 const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
 
-/// The machine that a text describes, or every fault in it.
-pub(super) fn machine(text: &str) -> Result<Machine, Vec<Fault>> {
-    let (document, syntax_errors) = DeTable::parse_recoverable(text);
-    if !syntax_errors.is_empty() {
-        return Err(syntax_errors.iter().map(|error| syntax_fault(error, text)).collect());
-    }
+/// The name of the machine that a text builds upon, where it does; the faults of the syntax where it has any.
+pub(super) fn base(text: &str) -> Result<Option<String>, Vec<Fault>> {
+    let document = document(text)?;
     let mut faults = Vec::new();
-    let mut root = Table::root(&document);
+    let name = document.get_ref().contains_key("base").then(|| Table::root(&document, None).text("base", &mut faults));
+    if faults.is_empty() { Ok(name) } else { Err(faults) }
+}
+
+/// The base builds upon another machine.
+pub(super) fn chained(text: &str, base: &str) -> Fault {
+    let at = document(text).ok().and_then(|document| document.get_ref().get("base").map(toml::Spanned::span));
+    Fault {
+        at: at.unwrap_or(0..0),
+        label: "has a base itself",
+        message: format!("base: '{base}' builds upon another machine itself"),
+        hint: Some("name that machine, and repeat here what differs".to_owned()),
+    }
+}
+
+fn document(text: &str) -> Result<toml::Spanned<DeTable<'_>>, Vec<Fault>> {
+    let (document, syntax_errors) = DeTable::parse_recoverable(text);
+    if syntax_errors.is_empty() {
+        Ok(document)
+    } else {
+        Err(syntax_errors.iter().map(|error| syntax_fault(error, text)).collect())
+    }
+}
+
+/// The machine that a text describes, upon the text of a base without faults where it has one, or every fault in it.
+pub(super) fn machine(text: &str, base: Option<&str>) -> Result<Machine, Vec<Fault>> {
+    let document_here = document(text)?;
+    let document_base = base.map(document).transpose()?;
+    let mut faults = Vec::new();
+    let mut root = Table::root(&document_here, document_base.as_ref());
+    if base.is_some() {
+        root.text("base", &mut faults);
+    }
+    let period = period(root.table("period", &mut faults), &mut faults);
+    let mechanics_s = period.mechanics_s;
     let machine = Machine {
         name: root.text("name", &mut faults),
         description: root.text("description", &mut faults),
         source: root.text("source", &mut faults),
-        period: period(root.table("period", &mut faults), &mut faults),
+        period,
         limits: limits(root.table("limits", &mut faults), &mut faults),
         plc: root.optional_table("plc", &mut faults).map(|table| plc(table, &mut faults)).unwrap_or_default(),
-        axes: axes(root.table("axis", &mut faults), &mut faults),
+        axes: axes(root.table("axis", &mut faults), mechanics_s, &mut faults),
     };
     root.finish(&mut faults);
     if faults.is_empty() { Ok(machine) } else { Err(faults) }
@@ -82,17 +115,19 @@ fn plc(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Durations {
     durations
 }
 
-fn axes(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Vec<Axis> {
+fn axes(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Vec<Axis> {
     let [x, y, z] = AXIS_NAMES;
-    let mut axes: Vec<Axis> = [x, y].into_iter().map(|name| axis(table.table(name, faults), faults)).collect();
+    let mut axes: Vec<Axis> =
+        [x, y].into_iter().map(|name| axis(table.table(name, faults), mechanics_s, faults)).collect();
     if let Some(present) = table.optional_table(z, faults) {
-        axes.push(axis(present, faults));
+        axes.push(axis(present, mechanics_s, faults));
     }
     table.finish(faults);
     axes
 }
 
-fn axis(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Axis {
+fn axis(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Axis {
+    let transmission = table.optional_table("transmission", faults);
     let axis = Axis {
         lead_mm_per_rev: table.number("lead_mm_per_rev", "mm/rev", 0.01..=1e3, faults),
         inertia_kg_m2: table.number("inertia_kg_m2", "kg m2", 1e-9..=1e3, faults),
@@ -105,9 +140,45 @@ fn axis(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Axis {
         kd: table.number("kd", "(no unit)", 0.0..=1e3, faults),
         kv_nm_s_per_rad: table.number("kv_nm_s_per_rad", "N m s/rad", 1e-9..=1e6, faults),
         torque_limit_nm: table.number("torque_limit_nm", "N m", 1e-6..=1e6, faults),
+        drive_delay_s: table.optional_number("drive_delay_s", "s", 0.0..=0.02, faults).unwrap_or(0.0),
+        torque_bits: table.optional_number("torque_bits", "bits", 4.0..=32.0, faults).map(|bits| bits.round() as u32),
+        encoder_step_um: table.optional_number("encoder_step_um", "um", 0.0..=1e3, faults).unwrap_or(0.0),
+        transmission: transmission.map(|table| self::transmission(table, mechanics_s, faults)),
     };
     table.finish(faults);
     axis
+}
+
+/// The two masses may turn by this angle against each other within a mechanics period, rad: beyond, the integration loses
+/// the frequency by more than a percent.
+const MOST_PHASE_RAD: f64 = 0.5;
+
+fn transmission(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Transmission {
+    let transmission = Transmission {
+        table_share: table.number("table_share", "(no unit)", 0.01..=0.99, faults),
+        resonance_hz: table.number("resonance_hz", "Hz", 0.1..=1e4, faults),
+        damping_ratio: table.number("damping_ratio", "(no unit)", 0.0..=1.0, faults),
+        backlash_um: table.number("backlash_um", "um", 0.0..=1e4, faults),
+        scale_on_table: table
+            .optional_number("scale_on_table", "(0 or 1)", 0.0..=1.0, faults)
+            .is_some_and(|on| on > 0.5),
+    };
+    let free_rad_s = TAU * transmission.resonance_hz / (1.0 - transmission.table_share).sqrt();
+    if free_rad_s * mechanics_s > MOST_PHASE_RAD {
+        let finest = MOST_PHASE_RAD / free_rad_s;
+        faults.push(Fault {
+            at: table.place("resonance_hz"),
+            label: "too fast for mechanics_s",
+            message: format!(
+                "resonance_hz is {} Hz, with which motor and table swing against each other at {:.0} Hz; mechanics_s of {mechanics_s} s cannot follow that",
+                transmission.resonance_hz,
+                free_rad_s / TAU
+            ),
+            hint: Some(format!("mechanics_s has to be {finest:.1e} s or less")),
+        });
+    }
+    table.finish(faults);
+    transmission
 }
 
 fn syntax_fault(error: &toml::de::Error, text: &str) -> Fault {

@@ -30,13 +30,29 @@ pub(super) struct Table<'t, 'i> {
     at: Range<usize>,
     /// What it holds; a table that is missing holds nothing and reports nothing.
     entries: Option<&'t DeTable<'i>>,
+    /// What the machine that this one builds upon has in its place.
+    base: Option<&'t DeTable<'i>>,
     asked: Vec<&'static str>,
 }
 
 impl<'t, 'i> Table<'t, 'i> {
     /// The file itself.
-    pub(super) fn root(entries: &'t Spanned<DeTable<'i>>) -> Self {
-        Self { name: String::new(), at: 0..0, entries: Some(entries.get_ref()), asked: Vec::new() }
+    pub(super) fn root(entries: &'t Spanned<DeTable<'i>>, base: Option<&'t Spanned<DeTable<'i>>>) -> Self {
+        let (entries, base) = (Some(entries.get_ref()), base.map(Spanned::get_ref));
+        Self { name: String::new(), at: 0..0, entries, base, asked: Vec::new() }
+    }
+
+    /// As [`Self::number`], where it may be left out.
+    pub(super) fn optional_number(
+        &mut self,
+        key: &'static str,
+        unit: &str,
+        range: RangeInclusive<f64>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<f64> {
+        self.asked.push(key);
+        self.value(key)?;
+        Some(self.number(key, unit, range, faults))
     }
 
     /// A number in `unit` within `range`; NaN and a fault where it is not.
@@ -104,15 +120,24 @@ impl<'t, 'i> Table<'t, 'i> {
                     hint: self.near_unknown(key).map(|near| format!("is [{}] meant to be it?", self.dotted(near))),
                 });
             }
-            Self { name, at: self.at.clone(), entries: None, asked: Vec::new() }
+            Self { name, at: self.at.clone(), entries: None, base: None, asked: Vec::new() }
         })
     }
 
     /// A table that may be left out.
     pub(super) fn optional_table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<Self> {
         self.asked.push(key);
-        let value = self.entries?.get(key)?;
         let name = self.dotted(key);
+        let base = self.base.and_then(|base| base.get(key)).and_then(|value| value.get_ref().as_table());
+        let Some(value) = self.entries.and_then(|entries| entries.get(key)) else {
+            return base.map(|base| Self {
+                name,
+                at: self.at.clone(),
+                entries: Some(base),
+                base: None,
+                asked: Vec::new(),
+            });
+        };
         let entries = match value.get_ref() {
             DeValue::Table(entries) => Some(entries),
             other => {
@@ -120,7 +145,7 @@ impl<'t, 'i> Table<'t, 'i> {
                 None
             }
         };
-        Some(Self { name, at: value.span(), entries, asked: Vec::new() })
+        Some(Self { name, at: value.span(), entries, base, asked: Vec::new() })
     }
 
     /// Place of a key's value, for faults between values; the table's where the key is missing.
@@ -153,7 +178,8 @@ impl<'t, 'i> Table<'t, 'i> {
     /// The value of a key that has to be there; a fault where it is not.
     fn required(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<&'t Spanned<DeValue<'i>>> {
         self.asked.push(key);
-        let value = self.entries?.get(key);
+        self.entries?;
+        let value = self.value(key);
         if value.is_none() {
             let home = if self.name.is_empty() { String::new() } else { format!(" from [{}]", self.name) };
             faults.push(Fault {
@@ -164,6 +190,12 @@ impl<'t, 'i> Table<'t, 'i> {
             });
         }
         value
+    }
+
+    /// The value of a key, here or in the base.
+    fn value(&self, key: &str) -> Option<&'t Spanned<DeValue<'i>>> {
+        let here = self.entries.and_then(|entries| entries.get(key));
+        here.or_else(|| self.base.and_then(|base| base.get(key)))
     }
 
     /// A key of the text that nobody asked for yet and that looks like `key`.
