@@ -23,6 +23,8 @@ pub struct Settings {
     pub horizon: horizon::Settings,
     /// Adaptation of the identifier.
     pub adaptation: adaptation::Settings,
+    /// Innovations of this size make the inversion half as sharp, mm; larger ones blunter still.
+    pub sure_mm: f64,
     /// Part of the offset along the path that is taken back in each feed period; 0 to 1. Offsets are made across the
     /// path; where the path has turned since, what is left of them along it only shifts the tool in time.
     pub tangential_leak: f64,
@@ -32,8 +34,9 @@ impl Settings {
     /// Values that serve every shape and machine tried.
     pub const DEFAULT: Self = Self {
         servo_periods: 5,
-        horizon: horizon::Settings { knots: 10, rate_weight: 1e-8, change_weight: 0.0, rate_limit_mm_s: 20.0 },
+        horizon: horizon::Settings { knots: 10, rate_weight: 1e-8, change_weight: 1e-7, rate_limit_mm_s: 20.0 },
         adaptation: adaptation::Settings::DEFAULT,
+        sure_mm: 1e-3,
         tangential_leak: 0.05,
     };
 }
@@ -117,7 +120,11 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
         let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
         self.take_in(command_mm, measured, window.feed_period_s);
         let state = State { delays: self.delays, residual: self.net.residual(), lag_s: self.net.net().lag_s() };
-        let step = self.plan.improve(self.net.net(), window, &state, &self.settings.horizon);
+        let share = self.net.innovation_mm() / self.settings.sure_mm;
+        let mut horizon = self.settings.horizon;
+        horizon.rate_weight *= 1.0 + share * share;
+        horizon.change_weight *= share * share;
+        let step = self.plan.improve(self.net.net(), window, &state, &horizon);
         let next = window.ahead(1);
         let along = dot(step.offset_mm, next.tangent);
         let offset_mm = add_scaled(step.offset_mm, -self.settings.tangential_leak * along, next.tangent);

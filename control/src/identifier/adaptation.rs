@@ -95,6 +95,16 @@ impl<const N: usize> Adaptation<N> {
         core::array::from_fn(|axis| self.axes[axis].believed().residual)
     }
 
+    /// RMS of the innovations lately, mm: how good the predictions are.
+    #[inline]
+    pub fn innovation_mm(&self) -> f64 {
+        let mut sum = 0.0;
+        for axis in &self.axes {
+            sum += axis.believed().square_mm2;
+        }
+        libm::sqrt(sum)
+    }
+
     /// Back to what was trained.
     pub fn reset(&mut self) {
         self.now.clone_from(&self.trained);
