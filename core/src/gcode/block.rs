@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use super::codes::{self, AXES, GROUPS, Group, bit, letter, slot};
-use super::diagnostic::{Fault, Read};
+use super::diagnostic::{Fault, Read, Short};
 use super::expression::{Evaluator, INTEGER_WITHIN, Target, Values};
-use super::lexer::{Cursor, END, shown};
+use super::lexer::{Cursor, END, NO_EXPONENT, shown};
 
 /// Letters, `@` and `^`.
 const LETTERS: usize = 28;
@@ -45,6 +45,8 @@ pub(super) struct Block {
     pub(super) comment: Option<Range<usize>>,
     /// Whether a letter may stand without a value where it only names an axis.
     bare_words: bool,
+    /// Whether a word E follows a number without a blank, as an exponent does.
+    pub(super) exponent: bool,
     /// End of the line's text outside comments.
     pub(super) end: usize,
 }
@@ -68,6 +70,7 @@ impl Block {
             assignments: Vec::new(),
             comment: None,
             bare_words: false,
+            exponent: false,
             end: 0,
         }
     }
@@ -76,6 +79,7 @@ impl Block {
     #[inline]
     pub(super) fn clear(&mut self) {
         self.set = 0;
+        self.exponent = false;
         if !self.g.is_empty() {
             self.g.clear();
             self.group = [None; GROUPS];
@@ -166,15 +170,15 @@ impl Block {
 
     #[inline]
     fn read_word<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, byte: u8, start: usize) -> Read<()> {
+        self.exponent |= byte == b'e' && evaluator.cursor.is_exponent();
         evaluator.cursor.bump();
         let value = if self.bare_words && self.is_bare(&mut evaluator.cursor) { 0.0 } else { evaluator.value()? };
         let slot = slot(byte);
         let place = (start as u32, evaluator.cursor.at as u32);
         if self.set & (1 << slot) != 0 {
             let message = format!("the line already has a word {}", letter(slot));
-            return Err(
-                Fault::new("gcode::repeated", start..evaluator.cursor.at, message).hint("split the line in two")
-            );
+            let hint = if byte == b'e' && self.exponent { NO_EXPONENT } else { "split the line in two" };
+            return Err(Fault::new("gcode::repeated", start..evaluator.cursor.at, message).hint(hint));
         }
         self.set |= 1 << slot;
         self.value[slot] = value;
@@ -214,7 +218,7 @@ impl Block {
             return Err(Fault::new(
                 "gcode::m_code",
                 start..end,
-                format!("M{value} is no M-code: the number must be an integer from 0 to 9999"),
+                format!("M{} is no M-code: the number must be an integer from 0 to 9999", Short(value)),
             ));
         }
         self.m.push(Word { number: number as u16, start: start as u32, end: end as u32 });
@@ -252,7 +256,8 @@ pub(super) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
                 .hint("close the first comment with `)` before the second `(`"))
         }
         None => {
-            Err(Fault::new("gcode::comment", start..cursor.bytes.len(), "the comment is not closed: `)` is missing"))
+            Err(Fault::new("gcode::comment", start..cursor.bytes.len(), "the comment is not closed: `)` is missing")
+                .hint("close it on the same line, or begin it with `;`"))
         }
     }
 }
@@ -260,14 +265,19 @@ pub(super) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
 #[cold]
 fn misplaced(byte: u8, start: usize) -> Box<Fault> {
     let what = if byte == b'n' { "the line number N" } else { "an O-word" };
-    Fault::new("gcode::misplaced", start..start + 1, format!("{what} must stand at the beginning of the line"))
+    let fault =
+        Fault::new("gcode::misplaced", start..start + 1, format!("{what} must stand at the beginning of the line"));
+    if byte == b'o' { fault.hint("the letter O is no zero: write 0 in numbers") } else { fault }
 }
 
 #[cold]
 fn unknown_g(value: f64, at: Range<usize>) -> Box<Fault> {
     let tenths = (value * 10.0).round();
-    let spelled =
-        if (value * 10.0 - tenths).abs() < TENTH_WITHIN { format!("G{}", tenths / 10.0) } else { format!("G{value}") };
+    let spelled = if (value * 10.0 - tenths).abs() < TENTH_WITHIN {
+        format!("G{}", Short(tenths / 10.0))
+    } else {
+        format!("G{}", Short(value))
+    };
     Fault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"))
         .hint(format!("the nearest known: {}", codes::nearest(value)))
 }
@@ -282,6 +292,8 @@ fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
             b'/' => fault.hint("a `/` that deletes the line stands first on it"),
             b')' => fault.hint("the comment that ends here has no `(`"),
             b'[' => fault.hint("a bracket stands behind a letter or a function"),
+            b',' => fault.hint("a decimal point is a point: write 1.5, not 1,5"),
+            b']' => fault.hint("the bracket that ends here has no `[`"),
             0 => fault.hint("the file holds bytes that are no text"),
             _ => fault,
         };

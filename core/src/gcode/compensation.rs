@@ -147,7 +147,8 @@ impl Interpreter {
                     format!(
                         "the entry into cutter compensation is {way:.4} mm long: it must be as long as the tool's radius of {radius:.4} mm"
                     ),
-                ));
+                )
+                .hint("begin the line with G41 or G42 farther from the contour"));
             }
         } else {
             let curve = Curve::Line { start: add(from, aside), end };

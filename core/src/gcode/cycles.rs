@@ -6,7 +6,7 @@
 use super::block::Block;
 use super::canon::{Corner, EventKind};
 use super::codes::{AXIS_LETTERS, bit, spelled};
-use super::diagnostic::{Fault, Read};
+use super::diagnostic::{Fault, Read, Short};
 use super::state::{INCH_MM, Interpreter, Position};
 use super::travel::Speed;
 
@@ -51,7 +51,8 @@ impl Interpreter {
                     "gcode::cycle",
                     block.whole(),
                     format!("R (height to begin at) is missing for {}", spelled(code)),
-                ));
+                )
+                .hint("R stands above the work: G81 X10 Y10 Z-5 R2 F100 drills from 2 to -5"));
             }
             if !block.has(letter) {
                 let name = char::from(letter).to_ascii_uppercase();
@@ -117,7 +118,7 @@ impl Interpreter {
                 return Err(Fault::new(
                     "gcode::cycle",
                     block.at(b'q'),
-                    format!("the depth of a peck Q{value} must be above 0"),
+                    format!("the depth of a peck Q{} must be above 0", Short(value)),
                 ));
             }
             kept.peck = Some(value * self.modal.unit_mm);
@@ -127,7 +128,7 @@ impl Interpreter {
                 return Err(Fault::new(
                     "gcode::cycle",
                     block.at(b'p'),
-                    format!("the dwell P{value} must not be negative"),
+                    format!("the dwell P{} is negative; the smallest is 0 s", Short(value)),
                 ));
             }
             kept.dwell_s = Some(value);
@@ -218,7 +219,7 @@ impl Interpreter {
             return Err(Fault::new(
                 "gcode::cycle",
                 block.at(b'q'),
-                format!("a peck of {step} mm needs more than {MOST_PECKS} pecks"),
+                format!("a peck of {} mm needs more than {MOST_PECKS} pecks", Short(step)),
             ));
         }
         let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };

@@ -12,8 +12,8 @@
 //! Rules: T. R. Kramer, F. M. Proctor, E. Messina, The NIST RS274NGC Interpreter - Version 3, NISTIR 6556 (2000), section 3.3,
 //! with the named parameters and comparisons that LinuxCNC added.
 
-use super::diagnostic::{Fault, Read};
-use super::lexer::{Cursor, END, shown};
+use super::diagnostic::{Fault, Read, Short};
+use super::lexer::{Cursor, END, NO_EXPONENT, shown};
 use super::parameters::PARAMETERS;
 
 /// Brackets, signs and `#` inside each other. Each level costs stack; no written program has more than a dozen.
@@ -137,7 +137,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
             return Err(Fault::new(
                 "gcode::bracket",
                 start..start + 1,
-                format!("`[` is missing: `{}` stands in its place", text_of(found)),
+                format!("`[` is missing: {} stands in its place", text_of(found)),
             ));
         }
         let value = self.deeper(start, |evaluator| evaluator.expression(1))?;
@@ -145,7 +145,8 @@ impl<'a, V: Values> Evaluator<'a, V> {
             let found = self.cursor.peek();
             let at = self.cursor.at;
             let message = format!("`]` or an operator is missing: {} stands in its place", text_of(found));
-            return Err(Fault::new("gcode::bracket", at..at + 1, message));
+            let fault = Fault::new("gcode::bracket", at..at + 1, message);
+            return Err(if self.cursor.is_exponent() { fault.hint(NO_EXPONENT) } else { fault });
         }
         Ok(value)
     }
@@ -225,6 +226,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
             .map(|known| String::from_utf8_lossy(known))
             .find(|known| letters.len() > 1 && strsim::levenshtein(known, &name) <= 1);
         match nearest {
+            _ if letters.first() == Some(&b'o') => fault.hint("the letter O is no zero: write 0"),
             Some(known) => fault.hint(format!("did you mean `{known}[...]`?")),
             None => fault,
         }
@@ -256,10 +258,15 @@ impl<'a, V: Values> Evaluator<'a, V> {
         let rounded = index.round();
         let at = start..self.cursor.at;
         if (index - rounded).abs() > INTEGER_WITHIN {
-            return Err(Fault::new("gcode::parameter", at, format!("parameter number {index} is not an integer")));
+            return Err(Fault::new(
+                "gcode::parameter",
+                at,
+                format!("parameter number {} is not an integer", Short(index)),
+            ));
         }
         if !(1.0..PARAMETERS as f64).contains(&rounded) {
-            let message = format!("parameter #{rounded} does not exist: the numbers go from 1 to {}", PARAMETERS - 1);
+            let message =
+                format!("parameter #{} does not exist: the numbers go from 1 to {}", Short(rounded), PARAMETERS - 1);
             return Err(Fault::new("gcode::parameter", at, message));
         }
         Ok(Target::Numbered(rounded as usize))
@@ -315,15 +322,16 @@ impl<'a, V: Values> Evaluator<'a, V> {
 
 impl Operator {
     fn apply(self, left: f64, right: f64) -> Result<f64, String> {
+        let (base, power) = (Short(left), Short(right));
         let truth = |value: bool| Ok(f64::from(u8::from(value)));
         let (is_left, is_right) = (left != 0.0, right != 0.0);
         match self {
             Self::Power if left < 0.0 && right.fract() != 0.0 => {
-                Err(format!("{left} cannot be raised to {right}: a negative base needs an integer exponent"))
+                Err(format!("{base} cannot be raised to {power}: a negative base needs an integer exponent"))
             }
             Self::Power => Ok(left.powf(right)),
             Self::Times => Ok(left * right),
-            Self::Over | Self::Modulo if right == 0.0 => Err(format!("{left} is divided by zero")),
+            Self::Over | Self::Modulo if right == 0.0 => Err(format!("{base} is divided by zero")),
             Self::Over => Ok(left / right),
             Self::Modulo => Ok(left.rem_euclid(right)),
             Self::Plus => Ok(left + right),
@@ -343,7 +351,7 @@ impl Operator {
 
 fn apply_function(name: &[u8], x: f64) -> Result<f64, String> {
     let outside = |range: &str| {
-        Err(format!("{}[{x}] does not exist: the argument must be {range}", String::from_utf8_lossy(name)))
+        Err(format!("{}[{}] does not exist: the argument must be {range}", String::from_utf8_lossy(name), Short(x)))
     };
     match name {
         b"abs" => Ok(x.abs()),

@@ -19,6 +19,10 @@ const EXACT_MANTISSA: u64 = 1 << 53;
 /// Digits that always fit a u64.
 const SAFE_DIGITS: usize = 19;
 
+/// What a number with an exponent is told.
+pub(super) const NO_EXPONENT: &str =
+    "G-code has no exponents: write the digits out, 1500 for 1.5e3 and 0.0015 for 1.5e-3";
+
 /// A place in a line.
 #[derive(Debug, Clone)]
 pub(super) struct Cursor<'a> {
@@ -75,6 +79,15 @@ impl<'a> Cursor<'a> {
             }
         }
         true
+    }
+
+    /// Whether an `e` under the cursor looks like an exponent: between a digit or point and a digit or sign.
+    pub(super) fn is_exponent(&self) -> bool {
+        let before = self.at.checked_sub(1).and_then(|before| self.bytes.get(before));
+        let after = self.bytes.get(self.at + 1);
+        self.raw().eq_ignore_ascii_case(&b'e')
+            && before.is_some_and(|byte| byte.is_ascii_digit() || *byte == b'.')
+            && after.is_some_and(|byte| byte.is_ascii_digit() || matches!(byte, b'+' | b'-'))
     }
 
     /// The bytes to the end of the line.

@@ -76,7 +76,9 @@ pub fn summarize(mut reader: Reader) -> Result<Summary, CheckError> {
     }
     if summary.motions == 0 && faults.is_empty() {
         let message = "the program has no motion".to_owned();
-        faults.push(Diagnostic::of_file(Severity::Error, "gcode::no_motion", reader.name(), message));
+        let mut fault = Diagnostic::of_file(Severity::Error, "gcode::no_motion", reader.name(), message);
+        fault.hint = Some(NO_MOTION_HINT.to_owned());
+        faults.push(fault);
     }
     if !faults.is_empty() {
         return Err(CheckError::Faults(faults));
@@ -85,6 +87,10 @@ pub fn summarize(mut reader: Reader) -> Result<Summary, CheckError> {
     summary.warnings = reader.warnings().to_vec();
     Ok(summary)
 }
+
+/// Why a program may have no motion although none of its lines is wrong.
+const NO_MOTION_HINT: &str = "an early M2, M30 or %, a subroutine that nothing calls, and a comment around everything leave nothing to do; \
+                              is this the right file?";
 
 impl Summary {
     fn add(&mut self, motion: &Motion) {

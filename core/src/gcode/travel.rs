@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::canon::{Canon, Motion, MotionKind, Others, Shape};
 use super::codes::{AXIS_LETTERS, Group, bit};
-use super::diagnostic::{Fault, Read};
+use super::diagnostic::{Fault, Read, Short};
 use super::settings::Dialect;
 use super::state::{FeedMode, Interpreter, Position};
 
@@ -175,11 +175,13 @@ impl Interpreter {
     pub(super) fn too_far(&self, block: &Block, letter: u8, value: f64) -> Box<Fault> {
         let name = char::from(letter).to_ascii_uppercase();
         let limit = self.settings.coordinate_limit_mm;
-        Fault::new(
-            "gcode::coordinate",
-            block.at(letter),
-            format!("{name} = {value} mm is beyond the limit of {limit} mm"),
-        )
+        let unit = if matches!(letter, b'a' | b'b' | b'c') { "degrees" } else { "mm" };
+        let message = format!("{name} = {} {unit} is beyond the limit of {limit} {unit}", Short(value));
+        Fault::new("gcode::coordinate", block.at(letter), message).hint(if self.modal.unit_mm == 1.0 {
+            "is a decimal point missing?"
+        } else {
+            "is a decimal point missing? G20 is active: lengths are inches"
+        })
     }
 
     /// Many small steps must not creep beyond the limit either.
