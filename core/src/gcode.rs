@@ -39,6 +39,7 @@ mod variables;
 
 pub use diagnostic::{Diagnostic, Severity};
 pub use reader::{ReadError, Reader};
-pub use settings::{Dialect, Settings};
+pub use settings::{AUTO, DIALECTS, Dialect, Settings, UnknownDialect};
+pub use state::INCH_MM;
 pub use summary::{CheckError, Summary, check, summarize};
-pub use tools::{Tool, ToolTable};
+pub use tools::{Tool, ToolTable, ToolTableError};

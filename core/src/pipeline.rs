@@ -62,7 +62,7 @@ where
         runs.push(cut_once(job, summary, entry, &mut *controller, judged.then_some(&mut files), progress)?);
     }
     progress.stage(Stage::Writing);
-    let report = job.report(N, runs);
+    let report = job.report(N, summary, runs);
     let within_tolerance = job.within_tolerance(&report);
     files.finish(job, &report)?;
     Ok(Outcome { report, warnings: summary.warnings.clone(), within_tolerance })

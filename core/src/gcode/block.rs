@@ -194,7 +194,7 @@ impl Block {
         let tenths = (value * 10.0).round();
         let is_tenth = (value * 10.0 - tenths).abs() < TENTH_WITHIN && (0.0..1000.0).contains(&tenths);
         let Some(code) = is_tenth.then(|| codes::find(tenths as u16)).flatten() else {
-            return Err(unknown_g(value, start..end));
+            return Err(unknown_g(value, evaluator.cursor.bytes, start..end));
         };
         let word = Word { number: code.number, start: start as u32, end: end as u32 };
         if let Some(other) = self.group[code.group as usize].replace(word) {
@@ -271,15 +271,21 @@ fn misplaced(byte: u8, start: usize) -> Box<Fault> {
 }
 
 #[cold]
-fn unknown_g(value: f64, at: Range<usize>) -> Box<Fault> {
+fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
     let tenths = (value * 10.0).round();
     let spelled = if (value * 10.0 - tenths).abs() < TENTH_WITHIN {
         format!("G{}", Short(tenths / 10.0))
     } else {
         format!("G{}", Short(value))
     };
-    Fault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"))
-        .hint(format!("the nearest known: {}", codes::nearest(value)))
+    // `G1 10`: digits, a blank, digits.
+    let has_gap = bytes[at.clone()].windows(3).any(|w| w[0].is_ascii_digit() && w[1] == b' ' && w[2].is_ascii_digit());
+    let fault = Fault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"));
+    if has_gap {
+        fault.hint("blanks inside numbers mean nothing: is a letter missing behind the blank?")
+    } else {
+        fault.hint(format!("the nearest known: {}", codes::nearest(value)))
+    }
 }
 
 /// A byte that has no meaning here.

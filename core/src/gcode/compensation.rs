@@ -80,7 +80,10 @@ impl Interpreter {
                         at,
                         format!("tool {tool} is not in the tool table: its radius is not known"),
                     )
-                    .hint(format!("give a tool table, or write {}.1 D with the diameter", spelled(word.number))));
+                    .hint(format!(
+                        "give a tool table with --tool-table, or write {}.1 D with the diameter",
+                        spelled(word.number)
+                    )));
                 }
             }
         };

@@ -87,6 +87,10 @@ fn printable(bytes: &[u8]) -> String {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Where there is no line to show, nothing else names the file.
+        if self.line == 0 {
+            write!(f, "{}: ", self.file)?;
+        }
         f.write_str(&self.message)
     }
 }

@@ -133,7 +133,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
     pub(super) fn bracketed(&mut self) -> Read<f64> {
         let start = self.cursor.at;
         if !self.cursor.eat(b'[') {
-            let found = self.cursor.peek();
+            let found = self.cursor.raw();
             return Err(Fault::new(
                 "gcode::bracket",
                 start..start + 1,
@@ -142,11 +142,10 @@ impl<'a, V: Values> Evaluator<'a, V> {
         }
         let value = self.deeper(start, |evaluator| evaluator.expression(1))?;
         if !self.cursor.eat(b']') {
-            let found = self.cursor.peek();
-            let at = self.cursor.at;
+            let (found, at) = (self.cursor.raw(), self.cursor.at);
             let message = format!("`]` or an operator is missing: {} stands in its place", text_of(found));
             let fault = Fault::new("gcode::bracket", at..at + 1, message);
-            return Err(if self.cursor.is_exponent() { fault.hint(NO_EXPONENT) } else { fault });
+            return Err(fault.hint(if self.cursor.is_exponent() { NO_EXPONENT } else { "every `[` needs its `]`" }));
         }
         Ok(value)
     }
@@ -206,15 +205,8 @@ impl<'a, V: Values> Evaluator<'a, V> {
 
     #[cold]
     fn unknown_function(&mut self, start: usize) -> Box<Fault> {
-        let letters: Vec<u8> = self
-            .cursor
-            .rest()
-            .iter()
-            .copied()
-            .take_while(u8::is_ascii_alphabetic)
-            .map(|byte| byte.to_ascii_lowercase())
-            .take(12)
-            .collect();
+        let letters: Vec<u8> =
+            self.cursor.rest().iter().copied().take_while(u8::is_ascii_alphabetic).take(12).collect();
         let name = String::from_utf8_lossy(&letters).into_owned();
         let fault = Fault::new(
             "gcode::number",
@@ -224,9 +216,11 @@ impl<'a, V: Values> Evaluator<'a, V> {
         let nearest = FUNCTIONS
             .iter()
             .map(|known| String::from_utf8_lossy(known))
-            .find(|known| letters.len() > 1 && strsim::levenshtein(known, &name) <= 1);
+            .find(|known| letters.len() > 1 && strsim::levenshtein(known, &name.to_ascii_lowercase()) <= 1);
         match nearest {
-            _ if letters.first() == Some(&b'o') => fault.hint("the letter O is no zero: write 0"),
+            _ if letters.first() == Some(&b'o') || letters.first() == Some(&b'O') => {
+                fault.hint("the letter O is no zero: write 0")
+            }
             Some(known) => fault.hint(format!("did you mean `{known}[...]`?")),
             None => fault,
         }

@@ -37,7 +37,7 @@ impl<'a> Cursor<'a> {
 
     /// The byte under the cursor as it stands, [`END`] behind the last.
     #[inline]
-    fn raw(&self) -> u8 {
+    pub(super) fn raw(&self) -> u8 {
         self.bytes.get(self.at).copied().unwrap_or(END)
     }
 
@@ -164,7 +164,7 @@ impl<'a> Cursor<'a> {
     #[cold]
     fn not_a_number(&mut self, start: usize) -> Box<Fault> {
         let found = self.peek();
-        let what = if found == END { "the end of the line".to_owned() } else { format!("`{}`", shown(found)) };
+        let what = if found == END { "the end of the line".to_owned() } else { format!("`{}`", shown(self.raw())) };
         let end = if found == END { self.at } else { self.at + 1 };
         Fault::new("gcode::number", start..end.max(start), format!("a number is missing: {what} stands in its place"))
     }

@@ -137,7 +137,7 @@ impl Reader {
     fn new(source: Source, folder: Option<PathBuf>, settings: Settings) -> Result<Self, ReadError> {
         let choice = dialect::choose(source.head(), &source.name)?;
         let (dialect, dialect_reason) = match settings.dialect {
-            Some(dialect) => (dialect, "set"),
+            Some(dialect) => (dialect, "as was asked for"),
             None => choice,
         };
         Ok(Self {

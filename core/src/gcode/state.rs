@@ -13,7 +13,7 @@ use super::splines::Collected;
 use super::variables::Saved;
 
 /// Millimetres of an inch.
-pub(super) const INCH_MM: f64 = 25.4;
+pub const INCH_MM: f64 = 25.4;
 
 /// X Y Z A B C U V W: mm and degrees.
 pub(super) type Position = [f64; 9];
