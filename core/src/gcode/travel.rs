@@ -58,7 +58,10 @@ impl Interpreter {
         }
         let feed_mm_s = match speed {
             Speed::Rapid => 0.0,
-            Speed::Programmed => self.feed_for(block, distance(&start, &machine))?,
+            Speed::Programmed => {
+                let feed = self.feed_for(block, distance(&start, &machine))?;
+                if turns_only(&start, &machine) { feed / self.modal.feed_unit_mm } else { feed }
+            }
         };
         self.push_motion(speed, &start, Shape::Line, feed_mm_s, others);
         Ok(())
@@ -252,4 +255,9 @@ pub(super) fn others(start: &Position, end: &Position, extruder_mm: f64) -> Othe
 pub(super) fn distance(start: &Position, end: &Position) -> f64 {
     let along = |axes: std::ops::Range<usize>| axes.map(|axis| (end[axis] - start[axis]).powi(2)).sum::<f64>().sqrt();
     [along(0..3), along(6..9), along(3..6)].into_iter().find(|&length| length > 0.0).unwrap_or(0.0)
+}
+
+/// Whether rotary axes are all that moves, so that F is in degrees.
+fn turns_only(start: &Position, end: &Position) -> bool {
+    start[..3] == end[..3] && start[6..] == end[6..] && start[3..6] != end[3..6]
 }

@@ -71,6 +71,9 @@ fn swatch(index: usize) -> String {
     format!("<span class=\"swatch\" style=\"--run: var(--run-{})\"></span>", index % 6)
 }
 
+/// Rows of a timeline. A machine has a dozen units; a file that names hundreds is not drawn further.
+const SHOWN_ROWS: usize = 24;
+
 /// The events of a run on a strip as long as the run, and as a list.
 fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()> {
     if run.events.is_empty() {
@@ -92,7 +95,9 @@ fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()>
         let hint = escaped(&event_text(event));
         write!(out, "<i style=\"left:{left:.3}%;width:{width:.3}%\" title=\"{hint}\"></i>")?;
     }
-    out.write_all(b"</span></summary><ol>")?;
+    out.write_all(b"</span></summary>")?;
+    write_rows(out, run, percent)?;
+    out.write_all(b"<ol>")?;
     for event in run.events.iter().take(SHOWN_EVENTS) {
         write!(out, "<li data-t=\"{:.5}\">{}</li>", event.t_s, escaped(&event_text(event)))?;
     }
@@ -100,6 +105,30 @@ fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()>
         write!(out, "<li>and {more} more</li>")?;
     }
     out.write_all(b"</ol></details>\n")
+}
+
+/// A strip for each unit of the machine that has events, in the order in which they first come.
+fn write_rows(out: &mut impl Write, run: &Run, percent: impl Fn(f64) -> f64) -> io::Result<()> {
+    let mut rows: Vec<&str> = Vec::new();
+    for event in &run.events {
+        if !rows.contains(&event.row.as_str()) && rows.len() < SHOWN_ROWS {
+            rows.push(&event.row);
+        }
+    }
+    out.write_all(b"<div class=\"rows\">")?;
+    for row in rows {
+        let events = || run.events.iter().filter(|event| event.row == row);
+        let total_s: f64 = events().map(|event| event.duration_s).sum();
+        let took = if total_s > 0.0 { duration(total_s) } else { String::new() };
+        write!(out, "<div class=\"row\"><b>{}</b><span class=\"strip\">", escaped(row))?;
+        for event in events().take(SHOWN_EVENTS) {
+            let (left, width) = (percent(event.t_s), percent(event.duration_s));
+            let hint = escaped(&event_text(event));
+            write!(out, "<i style=\"left:{left:.3}%;width:{width:.3}%\" title=\"{hint}\"></i>")?;
+        }
+        write!(out, "</span><span class=\"num\">{took}</span></div>")?;
+    }
+    out.write_all(b"</div>")
 }
 
 fn event_text(event: &TimelineEvent) -> String {
