@@ -37,6 +37,8 @@ mod tools;
 mod travel;
 mod variables;
 
+#[doc(hidden)]
+pub use block::count_words;
 pub use diagnostic::{Diagnostic, Severity};
 pub use reader::{ReadError, Reader};
 pub use settings::{AUTO, DIALECTS, Dialect, Settings, UnknownDialect};

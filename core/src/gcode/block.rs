@@ -241,6 +241,32 @@ impl Block {
     }
 }
 
+/// Words of all lines of a program, read and not carried out: what the benches compare the reader with. Parameters are 0,
+/// and lines that are no words (O-words, `%`, mistakes) count nothing.
+#[doc(hidden)]
+pub fn count_words(text: &[u8]) -> usize {
+    struct Zeros;
+    impl Values for Zeros {
+        fn numbered(&self, _index: usize) -> f64 {
+            0.0
+        }
+        fn named(&self, _name: &[u8]) -> Option<f64> {
+            Some(0.0)
+        }
+    }
+    let mut block = Block::new();
+    let words_of = |line: &[u8]| {
+        let mut cursor = Cursor::new(line);
+        if cursor.eat(b'n') && cursor.number().is_err() {
+            return 0;
+        }
+        block.clear();
+        let read = block.read(cursor, &Zeros, Style::default());
+        if read.is_ok() { block.set.count_ones() as usize + block.g.len() + block.m.len() } else { 0 }
+    };
+    text.split(|&byte| byte == b'\n').map(words_of).sum()
+}
+
 /// Reads `( text )`; returns the place of the text.
 pub(super) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
     let start = cursor.at;
@@ -348,6 +374,11 @@ mod tests {
         assert_eq!(block.code(Group::Motion).unwrap().number, 10);
         assert_eq!(block.comment, Some(31..36));
         assert_eq!(block.at(b'x'), 4..8);
+    }
+
+    #[test]
+    fn words_are_counted_without_being_carried_out() {
+        assert_eq!(count_words(b"N10 G1 X1 Y[2*#3] F100 (a)\nM3 S100\nX$\n\n%"), 6);
     }
 
     #[test]
