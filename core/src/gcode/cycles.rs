@@ -60,7 +60,8 @@ impl Interpreter {
                     "gcode::cycle",
                     block.whole(),
                     format!("{name} (bottom of the hole) is missing for {}", spelled(code)),
-                ));
+                )
+                .hint("the first hole of a cycle has all its words; the next ones need only their X and Y"));
             }
             kept =
                 Cycle { code, began_at: if is_series { kept.began_at } else { self.at[normal] }, ..Cycle::default() };
@@ -176,7 +177,8 @@ impl Interpreter {
                         "gcode::cycle",
                         block.whole(),
                         format!("{code} taps with the spindle turning by {how}, which it does not"),
-                    ));
+                    )
+                    .hint(format!("start it before: S500 {how}")));
                 }
                 self.spindle(-wanted);
                 self.pause(cycle.dwell_s.unwrap_or(0.0));
@@ -191,7 +193,8 @@ impl Interpreter {
                         "gcode::cycle",
                         block.whole(),
                         format!("{} needs a turning spindle (M3 or M4)", spelled(cycle.code)),
-                    ));
+                    )
+                    .hint("start it before: S500 M3"));
                 }
                 self.pause(cycle.dwell_s.unwrap_or(0.0));
                 self.spindle(0);
@@ -242,7 +245,8 @@ impl Interpreter {
         let &Hole { normal, bottom, clearance } = hole;
         let turning = self.modal.spindle_turns;
         if turning == 0 {
-            return Err(Fault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)"));
+            return Err(Fault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)")
+                .hint("start it before: S500 M3"));
         }
         let scale = self.modal.unit_mm;
         let word = |axis: usize| block.get(b"ijk"[axis]).unwrap_or(0.0) * scale;

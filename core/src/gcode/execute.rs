@@ -101,7 +101,8 @@ impl Interpreter {
     fn axes_without_motion(&self, block: &Block, motion: Option<u16>) -> Box<Fault> {
         let at = block.at_any(codes::AXES);
         if motion == Some(800) && block.code(Group::Motion).is_some() {
-            return Fault::new("gcode::no_motion_mode", at, "G80 ends motion modes and takes no axis words");
+            return Fault::new("gcode::no_motion_mode", at, "G80 ends motion modes and takes no axis words")
+                .hint("write G0 or G1 with them on the next line");
         }
         Fault::new("gcode::no_motion_mode", at, "axis words, but no code such as G0 or G1 says how to move")
             .hint("write G0, G1, G2 or G3 on this line or one before it")

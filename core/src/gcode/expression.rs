@@ -93,6 +93,9 @@ const FUNCTIONS: [&[u8]; 14] = [
     b"tan",
 ];
 
+/// Words of Fanuc macros and of other languages, which programs for them hold in place of O-words.
+const MACRO_KEYWORDS: [&str; 8] = ["if", "while", "goto", "end", "endif", "else", "for", "do"];
+
 impl<'a, V: Values> Evaluator<'a, V> {
     pub(super) const fn new(cursor: Cursor<'a>, values: &'a V) -> Self {
         Self { cursor, values, depth: 0 }
@@ -217,10 +220,15 @@ impl<'a, V: Values> Evaluator<'a, V> {
             .iter()
             .map(|known| String::from_utf8_lossy(known))
             .find(|known| letters.len() > 1 && strsim::levenshtein(known, &name.to_ascii_lowercase()) <= 1);
+        // The letter before the value belongs to the word that the user wrote: W and `hile`.
+        let before = start.checked_sub(1).map_or(b' ', |before| self.cursor.bytes[before].to_ascii_lowercase());
+        let keyword = format!("{}{}", char::from(before), name.to_ascii_lowercase());
         match nearest {
-            _ if letters.first() == Some(&b'o') || letters.first() == Some(&b'O') => {
-                fault.hint("the letter O is no zero: write 0")
+            _ if before == b'#' => fault.hint(format!("names of parameters stand in angle brackets: #<{name}>")),
+            _ if MACRO_KEYWORDS.contains(&&keyword[..]) => {
+                fault.hint("loops and branches begin with an O-word, as in `o1 while [#1 LT 5]`; those of Fanuc macros are not read")
             }
+            _ if name.starts_with(['o', 'O']) => fault.hint("the letter O is no zero: write 0"),
             Some(known) => fault.hint(format!("did you mean `{known}[...]`?")),
             None => fault,
         }

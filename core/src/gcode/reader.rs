@@ -326,6 +326,7 @@ impl Reader {
             self.state = State::Done;
             let mut diagnostic = self.of_file("gcode::o_word", message);
             diagnostic.line = line;
+            diagnostic.hint = Some("write it behind the last line that belongs to it".to_owned());
             self.interpreter.end_program();
             return Err(diagnostic);
         }
