@@ -21,7 +21,7 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Cut a part on a simulated machine, open loop and with a controller, and write the report.
-    Run(RunArgs),
+    Run(Box<RunArgs>),
     /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
     Paper(PaperArgs),
     /// Report all mistakes of G-code programs and machine files; of a folder, of all programs in it.

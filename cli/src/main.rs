@@ -22,7 +22,7 @@ fn main() -> ExitCode {
     }
     let quiet = cli.quiet;
     let result = match cli.command {
-        Command::Run(args) => commands::run::run(args, quiet),
+        Command::Run(args) => commands::run::run(*args, quiet),
         Command::Paper(args) => commands::paper::run(&args, quiet),
         Command::Check(args) => commands::check::run(&args, quiet),
         Command::Canon(args) => commands::canon::run(&args, quiet),

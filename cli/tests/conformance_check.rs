@@ -1,6 +1,8 @@
 //! `feedwright check` on many files: order, folders, files named twice, threads; and the options of reading that three
 //! commands share.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 #[path = "common/command.rs"]
 #[expect(dead_code, reason = "every test file uses a part of this")]
 mod common;

@@ -1,6 +1,8 @@
 //! What happens besides motions: each unit of the machine has its row and its durations in the report, and rotary axes that
 //! turn alone take their time.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 #[path = "common/command.rs"]
 #[expect(dead_code, reason = "every test file uses a part of this")]
 mod common;

@@ -2,6 +2,8 @@
 //!
 //! Golden: it holds the document to the program, not the program to the truth.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 #[path = "common/command.rs"]
 #[expect(dead_code, reason = "every test file uses a part of this")]
 mod common;
@@ -34,7 +36,7 @@ fn written_anew(document: &str) -> (String, usize) {
         let (program, rest) = part.split_once(END).unwrap();
         let (between, rest) = rest.split_once(MESSAGE).unwrap();
         assert!(between.trim().is_empty(), "the message stands behind its program: {program}");
-        let after = if rest.starts_with(END) { &rest[END.len()..] } else { rest.split_once("\n```\n").unwrap().1 };
+        let after = rest.strip_prefix(END).unwrap_or_else(|| rest.split_once("\n```\n").unwrap().1);
         text += &[PROGRAM, program, END, between, MESSAGE, &told(program), END, after].concat();
         count += 1;
     }
