@@ -49,9 +49,9 @@ fn every_unit_has_its_row_with_the_durations_of_the_machine_file() {
         ("stop", "M0 program stop", ""),
     ] {
         let (_, rest) = page.split_once(&format!("<b>{row}</b>")).unwrap_or_else(|| panic!("no row {row}"));
-        let strip = rest.split_once("</div>").unwrap().0;
+        let strip = rest.split_once("</span></span>").unwrap().0;
         assert!(strip.contains(label), "{row}: {strip}");
-        assert!(strip.ends_with(&format!("{took}</span>")), "{row}: {strip}");
+        assert!(strip.ends_with(&format!(">{took}")), "{row}: {strip}");
     }
     assert!(page.contains("lamp off"));
     // Two stops of the motion are one where all of it happens.
