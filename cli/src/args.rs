@@ -24,6 +24,8 @@ pub(crate) enum Command {
     Run(Box<RunArgs>),
     /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
     Paper(PaperArgs),
+    /// Compare all controllers on contours and machines, in one table.
+    Compare(CompareArgs),
     /// Report all mistakes of G-code programs and machine files; of a folder, of all programs in it.
     Check(CheckArgs),
     /// Print the canonical motions of a program, one JSON object a line, in mm and s.
@@ -86,6 +88,37 @@ pub(crate) struct PaperArgs {
     /// Number of seeds, from 1.
     #[arg(long, default_value_t = 10, value_parser = clap::value_parser!(u64).range(1..=1000))]
     pub(crate) seeds: u64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    /// Only these contours, machines and controllers; what is not named in its kind is left out.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) only: Vec<String>,
+    /// Cut this program too, in the XY plane; may be given several times.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) part: Vec<PathBuf>,
+    /// Cut on this machine too; may be given several times.
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) machine: Vec<OsString>,
+    /// Seed of everything random.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Take the default of every parameter instead of searching for the best.
+    #[arg(long)]
+    pub(crate) no_tuning: bool,
+    /// Also find, for each smooth contour, the feedrate at which each controller just holds 10 um.
+    #[arg(long)]
+    pub(crate) at_tolerance: bool,
+    /// Threads; all cores where it is left out. The table does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Write all rows.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+    /// Write a page with the table and plots of the errors.
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) html: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -24,6 +24,7 @@ fn main() -> ExitCode {
     let result = match cli.command {
         Command::Run(args) => commands::run::run(*args, quiet),
         Command::Paper(args) => commands::paper::run(&args, quiet),
+        Command::Compare(args) => commands::compare::run(&args, quiet),
         Command::Check(args) => commands::check::run(&args, quiet),
         Command::Canon(args) => commands::canon::run(&args, quiet),
         Command::Machines => commands::list::machines(),

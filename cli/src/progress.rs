@@ -24,6 +24,13 @@ impl Bar {
         Self::new(quiet, STEPS)
     }
 
+    /// Begins anew with so many steps.
+    pub(crate) fn begin(&self, message: &'static str, steps: u64) {
+        self.0.set_length(steps);
+        self.0.set_position(0);
+        self.say(message);
+    }
+
     pub(crate) fn say(&self, message: impl Into<String>) {
         self.0.set_message(message.into());
     }

@@ -6,6 +6,7 @@ use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDi
 use feedwright_control::identifier::Inputs;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::servo::ServoIdentifier;
+use feedwright_control::safety::Bounds;
 use feedwright_control::window::{Preview, Register};
 use feedwright_control::{Controller, Knot, Measured, Reference, Tick, Window};
 
@@ -62,7 +63,8 @@ impl<const N: usize> Rig<N> {
     /// Warmed up by a lap.
     pub(crate) fn new() -> Self {
         let controller = paper::<N>();
-        let mut rig = Self { tick: Tick::new(0.001, controller.schedule(), 0.5), controller, periods: 0 };
+        let mut rig =
+            Self { tick: Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0)), controller, periods: 0 };
         for _ in 0..1000 {
             rig.servo_period();
         }

@@ -60,8 +60,22 @@ pub trait Controller<const N: usize> {
     fn schedule(&self) -> Schedule;
     /// Back to the state after construction.
     fn reset(&mut self);
+    /// The same part is cut once more: what was learnt of it is kept.
+    fn next_lap(&mut self) {
+        self.reset();
+    }
     /// Learns from what the last command led to. Called once a feed period, before [`Self::command`].
     fn observe(&mut self, measured: &Measured<N>);
+    /// By how much the last prediction missed what was measured, mm; 0 where there was none. [`crate::safety`] reads it
+    /// after each decision.
+    fn missed_mm(&self) -> f64 {
+        0.0
+    }
+    /// Whether it means to make the contour error smaller. One that excites the machine to identify it does not, and is
+    /// not taken out of the loop for making it larger.
+    fn corrects(&self) -> bool {
+        true
+    }
     /// Decides.
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N>;
 }

@@ -14,6 +14,7 @@ pub mod identifier;
 pub mod inversion;
 pub mod horizon;
 pub mod controller;
+pub mod safety;
 pub mod tick;
 
 pub use controller::{Command, Controller, Measured, Schedule};

@@ -1,15 +1,13 @@
 //! The tick: from the reference and a measurement to the position command of one servo period.
 //!
 //! The same code runs around a simulated plant and in a servo thread. Once a feed period the controller observes and
-//! decides; in every servo period the command moves on along the path and between the two offsets.
+//! decides, under the safety layer; in every servo period the command moves on along the path and between the two offsets.
 
 use crate::contour_error::{ContourError, Estimator};
 use crate::controller::{Command, Controller, Measured, Schedule};
-use crate::vector::{add_scaled, limit_norm, sub};
+use crate::safety::{Bounds, Fade, Guard};
+use crate::vector::{add_scaled, sub};
 use crate::window::{Knot, Preview, Reference, Register, Window};
-
-/// Slowest and fastest that any controller may run the plan: a program always ends, and no command leaps.
-const RATE_RANGE: [f64; 2] = [0.1, 3.0];
 
 /// The command of one servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +26,7 @@ pub struct Setpoint<const N: usize> {
 #[derive(Debug, Clone)]
 pub struct Tick<const N: usize> {
     servo_s: f64,
-    max_deviation_mm: f64,
+    guard: Guard<N>,
     schedule: Schedule,
     register: Register<N>,
     estimator: Estimator,
@@ -43,12 +41,11 @@ pub struct Tick<const N: usize> {
 }
 
 impl<const N: usize> Tick<N> {
-    /// At the start of a program, for a controller with this schedule and a servo period of `servo_s` seconds. The
-    /// command never leaves the path by more than `max_deviation_mm`.
-    pub fn new(servo_s: f64, schedule: Schedule, max_deviation_mm: f64) -> Self {
+    /// At the start of a program, for a controller with this schedule and a servo period of `servo_s` seconds.
+    pub fn new(servo_s: f64, schedule: Schedule, bounds: Bounds) -> Self {
         Self {
             servo_s,
-            max_deviation_mm,
+            guard: Guard::new(bounds),
             schedule: Schedule { servo_periods: schedule.servo_periods.max(1), ..schedule },
             register: Register::default(),
             estimator: Estimator::default(),
@@ -92,6 +89,11 @@ impl<const N: usize> Tick<N> {
         &self.contour
     }
 
+    /// Whether, when and why the safety layer took the controller out of the loop.
+    pub fn fade(&self) -> Option<Fade> {
+        self.guard.fade()
+    }
+
     fn decide<C: Controller<N> + ?Sized>(&mut self, controller: &mut C, tool_mm: [f64; N]) {
         let window = Window {
             register: &self.register,
@@ -102,19 +104,10 @@ impl<const N: usize> Tick<N> {
         };
         self.contour = self.estimator.estimate(&window, tool_mm);
         let measured = Measured { position_mm: tool_mm, contour: self.contour };
-        controller.observe(&measured);
-        self.command = self.admit(controller.command(&window, &measured));
+        self.command = self.guard.decide(controller, &window, &measured);
     }
 
     fn feed_period_s(&self) -> f64 {
         f64::from(self.schedule.servo_periods) * self.servo_s
-    }
-
-    /// The command, held within the limits; what is not a number goes on as planned, beside the path where it is.
-    fn admit(&self, command: Command<N>) -> Command<N> {
-        let rate = if command.rate.is_finite() { command.rate.clamp(RATE_RANGE[0], RATE_RANGE[1]) } else { 1.0 };
-        let finite = command.offset_mm.iter().all(|o| o.is_finite());
-        let offset_mm = if finite { command.offset_mm } else { self.offset_from_mm };
-        Command { rate, offset_mm: limit_norm(offset_mm, self.max_deviation_mm) }
     }
 }

@@ -2,10 +2,11 @@
 //!
 //! Help texts, the comparison, docs and conformance tests iterate over [`CONTROLLERS`].
 
+use feedwright_control::controller::inverting::{self, Settings};
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
-use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
+use feedwright_control::controller::two_dimensional::TwoDimensional;
 use feedwright_control::{Controller, inversion};
 use serde::Serialize;
 
@@ -22,25 +23,70 @@ pub struct Entry {
     pub summary: &'static str,
     /// Author, year.
     pub source: &'static str,
-    /// Whether it needs an identifier trained on the machine.
-    pub identifies: bool,
-    plane: fn(&mut Setup<'_>) -> Box<dyn Controller<2>>,
-    space: fn(&mut Setup<'_>) -> Box<dyn Controller<3>>,
+    /// What it knows of the machine.
+    pub knows: Knows,
+    /// Laps of the same part that it cuts; all but the last are practice.
+    pub laps: u32,
+    /// What can be tuned.
+    pub parameters: &'static [Parameter],
+    plane: Maker<2>,
+    space: Maker<3>,
+}
+
+/// What a controller knows of the machine before it cuts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Knows {
+    /// Nothing.
+    Nothing,
+    /// What was identified from a recording.
+    Identified,
+    /// The parameters of its model.
+    ExactModel,
+    /// What went wrong in earlier laps of the same part.
+    EarlierLaps,
+}
+
+/// Makes a controller from a setup and the values of its parameters.
+type Maker<const N: usize> = fn(&mut Setup<'_>, &[f64]) -> Box<dyn Controller<N>>;
+
+/// Something that can be tuned.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Name, with its unit at the end.
+    pub name: &'static str,
+    /// Range in which values make sense; searched by ratios where it begins above zero.
+    pub range: [f64; 2],
+    /// Value where none is given.
+    pub default: f64,
+}
+
+const fn parameter(name: &'static str, range: [f64; 2], default: f64) -> Parameter {
+    Parameter { name, range, default }
 }
 
 /// A row from a function that is generic over the number of axes.
 macro_rules! entry {
-    ($name:literal, $summary:literal, $source:literal, identifies: $identifies:literal, $make:ident) => {
+    ($name:literal, $summary:literal, $source:literal, $knows:ident, laps: $laps:literal, [$($parameter:expr),*], $make:ident) => {
         Entry {
             name: $name,
             summary: $summary,
             source: $source,
-            identifies: $identifies,
+            knows: Knows::$knows,
+            laps: $laps,
+            parameters: &[$($parameter),*],
             plane: $make::<2>,
             space: $make::<3>,
         }
     };
 }
+
+const RHO: Parameter = parameter("rho", [1e-5, 0.1], Settings::DEFAULT.inversion.rho);
+const ETA: Parameter = parameter("eta", [1e-3, 10.0], Settings::DEFAULT.inversion.eta);
+const RATE_WEIGHT: Parameter =
+    parameter("rate_weight_s2", [1e-9, 1e-4], receding_horizon::Settings::DEFAULT.horizon.rate_weight);
+const INNOVATION_GAIN: Parameter =
+    parameter("innovation_gain", [0.0, 1.0], receding_horizon::Settings::DEFAULT.innovation_gain);
 
 /// All controllers.
 pub const CONTROLLERS: &[Entry] = &[
@@ -48,28 +94,36 @@ pub const CONTROLLERS: &[Entry] = &[
         "open-loop",
         "the programmed path at the planned feed",
         "what every open-source control does",
-        identifies: false,
+        Nothing,
+        laps: 1,
+        [],
         open_loop
     ),
     entry!(
         "magnitude-only",
         "inversion of the identifier, speed along the path only",
         "Yoon and Jeon (2000)",
-        identifies: true,
+        Identified,
+        laps: 1,
+        [RHO, ETA],
         magnitude_only
     ),
     entry!(
         "two-dimensional",
         "inversion of the identifier, speed and geometry",
         "Lee, Cho and Jeon (2005)",
-        identifies: true,
+        Identified,
+        laps: 1,
+        [RHO, ETA],
         two_dimensional
     ),
     entry!(
         "receding-horizon",
         "geometry planned over 10 knots ahead through an identified servo, speed as planned",
         "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
-        identifies: true,
+        Identified,
+        laps: 1,
+        [RATE_WEIGHT, INNOVATION_GAIN],
         receding_horizon
     ),
 ];
@@ -86,6 +140,8 @@ pub struct Choices {
     pub rho: Option<f64>,
     /// Seed of the training.
     pub seed: u64,
+    /// Values of the controller's parameters in the order of [`Entry::parameters`]; all defaults where it is empty.
+    pub values: Vec<f64>,
 }
 
 /// What a controller is made from.
@@ -104,6 +160,12 @@ impl Entry {
         CONTROLLERS.iter().find(|entry| entry.name == name)
     }
 
+    /// The values of the parameters that the choices come to.
+    fn values(&self, choices: &Choices) -> Vec<f64> {
+        let defaults = self.parameters.iter().map(|parameter| parameter.default);
+        defaults.enumerate().map(|(i, default)| choices.values.get(i).copied().unwrap_or(default)).collect()
+    }
+
     /// The name that was probably meant by one that is none.
     pub fn meant_by(name: &str) -> Option<&'static str> {
         let names: Vec<&'static str> = CONTROLLERS.iter().map(|entry| entry.name).collect();
@@ -119,13 +181,13 @@ pub trait Make<const N: usize> {
 
 impl Make<2> for Entry {
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
-        (self.plane)(setup)
+        (self.plane)(setup, &self.values(setup.choices))
     }
 }
 
 impl Make<3> for Entry {
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
-        (self.space)(setup)
+        (self.space)(setup, &self.values(setup.choices))
     }
 }
 
@@ -135,30 +197,34 @@ impl std::fmt::Debug for Entry {
     }
 }
 
-fn open_loop<const N: usize>(_: &mut Setup<'_>) -> Box<dyn Controller<N>> {
+fn open_loop<const N: usize>(_: &mut Setup<'_>, _: &[f64]) -> Box<dyn Controller<N>> {
     Box::new(OpenLoop)
 }
 
-fn magnitude_only<const N: usize>(setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
-    let inversion = inversion::Settings { gradient: inversion::Gradient::Exact, ..Settings::DEFAULT.inversion };
-    let settings = chosen(Settings { inversion, ..Settings::DEFAULT }, setup);
+fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let mut settings = inverting(setup, values);
+    settings.inversion.gradient = inversion::Gradient::Exact;
     Box::new(MagnitudeOnly::new(trained(setup).net, settings))
 }
 
-fn two_dimensional<const N: usize>(setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
-    let settings = chosen(Settings::DEFAULT, setup);
+fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let settings = inverting(setup, values);
     Box::new(TwoDimensional::new(trained(setup).net, settings))
 }
 
-fn receding_horizon<const N: usize>(setup: &mut Setup<'_>) -> Box<dyn Controller<N>> {
+fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
     let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
-    Box::new(RecedingHorizon::new(identified.net, receding_horizon::Settings::DEFAULT))
+    let mut settings = receding_horizon::Settings::DEFAULT;
+    settings.servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
+    (settings.horizon.rate_weight, settings.innovation_gain) = (values[0], values[1]);
+    Box::new(RecedingHorizon::new(identified.net, settings))
 }
 
-fn chosen(mut settings: Settings, setup: &Setup<'_>) -> Settings {
-    if let Some(rho) = setup.choices.rho {
-        settings.inversion.rho = rho;
-    }
+/// Settings of the controllers that invert the paper's identifier.
+fn inverting(setup: &Setup<'_>, values: &[f64]) -> Settings {
+    let mut settings = Settings::DEFAULT;
+    settings.servo_periods = setup.machine.period.servo_periods(inverting::FEED_PERIOD_S);
+    (settings.inversion.rho, settings.inversion.eta) = (setup.choices.rho.unwrap_or(values[0]), values[1]);
     settings
 }
 

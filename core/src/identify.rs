@@ -9,8 +9,11 @@ pub mod servo;
 pub mod cache;
 mod excitation;
 
+use feedwright_control::controller::{inverting, receding_horizon};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::Serialize;
+
+use crate::machine::Machine;
 
 /// The generator behind everything random here: the same seed gives the same bits on every platform.
 type Rng = Xoshiro256PlusPlus;
@@ -30,11 +33,16 @@ pub struct Programme {
     pub offset_mm: f64,
     /// Feed periods after which the offset is drawn anew.
     pub renewal_periods: u32,
-    /// Servo periods in a feed period: as in the controller that will use the identifier.
-    pub servo_periods: u32,
+    /// Feed period, s: as in the controller that will use the identifier.
+    pub feed_period_s: f64,
 }
 
 impl Programme {
+    /// The feed period that the machine can have, s.
+    fn period_s(&self, machine: &Machine) -> f64 {
+        f64::from(machine.period.servo_periods(self.feed_period_s)) * machine.period.servo_s
+    }
+
     /// The circle of eq. 11.
     pub fn paper() -> Self {
         Self {
@@ -44,7 +52,7 @@ impl Programme {
             laps: 60,
             offset_mm: 0.06,
             renewal_periods: 3,
-            servo_periods: 10,
+            feed_period_s: inverting::FEED_PERIOD_S,
         }
     }
 
@@ -57,6 +65,12 @@ impl Programme {
     /// For the servo identifier, whose dynamics do not depend on the path: both senses, a wider range of feeds, knots
     /// half as far apart.
     pub fn servo() -> Self {
-        Self { turns: vec![-1, 1, 1], feed_mm_s: [10.0, 70.0], servo_periods: 5, renewal_periods: 4, ..Self::general() }
+        Self {
+            turns: vec![-1, 1, 1],
+            feed_mm_s: [10.0, 70.0],
+            feed_period_s: receding_horizon::FEED_PERIOD_S,
+            renewal_periods: 4,
+            ..Self::general()
+        }
     }
 }

@@ -20,3 +20,4 @@ pub mod controllers;
 pub mod report;
 pub mod pipeline;
 pub mod paper;
+pub mod compare;

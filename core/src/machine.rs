@@ -57,6 +57,16 @@ pub struct Period {
     pub mechanics_per_servo: u32,
 }
 
+/// Most servo periods in a feed period: twenty feed periods of preview must fit into the window.
+const MOST_SERVO_PERIODS: f64 = 12.0;
+
+impl Period {
+    /// Servo periods in a feed period of about `feed_period_s`: at least one, and no more than a preview has room for.
+    pub fn servo_periods(&self, feed_period_s: f64) -> u32 {
+        (feed_period_s / self.servo_s).round().clamp(1.0, MOST_SERVO_PERIODS) as u32
+    }
+}
+
 /// What the machine may be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Limits {

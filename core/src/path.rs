@@ -17,6 +17,7 @@
 
 pub mod arc;
 mod arcs;
+mod butterfly;
 pub mod contour;
 pub mod line;
 pub mod pieces;

@@ -14,7 +14,7 @@ mod outline;
 mod series;
 mod statistics;
 mod summary;
-mod text;
+pub(crate) mod text;
 mod worst;
 
 pub use html::write_html;
@@ -23,7 +23,7 @@ pub use statistics::{Histogram, Statistics};
 pub use summary::{RunFacts, RunSummary};
 pub use worst::WorstPlace;
 
-pub use crate::trace::Outcome;
+pub use crate::trace::{FadedOut, Outcome};
 
 /// Everything that the page shows.
 #[derive(Debug, Clone)]

@@ -6,12 +6,13 @@
 use std::time::Instant;
 
 use feedwright_control::controller::Controller;
+use feedwright_control::safety::Bounds;
 use feedwright_control::{Knot, Tick};
 
 use crate::machine::Machine;
 use crate::plant::{Measurement, Plant};
 use crate::reference::{Reference, Sample};
-use crate::trace::{Commanded, Outcome, Row, Sink};
+use crate::trace::{Commanded, FadedOut, Outcome, Row, Sink};
 
 /// A stable loop of gain Kp lags by v / Kp. Where the command is this many times the lag of a rapid away, or
 /// [`LOST_MM`] where that is more, the tool does not follow any more.
@@ -32,6 +33,8 @@ const LEAD_S: f64 = 0.05;
 pub struct Run {
     /// How it ended.
     pub outcome: Outcome,
+    /// Whether the safety layer took the controller out of the loop.
+    pub faded_out: Option<FadedOut>,
     /// Machining time: when the command has ended, s.
     pub time_s: f64,
     /// When the tool has arrived there, s.
@@ -42,11 +45,25 @@ pub struct Run {
     pub ticks: TickTimes,
 }
 
-/// Cuts the whole reference with a controller; every row goes to every sink.
+/// Cuts the whole reference with a controller that begins anew; every row goes to every sink.
 ///
 /// # Errors
 /// What a sink says when it takes no more.
 pub fn simulate<const N: usize>(
+    machine: &Machine,
+    reference: &mut Reference<'_>,
+    controller: &mut dyn Controller<N>,
+    sinks: &mut [&mut dyn Sink],
+) -> std::io::Result<Run> {
+    controller.reset();
+    simulate_lap(machine, reference, controller, sinks)
+}
+
+/// As [`simulate`], with a controller that remembers the laps before.
+///
+/// # Errors
+/// What a sink says when it takes no more.
+pub fn simulate_lap<const N: usize>(
     machine: &Machine,
     reference: &mut Reference<'_>,
     controller: &mut dyn Controller<N>,
@@ -57,8 +74,8 @@ pub fn simulate<const N: usize>(
     let lag_s = LAG_TIME_CONSTANTS * slowest_s;
     let lost_mm = LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s);
     let start_mm = first(reference.at(0.0).position_mm);
-    controller.reset();
-    let mut tick = Tick::<N>::new(servo_s, controller.schedule(), machine.limits.max_deviation_mm);
+    let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s);
+    let mut tick = Tick::<N>::new(servo_s, controller.schedule(), bounds);
     let mut plant = Plant::<N>::new(machine, start_mm);
     let mut tool_mm = start_mm;
     let mut run = Run::default();
@@ -71,6 +88,9 @@ pub fn simulate<const N: usize>(
         if setpoint.decided {
             run.ticks.add(clock.elapsed().as_nanos());
             run.most_entries = run.most_entries.max(tick.contour().entries);
+            if run.faded_out.is_none() {
+                run.faded_out = tick.fade().map(|fade| FadedOut { at_s: t_s, cause: fade.cause.words() });
+            }
         }
         if ended.is_none()
             && let Some(end_s) = reference.end_s()

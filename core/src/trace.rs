@@ -61,6 +61,15 @@ pub enum Outcome {
     },
 }
 
+/// The safety layer took the controller out of the loop: the rest was cut open loop.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FadedOut {
+    /// When, s.
+    pub at_s: f64,
+    /// Why, in words.
+    pub cause: &'static str,
+}
+
 /// Takes the rows of a run in order.
 pub trait Sink {
     /// Takes one row.

@@ -14,6 +14,7 @@ use feedwright::plant::Plant;
 use feedwright::reference::{Foot, Reference};
 use feedwright_control::contour_error::MAX_ENTRIES;
 use feedwright_control::controller::{Command, Controller, Measured, Schedule};
+use feedwright_control::safety::Bounds;
 use feedwright_control::window::{REGISTER_KNOTS, Window};
 use feedwright_control::{Knot, Tick};
 use rand::{RngExt, SeedableRng};
@@ -92,7 +93,8 @@ fn check(part: &Path, machine: &Machine, schedule: Schedule, mut tool: Tool) {
     let servo_s = machine.period.servo_s;
     let reach_s = (REGISTER_KNOTS - 1) as f64 * servo_s;
     let mut recorder = Recorder { schedule, measured: None };
-    let mut tick = Tick::<3>::new(servo_s, schedule, machine.limits.max_deviation_mm);
+    let mut tick =
+        Tick::<3>::new(servo_s, schedule, Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s));
     let mut tool_mm = reference.at(0.0).position_mm;
     let (mut checked, mut worst_mm) = (0, 0.0_f64);
     let (mut from_mm, mut to_mm) = ([0.0; 3], [0.0; 3]);

@@ -34,7 +34,7 @@ fn job(args: RunArgs) -> Result<Job> {
         controller: find(&args.controller)?,
         against: find(&args.against)?,
         feed_mm_s: args.feed,
-        choices: Choices { rho: args.rho, seed: args.seed },
+        choices: Choices { rho: args.rho, seed: args.seed, ..Choices::default() },
         tolerance_um: args.tolerance,
         reader: args.reader.settings()?,
         inputs: Some(PathBuf::from(args.machine))
@@ -95,6 +95,9 @@ fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
         )?;
         if let Ending::Diverged { at_s } = now.outcome {
             writeln!(out, "{:<18} diverged at {at_s:.3} s: the servo loop of this machine is unstable", "")?;
+        }
+        if let Some(faded) = now.faded_out {
+            writeln!(out, "{:<18} open loop from {:.3} s on, because {}", "", faded.at_s, faded.cause)?;
         }
     }
     if let [first, .., last] = &runs[..]

@@ -23,6 +23,9 @@ use crate::inversion::{self, Gradient};
 use crate::vector::{add_scaled, dot, norm, scale, sub};
 use crate::window::Window;
 
+/// The paper's feed period, s.
+pub const FEED_PERIOD_S: f64 = 0.01;
+
 /// Settings of the controllers that invert the identifier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -70,6 +73,7 @@ pub struct Inverting<const N: usize, I> {
     net: ContourIdentifier<N>,
     history: History<N>,
     last: Option<Inputs<N>>,
+    missed_mm: f64,
     settings: Settings,
     how: PhantomData<I>,
 }
@@ -77,7 +81,15 @@ pub struct Inverting<const N: usize, I> {
 impl<const N: usize, I> Inverting<N, I> {
     /// With an identifier that is trained on the machine.
     pub fn new(trained: ContourIdentifier<N>, settings: Settings) -> Self {
-        Self { net: trained.clone(), trained, history: History::default(), last: None, settings, how: PhantomData }
+        Self {
+            net: trained.clone(),
+            trained,
+            history: History::default(),
+            last: None,
+            missed_mm: 0.0,
+            settings,
+            how: PhantomData,
+        }
     }
 }
 
@@ -90,6 +102,7 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
         self.net.clone_from(&self.trained);
         self.history = History::default();
         self.last = None;
+        self.missed_mm = 0.0;
     }
 
     /// One step of back-propagation on the last command and its outcome, then both move into the delays.
@@ -99,12 +112,15 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
             return;
         }
         if let Some(inputs) = self.last {
-            if self.settings.learning_step > 0.0 {
-                let target = error_mm.map(|e| e / ERROR_SCALE_MM);
-                self.net.learn(&inputs, target, self.settings.learning_step);
-            }
+            let target = error_mm.map(|e| e / ERROR_SCALE_MM);
+            let cost = self.net.learn(&inputs, target, self.settings.learning_step);
+            self.missed_mm = ERROR_SCALE_MM * libm::sqrt(2.0 * cost);
             self.history.push(inputs.map(|axis| axis[0] * FEED_SCALE_MM_S), error_mm);
         }
+    }
+
+    fn missed_mm(&self) -> f64 {
+        self.missed_mm
     }
 
     /// Inverts from the planned feedrate and turns the result into a rate and a new offset.

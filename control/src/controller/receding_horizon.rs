@@ -10,6 +10,9 @@ use crate::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
 use crate::vector::{add_scaled, dot, norm, scale, sub};
 use crate::window::Window;
 
+/// Its feed period, s: a quarter of the time constant of a position loop of 50 1/s.
+pub const FEED_PERIOD_S: f64 = 0.005;
+
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -42,6 +45,7 @@ pub struct RecedingHorizon<const N: usize> {
     plan: Plan<N>,
     delays: Delays<N>,
     bias_mm: [f64; N],
+    missed_mm: f64,
     /// The command of the last knot, mm, and the following error predicted for this one.
     last: Option<Last<N>>,
 }
@@ -55,7 +59,15 @@ struct Last<const N: usize> {
 impl<const N: usize> RecedingHorizon<N> {
     /// With an identifier that is trained on a machine.
     pub fn new(net: ServoIdentifier<N>, settings: Settings) -> Self {
-        Self { net, settings, plan: Plan::default(), delays: Delays::REST, bias_mm: [0.0; N], last: None }
+        Self {
+            net,
+            settings,
+            plan: Plan::default(),
+            delays: Delays::REST,
+            bias_mm: [0.0; N],
+            missed_mm: 0.0,
+            last: None,
+        }
     }
 
     /// The feedrate between two commands, scaled.
@@ -73,6 +85,7 @@ impl<const N: usize> RecedingHorizon<N> {
         match self.last {
             Some(last) => {
                 let innovation = sub(following_mm, last.predicted_mm);
+                self.missed_mm = norm(innovation);
                 self.bias_mm = add_scaled(self.bias_mm, self.settings.innovation_gain, innovation);
                 self.delays.push(Self::feed(last.command_mm, command_mm, period_s), error);
             }
@@ -90,10 +103,15 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
         self.plan.reset();
         self.delays = Delays::REST;
         self.bias_mm = [0.0; N];
+        self.missed_mm = 0.0;
         self.last = None;
     }
 
     fn observe(&mut self, _: &Measured<N>) {}
+
+    fn missed_mm(&self) -> f64 {
+        self.missed_mm
+    }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);

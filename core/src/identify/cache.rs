@@ -46,11 +46,22 @@ pub fn identified<const N: usize>(
     identified
 }
 
-fn folder() -> Option<PathBuf> {
+/// The folder of the cache, where there is one.
+pub fn folder() -> Option<PathBuf> {
     match std::env::var_os("FEEDWRIGHT_CACHE") {
         Some(folder) => Some(PathBuf::from(folder)),
         None => directories::ProjectDirs::from("", "", "feedwright").map(|dirs| dirs.cache_dir().to_owned()),
     }
+}
+
+/// A name for what depends on these parts.
+pub fn key_of(parts: &[&[u8]]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for part in parts {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        hasher.update(part);
+    }
+    hasher.finalize().to_hex().to_string()
 }
 
 fn key<const N: usize>(recording: &Recording<N>, training: &Training) -> String {

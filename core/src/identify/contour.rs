@@ -63,7 +63,7 @@ impl<const N: usize> Recording<N> {
     /// Cuts the programme on the machine.
     pub fn new(machine: &Machine, programme: &Programme, seed: u64) -> Self {
         let mut rng = Rng::seed_from_u64(seed);
-        let period_s = f64::from(programme.servo_periods) * machine.period.servo_s;
+        let period_s = programme.period_s(machine);
         let laps = record::<N>(machine, programme, &mut rng);
         Self { samples: laps.iter().flat_map(|lap| samples(lap, period_s)).collect(), rng }
     }

@@ -38,6 +38,7 @@ pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, r
             let undisturbed = lap.is_multiple_of(UNDISTURBED_EVERY);
             let mut excitation = Excitation {
                 programme,
+                servo_periods: machine.period.servo_periods(programme.feed_period_s),
                 reach_mm: if undisturbed { 0.0 } else { programme.offset_mm },
                 rng,
                 offset_mm: [0.0; N],
@@ -79,6 +80,7 @@ fn circle<const N: usize>(programme: &Programme, lap: u32, rng: &mut Rng) -> Mot
 /// Open loop with random offsets; records.
 struct Excitation<'a, const N: usize> {
     programme: &'a Programme,
+    servo_periods: u32,
     reach_mm: f64,
     rng: &'a mut Rng,
     offset_mm: [f64; N],
@@ -87,7 +89,7 @@ struct Excitation<'a, const N: usize> {
 
 impl<const N: usize> Controller<N> for Excitation<'_, N> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: self.programme.servo_periods, preview: 0 }
+        Schedule { servo_periods: self.servo_periods, preview: 0 }
     }
 
     fn reset(&mut self) {
@@ -95,6 +97,10 @@ impl<const N: usize> Controller<N> for Excitation<'_, N> {
     }
 
     fn observe(&mut self, _: &Measured<N>) {}
+
+    fn corrects(&self) -> bool {
+        false
+    }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         if self.lap.len().is_multiple_of(self.programme.renewal_periods as usize) {

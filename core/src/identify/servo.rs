@@ -41,7 +41,7 @@ struct Sample<const N: usize> {
 /// Cuts the programme on the machine and fits the identifier to what it sees.
 pub fn identify<const N: usize>(machine: &Machine, programme: &Programme, seed: u64) -> Identified<N> {
     let mut rng = Rng::seed_from_u64(seed);
-    let period_s = f64::from(programme.servo_periods) * machine.period.servo_s;
+    let period_s = programme.period_s(machine);
     let laps = record::<N>(machine, programme, &mut rng);
     let samples: Vec<Sample<N>> = laps.iter().flat_map(|lap| samples(lap, period_s)).collect();
     let net = fit(&samples);

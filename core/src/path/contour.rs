@@ -7,13 +7,15 @@
 //! | eight | `(15 sin a, 10 sin 2a)` |
 //! | star | `(12 + 4 cos 5a) (cos a, sin a)` |
 //! | square | 20 x 20, sharp corners, counter-clockwise |
+//! | butterfly | NURBS of Yeh and Hsu, see [`super::butterfly`] |
 //! | line-line-circle | (0,0) (40,30) (60,30), then a full circle about (90,30), counter-clockwise |
 
+use super::butterfly::butterfly;
 use super::pieces::Pieces;
 use super::smooth::{Jet, Parametric, Smooth};
 use super::vector::scale;
 use super::{Curve, PathError, Piece, Step};
-use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape, Spline};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -35,6 +37,8 @@ enum Outline {
     Circle(&'static [[f64; 2]], [f64; 2], i32),
     /// A closed curve.
     Curve(fn(f64) -> Jet),
+    /// A NURBS.
+    Spline(fn() -> Spline),
 }
 
 /// All contours.
@@ -47,6 +51,7 @@ pub const CONTOURS: &[Contour] = &[
     Contour { name: "ellipse", about: "half axes 20 and 10 mm", outline: Outline::Curve(ellipse) },
     Contour { name: "eight", about: "figure of eight, 30 x 20 mm", outline: Outline::Curve(eight) },
     Contour { name: "star", about: "five soft points, radius 8 to 16 mm", outline: Outline::Curve(star) },
+    Contour { name: "butterfly", about: "NURBS with sharp tips, 103 x 62 mm", outline: Outline::Spline(butterfly) },
     Contour {
         name: "square",
         about: "20 x 20 mm, sharp corners",
@@ -65,6 +70,15 @@ pub fn contour(name: &str) -> Option<&'static Contour> {
 }
 
 impl Contour {
+    /// Whether it has no corners.
+    pub fn is_smooth(&self) -> bool {
+        match self.outline {
+            Outline::Polygon(_) => false,
+            Outline::Circle(points, ..) => points.len() == 1,
+            Outline::Curve(_) | Outline::Spline(_) => true,
+        }
+    }
+
     /// The contour as steps of a path, all cutting, at `feed_mm_s`, corners taken as `corner` says; lines count from 1.
     ///
     /// # Errors
@@ -89,6 +103,21 @@ impl Contour {
                     others: Others::default(),
                 }));
                 Pieces::new(canon.into_iter()).collect()
+            }
+            Outline::Spline(spline) => {
+                let spline = Arc::new(spline());
+                let ends_mm = [0, spline.control_mm.len() - 1].map(|i| spline.control_mm[i]);
+                let motion = Motion {
+                    line: 1,
+                    kind: MotionKind::Feed,
+                    start_mm: ends_mm[0],
+                    end_mm: ends_mm[1],
+                    shape: Shape::Spline(spline),
+                    feed_mm_s,
+                    corner,
+                    others: Others::default(),
+                };
+                Pieces::new(std::iter::once(Canon::Motion(motion))).collect()
             }
             Outline::Curve(jet) => {
                 let smooth = Smooth::new(Box::new(Closed { jet }));

@@ -99,14 +99,7 @@ pub fn write_page(
     introduction: &str,
     figures: &[CaptionedFigure],
 ) -> io::Result<()> {
-    let (title, introduction) = (escaped(title), escaped(introduction));
-    write!(
-        out,
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; img-src data:\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n\
-         <title>{title}</title>\n<style>\n{PAGE_CSS}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n<p>{introduction}</p>\n"
-    )?;
+    write_head(out, title, introduction, "")?;
     for entry in figures {
         write!(
             out,
@@ -116,6 +109,23 @@ pub fn write_page(
             escaped(&entry.caption)
         )?;
     }
+    write_foot(out)
+}
+
+/// The beginning of a self-contained page in the style of the figures; `more_css` is added to it.
+pub(crate) fn write_head(out: &mut impl Write, title: &str, introduction: &str, more_css: &str) -> io::Result<()> {
+    let (title, introduction) = (escaped(title), escaped(introduction));
+    write!(
+        out,
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; img-src data:\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n\
+         <title>{title}</title>\n<style>\n{PAGE_CSS}{more_css}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n<p>{introduction}</p>\n"
+    )
+}
+
+/// The end of such a page.
+pub(crate) fn write_foot(out: &mut impl Write) -> io::Result<()> {
     out.write_all(b"</main>\n</body>\n</html>\n")
 }
 

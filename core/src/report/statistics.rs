@@ -88,6 +88,7 @@ impl Statistics {
             part: facts.part,
             axes: facts.axes,
             outcome: facts.run.outcome,
+            faded_out: facts.run.faded_out,
             time_s: facts.run.time_s,
             rms_um: self.rms_um(),
             max_um: self.max_um(),
@@ -108,6 +109,16 @@ impl Statistics {
     /// Root mean square of the contour error over the rows that cut, µm; 0 without such rows.
     pub fn rms_um(&self) -> f64 {
         if self.cutting_rows == 0 { 0.0 } else { (self.square_sum_mm2 / self.cutting_rows as f64).sqrt() * 1e3 }
+    }
+
+    /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.
+    pub fn max_deviation_um(&self) -> f64 {
+        self.max_deviation_mm * 1e3
+    }
+
+    /// Largest torque of each axis, N m.
+    pub fn peak_torque_nm(&self) -> [f64; 3] {
+        self.peak_torque_nm
     }
 
     /// Largest |contour error| over the rows that cut, µm.

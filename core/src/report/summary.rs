@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::statistics::Histogram;
 use super::worst::WorstPlace;
 use crate::simulate::Run;
-use crate::trace::Outcome;
+use crate::trace::{FadedOut, Outcome};
 
 /// What [`Statistics`](super::Statistics) cannot see in the rows of a run.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -35,6 +35,8 @@ pub struct RunSummary {
     pub axes: usize,
     /// How the run ended.
     pub outcome: Outcome,
+    /// Whether the safety layer took the controller out of the loop, when and why.
+    pub faded_out: Option<FadedOut>,
     /// Machining time: when the command has ended, s.
     pub time_s: f64,
     /// Root mean square of the contour error over the rows that cut, µm.

@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::report::text::{change, duration, escaped, fixed, number, signed};
-use crate::report::{Outcome, Report, Run, RunSummary, TimelineEvent, WorstPlace};
+use crate::report::{FadedOut, Outcome, Report, Run, RunSummary, TimelineEvent, WorstPlace};
 
 const AXES: [&str; 3] = ["X", "Y", "Z"];
 
@@ -41,9 +41,12 @@ fn write_summary_row(
     first: Option<&RunSummary>,
     axes: usize,
 ) -> io::Result<()> {
-    let note = match &run.outcome {
-        Outcome::Completed => String::new(),
-        Outcome::Diverged { at_s } => format!("<small class=\"alarm\">diverged at {}</small>", duration(*at_s)),
+    let note = match (&run.outcome, &run.faded_out) {
+        (Outcome::Diverged { at_s }, _) => format!("<small class=\"alarm\">diverged at {}</small>", duration(*at_s)),
+        (Outcome::Completed, Some(FadedOut { at_s, cause })) => {
+            format!("<small class=\"alarm\">open loop from {} on: {cause}</small>", duration(*at_s))
+        }
+        (Outcome::Completed, None) => String::new(),
     };
     write!(
         out,

@@ -37,7 +37,11 @@ pub(super) fn verdict(report: &Report) -> String {
         Some(limit) => format!(": out of the tolerance of {} µm", number(limit)),
         None => String::new(),
     };
-    format!("{numbers}{tolerance}.")
+    let faded = last.faded_out.map_or(String::new(), |faded| {
+        let (name, from) = (name(last), duration(faded.at_s));
+        format!(" The safety layer took {name} out of the loop at {from}, because {}.", faded.cause)
+    });
+    format!("{numbers}{tolerance}.{faded}")
 }
 
 fn name(run: &RunSummary) -> String {

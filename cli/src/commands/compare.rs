@@ -1,0 +1,231 @@
+//! `feedwright compare`: the table of all controllers on all contours and machines.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use feedwright::compare::journal::Journal;
+use feedwright::compare::tolerance::TOLERANCE_UM;
+use feedwright::compare::{Comparison, Options, Watch, Workpiece, all_controllers, compare, page};
+use feedwright::controllers::BASELINE;
+use feedwright::identify::cache;
+use feedwright::machine::{BUILT_IN, Machine};
+use feedwright::output::OutputFile;
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+
+use crate::args::CompareArgs;
+use crate::message::printed;
+use crate::progress::Bar;
+
+pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Result<ExitCode> {
+    let options = options(args)?;
+    if let Some(threads) = args.threads {
+        rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global().into_diagnostic()?;
+    }
+    let mut files = Files::create(args)?;
+    let mut journal = journal(&options);
+    if journal.known() > 0 {
+        eprintln!("going on where an earlier run was interrupted: {} rows are there", journal.known());
+    }
+    let bar = Bar::new(quiet, 0);
+    let comparison = compare(&options, &mut journal, &bar)?;
+    bar.clear();
+    files.write(&comparison)?;
+    journal.remove();
+    printed(print(args, &comparison), ExitCode::SUCCESS)
+}
+
+impl Watch for Bar {
+    fn tuning(&self, searches: u64) {
+        self.begin("tuning every controller alike", searches);
+    }
+
+    fn cutting(&self, cuts: u64) {
+        self.begin("cutting", cuts);
+    }
+
+    fn holding(&self, searches: u64) {
+        self.begin("raising the feed to the tolerance", searches);
+    }
+
+    fn done(&self) {
+        self.step();
+    }
+}
+
+fn options(args: &CompareArgs) -> Result<Options> {
+    let mut workpieces = Workpiece::contours();
+    let mut machines: Vec<Machine> =
+        BUILT_IN.iter().map(|(name, _)| Machine::load(name.as_ref())).collect::<Result<_, _>>()?;
+    let mut controllers = all_controllers();
+    let known: Vec<String> = (workpieces.iter().map(|w| w.name.clone()))
+        .chain(machines.iter().map(|m| m.name.clone()))
+        .chain(controllers.iter().map(|c| c.name.to_owned()))
+        .collect();
+    for name in &args.only {
+        if !known.contains(name) {
+            return Err(miette!(
+                help = format!("there are {}", known.join(", ")),
+                "--only: no contour, machine or controller is called '{name}'"
+            ));
+        }
+    }
+    let named = |name: &str| args.only.iter().any(|only| only == name);
+    if workpieces.iter().any(|w| named(&w.name)) || !args.part.is_empty() && !args.only.is_empty() {
+        workpieces.retain(|w| named(&w.name));
+    }
+    if machines.iter().any(|m| named(&m.name)) {
+        // The first is what the controllers know.
+        let nominal = machines[0].name.clone();
+        machines.retain(|m| named(&m.name) || m.name == nominal);
+    }
+    if controllers.iter().any(|c| named(c.name)) {
+        controllers.retain(|c| named(c.name) || c.name == BASELINE);
+    }
+    for part in &args.part {
+        workpieces.push(Workpiece::program(part)?);
+    }
+    for machine in &args.machine {
+        machines.push(Machine::load(machine)?);
+    }
+    Ok(Options {
+        workpieces,
+        machines,
+        controllers,
+        seed: args.seed,
+        tune: !args.no_tuning,
+        at_tolerance: args.at_tolerance,
+    })
+}
+
+/// The journal of these options and this program; none where there is no place for it.
+fn journal(options: &Options) -> Journal {
+    let program = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
+    let key = cache::key_of(&[options.fingerprint().as_bytes(), &program]);
+    cache::folder().and_then(|folder| Journal::open(&folder, &key).ok()).unwrap_or_else(Journal::none)
+}
+
+/// The files that are asked for, made before the work begins.
+struct Files {
+    json: Option<OutputFile>,
+    html: Option<OutputFile>,
+}
+
+impl Files {
+    fn create(args: &CompareArgs) -> Result<Self> {
+        let machines: Vec<PathBuf> = args.machine.iter().map(PathBuf::from).collect();
+        let inputs: Vec<&Path> = args.part.iter().chain(&machines).map(PathBuf::as_path).collect();
+        let create = |path: &Option<PathBuf>| path.as_ref().map(|path| OutputFile::create(path, &inputs)).transpose();
+        Ok(Self { json: create(&args.json)?, html: create(&args.html)? })
+    }
+
+    fn write(&mut self, comparison: &Comparison) -> Result<()> {
+        let mut complete = Vec::new();
+        if let Some(mut file) = self.json.take() {
+            serde_json::to_writer_pretty(&mut file, comparison).into_diagnostic().wrap_err("cannot write the rows")?;
+            file.write_all(b"\n").into_diagnostic()?;
+            complete.push(file);
+        }
+        if let Some(mut file) = self.html.take() {
+            page::write(&mut file, comparison).into_diagnostic()?;
+            complete.push(file);
+        }
+        OutputFile::commit_all(complete)?;
+        Ok(())
+    }
+}
+
+fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let (verdicts, tolerances) = (&comparison.verdicts, &comparison.at_tolerance);
+    for tuned in comparison.tuned.iter().filter(|tuned| tuned.cuts > 0) {
+        let values: Vec<String> = tuned.values.iter().map(|(name, value)| format!("{name} {value:.3e}")).collect();
+        writeln!(
+            out,
+            "tuned {}: {} ({} cuts, {:.2} um)",
+            tuned.controller,
+            values.join(", "),
+            tuned.cuts,
+            tuned.rms_um
+        )?;
+    }
+    let mut heading = String::new();
+    for row in &comparison.rows {
+        let here = format!("{} on {}", row.contour, row.machine);
+        if here != heading {
+            writeln!(
+                out,
+                "\n{here:<34} {:>8} {:>9} {:>9} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} {:>8}",
+                "time s", "RMS um", "max um", "time", "RMS", "max", "off um", "N m", "tick us", "99.9 %"
+            )?;
+            heading = here;
+        }
+        let [median_us, most_us] =
+            row.tick_us.map_or(["-".to_owned(), "-".to_owned()], |us| us.map(|t| format!("{t:.1}")));
+        let note = match (&row.faded_out, row.completed) {
+            (_, false) => "  diverged".to_owned(),
+            (Some(cause), true) => format!("  open loop in the end: {cause}"),
+            (None, true) => String::new(),
+        };
+        writeln!(
+            out,
+            "{:<34} {:>8.3} {:>9.2} {:>9.2} {:>6.3} {:>6.3} {:>6.3} {:>8.0} {:>7.2} {median_us:>8} {most_us:>8}{note}",
+            row.controller,
+            row.time_s,
+            row.rms_um,
+            row.max_um,
+            row.time_ratio,
+            row.rms_ratio,
+            row.max_ratio,
+            row.max_deviation_um,
+            row.peak_torque_nm,
+        )?;
+    }
+    if !tolerances.is_empty() {
+        writeln!(
+            out,
+            "\n{:<20} {:<28} {:>9} {:>9} {:>6}",
+            format!("max {TOLERANCE_UM} um"),
+            "",
+            "feed mm/s",
+            "time s",
+            "time"
+        )?;
+        let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
+        for row in tolerances {
+            writeln!(
+                out,
+                "{:<20} {:<28} {:>9} {:>9} {:>6}",
+                row.contour,
+                row.controller,
+                row.feed_mm_s.map_or("-".to_owned(), |feed| format!("{feed:.1}")),
+                number(row.time_s),
+                number(row.time_ratio)
+            )?;
+        }
+    }
+    if !verdicts.is_empty() {
+        writeln!(out, "\n{:<66} {:<18} {:<10} {:>6} {:>6}", "", "", "", "ratio", "limit")?;
+    }
+    for verdict in verdicts {
+        writeln!(
+            out,
+            "{:<66} {:<18} {:<10} {:>6.3} {:>6.3}  {} ({})",
+            verdict.claim,
+            verdict.contour,
+            verdict.machine,
+            verdict.value,
+            verdict.limit,
+            if verdict.holds { "holds" } else { "FALLS SHORT" },
+            verdict.against
+        )?;
+    }
+    if !verdicts.is_empty() {
+        let held = verdicts.iter().filter(|verdict| verdict.holds).count();
+        writeln!(out, "{held} of {} claims hold", verdicts.len())?;
+    }
+    for path in [&args.json, &args.html].into_iter().flatten() {
+        writeln!(out, "wrote {}", path.display())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,288 @@
+//! The comparison: every controller on every contour and machine, in one table.
+//!
+//! Controllers are made from what is known of one machine, the nominal one, and meet all others unseen; those that
+//! identify also appear once more, identified on the machine that they cut on. Every controller with parameters is tuned
+//! by the same search first ([`tuning`]). A table is the same bit by bit for the same options, whatever the number of
+//! threads.
+//!
+//! | File | What |
+//! |---|---|
+//! | `compare/tuning.rs` | the search that tunes every controller alike |
+//! | `compare/table.rs` | rows and their ratios |
+//! | `compare/verdict.rs` | what is claimed, row by row |
+//! | `compare/tolerance.rs` | the machining time at which a tolerance just holds |
+//! | `compare/journal.rs` | finished rows on disk: an interrupted comparison goes on |
+//! | `compare/page.rs` | the page |
+
+mod cut;
+pub mod journal;
+pub mod page;
+pub mod table;
+pub mod tolerance;
+pub mod tuning;
+pub mod verdict;
+
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use serde::Serialize;
+use thiserror::Error;
+
+use crate::controllers::{CONTROLLERS, Entry, Knows};
+use crate::feed::LimitsError;
+use crate::gcode;
+use crate::gcode::canon::Corner;
+use crate::machine::Machine;
+use crate::path::contour::CONTOURS;
+use crate::path::pieces::Pieces;
+use crate::path::{PathError, Step};
+use cut::Maker;
+use journal::Journal;
+use table::{Row, Table};
+use tolerance::AtTolerance;
+use tuning::Tuned;
+use verdict::Verdict;
+
+/// Feedrate of the contours, mm/s.
+pub const FEED_MM_S: f64 = 50.0;
+/// How corners of the contours are taken: at the speed that the machine's limits allow.
+pub(crate) const CORNER: Corner = Corner::Continuous { tolerance_mm: None };
+/// Contour on which controllers are tuned.
+pub const TUNING_CONTOUR: &str = "eight";
+
+/// Something to cut.
+#[derive(Debug, Clone)]
+pub struct Workpiece {
+    /// Name.
+    pub name: String,
+    /// Whether it has no corners.
+    pub smooth: bool,
+    /// Its path.
+    pub steps: Vec<Step>,
+}
+
+impl Workpiece {
+    /// The closed-form contours at [`FEED_MM_S`].
+    pub fn contours() -> Vec<Self> {
+        CONTOURS
+            .iter()
+            .map(|contour| Self {
+                name: contour.name.to_owned(),
+                smooth: contour.is_smooth(),
+                steps: contour.steps(FEED_MM_S, CORNER).expect("the built-in contours have a path"),
+            })
+            .collect()
+    }
+}
+
+impl Workpiece {
+    /// A program, as it is read and cut elsewhere.
+    ///
+    /// # Errors
+    /// A program with mistakes, one that leaves the XY plane, or one without a path.
+    pub fn program(file: &Path) -> Result<Self, PartError> {
+        let settings = gcode::Settings::default();
+        let summary = gcode::check(file, settings.clone()).map_err(crate::pipeline::Error::from)?;
+        if summary.moves[2] {
+            return Err(PartError::LeavesPlane { part: file.to_owned() });
+        }
+        let steps = gcode::Reader::open(file, settings).map_err(crate::pipeline::Error::from)?.map_while(Result::ok);
+        let steps: Result<Vec<Step>, PathError> = Pieces::new(steps).collect();
+        let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
+        let steps = steps.map_err(|fault| crate::pipeline::Error::Path { part: file.to_owned(), fault })?;
+        Ok(Self { name, smooth: false, steps })
+    }
+}
+
+/// Why a program cannot be compared on.
+#[derive(Debug, Error, miette::Diagnostic)]
+pub enum PartError {
+    /// It cannot be read, or has mistakes.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Program(#[from] crate::pipeline::Error),
+    /// The comparison is of two axes.
+    #[error("{} moves Z; the comparison is of motions in the XY plane", part.display())]
+    #[diagnostic(help("feedwright run compares two controllers on programs in space"))]
+    LeavesPlane {
+        /// The program.
+        part: PathBuf,
+    },
+}
+
+/// A controller in the comparison.
+#[derive(Debug, Clone, Copy)]
+pub struct Competitor {
+    /// Its row in the table of controllers.
+    pub entry: &'static Entry,
+    /// Whether it is identified on the machine that it cuts on, instead of the nominal one.
+    pub at_home: bool,
+}
+
+/// What stands behind the name of a competitor that is identified on the machine that it cuts on.
+pub const AT_HOME: &str = "+identified";
+
+impl Competitor {
+    /// Its name in the table.
+    pub fn name(&self) -> String {
+        format!("{}{}", self.entry.name, if self.at_home { AT_HOME } else { "" })
+    }
+}
+
+/// What is to be compared.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// Contours and parts.
+    pub workpieces: Vec<Workpiece>,
+    /// Machines; the first is the nominal one.
+    pub machines: Vec<Machine>,
+    /// Controllers, open loop among them: the ratios are against it.
+    pub controllers: Vec<&'static Entry>,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Whether to tune, or to take the defaults.
+    pub tune: bool,
+    /// Whether to look for the machining times at equal tolerance too.
+    pub at_tolerance: bool,
+}
+
+/// Progress of a comparison: how many cuts there are, and that one more is done.
+pub trait Watch: Sync {
+    /// The controllers are tuned: so many searches.
+    fn tuning(&self, searches: u64);
+    /// The table is made: so many cuts, some of which an earlier run has left.
+    fn cutting(&self, cuts: u64);
+    /// Machining times at equal tolerance are looked for: so many searches.
+    fn holding(&self, searches: u64);
+    /// One is done.
+    fn done(&self);
+}
+
+/// Tells nobody.
+impl Watch for () {
+    fn tuning(&self, _: u64) {}
+    fn cutting(&self, _: u64) {}
+    fn holding(&self, _: u64) {}
+    fn done(&self) {}
+}
+
+/// A finished comparison.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// Name of the nominal machine.
+    pub nominal: String,
+    /// Seed.
+    pub seed: u64,
+    /// The values that the controllers ran with.
+    pub tuned: Vec<Tuned>,
+    /// All rows: by workpiece, then machine, then controller.
+    pub rows: Vec<Row>,
+    /// What is claimed, row by row.
+    pub verdicts: Vec<Verdict>,
+    /// Machining times at equal tolerance, where they were asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub at_tolerance: Vec<AtTolerance>,
+}
+
+impl Options {
+    /// All competitors in the order of the table.
+    pub fn competitors(&self) -> Vec<Competitor> {
+        let unseen = self.controllers.iter().map(|&entry| Competitor { entry, at_home: false });
+        let identifying = self.controllers.iter().filter(|entry| entry.knows == Knows::Identified);
+        unseen.chain(identifying.map(|&entry| Competitor { entry, at_home: true })).collect()
+    }
+
+    /// What the result depends on, apart from the program: the key of the journal.
+    pub fn fingerprint(&self) -> String {
+        let workpieces: Vec<_> = self.workpieces.iter().map(|w| (&w.name, format!("{:?}", w.steps))).collect();
+        let machines: Vec<_> = self.machines.iter().map(|m| (&m.name, m.fingerprint())).collect();
+        let names: Vec<_> = self.controllers.iter().map(|entry| entry.name).collect();
+        let content = serde_json::json!([workpieces, machines, names, self.seed, self.tune]);
+        blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+    }
+}
+
+/// Compares. Rows that the journal holds are not cut again.
+///
+/// # Errors
+/// Where a machine has no sensible limits.
+pub fn compare(options: &Options, journal: &mut Journal, watch: &dyn Watch) -> Result<Comparison, LimitsError> {
+    let nominal = &options.machines[0];
+    let tuned = tuned(options, journal, watch)?;
+    let competitors = options.competitors();
+    // One maker each: what it has identified serves all workpieces.
+    let pairs: Vec<(&Machine, &Competitor)> = options
+        .machines
+        .iter()
+        .flat_map(|machine| competitors.iter().map(move |competitor| (machine, competitor)))
+        // At home on the nominal machine is the unseen controller once more.
+        .filter(|(machine, competitor)| !competitor.at_home || machine.name != nominal.name)
+        .collect();
+    watch.cutting((pairs.len() * options.workpieces.len()) as u64);
+    let journal = std::sync::Mutex::new(journal);
+    let rows: Result<Vec<Vec<Row>>, LimitsError> = pairs
+        .par_iter()
+        .map(|(machine, competitor)| {
+            let maker = Maker { competitor, nominal, seed: options.seed, tuned: &tuned };
+            let mut controller = None;
+            let row = |workpiece: &Workpiece| {
+                let known = journal.lock().ok().and_then(|journal| journal.row(&workpiece.name, machine, competitor));
+                let row = match known {
+                    Some(row) => row,
+                    None => {
+                        let controller = controller.get_or_insert_with(|| maker.make(machine));
+                        let row = cut::cut(workpiece, machine, competitor, &mut **controller)?;
+                        if let Ok(mut journal) = journal.lock() {
+                            journal.add(&row);
+                        }
+                        row
+                    }
+                };
+                watch.done();
+                Ok(row)
+            };
+            options.workpieces.iter().map(row).collect()
+        })
+        .collect();
+    let table = Table::new(rows?.into_iter().flatten().collect(), options);
+    let at_tolerance = if options.at_tolerance { tolerance::at_tolerance(options, &tuned, watch)? } else { Vec::new() };
+    Ok(Comparison {
+        nominal: nominal.name.clone(),
+        seed: options.seed,
+        verdicts: verdict::verdicts(&table.rows, &nominal.name, &options.workpieces),
+        tuned,
+        rows: table.rows,
+        at_tolerance,
+    })
+}
+
+/// The values of all controllers that have parameters.
+fn tuned(options: &Options, journal: &mut Journal, watch: &dyn Watch) -> Result<Vec<Tuned>, LimitsError> {
+    let tunable: Vec<_> = options.controllers.iter().filter(|entry| !entry.parameters.is_empty()).collect();
+    watch.tuning(tunable.len() as u64);
+    let journal = std::sync::Mutex::new(journal);
+    tunable
+        .par_iter()
+        .map(|entry| {
+            let known = journal.lock().ok().and_then(|journal| journal.tuned(entry.name));
+            let tuned = match known {
+                Some(tuned) => tuned,
+                None if options.tune => {
+                    let tuned = tuning::search(entry, &options.machines[0], options.seed)?;
+                    if let Ok(mut journal) = journal.lock() {
+                        journal.add_tuned(&tuned);
+                    }
+                    tuned
+                }
+                None => Tuned::defaults(entry),
+            };
+            watch.done();
+            Ok(tuned)
+        })
+        .collect()
+}
+
+/// All controllers of the library.
+pub fn all_controllers() -> Vec<&'static Entry> {
+    CONTROLLERS.iter().collect()
+}

@@ -1,0 +1,112 @@
+//! The table: one row for each workpiece, machine and controller, with ratios against open loop.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Competitor, Options, Workpiece};
+use crate::controllers::{BASELINE, Knows};
+use crate::machine::Machine;
+use crate::report::Statistics;
+use crate::simulate::Run;
+use crate::trace::Outcome;
+
+/// One row.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Contour or part.
+    pub contour: String,
+    /// Machine that was cut on.
+    pub machine: String,
+    /// Controller.
+    pub controller: String,
+    /// Machining time, s.
+    pub time_s: f64,
+    /// RMS contour error, um.
+    pub rms_um: f64,
+    /// Largest contour error, um.
+    pub max_um: f64,
+    /// Largest distance of the command from the point of the path of the same instant, um.
+    pub max_deviation_um: f64,
+    /// Largest torque of any axis, N m.
+    pub peak_torque_nm: f64,
+    /// Machining time against open loop on the same machine.
+    pub time_ratio: f64,
+    /// RMS against open loop.
+    pub rms_ratio: f64,
+    /// Largest error against open loop.
+    pub max_ratio: f64,
+    /// Whether it was cut to its end.
+    pub completed: bool,
+    /// Why the safety layer took the controller out of the loop, where it did.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub faded_out: Option<String>,
+    /// Contour error along the cut, um, for plots.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub error_um: Vec<f32>,
+    /// Median and 99.9 % of the time of the ticks that decide, us: of the computer, not of the comparison, and not equal
+    /// from run to run.
+    #[serde(skip)]
+    pub tick_us: Option<[f64; 2]>,
+}
+
+impl Row {
+    pub(super) fn new(
+        workpiece: &Workpiece,
+        machine: &Machine,
+        competitor: &Competitor,
+        statistics: &Statistics,
+        run: &Run,
+        error_um: Vec<f32>,
+    ) -> Self {
+        Self {
+            contour: workpiece.name.clone(),
+            machine: machine.name.clone(),
+            controller: competitor.name(),
+            time_s: run.time_s,
+            rms_um: statistics.rms_um(),
+            max_um: statistics.max_um(),
+            max_deviation_um: statistics.max_deviation_um(),
+            peak_torque_nm: statistics.peak_torque_nm().into_iter().fold(0.0, f64::max),
+            time_ratio: 1.0,
+            rms_ratio: 1.0,
+            max_ratio: 1.0,
+            completed: run.outcome == Outcome::Completed,
+            faded_out: run.faded_out.map(|faded| faded.cause.to_owned()),
+            error_um,
+            tick_us: Some([run.ticks.quantile_us(0.5), run.ticks.quantile_us(0.999)]),
+        }
+    }
+}
+
+/// All rows in order, ratios filled in.
+pub(super) struct Table {
+    pub(super) rows: Vec<Row>,
+}
+
+impl Table {
+    pub(super) fn new(cuts: Vec<Row>, options: &Options) -> Self {
+        let mut rows = Vec::with_capacity(cuts.len());
+        for workpiece in &options.workpieces {
+            for machine in &options.machines {
+                let here = cuts.iter().filter(|row| row.contour == workpiece.name && row.machine == machine.name);
+                let base = here.clone().find(|row| row.controller == BASELINE);
+                rows.extend(here.map(|row| against(row.clone(), base)));
+            }
+        }
+        Self { rows }
+    }
+}
+
+fn against(mut row: Row, base: Option<&Row>) -> Row {
+    if let Some(base) = base {
+        row.time_ratio = row.time_s / base.time_s;
+        row.rms_ratio = row.rms_um / base.rms_um;
+        row.max_ratio = row.max_um / base.max_um;
+    }
+    row
+}
+
+/// What the controller of a row knows; nothing where its name is none.
+pub fn knows(row: &Row) -> Option<Knows> {
+    let name = row.controller.strip_suffix(super::AT_HOME).unwrap_or(&row.controller);
+    crate::controllers::Entry::find(name).map(|entry| entry.knows)
+}

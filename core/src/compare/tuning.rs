@@ -1,0 +1,223 @@
+//! The search that tunes every controller alike, on one contour of one machine.
+//!
+//! Parameters whose range begins above zero are searched by ratios, others by differences. First the default and the points
+//! of a Halton sequence, then a pattern search (Hooke and Jeeves 1961) from the best, whose step halves where no neighbour is
+//! better. What is minimised is the RMS contour error, at no more time than open loop takes: each percent above costs as
+//! much as ten percent of error.
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::cut::cut_once;
+use super::{TUNING_CONTOUR, Workpiece};
+use crate::controllers::{BASELINE, Choices, Entry, Make, Parameter, Setup};
+use crate::feed::LimitsError;
+use crate::machine::Machine;
+use crate::trace::Outcome;
+
+/// Points of the Halton sequence for each parameter.
+const SCATTERED: usize = 12;
+/// First step of the pattern search, as a part of the range.
+const FIRST_STEP: f64 = 0.125;
+/// Halvings of the step.
+const HALVINGS: u32 = 4;
+/// Most moves at one step size.
+const MOVES: u32 = 6;
+/// Bases of the Halton sequence: as many as there are parameters at most.
+const BASES: [u32; 6] = [2, 3, 5, 7, 11, 13];
+/// Cost of a percent of time, in percent of error.
+const TIME_PRICE: f64 = 10.0;
+
+/// The values that a search came to.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Tuned {
+    /// Controller.
+    pub controller: String,
+    /// Names and values, in the order of the controller's parameters.
+    pub values: Vec<(String, f64)>,
+    /// Cuts that it took; 0 where nothing was searched.
+    pub cuts: u64,
+    /// RMS contour error at these values, um; 0 where nothing was searched.
+    pub rms_um: f64,
+}
+
+impl Tuned {
+    /// The defaults.
+    pub fn defaults(entry: &Entry) -> Self {
+        let values = entry.parameters.iter().map(|p| (p.name.to_owned(), p.default)).collect();
+        Self { controller: entry.name.to_owned(), values, cuts: 0, rms_um: 0.0 }
+    }
+
+    /// The values alone.
+    pub fn values(&self) -> Vec<f64> {
+        self.values.iter().map(|(_, value)| *value).collect()
+    }
+}
+
+/// Tunes a controller on the machine.
+///
+/// # Errors
+/// Where the machine has no sensible limits.
+pub fn search(entry: &'static Entry, machine: &Machine, seed: u64) -> Result<Tuned, LimitsError> {
+    let workpiece = Workpiece::contours().into_iter().find(|w| w.name == TUNING_CONTOUR);
+    let workpiece = workpiece.expect("the tuning contour is one of the contours");
+    let base = Entry::find(BASELINE).expect("the baseline is in the table");
+    let open_loop = Trial { entry: base, machine, workpiece: &workpiece, seed, open_time_s: f64::INFINITY };
+    let open_time_s = open_loop.cut(&[])?.time_s;
+    let trial = Trial { entry, machine, workpiece: &workpiece, seed, open_time_s };
+    trial.search()
+}
+
+struct Trial<'a> {
+    entry: &'static Entry,
+    machine: &'a Machine,
+    workpiece: &'a Workpiece,
+    seed: u64,
+    open_time_s: f64,
+}
+
+/// What a trial came to.
+#[derive(Debug, Clone, Copy)]
+struct Result_ {
+    time_s: f64,
+    rms_um: f64,
+    sound: bool,
+}
+
+/// A point of the unit cube and its cost.
+#[derive(Debug, Clone)]
+struct Point {
+    place: Vec<f64>,
+    cost: f64,
+}
+
+impl Trial<'_> {
+    fn search(&self) -> Result<Tuned, LimitsError> {
+        let parameters = self.entry.parameters;
+        let default: Vec<f64> = parameters.iter().map(place_of_default).collect();
+        let scattered = (1..=SCATTERED * parameters.len()).map(|i| halton(i, parameters.len()));
+        let mut points = self.costs(std::iter::once(default).chain(scattered).collect())?;
+        let mut cuts = points.len() as u64;
+        points.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+        let mut best = points.swap_remove(0);
+        let mut step = FIRST_STEP;
+        for _ in 0..=HALVINGS {
+            for _ in 0..MOVES {
+                let mut around = self.costs(neighbours(&best.place, step))?;
+                cuts += around.len() as u64;
+                around.sort_by(|a, b| a.cost.total_cmp(&b.cost));
+                if around.first().is_none_or(|nearest| nearest.cost >= best.cost) {
+                    break;
+                }
+                best = around.swap_remove(0);
+            }
+            step *= 0.5;
+        }
+        let values = self.values(&best.place);
+        let rms_um = self.cut(&values)?.rms_um;
+        let values = parameters.iter().zip(values).map(|(p, value)| (p.name.to_owned(), value)).collect();
+        Ok(Tuned { controller: self.entry.name.to_owned(), values, cuts, rms_um })
+    }
+
+    fn costs(&self, places: Vec<Vec<f64>>) -> Result<Vec<Point>, LimitsError> {
+        places.into_par_iter().map(|place| Ok(Point { cost: self.cost(&place)?, place })).collect()
+    }
+
+    fn cost(&self, place: &[f64]) -> Result<f64, LimitsError> {
+        let result = self.cut(&self.values(place))?;
+        let longer = (result.time_s / self.open_time_s - 1.0).max(0.0);
+        Ok(if result.sound { result.rms_um * (1.0 + TIME_PRICE * longer) } else { f64::INFINITY })
+    }
+
+    fn cut(&self, values: &[f64]) -> Result<Result_, LimitsError> {
+        let choices = Choices { seed: self.seed, values: values.to_vec(), ..Choices::default() };
+        let mut setup = Setup { machine: self.machine, choices: &choices, progress: &mut |_| {} };
+        let mut controller = Make::<2>::make(self.entry, &mut setup);
+        let cut = cut_once(self.workpiece, self.machine, &mut *controller, self.entry.laps, &mut [])?;
+        Ok(Result_ {
+            time_s: cut.run.time_s,
+            rms_um: cut.statistics.rms_um(),
+            sound: cut.run.outcome == Outcome::Completed && cut.run.faded_out.is_none(),
+        })
+    }
+
+    fn values(&self, place: &[f64]) -> Vec<f64> {
+        self.entry.parameters.iter().zip(place).map(|(parameter, &at)| value_at(parameter, at)).collect()
+    }
+}
+
+/// The value at a place from 0 to 1 of the range.
+fn value_at(parameter: &Parameter, at: f64) -> f64 {
+    let [low, high] = parameter.range;
+    if low > 0.0 { low * (high / low).powf(at) } else { low + at * (high - low) }
+}
+
+fn place_of_default(parameter: &Parameter) -> f64 {
+    let [low, high] = parameter.range;
+    let value = parameter.default;
+    if low > 0.0 { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
+}
+
+/// One step up and down along each parameter, inside the range.
+fn neighbours(place: &[f64], step: f64) -> Vec<Vec<f64>> {
+    let mut all = Vec::with_capacity(2 * place.len());
+    for axis in 0..place.len() {
+        for change in [-step, step] {
+            let mut moved = place.to_vec();
+            moved[axis] = (moved[axis] + change).clamp(0.0, 1.0);
+            if moved != place {
+                all.push(moved);
+            }
+        }
+    }
+    all
+}
+
+/// The i-th point of the Halton sequence (Halton 1960).
+fn halton(i: usize, dimensions: usize) -> Vec<f64> {
+    let digit_reversed = |base: u32| {
+        let (mut i, mut fraction, mut sum) = (i as u32, 1.0, 0.0);
+        while i > 0 {
+            fraction /= f64::from(base);
+            sum += f64::from(i % base) * fraction;
+            i /= base;
+        }
+        sum
+    };
+    BASES.into_iter().cycle().take(dimensions).map(digit_reversed).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_and_values_are_each_others_inverse() {
+        for parameter in [
+            Parameter { name: "ratio", range: [1e-3, 10.0], default: 0.2 },
+            Parameter { name: "difference", range: [0.0, 4.0], default: 1.0 },
+        ] {
+            let value = value_at(&parameter, place_of_default(&parameter));
+            assert!((value - parameter.default).abs() < 1e-12, "{value}");
+            assert_eq!([value_at(&parameter, 0.0), value_at(&parameter, 1.0)], parameter.range);
+        }
+    }
+
+    #[test]
+    fn the_halton_sequence_is_the_published_one() {
+        let first: Vec<Vec<f64>> = (1..=4).map(|i| halton(i, 2)).collect();
+        let expected = [[0.5, 1.0 / 3.0], [0.25, 2.0 / 3.0], [0.75, 1.0 / 9.0], [0.125, 4.0 / 9.0]];
+        for (point, expected) in first.iter().zip(expected) {
+            assert!(point.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-15), "{point:?}");
+        }
+    }
+
+    #[test]
+    fn a_search_finds_values_no_worse_than_the_defaults() {
+        let machine = Machine::load("tnv40".as_ref()).unwrap();
+        let entry = Entry::find("magnitude-only").unwrap();
+        let tuned = search(entry, &machine, 1).unwrap();
+        assert!(tuned.cuts > 20 && tuned.values.len() == entry.parameters.len(), "{tuned:?}");
+        assert_eq!(tuned, search(entry, &machine, 1).unwrap());
+    }
+}
