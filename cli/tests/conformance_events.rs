@@ -77,6 +77,15 @@ fn an_axis_that_turns_alone_takes_its_time_and_is_told() {
     assert!((turned("U36") - 6.0).abs() < 0.002);
     // Inverse time: a tenth of a minute, whatever the way.
     assert!((turned("G93 F10 B90\nG94 F360") - 6.0).abs() < 0.002);
+    // Rapids, and feeds beyond it, turn at the rate of the machine; without one, at once.
+    folder.file("slow.toml", format!("{TNV40}\nrotary_deg_s = 3\n"));
+    let still_slow = time_s(&folder, &program("M0"), "slow.toml");
+    for (turn, slow_s, plain_s) in [("G0 A36 B-6\nG1", 12.0, 0.0), ("A36", 12.0, 6.0), ("F90 A6\nF360", 4.0, 4.0)] {
+        assert!((time_s(&folder, &program(turn), "slow.toml") - still_slow - slow_s).abs() < 0.002, "{turn}");
+        assert!((turned(turn) - plain_s).abs() < 0.002, "{turn}");
+    }
+    // 400 mm/s.
+    assert!((turned("G0 U400\nG1") - 1.0).abs() < 0.002);
     folder.file("part.ngc", program("A36 C10"));
     let ran = folder.run_open_loop(&["part.ngc"]).succeeded();
     let told = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -95,6 +95,8 @@ pub struct Durations {
     pub pallet_change_s: f64,
     /// Rate at which the spindle changes its speed, rev/min in a second; 0 is at once.
     pub spindle_rev_min_s: f64,
+    /// Most that a rotary axis A, B or C turns in a second, degrees; 0 is no limit, and at once in a rapid.
+    pub rotary_deg_s: f64,
 }
 
 /// An M-code that the machine builder gave a meaning: table `[plc.event."M64 P3"]`.

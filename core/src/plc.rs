@@ -53,6 +53,11 @@ impl Plc {
         }
     }
 
+    /// How long a rotary axis takes to turn, s.
+    pub fn turn_s(&self, degrees: f64) -> f64 {
+        if self.durations.rotary_deg_s > 0.0 { degrees / self.durations.rotary_deg_s } else { 0.0 }
+    }
+
     fn runs(&self) -> bool {
         self.spindle_rev_min != 0.0
     }
@@ -69,8 +74,13 @@ impl Plc {
 mod tests {
     use super::*;
 
-    const DURATIONS: Durations =
-        Durations { tool_change_s: 5.0, coolant_s: 0.5, pallet_change_s: 10.0, spindle_rev_min_s: 2000.0 };
+    const DURATIONS: Durations = Durations {
+        tool_change_s: 5.0,
+        coolant_s: 0.5,
+        pallet_change_s: 10.0,
+        spindle_rev_min_s: 2000.0,
+        rotary_deg_s: 60.0,
+    };
 
     fn m(code: u16) -> EventKind {
         EventKind::MCode { code, p: None, q: None }
@@ -93,6 +103,12 @@ mod tests {
         plc.takes_s(&m(3));
         assert_eq!(plc.takes_s(&m(6)), 7.0);
         assert_eq!(plc.takes_s(&m(6)), 5.0);
+    }
+
+    #[test]
+    fn rotary_axes_turn_at_their_rate_or_at_once() {
+        assert_eq!(Plc::new(DURATIONS).turn_s(90.0), 1.5);
+        assert_eq!(Plc::default().turn_s(90.0), 0.0);
     }
 
     #[test]

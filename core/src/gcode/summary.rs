@@ -148,7 +148,7 @@ impl Summary {
         let message = format!("line {line}: {names} moves; only X, Y and Z are simulated and controlled");
         let mut warning = Diagnostic::of_file(Severity::Warning, "gcode::other_axes", self.name.clone(), message);
         warning.hint = Some(
-            "its feed motions alone count with their time, rapids with none; together with X, Y or Z it is taken along"
+            "where it moves alone it takes its time (rotary_deg_s in [plc]); together with X, Y or Z it is taken along"
                 .to_owned(),
         );
         Some(warning)

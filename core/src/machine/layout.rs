@@ -82,6 +82,7 @@ fn plc(mut table: Table<'_, '_>, events: &mut Vec<PlcEvent>, faults: &mut Vec<Fa
         coolant_s: table.number("coolant_s", "s", 0.0..=1e4, faults),
         pallet_change_s: table.number("pallet_change_s", "s", 0.0..=1e5, faults),
         spindle_rev_min_s: table.number("spindle_rev_min_s", "rev/min/s", 0.0..=1e7, faults),
+        rotary_deg_s: table.optional_number("rotary_deg_s", "degrees/s", 0.0..=1e5, faults).unwrap_or(0.0),
     };
     if let Some(named) = table.optional_table("event", faults) {
         for (key, table) in named.tables(faults) {

@@ -73,6 +73,21 @@ impl<'t, 'i> Table<'t, 'i> {
         f64::NAN
     }
 
+    /// As `number`, for a key that may be left out.
+    pub(super) fn optional_number(
+        &mut self,
+        key: &'static str,
+        unit: &str,
+        range: RangeInclusive<f64>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<f64> {
+        if self.entries.is_some_and(|entries| entries.contains_key(key)) {
+            return Some(self.number(key, unit, range, faults));
+        }
+        self.asked.push(key);
+        None
+    }
+
     /// A text that is not blank; empty and a fault where it is.
     pub(super) fn text(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> String {
         let Some(value) = self.required(key, faults) else {

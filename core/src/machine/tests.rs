@@ -242,6 +242,15 @@ fn m_codes_may_be_given_a_meaning() {
 }
 
 #[test]
+fn the_rate_of_rotary_axes_may_be_left_out() {
+    assert_eq!(tnv40().plc.rotary_deg_s, 0.0);
+    assert_eq!(with_events("rotary_deg_s = 90").unwrap().plc.rotary_deg_s, 90.0);
+    assert!(
+        fault_after("spindle_rev_min_s = 4000", "rotary_deg_s = -1\nspindle_rev_min_s = 4000").contains("degrees/s")
+    );
+}
+
+#[test]
 fn faults_of_named_m_codes_have_their_places() {
     let faults = |text: &str| match with_events(text) {
         Err(MachineError::Invalid { problems, .. }) => problems.iter().map(ToString::to_string).collect::<Vec<_>>(),
