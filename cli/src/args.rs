@@ -145,7 +145,7 @@ pub(crate) struct ReaderArgs {
     /// Whose G-code it is: auto, linuxcnc, fanuc, haas, grbl, marlin or klipper. auto looks at the beginning.
     #[arg(long, value_name = "NAME", default_value = AUTO)]
     pub(crate) dialect: String,
-    /// Motions and events after which a program counts as endless.
+    /// Motions after which a program counts as endless.
     #[arg(long, value_name = "N", default_value_t = Settings::default().max_motions, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     pub(crate) max_motions: u64,
     /// Lines without a motion in a row after which a loop counts as endless.

@@ -95,7 +95,7 @@ pub struct Settings {
     pub coordinate_limit_mm: f64,
     /// Lines that may be carried out without a motion before the program counts as an endless loop.
     pub max_idle_lines: u64,
-    /// Motions and events that a program may have.
+    /// Motions that a program may have.
     pub max_motions: u64,
     /// Calls and loops inside each other.
     pub max_depth: usize,
