@@ -25,6 +25,10 @@ tables: paper
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
     cargo run --release -p feedwright --example tables
 
+# Write the messages of docs/gcode-mistakes.md anew.
+mistakes:
+    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright-cli --test golden_gcode_mistakes
+
 # Instructions of one piece of work in the servo thread, counted by callgrind (Debian: valgrind).
 instructions:
     #!/usr/bin/env bash

@@ -3,13 +3,15 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use feedwright::gcode::{AUTO, Dialect, INCH_MM, Settings, ToolTable};
+use miette::Result;
 
 /// Predict the contour error of a CNC program on a machine, and correct it.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 110)]
 pub(crate) struct Cli {
-    /// Show no progress.
+    /// Show no progress, and not as what a program is read.
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
     #[command(subcommand)]
@@ -19,12 +21,12 @@ pub(crate) struct Cli {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Cut a part on a simulated machine, open loop and with a controller, and write the report.
-    Run(RunArgs),
+    Run(Box<RunArgs>),
     /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
     Paper(PaperArgs),
     /// Compare all controllers on contours and machines, in one table.
     Compare(CompareArgs),
-    /// Report all mistakes of G-code programs and machine files.
+    /// Report all mistakes of G-code programs and machine files; of a folder, of all programs in it.
     Check(CheckArgs),
     /// Print the canonical motions of a program, one JSON object a line, in mm and s.
     Canon(CanonArgs),
@@ -71,6 +73,8 @@ pub(crate) struct RunArgs {
     /// Seed of the identifier's training.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
 }
 
 #[derive(Debug, Args)]
@@ -119,13 +123,63 @@ pub(crate) struct CompareArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// G-code programs, and machine files (.toml).
+    /// G-code programs, machine files (.toml), and folders of programs.
     #[arg(required = true)]
     pub(crate) files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct CanonArgs {
     /// G-code program.
     pub(crate) file: PathBuf,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}
+
+/// How programs are read; the same for all commands that read one.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Reading the program")]
+pub(crate) struct ReaderArgs {
+    /// Whose G-code it is: auto, linuxcnc, fanuc, haas, grbl, marlin or klipper. auto looks at the beginning.
+    #[arg(long, value_name = "NAME", default_value = AUTO)]
+    pub(crate) dialect: String,
+    /// Motions after which a program counts as endless.
+    #[arg(long, value_name = "N", default_value_t = Settings::default().max_motions, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    pub(crate) max_motions: u64,
+    /// Lines without a motion in a row after which a loop counts as endless.
+    #[arg(long, value_name = "N", default_value_t = Settings::default().max_idle_lines, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    pub(crate) max_idle_lines: u64,
+    /// Tools, as LinuxCNC keeps them: one `T1 P1 Z25.4 D6` a line.
+    #[arg(long, value_name = "FILE.tbl")]
+    pub(crate) tool_table: Option<PathBuf>,
+    /// Unit of the lengths in the tool table.
+    #[arg(long, value_name = "UNIT", value_enum, default_value_t = Unit::Mm, requires = "tool_table")]
+    pub(crate) tool_unit: Unit,
+}
+
+/// Unit of lengths.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub(crate) enum Unit {
+    Mm,
+    Inch,
+}
+
+impl ReaderArgs {
+    /// What the reader has to know.
+    pub(crate) fn settings(&self) -> Result<Settings> {
+        let unit_mm = match self.tool_unit {
+            Unit::Mm => 1.0,
+            Unit::Inch => INCH_MM,
+        };
+        let tools = self.tool_table.as_deref().map(|table| ToolTable::read(table, unit_mm)).transpose()?;
+        Ok(Settings {
+            dialect: Dialect::named(&self.dialect)?,
+            max_motions: self.max_motions,
+            max_idle_lines: self.max_idle_lines,
+            tools: tools.unwrap_or_default(),
+            ..Settings::default()
+        })
+    }
 }

@@ -5,6 +5,7 @@
 
 mod args;
 mod commands;
+mod files;
 mod message;
 mod progress;
 
@@ -21,11 +22,11 @@ fn main() -> ExitCode {
     }
     let quiet = cli.quiet;
     let result = match cli.command {
-        Command::Run(args) => commands::run::run(args, quiet),
+        Command::Run(args) => commands::run::run(*args, quiet),
         Command::Paper(args) => commands::paper::run(&args, quiet),
         Command::Compare(args) => commands::compare::run(&args, quiet),
-        Command::Check(args) => commands::check::run(&args),
-        Command::Canon(args) => commands::canon::run(&args),
+        Command::Check(args) => commands::check::run(&args, quiet),
+        Command::Canon(args) => commands::canon::run(&args, quiet),
         Command::Machines => commands::list::machines(),
         Command::Controllers => commands::list::controllers(),
     };

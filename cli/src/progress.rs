@@ -39,6 +39,11 @@ impl Bar {
         self.0.inc(1);
     }
 
+    /// Does something that prints, with the bar out of the way.
+    pub(crate) fn aside<T>(&self, print: impl FnOnce() -> T) -> T {
+        self.0.suspend(print)
+    }
+
     pub(crate) fn clear(&self) {
         self.0.finish_and_clear();
     }

@@ -41,8 +41,8 @@ fn a_program_that_is_none() {
         ("missing.ngc", &["missing.ngc", "No such file"][..]),
         ("binary.ngc", &["binary.ngc", "byte 4", "NUL", "plain text"]),
         ("empty.ngc", &["empty.ngc", "empty"]),
-        ("comments.ngc", &["comments.ngc", "no motion"]),
-        ("still.ngc", &["still.ngc", "no motion"]),
+        ("comments.ngc", &["comments.ngc", "no motion", "comment around everything"]),
+        ("still.ngc", &["still.ngc", "no motion", "the right file"]),
         ("folder.ngc", &["folder.ngc", "folder, not a G-code program"]),
     ] {
         refuses(&folder, &[part], says);
@@ -61,8 +61,13 @@ fn a_program_with_a_mistake() {
         ("none", "G1 X10", &["no feed F", "none.ngc:2:1", "add F"]),
         ("nine", "G1 X999999999 F100", &["X = 999999999 mm", "limit of 1000000 mm", "nine.ngc:2:4"]),
         ("ten", "G1 X1234567890 F100", &["X = 1234567890 mm", "limit of 1000000 mm", "ten.ngc:2:4"]),
-        ("exponent", "G1 X1e300 F100", &["E has no meaning", "exponent.ngc:2:6"]),
-        ("far", &far, &["limit of 1000000 mm", "far.ngc:2:4"]),
+        ("exponent", "G1 X1e300 F100", &["E has no meaning", "exponent.ngc:2:6", "no exponents", "1500 for 1.5e3"]),
+        ("bracket", "G1 X[1e3] F100", &["`]` or an operator is missing", "bracket.ngc:2:7", "no exponents"]),
+        ("far", &far, &["X = 1.000e300 mm", "limit of 1000000 mm", "far.ngc:2:4", "decimal point"]),
+        ("turned", "G1 A1000001 F100", &["A = 1000001 degrees", "limit of 1000000 degrees", "turned.ngc:2:4"]),
+        ("comma", "G1 X1,5 F100", &["`,` has no meaning", "comma.ngc:2:6", "1.5, not 1,5"]),
+        ("letter", "GO X1", &["neither a number", "letter.ngc:2:2", "write 0"]),
+        ("letters", "G0 X1O", &["O-word", "letters.ngc:2:6", "write 0"]),
     ] {
         let part = format!("{name}.ngc");
         folder.file(&part, format!("G21 G90 G17\n{line}\nM2\n"));

@@ -205,8 +205,13 @@ fn long_program() -> String {
 fn a_reader_that_goes_away_is_no_error() {
     let folder = Folder::new();
     folder.file("long.ngc", long_program());
-    let mut child =
-        folder.command().args(["canon", "long.ngc"]).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut child = folder
+        .command()
+        .args(["-q", "canon", "long.ngc"])
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
     let mut first = [0; 100];
     child.stdout.take().unwrap().read_exact(&mut first).unwrap();
     let ran = Ran::from(child.wait_with_output().unwrap());
@@ -234,7 +239,7 @@ fn a_reader_that_goes_away_is_no_error() {
 #[cfg(target_os = "linux")]
 fn a_standard_output_that_takes_nothing_is_an_error() {
     let folder = Folder::new();
-    for arguments in [&["machines"][..], &["canon", "circle.ngc"], &["check", "circle.ngc"]] {
+    for arguments in [&["machines"][..], &["-q", "canon", "circle.ngc"], &["check", "circle.ngc"]] {
         let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
         let output = folder.command().args(arguments).stdout(full).output().unwrap();
         Ran::from(output).refused(&["standard output", "No space left on device"]);

@@ -83,13 +83,18 @@ fn run(job: &Job, name: &str, lag_s: [f64; 3]) -> io::Result<Run> {
         run: feedwright::simulate::Run { time_s, ..Default::default() },
     };
     let text = |line: u32| format!("N{line} G1 X1 Y2 (</script><img src=x onerror=alert(1)> & \"quoted\")");
-    let event =
-        |t_s: f64, duration_s: f64, label: &str| TimelineEvent { t_s, duration_s, line: 3, label: label.to_owned() };
+    let event = |t_s: f64, duration_s: f64, row: &str, label: &str| TimelineEvent {
+        t_s,
+        duration_s,
+        line: 3,
+        row: row.to_owned(),
+        label: label.to_owned(),
+    };
     let events = vec![
-        event(0.0, 0.0, "tool 3"),
-        event(0.0, 0.0, "spindle 12000 rev/min"),
-        event(0.6 * time_s, 0.05 * time_s, "dwell"),
-        event(time_s, 0.0, "end of program"),
+        event(0.0, 0.0, "tool", "tool 3"),
+        event(0.0, 0.0, "spindle", "spindle 12000 rev/min"),
+        event(0.6 * time_s, 0.05 * time_s, "dwell", "dwell"),
+        event(time_s, 0.0, "stop", "end of program"),
     ];
     Ok(Run { summary: statistics.summary(facts, text), series, events })
 }

@@ -37,8 +37,11 @@ mod tools;
 mod travel;
 mod variables;
 
+#[doc(hidden)]
+pub use block::count_words;
 pub use diagnostic::{Diagnostic, Severity};
 pub use reader::{ReadError, Reader};
-pub use settings::{Dialect, Settings};
+pub use settings::{AUTO, DIALECTS, Dialect, Settings, UnknownDialect};
+pub use state::INCH_MM;
 pub use summary::{CheckError, Summary, check, summarize};
-pub use tools::{Tool, ToolTable};
+pub use tools::{Tool, ToolTable, ToolTableError};

@@ -47,6 +47,8 @@ pub struct Machine {
     pub limits: Limits,
     /// PLC and spindle.
     pub plc: Durations,
+    /// M-codes that the machine builder gave a meaning, such as a lamp.
+    pub plc_events: Vec<PlcEvent>,
     /// Two or three axes: x, y and perhaps z.
     pub axes: Vec<Axis>,
 }
@@ -100,6 +102,23 @@ pub struct Durations {
     pub pallet_change_s: f64,
     /// Rate at which the spindle changes its speed, rev/min in a second; 0 is at once.
     pub spindle_rev_min_s: f64,
+    /// Most that a rotary axis A, B or C turns in a second, degrees; 0 is no limit, and at once in a rapid.
+    pub rotary_deg_s: f64,
+}
+
+/// An M-code that the machine builder gave a meaning: table `[plc.event."M64 P3"]`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PlcEvent {
+    /// Number behind M.
+    pub code: u16,
+    /// Its P word; `None` is any or none.
+    pub p: Option<u32>,
+    /// What it belongs to: a row of the timeline, such as "lamp".
+    pub row: String,
+    /// What happens, such as "lamp on".
+    pub label: String,
+    /// How long it holds the motion up, s.
+    pub takes_s: f64,
 }
 
 /// A servo axis: mechanics at the motor shaft and the two control loops.

@@ -141,8 +141,12 @@ pub enum Step {
     Rest {
         /// Line of the program.
         line: u32,
-        /// How long.
+        /// How long the programmed feed makes it; 0 for a rapid.
         seconds: f64,
+        /// Largest angle that one of A, B and C turns, degrees: at the machine's rate it takes no less.
+        turn_deg: f64,
+        /// Way of U, V and W in a rapid, mm: at the machine's rapid rate.
+        rapid_mm: f64,
     },
 }
 

@@ -62,10 +62,11 @@ where
         runs.push(cut_once(job, summary, entry, &mut *controller, judged.then_some(&mut files), progress)?);
     }
     progress.stage(Stage::Writing);
-    let report = job.report(N, runs);
+    let report = job.report(N, summary, runs);
     let within_tolerance = job.within_tolerance(&report);
     files.finish(job, &report)?;
-    Ok(Outcome { report, warnings: summary.warnings.clone(), within_tolerance })
+    let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
+    Ok(Outcome { report, warnings, within_tolerance })
 }
 
 fn cut_once<const N: usize>(
@@ -76,9 +77,10 @@ fn cut_once<const N: usize>(
     files: Option<&mut Files>,
     progress: &mut dyn Progress,
 ) -> Result<Run, Error> {
-    let plc = Plc::new(job.machine.plc);
+    let plc = Plc::new(job.machine.plc).with_events(&job.machine.plc_events);
     let mut reference = Reference::new(job.program()?, &(&job.machine.limits).into())?.with_plc(plc);
-    let (mut statistics, mut series, mut timeline) = (Statistics::new(), Series::new(), Timeline::default());
+    let (mut statistics, mut series, mut timeline) =
+        (Statistics::new(), Series::new(), Timeline::new(&job.machine.plc_events));
     let mut told = job::Told::new(progress, summary);
     let mut sinks: Vec<&mut dyn Sink> = vec![&mut statistics, &mut series, &mut timeline, &mut told];
     sinks.extend(files.map(|files| files as &mut dyn Sink));

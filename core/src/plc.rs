@@ -3,13 +3,17 @@
 //! The CNC system of Lee, Cho and Jeon (2005), Fig. 1, has both beside the axes. Durations come from the machine file; a
 //! spindle speeds up and slows down at a constant rate.
 
+mod rows;
+
 use crate::gcode::canon::EventKind;
-use crate::machine::Durations;
+use crate::machine::{Durations, PlcEvent};
+pub use rows::{Named, named};
 
 /// The state that durations depend on.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct Plc {
     durations: Durations,
+    events: Vec<PlcEvent>,
     /// Programmed speed, rev/min.
     speed_rev_min: f64,
     /// Speed of the spindle, rev/min; negative is counter-clockwise.
@@ -19,7 +23,14 @@ pub struct Plc {
 impl Plc {
     /// At rest, with these durations.
     pub const fn new(durations: Durations) -> Self {
-        Self { durations, speed_rev_min: 0.0, spindle_rev_min: 0.0 }
+        Self { durations, events: Vec::new(), speed_rev_min: 0.0, spindle_rev_min: 0.0 }
+    }
+
+    /// With M-codes that the machine builder gave a meaning and a duration.
+    #[must_use]
+    pub fn with_events(mut self, events: &[PlcEvent]) -> Self {
+        self.events = events.to_vec();
+        self
     }
 
     /// How long the tool waits for what happens, s. Time that an operator takes (M0, M1) is none of the machine's.
@@ -38,8 +49,13 @@ impl Plc {
             EventKind::MCode { code: 6, .. } => self.spin_to(0.0) + self.durations.tool_change_s,
             EventKind::MCode { code: 7..=9, .. } => self.durations.coolant_s,
             EventKind::MCode { code: 60, .. } => self.durations.pallet_change_s,
-            _ => 0.0,
+            kind => rows::builders(kind, &self.events).map_or(0.0, |event| event.takes_s),
         }
+    }
+
+    /// How long a rotary axis takes to turn, s.
+    pub fn turn_s(&self, degrees: f64) -> f64 {
+        if self.durations.rotary_deg_s > 0.0 { degrees / self.durations.rotary_deg_s } else { 0.0 }
     }
 
     fn runs(&self) -> bool {
@@ -58,8 +74,13 @@ impl Plc {
 mod tests {
     use super::*;
 
-    const DURATIONS: Durations =
-        Durations { tool_change_s: 5.0, coolant_s: 0.5, pallet_change_s: 10.0, spindle_rev_min_s: 2000.0 };
+    const DURATIONS: Durations = Durations {
+        tool_change_s: 5.0,
+        coolant_s: 0.5,
+        pallet_change_s: 10.0,
+        spindle_rev_min_s: 2000.0,
+        rotary_deg_s: 60.0,
+    };
 
     fn m(code: u16) -> EventKind {
         EventKind::MCode { code, p: None, q: None }
@@ -85,9 +106,24 @@ mod tests {
     }
 
     #[test]
+    fn rotary_axes_turn_at_their_rate_or_at_once() {
+        assert_eq!(Plc::new(DURATIONS).turn_s(90.0), 1.5);
+        assert_eq!(Plc::default().turn_s(90.0), 0.0);
+    }
+
+    #[test]
     fn coolant_pallet_and_the_rest_take_what_the_file_says() {
         let mut plc = Plc::new(DURATIONS);
         assert_eq!([7, 8, 9, 60, 0, 1].map(|code| plc.takes_s(&m(code))), [0.5, 0.5, 0.5, 10.0, 0.0, 0.0]);
         assert_eq!(Plc::default().takes_s(&m(6)), 0.0);
+    }
+
+    #[test]
+    fn what_the_builder_named_takes_what_the_builder_says() {
+        let event = |p, takes_s| PlcEvent { code: 64, p, row: "lamp".to_owned(), label: "on".to_owned(), takes_s };
+        let mut plc = Plc::new(DURATIONS).with_events(&[event(None, 1.0), event(Some(3), 0.25)]);
+        let output = |p| EventKind::MCode { code: 64, p, q: None };
+        assert_eq!([Some(3.0), Some(2.0), None].map(|p| plc.takes_s(&output(p))), [0.25, 1.0, 1.0]);
+        assert_eq!(plc.takes_s(&m(65)), 0.0);
     }
 }

@@ -62,6 +62,8 @@ pub struct TimelineEvent {
     pub duration_s: f64,
     /// Line of the program, from 1.
     pub line: u32,
+    /// Row of the timeline that it stands in, as in "spindle" or "lamp".
+    pub row: String,
     /// What happened, as in "tool 3" or "dwell".
     pub label: String,
 }

@@ -52,7 +52,8 @@ fn run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Run {
         axes,
         run: feedwright::simulate::Run { time_s: rows as f64 * 1e-3, ..Default::default() },
     };
-    let event = TimelineEvent { t_s: 0.1, duration_s: 0.5, line: 3, label: HOSTILE.to_owned() };
+    let event =
+        TimelineEvent { t_s: 0.1, duration_s: 0.5, line: 3, row: HOSTILE.to_owned(), label: HOSTILE.to_owned() };
     Run { summary: statistics.summary(facts, |_| HOSTILE.to_owned()), series, events: vec![event] }
 }
 

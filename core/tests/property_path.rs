@@ -167,7 +167,9 @@ fn contours_join_and_close() {
             s_mm += piece.length_mm;
         }
         if contour.name != "line-line-circle" {
-            assert!(distance(here, pieces[0].start_mm) < 1e-9, "{}", contour.name);
+            // The butterfly is tabulated to 1 um, and its first and last point differ by that.
+            let gap_mm = if contour.name == "butterfly" { 1.001e-3 } else { 1e-9 };
+            assert!(distance(here, pieces[0].start_mm) < gap_mm, "{}", contour.name);
         }
     }
 }
@@ -178,6 +180,8 @@ fn lengths_are_those_of_the_closed_form() {
     let length = |name: &str| -> f64 {
         steps(contour(name).unwrap().steps(50.0, BLEND).unwrap()).iter().map(|piece| piece.length_mm).sum()
     };
+    // Hu et al. (2023) give 382.859 mm.
+    assert!((length("butterfly") - 382.859).abs() < 1e-3, "{}", length("butterfly"));
     let (mut a, mut g): (f64, f64) = (20.0, 10.0);
     let (mut sum, mut power) = (0.5 * (a * a - g * g), 0.5);
     // Converges quadratically: ten rounds are plenty.

@@ -3,14 +3,18 @@
 use std::io::{self, BufWriter, Write};
 use std::process::ExitCode;
 
-use feedwright::gcode::{Reader, Settings};
+use feedwright::gcode::Reader;
 use miette::Result;
 
 use crate::args::CanonArgs;
 use crate::message::{fail, printed};
 
-pub(crate) fn run(args: &CanonArgs) -> Result<ExitCode> {
-    let reader = Reader::open(&args.file, Settings::default())?;
+pub(crate) fn run(args: &CanonArgs, quiet: bool) -> Result<ExitCode> {
+    let reader = Reader::open(&args.file, args.reader.settings()?)?;
+    if !quiet {
+        let (dialect, reason) = reader.dialect();
+        eprintln!("{}: read as {dialect}: {reason}", args.file.display());
+    }
     let mut code = ExitCode::SUCCESS;
     let result = print(reader, &mut code);
     printed(result, code)

@@ -5,7 +5,6 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright::controllers::{CONTROLLERS, Choices, Entry};
-use feedwright::gcode;
 use feedwright::machine::{self, Machine};
 use feedwright::pipeline::{self, Job, Outcome, Outputs};
 use feedwright::report::{Outcome as Ending, RunSummary};
@@ -37,8 +36,12 @@ fn job(args: RunArgs) -> Result<Job> {
         feed_mm_s: args.feed,
         choices: Choices { rho: args.rho, seed: args.seed, ..Choices::default() },
         tolerance_um: args.tolerance,
-        reader: gcode::Settings::default(),
-        inputs: Some(PathBuf::from(args.machine)).filter(|path| machine::is_path(path)).into_iter().collect(),
+        reader: args.reader.settings()?,
+        inputs: Some(PathBuf::from(args.machine))
+            .filter(|path| machine::is_path(path))
+            .into_iter()
+            .chain(args.reader.tool_table)
+            .collect(),
         outputs: Outputs { report: Some(report), json: args.json, trace: args.trace, out: args.out },
         part: args.part,
     })

@@ -149,7 +149,7 @@ fn write_cell(out: &mut impl Write, index: usize, rows: &[Row]) -> io::Result<()
         writeln!(out, "<td>{off}</td><td>{torque}</td><td class=\"note\">{}</td></tr>", escaped(&note))?;
     }
     out.write_all(b"</tbody></table></div>\n")?;
-    write!(out, "<figure>{}</figure></section>\n", errors(rows).to_svg())
+    writeln!(out, "<figure>{}</figure></section>", errors(rows).to_svg())
 }
 
 fn ours(controller: &str) -> &'static str {

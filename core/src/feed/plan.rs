@@ -5,7 +5,7 @@ use super::sections::sections;
 use super::{FeedPlanner, Limits, LimitsError, MEMBERS, Member, Phase, Span, TimedEvent};
 use crate::gcode::canon::{Corner, Event, EventKind};
 use crate::path::pieces::ArcLength;
-use crate::path::{PathError, Piece, Step, Steps};
+use crate::path::{MAX_REST_S, PathError, Piece, Step, Steps};
 use crate::plc::Plc;
 use std::collections::VecDeque;
 
@@ -106,8 +106,10 @@ impl<'p> Plan<'p> {
         match self.steps.next() {
             Some(Ok(Step::Piece(piece))) => self.piece(piece),
             Some(Ok(Step::Event(event))) => self.event(event),
-            Some(Ok(Step::Rest { line, seconds })) => {
+            Some(Ok(Step::Rest { line, seconds, turn_deg, rapid_mm })) => {
                 self.stop = true;
+                let least_s = self.plc.turn_s(turn_deg).max(rapid_mm / self.limits.rapid_mm_s);
+                let seconds = seconds.max(least_s).min(MAX_REST_S);
                 self.between(None, Some((seconds, line)));
             }
             Some(Err(error)) => {

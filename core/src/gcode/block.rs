@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use super::codes::{self, AXES, GROUPS, Group, bit, letter, slot};
-use super::diagnostic::{Fault, Read};
+use super::diagnostic::{Fault, Read, Short};
 use super::expression::{Evaluator, INTEGER_WITHIN, Target, Values};
-use super::lexer::{Cursor, END, shown};
+use super::lexer::{Cursor, END, NO_EXPONENT, shown};
 
 /// Letters, `@` and `^`.
 const LETTERS: usize = 28;
@@ -45,6 +45,8 @@ pub(super) struct Block {
     pub(super) comment: Option<Range<usize>>,
     /// Whether a letter may stand without a value where it only names an axis.
     bare_words: bool,
+    /// Whether a word E follows a number without a blank, as an exponent does.
+    pub(super) exponent: bool,
     /// End of the line's text outside comments.
     pub(super) end: usize,
 }
@@ -68,6 +70,7 @@ impl Block {
             assignments: Vec::new(),
             comment: None,
             bare_words: false,
+            exponent: false,
             end: 0,
         }
     }
@@ -76,6 +79,7 @@ impl Block {
     #[inline]
     pub(super) fn clear(&mut self) {
         self.set = 0;
+        self.exponent = false;
         if !self.g.is_empty() {
             self.g.clear();
             self.group = [None; GROUPS];
@@ -166,15 +170,15 @@ impl Block {
 
     #[inline]
     fn read_word<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, byte: u8, start: usize) -> Read<()> {
+        self.exponent |= byte == b'e' && evaluator.cursor.is_exponent();
         evaluator.cursor.bump();
         let value = if self.bare_words && self.is_bare(&mut evaluator.cursor) { 0.0 } else { evaluator.value()? };
         let slot = slot(byte);
         let place = (start as u32, evaluator.cursor.at as u32);
         if self.set & (1 << slot) != 0 {
             let message = format!("the line already has a word {}", letter(slot));
-            return Err(
-                Fault::new("gcode::repeated", start..evaluator.cursor.at, message).hint("split the line in two")
-            );
+            let hint = if byte == b'e' && self.exponent { NO_EXPONENT } else { "split the line in two" };
+            return Err(Fault::new("gcode::repeated", start..evaluator.cursor.at, message).hint(hint));
         }
         self.set |= 1 << slot;
         self.value[slot] = value;
@@ -190,7 +194,7 @@ impl Block {
         let tenths = (value * 10.0).round();
         let is_tenth = (value * 10.0 - tenths).abs() < TENTH_WITHIN && (0.0..1000.0).contains(&tenths);
         let Some(code) = is_tenth.then(|| codes::find(tenths as u16)).flatten() else {
-            return Err(unknown_g(value, start..end));
+            return Err(unknown_g(value, evaluator.cursor.bytes, start..end));
         };
         let word = Word { number: code.number, start: start as u32, end: end as u32 };
         if let Some(other) = self.group[code.group as usize].replace(word) {
@@ -214,7 +218,7 @@ impl Block {
             return Err(Fault::new(
                 "gcode::m_code",
                 start..end,
-                format!("M{value} is no M-code: the number must be an integer from 0 to 9999"),
+                format!("M{} is no M-code: the number must be an integer from 0 to 9999", Short(value)),
             ));
         }
         self.m.push(Word { number: number as u16, start: start as u32, end: end as u32 });
@@ -237,6 +241,32 @@ impl Block {
     }
 }
 
+/// Words of all lines of a program, read and not carried out: what the benches compare the reader with. Parameters are 0,
+/// and lines that are no words (O-words, `%`, mistakes) count nothing.
+#[doc(hidden)]
+pub fn count_words(text: &[u8]) -> usize {
+    struct Zeros;
+    impl Values for Zeros {
+        fn numbered(&self, _index: usize) -> f64 {
+            0.0
+        }
+        fn named(&self, _name: &[u8]) -> Option<f64> {
+            Some(0.0)
+        }
+    }
+    let mut block = Block::new();
+    let words_of = |line: &[u8]| {
+        let mut cursor = Cursor::new(line);
+        if cursor.eat(b'n') && cursor.number().is_err() {
+            return 0;
+        }
+        block.clear();
+        let read = block.read(cursor, &Zeros, Style::default());
+        if read.is_ok() { block.set.count_ones() as usize + block.g.len() + block.m.len() } else { 0 }
+    };
+    text.split(|&byte| byte == b'\n').map(words_of).sum()
+}
+
 /// Reads `( text )`; returns the place of the text.
 pub(super) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
     let start = cursor.at;
@@ -252,7 +282,8 @@ pub(super) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
                 .hint("close the first comment with `)` before the second `(`"))
         }
         None => {
-            Err(Fault::new("gcode::comment", start..cursor.bytes.len(), "the comment is not closed: `)` is missing"))
+            Err(Fault::new("gcode::comment", start..cursor.bytes.len(), "the comment is not closed: `)` is missing")
+                .hint("close it on the same line, or begin it with `;`"))
         }
     }
 }
@@ -260,16 +291,27 @@ pub(super) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
 #[cold]
 fn misplaced(byte: u8, start: usize) -> Box<Fault> {
     let what = if byte == b'n' { "the line number N" } else { "an O-word" };
-    Fault::new("gcode::misplaced", start..start + 1, format!("{what} must stand at the beginning of the line"))
+    let fault =
+        Fault::new("gcode::misplaced", start..start + 1, format!("{what} must stand at the beginning of the line"));
+    if byte == b'o' { fault.hint("the letter O is no zero: write 0 in numbers") } else { fault }
 }
 
 #[cold]
-fn unknown_g(value: f64, at: Range<usize>) -> Box<Fault> {
+fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
     let tenths = (value * 10.0).round();
-    let spelled =
-        if (value * 10.0 - tenths).abs() < TENTH_WITHIN { format!("G{}", tenths / 10.0) } else { format!("G{value}") };
-    Fault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"))
-        .hint(format!("the nearest known: {}", codes::nearest(value)))
+    let spelled = if (value * 10.0 - tenths).abs() < TENTH_WITHIN {
+        format!("G{}", Short(tenths / 10.0))
+    } else {
+        format!("G{}", Short(value))
+    };
+    // `G1 10`: digits, a blank, digits.
+    let has_gap = bytes[at.clone()].windows(3).any(|w| w[0].is_ascii_digit() && w[1] == b' ' && w[2].is_ascii_digit());
+    let fault = Fault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"));
+    if has_gap {
+        fault.hint("blanks inside numbers mean nothing: is a letter missing behind the blank?")
+    } else {
+        fault.hint(format!("the nearest known: {}", codes::nearest(value)))
+    }
 }
 
 /// A byte that has no meaning here.
@@ -282,6 +324,8 @@ fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
             b'/' => fault.hint("a `/` that deletes the line stands first on it"),
             b')' => fault.hint("the comment that ends here has no `(`"),
             b'[' => fault.hint("a bracket stands behind a letter or a function"),
+            b',' => fault.hint("a decimal point is a point: write 1.5, not 1,5"),
+            b']' => fault.hint("the bracket that ends here has no `[`"),
             0 => fault.hint("the file holds bytes that are no text"),
             _ => fault,
         };
@@ -330,6 +374,11 @@ mod tests {
         assert_eq!(block.code(Group::Motion).unwrap().number, 10);
         assert_eq!(block.comment, Some(31..36));
         assert_eq!(block.at(b'x'), 4..8);
+    }
+
+    #[test]
+    fn words_are_counted_without_being_carried_out() {
+        assert_eq!(count_words(b"N10 G1 X1 Y[2*#3] F100 (a)\nM3 S100\nX$\n\n%"), 6);
     }
 
     #[test]

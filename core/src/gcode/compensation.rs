@@ -80,7 +80,10 @@ impl Interpreter {
                         at,
                         format!("tool {tool} is not in the tool table: its radius is not known"),
                     )
-                    .hint(format!("give a tool table, or write {}.1 D with the diameter", spelled(word.number))));
+                    .hint(format!(
+                        "give a tool table with --tool-table, or write {}.1 D with the diameter",
+                        spelled(word.number)
+                    )));
                 }
             }
         };
@@ -147,7 +150,8 @@ impl Interpreter {
                     format!(
                         "the entry into cutter compensation is {way:.4} mm long: it must be as long as the tool's radius of {radius:.4} mm"
                     ),
-                ));
+                )
+                .hint("begin the line with G41 or G42 farther from the contour"));
             }
         } else {
             let curve = Curve::Line { start: add(from, aside), end };

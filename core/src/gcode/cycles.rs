@@ -6,7 +6,7 @@
 use super::block::Block;
 use super::canon::{Corner, EventKind};
 use super::codes::{AXIS_LETTERS, bit, spelled};
-use super::diagnostic::{Fault, Read};
+use super::diagnostic::{Fault, Read, Short};
 use super::state::{INCH_MM, Interpreter, Position};
 use super::travel::Speed;
 
@@ -51,7 +51,8 @@ impl Interpreter {
                     "gcode::cycle",
                     block.whole(),
                     format!("R (height to begin at) is missing for {}", spelled(code)),
-                ));
+                )
+                .hint("R stands above the work: G81 X10 Y10 Z-5 R2 F100 drills from 2 to -5"));
             }
             if !block.has(letter) {
                 let name = char::from(letter).to_ascii_uppercase();
@@ -59,7 +60,8 @@ impl Interpreter {
                     "gcode::cycle",
                     block.whole(),
                     format!("{name} (bottom of the hole) is missing for {}", spelled(code)),
-                ));
+                )
+                .hint("the first hole of a cycle has all its words; the next ones need only their X and Y"));
             }
             kept =
                 Cycle { code, began_at: if is_series { kept.began_at } else { self.at[normal] }, ..Cycle::default() };
@@ -117,7 +119,7 @@ impl Interpreter {
                 return Err(Fault::new(
                     "gcode::cycle",
                     block.at(b'q'),
-                    format!("the depth of a peck Q{value} must be above 0"),
+                    format!("the depth of a peck Q{} must be above 0", Short(value)),
                 ));
             }
             kept.peck = Some(value * self.modal.unit_mm);
@@ -127,7 +129,7 @@ impl Interpreter {
                 return Err(Fault::new(
                     "gcode::cycle",
                     block.at(b'p'),
-                    format!("the dwell P{value} must not be negative"),
+                    format!("the dwell P{} is negative; the smallest is 0 s", Short(value)),
                 ));
             }
             kept.dwell_s = Some(value);
@@ -175,7 +177,8 @@ impl Interpreter {
                         "gcode::cycle",
                         block.whole(),
                         format!("{code} taps with the spindle turning by {how}, which it does not"),
-                    ));
+                    )
+                    .hint(format!("start it before: S500 {how}")));
                 }
                 self.spindle(-wanted);
                 self.pause(cycle.dwell_s.unwrap_or(0.0));
@@ -190,7 +193,8 @@ impl Interpreter {
                         "gcode::cycle",
                         block.whole(),
                         format!("{} needs a turning spindle (M3 or M4)", spelled(cycle.code)),
-                    ));
+                    )
+                    .hint("start it before: S500 M3"));
                 }
                 self.pause(cycle.dwell_s.unwrap_or(0.0));
                 self.spindle(0);
@@ -218,7 +222,7 @@ impl Interpreter {
             return Err(Fault::new(
                 "gcode::cycle",
                 block.at(b'q'),
-                format!("a peck of {step} mm needs more than {MOST_PECKS} pecks"),
+                format!("a peck of {} mm needs more than {MOST_PECKS} pecks", Short(step)),
             ));
         }
         let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };
@@ -241,7 +245,8 @@ impl Interpreter {
         let &Hole { normal, bottom, clearance } = hole;
         let turning = self.modal.spindle_turns;
         if turning == 0 {
-            return Err(Fault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)"));
+            return Err(Fault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)")
+                .hint("start it before: S500 M3"));
         }
         let scale = self.modal.unit_mm;
         let word = |axis: usize| block.get(b"ijk"[axis]).unwrap_or(0.0) * scale;

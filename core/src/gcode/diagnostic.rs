@@ -87,6 +87,10 @@ fn printable(bytes: &[u8]) -> String {
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // Where there is no line to show, nothing else names the file.
+        if self.line == 0 {
+            write!(f, "{}: ", self.file)?;
+        }
         f.write_str(&self.message)
     }
 }
@@ -144,6 +148,21 @@ impl SourceCode for Diagnostic {
     }
 }
 
+/// Beyond these magnitudes a number in a message has an exponent instead of hundreds of digits. No length, feed or time of
+/// a program lies outside, so that sensible values are shown as they were written.
+const WRITTEN_OUT: Range<f64> = 1e-7..1e15;
+
+/// A number as messages show it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Short(pub(super) f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = *self;
+        if value == 0.0 || WRITTEN_OUT.contains(&value.abs()) { write!(f, "{value}") } else { write!(f, "{value:.3e}") }
+    }
+}
+
 /// A fault found while a line is read: the place is known only within the line.
 #[derive(Debug)]
 pub(super) struct Fault {
@@ -167,5 +186,17 @@ impl Fault {
     pub(super) fn hint(mut self: Box<Self>, hint: impl Into<String>) -> Box<Self> {
         self.hint = Some(hint.into());
         self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_shown_as_written_or_short() {
+        let shown = |value: f64| Short(value).to_string();
+        assert_eq!([0.0, -1.5, 999_999_999.0, 0.0001].map(shown), ["0", "-1.5", "999999999", "0.0001"]);
+        assert_eq!([1e300, -1.23456e20, 1e-300].map(shown), ["1.000e300", "-1.235e20", "1.000e-300"]);
     }
 }

@@ -6,8 +6,9 @@
 use super::block::{Block, Word};
 use super::canon::{Corner, EventKind, Plane};
 use super::codes::{self, ALWAYS, Group};
-use super::diagnostic::{Fault, Read};
+use super::diagnostic::{Fault, Read, Short};
 use super::expression::INTEGER_WITHIN;
+use super::lexer::NO_EXPONENT;
 use super::settings::Dialect;
 use super::state::{FeedMode, INCH_MM, Interpreter};
 
@@ -84,14 +85,24 @@ impl Interpreter {
             return Err(self.axes_without_motion(block, motion));
         }
         let with = motion.map_or_else(|| "this line".to_owned(), codes::spelled);
-        Err(Fault::new("gcode::unused_word", at, format!("{word} has no meaning with {with}")))
+        let fault = Fault::new("gcode::unused_word", at, format!("{word} has no meaning with {with}"));
+        Err(match word {
+            'E' if block.exponent => fault.hint(NO_EXPONENT),
+            'E' => fault.hint("E pushes filament on 3D printers: choose the printer's dialect for its programs"),
+            'I' | 'J' | 'K' => fault.hint("I, J and K are the centre of an arc: write G2 or G3 on this line"),
+            'R' if matches!(motion, Some(0 | 10)) => {
+                fault.hint("R is the radius of an arc (G2, G3) or a height of a cycle (G81 to G89)")
+            }
+            _ => fault,
+        })
     }
 
     #[cold]
     fn axes_without_motion(&self, block: &Block, motion: Option<u16>) -> Box<Fault> {
         let at = block.at_any(codes::AXES);
         if motion == Some(800) && block.code(Group::Motion).is_some() {
-            return Fault::new("gcode::no_motion_mode", at, "G80 ends motion modes and takes no axis words");
+            return Fault::new("gcode::no_motion_mode", at, "G80 ends motion modes and takes no axis words")
+                .hint("write G0 or G1 with them on the next line");
         }
         Fault::new("gcode::no_motion_mode", at, "axis words, but no code such as G0 or G1 says how to move")
             .hint("write G0, G1, G2 or G3 on this line or one before it")
@@ -122,11 +133,12 @@ impl Interpreter {
             return Err(Fault::new(
                 "gcode::feed",
                 block.at(b'f'),
-                format!("feed F{feed} is negative; the smallest is 0"),
+                format!("feed F{} is negative; the smallest is 0", Short(feed)),
             ));
         }
         // F comes before G20 and G21 of the same line: it still has the old unit.
-        self.modal.feed = if self.modal.feed_mode == FeedMode::Inverse { feed } else { feed * self.modal.unit_mm };
+        self.modal.feed_unit_mm = if self.modal.feed_mode == FeedMode::Inverse { 1.0 } else { self.modal.unit_mm };
+        self.modal.feed = feed * self.modal.feed_unit_mm;
         Ok(())
     }
 
@@ -141,7 +153,7 @@ impl Interpreter {
             return Err(Fault::new(
                 "gcode::spindle",
                 block.at(b's'),
-                format!("spindle speed S{speed} is negative; the smallest is 0"),
+                format!("spindle speed S{} is negative; the smallest is 0 rev/min", Short(speed)),
             ));
         }
         self.modal.spindle_speed = speed;
@@ -166,11 +178,15 @@ impl Interpreter {
         let name = codes::letter(codes::slot(letter));
         let at = block.at(letter);
         if (value - value.round()).abs() > INTEGER_WITHIN {
-            return Err(Fault::new("gcode::integer", at, format!("{name}{value} is not an integer")));
+            return Err(Fault::new("gcode::integer", at, format!("{name}{} is not an integer", Short(value))));
         }
         let rounded = value.round() as i64;
         if !(low..=high).contains(&rounded) {
-            return Err(Fault::new("gcode::range", at, format!("{name}{rounded} is out of range: {low} to {high}")));
+            return Err(Fault::new(
+                "gcode::range",
+                at,
+                format!("{name}{} is out of range: {low} to {high}", Short(value.round())),
+            ));
         }
         Ok(rounded)
     }
@@ -252,7 +268,7 @@ impl Interpreter {
             return Err(Fault::new(
                 "gcode::dwell",
                 block.at_any(codes::bit(b'p') | codes::bit(b's')),
-                format!("the dwell of {seconds} s is negative; the smallest is 0 s"),
+                format!("the dwell of {} s is negative; the smallest is 0 s", Short(seconds)),
             ));
         }
         self.event(EventKind::Dwell { seconds });

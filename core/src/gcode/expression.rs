@@ -12,8 +12,8 @@
 //! Rules: T. R. Kramer, F. M. Proctor, E. Messina, The NIST RS274NGC Interpreter - Version 3, NISTIR 6556 (2000), section 3.3,
 //! with the named parameters and comparisons that LinuxCNC added.
 
-use super::diagnostic::{Fault, Read};
-use super::lexer::{Cursor, END, shown};
+use super::diagnostic::{Fault, Read, Short};
+use super::lexer::{Cursor, END, NO_EXPONENT, shown};
 use super::parameters::PARAMETERS;
 
 /// Brackets, signs and `#` inside each other. Each level costs stack; no written program has more than a dozen.
@@ -93,6 +93,9 @@ const FUNCTIONS: [&[u8]; 14] = [
     b"tan",
 ];
 
+/// Words of Fanuc macros and of other languages, which programs for them hold in place of O-words.
+const MACRO_KEYWORDS: [&str; 8] = ["if", "while", "goto", "end", "endif", "else", "for", "do"];
+
 impl<'a, V: Values> Evaluator<'a, V> {
     pub(super) const fn new(cursor: Cursor<'a>, values: &'a V) -> Self {
         Self { cursor, values, depth: 0 }
@@ -133,19 +136,19 @@ impl<'a, V: Values> Evaluator<'a, V> {
     pub(super) fn bracketed(&mut self) -> Read<f64> {
         let start = self.cursor.at;
         if !self.cursor.eat(b'[') {
-            let found = self.cursor.peek();
+            let found = self.cursor.raw();
             return Err(Fault::new(
                 "gcode::bracket",
                 start..start + 1,
-                format!("`[` is missing: `{}` stands in its place", text_of(found)),
+                format!("`[` is missing: {} stands in its place", text_of(found)),
             ));
         }
         let value = self.deeper(start, |evaluator| evaluator.expression(1))?;
         if !self.cursor.eat(b']') {
-            let found = self.cursor.peek();
-            let at = self.cursor.at;
+            let (found, at) = (self.cursor.raw(), self.cursor.at);
             let message = format!("`]` or an operator is missing: {} stands in its place", text_of(found));
-            return Err(Fault::new("gcode::bracket", at..at + 1, message));
+            let fault = Fault::new("gcode::bracket", at..at + 1, message);
+            return Err(fault.hint(if self.cursor.is_exponent() { NO_EXPONENT } else { "every `[` needs its `]`" }));
         }
         Ok(value)
     }
@@ -205,15 +208,8 @@ impl<'a, V: Values> Evaluator<'a, V> {
 
     #[cold]
     fn unknown_function(&mut self, start: usize) -> Box<Fault> {
-        let letters: Vec<u8> = self
-            .cursor
-            .rest()
-            .iter()
-            .copied()
-            .take_while(u8::is_ascii_alphabetic)
-            .map(|byte| byte.to_ascii_lowercase())
-            .take(12)
-            .collect();
+        let letters: Vec<u8> =
+            self.cursor.rest().iter().copied().take_while(u8::is_ascii_alphabetic).take(12).collect();
         let name = String::from_utf8_lossy(&letters).into_owned();
         let fault = Fault::new(
             "gcode::number",
@@ -223,8 +219,16 @@ impl<'a, V: Values> Evaluator<'a, V> {
         let nearest = FUNCTIONS
             .iter()
             .map(|known| String::from_utf8_lossy(known))
-            .find(|known| letters.len() > 1 && strsim::levenshtein(known, &name) <= 1);
+            .find(|known| letters.len() > 1 && strsim::levenshtein(known, &name.to_ascii_lowercase()) <= 1);
+        // The letter before the value belongs to the word that the user wrote: W and `hile`.
+        let before = start.checked_sub(1).map_or(b' ', |before| self.cursor.bytes[before].to_ascii_lowercase());
+        let keyword = format!("{}{}", char::from(before), name.to_ascii_lowercase());
         match nearest {
+            _ if before == b'#' => fault.hint(format!("names of parameters stand in angle brackets: #<{name}>")),
+            _ if MACRO_KEYWORDS.contains(&&keyword[..]) => {
+                fault.hint("loops and branches begin with an O-word, as in `o1 while [#1 LT 5]`; those of Fanuc macros are not read")
+            }
+            _ if name.starts_with(['o', 'O']) => fault.hint("the letter O is no zero: write 0"),
             Some(known) => fault.hint(format!("did you mean `{known}[...]`?")),
             None => fault,
         }
@@ -256,10 +260,15 @@ impl<'a, V: Values> Evaluator<'a, V> {
         let rounded = index.round();
         let at = start..self.cursor.at;
         if (index - rounded).abs() > INTEGER_WITHIN {
-            return Err(Fault::new("gcode::parameter", at, format!("parameter number {index} is not an integer")));
+            return Err(Fault::new(
+                "gcode::parameter",
+                at,
+                format!("parameter number {} is not an integer", Short(index)),
+            ));
         }
         if !(1.0..PARAMETERS as f64).contains(&rounded) {
-            let message = format!("parameter #{rounded} does not exist: the numbers go from 1 to {}", PARAMETERS - 1);
+            let message =
+                format!("parameter #{} does not exist: the numbers go from 1 to {}", Short(rounded), PARAMETERS - 1);
             return Err(Fault::new("gcode::parameter", at, message));
         }
         Ok(Target::Numbered(rounded as usize))
@@ -315,15 +324,16 @@ impl<'a, V: Values> Evaluator<'a, V> {
 
 impl Operator {
     fn apply(self, left: f64, right: f64) -> Result<f64, String> {
+        let (base, power) = (Short(left), Short(right));
         let truth = |value: bool| Ok(f64::from(u8::from(value)));
         let (is_left, is_right) = (left != 0.0, right != 0.0);
         match self {
             Self::Power if left < 0.0 && right.fract() != 0.0 => {
-                Err(format!("{left} cannot be raised to {right}: a negative base needs an integer exponent"))
+                Err(format!("{base} cannot be raised to {power}: a negative base needs an integer exponent"))
             }
             Self::Power => Ok(left.powf(right)),
             Self::Times => Ok(left * right),
-            Self::Over | Self::Modulo if right == 0.0 => Err(format!("{left} is divided by zero")),
+            Self::Over | Self::Modulo if right == 0.0 => Err(format!("{base} is divided by zero")),
             Self::Over => Ok(left / right),
             Self::Modulo => Ok(left.rem_euclid(right)),
             Self::Plus => Ok(left + right),
@@ -343,7 +353,7 @@ impl Operator {
 
 fn apply_function(name: &[u8], x: f64) -> Result<f64, String> {
     let outside = |range: &str| {
-        Err(format!("{}[{x}] does not exist: the argument must be {range}", String::from_utf8_lossy(name)))
+        Err(format!("{}[{}] does not exist: the argument must be {range}", String::from_utf8_lossy(name), Short(x)))
     };
     match name {
         b"abs" => Ok(x.abs()),

@@ -19,6 +19,10 @@ const EXACT_MANTISSA: u64 = 1 << 53;
 /// Digits that always fit a u64.
 const SAFE_DIGITS: usize = 19;
 
+/// What a number with an exponent is told.
+pub(super) const NO_EXPONENT: &str =
+    "G-code has no exponents: write the digits out, 1500 for 1.5e3 and 0.0015 for 1.5e-3";
+
 /// A place in a line.
 #[derive(Debug, Clone)]
 pub(super) struct Cursor<'a> {
@@ -33,7 +37,7 @@ impl<'a> Cursor<'a> {
 
     /// The byte under the cursor as it stands, [`END`] behind the last.
     #[inline]
-    fn raw(&self) -> u8 {
+    pub(super) fn raw(&self) -> u8 {
         self.bytes.get(self.at).copied().unwrap_or(END)
     }
 
@@ -75,6 +79,15 @@ impl<'a> Cursor<'a> {
             }
         }
         true
+    }
+
+    /// Whether an `e` under the cursor looks like an exponent: between a digit or point and a digit or sign.
+    pub(super) fn is_exponent(&self) -> bool {
+        let before = self.at.checked_sub(1).and_then(|before| self.bytes.get(before));
+        let after = self.bytes.get(self.at + 1);
+        self.raw().eq_ignore_ascii_case(&b'e')
+            && before.is_some_and(|byte| byte.is_ascii_digit() || *byte == b'.')
+            && after.is_some_and(|byte| byte.is_ascii_digit() || matches!(byte, b'+' | b'-'))
     }
 
     /// The bytes to the end of the line.
@@ -151,7 +164,7 @@ impl<'a> Cursor<'a> {
     #[cold]
     fn not_a_number(&mut self, start: usize) -> Box<Fault> {
         let found = self.peek();
-        let what = if found == END { "the end of the line".to_owned() } else { format!("`{}`", shown(found)) };
+        let what = if found == END { "the end of the line".to_owned() } else { format!("`{}`", shown(self.raw())) };
         let end = if found == END { self.at } else { self.at + 1 };
         Fault::new("gcode::number", start..end.max(start), format!("a number is missing: {what} stands in its place"))
     }

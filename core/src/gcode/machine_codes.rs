@@ -64,7 +64,7 @@ impl Interpreter {
                     word.at(),
                     format!("M{} is not an M-code that LinuxCNC knows", word.number),
                 )
-                .hint("user M-codes go from M100 to M199; another control's program needs another dialect"));
+                .hint("user M-codes go from M100 to M199; another control's program needs another --dialect"));
             }
         }
         Ok(())

@@ -89,7 +89,8 @@ impl Interpreter {
             let at = if block.has(b'h') { block.at(b'h') } else { word.at() };
             let message = format!("tool {number} is not in the tool table: its length counts as 0 mm");
             let fault = Fault::new("gcode::tool", at, message);
-            self.warnings.push(*fault.hint("give a tool table, or nothing if the program's Z is the tip"));
+            self.warnings
+                .push(*fault.hint("give a tool table with --tool-table, or nothing if the program's Z is the tip"));
         }
         Ok([0.0; 9])
     }

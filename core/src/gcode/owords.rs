@@ -1,6 +1,6 @@
 //! O-words: the lines that steer the flow of a program, read into labels, keywords and arguments.
 
-use super::diagnostic::{Fault, Read};
+use super::diagnostic::{Fault, Read, Short};
 use super::expression::{Evaluator, INTEGER_WITHIN, Values};
 use super::lexer::{Cursor, END};
 use super::parameters::LOCALS;
@@ -94,7 +94,7 @@ pub(super) fn read_head<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<Hea
         let value = evaluator.value()?;
         let rounded = value.round();
         if (value - rounded).abs() > INTEGER_WITHIN || !(0.0..1e15).contains(&rounded) {
-            let message = format!("the label O{value} is not a whole number");
+            let message = format!("the label O{} is not a whole number", Short(value));
             return Err(Fault::new("gcode::o_word", start..evaluator.cursor.at, message));
         }
         format!("{}", rounded as u64).into_bytes()

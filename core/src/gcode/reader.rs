@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use super::block::{Block, Style};
 use super::canon::{Canon, EventKind};
-use super::diagnostic::{Diagnostic, Fault, Read, Severity};
+use super::diagnostic::{Diagnostic, Fault, Read, Severity, Short};
 use super::dialect;
 use super::firmware;
 use super::flow::Flow;
@@ -37,6 +37,7 @@ pub enum ReadError {
     },
     /// A folder instead of a file.
     #[error("{path}: this is a folder, not a G-code program")]
+    #[diagnostic(help("name a program in it; `feedwright check` takes folders"))]
     Directory {
         /// As the user named it.
         path: PathBuf,
@@ -52,6 +53,7 @@ pub enum ReadError {
     },
     /// Nothing in it.
     #[error("{name}: the program is empty")]
+    #[diagnostic(help("the export may have failed; a program has at least a motion such as G1 X10 F100"))]
     Empty {
         /// As the user named it.
         name: Arc<str>,
@@ -135,7 +137,7 @@ impl Reader {
     fn new(source: Source, folder: Option<PathBuf>, settings: Settings) -> Result<Self, ReadError> {
         let choice = dialect::choose(source.head(), &source.name)?;
         let (dialect, dialect_reason) = match settings.dialect {
-            Some(dialect) => (dialect, "set"),
+            Some(dialect) => (dialect, "as was asked for"),
             None => choice,
         };
         Ok(Self {
@@ -278,7 +280,8 @@ impl Reader {
                             "gcode::m98",
                             at,
                             "M98 calls a subroutine, but P with its number is missing",
-                        ));
+                        )
+                        .hint("write M98 P1000 to call O1000"));
                     };
                     let times =
                         if block.has(b'l') { interpreter.integer(block, b'l', 0, i64::from(u32::MAX))? } else { 1 };
@@ -286,7 +289,7 @@ impl Reader {
                         return Err(Fault::new(
                             "gcode::m98",
                             block.at(b'p'),
-                            format!("P{number} is no number of a subroutine"),
+                            format!("P{} is no number of a subroutine", Short(number)),
                         ));
                     }
                     flow.call_number(number.round() as u64, times as u32, &at, interpreter)?;
@@ -308,7 +311,8 @@ impl Reader {
                 self.interpreter.end_program();
             }
             Percent::Absent => {
-                let fault = Fault::new("gcode::percent", at, "`%` ends the program, but no `%` begins it");
+                let fault = Fault::new("gcode::percent", at, "`%` ends the program, but no `%` begins it")
+                    .hint("write `%` as the first line, too, or M2 instead of this one");
                 self.interpreter.warnings.push(*fault);
                 self.interpreter.end_program();
             }
@@ -322,6 +326,7 @@ impl Reader {
             self.state = State::Done;
             let mut diagnostic = self.of_file("gcode::o_word", message);
             diagnostic.line = line;
+            diagnostic.hint = Some("write it behind the last line that belongs to it".to_owned());
             self.interpreter.end_program();
             return Err(diagnostic);
         }
@@ -331,6 +336,7 @@ impl Reader {
                 let mut warning =
                     self.of_file("gcode::program_end", "the program ends without M2, M30 or %".to_owned());
                 warning.severity = Severity::Warning;
+                warning.hint = Some("write M2 on the last line; a control may wait for more without it".to_owned());
                 self.warn(*warning);
             }
             self.interpreter.end_program();
@@ -346,17 +352,23 @@ impl Reader {
         }
         self.idle_lines += 1;
         let settings = &self.interpreter.settings;
-        let message = if self.idle_lines > settings.max_idle_lines {
-            format!("endless loop: {} lines in a row were carried out without a motion", settings.max_idle_lines)
+        let (message, hint) = if self.idle_lines > settings.max_idle_lines {
+            (
+                format!("endless loop: {} lines in a row were carried out without a motion", settings.max_idle_lines),
+                "does the loop change what it waits for? --max-idle-lines sets the limit",
+            )
         } else if self.interpreter.motions > settings.max_motions {
-            format!("the program has more than {} motions", settings.max_motions)
+            (
+                format!("the program has more than {} motions", settings.max_motions),
+                "does a loop never end? --max-motions sets the limit",
+            )
         } else {
             return Ok(());
         };
         self.state = State::Done;
         let mut diagnostic = self.of_file("gcode::endless", message);
         diagnostic.line = self.interpreter.line;
-        diagnostic.hint = Some("the limits are settings of the reader".to_owned());
+        diagnostic.hint = Some(hint.to_owned());
         Err(diagnostic)
     }
 

@@ -3,7 +3,22 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use thiserror::Error;
+
 use super::tools::ToolTable;
+use crate::machine::nearest;
+
+/// Name under which the dialect is chosen by the beginning of the file.
+pub const AUTO: &str = "auto";
+/// Every other name of a dialect.
+pub const DIALECTS: [(&str, Dialect); 6] = [
+    ("linuxcnc", Dialect::LinuxCnc),
+    ("fanuc", Dialect::Fanuc),
+    ("haas", Dialect::Fanuc),
+    ("grbl", Dialect::Grbl),
+    ("marlin", Dialect::Printer),
+    ("klipper", Dialect::Printer),
+];
 
 /// Whose G-code it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,6 +31,44 @@ pub enum Dialect {
     Grbl,
     /// Marlin, Klipper and other firmware of 3D printers: an E axis, M-codes without limit, G28 is homing.
     Printer,
+}
+
+impl Dialect {
+    /// The dialect of a name in [`DIALECTS`], in any case; `None` for [`AUTO`].
+    ///
+    /// # Errors
+    /// A name that is none of these.
+    pub fn named(name: &str) -> Result<Option<Self>, UnknownDialect> {
+        if name.eq_ignore_ascii_case(AUTO) {
+            return Ok(None);
+        }
+        match DIALECTS.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) {
+            Some((_, dialect)) => Ok(Some(*dialect)),
+            None => Err(UnknownDialect::new(name)),
+        }
+    }
+}
+
+/// A name that no dialect has.
+#[derive(Debug, Clone, PartialEq, Eq, Error, miette::Diagnostic)]
+#[error("no dialect is called '{name}'; there are {}", names().join(", "))]
+pub struct UnknownDialect {
+    /// What was asked for.
+    pub name: String,
+    /// Which one may be meant.
+    #[help]
+    pub hint: String,
+}
+
+impl UnknownDialect {
+    fn new(name: &str) -> Self {
+        let meant = nearest(name, &names()).map_or(String::new(), |meant| format!("did you mean '{meant}'? "));
+        Self { name: name.to_owned(), hint: format!("{meant}'{AUTO}' chooses by the beginning of the program") }
+    }
+}
+
+fn names() -> Vec<&'static str> {
+    std::iter::once(AUTO).chain(DIALECTS.iter().map(|(name, _)| *name)).collect()
 }
 
 impl fmt::Display for Dialect {
@@ -42,7 +95,7 @@ pub struct Settings {
     pub coordinate_limit_mm: f64,
     /// Lines that may be carried out without a motion before the program counts as an endless loop.
     pub max_idle_lines: u64,
-    /// Motions and events that a program may have.
+    /// Motions that a program may have.
     pub max_motions: u64,
     /// Calls and loops inside each other.
     pub max_depth: usize,
@@ -66,5 +119,21 @@ impl Default for Settings {
             subroutine_paths: Vec::new(),
             tools: ToolTable::default(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dialects_have_names() {
+        assert_eq!(Dialect::named("AUTO"), Ok(None));
+        for (name, dialect) in DIALECTS {
+            assert_eq!(Dialect::named(&name.to_uppercase()), Ok(Some(dialect)));
+        }
+        let unknown = Dialect::named("linuxcn").unwrap_err();
+        assert!(unknown.to_string().ends_with("there are auto, linuxcnc, fanuc, haas, grbl, marlin, klipper"));
+        assert!(unknown.hint.starts_with("did you mean 'linuxcnc'?"));
     }
 }

@@ -13,7 +13,7 @@ use super::splines::Collected;
 use super::variables::Saved;
 
 /// Millimetres of an inch.
-pub(super) const INCH_MM: f64 = 25.4;
+pub const INCH_MM: f64 = 25.4;
 
 /// X Y Z A B C U V W: mm and degrees.
 pub(super) type Position = [f64; 9];
@@ -42,6 +42,8 @@ pub(super) struct Modal {
     pub(super) feed_mode: FeedMode,
     /// F: mm/min, 1/min or mm/rev by `feed_mode`.
     pub(super) feed: f64,
+    /// What F was multiplied by to become millimetres. Rotary axes that move alone take F in degrees, whatever the unit.
+    pub(super) feed_unit_mm: f64,
     pub(super) corner: Corner,
     /// G99: canned cycles retract to R; G98: to where they began.
     pub(super) retract_to_r: bool,
@@ -71,6 +73,7 @@ impl Modal {
             arc_absolute: false,
             feed_mode: FeedMode::PerMinute,
             feed: 0.0,
+            feed_unit_mm: 1.0,
             corner: Corner::Continuous { tolerance_mm: None },
             // As LinuxCNC begins, though its manual says otherwise.
             retract_to_r: true,

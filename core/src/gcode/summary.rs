@@ -1,6 +1,7 @@
 //! A run through a whole program ahead of all others: every fault at once, or what the program amounts to.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use super::canon::{Canon, Motion, MotionKind, Shape};
 use super::diagnostic::{Diagnostic, Severity};
@@ -10,6 +11,8 @@ use super::settings::{Dialect, Settings};
 /// What a program amounts to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
+    /// File as the user named it.
+    pub name: Arc<str>,
     /// Motions.
     pub motions: u64,
     /// Events.
@@ -18,6 +21,8 @@ pub struct Summary {
     pub moves: [bool; 3],
     /// Whether A B C U V W or an extruder moves.
     pub moves_others: bool,
+    /// First line in which each of A, B, C, U, V and W moves.
+    pub others_move: [Option<u32>; 6],
     /// Length of all feed motions, mm.
     pub feed_mm: f64,
     /// Length of all rapids, mm.
@@ -55,10 +60,12 @@ pub fn check(path: &Path, settings: Settings) -> Result<Summary, CheckError> {
 /// All faults of the program.
 pub fn summarize(mut reader: Reader) -> Result<Summary, CheckError> {
     let mut summary = Summary {
+        name: reader.name(),
         motions: 0,
         events: 0,
         moves: [false; 3],
         moves_others: false,
+        others_move: [None; 6],
         feed_mm: 0.0,
         rapid_mm: 0.0,
         lines: 0,
@@ -76,7 +83,9 @@ pub fn summarize(mut reader: Reader) -> Result<Summary, CheckError> {
     }
     if summary.motions == 0 && faults.is_empty() {
         let message = "the program has no motion".to_owned();
-        faults.push(Diagnostic::of_file(Severity::Error, "gcode::no_motion", reader.name(), message));
+        let mut fault = Diagnostic::of_file(Severity::Error, "gcode::no_motion", reader.name(), message);
+        fault.hint = Some(NO_MOTION_HINT.to_owned());
+        faults.push(fault);
     }
     if !faults.is_empty() {
         return Err(CheckError::Faults(faults));
@@ -86,10 +95,19 @@ pub fn summarize(mut reader: Reader) -> Result<Summary, CheckError> {
     Ok(summary)
 }
 
+/// Why a program may have no motion although none of its lines is wrong.
+const NO_MOTION_HINT: &str = "an early M2, M30 or %, a subroutine that nothing calls, and a comment around everything leave nothing to do; \
+                              is this the right file?";
+
 impl Summary {
     fn add(&mut self, motion: &Motion) {
         self.motions += 1;
         self.moves_others |= !motion.others.is_none();
+        if let Some([start, end]) = motion.others.axes.as_deref() {
+            for axis in (0..6).filter(|&axis| start[axis] != end[axis]) {
+                self.others_move[axis].get_or_insert(motion.line);
+            }
+        }
         let length = motion.length_mm();
         match motion.kind {
             MotionKind::Feed => self.feed_mm += length,
@@ -120,6 +138,20 @@ impl Summary {
                 }
             }
         }
+    }
+
+    /// A warning where axes move that nothing behind the reader simulates or controls.
+    pub(crate) fn uncontrolled(&self) -> Option<Diagnostic> {
+        let line = self.others_move.iter().flatten().min()?;
+        let moving = "ABCUVW".chars().zip(self.others_move).filter(|(_, line)| line.is_some());
+        let names = moving.map(|(name, _)| name.to_string()).collect::<Vec<_>>().join(", ");
+        let message = format!("line {line}: {names} moves; only X, Y and Z are simulated and controlled");
+        let mut warning = Diagnostic::of_file(Severity::Warning, "gcode::other_axes", self.name.clone(), message);
+        warning.hint = Some(
+            "where it moves alone it takes its time (rotary_deg_s in [plc]); together with X, Y or Z it is taken along"
+                .to_owned(),
+        );
+        Some(warning)
     }
 
     fn include(&mut self, point: [f64; 3]) {

@@ -3,7 +3,7 @@
 use super::block::Block;
 use super::canon::{Canon, Motion, MotionKind, Others, Shape};
 use super::codes::{AXIS_LETTERS, Group, bit};
-use super::diagnostic::{Fault, Read};
+use super::diagnostic::{Fault, Read, Short};
 use super::settings::Dialect;
 use super::state::{FeedMode, Interpreter, Position};
 
@@ -58,7 +58,10 @@ impl Interpreter {
         }
         let feed_mm_s = match speed {
             Speed::Rapid => 0.0,
-            Speed::Programmed => self.feed_for(block, distance(&start, &machine))?,
+            Speed::Programmed => {
+                let feed = self.feed_for(block, distance(&start, &machine))?;
+                if turns_only(&start, &machine) { feed / self.modal.feed_unit_mm } else { feed }
+            }
         };
         self.push_motion(speed, &start, Shape::Line, feed_mm_s, others);
         Ok(())
@@ -91,13 +94,15 @@ impl Interpreter {
                 "gcode::feed",
                 block.whole(),
                 "F is missing: with G93 (inverse time) every feed motion needs its own",
-            )),
+            )
+            .hint("F2 does the motion in half a minute; G94 goes back to feed per minute")),
             FeedMode::Inverse if feed > 0.0 => Ok(length_mm * feed / MINUTE_S),
             FeedMode::PerRevolution if feed > 0.0 && self.modal.spindle_speed == 0.0 => Err(Fault::new(
                 "gcode::feed",
                 block.whole(),
                 "with G95 (feed per revolution) the spindle needs a speed S above 0 rev/min",
-            )),
+            )
+            .hint("write S and M3 before it, or G94 for feed per minute")),
             FeedMode::PerRevolution if feed > 0.0 => Ok(feed * self.modal.spindle_speed / MINUTE_S),
             // Printers start with a feed of their own.
             _ if self.dialect == Dialect::Printer => Ok(PRINTER_FEED_MM_S),
@@ -175,11 +180,13 @@ impl Interpreter {
     pub(super) fn too_far(&self, block: &Block, letter: u8, value: f64) -> Box<Fault> {
         let name = char::from(letter).to_ascii_uppercase();
         let limit = self.settings.coordinate_limit_mm;
-        Fault::new(
-            "gcode::coordinate",
-            block.at(letter),
-            format!("{name} = {value} mm is beyond the limit of {limit} mm"),
-        )
+        let unit = if matches!(letter, b'a' | b'b' | b'c') { "degrees" } else { "mm" };
+        let message = format!("{name} = {} {unit} is beyond the limit of {limit} {unit}", Short(value));
+        Fault::new("gcode::coordinate", block.at(letter), message).hint(if self.modal.unit_mm == 1.0 {
+            "is a decimal point missing?"
+        } else {
+            "is a decimal point missing? G20 is active: lengths are inches"
+        })
     }
 
     /// Many small steps must not creep beyond the limit either.
@@ -250,4 +257,9 @@ pub(super) fn others(start: &Position, end: &Position, extruder_mm: f64) -> Othe
 pub(super) fn distance(start: &Position, end: &Position) -> f64 {
     let along = |axes: std::ops::Range<usize>| axes.map(|axis| (end[axis] - start[axis]).powi(2)).sum::<f64>().sqrt();
     [along(0..3), along(6..9), along(3..6)].into_iter().find(|&length| length > 0.0).unwrap_or(0.0)
+}
+
+/// Whether rotary axes are all that moves, so that F is in degrees.
+fn turns_only(start: &Position, end: &Position) -> bool {
+    start[..3] == end[..3] && start[6..] == end[6..] && start[3..6] != end[3..6]
 }

@@ -9,7 +9,7 @@ use toml::de::DeTable;
 
 use super::error::Fault;
 use super::reader::Table;
-use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Period, Transmission};
+use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Period, PlcEvent, Transmission};
 
 /// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
 /// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.
@@ -57,13 +57,18 @@ pub(super) fn machine(text: &str, base: Option<&str>) -> Result<Machine, Vec<Fau
     }
     let period = period(root.table("period", &mut faults), &mut faults);
     let mechanics_s = period.mechanics_s;
+    let mut plc_events = Vec::new();
     let machine = Machine {
         name: root.text("name", &mut faults),
         description: root.text("description", &mut faults),
         source: root.text("source", &mut faults),
         period,
         limits: limits(root.table("limits", &mut faults), &mut faults),
-        plc: root.optional_table("plc", &mut faults).map(|table| plc(table, &mut faults)).unwrap_or_default(),
+        plc: root
+            .optional_table("plc", &mut faults)
+            .map(|table| plc(table, &mut plc_events, &mut faults))
+            .unwrap_or_default(),
+        plc_events,
         axes: axes(root.table("axis", &mut faults), mechanics_s, &mut faults),
     };
     root.finish(&mut faults);
@@ -104,16 +109,77 @@ fn limits(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Limits {
     limits
 }
 
-fn plc(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Durations {
+fn plc(mut table: Table<'_, '_>, events: &mut Vec<PlcEvent>, faults: &mut Vec<Fault>) -> Durations {
     let durations = Durations {
         tool_change_s: table.number("tool_change_s", "s", 0.0..=1e4, faults),
         coolant_s: table.number("coolant_s", "s", 0.0..=1e4, faults),
         pallet_change_s: table.number("pallet_change_s", "s", 0.0..=1e5, faults),
         spindle_rev_min_s: table.number("spindle_rev_min_s", "rev/min/s", 0.0..=1e7, faults),
+        rotary_deg_s: table.optional_number("rotary_deg_s", "degrees/s", 0.0..=1e5, faults).unwrap_or(0.0),
     };
+    if let Some(named) = table.optional_table("event", faults) {
+        for (key, table) in named.tables(faults) {
+            events.extend(plc_event(&key, table, events, faults));
+        }
+    }
     table.finish(faults);
     durations
 }
+
+fn plc_event(key: &str, mut table: Table<'_, '_>, before: &[PlcEvent], faults: &mut Vec<Fault>) -> Option<PlcEvent> {
+    let event = m_code(key).map(|(code, p)| PlcEvent {
+        code,
+        p,
+        row: table.text("row", faults),
+        label: table.text("label", faults),
+        takes_s: table.number("takes_s", "s", 0.0..=1e4, faults),
+    });
+    let at = table.header();
+    let fault = |label, message, hint: &str| faults.push(Fault { at, label, message, hint: Some(hint.to_owned()) });
+    match &event {
+        None => {
+            fault(
+                "no M-code",
+                format!("[plc.event] names '{key}', which is no M-code"),
+                "write \"M64 P3\" or \"M100\"",
+            );
+            return None;
+        }
+        Some(event) if CODES_OF_THEIR_OWN.contains(&event.code) => {
+            fault(
+                "has a meaning of its own",
+                format!("M{} cannot be given another meaning", event.code),
+                "its duration is a key of [plc], where it has one",
+            );
+        }
+        Some(event) if before.iter().any(|other| (other.code, other.p) == (event.code, event.p)) => {
+            fault("named twice", format!("'{key}' is another spelling of an M-code that is named already"), "keep one");
+        }
+        Some(_) => {}
+    }
+    table.finish(faults);
+    event
+}
+
+/// M-codes whose meaning no machine builder changes: stops, spindle, tool change, coolant, overrides, pallets, modes.
+const CODES_OF_THEIR_OWN: [u16; 23] =
+    [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30, 48, 49, 50, 51, 52, 53, 60, 70, 71, 72, 73, 99];
+
+/// `M64 P3`: the code and its P word, blanks and case free.
+fn m_code(key: &str) -> Option<(u16, Option<u32>)> {
+    let key: String = key.chars().filter(|c| !c.is_whitespace()).map(|c| c.to_ascii_uppercase()).collect();
+    let words = key.strip_prefix('M')?;
+    // `parse` alone would take a sign.
+    let number = |digits: &str| digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok()).flatten();
+    let (code, p) = match words.split_once('P') {
+        Some((code, p)) => (number(code)?, Some(number(p)?)),
+        None => (number(words)?, None),
+    };
+    u16::try_from(code).ok().filter(|&code| code <= LAST_M_CODE).map(|code| (code, p))
+}
+
+/// As the reader has it.
+const LAST_M_CODE: u16 = 9999;
 
 fn axes(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Vec<Axis> {
     let [x, y, z] = AXIS_NAMES;

@@ -148,6 +148,32 @@ impl<'t, 'i> Table<'t, 'i> {
         Some(Self { name, at: value.span(), entries, base, asked: Vec::new() })
     }
 
+    /// Every entry as a table with its key, in the order of the file; a fault for each that is none.
+    pub(super) fn tables(self, faults: &mut Vec<Fault>) -> Vec<(String, Self)> {
+        let mut found = Vec::new();
+        for (key, value) in self.entries.into_iter().flatten() {
+            let name = if self.name.is_empty() {
+                key.get_ref().to_string()
+            } else {
+                format!("{}.\"{}\"", self.name, key.get_ref())
+            };
+            match value.get_ref() {
+                DeValue::Table(entries) => {
+                    let table = Self { name, at: key.span(), entries: Some(entries), base: None, asked: Vec::new() };
+                    found.push((key.span().start, key.get_ref().to_string(), table));
+                }
+                other => faults.push(wrong_type(value.span(), key.get_ref(), &format!("a table [{name}]"), other)),
+            }
+        }
+        found.sort_by_key(|(start, ..)| *start);
+        found.into_iter().map(|(_, key, table)| (key, table)).collect()
+    }
+
+    /// Place of the table itself.
+    pub(super) fn header(&self) -> Range<usize> {
+        self.at.clone()
+    }
+
     /// Place of a key's value, for faults between values; the table's where the key is missing.
     pub(super) fn place(&self, key: &str) -> Range<usize> {
         self.entries.and_then(|entries| entries.get(key)).map_or_else(|| self.at.clone(), Spanned::span)

@@ -219,3 +219,60 @@ fn fingerprint_follows_the_content_and_nothing_else() {
     let (two_axes, _) = TNV40.split_once("# The paper simulates X and Y only").unwrap();
     assert_ne!(Machine::parse("x", two_axes).unwrap().fingerprint(), original);
 }
+
+/// The tnv40 file with more at its end, which is in [plc].
+fn with_events(text: &str) -> Result<Machine, MachineError> {
+    Machine::parse("events.toml", &format!("{TNV40}\n{text}"))
+}
+
+#[test]
+fn m_codes_may_be_given_a_meaning() {
+    let text = "[plc.event.\"m 64 p3\"]\nrow = 'lamp'\nlabel = 'lamp on'\ntakes_s = 0.25\n\
+                [plc.event.M101]\nrow = 'chuck'\nlabel = 'opens'\ntakes_s = 2\n";
+    let events = with_events(text).unwrap().plc_events;
+    let event = |code, p, row: &str, label: &str, takes_s| PlcEvent {
+        code,
+        p,
+        row: row.to_owned(),
+        label: label.to_owned(),
+        takes_s,
+    };
+    assert_eq!(events, [event(64, Some(3), "lamp", "lamp on", 0.25), event(101, None, "chuck", "opens", 2.0)]);
+    assert_eq!(tnv40().plc_events, []);
+}
+
+#[test]
+fn the_rate_of_rotary_axes_may_be_left_out() {
+    assert_eq!(tnv40().plc.rotary_deg_s, 0.0);
+    assert_eq!(with_events("rotary_deg_s = 90").unwrap().plc.rotary_deg_s, 90.0);
+    assert!(
+        fault_after("spindle_rev_min_s = 4000", "rotary_deg_s = -1\nspindle_rev_min_s = 4000").contains("degrees/s")
+    );
+}
+
+#[test]
+fn faults_of_named_m_codes_have_their_places() {
+    let faults = |text: &str| match with_events(text) {
+        Err(MachineError::Invalid { problems, .. }) => problems.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        other => panic!("expected faults, got {other:?}"),
+    };
+    let rest = "row = 'lamp'\nlabel = 'on'\ntakes_s = 0\n";
+    for (key, says) in [
+        ("lamp", "names 'lamp', which is no M-code"),
+        ("M", "no M-code"),
+        ("M64P", "no M-code"),
+        ("M64P-3", "no M-code"),
+        ("M+64", "no M-code"),
+        ("M10000", "no M-code"),
+        ("M99999999999", "no M-code"),
+        ("M6", "M6 cannot be given another meaning"),
+    ] {
+        let found = faults(&format!("[plc.event.'{key}']\n{rest}"));
+        assert!(found.len() == 1 && found[0].contains(says), "{key}: {found:?}");
+    }
+    assert!(faults("[plc.event]\nM100 = 'lamp'\n")[0].contains("table"));
+    let twice = faults(&format!("[plc.event.M100]\n{rest}[plc.event.'m 100']\n{rest}"));
+    assert!(twice.len() == 1 && twice[0].contains("named already"), "{twice:?}");
+    let found = faults("[plc.event.M100]\nrow = ' '\nlabel = 3\ntakes_s = -1\nlamp = 1\n");
+    assert_eq!(found.len(), 4, "{found:?}");
+}

@@ -7,7 +7,7 @@
 //! | eight | `(15 sin a, 10 sin 2a)` |
 //! | star | `(12 + 4 cos 5a) (cos a, sin a)` |
 //! | square | 20 x 20, sharp corners, counter-clockwise |
-//! | butterfly | NURBS of Yeh and Hsu, see [`super::butterfly`] |
+//! | butterfly | NURBS of Yeh and Hsu (2002), see `butterfly.rs` |
 //! | line-line-circle | (0,0) (40,30) (60,30), then a full circle about (90,30), counter-clockwise |
 
 use super::butterfly::butterfly;

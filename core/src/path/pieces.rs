@@ -66,7 +66,7 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
             }
         }
         if self.ready.len() == ready && !motion.others.is_none() {
-            self.ready.push_back(Step::Rest { line: motion.line, seconds: standing_s(motion) });
+            self.ready.push_back(rest(motion));
         }
         Ok(())
     }
@@ -145,19 +145,22 @@ impl<I: Iterator<Item = Canon>> Iterator for Pieces<I> {
     }
 }
 
-/// How long something else moves while X, Y and Z stand still. The feedrate refers to U, V, W in mm if they move, else to
-/// A, B, C in degrees, else to the extruder; a rapid has no rate of its own here and takes no time.
-fn standing_s(motion: &Motion) -> f64 {
-    if motion.kind == MotionKind::Rapid {
-        return 0.0;
-    }
+/// What moves while X, Y and Z stand still. The feedrate refers to U, V, W in mm if they move, else to A, B, C in degrees,
+/// else to the extruder.
+fn rest(motion: &Motion) -> Step {
+    let [start, end] = motion.others.axes.as_deref().unwrap_or(&[[0.0; 6]; 2]);
     let along = |from: usize| {
-        let [start, end] = motion.others.axes.as_deref().unwrap_or(&[[0.0; 6]; 2]);
         distance([start[from], start[from + 1], start[from + 2]], [end[from], end[from + 1], end[from + 2]])
     };
+    let is_rapid = motion.kind == MotionKind::Rapid;
     let ways = [along(3), along(0), motion.others.extruder_mm.abs()];
-    let seconds = ways.into_iter().find(|&way| way > 0.0).unwrap_or(0.0) / motion.feed_mm_s;
-    seconds.min(MAX_REST_S)
+    let way = ways.into_iter().find(|&way| way > 0.0).unwrap_or(0.0);
+    Step::Rest {
+        line: motion.line,
+        seconds: if is_rapid { 0.0 } else { (way / motion.feed_mm_s).min(MAX_REST_S) },
+        turn_deg: (0..3).map(|axis| (end[axis] - start[axis]).abs()).fold(0.0, f64::max),
+        rapid_mm: if is_rapid { along(3) } else { 0.0 },
+    }
 }
 
 fn check_event(event: &Event) -> Result<(), PathError> {

@@ -7,9 +7,10 @@ use serde::Serialize;
 
 use super::job::{Error, Job};
 use crate::feed::TimedEvent;
-use crate::gcode::canon::EventKind;
+use crate::machine::PlcEvent;
 use crate::output::gcode_writer::GcodeWriter;
 use crate::output::{OutputError, OutputFile};
+use crate::plc;
 use crate::report::{Report, RunSummary, TimelineEvent, write_html};
 use crate::trace::csv::{SetpointWriter, TraceWriter};
 use crate::trace::{Row, Sink};
@@ -171,12 +172,20 @@ fn write_json(out: &mut impl io::Write, job: &Job, report: &Report) -> io::Resul
 const MOST_EVENTS: usize = 500;
 
 /// The events of a run, for the page.
-#[derive(Debug, Default)]
-pub(super) struct Timeline {
+#[derive(Debug)]
+pub(super) struct Timeline<'a> {
     pub(super) events: Vec<TimelineEvent>,
+    /// What the machine builder named.
+    named: &'a [PlcEvent],
 }
 
-impl Sink for Timeline {
+impl<'a> Timeline<'a> {
+    pub(super) const fn new(named: &'a [PlcEvent]) -> Self {
+        Self { events: Vec::new(), named }
+    }
+}
+
+impl Sink for Timeline<'_> {
     fn row(&mut self, _: &Row) -> io::Result<()> {
         Ok(())
     }
@@ -184,40 +193,9 @@ impl Sink for Timeline {
     fn event(&mut self, t_s: f64, event: &TimedEvent) -> io::Result<()> {
         if self.events.len() < MOST_EVENTS {
             let TimedEvent { duration_s, event, .. } = event;
-            self.events.push(TimelineEvent {
-                t_s,
-                duration_s: *duration_s,
-                line: event.line,
-                label: label(&event.kind),
-            });
+            let plc::Named { row, label } = plc::named(&event.kind, self.named);
+            self.events.push(TimelineEvent { t_s, duration_s: *duration_s, line: event.line, row, label });
         }
         Ok(())
-    }
-}
-
-fn label(kind: &EventKind) -> String {
-    match kind {
-        EventKind::Dwell { seconds } => format!("dwell {seconds} s"),
-        EventKind::SpindleSpeed { rpm } => format!("spindle speed {rpm} rev/min"),
-        EventKind::MCode { code, .. } => match code {
-            0 => "M0 program stop".to_owned(),
-            1 => "M1 optional stop".to_owned(),
-            3 => "M3 spindle clockwise".to_owned(),
-            4 => "M4 spindle counter-clockwise".to_owned(),
-            5 => "M5 spindle stop".to_owned(),
-            6 => "M6 tool change".to_owned(),
-            7 => "M7 mist coolant".to_owned(),
-            8 => "M8 flood coolant".to_owned(),
-            9 => "M9 coolant off".to_owned(),
-            other => format!("M{other}"),
-        },
-        EventKind::ToolSelect { tool } => format!("T{tool} selected"),
-        EventKind::Message { text } => text.clone(),
-        EventKind::SpindleSync { pitch_mm: Some(pitch_mm) } => {
-            format!("feed coupled to the spindle, {pitch_mm} mm/rev")
-        }
-        EventKind::SpindleSync { pitch_mm: None } => "feed free of the spindle".to_owned(),
-        EventKind::Probe => "probe".to_owned(),
-        EventKind::ProgramEnd => "program end".to_owned(),
     }
 }

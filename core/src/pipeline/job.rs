@@ -209,13 +209,14 @@ impl Job {
     }
 
     /// Everything that the page shows.
-    pub(super) fn report(&self, axes: usize, runs: Vec<Run>) -> Report {
+    pub(super) fn report(&self, axes: usize, summary: &Summary, runs: Vec<Run>) -> Report {
         let value = |name: &str, value: String| (name.to_owned(), value);
         let mut settings = vec![
             value("Compared against", self.against.name.to_owned()),
             value("Controller", format!("{}: {}", self.controller.name, self.controller.summary)),
             value("Source of the method", self.controller.source.to_owned()),
             value("Axes controlled", axes.to_string()),
+            value("Program read as", format!("{}: {}", summary.dialect.0, summary.dialect.1)),
             value("Seed", self.choices.seed.to_string()),
         ];
         if let Some(rho) = self.choices.rho {

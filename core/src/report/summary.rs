@@ -36,6 +36,7 @@ pub struct RunSummary {
     /// How the run ended.
     pub outcome: Outcome,
     /// Whether the safety layer took the controller out of the loop, when and why.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub faded_out: Option<FadedOut>,
     /// Machining time: when the command has ended, s.
     pub time_s: f64,

@@ -7,7 +7,7 @@ use crate::report::{FadedOut, Outcome, Report, Run, RunSummary, TimelineEvent, W
 
 const AXES: [&str; 3] = ["X", "Y", "Z"];
 
-/// Events drawn on the strip; the rest is told by number. More would be a solid bar.
+/// Events drawn on a strip; the rest is told by number. More would be a solid bar.
 const SHOWN_EVENTS: usize = 200;
 
 /// A row for each controller.
@@ -74,7 +74,10 @@ fn swatch(index: usize) -> String {
     format!("<span class=\"swatch\" style=\"--run: var(--run-{})\"></span>", index % 6)
 }
 
-/// The events of a run on a strip as long as the run, and as a list.
+/// Rows of a timeline. A machine has a dozen units; a file that names hundreds is not drawn further.
+const SHOWN_ROWS: usize = 24;
+
+/// The events of a run on strips as long as the run, one for each unit of the machine, and as a list.
 fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()> {
     if run.events.is_empty() {
         return Ok(());
@@ -85,17 +88,14 @@ fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()>
     };
     write!(
         out,
-        "<details class=\"events\"><summary>{}<span>{} program events, {}</span><span class=\"strip\" aria-hidden=\"true\">",
+        "<details class=\"events\"><summary>{}<span>{} program events, {}</span>",
         swatch(index),
         run.events.len(),
         escaped(&run.summary.controller)
     )?;
-    for event in run.events.iter().take(SHOWN_EVENTS) {
-        let (left, width) = (percent(event.t_s), percent(event.duration_s));
-        let hint = escaped(&event_text(event));
-        write!(out, "<i style=\"left:{left:.3}%;width:{width:.3}%\" title=\"{hint}\"></i>")?;
-    }
-    out.write_all(b"</span></summary><ol>")?;
+    write_rows(out, run, percent)?;
+    out.write_all(b"</summary>")?;
+    out.write_all(b"<ol>")?;
     for event in run.events.iter().take(SHOWN_EVENTS) {
         write!(out, "<li data-t=\"{:.5}\">{}</li>", event.t_s, escaped(&event_text(event)))?;
     }
@@ -103,6 +103,30 @@ fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()>
         write!(out, "<li>and {more} more</li>")?;
     }
     out.write_all(b"</ol></details>\n")
+}
+
+/// A strip for each unit of the machine that has events, in the order in which they first come.
+fn write_rows(out: &mut impl Write, run: &Run, percent: impl Fn(f64) -> f64) -> io::Result<()> {
+    let mut rows: Vec<&str> = Vec::new();
+    for event in &run.events {
+        if !rows.contains(&event.row.as_str()) && rows.len() < SHOWN_ROWS {
+            rows.push(&event.row);
+        }
+    }
+    out.write_all(b"<span class=\"rows\" aria-hidden=\"true\">")?;
+    for row in rows {
+        let events = || run.events.iter().filter(|event| event.row == row);
+        let total_s: f64 = events().map(|event| event.duration_s).sum();
+        let took = if total_s > 0.0 { duration(total_s) } else { String::new() };
+        write!(out, "<span class=\"row\"><b>{}</b><span class=\"strip\">", escaped(row))?;
+        for event in events().take(SHOWN_EVENTS) {
+            let (left, width) = (percent(event.t_s), percent(event.duration_s));
+            let hint = escaped(&event_text(event));
+            write!(out, "<i style=\"left:min({left:.3}%,100% - 3px);width:{width:.3}%\" title=\"{hint}\"></i>")?;
+        }
+        write!(out, "</span><span class=\"num\">{took}</span></span>")?;
+    }
+    out.write_all(b"</span>")
 }
 
 fn event_text(event: &TimelineEvent) -> String {
