@@ -1,11 +1,11 @@
 //! Recursive least squares with forgetting, held to a prior: the estimate of a tick.
 //!
 //! ```text
-//! R(k) = lambda R(k-1) + phi phi'     q(k) = lambda q(k-1) + phi y     (R + D) theta = q
+//! R(k) = lambda R(k-1) + phi phi'     q(k) = lambda q(k-1) + phi y     (R + d) theta = q + d mean
 //! ```
 //!
 //! The classical recursion keeps the inverse of R, which grows without bound along directions that nothing excites, and
-//! then leaps at the first excitation ("wind-up"). Here R is kept and the prior D is added anew at each solution: along a
+//! then leaps at the first excitation ("wind-up"). Here R is kept and the prior d is added anew at each solution: along a
 //! direction that nothing excites the estimate goes back to the prior, whatever the length of the run.
 //!
 //! Source: exponential forgetting in information form as in Ljung and Soederstroem (1983), section 2.6; ridge as in Hoerl
@@ -40,13 +40,14 @@ impl<const P: usize> LeastSquares<P> {
         }
     }
 
-    /// The estimate with the prior weights `prior`, all above zero: the deviation from the prior that fits best.
+    /// The estimate that fits best and lies near `mean`, where `weight` (above zero) says how much the prior counts.
     #[inline]
-    pub fn estimate(&self, prior: &[f64; P]) -> [f64; P] {
+    pub fn estimate(&self, weight: f64, mean: &[f64; P]) -> [f64; P] {
         let mut a = self.information;
         let mut b = self.right;
         for r in 0..P {
-            a[r][r] += prior[r];
+            a[r][r] += weight;
+            b[r] += weight * mean[r];
         }
         cholesky(&mut a, &mut b, P);
         b
@@ -98,7 +99,7 @@ mod tests {
             let phi = [libm::sin(0.3 * f64::from(i)), libm::cos(0.7 * f64::from(i))];
             sums.add(1.0, &phi, 2.0 * phi[0] - 0.5 * phi[1]);
         }
-        let found = sums.estimate(&[1e-9; 2]);
+        let found = sums.estimate(1e-9, &[0.0; 2]);
         assert!((found[0] - 2.0).abs() < 1e-9 && (found[1] + 0.5).abs() < 1e-9, "{found:?}");
     }
 
@@ -109,7 +110,7 @@ mod tests {
             // The two inputs move together: only their sum is known.
             sums.add(0.99, &[1.0, 1.0], 0.1 + 1e-3 * libm::sin(f64::from(i)));
         }
-        let found = sums.estimate(&[1.0; 2]);
+        let found = sums.estimate(1.0, &[0.0; 2]);
         assert!((found[0] - found[1]).abs() < 1e-12 && (found[0] + found[1] - 0.1).abs() < 2e-3, "{found:?}");
     }
 

@@ -218,7 +218,7 @@ fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Bo
     settings.servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
     (settings.horizon.rate_weight, settings.adaptation.residual.gain) = (values[0], values[1]);
     let hack: Vec<f64> = std::env::var("FW").unwrap_or_default().split(',').filter_map(|x| x.parse().ok()).collect();
-    if hack.len() > 7 {
+    if hack.len() > 9 {
         settings.horizon.rate_weight = hack[0];
         settings.horizon.change_weight = hack[1];
         settings.adaptation.forgetting = hack[2];
@@ -227,6 +227,8 @@ fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Bo
         settings.adaptation.judging = hack[5];
         settings.adaptation.residual.noise_mm = hack[6];
         settings.sure_mm = hack[7];
+        settings.adaptation.caution = hack[8];
+        settings.adaptation.alike = hack[9];
     }
     Box::new(RecedingHorizon::new(identified.net, settings))
 }

@@ -34,6 +34,10 @@ pub struct Settings {
     pub spread_mm: f64,
     /// Part by which the mean squares that the models are judged by follow each innovation; 0.001 to 0.1.
     pub judging: f64,
+    /// As [`Self::judging`], for how much the predictions are trusted; smaller remembers a surprise for longer.
+    pub caution: f64,
+    /// How much an axis that has not moved yet is taken to be like the others; 0 (not at all) to 0.99.
+    pub alike: f64,
     /// Prediction of what the models miss.
     pub residual: residual::Settings,
 }
@@ -45,6 +49,8 @@ impl Settings {
         noise_mm: 1e-2,
         spread_mm: 0.2,
         judging: 0.01,
+        caution: 0.002,
+        alike: 0.9,
         residual: residual::Settings::DEFAULT,
     };
 }
@@ -55,10 +61,15 @@ pub struct Adaptation<const N: usize> {
     trained: ServoIdentifier<N>,
     now: ServoIdentifier<N>,
     axes: [Axis; N],
+    /// Mean squares of the innovations of both models lately, over all axes, mm2.
+    square_mm2: [f64; 2],
+    /// As these, of the model that was believed, over a longer time.
+    long_square_mm2: f64,
+    believed: usize,
     settings: Settings,
 }
 
-/// Both models of an axis.
+/// Both models of an axis: trained and adapted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Axis {
     sums: LeastSquares<INPUTS>,
@@ -66,21 +77,21 @@ struct Axis {
     /// The last inputs and misses, newest first, for the filter.
     past_inputs: [[f64; INPUTS]; LAGS],
     past_missed_mm: [f64; LAGS],
-    models: [Model; 2],
-    believed: usize,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Model {
-    residual: Residual,
-    /// Mean square of its innovations lately, mm2.
-    square_mm2: f64,
+    residuals: [Residual; 2],
 }
 
 impl<const N: usize> Adaptation<N> {
     /// From an identifier that is trained on a machine.
     pub fn new(trained: ServoIdentifier<N>, settings: Settings) -> Self {
-        Self { now: trained.clone(), trained, axes: [Axis::new(&settings); N], settings }
+        Self {
+            now: trained.clone(),
+            trained,
+            axes: [Axis::new(&settings); N],
+            square_mm2: [0.0; 2],
+            long_square_mm2: 0.0,
+            believed: 0,
+            settings,
+        }
     }
 
     /// As it is now.
@@ -92,38 +103,72 @@ impl<const N: usize> Adaptation<N> {
     /// What it is expected to miss.
     #[inline]
     pub fn residual(&self) -> [Residual; N] {
-        core::array::from_fn(|axis| self.axes[axis].believed().residual)
+        core::array::from_fn(|axis| self.axes[axis].residuals[self.believed])
     }
 
     /// RMS of the innovations lately, mm: how good the predictions are.
     #[inline]
     pub fn innovation_mm(&self) -> f64 {
-        let mut sum = 0.0;
-        for axis in &self.axes {
-            sum += axis.believed().square_mm2;
-        }
-        libm::sqrt(sum)
+        libm::sqrt(self.square_mm2[self.believed].max(self.long_square_mm2))
     }
 
     /// Back to what was trained.
     pub fn reset(&mut self) {
         self.now.clone_from(&self.trained);
         self.axes = [Axis::new(&self.settings); N];
+        self.square_mm2 = [0.0; 2];
+        self.long_square_mm2 = 0.0;
+        self.believed = 0;
     }
 
     /// Takes in that these inputs led to this growth of the following error, mm.
     #[inline]
     pub fn learn(&mut self, inputs: &Inputs<N>, grown_mm: [f64; N]) {
         let foreseen_mm = self.trained.predict(inputs);
+        let mut missed_mm = [0.0; N];
         for axis in 0..N {
-            let missed_mm = grown_mm[axis] - foreseen_mm[axis];
-            if !missed_mm.is_finite() {
-                continue;
+            missed_mm[axis] = grown_mm[axis] - foreseen_mm[axis];
+            if !missed_mm[axis].is_finite() {
+                return;
             }
-            let change = self.axes[axis].learn(&inputs[axis], missed_mm, &self.settings);
+        }
+        let mut squares = [0.0; 2];
+        for axis in 0..N {
+            let mean = self.others(axis);
+            let innovations_mm = self.axes[axis].learn(&inputs[axis], missed_mm[axis], &mean, &self.settings);
+            for model in 0..2 {
+                squares[model] += innovations_mm[model] * innovations_mm[model];
+            }
+        }
+        self.judge(squares);
+        for axis in 0..N {
             for input in 0..INPUTS {
-                self.now.linear[axis][axis][input] = self.trained.linear[axis][axis][input] + change[input];
+                let change = if self.believed == 1 { self.axes[axis].change[input] } else { 0.0 };
+                self.now.linear[axis][axis][input] = self.trained.linear[axis][axis][input] + change;
             }
+        }
+    }
+
+    /// What the other axes have changed by: an axis that has not moved yet is taken to differ from the trained as they do.
+    /// A little less, so that all of them go back to the trained where nothing moves.
+    fn others(&self, axis: usize) -> [f64; INPUTS] {
+        let mut sum = [0.0; INPUTS];
+        for (other, model) in self.axes.iter().enumerate() {
+            for input in 0..INPUTS {
+                sum[input] += if other == axis { 0.0 } else { model.change[input] };
+            }
+        }
+        sum.map(|change| change * self.settings.alike / (N.max(2) - 1) as f64)
+    }
+
+    fn judge(&mut self, squares: [f64; 2]) {
+        for model in 0..2 {
+            self.square_mm2[model] += self.settings.judging * (squares[model] - self.square_mm2[model]);
+        }
+        self.long_square_mm2 += self.settings.caution * (squares[self.believed] - self.long_square_mm2);
+        let other = 1 - self.believed;
+        if self.square_mm2[other] < CLEARLY_BETTER * self.square_mm2[self.believed] {
+            self.believed = other;
         }
     }
 }
@@ -135,38 +180,35 @@ impl Axis {
             change: [0.0; INPUTS],
             past_inputs: [[0.0; INPUTS]; LAGS],
             past_missed_mm: [0.0; LAGS],
-            models: [Model { residual: Residual::new(settings.residual), square_mm2: 0.0 }; 2],
-            believed: 0,
+            residuals: [Residual::new(settings.residual); 2],
         }
     }
 
-    fn believed(&self) -> &Model {
-        &self.models[self.believed]
-    }
-
-    /// The change of the linear connection that is believed.
-    fn learn(&mut self, inputs: &[f64; INPUTS], missed_mm: f64, settings: &Settings) -> [f64; INPUTS] {
+    /// One more sample; returns the innovations of both models, mm.
+    fn learn(&mut self, inputs: &[f64; INPUTS], missed_mm: f64, mean: &[f64; INPUTS], settings: &Settings) -> [f64; 2] {
         let mut explained_mm = 0.0;
         for input in 0..INPUTS {
             explained_mm += self.change[input] * inputs[input];
         }
-        for (model, residual_mm) in self.models.iter_mut().zip([missed_mm, missed_mm - explained_mm]) {
-            let innovation_mm = residual_mm - model.residual.expected_mm();
-            model.square_mm2 += settings.judging * (innovation_mm * innovation_mm - model.square_mm2);
-        }
-        let coefficients = *self.models[0].residual.coefficients();
-        let weight = self.models[0].residual.push(missed_mm);
-        self.models[1].residual.push(missed_mm - explained_mm);
-        self.fit(inputs, missed_mm, &coefficients, libm::sqrt(weight), settings);
-        let other = 1 - self.believed;
-        if self.models[other].square_mm2 < CLEARLY_BETTER * self.models[self.believed].square_mm2 {
-            self.believed = other;
-        }
-        if self.believed == 1 { self.change } else { [0.0; INPUTS] }
+        let residuals_mm = [missed_mm, missed_mm - explained_mm];
+        let innovations_mm = [0, 1].map(|model: usize| residuals_mm[model] - self.residuals[model].expected_mm());
+        let filter = *self.residuals[0].coefficients();
+        let weight = self.residuals[0].push(residuals_mm[0]);
+        self.residuals[1].push(residuals_mm[1]);
+        self.fit(inputs, missed_mm, &filter, libm::sqrt(weight), mean, settings);
+        innovations_mm
     }
 
     /// One more sample for the adapted model, filtered.
-    fn fit(&mut self, inputs: &[f64; INPUTS], missed_mm: f64, filter: &[f64; LAGS], root: f64, settings: &Settings) {
+    fn fit(
+        &mut self,
+        inputs: &[f64; INPUTS],
+        missed_mm: f64,
+        filter: &[f64; LAGS],
+        root: f64,
+        mean: &[f64; INPUTS],
+        settings: &Settings,
+    ) {
         let mut phi = *inputs;
         let mut y_mm = missed_mm;
         for lag in 0..LAGS {
@@ -177,7 +219,7 @@ impl Axis {
         }
         self.sums.add(settings.forgetting, &phi.map(|x| root * x), root * y_mm);
         let share = settings.noise_mm / settings.spread_mm;
-        let change = self.sums.estimate(&[share * share; INPUTS]);
+        let change = self.sums.estimate(share * share, mean);
         if change.iter().sum::<f64>().is_finite() {
             self.change = change;
         }

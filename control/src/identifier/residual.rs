@@ -88,7 +88,7 @@ impl Residual {
         let surprise = residual_mm - weighted(&self.prior, &self.past_mm);
         let root = libm::sqrt(weight);
         self.sums.add(forgetting, &self.past_mm.map(|r| root * r), root * surprise);
-        let change = self.sums.estimate(&[noise_mm * noise_mm / (1.0 - forgetting).max(1e-6); LAGS]);
+        let change = self.sums.estimate(noise_mm * noise_mm / (1.0 - forgetting).max(1e-6), &[0.0; LAGS]);
         self.coefficients = core::array::from_fn(|j| self.prior[j] + change[j]);
         self.shift(residual_mm);
         self.largest_mm = (forgetting * self.largest_mm).max(residual_mm.abs());

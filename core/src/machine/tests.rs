@@ -96,7 +96,7 @@ fn missing_unknown_and_mistyped_keys_are_reported() {
         ["23:1: kp_1_s is missing from [axis.x]", "31:1: unknown key 'kp_l_s' in [axis.x]"]
     );
     assert!(fault_after("kd = 0", "kd = 0\ninertia_kgm2 = 1").ends_with("/ did you mean 'inertia_kg_m2'?"));
-    assert!(fault_after("kd = 0", "kd = 0\nqqq = 1").contains("[axis.x] holds lead_mm_per_rev, "));
+    assert!(fault_after("kd = 0", "kd = 0\nqqq = 1").contains("[axis.x] holds transmission, lead_mm_per_rev, "));
     assert_eq!(
         fault_after("kd = 0 ", "kd = \"0\" "),
         "32:6: kd has to be a number, but is a string / without the quotes: kd = 0"
@@ -167,10 +167,10 @@ fn empty_text_names_everything_that_is_missing() {
     assert_eq!(
         text,
         [
+            "table [period] is missing",
             "name is missing",
             "description is missing",
             "source is missing",
-            "table [period] is missing",
             "table [limits] is missing",
             "table [axis] is missing"
         ]
@@ -180,7 +180,7 @@ fn empty_text_names_everything_that_is_missing() {
 #[test]
 fn unknown_names_list_the_known_ones() {
     let error = Machine::load(OsStr::new("tnv4")).unwrap_err();
-    assert_eq!(error.to_string(), "no machine is called 'tnv4'; there is tnv40");
+    assert_eq!(error.to_string(), "no machine is called 'tnv4'; there is tnv40, heavy, sticky, rough, soft, coarse");
     assert_eq!(error.help().unwrap().to_string(), "did you mean 'tnv40'?");
     assert!(Machine::load(OsStr::new("lathe")).unwrap_err().help().unwrap().to_string().contains("ending in .toml"));
 }

@@ -1,0 +1,116 @@
+//! The default controller on machines that its identifier has never seen: it stays stable, and is never worse than open
+//! loop.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+use feedwright::compare::Workpiece;
+use feedwright::controllers::{BASELINE, BEST, Choices, Entry, Make, Setup};
+use feedwright::machine::{Machine, Transmission};
+use feedwright::reference::Reference;
+use feedwright::report::Statistics;
+use feedwright::simulate::{Run, simulate};
+use feedwright::trace::Outcome;
+use feedwright_control::Controller;
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+use rayon::prelude::*;
+
+/// Machines.
+const MACHINES: u64 = 200;
+/// Where the open loop itself rings by more than this, the machine is broken, um.
+const BROKEN_UM: f64 = 400.0;
+/// An RMS that differs from open loop's by less is the same, um: it is below the steps of any encoder.
+const SAME_UM: f64 = 0.5;
+
+fn tnv40() -> Machine {
+    Machine::load("tnv40".as_ref()).unwrap()
+}
+
+/// tnv40 with inertia, friction and gains within 0.3 to 3 times its own; one in three with a soft screw, one in three with
+/// a delay.
+fn unseen(seed: u64) -> Machine {
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
+    let mut machine = tnv40();
+    machine.name = format!("unseen {seed}");
+    let mut factor = || 10_f64.powf(rng.random_range(-0.523..=0.477));
+    // A pair of axes with different gains draws every line askew: gains are common.
+    let (kp, kv) = (factor(), factor());
+    for axis in &mut machine.axes {
+        axis.kp_1_s *= kp;
+        axis.kv_nm_s_per_rad *= kv;
+        axis.inertia_kg_m2 *= factor();
+        axis.viscous_friction_nm_s *= factor();
+        axis.coulomb_friction_nm *= factor();
+    }
+    let (soft, late) = (seed.is_multiple_of(3), seed % 3 == 1);
+    let resonance_hz = rng.random_range(30.0..=150.0);
+    let delay_s = rng.random_range(0.0..=0.003);
+    for axis in &mut machine.axes {
+        axis.transmission = soft.then_some(Transmission {
+            table_share: 0.5,
+            resonance_hz,
+            damping_ratio: 0.02,
+            backlash_um: 0.0,
+            scale_on_table: false,
+        });
+        axis.drive_delay_s = if late { delay_s } else { 0.0 };
+    }
+    machine
+}
+
+fn controller(name: &str) -> Box<dyn Controller<2>> {
+    let (machine, choices) = (tnv40(), Choices::default());
+    let mut setup = Setup { machine: &machine, choices: &choices, progress: &mut |_| {} };
+    Make::<2>::make(Entry::find(name).unwrap(), &mut setup)
+}
+
+fn cut(workpiece: &Workpiece, machine: &Machine, controller: &mut dyn Controller<2>) -> (Run, Statistics) {
+    let mut statistics = Statistics::new();
+    let mut reference = Reference::from_steps(workpiece.steps.clone(), &(&machine.limits).into()).unwrap();
+    let run = simulate(machine, &mut reference, controller, &mut [&mut statistics]).unwrap();
+    (run, statistics)
+}
+
+#[test]
+fn no_machine_is_cut_worse_than_open_loop() {
+    let contours: Vec<Workpiece> =
+        Workpiece::contours().into_iter().filter(|w| ["circle", "star", "square"].contains(&w.name.as_str())).collect();
+    let judged: Vec<(String, f64, f64)> = (0..MACHINES)
+        .into_par_iter()
+        .flat_map_iter(|seed| {
+            let machine = unseen(seed);
+            let (mut best, mut base) = (controller(BEST), controller(BASELINE));
+            let judge = |workpiece: &Workpiece| {
+                let (open, open_numbers) = cut(workpiece, &machine, &mut *base);
+                if open.outcome != Outcome::Completed || open_numbers.max_um() > BROKEN_UM {
+                    return None;
+                }
+                let (run, numbers) = cut(workpiece, &machine, &mut *best);
+                let what = format!("{} on {}", workpiece.name, machine.name);
+                assert_eq!(run.outcome, Outcome::Completed, "{what}");
+                if let Some(faded) = run.faded_out {
+                    eprintln!("{what}: faded out at {:.3} s, because {}", faded.at_s, faded.cause);
+                }
+                Some((what, numbers.rms_um(), open_numbers.rms_um()))
+            };
+            contours.iter().filter_map(judge).collect::<Vec<_>>()
+        })
+        .collect();
+    let mut ratios: Vec<f64> = judged.iter().map(|(_, rms_um, open_um)| rms_um / open_um).collect();
+    ratios.sort_by(f64::total_cmp);
+    let quantile = |part: f64| ratios[((ratios.len() - 1) as f64 * part) as usize];
+    eprintln!(
+        "{} cuts, RMS against open loop: median {:.3}, 90 % {:.3}, 99 % {:.3}, worst {:.3}",
+        ratios.len(),
+        quantile(0.5),
+        quantile(0.9),
+        quantile(0.99),
+        quantile(1.0)
+    );
+    let worse: Vec<_> = judged.iter().filter(|(_, rms_um, open_um)| *rms_um > open_um + SAME_UM).collect();
+    for (what, rms_um, open_um) in &worse {
+        eprintln!("{what}: {rms_um:.2} um, open loop {open_um:.2} um");
+    }
+    assert!(worse.is_empty(), "worse than open loop on {} cuts", worse.len());
+    assert!(judged.len() as u64 > 2 * MACHINES, "only {} cuts were judged", judged.len());
+}
