@@ -15,7 +15,7 @@ use feedwright::gcode::{Dialect, Reader, Settings, ToolTable};
 /// Largest distance between our points and LinuxCNC's, mm: its inches and our millimetres differ by rounding only.
 const SAME_POINT_MM: f64 = 1e-6;
 /// Centres may differ by as much as arcs may fail to close (half of it for most): theirs is moved until both radii agree.
-const SAME_CENTRE_MM: f64 = 2.9;
+const SAME_CENTRE_MM: f64 = 1e-6;
 /// Lines shorter than this are no motion, mm.
 const NO_MOTION_MM: f64 = 1e-9;
 
