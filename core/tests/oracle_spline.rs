@@ -166,7 +166,7 @@ fn butterfly_keeps_the_normal_limit_and_its_feet() {
 /// Point of a rational B-spline by de Boor's corner cutting in homogeneous coordinates, from the words of the program.
 fn de_boor(order: usize, knots: &[f64], points: &[[f64; 3]], u: f64) -> [f64; 3] {
     let degree = order - 1;
-    let span = (degree..points.len()).rev().find(|&i| knots[i] <= u && knots[i] < knots[i + 1]).unwrap();
+    let span = (degree..points.len()).rev().find(|&i| knots[i] <= u && knots[i] < knots[i + 1]).expect("a span");
     let mut cut: Vec<[f64; 3]> = (span - degree..=span)
         .map(|i| [points[i][0] * points[i][2], points[i][1] * points[i][2], points[i][2]])
         .collect();
