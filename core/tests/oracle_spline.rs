@@ -6,6 +6,7 @@ mod common;
 
 use common::{BLEND, LIMITS, Random, distance};
 use feedwright::gcode::canon::{Canon, Motion, MotionKind, Others, Shape, Spline};
+use feedwright::gcode::{Reader, Settings};
 use feedwright::path::pieces::Pieces;
 use feedwright::path::{Piece, Step};
 use feedwright::reference::Reference;
@@ -159,5 +160,93 @@ fn butterfly_keeps_the_normal_limit_and_its_feet() {
             .fold(f64::INFINITY, f64::min);
         assert!(foot.distance_mm <= brute + 1e-12, "{} {brute}", foot.distance_mm);
         assert!(foot.distance_mm >= brute - 50.0 * 5e-6, "{} {brute}", foot.distance_mm);
+    }
+}
+
+/// Point of a rational B-spline by de Boor's corner cutting in homogeneous coordinates, from the words of the program.
+fn de_boor(order: usize, knots: &[f64], points: &[[f64; 3]], u: f64) -> [f64; 3] {
+    let degree = order - 1;
+    let span = (degree..points.len()).rev().find(|&i| knots[i] <= u && knots[i] < knots[i + 1]).expect("a span");
+    let mut cut: Vec<[f64; 3]> = (span - degree..=span)
+        .map(|i| [points[i][0] * points[i][2], points[i][1] * points[i][2], points[i][2]])
+        .collect();
+    for level in 1..=degree {
+        for j in (level..=degree).rev() {
+            let i = span - degree + j;
+            let share = (u - knots[i]) / (knots[i + order - level] - knots[i]);
+            for k in 0..3 {
+                cut[j][k] = (1.0 - share) * cut[j - 1][k] + share * cut[j][k];
+            }
+        }
+    }
+    [cut[degree][0] / cut[degree][2], cut[degree][1] / cut[degree][2], 0.0]
+}
+
+/// G5, G5.1, G5.2 and G6.2 as read from a program: points of the curve that the words define lie on the path, and the path is as
+/// long as the chords through them.
+#[test]
+fn splines_of_a_program_are_the_curves_of_their_words() {
+    // Order, knots, and x, y, weight of the control points, worked out by hand from the program.
+    type Curve = (&'static str, usize, &'static [f64], &'static [[f64; 3]]);
+    const BEZIER_3: &[f64] = &[0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+    const CURVES: &[Curve] = &[
+        ("G5 X10 Y5 I3 J6 P-4 Q1", 4, BEZIER_3, &[[0.0, 0.0, 1.0], [3.0, 6.0, 1.0], [6.0, 6.0, 1.0], [10.0, 5.0, 1.0]]),
+        (
+            // Without I and J it goes on in the direction of the curve before.
+            "G5 X22 Y3 P-3 Q-5",
+            4,
+            BEZIER_3,
+            &[[10.0, 5.0, 1.0], [14.0, 4.0, 1.0], [19.0, -2.0, 1.0], [22.0, 3.0, 1.0]],
+        ),
+        (
+            "G5.1 X30 Y5 I2 J8",
+            3,
+            &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
+            &[[22.0, 3.0, 1.0], [24.0, 11.0, 1.0], [30.0, 5.0, 1.0]],
+        ),
+        (
+            "G5.2 X33 Y12 P1.5\nX40 Y15 P0.7\nX45 Y2 P2\nX52 Y4 P1\nG5.3",
+            3,
+            &[0.0, 0.0, 0.0, 1.0, 2.0, 3.0, 3.0, 3.0],
+            &[[30.0, 5.0, 1.0], [33.0, 12.0, 1.5], [40.0, 15.0, 0.7], [45.0, 2.0, 2.0], [52.0, 4.0, 1.0]],
+        ),
+        (
+            "G6.2 P4 K0 X52 Y4 R1\nK0 X55 Y14 R0.6\nK0 X60 Y12 R3\nK0 X66 Y0 R1\nK0.3 X70 Y3 R2\nG6.2 K2\nG6.2 K2\nG6.2 K2\nG6.2 K2",
+            4,
+            &[0.0, 0.0, 0.0, 0.0, 0.3, 2.0, 2.0, 2.0, 2.0],
+            &[[52.0, 4.0, 1.0], [55.0, 14.0, 0.6], [60.0, 12.0, 3.0], [66.0, 0.0, 1.0], [70.0, 3.0, 2.0]],
+        ),
+    ];
+    const SAMPLES: u32 = 20_000;
+    let words: Vec<&str> = CURVES.iter().map(|curve| curve.0).collect();
+    let text = format!("G21 G17 G90 F600\n{}\nM2\n", words.join("\n"));
+    let motions: Vec<Canon> = Reader::from_text("splines", text, Settings::default())
+        .unwrap()
+        .map(|step| step.unwrap())
+        .filter(|step| matches!(step, Canon::Motion(_)))
+        .collect();
+    assert_eq!(motions.len(), CURVES.len());
+    for ((words, order, knots, points), motion) in CURVES.iter().zip(motions) {
+        let pieces = pieces(motion);
+        let (first, last) = (knots[0], knots[points.len()]);
+        let mut before = [points[0][0], points[0][1], 0.0];
+        let (mut chords, mut worst) = (0.0, 0.0f64);
+        for number in 1..=SAMPLES {
+            // The last knot itself is in no span.
+            let u = first + (last - first) * f64::from(number) / f64::from(SAMPLES) * (1.0 - 1e-15);
+            let point = de_boor(*order, knots, points, u);
+            chords += distance(before, point);
+            before = point;
+            if number % 100 == 0 {
+                let away = pieces.iter().map(|piece| {
+                    let foot = piece.curve.nearest(point, 0.0, piece.length_mm);
+                    distance(piece.curve.at(foot).position_mm, point)
+                });
+                worst = worst.max(away.fold(f64::INFINITY, f64::min));
+            }
+        }
+        let length: f64 = pieces.iter().map(|piece| piece.length_mm).sum();
+        assert!(worst < 1e-8, "{words}: {worst}");
+        assert!((length - chords).abs() < 1e-6, "{words}: {length} {chords}");
     }
 }

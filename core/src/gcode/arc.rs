@@ -1,8 +1,9 @@
 //! G2 and G3: arcs, full circles and helices, by centre (I J K) or by radius (R).
 //!
-//! The programmed centre is handed on; a later stage re-centres within the tolerance that is checked here. The rule is
-//! LinuxCNC 2.9's, found by trying arcs on it: the radii at start and end may differ by 0.02 sqrt(2) mm (0.002 sqrt(2) inch), or by
-//! 0.1 % of the larger radius, but never by more than a hundred times the former.
+//! The programmed centre is handed on as it is; where start and end are not equally far from it, the path is a spiral (see
+//! `path/arcs.rs`). The rules are LinuxCNC 2.9's, found by trying arcs on it: the radii at start and end may differ by
+//! 0.02 sqrt(2) mm (0.002 sqrt(2) inch), or by 0.1 % of the larger radius, but never by more than a hundred times the former, and
+//! neither may be below 0.00005 inch.
 
 use super::block::Block;
 use super::canon::{Plane, Shape};
@@ -17,6 +18,8 @@ const RADIUS_SLACK: [f64; 2] = [0.02 * std::f64::consts::SQRT_2, 0.002 * std::f6
 const RADIUS_SLACK_MOST: [f64; 2] = [2.0 * std::f64::consts::SQRT_2, 0.2 * std::f64::consts::SQRT_2];
 /// Between the two, the difference must be below this share of the radius.
 const RADIUS_SLACK_SHARE: f64 = 1e-3;
+/// Smallest radius of an arc given by its centre, mm: 0.00005 inch, in both units.
+const LEAST_RADIUS_MM: f64 = 0.000_05 * INCH_MM;
 /// R may be shorter than half the chord by this much; the arc is then a half circle. mm and inch.
 const CHORD_SLACK: [f64; 2] = [0.001, 0.000_05];
 /// Full turns that P may ask for; a thread has fewer, and the turns are an i32 later.
@@ -144,12 +147,14 @@ impl Interpreter {
         let (at_start, at_end) = (radius_to(&self.at), radius_to(target));
         let difference = (at_start - at_end).abs();
         let largest = at_start.max(at_end);
-        if largest == 0.0 {
-            return Err(Fault::new(
-                "gcode::arc_radius",
-                block.whole(),
-                "the arc's radius is 0 mm: centre, start and end are one point",
-            ));
+        let least = at_start.min(at_end);
+        if least < LEAST_RADIUS_MM {
+            let message = if largest == 0.0 {
+                "the arc's radius is 0 mm: centre, start and end are one point".to_owned()
+            } else {
+                format!("the arc's radius is {least:.6} mm; the limit is {LEAST_RADIUS_MM} mm")
+            };
+            return Err(Fault::new("gcode::arc_radius", block.whole(), message));
         }
         if difference > self.slack(RADIUS_SLACK_MOST)
             || (difference > self.slack(RADIUS_SLACK) && difference > RADIUS_SLACK_SHARE * largest)
@@ -212,12 +217,12 @@ pub(super) fn arc_length(start: &Position, end: &Position, center: &Position, pl
     let to = [end[first] - center[first], end[second] - center[second]];
     let sign = f64::from(turns.signum());
     let mut angle = sign * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
-    if angle <= FULL_TURN_WITHIN_RAD {
+    if angle * from[0].hypot(from[1]) <= FULL_TURN_WITHIN_MM {
         angle += std::f64::consts::TAU;
     }
     angle += std::f64::consts::TAU * f64::from(turns.abs() - 1);
     (angle * from[0].hypot(from[1])).hypot(end[normal] - start[normal])
 }
 
-/// An arc that ends within this angle of its start is a full turn (LinuxCNC's CIRCLE_FUZZ).
-pub(super) const FULL_TURN_WITHIN_RAD: f64 = 1e-6;
+/// An arc that ends this close to its start, mm along the circle, is a full turn: as in the path stage, and on LinuxCNC.
+pub(super) const FULL_TURN_WITHIN_MM: f64 = 8e-9;

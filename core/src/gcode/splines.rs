@@ -219,7 +219,8 @@ impl Interpreter {
                 "gcode::spline",
                 block.whole(),
                 format!("{} needs the XY plane G17", spelled(code)),
-            ));
+            )
+            .hint("curves lie in XY only; write G17 before the curve, or cut it in another plane by lines and arcs"));
         }
         let others = block.set & AXES & !(bit(b'x') | bit(b'y'));
         if others != 0 {

@@ -172,7 +172,7 @@ fn arc_extremes(motion: &Motion, center: [f64; 3], plane: [usize; 2], turns: i32
     let (from, to) = if turns > 0 { (motion.start_mm, motion.end_mm) } else { (motion.end_mm, motion.start_mm) };
     let begin = angle_of(from);
     let sweep = (angle_of(to) - begin).rem_euclid(TAU);
-    let whole = turns.abs() > 1 || sweep < super::arc::FULL_TURN_WITHIN_RAD;
+    let whole = turns.abs() > 1 || sweep * radius < super::arc::FULL_TURN_WITHIN_MM;
     (0..4)
         .map(|quarter| f64::from(quarter) * FRAC_PI_2)
         .filter(|quarter| whole || (quarter - begin).rem_euclid(TAU) <= sweep)
