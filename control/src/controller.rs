@@ -12,6 +12,9 @@
 //!
 //! To add a controller: one file here and one row in the table of the library.
 
+pub mod contour_compensation;
+pub mod cross_coupled;
+pub mod fuzzy_feedrate;
 pub mod inverting;
 pub mod magnitude_only;
 pub mod open_loop;

@@ -2,6 +2,9 @@
 //!
 //! Help texts, the comparison, docs and conformance tests iterate over [`CONTROLLERS`].
 
+use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
+use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
+use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
 use feedwright_control::controller::inverting::{self, Settings};
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::open_loop::OpenLoop;
@@ -98,6 +101,41 @@ pub const CONTROLLERS: &[Entry] = &[
         laps: 1,
         [],
         open_loop
+    ),
+    entry!(
+        "cross-coupled",
+        "PID control of the contour error, added to the command across the path",
+        "Koren (1980); Srinivasan and Kulkarni (1990)",
+        identifies: false,
+        [
+            parameter("kp", [0.1, 20.0], cross_coupled::Settings::DEFAULT.kp),
+            parameter("ki_1_s", [1.0, 1000.0], cross_coupled::Settings::DEFAULT.ki_1_s),
+            parameter("kd_s", [1e-4, 0.1], cross_coupled::Settings::DEFAULT.kd_s)
+        ],
+        cross_coupled
+    ),
+    entry!(
+        "contour-compensation",
+        "the reference moved by the estimated contour error",
+        "Lee and Jeon (1999)",
+        identifies: false,
+        [
+            parameter("rate_1_s", [1.0, 300.0], contour_compensation::Settings::DEFAULT.rate_1_s),
+            parameter("filter_s", [1e-4, 0.1], contour_compensation::Settings::DEFAULT.filter_s)
+        ],
+        contour_compensation
+    ),
+    entry!(
+        "fuzzy-feedrate",
+        "fuzzy rules on the contour error and its change, speed along the path only",
+        "after Tsai and others (about 2003)",
+        identifies: false,
+        [
+            parameter("error_mm", [0.002, 0.2], fuzzy_feedrate::Settings::DEFAULT.error_mm),
+            parameter("change_mm_s", [0.05, 20.0], fuzzy_feedrate::Settings::DEFAULT.change_mm_s),
+            parameter("slowest", [0.2, 1.0], fuzzy_feedrate::Settings::DEFAULT.slowest)
+        ],
+        fuzzy_feedrate
     ),
     entry!(
         "magnitude-only",
@@ -199,6 +237,25 @@ impl std::fmt::Debug for Entry {
 
 fn open_loop<const N: usize>(_: &mut Setup<'_>, _: &[f64]) -> Box<dyn Controller<N>> {
     Box::new(OpenLoop)
+}
+
+fn cross_coupled<const N: usize>(_: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    Box::new(CrossCoupled::new(cross_coupled::Settings { kp: values[0], ki_1_s: values[1], kd_s: values[2] }))
+}
+
+fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let settings = contour_compensation::Settings { rate_1_s: values[0], filter_s: values[1] };
+    Box::new(ContourCompensation::new(settings))
+}
+
+fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    Box::new(FuzzyFeedrate::new(fuzzy_feedrate::Settings {
+        servo_periods: setup.machine.period.servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
+        error_mm: values[0],
+        change_mm_s: values[1],
+        slowest: values[2],
+        acceleration_mm_s2: setup.machine.limits.tangential_accel_mm_s2,
+    }))
 }
 
 fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {

@@ -1,0 +1,167 @@
+//! Cross-coupled control: the contour error through a PID controller, added to the command across the path.
+//!
+//! ```text
+//! u = Kp e + Ki integral(e dt) + Kd de/dt        e: contour error, desired minus actual
+//! P'(t) = P*(t) + u n                            n: unit normal of the path where the tool is
+//! ```
+//!
+//! Source: Koren (1980), ASME J. Dyn. Sys. Meas. Control 102, for the structure; Srinivasan and Kulkarni (1990), same
+//! journal 112, for curved contours. The gains that turn with the path (Cx and Cy, of Koren and Lo (1991) for circles) are
+//! the components of n: the normal at the nearest point, exact where theirs is of second order.
+//!
+//! The frame of e, its integral and its derivative is that of the path: all turn with n, so that an error that is constant
+//! beside a circle is constant here. In space n is any direction across the path, and the frame turns by the smallest
+//! rotation between two tangents; in the plane that is their scalar.
+//!
+//! Departures: Koren adds u to the velocity command behind the position controllers. Here only position commands are
+//! accepted; with proportional position loops of equal gain that is the same, with all three gains divided by the loop's.
+//! The derivative is filtered ([`DERIVATIVE_S`]). While the safety layer holds the command back, the integral does not
+//! grow. Where the path runs back, n does not flip. Kp, Ki and Kd are tuned, the sources derive theirs for their machines.
+
+use super::{Command, Controller, Measured, Schedule};
+use crate::vector::{add_scaled, dot, norm, reject, sub};
+use crate::window::Window;
+
+/// Time constant of the filter of the derivative, s: two servo periods of 1 ms, below what a speed loop follows.
+const DERIVATIVE_S: f64 = 0.002;
+/// A command that differs by more than this from what was asked was held back, mm.
+const HELD_BACK_MM: f64 = 1e-9;
+/// Cosine between two tangents below which the path runs back: no smallest rotation leads from one to the other.
+const RUNS_BACK_COSINE: f64 = -0.9;
+
+/// Gains of the controller.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Proportional, mm of offset a mm of error; 0 to 20.
+    pub kp: f64,
+    /// Integral, 1/s; 0 to 1000.
+    pub ki_1_s: f64,
+    /// Derivative, s; 0 to 0.1.
+    pub kd_s: f64,
+}
+
+impl Settings {
+    /// Ki / Kp cancels the pole of a position loop of 50 1/s; the derivative makes up for a part of its speed loop's.
+    pub const DEFAULT: Self = Self { kp: 2.0, ki_1_s: 100.0, kd_s: 0.01 };
+}
+
+/// Cross-coupled control.
+#[derive(Debug, Clone)]
+pub struct CrossCoupled<const N: usize> {
+    settings: Settings,
+    integral_mm_s: [f64; N],
+    derivative_mm_s: [f64; N],
+    last: Option<Last<N>>,
+}
+
+#[derive(Debug, Clone, Copy)]
+struct Last<const N: usize> {
+    error_mm: [f64; N],
+    tangent: [f64; N],
+    asked_mm: [f64; N],
+}
+
+impl<const N: usize> CrossCoupled<N> {
+    /// With these gains.
+    pub fn new(settings: Settings) -> Self {
+        Self { settings, integral_mm_s: [0.0; N], derivative_mm_s: [0.0; N], last: None }
+    }
+}
+
+/// A vector across the path, carried along it from one tangent to another by the smallest rotation between them.
+pub(super) fn carried<const N: usize>(across: [f64; N], from: [f64; N], to: [f64; N]) -> [f64; N] {
+    let cosine = dot(from, to);
+    if cosine < RUNS_BACK_COSINE {
+        return reject(across, to);
+    }
+    let both = add_scaled(from, 1.0, to);
+    reject(add_scaled(across, -dot(across, to) / (1.0 + cosine), both), to)
+}
+
+impl<const N: usize> Controller<N> for CrossCoupled<N> {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: 1, preview: 0 }
+    }
+
+    fn reset(&mut self) {
+        *self = Self::new(self.settings);
+    }
+
+    fn observe(&mut self, _: &Measured<N>) {}
+
+    fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
+        let period_s = window.feed_period_s;
+        let tangent = measured.contour.tangent;
+        let error_mm = measured.contour.vector_mm;
+        if !norm(error_mm).is_finite() {
+            return Command { rate: 1.0, offset_mm: window.offset_mm };
+        }
+        let mut held_back = false;
+        if let Some(last) = self.last {
+            let before_mm = carried(last.error_mm, last.tangent, tangent);
+            self.integral_mm_s = carried(self.integral_mm_s, last.tangent, tangent);
+            self.derivative_mm_s = carried(self.derivative_mm_s, last.tangent, tangent);
+            let missing_mm_s = add_scaled(sub(error_mm, before_mm), -period_s, self.derivative_mm_s);
+            self.derivative_mm_s = add_scaled(self.derivative_mm_s, 1.0 / (period_s + DERIVATIVE_S), missing_mm_s);
+            held_back = norm(sub(window.offset_mm, last.asked_mm)) > HELD_BACK_MM;
+        }
+        let grows = dot(error_mm, self.integral_mm_s) > 0.0;
+        if !(held_back && grows) {
+            self.integral_mm_s = add_scaled(self.integral_mm_s, period_s, error_mm);
+        }
+        let Settings { kp, ki_1_s, kd_s } = self.settings;
+        let slow_mm = add_scaled([0.0; N], ki_1_s, self.integral_mm_s);
+        let offset_mm = add_scaled(add_scaled(slow_mm, kp, error_mm), kd_s, self.derivative_mm_s);
+        self.last = Some(Last { error_mm, tangent, asked_mm: offset_mm });
+        Command { rate: 1.0, offset_mm }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::safety::Bounds;
+    use crate::tick::Tick;
+    use crate::window::{Knot, Reference};
+
+    /// Along x at 50 mm/s.
+    struct Line;
+
+    impl Reference<2> for Line {
+        fn knot(&mut self, tau_s: f64) -> Knot<2> {
+            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0 }
+        }
+    }
+
+    /// Where a tool comes to rest across the line that a constant load pushes 20 um off it: loops of 50 1/s.
+    fn rests_at_mm(settings: Settings) -> f64 {
+        let mut controller = CrossCoupled::<2>::new(settings);
+        let mut tick = Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0));
+        let mut tool = [0.0, 0.0];
+        for _ in 0..1000 {
+            let command = tick.step(&mut Line, &mut controller, tool).command_mm;
+            tool = [tool[0] + 0.05 * (command[0] - tool[0]), tool[1] + 0.05 * (command[1] + 0.02 - tool[1])];
+        }
+        tool[1]
+    }
+
+    #[test]
+    fn the_proportional_part_leaves_its_share_and_the_integral_nothing() {
+        let proportional = rests_at_mm(Settings { kp: 3.0, ki_1_s: 0.0, kd_s: 0.0 });
+        assert!((proportional - 0.02 / 4.0).abs() < 1e-9, "{proportional}");
+        assert!(rests_at_mm(Settings::DEFAULT).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_carried_keeps_its_length_and_its_side_of_the_path() {
+        for degrees in -150..=150 {
+            let a = f64::from(degrees).to_radians();
+            let to = [libm::cos(a), libm::sin(a)];
+            let normal = carried([0.0, 2.0], [1.0, 0.0], to);
+            assert!(norm(sub(normal, [-2.0 * to[1], 2.0 * to[0]])) < 1e-12, "{degrees}: {normal:?}");
+        }
+        // In space, what lies along the axis of the rotation stays.
+        assert_eq!(carried([0.0, 0.0, 3.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.0, 0.0, 3.0]);
+        assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [-1.0, 0.0]), [0.0, 2.0]);
+    }
+}
