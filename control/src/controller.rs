@@ -12,11 +12,13 @@
 //!
 //! To add a controller: one file here and one row in the table of the library.
 
+pub mod feedforward;
 pub mod inverting;
 pub mod magnitude_only;
 pub mod open_loop;
 pub mod receding_horizon;
 pub mod two_dimensional;
+pub mod zero_phase;
 
 use crate::contour_error::ContourError;
 use crate::window::Window;
