@@ -2,6 +2,8 @@
 //!
 //! Help texts, the comparison, docs and conformance tests iterate over [`CONTROLLERS`].
 
+pub mod iterative_learning;
+
 use feedwright_control::controller::feedforward::{AxisModel, Feedforward, Gains};
 use feedwright_control::controller::inverting::{self, Settings};
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
