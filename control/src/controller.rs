@@ -15,11 +15,13 @@
 pub mod contour_compensation;
 pub mod cross_coupled;
 pub mod fuzzy_feedrate;
+pub mod feedforward;
 pub mod inverting;
 pub mod magnitude_only;
 pub mod open_loop;
 pub mod receding_horizon;
 pub mod two_dimensional;
+pub mod zero_phase;
 
 use crate::contour_error::ContourError;
 use crate::window::Window;

@@ -2,21 +2,25 @@
 //!
 //! Help texts, the comparison, docs and conformance tests iterate over [`CONTROLLERS`].
 
+pub mod iterative_learning;
+
 use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
 use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
+use feedwright_control::controller::feedforward::{AxisModel, Feedforward, Gains};
 use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
 use feedwright_control::controller::inverting::{self, Settings};
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::two_dimensional::TwoDimensional;
+use feedwright_control::controller::zero_phase::{SampledAxis, ZeroPhase};
 use feedwright_control::{Controller, inversion};
 use serde::Serialize;
 
 use crate::identify::cache::identified;
 use crate::identify::contour::{Identified, Training};
 use crate::identify::{Programme, servo};
-use crate::machine::{Machine, nearest};
+use crate::machine::{Axis, Machine, Period, nearest};
 
 /// One row of the table.
 pub struct Entry {
@@ -91,6 +95,12 @@ const RATE_WEIGHT: Parameter =
 const INNOVATION_GAIN: Parameter =
     parameter("innovation_gain", [0.0, 1.0], receding_horizon::Settings::DEFAULT.adaptation.residual.gain);
 
+const VELOCITY_GAIN: Parameter = parameter("velocity_gain", [0.5, 1.5], Gains::EXACT.velocity);
+const ACCELERATION_GAIN: Parameter = parameter("acceleration_gain", [0.0, 2.0], Gains::EXACT.acceleration);
+const FRICTION_GAIN: Parameter = parameter("friction_gain", [0.0, 2.0], Gains::EXACT.friction);
+const LAG_SCALE: Parameter = parameter("lag_scale", [0.5, 1.5], 1.0);
+const INERTIA_SCALE: Parameter = parameter("inertia_scale", [0.5, 2.0], 1.0);
+
 /// All controllers.
 pub const CONTROLLERS: &[Entry] = &[
     entry!(
@@ -106,7 +116,8 @@ pub const CONTROLLERS: &[Entry] = &[
         "cross-coupled",
         "PID control of the contour error, added to the command across the path",
         "Koren (1980); Srinivasan and Kulkarni (1990)",
-        identifies: false,
+        Nothing,
+        laps: 1,
         [
             parameter("kp", [0.1, 20.0], cross_coupled::Settings::DEFAULT.kp),
             parameter("ki_1_s", [1.0, 1000.0], cross_coupled::Settings::DEFAULT.ki_1_s),
@@ -118,7 +129,8 @@ pub const CONTROLLERS: &[Entry] = &[
         "contour-compensation",
         "the reference moved by the estimated contour error",
         "Lee and Jeon (1999)",
-        identifies: false,
+        Nothing,
+        laps: 1,
         [
             parameter("rate_1_s", [1.0, 300.0], contour_compensation::Settings::DEFAULT.rate_1_s),
             parameter("filter_s", [1e-4, 0.1], contour_compensation::Settings::DEFAULT.filter_s)
@@ -129,13 +141,32 @@ pub const CONTROLLERS: &[Entry] = &[
         "fuzzy-feedrate",
         "fuzzy rules on the contour error and its change, speed along the path only",
         "after Tsai and others (about 2003)",
-        identifies: false,
+        Nothing,
+        laps: 1,
         [
             parameter("error_mm", [0.002, 0.2], fuzzy_feedrate::Settings::DEFAULT.error_mm),
             parameter("change_mm_s", [0.05, 20.0], fuzzy_feedrate::Settings::DEFAULT.change_mm_s),
             parameter("slowest", [0.2, 1.0], fuzzy_feedrate::Settings::DEFAULT.slowest)
         ],
         fuzzy_feedrate
+    ),
+    entry!(
+        "feedforward",
+        "velocity, acceleration and friction feedforward with the exact model of the machine",
+        "Pritschow (1996); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
+        ExactModel,
+        laps: 1,
+        [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN],
+        feedforward
+    ),
+    entry!(
+        "zero-phase",
+        "zero phase error tracking control with the linear model of the machine",
+        "Tomizuka (1987)",
+        ExactModel,
+        laps: 1,
+        [LAG_SCALE, INERTIA_SCALE],
+        zero_phase
     ),
     entry!(
         "magnitude-only",
@@ -256,6 +287,53 @@ fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<
         slowest: values[2],
         acceleration_mm_s2: setup.machine.limits.tangential_accel_mm_s2,
     }))
+}
+
+fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let Period { servo_s, mechanics_s, .. } = setup.machine.period;
+    let axes = axes(setup.machine).map(|axis| AxisModel {
+        rad_per_mm: std::f64::consts::TAU / axis.lead_mm_per_rev,
+        kp_1_s: axis.kp_1_s,
+        kd: axis.kd,
+        kv_nm_s_per_rad: axis.kv_nm_s_per_rad,
+        // The speed loop answers to the speed at the start of a mechanics period, and so damps less than one without
+        // delay by so much inertia.
+        inertia_kg_m2: axis.inertia_kg_m2 - (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) * mechanics_s,
+        viscous_friction_nm_s: axis.viscous_friction_nm_s,
+        coulomb_friction_nm: axis.coulomb_friction_nm,
+        coulomb_smoothing_rad_s: axis.coulomb_smoothing_rad_s,
+    });
+    let gains = Gains { velocity: values[0], acceleration: values[1], friction: values[2] };
+    Box::new(Feedforward::new(axes, gains, servo_s))
+}
+
+fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let [lag_scale, inertia_scale] = [values[0], values[1]];
+    let sampled = axes(setup.machine).map(|axis| {
+        let inertia_kg_m2 = inertia_scale * axis.inertia_kg_m2;
+        sampled(&Axis { kp_1_s: axis.kp_1_s / lag_scale, inertia_kg_m2, ..axis }, &setup.machine.period)
+    });
+    Box::new(ZeroPhase::new(&sampled, setup.machine.period.servo_s))
+}
+
+/// The linear part of an axis over one servo period, as the plant integrates it.
+fn sampled(axis: &Axis, period: &Period) -> SampledAxis {
+    let over = |mut speed: f64, reference: f64| {
+        let mut travel_s = 0.0;
+        for _ in 0..period.mechanics_per_servo {
+            let torque_nm = axis.kv_nm_s_per_rad * (reference - speed) - axis.viscous_friction_nm_s * speed;
+            speed += period.mechanics_s * torque_nm / axis.inertia_kg_m2;
+            travel_s += period.mechanics_s * speed;
+        }
+        (speed, travel_s)
+    };
+    let ((alpha, gamma_s), (beta, delta_s)) = (over(1.0, 0.0), over(0.0, 1.0));
+    SampledAxis { alpha, beta, gamma_s, delta_s, kp_1_s: axis.kp_1_s, kd: axis.kd }
+}
+
+/// The first N axes of a machine; one that it does not have is like its last.
+fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
+    std::array::from_fn(|i| machine.axes[i.min(machine.axes.len() - 1)])
 }
 
 fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
