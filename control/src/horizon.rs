@@ -1,7 +1,7 @@
 //! The receding-horizon inversion: one Gauss-Newton step on the offset rates of all knots of the horizon.
 //!
 //! With the rates u_j of the command's offset across the path as the unknowns (one normal in the plane, two in space),
-//! the plan is rolled out through the servo identifier, the contour error of every predicted tool position is exact
+//! the plan is rolled out through a [`Model`] of the machine (the servo identifier), the contour error of every predicted tool position is exact
 //! geometry, and
 //!
 //! ```text
@@ -9,8 +9,8 @@
 //! ```
 //!
 //! is minimised by one step of Gauss and Newton from last tick's plan, shifted. The derivative of eps_i to u_j is
-//! n_i . R(i - j) n_j, where R(m) is the response of the tool, m knots later, to a feedrate of 1 for one knot: that of
-//! the linear part of the identifier, the same for all knots of a tick. The tangential direction belongs to the feed.
+//! n_i . R(i - j) n_j, where R(m) is the response of the tool, m knots later, to a feedrate of 1 for one knot: the
+//! same for all knots of a tick. The tangential direction belongs to the feed.
 //!
 //! Source: the performance index is Lee, Cho and Jeon (2005), eq. 7, summed over a horizon; receding horizon as in Richalet
 //! et al. (1978), Gauss-Newton with a fixed number of steps a tick as in Diehl, Bock and Schloeder (2005).
@@ -18,11 +18,8 @@
 //! Everything is of fixed size: at most [`MOST_KNOTS`] knots, N - 1 unknowns each.
 
 use crate::contour_error::locate;
-use crate::identifier::FEED_SCALE_MM_S;
-use crate::identifier::residual::Residual;
-use crate::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
 use crate::least_squares::cholesky;
-use crate::vector::{add_scaled, dot, norm, reject, scale, sub};
+use crate::vector::{add_scaled, dot, norm, reject, scale};
 use crate::window::Window;
 
 /// Most knots of a horizon.
@@ -60,15 +57,29 @@ impl<const N: usize> Default for Plan<N> {
     }
 }
 
-/// What is known when a plan is made.
-#[derive(Debug, Clone, Copy)]
-pub struct State<const N: usize> {
-    /// Feedrates and following errors up to the current knot, scaled.
-    pub delays: Delays<N>,
-    /// What the identifier misses of the growth of the following error in each axis: added to every prediction.
-    pub residual: [Residual; N],
+/// R(m) for all knots of a horizon: displacement of the tool, mm, m knots after a feedrate of 1 mm/s along an axis for
+/// one knot: [m][tool][feed].
+pub type Response<const N: usize> = [[[f64; N]; N]; MOST_KNOTS];
+
+/// What predicts the tool: a model of the machine, with its state at the current knot.
+pub trait Model<const N: usize>: Clone {
     /// How far the tool is behind the command, s: where the search for the nearest points starts.
-    pub lag_s: f64,
+    fn lag_s(&self) -> f64;
+    /// Moves on by one feed period; the tool at its end, mm.
+    fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>) -> [f64; N];
+    /// R(m) of the first `knots` knots.
+    fn response(&self, period_s: f64, knots: usize) -> Response<N>;
+}
+
+/// What is commanded in a feed period of the horizon.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stretch<const N: usize> {
+    /// Its number, from 0.
+    pub knot: usize,
+    /// Command at its start and end, mm.
+    pub command_mm: [[f64; N]; 2],
+    /// Offset from the path at its start and end, mm.
+    pub offset_mm: [[f64; N]; 2],
 }
 
 /// The first step of a plan.
@@ -76,6 +87,8 @@ pub struct State<const N: usize> {
 pub struct Step<const N: usize> {
     /// Offset at the next knot, mm.
     pub offset_mm: [f64; N],
+    /// Largest change of an offset rate in this step, mm/s.
+    pub change_mm_s: f64,
 }
 
 /// Normals of a knot; the second is zero in the plane.
@@ -97,27 +110,29 @@ impl<const N: usize> Plan<N> {
         *self = Self::default();
     }
 
-    /// Improves the plan by one step and returns its first command. The plan is shifted first: call once a feed period.
-    pub fn improve(
-        &mut self,
-        net: &ServoIdentifier<N>,
-        window: &Window<'_, N>,
-        state: &State<N>,
-        settings: &Settings,
-    ) -> Step<N> {
+    /// Improves last tick's plan by one step and returns its first command: call once a feed period.
+    pub fn improve<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings) -> Step<N> {
+        self.shift(settings.knots.clamp(1, MOST_KNOTS));
+        self.improve_again(model, window, settings)
+    }
+
+    /// One more step on the plan of this feed period.
+    pub fn improve_again<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings) -> Step<N> {
         let knots = settings.knots.clamp(1, MOST_KNOTS);
-        self.shift(knots);
-        let rollout = self.roll_out(net, window, state, knots);
-        let response = tool_response(net, window.feed_period_s, knots);
+        let rollout = self.roll_out(model, window, knots);
+        let response = model.response(window.feed_period_s, knots);
         let change = solve::<N>(&rollout, &response, &self.rates, knots, settings);
         let limit = settings.rate_limit_mm_s;
+        let mut largest_mm_s = 0.0_f64;
         for (rate, change) in self.rates.iter_mut().zip(change).take(knots * normals::<N>()) {
             let improved = *rate + change;
-            *rate = if improved.is_finite() { improved.clamp(-limit, limit) } else { 0.0 };
+            let improved = if improved.is_finite() { improved.clamp(-limit, limit) } else { 0.0 };
+            largest_mm_s = largest_mm_s.max((improved - *rate).abs());
+            *rate = improved;
         }
         let offset_mm = self.moved(window.offset_mm, &rollout.at_knot[0], 0, window.feed_period_s);
         self.normal = rollout.at_knot[0][0];
-        Step { offset_mm }
+        Step { offset_mm, change_mm_s: largest_mm_s }
     }
 
     /// Last tick's second step becomes the first; the last is held.
@@ -135,15 +150,14 @@ impl<const N: usize> Plan<N> {
         (0..n).fold(offset_mm, |o, normal| add_scaled(o, period_s * self.rates[knot * n + normal], along[normal]))
     }
 
-    fn roll_out(&self, net: &ServoIdentifier<N>, window: &Window<'_, N>, state: &State<N>, knots: usize) -> Rollout<N> {
+    fn roll_out<M: Model<N>>(&self, model: &M, window: &Window<'_, N>, knots: usize) -> Rollout<N> {
         let period_s = window.feed_period_s;
         let mut rollout = Rollout {
             error: [[0.0; MOST_NORMALS]; MOST_KNOTS],
             at_foot: [[[0.0; N]; MOST_NORMALS]; MOST_KNOTS],
             at_knot: [[[0.0; N]; MOST_NORMALS]; MOST_KNOTS],
         };
-        let mut delays = state.delays;
-        let mut residual = state.residual;
+        let mut model = model.clone();
         let mut offset_mm = window.offset_mm;
         let mut command_mm = add_scaled(window.now().position_mm, 1.0, offset_mm);
         let mut normal = self.normal;
@@ -151,16 +165,13 @@ impl<const N: usize> Plan<N> {
             let knot = window.ahead(i + 1);
             rollout.at_knot[i] = normals_of(knot.tangent, normal);
             normal = rollout.at_knot[i][0];
-            offset_mm = self.moved(offset_mm, &rollout.at_knot[i], i, period_s);
-            let next_mm = add_scaled(knot.position_mm, 1.0, offset_mm);
-            let feed = scale(1.0 / (period_s * FEED_SCALE_MM_S), sub(next_mm, command_mm));
-            let missed = core::array::from_fn(|axis| residual[axis].next());
-            let grown = add_scaled(net.predict(&delays.inputs(feed)), 1.0, missed);
-            let error = add_scaled(delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown);
-            delays.push(feed, error);
-            command_mm = next_mm;
-            let tool_mm = add_scaled(command_mm, -FOLLOWING_SCALE_MM, error);
-            let behind_s = (i + 1) as f64 * period_s - state.lag_s;
+            let next_offset_mm = self.moved(offset_mm, &rollout.at_knot[i], i, period_s);
+            let next_mm = add_scaled(knot.position_mm, 1.0, next_offset_mm);
+            let stretch =
+                Stretch { knot: i, command_mm: [command_mm, next_mm], offset_mm: [offset_mm, next_offset_mm] };
+            let tool_mm = model.advance(window, &stretch);
+            (offset_mm, command_mm) = (next_offset_mm, next_mm);
+            let behind_s = (i + 1) as f64 * period_s - model.lag_s();
             let contour = locate(window, tool_mm, libm::round(behind_s / window.servo_s()) as i32);
             rollout.at_foot[i] = normals_of(contour.tangent, normal);
             rollout.error[i] = core::array::from_fn(|d| -dot(contour.vector_mm, rollout.at_foot[i][d]));
@@ -199,30 +210,10 @@ fn normals_of<const N: usize>(tangent: [f64; N], hint: [f64; N]) -> Normals<N> {
     [first, second]
 }
 
-/// R(m): displacement of the tool, mm, m knots after a feedrate of 1 mm/s along an axis for one knot: [m][tool][feed].
-fn tool_response<const N: usize>(net: &ServoIdentifier<N>, period_s: f64, knots: usize) -> [[[f64; N]; N]; MOST_KNOTS] {
-    let mut response = [[[0.0; N]; N]; MOST_KNOTS];
-    for axis in 0..N {
-        let mut delays = Delays::<N>::REST;
-        let mut feed = [0.0; N];
-        feed[axis] = 1.0 / FEED_SCALE_MM_S;
-        for at in response.iter_mut().take(knots) {
-            let grown = net.predict_linear(&delays.inputs(feed));
-            delays.push(feed, add_scaled(delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown));
-            feed = [0.0; N];
-            for tool in 0..N {
-                at[tool][axis] = -FOLLOWING_SCALE_MM * delays.error[0][tool];
-            }
-            at[axis][axis] += period_s;
-        }
-    }
-    response
-}
-
 /// The step of Gauss and Newton: (G'G + W) du = -G' eps - W u, by Cholesky's factorisation in place.
 fn solve<const N: usize>(
     rollout: &Rollout<N>,
-    response: &[[[f64; N]; N]; MOST_KNOTS],
+    response: &Response<N>,
     rates: &[f64; MOST_UNKNOWNS],
     knots: usize,
     settings: &Settings,

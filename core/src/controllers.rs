@@ -3,6 +3,7 @@
 //! Help texts, the comparison, docs and conformance tests iterate over [`CONTROLLERS`].
 
 pub mod iterative_learning;
+pub mod model_predictive;
 
 use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
 use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
@@ -14,7 +15,8 @@ use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::two_dimensional::TwoDimensional;
 use feedwright_control::controller::zero_phase::{SampledAxis, ZeroPhase};
-use feedwright_control::{Controller, inversion};
+use feedwright_control::{Controller, horizon, inversion};
+use model_predictive::ModelPredictive;
 use serde::Serialize;
 
 use crate::identify::cache::identified;
@@ -167,6 +169,15 @@ pub const CONTROLLERS: &[Entry] = &[
         laps: 1,
         [LAG_SCALE, INERTIA_SCALE],
         zero_phase
+    ),
+    entry!(
+        "model-predictive",
+        "contouring over 20 knots ahead with the exact model of the machine, solved to convergence",
+        "Lam, Manzie and Good (2010)",
+        ExactModel,
+        laps: 1,
+        [RATE_WEIGHT],
+        model_predictive
     ),
     entry!(
         "magnitude-only",
@@ -334,6 +345,13 @@ fn sampled(axis: &Axis, period: &Period) -> SampledAxis {
 /// The first N axes of a machine; one that it does not have is like its last.
 fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
     std::array::from_fn(|i| machine.axes[i.min(machine.axes.len() - 1)])
+}
+
+fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let mut horizon = receding_horizon::Settings::DEFAULT.horizon;
+    (horizon.knots, horizon.rate_weight, horizon.change_weight) = (horizon::MOST_KNOTS, values[0], 0.0);
+    let servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
+    Box::new(ModelPredictive::new(setup.machine, model_predictive::Settings { servo_periods, horizon }))
 }
 
 fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {

@@ -4,8 +4,9 @@
 //! of [`crate::horizon`], command its first step. The speed along the path stays as planned.
 
 use super::{Command, Controller, Measured, Schedule};
-use crate::horizon::{self, Plan, State};
+use crate::horizon::{self, MOST_KNOTS, Model, Plan, Response, Stretch};
 use crate::identifier::adaptation::{self, Adaptation};
+use crate::identifier::residual::Residual;
 use crate::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
 use crate::identifier::{FEED_SCALE_MM_S, Inputs};
 use crate::vector::{add_scaled, dot, norm, scale, sub};
@@ -73,11 +74,6 @@ impl<const N: usize> RecedingHorizon<N> {
         }
     }
 
-    /// The feedrate between two commands, scaled.
-    fn feed(from_mm: [f64; N], to_mm: [f64; N], period_s: f64) -> [f64; N] {
-        scale(1.0 / (period_s * FEED_SCALE_MM_S), sub(to_mm, from_mm))
-    }
-
     /// Takes in where the tool is now: delays and bias.
     fn take_in(&mut self, command_mm: [f64; N], measured: &Measured<N>, period_s: f64) {
         let following_mm = sub(command_mm, measured.position_mm);
@@ -90,7 +86,7 @@ impl<const N: usize> RecedingHorizon<N> {
                 let before_mm = scale(FOLLOWING_SCALE_MM, self.delays.error[0]);
                 self.net.learn(&last.inputs, sub(following_mm, before_mm));
                 self.missed_mm = norm(sub(following_mm, last.predicted_mm));
-                self.delays.push(Self::feed(last.command_mm, command_mm, period_s), error);
+                self.delays.push(feed(last.command_mm, command_mm, period_s), error);
             }
             None => self.delays.error = [error; 2],
         }
@@ -119,21 +115,72 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
         self.take_in(command_mm, measured, window.feed_period_s);
-        let state = State { delays: self.delays, residual: self.net.residual(), lag_s: self.net.net().lag_s() };
+        let model = Identified { net: self.net.net(), delays: self.delays, residual: self.net.residual() };
         let share = self.net.innovation_mm() / self.settings.sure_mm;
         let mut horizon = self.settings.horizon;
         horizon.rate_weight *= 1.0 + share * share;
         horizon.change_weight *= share * share;
-        let step = self.plan.improve(self.net.net(), window, &state, &horizon);
+        let step = self.plan.improve(&model, window, &horizon);
         let next = window.ahead(1);
         let along = dot(step.offset_mm, next.tangent);
         let offset_mm = add_scaled(step.offset_mm, -self.settings.tangential_leak * along, next.tangent);
         let next_mm = add_scaled(next.position_mm, 1.0, offset_mm);
-        let inputs = self.delays.inputs(Self::feed(command_mm, next_mm, window.feed_period_s));
-        let modelled_mm = add_scaled(self.net.net().predict(&inputs), FOLLOWING_SCALE_MM, self.delays.error[0]);
-        let mut residual = self.net.residual();
-        let predicted_mm = core::array::from_fn(|axis| modelled_mm[axis] + residual[axis].next());
+        let inputs = self.delays.inputs(feed(command_mm, next_mm, window.feed_period_s));
+        let offset_mm_both = [window.offset_mm, offset_mm];
+        let stretch = Stretch { knot: 0, command_mm: [command_mm, next_mm], offset_mm: offset_mm_both };
+        let predicted_mm = sub(next_mm, model.clone().advance(window, &stretch));
         self.last = Some(Last { command_mm, inputs, predicted_mm });
         Command { rate: 1.0, offset_mm }
+    }
+}
+
+/// The feedrate between two commands, scaled.
+#[inline]
+fn feed<const N: usize>(from_mm: [f64; N], to_mm: [f64; N], period_s: f64) -> [f64; N] {
+    scale(1.0 / (period_s * FEED_SCALE_MM_S), sub(to_mm, from_mm))
+}
+
+/// The identified servo as a model of the machine.
+#[derive(Debug, Clone)]
+struct Identified<'a, const N: usize> {
+    net: &'a ServoIdentifier<N>,
+    delays: Delays<N>,
+    residual: [Residual; N],
+}
+
+impl<const N: usize> Model<N> for Identified<'_, N> {
+    fn lag_s(&self) -> f64 {
+        self.net.lag_s()
+    }
+
+    #[inline]
+    fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>) -> [f64; N] {
+        let [from_mm, to_mm] = stretch.command_mm;
+        let feed = feed(from_mm, to_mm, window.feed_period_s);
+        let missed = core::array::from_fn(|axis| self.residual[axis].next());
+        let grown = add_scaled(self.net.predict(&self.delays.inputs(feed)), 1.0, missed);
+        let error = add_scaled(self.delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown);
+        self.delays.push(feed, error);
+        add_scaled(to_mm, -FOLLOWING_SCALE_MM, error)
+    }
+
+    /// Of the linear part of the identifier.
+    fn response(&self, period_s: f64, knots: usize) -> Response<N> {
+        let mut response = [[[0.0; N]; N]; MOST_KNOTS];
+        for axis in 0..N {
+            let mut delays = Delays::<N>::REST;
+            let mut feed = [0.0; N];
+            feed[axis] = 1.0 / FEED_SCALE_MM_S;
+            for at in response.iter_mut().take(knots) {
+                let grown = self.net.predict_linear(&delays.inputs(feed));
+                delays.push(feed, add_scaled(delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown));
+                feed = [0.0; N];
+                for tool in 0..N {
+                    at[tool][axis] = -FOLLOWING_SCALE_MM * delays.error[0][tool];
+                }
+                at[axis][axis] += period_s;
+            }
+        }
+        response
     }
 }
