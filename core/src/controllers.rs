@@ -94,7 +94,7 @@ pub const CONTROLLERS: &[Entry] = &[
     entry!(
         "feedforward",
         "velocity, acceleration and friction feedforward with the exact model of the machine",
-        "Pritschow (1996); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
+        "Masory (1986); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
         identifies: false,
         [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN],
         feedforward

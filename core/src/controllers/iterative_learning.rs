@@ -158,9 +158,8 @@ const HIGHEST_CUT_OFF: f64 = 0.49;
 
 #[cfg(test)]
 mod tests {
-    use feedwright_control::Knot;
-    use feedwright_control::Tick;
     use feedwright_control::safety::Bounds;
+    use feedwright_control::{Knot, Tick};
 
     use super::*;
 
