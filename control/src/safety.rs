@@ -23,7 +23,7 @@ pub const FADE_S: f64 = 0.1;
 const RATE_RANGE: [f64; 2] = [0.1, 3.0];
 /// Time in which the correction may take up the highest speed it is allowed, s. A position command that does this within
 /// less hammers the drive; feedforward of the exact model at a corner needs no less.
-const TAKE_UP_S: f64 = 0.01;
+const TAKE_UP_S: f64 = 0.001;
 /// Decisions in a row without a measurement that a controller bridges by holding its offset. One is a glitch of a bus.
 const LOST_DECISIONS: u32 = 3;
 /// Decisions in a row with a wrong prediction. One is a shock, which no model foresees.

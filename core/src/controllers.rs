@@ -155,7 +155,7 @@ pub const CONTROLLERS: &[Entry] = &[
     entry!(
         "feedforward",
         "velocity, acceleration and friction feedforward with the exact model of the machine",
-        "Pritschow (1996); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
+        "Masory (1986); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
         ExactModel,
         laps: 1,
         [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN],
@@ -348,10 +348,13 @@ fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
 }
 
 fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let mut horizon = receding_horizon::Settings::DEFAULT.horizon;
+    let receding_horizon::Settings { mut horizon, tangential_leak, .. } = receding_horizon::Settings::DEFAULT;
     (horizon.knots, horizon.rate_weight, horizon.change_weight) = (horizon::MOST_KNOTS, values[0], 0.0);
     let servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
-    Box::new(ModelPredictive::new(setup.machine, model_predictive::Settings { servo_periods, horizon }))
+    Box::new(ModelPredictive::new(
+        setup.machine,
+        model_predictive::Settings { servo_periods, horizon, tangential_leak },
+    ))
 }
 
 fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {

@@ -19,7 +19,7 @@
 //!
 //! so that x / r = |B-|^2 / B-(1)^2 is real at every frequency and 1 at standstill.
 //!
-//! Source: Tomizuka (1987), "Zero phase error tracking algorithm for digital control", eqs 9 to 13.
+//! Source: Tomizuka (1987), "Zero phase error tracking algorithm for digital control".
 //!
 //! Departures: none in the filter. The Coulomb friction is not linear, and the model leaves it out.
 
@@ -77,7 +77,7 @@ pub struct ZeroPhase<const N: usize> {
 impl<const N: usize> ZeroPhase<N> {
     /// For these axes and a servo period of `servo_s`.
     pub fn new(axes: &[SampledAxis; N], servo_s: f64) -> Self {
-        // What is neither travelled with the speed of the axis nor with the loop's is on its way: J / (kv + B).
+        // The lags of the position loop and of the speed loop; the second is J / (kv + B).
         let lag_s = axes.iter().map(|axis| 1.0 / axis.kp_1_s + axis.gamma_s / (1.0 - axis.alpha));
         Self {
             preview: preview(lag_s.fold(0.0, f64::max), servo_s),
@@ -114,8 +114,7 @@ impl<const N: usize> Controller<N> for ZeroPhase<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::safety::Bounds;
-    use crate::tick::Tick;
+    use crate::controller::feedforward::tests::commands;
     use crate::window::{Knot, Reference};
 
     const SERVO_S: f64 = 0.001;
@@ -128,7 +127,7 @@ mod tests {
         SampledAxis { alpha, beta: 1.0 - alpha, gamma_s, delta_s: SERVO_S - gamma_s, kp_1_s: 50.0, kd }
     }
 
-    /// 20 mm/s and a tenth of a millimetre at `rad_s` across it: small enough that no bound of the safety layer binds.
+    /// 20 mm/s and a tenth of a millimetre at `rad_s` across it.
     struct Wave {
         rad_s: f64,
     }
@@ -145,20 +144,17 @@ mod tests {
     fn drive(kd: f64, rad_s: f64, mut each: impl FnMut(f64, [f64; 2])) {
         let model = axis(kd);
         let mut controller = ZeroPhase::new(&[model; 2], SERVO_S);
-        let bounds = Bounds { deviation_mm: 10.0, speed_mm_s: 1e4, acceleration_mm_s2: 1e7 };
-        let mut tick = Tick::new(SERVO_S, controller.schedule(), bounds);
         let (mut tool_mm, mut speed, mut last_mm) = ([0.0; 2], [0.0; 2], [0.0; 2]);
-        for n in 1..=1000 {
-            let setpoint = tick.step(&mut Wave { rad_s }, &mut controller, tool_mm);
+        commands(&mut Wave { rad_s }, &mut controller, SERVO_S, |n, command_mm| {
             for i in 0..2 {
-                let error_mm = setpoint.command_mm[i] - tool_mm[i];
+                let error_mm = command_mm[i] - tool_mm[i];
                 let reference = model.kp_1_s * error_mm + model.kd * (error_mm - last_mm[i]) / SERVO_S;
                 last_mm[i] = error_mm;
                 tool_mm[i] += model.gamma_s * speed[i] + model.delta_s * reference;
                 speed[i] = model.alpha * speed[i] + model.beta * reference;
             }
-            each(f64::from(n) * SERVO_S, tool_mm);
-        }
+            each((n + 1) as f64 * SERVO_S, tool_mm);
+        });
     }
 
     #[test]

@@ -46,9 +46,9 @@ impl<const N: usize> ServoIdentifier<N> {
         sum / N as f64
     }
 
-    /// e(k+1) - e(k), mm.
+    /// f(W_h I).
     #[inline]
-    pub fn predict(&self, inputs: &Inputs<N>) -> [f64; N] {
+    pub fn hidden_nodes(&self, inputs: &Inputs<N>) -> [f64; HIDDEN] {
         let mut net = [0.0; HIDDEN];
         for axis in 0..N {
             for input in 0..INPUTS {
@@ -57,7 +57,13 @@ impl<const N: usize> ServoIdentifier<N> {
                 }
             }
         }
-        let hidden = bipolar_sigmoid(net);
+        bipolar_sigmoid(net)
+    }
+
+    /// e(k+1) - e(k), mm.
+    #[inline]
+    pub fn predict(&self, inputs: &Inputs<N>) -> [f64; N] {
+        let hidden = self.hidden_nodes(inputs);
         let mut increment = self.predict_linear(inputs);
         for o in 0..N {
             for j in 0..HIDDEN {

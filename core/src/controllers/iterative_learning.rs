@@ -48,8 +48,9 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// For a loop of 50 1/s around a speed loop of 200 1/s: the lead is the sum of the two time constants.
-    pub const DEFAULT: Self = Self { servo_periods: 1, gain: 0.8, lead_s: 0.025, cut_off_hz: 30.0 };
+    /// For a loop of 50 1/s: the lead is its time constant, and Q ends below the bandwidth of a speed loop of 200 1/s.
+    /// Of the settings tried on circle, star, square and figure-eight the one with the smallest RMS errors on most.
+    pub const DEFAULT: Self = Self { servo_periods: 1, gain: 1.0, lead_s: 0.02, cut_off_hz: 30.0 };
 }
 
 /// The learning controller: table of offsets, and the errors of the lap under way.
@@ -158,9 +159,8 @@ const HIGHEST_CUT_OFF: f64 = 0.49;
 
 #[cfg(test)]
 mod tests {
-    use feedwright_control::Knot;
-    use feedwright_control::Tick;
     use feedwright_control::safety::Bounds;
+    use feedwright_control::{Knot, Tick};
 
     use super::*;
 
@@ -199,7 +199,7 @@ mod tests {
 
     #[test]
     fn the_error_falls_from_lap_to_lap() {
-        let mut controller = IterativeLearning::new(Settings { lead_s: 0.02, ..Settings::DEFAULT }, PROGRAM_S, SERVO_S);
+        let mut controller = IterativeLearning::new(Settings::DEFAULT, PROGRAM_S, SERVO_S);
         let first_mm = lap(&mut controller);
         let again_mm = lap(&mut controller);
         assert_eq!(first_mm.to_bits(), again_mm.to_bits(), "nothing is learned before the next lap");

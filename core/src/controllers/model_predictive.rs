@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use feedwright_control::activation::tanh;
 use feedwright_control::horizon::{self, MOST_KNOTS, Model, Plan, Response, Stretch};
 use feedwright_control::identifier::residual::{self, Residual};
-use feedwright_control::vector::{add_scaled, norm, sub};
+use feedwright_control::vector::{add_scaled, dot, norm, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
 use crate::machine::{Axis, Machine};
@@ -30,6 +30,8 @@ pub struct Settings {
     pub servo_periods: u32,
     /// The inversion.
     pub horizon: horizon::Settings,
+    /// Part of the offset along the path that is taken back in each feed period, as in the receding horizon.
+    pub tangential_leak: f64,
 }
 
 /// Model-predictive contouring.
@@ -110,8 +112,11 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
             step = self.plan.improve_again(&self.model, window, settings);
         }
         let now_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
-        let next_mm = add_scaled(window.ahead(1).position_mm, 1.0, step.offset_mm);
-        let stretch = Stretch { knot: 0, command_mm: [now_mm, next_mm], offset_mm: [window.offset_mm, step.offset_mm] };
+        let next = window.ahead(1);
+        let along_mm = dot(step.offset_mm, next.tangent);
+        let offset_mm = add_scaled(step.offset_mm, -self.settings.tangential_leak * along_mm, next.tangent);
+        let next_mm = add_scaled(next.position_mm, 1.0, offset_mm);
+        let stretch = Stretch { knot: 0, command_mm: [now_mm, next_mm], offset_mm: [window.offset_mm, offset_mm] };
         let residual = self.model.residual;
         let expected_mm = self.model.advance(window, &stretch);
         let modelled_mm = std::array::from_fn(|i| self.model.axes[i].angle_rad / self.model.axes[i].rad_per_mm);
@@ -119,7 +124,7 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
         self.model.residual = residual;
         self.model.missed_mm = [0.0; N];
         self.expected_mm = Some([modelled_mm, expected_mm]);
-        Command { rate: 1.0, offset_mm: step.offset_mm }
+        Command { rate: 1.0, offset_mm }
     }
 }
 

@@ -8,7 +8,7 @@
 //! Kennard (1970).
 
 use feedwright_control::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
-use feedwright_control::identifier::{FEED_SCALE_MM_S, INPUTS, Inputs};
+use feedwright_control::identifier::{FEED_SCALE_MM_S, HIDDEN, INPUTS, Inputs};
 use feedwright_control::vector::{scale, sub};
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
@@ -44,7 +44,7 @@ pub fn identify<const N: usize>(machine: &Machine, programme: &Programme, seed: 
     let period_s = programme.period_s(machine);
     let laps = record::<N>(machine, programme, &mut rng);
     let samples: Vec<Sample<N>> = laps.iter().flat_map(|lap| samples(lap, period_s)).collect();
-    let net = fit(&samples);
+    let net = fit(&samples, period_s);
     let squares = samples.iter().map(|sample| {
         let missed = sub(sample.grown_mm, net.predict(&sample.inputs));
         missed.iter().map(|m| m * m).sum::<f64>()
@@ -67,16 +67,60 @@ fn samples<const N: usize>(lap: &Lap<N>, period_s: f64) -> Vec<Sample<N>> {
     samples
 }
 
-/// The least squares, all outputs against the same inputs.
-fn fit<const N: usize>(samples: &[Sample<N>]) -> ServoIdentifier<N> {
-    let unknowns = N * INPUTS;
+/// The linear part alone first, since the hidden nodes are laid along it; then both parts together.
+fn fit<const N: usize>(samples: &[Sample<N>], period_s: f64) -> ServoIdentifier<N> {
+    let linear = fit_outputs(samples, ServoIdentifier::IDEAL);
+    let hidden = hidden(&linear, period_s);
+    fit_outputs(samples, ServoIdentifier { hidden, ..linear })
+}
+
+/// Speeds over which a hidden node turns its sign, mm/s: those at which Coulomb friction does, and the change of speed
+/// within a knot at reversal, which smears it.
+const TURNS_OVER_MM_S: [f64; 3] = [0.25, 1.0, 4.0];
+
+/// Hidden nodes that see the sign of the tool's speed in an axis, at the start and at the end of the knot, and so how long
+/// within it friction pushes which way: what is not linear in a servo.
+fn hidden<const N: usize>(linear: &ServoIdentifier<N>, period_s: f64) -> [[[f64; HIDDEN]; INPUTS]; N] {
+    let mut hidden = [[[0.0; HIDDEN]; INPUTS]; N];
+    // The growth of e in a knot, mm, as a feedrate that the network sees as 1.
+    let speed = 1.0 / (period_s * FEED_SCALE_MM_S);
+    for node in 0..HIDDEN {
+        let axis = node % N;
+        let turns_over = TURNS_OVER_MM_S[(node / N / 2) % TURNS_OVER_MM_S.len()];
+        // The bipolar sigmoid is tanh(x / 2).
+        let steepness = 2.0 * FEED_SCALE_MM_S / turns_over;
+        if (node / N).is_multiple_of(2) {
+            // At the start: F(k-1) less the growth of e in the last knot.
+            hidden[axis][1][node] = steepness;
+            hidden[axis][3][node] = -steepness * speed * FOLLOWING_SCALE_MM;
+            hidden[axis][4][node] = steepness * speed * FOLLOWING_SCALE_MM;
+        } else {
+            // At the end: F(k) less the growth of e that the linear part foresees.
+            hidden[axis][0][node] = steepness;
+            for other in 0..N {
+                for input in 0..INPUTS {
+                    hidden[other][input][node] -= steepness * speed * linear.linear[axis][other][input];
+                }
+            }
+        }
+    }
+    hidden
+}
+
+/// The least squares over the linear connection and the outputs of the hidden nodes, as they are.
+fn fit_outputs<const N: usize>(samples: &[Sample<N>], net: ServoIdentifier<N>) -> ServoIdentifier<N> {
+    let nodes = if net.hidden.as_flattened().as_flattened().iter().all(|w| *w == 0.0) { 0 } else { HIDDEN };
+    let unknowns = N * INPUTS + nodes;
     let mut square = DMatrix::<f64>::identity(unknowns, unknowns) * (RIDGE * samples.len() as f64);
     let mut right = vec![DVector::<f64>::zeros(unknowns); N];
+    let mut seen = DVector::<f64>::zeros(unknowns);
     for sample in samples {
-        let inputs = DVector::from_column_slice(sample.inputs.as_flattened());
-        square.ger(1.0, &inputs, &inputs, 1.0);
+        let hidden = net.hidden_nodes(&sample.inputs);
+        let all = sample.inputs.as_flattened().iter().chain(&hidden[..nodes]);
+        seen.iter_mut().zip(all).for_each(|(seen, value)| *seen = *value);
+        square.ger(1.0, &seen, &seen, 1.0);
         for (right, grown_mm) in right.iter_mut().zip(sample.grown_mm) {
-            right.axpy(grown_mm, &inputs, 1.0);
+            right.axpy(grown_mm, &seen, 1.0);
         }
     }
     // With the ridge the matrix is positive definite unless a sample is not finite: then nothing was identified.
@@ -85,5 +129,8 @@ fn fit<const N: usize>(samples: &[Sample<N>]) -> ServoIdentifier<N> {
     let linear = std::array::from_fn(|o| {
         std::array::from_fn(|axis| std::array::from_fn(|input| solutions[o][axis * INPUTS + input]))
     });
-    ServoIdentifier { linear, ..ServoIdentifier::IDEAL }
+    let output = std::array::from_fn(|o| {
+        std::array::from_fn(|node| if node < nodes { solutions[o][N * INPUTS + node] } else { 0.0 })
+    });
+    ServoIdentifier { linear, output, ..net }
 }
