@@ -118,11 +118,35 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::safety::Bounds;
-    use crate::tick::Tick;
-    use crate::window::{Knot, Reference};
+    use crate::contour_error::Estimator;
+    use crate::window::{Knot, Preview, Reference, Register};
+
+    /// Where a tool is after so many servo periods of 1 ms that a constant load pushes `load_mm` off its command, in loops
+    /// of 50 1/s and without the safety layer.
+    pub(in crate::controller) fn cut<C: Controller<2>>(
+        reference: &mut impl Reference<2>,
+        controller: &mut C,
+        load_mm: [f64; 2],
+        periods: u32,
+    ) -> [f64; 2] {
+        let mut register = Register::default();
+        let preview = Preview::new(0.001);
+        let mut estimator = Estimator::default();
+        let (mut offset_mm, mut tool_mm) = ([0.0; 2], [0.0; 2]);
+        for n in 0..periods {
+            let tau_s = f64::from(n) * 0.001;
+            register.push(reference.knot(tau_s));
+            let window = Window { register: &register, preview: &preview, tau_s, feed_period_s: 0.001, offset_mm };
+            let contour = estimator.estimate(&window, tool_mm);
+            let measured = Measured { position_mm: tool_mm, contour };
+            let pulled_to_mm = add_scaled(add_scaled(window.now().position_mm, 1.0, offset_mm), 1.0, load_mm);
+            offset_mm = controller.command(&window, &measured).offset_mm;
+            tool_mm = add_scaled(tool_mm, 1.0 - libm::exp(-0.05), sub(pulled_to_mm, tool_mm));
+        }
+        tool_mm
+    }
 
     /// Along x at 50 mm/s.
     struct Line;
@@ -133,20 +157,9 @@ mod tests {
         }
     }
 
-    /// Where a tool comes to rest across the line that a constant load pushes 20 um off it: loops of 50 1/s.
-    fn rests_at_mm(settings: Settings) -> f64 {
-        let mut controller = CrossCoupled::<2>::new(settings);
-        let mut tick = Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0));
-        let mut tool = [0.0, 0.0];
-        for _ in 0..1000 {
-            let command = tick.step(&mut Line, &mut controller, tool).command_mm;
-            tool = [tool[0] + 0.05 * (command[0] - tool[0]), tool[1] + 0.05 * (command[1] + 0.02 - tool[1])];
-        }
-        tool[1]
-    }
-
     #[test]
     fn the_proportional_part_leaves_its_share_and_the_integral_nothing() {
+        let rests_at_mm = |settings: Settings| cut(&mut Line, &mut CrossCoupled::new(settings), [0.0, 0.02], 1000)[1];
         let proportional = rests_at_mm(Settings { kp: 3.0, ki_1_s: 0.0, kd_s: 0.0 });
         assert!((proportional - 0.02 / 4.0).abs() < 1e-9, "{proportional}");
         assert!(rests_at_mm(Settings::DEFAULT).abs() < 1e-9);
