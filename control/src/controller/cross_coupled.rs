@@ -16,7 +16,9 @@
 //! Departures: Koren adds u to the velocity command behind the position controllers. Here only position commands are
 //! accepted; with proportional position loops of equal gain that is the same, with all three gains divided by the loop's.
 //! The derivative is filtered ([`DERIVATIVE_S`]). While the safety layer holds the command back, the integral does not
-//! grow. Where the path runs back, n does not flip. Kp, Ki and Kd are tuned, the sources derive theirs for their machines.
+//! grow. In a corner the frame does not turn: what was learned across one side serves the other only as far as it lies across
+//! that too, and turning it by the corner makes the command leap. Kp, Ki and Kd are tuned; the sources derive theirs for
+//! their machines.
 
 use super::{Command, Controller, Measured, Schedule};
 use crate::vector::{add_scaled, dot, norm, reject, sub};
@@ -26,8 +28,8 @@ use crate::window::Window;
 const DERIVATIVE_S: f64 = 0.002;
 /// A command that differs by more than this from what was asked was held back, mm.
 const HELD_BACK_MM: f64 = 1e-9;
-/// Cosine between two tangents below which the path runs back: no smallest rotation leads from one to the other.
-const RUNS_BACK_COSINE: f64 = -0.9;
+/// Cosine between the tangents of two servo periods below which there is a corner between them, as for the estimator.
+const CORNER_COSINE: f64 = 0.995;
 
 /// Gains of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -41,8 +43,8 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Ki / Kp cancels the pole of a position loop of 50 1/s; the derivative makes up for a part of its speed loop's.
-    pub const DEFAULT: Self = Self { kp: 2.0, ki_1_s: 100.0, kd_s: 0.01 };
+    /// Ki / Kp cancels the pole of a position loop of 50 1/s, Kp / Kd that of a speed loop of 200 1/s.
+    pub const DEFAULT: Self = Self { kp: 4.0, ki_1_s: 200.0, kd_s: 0.02 };
 }
 
 /// Cross-coupled control.
@@ -68,10 +70,11 @@ impl<const N: usize> CrossCoupled<N> {
     }
 }
 
-/// A vector across the path, carried along it from one tangent to another by the smallest rotation between them.
+/// A vector across the path, carried along it from one tangent to another by the smallest rotation between them. Behind a
+/// corner only what lies across the new stretch is left.
 pub(super) fn carried<const N: usize>(across: [f64; N], from: [f64; N], to: [f64; N]) -> [f64; N] {
     let cosine = dot(from, to);
-    if cosine < RUNS_BACK_COSINE {
+    if cosine < CORNER_COSINE {
         return reject(across, to);
     }
     let both = add_scaled(from, 1.0, to);
@@ -167,14 +170,17 @@ pub(super) mod tests {
 
     #[test]
     fn what_is_carried_keeps_its_length_and_its_side_of_the_path() {
-        for degrees in -150..=150 {
-            let a = f64::from(degrees).to_radians();
+        for step in -50..=50 {
+            let a = 0.001 * f64::from(step);
             let to = [libm::cos(a), libm::sin(a)];
             let normal = carried([0.0, 2.0], [1.0, 0.0], to);
-            assert!(norm(sub(normal, [-2.0 * to[1], 2.0 * to[0]])) < 1e-12, "{degrees}: {normal:?}");
+            assert!(norm(sub(normal, [-2.0 * to[1], 2.0 * to[0]])) < 1e-12, "{a}: {normal:?}");
         }
         // In space, what lies along the axis of the rotation stays.
-        assert_eq!(carried([0.0, 0.0, 3.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.0, 0.0, 3.0]);
+        let to = [libm::cos(0.05), libm::sin(0.05), 0.0];
+        assert!(norm(sub(carried([0.0, 0.0, 3.0], [1.0, 0.0, 0.0], to), [0.0, 0.0, 3.0])) < 1e-15);
+        // Behind a right-angled corner nothing is left, behind a point where the path runs back everything.
+        assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [0.0, 1.0]), [0.0, 0.0]);
         assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [-1.0, 0.0]), [0.0, 2.0]);
     }
 }
