@@ -9,6 +9,8 @@
 //! journal 112, for curved contours. The gains that turn with the path (Cx and Cy, of Koren and Lo (1991) for circles) are
 //! the components of n: the normal at the nearest point, exact where theirs is of second order.
 //!
+//! The papers were not at hand: this is the method as later work describes it.
+//!
 //! The frame of e, its integral and its derivative is that of the path: all turn with n, so that an error that is constant
 //! beside a circle is constant here. In space n is any direction across the path, and the frame turns by the smallest
 //! rotation between two tangents; in the plane that is their scalar.
@@ -34,11 +36,11 @@ const CORNER_COSINE: f64 = 0.995;
 /// Gains of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Proportional, mm of offset a mm of error; 0 to 20.
+    /// Proportional, mm of offset a mm of error; 0 to 8.
     pub kp: f64,
-    /// Integral, 1/s; 0 to 1000.
+    /// Integral, 1/s; 0 to 400.
     pub ki_1_s: f64,
-    /// Derivative, s; 0 to 0.1.
+    /// Derivative, s; 0 to 0.03.
     pub kd_s: f64,
 }
 
