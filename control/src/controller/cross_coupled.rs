@@ -17,7 +17,7 @@
 //!
 //! Departures: Koren adds u to the velocity command behind the position controllers. Here only position commands are
 //! accepted; with proportional position loops of equal gain that is the same, with all three gains divided by the loop's.
-//! The derivative is filtered ([`DERIVATIVE_S`]). While the safety layer holds the command back, the integral does not
+//! The derivative is filtered (`DERIVATIVE_S`). While the safety layer holds the command back, the integral does not
 //! grow. In a corner the frame does not turn: what was learned across one side serves the other only as far as it lies across
 //! that too, and turning it by the corner makes the command leap. Kp, Ki and Kd are tuned; the sources derive theirs for
 //! their machines.
