@@ -120,10 +120,11 @@ pub const CONTROLLERS: &[Entry] = &[
         "Koren (1980); Srinivasan and Kulkarni (1990)",
         Nothing,
         laps: 1,
+        // Beyond these gains the loop is still stable on smooth paths, but catches the tool in acute corners.
         [
-            parameter("kp", [0.1, 20.0], cross_coupled::Settings::DEFAULT.kp),
-            parameter("ki_1_s", [1.0, 1000.0], cross_coupled::Settings::DEFAULT.ki_1_s),
-            parameter("kd_s", [1e-4, 0.1], cross_coupled::Settings::DEFAULT.kd_s)
+            parameter("kp", [0.1, 8.0], cross_coupled::Settings::DEFAULT.kp),
+            parameter("ki_1_s", [1.0, 400.0], cross_coupled::Settings::DEFAULT.ki_1_s),
+            parameter("kd_s", [1e-4, 0.03], cross_coupled::Settings::DEFAULT.kd_s)
         ],
         cross_coupled
     ),
