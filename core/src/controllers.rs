@@ -349,13 +349,10 @@ fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
 }
 
 fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let receding_horizon::Settings { mut horizon, tangential_leak, .. } = receding_horizon::Settings::DEFAULT;
+    let receding_horizon::Settings { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
     (horizon.knots, horizon.rate_weight, horizon.change_weight) = (horizon::MOST_KNOTS, values[0], 0.0);
     let servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
-    Box::new(ModelPredictive::new(
-        setup.machine,
-        model_predictive::Settings { servo_periods, horizon, tangential_leak },
-    ))
+    Box::new(ModelPredictive::new(setup.machine, model_predictive::Settings { servo_periods, horizon }))
 }
 
 fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
@@ -372,10 +369,13 @@ fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box
 fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
     let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
     let mut settings = receding_horizon::Settings::DEFAULT;
-    settings.servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
+    settings.servo_periods = setup.machine.period.servo_periods(crate::identify::hackt()[0]);
     (settings.horizon.rate_weight, settings.adaptation.residual.gain) = (values[0], values[1]);
+    settings.horizon.knots = crate::identify::hackt()[1] as usize;
+    settings.adaptation.residual.gain = crate::identify::hackt()[2];
+    settings.adaptation.residual.forgetting = crate::identify::hackt()[3];
     let hack: Vec<f64> = std::env::var("FW").unwrap_or_default().split(',').filter_map(|x| x.parse().ok()).collect();
-    if hack.len() > 9 {
+    if hack.len() > 10 {
         settings.horizon.rate_weight = hack[0];
         settings.horizon.change_weight = hack[1];
         settings.adaptation.forgetting = hack[2];
@@ -386,6 +386,7 @@ fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Bo
         settings.sure_mm = hack[7];
         settings.adaptation.caution = hack[8];
         settings.adaptation.alike = hack[9];
+        settings.horizon.tangential_price = hack[10];
     }
     Box::new(RecedingHorizon::new(identified.net, settings))
 }

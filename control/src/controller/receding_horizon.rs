@@ -13,7 +13,7 @@ use crate::vector::{add_scaled, dot, norm, scale, sub};
 use crate::window::Window;
 
 /// Its feed period, s: a quarter of the time constant of a position loop of 50 1/s.
-pub const FEED_PERIOD_S: f64 = 0.005;
+pub const FEED_PERIOD_S: f64 = 0.003;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,19 +26,21 @@ pub struct Settings {
     pub adaptation: adaptation::Settings,
     /// Innovations of this size make the inversion half as sharp, mm; larger ones blunter still.
     pub sure_mm: f64,
-    /// Part of the offset along the path that is taken back in each feed period; 0 to 1. Offsets are made across the
-    /// path; where the path has turned since, what is left of them along it only shifts the tool in time.
-    pub tangential_leak: f64,
 }
 
 impl Settings {
     /// Values that serve every shape and machine tried.
     pub const DEFAULT: Self = Self {
         servo_periods: 5,
-        horizon: horizon::Settings { knots: 10, rate_weight: 1e-8, change_weight: 1e-7, rate_limit_mm_s: 20.0 },
+        horizon: horizon::Settings {
+            knots: 16,
+            rate_weight: 1e-8,
+            change_weight: 1e-7,
+            tangential_price: 0.01,
+            rate_limit_mm_s: 20.0,
+        },
         adaptation: adaptation::Settings::DEFAULT,
         sure_mm: 1e-3,
-        tangential_leak: 0.05,
     };
 }
 
@@ -122,8 +124,7 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
         horizon.change_weight *= share * share;
         let step = self.plan.improve(&model, window, &horizon);
         let next = window.ahead(1);
-        let along = dot(step.offset_mm, next.tangent);
-        let offset_mm = add_scaled(step.offset_mm, -self.settings.tangential_leak * along, next.tangent);
+        let offset_mm = step.offset_mm;
         let next_mm = add_scaled(next.position_mm, 1.0, offset_mm);
         let inputs = self.delays.inputs(feed(command_mm, next_mm, window.feed_period_s));
         let offset_mm_both = [window.offset_mm, offset_mm];

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use feedwright_control::activation::tanh;
 use feedwright_control::horizon::{self, MOST_KNOTS, Model, Plan, Response, Stretch};
 use feedwright_control::identifier::residual::{self, Residual};
-use feedwright_control::vector::{add_scaled, dot, norm, sub};
+use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
 use crate::machine::{Axis, Machine};
@@ -30,8 +30,6 @@ pub struct Settings {
     pub servo_periods: u32,
     /// The inversion.
     pub horizon: horizon::Settings,
-    /// Part of the offset along the path that is taken back in each feed period, as in the receding horizon.
-    pub tangential_leak: f64,
 }
 
 /// Model-predictive contouring.
@@ -113,8 +111,7 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
         }
         let now_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
         let next = window.ahead(1);
-        let along_mm = dot(step.offset_mm, next.tangent);
-        let offset_mm = add_scaled(step.offset_mm, -self.settings.tangential_leak * along_mm, next.tangent);
+        let offset_mm = step.offset_mm;
         let next_mm = add_scaled(next.position_mm, 1.0, offset_mm);
         let stretch = Stretch { knot: 0, command_mm: [now_mm, next_mm], offset_mm: [window.offset_mm, offset_mm] };
         let residual = self.model.residual;
