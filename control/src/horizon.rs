@@ -30,6 +30,10 @@ const MOST_AXES: usize = 3;
 /// Most unknowns.
 const MOST_UNKNOWNS: usize = MOST_KNOTS * MOST_AXES;
 
+/// The search for the nearest points starts where the tool is now and goes over to where the model has it in the long run,
+/// s: a model that is wrong about the lag then misleads late in the horizon only.
+const BELIEVED_AFTER_S: f64 = 0.1;
+
 /// Settings of the inversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -106,16 +110,29 @@ impl<const N: usize> Plan<N> {
         *self = Self::default();
     }
 
-    /// Improves last tick's plan by one step and returns its first command: call once a feed period.
-    pub fn improve<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings) -> Step<N> {
+    /// Improves last tick's plan by one step and returns its first command: call once a feed period. The tool is `lag_s`
+    /// behind the command now.
+    pub fn improve<M: Model<N>>(
+        &mut self,
+        model: &M,
+        window: &Window<'_, N>,
+        lag_s: f64,
+        settings: &Settings,
+    ) -> Step<N> {
         self.shift(settings.knots.clamp(1, MOST_KNOTS));
-        self.improve_again(model, window, settings)
+        self.improve_again(model, window, lag_s, settings)
     }
 
     /// One more step on the plan of this feed period.
-    pub fn improve_again<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings) -> Step<N> {
+    pub fn improve_again<M: Model<N>>(
+        &mut self,
+        model: &M,
+        window: &Window<'_, N>,
+        lag_s: f64,
+        settings: &Settings,
+    ) -> Step<N> {
         let knots = settings.knots.clamp(1, MOST_KNOTS);
-        let rollout = self.roll_out(model, window, knots);
+        let rollout = self.roll_out(model, window, lag_s, knots);
         let response = model.response(window.feed_period_s, knots);
         let change = solve(&rollout, &response, &self.rates, window.feed_period_s, knots, settings);
         let limit = settings.rate_limit_mm_s;
@@ -138,10 +155,11 @@ impl<const N: usize> Plan<N> {
         self.rates[knots - 1] = [0.0; N];
     }
 
-    fn roll_out<M: Model<N>>(&self, model: &M, window: &Window<'_, N>, knots: usize) -> Rollout<N> {
+    fn roll_out<M: Model<N>>(&self, model: &M, window: &Window<'_, N>, lag_s: f64, knots: usize) -> Rollout<N> {
         let period_s = window.feed_period_s;
         let mut rollout = Rollout { directions: [[[0.0; N]; N]; MOST_KNOTS], off_mm: [[0.0; N]; MOST_KNOTS] };
         let mut model = model.clone();
+        let model_lag_s = model.lag_s();
         let mut offset_mm = window.offset_mm;
         let mut command_mm = add_scaled(window.now().position_mm, 1.0, offset_mm);
         for i in 0..knots {
@@ -152,7 +170,8 @@ impl<const N: usize> Plan<N> {
                 Stretch { knot: i, command_mm: [command_mm, next_mm], offset_mm: [offset_mm, next_offset_mm] };
             let tool_mm = model.advance(window, &stretch);
             (offset_mm, command_mm) = (next_offset_mm, next_mm);
-            let behind_s = (i + 1) as f64 * period_s - model.lag_s();
+            let ahead_s = (i + 1) as f64 * period_s;
+            let behind_s = ahead_s - lag_s - (model_lag_s - lag_s) * (ahead_s / BELIEVED_AFTER_S).min(1.0);
             let contour = locate(window, tool_mm, libm::round(behind_s / window.servo_s()) as i32);
             let normals = normals_of(contour.tangent);
             for row in 0..N - 1 {

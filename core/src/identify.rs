@@ -63,20 +63,14 @@ impl Programme {
     }
 
     /// For the servo identifier, whose dynamics do not depend on the path: both senses, a wider range of feeds, knots
-    /// half as far apart.
+    /// nearer to each other.
     pub fn servo() -> Self {
         Self {
             turns: vec![-1, 1, 1],
             feed_mm_s: [10.0, 70.0],
-            feed_period_s: hackt()[0],
-            renewal_periods: (0.02 / hackt()[0]) as u32,
+            feed_period_s: receding_horizon::FEED_PERIOD_S,
+            renewal_periods: 6,
             ..Self::general()
         }
     }
-}
-
-pub fn hackt() -> Vec<f64> {
-    let v: Vec<f64> =
-        std::env::var("FWT").unwrap_or("0.003,16,0.3,0.99".into()).split(',').filter_map(|x| x.parse().ok()).collect();
-    v
 }

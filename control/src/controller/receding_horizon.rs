@@ -9,7 +9,7 @@ use crate::identifier::adaptation::{self, Adaptation};
 use crate::identifier::residual::Residual;
 use crate::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
 use crate::identifier::{FEED_SCALE_MM_S, Inputs};
-use crate::vector::{add_scaled, dot, norm, scale, sub};
+use crate::vector::{add_scaled, norm, scale, sub};
 use crate::window::Window;
 
 /// Its feed period, s: a quarter of the time constant of a position loop of 50 1/s.
@@ -36,11 +36,11 @@ impl Settings {
             knots: 16,
             rate_weight: 1e-8,
             change_weight: 1e-7,
-            tangential_price: 0.01,
+            tangential_price: 0.003,
             rate_limit_mm_s: 20.0,
         },
         adaptation: adaptation::Settings::DEFAULT,
-        sure_mm: 1e-3,
+        sure_mm: 3e-4,
     };
 }
 
@@ -122,7 +122,7 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
         let mut horizon = self.settings.horizon;
         horizon.rate_weight *= 1.0 + share * share;
         horizon.change_weight *= share * share;
-        let step = self.plan.improve(&model, window, &horizon);
+        let step = self.plan.improve(&model, window, lag_s(window, measured), &horizon);
         let next = window.ahead(1);
         let offset_mm = step.offset_mm;
         let next_mm = add_scaled(next.position_mm, 1.0, offset_mm);
@@ -133,6 +133,11 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
         self.last = Some(Last { command_mm, inputs, predicted_mm });
         Command { rate: 1.0, offset_mm }
     }
+}
+
+/// How far the tool is behind the command now, s.
+pub fn lag_s<const N: usize>(window: &Window<'_, N>, measured: &Measured<N>) -> f64 {
+    f64::from(-measured.contour.index) * window.servo_s()
 }
 
 /// The feedrate between two commands, scaled.

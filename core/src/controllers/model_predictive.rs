@@ -11,6 +11,7 @@
 use std::f64::consts::TAU;
 
 use feedwright_control::activation::tanh;
+use feedwright_control::controller::receding_horizon::lag_s;
 use feedwright_control::horizon::{self, MOST_KNOTS, Model, Plan, Response, Stretch};
 use feedwright_control::identifier::residual::{self, Residual};
 use feedwright_control::vector::{add_scaled, norm, sub};
@@ -102,12 +103,13 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         self.take_in(window, measured.position_mm);
         let settings = &self.settings.horizon;
-        let mut step = self.plan.improve(&self.model, window, settings);
+        let lag_s = lag_s(window, measured);
+        let mut step = self.plan.improve(&self.model, window, lag_s, settings);
         for _ in 1..MOST_STEPS {
             if step.change_mm_s <= CONVERGED_MM_S {
                 break;
             }
-            step = self.plan.improve_again(&self.model, window, settings);
+            step = self.plan.improve_again(&self.model, window, lag_s, settings);
         }
         let now_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
         let next = window.ahead(1);
