@@ -63,7 +63,7 @@ impl<const N: usize> Default for Plan<N> {
 }
 
 /// R(m) for all knots of a horizon: displacement of the tool, mm, m knots after a feedrate of 1 mm/s along an axis for
-/// one knot: [m][tool][feed].
+/// one knot, indexed by m, axis of the tool and axis of the feedrate.
 pub type Response<const N: usize> = [[[f64; N]; N]; MOST_KNOTS];
 
 /// What predicts the tool: a model of the machine, with its state at the current knot.

@@ -163,7 +163,7 @@ impl<const N: usize> Model<N> for Identified<'_, N> {
     fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>) -> [f64; N] {
         let [from_mm, to_mm] = stretch.command_mm;
         let feed = feed(from_mm, to_mm, window.feed_period_s);
-        let missed = core::array::from_fn(|axis| self.residual[axis].next());
+        let missed = core::array::from_fn(|axis| self.residual[axis].foresee());
         let grown = add_scaled(self.net.predict(&self.delays.inputs(feed)), 1.0, missed);
         let error = add_scaled(self.delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown);
         self.delays.push(feed, error);

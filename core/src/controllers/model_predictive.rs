@@ -228,7 +228,7 @@ impl<const N: usize> Model<N> for Exact<N> {
             }
         }
         for i in 0..N {
-            self.missed_mm[i] += self.residual[i].next();
+            self.missed_mm[i] += self.residual[i].foresee();
         }
         std::array::from_fn(|i| self.axes[i].angle_rad / self.axes[i].rad_per_mm + self.missed_mm[i])
     }
