@@ -34,13 +34,13 @@ impl Settings {
         servo_periods: 5,
         horizon: horizon::Settings {
             knots: 16,
-            rate_weight: 1e-8,
-            change_weight: 1e-7,
+            rate_weight: 1e-9,
+            change_weight: 1e-8,
             tangential_price: 0.003,
             rate_limit_mm_s: 20.0,
         },
         adaptation: adaptation::Settings::DEFAULT,
-        sure_mm: 3e-4,
+        sure_mm: 1e-4,
     };
 }
 
