@@ -19,8 +19,12 @@ paper out="target/paper":
 bench:
     cargo bench --workspace
 
-# Regenerate the table and the figures of README.md and of examples/.
-tables: paper
+# Every controller on every contour and machine: about a minute.
+compare out="target/compare":
+    cargo run --release -- compare --at-tolerance --json {{ out }}.json --html {{ out }}.html
+
+# Regenerate the tables and the figures of README.md and of examples/.
+tables: paper compare
     cp target/paper/figure_10.svg docs/paper_circle.svg
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
     cargo run --release -p feedwright --example tables

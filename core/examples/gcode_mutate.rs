@@ -157,7 +157,7 @@ fn main() -> ExitCode {
     while begin.elapsed() < Duration::from_secs(seconds) {
         round += 1;
         let text = mutated(&seeds, &mut random);
-        if let Err(reason) = try_program(&text) {
+        if let Err(reason) = try_program(&text, true) {
             let file = format!("gcode_mutate_{seed}_{round}.ngc");
             eprintln!("{file}: {reason}");
             if let Err(error) = std::fs::write(&file, &text) {
@@ -218,8 +218,8 @@ fn mutated(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
     text
 }
 
-/// Reads a program; says what is wrong with the reader's answer.
-fn try_program(text: &[u8]) -> Result<(), String> {
+/// Reads a program; says what is wrong with the reader's answer. A program that takes too long is read `again`.
+fn try_program(text: &[u8], again: bool) -> Result<(), String> {
     let begin = Instant::now();
     let result = std::panic::catch_unwind(|| {
         let settings = Settings { max_idle_lines: 20_000, max_motions: 20_000, ..Settings::default() };
@@ -254,6 +254,8 @@ fn try_program(text: &[u8]) -> Result<(), String> {
     match result {
         Err(_) => Err("it panics".to_owned()),
         Ok(Err(reason)) => Err(reason),
+        // Once more: another program may have had the processor.
+        Ok(Ok(())) if begin.elapsed() > SLOW && again => try_program(text, false),
         Ok(Ok(())) if begin.elapsed() > SLOW => Err(format!("it takes {:?}", begin.elapsed())),
         Ok(Ok(())) => Ok(()),
     }

@@ -5,7 +5,7 @@
 use std::path::{Path, PathBuf};
 
 /// Folders with documents; not searched deeper.
-const FOLDERS: [&str; 3] = ["", "docs", "examples/01_paper_circle"];
+const FOLDERS: [&str; 4] = ["", "docs", "examples/01_paper_circle", "examples/02_horizon"];
 
 fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))

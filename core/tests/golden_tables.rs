@@ -7,6 +7,11 @@
 #[path = "../examples/tables/table.rs"]
 mod table;
 
+use feedwright::compare::journal::Journal;
+use feedwright::compare::table::Row;
+use feedwright::compare::{Options, Tuning, Workpiece, compare};
+use feedwright::controllers::Entry;
+use feedwright::machine::Machine;
 use table::{Place, root};
 
 /// Another platform's sine may differ in its last bit and turn a number over at a rounding.
@@ -46,8 +51,43 @@ fn holds(place: Place) {
 }
 
 #[test]
-fn the_results_in_the_readme_are_those_of_the_program() {
-    holds(Place::results().unwrap());
+fn the_tables_of_results_are_those_of_the_kept_comparison() {
+    for place in Place::results().unwrap() {
+        holds(place);
+    }
+}
+
+/// Contours, machines and controllers of the kept comparison that are cut again here; the whole takes a minute.
+const AGAIN: [&[&str]; 3] = [
+    &["ellipse", "square"],
+    &["tnv40", "rough", "soft"],
+    &["open-loop", "cross-coupled", "feedforward", "two-dimensional", "receding-horizon"],
+];
+/// Rounding of another platform's sine, after thousands of servo periods with feedback.
+const SAME_RATIO: f64 = 1e-3;
+
+#[test]
+fn the_kept_comparison_is_what_the_program_makes() {
+    let kept = table::comparison().unwrap();
+    let [contours, machines, controllers] = AGAIN;
+    let options = Options {
+        workpieces: Workpiece::contours().into_iter().filter(|w| contours.contains(&w.name.as_str())).collect(),
+        machines: machines.iter().map(|name| Machine::load(name.as_ref()).unwrap()).collect(),
+        controllers: controllers.iter().map(|name| Entry::find(name).unwrap()).collect(),
+        seed: kept.seed,
+        tuning: Tuning::Known(kept.tuned.clone()),
+        at_tolerance: false,
+    };
+    let made = compare(&options, &mut Journal::none(), &()).unwrap();
+    for row in &made.rows {
+        let place = |other: &&Row| {
+            (&other.contour, &other.machine, &other.controller) == (&row.contour, &row.machine, &row.controller)
+        };
+        let was = kept.rows.iter().find(place).unwrap();
+        for (was, is) in [(was.rms_um, row.rms_um), (was.max_um, row.max_um), (was.time_s, row.time_s)] {
+            assert!((was - is).abs() <= SAME_RATIO * was, "{was} is {is}; hint: `just tables`\n{row:?}");
+        }
+    }
 }
 
 #[test]

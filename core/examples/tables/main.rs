@@ -1,18 +1,33 @@
-//! Regenerates the tables of README.md and of examples/01_paper_circle/README.md in their places: `just tables`.
+//! Regenerates the tables of README.md and of examples/*/README.md in their places: `just tables`, which makes
+//! `target/compare.json` first.
 
+#[expect(dead_code, reason = "the golden tests use the rest")]
 mod table;
 
 use std::error::Error;
 
-use table::{Place, root};
+use feedwright::compare::Comparison;
+use table::{COMPARISON, Place, root};
 
 fn main() -> Result<(), Box<dyn Error>> {
-    for place in [Place::results()?, Place::paper()?] {
+    keep_comparison()?;
+    for place in Place::results()?.into_iter().chain([Place::paper()?]) {
         let path = root().join(place.file);
         let text = std::fs::read_to_string(&path)?;
         let old = place.find(&text)?;
         std::fs::write(&path, [&text[..old.start], &place.table, &text[old.end..]].concat())?;
-        println!("{}\n{}", place.file, place.table);
+        println!("{}, {}\n{}", place.file, place.name, place.table);
     }
+    Ok(())
+}
+
+/// Keeps the rows of the comparison without their plots.
+fn keep_comparison() -> Result<(), Box<dyn Error>> {
+    let made = root().join("target/compare.json");
+    let mut comparison: Comparison = serde_json::from_slice(&std::fs::read(made)?)?;
+    for row in &mut comparison.rows {
+        row.error_um.clear();
+    }
+    std::fs::write(root().join(COMPARISON), serde_json::to_string_pretty(&comparison)? + "\n")?;
     Ok(())
 }

@@ -4,20 +4,20 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use feedwright::controllers::{CONTROLLERS, Choices, Entry};
+use feedwright::compare::table::Row;
+use feedwright::compare::{AT_HOME, Comparison};
+use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Knows};
 use feedwright::machine::Machine;
 use feedwright::paper::{Numbers, experiment};
-use feedwright::pipeline::{Job, Outputs, run};
-use feedwright::report::RunSummary;
 
-/// The machine of all tables.
+/// The machine of the paper.
 const MACHINE: &str = "tnv40";
-/// Seed of the results: the default of the command line.
-const SEED: u64 = 1;
 /// Seeds of the paper's experiment: the default of the command line.
 const SEEDS: u64 = 10;
-/// What stands before and after a table.
-const MARKERS: [&str; 2] = ["<!-- table made by `just tables` -->\n", "<!-- end of table -->\n"];
+/// The comparison that the tables of the results are made from.
+pub(crate) const COMPARISON: &str = "examples/02_horizon/compare.json";
+/// What stands after a table.
+const END: &str = "<!-- end of table -->\n";
 
 /// Every error here ends the program that asked.
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
@@ -26,6 +26,8 @@ type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 pub(crate) struct Place {
     /// Document, from the root of the repository.
     pub(crate) file: &'static str,
+    /// Name of the table in the document.
+    pub(crate) name: &'static str,
     /// The table in Markdown.
     pub(crate) table: String,
 }
@@ -35,46 +37,96 @@ pub(crate) fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
+/// The comparison as it is kept.
+pub(crate) fn comparison() -> Result<Comparison> {
+    Ok(serde_json::from_slice(&std::fs::read(root().join(COMPARISON))?)?)
+}
+
 impl Place {
-    /// Every controller on every part.
-    pub(crate) fn results() -> Result<Self> {
-        Ok(Self { file: "README.md", table: results()? })
+    /// The tables that show the comparison.
+    pub(crate) fn results() -> Result<Vec<Self>> {
+        let comparison = comparison()?;
+        let readme = |name, table| Self { file: "README.md", name, table };
+        let study = |name, table| Self { file: "examples/02_horizon/README.md", name, table };
+        Ok(vec![
+            readme("contours", contours(&comparison, SHOWN)?),
+            readme("machines", machines(&comparison)?),
+            study("contours", contours(&comparison, &controllers(&comparison))?),
+            study("machines", machines(&comparison)?),
+            study("tuned", tuned(&comparison)?),
+            study("claims", claims(&comparison)?),
+            study("tolerance", tolerance(&comparison)?),
+        ])
     }
 
     /// The experiment of the paper, seed by seed.
     pub(crate) fn paper() -> Result<Self> {
-        Ok(Self { file: "examples/01_paper_circle/README.md", table: paper()? })
+        Ok(Self { file: "examples/01_paper_circle/README.md", name: "seeds", table: paper()? })
     }
 
     /// Where in the text of the document the table stands.
     pub(crate) fn find(&self, text: &str) -> Result<Range<usize>> {
-        let [before, after] = MARKERS;
-        let start = text.find(before).ok_or_else(|| format!("{} has no line {before}", self.file))? + before.len();
-        let length = text[start..].find(after).ok_or_else(|| format!("{} has no line {after}", self.file))?;
+        let before = format!("<!-- table of {}, made by `just tables` -->\n", self.name);
+        let start = text.find(&before).ok_or_else(|| format!("{} has no line {before}", self.file))? + before.len();
+        let length = text[start..].find(END).ok_or_else(|| format!("{} has no line {END}", self.file))?;
         Ok(start..start + length)
     }
 }
 
-/// One line for each part, one column for each controller: RMS and largest error, and the time against open loop.
-fn results() -> Result<String> {
-    let mut parts: Vec<PathBuf> =
-        std::fs::read_dir(root().join("parts"))?.map(|part| Ok(part?.path())).collect::<Result<_>>()?;
-    parts.retain(|part| part.extension().is_some_and(|ending| ending == "ngc"));
-    parts.sort();
-    let machine = Machine::load(MACHINE.as_ref())?;
-    let mut table = String::from("| part | open-loop time |");
-    CONTROLLERS.iter().try_for_each(|entry| write!(table, " {} |", entry.name))?;
-    writeln!(table, "\n|---|--:|{}", "--:|".repeat(CONTROLLERS.len()))?;
-    for part in parts {
-        let runs: Vec<RunSummary> =
-            CONTROLLERS.iter().map(|entry| cut(&machine, &part, entry)).collect::<Result<_>>()?;
-        let name = part.file_stem().unwrap_or_default().to_string_lossy();
-        write!(table, "| {name} | {:.2} s |", runs[0].time_s)?;
-        for run in &runs {
-            write!(table, " {:.1} / {:.1}", run.rms_um, run.max_um)?;
-            let ratio = format!("{:.2}", run.time_s / runs[0].time_s);
-            if ratio != "1.00" {
-                write!(table, " in {ratio}")?;
+/// Controllers that the README shows.
+const SHOWN: &[&str] = &[
+    "open-loop",
+    "two-dimensional",
+    "contour-compensation",
+    "cross-coupled",
+    "feedforward",
+    "model-predictive",
+    "receding-horizon",
+];
+
+/// Names of a column, each once, in the order of the rows.
+fn each_once<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
+    let mut once: Vec<&str> = Vec::new();
+    for name in names {
+        if !once.contains(&name.as_str()) {
+            once.push(name);
+        }
+    }
+    once
+}
+
+fn controllers(comparison: &Comparison) -> Vec<&str> {
+    let nominal = comparison.rows.iter().filter(|row| row.machine == comparison.nominal);
+    each_once(nominal.map(|row| &row.controller))
+}
+
+fn find<'a>(comparison: &'a Comparison, contour: &str, machine: &str, controller: &str) -> Result<&'a Row> {
+    let row = comparison.rows.iter().find(|row| {
+        (row.contour.as_str(), row.machine.as_str(), row.controller.as_str()) == (contour, machine, controller)
+    });
+    Ok(row.ok_or_else(|| format!("{COMPARISON} has no {controller} on {contour} and {machine}"))?)
+}
+
+/// Of a table in Markdown: the first two lines.
+fn heading(table: &mut String, first: &str, columns: &[&str]) -> Result<()> {
+    write!(table, "| {first} |")?;
+    columns.iter().try_for_each(|column| write!(table, " {column} |"))?;
+    writeln!(table, "\n|---|{}", "--:|".repeat(columns.len()))?;
+    Ok(())
+}
+
+/// One line for each controller, one column for each contour, on the nominal machine: RMS and largest error.
+fn contours(comparison: &Comparison, controllers: &[&str]) -> Result<String> {
+    let contours = each_once(comparison.rows.iter().map(|row| &row.contour));
+    let mut table = String::new();
+    heading(&mut table, "RMS / max, \u{b5}m", &contours)?;
+    for controller in controllers {
+        write!(table, "| {controller} |")?;
+        for contour in &contours {
+            let row = find(comparison, contour, &comparison.nominal, controller)?;
+            write!(table, " {:.2} / {:.1}", row.rms_um, row.max_um)?;
+            if (row.time_ratio - 1.0).abs() > 0.005 {
+                write!(table, " in {:.2}", row.time_ratio)?;
             }
             write!(table, " |")?;
         }
@@ -83,22 +135,81 @@ fn results() -> Result<String> {
     Ok(table)
 }
 
-/// What `feedwright run` measures of one part under one controller.
-fn cut(machine: &Machine, part: &std::path::Path, entry: &'static Entry) -> Result<RunSummary> {
-    let job = Job {
-        part: part.to_owned(),
-        machine: machine.clone(),
-        controller: entry,
-        against: entry,
-        feed_mm_s: None,
-        choices: Choices { seed: SEED, ..Choices::default() },
-        tolerance_um: None,
-        reader: feedwright::gcode::Settings::default(),
-        inputs: Vec::new(),
-        outputs: Outputs::default(),
+/// One line for each machine: RMS over all contours.
+fn machines(comparison: &Comparison) -> Result<String> {
+    let contours = each_once(comparison.rows.iter().map(|row| &row.contour));
+    let over_all = |machine: &str, controller: &str| -> Result<f64> {
+        let mut square = 0.0;
+        for contour in &contours {
+            square += find(comparison, contour, machine, controller)?.rms_um.powi(2);
+        }
+        Ok((square / contours.len() as f64).sqrt())
     };
-    let mut runs = run(&job, &mut ())?.report.runs;
-    Ok(runs.pop().ok_or("a job makes at least one run")?.summary)
+    let home = format!("{BEST}{AT_HOME}");
+    let mut table = String::new();
+    let columns = ["open-loop", "best of those without model", BEST, "the same, identified on it"];
+    heading(&mut table, "RMS over all contours, \u{b5}m", &columns)?;
+    for machine in each_once(comparison.rows.iter().map(|row| &row.machine)) {
+        let mut peers = Vec::new();
+        for entry in CONTROLLERS {
+            if matches!(entry.knows, Knows::Nothing | Knows::Identified) && ![BEST, BASELINE].contains(&entry.name) {
+                peers.push((over_all(machine, entry.name)?, entry.name));
+            }
+        }
+        let (rms_um, name) = peers.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).ok_or("there are no peers")?;
+        let (open, ours) = (over_all(machine, BASELINE)?, over_all(machine, BEST)?);
+        let identified = if machine == comparison.nominal { ours } else { over_all(machine, &home)? };
+        writeln!(table, "| {machine} | {open:.2} | {rms_um:.2} ({name}) | {ours:.2} | {identified:.2} |")?;
+    }
+    Ok(table)
+}
+
+/// What the search came to.
+fn tuned(comparison: &Comparison) -> Result<String> {
+    let mut table = String::from("| controller | cuts | RMS on the eight, \u{b5}m | values |\n|---|--:|--:|---|\n");
+    for tuned in &comparison.tuned {
+        let values: Vec<String> = tuned.values.iter().map(|(name, value)| format!("{name} {value:.3e}")).collect();
+        writeln!(table, "| {} | {} | {:.2} | {} |", tuned.controller, tuned.cuts, tuned.rms_um, values.join(", "))?;
+    }
+    Ok(table)
+}
+
+/// One line for each claim: on how many contours and machines it holds, and where it does not.
+fn claims(comparison: &Comparison) -> Result<String> {
+    let mut table = String::from("| claim | limit | holds | worst | falls short on |\n|---|--:|--:|--:|---|\n");
+    for claim in each_once(comparison.verdicts.iter().map(|verdict| &verdict.claim)) {
+        let all: Vec<_> = comparison.verdicts.iter().filter(|verdict| verdict.claim == claim).collect();
+        let short: Vec<String> = all
+            .iter()
+            .filter(|verdict| !verdict.holds)
+            .map(|verdict| format!("{} on {} ({:.2})", verdict.contour, verdict.machine, verdict.value))
+            .collect();
+        let worst = all.iter().map(|verdict| verdict.value).fold(0.0, f64::max);
+        let held = all.len() - short.len();
+        let limit = all[0].limit;
+        writeln!(table, "| {claim} | {limit} | {held} of {} | {worst:.3} | {} |", all.len(), short.join(", "))?;
+    }
+    Ok(table)
+}
+
+/// Machining time at equal tolerance, against open loop.
+fn tolerance(comparison: &Comparison) -> Result<String> {
+    let rows = &comparison.at_tolerance;
+    let contours = each_once(rows.iter().map(|row| &row.contour));
+    let mut table = String::new();
+    heading(&mut table, "feedrate in mm/s, time against open loop", &contours)?;
+    for controller in each_once(rows.iter().map(|row| &row.controller)) {
+        write!(table, "| {controller} |")?;
+        for contour in &contours {
+            let row = rows.iter().find(|row| (row.contour.as_str(), row.controller.as_str()) == (contour, controller));
+            match row.and_then(|row| row.feed_mm_s.zip(row.time_ratio)) {
+                Some((feed_mm_s, ratio)) => write!(table, " {feed_mm_s:.0}, {ratio:.2} |")?,
+                None => write!(table, " never |")?,
+            }
+        }
+        writeln!(table)?;
+    }
+    Ok(table)
 }
 
 /// One line for each seed.
