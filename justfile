@@ -19,6 +19,10 @@ paper out="target/paper":
 bench:
     cargo bench --workspace
 
+# The identifier beside FANN (Debian: libfann-dev, valgrind), on one core.
+bench-fann:
+    taskset --cpu-list 1 cargo bench --package feedwright-control --bench fann
+
 # Regenerate the table and the figures of README.md and of examples/.
 tables: paper
     cp target/paper/figure_10.svg docs/paper_circle.svg
