@@ -1,21 +1,22 @@
 //! The receding-horizon inversion: one Gauss-Newton step on the offset rates of all knots of the horizon.
 //!
-//! With the rates u_j of the command's offset across the path as the unknowns (one normal in the plane, two in space),
-//! the plan is rolled out through a [`Model`] of the machine (the servo identifier), the contour error of every predicted tool position is exact
-//! geometry, and
+//! With the rates u_j of the command's offset from the path as the unknowns, in all axes, the plan is rolled out through a
+//! [`Model`] of the machine (the servo identifier), the contour error of every predicted tool position is exact geometry,
+//! and
 //!
 //! ```text
-//! J(u) = 1/2 sum_i |eps_i(u)|^2 + w/2 sum_j |u_j|^2 + d/2 sum_j |u_j - u_{j-1}|^2
+//! J(u) = 1/2 sum_i |eps_i(u)|^2 + h^2/2 sum_i (t_i . o_i(u))^2 + w/2 sum_j |u_j|^2 + d/2 sum_j |u_j - u_{j-1}|^2
 //! ```
 //!
 //! is minimised by one step of Gauss and Newton from last tick's plan, shifted. The derivative of eps_i to u_j is
-//! n_i . R(i - j) n_j, where R(m) is the response of the tool, m knots later, to a feedrate of 1 for one knot: the
-//! same for all knots of a tick. The tangential direction belongs to the feed.
+//! n_i . R(i - j), where R(m) is the response of the tool, m knots later, to a feedrate of 1 for one knot, the same for all
+//! knots of a tick. Along the path an offset only shifts the tool in time, but for corners, where it makes the command turn
+//! earlier or later; h is its price, so that nothing drifts and no time is bought or sold.
 //!
 //! Source: the performance index is Lee, Cho and Jeon (2005), eq. 7, summed over a horizon; receding horizon as in Richalet
 //! et al. (1978), Gauss-Newton with a fixed number of steps a tick as in Diehl, Bock and Schloeder (2005).
 //!
-//! Everything is of fixed size: at most [`MOST_KNOTS`] knots, N - 1 unknowns each.
+//! Everything is of fixed size: at most [`MOST_KNOTS`] knots, N unknowns each.
 
 use crate::contour_error::locate;
 use crate::least_squares::cholesky;
@@ -24,10 +25,14 @@ use crate::window::Window;
 
 /// Most knots of a horizon.
 pub const MOST_KNOTS: usize = 20;
-/// Most normals of a path: one in the plane, two in space.
-const MOST_NORMALS: usize = 2;
+/// Most axes.
+const MOST_AXES: usize = 3;
 /// Most unknowns.
-const MOST_UNKNOWNS: usize = MOST_KNOTS * MOST_NORMALS;
+const MOST_UNKNOWNS: usize = MOST_KNOTS * MOST_AXES;
+
+/// The search for the nearest points starts where the tool is now and goes over to where the model has it in the long run,
+/// s: a model that is wrong about the lag then misleads late in the horizon only.
+const BELIEVED_AFTER_S: f64 = 0.1;
 
 /// Settings of the inversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,26 +44,26 @@ pub struct Settings {
     pub rate_weight: f64,
     /// d: weight of the change of the offset rates from knot to knot, s^2.
     pub change_weight: f64,
-    /// Largest offset rate, mm/s.
+    /// h: price of an offset along the path against a contour error of the same size; 0.001 to 1.
+    pub tangential_price: f64,
+    /// Largest offset rate of an axis, mm/s.
     pub rate_limit_mm_s: f64,
 }
 
-/// A plan: the offset rate of each knot of the horizon, on the normals of that knot.
+/// A plan: the offset rate of each knot of the horizon, mm/s.
 #[derive(Debug, Clone)]
 pub struct Plan<const N: usize> {
-    rates: [f64; MOST_UNKNOWNS],
-    /// The first normal of the current knot: carried along the path, so that it turns as little as it can.
-    normal: [f64; N],
+    rates: [[f64; N]; MOST_KNOTS],
 }
 
 impl<const N: usize> Default for Plan<N> {
     fn default() -> Self {
-        Self { rates: [0.0; MOST_UNKNOWNS], normal: [0.0; N] }
+        Self { rates: [[0.0; N]; MOST_KNOTS] }
     }
 }
 
 /// R(m) for all knots of a horizon: displacement of the tool, mm, m knots after a feedrate of 1 mm/s along an axis for
-/// one knot: [m][tool][feed].
+/// one knot, indexed by m, axis of the tool and axis of the feedrate.
 pub type Response<const N: usize> = [[[f64; N]; N]; MOST_KNOTS];
 
 /// What predicts the tool: a model of the machine, with its state at the current knot.
@@ -91,17 +96,12 @@ pub struct Step<const N: usize> {
     pub change_mm_s: f64,
 }
 
-/// Normals of a knot; the second is zero in the plane.
-type Normals<const N: usize> = [[f64; N]; MOST_NORMALS];
-
 /// The predictions along a plan.
 struct Rollout<const N: usize> {
-    /// Components of the contour error across the path, tool minus path, mm: [knot][normal].
-    error: [[f64; MOST_NORMALS]; MOST_KNOTS],
-    /// Normals at the nearest points.
-    at_foot: [Normals<N>; MOST_KNOTS],
-    /// Normals along which the offset moves in each step.
-    at_knot: [Normals<N>; MOST_KNOTS],
+    /// Rows of the least squares at each knot: directions in which the tool is off, and by how much, mm. The last is along
+    /// the path, and of the offset.
+    directions: [[[f64; N]; N]; MOST_KNOTS],
+    off_mm: [[f64; N]; MOST_KNOTS],
 }
 
 impl<const N: usize> Plan<N> {
@@ -110,150 +110,152 @@ impl<const N: usize> Plan<N> {
         *self = Self::default();
     }
 
-    /// Improves last tick's plan by one step and returns its first command: call once a feed period.
-    pub fn improve<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings) -> Step<N> {
+    /// Improves last tick's plan by one step and returns its first command: call once a feed period. The tool is `lag_s`
+    /// behind the command now.
+    pub fn improve<M: Model<N>>(
+        &mut self,
+        model: &M,
+        window: &Window<'_, N>,
+        lag_s: f64,
+        settings: &Settings,
+    ) -> Step<N> {
         self.shift(settings.knots.clamp(1, MOST_KNOTS));
-        self.improve_again(model, window, settings)
+        self.improve_again(model, window, lag_s, settings)
     }
 
     /// One more step on the plan of this feed period.
-    pub fn improve_again<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings) -> Step<N> {
+    pub fn improve_again<M: Model<N>>(
+        &mut self,
+        model: &M,
+        window: &Window<'_, N>,
+        lag_s: f64,
+        settings: &Settings,
+    ) -> Step<N> {
         let knots = settings.knots.clamp(1, MOST_KNOTS);
-        let rollout = self.roll_out(model, window, knots);
+        let rollout = self.roll_out(model, window, lag_s, knots);
         let response = model.response(window.feed_period_s, knots);
-        let change = solve::<N>(&rollout, &response, &self.rates, knots, settings);
+        let change = solve(&rollout, &response, &self.rates, window.feed_period_s, knots, settings);
         let limit = settings.rate_limit_mm_s;
         let mut largest_mm_s = 0.0_f64;
-        for (rate, change) in self.rates.iter_mut().zip(change).take(knots * normals::<N>()) {
-            let improved = *rate + change;
-            let improved = if improved.is_finite() { improved.clamp(-limit, limit) } else { 0.0 };
-            largest_mm_s = largest_mm_s.max((improved - *rate).abs());
-            *rate = improved;
+        for (knot, rate) in self.rates.iter_mut().take(knots).enumerate() {
+            for (axis, rate) in rate.iter_mut().enumerate() {
+                let improved = *rate + change[knot * N + axis];
+                let improved = if improved.is_finite() { improved.clamp(-limit, limit) } else { 0.0 };
+                largest_mm_s = largest_mm_s.max((improved - *rate).abs());
+                *rate = improved;
+            }
         }
-        let offset_mm = self.moved(window.offset_mm, &rollout.at_knot[0], 0, window.feed_period_s);
-        self.normal = rollout.at_knot[0][0];
+        let offset_mm = add_scaled(window.offset_mm, window.feed_period_s, self.rates[0]);
         Step { offset_mm, change_mm_s: largest_mm_s }
     }
 
     /// Last tick's second step becomes the first; the last is held.
     fn shift(&mut self, knots: usize) {
-        let n = normals::<N>();
-        self.rates.copy_within(n..knots * n, 0);
-        for normal in 0..n {
-            self.rates[(knots - 1) * n + normal] = 0.0;
-        }
+        self.rates.copy_within(1..knots, 0);
+        self.rates[knots - 1] = [0.0; N];
     }
 
-    /// The offset after one step of the plan, mm.
-    fn moved(&self, offset_mm: [f64; N], along: &Normals<N>, knot: usize, period_s: f64) -> [f64; N] {
-        let n = normals::<N>();
-        (0..n).fold(offset_mm, |o, normal| add_scaled(o, period_s * self.rates[knot * n + normal], along[normal]))
-    }
-
-    fn roll_out<M: Model<N>>(&self, model: &M, window: &Window<'_, N>, knots: usize) -> Rollout<N> {
+    fn roll_out<M: Model<N>>(&self, model: &M, window: &Window<'_, N>, lag_s: f64, knots: usize) -> Rollout<N> {
         let period_s = window.feed_period_s;
-        let mut rollout = Rollout {
-            error: [[0.0; MOST_NORMALS]; MOST_KNOTS],
-            at_foot: [[[0.0; N]; MOST_NORMALS]; MOST_KNOTS],
-            at_knot: [[[0.0; N]; MOST_NORMALS]; MOST_KNOTS],
-        };
+        let mut rollout = Rollout { directions: [[[0.0; N]; N]; MOST_KNOTS], off_mm: [[0.0; N]; MOST_KNOTS] };
         let mut model = model.clone();
+        let model_lag_s = model.lag_s();
         let mut offset_mm = window.offset_mm;
         let mut command_mm = add_scaled(window.now().position_mm, 1.0, offset_mm);
-        let mut normal = self.normal;
         for i in 0..knots {
             let knot = window.ahead(i + 1);
-            rollout.at_knot[i] = normals_of(knot.tangent, normal);
-            normal = rollout.at_knot[i][0];
-            let next_offset_mm = self.moved(offset_mm, &rollout.at_knot[i], i, period_s);
+            let next_offset_mm = add_scaled(offset_mm, period_s, self.rates[i]);
             let next_mm = add_scaled(knot.position_mm, 1.0, next_offset_mm);
             let stretch =
                 Stretch { knot: i, command_mm: [command_mm, next_mm], offset_mm: [offset_mm, next_offset_mm] };
             let tool_mm = model.advance(window, &stretch);
             (offset_mm, command_mm) = (next_offset_mm, next_mm);
-            let behind_s = (i + 1) as f64 * period_s - model.lag_s();
+            let ahead_s = (i + 1) as f64 * period_s;
+            let behind_s = ahead_s - lag_s - (model_lag_s - lag_s) * (ahead_s / BELIEVED_AFTER_S).min(1.0);
             let contour = locate(window, tool_mm, libm::round(behind_s / window.servo_s()) as i32);
-            rollout.at_foot[i] = normals_of(contour.tangent, normal);
-            rollout.error[i] = core::array::from_fn(|d| -dot(contour.vector_mm, rollout.at_foot[i][d]));
+            let normals = normals_of(contour.tangent);
+            for row in 0..N - 1 {
+                rollout.directions[i][row] = normals[row];
+                rollout.off_mm[i][row] = -dot(contour.vector_mm, normals[row]);
+            }
+            rollout.directions[i][N - 1] = knot.tangent;
+            rollout.off_mm[i][N - 1] = dot(offset_mm, knot.tangent);
         }
         rollout
     }
 }
 
-/// Normals of a path in N axes.
-const fn normals<const N: usize>() -> usize {
-    if N == 2 { 1 } else { MOST_NORMALS }
-}
-
-/// The normals of a tangent: the left one in the plane; in space the one nearest to `hint`, and the one across both.
-fn normals_of<const N: usize>(tangent: [f64; N], hint: [f64; N]) -> Normals<N> {
-    let mut first = [0.0; N];
+/// The normals of a tangent: the left one in the plane; in space the one nearest to an axis, and the one across both. The
+/// last row is not used.
+fn normals_of<const N: usize>(tangent: [f64; N]) -> [[f64; N]; N] {
+    let mut normals = [[0.0; N]; N];
     if N == 2 {
-        (first[0], first[1]) = (-tangent[1], tangent[0]);
-        return [first, [0.0; N]];
+        (normals[0][0], normals[0][1]) = (-tangent[1], tangent[0]);
+        return normals;
     }
-    first = reject(hint, tangent);
-    let mut length = norm(first);
-    if length < 0.1 {
-        // No hint, or along the path: the axis that the path runs least along.
-        let least = (0..N).fold(0, |best, i| if tangent[i].abs() < tangent[best].abs() { i } else { best });
-        let mut axis = [0.0; N];
-        axis[least] = 1.0;
-        first = reject(axis, tangent);
-        length = norm(first);
-    }
-    first = scale(1.0 / length, first);
-    let second = core::array::from_fn(|i| {
+    // The axis that the path runs least along.
+    let least = (0..N).fold(0, |best, i| if tangent[i].abs() < tangent[best].abs() { i } else { best });
+    let mut axis = [0.0; N];
+    axis[least] = 1.0;
+    let first = reject(axis, tangent);
+    let first = scale(1.0 / norm(first), first);
+    normals[0] = first;
+    normals[1] = core::array::from_fn(|i| {
         let (j, k) = ((i + 1) % N, (i + 2) % N);
         tangent[j] * first[k] - tangent[k] * first[j]
     });
-    [first, second]
+    normals
 }
 
-/// The step of Gauss and Newton: (G'G + W) du = -G' eps - W u, by Cholesky's factorisation in place.
+/// The step of Gauss and Newton: (G'G + W) du = -G' off - W u, by Cholesky's factorisation in place.
 fn solve<const N: usize>(
     rollout: &Rollout<N>,
     response: &Response<N>,
-    rates: &[f64; MOST_UNKNOWNS],
+    rates: &[[f64; N]; MOST_KNOTS],
+    period_s: f64,
     knots: usize,
     settings: &Settings,
 ) -> [f64; MOST_UNKNOWNS] {
-    let n = normals::<N>();
-    let unknowns = knots * n;
     let mut matrix = [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS];
     let mut right = [0.0; MOST_UNKNOWNS];
-    // Row by row of G: the error of knot i on one normal feels the rates of knots 0..=i.
+    // Row by row of G: what is off at knot i feels the rates of knots 0..=i.
     for i in 0..knots {
-        for d in 0..n {
+        for d in 0..N {
             let mut row = [0.0; MOST_UNKNOWNS];
+            let direction = rollout.directions[i][d];
+            let along = d == N - 1;
+            let price = if along { settings.tangential_price } else { 1.0 };
             for j in 0..=i {
-                let felt: [f64; N] = core::array::from_fn(|a| {
-                    (0..N).map(|tool| rollout.at_foot[i][d][tool] * response[i - j][tool][a]).sum()
-                });
-                for c in 0..n {
-                    row[j * n + c] = dot(felt, rollout.at_knot[j][c]);
+                for axis in 0..N {
+                    row[j * N + axis] = if along {
+                        price * period_s * direction[axis]
+                    } else {
+                        (0..N).map(|tool| direction[tool] * response[i - j][tool][axis]).sum()
+                    };
                 }
             }
-            let width = (i + 1) * n;
+            let width = (i + 1) * N;
             for r in 0..width {
-                right[r] -= row[r] * rollout.error[i][d];
+                right[r] -= row[r] * price * rollout.off_mm[i][d];
                 for c in 0..=r {
                     matrix[r][c] += row[r] * row[c];
                 }
             }
         }
     }
+    let unknowns = knots * N;
+    let rate = |unknown: usize| rates[unknown / N][unknown % N];
     for r in 0..unknowns {
         matrix[r][r] += settings.rate_weight;
-        right[r] -= settings.rate_weight * rates[r];
-        if r >= n {
+        right[r] -= settings.rate_weight * rate(r);
+        if r >= N {
             let w = settings.change_weight;
             matrix[r][r] += w;
-            matrix[r - n][r - n] += w;
-            matrix[r][r - n] -= w;
-            let change = w * (rates[r] - rates[r - n]);
+            matrix[r - N][r - N] += w;
+            matrix[r][r - N] -= w;
+            let change = w * (rate(r) - rate(r - N));
             right[r] -= change;
-            right[r - n] += change;
+            right[r - N] += change;
         }
     }
     cholesky(&mut matrix, &mut right, unknowns);

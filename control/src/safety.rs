@@ -21,8 +21,8 @@ use crate::window::Window;
 pub const FADE_S: f64 = 0.1;
 /// Slowest and fastest that any controller may run the plan: a program always ends, and no command leaps.
 const RATE_RANGE: [f64; 2] = [0.1, 3.0];
-/// Time in which the correction may take up the highest speed it is allowed, s. A position command that does this within
-/// less hammers the drive; feedforward of the exact model at a corner needs no less.
+/// Time in which the correction may take up the highest speed it is allowed, s. Feedforward of the exact model takes as
+/// little at a corner; of what leaps more, no machine could follow any.
 const TAKE_UP_S: f64 = 0.001;
 /// Decisions in a row without a measurement that a controller bridges by holding its offset. One is a glitch of a bus.
 const LOST_DECISIONS: u32 = 3;
@@ -64,7 +64,7 @@ pub enum Cause {
     LostFeedback,
     /// Its predictions were wrong for several decisions in a row.
     WrongPredictions,
-    /// It made the contour error larger than it would have been without; see [`Benefit`].
+    /// It made the contour error larger than it would have been without.
     Harmful,
 }
 

@@ -25,7 +25,7 @@ pub mod verdict;
 use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::controllers::{CONTROLLERS, Entry, Knows};
@@ -129,6 +129,17 @@ impl Competitor {
     }
 }
 
+/// Where the values of the controllers' parameters come from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub enum Tuning {
+    /// A search, the same for all.
+    Search,
+    /// The defaults.
+    Defaults,
+    /// An earlier search; defaults for controllers that it does not name.
+    Known(Vec<Tuned>),
+}
+
 /// What is to be compared.
 #[derive(Debug, Clone)]
 pub struct Options {
@@ -140,8 +151,8 @@ pub struct Options {
     pub controllers: Vec<&'static Entry>,
     /// Seed of everything random.
     pub seed: u64,
-    /// Whether to tune, or to take the defaults.
-    pub tune: bool,
+    /// Values of the controllers' parameters.
+    pub tuning: Tuning,
     /// Whether to look for the machining times at equal tolerance too.
     pub at_tolerance: bool,
 }
@@ -167,7 +178,7 @@ impl Watch for () {
 }
 
 /// A finished comparison.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// Name of the nominal machine.
     pub nominal: String,
@@ -180,7 +191,7 @@ pub struct Comparison {
     /// What is claimed, row by row.
     pub verdicts: Vec<Verdict>,
     /// Machining times at equal tolerance, where they were asked for.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub at_tolerance: Vec<AtTolerance>,
 }
 
@@ -197,7 +208,7 @@ impl Options {
         let workpieces: Vec<_> = self.workpieces.iter().map(|w| (&w.name, format!("{:?}", w.steps))).collect();
         let machines: Vec<_> = self.machines.iter().map(|m| (&m.name, m.fingerprint())).collect();
         let names: Vec<_> = self.controllers.iter().map(|entry| entry.name).collect();
-        let content = serde_json::json!([workpieces, machines, names, self.seed, self.tune]);
+        let content = serde_json::json!([workpieces, machines, names, self.seed, self.tuning]);
         blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
     }
 }
@@ -267,14 +278,20 @@ fn tuned(options: &Options, journal: &mut Journal, watch: &dyn Watch) -> Result<
             let known = journal.lock().ok().and_then(|journal| journal.tuned(entry.name));
             let tuned = match known {
                 Some(tuned) => tuned,
-                None if options.tune => {
-                    let tuned = tuning::search(entry, &options.machines[0], options.seed)?;
-                    if let Ok(mut journal) = journal.lock() {
-                        journal.add_tuned(&tuned);
+                None => match &options.tuning {
+                    Tuning::Search => {
+                        let tuned = tuning::search(entry, &options.machines[0], options.seed)?;
+                        if let Ok(mut journal) = journal.lock() {
+                            journal.add_tuned(&tuned);
+                        }
+                        tuned
                     }
-                    tuned
-                }
-                None => Tuned::defaults(entry),
+                    Tuning::Defaults => Tuned::defaults(entry),
+                    Tuning::Known(known) => {
+                        let known = known.iter().find(|tuned| tuned.controller == entry.name);
+                        known.cloned().unwrap_or_else(|| Tuned::defaults(entry))
+                    }
+                },
             };
             watch.done();
             Ok(tuned)

@@ -16,6 +16,7 @@ use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::two_dimensional::TwoDimensional;
 use feedwright_control::controller::zero_phase::{SampledAxis, ZeroPhase};
 use feedwright_control::{Controller, horizon, inversion};
+use iterative_learning::IterativeLearning;
 use model_predictive::ModelPredictive;
 use serde::Serialize;
 
@@ -94,8 +95,6 @@ const RHO: Parameter = parameter("rho", [1e-5, 0.1], Settings::DEFAULT.inversion
 const ETA: Parameter = parameter("eta", [1e-3, 10.0], Settings::DEFAULT.inversion.eta);
 const RATE_WEIGHT: Parameter =
     parameter("rate_weight_s2", [1e-9, 1e-4], receding_horizon::Settings::DEFAULT.horizon.rate_weight);
-const INNOVATION_GAIN: Parameter =
-    parameter("innovation_gain", [0.0, 1.0], receding_horizon::Settings::DEFAULT.adaptation.residual.gain);
 
 const VELOCITY_GAIN: Parameter = parameter("velocity_gain", [0.5, 1.5], Gains::EXACT.velocity);
 const ACCELERATION_GAIN: Parameter = parameter("acceleration_gain", [0.0, 2.0], Gains::EXACT.acceleration);
@@ -120,10 +119,11 @@ pub const CONTROLLERS: &[Entry] = &[
         "Koren (1980); Srinivasan and Kulkarni (1990)",
         Nothing,
         laps: 1,
+        // Beyond these gains the loop is still stable on smooth paths, but catches the tool in acute corners.
         [
-            parameter("kp", [0.1, 20.0], cross_coupled::Settings::DEFAULT.kp),
-            parameter("ki_1_s", [1.0, 1000.0], cross_coupled::Settings::DEFAULT.ki_1_s),
-            parameter("kd_s", [1e-4, 0.1], cross_coupled::Settings::DEFAULT.kd_s)
+            parameter("kp", [0.1, 8.0], cross_coupled::Settings::DEFAULT.kp),
+            parameter("ki_1_s", [1.0, 400.0], cross_coupled::Settings::DEFAULT.ki_1_s),
+            parameter("kd_s", [1e-4, 0.03], cross_coupled::Settings::DEFAULT.kd_s)
         ],
         cross_coupled
     ),
@@ -180,6 +180,33 @@ pub const CONTROLLERS: &[Entry] = &[
         model_predictive
     ),
     entry!(
+        "iterative-learning-1",
+        "offsets learned from the contour error of the same part, 1 lap of practice",
+        "Arimoto, Kawamura and Miyazaki (1984)",
+        EarlierLaps,
+        laps: 2,
+        [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
+        iterative_learning
+    ),
+    entry!(
+        "iterative-learning-3",
+        "offsets learned from the contour error of the same part, 3 laps of practice",
+        "Arimoto, Kawamura and Miyazaki (1984)",
+        EarlierLaps,
+        laps: 4,
+        [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
+        iterative_learning
+    ),
+    entry!(
+        "iterative-learning-10",
+        "offsets learned from the contour error of the same part, 10 laps of practice",
+        "Arimoto, Kawamura and Miyazaki (1984)",
+        EarlierLaps,
+        laps: 11,
+        [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
+        iterative_learning
+    ),
+    entry!(
         "magnitude-only",
         "inversion of the identifier, speed along the path only",
         "Yoon and Jeon (2000)",
@@ -203,7 +230,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
         Identified,
         laps: 1,
-        [RATE_WEIGHT, INNOVATION_GAIN],
+        [],
         receding_horizon
     ),
 ];
@@ -348,13 +375,20 @@ fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
 }
 
 fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let receding_horizon::Settings { mut horizon, tangential_leak, .. } = receding_horizon::Settings::DEFAULT;
+    let receding_horizon::Settings { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
     (horizon.knots, horizon.rate_weight, horizon.change_weight) = (horizon::MOST_KNOTS, values[0], 0.0);
     let servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
-    Box::new(ModelPredictive::new(
-        setup.machine,
-        model_predictive::Settings { servo_periods, horizon, tangential_leak },
-    ))
+    Box::new(ModelPredictive::new(setup.machine, model_predictive::Settings { servo_periods, horizon }))
+}
+
+fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let settings = iterative_learning::Settings {
+        gain: values[0],
+        lead_s: values[1],
+        cut_off_hz: values[2],
+        ..iterative_learning::Settings::DEFAULT
+    };
+    Box::new(IterativeLearning::new(settings, setup.machine.period.servo_s))
 }
 
 fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
@@ -368,24 +402,10 @@ fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box
     Box::new(TwoDimensional::new(trained(setup).net, settings))
 }
 
-fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, _: &[f64]) -> Box<dyn Controller<N>> {
     let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
     let mut settings = receding_horizon::Settings::DEFAULT;
     settings.servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
-    (settings.horizon.rate_weight, settings.adaptation.residual.gain) = (values[0], values[1]);
-    let hack: Vec<f64> = std::env::var("FW").unwrap_or_default().split(',').filter_map(|x| x.parse().ok()).collect();
-    if hack.len() > 9 {
-        settings.horizon.rate_weight = hack[0];
-        settings.horizon.change_weight = hack[1];
-        settings.adaptation.forgetting = hack[2];
-        settings.adaptation.noise_mm = hack[3];
-        settings.adaptation.spread_mm = hack[4];
-        settings.adaptation.judging = hack[5];
-        settings.adaptation.residual.noise_mm = hack[6];
-        settings.sure_mm = hack[7];
-        settings.adaptation.caution = hack[8];
-        settings.adaptation.alike = hack[9];
-    }
     Box::new(RecedingHorizon::new(identified.net, settings))
 }
 

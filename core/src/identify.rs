@@ -63,13 +63,13 @@ impl Programme {
     }
 
     /// For the servo identifier, whose dynamics do not depend on the path: both senses, a wider range of feeds, knots
-    /// half as far apart.
+    /// nearer to each other.
     pub fn servo() -> Self {
         Self {
             turns: vec![-1, 1, 1],
             feed_mm_s: [10.0, 70.0],
             feed_period_s: receding_horizon::FEED_PERIOD_S,
-            renewal_periods: 4,
+            renewal_periods: 6,
             ..Self::general()
         }
     }

@@ -13,7 +13,7 @@ use crate::gcode::{self, Summary};
 use crate::plc::Plc;
 use crate::reference::Reference;
 use crate::report::{Report, Run, RunFacts, Series, Statistics};
-use crate::simulate::simulate;
+use crate::simulate::simulate_lap;
 use crate::trace::Sink;
 pub use files::Outputs;
 use files::{Files, Timeline};
@@ -78,13 +78,21 @@ fn cut_once<const N: usize>(
     progress: &mut dyn Progress,
 ) -> Result<Run, Error> {
     let plc = Plc::new(job.machine.plc).with_events(&job.machine.plc_events);
-    let mut reference = Reference::new(job.program()?, &(&job.machine.limits).into())?.with_plc(plc);
+    let reference = || -> Result<Reference<'_>, Error> {
+        Ok(Reference::new(job.program()?, &(&job.machine.limits).into())?.with_plc(plc.clone()))
+    };
+    controller.reset();
+    for _ in 1..entry.laps {
+        simulate_lap(&job.machine, &mut reference()?, controller, &mut [])?;
+        controller.next_lap();
+    }
+    let mut reference = reference()?;
     let (mut statistics, mut series, mut timeline) =
         (Statistics::new(), Series::new(), Timeline::new(&job.machine.plc_events));
     let mut told = job::Told::new(progress, summary);
     let mut sinks: Vec<&mut dyn Sink> = vec![&mut statistics, &mut series, &mut timeline, &mut told];
     sinks.extend(files.map(|files| files as &mut dyn Sink));
-    let run = simulate(&job.machine, &mut reference, controller, &mut sinks)?;
+    let run = simulate_lap(&job.machine, &mut reference, controller, &mut sinks)?;
     if let Some(fault) = reference.fault() {
         return Err(Error::Path { part: job.part.clone(), fault: fault.clone() });
     }

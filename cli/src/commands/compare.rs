@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use feedwright::compare::journal::Journal;
 use feedwright::compare::tolerance::TOLERANCE_UM;
-use feedwright::compare::{Comparison, Options, Watch, Workpiece, all_controllers, compare, page};
+use feedwright::compare::{Comparison, Options, Tuning, Watch, Workpiece, all_controllers, compare, page};
 use feedwright::controllers::BASELINE;
 use feedwright::identify::cache;
 use feedwright::machine::{BUILT_IN, Machine};
@@ -93,7 +93,7 @@ fn options(args: &CompareArgs) -> Result<Options> {
         machines,
         controllers,
         seed: args.seed,
-        tune: !args.no_tuning,
+        tuning: if args.no_tuning { Tuning::Defaults } else { Tuning::Search },
         at_tolerance: args.at_tolerance,
     })
 }

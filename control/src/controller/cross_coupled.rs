@@ -9,14 +9,18 @@
 //! journal 112, for curved contours. The gains that turn with the path (Cx and Cy, of Koren and Lo (1991) for circles) are
 //! the components of n: the normal at the nearest point, exact where theirs is of second order.
 //!
+//! The papers were not at hand: this is the method as later work describes it.
+//!
 //! The frame of e, its integral and its derivative is that of the path: all turn with n, so that an error that is constant
 //! beside a circle is constant here. In space n is any direction across the path, and the frame turns by the smallest
 //! rotation between two tangents; in the plane that is their scalar.
 //!
 //! Departures: Koren adds u to the velocity command behind the position controllers. Here only position commands are
 //! accepted; with proportional position loops of equal gain that is the same, with all three gains divided by the loop's.
-//! The derivative is filtered ([`DERIVATIVE_S`]). While the safety layer holds the command back, the integral does not
-//! grow. Where the path runs back, n does not flip. Kp, Ki and Kd are tuned, the sources derive theirs for their machines.
+//! The derivative is filtered (`DERIVATIVE_S`). While the safety layer holds the command back, the integral does not
+//! grow. In a corner the frame does not turn: what was learned across one side serves the other only as far as it lies across
+//! that too, and turning it by the corner makes the command leap. Kp, Ki and Kd are tuned; the sources derive theirs for
+//! their machines.
 
 use super::{Command, Controller, Measured, Schedule};
 use crate::vector::{add_scaled, dot, norm, reject, sub};
@@ -26,23 +30,23 @@ use crate::window::Window;
 const DERIVATIVE_S: f64 = 0.002;
 /// A command that differs by more than this from what was asked was held back, mm.
 const HELD_BACK_MM: f64 = 1e-9;
-/// Cosine between two tangents below which the path runs back: no smallest rotation leads from one to the other.
-const RUNS_BACK_COSINE: f64 = -0.9;
+/// Cosine between the tangents of two servo periods below which there is a corner between them, as for the estimator.
+const CORNER_COSINE: f64 = 0.995;
 
 /// Gains of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
-    /// Proportional, mm of offset a mm of error; 0 to 20.
+    /// Proportional, mm of offset a mm of error; 0 to 8.
     pub kp: f64,
-    /// Integral, 1/s; 0 to 1000.
+    /// Integral, 1/s; 0 to 400.
     pub ki_1_s: f64,
-    /// Derivative, s; 0 to 0.1.
+    /// Derivative, s; 0 to 0.03.
     pub kd_s: f64,
 }
 
 impl Settings {
-    /// Ki / Kp cancels the pole of a position loop of 50 1/s; the derivative makes up for a part of its speed loop's.
-    pub const DEFAULT: Self = Self { kp: 2.0, ki_1_s: 100.0, kd_s: 0.01 };
+    /// Ki / Kp cancels the pole of a position loop of 50 1/s, Kp / Kd that of a speed loop of 200 1/s.
+    pub const DEFAULT: Self = Self { kp: 4.0, ki_1_s: 200.0, kd_s: 0.02 };
 }
 
 /// Cross-coupled control.
@@ -68,10 +72,11 @@ impl<const N: usize> CrossCoupled<N> {
     }
 }
 
-/// A vector across the path, carried along it from one tangent to another by the smallest rotation between them.
+/// A vector across the path, carried along it from one tangent to another by the smallest rotation between them. Behind a
+/// corner only what lies across the new stretch is left.
 pub(super) fn carried<const N: usize>(across: [f64; N], from: [f64; N], to: [f64; N]) -> [f64; N] {
     let cosine = dot(from, to);
-    if cosine < RUNS_BACK_COSINE {
+    if cosine < CORNER_COSINE {
         return reject(across, to);
     }
     let both = add_scaled(from, 1.0, to);
@@ -118,11 +123,35 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
-    use crate::safety::Bounds;
-    use crate::tick::Tick;
-    use crate::window::{Knot, Reference};
+    use crate::contour_error::Estimator;
+    use crate::window::{Knot, Preview, Reference, Register};
+
+    /// Where a tool is after so many servo periods of 1 ms that a constant load pushes `load_mm` off its command, in loops
+    /// of 50 1/s and without the safety layer.
+    pub(in crate::controller) fn cut<C: Controller<2>>(
+        reference: &mut impl Reference<2>,
+        controller: &mut C,
+        load_mm: [f64; 2],
+        periods: u32,
+    ) -> [f64; 2] {
+        let mut register = Register::default();
+        let preview = Preview::new(0.001);
+        let mut estimator = Estimator::default();
+        let (mut offset_mm, mut tool_mm) = ([0.0; 2], [0.0; 2]);
+        for n in 0..periods {
+            let tau_s = f64::from(n) * 0.001;
+            register.push(reference.knot(tau_s));
+            let window = Window { register: &register, preview: &preview, tau_s, feed_period_s: 0.001, offset_mm };
+            let contour = estimator.estimate(&window, tool_mm);
+            let measured = Measured { position_mm: tool_mm, contour };
+            let pulled_to_mm = add_scaled(add_scaled(window.now().position_mm, 1.0, offset_mm), 1.0, load_mm);
+            offset_mm = controller.command(&window, &measured).offset_mm;
+            tool_mm = add_scaled(tool_mm, 1.0 - libm::exp(-0.05), sub(pulled_to_mm, tool_mm));
+        }
+        tool_mm
+    }
 
     /// Along x at 50 mm/s.
     struct Line;
@@ -133,20 +162,9 @@ mod tests {
         }
     }
 
-    /// Where a tool comes to rest across the line that a constant load pushes 20 um off it: loops of 50 1/s.
-    fn rests_at_mm(settings: Settings) -> f64 {
-        let mut controller = CrossCoupled::<2>::new(settings);
-        let mut tick = Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0));
-        let mut tool = [0.0, 0.0];
-        for _ in 0..1000 {
-            let command = tick.step(&mut Line, &mut controller, tool).command_mm;
-            tool = [tool[0] + 0.05 * (command[0] - tool[0]), tool[1] + 0.05 * (command[1] + 0.02 - tool[1])];
-        }
-        tool[1]
-    }
-
     #[test]
     fn the_proportional_part_leaves_its_share_and_the_integral_nothing() {
+        let rests_at_mm = |settings: Settings| cut(&mut Line, &mut CrossCoupled::new(settings), [0.0, 0.02], 1000)[1];
         let proportional = rests_at_mm(Settings { kp: 3.0, ki_1_s: 0.0, kd_s: 0.0 });
         assert!((proportional - 0.02 / 4.0).abs() < 1e-9, "{proportional}");
         assert!(rests_at_mm(Settings::DEFAULT).abs() < 1e-9);
@@ -154,14 +172,17 @@ mod tests {
 
     #[test]
     fn what_is_carried_keeps_its_length_and_its_side_of_the_path() {
-        for degrees in -150..=150 {
-            let a = f64::from(degrees).to_radians();
+        for step in -50..=50 {
+            let a = 0.001 * f64::from(step);
             let to = [libm::cos(a), libm::sin(a)];
             let normal = carried([0.0, 2.0], [1.0, 0.0], to);
-            assert!(norm(sub(normal, [-2.0 * to[1], 2.0 * to[0]])) < 1e-12, "{degrees}: {normal:?}");
+            assert!(norm(sub(normal, [-2.0 * to[1], 2.0 * to[0]])) < 1e-12, "{a}: {normal:?}");
         }
         // In space, what lies along the axis of the rotation stays.
-        assert_eq!(carried([0.0, 0.0, 3.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]), [0.0, 0.0, 3.0]);
+        let to = [libm::cos(0.05), libm::sin(0.05), 0.0];
+        assert!(norm(sub(carried([0.0, 0.0, 3.0], [1.0, 0.0, 0.0], to), [0.0, 0.0, 3.0])) < 1e-15);
+        // Behind a right-angled corner nothing is left, behind a point where the path runs back everything.
+        assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [0.0, 1.0]), [0.0, 0.0]);
         assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [-1.0, 0.0]), [0.0, 2.0]);
     }
 }

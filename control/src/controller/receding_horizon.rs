@@ -9,11 +9,11 @@ use crate::identifier::adaptation::{self, Adaptation};
 use crate::identifier::residual::Residual;
 use crate::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
 use crate::identifier::{FEED_SCALE_MM_S, Inputs};
-use crate::vector::{add_scaled, dot, norm, scale, sub};
+use crate::vector::{add_scaled, norm, scale, sub};
 use crate::window::Window;
 
 /// Its feed period, s: a quarter of the time constant of a position loop of 50 1/s.
-pub const FEED_PERIOD_S: f64 = 0.005;
+pub const FEED_PERIOD_S: f64 = 0.003;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,19 +26,21 @@ pub struct Settings {
     pub adaptation: adaptation::Settings,
     /// Innovations of this size make the inversion half as sharp, mm; larger ones blunter still.
     pub sure_mm: f64,
-    /// Part of the offset along the path that is taken back in each feed period; 0 to 1. Offsets are made across the
-    /// path; where the path has turned since, what is left of them along it only shifts the tool in time.
-    pub tangential_leak: f64,
 }
 
 impl Settings {
     /// Values that serve every shape and machine tried.
     pub const DEFAULT: Self = Self {
         servo_periods: 5,
-        horizon: horizon::Settings { knots: 10, rate_weight: 1e-8, change_weight: 1e-7, rate_limit_mm_s: 20.0 },
+        horizon: horizon::Settings {
+            knots: 16,
+            rate_weight: 1e-8,
+            change_weight: 1e-7,
+            tangential_price: 0.003,
+            rate_limit_mm_s: 20.0,
+        },
         adaptation: adaptation::Settings::DEFAULT,
-        sure_mm: 1e-3,
-        tangential_leak: 0.05,
+        sure_mm: 3e-4,
     };
 }
 
@@ -120,10 +122,9 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
         let mut horizon = self.settings.horizon;
         horizon.rate_weight *= 1.0 + share * share;
         horizon.change_weight *= share * share;
-        let step = self.plan.improve(&model, window, &horizon);
+        let step = self.plan.improve(&model, window, lag_s(window, measured), &horizon);
         let next = window.ahead(1);
-        let along = dot(step.offset_mm, next.tangent);
-        let offset_mm = add_scaled(step.offset_mm, -self.settings.tangential_leak * along, next.tangent);
+        let offset_mm = step.offset_mm;
         let next_mm = add_scaled(next.position_mm, 1.0, offset_mm);
         let inputs = self.delays.inputs(feed(command_mm, next_mm, window.feed_period_s));
         let offset_mm_both = [window.offset_mm, offset_mm];
@@ -132,6 +133,11 @@ impl<const N: usize> Controller<N> for RecedingHorizon<N> {
         self.last = Some(Last { command_mm, inputs, predicted_mm });
         Command { rate: 1.0, offset_mm }
     }
+}
+
+/// How far the tool is behind the command now, s.
+pub fn lag_s<const N: usize>(window: &Window<'_, N>, measured: &Measured<N>) -> f64 {
+    f64::from(-measured.contour.index) * window.servo_s()
 }
 
 /// The feedrate between two commands, scaled.
@@ -157,7 +163,7 @@ impl<const N: usize> Model<N> for Identified<'_, N> {
     fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>) -> [f64; N] {
         let [from_mm, to_mm] = stretch.command_mm;
         let feed = feed(from_mm, to_mm, window.feed_period_s);
-        let missed = core::array::from_fn(|axis| self.residual[axis].next());
+        let missed = core::array::from_fn(|axis| self.residual[axis].foresee());
         let grown = add_scaled(self.net.predict(&self.delays.inputs(feed)), 1.0, missed);
         let error = add_scaled(self.delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown);
         self.delays.push(feed, error);

@@ -36,6 +36,8 @@ pub struct Settings {
     pub judging: f64,
     /// As [`Self::judging`], for how much the predictions are trusted; smaller remembers a surprise for longer.
     pub caution: f64,
+    /// Innovations that are feared before any was seen, mm: a machine is met with caution.
+    pub doubt_mm: f64,
     /// How much an axis that has not moved yet is taken to be like the others; 0 (not at all) to 0.99.
     pub alike: f64,
     /// Prediction of what the models miss.
@@ -50,6 +52,7 @@ impl Settings {
         spread_mm: 0.2,
         judging: 0.01,
         caution: 0.002,
+        doubt_mm: 0.0,
         alike: 0.9,
         residual: residual::Settings::DEFAULT,
     };
@@ -88,7 +91,7 @@ impl<const N: usize> Adaptation<N> {
             trained,
             axes: [Axis::new(&settings); N],
             square_mm2: [0.0; 2],
-            long_square_mm2: 0.0,
+            long_square_mm2: settings.doubt_mm * settings.doubt_mm,
             believed: 0,
             settings,
         }
@@ -117,7 +120,7 @@ impl<const N: usize> Adaptation<N> {
         self.now.clone_from(&self.trained);
         self.axes = [Axis::new(&self.settings); N];
         self.square_mm2 = [0.0; 2];
-        self.long_square_mm2 = 0.0;
+        self.long_square_mm2 = self.settings.doubt_mm * self.settings.doubt_mm;
         self.believed = 0;
     }
 

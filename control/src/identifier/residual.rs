@@ -97,7 +97,7 @@ impl Residual {
 
     /// The residuals to come, one a call: shifts its own predictions in.
     #[inline]
-    pub fn next(&mut self) -> f64 {
+    pub fn foresee(&mut self) -> f64 {
         let next = self.expected_mm();
         self.shift(next);
         next
@@ -146,7 +146,7 @@ mod tests {
             residual.push(vibration(k));
         }
         for k in 400..410 {
-            let next = residual.next();
+            let next = residual.foresee();
             assert!((next - vibration(k)).abs() < 1e-4, "{k}: {next} {}", vibration(k));
         }
     }
@@ -157,7 +157,7 @@ mod tests {
         for k in 0..1000 {
             residual.push(if k % 2 == 0 { 1e-6 } else { -1e-6 });
         }
-        assert!(residual.next().abs() < 5e-7);
+        assert!(residual.foresee().abs() < 5e-7);
     }
 
     #[test]
@@ -169,7 +169,7 @@ mod tests {
         }
         let largest = 1e-6 * libm::exp(0.2 * 59.0);
         for _ in 0..100 {
-            assert!(residual.next().abs() <= largest * (1.0 + 1e-12));
+            assert!(residual.foresee().abs() <= largest * (1.0 + 1e-12));
         }
     }
 }

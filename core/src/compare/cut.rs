@@ -10,7 +10,7 @@ use crate::feed::LimitsError;
 use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::report::Statistics;
-use crate::simulate::{Run, simulate, simulate_lap};
+use crate::simulate::{Run, simulate_lap};
 use crate::trace::{Row as TraceRow, Sink};
 
 /// Makes a competitor for a machine.
@@ -49,15 +49,10 @@ pub(super) fn cut_once(
     sinks: &mut [&mut dyn Sink],
 ) -> Result<Cut, LimitsError> {
     let reference = || Reference::from_steps(workpiece.steps.clone(), &(&machine.limits).into());
-    if laps > 1 {
-        simulate(machine, &mut reference()?, controller, &mut []).expect("without sinks nothing is written");
-        for _ in 2..laps {
-            controller.next_lap();
-            simulate_lap(machine, &mut reference()?, controller, &mut []).expect("without sinks nothing is written");
-        }
+    controller.reset();
+    for _ in 1..laps {
+        simulate_lap(machine, &mut reference()?, controller, &mut []).expect("without sinks nothing is written");
         controller.next_lap();
-    } else {
-        controller.reset();
     }
     let mut statistics = Statistics::new();
     let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];

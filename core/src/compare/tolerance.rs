@@ -1,7 +1,7 @@
 //! The machining time at which a controller just holds a tolerance: the feedrate is raised until it does not.
 
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::cut::{Maker, cut_once};
 use super::tuning::Tuned;
@@ -19,7 +19,7 @@ const SLOWEST_MM_S: f64 = 1.0;
 const HALVINGS: u32 = 10;
 
 /// What a controller comes to on one contour.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AtTolerance {
     /// Contour.
     pub contour: String,

@@ -1,16 +1,16 @@
 //! What is claimed of the receding horizon, row by row: value, limit, and whether it holds.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::table::{Row, knows};
 use super::{AT_HOME, Workpiece};
 use crate::controllers::{BASELINE, BEST, Knows};
 
 /// One claim on one contour of one machine.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// What is claimed.
-    pub claim: &'static str,
+    pub claim: String,
     /// Contour or part.
     pub contour: String,
     /// Machine.
@@ -45,9 +45,9 @@ pub(super) fn verdicts(rows: &[Row], nominal: &str, workpieces: &[Workpiece]) ->
         let here: Vec<&Row> =
             rows.iter().filter(|row| row.contour == ours.contour && row.machine == ours.machine).collect();
         let smooth = workpieces.iter().any(|workpiece| workpiece.name == ours.contour && workpiece.smooth);
-        let mut judge = |claim, row: &Row, against: &str, value: f64, limit| {
+        let mut judge = |claim: &str, row: &Row, against: &str, value: f64, limit| {
             verdicts.push(Verdict {
-                claim,
+                claim: claim.to_owned(),
                 contour: row.contour.clone(),
                 machine: row.machine.clone(),
                 against: against.to_owned(),

@@ -11,9 +11,10 @@
 use std::f64::consts::TAU;
 
 use feedwright_control::activation::tanh;
+use feedwright_control::controller::receding_horizon::lag_s;
 use feedwright_control::horizon::{self, MOST_KNOTS, Model, Plan, Response, Stretch};
 use feedwright_control::identifier::residual::{self, Residual};
-use feedwright_control::vector::{add_scaled, dot, norm, sub};
+use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
 use crate::machine::{Axis, Machine};
@@ -30,8 +31,6 @@ pub struct Settings {
     pub servo_periods: u32,
     /// The inversion.
     pub horizon: horizon::Settings,
-    /// Part of the offset along the path that is taken back in each feed period, as in the receding horizon.
-    pub tangential_leak: f64,
 }
 
 /// Model-predictive contouring.
@@ -104,17 +103,17 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         self.take_in(window, measured.position_mm);
         let settings = &self.settings.horizon;
-        let mut step = self.plan.improve(&self.model, window, settings);
+        let lag_s = lag_s(window, measured);
+        let mut step = self.plan.improve(&self.model, window, lag_s, settings);
         for _ in 1..MOST_STEPS {
             if step.change_mm_s <= CONVERGED_MM_S {
                 break;
             }
-            step = self.plan.improve_again(&self.model, window, settings);
+            step = self.plan.improve_again(&self.model, window, lag_s, settings);
         }
         let now_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
         let next = window.ahead(1);
-        let along_mm = dot(step.offset_mm, next.tangent);
-        let offset_mm = add_scaled(step.offset_mm, -self.settings.tangential_leak * along_mm, next.tangent);
+        let offset_mm = step.offset_mm;
         let next_mm = add_scaled(next.position_mm, 1.0, offset_mm);
         let stretch = Stretch { knot: 0, command_mm: [now_mm, next_mm], offset_mm: [window.offset_mm, offset_mm] };
         let residual = self.model.residual;
@@ -229,7 +228,7 @@ impl<const N: usize> Model<N> for Exact<N> {
             }
         }
         for i in 0..N {
-            self.missed_mm[i] += self.residual[i].next();
+            self.missed_mm[i] += self.residual[i].foresee();
         }
         std::array::from_fn(|i| self.axes[i].angle_rad / self.axes[i].rad_per_mm + self.missed_mm[i])
     }

@@ -1,0 +1,93 @@
+//! What the default controller learns while cutting does no harm: not on a straight line of ten minutes, not with another
+//! seed of its training.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+use feedwright::controllers::{BEST, Choices, Entry, Make, Setup};
+use feedwright::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use feedwright::machine::Machine;
+use feedwright::reference::Reference;
+use feedwright::simulate::simulate;
+use feedwright::trace::{Row, Sink};
+use rayon::prelude::*;
+
+const FEED_MM_S: f64 = 50.0;
+/// Ten minutes at that feedrate.
+const LONG_LINE_MM: f64 = 600.0 * FEED_MM_S;
+const SHORT_LINE_MM: f64 = 20.0;
+
+/// Squares of the contour error of one line of the program.
+struct LineError {
+    line: u32,
+    square_um2: f64,
+    rows: u64,
+}
+
+impl LineError {
+    fn rms_um(&self) -> f64 {
+        (self.square_um2 / self.rows as f64).sqrt()
+    }
+}
+
+impl Sink for LineError {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        if row.line == self.line && row.cutting {
+            self.square_um2 += (row.contour_error_mm * 1e3).powi(2);
+            self.rows += 1;
+        }
+        Ok(())
+    }
+}
+
+/// A line along x, and a circle of 10 mm.
+fn line_and_circle(length_mm: f64) -> Vec<Canon> {
+    let motion = |line: u32, from_x: f64, to_x: f64, shape| {
+        Canon::Motion(Motion {
+            line,
+            kind: MotionKind::Feed,
+            start_mm: [from_x, 0.0, 0.0],
+            end_mm: [to_x, 0.0, 0.0],
+            shape,
+            feed_mm_s: FEED_MM_S,
+            corner: Corner::Continuous { tolerance_mm: None },
+            others: Others::default(),
+        })
+    };
+    let circle = Shape::Arc { plane: Plane::Xy, center_mm: [length_mm, 10.0, 0.0], turns: 1 };
+    vec![motion(1, 0.0, length_mm, Shape::Line), motion(2, length_mm, length_mm, circle)]
+}
+
+/// RMS contour error of the circle behind a line of this length, um.
+fn circle_behind(length_mm: f64, machine: &Machine, seed: u64) -> f64 {
+    let nominal = Machine::load("tnv40".as_ref()).unwrap();
+    let choices = Choices { seed, ..Choices::default() };
+    let mut setup = Setup { machine: &nominal, choices: &choices, progress: &mut |_| {} };
+    let mut controller = Make::<2>::make(Entry::find(BEST).unwrap(), &mut setup);
+    let mut reference = Reference::new(line_and_circle(length_mm), &(&machine.limits).into()).unwrap();
+    let mut error = LineError { line: 2, square_um2: 0.0, rows: 0 };
+    let run = simulate(machine, &mut reference, &mut *controller, &mut [&mut error]).unwrap();
+    assert_eq!(run.faded_out, None);
+    error.rms_um()
+}
+
+#[test]
+fn nothing_drifts_on_a_straight_line_of_ten_minutes() {
+    for name in ["tnv40", "rough", "coarse"] {
+        let machine = Machine::load(name.as_ref()).unwrap();
+        let short_um = circle_behind(SHORT_LINE_MM, &machine, 1);
+        let long_um = circle_behind(LONG_LINE_MM, &machine, 1);
+        eprintln!("{name}: circle behind a short line {short_um:.3} um, behind ten minutes {long_um:.3} um");
+        assert!(long_um <= 1.5 * short_um + 0.05, "{name}: {short_um} um, then {long_um} um");
+    }
+}
+
+#[test]
+fn the_worst_of_ten_seeds_is_near_the_median() {
+    let machine = Machine::load("tnv40".as_ref()).unwrap();
+    let mut errors_um: Vec<f64> =
+        (1..=10_u64).into_par_iter().map(|seed| circle_behind(SHORT_LINE_MM, &machine, seed)).collect();
+    errors_um.sort_by(f64::total_cmp);
+    let median_um = 0.5 * (errors_um[4] + errors_um[5]);
+    eprintln!("ten seeds: {errors_um:.3?} um");
+    assert!(errors_um[9] <= 1.5 * median_um, "{errors_um:?}");
+}
