@@ -25,6 +25,17 @@ compare out="target/compare":
 
 # Regenerate the tables and the figures of README.md and of examples/.
 tables: paper compare
+# The identifier beside FANN (Debian: libfann-dev, valgrind), on one core.
+bench-fann:
+    taskset --cpu-list 1 cargo bench --package feedwright-control --bench fann
+
+# Percentiles of the time of a whole decision of the receding horizon, on one core; counts on an idle machine only.
+tick ticks="100000" runs="5":
+    cargo build --release --quiet -p feedwright-control --example tick_percentiles
+    taskset --cpu-list 1 target/release/examples/tick_percentiles {{ ticks }} {{ runs }}
+
+# Regenerate the table and the figures of README.md and of examples/.
+tables: paper
     cp target/paper/figure_10.svg docs/paper_circle.svg
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
     cargo run --release -p feedwright --example tables
@@ -42,7 +53,7 @@ instructions:
         valgrind --tool=callgrind --callgrind-out-file=/dev/null target/release/examples/instructions "$1" "$2" 2>&1 |
             sed -n 's/.*Collected : //p'
     }
-    for work in paper-tick horizon-tick servo-period learn; do
+    for work in paper-tick horizon-tick horizon-20 servo-period learn; do
         few=$(counted "$work" 1000)
         many=$(counted "$work" 3000)
         printf '%-14s %8d instructions\n' "$work" $(((many - few) / 2000))

@@ -8,7 +8,7 @@ use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::servo::ServoIdentifier;
 use feedwright_control::safety::Bounds;
 use feedwright_control::window::{Preview, Register};
-use feedwright_control::{Controller, Knot, Measured, Reference, Tick, Window};
+use feedwright_control::{Controller, Knot, Measured, Reference, Setpoint, Tick, Window};
 
 /// The circle of eq. 11 at 50 mm/s.
 pub(crate) struct Circle;
@@ -41,42 +41,51 @@ pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
     TwoDimensional::new(network().0, Settings::DEFAULT)
 }
 
-/// The receding horizon over a servo like that of tnv40: what least squares give for one axis, for all axes.
-pub(crate) fn horizon<const N: usize>() -> RecedingHorizon<N> {
+/// The receding horizon of so many knots over a servo like that of tnv40: what least squares give for one axis, for all
+/// axes.
+pub(crate) fn horizon<const N: usize>(knots: usize) -> RecedingHorizon<N> {
     let mut net = ServoIdentifier { hidden: network::<N>().0.hidden, ..ServoIdentifier::IDEAL };
     for axis in 0..N {
         net.linear[axis][axis] = [0.244, -0.101, -0.00186, 0.2785, -0.4166];
     }
-    RecedingHorizon::new(net, receding_horizon::Settings::DEFAULT)
+    let mut settings = receding_horizon::Settings::DEFAULT;
+    settings.horizon.knots = knots;
+    RecedingHorizon::new(net, settings)
 }
 
-/// A tick run by hand: the controller alone, or the whole with reference and contour error.
-pub(crate) struct Rig<const N: usize> {
-    /// The tick.
+/// Part of the way to the command that the tool of [`Rig`] goes in 1 ms: it lags by 20 ms.
+const FOLLOWED: f64 = 0.05;
+
+/// The whole run by hand: reference, contour error, controller under the safety layer, and a tool that lags.
+pub(crate) struct Rig<const N: usize, C> {
     tick: Tick<N>,
-    /// Its controller.
-    controller: TwoDimensional<N>,
-    periods: u32,
+    controller: C,
+    tool_mm: [f64; N],
 }
 
-impl<const N: usize> Rig<N> {
-    /// Warmed up by a lap.
-    pub(crate) fn new() -> Self {
-        let controller = paper::<N>();
-        let mut rig =
-            Self { tick: Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0)), controller, periods: 0 };
+impl<const N: usize, C: Controller<N>> Rig<N, C> {
+    /// Warmed up by nearly a lap.
+    pub(crate) fn new(controller: C) -> Self {
+        let tick = Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0));
+        let mut rig = Self { tick, controller, tool_mm: [0.0; N] };
         for _ in 0..1000 {
             rig.servo_period();
         }
         rig
     }
 
-    /// One servo period; the tool lags by 20 ms and is 20 um inside.
-    pub(crate) fn servo_period(&mut self) -> [f64; N] {
-        let mut tool: Knot<N> = Circle.knot(f64::from(self.periods) * 0.001 - 0.02);
-        tool.position_mm[0] += 0.02 * tool.tangent[1];
-        self.periods += 1;
-        self.tick.step(&mut Circle, &mut self.controller, tool.position_mm).command_mm
+    /// One servo period.
+    pub(crate) fn servo_period(&mut self) -> Setpoint<N> {
+        let setpoint = self.tick.step(&mut Circle, &mut self.controller, self.tool_mm);
+        for axis in 0..N {
+            self.tool_mm[axis] += FOLLOWED * (setpoint.command_mm[axis] - self.tool_mm[axis]);
+        }
+        setpoint
+    }
+
+    /// Stops the measurement where the safety layer has taken the controller out: its work would be missing.
+    pub(crate) fn expect_in_the_loop(&self) {
+        assert!(self.tick.fade().is_none(), "the safety layer took the controller out: {:?}", self.tick.fade());
     }
 }
 

@@ -20,12 +20,12 @@ fn paper_tick<const N: usize>(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| rig::decide(&mut controller, black_box(&window), black_box(&measured)));
 }
 
-/// One Gauss-Newton step over twenty knots.
-#[divan::bench(consts = [2, 3])]
-fn horizon_tick<const N: usize>(bencher: Bencher<'_, '_>) {
+/// One Gauss-Newton step over the knots of the default and over the most.
+#[divan::bench(consts = [2, 3], args = [10, 20])]
+fn horizon_tick<const N: usize>(bencher: Bencher<'_, '_>, knots: usize) {
     let surroundings = rig::Surroundings::<N>::new();
     let (window, measured) = (surroundings.window(), surroundings.measured());
-    let mut controller = rig::horizon();
+    let mut controller = rig::horizon(knots);
     bencher.bench_local(|| rig::decide(&mut controller, black_box(&window), black_box(&measured)));
 }
 
@@ -59,6 +59,7 @@ fn back_propagation<const N: usize>(bencher: Bencher<'_, '_>) {
 /// A servo period of the whole: reference, register, and in every tenth the contour error and the decision.
 #[divan::bench(consts = [2, 3])]
 fn servo_period<const N: usize>(bencher: Bencher<'_, '_>) {
-    let mut rig = rig::Rig::<N>::new();
+    let mut rig = rig::Rig::<N, _>::new(rig::paper());
     bencher.bench_local(|| rig.servo_period());
+    rig.expect_in_the_loop();
 }

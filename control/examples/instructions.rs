@@ -1,6 +1,6 @@
 //! Runs one kind of work a number of times, for counting its instructions with callgrind: see `just instructions`.
 //!
-//! `instructions paper-tick|horizon-tick|servo-period|learn COUNT`. The difference of two counts divided by the difference of their
+//! `instructions paper-tick|horizon-tick|horizon-20|servo-period|learn COUNT`. The difference of two counts divided by the difference of their
 //! instructions leaves out what starting and ending a process costs.
 
 #![expect(clippy::unwrap_used, reason = "an example that only the recipe calls")]
@@ -15,10 +15,12 @@ fn main() {
     let (work, count) = (arguments.next().unwrap(), arguments.next().unwrap().parse::<u32>().unwrap());
     match work.as_str() {
         "paper-tick" => decide(&mut rig::paper(), count),
-        "horizon-tick" => decide(&mut rig::horizon(), count),
+        "horizon-tick" => decide(&mut rig::horizon(10), count),
+        "horizon-20" => decide(&mut rig::horizon(20), count),
         "servo-period" => {
-            let mut rig = rig::Rig::<2>::new();
+            let mut rig = rig::Rig::<2, _>::new(rig::paper());
             (0..count).for_each(|_| _ = std::hint::black_box(rig.servo_period()));
+            rig.expect_in_the_loop();
         }
         "learn" => {
             let (mut net, inputs) = rig::network::<2>();

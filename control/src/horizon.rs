@@ -54,11 +54,12 @@ pub struct Settings {
 #[derive(Debug, Clone)]
 pub struct Plan<const N: usize> {
     rates: [[f64; N]; MOST_KNOTS],
+    normal: Normal,
 }
 
 impl<const N: usize> Default for Plan<N> {
     fn default() -> Self {
-        Self { rates: [[0.0; N]; MOST_KNOTS] }
+        Self { rates: [[0.0; N]; MOST_KNOTS], normal: Normal::EMPTY }
     }
 }
 
@@ -107,7 +108,7 @@ struct Rollout<const N: usize> {
 impl<const N: usize> Plan<N> {
     /// Forgets the plan.
     pub fn reset(&mut self) {
-        *self = Self::default();
+        self.rates = [[0.0; N]; MOST_KNOTS];
     }
 
     /// Improves last tick's plan by one step and returns its first command: call once a feed period. The tool is `lag_s`
@@ -134,7 +135,7 @@ impl<const N: usize> Plan<N> {
         let knots = settings.knots.clamp(1, MOST_KNOTS);
         let rollout = self.roll_out(model, window, lag_s, knots);
         let response = model.response(window.feed_period_s, knots);
-        let change = solve(&rollout, &response, &self.rates, window.feed_period_s, knots, settings);
+        let change = self.normal.solve(&rollout, &response, &self.rates, window.feed_period_s, knots, settings);
         let limit = settings.rate_limit_mm_s;
         let mut largest_mm_s = 0.0_f64;
         for (knot, rate) in self.rates.iter_mut().take(knots).enumerate() {
@@ -207,57 +208,104 @@ fn normals_of<const N: usize>(tangent: [f64; N]) -> [[f64; N]; N] {
     normals
 }
 
-/// The step of Gauss and Newton: (G'G + W) du = -G' off - W u, by Cholesky's factorisation in place.
-fn solve<const N: usize>(
-    rollout: &Rollout<N>,
-    response: &Response<N>,
-    rates: &[[f64; N]; MOST_KNOTS],
-    period_s: f64,
-    knots: usize,
-    settings: &Settings,
-) -> [f64; MOST_UNKNOWNS] {
-    let mut matrix = [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS];
-    let mut right = [0.0; MOST_UNKNOWNS];
-    // Row by row of G: what is off at knot i feels the rates of knots 0..=i.
-    for i in 0..knots {
-        for d in 0..N {
-            let mut row = [0.0; MOST_UNKNOWNS];
-            let direction = rollout.directions[i][d];
-            let along = d == N - 1;
-            let price = if along { settings.tangential_price } else { 1.0 };
-            for j in 0..=i {
-                for axis in 0..N {
-                    row[j * N + axis] = if along {
-                        price * period_s * direction[axis]
-                    } else {
-                        (0..N).map(|tool| direction[tool] * response[i - j][tool][axis]).sum()
-                    };
-                }
-            }
+/// The least squares of a tick. Part of the plan, so that no tick has to clear it: only its lower half is used, and of that
+/// what the horizon needs.
+#[derive(Debug, Clone)]
+struct Normal {
+    matrix: [[f64; MOST_UNKNOWNS]; MOST_UNKNOWNS],
+    right: [f64; MOST_UNKNOWNS],
+}
+
+impl Normal {
+    const EMPTY: Self = Self { matrix: [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS], right: [0.0; MOST_UNKNOWNS] };
+
+    /// The step of Gauss and Newton: (G'G + W) du = -G' off - W u, by Cholesky's factorisation in place.
+    fn solve<const N: usize>(
+        &mut self,
+        rollout: &Rollout<N>,
+        response: &Response<N>,
+        rates: &[[f64; N]; MOST_KNOTS],
+        period_s: f64,
+        knots: usize,
+        settings: &Settings,
+    ) -> &[f64; MOST_UNKNOWNS] {
+        let unknowns = knots * N;
+        for r in 0..unknowns {
+            self.matrix[r][..=r].fill(0.0);
+        }
+        self.right[..unknowns].fill(0.0);
+        self.add_across(rollout, response, knots);
+        self.add_along(rollout, settings.tangential_price * period_s, settings.tangential_price, knots);
+        self.add_weights(rates, knots, settings);
+        cholesky(&mut self.matrix, &mut self.right, unknowns);
+        &self.right
+    }
+
+    /// Row by row of G: the contour error at knot i feels the rates of knots 0..=i.
+    fn add_across<const N: usize>(&mut self, rollout: &Rollout<N>, response: &Response<N>, knots: usize) {
+        let mut row = [0.0; MOST_UNKNOWNS];
+        for i in 0..knots {
             let width = (i + 1) * N;
-            for r in 0..width {
-                right[r] -= row[r] * price * rollout.off_mm[i][d];
-                for c in 0..=r {
-                    matrix[r][c] += row[r] * row[c];
+            for d in 0..N - 1 {
+                let direction = rollout.directions[i][d];
+                for j in 0..=i {
+                    for axis in 0..N {
+                        let mut felt = 0.0;
+                        for tool in 0..N {
+                            felt += direction[tool] * response[i - j][tool][axis];
+                        }
+                        row[j * N + axis] = felt;
+                    }
+                }
+                let off_mm = rollout.off_mm[i][d];
+                for r in 0..width {
+                    self.right[r] -= row[r] * off_mm;
+                    let factor = row[r];
+                    for (m, felt) in self.matrix[r][..=r].iter_mut().zip(&row[..=r]) {
+                        *m += factor * felt;
+                    }
                 }
             }
         }
     }
-    let unknowns = knots * N;
-    let rate = |unknown: usize| rates[unknown / N][unknown % N];
-    for r in 0..unknowns {
-        matrix[r][r] += settings.rate_weight;
-        right[r] -= settings.rate_weight * rate(r);
-        if r >= N {
-            let w = settings.change_weight;
-            matrix[r][r] += w;
-            matrix[r - N][r - N] += w;
-            matrix[r][r - N] -= w;
-            let change = w * (rate(r) - rate(r - N));
-            right[r] -= change;
-            right[r - N] += change;
+
+    /// The part of the offset along the path at knot i is the same sum of rates for all j <= i: what knots from m on add is
+    /// one small matrix.
+    fn add_along<const N: usize>(&mut self, rollout: &Rollout<N>, gain: f64, price: f64, knots: usize) {
+        let mut square = [[0.0; N]; N];
+        let mut right = [0.0; N];
+        for m in (0..knots).rev() {
+            let (tangent, off_mm) = (rollout.directions[m][N - 1], rollout.off_mm[m][N - 1]);
+            for a in 0..N {
+                for b in 0..N {
+                    square[a][b] += gain * gain * tangent[a] * tangent[b];
+                }
+                right[a] -= gain * tangent[a] * price * off_mm;
+            }
+            for a in 0..N {
+                let r = m * N + a;
+                self.right[r] += right[a];
+                for c in 0..=r {
+                    self.matrix[r][c] += square[a][c % N];
+                }
+            }
         }
     }
-    cholesky(&mut matrix, &mut right, unknowns);
-    right
+
+    fn add_weights<const N: usize>(&mut self, rates: &[[f64; N]; MOST_KNOTS], knots: usize, settings: &Settings) {
+        let rate = |unknown: usize| rates[unknown / N][unknown % N];
+        for r in 0..knots * N {
+            self.matrix[r][r] += settings.rate_weight;
+            self.right[r] -= settings.rate_weight * rate(r);
+            if r >= N {
+                let w = settings.change_weight;
+                self.matrix[r][r] += w;
+                self.matrix[r - N][r - N] += w;
+                self.matrix[r][r - N] -= w;
+                let change = w * (rate(r) - rate(r - N));
+                self.right[r] -= change;
+                self.right[r - N] += change;
+            }
+        }
+    }
 }

@@ -57,20 +57,22 @@ impl<const P: usize> LeastSquares<P> {
 /// Solves A x = b in place for the lower half of a symmetric positive A, of which the first `n` rows count.
 #[inline]
 pub fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], n: usize) {
-    for r in 0..n {
-        for c in 0..r {
-            let mut sum = a[r][c];
-            for k in 0..c {
-                sum -= a[r][k] * a[c][k];
+    // Column by column, each taken from all rows below at once: sums along a row, which the processor does side by side.
+    let mut column = [0.0; P];
+    for k in 0..n {
+        // The diagonal holds the reciprocal: one division a column.
+        let pivot = 1.0 / libm::sqrt(a[k][k]);
+        a[k][k] = pivot;
+        for r in k + 1..n {
+            a[r][k] *= pivot;
+            column[r] = a[r][k];
+        }
+        for r in k + 1..n {
+            let factor = column[r];
+            for (m, other) in a[r][k + 1..=r].iter_mut().zip(&column[k + 1..=r]) {
+                *m -= factor * other;
             }
-            a[r][c] = sum * a[c][c];
         }
-        let mut square = a[r][r];
-        for k in 0..r {
-            square -= a[r][k] * a[r][k];
-        }
-        // The diagonal holds the reciprocal: one division a row.
-        a[r][r] = 1.0 / libm::sqrt(square);
     }
     for r in 0..n {
         let mut sum = b[r];
