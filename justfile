@@ -23,8 +23,6 @@ bench:
 compare out="target/compare":
     cargo run --release -- compare --at-tolerance --json {{ out }}.json --html {{ out }}.html
 
-# Regenerate the tables and the figures of README.md and of examples/.
-tables: paper compare
 # The identifier beside FANN (Debian: libfann-dev, valgrind), on one core.
 bench-fann:
     taskset --cpu-list 1 cargo bench --package feedwright-control --bench fann
@@ -34,8 +32,8 @@ tick ticks="100000" runs="5":
     cargo build --release --quiet -p feedwright-control --example tick_percentiles
     taskset --cpu-list 1 target/release/examples/tick_percentiles {{ ticks }} {{ runs }}
 
-# Regenerate the table and the figures of README.md and of examples/.
-tables: paper
+# Regenerate the tables and the figures of README.md and of examples/.
+tables: paper compare
     cp target/paper/figure_10.svg docs/paper_circle.svg
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
     cargo run --release -p feedwright --example tables

@@ -226,7 +226,7 @@ pub const CONTROLLERS: &[Entry] = &[
     ),
     entry!(
         "receding-horizon",
-        "geometry planned over 10 knots ahead through an identified servo, speed as planned",
+        "geometry planned over 16 knots ahead through an identified servo, speed as planned",
         "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
         Identified,
         laps: 1,

@@ -1,7 +1,6 @@
 //! Regenerates the tables of README.md and of examples/*/README.md in their places: `just tables`, which makes
 //! `target/compare.json` first.
 
-#[expect(dead_code, reason = "the golden tests use the rest")]
 mod table;
 
 use std::error::Error;

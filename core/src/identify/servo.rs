@@ -1,11 +1,15 @@
-//! Training of the servo identifier: least squares for its linear part.
+//! Training of the servo identifier: least squares for its linear part and for the outputs of its hidden nodes.
 //!
 //! ```text
-//! minimise sum |e(k+1) - e(k) - L I(k)|^2 + r n |L|^2
+//! minimise sum |e(k+1) - e(k) - L I(k) - Wo f(Wh I(k))|^2 + r n (|L|^2 + |Wo|^2)
 //! ```
 //!
-//! over the n samples of all laps, by the normal equations and Cholesky's factorisation. Ridge regression: Hoerl and
-//! Kennard (1970).
+//! over the n samples of all laps, by the normal equations and Cholesky's factorisation. L alone first; Wh then follows from
+//! L: its nodes see the sign of the tool's speed, which is where a servo is not linear. With Wh laid, the rest is one linear
+//! solution, in place of a descent that needs starting weights.
+//!
+//! Source: ridge regression, Hoerl and Kennard (1970); hidden layers that are laid instead of trained, Schmidt, Kraaijveld
+//! and Duin (1992).
 
 use feedwright_control::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
 use feedwright_control::identifier::{FEED_SCALE_MM_S, HIDDEN, INPUTS, Inputs};

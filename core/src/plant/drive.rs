@@ -64,3 +64,41 @@ pub(super) fn torque_step_nm(axis: &Axis) -> f64 {
 pub(super) fn in_steps(value: f64, step: f64) -> f64 {
     if step > 0.0 { (value / step).round() * step } else { value }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::Machine;
+
+    #[test]
+    fn a_reference_arrives_after_the_delay_to_the_mechanics_period() {
+        let machine = Machine::load("tnv40".as_ref()).unwrap();
+        let substeps = machine.period.mechanics_per_servo;
+        for delay_s in [0.0, 0.0003, 0.001, 0.0027, 0.02] {
+            let axis = Axis { drive_delay_s: delay_s, ..machine.axes[0] };
+            let mut delay = Delay::new(&axis, &machine.period);
+            let mut arrived_s = None;
+            for period in 0..40_u32 {
+                delay.send(if period >= 10 { 1.0 } else { 0.0 });
+                for substep in 0..substeps {
+                    let now_s = f64::from((period - 10.min(period)) * substeps + substep) * machine.period.mechanics_s;
+                    if delay.arrived(substep) == 1.0 && arrived_s.is_none() {
+                        arrived_s = Some(now_s);
+                    }
+                }
+            }
+            assert!((arrived_s.unwrap() - delay_s).abs() < 1e-9, "{delay_s}: {arrived_s:?}");
+        }
+    }
+
+    #[test]
+    fn twelve_bits_divide_the_range_of_the_torque() {
+        let machine = Machine::load("coarse".as_ref()).unwrap();
+        let step = torque_step_nm(&machine.axes[0]);
+        assert!((step - 60.0 / 4096.0).abs() < 1e-15);
+        for torque in [-29.99, -0.01, 0.0, 0.3, 17.0] {
+            let stepped = in_steps(torque, step);
+            assert!((stepped - torque).abs() <= 0.5 * step && (stepped / step).fract() == 0.0, "{torque}");
+        }
+    }
+}

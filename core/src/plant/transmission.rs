@@ -56,3 +56,69 @@ impl Joint {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::Machine;
+
+    const DT_S: f64 = 1e-5;
+
+    fn soft(backlash_um: f64) -> (Joint, Transmission, f64) {
+        let machine = Machine::load("soft".as_ref()).unwrap();
+        let axis = machine.axes[0];
+        let transmission = Transmission { backlash_um, ..axis.transmission.unwrap() };
+        (Joint::new(&axis, &transmission), transmission, axis.lead_mm_per_rev)
+    }
+
+    /// The table swings against the held motor: angle over time from a twist of a milliradian.
+    fn ring_down(joint: &Joint, seconds: f64) -> Vec<f64> {
+        let (mut angle, mut speed) = (1e-3, 0.0);
+        let steps = (seconds / DT_S) as usize;
+        (0..steps)
+            .map(|_| {
+                speed += DT_S * joint.inverse_table_inertia * joint.torque_nm(-angle, -speed);
+                angle += DT_S * speed;
+                angle
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_table_rings_at_the_frequency_and_with_the_damping_of_the_file() {
+        let (joint, transmission, _) = soft(0.0);
+        let angle = ring_down(&joint, 0.5);
+        let upward: Vec<usize> = (1..angle.len()).filter(|&i| angle[i - 1] < 0.0 && angle[i] >= 0.0).collect();
+        let periods = upward.len() - 1;
+        let period_s = (upward[periods] - upward[0]) as f64 * DT_S / periods as f64;
+        let damped_hz = transmission.resonance_hz * (1.0 - transmission.damping_ratio.powi(2)).sqrt();
+        assert!((1.0 / period_s - damped_hz).abs() < 0.01 * damped_hz, "{} Hz", 1.0 / period_s);
+        // Logarithmic decrement, from peak to peak: 2 pi zeta / sqrt(1 - zeta^2). At zero twist the flanks part: while
+        // they pull they are let go, which costs the least bit of damping.
+        let peak = |from: usize, to: usize| angle[from..to].iter().fold(0.0_f64, |a, b| a.max(*b));
+        let decrement = (peak(upward[0], upward[1]) / peak(upward[5], upward[6])).ln() / 5.0;
+        let expected = TAU * transmission.damping_ratio / (1.0 - transmission.damping_ratio.powi(2)).sqrt();
+        assert!((decrement - expected).abs() < 0.1 * expected, "{decrement} {expected}");
+    }
+
+    #[test]
+    fn a_torque_twists_the_screw_by_its_stiffness_behind_the_gap() {
+        let (joint, transmission, lead_mm) = soft(5.0);
+        let half_gap_rad = 0.5 * 5e-3 * TAU / lead_mm;
+        for twist in [-1e-4, 0.0, 1e-3, half_gap_rad * 0.999] {
+            let held = joint.torque_nm(twist, 0.0);
+            assert_eq!(held != 0.0, twist.abs() > half_gap_rad, "{twist}");
+        }
+        let stiffness = (TAU * transmission.resonance_hz).powi(2) / joint.inverse_table_inertia;
+        let torque = joint.torque_nm(half_gap_rad + 1e-3, 0.0);
+        assert!((torque - stiffness * 1e-3).abs() < 1e-9, "{torque}");
+    }
+
+    #[test]
+    fn flanks_push_and_do_not_pull() {
+        let (joint, ..) = soft(5.0);
+        for speed in [-1e3, -1.0, 0.0, 1.0, 1e3] {
+            assert!(joint.torque_nm(0.01, speed) >= 0.0 && joint.torque_nm(-0.01, speed) <= 0.0);
+        }
+    }
+}
