@@ -36,9 +36,12 @@ pub(crate) fn network<const N: usize>() -> (ContourIdentifier<N>, Inputs<N>) {
     (ContourIdentifier { hidden, output }, inputs)
 }
 
-/// The paper's controller with an untrained network: the work does not depend on the weights.
+/// The paper's controller with an untrained network: the work does not depend on the weights. The output weights are
+/// small, so that it does little harm and the safety layer leaves it in the loop.
 pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
-    TwoDimensional::new(network().0, Settings::DEFAULT)
+    let mut net = network::<N>().0;
+    net.output.as_flattened_mut().iter_mut().for_each(|w| *w *= 0.01);
+    TwoDimensional::new(net, Settings::DEFAULT)
 }
 
 /// The receding horizon of so many knots over a servo like that of tnv40: what least squares give for one axis, for all

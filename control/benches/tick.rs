@@ -56,8 +56,9 @@ fn back_propagation<const N: usize>(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| net.learn(black_box(&inputs), black_box(error), 0.01));
 }
 
-/// A servo period of the whole: reference, register, and in every tenth the contour error and the decision.
-#[divan::bench(consts = [2, 3])]
+/// A servo period of the whole: reference, register, and in every tenth the contour error and the decision. The mean over
+/// whole feed periods.
+#[divan::bench(consts = [2, 3], sample_size = 1000)]
 fn servo_period<const N: usize>(bencher: Bencher<'_, '_>) {
     let mut rig = rig::Rig::<N, _>::new(rig::paper());
     bencher.bench_local(|| rig.servo_period());
