@@ -51,7 +51,7 @@ instructions:
         valgrind --tool=callgrind --callgrind-out-file=/dev/null target/release/examples/instructions "$1" "$2" 2>&1 |
             sed -n 's/.*Collected : //p'
     }
-    for work in paper-tick horizon-tick horizon-20 servo-period learn; do
+    for work in paper-tick horizon-tick horizon-20 servo-period horizon-period learn; do
         few=$(counted "$work" 1000)
         many=$(counted "$work" 3000)
         printf '%-14s %8d instructions\n' "$work" $(((many - few) / 2000))

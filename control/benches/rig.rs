@@ -53,21 +53,32 @@ pub(crate) fn horizon<const N: usize>(knots: usize) -> RecedingHorizon<N> {
     RecedingHorizon::new(net, settings)
 }
 
-/// Part of the way to the command that the tool of [`Rig`] goes in 1 ms: it lags by 20 ms.
-const FOLLOWED: f64 = 0.05;
+/// What the tool of a [`Rig`] does; it is behind by 20 ms in either case.
+#[derive(Clone, Copy)]
+pub(crate) enum Tool {
+    /// It stays on the path whatever is commanded, so that an untrained controller can do no harm.
+    OnThePath,
+    /// It follows the command with a lag of first order.
+    Follows,
+}
 
-/// The whole run by hand: reference, contour error, controller under the safety layer, and a tool that lags.
+/// The lag of the tool, s, and the part of the way to the command that it then goes in a servo period.
+const LAG_S: f64 = 0.02;
+const FOLLOWED: f64 = 0.001 / LAG_S;
+
+/// The whole run by hand: reference, contour error, controller under the safety layer, and a tool.
 pub(crate) struct Rig<const N: usize, C> {
     tick: Tick<N>,
     controller: C,
+    tool: Tool,
     tool_mm: [f64; N],
 }
 
 impl<const N: usize, C: Controller<N>> Rig<N, C> {
     /// Warmed up by nearly a lap.
-    pub(crate) fn new(controller: C) -> Self {
+    pub(crate) fn new(controller: C, tool: Tool) -> Self {
         let tick = Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0));
-        let mut rig = Self { tick, controller, tool_mm: [0.0; N] };
+        let mut rig = Self { tick, controller, tool, tool_mm: [0.0; N] };
         for _ in 0..1000 {
             rig.servo_period();
         }
@@ -77,8 +88,13 @@ impl<const N: usize, C: Controller<N>> Rig<N, C> {
     /// One servo period.
     pub(crate) fn servo_period(&mut self) -> Setpoint<N> {
         let setpoint = self.tick.step(&mut Circle, &mut self.controller, self.tool_mm);
-        for axis in 0..N {
-            self.tool_mm[axis] += FOLLOWED * (setpoint.command_mm[axis] - self.tool_mm[axis]);
+        match self.tool {
+            Tool::OnThePath => self.tool_mm = Circle.knot(setpoint.tau_s + 0.001 - LAG_S).position_mm,
+            Tool::Follows => {
+                for axis in 0..N {
+                    self.tool_mm[axis] += FOLLOWED * (setpoint.command_mm[axis] - self.tool_mm[axis]);
+                }
+            }
         }
         setpoint
     }

@@ -56,10 +56,19 @@ fn back_propagation<const N: usize>(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| net.learn(black_box(&inputs), black_box(error), 0.01));
 }
 
-/// A servo period of the whole: reference, register, and in every tenth the contour error and the decision.
-#[divan::bench(consts = [2, 3])]
+/// A servo period of the whole: reference, register, and in every tenth the contour error and the decision. The mean over
+/// whole feed periods.
+#[divan::bench(consts = [2, 3], sample_size = 1000)]
 fn servo_period<const N: usize>(bencher: Bencher<'_, '_>) {
-    let mut rig = rig::Rig::<N, _>::new(rig::paper());
+    let mut rig = rig::Rig::<N, _>::new(rig::paper(), rig::Tool::OnThePath);
+    bencher.bench_local(|| rig.servo_period());
+    rig.expect_in_the_loop();
+}
+
+/// The same with the receding horizon, which decides in every fifth.
+#[divan::bench(consts = [2, 3], args = [10, 20], sample_size = 1000)]
+fn servo_period_of_horizon<const N: usize>(bencher: Bencher<'_, '_>, knots: usize) {
+    let mut rig = rig::Rig::<N, _>::new(rig::horizon(knots), rig::Tool::Follows);
     bencher.bench_local(|| rig.servo_period());
     rig.expect_in_the_loop();
 }

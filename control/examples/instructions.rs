@@ -1,6 +1,6 @@
 //! Runs one kind of work a number of times, for counting its instructions with callgrind: see `just instructions`.
 //!
-//! `instructions paper-tick|horizon-tick|horizon-20|servo-period|learn COUNT`. The difference of two counts divided by the difference of their
+//! `instructions paper-tick|horizon-tick|horizon-20|servo-period|horizon-period|learn COUNT`. The difference of two counts divided by the difference of their
 //! instructions leaves out what starting and ending a process costs.
 
 #![expect(clippy::unwrap_used, reason = "an example that only the recipe calls")]
@@ -17,11 +17,8 @@ fn main() {
         "paper-tick" => decide(&mut rig::paper(), count),
         "horizon-tick" => decide(&mut rig::horizon(10), count),
         "horizon-20" => decide(&mut rig::horizon(20), count),
-        "servo-period" => {
-            let mut rig = rig::Rig::<2, _>::new(rig::paper());
-            (0..count).for_each(|_| _ = std::hint::black_box(rig.servo_period()));
-            rig.expect_in_the_loop();
-        }
+        "servo-period" => live(rig::Rig::new(rig::paper(), rig::Tool::OnThePath), count),
+        "horizon-period" => live(rig::Rig::new(rig::horizon(10), rig::Tool::Follows), count),
         "learn" => {
             let (mut net, inputs) = rig::network::<2>();
             (0..count).for_each(|_| _ = std::hint::black_box(net.learn(&inputs, [0.2, -0.1], 0.01)));
@@ -36,4 +33,9 @@ fn decide(controller: &mut impl Controller<2>, count: u32) {
     for _ in 0..count {
         std::hint::black_box(rig::decide(controller, std::hint::black_box(&window), &measured));
     }
+}
+
+fn live(mut rig: rig::Rig<2, impl Controller<2>>, count: u32) {
+    (0..count).for_each(|_| _ = std::hint::black_box(rig.servo_period()));
+    rig.expect_in_the_loop();
 }

@@ -39,7 +39,7 @@ fn measure<const N: usize>(knots: usize, ticks: usize, runs: usize) -> Vec<[f64;
 
 /// The times of so many decisions, us.
 fn run_us<const N: usize>(knots: usize, ticks: usize) -> Vec<f64> {
-    let mut rig = rig::Rig::<N, _>::new(rig::horizon(knots));
+    let mut rig = rig::Rig::<N, _>::new(rig::horizon(knots), rig::Tool::Follows);
     let mut times_us = Vec::with_capacity(ticks);
     while times_us.len() < ticks {
         let start = Instant::now();
