@@ -138,6 +138,27 @@ fn a_value_out_of_its_range() {
 }
 
 #[test]
+fn a_comparison_of_what_there_is_not() {
+    let folder = Folder::new();
+    folder.file("space.ngc", "G21 G90 F600\nG1 X1 Z1\nM2\n");
+    folder.file("wrong.ngc", "G21 G90\nG1 X1\nM2\n");
+    let before = folder.content();
+    for (arguments, says) in [
+        (&["--only", "circel"][..], &["--only", "circel", "did you mean 'circle'?"][..]),
+        (&["--only", "circle,receding-horison"], &["receding-horison", "did you mean 'receding-horizon'?"]),
+        (&["--part", "space.ngc"], &["space.ngc moves Z", "XY plane", "feedwright run"]),
+        (&["--part", "wrong.ngc"], &["wrong.ngc:2:1", "F"]),
+        (&["--part", "missing.ngc"], &["missing.ngc", "No such file"]),
+        (&["--machine", "tnv4"], &["tnv4", "did you mean 'tnv40'?"]),
+        (&["--threads", "0"], &["--threads", "0"]),
+        (&["--json", "no/such/folder/r.json"], &["no/such/folder"]),
+    ] {
+        folder.run(&[&["compare"], arguments].concat()).refused(says);
+    }
+    assert_eq!(before, folder.content());
+}
+
+#[test]
 fn a_place_that_cannot_be_written() {
     let folder = Folder::new();
     std::fs::create_dir(folder.path().join("folder")).unwrap();

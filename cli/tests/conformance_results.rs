@@ -62,6 +62,31 @@ fn the_json_has_the_documented_numbers_of_every_run() {
 }
 
 #[test]
+fn the_comparison_has_the_documented_rows_and_its_own_part() {
+    let folder = Folder::new();
+    let only = ["--only", "square,tnv40,rough,open-loop,contour-compensation", "--no-tuning", "--part", "circle.ngc"];
+    let outputs = ["--json", "r.json", "--html", "r.html"];
+    let out = folder.run(&[&["compare"], &only[..], &outputs[..]].concat()).succeeded();
+    assert!(out.stdout.contains("square on rough") && out.stdout.contains("wrote r.html"), "{out:?}");
+    let results = results(&folder);
+    let rows = results["rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 2 * 2 * 2, "{rows:?}");
+    for row in rows {
+        for key in ["contour", "machine", "controller"] {
+            assert!(row[key].is_string(), "{row}");
+        }
+        for key in ["time_s", "rms_um", "max_um", "time_ratio", "rms_ratio", "max_ratio"] {
+            assert!(row[key].as_f64().is_some_and(|value| value > 0.0), "{key}: {row}");
+        }
+    }
+    assert!(rows.iter().any(|row| row["contour"] == "circle.ngc"));
+    assert!(folder.text("r.html").contains("circle.ngc on rough"));
+    let again = [&["compare", "--threads", "1"], &only[..], &["--json", "again.json"]].concat();
+    folder.run(&again).succeeded();
+    assert_eq!(folder.read("r.json"), folder.read("again.json"));
+}
+
+#[test]
 fn the_trace_has_the_documented_columns_and_a_row_a_servo_period() {
     let folder = Folder::new();
     folder.file("space.ngc", "G21 G90 G64\nG1 X1 Y1 Z1 F600\nX2 Z0\nM2\n");

@@ -9,7 +9,7 @@ use feedwright::compare::tolerance::TOLERANCE_UM;
 use feedwright::compare::{Comparison, Options, Tuning, Watch, Workpiece, all_controllers, compare, page};
 use feedwright::controllers::BASELINE;
 use feedwright::identify::cache;
-use feedwright::machine::{BUILT_IN, Machine};
+use feedwright::machine::{BUILT_IN, Machine, nearest};
 use feedwright::output::OutputFile;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
@@ -64,10 +64,12 @@ fn options(args: &CompareArgs) -> Result<Options> {
         .collect();
     for name in &args.only {
         if !known.contains(name) {
-            return Err(miette!(
-                help = format!("there are {}", known.join(", ")),
-                "--only: no contour, machine or controller is called '{name}'"
-            ));
+            let names: Vec<&str> = known.iter().map(String::as_str).collect();
+            let help = match nearest(name, &names) {
+                Some(meant) => format!("did you mean '{meant}'?"),
+                None => format!("there are {}", known.join(", ")),
+            };
+            return Err(miette!(help = help, "--only: no contour, machine or controller is called '{name}'"));
         }
     }
     let named = |name: &str| args.only.iter().any(|only| only == name);

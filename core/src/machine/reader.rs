@@ -13,7 +13,7 @@ use super::error::Fault;
 const SUGGESTION_SIMILARITY: f64 = 0.75;
 
 /// The candidate that `word` was probably meant to be.
-pub(crate) fn nearest<'a>(word: &str, candidates: &[&'a str]) -> Option<&'a str> {
+pub fn nearest<'a>(word: &str, candidates: &[&'a str]) -> Option<&'a str> {
     candidates
         .iter()
         .map(|candidate| (strsim::jaro_winkler(&word.to_lowercase(), candidate), *candidate))

@@ -1,0 +1,94 @@
+//! The comparison: the same for any number of threads and after an interruption, ratios and verdicts as they are defined.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+use feedwright::compare::journal::Journal;
+use feedwright::compare::{AT_HOME, Comparison, Options, Tuning, Workpiece, compare, page};
+use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Entry};
+use feedwright::machine::Machine;
+
+fn options() -> Options {
+    let named = |name: &str| Entry::find(name).unwrap();
+    Options {
+        workpieces: Workpiece::contours()
+            .into_iter()
+            .filter(|w| ["circle", "square"].contains(&w.name.as_str()))
+            .collect(),
+        machines: ["tnv40", "rough"].map(|name| Machine::load(name.as_ref()).unwrap()).to_vec(),
+        controllers: vec![named(BASELINE), named("contour-compensation"), named("iterative-learning-3"), named(BEST)],
+        seed: 7,
+        tuning: Tuning::Defaults,
+        at_tolerance: false,
+    }
+}
+
+fn with_threads(threads: usize, options: &Options, journal: &mut Journal) -> Comparison {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| compare(options, journal, &())).unwrap()
+}
+
+fn json(comparison: &Comparison) -> String {
+    serde_json::to_string(comparison).unwrap()
+}
+
+#[test]
+fn the_table_is_the_same_for_any_number_of_threads_and_after_an_interruption() {
+    let options = options();
+    let one = with_threads(1, &options, &mut Journal::none());
+    assert_eq!(json(&one), json(&with_threads(3, &options, &mut Journal::none())));
+
+    let folder = tempfile::tempdir().unwrap();
+    let mut journal = Journal::open(folder.path(), "key").unwrap();
+    with_threads(2, &options, &mut journal);
+    drop(journal);
+    let file = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
+    let text = std::fs::read_to_string(&file).unwrap();
+    // Killed in the middle of a line.
+    std::fs::write(&file, &text[..text.len() * 2 / 3]).unwrap();
+    let mut journal = Journal::open(folder.path(), "key").unwrap();
+    let known = journal.known();
+    assert!(known > 0 && known < one.rows.len(), "{known} of {}", one.rows.len());
+    assert_eq!(json(&one), json(&with_threads(2, &options, &mut journal)));
+    journal.remove();
+    assert!(!file.exists());
+}
+
+#[test]
+fn rows_are_complete_and_ratios_are_against_open_loop() {
+    let options = options();
+    let comparison = with_threads(2, &options, &mut Journal::none());
+    // On the machine that is known, the identified competitor is the unseen one.
+    let rows = options.workpieces.len() * (options.machines.len() * options.controllers.len() + 1);
+    assert_eq!(comparison.rows.len(), rows);
+    for row in &comparison.rows {
+        let base = comparison.rows.iter().find(|base| {
+            (&base.contour, &base.machine, base.controller.as_str()) == (&row.contour, &row.machine, BASELINE)
+        });
+        let base = base.unwrap();
+        assert_eq!(row.rms_ratio, row.rms_um / base.rms_um);
+        assert_eq!(row.max_ratio, row.max_um / base.max_um);
+        assert_eq!(row.time_ratio, row.time_s / base.time_s);
+        assert!(row.completed && row.faded_out.is_none(), "{row:?}");
+    }
+    assert!(comparison.rows.iter().any(|row| row.controller == format!("{BEST}{AT_HOME}") && row.machine == "rough"));
+    for verdict in &comparison.verdicts {
+        assert!(verdict.value.is_finite() && (!verdict.holds || verdict.value <= verdict.limit), "{verdict:?}");
+    }
+    let mut html = Vec::new();
+    page::write(&mut html, &comparison).unwrap();
+    let html = String::from_utf8(html).unwrap();
+    for entry in &options.controllers {
+        assert!(html.contains(entry.name), "{}", entry.name);
+    }
+    assert!(!html.contains("NaN") && !html.contains("src=\"http") && html.ends_with("</html>\n"));
+}
+
+#[test]
+fn every_default_lies_in_its_range() {
+    for entry in CONTROLLERS {
+        for parameter in entry.parameters {
+            let [low, high] = parameter.range;
+            assert!((low..=high).contains(&parameter.default), "{}: {parameter:?}", entry.name);
+        }
+    }
+}
