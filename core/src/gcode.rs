@@ -17,6 +17,7 @@ mod execute;
 mod expression;
 mod firmware;
 mod flow;
+mod lathe;
 mod length;
 mod lexer;
 mod machine_codes;

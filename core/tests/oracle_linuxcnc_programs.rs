@@ -48,9 +48,6 @@ const DIFFERENCES: &[(&str, &str)] = &[
     ("oracle_data/g5_2_outside_xy", "G5.2 is refused outside the XY plane, as G5 and G5.1 are by both"),
     ("g84__g18__g99", "LinuxCNC 2.9 swaps the axes of G84 outside G17"),
     ("g84__g19__g99", "LinuxCNC 2.9 swaps the axes of G84 outside G17"),
-    ("g71-endless-loop2", "G70-G72 are not read"),
-    ("g72-missing-iteration", "G70-G72 are not read"),
-    ("lathe_g7", "G70-G72 are not read"),
 ];
 
 #[derive(Debug)]

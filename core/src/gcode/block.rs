@@ -28,7 +28,7 @@ impl Word {
 }
 
 /// The words of a line. Used again for every line, so that reading a line allocates nothing.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Block {
     /// Bit set of the letters that the line has; G, M, N and O do not count.
     pub(super) set: u32,

@@ -255,17 +255,31 @@ impl Reader {
         }
         if cursor.peek() == b'o' {
             let at = cursor.at;
-            return flow.line(range, at, interpreter);
+            flow.line(range, at, interpreter)?;
+            return self.end_profile();
         }
         block.read(cursor, interpreter, self.style)?;
         if let Some(comment) = &block.comment {
             interpreter.comment(&bytes[comment.clone()]);
         }
         interpreter.execute(block)?;
+        if let Some(wanted) = interpreter.wanted.take() {
+            flow.call_profile(&wanted, interpreter)?;
+        }
         for (target, value) in block.assignments.drain(..) {
             interpreter.assign(&target, value)?;
         }
         if block.m.is_empty() { Ok(()) } else { self.calls() }
+    }
+
+    /// A subroutine has perhaps returned to the lathe cycle whose profile it is; faults are the cycle's.
+    fn end_profile(&mut self) -> Read<()> {
+        let Self { flow, interpreter, .. } = self;
+        let Some(lathe) = interpreter.lathe.take_if(|lathe| interpreter.call_level <= lathe.level) else {
+            return Ok(());
+        };
+        flow.source().line_start = lathe.mark;
+        interpreter.finish_lathe(&lathe)
     }
 
     /// M98 and M99 come after all else of their line.

@@ -12,7 +12,7 @@ const CHUNK_BYTES: usize = 1 << 18;
 pub(super) const LONGEST_LINE_BYTES: usize = 1 << 16;
 
 /// A place to come back to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Mark {
     /// Byte offset of a line in the file.
     pub(super) offset: u64,

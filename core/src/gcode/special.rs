@@ -21,14 +21,7 @@ impl Interpreter {
             382..=385 => self.probe(block),
             730 | 740 | 810..=890 => self.cycle(block, code),
             760 => self.thread(block),
-            _ => {
-                let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
-                Err(Fault::new(
-                    "gcode::unsupported",
-                    at,
-                    format!("the lathe cycle {} is not read by this version", spelled(code)),
-                ))
-            }
+            _ => self.lathe_cycle(block, code),
         }
     }
 

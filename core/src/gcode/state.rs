@@ -7,6 +7,7 @@ use super::compensation::Compensation;
 use super::cycles::Cycle;
 use super::diagnostic::Fault;
 use super::expression::Values;
+use super::lathe::{Lathe, Wanted};
 use super::parameters::{self as numbers, Parameters};
 use super::settings::{Dialect, Settings};
 use super::splines::Collected;
@@ -156,6 +157,9 @@ pub(super) struct Interpreter {
     pub(super) cycle: Cycle,
     /// The NURBS that is being collected.
     pub(super) collected: Option<Collected>,
+    /// The lathe cycle whose profile is being read, and the call that it waits for.
+    pub(super) lathe: Option<Box<Lathe>>,
+    pub(super) wanted: Option<Wanted>,
     /// P and Q of the last G5, if the line before was one.
     pub(super) last_bezier_end: Option<[f64; 2]>,
     /// Tool in the spindle.
@@ -198,6 +202,8 @@ impl Interpreter {
             held: Vec::new(),
             cycle: Cycle::default(),
             collected: None,
+            lathe: None,
+            wanted: None,
             last_bezier_end: None,
             tool: 0,
             next_tool: 0,
@@ -221,7 +227,9 @@ impl Interpreter {
     /// Hands out a step, behind those that are held back.
     #[inline]
     pub(super) fn push(&mut self, step: Canon) {
-        if self.held.is_empty() {
+        if self.lathe.is_some() {
+            self.keep(step);
+        } else if self.held.is_empty() {
             self.out.push_back(step);
         } else {
             self.held.push(step);

@@ -12,6 +12,7 @@ use std::sync::Arc;
 use super::diagnostic::{Fault, Read};
 use super::expression::{Evaluator, Values};
 use super::flow::{Flow, at_o_word, cannot_read};
+use super::lathe::Wanted;
 use super::lexer::Cursor;
 use super::owords::{Arguments, Head, Keyword, read_head, shown};
 use super::parameters::LOCALS;
@@ -89,6 +90,16 @@ impl Flow {
         .inspect_err(|_| interpreter.parameters.leave(saved))?;
         interpreter.entered(self.frames.len());
         Ok(())
+    }
+
+    /// The profile of a lathe cycle: a call without arguments.
+    pub(super) fn call_profile(&mut self, wanted: &Wanted, interpreter: &mut Interpreter) -> Read<()> {
+        let head = Head { label: wanted.label.clone(), keyword: Keyword::Call, at: wanted.at.clone() };
+        let arguments = Arguments { values: [0.0; LOCALS], count: 0 };
+        if let Some(lathe) = &mut interpreter.lathe {
+            lathe.mark = self.source_ref().line_start;
+        }
+        self.call(&head, &arguments, interpreter).inspect_err(|_| interpreter.lathe = None)
     }
 
     /// `M98 P1 L2`.

@@ -1,0 +1,203 @@
+//! Lathe cycles G70, G71, G72: a profile, written as a subroutine, is roughed out in straight passes or finished along itself.
+//!
+//! The cycle's block calls the subroutine; its motions are kept here instead of handed out ([`Interpreter::keep`]). When it returns, `profile`
+//! brings them into the cycle's own coordinates and offsets them, and `roughing` and `finishing` make motions of them. What LinuxCNC 2.9 does
+//! was found by trying programs on it; see `core/tests/oracle_linuxcnc_lathe.rs`.
+
+mod finishing;
+mod profile;
+mod roughing;
+
+use super::block::Block;
+use super::canon::{Canon, Motion, Plane, Shape};
+use super::codes::{Group, spelled};
+use super::diagnostic::{Fault, Read, Short};
+use super::expression::INTEGER_WITHIN;
+use super::source::Mark;
+use super::state::{Interpreter, Position};
+
+/// Motions of a profile: it is kept in memory, and a drawing has far fewer.
+const MOST_MOTIONS: usize = 100_000;
+/// Passes of one cycle: more is a mistake in I or P.
+const MOST_PASSES: f64 = 10_000.0;
+/// LinuxCNC's depth of a pass and retraction where I and R are missing, in the unit of the program.
+const DEFAULT_DEPTH: f64 = 1.0;
+const DEFAULT_RETRACTION: f64 = 0.5;
+
+/// What the words of the cycle ask for, mm.
+#[derive(Debug, Clone, Copy)]
+enum Work {
+    /// G70: passes from one distance off the profile to another.
+    Finish { first_mm: f64, last_mm: f64, passes: u32 },
+    /// G71, G72: passes of a depth, and what is left on the profile.
+    Rough { depth_mm: f64, retraction_mm: f64, left_mm: f64 },
+}
+
+/// A cycle whose profile is being read.
+#[derive(Debug)]
+pub(super) struct Lathe {
+    code: u16,
+    block: Block,
+    /// Line of the cycle, its place, and the depth of calls it stands at.
+    line: u32,
+    pub(super) mark: Mark,
+    pub(super) level: usize,
+    /// Where the cycle begins, machine coordinates.
+    start: Position,
+    feed: (f64, f64),
+    work: Work,
+    motions: Vec<Motion>,
+    /// What does not belong in a profile, by its line.
+    fault: Option<(u32, String)>,
+}
+
+/// Label and place of the subroutine that a lathe cycle asks for.
+#[derive(Debug)]
+pub(super) struct Wanted {
+    pub(super) label: Vec<u8>,
+    pub(super) at: std::ops::Range<usize>,
+}
+
+impl Interpreter {
+    /// G70, G71, G72: goes to the start; the reader then calls the profile.
+    pub(super) fn lathe_cycle(&mut self, block: &Block, code: u16) -> Read<()> {
+        let name = spelled(code);
+        let fault = |at, message: String| Fault::new("gcode::lathe", at, message);
+        let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
+        if matches!(code, 711 | 712 | 721 | 722) {
+            return Err(Fault::new(
+                "gcode::unsupported",
+                at,
+                format!("the pocketing cycle {name} is not read by this version"),
+            )
+            .hint(format!("{} roughs out a profile without pockets", spelled(code - code % 10))));
+        }
+        if self.lathe.is_some() {
+            return Err(fault(at, format!("{name} stands inside the profile of another lathe cycle")));
+        }
+        if self.modal.plane != Plane::Zx {
+            return Err(fault(at, format!("{name} needs the plane G18 (ZX)")).hint("write G18 before it"));
+        }
+        if self.frame.rotation_deg != 0.0 {
+            return Err(fault(at, format!("{name} cannot run in a rotated coordinate system"))
+                .hint("rotation is R of G10 L2; write G10 L2 P0 R0 to end it"));
+        }
+        let Some(number) = block.get(b'q') else {
+            return Err(fault(at, format!("Q (number of the profile's subroutine) is missing for {name}"))
+                .hint("write Q100 for a profile between O100 sub and O100 endsub"));
+        };
+        if !(0.0..1e15).contains(&number) || (number - number.round()).abs() > INTEGER_WITHIN {
+            return Err(fault(block.at(b'q'), format!("Q{} is no number of a subroutine", Short(number))));
+        }
+        let work = self.lathe_work(block, code)?;
+        let target = self.target(block)?;
+        self.go(block, target, super::travel::Speed::Rapid)?;
+        // A profile that begins with axis words alone is cut straight.
+        self.modal.motion = 10;
+        self.wanted = Some(Wanted { label: (number.round() as u64).to_string().into_bytes(), at: block.at(b'q') });
+        self.lathe = Some(Box::new(Lathe {
+            code,
+            block: block.clone(),
+            line: self.line,
+            mark: Mark::default(),
+            level: self.call_level,
+            start: self.here,
+            feed: (self.modal.feed, self.modal.feed_unit_mm),
+            work,
+            motions: Vec::new(),
+            fault: None,
+        }));
+        Ok(())
+    }
+
+    fn lathe_work(&self, block: &Block, code: u16) -> Read<Work> {
+        let unit = self.modal.unit_mm;
+        // A distance that must not be negative.
+        let distance = |letter: u8, default: f64| {
+            let value = block.get(letter).unwrap_or(default);
+            if value >= 0.0 && value * unit <= self.settings.coordinate_limit_mm {
+                return Ok(value * unit);
+            }
+            let name = char::from(letter).to_ascii_uppercase();
+            let limit = self.settings.coordinate_limit_mm;
+            let message = format!("{name}{} of {} is out of range: 0 to {limit} mm", Short(value), spelled(code));
+            Err(Fault::new("gcode::lathe", block.at(letter), message))
+        };
+        if code == 700 {
+            if block.has(b'r') {
+                return Err(Fault::new("gcode::unused_word", block.at(b'r'), "R has no meaning with G70"));
+            }
+            let passes = if block.has(b'p') { self.integer(block, b'p', 1, MOST_PASSES as i64)? as u32 } else { 1 };
+            return Ok(Work::Finish { first_mm: distance(b'd', 0.0)?, last_mm: distance(b'e', 0.0)?, passes });
+        }
+        let depth_mm = distance(b'i', DEFAULT_DEPTH)?;
+        if depth_mm == 0.0 {
+            return Err(Fault::new(
+                "gcode::lathe",
+                block.at(b'i'),
+                format!("the depth of a pass I of {} must be above 0", spelled(code)),
+            ));
+        }
+        Ok(Work::Rough { depth_mm, retraction_mm: distance(b'r', DEFAULT_RETRACTION)?, left_mm: distance(b'd', 0.0)? })
+    }
+
+    /// Keeps a step of the profile.
+    #[cold]
+    pub(super) fn keep(&mut self, step: Canon) {
+        let Some(lathe) = &mut self.lathe else { return };
+        if lathe.fault.is_some() {
+            return;
+        }
+        let fault = match &step {
+            Canon::Event(_) => Some("only motions belong in a profile".to_owned()),
+            Canon::Motion(motion) if !motion.others.is_none() => Some(
+                "the profile moves other axes than X and Z (corners by A and C, steps by U and W are not read)"
+                    .to_owned(),
+            ),
+            Canon::Motion(motion) if motion.start_mm[1] != motion.end_mm[1] => {
+                Some("the profile moves Y; only X and Z form a profile".to_owned())
+            }
+            Canon::Motion(Motion {
+                shape: Shape::Arc { plane: Plane::Zx, turns: 1 | -1, .. } | Shape::Line, ..
+            }) => None,
+            Canon::Motion(_) => Some("a profile has straight lines and arcs of up to one turn in G18".to_owned()),
+        };
+        match (fault, step) {
+            (Some(fault), _) => lathe.fault = Some((self.line, fault)),
+            (None, Canon::Motion(_)) if lathe.motions.len() >= MOST_MOTIONS => {
+                lathe.fault = Some((self.line, format!("the profile has more than {MOST_MOTIONS} motions")));
+            }
+            (None, Canon::Motion(motion)) => lathe.motions.push(motion),
+            (None, Canon::Event(_)) => {}
+        }
+    }
+
+    /// The profile has been read: carries the cycle out.
+    pub(super) fn finish_lathe(&mut self, lathe: &Lathe) -> Read<()> {
+        let block = &lathe.block;
+        self.line = lathe.line;
+        (self.modal.feed, self.modal.feed_unit_mm) = lathe.feed;
+        let refuse = |message: String| Fault::new("gcode::lathe", block.at(b'q'), message);
+        if let Some((line, message)) = &lathe.fault {
+            return Err(refuse(format!(
+                "the profile of {} cannot be used: line {line}: {message}",
+                spelled(lathe.code)
+            )));
+        }
+        if self.compensates() || self.modal.plane != Plane::Zx || self.frame.rotation_deg != 0.0 {
+            return Err(refuse("the profile changes the plane, the rotation or cutter compensation".to_owned()));
+        }
+        if lathe.motions.len() < 2 {
+            let message = format!("the profile of {} has fewer than two motions: nothing is cut", spelled(lathe.code));
+            self.warnings.push(*refuse(message));
+            return Ok(());
+        }
+        self.here = lathe.start;
+        let done = match lathe.work {
+            Work::Finish { first_mm, last_mm, passes } => self.finish_profile(lathe, [first_mm, last_mm], passes),
+            Work::Rough { depth_mm, retraction_mm, left_mm } => self.rough(lathe, depth_mm, retraction_mm, left_mm),
+        };
+        self.at = self.frame.to_program(&self.here);
+        done
+    }
+}

@@ -1,0 +1,259 @@
+//! The profile in the cycle's own plane, and the curve at a distance from it.
+//!
+//! Coordinates: the first grows along the passes, the second grows from the finished part to the stock's surface. A profile runs towards a
+//! growing first coordinate, so the stock lies on its left; the offset curve lies there, with arcs about its outer corners.
+
+use super::Lathe;
+use crate::gcode::canon::{Motion, Shape};
+use crate::gcode::codes::spelled;
+use crate::gcode::diagnostic::{Fault, Read};
+use crate::gcode::plane::{Curve, Point, add, cross, dot, left_of, length, minus, scaled, unit};
+use crate::gcode::state::{Interpreter, Position};
+use crate::gcode::travel::Speed;
+
+/// Slack of comparisons, mm: far above rounding, far below anything cut.
+pub(super) const SLACK_MM: f64 = 1e-9;
+/// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
+const SMOOTH_RAD: f64 = 1e-10;
+
+/// The cycle's plane: which axes, and which way.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Side {
+    /// Axis along the passes, and of their depth.
+    axes: [usize; 2],
+    signs: [f64; 2],
+}
+
+/// Start of the cycle, end of the entry, and the curves behind it.
+#[derive(Debug, Clone)]
+pub(super) struct Profile {
+    pub(super) side: Side,
+    pub(super) start: Point,
+    pub(super) curves: Vec<Curve>,
+}
+
+impl Side {
+    fn of(self, point: [f64; 3]) -> Point {
+        std::array::from_fn(|n| self.signs[n] * point[self.axes[n]])
+    }
+
+    /// The machine position of a point; the other axes stay.
+    pub(super) fn position(self, point: Point, like: &Position) -> Position {
+        let mut position = *like;
+        for n in 0..2 {
+            position[self.axes[n]] = self.signs[n] * point[n];
+        }
+        position
+    }
+
+    /// Whether an arc that turns left here turns counter-clockwise in G18 (Z, then X).
+    fn turns(self, turn: f64) -> f64 {
+        let exchanged = if self.axes == [2, 0] { 1.0 } else { -1.0 };
+        turn * exchanged * self.signs[0] * self.signs[1]
+    }
+
+    fn curve(self, motion: &Motion) -> Curve {
+        let (start, end) = (self.of(motion.start_mm), self.of(motion.end_mm));
+        match &motion.shape {
+            Shape::Arc { center_mm, turns, .. } => {
+                Curve::Arc { start, end, center: self.of(*center_mm), turn: self.turns(f64::from(*turns)) }
+            }
+            _ => Curve::Line { start, end },
+        }
+    }
+}
+
+pub(super) const fn start_of(curve: &Curve) -> Point {
+    match *curve {
+        Curve::Line { start, .. } | Curve::Arc { start, .. } => start,
+    }
+}
+
+pub(super) const fn end_of(curve: &Curve) -> Point {
+    match *curve {
+        Curve::Line { end, .. } | Curve::Arc { end, .. } => end,
+    }
+}
+
+/// Direction at a point of the curve.
+fn direction(curve: &Curve, at: Point) -> Point {
+    match *curve {
+        Curve::Line { start, end } => unit(minus(end, start)),
+        Curve::Arc { center, turn, .. } => scaled(left_of(unit(minus(at, center))), turn),
+    }
+}
+
+impl Profile {
+    /// The profile of a cycle; refuses one that goes back or, behind its entry, deeper.
+    pub(super) fn new(lathe: &Lathe) -> Read<Self> {
+        let axes = if lathe.code == 720 { [0, 2] } else { [2, 0] };
+        let along = |motion: &Motion, axis: usize| motion.end_mm[axes[axis]] - motion.start_mm[axes[axis]];
+        let sign_of = |axis: usize, skip: usize| {
+            let first =
+                lathe.motions.iter().skip(skip).map(|motion| along(motion, axis)).find(|way| way.abs() > SLACK_MM);
+            first.map_or(1.0, f64::signum)
+        };
+        // The entry goes down to the profile, the rest comes back up to the surface.
+        let entry_way = along(&lathe.motions[0], 1);
+        let up = if entry_way.abs() > SLACK_MM { -entry_way.signum() } else { sign_of(1, 1) };
+        let side = Side { axes, signs: [sign_of(0, 1), up] };
+        let curves: Vec<Curve> = lathe.motions.iter().map(|motion| side.curve(motion)).collect();
+        for (number, (curve, motion)) in curves.iter().zip(&lathe.motions).enumerate() {
+            let axes = if number == 0 { &[0][..] } else { &[0, 1][..] };
+            if let Some(&axis) = axes.iter().find(|&&axis| goes_back(curve, axis)) {
+                return Err(lathe.not_monotonic(motion.line, side.axes[axis], number == 0));
+            }
+        }
+        let [first, rest @ ..] = curves.as_slice() else {
+            return Ok(Self { side, start: [0.0; 2], curves });
+        };
+        if matches!(first, Curve::Arc { .. }) {
+            return Err(
+                lathe.refuse(lathe.motions[0].line, "the first motion leads to the profile and must be straight")
+            );
+        }
+        let start = side.of([lathe.start[0], lathe.start[1], lathe.start[2]]);
+        Ok(Self { side, start, curves: rest.to_vec() })
+    }
+
+    /// The profile at `distance_mm` from itself, on the side of the stock.
+    pub(super) fn offset(&self, lathe: &Lathe, distance_mm: f64) -> Read<Self> {
+        if distance_mm <= SLACK_MM {
+            return Ok(self.clone());
+        }
+        let refuse = || {
+            let message = format!("a detail of the profile is smaller than the distance of {distance_mm:.4} mm to it");
+            lathe.refuse(lathe.line, &message).hint("make D (and E) smaller")
+        };
+        let mut curves: Vec<Curve> = Vec::with_capacity(2 * self.curves.len());
+        let mut before: Option<&Curve> = None;
+        for curve in &self.curves {
+            let mut moved = shifted(curve, distance_mm).ok_or_else(refuse)?;
+            if let (Some(old), Some(last)) = (before, curves.last_mut()) {
+                let corner = start_of(curve);
+                let (from, to) = (direction(old, corner), direction(curve, corner));
+                let bend = cross(from, to).atan2(dot(from, to));
+                if bend > SMOOTH_RAD {
+                    let point = last.meet(&moved, corner).ok_or_else(refuse)?;
+                    set_end(last, point);
+                    set_start(&mut moved, point);
+                } else if bend < -SMOOTH_RAD {
+                    let (start, end) = (end_of(last), start_of(&moved));
+                    curves.push(Curve::Arc { start, end, center: corner, turn: -1.0 });
+                }
+            }
+            curves.push(moved);
+            before = Some(curve);
+        }
+        // A curve shortened past its own start runs backwards.
+        if curves.iter().any(|curve| goes_back(curve, 0) || goes_back(curve, 1)) {
+            return Err(refuse());
+        }
+        curves.retain(|curve| length(minus(end_of(curve), start_of(curve))) > SLACK_MM);
+        if curves.is_empty() {
+            return Err(refuse());
+        }
+        Ok(Self { side: self.side, start: self.start, curves })
+    }
+
+    /// Where the entry ends.
+    pub(super) fn entry(&self) -> Point {
+        self.curves.first().map_or(self.start, start_of)
+    }
+}
+
+/// Whether a curve goes against the growing coordinate anywhere.
+fn goes_back(curve: &Curve, axis: usize) -> bool {
+    if end_of(curve)[axis] < start_of(curve)[axis] - SLACK_MM {
+        return true;
+    }
+    match *curve {
+        Curve::Line { .. } => false,
+        // A monotonic arc stays within a quarter; the rounding of ends and centres turns the tangent by very little.
+        Curve::Arc { start, end, .. } => {
+            let radius_slack = 1e-6;
+            [start, end].iter().any(|&at| direction(curve, at)[axis] < -radius_slack)
+                || dot(direction(curve, start), direction(curve, end)) < -radius_slack
+        }
+    }
+}
+
+/// The curve moved to its left; an arc that would vanish does not exist.
+fn shifted(curve: &Curve, by: f64) -> Option<Curve> {
+    Some(match *curve {
+        Curve::Line { start, end } => {
+            let shift = scaled(left_of(unit(minus(end, start))), by);
+            Curve::Line { start: add(start, shift), end: add(end, shift) }
+        }
+        Curve::Arc { start, end, center, turn } => {
+            let out = |point: Point| {
+                let ray = minus(point, center);
+                let radius = length(ray);
+                (radius - turn * by > SLACK_MM).then(|| add(center, scaled(ray, (radius - turn * by) / radius)))
+            };
+            Curve::Arc { start: out(start)?, end: out(end)?, center, turn }
+        }
+    })
+}
+
+const fn set_start(curve: &mut Curve, point: Point) {
+    match curve {
+        Curve::Line { start, .. } | Curve::Arc { start, .. } => *start = point,
+    }
+}
+
+const fn set_end(curve: &mut Curve, point: Point) {
+    match curve {
+        Curve::Line { end, .. } | Curve::Arc { end, .. } => *end = point,
+    }
+}
+
+impl Lathe {
+    pub(super) fn refuse(&self, line: u32, message: &str) -> Box<Fault> {
+        let place = if line == self.line { String::new() } else { format!("line {line}: ") };
+        let message = format!("the profile of {} cannot be cut: {place}{message}", spelled(self.code));
+        Fault::new("gcode::lathe", self.block.at(b'q'), message)
+    }
+
+    fn not_monotonic(&self, line: u32, axis: usize, is_entry: bool) -> Box<Fault> {
+        let name = ["X", "Y", "Z"][axis];
+        if is_entry {
+            return self
+                .refuse(line, &format!("{name} goes the other way than in the rest of the profile"))
+                .hint("start the cycle (its X and Z) where the first motion of the profile does not turn back");
+        }
+        self.refuse(line, &format!("{name} turns back; this version reads profiles without undercuts and pockets"))
+            .hint("the first motion goes to the depth of the profile; behind it neither X nor Z may turn back")
+    }
+}
+
+impl Interpreter {
+    /// Moves straight to a point of the cycle's plane.
+    pub(super) fn lathe_line(&mut self, lathe: &Lathe, side: Side, point: Point, speed: Speed) -> Read<()> {
+        let target = side.position(point, &lathe.start);
+        self.line_to(&lathe.block, target, speed, 0.0)
+    }
+
+    /// Cuts along curves.
+    pub(super) fn lathe_cut(&mut self, lathe: &Lathe, profile: &Profile) -> Read<()> {
+        let side = profile.side;
+        for curve in &profile.curves {
+            match *curve {
+                Curve::Line { end, .. } => self.lathe_line(lathe, side, end, Speed::Programmed)?,
+                Curve::Arc { end, center, turn, .. } => {
+                    let middle = self.frame.to_program(&side.position(center, &lathe.start));
+                    let target = self.frame.to_program(&side.position(end, &lathe.start));
+                    let turns = if side.turns(turn) > 0.0 { 1 } else { -1 };
+                    let round = crate::gcode::arc::Round { center: [middle[2], middle[0]], turns };
+                    self.arc_to(&lathe.block, &target, round, 0.0)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the entry of the profile is a rapid: into the cut it is, along the surface it is not.
+    pub(super) fn lathe_entry_speed(profile: &Profile) -> Speed {
+        if profile.entry()[1] < profile.start[1] - SLACK_MM { Speed::Rapid } else { Speed::Programmed }
+    }
+}
