@@ -234,10 +234,16 @@ impl<const N: usize> Guard<N> {
         let free = add_scaled(window.offset_mm, period_s, velocity);
         let same = norm(sub(free, wanted.offset_mm)) <= SAME_MM;
         let offset_mm = if same { wanted.offset_mm } else { free };
-        Command { rate, offset_mm: near_the_path(window, rate, offset_mm, deviation_mm) }
+        let near_mm = near_the_path(window, rate, offset_mm, deviation_mm);
+        // What the path takes back comes on top, but not without bound.
+        let step_mm = limit_norm(sub(near_mm, window.offset_mm), MOST_TAKEN_BACK * speed_mm_s * period_s);
+        let held = norm(sub(near_mm, offset_mm)) > 0.0;
+        Command { rate, offset_mm: if held { add_scaled(window.offset_mm, 1.0, step_mm) } else { offset_mm } }
     }
 }
 
+/// The bound of the deviation may move the command by this many times the highest speed of the offset.
+const MOST_TAKEN_BACK: f64 = 2.0;
 /// Offsets closer than this differ by rounding only, mm.
 const SAME_MM: f64 = 1e-12;
 
