@@ -24,8 +24,8 @@ const DIFFERENCES: &[(&str, &str)] = &[
     ("iniparam", "needs an INI file"),
 ];
 
-/// The tool that the threading test prints the length of, inches, and the one without length of the facing test.
-const TOOLS: &str = "T4 Z0.7\nT2 Z0";
+/// The tool that the threading test prints the length of, inches, and the one of the facing test.
+const TOOLS: &str = "T4 Z0.7\nT2 Z0.1";
 
 #[derive(Debug, PartialEq)]
 struct Move {
