@@ -329,7 +329,9 @@ impl Interpreter {
                 0 | 1 | 60 => self.event(EventKind::MCode { code: word.number, p: None, q: None }),
                 2 | 30 => {
                     self.event(EventKind::MCode { code: word.number, p: None, q: None });
+                    let open = self.lathe.is_some();
                     self.end_program();
+                    self.check_profile_end(open, word.at())?;
                     self.check_no_curve(block)?;
                 }
                 _ => {}
@@ -342,6 +344,7 @@ impl Interpreter {
     pub(super) fn end_program(&mut self) {
         if !self.ended {
             self.ended = true;
+            self.lathe = None;
             self.compensation = None;
             self.release();
             self.event(EventKind::ProgramEnd);

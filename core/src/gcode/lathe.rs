@@ -141,6 +141,19 @@ impl Interpreter {
         Ok(Work::Rough { depth_mm, retraction_mm: distance(b'r', DEFAULT_RETRACTION)?, left_mm: distance(b'd', 0.0)? })
     }
 
+    /// The end of the program inside a profile: the cycle was not carried out.
+    pub(super) fn check_profile_end(&self, open: bool, at: std::ops::Range<usize>) -> Read<()> {
+        if !open {
+            return Ok(());
+        }
+        Err(Fault::new(
+            "gcode::lathe",
+            at,
+            "the program ends inside the profile of a lathe cycle: nothing of it is cut",
+        )
+        .hint("end the profile with endsub"))
+    }
+
     /// Keeps a step of the profile.
     #[cold]
     pub(super) fn keep(&mut self, step: Canon) {

@@ -322,7 +322,9 @@ impl Reader {
             Percent::NotSeen => self.percent = Percent::Open,
             Percent::Open => {
                 self.percent = Percent::Absent;
+                let open = self.interpreter.lathe.is_some();
                 self.interpreter.end_program();
+                self.interpreter.check_profile_end(open, at)?;
             }
             Percent::Absent => {
                 let fault = Fault::new("gcode::percent", at, "`%` ends the program, but no `%` begins it")

@@ -91,17 +91,17 @@ impl Profile {
         let sign_of = |axis: usize, skip: usize| {
             let first =
                 lathe.motions.iter().skip(skip).map(|motion| along(motion, axis)).find(|way| way.abs() > SLACK_MM);
-            first.map_or(1.0, f64::signum)
+            first.map(f64::signum)
         };
-        // The entry goes down to the profile, the rest comes back up to the surface.
+        // The profile comes back up to the surface; one that does not is left by its last point only, opposite to its entry.
+        let rest = sign_of(1, 1);
         let entry_way = along(&lathe.motions[0], 1);
-        let up = if entry_way.abs() > SLACK_MM { -entry_way.signum() } else { sign_of(1, 1) };
-        let side = Side { axes, signs: [sign_of(0, 1), up] };
+        let up = rest.unwrap_or(if entry_way > 0.0 { -1.0 } else { 1.0 });
+        let side = Side { axes, signs: [sign_of(0, 1).unwrap_or(1.0), up] };
         let curves: Vec<Curve> = lathe.motions.iter().map(|motion| side.curve(motion)).collect();
-        for (number, (curve, motion)) in curves.iter().zip(&lathe.motions).enumerate() {
-            let axes = if number == 0 { &[0][..] } else { &[0, 1][..] };
-            if let Some(&axis) = axes.iter().find(|&&axis| goes_back(curve, axis)) {
-                return Err(lathe.not_monotonic(motion.line, side.axes[axis], number == 0));
+        for (curve, motion) in curves.iter().zip(&lathe.motions).skip(1) {
+            if let Some(axis) = (0..2).find(|&axis| goes_back(curve, axis)) {
+                return Err(lathe.not_monotonic(motion.line, side.axes[axis]));
             }
         }
         let [first, rest @ ..] = curves.as_slice() else {
@@ -112,7 +112,9 @@ impl Profile {
                 lathe.refuse(lathe.motions[0].line, "the first motion leads to the profile and must be straight")
             );
         }
+        // An entry that would lead back is begun above its end.
         let start = side.of([lathe.start[0], lathe.start[1], lathe.start[2]]);
+        let start = [start[0].min(end_of(first)[0]), start[1]];
         Ok(Self { side, start, curves: rest.to_vec() })
     }
 
@@ -215,13 +217,8 @@ impl Lathe {
         Fault::new("gcode::lathe", self.block.at(b'q'), message)
     }
 
-    fn not_monotonic(&self, line: u32, axis: usize, is_entry: bool) -> Box<Fault> {
+    fn not_monotonic(&self, line: u32, axis: usize) -> Box<Fault> {
         let name = ["X", "Y", "Z"][axis];
-        if is_entry {
-            return self
-                .refuse(line, &format!("{name} goes the other way than in the rest of the profile"))
-                .hint("start the cycle (its X and Z) where the first motion of the profile does not turn back");
-        }
         self.refuse(line, &format!("{name} turns back; this version reads profiles without undercuts and pockets"))
             .hint("the first motion goes to the depth of the profile; behind it neither X nor Z may turn back")
     }

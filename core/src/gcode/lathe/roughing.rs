@@ -3,7 +3,7 @@
 use super::profile::{Profile, SLACK_MM, end_of, start_of};
 use super::{Lathe, MOST_PASSES};
 use crate::gcode::diagnostic::{Fault, Read};
-use crate::gcode::plane::{Curve, Point, length, minus};
+use crate::gcode::plane::{Curve, length, minus};
 use crate::gcode::state::Interpreter;
 use crate::gcode::travel::Speed;
 
@@ -23,6 +23,7 @@ impl Interpreter {
             return Err(Fault::new("gcode::lathe", lathe.block.at(b'q'), message).hint("make I larger"));
         }
         let side = profile.side;
+        self.lathe_line(lathe, side, start, Speed::Rapid)?;
         let mut pass = 0_u32;
         loop {
             let level = start[1] - f64::from(pass) * depth_mm;
@@ -34,9 +35,11 @@ impl Interpreter {
             let hit = [first_at(&profile.curves, level), level];
             self.lathe_line(lathe, side, begin, Speed::Rapid)?;
             self.lathe_line(lathe, side, hit, Speed::Programmed)?;
-            let away = |point: Point| [point[0] - retraction_mm, level + retraction_mm];
-            self.lathe_line(lathe, side, away(hit), Speed::Rapid)?;
-            self.lathe_line(lathe, side, away(begin), Speed::Rapid)?;
+            // Never past the middle of a short pass: the way back leads back.
+            let away_mm = retraction_mm.min(0.5 * (hit[0] - begin[0]).max(0.0));
+            let above = level + away_mm;
+            self.lathe_line(lathe, side, [hit[0] - away_mm, above], Speed::Rapid)?;
+            self.lathe_line(lathe, side, [begin[0] + away_mm, above], Speed::Rapid)?;
             self.lathe_line(lathe, side, begin, Speed::Rapid)?;
             pass += 1;
         }
