@@ -12,3 +12,29 @@ fn a_program_that_errs_ever_more_often_is_given_up() {
     assert!(last.message.contains("the rest of the program was not read"), "{}", last.message);
     assert!(reader.lines() < 1_000_000, "{} lines", reader.lines());
 }
+
+/// One line made millions of motions, which are held until they are read: gigabytes from forty bytes.
+#[test]
+fn no_line_makes_more_motions_than_fit_into_memory() {
+    for (name, text, place) in [
+        ("pecks", "G21 G90 F100\nG0 Z5\nG83 X1 Z-1000 R1 Q0.0002\nM2\n", 3),
+        ("holes", "G21 G91 F100\nG83 X1 Z-1 R1 Q0.01 L100000\nM2\n", 2),
+        (
+            "passes",
+            "G18 G21 G8 F100\nG0 X30 Z5\no1 sub\n#1 = 0\no1 while [#1 LT 2000]\nG1 X[10+#1*0.001] Z[-#1*0.001]\n#1 = [#1+1]\n\
+             o1 endwhile\no1 endsub\nG70 Q1 P9999\nM2\n",
+            10,
+        ),
+    ] {
+        let reader = Reader::from_text(name, text, Settings::default()).unwrap();
+        let (mut steps, mut faults) = (0, Vec::new());
+        for step in reader {
+            match step {
+                Ok(_) => steps += 1,
+                Err(fault) => faults.push(fault),
+            }
+        }
+        assert!(steps < 1_000_000, "{name}: {steps} steps");
+        assert!(faults.iter().any(|fault| fault.line == place), "{name}: {faults:?}");
+    }
+}

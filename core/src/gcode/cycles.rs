@@ -12,8 +12,8 @@ use super::travel::Speed;
 
 /// Distance that a peck backs off or stays above the last depth, mm and inch.
 const PECK_CLEARANCE: [f64; 2] = [0.254, 0.010];
-/// Pecks of one hole: more would be a mistake in Q (a micrometre of it gives this many in ten metres).
-const MOST_PECKS: f64 = 1e7;
+/// Pecks of one line, over all its holes: they are held in memory until they are read, and more would be a mistake in Q or L.
+const MOST_PECKS: f64 = 1e5;
 /// Holes of one line (L).
 const MOST_REPEATS: i64 = 100_000;
 
@@ -147,6 +147,13 @@ impl Interpreter {
         if self.at[hole.normal] < hole.clearance {
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
         }
+        let pecks = (hole.clearance - hole.bottom) / self.cycle.peck.unwrap_or(f64::INFINITY) * repeats as f64;
+        if matches!(self.cycle.code, 730 | 830) && pecks > MOST_PECKS {
+            let step = Short(self.cycle.peck.unwrap_or_default());
+            let message = format!("{pecks:.0} pecks of {step} mm in one line; it may have {MOST_PECKS}");
+            let hint = "is Q, the depth of a peck, or L, the number of holes, a slip?";
+            return Err(Fault::new("gcode::cycle", block.at_any(bit(b'q') | bit(b'l')), message).hint(hint));
+        }
         for _ in 0..repeats {
             let mut target = self.target(block)?;
             target[hole.normal] = self.at[hole.normal];
@@ -218,13 +225,6 @@ impl Interpreter {
     fn peck(&mut self, block: &Block, hole: &Hole) -> Read<()> {
         let &Hole { normal, bottom, clearance } = hole;
         let step = self.cycle.peck.unwrap_or(clearance - bottom);
-        if (clearance - bottom) / step > MOST_PECKS {
-            return Err(Fault::new(
-                "gcode::cycle",
-                block.at(b'q'),
-                format!("a peck of {} mm needs more than {MOST_PECKS} pecks", Short(step)),
-            ));
-        }
         let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };
         let mut depth = clearance - step;
         while depth > bottom {

@@ -16,7 +16,7 @@ use super::expression::INTEGER_WITHIN;
 use super::source::Mark;
 use super::state::{Interpreter, Position};
 
-/// Motions of a profile: it is kept in memory, and a drawing has far fewer.
+/// Motions of a profile, and of all passes along it: they are kept in memory, and a drawing has far fewer.
 const MOST_MOTIONS: usize = 100_000;
 /// Passes of one cycle: more is a mistake in I or P.
 const MOST_PASSES: f64 = 10_000.0;

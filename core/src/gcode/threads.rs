@@ -13,7 +13,7 @@ use super::travel::{Speed, distance};
 /// Shortest way of a probe, mm (LinuxCNC: 0.254 mm or 0.01 inch).
 const PROBE_LEAST_MM: f64 = 0.254;
 /// Passes of a thread: more is a mistake in J or R.
-const MOST_PASSES: u32 = 100_000;
+const MOST_PASSES: u32 = 20_000;
 
 impl Interpreter {
     /// G33 and G33.1: along with the spindle, `K` mm a revolution.

@@ -1,14 +1,21 @@
 //! G70: along the profile, from the first distance to the last in even steps.
 
-use super::Lathe;
 use super::profile::Profile;
-use crate::gcode::diagnostic::Read;
+use super::{Lathe, MOST_MOTIONS};
+use crate::gcode::codes::bit;
+use crate::gcode::diagnostic::{Fault, Read};
 use crate::gcode::state::Interpreter;
 use crate::gcode::travel::Speed;
 
 impl Interpreter {
     pub(super) fn finish_profile(&mut self, lathe: &Lathe, [first_mm, last_mm]: [f64; 2], passes: u32) -> Read<()> {
         let profile = Profile::new(lathe)?;
+        let motions = lathe.motions.len() as u64 * u64::from(passes);
+        if motions > MOST_MOTIONS as u64 {
+            let message = format!("{passes} passes along {} motions in one line", lathe.motions.len());
+            let fault = Fault::new("gcode::lathe", lathe.block.at_any(bit(b'p') | bit(b'q')), message);
+            return Err(fault.hint("the product may be 100000: cut the last passes with a G70 of their own"));
+        }
         for pass in 1..=passes {
             // The first pass already takes its share: D is what roughing has left.
             let distance_mm = first_mm + (last_mm - first_mm) * (f64::from(pass) / f64::from(passes));
