@@ -1,5 +1,6 @@
 //! What went wrong once, as small as it could be made.
 
+use feedwright::gcode::canon::Canon;
 use feedwright::gcode::{Reader, Settings};
 
 /// Found by mutation: each call made two more and an error, and the reader counted millions of them.
@@ -37,4 +38,28 @@ fn no_line_makes_more_motions_than_fit_into_memory() {
         assert!(steps < 1_000_000, "{name}: {steps} steps");
         assert!(faults.iter().any(|fault| fault.line == place), "{name}: {faults:?}");
     }
+}
+
+/// Found by mutation: behind a profile of one motion, which is not cut, the next motion began where the profile ended.
+#[test]
+fn a_profile_that_is_not_cut_moves_nothing() {
+    let text = "G18 G21 F400\no100 sub\nG1 X5000 Z-40\no100 endsub\nG72 Q100 X50 Z0 I3 R0.1\nG0 X0 Z0\nM30\n";
+    let steps = Reader::from_text("short.ngc", text, Settings::default()).unwrap().map(Result::unwrap);
+    let motions: Vec<_> =
+        steps.filter_map(|step| if let Canon::Motion(motion) = step { Some(motion) } else { None }).collect();
+    for pair in motions.windows(2) {
+        assert_eq!(pair[0].end_mm, pair[1].start_mm);
+    }
+    assert_eq!(motions.last().unwrap().start_mm, [50.0, 0.0, 0.0]);
+}
+
+/// Found by mutation: cutter compensation inside a profile let its motions out.
+#[test]
+fn a_profile_with_cutter_compensation_lets_nothing_out() {
+    let text =
+        "G18 G21 F400\nG0 X60 Z5\no1 sub\nG17\nG42.1 D1\nG1 X1\nG1 Z-5\nG40\nG18\nG1 X50\no1 endsub\nG72 Q1 I3\nM30\n";
+    let steps: Vec<_> = Reader::from_text("held.ngc", text, Settings::default()).unwrap().collect();
+    assert!(steps.iter().any(|step| step.as_ref().is_err_and(|fault| fault.message.contains("inside the profile"))));
+    let out = |step: &Result<Canon, _>| matches!(step, Ok(Canon::Motion(motion)) if (5..=11).contains(&motion.line));
+    assert!(!steps.iter().any(out), "{steps:?}");
 }

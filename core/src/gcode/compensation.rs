@@ -87,6 +87,11 @@ impl Interpreter {
                 }
             }
         };
+        if self.lathe.is_some() {
+            let message = format!("{} inside the profile of a lathe cycle", spelled(word.number));
+            let fault = Fault::new("gcode::compensation", word.at(), message);
+            return Err(fault.hint("the profile is the part's; leave the radius of the tool to the cycle's D"));
+        }
         // A negative diameter is the other side.
         let side = if diameter < 0.0 { -left } else { left };
         self.compensation = Some(Compensation { side, radius_mm: 0.5 * diameter.abs(), last: None });

@@ -14,8 +14,8 @@ use super::travel::Speed;
 const PECK_CLEARANCE: [f64; 2] = [0.254, 0.010];
 /// Pecks of one line, over all its holes: they are held in memory until they are read, and more would be a mistake in Q or L.
 const MOST_PECKS: f64 = 1e5;
-/// Holes of one line (L).
-const MOST_REPEATS: i64 = 100_000;
+/// Holes of one line (L): up to eight motions each.
+const MOST_REPEATS: i64 = 20_000;
 
 /// What a cycle keeps for the next line, mm and seconds.
 #[derive(Debug, Clone, Copy, Default)]

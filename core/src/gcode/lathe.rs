@@ -190,6 +190,9 @@ impl Interpreter {
         let block = &lathe.block;
         self.line = lathe.line;
         (self.modal.feed, self.modal.feed_unit_mm) = lathe.feed;
+        // Reading the profile has moved the reader, and not the tool.
+        self.here = lathe.start;
+        self.at = self.frame.to_program(&self.here);
         let refuse = |message: String| Fault::new("gcode::lathe", block.at(b'q'), message);
         if let Some((line, message)) = &lathe.fault {
             return Err(refuse(format!(
@@ -205,7 +208,6 @@ impl Interpreter {
             self.warnings.push(*refuse(message));
             return Ok(());
         }
-        self.here = lathe.start;
         let done = match lathe.work {
             Work::Finish { first_mm, last_mm, passes } => self.finish_profile(lathe, [first_mm, last_mm], passes),
             Work::Rough { depth_mm, retraction_mm, left_mm } => self.rough(lathe, depth_mm, retraction_mm, left_mm),
