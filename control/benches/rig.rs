@@ -4,6 +4,7 @@ use feedwright_control::contour_error::{ContourError, Estimator};
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
 use feedwright_control::identifier::Inputs;
+use feedwright_control::identifier::adaptation::UNKNOWNS;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::servo::ServoIdentifier;
 use feedwright_control::safety::Bounds;
@@ -50,7 +51,7 @@ pub(crate) fn horizon<const N: usize>(knots: usize) -> RecedingHorizon<N> {
     }
     let mut settings = receding_horizon::Settings::DEFAULT;
     settings.horizon.knots = knots;
-    RecedingHorizon::new(net, settings)
+    RecedingHorizon::new(net, &[[[0.0; UNKNOWNS]; UNKNOWNS]; N], settings)
 }
 
 /// What the tool of a [`Rig`] does; it is behind by 20 ms in either case.

@@ -28,9 +28,9 @@ pub const MAX_ENTRIES: usize = 2 * MOST_REACH as usize + 1;
 /// The window reaches this many times the last distance to both sides: the nearest point beyond a right-angled corner
 /// is no further along the path than 2.4 times the distance.
 const REACH_OF_ERROR: f64 = 3.0;
-/// Entries that [`locate`] looks at on either side: between standstill and full acceleration the lag of a servo changes
-/// by a third of its time constant.
-const LOCATE_REACH: i32 = 8;
+/// Entries that [`locate`] looks at on either side, at the least: between standstill and full acceleration the lag of a servo
+/// of 20 ms changes by a third.
+const LEAST_LOCATE_REACH: i32 = 8;
 /// A tool that stands becomes older by the knots of a feed period, rounded, and by as much as it trembles; entries.
 const STANDING: i32 = 2;
 /// Where the path runs back along itself, an old stretch is as near as the one that the tool is on, and following it leads
@@ -111,15 +111,16 @@ impl Estimator {
     }
 }
 
-/// The contour error of a predicted tool whose nearest knot is near the index `near`: the nearest point within
-/// eight knots. It does not look further, so that beside a corner a tool belongs to the side that its time
+/// The contour error of a predicted tool whose nearest knot is near the index `near`: the nearest point within `reach`
+/// entries, 8 to [`MOST_REACH`]. It does not look further, so that beside a corner a tool belongs to the side that its time
 /// belongs to, and not to the one that happens to be nearer.
 #[inline]
-pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i32) -> ContourError<N> {
+pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i32, reach: i32) -> ContourError<N> {
+    let reach = reach.clamp(LEAST_LOCATE_REACH, MOST_REACH);
     let [first, last] = window.range();
     let near = near.clamp(first, last);
     let (mut index, mut least) = (near, f64::INFINITY);
-    for candidate in (near - LOCATE_REACH).max(first)..=(near + LOCATE_REACH).min(last) {
+    for candidate in (near - reach).max(first)..=(near + reach).min(last) {
         let d = sub(window.knot(candidate).position_mm, tool_mm);
         if dot(d, d) < least {
             (index, least) = (candidate, dot(d, d));

@@ -43,11 +43,23 @@ impl<const P: usize> LeastSquares<P> {
     /// The estimate that fits best and lies near `mean`, where `weight` (above zero) says how much the prior counts.
     #[inline]
     pub fn estimate(&self, weight: f64, mean: &[f64; P]) -> [f64; P] {
+        let mut prior = [[0.0; P]; P];
+        for r in 0..P {
+            prior[r][r] = weight;
+        }
+        self.estimate_held(&prior, mean)
+    }
+
+    /// As [`Self::estimate`], with a weight for every direction: a symmetric positive matrix.
+    #[inline]
+    pub fn estimate_held(&self, prior: &[[f64; P]; P], mean: &[f64; P]) -> [f64; P] {
         let mut a = self.information;
         let mut b = self.right;
         for r in 0..P {
-            a[r][r] += weight;
-            b[r] += weight * mean[r];
+            for c in 0..P {
+                a[r][c] += prior[r][c];
+                b[r] += prior[r][c] * mean[c];
+            }
         }
         cholesky(&mut a, &mut b, P);
         b

@@ -309,10 +309,10 @@ fn near_the_path<const N: usize>(window: &Window<'_, N>, rate: f64, offset_mm: [
     let lead_s = dot(offset_mm, next.tangent) / next.feed_mm_s;
     // A float that is too large, or not a number, saturates; the window clamps it.
     let near = libm::round((ahead_s + lead_s) / window.servo_s()) as i32;
-    let mut nearest = locate(window, command_mm, near);
+    let mut nearest = locate(window, command_mm, near, 0);
     // Behind, the knots are as far apart as the rate made them, and the guess may be off.
     for _ in 0..MOST_LOOKS {
-        let again = locate(window, command_mm, nearest.index);
+        let again = locate(window, command_mm, nearest.index, 0);
         if again.index == nearest.index {
             break;
         }

@@ -94,7 +94,7 @@ macro_rules! entry {
 const RHO: Parameter = parameter("rho", [1e-5, 0.1], Settings::DEFAULT.inversion.rho);
 const ETA: Parameter = parameter("eta", [1e-3, 10.0], Settings::DEFAULT.inversion.eta);
 const RATE_WEIGHT: Parameter =
-    parameter("rate_weight_s2", [1e-9, 1e-4], receding_horizon::Settings::DEFAULT.horizon.rate_weight);
+    parameter("rate_weight_s2", [1e-11, 1e-4], receding_horizon::Settings::DEFAULT.horizon.rate_weight);
 
 const VELOCITY_GAIN: Parameter = parameter("velocity_gain", [0.5, 1.5], Gains::EXACT.velocity);
 const ACCELERATION_GAIN: Parameter = parameter("acceleration_gain", [0.0, 2.0], Gains::EXACT.acceleration);
@@ -376,7 +376,7 @@ fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
 
 fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
     let receding_horizon::Settings { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
-    (horizon.knots, horizon.rate_weight, horizon.change_weight) = (horizon::MOST_KNOTS, values[0], 0.0);
+    (horizon.knots, horizon.rate_weight) = (horizon::MOST_KNOTS, values[0]);
     let servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
     Box::new(ModelPredictive::new(setup.machine, model_predictive::Settings { servo_periods, horizon }))
 }
@@ -406,7 +406,8 @@ fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, _: &[f64]) -> Box<dyn
     let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
     let mut settings = receding_horizon::Settings::DEFAULT;
     settings.servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
-    Box::new(RecedingHorizon::new(identified.net, settings))
+    let controller: RecedingHorizon<N> = RecedingHorizon::new(identified.net, &identified.spread, settings);
+    Box::new(controller)
 }
 
 /// Settings of the controllers that invert the paper's identifier.

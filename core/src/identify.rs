@@ -8,6 +8,7 @@ pub mod contour;
 pub mod servo;
 pub mod cache;
 mod excitation;
+mod spread;
 
 use feedwright_control::controller::{inverting, receding_horizon};
 use rand_xoshiro::Xoshiro256PlusPlus;

@@ -33,19 +33,45 @@ pub struct Settings {
 
 impl Settings {
     /// Values that serve.
-    pub const DEFAULT: Self = Self { gain: 0.3, forgetting: 0.99, noise_mm: 5e-5 };
+    pub const DEFAULT: Self = Self { gain: 0.3, forgetting: 0.99, noise_mm: 2e-5 };
+}
+
+/// The residuals to come of one axis, as far as the past foretells them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Foresight {
+    /// The last residuals, newest first, mm.
+    past_mm: [f64; LAGS],
+    coefficients: [f64; LAGS],
+    /// Largest residual lately, mm: no prediction goes beyond.
+    largest_mm: f64,
+}
+
+impl Foresight {
+    #[inline]
+    fn expected_mm(&self) -> f64 {
+        weighted(&self.coefficients, &self.past_mm).clamp(-self.largest_mm, self.largest_mm)
+    }
+
+    /// The next residual, mm; each call goes on by one knot.
+    #[inline]
+    pub fn next_mm(&mut self) -> f64 {
+        let next_mm = self.expected_mm();
+        self.shift(next_mm);
+        next_mm
+    }
+
+    fn shift(&mut self, newest_mm: f64) {
+        self.past_mm.copy_within(0..LAGS - 1, 1);
+        self.past_mm[0] = newest_mm;
+    }
 }
 
 /// Residuals of one axis and the model of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual {
-    /// The last residuals, newest first, mm.
-    past_mm: [f64; LAGS],
+    foresight: Foresight,
     sums: LeastSquares<LAGS>,
     prior: [f64; LAGS],
-    coefficients: [f64; LAGS],
-    /// Largest residual lately, mm: no prediction goes beyond.
-    largest_mm: f64,
     usual_mm: f64,
     settings: Settings,
 }
@@ -55,11 +81,9 @@ impl Residual {
     pub fn new(settings: Settings) -> Self {
         let prior = smoothing(settings.gain);
         Self {
-            past_mm: [0.0; LAGS],
+            foresight: Foresight { past_mm: [0.0; LAGS], coefficients: prior, largest_mm: 0.0 },
             sums: LeastSquares::EMPTY,
             prior,
-            coefficients: prior,
-            largest_mm: 0.0,
             usual_mm: 0.0,
             settings,
         }
@@ -68,44 +92,38 @@ impl Residual {
     /// The coefficients a.
     #[inline]
     pub fn coefficients(&self) -> &[f64; LAGS] {
-        &self.coefficients
+        &self.foresight.coefficients
     }
 
     /// What is expected next, mm.
     #[inline]
     pub fn expected_mm(&self) -> f64 {
-        weighted(&self.coefficients, &self.past_mm).clamp(-self.largest_mm, self.largest_mm)
+        self.foresight.expected_mm()
+    }
+
+    /// What is expected from here on.
+    #[inline]
+    pub fn foresight(&self) -> Foresight {
+        self.foresight
     }
 
     /// Takes in the residual of a knot, mm; returns the weight from 0 to 1 that it deserves.
     #[inline]
     pub fn push(&mut self, residual_mm: f64) -> f64 {
         let Settings { forgetting, noise_mm, .. } = self.settings;
+        let past_mm = self.foresight.past_mm;
         let innovation_mm = (residual_mm - self.expected_mm()).abs();
         let limit_mm = USUAL * self.usual_mm + noise_mm;
         let weight = if innovation_mm > limit_mm { limit_mm / innovation_mm } else { 1.0 };
         self.usual_mm += USUAL_GAIN * (innovation_mm.min(limit_mm) - self.usual_mm);
-        let surprise = residual_mm - weighted(&self.prior, &self.past_mm);
+        let surprise_mm = residual_mm - weighted(&self.prior, &past_mm);
         let root = libm::sqrt(weight);
-        self.sums.add(forgetting, &self.past_mm.map(|r| root * r), root * surprise);
+        self.sums.add(forgetting, &past_mm.map(|r| root * r), root * surprise_mm);
         let change = self.sums.estimate(noise_mm * noise_mm / (1.0 - forgetting).max(1e-6), &[0.0; LAGS]);
-        self.coefficients = core::array::from_fn(|j| self.prior[j] + change[j]);
-        self.shift(residual_mm);
-        self.largest_mm = (forgetting * self.largest_mm).max(residual_mm.abs());
+        self.foresight.coefficients = core::array::from_fn(|j| self.prior[j] + change[j]);
+        self.foresight.shift(residual_mm);
+        self.foresight.largest_mm = (forgetting * self.foresight.largest_mm).max(residual_mm.abs());
         weight
-    }
-
-    /// The residuals to come, one a call: shifts its own predictions in.
-    #[inline]
-    pub fn foresee(&mut self) -> f64 {
-        let next = self.expected_mm();
-        self.shift(next);
-        next
-    }
-
-    fn shift(&mut self, newest_mm: f64) {
-        self.past_mm.copy_within(0..LAGS - 1, 1);
-        self.past_mm[0] = newest_mm;
     }
 }
 
@@ -145,8 +163,9 @@ mod tests {
         for k in 0..400 {
             residual.push(vibration(k));
         }
+        let mut foresight = residual.foresight();
         for k in 400..410 {
-            let next = residual.foresee();
+            let next = foresight.next_mm();
             assert!((next - vibration(k)).abs() < 1e-4, "{k}: {next} {}", vibration(k));
         }
     }
@@ -157,7 +176,7 @@ mod tests {
         for k in 0..1000 {
             residual.push(if k % 2 == 0 { 1e-6 } else { -1e-6 });
         }
-        assert!(residual.foresee().abs() < 5e-7);
+        assert!(residual.expected_mm().abs() < 5e-7);
     }
 
     #[test]
@@ -168,8 +187,9 @@ mod tests {
             residual.push(1e-6 * libm::exp(0.2 * f64::from(k)));
         }
         let largest = 1e-6 * libm::exp(0.2 * 59.0);
+        let mut foresight = residual.foresight();
         for _ in 0..100 {
-            assert!(residual.foresee().abs() <= largest * (1.0 + 1e-12));
+            assert!(foresight.next_mm().abs() <= largest * (1.0 + 1e-12));
         }
     }
 }

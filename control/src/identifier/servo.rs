@@ -13,7 +13,8 @@
 //! inputs to outputs are classical (Rumelhart, Hinton and Williams 1986).
 
 use super::{HIDDEN, INPUTS, Inputs};
-use crate::activation::bipolar_sigmoid;
+use crate::activation::{bipolar_sigmoid, slope};
+use crate::vector::add_scaled;
 
 /// The following error that the network sees as 1: the lag of a 50 1/s position loop at 50 mm/s.
 pub const FOLLOWING_SCALE_MM: f64 = 1.0;
@@ -63,14 +64,42 @@ impl<const N: usize> ServoIdentifier<N> {
     /// e(k+1) - e(k), mm.
     #[inline]
     pub fn predict(&self, inputs: &Inputs<N>) -> [f64; N] {
+        add_scaled(self.predict_linear(inputs), 1.0, self.predict_hidden(inputs))
+    }
+
+    /// As [`Self::predict`], and its derivative in each axis to the inputs of that axis, mm for an input of 1.
+    #[inline]
+    pub fn predict_with_slopes(&self, inputs: &Inputs<N>) -> ([f64; N], Inputs<N>) {
         let hidden = self.hidden_nodes(inputs);
-        let mut increment = self.predict_linear(inputs);
+        let mut grown_mm = self.predict_linear(inputs);
+        let mut slopes = [[0.0; INPUTS]; N];
         for o in 0..N {
+            let mut weights = [0.0; HIDDEN];
             for j in 0..HIDDEN {
-                increment[o] += self.output[o][j] * hidden[j];
+                grown_mm[o] += self.output[o][j] * hidden[j];
+                weights[j] = self.output[o][j] * slope(hidden[j]);
+            }
+            for input in 0..INPUTS {
+                slopes[o][input] = self.linear[o][o][input];
+                for j in 0..HIDDEN {
+                    slopes[o][input] += weights[j] * self.hidden[o][input][j];
+                }
             }
         }
-        increment
+        (grown_mm, slopes)
+    }
+
+    /// The part of [`Self::predict`] that the hidden nodes make, mm.
+    #[inline]
+    pub fn predict_hidden(&self, inputs: &Inputs<N>) -> [f64; N] {
+        let hidden = self.hidden_nodes(inputs);
+        core::array::from_fn(|o| {
+            let mut sum = 0.0;
+            for j in 0..HIDDEN {
+                sum += self.output[o][j] * hidden[j];
+            }
+            sum
+        })
     }
 
     /// The part of [`Self::predict`] that the linear connection makes, mm.

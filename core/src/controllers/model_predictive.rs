@@ -8,12 +8,13 @@
 //! Source: Lam, Manzie and Good (2010), "Model predictive contouring control", for the contour error over a horizon; the
 //! progress along the path stays as planned here, since a time bought with error is not compared.
 
+use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 use feedwright_control::activation::tanh;
 use feedwright_control::controller::receding_horizon::lag_s;
-use feedwright_control::horizon::{self, MOST_KNOTS, Model, Plan, Response, Stretch};
-use feedwright_control::identifier::residual::{self, Residual};
+use feedwright_control::horizon::{self, Felt, MOST_KNOTS, Model, Plan, Stretch};
+use feedwright_control::identifier::residual::{self, Foresight, Residual};
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
@@ -40,6 +41,7 @@ pub struct ModelPredictive<const N: usize> {
     /// The model at rest at the origin.
     rest: Exact<N>,
     model: Exact<N>,
+    residuals: [Residual; N],
     plan: Plan<N>,
     /// Where the tool was expected, mm, without and with what the model was expected to miss.
     expected_mm: Option<[[f64; N]; 2]>,
@@ -50,7 +52,15 @@ impl<const N: usize> ModelPredictive<N> {
     /// With the model of a machine.
     pub fn new(machine: &Machine, settings: Settings) -> Self {
         let rest = Exact::new(machine, settings.servo_periods);
-        Self { settings, model: rest.clone(), rest, plan: Plan::default(), expected_mm: None, missed_mm: 0.0 }
+        Self {
+            settings,
+            model: rest.clone(),
+            rest,
+            residuals: [Residual::new(residual::Settings::DEFAULT); N],
+            plan: Plan::default(),
+            expected_mm: None,
+            missed_mm: 0.0,
+        }
     }
 
     /// The tool is where it is measured; its speed is the model's, which forgets its errors within the time constant of the
@@ -64,7 +74,7 @@ impl<const N: usize> ModelPredictive<N> {
                 let missed_mm = sub(position_mm, modelled_mm);
                 self.missed_mm = norm(sub(position_mm, expected_mm));
                 for axis in 0..N {
-                    self.model.residual[axis].push(missed_mm[axis]);
+                    self.residuals[axis].push(missed_mm[axis]);
                 }
             }
             None => {
@@ -72,12 +82,12 @@ impl<const N: usize> ModelPredictive<N> {
                 let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
                 let error_mm = sub(command_mm, position_mm);
                 for (axis, error_mm) in self.model.axes.iter_mut().zip(error_mm) {
-                    axis.last_error_rad = error_mm * axis.rad_per_mm;
+                    axis.state.error_rad = error_mm * axis.rad_per_mm;
                 }
             }
         }
         for (axis, position_mm) in self.model.axes.iter_mut().zip(position_mm) {
-            axis.angle_rad = position_mm * axis.rad_per_mm;
+            axis.state.angle_rad = position_mm * axis.rad_per_mm;
         }
     }
 }
@@ -89,6 +99,7 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
 
     fn reset(&mut self) {
         self.model.clone_from(&self.rest);
+        self.residuals = [Residual::new(residual::Settings::DEFAULT); N];
         self.plan.reset();
         self.expected_mm = None;
         self.missed_mm = 0.0;
@@ -104,26 +115,23 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
         self.take_in(window, measured.position_mm);
         let settings = &self.settings.horizon;
         let lag_s = lag_s(window, measured);
-        let mut step = self.plan.improve(&self.model, window, lag_s, settings);
+        let mut model = self.model.clone();
+        model.residual = self.residuals.each_ref().map(Residual::foresight);
+        self.plan.shift(1, settings);
+        let mut step = self.plan.improve(&model, window, lag_s, settings);
         for _ in 1..MOST_STEPS {
             if step.change_mm_s <= CONVERGED_MM_S {
                 break;
             }
-            step = self.plan.improve_again(&self.model, window, lag_s, settings);
+            step = self.plan.improve(&model, window, lag_s, settings);
         }
-        let now_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
-        let next = window.ahead(1);
-        let offset_mm = step.offset_mm;
-        let next_mm = add_scaled(next.position_mm, 1.0, offset_mm);
-        let stretch = Stretch { knot: 0, command_mm: [now_mm, next_mm], offset_mm: [window.offset_mm, offset_mm] };
-        let residual = self.model.residual;
-        let expected_mm = self.model.advance(window, &stretch);
-        let modelled_mm = std::array::from_fn(|i| self.model.axes[i].angle_rad / self.model.axes[i].rad_per_mm);
-        // What is expected to be missed is shifted in when it was missed.
-        self.model.residual = residual;
-        self.model.missed_mm = [0.0; N];
-        self.expected_mm = Some([modelled_mm, expected_mm]);
-        Command { rate: 1.0, offset_mm }
+        let stretch = Stretch::next(window, step.offset_mm);
+        let expected_mm = model.advance(window, &stretch, &mut [[0.0; N]; MOST_KNOTS]);
+        for (own, foreseen) in self.model.axes.iter_mut().zip(&model.axes) {
+            own.state = foreseen.state;
+        }
+        self.expected_mm = Some([self.model.tool_mm(), expected_mm]);
+        Command { rate: 1.0, offset_mm: step.offset_mm }
     }
 }
 
@@ -132,82 +140,42 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
 struct Exact<const N: usize> {
     axes: [ExactAxis; N],
     servo_periods: u32,
-    substeps: u32,
-    servo_s: f64,
-    mechanics_s: f64,
-    response: Response<N>,
-    residual: [Residual; N],
+    step: ServoPeriod,
+    residual: [Foresight; N],
     /// Sum of what it is expected to miss on the way, mm.
     missed_mm: [f64; N],
     lag_s: f64,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct ExactAxis {
-    parameters: Axis,
-    rad_per_mm: f64,
-    angle_rad: f64,
-    speed_rad_s: f64,
-    last_error_rad: f64,
-}
-
-impl ExactAxis {
-    /// One servo period at a command, friction scaled by `friction`.
-    fn step(&mut self, command_mm: f64, servo_s: f64, mechanics_s: f64, substeps: u32, friction: f64) {
-        let axis = &self.parameters;
-        let error_rad = command_mm * self.rad_per_mm - self.angle_rad;
-        let reference = axis.kp_1_s * error_rad + axis.kd * (error_rad - self.last_error_rad) / servo_s;
-        self.last_error_rad = error_rad;
-        for _ in 0..substeps {
-            let w = self.speed_rad_s;
-            let torque = (axis.kv_nm_s_per_rad * (reference - w)).clamp(-axis.torque_limit_nm, axis.torque_limit_nm);
-            let [sign] = tanh([w / axis.coulomb_smoothing_rad_s]);
-            let load = axis.viscous_friction_nm_s * w + friction * axis.coulomb_friction_nm * sign;
-            self.speed_rad_s += mechanics_s / axis.inertia_kg_m2 * (torque - load);
-            self.angle_rad += mechanics_s * self.speed_rad_s;
-        }
-    }
 }
 
 impl<const N: usize> Exact<N> {
     fn new(machine: &Machine, servo_periods: u32) -> Self {
         let axes = std::array::from_fn(|i| {
             let parameters = machine.axes[i.min(machine.axes.len() - 1)];
-            let rad_per_mm = TAU / parameters.lead_mm_per_rev;
-            ExactAxis { parameters, rad_per_mm, angle_rad: 0.0, speed_rad_s: 0.0, last_error_rad: 0.0 }
+            ExactAxis {
+                parameters,
+                rad_per_mm: TAU / parameters.lead_mm_per_rev,
+                state: State::default(),
+                slopes: [State::default(); MOST_KNOTS],
+            }
         });
         let lag_s = axes.iter().map(|axis: &ExactAxis| 1.0 / axis.parameters.kp_1_s).sum::<f64>() / N as f64;
         let period = machine.period;
-        let mut exact = Self {
+        Self {
             axes,
             servo_periods,
-            substeps: period.mechanics_per_servo,
-            servo_s: period.servo_s,
-            mechanics_s: period.mechanics_s,
-            response: [[[0.0; N]; N]; MOST_KNOTS],
-            residual: [Residual::new(residual::Settings::DEFAULT); N],
+            step: ServoPeriod {
+                servo_s: period.servo_s,
+                mechanics_s: period.mechanics_s,
+                substeps: period.mechanics_per_servo,
+            },
+            residual: [Residual::new(residual::Settings::DEFAULT).foresight(); N],
             missed_mm: [0.0; N],
             lag_s,
-        };
-        exact.response = exact.linear_response();
-        exact
+        }
     }
 
-    /// R(m) without Coulomb friction: an offset that moves at 1 mm/s for one feed period and stays.
-    fn linear_response(&self) -> Response<N> {
-        let mut response = [[[0.0; N]; N]; MOST_KNOTS];
-        for (i, axis) in self.axes.iter().enumerate() {
-            let mut axis = *axis;
-            let mut command_mm: f64 = 0.0;
-            for (m, at) in response.iter_mut().enumerate() {
-                for _ in 0..self.servo_periods {
-                    axis.step(command_mm, self.servo_s, self.mechanics_s, self.substeps, 0.0);
-                    command_mm += if m == 0 { self.servo_s } else { 0.0 };
-                }
-                at[i][i] = axis.angle_rad / axis.rad_per_mm;
-            }
-        }
-        response
+    fn tool_mm(&self) -> [f64; N] {
+        std::array::from_fn(|i| self.axes[i].state.angle_rad / self.axes[i].rad_per_mm + self.missed_mm[i])
     }
 }
 
@@ -216,24 +184,96 @@ impl<const N: usize> Model<N> for Exact<N> {
         self.lag_s
     }
 
-    fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>) -> [f64; N] {
+    fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>, felt: &mut Felt<N>) -> [f64; N] {
         let [from_mm, to_mm] = stretch.offset_mm;
         for phase in 0..self.servo_periods {
-            let ahead = stretch.knot as u32 * self.servo_periods + phase;
-            let path_mm = window.preview.at(window.tau_s + f64::from(ahead) * self.servo_s).position_mm;
+            let ahead = stretch.period as u32 * self.servo_periods + phase;
+            let path_mm = window.preview.at(window.tau_s + f64::from(ahead) * self.step.servo_s).position_mm;
             let part = f64::from(phase) / f64::from(self.servo_periods);
+            let moved_s = std::array::from_fn(|knot| match knot.cmp(&stretch.knot()) {
+                Ordering::Less => stretch.periods_per_knot as f64 * window.feed_period_s,
+                Ordering::Equal => (stretch.elapsed(knot) as f64 + part) * window.feed_period_s,
+                Ordering::Greater => 0.0,
+            });
             for (i, axis) in self.axes.iter_mut().enumerate() {
                 let command_mm = path_mm[i] + from_mm[i] + part * (to_mm[i] - from_mm[i]);
-                axis.step(command_mm, self.servo_s, self.mechanics_s, self.substeps, 1.0);
+                axis.advance(command_mm, &moved_s, &self.step, stretch.knot());
             }
         }
         for i in 0..N {
-            self.missed_mm[i] += self.residual[i].foresee();
+            self.missed_mm[i] += self.residual[i].next_mm();
+            for knot in 0..=stretch.knot() {
+                felt[knot][i] = self.axes[i].slopes[knot].angle_rad / self.axes[i].rad_per_mm;
+            }
         }
-        std::array::from_fn(|i| self.axes[i].angle_rad / self.axes[i].rad_per_mm + self.missed_mm[i])
+        self.tool_mm()
+    }
+}
+
+/// How a servo period is integrated.
+#[derive(Debug, Clone, Copy)]
+struct ServoPeriod {
+    servo_s: f64,
+    mechanics_s: f64,
+    substeps: u32,
+}
+
+/// An axis: its state, and the derivative of that to the rate of each knot, per mm/s.
+#[derive(Debug, Clone, Copy)]
+struct ExactAxis {
+    parameters: Axis,
+    rad_per_mm: f64,
+    state: State,
+    slopes: [State; MOST_KNOTS],
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct State {
+    angle_rad: f64,
+    speed_rad_s: f64,
+    /// Following error that the position loop saw last.
+    error_rad: f64,
+}
+
+impl State {
+    /// The position loop: takes in a command; the speed that it asks for, rad/s. Linear, and so its own derivative.
+    fn position_loop(&mut self, command_rad: f64, axis: &Axis, servo_s: f64) -> f64 {
+        let error_rad = command_rad - self.angle_rad;
+        let rate_rad_s = (error_rad - self.error_rad) / servo_s;
+        self.error_rad = error_rad;
+        axis.kp_1_s * error_rad + axis.kd * rate_rad_s
     }
 
-    fn response(&self, _: f64, _: usize) -> Response<N> {
-        self.response
+    fn accelerate(&mut self, torque_nm: f64, axis: &Axis, mechanics_s: f64) {
+        self.speed_rad_s += mechanics_s / axis.inertia_kg_m2 * torque_nm;
+        self.angle_rad += mechanics_s * self.speed_rad_s;
+    }
+}
+
+impl ExactAxis {
+    /// One servo period at a command that moves by `moved_s` mm for a rate of 1 mm/s in each of the knots up to `knot`.
+    fn advance(&mut self, command_mm: f64, moved_s: &[f64; MOST_KNOTS], step: &ServoPeriod, knot: usize) {
+        let axis = &self.parameters;
+        let asked_rad_s = self.state.position_loop(command_mm * self.rad_per_mm, axis, step.servo_s);
+        let mut slopes_asked = [0.0; MOST_KNOTS];
+        for (asked, (slope, moved_s)) in slopes_asked.iter_mut().zip(self.slopes.iter_mut().zip(moved_s)).take(knot + 1)
+        {
+            *asked = slope.position_loop(moved_s * self.rad_per_mm, axis, step.servo_s);
+        }
+        for _ in 0..step.substeps {
+            let w = self.state.speed_rad_s;
+            let wanted_nm = axis.kv_nm_s_per_rad * (asked_rad_s - w);
+            let torque_nm = wanted_nm.clamp(-axis.torque_limit_nm, axis.torque_limit_nm);
+            let [sign] = tanh([w / axis.coulomb_smoothing_rad_s]);
+            let load_nm = axis.viscous_friction_nm_s * w + axis.coulomb_friction_nm * sign;
+            self.state.accelerate(torque_nm - load_nm, axis, step.mechanics_s);
+            let gain = if torque_nm == wanted_nm { axis.kv_nm_s_per_rad } else { 0.0 };
+            let friction = axis.coulomb_friction_nm * (1.0 - sign * sign) / axis.coulomb_smoothing_rad_s;
+            let damping = axis.viscous_friction_nm_s + friction;
+            for (slope, asked) in self.slopes.iter_mut().zip(&slopes_asked).take(knot + 1) {
+                let torque_nm = gain * (asked - slope.speed_rad_s) - damping * slope.speed_rad_s;
+                slope.accelerate(torque_nm, axis, step.mechanics_s);
+            }
+        }
     }
 }

@@ -6,11 +6,14 @@
 //!
 //! over the n samples of all laps, by the normal equations and Cholesky's factorisation. L alone first; Wh then follows from
 //! L: its nodes see the sign of the tool's speed, which is where a servo is not linear. With Wh laid, the rest is one linear
-//! solution, in place of a descent that needs starting weights.
+//! solution, in place of a descent that needs starting weights. Last, the same once more, with everything filtered by the
+//! autoregression of what was missed: a disturbance of 25 Hz then takes no part in the weights.
 //!
 //! Source: ridge regression, Hoerl and Kennard (1970); hidden layers that are laid instead of trained, Schmidt, Kraaijveld
-//! and Duin (1992).
+//! and Duin (1992); generalised least squares, Clarke (1967).
 
+use feedwright_control::identifier::adaptation::Spread;
+use feedwright_control::identifier::residual::LAGS;
 use feedwright_control::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
 use feedwright_control::identifier::{FEED_SCALE_MM_S, HIDDEN, INPUTS, Inputs};
 use feedwright_control::vector::{scale, sub};
@@ -18,6 +21,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 
 use super::excitation::{Lap, record};
+use super::spread::spread;
 use super::{Programme, Rng};
 use crate::machine::Machine;
 
@@ -34,6 +38,8 @@ pub struct Identified<const N: usize> {
     pub fit_um: f64,
     /// Samples it was trained on.
     pub samples: usize,
+    /// How other machines of its kind differ.
+    pub spread: Spread<N>,
 }
 
 /// One sample: the inputs, and the growth of the following error that followed, mm.
@@ -46,15 +52,14 @@ struct Sample<const N: usize> {
 pub fn identify<const N: usize>(machine: &Machine, programme: &Programme, seed: u64) -> Identified<N> {
     let mut rng = Rng::seed_from_u64(seed);
     let period_s = programme.period_s(machine);
-    let laps = record::<N>(machine, programme, &mut rng);
-    let samples: Vec<Sample<N>> = laps.iter().flat_map(|lap| samples(lap, period_s)).collect();
-    let net = fit(&samples, period_s);
-    let squares = samples.iter().map(|sample| {
-        let missed = sub(sample.grown_mm, net.predict(&sample.inputs));
-        missed.iter().map(|m| m * m).sum::<f64>()
-    });
-    let fit_um = (squares.sum::<f64>() / (N * samples.len().max(1)) as f64).sqrt() * 1e3;
-    Identified { net, fit_um, samples: samples.len() }
+    let laps: Vec<Vec<Sample<N>>> =
+        record::<N>(machine, programme, &mut rng).iter().map(|lap| samples(lap, period_s)).collect();
+    let net = fit(&laps, period_s);
+    let missed = laps.iter().flatten().map(|sample| sub(sample.grown_mm, net.predict(&sample.inputs)));
+    let squares: f64 = missed.map(|missed| missed.iter().map(|m| m * m).sum::<f64>()).sum();
+    let samples: usize = laps.iter().map(Vec::len).sum();
+    let fit_um = (squares / (N * samples.max(1)) as f64).sqrt() * 1e3;
+    Identified { spread: spread(&net, period_s), net, fit_um, samples }
 }
 
 /// What the identifier would have seen from knot to knot of a lap, once its delays are filled.
@@ -71,11 +76,36 @@ fn samples<const N: usize>(lap: &Lap<N>, period_s: f64) -> Vec<Sample<N>> {
     samples
 }
 
-/// The linear part alone first, since the hidden nodes are laid along it; then both parts together.
-fn fit<const N: usize>(samples: &[Sample<N>], period_s: f64) -> ServoIdentifier<N> {
-    let linear = fit_outputs(samples, ServoIdentifier::IDEAL);
+/// The linear part alone first, since the hidden nodes are laid along it; then both parts together; then both again,
+/// filtered by what they miss.
+fn fit<const N: usize>(laps: &[Vec<Sample<N>>], period_s: f64) -> ServoIdentifier<N> {
+    let plain = [[0.0; LAGS]; N];
+    let linear = fit_outputs(laps, ServoIdentifier::IDEAL, &plain);
     let hidden = hidden(&linear, period_s);
-    fit_outputs(samples, ServoIdentifier { hidden, ..linear })
+    let net = fit_outputs(laps, ServoIdentifier { hidden, ..linear }, &plain);
+    let filter = autoregression(laps, &net);
+    fit_outputs(laps, net, &filter)
+}
+
+/// The autoregression of what the network misses, axis by axis: what filters a vibration out of the samples, which would pass
+/// for a part of the machine otherwise.
+fn autoregression<const N: usize>(laps: &[Vec<Sample<N>>], net: &ServoIdentifier<N>) -> [[f64; LAGS]; N] {
+    let mut equations = vec![NormalEquations::new(LAGS); N];
+    for lap in laps {
+        let missed_mm: Vec<[f64; N]> =
+            lap.iter().map(|sample| sub(sample.grown_mm, net.predict(&sample.inputs))).collect();
+        for past in missed_mm.windows(LAGS + 1) {
+            for (axis, equations) in equations.iter_mut().enumerate() {
+                equations.add(&DVector::from_fn(LAGS, |lag, _| past[LAGS - 1 - lag][axis]), past[LAGS][axis]);
+            }
+        }
+    }
+    std::array::from_fn(|axis| {
+        let NormalEquations { square, .. } = &equations[axis];
+        // A machine that misses nothing has no pattern to filter.
+        let found = equations[axis].solve(RIDGE * square.trace() / LAGS as f64 + f64::MIN_POSITIVE);
+        found.map_or([0.0; LAGS], |found| std::array::from_fn(|lag| found[lag]))
+    })
 }
 
 /// Speeds over which a hidden node turns its sign, mm/s: those at which Coulomb friction does, and the change of speed
@@ -111,25 +141,36 @@ fn hidden<const N: usize>(linear: &ServoIdentifier<N>, period_s: f64) -> [[[f64;
     hidden
 }
 
-/// The least squares over the linear connection and the outputs of the hidden nodes, as they are.
-fn fit_outputs<const N: usize>(samples: &[Sample<N>], net: ServoIdentifier<N>) -> ServoIdentifier<N> {
+/// The least squares over the linear connection and the outputs of the hidden nodes, which stay as they are, of the samples
+/// behind a filter.
+fn fit_outputs<const N: usize>(
+    laps: &[Vec<Sample<N>>],
+    net: ServoIdentifier<N>,
+    filter: &[[f64; LAGS]; N],
+) -> ServoIdentifier<N> {
     let nodes = if net.hidden.as_flattened().as_flattened().iter().all(|w| *w == 0.0) { 0 } else { HIDDEN };
     let unknowns = N * INPUTS + nodes;
-    let mut square = DMatrix::<f64>::identity(unknowns, unknowns) * (RIDGE * samples.len() as f64);
-    let mut right = vec![DVector::<f64>::zeros(unknowns); N];
-    let mut seen = DVector::<f64>::zeros(unknowns);
-    for sample in samples {
-        let hidden = net.hidden_nodes(&sample.inputs);
-        let all = sample.inputs.as_flattened().iter().chain(&hidden[..nodes]);
-        seen.iter_mut().zip(all).for_each(|(seen, value)| *seen = *value);
-        square.ger(1.0, &seen, &seen, 1.0);
-        for (right, grown_mm) in right.iter_mut().zip(sample.grown_mm) {
-            right.axpy(grown_mm, &seen, 1.0);
+    let mut equations = vec![NormalEquations::new(unknowns); N];
+    for lap in laps {
+        let seen: Vec<DVector<f64>> = lap.iter().map(|sample| seen(&net, sample, nodes)).collect();
+        for k in LAGS..lap.len() {
+            for (axis, equations) in equations.iter_mut().enumerate() {
+                let (mut inputs, mut grown_mm) = (seen[k].clone(), lap[k].grown_mm[axis]);
+                for (lag, coefficient) in filter[axis].iter().enumerate() {
+                    inputs.axpy(-coefficient, &seen[k - 1 - lag], 1.0);
+                    grown_mm -= coefficient * lap[k - 1 - lag].grown_mm[axis];
+                }
+                equations.add(&inputs, grown_mm);
+            }
         }
     }
-    // With the ridge the matrix is positive definite unless a sample is not finite: then nothing was identified.
-    let Some(factor) = square.cholesky() else { return ServoIdentifier::IDEAL };
-    let solutions: Vec<_> = right.iter().map(|right| factor.solve(right)).collect();
+    let samples: usize = laps.iter().map(Vec::len).sum();
+    let mut solutions = Vec::new();
+    for equations in &equations {
+        // With the ridge the matrix is positive definite unless a sample is not finite: then nothing was identified.
+        let Some(solution) = equations.solve(RIDGE * samples as f64) else { return ServoIdentifier::IDEAL };
+        solutions.push(solution);
+    }
     let linear = std::array::from_fn(|o| {
         std::array::from_fn(|axis| std::array::from_fn(|input| solutions[o][axis * INPUTS + input]))
     });
@@ -137,4 +178,36 @@ fn fit_outputs<const N: usize>(samples: &[Sample<N>], net: ServoIdentifier<N>) -
         std::array::from_fn(|node| if node < nodes { solutions[o][N * INPUTS + node] } else { 0.0 })
     });
     ServoIdentifier { linear, output, ..net }
+}
+
+/// The inputs of a sample, and the first hidden nodes at them.
+fn seen<const N: usize>(net: &ServoIdentifier<N>, sample: &Sample<N>, nodes: usize) -> DVector<f64> {
+    let hidden = net.hidden_nodes(&sample.inputs);
+    let all = sample.inputs.as_flattened().iter().chain(&hidden[..nodes]);
+    DVector::from_iterator(N * INPUTS + nodes, all.copied())
+}
+
+/// The sums of a least-squares fit.
+#[derive(Debug, Clone)]
+struct NormalEquations {
+    square: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+impl NormalEquations {
+    fn new(unknowns: usize) -> Self {
+        Self { square: DMatrix::zeros(unknowns, unknowns), right: DVector::zeros(unknowns) }
+    }
+
+    fn add(&mut self, inputs: &DVector<f64>, output: f64) {
+        self.square.ger(1.0, inputs, inputs, 1.0);
+        self.right.axpy(output, inputs, 1.0);
+    }
+
+    /// The solution with a ridge on the diagonal; none where the sums are not finite, or all zero.
+    fn solve(&self, ridge: f64) -> Option<DVector<f64>> {
+        let mut square = self.square.clone();
+        (0..square.nrows()).for_each(|i| square[(i, i)] += ridge);
+        Some(square.cholesky()?.solve(&self.right))
+    }
 }
