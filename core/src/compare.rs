@@ -28,7 +28,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::controllers::{CONTROLLERS, Entry, Knows};
+use crate::controllers::{Entry, Knows};
 use crate::feed::LimitsError;
 use crate::gcode;
 use crate::gcode::canon::Corner;
@@ -38,7 +38,7 @@ use crate::path::pieces::Pieces;
 use crate::path::{PathError, Step};
 use cut::Maker;
 use journal::Journal;
-use table::{Row, Table};
+use table::Row;
 use tolerance::AtTolerance;
 use tuning::Tuned;
 use verdict::Verdict;
@@ -255,14 +255,14 @@ pub fn compare(options: &Options, journal: &mut Journal, watch: &dyn Watch) -> R
             options.workpieces.iter().map(row).collect()
         })
         .collect();
-    let table = Table::new(rows?.into_iter().flatten().collect(), options);
+    let rows = table::in_order(&rows?.concat(), options);
     let at_tolerance = if options.at_tolerance { tolerance::at_tolerance(options, &tuned, watch)? } else { Vec::new() };
     Ok(Comparison {
         nominal: nominal.name.clone(),
         seed: options.seed,
-        verdicts: verdict::verdicts(&table.rows, &nominal.name, &options.workpieces),
+        verdicts: verdict::verdicts(&rows, &nominal.name, &options.workpieces),
         tuned,
-        rows: table.rows,
+        rows,
         at_tolerance,
     })
 }
@@ -297,9 +297,4 @@ fn tuned(options: &Options, journal: &mut Journal, watch: &dyn Watch) -> Result<
             Ok(tuned)
         })
         .collect()
-}
-
-/// All controllers of the library.
-pub fn all_controllers() -> Vec<&'static Entry> {
-    CONTROLLERS.iter().collect()
 }

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 use feedwright::compare::journal::Journal;
 use feedwright::compare::tolerance::TOLERANCE_UM;
-use feedwright::compare::{Comparison, Options, Tuning, Watch, Workpiece, all_controllers, compare, page};
-use feedwright::controllers::BASELINE;
+use feedwright::compare::{Comparison, Options, Tuning, Watch, Workpiece, compare, page};
+use feedwright::controllers::{BASELINE, CONTROLLERS, Entry};
 use feedwright::identify::cache;
 use feedwright::machine::{BUILT_IN, Machine, nearest};
 use feedwright::output::OutputFile;
@@ -57,7 +57,7 @@ fn options(args: &CompareArgs) -> Result<Options> {
     let mut workpieces = Workpiece::contours();
     let mut machines: Vec<Machine> =
         BUILT_IN.iter().map(|(name, _)| Machine::load(name.as_ref())).collect::<Result<_, _>>()?;
-    let mut controllers = all_controllers();
+    let mut controllers: Vec<&'static Entry> = CONTROLLERS.iter().collect();
     let known: Vec<String> = (workpieces.iter().map(|w| w.name.clone()))
         .chain(machines.iter().map(|m| m.name.clone()))
         .chain(controllers.iter().map(|c| c.name.to_owned()))

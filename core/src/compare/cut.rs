@@ -11,7 +11,7 @@ use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::report::Statistics;
 use crate::simulate::{Run, simulate_lap};
-use crate::trace::{Row as TraceRow, Sink};
+use crate::trace::{Outcome, Row as TraceRow, Sink};
 
 /// Makes a competitor for a machine.
 pub(super) struct Maker<'a> {
@@ -38,6 +38,13 @@ impl Maker<'_> {
 pub(super) struct Cut {
     pub(super) statistics: Statistics,
     pub(super) run: Run,
+}
+
+impl Cut {
+    /// Whether the controller brought it to its end on its own.
+    pub(super) fn is_sound(&self) -> bool {
+        self.run.outcome == Outcome::Completed && self.run.faded_out.is_none()
+    }
 }
 
 /// Cuts a workpiece, after as many laps of practice as the controller needs.
