@@ -59,6 +59,25 @@ pub fn simulate<const N: usize>(
     simulate_lap(machine, reference, controller, sinks)
 }
 
+/// Makes a controller ready for the last of its `laps`, the one that counts: it begins anew and cuts those before as
+/// practice, each a reference of its own. [`simulate_lap`] cuts the last.
+///
+/// # Errors
+/// Where there is no reference.
+pub fn practise<'p, const N: usize, E>(
+    machine: &Machine,
+    mut reference: impl FnMut() -> Result<Reference<'p>, E>,
+    controller: &mut dyn Controller<N>,
+    laps: u32,
+) -> Result<(), E> {
+    controller.reset();
+    for _ in 1..laps {
+        simulate_lap(machine, &mut reference()?, controller, &mut []).expect("without sinks nothing is written");
+        controller.next_lap();
+    }
+    Ok(())
+}
+
 /// As [`simulate`], with a controller that remembers the laps before.
 ///
 /// # Errors

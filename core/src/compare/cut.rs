@@ -10,7 +10,7 @@ use crate::feed::LimitsError;
 use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::report::Statistics;
-use crate::simulate::{Run, simulate_lap};
+use crate::simulate::{Run, practise, simulate_lap};
 use crate::trace::{Outcome, Row as TraceRow, Sink};
 
 /// Makes a competitor for a machine.
@@ -56,11 +56,7 @@ pub(super) fn cut_once(
     sinks: &mut [&mut dyn Sink],
 ) -> Result<Cut, LimitsError> {
     let reference = || Reference::from_steps(workpiece.steps.clone(), &(&machine.limits).into());
-    controller.reset();
-    for _ in 1..laps {
-        simulate_lap(machine, &mut reference()?, controller, &mut []).expect("without sinks nothing is written");
-        controller.next_lap();
-    }
+    practise(machine, reference, controller, laps)?;
     let mut statistics = Statistics::new();
     let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];
     all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
