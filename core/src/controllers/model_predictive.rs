@@ -172,7 +172,7 @@ impl ExactAxis {
 impl<const N: usize> Exact<N> {
     fn new(machine: &Machine, servo_periods: u32) -> Self {
         let axes = std::array::from_fn(|i| {
-            let parameters = machine.axes[i.min(machine.axes.len() - 1)];
+            let parameters = *machine.axis(i);
             let rad_per_mm = TAU / parameters.lead_mm_per_rev;
             ExactAxis { parameters, rad_per_mm, angle_rad: 0.0, speed_rad_s: 0.0, last_error_rad: 0.0 }
         });
