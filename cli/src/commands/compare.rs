@@ -23,12 +23,12 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Result<ExitCode> {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global().into_diagnostic()?;
     }
     let mut files = Files::create(args)?;
-    let mut journal = journal(&options);
+    let journal = journal(&options);
     if journal.known() > 0 {
         eprintln!("going on where an earlier run was interrupted: {} rows are there", journal.known());
     }
     let bar = Bar::new(quiet, 0);
-    let comparison = compare(&options, &mut journal, &bar)?;
+    let comparison = compare(&options, &journal, &bar)?;
     bar.clear();
     files.write(&comparison)?;
     journal.remove();

@@ -63,7 +63,7 @@ pub(super) fn at_tolerance(
 }
 
 fn one(name: &str, competitor: &Competitor, options: &Options, tuned: &[Tuned]) -> Result<AtTolerance, LimitsError> {
-    let machine = &options.machines[0];
+    let machine = options.nominal();
     let mut controller = Maker { competitor, nominal: machine, seed: options.seed, tuned }.make(machine);
     let contour = CONTOURS.iter().find(|contour| contour.name == name).expect("only contours are asked for");
     let mut holds = |feed_mm_s: f64| -> Result<Option<f64>, LimitsError> {
