@@ -279,7 +279,7 @@ fn cuts(options: &Options, tuned: &[Tuned], journal: &Journal, watch: &dyn Watch
                     Some(row) => row,
                     None => {
                         let controller = controller.get_or_insert_with(|| maker.make(machine));
-                        let row = cut::cut(workpiece, machine, competitor, &mut **controller)?;
+                        let row = cut::row(workpiece, machine, competitor, &mut **controller)?;
                         journal.add(&row);
                         row
                     }

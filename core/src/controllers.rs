@@ -69,7 +69,7 @@ const fn parameter(name: &'static str, range: [f64; 2], default: f64) -> Paramet
     Parameter { name, range, default }
 }
 
-/// A row from a function that is generic over the number of axes.
+/// A row from a function of `make` that is generic over the number of axes.
 macro_rules! entry {
     ($name:literal, $summary:literal, $source:literal, $knows:ident, laps: $laps:literal, [$($parameter:expr),*], $make:ident) => {
         Entry {
@@ -85,11 +85,13 @@ macro_rules! entry {
     };
 }
 
+// Of those that invert the paper's identifier.
 const RHO: Parameter = parameter("rho", [1e-5, 0.1], Inverting::DEFAULT.inversion.rho);
 const ETA: Parameter = parameter("eta", [1e-3, 10.0], Inverting::DEFAULT.inversion.eta);
+// Of the horizon, solved to convergence.
 const RATE_WEIGHT: Parameter =
     parameter("rate_weight_s2", [1e-9, 1e-4], receding_horizon::Settings::DEFAULT.horizon.rate_weight);
-
+// Parts of what the exact model calls for, and scales of its parameters.
 const VELOCITY_GAIN: Parameter = parameter("velocity_gain", [0.5, 1.5], Gains::EXACT.velocity);
 const ACCELERATION_GAIN: Parameter = parameter("acceleration_gain", [0.0, 2.0], Gains::EXACT.acceleration);
 const FRICTION_GAIN: Parameter = parameter("friction_gain", [0.0, 2.0], Gains::EXACT.friction);

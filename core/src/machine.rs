@@ -252,10 +252,11 @@ impl Machine {
         &self.axes[i.min(self.axes.len() - 1)]
     }
 
-    /// Content of the machine as a hexadecimal key for caches: equal for machines that behave equally, whatever their names.
+    /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move equally, whatever their
+    /// names and however long their PLC takes.
     ///
-    /// Hashed is the JSON of everything but `name`, `description` and `source`; field order and the shortest
-    /// round-trip form of numbers make it canonical.
+    /// Hashed is the JSON of periods, limits and axes; field order and the shortest round-trip form of numbers make it
+    /// canonical.
     pub fn fingerprint(&self) -> String {
         let content = serde_json::json!([self.period, self.limits, self.axes]);
         blake3::hash(content.to_string().as_bytes()).to_hex().to_string()

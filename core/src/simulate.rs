@@ -62,8 +62,8 @@ pub fn simulate<const N: usize>(
     simulate_lap(machine, reference, controller, sinks)
 }
 
-/// Makes a controller ready for the last of its `laps`, the one that counts: it begins anew and cuts those before as
-/// practice, each a reference of its own. [`simulate_lap`] cuts the last.
+/// Makes a controller ready for the lap that counts, the last of `laps`: it begins anew and cuts the others as practice,
+/// each on a reference of its own. The last is cut by [`simulate_lap`].
 ///
 /// # Errors
 /// Where there is no reference.
@@ -122,8 +122,7 @@ pub fn simulate_lap<const N: usize>(
             run.time_s = crossing(t_s, servo_s, last_tau_s, setpoint.tau_s, end_s);
         }
         last_tau_s = setpoint.tau_s;
-        let Measurement { position_mm, measured_mm, torque_nm } = plant.step(setpoint.command_mm);
-        let tool_mm = position_mm;
+        let Measurement { position_mm: tool_mm, measured_mm, torque_nm } = plant.step(setpoint.command_mm);
         seen_mm = measured_mm;
         let following_mm = distance(tool_mm, setpoint.command_mm);
         if following_mm.is_nan() || following_mm > lost_mm {

@@ -48,7 +48,7 @@ impl Cut {
 }
 
 /// Cuts a workpiece, after as many laps of practice as the controller needs.
-pub(super) fn cut_once(
+pub(super) fn cut(
     workpiece: &Workpiece,
     machine: &Machine,
     controller: &mut dyn Controller<2>,
@@ -65,14 +65,14 @@ pub(super) fn cut_once(
 }
 
 /// One row, its ratios still open.
-pub(super) fn cut(
+pub(super) fn row(
     workpiece: &Workpiece,
     machine: &Machine,
     competitor: &Competitor,
     controller: &mut dyn Controller<2>,
 ) -> Result<Row, LimitsError> {
     let mut errors = Errors::default();
-    let Cut { statistics, run } = cut_once(workpiece, machine, controller, competitor.entry.laps, &mut [&mut errors])?;
+    let Cut { statistics, run } = cut(workpiece, machine, controller, competitor.entry.laps, &mut [&mut errors])?;
     Ok(Row::new(workpiece, machine, competitor, &statistics, &run, errors.thinned()))
 }
 

@@ -8,7 +8,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::cut::{Cut, cut_once};
+use super::cut::{Cut, cut};
 use super::{TUNING_CONTOUR, Workpiece};
 use crate::controllers::{BASELINE, Choices, Entry, Make, Parameter, Setup};
 use crate::feed::LimitsError;
@@ -124,7 +124,7 @@ impl Trial<'_> {
         let choices = Choices { seed: self.seed, values: values.to_vec(), ..Choices::default() };
         let mut setup = Setup { machine: self.machine, choices: &choices, progress: &mut |_| {} };
         let mut controller = Make::<2>::make(self.entry, &mut setup);
-        cut_once(self.workpiece, self.machine, &mut *controller, self.entry.laps, &mut [])
+        cut(self.workpiece, self.machine, &mut *controller, self.entry.laps, &mut [])
     }
 
     fn values(&self, place: &[f64]) -> Vec<f64> {
