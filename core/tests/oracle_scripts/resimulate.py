@@ -34,7 +34,7 @@ import tomllib
 
 BUILT_IN = pathlib.Path(__file__).resolve().parents[3] / "machines"
 
-# At the same step nothing differs but the last bits of sine, tanh and sums, a millionth of a nanometre. It stays so where the
+# At the same step nothing differs but the last bits of sine, tanh and sums: some 1e-6 nm. It stays so where the
 # machine does not amplify them: friction grows with the speed everywhere, so two runs draw near to each other and no choice
 # between sticking and sliding hangs on a last bit; an encoder or torque step turns a last bit into something large where
 # a value lies within some 1e-12 of the middle between two steps, and the millions of values of a test do not. What would
