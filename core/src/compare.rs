@@ -7,6 +7,7 @@
 //!
 //! | File | What |
 //! |---|---|
+//! | `compare/cut.rs` | one cut |
 //! | `compare/tuning.rs` | the search that tunes every controller alike |
 //! | `compare/table.rs` | rows and their ratios |
 //! | `compare/verdict.rs` | what is claimed, row by row |
@@ -28,7 +29,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::controllers::{CONTROLLERS, Entry, Knows};
+use crate::controllers::{Entry, Knows};
 use crate::feed::LimitsError;
 use crate::gcode;
 use crate::gcode::canon::Corner;
@@ -38,7 +39,7 @@ use crate::path::pieces::Pieces;
 use crate::path::{PathError, Step};
 use cut::Maker;
 use journal::Journal;
-use table::{Row, Table};
+use table::Row;
 use tolerance::AtTolerance;
 use tuning::Tuned;
 use verdict::Verdict;
@@ -73,9 +74,7 @@ impl Workpiece {
             })
             .collect()
     }
-}
 
-impl Workpiece {
     /// A program, as it is read and cut elsewhere.
     ///
     /// # Errors
@@ -196,6 +195,11 @@ pub struct Comparison {
 }
 
 impl Options {
+    /// The machine that controllers know.
+    fn nominal(&self) -> &Machine {
+        &self.machines[0]
+    }
+
     /// All competitors in the order of the table.
     pub fn competitors(&self) -> Vec<Competitor> {
         let unseen = self.controllers.iter().map(|&entry| Competitor { entry, at_home: false });
@@ -217,11 +221,45 @@ impl Options {
 ///
 /// # Errors
 /// Where a machine has no sensible limits.
-pub fn compare(options: &Options, journal: &mut Journal, watch: &dyn Watch) -> Result<Comparison, LimitsError> {
-    let nominal = &options.machines[0];
+pub fn compare(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Comparison, LimitsError> {
     let tuned = tuned(options, journal, watch)?;
+    let rows = table::in_order(&cuts(options, &tuned, journal, watch)?, options);
+    let at_tolerance = if options.at_tolerance { tolerance::at_tolerance(options, &tuned, watch)? } else { Vec::new() };
+    let nominal = options.nominal().name.clone();
+    let verdicts = verdict::verdicts(&rows, &nominal, &options.workpieces);
+    Ok(Comparison { nominal, seed: options.seed, tuned, rows, verdicts, at_tolerance })
+}
+
+/// The values of all controllers that have parameters.
+fn tuned(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Vec<Tuned>, LimitsError> {
+    let tunable: Vec<_> = options.controllers.iter().filter(|entry| !entry.parameters.is_empty()).collect();
+    watch.tuning(tunable.len() as u64);
+    let values = |entry: &'static Entry| match &options.tuning {
+        Tuning::Search => {
+            let tuned = tuning::search(entry, options.nominal(), options.seed)?;
+            journal.add_tuned(&tuned);
+            Ok(tuned)
+        }
+        Tuning::Defaults => Ok(Tuned::defaults(entry)),
+        Tuning::Known(known) => {
+            let known = known.iter().find(|tuned| tuned.controller == entry.name);
+            Ok(known.cloned().unwrap_or_else(|| Tuned::defaults(entry)))
+        }
+    };
+    tunable
+        .par_iter()
+        .map(|entry| {
+            let tuned = journal.tuned(entry.name).map_or_else(|| values(entry), Ok)?;
+            watch.done();
+            Ok(tuned)
+        })
+        .collect()
+}
+
+/// One row for every workpiece, machine and competitor, by machine and competitor, ratios still open.
+fn cuts(options: &Options, tuned: &[Tuned], journal: &Journal, watch: &dyn Watch) -> Result<Vec<Row>, LimitsError> {
+    let nominal = options.nominal();
     let competitors = options.competitors();
-    // One maker each: what it has identified serves all workpieces.
     let pairs: Vec<(&Machine, &Competitor)> = options
         .machines
         .iter()
@@ -230,76 +268,27 @@ pub fn compare(options: &Options, journal: &mut Journal, watch: &dyn Watch) -> R
         .filter(|(machine, competitor)| !competitor.at_home || machine.name != nominal.name)
         .collect();
     watch.cutting((pairs.len() * options.workpieces.len()) as u64);
-    let journal = std::sync::Mutex::new(journal);
     let rows: Result<Vec<Vec<Row>>, LimitsError> = pairs
         .par_iter()
         .map(|(machine, competitor)| {
-            let maker = Maker { competitor, nominal, seed: options.seed, tuned: &tuned };
+            let maker = Maker { competitor, nominal, seed: options.seed, tuned };
+            // Made once and where it is needed: what it has identified serves all workpieces.
             let mut controller = None;
-            let row = |workpiece: &Workpiece| {
-                let known = journal.lock().ok().and_then(|journal| journal.row(&workpiece.name, machine, competitor));
-                let row = match known {
+            let mut row = |workpiece: &Workpiece| {
+                let row = match journal.row(&workpiece.name, machine, competitor) {
                     Some(row) => row,
                     None => {
                         let controller = controller.get_or_insert_with(|| maker.make(machine));
-                        let row = cut::cut(workpiece, machine, competitor, &mut **controller)?;
-                        if let Ok(mut journal) = journal.lock() {
-                            journal.add(&row);
-                        }
+                        let row = cut::row(workpiece, machine, competitor, &mut **controller)?;
+                        journal.add(&row);
                         row
                     }
                 };
                 watch.done();
                 Ok(row)
             };
-            options.workpieces.iter().map(row).collect()
+            options.workpieces.iter().map(&mut row).collect()
         })
         .collect();
-    let table = Table::new(rows?.into_iter().flatten().collect(), options);
-    let at_tolerance = if options.at_tolerance { tolerance::at_tolerance(options, &tuned, watch)? } else { Vec::new() };
-    Ok(Comparison {
-        nominal: nominal.name.clone(),
-        seed: options.seed,
-        verdicts: verdict::verdicts(&table.rows, &nominal.name, &options.workpieces),
-        tuned,
-        rows: table.rows,
-        at_tolerance,
-    })
-}
-
-/// The values of all controllers that have parameters.
-fn tuned(options: &Options, journal: &mut Journal, watch: &dyn Watch) -> Result<Vec<Tuned>, LimitsError> {
-    let tunable: Vec<_> = options.controllers.iter().filter(|entry| !entry.parameters.is_empty()).collect();
-    watch.tuning(tunable.len() as u64);
-    let journal = std::sync::Mutex::new(journal);
-    tunable
-        .par_iter()
-        .map(|entry| {
-            let known = journal.lock().ok().and_then(|journal| journal.tuned(entry.name));
-            let tuned = match known {
-                Some(tuned) => tuned,
-                None => match &options.tuning {
-                    Tuning::Search => {
-                        let tuned = tuning::search(entry, &options.machines[0], options.seed)?;
-                        if let Ok(mut journal) = journal.lock() {
-                            journal.add_tuned(&tuned);
-                        }
-                        tuned
-                    }
-                    Tuning::Defaults => Tuned::defaults(entry),
-                    Tuning::Known(known) => {
-                        let known = known.iter().find(|tuned| tuned.controller == entry.name);
-                        known.cloned().unwrap_or_else(|| Tuned::defaults(entry))
-                    }
-                },
-            };
-            watch.done();
-            Ok(tuned)
-        })
-        .collect()
-}
-
-/// All controllers of the library.
-pub fn all_controllers() -> Vec<&'static Entry> {
-    CONTROLLERS.iter().collect()
+    Ok(rows?.concat())
 }

@@ -1,29 +1,23 @@
 //! The table of controllers: a name, what it is, where it comes from, and how it is made.
 //!
 //! Help texts, the comparison, docs and conformance tests iterate over [`CONTROLLERS`].
+//!
+//! | File | What |
+//! |---|---|
+//! | `controllers/make.rs` | how each row is made for a machine |
+//! | `controllers/model_predictive.rs`, `controllers/iterative_learning.rs` | those that are not fit for a servo thread |
 
 pub mod iterative_learning;
+mod make;
 pub mod model_predictive;
 
-use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
-use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
-use feedwright_control::controller::feedforward::{AxisModel, Feedforward, Gains};
-use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
-use feedwright_control::controller::inverting::{self, Settings};
-use feedwright_control::controller::magnitude_only::MagnitudeOnly;
-use feedwright_control::controller::open_loop::OpenLoop;
-use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
-use feedwright_control::controller::two_dimensional::TwoDimensional;
-use feedwright_control::controller::zero_phase::{SampledAxis, ZeroPhase};
-use feedwright_control::{Controller, horizon, inversion};
-use iterative_learning::IterativeLearning;
-use model_predictive::ModelPredictive;
+use feedwright_control::Controller;
+use feedwright_control::controller::feedforward::Gains;
+use feedwright_control::controller::inverting::Settings as Inverting;
+use feedwright_control::controller::{contour_compensation, cross_coupled, fuzzy_feedrate, receding_horizon};
 use serde::Serialize;
 
-use crate::identify::cache::identified;
-use crate::identify::contour::{Identified, Training};
-use crate::identify::{Programme, servo};
-use crate::machine::{Axis, Machine, Period, nearest};
+use crate::machine::{Machine, nearest};
 
 /// One row of the table.
 pub struct Entry {
@@ -75,7 +69,7 @@ const fn parameter(name: &'static str, range: [f64; 2], default: f64) -> Paramet
     Parameter { name, range, default }
 }
 
-/// A row from a function that is generic over the number of axes.
+/// A row from a function of `make` that is generic over the number of axes.
 macro_rules! entry {
     ($name:literal, $summary:literal, $source:literal, $knows:ident, laps: $laps:literal, [$($parameter:expr),*], $make:ident) => {
         Entry {
@@ -85,17 +79,19 @@ macro_rules! entry {
             knows: Knows::$knows,
             laps: $laps,
             parameters: &[$($parameter),*],
-            plane: $make::<2>,
-            space: $make::<3>,
+            plane: make::$make::<2>,
+            space: make::$make::<3>,
         }
     };
 }
 
-const RHO: Parameter = parameter("rho", [1e-5, 0.1], Settings::DEFAULT.inversion.rho);
-const ETA: Parameter = parameter("eta", [1e-3, 10.0], Settings::DEFAULT.inversion.eta);
+// Of those that invert the paper's identifier.
+const RHO: Parameter = parameter("rho", [1e-5, 0.1], Inverting::DEFAULT.inversion.rho);
+const ETA: Parameter = parameter("eta", [1e-3, 10.0], Inverting::DEFAULT.inversion.eta);
+// Of the horizon, solved to convergence.
 const RATE_WEIGHT: Parameter =
     parameter("rate_weight_s2", [1e-11, 1e-4], receding_horizon::Settings::DEFAULT.horizon.rate_weight);
-
+// Parts of what the exact model calls for, and scales of its parameters.
 const VELOCITY_GAIN: Parameter = parameter("velocity_gain", [0.5, 1.5], Gains::EXACT.velocity);
 const ACCELERATION_GAIN: Parameter = parameter("acceleration_gain", [0.0, 2.0], Gains::EXACT.acceleration);
 const FRICTION_GAIN: Parameter = parameter("friction_gain", [0.0, 2.0], Gains::EXACT.friction);
@@ -302,122 +298,4 @@ impl std::fmt::Debug for Entry {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name)
     }
-}
-
-fn open_loop<const N: usize>(_: &mut Setup<'_>, _: &[f64]) -> Box<dyn Controller<N>> {
-    Box::new(OpenLoop)
-}
-
-fn cross_coupled<const N: usize>(_: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    Box::new(CrossCoupled::new(cross_coupled::Settings { kp: values[0], ki_1_s: values[1], kd_s: values[2] }))
-}
-
-fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let settings = contour_compensation::Settings { rate_1_s: values[0], filter_s: values[1] };
-    Box::new(ContourCompensation::new(settings))
-}
-
-fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    Box::new(FuzzyFeedrate::new(fuzzy_feedrate::Settings {
-        servo_periods: setup.machine.period.servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
-        error_mm: values[0],
-        change_mm_s: values[1],
-        slowest: values[2],
-        acceleration_mm_s2: setup.machine.limits.tangential_accel_mm_s2,
-    }))
-}
-
-fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let Period { servo_s, mechanics_s, .. } = setup.machine.period;
-    let axes = axes(setup.machine).map(|axis| AxisModel {
-        rad_per_mm: std::f64::consts::TAU / axis.lead_mm_per_rev,
-        kp_1_s: axis.kp_1_s,
-        kd: axis.kd,
-        kv_nm_s_per_rad: axis.kv_nm_s_per_rad,
-        // The speed loop answers to the speed at the start of a mechanics period, and so damps less than one without
-        // delay by so much inertia.
-        inertia_kg_m2: axis.inertia_kg_m2 - (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) * mechanics_s,
-        viscous_friction_nm_s: axis.viscous_friction_nm_s,
-        coulomb_friction_nm: axis.coulomb_friction_nm,
-        coulomb_smoothing_rad_s: axis.coulomb_smoothing_rad_s,
-    });
-    let gains = Gains { velocity: values[0], acceleration: values[1], friction: values[2] };
-    Box::new(Feedforward::new(axes, gains, servo_s))
-}
-
-fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let [lag_scale, inertia_scale] = [values[0], values[1]];
-    let sampled = axes(setup.machine).map(|axis| {
-        let inertia_kg_m2 = inertia_scale * axis.inertia_kg_m2;
-        sampled(&Axis { kp_1_s: axis.kp_1_s / lag_scale, inertia_kg_m2, ..axis }, &setup.machine.period)
-    });
-    Box::new(ZeroPhase::new(&sampled, setup.machine.period.servo_s))
-}
-
-/// The linear part of an axis over one servo period, as the plant integrates it.
-fn sampled(axis: &Axis, period: &Period) -> SampledAxis {
-    let over = |mut speed: f64, reference: f64| {
-        let mut travel_s = 0.0;
-        for _ in 0..period.mechanics_per_servo {
-            let torque_nm = axis.kv_nm_s_per_rad * (reference - speed) - axis.viscous_friction_nm_s * speed;
-            speed += period.mechanics_s * torque_nm / axis.inertia_kg_m2;
-            travel_s += period.mechanics_s * speed;
-        }
-        (speed, travel_s)
-    };
-    let ((alpha, gamma_s), (beta, delta_s)) = (over(1.0, 0.0), over(0.0, 1.0));
-    SampledAxis { alpha, beta, gamma_s, delta_s, kp_1_s: axis.kp_1_s, kd: axis.kd }
-}
-
-/// The first N axes of a machine; one that it does not have is like its last.
-fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
-    std::array::from_fn(|i| machine.axes[i.min(machine.axes.len() - 1)])
-}
-
-fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let receding_horizon::Settings { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
-    (horizon.knots, horizon.rate_weight) = (horizon::MOST_KNOTS, values[0]);
-    let servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
-    Box::new(ModelPredictive::new(setup.machine, model_predictive::Settings { servo_periods, horizon }))
-}
-
-fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let settings = iterative_learning::Settings {
-        gain: values[0],
-        lead_s: values[1],
-        cut_off_hz: values[2],
-        ..iterative_learning::Settings::DEFAULT
-    };
-    Box::new(IterativeLearning::new(settings, setup.machine.period.servo_s))
-}
-
-fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let mut settings = inverting(setup, values);
-    settings.inversion.gradient = inversion::Gradient::Exact;
-    Box::new(MagnitudeOnly::new(trained(setup).net, settings))
-}
-
-fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let settings = inverting(setup, values);
-    Box::new(TwoDimensional::new(trained(setup).net, settings))
-}
-
-fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, _: &[f64]) -> Box<dyn Controller<N>> {
-    let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
-    let mut settings = receding_horizon::Settings::DEFAULT;
-    settings.servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
-    let controller: RecedingHorizon<N> = RecedingHorizon::new(identified.net, &identified.spread, settings);
-    Box::new(controller)
-}
-
-/// Settings of the controllers that invert the paper's identifier.
-fn inverting(setup: &Setup<'_>, values: &[f64]) -> Settings {
-    let mut settings = Settings::DEFAULT;
-    settings.servo_periods = setup.machine.period.servo_periods(inverting::FEED_PERIOD_S);
-    (settings.inversion.rho, settings.inversion.eta) = (setup.choices.rho.unwrap_or(values[0]), values[1]);
-    settings
-}
-
-fn trained<const N: usize>(setup: &mut Setup<'_>) -> Identified<N> {
-    identified(setup.machine, &Programme::general(), &Training::default(), setup.choices.seed, setup.progress)
 }

@@ -214,17 +214,20 @@ impl Machine {
     /// # Errors
     /// Every fault found in the text, in one go.
     pub fn parse(file: &str, text: &str) -> Result<Self, MachineError> {
-        let invalid = |problems| MachineError::invalid(file, text, problems);
-        let Some(base) = layout::base(text).map_err(invalid)? else {
-            return layout::machine(text, None).map_err(invalid);
+        let invalid = |faults| MachineError::invalid(file, text, faults);
+        let document = layout::document(text).map_err(invalid)?;
+        let Some(base) = layout::base(&document).map_err(invalid)? else {
+            return layout::machine(&document, None).map_err(invalid);
         };
         // The base is a machine of its own: its faults are reported in its own text.
         let (base_file, base_text) = Self::base_text(file, &base)?;
-        if layout::base(&base_text).is_ok_and(|base| base.is_some()) {
-            return Err(invalid(vec![layout::chained(text, &base)]));
+        let invalid_base = |faults| MachineError::invalid(&base_file, &base_text, faults);
+        let base_document = layout::document(&base_text).map_err(invalid_base)?;
+        if layout::base(&base_document).is_ok_and(|base| base.is_some()) {
+            return Err(invalid(vec![layout::chained(&document, &base)]));
         }
-        layout::machine(&base_text, None).map_err(|faults| MachineError::invalid(&base_file, &base_text, faults))?;
-        layout::machine(text, Some(&base_text)).map_err(invalid)
+        layout::machine(&base_document, None).map_err(invalid_base)?;
+        layout::machine(&document, Some(&base_document)).map_err(invalid)
     }
 
     /// Name and text of a base: a built-in machine, or a file beside the one that names it.
@@ -244,10 +247,16 @@ impl Machine {
         self.axes.len()
     }
 
-    /// Content of the machine as a hexadecimal key for caches: equal for machines that behave equally, whatever their names.
+    /// The i-th axis; one that the machine does not have is like its last.
+    pub fn axis(&self, i: usize) -> &Axis {
+        &self.axes[i.min(self.axes.len() - 1)]
+    }
+
+    /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move equally, whatever their
+    /// names and however long their PLC takes.
     ///
-    /// Hashed is the JSON of everything but `name`, `description` and `source`; field order and the shortest
-    /// round-trip form of numbers make it canonical.
+    /// Hashed is the JSON of periods, limits and axes; field order and the shortest round-trip form of numbers make it
+    /// canonical.
     pub fn fingerprint(&self) -> String {
         let content = serde_json::json!([self.period, self.limits, self.axes]);
         blake3::hash(content.to_string().as_bytes()).to_hex().to_string()

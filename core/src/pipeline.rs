@@ -13,7 +13,7 @@ use crate::gcode::{self, Summary};
 use crate::plc::Plc;
 use crate::reference::Reference;
 use crate::report::{Report, Run, RunFacts, Series, Statistics};
-use crate::simulate::simulate_lap;
+use crate::simulate::{practise, simulate_lap};
 use crate::trace::Sink;
 pub use files::Outputs;
 use files::{Files, Timeline};
@@ -81,11 +81,7 @@ fn cut_once<const N: usize>(
     let reference = || -> Result<Reference<'_>, Error> {
         Ok(Reference::new(job.program()?, &(&job.machine.limits).into())?.with_plc(plc.clone()))
     };
-    controller.reset();
-    for _ in 1..entry.laps {
-        simulate_lap(&job.machine, &mut reference()?, controller, &mut [])?;
-        controller.next_lap();
-    }
+    practise(&job.machine, reference, controller, entry.laps)?;
     let mut reference = reference()?;
     let (mut statistics, mut series, mut timeline) =
         (Statistics::new(), Series::new(), Timeline::new(&job.machine.plc_events));

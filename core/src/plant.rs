@@ -110,18 +110,14 @@ impl Real {
 }
 
 impl<const N: usize> Plant<N> {
-    /// The first N axes of a machine, at rest at `start_mm`. An axis that the machine file does not have is like its
-    /// last.
+    /// The first N axes of a machine, at rest at `start_mm`.
     pub fn new(machine: &Machine, start_mm: [f64; N]) -> Self {
-        let axes = &machine.axes;
-        let each =
-            |value: fn(&Axis) -> f64| -> [f64; N] { std::array::from_fn(|i| value(&axes[i.min(axes.len() - 1)])) };
+        let each = |value: fn(&Axis) -> f64| -> [f64; N] { std::array::from_fn(|i| value(machine.axis(i))) };
         let rad_per_mm = each(|a| TAU / a.lead_mm_per_rev);
         let disturbance_rad_s = each(|a| TAU * a.disturbance_hz);
         let mechanics_s = machine.period.mechanics_s;
         let angle_rad: [f64; N] = std::array::from_fn(|i| start_mm[i] * rad_per_mm[i]);
-        let axis = |i: usize| &axes[i.min(axes.len() - 1)];
-        let real = (0..N).any(|i| !Real::is_ideal(axis(i)));
+        let real = (0..N).any(|i| !Real::is_ideal(machine.axis(i)));
         Self {
             servo_s: machine.period.servo_s,
             mechanics_s,
@@ -145,7 +141,7 @@ impl<const N: usize> Plant<N> {
             angle_rad,
             speed_rad_s: [0.0; N],
             last_error_rad: [0.0; N],
-            real: real.then(|| Box::new(std::array::from_fn(|i| Real::new(axis(i), machine, angle_rad[i])))),
+            real: real.then(|| Box::new(std::array::from_fn(|i| Real::new(machine.axis(i), machine, angle_rad[i])))),
         }
     }
 

@@ -3,6 +3,8 @@
 //! Row n: at t = n Ts the tick makes the position command from the reference and the tool position; the plant holds it for
 //! one servo period; the contour error is that of the tool at its end, against the exact path.
 
+mod tick_times;
+
 use std::time::Instant;
 
 use feedwright_control::controller::Controller;
@@ -13,6 +15,7 @@ use crate::machine::Machine;
 use crate::plant::{Measurement, Plant};
 use crate::reference::{Reference, Sample};
 use crate::trace::{Commanded, FadedOut, Outcome, Row, Sink};
+pub use tick_times::TickTimes;
 
 /// A stable loop of gain Kp lags by v / Kp. Where the command is this many times the lag of a rapid away, or
 /// [`LOST_MM`] where that is more, the tool does not follow any more.
@@ -59,6 +62,25 @@ pub fn simulate<const N: usize>(
     simulate_lap(machine, reference, controller, sinks)
 }
 
+/// Makes a controller ready for the lap that counts, the last of `laps`: it begins anew and cuts the others as practice,
+/// each on a reference of its own. The last is cut by [`simulate_lap`].
+///
+/// # Errors
+/// Where there is no reference.
+pub fn practise<'p, const N: usize, E>(
+    machine: &Machine,
+    mut reference: impl FnMut() -> Result<Reference<'p>, E>,
+    controller: &mut dyn Controller<N>,
+    laps: u32,
+) -> Result<(), E> {
+    controller.reset();
+    for _ in 1..laps {
+        simulate_lap(machine, &mut reference()?, controller, &mut []).expect("without sinks nothing is written");
+        controller.next_lap();
+    }
+    Ok(())
+}
+
 /// As [`simulate`], with a controller that remembers the laps before.
 ///
 /// # Errors
@@ -100,8 +122,7 @@ pub fn simulate_lap<const N: usize>(
             run.time_s = crossing(t_s, servo_s, last_tau_s, setpoint.tau_s, end_s);
         }
         last_tau_s = setpoint.tau_s;
-        let Measurement { position_mm, measured_mm, torque_nm } = plant.step(setpoint.command_mm);
-        let tool_mm = position_mm;
+        let Measurement { position_mm: tool_mm, measured_mm, torque_nm } = plant.step(setpoint.command_mm);
         seen_mm = measured_mm;
         let following_mm = distance(tool_mm, setpoint.command_mm);
         if following_mm.is_nan() || following_mm > lost_mm {
@@ -177,44 +198,4 @@ fn spread<const N: usize>(v: [f64; N]) -> [f64; 3] {
 
 fn distance<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     feedwright_control::vector::norm(feedwright_control::vector::sub(a, b))
-}
-
-/// Buckets an octave in the histogram of tick times: a quantile is good to 5 %.
-const BUCKETS_AN_OCTAVE: usize = 8;
-/// 2^32 ns is over four seconds.
-const OCTAVES: usize = 32;
-
-/// A histogram of tick times, logarithmic, of fixed size.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TickTimes {
-    counts: Box<[u64; BUCKETS_AN_OCTAVE * OCTAVES]>,
-    total: u64,
-}
-
-impl Default for TickTimes {
-    fn default() -> Self {
-        Self { counts: Box::new([0; BUCKETS_AN_OCTAVE * OCTAVES]), total: 0 }
-    }
-}
-
-impl TickTimes {
-    fn add(&mut self, ns: u128) {
-        let octaves = (ns.max(1) as f64).log2();
-        let bucket = (octaves * BUCKETS_AN_OCTAVE as f64) as usize;
-        self.counts[bucket.min(self.counts.len() - 1)] += 1;
-        self.total += 1;
-    }
-
-    /// The time that this part of the ticks stays below, us; zero without ticks.
-    pub fn quantile_us(&self, part: f64) -> f64 {
-        let wanted = part * self.total as f64;
-        let mut seen = 0;
-        for (bucket, count) in self.counts.iter().enumerate() {
-            seen += count;
-            if *count > 0 && seen as f64 >= wanted {
-                return ((bucket as f64 + 0.5) / BUCKETS_AN_OCTAVE as f64).exp2() * 1e-3;
-            }
-        }
-        0.0
-    }
 }

@@ -22,7 +22,7 @@ fn options() -> Options {
     }
 }
 
-fn with_threads(threads: usize, options: &Options, journal: &mut Journal) -> Comparison {
+fn with_threads(threads: usize, options: &Options, journal: &Journal) -> Comparison {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| compare(options, journal, &())).unwrap()
 }
@@ -34,21 +34,21 @@ fn json(comparison: &Comparison) -> String {
 #[test]
 fn the_table_is_the_same_for_any_number_of_threads_and_after_an_interruption() {
     let options = options();
-    let one = with_threads(1, &options, &mut Journal::none());
-    assert_eq!(json(&one), json(&with_threads(3, &options, &mut Journal::none())));
+    let one = with_threads(1, &options, &Journal::none());
+    assert_eq!(json(&one), json(&with_threads(3, &options, &Journal::none())));
 
     let folder = tempfile::tempdir().unwrap();
-    let mut journal = Journal::open(folder.path(), "key").unwrap();
-    with_threads(2, &options, &mut journal);
+    let journal = Journal::open(folder.path(), "key").unwrap();
+    with_threads(2, &options, &journal);
     drop(journal);
     let file = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
     let text = std::fs::read_to_string(&file).unwrap();
     // Killed in the middle of a line.
     std::fs::write(&file, &text[..text.len() * 2 / 3]).unwrap();
-    let mut journal = Journal::open(folder.path(), "key").unwrap();
+    let journal = Journal::open(folder.path(), "key").unwrap();
     let known = journal.known();
     assert!(known > 0 && known < one.rows.len(), "{known} of {}", one.rows.len());
-    assert_eq!(json(&one), json(&with_threads(2, &options, &mut journal)));
+    assert_eq!(json(&one), json(&with_threads(2, &options, &journal)));
     journal.remove();
     assert!(!file.exists());
 }
@@ -56,7 +56,7 @@ fn the_table_is_the_same_for_any_number_of_threads_and_after_an_interruption() {
 #[test]
 fn rows_are_complete_and_ratios_are_against_open_loop() {
     let options = options();
-    let comparison = with_threads(2, &options, &mut Journal::none());
+    let comparison = with_threads(2, &options, &Journal::none());
     // On the machine that is known, the identified competitor is the unseen one.
     let rows = options.workpieces.len() * (options.machines.len() * options.controllers.len() + 1);
     assert_eq!(comparison.rows.len(), rows);

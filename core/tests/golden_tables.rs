@@ -78,7 +78,7 @@ fn the_kept_comparison_is_what_the_program_makes() {
         tuning: Tuning::Known(kept.tuned.clone()),
         at_tolerance: false,
     };
-    let made = compare(&options, &mut Journal::none(), &()).unwrap();
+    let made = compare(&options, &Journal::none(), &()).unwrap();
     for row in &made.rows {
         let place = |other: &&Row| {
             (&other.contour, &other.machine, &other.controller) == (&row.contour, &row.machine, &row.controller)

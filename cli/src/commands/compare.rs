@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 use feedwright::compare::journal::Journal;
 use feedwright::compare::tolerance::TOLERANCE_UM;
-use feedwright::compare::{Comparison, Options, Tuning, Watch, Workpiece, all_controllers, compare, page};
-use feedwright::controllers::BASELINE;
+use feedwright::compare::{Comparison, Options, Tuning, Watch, Workpiece, compare, page};
+use feedwright::controllers::{BASELINE, CONTROLLERS, Entry};
 use feedwright::identify::cache;
 use feedwright::machine::{BUILT_IN, Machine, nearest};
 use feedwright::output::OutputFile;
@@ -23,12 +23,12 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Result<ExitCode> {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global().into_diagnostic()?;
     }
     let mut files = Files::create(args)?;
-    let mut journal = journal(&options);
+    let journal = journal(&options);
     if journal.known() > 0 {
         eprintln!("going on where an earlier run was interrupted: {} rows are there", journal.known());
     }
     let bar = Bar::new(quiet, 0);
-    let comparison = compare(&options, &mut journal, &bar)?;
+    let comparison = compare(&options, &journal, &bar)?;
     bar.clear();
     files.write(&comparison)?;
     journal.remove();
@@ -57,7 +57,7 @@ fn options(args: &CompareArgs) -> Result<Options> {
     let mut workpieces = Workpiece::contours();
     let mut machines: Vec<Machine> =
         BUILT_IN.iter().map(|(name, _)| Machine::load(name.as_ref())).collect::<Result<_, _>>()?;
-    let mut controllers = all_controllers();
+    let mut controllers: Vec<&'static Entry> = CONTROLLERS.iter().collect();
     let known: Vec<String> = (workpieces.iter().map(|w| w.name.clone()))
         .chain(machines.iter().map(|m| m.name.clone()))
         .chain(controllers.iter().map(|c| c.name.to_owned()))

@@ -10,8 +10,8 @@ use crate::feed::LimitsError;
 use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::report::Statistics;
-use crate::simulate::{Run, simulate_lap};
-use crate::trace::{Row as TraceRow, Sink};
+use crate::simulate::{Run, practise, simulate_lap};
+use crate::trace::{Outcome, Row as TraceRow, Sink};
 
 /// Makes a competitor for a machine.
 pub(super) struct Maker<'a> {
@@ -40,8 +40,15 @@ pub(super) struct Cut {
     pub(super) run: Run,
 }
 
+impl Cut {
+    /// Whether the controller brought it to its end on its own.
+    pub(super) fn is_sound(&self) -> bool {
+        self.run.outcome == Outcome::Completed && self.run.faded_out.is_none()
+    }
+}
+
 /// Cuts a workpiece, after as many laps of practice as the controller needs.
-pub(super) fn cut_once(
+pub(super) fn cut(
     workpiece: &Workpiece,
     machine: &Machine,
     controller: &mut dyn Controller<2>,
@@ -49,11 +56,7 @@ pub(super) fn cut_once(
     sinks: &mut [&mut dyn Sink],
 ) -> Result<Cut, LimitsError> {
     let reference = || Reference::from_steps(workpiece.steps.clone(), &(&machine.limits).into());
-    controller.reset();
-    for _ in 1..laps {
-        simulate_lap(machine, &mut reference()?, controller, &mut []).expect("without sinks nothing is written");
-        controller.next_lap();
-    }
+    practise(machine, reference, controller, laps)?;
     let mut statistics = Statistics::new();
     let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];
     all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
@@ -62,14 +65,14 @@ pub(super) fn cut_once(
 }
 
 /// One row, its ratios still open.
-pub(super) fn cut(
+pub(super) fn row(
     workpiece: &Workpiece,
     machine: &Machine,
     competitor: &Competitor,
     controller: &mut dyn Controller<2>,
 ) -> Result<Row, LimitsError> {
     let mut errors = Errors::default();
-    let Cut { statistics, run } = cut_once(workpiece, machine, controller, competitor.entry.laps, &mut [&mut errors])?;
+    let Cut { statistics, run } = cut(workpiece, machine, controller, competitor.entry.laps, &mut [&mut errors])?;
     Ok(Row::new(workpiece, machine, competitor, &statistics, &run, errors.thinned()))
 }
 

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 
 use serde::{Deserialize, Serialize};
 
@@ -21,10 +22,10 @@ enum Line {
     Row(Row),
 }
 
-/// The journal of one comparison.
+/// The journal of one comparison: what an earlier run has left, and the file to which this one adds.
 #[derive(Debug, Default)]
 pub struct Journal {
-    file: Option<(PathBuf, File)>,
+    file: Option<(PathBuf, Mutex<File>)>,
     rows: BTreeMap<[String; 3], Row>,
     tuned: BTreeMap<String, Tuned>,
 }
@@ -59,7 +60,7 @@ impl Journal {
         if !text.is_empty() && !text.ends_with('\n') {
             file.write_all(b"\n")?;
         }
-        journal.file = Some((path, file));
+        journal.file = Some((path, Mutex::new(file)));
         Ok(journal)
     }
 
@@ -76,11 +77,11 @@ impl Journal {
         self.tuned.get(controller).cloned()
     }
 
-    pub(super) fn add(&mut self, row: &Row) {
+    pub(super) fn add(&self, row: &Row) {
         self.write(&Line::Row(row.clone()));
     }
 
-    pub(super) fn add_tuned(&mut self, tuned: &Tuned) {
+    pub(super) fn add_tuned(&self, tuned: &Tuned) {
         self.write(&Line::Tuned(tuned.clone()));
     }
 
@@ -93,8 +94,9 @@ impl Journal {
     }
 
     /// A journal that cannot be written costs time after an interruption, nothing else.
-    fn write(&mut self, line: &Line) {
-        if let (Some((_, file)), Ok(mut text)) = (&mut self.file, serde_json::to_string(line)) {
+    fn write(&self, line: &Line) {
+        let file = self.file.as_ref().and_then(|(_, file)| file.lock().ok());
+        if let (Some(mut file), Ok(mut text)) = (file, serde_json::to_string(line)) {
             text.push('\n');
             let _ = file.write_all(text.as_bytes());
         }

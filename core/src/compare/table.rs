@@ -77,23 +77,17 @@ impl Row {
     }
 }
 
-/// All rows in order, ratios filled in.
-pub(super) struct Table {
-    pub(super) rows: Vec<Row>,
-}
-
-impl Table {
-    pub(super) fn new(cuts: Vec<Row>, options: &Options) -> Self {
-        let mut rows = Vec::with_capacity(cuts.len());
-        for workpiece in &options.workpieces {
-            for machine in &options.machines {
-                let here = cuts.iter().filter(|row| row.contour == workpiece.name && row.machine == machine.name);
-                let base = here.clone().find(|row| row.controller == BASELINE);
-                rows.extend(here.map(|row| against(row.clone(), base)));
-            }
+/// All rows by workpiece, then machine, in the order of the cuts otherwise; ratios filled in.
+pub(super) fn in_order(cuts: &[Row], options: &Options) -> Vec<Row> {
+    let mut rows = Vec::with_capacity(cuts.len());
+    for workpiece in &options.workpieces {
+        for machine in &options.machines {
+            let here = cuts.iter().filter(|row| row.contour == workpiece.name && row.machine == machine.name);
+            let base = here.clone().find(|row| row.controller == BASELINE);
+            rows.extend(here.map(|row| against(row.clone(), base)));
         }
-        Self { rows }
     }
+    rows
 }
 
 fn against(mut row: Row, base: Option<&Row>) -> Row {

@@ -3,12 +3,12 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::cut::{Maker, cut_once};
+use super::cut::{Maker, cut};
 use super::tuning::Tuned;
 use super::{CORNER, Competitor, Options, Watch, Workpiece};
 use crate::controllers::BASELINE;
 use crate::feed::LimitsError;
-use crate::path::contour::CONTOURS;
+use crate::path::contour::{CONTOURS, Contour};
 use crate::trace::Outcome;
 
 /// What the largest contour error may be, um.
@@ -40,15 +40,23 @@ pub(super) fn at_tolerance(
     tuned: &[Tuned],
     watch: &dyn Watch,
 ) -> Result<Vec<AtTolerance>, LimitsError> {
-    let smooth: Vec<&str> = CONTOURS.iter().filter(|contour| contour.is_smooth()).map(|contour| contour.name).collect();
-    let wanted = options.workpieces.iter().map(|w| w.name.as_str()).filter(|name| smooth.contains(name));
-    let pairs: Vec<_> = wanted.flat_map(|name| options.controllers.iter().map(move |&entry| (name, entry))).collect();
+    let named = |name: &str| CONTOURS.iter().find(|contour| contour.name == name && contour.is_smooth());
+    let contours = options.workpieces.iter().filter_map(|workpiece| named(&workpiece.name));
+    let pairs: Vec<_> =
+        contours.flat_map(|contour| options.controllers.iter().map(move |&entry| (contour, entry))).collect();
     watch.holding(pairs.len() as u64);
     let found: Result<Vec<AtTolerance>, LimitsError> = pairs
         .par_iter()
-        .map(|&(name, entry)| {
+        .map(|&(contour, entry)| {
             let competitor = Competitor { entry, at_home: false };
-            let row = one(name, &competitor, options, tuned)?;
+            let best = fastest(contour, &competitor, options, tuned)?;
+            let row = AtTolerance {
+                contour: contour.name.to_owned(),
+                controller: competitor.name(),
+                feed_mm_s: best.map(|best| best.feed_mm_s),
+                time_s: best.map(|best| best.time_s),
+                time_ratio: None,
+            };
             watch.done();
             Ok(row)
         })
@@ -62,41 +70,41 @@ pub(super) fn at_tolerance(
     Ok(found)
 }
 
-fn one(name: &str, competitor: &Competitor, options: &Options, tuned: &[Tuned]) -> Result<AtTolerance, LimitsError> {
-    let machine = &options.machines[0];
-    let mut controller = Maker { competitor, nominal: machine, seed: options.seed, tuned }.make(machine);
-    let contour = CONTOURS.iter().find(|contour| contour.name == name).expect("only contours are asked for");
-    let mut holds = |feed_mm_s: f64| -> Result<Option<f64>, LimitsError> {
-        let steps = contour.steps(feed_mm_s, CORNER).expect("the feedrate is one");
-        let workpiece = Workpiece { name: name.to_owned(), smooth: true, steps };
-        let cut = cut_once(&workpiece, machine, &mut *controller, competitor.entry.laps, &mut [])?;
-        let held = cut.run.outcome == Outcome::Completed && cut.statistics.max_um() <= TOLERANCE_UM;
-        Ok(held.then_some(cut.run.time_s))
-    };
-    let fastest = machine.limits.max_feed_mm_s;
-    let (mut low, mut high) = (SLOWEST_MM_S.ln(), fastest.ln());
-    let mut best = match holds(fastest)? {
-        Some(time_s) => return Ok(row(name, competitor, Some((fastest, time_s)))),
-        None => holds(SLOWEST_MM_S)?.map(|time_s| (SLOWEST_MM_S, time_s)),
-    };
-    if best.is_some() {
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            match holds(middle.exp())? {
-                Some(time_s) => (low, best) = (middle, Some((middle.exp(), time_s))),
-                None => high = middle,
-            }
-        }
-    }
-    Ok(row(name, competitor, best))
+/// A feedrate at which the tolerance holds, and the machining time there.
+#[derive(Clone, Copy)]
+struct Holding {
+    feed_mm_s: f64,
+    time_s: f64,
 }
 
-fn row(contour: &str, competitor: &Competitor, best: Option<(f64, f64)>) -> AtTolerance {
-    AtTolerance {
-        contour: contour.to_owned(),
-        controller: competitor.name(),
-        feed_mm_s: best.map(|(feed_mm_s, _)| feed_mm_s),
-        time_s: best.map(|(_, time_s)| time_s),
-        time_ratio: None,
+/// The fastest that is found, by bisection: nothing where the tolerance does not hold at the slowest.
+fn fastest(
+    contour: &Contour,
+    competitor: &Competitor,
+    options: &Options,
+    tuned: &[Tuned],
+) -> Result<Option<Holding>, LimitsError> {
+    let machine = options.nominal();
+    let mut controller = Maker { competitor, nominal: machine, seed: options.seed, tuned }.make(machine);
+    let mut holding = |feed_mm_s: f64| -> Result<Option<Holding>, LimitsError> {
+        let steps = contour.steps(feed_mm_s, CORNER).expect("the feedrate is one");
+        let workpiece = Workpiece { name: contour.name.to_owned(), smooth: true, steps };
+        let cut = cut(&workpiece, machine, &mut *controller, competitor.entry.laps, &mut [])?;
+        let holds = cut.run.outcome == Outcome::Completed && cut.statistics.max_um() <= TOLERANCE_UM;
+        Ok(holds.then_some(Holding { feed_mm_s, time_s: cut.run.time_s }))
+    };
+    let highest = machine.limits.max_feed_mm_s;
+    if let Some(at_highest) = holding(highest)? {
+        return Ok(Some(at_highest));
     }
+    let Some(mut best) = holding(SLOWEST_MM_S)? else { return Ok(None) };
+    let (mut low, mut high) = (SLOWEST_MM_S.ln(), highest.ln());
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        match holding(middle.exp())? {
+            Some(faster) => (low, best) = (middle, faster),
+            None => high = middle,
+        }
+    }
+    Ok(Some(best))
 }

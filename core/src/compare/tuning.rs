@@ -8,12 +8,11 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::cut::cut_once;
+use super::cut::{Cut, cut};
 use super::{TUNING_CONTOUR, Workpiece};
 use crate::controllers::{BASELINE, Choices, Entry, Make, Parameter, Setup};
 use crate::feed::LimitsError;
 use crate::machine::Machine;
-use crate::trace::Outcome;
 
 /// Points of the Halton sequence for each parameter.
 const SCATTERED: usize = 12;
@@ -63,7 +62,7 @@ pub fn search(entry: &'static Entry, machine: &Machine, seed: u64) -> Result<Tun
     let workpiece = workpiece.expect("the tuning contour is one of the contours");
     let base = Entry::find(BASELINE).expect("the baseline is in the table");
     let open_loop = Trial { entry: base, machine, workpiece: &workpiece, seed, open_time_s: f64::INFINITY };
-    let open_time_s = open_loop.cut(&[])?.time_s;
+    let open_time_s = open_loop.cut(&[])?.run.time_s;
     let trial = Trial { entry, machine, workpiece: &workpiece, seed, open_time_s };
     trial.search()
 }
@@ -74,14 +73,6 @@ struct Trial<'a> {
     workpiece: &'a Workpiece,
     seed: u64,
     open_time_s: f64,
-}
-
-/// What a trial came to.
-#[derive(Debug, Clone, Copy)]
-struct Result_ {
-    time_s: f64,
-    rms_um: f64,
-    sound: bool,
 }
 
 /// A point of the unit cube and its cost.
@@ -114,7 +105,7 @@ impl Trial<'_> {
             step *= 0.5;
         }
         let values = self.values(&best.place);
-        let rms_um = self.cut(&values)?.rms_um;
+        let rms_um = self.cut(&values)?.statistics.rms_um();
         let values = parameters.iter().zip(values).map(|(p, value)| (p.name.to_owned(), value)).collect();
         Ok(Tuned { controller: self.entry.name.to_owned(), values, cuts, rms_um })
     }
@@ -124,21 +115,16 @@ impl Trial<'_> {
     }
 
     fn cost(&self, place: &[f64]) -> Result<f64, LimitsError> {
-        let result = self.cut(&self.values(place))?;
-        let longer = (result.time_s / self.open_time_s - 1.0).max(0.0);
-        Ok(if result.sound { result.rms_um * (1.0 + TIME_PRICE * longer) } else { f64::INFINITY })
+        let cut = self.cut(&self.values(place))?;
+        let longer = (cut.run.time_s / self.open_time_s - 1.0).max(0.0);
+        Ok(if cut.is_sound() { cut.statistics.rms_um() * (1.0 + TIME_PRICE * longer) } else { f64::INFINITY })
     }
 
-    fn cut(&self, values: &[f64]) -> Result<Result_, LimitsError> {
+    fn cut(&self, values: &[f64]) -> Result<Cut, LimitsError> {
         let choices = Choices { seed: self.seed, values: values.to_vec(), ..Choices::default() };
         let mut setup = Setup { machine: self.machine, choices: &choices, progress: &mut |_| {} };
         let mut controller = Make::<2>::make(self.entry, &mut setup);
-        let cut = cut_once(self.workpiece, self.machine, &mut *controller, self.entry.laps, &mut [])?;
-        Ok(Result_ {
-            time_s: cut.run.time_s,
-            rms_um: cut.statistics.rms_um(),
-            sound: cut.run.outcome == Outcome::Completed && cut.run.faded_out.is_none(),
-        })
+        cut(self.workpiece, self.machine, &mut *controller, self.entry.laps, &mut [])
     }
 
     fn values(&self, place: &[f64]) -> Vec<f64> {

@@ -28,110 +28,101 @@ pub struct Verdict {
 /// A ratio of machining times that is 1 to rounding.
 const SAME_TIME: f64 = 1.0 + 1e-9;
 
-const RMS_OPEN_LOOP: f64 = 0.045;
-const MAX_OPEN_LOOP: f64 = 0.10;
-const RMS_BEST_PEER: f64 = 0.25;
-const RMS_EXACT_MODEL: f64 = 1.2;
-const RMS_UNSEEN: f64 = 0.5;
-const RMS_IDENTIFIED: f64 = 0.25;
-const CORNERS: f64 = 1.0;
-/// The peer that has the exact model and all the time of the world.
-pub const UPPER_BOUND: &str = "model-predictive";
+/// The peer that has the exact model and all the time of the world: what can be reached, and so no peer to be beaten.
+const UPPER_BOUND: &str = "model-predictive";
+
+/// What is claimed, and the largest ratio at which it holds.
+struct Claim(&'static str, f64);
+
+// On the nominal machine, contours without corners.
+const RMS_OPEN_LOOP: Claim = Claim("RMS against open loop", 0.045);
+const MAX_OPEN_LOOP: Claim = Claim("max against open loop", 0.10);
+const RMS_BEST_PEER: Claim = Claim("RMS against the best peer without model", 0.25);
+const RMS_EXACT_MODEL: Claim = Claim("RMS against the exact model", 1.2);
+// On the nominal machine, contours with corners.
+const RMS_CORNERS: Claim = Claim("RMS at corners against the best peer", 1.0);
+const MAX_CORNERS: Claim = Claim("max at corners against the best peer", 1.0);
+// On all other machines.
+const RMS_UNSEEN: Claim = Claim("RMS, unseen machine, against the best peer without model", 0.5);
+const RMS_IDENTIFIED: Claim = Claim("RMS, identified machine, against the best peer without model", 0.25);
+
+impl Claim {
+    /// What a row makes of it: `value` is its ratio to the row of `against`.
+    fn of(&self, row: &Row, against: &str, value: f64) -> Verdict {
+        let Self(claim, limit) = *self;
+        Verdict {
+            claim: claim.to_owned(),
+            contour: row.contour.clone(),
+            machine: row.machine.clone(),
+            against: against.to_owned(),
+            value,
+            limit,
+            holds: value <= limit && row.completed && row.time_ratio <= SAME_TIME,
+        }
+    }
+
+    fn of_rms(&self, row: &Row, against: &Row) -> Verdict {
+        self.of(row, &against.controller, row.rms_um / against.rms_um)
+    }
+
+    fn of_max(&self, row: &Row, against: &Row) -> Verdict {
+        self.of(row, &against.controller, row.max_um / against.max_um)
+    }
+}
 
 /// All claims that the rows can bear out.
 pub(super) fn verdicts(rows: &[Row], nominal: &str, workpieces: &[Workpiece]) -> Vec<Verdict> {
-    let mut verdicts = Vec::new();
-    for ours in rows.iter().filter(|row| row.controller == BEST) {
+    let is_smooth = |contour: &str| workpieces.iter().any(|workpiece| workpiece.name == contour && workpiece.smooth);
+    let of_contour_and_machine = |ours: &Row| {
         let here: Vec<&Row> =
             rows.iter().filter(|row| row.contour == ours.contour && row.machine == ours.machine).collect();
-        let smooth = workpieces.iter().any(|workpiece| workpiece.name == ours.contour && workpiece.smooth);
-        let mut judge = |claim: &str, row: &Row, against: &str, value: f64, limit| {
-            verdicts.push(Verdict {
-                claim: claim.to_owned(),
-                contour: row.contour.clone(),
-                machine: row.machine.clone(),
-                against: against.to_owned(),
-                value,
-                limit,
-                holds: value <= limit && row.completed && row.time_ratio <= SAME_TIME,
-            });
-        };
-        let without_model = best(&here, |row| is_peer(row) && matters(row, &[Knows::Nothing, Knows::Identified]));
-        if ours.machine == nominal {
-            if smooth {
-                judge("RMS against open loop", ours, BASELINE, ours.rms_ratio, RMS_OPEN_LOOP);
-                judge("max against open loop", ours, BASELINE, ours.max_ratio, MAX_OPEN_LOOP);
-                if let Some(peer) = without_model {
-                    judge(
-                        "RMS against the best peer without model",
-                        ours,
-                        &peer.controller,
-                        ours.rms_um / peer.rms_um,
-                        RMS_BEST_PEER,
-                    );
-                }
-                if let Some(bound) = here.iter().find(|row| row.controller == UPPER_BOUND) {
-                    judge(
-                        "RMS against the exact model",
-                        ours,
-                        UPPER_BOUND,
-                        ours.rms_um / bound.rms_um,
-                        RMS_EXACT_MODEL,
-                    );
-                }
-            } else {
-                let all = [Knows::Nothing, Knows::Identified, Knows::ExactModel];
-                if let Some(peer) = best(&here, |row| is_peer(row) && matters(row, &all)) {
-                    judge(
-                        "RMS at corners against the best peer",
-                        ours,
-                        &peer.controller,
-                        ours.rms_um / peer.rms_um,
-                        CORNERS,
-                    );
-                }
-                let peers = here.iter().filter(|row| is_peer(row) && matters(row, &all));
-                if let Some(peer) = peers.min_by(|a, b| a.max_um.total_cmp(&b.max_um)) {
-                    judge(
-                        "max at corners against the best peer",
-                        ours,
-                        &peer.controller,
-                        ours.max_um / peer.max_um,
-                        CORNERS,
-                    );
-                }
-            }
-        } else if let Some(peer) = without_model {
-            judge(
-                "RMS, unseen machine, against the best peer without model",
-                ours,
-                &peer.controller,
-                ours.rms_um / peer.rms_um,
-                RMS_UNSEEN,
-            );
-            if let Some(home) = here.iter().find(|row| row.controller == format!("{BEST}{AT_HOME}")) {
-                judge(
-                    "RMS, identified machine, against the best peer without model",
-                    home,
-                    &peer.controller,
-                    home.rms_um / peer.rms_um,
-                    RMS_IDENTIFIED,
-                );
-            }
+        match (ours.machine == nominal, is_smooth(&ours.contour)) {
+            (true, true) => without_corners(ours, &here),
+            (true, false) => with_corners(ours, &here),
+            (false, _) => elsewhere(ours, &here),
         }
-    }
+    };
+    rows.iter().filter(|row| row.controller == BEST).flat_map(of_contour_and_machine).collect()
+}
+
+fn without_corners(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
+    let bound = here.iter().find(|row| row.controller == UPPER_BOUND);
+    let mut verdicts =
+        vec![RMS_OPEN_LOOP.of(ours, BASELINE, ours.rms_ratio), MAX_OPEN_LOOP.of(ours, BASELINE, ours.max_ratio)];
+    verdicts.extend(best_without_model(here).map(|peer| RMS_BEST_PEER.of_rms(ours, peer)));
+    verdicts.extend(bound.map(|bound| RMS_EXACT_MODEL.of_rms(ours, bound)));
     verdicts
 }
 
-/// Neither ours nor identified anew.
-fn is_peer(row: &Row) -> bool {
-    row.controller != BEST && !row.controller.ends_with(AT_HOME) && row.completed
+fn with_corners(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
+    let known = [Knows::Nothing, Knows::Identified, Knows::ExactModel];
+    let on_rms = least(peers(here, &known), |row| row.rms_um);
+    let on_max = least(peers(here, &known), |row| row.max_um);
+    let rms = on_rms.map(|peer| RMS_CORNERS.of_rms(ours, peer));
+    let max = on_max.map(|peer| MAX_CORNERS.of_max(ours, peer));
+    rms.into_iter().chain(max).collect()
 }
 
-fn matters(row: &Row, known: &[Knows]) -> bool {
-    knows(row).is_some_and(|knows| known.contains(&knows)) && row.controller != UPPER_BOUND
+fn elsewhere(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
+    let Some(peer) = best_without_model(here) else { return Vec::new() };
+    let home = here.iter().find(|row| row.controller == format!("{BEST}{AT_HOME}"));
+    let mut verdicts = vec![RMS_UNSEEN.of_rms(ours, peer)];
+    verdicts.extend(home.map(|home| RMS_IDENTIFIED.of_rms(home, peer)));
+    verdicts
 }
 
-fn best<'a>(rows: &[&'a Row], counts: impl Fn(&Row) -> bool) -> Option<&'a Row> {
-    rows.iter().copied().filter(|row| counts(row)).min_by(|a, b| a.rms_um.total_cmp(&b.rms_um))
+fn best_without_model<'a>(here: &[&'a Row]) -> Option<&'a Row> {
+    least(peers(here, &[Knows::Nothing, Knows::Identified]), |row| row.rms_um)
+}
+
+/// Rows that came to their end of others that know no more than this; none that is identified anew.
+fn peers<'a>(here: &[&'a Row], known: &[Knows]) -> impl Iterator<Item = &'a Row> {
+    here.iter().copied().filter(|row| {
+        let is_other = row.controller != BEST && row.controller != UPPER_BOUND && !row.controller.ends_with(AT_HOME);
+        is_other && row.completed && knows(row).is_some_and(|knows| known.contains(&knows))
+    })
+}
+
+fn least<'a>(rows: impl Iterator<Item = &'a Row>, number: fn(&Row) -> f64) -> Option<&'a Row> {
+    rows.min_by(|a, b| number(a).total_cmp(&number(b)))
 }

@@ -37,6 +37,9 @@ const ARRIVAL_S: f64 = 0.25;
 /// Longest program of which all is learned, s; behind it the last offset stays.
 const LONGEST_S: f64 = 120.0;
 
+/// A cut-off is below this part of the sampling frequency, just short of its half; beyond, there is nothing to take away.
+const HIGHEST_CUT_OFF: f64 = 0.49;
+
 /// Settings of the learning.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -130,7 +133,6 @@ impl<const N: usize> Controller<N> for IterativeLearning<N> {
 /// Butterworth of second order by the bilinear transform, as in Oppenheim and Schafer, "Discrete-time signal processing",
 /// section 7.2; before the first and behind the last value the sequence goes on as it was there.
 fn smooth<const N: usize>(values: &mut [[f64; N]], cut_off: f64) {
-    // At half the sampling frequency there is nothing left to take away.
     if cut_off >= HIGHEST_CUT_OFF {
         return;
     }
@@ -150,9 +152,6 @@ fn smooth<const N: usize>(values: &mut [[f64; N]], cut_off: f64) {
     pass(&mut values.iter_mut());
     pass(&mut values.iter_mut().rev());
 }
-
-/// Of the sampling frequency: just below its half.
-const HIGHEST_CUT_OFF: f64 = 0.49;
 
 #[cfg(test)]
 mod tests {

@@ -150,7 +150,7 @@ struct Exact<const N: usize> {
 impl<const N: usize> Exact<N> {
     fn new(machine: &Machine, servo_periods: u32) -> Self {
         let axes = std::array::from_fn(|i| {
-            let parameters = machine.axes[i.min(machine.axes.len() - 1)];
+            let parameters = *machine.axis(i);
             ExactAxis {
                 parameters,
                 rad_per_mm: TAU / parameters.lead_mm_per_rev,

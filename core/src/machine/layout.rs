@@ -18,26 +18,11 @@ const WHOLE_RATIO_TOLERANCE: f64 = 1e-12;
 /// More mechanics steps than this within a servo period are a mistaken unit, and nobody could wait for them.
 const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
 
-/// The name of the machine that a text builds upon, where it does; the faults of the syntax where it has any.
-pub(super) fn base(text: &str) -> Result<Option<String>, Vec<Fault>> {
-    let document = document(text)?;
-    let mut faults = Vec::new();
-    let name = document.get_ref().contains_key("base").then(|| Table::root(&document, None).text("base", &mut faults));
-    if faults.is_empty() { Ok(name) } else { Err(faults) }
-}
+/// The text of a machine file, taken apart; its values know their places in the text.
+type Document<'t> = toml::Spanned<DeTable<'t>>;
 
-/// The base builds upon another machine.
-pub(super) fn chained(text: &str, base: &str) -> Fault {
-    let at = document(text).ok().and_then(|document| document.get_ref().get("base").map(toml::Spanned::span));
-    Fault {
-        at: at.unwrap_or(0..0),
-        label: "has a base itself",
-        message: format!("base: '{base}' builds upon another machine itself"),
-        hint: Some("name that machine, and repeat here what differs".to_owned()),
-    }
-}
-
-fn document(text: &str) -> Result<toml::Spanned<DeTable<'_>>, Vec<Fault>> {
+/// Takes a text apart; the faults of its syntax where it has any.
+pub(super) fn document(text: &str) -> Result<Document<'_>, Vec<Fault>> {
     let (document, syntax_errors) = DeTable::parse_recoverable(text);
     if syntax_errors.is_empty() {
         Ok(document)
@@ -46,12 +31,27 @@ fn document(text: &str) -> Result<toml::Spanned<DeTable<'_>>, Vec<Fault>> {
     }
 }
 
-/// The machine that a text describes, upon the text of a base without faults where it has one, or every fault in it.
-pub(super) fn machine(text: &str, base: Option<&str>) -> Result<Machine, Vec<Fault>> {
-    let document_here = document(text)?;
-    let document_base = base.map(document).transpose()?;
+/// The name of the machine that a file builds upon, where it does.
+pub(super) fn base(document: &Document<'_>) -> Result<Option<String>, Vec<Fault>> {
     let mut faults = Vec::new();
-    let mut root = Table::root(&document_here, document_base.as_ref());
+    let name = document.get_ref().contains_key("base").then(|| Table::root(document, None).text("base", &mut faults));
+    if faults.is_empty() { Ok(name) } else { Err(faults) }
+}
+
+/// The base builds upon another machine.
+pub(super) fn chained(document: &Document<'_>, base: &str) -> Fault {
+    Fault {
+        at: document.get_ref().get("base").map_or(0..0, toml::Spanned::span),
+        label: "has a base itself",
+        message: format!("base: '{base}' builds upon another machine itself"),
+        hint: Some("name that machine, and repeat here what differs".to_owned()),
+    }
+}
+
+/// The machine that a file describes, upon a base without faults where it has one, or every fault in it.
+pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> Result<Machine, Vec<Fault>> {
+    let mut faults = Vec::new();
+    let mut root = Table::root(document, base);
     if base.is_some() {
         root.text("base", &mut faults);
     }

@@ -28,9 +28,9 @@ pub(super) struct Table<'t, 'i> {
     name: String,
     /// Place of the table's header, where a missing key is reported.
     at: Range<usize>,
-    /// What it holds; a table that is missing holds nothing and reports nothing.
+    /// What it holds; none where it stands in the base alone, or nowhere: then it reports nothing.
     entries: Option<&'t DeTable<'i>>,
-    /// What the machine that this one builds upon has in its place.
+    /// What the machine that this one builds upon has in its place: without faults, and its places are in another text.
     base: Option<&'t DeTable<'i>>,
     asked: Vec<&'static str>,
 }
@@ -130,13 +130,7 @@ impl<'t, 'i> Table<'t, 'i> {
         let name = self.dotted(key);
         let base = self.base.and_then(|base| base.get(key)).and_then(|value| value.get_ref().as_table());
         let Some(value) = self.entries.and_then(|entries| entries.get(key)) else {
-            return base.map(|base| Self {
-                name,
-                at: self.at.clone(),
-                entries: Some(base),
-                base: None,
-                asked: Vec::new(),
-            });
+            return base.is_some().then(|| Self { name, at: self.at.clone(), entries: None, base, asked: Vec::new() });
         };
         let entries = match value.get_ref() {
             DeValue::Table(entries) => Some(entries),
@@ -151,7 +145,7 @@ impl<'t, 'i> Table<'t, 'i> {
     /// Every entry as a table with its key, in the order of the file; a fault for each that is none.
     pub(super) fn tables(self, faults: &mut Vec<Fault>) -> Vec<(String, Self)> {
         let mut found = Vec::new();
-        for (key, value) in self.entries.into_iter().flatten() {
+        for (key, value) in self.entries.or(self.base).into_iter().flatten() {
             let name = if self.name.is_empty() {
                 key.get_ref().to_string()
             } else {
@@ -204,9 +198,8 @@ impl<'t, 'i> Table<'t, 'i> {
     /// The value of a key that has to be there; a fault where it is not.
     fn required(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<&'t Spanned<DeValue<'i>>> {
         self.asked.push(key);
-        self.entries?;
         let value = self.value(key);
-        if value.is_none() {
+        if value.is_none() && self.entries.is_some() {
             let home = if self.name.is_empty() { String::new() } else { format!(" from [{}]", self.name) };
             faults.push(Fault {
                 at: self.at.clone(),

@@ -154,6 +154,22 @@ fn whole_ratios_survive_the_rounding_of_decimal_numbers() {
 }
 
 #[test]
+fn a_fault_between_a_value_here_and_one_of_the_base_has_its_place_here() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, transmission) = BUILT_IN[4].1.split_once("[axis.x.transmission]").unwrap();
+    std::fs::write(folder.path().join("screw.toml"), format!("{TNV40}\n[axis.x.transmission]{transmission}")).unwrap();
+    let text = "base = 'screw.toml'\nname = 'slow'\ndescription = 'd'\nsource = 's'\n[period]\nmechanics_s = 0.001\n[axis.y]\n";
+    let file = folder.path().join("slow.toml");
+    let Err(MachineError::Invalid { problems, .. }) = Machine::parse(&file.display().to_string(), text) else {
+        panic!()
+    };
+    let lines: Vec<usize> = problems.iter().map(|problem| problem.line).collect();
+    assert!(problems.iter().all(|problem| problem.message.starts_with("resonance_hz is 60 Hz")), "{problems:?}");
+    // Of x and z the text says nothing: [axis] begins at line 7.
+    assert_eq!(lines, [7, 7, 7]);
+}
+
+#[test]
 fn broken_toml_shows_where() {
     let fault = fault_after("[limits]", "[limits");
     assert!(fault.starts_with("15:") && fault.contains("not TOML"), "{fault}");

@@ -1,0 +1,142 @@
+//! How each controller of the table is made for a machine: one function for each row, or for several that differ in their
+//! laps alone. `values` are those of the row's parameters, in its order.
+
+use std::f64::consts::TAU;
+
+use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
+use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
+use feedwright_control::controller::feedforward::{AxisModel, Feedforward, Gains};
+use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
+use feedwright_control::controller::inverting;
+use feedwright_control::controller::magnitude_only::MagnitudeOnly;
+use feedwright_control::controller::open_loop::OpenLoop;
+use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
+use feedwright_control::controller::two_dimensional::TwoDimensional;
+use feedwright_control::controller::zero_phase::{SampledAxis, ZeroPhase};
+use feedwright_control::{Controller, horizon, inversion};
+
+use super::Setup;
+use super::iterative_learning::{self, IterativeLearning};
+use super::model_predictive::{self, ModelPredictive};
+use crate::identify::cache::identified;
+use crate::identify::contour::{Identified, Training};
+use crate::identify::{Programme, servo};
+use crate::machine::{Axis, Machine, Period};
+
+pub(super) fn open_loop<const N: usize>(_: &mut Setup<'_>, _: &[f64]) -> Box<dyn Controller<N>> {
+    Box::new(OpenLoop)
+}
+
+pub(super) fn cross_coupled<const N: usize>(_: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    Box::new(CrossCoupled::new(cross_coupled::Settings { kp: values[0], ki_1_s: values[1], kd_s: values[2] }))
+}
+
+pub(super) fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let settings = contour_compensation::Settings { rate_1_s: values[0], filter_s: values[1] };
+    Box::new(ContourCompensation::new(settings))
+}
+
+pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    Box::new(FuzzyFeedrate::new(fuzzy_feedrate::Settings {
+        servo_periods: setup.machine.period.servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
+        error_mm: values[0],
+        change_mm_s: values[1],
+        slowest: values[2],
+        acceleration_mm_s2: setup.machine.limits.tangential_accel_mm_s2,
+    }))
+}
+
+pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let Period { servo_s, mechanics_s, .. } = setup.machine.period;
+    let axes = axes(setup.machine).map(|axis| AxisModel {
+        rad_per_mm: TAU / axis.lead_mm_per_rev,
+        kp_1_s: axis.kp_1_s,
+        kd: axis.kd,
+        kv_nm_s_per_rad: axis.kv_nm_s_per_rad,
+        // The speed loop answers to the speed at the start of a mechanics period, and so damps less than one without
+        // delay by so much inertia.
+        inertia_kg_m2: axis.inertia_kg_m2 - (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) * mechanics_s,
+        viscous_friction_nm_s: axis.viscous_friction_nm_s,
+        coulomb_friction_nm: axis.coulomb_friction_nm,
+        coulomb_smoothing_rad_s: axis.coulomb_smoothing_rad_s,
+    });
+    let gains = Gains { velocity: values[0], acceleration: values[1], friction: values[2] };
+    Box::new(Feedforward::new(axes, gains, servo_s))
+}
+
+pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let [lag_scale, inertia_scale] = [values[0], values[1]];
+    let sampled = axes(setup.machine).map(|axis| {
+        let inertia_kg_m2 = inertia_scale * axis.inertia_kg_m2;
+        sampled(&Axis { kp_1_s: axis.kp_1_s / lag_scale, inertia_kg_m2, ..axis }, &setup.machine.period)
+    });
+    Box::new(ZeroPhase::new(&sampled, setup.machine.period.servo_s))
+}
+
+/// The linear part of an axis over one servo period, as the plant integrates it.
+fn sampled(axis: &Axis, period: &Period) -> SampledAxis {
+    let over = |mut speed: f64, reference: f64| {
+        let mut travel_s = 0.0;
+        for _ in 0..period.mechanics_per_servo {
+            let torque_nm = axis.kv_nm_s_per_rad * (reference - speed) - axis.viscous_friction_nm_s * speed;
+            speed += period.mechanics_s * torque_nm / axis.inertia_kg_m2;
+            travel_s += period.mechanics_s * speed;
+        }
+        (speed, travel_s)
+    };
+    let ((alpha, gamma_s), (beta, delta_s)) = (over(1.0, 0.0), over(0.0, 1.0));
+    SampledAxis { alpha, beta, gamma_s, delta_s, kp_1_s: axis.kp_1_s, kd: axis.kd }
+}
+
+/// The first N axes of a machine.
+fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
+    std::array::from_fn(|i| *machine.axis(i))
+}
+
+pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let receding_horizon::Settings { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
+    (horizon.knots, horizon.rate_weight) = (horizon::MOST_KNOTS, values[0]);
+    let servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
+    Box::new(ModelPredictive::new(setup.machine, model_predictive::Settings { servo_periods, horizon }))
+}
+
+pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let settings = iterative_learning::Settings {
+        gain: values[0],
+        lead_s: values[1],
+        cut_off_hz: values[2],
+        ..iterative_learning::Settings::DEFAULT
+    };
+    Box::new(IterativeLearning::new(settings, setup.machine.period.servo_s))
+}
+
+pub(super) fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let mut settings = inverting(setup, values);
+    settings.inversion.gradient = inversion::Gradient::Exact;
+    Box::new(MagnitudeOnly::new(trained(setup).net, settings))
+}
+
+pub(super) fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+    let settings = inverting(setup, values);
+    Box::new(TwoDimensional::new(trained(setup).net, settings))
+}
+
+pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, _: &[f64]) -> Box<dyn Controller<N>> {
+    let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
+    let mut settings = receding_horizon::Settings::DEFAULT;
+    settings.servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
+    let controller: RecedingHorizon<N> = RecedingHorizon::new(identified.net, &identified.spread, settings);
+    Box::new(controller)
+}
+
+/// Settings of the controllers that invert the paper's identifier.
+fn inverting(setup: &Setup<'_>, values: &[f64]) -> inverting::Settings {
+    let mut settings = inverting::Settings::DEFAULT;
+    settings.servo_periods = setup.machine.period.servo_periods(inverting::FEED_PERIOD_S);
+    (settings.inversion.rho, settings.inversion.eta) = (setup.choices.rho.unwrap_or(values[0]), values[1]);
+    settings
+}
+
+fn trained<const N: usize>(setup: &mut Setup<'_>) -> Identified<N> {
+    identified(setup.machine, &Programme::general(), &Training::default(), setup.choices.seed, setup.progress)
+}
