@@ -55,7 +55,7 @@ impl Settings {
             knots: 16,
             rate_weight: 3e-10,
             change_weight: 1e-10,
-            tangential_price: 0.003,
+            tangential_price: 0.002,
             rate_limit_mm_s: 1000.0,
         },
         steps: 1,

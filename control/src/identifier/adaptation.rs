@@ -1,4 +1,4 @@
-//! Adaptation of the servo identifier while cutting: of two models of each axis, the one that has foreseen the last sixth of
+//! Adaptation of the servo identifier while cutting: of two models of each axis, the one that has foreseen the last third of
 //! a second better is believed.
 //!
 //! ```text
@@ -57,7 +57,7 @@ impl Settings {
         forgetting: 0.998,
         noise_mm: 1e-3,
         beyond_mm: 3e-3,
-        judging: 0.02,
+        judging: 0.01,
         caution: 0.002,
         fright: 0.3,
         alike: 0.9,
