@@ -16,7 +16,7 @@
 //! The window of variable size: the search starts at the age where it ended last time and looks as far to both sides as
 //! the tool can be, given how far it was off and how fast the reference moves. [`MAX_ENTRIES`] bounds it.
 
-use crate::vector::{add_scaled, dot, norm, scale, sub};
+use crate::vector::{add_scaled, dot, norm, reject, scale, sub};
 use crate::window::{Knot, Window};
 
 /// Entries looked at on either side of the start, at the least: covers a feed period in which the lag changes.
@@ -127,6 +127,17 @@ pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i
         }
     }
     ContourError { index, ..nearest_foot(window, tool_mm, index) }
+}
+
+/// A vector across the path, carried along it from one tangent to another by the smallest rotation between them. Behind a
+/// corner only what lies across the new stretch is left.
+pub(crate) fn carried<const N: usize>(across: [f64; N], from: [f64; N], to: [f64; N]) -> [f64; N] {
+    let cosine = dot(from, to);
+    if cosine < CORNER_COSINE {
+        return reject(across, to);
+    }
+    let both = add_scaled(from, 1.0, to);
+    reject(add_scaled(across, -dot(across, to) / (1.0 + cosine), both), to)
 }
 
 /// The nearest point of the path near the knots of a range, which is widened while the nearest stands at an end of it. Of
@@ -346,5 +357,21 @@ mod tests {
         let behind = Behind::new((0..300).map(|i| on_circle(f64::from(i) * 0.005)));
         let error = behind.estimate([f64::NAN, 0.0]);
         assert!(error.entries <= MAX_ENTRIES && !norm(error.vector_mm).is_finite());
+    }
+
+    #[test]
+    fn what_is_carried_keeps_its_length_and_its_side_of_the_path() {
+        for step in -50..=50 {
+            let a = 0.001 * f64::from(step);
+            let to = [libm::cos(a), libm::sin(a)];
+            let normal = carried([0.0, 2.0], [1.0, 0.0], to);
+            assert!(norm(sub(normal, [-2.0 * to[1], 2.0 * to[0]])) < 1e-12, "{a}: {normal:?}");
+        }
+        // In space, what lies along the axis of the rotation stays.
+        let to = [libm::cos(0.05), libm::sin(0.05), 0.0];
+        assert!(norm(sub(carried([0.0, 0.0, 3.0], [1.0, 0.0, 0.0], to), [0.0, 0.0, 3.0])) < 1e-15);
+        // Behind a right-angled corner nothing is left, behind a point where the path runs back everything.
+        assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [0.0, 1.0]), [0.0, 0.0]);
+        assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [-1.0, 0.0]), [0.0, 2.0]);
     }
 }

@@ -234,7 +234,15 @@ impl<const N: usize> Guard<N> {
         let free = add_scaled(window.offset_mm, period_s, velocity);
         let same = norm(sub(free, wanted.offset_mm)) <= SAME_MM;
         let offset_mm = if same { wanted.offset_mm } else { free };
-        let near_mm = near_the_path(window, rate, offset_mm, deviation_mm);
+        let mut near_mm = near_the_path(window, rate * period_s, offset_mm, deviation_mm);
+        // The offset moves along a line, the path perhaps not: on the way it may be too far where neither end is.
+        for part in ON_THE_WAY {
+            let there_mm = add_scaled(window.offset_mm, part, sub(near_mm, window.offset_mm));
+            let back_mm = sub(near_the_path(window, part * rate * period_s, there_mm, deviation_mm), there_mm);
+            if norm(back_mm) > 0.0 {
+                near_mm = add_scaled(near_mm, 1.0 / part, back_mm);
+            }
+        }
         // What the path takes back comes on top, but not without bound.
         let step_mm = limit_norm(sub(near_mm, window.offset_mm), MOST_TAKEN_BACK * speed_mm_s * period_s);
         let held = norm(sub(near_mm, offset_mm)) > 0.0;
@@ -242,6 +250,8 @@ impl<const N: usize> Guard<N> {
     }
 }
 
+/// Parts of the way of the offset in a feed period at which its deviation is looked at.
+const ON_THE_WAY: [f64; 3] = [0.75, 0.5, 0.25];
 /// The bound of the deviation may move the command by this many times the highest speed of the offset.
 const MOST_TAKEN_BACK: f64 = 2.0;
 /// Offsets closer than this differ by rounding only, mm.
@@ -292,13 +302,12 @@ impl<const N: usize> Benefit<N> {
 /// Looks at the path, of eight knots to either side each, before the nearest point counts as found.
 const MOST_LOOKS: usize = 8;
 
-/// The offset at the end of the feed period, taken back towards the path where the command would be further from it than
+/// The offset `ahead_s` from now in plan time, taken back towards the path where the command would be further from it than
 /// `limit_mm`. An offset along the path is none from the path.
-fn near_the_path<const N: usize>(window: &Window<'_, N>, rate: f64, offset_mm: [f64; N], limit_mm: f64) -> [f64; N] {
+fn near_the_path<const N: usize>(window: &Window<'_, N>, ahead_s: f64, offset_mm: [f64; N], limit_mm: f64) -> [f64; N] {
     if norm(offset_mm) <= limit_mm {
         return offset_mm;
     }
-    let ahead_s = rate * window.feed_period_s;
     let next = window.preview.at(window.tau_s + ahead_s);
     // Beyond the knots that the window holds nobody knows where the path is.
     let [oldest, farthest] = window.range();

@@ -1,8 +1,7 @@
 //! The default controller on machines that its identifier has never seen: it stays stable, and is hardly ever worse than
 //! open loop.
 //!
-//! Where it is worse: at the corners of machines whose loop is so slow that it lags by more than the horizon reaches, or so
-//! stiff that open loop is below a micrometre anyway.
+//! Where it is worse: on loops that ring by themselves, and on loops so stiff that open loop is below a micrometre anyway.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
@@ -23,8 +22,8 @@ const MACHINES: u64 = 200;
 /// Where the open loop itself rings by more than this, the machine is broken, um.
 const BROKEN_UM: f64 = 400.0;
 /// Part of the cuts that may be worse, and by how much at the most: what was measured, rounded up.
-const WORSE: f64 = 0.04;
-const WORST_RATIO: f64 = 8.0;
+const WORSE: f64 = 0.02;
+const WORST_RATIO: f64 = 6.0;
 /// An RMS that differs from open loop's by less is the same, um: it is below the steps of any encoder.
 const SAME_UM: f64 = 0.5;
 

@@ -16,8 +16,8 @@
 //!
 //! Departure: while the safety layer holds the command back, the accumulation starts from what it let through.
 
-use super::cross_coupled::carried;
 use super::{Command, Controller, Measured, Schedule};
+use crate::contour_error::carried;
 use crate::vector::{add_scaled, norm, sub};
 use crate::window::Window;
 

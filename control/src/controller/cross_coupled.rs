@@ -23,15 +23,14 @@
 //! their machines.
 
 use super::{Command, Controller, Measured, Schedule};
-use crate::vector::{add_scaled, dot, norm, reject, sub};
+use crate::contour_error::carried;
+use crate::vector::{add_scaled, dot, norm, sub};
 use crate::window::Window;
 
 /// Time constant of the filter of the derivative, s: two servo periods of 1 ms, below what a speed loop follows.
 const DERIVATIVE_S: f64 = 0.002;
 /// A command that differs by more than this from what was asked was held back, mm.
 const HELD_BACK_MM: f64 = 1e-9;
-/// Cosine between the tangents of two servo periods below which there is a corner between them, as for the estimator.
-const CORNER_COSINE: f64 = 0.995;
 
 /// Gains of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -70,17 +69,6 @@ impl<const N: usize> CrossCoupled<N> {
     pub fn new(settings: Settings) -> Self {
         Self { settings, integral_mm_s: [0.0; N], derivative_mm_s: [0.0; N], last: None }
     }
-}
-
-/// A vector across the path, carried along it from one tangent to another by the smallest rotation between them. Behind a
-/// corner only what lies across the new stretch is left.
-pub(super) fn carried<const N: usize>(across: [f64; N], from: [f64; N], to: [f64; N]) -> [f64; N] {
-    let cosine = dot(from, to);
-    if cosine < CORNER_COSINE {
-        return reject(across, to);
-    }
-    let both = add_scaled(from, 1.0, to);
-    reject(add_scaled(across, -dot(across, to) / (1.0 + cosine), both), to)
 }
 
 impl<const N: usize> Controller<N> for CrossCoupled<N> {
@@ -168,21 +156,5 @@ pub(super) mod tests {
         let proportional = rests_at_mm(Settings { kp: 3.0, ki_1_s: 0.0, kd_s: 0.0 });
         assert!((proportional - 0.02 / 4.0).abs() < 1e-9, "{proportional}");
         assert!(rests_at_mm(Settings::DEFAULT).abs() < 1e-9);
-    }
-
-    #[test]
-    fn what_is_carried_keeps_its_length_and_its_side_of_the_path() {
-        for step in -50..=50 {
-            let a = 0.001 * f64::from(step);
-            let to = [libm::cos(a), libm::sin(a)];
-            let normal = carried([0.0, 2.0], [1.0, 0.0], to);
-            assert!(norm(sub(normal, [-2.0 * to[1], 2.0 * to[0]])) < 1e-12, "{a}: {normal:?}");
-        }
-        // In space, what lies along the axis of the rotation stays.
-        let to = [libm::cos(0.05), libm::sin(0.05), 0.0];
-        assert!(norm(sub(carried([0.0, 0.0, 3.0], [1.0, 0.0, 0.0], to), [0.0, 0.0, 3.0])) < 1e-15);
-        // Behind a right-angled corner nothing is left, behind a point where the path runs back everything.
-        assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [0.0, 1.0]), [0.0, 0.0]);
-        assert_eq!(carried([0.0, 2.0], [1.0, 0.0], [-1.0, 0.0]), [0.0, 2.0]);
     }
 }
