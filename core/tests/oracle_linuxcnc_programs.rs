@@ -44,7 +44,6 @@ const DIFFERENCES: &[(&str, &str)] = &[
     ("macros/m106", "a subroutine without its end is refused"),
     ("ncfiles/smartprobe", "a dry run of a probe goes all the way"),
     ("ncfiles/useful-subroutines", "an inner arc of the tool's own radius leaves no path"),
-    ("inside-corners", "the inner corner of an arc with unequal radii lies elsewhere: 0.5 um"),
     ("oracle_data/g5_2_outside_xy", "G5.2 is refused outside the XY plane, as G5 and G5.1 are by both"),
     ("g72-missing-iteration", "the passes of G72 that LinuxCNC's own expectation has are missing in the packaged 2.9"),
     ("ncfiles/lathe_g70_71_demo", "pocketing cycles are not read"),
