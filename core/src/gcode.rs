@@ -29,6 +29,7 @@ mod reader;
 mod settings;
 mod source;
 mod special;
+mod spiral;
 mod splines;
 mod state;
 mod subroutines;
