@@ -1,7 +1,7 @@
 //! Canned cycles G73, G74 and G81-G89: one hole a line, along the normal of the plane.
 //!
-//! Every cycle first goes to R if it is below, then over the hole at that height, then to R; what happens between R and the bottom is the
-//! cycle's own. Z, R, Q and P stay until another code ends the cycle. NISTIR 6556, section 3.5.16, and LinuxCNC for G73, G74 and pecking.
+//! Every cycle first goes to R if the series began below, then over the hole at that height, then to R; what happens between R and the
+//! bottom is the cycle's own. Where a later hole of a series has a higher R, LinuxCNC 2.9 rises to it on the way to the hole. Z, R, Q and P stay until another code ends the cycle. NISTIR 6556, section 3.5.16, and LinuxCNC for G73, G74 and pecking.
 
 use super::block::Block;
 use super::canon::{Corner, EventKind};
@@ -144,7 +144,7 @@ impl Interpreter {
     }
 
     fn drill_all(&mut self, block: &Block, hole: &Hole, plane: [usize; 2], retract: f64, repeats: i64) -> Read<()> {
-        if self.at[hole.normal] < hole.clearance {
+        if self.cycle.began_at < hole.clearance && self.at[hole.normal] < hole.clearance {
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
         }
         let pecks = (hole.clearance - hole.bottom) / self.cycle.peck.unwrap_or(f64::INFINITY) * repeats as f64;
@@ -156,7 +156,7 @@ impl Interpreter {
         }
         for _ in 0..repeats {
             let mut target = self.target(block)?;
-            target[hole.normal] = self.at[hole.normal];
+            target[hole.normal] = self.at[hole.normal].max(hole.clearance);
             self.go(block, target, Speed::Rapid)?;
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
             self.drill(block, hole, plane)?;
