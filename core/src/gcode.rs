@@ -17,6 +17,7 @@ mod execute;
 mod expression;
 mod firmware;
 mod flow;
+mod foreign;
 mod lathe;
 mod length;
 mod lexer;

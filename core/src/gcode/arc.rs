@@ -42,6 +42,11 @@ impl Interpreter {
     pub(super) fn arc(&mut self, block: &Block, counter_clockwise: bool) -> Read<()> {
         let extruder_mm = self.extruder_word(block);
         let target = self.target(block)?;
+        if std::mem::take(&mut self.left_compensation) {
+            let message = "the first motion behind G40 must be straight, not an arc";
+            return Err(Fault::new("gcode::compensation", block.whole(), message)
+                .hint("the tool stands beside the contour: lead it away with G1 or G0 first"));
+        }
         let round = match self.round(block, &target, counter_clockwise) {
             Ok(round) => round,
             Err(fault) => {

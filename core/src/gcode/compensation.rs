@@ -41,7 +41,8 @@ impl Interpreter {
             return if self.compensates() { self.check_compensated(block) } else { Ok(()) };
         };
         if word.number == 400 {
-            self.compensation = None;
+            let was = self.compensation.take();
+            self.left_compensation |= was.is_some_and(|was| was.last.is_some() && was.radius_mm > 0.0);
             self.release();
             return Ok(());
         }
@@ -305,6 +306,7 @@ impl Interpreter {
             motion.feed_mm_s = self.feed_for(block, motion.length_mm())?;
         }
         self.motions += 1;
+        self.left_compensation = false;
         self.held.push(Canon::Motion(motion));
         Ok(())
     }

@@ -62,7 +62,7 @@ pub(super) enum Curve {
 }
 
 impl Curve {
-    /// Where the one curve can end and the other begin: the meeting nearest to a point.
+    /// Where the one curve can end and the other begin: the meeting nearest to a point, of two as near the one that `other` has first.
     pub(super) fn meet(&self, other: &Self, near: Point) -> Option<Point> {
         let candidates = match (*self, *other) {
             (Self::Line { start: a, end: b }, Self::Line { start: c, end: d }) => {
@@ -77,11 +77,22 @@ impl Curve {
             }
         };
         let fits = |point: &Point| self.ends_at(*point) && other.begins_at(*point);
-        candidates
-            .into_iter()
-            .flatten()
-            .filter(fits)
-            .min_by(|a, b| length(minus(*a, near)).total_cmp(&length(minus(*b, near))))
+        let away = |point: &Point| length(minus(*point, near));
+        match candidates {
+            // Both as near: a line that turns back into an arc. The arc is entered as early as it can be.
+            [Some(a), Some(b)] if fits(&a) && fits(&b) && (away(&a) - away(&b)).abs() < SLACK_MM => {
+                Some(if other.way_to(a) <= other.way_to(b) { a } else { b })
+            }
+            _ => candidates.into_iter().flatten().filter(fits).min_by(|a, b| away(a).total_cmp(&away(b))),
+        }
+    }
+
+    /// How far along the curve a point lies, mm or rad.
+    fn way_to(&self, point: Point) -> f64 {
+        match *self {
+            Self::Line { start, end } => dot(minus(point, start), unit(minus(end, start))),
+            Self::Arc { start, center, turn, .. } => sweep_within(start, point, center, turn),
+        }
     }
 
     /// The curve moved by a vector.

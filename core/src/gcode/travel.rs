@@ -72,6 +72,7 @@ impl Interpreter {
     pub(super) fn push_motion(&mut self, speed: Speed, start: &Position, shape: Shape, feed_mm_s: f64, others: Others) {
         let kind = speed.kind();
         self.motions += 1;
+        self.left_compensation = false;
         self.push(Canon::Motion(Motion {
             line: self.line,
             kind,
