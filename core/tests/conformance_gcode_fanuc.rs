@@ -5,7 +5,7 @@ use feedwright::gcode::{CheckError, Dialect, Reader, Settings, summarize};
 
 fn reader(text: &str, dialect: Dialect) -> Reader {
     let settings = Settings { dialect: Some(dialect), ..Settings::default() };
-    Reader::from_text("part.nc", text, settings).unwrap()
+    Reader::from_text("part.nc", text, settings).expect("it is a program")
 }
 
 fn steps(text: &str, dialect: Dialect) -> Vec<Canon> {

@@ -185,9 +185,10 @@ fn the_tool_rests_while_something_else_moves() {
 
 /// Plan time of a program on a machine whose rotary axes have a limit.
 fn program_s(text: &str, rotary_deg_s: f64) -> f64 {
-    let canon: Vec<Canon> = Reader::from_text("test", text, Settings::default()).unwrap().map(Result::unwrap).collect();
+    let reader = Reader::from_text("test", text, Settings::default()).expect("it is a program");
+    let canon: Vec<Canon> = reader.map(|step| step.expect("it has no mistakes")).collect();
     let plc = Plc::new(Durations { rotary_deg_s, ..Durations::default() });
-    let mut reference = Reference::new(canon, &LIMITS).unwrap().with_plc(plc);
+    let mut reference = Reference::new(canon, &LIMITS).expect("limits are sound").with_plc(plc);
     let end_s = reference.read_to_end_s();
     assert_eq!(reference.fault(), None);
     end_s
