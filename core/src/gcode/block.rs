@@ -328,12 +328,12 @@ fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
     } else {
         format!("G{}", Short(value))
     };
-    if let Some((what, hint)) = foreign::what(tenths) {
+    // `G1 10`: digits, a blank, digits.
+    let has_gap = bytes[at.clone()].windows(3).any(|w| w[0].is_ascii_digit() && w[1] == b' ' && w[2].is_ascii_digit());
+    if let Some((what, hint)) = foreign::what(tenths).filter(|_| !has_gap) {
         return Fault::new("gcode::unsupported", at, format!("{spelled} ({what}, on other controls) is not read"))
             .hint(hint);
     }
-    // `G1 10`: digits, a blank, digits.
-    let has_gap = bytes[at.clone()].windows(3).any(|w| w[0].is_ascii_digit() && w[1] == b' ' && w[2].is_ascii_digit());
     let fault = Fault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"));
     if has_gap {
         fault.hint("blanks inside numbers mean nothing: is a letter missing behind the blank?")
