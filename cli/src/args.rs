@@ -119,6 +119,8 @@ pub(crate) struct CompareArgs {
     /// Write a page with the table and plots of the errors.
     #[arg(long, value_name = "FILE.html")]
     pub(crate) html: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
 }
 
 #[derive(Debug, Args)]

@@ -142,6 +142,8 @@ fn a_comparison_of_what_there_is_not() {
     let folder = Folder::new();
     folder.file("space.ngc", "G21 G90 F600\nG1 X1 Z1\nM2\n");
     folder.file("wrong.ngc", "G21 G90\nG1 X1\nM2\n");
+    folder.file("two.ngc", "G21 G90 F600\nG1 X1\nG1 Y1\nM2\n");
+    folder.file("beside.ngc", "G21 G90 F600\nT1 M6\nG41 G1 X4\nX8\nG40 X9 Y9\nM2\n");
     let before = folder.content();
     for (arguments, says) in [
         (&["--only", "circel"][..], &["--only", "circel", "did you mean 'circle'?"][..]),
@@ -149,6 +151,10 @@ fn a_comparison_of_what_there_is_not() {
         (&["--part", "space.ngc"], &["space.ngc moves Z", "XY plane", "feedwright run"]),
         (&["--part", "wrong.ngc"], &["wrong.ngc:2:1", "F"]),
         (&["--part", "missing.ngc"], &["missing.ngc", "No such file"]),
+        (&["--part", "beside.ngc"], &["beside.ngc:3:1", "tool 1 is not in the tool table", "--tool-table"]),
+        (&["--part", "circle.ngc", "--tool-table", "no.tbl"], &["no.tbl"]),
+        (&["--part", "circle.ngc", "--dialect", "fanuk"], &["fanuk", "fanuc"]),
+        (&["--part", "two.ngc", "--max-motions", "1"], &["two.ngc", "motions"]),
         (&["--machine", "tnv4"], &["tnv4", "did you mean 'tnv40'?"]),
         (&["--threads", "0"], &["--threads", "0"]),
         (&["--json", "no/such/folder/r.json"], &["no/such/folder"]),

@@ -64,13 +64,18 @@ fn the_json_has_the_documented_numbers_of_every_run() {
 #[test]
 fn the_comparison_has_the_documented_rows_and_its_own_part() {
     let folder = Folder::new();
-    let only = ["--only", "square,tnv40,rough,open-loop,contour-compensation", "--no-tuning", "--part", "circle.ngc"];
+    // Only a tool table tells how far beside its contour this program runs.
+    folder.file("beside.ngc", "G21 G90 F600\nT1 M6\nG41 G1 X4\nG1 X8\nG1 Y8\nG40 G1 X9 Y9\nM2\n");
+    folder.file("tools.tbl", "T1 P1 D2 ;\n");
+    let parts = ["--part", "circle.ngc", "--part", "beside.ngc", "--tool-table", "tools.tbl", "--dialect", "linuxcnc"];
+    let only = ["--only", "square,tnv40,rough,open-loop,contour-compensation", "--no-tuning"];
+    let only = [&only[..], &parts[..]].concat();
     let outputs = ["--json", "r.json", "--html", "r.html"];
     let out = folder.run(&[&["compare"], &only[..], &outputs[..]].concat()).succeeded();
     assert!(out.stdout.contains("square on rough") && out.stdout.contains("wrote r.html"), "{out:?}");
     let results = results(&folder);
     let rows = results["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 2 * 2 * 2, "{rows:?}");
+    assert_eq!(rows.len(), 3 * 2 * 2, "{rows:?}");
     for row in rows {
         for key in ["contour", "machine", "controller"] {
             assert!(row[key].is_string(), "{row}");
@@ -79,7 +84,7 @@ fn the_comparison_has_the_documented_rows_and_its_own_part() {
             assert!(row[key].as_f64().is_some_and(|value| value > 0.0), "{key}: {row}");
         }
     }
-    assert!(rows.iter().any(|row| row["contour"] == "circle.ngc"));
+    assert!(["circle.ngc", "beside.ngc"].iter().all(|part| rows.iter().any(|row| row["contour"] == *part)));
     assert!(folder.text("r.html").contains("circle.ngc on rough"));
     let again = [&["compare", "--threads", "1"], &only[..], &["--json", "again.json"]].concat();
     folder.run(&again).succeeded();

@@ -75,12 +75,11 @@ impl Workpiece {
             .collect()
     }
 
-    /// A program, as it is read and cut elsewhere.
+    /// A program, read by `settings` as it is elsewhere.
     ///
     /// # Errors
     /// A program with mistakes, one that leaves the XY plane, or one without a path.
-    pub fn program(file: &Path) -> Result<Self, PartError> {
-        let settings = gcode::Settings::default();
+    pub fn program(file: &Path, settings: gcode::Settings) -> Result<Self, PartError> {
         let summary = gcode::check(file, settings.clone()).map_err(crate::pipeline::Error::from)?;
         if summary.moves[2] {
             return Err(PartError::LeavesPlane { part: file.to_owned() });

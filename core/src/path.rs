@@ -128,6 +128,10 @@ pub struct Piece {
     pub feed_mm_s: f64,
     /// How the corner at its end is taken.
     pub corner: Corner,
+    /// Largest angle that one of A, B and C turns in a millimetre of this piece, degrees/mm; 0 where none turns.
+    pub turn_deg_mm: f64,
+    /// Way of U, V and W in a millimetre of this piece, mm/mm; 0 where none moves.
+    pub further_mm_mm: f64,
 }
 
 /// One step of a path: a piece, or an event between pieces.
@@ -145,8 +149,8 @@ pub enum Step {
         seconds: f64,
         /// Largest angle that one of A, B and C turns, degrees: at the machine's rate it takes no less.
         turn_deg: f64,
-        /// Way of U, V and W in a rapid, mm: at the machine's rapid rate.
-        rapid_mm: f64,
+        /// Way of U, V and W, mm: at the machine's rapid rate it takes no less.
+        further_mm: f64,
     },
 }
 

@@ -55,7 +55,12 @@ impl Plc {
 
     /// How long a rotary axis takes to turn, s.
     pub fn turn_s(&self, degrees: f64) -> f64 {
-        if self.durations.rotary_deg_s > 0.0 { degrees / self.durations.rotary_deg_s } else { 0.0 }
+        degrees / self.most_deg_s()
+    }
+
+    /// Rate at which a rotary axis turns at most, degrees/s; infinite without a limit.
+    pub const fn most_deg_s(&self) -> f64 {
+        if self.durations.rotary_deg_s > 0.0 { self.durations.rotary_deg_s } else { f64::INFINITY }
     }
 
     fn runs(&self) -> bool {
@@ -109,6 +114,7 @@ mod tests {
     fn rotary_axes_turn_at_their_rate_or_at_once() {
         assert_eq!(Plc::new(DURATIONS).turn_s(90.0), 1.5);
         assert_eq!(Plc::default().turn_s(90.0), 0.0);
+        assert_eq!([Plc::new(DURATIONS).most_deg_s(), Plc::default().most_deg_s()], [60.0, f64::INFINITY]);
     }
 
     #[test]

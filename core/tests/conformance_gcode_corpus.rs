@@ -20,7 +20,7 @@ const REFUSED: &[(&str, &str)] = &[
     // Needs what only the control has: tool radii, the plane that a lathe begins with, a probe.
     ("cncjs/helical-thread-milling.gcode", "not in the tool table"),
     ("fanuc-easyplot/TEST_TURN.NC", "outside the arc's plane"),
-    ("gcode-preview/mach3.gcode", "G31 is not a G-code"),
+    ("gcode-preview/mach3.gcode", "G31 (a motion until a signal, on other controls) is not read"),
 ];
 
 #[test]

@@ -16,7 +16,13 @@ fn faults(text: &str) -> Vec<Diagnostic> {
 /// Program, line, column, length of the mark, and a part of the message.
 const TABLE: &[(&str, u32, u32, u32, &str)] = &[
     ("G0 X1\nG1.7 X2", 2, 1, 4, "G1.7 is not a G-code"),
-    ("G0 X1\n  G115 X2", 2, 3, 4, "G115 is not a G-code"),
+    ("G0 X1\n  G315 X2", 2, 3, 4, "G315 is not a G-code"),
+    ("G0 X1\nG68 X0 Y0 R30", 2, 1, 3, "G68 (a rotation of the coordinates, on other controls) is not read"),
+    ("F100\nG1 X1 ,R2.", 2, 7, 1, "`,R` rounds the corner"),
+    ("F100\no1 else\nG1 X1\no1 endif", 2, 1, 7, "no `O1 if` stands before it"),
+    ("F100\no1 if [1]\nG1 X1\no1 endif\no1 do\no1 while [0]", 5, 1, 5, "the label O1 is that of line 2"),
+    ("F100 G91\no1 repeat [2]\nG1 X1\no1 endwhile", 4, 1, 11, "endwhile ends no `O1 repeat`"),
+    ("F100 G41.1 D1\nG1 X5\nX9\nG40\nM5\nG2 X12 R3", 6, 1, 9, "behind G40 must be straight"),
     ("F100 G2 X10 Y0 I5.6 J0", 1, 1, 22, "5.600000 mm at the start and 4.400000 mm at the end"),
     ("F100 G2 X10 Y0 R4.9", 1, 16, 4, "at least half the distance, 5.000000 mm"),
     ("G1 X10", 1, 1, 6, "no feed F"),

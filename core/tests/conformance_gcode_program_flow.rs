@@ -191,3 +191,14 @@ fn canonical_steps_are_json() {
         r#"{"motion":{"line":1,"kind":"feed","start_mm":[0.0,0.0,0.0],"end_mm":[2.0,0.0,0.0],"shape":{"arc":{"plane":"xy","center_mm":[1.0,0.0,0.0],"turns":-1}},"feed_mm_s":1.0,"corner":{"continuous":{"tolerance_mm":null}}}}"#
     );
 }
+
+#[test]
+fn a_blank_ends_the_number_of_a_parameter_in_a_message() {
+    let (steps, _) = read("#1=2 #12=3\nF1 G1 X1\n(print,a #1 2 #12,#<_metric>x)\nM2", Settings::default());
+    let text = "a 2.000000 2 3.000000,1.000000x".to_owned();
+    assert!(
+        steps
+            .iter()
+            .any(|step| matches!(step, Canon::Event(event) if event.kind == EventKind::Message { text: text.clone() }))
+    );
+}

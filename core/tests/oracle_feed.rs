@@ -7,7 +7,10 @@ mod common;
 use common::{BLEND, LIMITS, arc, line, polyline};
 use feedwright::feed::Limits;
 use feedwright::gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Others, Shape};
+use feedwright::gcode::{Reader, Settings};
+use feedwright::machine::Durations;
 use feedwright::path::contour::contour;
+use feedwright::plc::Plc;
 use feedwright::reference::Reference;
 use std::f64::consts::PI;
 
@@ -178,4 +181,52 @@ fn the_tool_rests_while_something_else_moves() {
     assert!((reference.read_to_end_s() - (1.1 + 0.05 + 3.0 + 1.1)).abs() < ROUNDING_S);
     let standing = reference.at(2.0);
     assert!(standing.resting && standing.line == 9 && standing.position_mm == [10.0, 0.0, 0.0]);
+}
+
+/// Plan time of a program on a machine whose rotary axes have a limit.
+fn program_s(text: &str, rotary_deg_s: f64) -> f64 {
+    let reader = Reader::from_text("test", text, Settings::default()).expect("it is a program");
+    let canon: Vec<Canon> = reader.map(|step| step.expect("it has no mistakes")).collect();
+    let plc = Plc::new(Durations { rotary_deg_s, ..Durations::default() });
+    let mut reference = Reference::new(canon, &LIMITS).expect("limits are sound").with_plc(plc);
+    let end_s = reference.read_to_end_s();
+    assert_eq!(reference.fault(), None);
+    end_s
+}
+
+#[test]
+fn the_slowest_axis_of_a_motion_bounds_it() {
+    // Time at constant speed, plus one ramp at 100 mm/s2 up and down: v / a.
+    let at_speed = |length_mm: f64, seconds: f64| seconds + length_mm / seconds / 100.0;
+    for (program, rotary_deg_s, expected) in [
+        // 90 degrees at 30 degrees/s, in feed and in rapid; F would do it in 0.1 s.
+        ("G1 X10 A90 F6000", 30.0, at_speed(10.0, 3.0)),
+        ("G0 X10 A90", 30.0, at_speed(10.0, 3.0)),
+        // The largest angle of several.
+        ("G1 X6 Y8 A-90 B120 C30 F6000", 30.0, at_speed(10.0, 4.0)),
+        // F is that of X, Y and Z, and slower than the rotary axis.
+        ("G1 X10 A9 F60", 30.0, at_speed(10.0, 10.0)),
+        // No limit: up to the middle and down again.
+        ("G1 X10 A90 F60000", 0.0, 2.0 * (10.0f64 / 100.0).sqrt()),
+        // Inverse time: 6 s are enough, 1 s is not.
+        ("G93 G1 X10 A90 F10", 30.0, at_speed(10.0, 6.0)),
+        ("G93 G1 X10 A90 F60", 30.0, at_speed(10.0, 3.0)),
+        // Half a circle, half a turn.
+        ("G2 X20 I10 B180 F6000", 60.0, at_speed(10.0 * PI, 3.0)),
+        // U beside X at the rapid rate of 100 mm/s.
+        ("G1 X3 U300 F6000", 0.0, at_speed(3.0, 3.0)),
+        // A way of nearly nothing.
+        ("G1 X0.000002 A360 F6000", 60.0, 6.0),
+        // Where X, Y and Z rest, F is degrees a minute, and the limit holds.
+        ("G1 A90 F1800", 60.0, 3.0),
+        ("G1 A90 F180000", 60.0, 1.5),
+    ] {
+        let time = program_s(&format!("G21 G90\n{program}\nM2\n"), rotary_deg_s);
+        assert!((time - expected).abs() < 1e-8, "{program}: {time} s, not {expected} s");
+    }
+    // A block with a turn before one without: from the slow speed u to 10 mm/s within the second.
+    let u = 10.0_f64 / 3.0;
+    let expected = 3.0 + u / 200.0 + 1.0 + (10.0 - u).powi(2) / 2000.0 + 0.05;
+    let time = program_s("G21 G90 G64 F600\nG1 X10 A90\nX20\nM2\n", 30.0);
+    assert!((time - expected).abs() < 1e-8, "{time} s, not {expected} s");
 }

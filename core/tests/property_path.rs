@@ -211,3 +211,26 @@ fn lengths_are_those_of_the_closed_form() {
         assert!((length(name) - sum).abs() < 1e-9, "{name} {} {sum}", length(name));
     }
 }
+
+proptest! {
+    #[test]
+    fn the_reader_measures_an_arc_as_the_path_does(
+        change in -0.028..0.028_f64,
+        to in 0.0..std::f64::consts::TAU,
+        turns in prop::sample::select(vec![1, -1, 4, -7]),
+    ) {
+        let motion = Motion {
+            line: 1,
+            kind: MotionKind::Feed,
+            start_mm: [1.0, 0.0, 0.0],
+            end_mm: [(1.0 + change) * to.cos(), (1.0 + change) * to.sin(), 2.0],
+            shape: Shape::Arc { plane: Plane::Xy, center_mm: [0.0; 3], turns },
+            feed_mm_s: 1.0,
+            corner: BLEND,
+            others: Others::default(),
+        };
+        let length_mm = motion.length_mm();
+        let path_mm: f64 = pieces(vec![Canon::Motion(motion)]).iter().map(|piece| piece.length_mm).sum();
+        prop_assert!((length_mm - path_mm).abs() < 1e-6, "{length_mm} {path_mm}");
+    }
+}

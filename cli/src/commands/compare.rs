@@ -84,8 +84,9 @@ fn options(args: &CompareArgs) -> Result<Options> {
     if controllers.iter().any(|c| named(c.name)) {
         controllers.retain(|c| named(c.name) || c.name == BASELINE);
     }
+    let settings = args.reader.settings()?;
     for part in &args.part {
-        workpieces.push(Workpiece::program(part)?);
+        workpieces.push(Workpiece::program(part, settings.clone())?);
     }
     for machine in &args.machine {
         machines.push(Machine::load(machine)?);
@@ -116,7 +117,8 @@ struct Files {
 impl Files {
     fn create(args: &CompareArgs) -> Result<Self> {
         let machines: Vec<PathBuf> = args.machine.iter().map(PathBuf::from).collect();
-        let inputs: Vec<&Path> = args.part.iter().chain(&machines).map(PathBuf::as_path).collect();
+        let inputs: Vec<&Path> =
+            args.part.iter().chain(&machines).chain(&args.reader.tool_table).map(PathBuf::as_path).collect();
         let create = |path: &Option<PathBuf>| path.as_ref().map(|path| OutputFile::create(path, &inputs)).transpose();
         Ok(Self { json: create(&args.json)?, html: create(&args.html)? })
     }

@@ -106,9 +106,9 @@ impl<'p> Plan<'p> {
         match self.steps.next() {
             Some(Ok(Step::Piece(piece))) => self.piece(piece),
             Some(Ok(Step::Event(event))) => self.event(event),
-            Some(Ok(Step::Rest { line, seconds, turn_deg, rapid_mm })) => {
+            Some(Ok(Step::Rest { line, seconds, turn_deg, further_mm })) => {
                 self.stop = true;
-                let least_s = self.plc.turn_s(turn_deg).max(rapid_mm / self.limits.rapid_mm_s);
+                let least_s = self.plc.turn_s(turn_deg).max(further_mm / self.limits.rapid_mm_s);
                 let seconds = seconds.max(least_s).min(MAX_REST_S);
                 self.between(None, Some((seconds, line)));
             }
@@ -132,8 +132,11 @@ impl<'p> Plan<'p> {
             _ => 0.0,
         };
         self.stop = false;
+        // The slowest axis of a motion bounds the others; nothing that moves along is no bound (division by zero).
+        let rotary_mm_s = self.plc.most_deg_s() / piece.turn_deg_mm;
+        let most_mm_s = rotary_mm_s.min(self.limits.rapid_mm_s / piece.further_mm_mm);
         let (planner, count) = (&mut self.planner, &mut self.sections);
-        sections(&piece, self.pieces, cap, &self.limits, |section| {
+        sections(&piece, self.pieces, cap, most_mm_s, &self.limits, |section| {
             planner.push(section);
             *count += 1;
         });

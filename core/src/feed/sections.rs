@@ -23,14 +23,22 @@ const MIN_SECTION_MM: f64 = 1e-6;
 const MIN_PART: f64 = 1.0 / 4096.0;
 
 /// Bound on the square of the speed on a piece without its curvature, mm2/s2.
-fn feed_cap(piece: &Piece, limits: &Limits) -> f64 {
+fn feed_cap(piece: &Piece, most_mm_s: f64, limits: &Limits) -> f64 {
     let feed = if piece.cutting { piece.feed_mm_s.min(limits.max_feed_mm_s) } else { limits.rapid_mm_s };
-    feed * feed
+    feed.min(most_mm_s).powi(2)
 }
 
-/// Hands the sections of a piece to `push`, in order; `joint_cap` belongs to the first.
-pub fn sections(piece: &Piece, number: u64, joint_cap: f64, limits: &Limits, mut push: impl FnMut(Section)) {
-    let feed = feed_cap(piece, limits);
+/// Hands the sections of a piece to `push`, in order; `joint_cap` belongs to the first, `most_mm_s` is what other axes that move
+/// along allow.
+pub fn sections(
+    piece: &Piece,
+    number: u64,
+    joint_cap: f64,
+    most_mm_s: f64,
+    limits: &Limits,
+    mut push: impl FnMut(Section),
+) {
+    let feed = feed_cap(piece, most_mm_s, limits);
     let bound = |curvature: f64| feed.min(limits.normal_accel_mm_s2 / curvature.clamp(0.0, MAX_CURVATURE_1_MM));
     match &piece.curve {
         Curve::Line(_) | Curve::Arc(_) => {

@@ -9,6 +9,7 @@ use super::block::Block;
 use super::canon::{Plane, Shape};
 use super::codes::{bit, letter, slot as slot_of};
 use super::diagnostic::{Fault, Read};
+use super::spiral::Spiral;
 use super::state::{INCH_MM, Interpreter, Position};
 use super::travel::{Speed, others};
 
@@ -41,6 +42,11 @@ impl Interpreter {
     pub(super) fn arc(&mut self, block: &Block, counter_clockwise: bool) -> Read<()> {
         let extruder_mm = self.extruder_word(block);
         let target = self.target(block)?;
+        if std::mem::take(&mut self.left_compensation) {
+            let message = "the first motion behind G40 must be straight, not an arc";
+            return Err(Fault::new("gcode::compensation", block.whole(), message)
+                .hint("the tool stands beside the contour: lead it away with G1 or G0 first"));
+        }
         let round = match self.round(block, &target, counter_clockwise) {
             Ok(round) => round,
             Err(fault) => {
@@ -76,7 +82,8 @@ impl Interpreter {
         let center = self.frame.to_machine(&center);
         let machine = self.frame.to_machine(target);
         let start = std::mem::replace(&mut self.here, machine);
-        let length_mm = arc_length(&start, &machine, &center, plane, round.turns);
+        let [from, to, middle] = [start, machine, center].map(|[x, y, z, ..]| [x, y, z]);
+        let length_mm = Spiral::new(from, to, middle, plane, round.turns).length_mm();
         let feed_mm_s = self.feed_for(block, length_mm)?;
         let others = others(&start, &machine, extruder_mm);
         let shape = Shape::Arc { plane, center_mm: [center[0], center[1], center[2]], turns: round.turns };
@@ -208,20 +215,6 @@ impl Interpreter {
     fn slack(&self, [in_mm, in_inch]: [f64; 2]) -> f64 {
         if self.modal.unit_mm == 1.0 { in_mm } else { in_inch * INCH_MM }
     }
-}
-
-/// Length of an arc or helix, mm.
-pub(super) fn arc_length(start: &Position, end: &Position, center: &Position, plane: Plane, turns: i32) -> f64 {
-    let [first, second, normal] = plane.axes();
-    let from = [start[first] - center[first], start[second] - center[second]];
-    let to = [end[first] - center[first], end[second] - center[second]];
-    let sign = f64::from(turns.signum());
-    let mut angle = sign * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
-    if angle * from[0].hypot(from[1]) <= FULL_TURN_WITHIN_MM {
-        angle += std::f64::consts::TAU;
-    }
-    angle += std::f64::consts::TAU * f64::from(turns.abs() - 1);
-    (angle * from[0].hypot(from[1])).hypot(end[normal] - start[normal])
 }
 
 /// An arc that ends this close to its start, mm along the circle, is a full turn: as in the path stage, and on LinuxCNC.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::codes::{self, AXES, GROUPS, Group, bit, letter, slot};
 use super::diagnostic::{Fault, Read, Short};
 use super::expression::{Evaluator, INTEGER_WITHIN, Target, Values};
+use super::foreign;
 use super::lexer::{Cursor, END, NO_EXPONENT, shown};
 
 /// Letters, `@` and `^`.
@@ -45,6 +46,9 @@ pub(super) struct Block {
     pub(super) comment: Option<Range<usize>>,
     /// Whether a letter may stand without a value where it only names an axis.
     bare_words: bool,
+    /// Whether to look for decimal points, and the letters whose numbers have one.
+    points: bool,
+    pointed: u32,
     /// Whether a word E follows a number without a blank, as an exponent does.
     pub(super) exponent: bool,
     /// End of the line's text outside comments.
@@ -56,6 +60,8 @@ pub(super) struct Block {
 pub(super) struct Style {
     /// Printers: `*` begins a checksum, and some letters stand alone.
     pub(super) printer: bool,
+    /// Fanuc and its relatives: a decimal point makes milliseconds seconds.
+    pub(super) points: bool,
 }
 
 impl Block {
@@ -70,6 +76,8 @@ impl Block {
             assignments: Vec::new(),
             comment: None,
             bare_words: false,
+            points: false,
+            pointed: 0,
             exponent: false,
             end: 0,
         }
@@ -79,6 +87,7 @@ impl Block {
     #[inline]
     pub(super) fn clear(&mut self) {
         self.set = 0;
+        self.pointed = 0;
         self.exponent = false;
         if !self.g.is_empty() {
             self.g.clear();
@@ -99,6 +108,11 @@ impl Block {
     #[inline]
     pub(super) const fn has(&self, letter: u8) -> bool {
         self.set & bit(letter) != 0
+    }
+
+    /// Whether the number of a letter is written with a decimal point; known where [`Style::points`] asks for it.
+    pub(super) const fn has_point(&self, letter: u8) -> bool {
+        self.pointed & bit(letter) != 0
     }
 
     /// Where the word of a letter stands.
@@ -136,6 +150,7 @@ impl Block {
         let mut evaluator = Evaluator::new(cursor, values);
         self.end = evaluator.cursor.at;
         self.bare_words = style.printer;
+        self.points = style.points;
         loop {
             let byte = evaluator.cursor.peek();
             let start = evaluator.cursor.at;
@@ -183,6 +198,9 @@ impl Block {
         self.set |= 1 << slot;
         self.value[slot] = value;
         self.place[slot] = place;
+        if self.points && evaluator.cursor.bytes[start..evaluator.cursor.at].contains(&b'.') {
+            self.pointed |= 1 << slot;
+        }
         Ok(())
     }
 
@@ -198,6 +216,12 @@ impl Block {
         };
         let word = Word { number: code.number, start: start as u32, end: end as u32 };
         if let Some(other) = self.group[code.group as usize].replace(word) {
+            if (code.number == 800) != (other.number == 800) {
+                // `G80 G0 X5`: the motion ends the cycle by itself.
+                self.group[code.group as usize] = Some(if code.number == 800 { other } else { word });
+                self.g.push(word);
+                return Ok(());
+            }
             let message = format!(
                 "{} and {} exclude each other on one line",
                 codes::spelled(other.number),
@@ -306,6 +330,10 @@ fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
     };
     // `G1 10`: digits, a blank, digits.
     let has_gap = bytes[at.clone()].windows(3).any(|w| w[0].is_ascii_digit() && w[1] == b' ' && w[2].is_ascii_digit());
+    if let Some((what, hint)) = foreign::what(tenths).filter(|_| !has_gap) {
+        return Fault::new("gcode::unsupported", at, format!("{spelled} ({what}, on other controls) is not read"))
+            .hint(hint);
+    }
     let fault = Fault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"));
     if has_gap {
         fault.hint("blanks inside numbers mean nothing: is a letter missing behind the blank?")
@@ -319,6 +347,17 @@ fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
 fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
     let byte = bytes[start];
     if byte.is_ascii() {
+        let next = bytes[start + 1..].trim_ascii_start().first().map(u8::to_ascii_uppercase);
+        if let (b',', Some(next @ (b'R' | b'C' | b'A'))) = (byte, next) {
+            let what = match next {
+                b'R' => "rounds the corner at the end of the line",
+                b'C' => "cuts a chamfer at the end of the line",
+                _ => "gives the angle of the line",
+            };
+            let message = format!("`,{}` {what} on other controls and is not read", char::from(next));
+            return Fault::new("gcode::unsupported", start..start + 1, message)
+                .hint("write the corner as a motion of its own, with its end point");
+        }
         let fault = Fault::new("gcode::character", start..start + 1, format!("`{}` has no meaning here", shown(byte)));
         return match byte {
             b'/' => fault.hint("a `/` that deletes the line stands first on it"),
@@ -326,6 +365,9 @@ fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
             b'[' => fault.hint("a bracket stands behind a letter or a function"),
             b',' => fault.hint("a decimal point is a point: write 1.5, not 1,5"),
             b']' => fault.hint("the bracket that ends here has no `[`"),
+            b'0'..=b'9' if bytes[..start].trim_ascii() == b"/" => {
+                fault.hint("levels of `/` are Fanuc's; LinuxCNC has one, without a number")
+            }
             0 => fault.hint("the file holds bytes that are no text"),
             _ => fault,
         };

@@ -41,7 +41,8 @@ impl Interpreter {
             return if self.compensates() { self.check_compensated(block) } else { Ok(()) };
         };
         if word.number == 400 {
-            self.compensation = None;
+            let was = self.compensation.take();
+            self.left_compensation |= was.is_some_and(|was| was.last.is_some() && was.radius_mm > 0.0);
             self.release();
             return Ok(());
         }
@@ -249,8 +250,9 @@ impl Interpreter {
         // Back the way it came: which side is inner shows in how the curves bend beside each other.
         let is_inner =
             if reverses { compensation.side * (before.bend() + next.bend()) < 0.0 } else { angle > SMOOTH_WITHIN_RAD };
+        let aside = scaled(left_of(along), compensation.side * compensation.radius_mm);
         if is_inner {
-            let meeting = before.meet(next, corner).ok_or_else(|| {
+            let meeting = inner_meeting(before, next, corner, add(corner, aside)).ok_or_else(|| {
                 Fault::new("gcode::compensation", block.whole(), format!("the tool of radius {:.4} mm does not fit into the inner corner before this motion: it would cut into the contour", compensation.radius_mm))
                     .hint("a smaller tool, a larger radius in the corner, or a longer motion")
             })?;
@@ -258,7 +260,6 @@ impl Interpreter {
         } else if angle < -SMOOTH_WITHIN_RAD || reverses {
             self.release();
             let [first, second, _] = self.modal.plane.axes();
-            let aside = scaled(left_of(along), compensation.side * compensation.radius_mm);
             let mut machine = self.here;
             (machine[first], machine[second]) = (corner[0] + aside[0], corner[1] + aside[1]);
             let mut center_mm = [self.here[0], self.here[1], self.here[2]];
@@ -305,8 +306,24 @@ impl Interpreter {
             motion.feed_mm_s = self.feed_for(block, motion.length_mm())?;
         }
         self.motions += 1;
+        self.left_compensation = false;
         self.held.push(Canon::Motion(motion));
         Ok(())
+    }
+}
+
+/// Where the offset curves of an inner corner meet; `beside` is the start of the second one beside the programmed corner.
+///
+/// An arc with unequal radii has that of its end, so that its offset circle does not pass through `beside`. LinuxCNC 2.9 moves the
+/// circle there before it meets a line, and the meeting back with it: the line then ends up to the difference of the radii off
+/// itself. Two arcs meet as they are. Found by trying corners on it.
+fn inner_meeting(before: &Curve, next: &Curve, corner: Point, beside: Point) -> Option<Point> {
+    match (before, next) {
+        (Curve::Line { .. }, Curve::Arc { start, .. }) => {
+            let shift = minus(beside, *start);
+            Some(minus(before.meet(&next.moved(shift), corner)?, shift))
+        }
+        _ => before.meet(next, corner),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Canned cycles G73, G74 and G81-G89: one hole a line, along the normal of the plane.
 //!
-//! Every cycle first goes to R if it is below, then over the hole at that height, then to R; what happens between R and the bottom is the
-//! cycle's own. Z, R, Q and P stay until another code ends the cycle. NISTIR 6556, section 3.5.16, and LinuxCNC for G73, G74 and pecking.
+//! Every cycle first goes to R if the series began below it, then over the hole, then to R; what happens between R and the bottom is the
+//! cycle's own. The way over the hole is at the height of the tool where that is above R; else it ends where the retraction will, and LinuxCNC
+//! 2.9 rises on the way where G98, G99 or R have changed within the series. Z, R, Q and P stay until another code ends the cycle. NISTIR 6556, section 3.5.16, and LinuxCNC for G73, G74 and pecking.
 
 use super::block::Block;
 use super::canon::{Corner, EventKind};
@@ -132,7 +133,7 @@ impl Interpreter {
                     format!("the dwell P{} is negative; the smallest is 0 s", Short(value)),
                 ));
             }
-            kept.dwell_s = Some(value);
+            kept.dwell_s = Some(self.seconds(block, value));
         }
         let missing = match kept.code {
             730 | 830 if kept.peck.is_none() => "Q (depth of a peck)",
@@ -144,7 +145,7 @@ impl Interpreter {
     }
 
     fn drill_all(&mut self, block: &Block, hole: &Hole, plane: [usize; 2], retract: f64, repeats: i64) -> Read<()> {
-        if self.at[hole.normal] < hole.clearance {
+        if self.cycle.began_at < hole.clearance {
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
         }
         let pecks = (hole.clearance - hole.bottom) / self.cycle.peck.unwrap_or(f64::INFINITY) * repeats as f64;
@@ -157,6 +158,9 @@ impl Interpreter {
         for _ in 0..repeats {
             let mut target = self.target(block)?;
             target[hole.normal] = self.at[hole.normal];
+            if target[hole.normal] <= hole.clearance {
+                target[hole.normal] = retract;
+            }
             self.go(block, target, Speed::Rapid)?;
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
             self.drill(block, hole, plane)?;
@@ -226,14 +230,18 @@ impl Interpreter {
         let &Hole { normal, bottom, clearance } = hole;
         let step = self.cycle.peck.unwrap_or(clearance - bottom);
         let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };
-        let mut depth = clearance - step;
-        while depth > bottom {
+        // In the program's unit, as LinuxCNC counts: elsewhere rounding makes a last peck of nothing, or leaves one out.
+        let unit = self.modal.unit_mm;
+        let (step, last) = (step / unit, bottom / unit);
+        let mut counted = clearance / unit - step;
+        while counted > last {
+            let depth = counted * unit;
             self.along(block, normal, depth, Speed::Programmed)?;
             if self.cycle.code == 830 {
                 self.along(block, normal, clearance, Speed::Rapid)?;
             }
             self.along(block, normal, depth + above, Speed::Rapid)?;
-            depth -= step;
+            counted -= step;
         }
         self.along(block, normal, bottom, Speed::Programmed)?;
         self.pause(self.cycle.dwell_s.unwrap_or(0.0));

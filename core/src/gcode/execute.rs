@@ -256,12 +256,16 @@ impl Interpreter {
         let seconds = match (block.get(b'p'), block.get(b's')) {
             (_, Some(seconds)) if printer => seconds,
             (Some(milliseconds), _) if printer => milliseconds * 1e-3,
-            (Some(seconds), _) => seconds,
+            (Some(time), _) => self.seconds(block, time),
             (None, _) if printer => 0.0,
             (None, _) => {
-                return Err(
-                    Fault::new("gcode::dwell", word.at(), "the dwell G4 has no time").hint("write G4 P with seconds")
-                );
+                return Err(Fault::new("gcode::dwell", word.at(), "the dwell G4 has no time").hint(
+                    if self.dialect == Dialect::Fanuc {
+                        "write G4 P with milliseconds in place of X or U with seconds"
+                    } else {
+                        "write G4 P with seconds"
+                    },
+                ));
             }
         };
         if seconds < 0.0 {
@@ -273,6 +277,11 @@ impl Interpreter {
         }
         self.event(EventKind::Dwell { seconds });
         Ok(())
+    }
+
+    /// Seconds of the time P of a dwell. Fanuc and Haas count milliseconds where it has no decimal point.
+    pub(super) const fn seconds(&self, block: &Block, time: f64) -> f64 {
+        if matches!(self.dialect, Dialect::Fanuc) && !block.has_point(b'p') { time * 1e-3 } else { time }
     }
 
     fn motion(&mut self, block: &Block) -> Read<()> {

@@ -1,15 +1,17 @@
-//! Lines that are commands to a firmware and no G-code: macros of Klipper, texts for a display, settings of grbl.
+//! Lines that are commands to a firmware and no G-code: macros of Klipper, texts for a display, settings of grbl, smoothing of Fanuc.
 
 use super::diagnostic::Fault;
 use super::settings::Dialect;
 
 /// What such a line is.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Command {
     /// The machine acts by itself: a macro, a probing of the bed. What it moves is not known here.
     Acts,
     /// A text, a setting.
     Speaks,
+    /// The control plans motions in another way from here on.
+    Smooths,
 }
 
 /// G-codes of printers that set the machine to work by itself: nozzle cleaning, parking, bed probing and alignment.
@@ -26,6 +28,7 @@ pub(super) fn command(line: &[u8], dialect: Dialect) -> Option<Command> {
             Some(Command::Speaks)
         }
         Dialect::Printer => printer_command(line),
+        Dialect::Fanuc => smooths(line).then_some(Command::Smooths),
         _ => None,
     }
 }
@@ -48,14 +51,36 @@ fn printer_command(line: &[u8]) -> Option<Command> {
     named.then_some(Command::Acts)
 }
 
-/// The warning for a command whose motions are not known.
-pub(super) fn warning(line: &[u8]) -> Box<Fault> {
+/// Look-ahead and smoothing of Fanuc and Haas: `G5.1 Q1`, `G5 P10000`, `G8 P1`, `G187 P3 E0.01`, alone on the line.
+fn smooths(line: &[u8]) -> bool {
+    let mut code = line.split(|byte| matches!(byte, b'(' | b';')).next().unwrap_or(line);
+    if let [b'n' | b'N', rest @ ..] = code {
+        let number = rest.iter().take_while(|byte| byte.is_ascii_digit()).count();
+        code = rest[number..].trim_ascii_start();
+    }
+    let [b'g' | b'G', code @ ..] = code else {
+        return false;
+    };
+    let end = code.iter().position(|byte| !byte.is_ascii_digit() && *byte != b'.').unwrap_or(code.len());
+    let (number, rest) = code.split_at(end);
+    let mut letters = rest.iter().filter(|byte| byte.is_ascii_alphabetic()).map(u8::to_ascii_lowercase);
+    match number {
+        b"187" => letters.all(|letter| matches!(letter, b'p' | b'e')),
+        b"5.1" | b"05.1" => letters.next() == Some(b'q') && letters.all(|letter| letter == b'r'),
+        b"5" | b"05" | b"8" | b"08" => letters.next() == Some(b'p') && letters.next().is_none(),
+        _ => false,
+    }
+}
+
+/// The warning for a command whose motions are not known, or that is left out.
+pub(super) fn warning(line: &[u8], command: Command) -> Box<Fault> {
     let shown = String::from_utf8_lossy(line.trim_ascii()).chars().take(40).collect::<String>();
-    Fault::new(
-        "gcode::firmware",
-        0..line.len(),
-        format!("`{shown}` is carried out by the firmware: what it moves is not known here"),
-    )
+    let what = if command == Command::Smooths {
+        "sets how the control smooths motions: it is left out"
+    } else {
+        "is carried out by the firmware: what it moves is not known here"
+    };
+    Fault::new("gcode::firmware", 0..line.len(), format!("`{shown}` {what}"))
 }
 
 #[cfg(test)]
@@ -74,5 +99,12 @@ mod tests {
         assert_eq!(command(b"$H", Dialect::Grbl), Some(Command::Speaks));
         assert_eq!(command(b"$J=G91 X1", Dialect::Grbl), None);
         assert_eq!(command(b"START_PRINT", Dialect::LinuxCnc), None);
+        let fanuc = |line: &str| command(line.as_bytes(), Dialect::Fanuc);
+        for line in ["G187 P3 E0.01", "N10 G05.1 Q1 (AICC)", "G5.1Q1R5", "G08 P1", "G05 P10000", "g187"] {
+            assert_eq!(fanuc(line), Some(Command::Smooths), "{line}");
+        }
+        for line in ["G5.1 X1 I1 J2", "G8", "G1 X5 P1", "G187 P1 G0 X5", "G08 P1 X5", "", "N10", "G"] {
+            assert_eq!(fanuc(line), None, "{line}");
+        }
     }
 }

@@ -3,6 +3,7 @@
 //! A definition is stepped over when the flow meets it and entered by a call. Branches not taken are skipped line by line, looking
 //! only for the O-word that ends them, so that nothing of a program has to be kept in memory except the places of its subroutines.
 
+use std::collections::HashMap;
 use std::io;
 use std::path::PathBuf;
 
@@ -49,6 +50,9 @@ enum Purpose {
     NextRound,
 }
 
+/// Labels of branches and loops that are remembered, far more than anybody writes by hand; what comes then is not checked.
+const MOST_LABELS: usize = 100_000;
+
 /// The files of a program, the place in them, and the calls and loops under way.
 #[derive(Debug)]
 pub(super) struct Flow {
@@ -59,6 +63,9 @@ pub(super) struct Flow {
     pub(super) loops: Vec<Loop>,
     pub(super) skip: Option<Skip>,
     pub(super) max_depth: usize,
+    /// Lines of the branches and loops met so far, by file, subroutine and label; and room for such a key.
+    labels: HashMap<Vec<u8>, u32>,
+    key: Vec<u8>,
 }
 
 impl Flow {
@@ -73,6 +80,8 @@ impl Flow {
             loops: Vec::new(),
             skip: None,
             max_depth: settings.max_depth,
+            labels: HashMap::new(),
+            key: Vec::new(),
         }
     }
 
@@ -200,6 +209,12 @@ impl Flow {
         let value = arguments.map_or(0.0, |arguments| arguments.values[0]);
         let is_true = value != 0.0;
         match head.keyword {
+            Keyword::Sub | Keyword::If | Keyword::Do | Keyword::Repeat => self.take_label(head, line)?,
+            Keyword::While if !self.ends_do(head) => self.take_label(head, line)?,
+            Keyword::ElseIf | Keyword::Else | Keyword::EndIf => self.find_label(head)?,
+            _ => {}
+        }
+        match head.keyword {
             Keyword::Number | Keyword::EndIf | Keyword::Call | Keyword::Return | Keyword::EndSub => {}
             Keyword::Sub => {
                 if self.frames.last().is_some_and(|frame| frame.manner == Manner::Fanuc && frame.label == head.label) {
@@ -223,8 +238,8 @@ impl Flow {
             Keyword::ElseIf | Keyword::Else => self.pass(head, Purpose::EndOfBranches, line),
             Keyword::While => return self.meet_while(head, is_true, line),
             Keyword::Do => self.begin_loop(head, 0)?,
-            Keyword::Repeat if value < 0.5 => self.pass(head, Purpose::EndOfLoop, line),
-            Keyword::Repeat => self.begin_loop(head, value.round() as u64)?,
+            Keyword::Repeat if value.round_ties_even() < 1.0 => self.pass(head, Purpose::EndOfLoop, line),
+            Keyword::Repeat => self.begin_loop(head, value.round_ties_even() as u64)?,
             Keyword::EndWhile | Keyword::EndRepeat => return self.end_round(head),
             Keyword::Break => {
                 self.find_loop(head)?;
@@ -276,11 +291,55 @@ impl Flow {
         Ok(&mut self.loops[base + found])
     }
 
+    /// Whether a `while` ends a loop that began with `do`.
+    fn ends_do(&self, head: &Head) -> bool {
+        let base = self.frames.last().map_or(0, |frame| frame.loops);
+        self.loops[base..].iter().any(|turn| turn.label == head.label && turn.kind == Keyword::Do)
+    }
+
+    /// A definition is met, or a branch or a loop begins: its label must not be that of another in the same subroutine.
+    fn take_label(&mut self, head: &Head, line: u32) -> Read<()> {
+        self.label_key(head);
+        match self.labels.get(&self.key) {
+            Some(&other) if other != line => {
+                let message = format!("the label {} is that of line {other} already", head.shown());
+                Err(Fault::new("gcode::o_word", head.at.clone(), message)
+                    .hint("give every subroutine, branch and loop a number of its own"))
+            }
+            Some(_) => Ok(()),
+            None => {
+                if self.labels.len() < MOST_LABELS {
+                    self.labels.insert(self.key.clone(), line);
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// A branch goes on or ends: it must have begun.
+    fn find_label(&mut self, head: &Head) -> Read<()> {
+        self.label_key(head);
+        if self.labels.contains_key(&self.key) || self.labels.len() == MOST_LABELS {
+            return Ok(());
+        }
+        let message = format!("{}: no `{} if` stands before it", head.keyword.spelled(), head.shown());
+        Err(Fault::new("gcode::o_word", head.at.clone(), message))
+    }
+
+    fn label_key(&mut self, head: &Head) {
+        self.key.clear();
+        self.key.extend_from_slice(&self.current.to_le_bytes());
+        if let Some(frame) = self.frames.last() {
+            self.key.extend_from_slice(&frame.label);
+        }
+        // A subroutine may share its number with a branch or a loop.
+        self.key.push(if head.keyword == Keyword::Sub { b'<' } else { b'>' });
+        self.key.extend_from_slice(&head.label);
+    }
+
     /// `while` begins a loop, or ends one that began with `do`.
     fn meet_while(&mut self, head: &Head, is_true: bool, line: u32) -> Read<()> {
-        let base = self.frames.last().map_or(0, |frame| frame.loops);
-        let ends_do = self.loops[base..].iter().any(|turn| turn.label == head.label && turn.kind == Keyword::Do);
-        if ends_do {
+        if self.ends_do(head) {
             let body = self.find_loop(head)?.body;
             if is_true {
                 return self.jump(body, head);
@@ -298,6 +357,16 @@ impl Flow {
     /// `endwhile`, `endrepeat`.
     fn end_round(&mut self, head: &Head) -> Read<()> {
         let turn = self.find_loop(head)?;
+        let ends = match head.keyword {
+            Keyword::EndWhile => Keyword::While,
+            Keyword::EndRepeat => Keyword::Repeat,
+            _ => turn.kind, // `continue` ends any round.
+        };
+        if turn.kind != ends {
+            let (end, kind) = (head.keyword.spelled(), turn.kind.spelled());
+            let message = format!("{end} ends no `{} {kind}`", head.shown());
+            return Err(Fault::new("gcode::o_word", head.at.clone(), message));
+        }
         match turn.kind {
             Keyword::Repeat => {
                 turn.repeats -= 1;

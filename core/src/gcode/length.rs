@@ -1,7 +1,7 @@
 //! Length of a canonical motion.
 
-use super::arc::arc_length;
 use super::canon::{Motion, Shape, Spline};
+use super::spiral::Spiral;
 
 /// Chords that a span of a spline is divided into for its length. The relative error of a chord is its turning angle squared over 24, so
 /// that even a span that turns by a full radian is measured to 5e-6.
@@ -13,15 +13,11 @@ impl Motion {
         match &self.shape {
             Shape::Line => norm(self.start_mm, self.end_mm),
             Shape::Arc { plane, center_mm, turns } => {
-                arc_length(&nine(self.start_mm), &nine(self.end_mm), &nine(*center_mm), *plane, *turns)
+                Spiral::new(self.start_mm, self.end_mm, *center_mm, *plane, *turns).length_mm()
             }
             Shape::Spline(spline) => spline.length_mm(),
         }
     }
-}
-
-fn nine([x, y, z]: [f64; 3]) -> [f64; 9] {
-    [x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
 }
 
 fn norm(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -23,7 +23,7 @@ impl Interpreter {
             61 => bit(b'q'),
             66 => bit(b'p') | bit(b'e') | bit(b'l') | bit(b'q'),
             67 | 68 => bit(b'e') | bit(b'q'),
-            97..=98 => bit(b'p') | bit(b'l') | bit(b'q'),
+            98 => bit(b'p') | bit(b'l'),
             99 => bit(b'p'),
             100..=199 => bit(b'p') | bit(b'q'),
             _ if self.dialect == Dialect::Fanuc => bit(b'p') | bit(b'q') | bit(b'r'),
@@ -56,6 +56,12 @@ impl Interpreter {
             if let Some(other) = clash {
                 let message = format!("M{} and M{} exclude each other on one line", other.number, word.number);
                 return Err(Fault::new("gcode::modal_group", word.at(), message).hint("write them on two lines"));
+            }
+            if self.dialect == Dialect::Fanuc
+                && let Some((what, hint)) = jump(word.number)
+            {
+                let message = format!("M{} {what}, which is not read", word.number);
+                return Err(Fault::new("gcode::unsupported", word.at(), message).hint(hint));
             }
             let known = matches!(word.number, 0..=9 | 19 | 30 | 48..=53 | 60..=68 | 70..=73 | 98 | 99 | 100..=199);
             if !known && self.dialect == Dialect::LinuxCnc {
@@ -149,6 +155,18 @@ impl Interpreter {
         }
         self.event(EventKind::MCode { code: number, p: block.get(b'p'), q: block.get(b'q') });
         Ok(())
+    }
+}
+
+/// M-codes of Fanuc and Haas that go on at another line: what they do, and what helps.
+const fn jump(number: u16) -> Option<(&'static str, &'static str)> {
+    const AS_SUBROUTINE: &str =
+        "put the lines behind M30, O1000 before and M99 behind them, and call them by M98 P1000";
+    match number {
+        96 => Some(("jumps where an input is off", "write the lines that the machine will carry out")),
+        97 => Some(("calls lines of the same program by their N", AS_SUBROUTINE)),
+        198 => Some(("calls a program on another device", AS_SUBROUTINE)),
+        _ => None,
     }
 }
 

@@ -30,8 +30,11 @@ impl Interpreter {
             number => usize::from(number - 530) / 10,
         };
         self.parameters.set(numbers::SYSTEM, system as f64);
-        self.frame.system = system;
-        self.load_system();
+        // LinuxCNC does not look again at the parameters of the system that is active already.
+        if self.dialect != Dialect::LinuxCnc || system != self.frame.system {
+            self.frame.system = system;
+            self.load_system();
+        }
         Ok(())
     }
 
@@ -259,7 +262,9 @@ impl Interpreter {
             if let Some(value) = block.get(letter) {
                 let value = self.length(block, letter, axis, value)?;
                 named[axis] = value;
-                offset[axis] = if self.modal.incremental && !by_position { offset[axis] + value } else { value };
+                // G91 means nothing to LinuxCNC's G10 L2; on Fanuc the value is added.
+                let added = self.modal.incremental && !by_position && self.dialect == Dialect::Fanuc;
+                offset[axis] = if added { offset[axis] + value } else { value };
             }
         }
         if by_position {

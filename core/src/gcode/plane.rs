@@ -51,7 +51,8 @@ pub(super) enum Curve {
         start: Point,
         end: Point,
     },
-    /// `turn` is 1 counter-clockwise, -1 clockwise; up to one full turn.
+    /// `turn` is 1 counter-clockwise, -1 clockwise; up to one full turn. Where start and end are not equally far from the centre,
+    /// it counts as a circle through the end.
     Arc {
         start: Point,
         end: Point,
@@ -61,26 +62,47 @@ pub(super) enum Curve {
 }
 
 impl Curve {
-    /// Where the one curve can end and the other begin: the meeting nearest to a point.
+    /// Where the one curve can end and the other begin: the meeting nearest to a point, of two as near the one that `other` has first.
     pub(super) fn meet(&self, other: &Self, near: Point) -> Option<Point> {
         let candidates = match (*self, *other) {
             (Self::Line { start: a, end: b }, Self::Line { start: c, end: d }) => {
                 line_line(a, minus(b, a), c, minus(d, c))
             }
-            (Self::Line { start, end }, Self::Arc { start: on, center, .. })
-            | (Self::Arc { start: on, center, .. }, Self::Line { start, end }) => {
+            (Self::Line { start, end }, Self::Arc { end: on, center, .. })
+            | (Self::Arc { end: on, center, .. }, Self::Line { start, end }) => {
                 line_circle(start, unit(minus(end, start)), center, length(minus(on, center)))
             }
-            (Self::Arc { start: a, center: c, .. }, Self::Arc { start: b, center: d, .. }) => {
+            (Self::Arc { end: a, center: c, .. }, Self::Arc { end: b, center: d, .. }) => {
                 circle_circle(c, length(minus(a, c)), d, length(minus(b, d)))
             }
         };
         let fits = |point: &Point| self.ends_at(*point) && other.begins_at(*point);
-        candidates
-            .into_iter()
-            .flatten()
-            .filter(fits)
-            .min_by(|a, b| length(minus(*a, near)).total_cmp(&length(minus(*b, near))))
+        let away = |point: &Point| length(minus(*point, near));
+        match candidates {
+            // Both as near: a line that turns back into an arc. The arc is entered as early as it can be.
+            [Some(a), Some(b)] if fits(&a) && fits(&b) && (away(&a) - away(&b)).abs() < SLACK_MM => {
+                Some(if other.way_to(a) <= other.way_to(b) { a } else { b })
+            }
+            _ => candidates.into_iter().flatten().filter(fits).min_by(|a, b| away(a).total_cmp(&away(b))),
+        }
+    }
+
+    /// How far along the curve a point lies, mm or rad.
+    fn way_to(&self, point: Point) -> f64 {
+        match *self {
+            Self::Line { start, end } => dot(minus(point, start), unit(minus(end, start))),
+            Self::Arc { start, center, turn, .. } => sweep_within(start, point, center, turn),
+        }
+    }
+
+    /// The curve moved by a vector.
+    pub(super) fn moved(&self, by: Point) -> Self {
+        match *self {
+            Self::Line { start, end } => Self::Line { start: add(start, by), end: add(end, by) },
+            Self::Arc { start, end, center, turn } => {
+                Self::Arc { start: add(start, by), end: add(end, by), center: add(center, by), turn }
+            }
+        }
     }
 
     /// Curvature, positive to the left.
@@ -180,5 +202,10 @@ mod tests {
         assert!((point[0] - 3.0).abs() < 1e-12 && (point[1] - 4.0).abs() < 1e-12);
         assert!(circle.ends_at(point) && !circle.ends_at([3.0, -4.0]));
         assert!(floor.begins_at([1.0, 0.0]) && !floor.begins_at([4.5, 0.0]));
+        // A spiral's end is what the next motion meets.
+        let spiral = Curve::Arc { start: [3.5, 0.0], end: [0.0, 3.0], center: [0.0, 0.0], turn: 1.0 };
+        assert_eq!(spiral.meet(&Curve::Line { start: [0.0, 0.0], end: [0.0, 9.0] }, [0.0, 3.0]).unwrap(), [0.0, 3.0]);
+        let Curve::Arc { center, end, .. } = spiral.moved([1.0, 2.0]) else { panic!("an arc stays an arc") };
+        assert_eq!((center, end), ([1.0, 2.0], [1.0, 5.0]));
     }
 }

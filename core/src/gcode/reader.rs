@@ -144,7 +144,7 @@ impl Reader {
             flow: Flow::new(source, folder, &settings),
             interpreter: Interpreter::new(settings, dialect),
             block: Block::new(),
-            style: Style { printer: dialect == Dialect::Printer },
+            style: Style { printer: dialect == Dialect::Printer, points: dialect == Dialect::Fanuc },
             warnings: Vec::new(),
             faults: 0,
             idle_lines: 0,
@@ -235,17 +235,20 @@ impl Reader {
                     return Ok(());
                 }
                 cursor.bump();
+                if interpreter.dialect == Dialect::Fanuc && cursor.raw().is_ascii_digit() {
+                    cursor.bump(); // The level, `/2`.
+                }
             }
             _ => {}
         }
         if self.percent == Percent::NotSeen {
             self.percent = Percent::Absent;
         }
-        if matches!(interpreter.dialect, Dialect::Grbl | Dialect::Printer)
+        if interpreter.dialect != Dialect::LinuxCnc
             && let Some(command) = firmware::command(bytes, interpreter.dialect)
         {
-            if command == firmware::Command::Acts {
-                interpreter.warnings.push(*firmware::warning(bytes));
+            if command != firmware::Command::Speaks {
+                interpreter.warnings.push(*firmware::warning(bytes, command));
             }
             interpreter.event(EventKind::Message { text: String::from_utf8_lossy(bytes.trim_ascii()).into_owned() });
             return Ok(());
@@ -306,7 +309,24 @@ impl Reader {
                             format!("P{} is no number of a subroutine", Short(number)),
                         ));
                     }
-                    flow.call_number(number.round() as u64, times as u32, &at, interpreter)?;
+                    let number = number.round() as u64;
+                    let called = flow.call_number(number, times as u32, &at, interpreter);
+                    // Fanuc: `M98 P30100` calls O100 three times, where there is no O30100.
+                    let counts = interpreter.dialect == Dialect::Fanuc && !block.has(b'l');
+                    match called {
+                        Err(fault) if counts && (10_000..100_000_000).contains(&number) => flow
+                            .call_number(number % 10_000, (number / 10_000) as u32, &at, interpreter)
+                            .map_err(|_| fault)?,
+                        called => called?,
+                    }
+                }
+                99 if block.has(b'p') && interpreter.dialect != Dialect::Printer => {
+                    return Err(Fault::new(
+                        "gcode::unsupported",
+                        block.at(b'p'),
+                        "M99 P goes on at another line than the one behind the call, which is not read",
+                    )
+                    .hint("write M99 alone"));
                 }
                 // A control would begin again for the next part.
                 99 if flow.return_number(&at, interpreter)? => interpreter.end_program(),

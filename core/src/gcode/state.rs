@@ -151,6 +151,8 @@ pub(super) struct Interpreter {
     pub(super) extruder_relative: bool,
     /// Cutter compensation, if it is on.
     pub(super) compensation: Option<Compensation>,
+    /// Cutter compensation has ended and nothing has moved since.
+    pub(super) left_compensation: bool,
     /// Steps that wait until compensation knows where the first of them ends.
     pub(super) held: Vec<Canon>,
     /// What canned cycles keep from line to line.
@@ -199,6 +201,7 @@ impl Interpreter {
             extruder_mm: 0.0,
             extruder_relative: false,
             compensation: None,
+            left_compensation: false,
             held: Vec::new(),
             cycle: Cycle::default(),
             collected: None,

@@ -7,6 +7,7 @@ use super::canon::{Canon, Motion, MotionKind, Shape};
 use super::diagnostic::{Diagnostic, Severity};
 use super::reader::{ReadError, Reader};
 use super::settings::{Dialect, Settings};
+use super::spiral::Spiral;
 
 /// What a program amounts to.
 #[derive(Debug, Clone, PartialEq)]
@@ -124,7 +125,8 @@ impl Summary {
                 let [first, second, _] = plane.axes();
                 self.moves[first] = true;
                 self.moves[second] = true;
-                for point in arc_extremes(motion, *center_mm, [first, second], *turns) {
+                let spiral = Spiral::new(motion.start_mm, motion.end_mm, *center_mm, *plane, *turns);
+                for point in spiral.extremes(motion.start_mm) {
                     self.include(point);
                 }
             }
@@ -148,7 +150,7 @@ impl Summary {
         let message = format!("line {line}: {names} moves; only X, Y and Z are simulated and controlled");
         let mut warning = Diagnostic::of_file(Severity::Warning, "gcode::other_axes", self.name.clone(), message);
         warning.hint = Some(
-            "where it moves alone it takes its time (rotary_deg_s in [plc]); together with X, Y or Z it is taken along"
+            "where it moves alone it takes its time; together with X, Y or Z it slows them down to its rate, which is rotary_deg_s in [plc]"
                 .to_owned(),
         );
         Some(warning)
@@ -161,26 +163,4 @@ impl Summary {
             high[axis] = high[axis].max(point[axis]);
         }
     }
-}
-
-/// The points of an arc that lie farthest out along the plane's axes.
-fn arc_extremes(motion: &Motion, center: [f64; 3], plane: [usize; 2], turns: i32) -> Vec<[f64; 3]> {
-    use std::f64::consts::{FRAC_PI_2, TAU};
-    let [first, second] = plane;
-    let angle_of = |point: [f64; 3]| (point[second] - center[second]).atan2(point[first] - center[first]);
-    let radius = (motion.start_mm[first] - center[first]).hypot(motion.start_mm[second] - center[second]);
-    let (from, to) = if turns > 0 { (motion.start_mm, motion.end_mm) } else { (motion.end_mm, motion.start_mm) };
-    let begin = angle_of(from);
-    let sweep = (angle_of(to) - begin).rem_euclid(TAU);
-    let whole = turns.abs() > 1 || sweep * radius < super::arc::FULL_TURN_WITHIN_MM;
-    (0..4)
-        .map(|quarter| f64::from(quarter) * FRAC_PI_2)
-        .filter(|quarter| whole || (quarter - begin).rem_euclid(TAU) <= sweep)
-        .map(|quarter| {
-            let mut point = motion.start_mm;
-            point[first] = center[first] + radius * quarter.cos();
-            point[second] = center[second] + radius * quarter.sin();
-            point
-        })
-        .collect()
 }

@@ -72,6 +72,7 @@ impl Interpreter {
     pub(super) fn push_motion(&mut self, speed: Speed, start: &Position, shape: Shape, feed_mm_s: f64, others: Others) {
         let kind = speed.kind();
         self.motions += 1;
+        self.left_compensation = false;
         self.push(Canon::Motion(Motion {
             line: self.line,
             kind,
@@ -153,7 +154,8 @@ impl Interpreter {
             )
             .hint("write G90 before it"));
         }
-        let mut machine = self.here;
+        // Behind G40 the tool stands beside the contour, and every motion starts from the contour.
+        let mut machine = if self.left_compensation { self.frame.to_machine(&self.at) } else { self.here };
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
                 machine[axis] = self.length(block, letter, axis, value)?;

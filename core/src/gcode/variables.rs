@@ -73,7 +73,9 @@ impl Interpreter {
                 at += 1;
                 continue;
             }
-            let mut cursor = Cursor::new(text);
+            // A blank ends the number of a parameter here, though not in a line.
+            let digits = text[at + 1..].iter().take_while(|byte| byte.is_ascii_digit()).count();
+            let mut cursor = Cursor::new(if digits > 0 { &text[..=at + digits] } else { text });
             cursor.at = at;
             let mut evaluator = Evaluator::new(cursor, self);
             match evaluator.value() {

@@ -130,6 +130,8 @@ impl Contour {
                     cutting: true,
                     feed_mm_s,
                     corner,
+                    turn_deg_mm: 0.0,
+                    further_mm_mm: 0.0,
                 })])
             }
         }

@@ -67,8 +67,23 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
         }
         if self.ready.len() == ready && !motion.others.is_none() {
             self.ready.push_back(rest(motion));
+        } else if let Some(axes) = &motion.others.axes {
+            self.take_along(ready, axes);
         }
         Ok(())
+    }
+
+    /// Tells the pieces from `first` on what else moves: evenly over their length.
+    fn take_along(&mut self, first: usize, axes: &[[f64; 6]; 2]) {
+        let lengths =
+            self.ready.range(first..).map(|step| if let Step::Piece(piece) = step { piece.length_mm } else { 0.0 });
+        let length_mm: f64 = lengths.sum();
+        for step in self.ready.range_mut(first..) {
+            if let Step::Piece(piece) = step {
+                piece.turn_deg_mm = turn_deg(axes) / length_mm;
+                piece.further_mm_mm = further_mm(axes) / length_mm;
+            }
+        }
     }
 
     /// Checks a motion and returns where it really starts.
@@ -117,6 +132,8 @@ impl<I: Iterator<Item = Canon>> Pieces<I> {
             cutting: motion.kind == MotionKind::Feed,
             feed_mm_s: motion.feed_mm_s,
             corner: motion.corner,
+            turn_deg_mm: 0.0,
+            further_mm_mm: 0.0,
         }));
     }
 }
@@ -148,19 +165,29 @@ impl<I: Iterator<Item = Canon>> Iterator for Pieces<I> {
 /// What moves while X, Y and Z stand still. The feedrate refers to U, V, W in mm if they move, else to A, B, C in degrees,
 /// else to the extruder.
 fn rest(motion: &Motion) -> Step {
-    let [start, end] = motion.others.axes.as_deref().unwrap_or(&[[0.0; 6]; 2]);
-    let along = |from: usize| {
-        distance([start[from], start[from + 1], start[from + 2]], [end[from], end[from + 1], end[from + 2]])
-    };
-    let is_rapid = motion.kind == MotionKind::Rapid;
-    let ways = [along(3), along(0), motion.others.extruder_mm.abs()];
+    let still = [[0.0; 6]; 2];
+    let axes = motion.others.axes.as_deref().unwrap_or(&still);
+    let [start, end] = axes;
+    let turned = distance([start[0], start[1], start[2]], [end[0], end[1], end[2]]);
+    let ways = [further_mm(axes), turned, motion.others.extruder_mm.abs()];
     let way = ways.into_iter().find(|&way| way > 0.0).unwrap_or(0.0);
+    let is_rapid = motion.kind == MotionKind::Rapid;
     Step::Rest {
         line: motion.line,
         seconds: if is_rapid { 0.0 } else { (way / motion.feed_mm_s).min(MAX_REST_S) },
-        turn_deg: (0..3).map(|axis| (end[axis] - start[axis]).abs()).fold(0.0, f64::max),
-        rapid_mm: if is_rapid { along(3) } else { 0.0 },
+        turn_deg: turn_deg(axes),
+        further_mm: further_mm(axes),
     }
+}
+
+/// Largest angle that one of A, B and C turns, degrees.
+fn turn_deg([start, end]: &[[f64; 6]; 2]) -> f64 {
+    (0..3).map(|axis| (end[axis] - start[axis]).abs()).fold(0.0, f64::max)
+}
+
+/// Way of U, V and W, mm.
+fn further_mm([start, end]: &[[f64; 6]; 2]) -> f64 {
+    distance([start[3], start[4], start[5]], [end[3], end[4], end[5]])
 }
 
 fn check_event(event: &Event) -> Result<(), PathError> {

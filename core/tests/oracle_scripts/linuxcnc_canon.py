@@ -9,7 +9,7 @@ File number n gives OUTPUT_FOLDER/n.json: one list a line,
   ["error", line, message]                                                   last line of a program that is refused
 Coordinates are those of the machine: programmed + G92, rotated, + coordinate system + tool.
 The module of LinuxCNC 2.9 crashes at T and M6 when no LinuxCNC runs, so these words and G43 H are taken out first; with tool
-lengths of zero they move nothing.
+lengths of zero they move nothing. So it does at G41 D and G42 D, which become G41.1 and G42.1 with the diameter of all tools.
 A crash of the interpreter (it happens) leaves a file without a last line ["end"].
 """
 import json
@@ -123,21 +123,31 @@ class Recorder:
 
 TOOL_WORDS = re.compile(rb"(?i)\bT\s*\d+|\bM\s*0?6(?!\d)|G\s*43(?![.\d])")
 LENGTH_WORD = re.compile(rb"(?i)H\s*\d+")
+RADIUS_WORD = re.compile(rb"(?i)G\s*4([12])(?![.\d])(.*?)D\s*\d+(?![.\d])")
+RADIUS_OF_TOOL = re.compile(rb"(?i)G\s*4([12])(?![.\d])()")
+TOOL_CHANGE = re.compile(rb"(?im)^[^(;\n]*M\s*0?6(?!\d)")
+# All tools are an eighth of an inch thick, in the unit of the program.
+RADIUS_GIVEN = rb"G4\1.1 D[0.125*[1+24.4*#<_metric>]]\2"
 
 
-def without_tools(line):
-    """The line without tool words; comments stay as they are."""
+def without_tools(line, has_tool):
+    """The line without tool words; comments stay as they are. `has_tool`: the program puts one into the spindle."""
     code = re.split(rb"[(;]", line, maxsplit=1)[0]
     stripped = TOOL_WORDS.sub(b"", code)
     if stripped != code:
         stripped = LENGTH_WORD.sub(b"", stripped)
+    stripped = RADIUS_WORD.sub(RADIUS_GIVEN, stripped)
+    if has_tool:
+        stripped = RADIUS_OF_TOOL.sub(RADIUS_GIVEN, stripped)
     return stripped + line[len(code):]
 
 
 def run(path, output):
     with tempfile.TemporaryDirectory() as folder:
         with open(path, "rb") as original:
-            lines = [without_tools(line) for line in original]
+            text = original.read()
+        has_tool = TOOL_CHANGE.search(text) is not None
+        lines = [without_tools(line, has_tool) for line in text.splitlines(keepends=True)]
         path = os.path.join(folder, "program.ngc")
         with open(path, "wb") as stripped:
             stripped.writelines(lines)
