@@ -234,19 +234,31 @@ impl<const N: usize> Guard<N> {
         let free = add_scaled(window.offset_mm, period_s, velocity);
         let same = norm(sub(free, wanted.offset_mm)) <= SAME_MM;
         let offset_mm = if same { wanted.offset_mm } else { free };
-        let mut near_mm = near_the_path(window, rate * period_s, offset_mm, deviation_mm);
-        // The offset moves along a line, the path perhaps not: on the way it may be too far where neither end is.
-        for part in ON_THE_WAY {
-            let there_mm = add_scaled(window.offset_mm, part, sub(near_mm, window.offset_mm));
-            let back_mm = sub(near_the_path(window, part * rate * period_s, there_mm, deviation_mm), there_mm);
-            if norm(back_mm) > 0.0 {
-                near_mm = add_scaled(near_mm, 1.0 / part, back_mm);
-            }
-        }
+        let end_mm = near_the_path(window, rate * period_s, offset_mm, deviation_mm);
+        let near_mm = self.near_on_the_way(window, rate * period_s, end_mm);
         // What the path takes back comes on top, but not without bound.
         let step_mm = limit_norm(sub(near_mm, window.offset_mm), MOST_TAKEN_BACK * speed_mm_s * period_s);
         let held = norm(sub(near_mm, offset_mm)) > 0.0;
         Command { rate, offset_mm: if held { add_scaled(window.offset_mm, 1.0, step_mm) } else { offset_mm } }
+    }
+
+    /// The offset moves along a line, the path perhaps not: on the way it may be too far where neither end is. Its end then
+    /// moves towards the path, the step no longer than it was, or may be.
+    fn near_on_the_way(&self, window: &Window<'_, N>, ahead_s: f64, end_mm: [f64; N]) -> [f64; N] {
+        let mut near_mm = end_mm;
+        for part in ON_THE_WAY {
+            let there_mm = add_scaled(window.offset_mm, part, sub(near_mm, window.offset_mm));
+            let back_mm = sub(near_the_path(window, part * ahead_s, there_mm, self.bounds.deviation_mm), there_mm);
+            if norm(back_mm) > 0.0 {
+                near_mm = add_scaled(near_mm, 1.0 / part, back_mm);
+            }
+        }
+        let longest_mm = norm(sub(end_mm, window.offset_mm)).max(self.bounds.speed_mm_s * window.feed_period_s);
+        let step_mm = sub(near_mm, window.offset_mm);
+        if norm(step_mm) <= longest_mm {
+            return near_mm;
+        }
+        add_scaled(window.offset_mm, 1.0, limit_norm(step_mm, longest_mm))
     }
 }
 
