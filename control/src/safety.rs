@@ -243,7 +243,7 @@ impl<const N: usize> Guard<N> {
     }
 
     /// The offset moves along a line, the path perhaps not: on the way it may be too far where neither end is. Its end then
-    /// moves towards the path, the step no longer than it was, or may be.
+    /// moves towards the path, and the step is no longer than it may be.
     fn near_on_the_way(&self, window: &Window<'_, N>, ahead_s: f64, end_mm: [f64; N]) -> [f64; N] {
         let mut near_mm = end_mm;
         for part in ON_THE_WAY {
@@ -253,12 +253,12 @@ impl<const N: usize> Guard<N> {
                 near_mm = add_scaled(near_mm, 1.0 / part, back_mm);
             }
         }
-        let longest_mm = norm(sub(end_mm, window.offset_mm)).max(self.bounds.speed_mm_s * window.feed_period_s);
-        let step_mm = sub(near_mm, window.offset_mm);
-        if norm(step_mm) <= longest_mm {
-            return near_mm;
+        if near_mm == end_mm {
+            return end_mm;
         }
-        add_scaled(window.offset_mm, 1.0, limit_norm(step_mm, longest_mm))
+        let step_mm = limit_norm(sub(near_mm, window.offset_mm), self.bounds.speed_mm_s * window.feed_period_s);
+        let near_mm = add_scaled(window.offset_mm, 1.0, step_mm);
+        near_the_path(window, ahead_s, near_mm, self.bounds.deviation_mm)
     }
 }
 

@@ -1,10 +1,11 @@
 //! Training of the servo identifier: least squares for its linear part and for the outputs of its hidden nodes.
 //!
 //! ```text
-//! minimise sum |e(k+1) - e(k) - L I(k) - Wo f(Wh I(k))|^2 + r n (|L|^2 + |Wo|^2)
+//! minimise sum |e(k+1) - e(k) - L I(k) - Wo f(Wh I(k))|^2 + r sum_i s_i^2 w_i^2
 //! ```
 //!
-//! over the n samples of all laps, by the normal equations and Cholesky's factorisation. L alone first; Wh then follows from
+//! over the samples of all laps, where s_i^2 is the sum of squares of what the weight w_i sees: inputs count in the scale that
+//! they have in the data. It is solved by the normal equations and Cholesky's factorisation. L alone first; Wh then follows from
 //! L: its nodes see the sign of the tool's speed, which is where a servo is not linear. With Wh laid, the rest is one linear
 //! solution, in place of a descent that needs starting weights. Last, the same once more, with everything filtered by the
 //! autoregression of what was missed: a disturbance of 25 Hz then takes no part in the weights.
@@ -25,8 +26,7 @@ use super::spread::spread;
 use super::{Programme, Rng};
 use crate::machine::Machine;
 
-/// r: keeps the equations regular where two inputs always move together, and is far below the variance of any that
-/// moves at all.
+/// r: keeps the equations regular where two inputs always move together, and is far below what tells any others apart.
 const RIDGE: f64 = 1e-9;
 
 /// A trained servo identifier and how well it fits.
@@ -101,10 +101,8 @@ fn autoregression<const N: usize>(laps: &[Vec<Sample<N>>], net: &ServoIdentifier
         }
     }
     std::array::from_fn(|axis| {
-        let NormalEquations { square, .. } = &equations[axis];
         // A machine that misses nothing has no pattern to filter.
-        let found = equations[axis].solve(RIDGE * square.trace() / LAGS as f64 + f64::MIN_POSITIVE);
-        found.map_or([0.0; LAGS], |found| std::array::from_fn(|lag| found[lag]))
+        equations[axis].solve().map_or([0.0; LAGS], |found| std::array::from_fn(|lag| found[lag]))
     })
 }
 
@@ -164,11 +162,10 @@ fn fit_outputs<const N: usize>(
             }
         }
     }
-    let samples: usize = laps.iter().map(Vec::len).sum();
     let mut solutions = Vec::new();
     for equations in &equations {
         // With the ridge the matrix is positive definite unless a sample is not finite: then nothing was identified.
-        let Some(solution) = equations.solve(RIDGE * samples as f64) else { return ServoIdentifier::IDEAL };
+        let Some(solution) = equations.solve() else { return ServoIdentifier::IDEAL };
         solutions.push(solution);
     }
     let linear = std::array::from_fn(|o| {
@@ -204,10 +201,11 @@ impl NormalEquations {
         self.right.axpy(output, inputs, 1.0);
     }
 
-    /// The solution with a ridge on the diagonal; none where the sums are not finite, or all zero.
-    fn solve(&self, ridge: f64) -> Option<DVector<f64>> {
+    /// The solution with a ridge on the diagonal, for each input in the scale that it has in the data; none where the sums are not
+    /// finite.
+    fn solve(&self) -> Option<DVector<f64>> {
         let mut square = self.square.clone();
-        (0..square.nrows()).for_each(|i| square[(i, i)] += ridge);
+        (0..square.nrows()).for_each(|i| square[(i, i)] += RIDGE * square[(i, i)] + f64::MIN_POSITIVE);
         Some(square.cholesky()?.solve(&self.right))
     }
 }
