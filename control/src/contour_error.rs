@@ -112,8 +112,8 @@ impl Estimator {
 }
 
 /// The contour error of a predicted tool whose nearest knot is near the index `near`: the nearest point within `reach`
-/// entries, 8 to [`MOST_REACH`]. It does not look further, so that beside a corner a tool belongs to the side that its time
-/// belongs to, and not to the one that happens to be nearer.
+/// entries, 8 to 48. It does not look further, so that beside a corner a tool belongs to the side that its time belongs to, and
+/// not to the one that happens to be nearer.
 #[inline]
 pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i32, reach: i32) -> ContourError<N> {
     let reach = reach.clamp(LEAST_LOCATE_REACH, MOST_REACH);
