@@ -9,30 +9,37 @@
 
 use super::problem::Problem;
 use super::{MOST_KNOTS, MOST_UNKNOWNS, Rates, Solver};
+use crate::vector::{add_scaled, scale};
 
 /// mu.
 const MOMENTUM: f64 = 0.8;
 
-/// One step of the gradient at a time.
+/// So many steps of the gradient at a time, on the problem linearised once.
 #[derive(Debug, Clone)]
-pub struct Gradient<const N: usize> {
+pub struct Gradient<const N: usize, const STEPS: usize = 1> {
     velocity: Rates<N>,
 }
 
-impl<const N: usize> Default for Gradient<N> {
+impl<const N: usize, const STEPS: usize> Default for Gradient<N, STEPS> {
     fn default() -> Self {
         Self { velocity: [[0.0; N]; MOST_KNOTS] }
     }
 }
 
-impl<const N: usize> Solver<N> for Gradient<N> {
+impl<const N: usize, const STEPS: usize> Solver<N> for Gradient<N, STEPS> {
     fn improve(&mut self, problem: &Problem<N>, rates: &mut Rates<N>) {
-        let gradient = problem.gradient(rates);
         let step = 1.0 / curvature(problem);
-        for knot in 0..problem.knots {
-            for axis in 0..N {
-                self.velocity[knot][axis] = MOMENTUM * self.velocity[knot][axis] - step * gradient[knot][axis];
-                rates[knot][axis] += self.velocity[knot][axis];
+        let mut change = [[0.0; N]; MOST_KNOTS];
+        let mut off_mm = problem.off_mm;
+        for taken in 0..STEPS {
+            if taken > 0 {
+                off_mm = problem.off_after_mm(&change);
+            }
+            let gradient = problem.gradient_at(rates, &off_mm);
+            for knot in 0..problem.knots {
+                self.velocity[knot] = add_scaled(scale(MOMENTUM, self.velocity[knot]), -step, gradient[knot]);
+                change[knot] = add_scaled(change[knot], 1.0, self.velocity[knot]);
+                rates[knot] = add_scaled(rates[knot], 1.0, self.velocity[knot]);
             }
         }
     }
