@@ -42,9 +42,9 @@ fn agree<const N: usize>() {
     let left = |rates| 100.0 * (material.cost(&problem, &rates) - best) / (before - best);
     println!(
         "    of what they save, the gradient leaves {:.1} % after 1 step, {:.1} % after 5, {:.1} % after 20",
-        left(material.improved(&mut Gradient::<N, 1>::default(), &problem)),
-        left(material.improved(&mut Gradient::<N, 5>::default(), &problem)),
-        left(material.improved(&mut Gradient::<N, 20>::default(), &problem)),
+        left(material.improved(&mut Gradient::<1>, &problem)),
+        left(material.improved(&mut Gradient::<5>, &problem)),
+        left(material.improved(&mut Gradient::<20>, &problem)),
     );
 }
 
@@ -69,17 +69,17 @@ fn solve_gauss_newton<const N: usize>(bencher: Bencher<'_, '_>) {
 
 #[divan::bench(consts = [2, 3])]
 fn solve_gradient_01<const N: usize>(bencher: Bencher<'_, '_>) {
-    improve(bencher, &mut Gradient::<N, 1>::default(), &Material::new(KNOTS));
+    improve(bencher, &mut Gradient::<1>, &Material::new(KNOTS));
 }
 
 #[divan::bench(consts = [2, 3])]
 fn solve_gradient_05<const N: usize>(bencher: Bencher<'_, '_>) {
-    improve(bencher, &mut Gradient::<N, 5>::default(), &Material::new(KNOTS));
+    improve(bencher, &mut Gradient::<5>, &Material::new(KNOTS));
 }
 
 #[divan::bench(consts = [2, 3])]
 fn solve_gradient_20<const N: usize>(bencher: Bencher<'_, '_>) {
-    improve(bencher, &mut Gradient::<N, 20>::default(), &Material::new(KNOTS));
+    improve(bencher, &mut Gradient::<20>, &Material::new(KNOTS));
 }
 
 #[divan::bench(consts = [2, 3])]

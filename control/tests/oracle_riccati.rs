@@ -57,9 +57,9 @@ fn the_gradient_comes_nearer_with_every_step_it_is_given() {
     let (problem, _) = material.roll_out(true);
     let costs = [
         material.cost(&problem, &material.rates),
-        material.cost(&problem, &material.improved(&mut Gradient::<2, 1>::default(), &problem)),
-        material.cost(&problem, &material.improved(&mut Gradient::<2, 5>::default(), &problem)),
-        material.cost(&problem, &material.improved(&mut Gradient::<2, 20>::default(), &problem)),
+        material.cost(&problem, &material.improved(&mut Gradient::<1>, &problem)),
+        material.cost(&problem, &material.improved(&mut Gradient::<5>, &problem)),
+        material.cost(&problem, &material.improved(&mut Gradient::<20>, &problem)),
         material.cost(&problem, &material.improved(&mut GaussNewton::default(), &problem)),
     ];
     assert!(costs.is_sorted_by(|more, less| more > less), "{costs:?}");

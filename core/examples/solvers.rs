@@ -45,11 +45,11 @@ fn horizons(machines: &[Machine], workpieces: &[&Workpiece]) -> Result<(), Failu
     }
     println!(" decision, us |\n|---|{}--:|", "--:|".repeat(machines.len() * workpieces.len()));
     row::<GaussNewton>("Gauss-Newton, 1 step", 1, machines, workpieces)?;
-    row::<Gradient<2>>("gradient, 1 step", 1, machines, workpieces)?;
-    row::<Gradient<2, 5>>("gradient, 5 steps, linearised once", 1, machines, workpieces)?;
-    row::<Gradient<2, 20>>("gradient, 20 steps, linearised once", 1, machines, workpieces)?;
-    row::<Gradient<2>>("gradient, 5 steps, each rolled out", 5, machines, workpieces)?;
-    row::<Gradient<2>>("gradient, 20 steps, each rolled out", 20, machines, workpieces)?;
+    row::<Gradient>("gradient, 1 step", 1, machines, workpieces)?;
+    row::<Gradient<5>>("gradient, 5 steps, linearised once", 1, machines, workpieces)?;
+    row::<Gradient<20>>("gradient, 20 steps, linearised once", 1, machines, workpieces)?;
+    row::<Gradient>("gradient, 5 steps, each rolled out", 5, machines, workpieces)?;
+    row::<Gradient>("gradient, 20 steps, each rolled out", 20, machines, workpieces)?;
     println!();
     Ok(())
 }
