@@ -167,3 +167,71 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
         Command { rate, offset_mm: add_scaled(add_scaled(window.offset_mm, period_s, across), -stale, direction) }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contour_error::ContourError;
+    use crate::controller::two_dimensional::TwoDimensional;
+    use crate::identifier::{HIDDEN, INPUTS};
+    use crate::window::{Knot, Preview, Reference, Register};
+
+    struct Circle;
+
+    impl Reference<2> for Circle {
+        fn knot(&mut self, tau_s: f64) -> Knot<2> {
+            let (sin, cos) = (libm::sin(5.0 * tau_s), libm::cos(5.0 * tau_s));
+            Knot { position_mm: [10.0 * sin, -10.0 * cos], tangent: [cos, sin], feed_mm_s: 50.0 }
+        }
+    }
+
+    fn net() -> ContourIdentifier<2> {
+        let weight = |i: usize| 0.3 * libm::sin(1.7 * i as f64);
+        let hidden = |a: usize, i: usize| core::array::from_fn(|j| weight((a * INPUTS + i) * HIDDEN + j));
+        ContourIdentifier {
+            hidden: core::array::from_fn(|a| core::array::from_fn(|i| hidden(a, i))),
+            output: core::array::from_fn(|o| core::array::from_fn(|j| weight(7 + o * HIDDEN + j))),
+        }
+    }
+
+    /// Twenty commands on a circle, each with an error after it.
+    fn commands(knots: usize, gradient: Gradient) -> [Command<2>; 20] {
+        let mut settings = Settings { knots, ..Settings::DEFAULT };
+        settings.inversion.gradient = gradient;
+        let mut controller = TwoDimensional::new(net(), settings);
+        let (mut register, mut preview) = (Register::default(), Preview::new(0.001));
+        let mut offset_mm = [0.0; 2];
+        core::array::from_fn(|k| {
+            let tau_s = 0.01 * k as f64;
+            register.push(Circle.knot(tau_s));
+            preview.fill(&mut Circle, tau_s, 0.01 * f64::from(controller.schedule().preview));
+            let window =
+                Window { register: &register, preview: &preview, tau_s, feed_period_s: FEED_PERIOD_S, offset_mm };
+            let vector_mm = [0.02 * libm::sin(tau_s), 0.03];
+            let measured = Measured {
+                position_mm: sub(window.now().position_mm, vector_mm),
+                contour: ContourError { vector_mm, ..ContourError::NONE },
+            };
+            controller.observe(&measured);
+            let command = controller.command(&window, &measured);
+            offset_mm = command.offset_mm;
+            command
+        })
+    }
+
+    #[test]
+    fn with_the_printed_gradient_further_knots_change_nothing_and_with_the_exact_one_they_do() {
+        assert_eq!(commands(1, Gradient::Printed), commands(5, Gradient::Printed));
+        let (one, five) = (commands(1, Gradient::Exact), commands(5, Gradient::Exact));
+        assert!(one.iter().zip(&five).all(|(one, five)| one.offset_mm != five.offset_mm));
+    }
+
+    #[test]
+    fn asks_for_the_preview_of_its_knots_and_for_none_beyond_what_there_is() {
+        let schedule = |servo_periods, knots| {
+            TwoDimensional::new(net(), Settings { servo_periods, knots, ..Settings::DEFAULT }).schedule().preview
+        };
+        assert_eq!([schedule(10, 1), schedule(10, 5), schedule(10, 99)], [1, 5, 20]);
+        assert_eq!([schedule(100, 20), schedule(10, 0), schedule(0, 3)], [2, 1, 3]);
+    }
+}
