@@ -69,17 +69,17 @@ fn solve_gauss_newton<const N: usize>(bencher: Bencher<'_, '_>) {
 
 #[divan::bench(consts = [2, 3])]
 fn solve_gradient_01<const N: usize>(bencher: Bencher<'_, '_>) {
-    improve(bencher, &mut Gradient::<1>, &Material::new(KNOTS));
+    improve(bencher, &mut Gradient::<1>, &Material::<N>::new(KNOTS));
 }
 
 #[divan::bench(consts = [2, 3])]
 fn solve_gradient_05<const N: usize>(bencher: Bencher<'_, '_>) {
-    improve(bencher, &mut Gradient::<5>, &Material::new(KNOTS));
+    improve(bencher, &mut Gradient::<5>, &Material::<N>::new(KNOTS));
 }
 
 #[divan::bench(consts = [2, 3])]
 fn solve_gradient_20<const N: usize>(bencher: Bencher<'_, '_>) {
-    improve(bencher, &mut Gradient::<20>, &Material::new(KNOTS));
+    improve(bencher, &mut Gradient::<20>, &Material::<N>::new(KNOTS));
 }
 
 #[divan::bench(consts = [2, 3])]

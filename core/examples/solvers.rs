@@ -87,9 +87,12 @@ fn inversions(machine: &Machine, workpiece: &Workpiece) -> Result<(), Failure> {
             settings.inversion.gradient = gradient;
             let mut controller = TwoDimensional::new(trained.net.clone(), settings);
             let (statistics, run) = cut(machine, workpiece, &mut controller)?;
-            let out = if run.faded_out.is_some() { ", taken out" } else { "" };
-            let decision_us = run.ticks.quantile_us(0.5);
-            println!("| {knots} | {name} | {}{out} | {:.3} | {decision_us:.1} |", errors(&statistics), run.time_s);
+            print!("| {knots} | {name} | {}", errors(&statistics));
+            match run.faded_out {
+                // From then on nothing is decided.
+                Some(_) => println!(", taken out | {:.3} | |", run.time_s),
+                None => println!(" | {:.3} | {:.1} |", run.time_s, run.ticks.quantile_us(0.5)),
+            }
         }
     }
     Ok(())
