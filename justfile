@@ -27,6 +27,12 @@ compare out="target/compare":
 bench-fann:
     taskset --cpu-list 1 cargo bench --package feedwright-control --bench fann
 
+# Solvers of the receding horizon side by side: the times of one tick, and the cuts.
+solvers:
+    taskset --cpu-list 1 cargo bench --package feedwright-control --bench solvers
+    cargo build --release --quiet --package feedwright --example solvers
+    taskset --cpu-list 1 target/release/examples/solvers
+
 # Percentiles of the time of a whole decision of the receding horizon, on one core; counts on an idle machine only.
 tick ticks="100000" runs="5":
     cargo build --release --quiet -p feedwright-control --example tick_percentiles

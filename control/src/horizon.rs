@@ -111,14 +111,10 @@ impl<const N: usize> Stretch<N> {
     }
 }
 
-/// What makes J smaller.
+/// What makes J smaller. It keeps nothing from tick to tick that the next depends on.
 pub trait Solver<const N: usize>: Default {
     /// Changes the rates of a plan whose problem is this.
     fn improve(&mut self, problem: &Problem<N>, rates: &mut Rates<N>);
-    /// Forgets what it keeps from tick to tick.
-    fn reset(&mut self) {}
-    /// The plan was shifted by one knot.
-    fn shift(&mut self) {}
 }
 
 /// A plan: the offset rate of each knot of the horizon, mm/s.
@@ -149,7 +145,6 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
     pub fn reset(&mut self) {
         self.rates = [[0.0; N]; MOST_KNOTS];
         self.periods = 1;
-        self.solver.reset();
     }
 
     /// Goes over to the next tick: what was planned for it comes first. From here on a knot has `periods` feed periods, 1
@@ -170,7 +165,6 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
             }
             *rate = sum;
         }
-        self.solver.shift();
     }
 
     /// Improves the plan by one step of the solver and returns its first command. The tool is `lag_s` behind the command

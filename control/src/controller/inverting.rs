@@ -8,7 +8,8 @@
 //!
 //! Source: Lee, Cho and Jeon (2005), section 3 and Fig. 5. The anchoring of F(0) to the original path keeps P' from
 //! drifting: the part of F - F(0) along F(0) changes the speed, the part across it the offset P' - P*, and nothing else
-//! moves either.
+//! moves either. Over a horizon, [`Settings::knots`], each knot has its F(0) from the preview, all F are inverted together
+//! and the first is commanded.
 //!
 //! Departures: between two knots the command follows the path instead of its chord (at 50 mm/s, 10 ms and a radius of
 //! 10 mm the chord alone misses the path by 3 um); rates and offsets are limited; offsets that lie along the path, or
@@ -19,9 +20,9 @@ use core::marker::PhantomData;
 use super::{Command, Controller, Measured, Schedule};
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::{ERROR_SCALE_MM, FEED_SCALE_MM_S, History, Inputs};
-use crate::inversion::{self, Gradient};
+use crate::inversion::{self, Gradient, MOST_KNOTS};
 use crate::vector::{add_scaled, dot, norm, scale, sub};
-use crate::window::Window;
+use crate::window::{PREVIEW_KNOTS, Window};
 
 /// The paper's feed period, s.
 pub const FEED_PERIOD_S: f64 = 0.01;
@@ -31,6 +32,8 @@ pub const FEED_PERIOD_S: f64 = 0.01;
 pub struct Settings {
     /// Servo periods in a feed period; 1 to 100.
     pub servo_periods: u32,
+    /// Knots that are inverted together; 1 to [`MOST_KNOTS`], 1 is the paper's.
+    pub knots: usize,
     /// The inversion.
     pub inversion: inversion::Settings,
     /// Step of back-propagation while cutting, scaled units; 0 (frozen) to 0.5.
@@ -43,6 +46,7 @@ impl Settings {
     /// The paper's setting where it names one, the prototype's otherwise.
     pub const DEFAULT: Self = Self {
         servo_periods: 10,
+        knots: 1,
         inversion: inversion::Settings { rho: 0.001, eta: 0.3, steps: 5, step_limit: 0.1, gradient: Gradient::Printed },
         learning_step: 0.003,
         rate_range: [0.5, 1.2],
@@ -61,8 +65,13 @@ const REST_LEAK: f64 = 0.3;
 
 /// How a controller inverts: the only thing in which the members differ.
 pub trait Invert {
-    /// Improves F(0), which `inputs` hold on entry, in place.
-    fn invert<const N: usize>(net: &ContourIdentifier<N>, inputs: &mut Inputs<N>, settings: &inversion::Settings);
+    /// Improves the F(0) of one or more knots, scaled, in place. `inputs` are those of the first.
+    fn invert<const N: usize>(
+        net: &ContourIdentifier<N>,
+        inputs: &Inputs<N>,
+        feeds: &mut [[f64; N]],
+        settings: &inversion::Settings,
+    );
 }
 
 /// A controller that inverts the paper's identifier. Between ticks it keeps the identifier, the delays, and what was asked
@@ -91,11 +100,17 @@ impl<const N: usize, I> Inverting<N, I> {
             how: PhantomData,
         }
     }
+
+    /// Knots that are inverted together; all of them within the preview.
+    fn knots(&self) -> usize {
+        let seen = PREVIEW_KNOTS / self.settings.servo_periods.max(1) as usize;
+        self.settings.knots.min(seen).clamp(1, MOST_KNOTS)
+    }
 }
 
 impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
     fn schedule(&self) -> Schedule {
-        Schedule { servo_periods: self.settings.servo_periods, preview: 1 }
+        Schedule { servo_periods: self.settings.servo_periods, preview: self.knots() as u32 }
     }
 
     fn reset(&mut self) {
@@ -128,14 +143,20 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
         let period_s = window.feed_period_s;
         let planned = scale(1.0 / period_s, sub(window.ahead(1).position_mm, window.now().position_mm));
         let planned_feed = norm(planned);
-        let mut inputs = self.history.inputs(planned);
+        let inputs = self.history.inputs(planned);
         if planned_feed < LEAST_FEED_MM_S {
             self.last = Some(inputs);
             return Command { rate: 1.0, offset_mm: scale(1.0 - REST_LEAK, window.offset_mm) };
         }
-        I::invert(&self.net, &mut inputs, &self.settings.inversion);
+        let mut feeds = [inputs.map(|axis| axis[0]); MOST_KNOTS];
+        let feeds = &mut feeds[..self.knots()];
+        for (knot, feed) in feeds.iter_mut().enumerate().skip(1) {
+            let stretch_mm = sub(window.ahead(knot + 1).position_mm, window.ahead(knot).position_mm);
+            *feed = scale(1.0 / (period_s * FEED_SCALE_MM_S), stretch_mm);
+        }
+        I::invert(&self.net, &inputs, feeds, &self.settings.inversion);
         let direction = scale(1.0 / planned_feed, planned);
-        let change = sub(inputs.map(|axis| axis[0] * FEED_SCALE_MM_S), planned);
+        let change = sub(feeds[0].map(|feed| feed * FEED_SCALE_MM_S), planned);
         let along = dot(change, direction);
         let across = add_scaled(change, -along, direction);
         let [slowest, fastest] = self.settings.rate_range;
@@ -144,5 +165,73 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
         self.last = Some(self.history.inputs(feed));
         let stale = TANGENTIAL_LEAK * dot(window.offset_mm, direction);
         Command { rate, offset_mm: add_scaled(add_scaled(window.offset_mm, period_s, across), -stale, direction) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contour_error::ContourError;
+    use crate::controller::two_dimensional::TwoDimensional;
+    use crate::identifier::{HIDDEN, INPUTS};
+    use crate::window::{Knot, Preview, Reference, Register};
+
+    struct Circle;
+
+    impl Reference<2> for Circle {
+        fn knot(&mut self, tau_s: f64) -> Knot<2> {
+            let (sin, cos) = (libm::sin(5.0 * tau_s), libm::cos(5.0 * tau_s));
+            Knot { position_mm: [10.0 * sin, -10.0 * cos], tangent: [cos, sin], feed_mm_s: 50.0 }
+        }
+    }
+
+    fn net() -> ContourIdentifier<2> {
+        let weight = |i: usize| 0.3 * libm::sin(1.7 * i as f64);
+        let hidden = |a: usize, i: usize| core::array::from_fn(|j| weight((a * INPUTS + i) * HIDDEN + j));
+        ContourIdentifier {
+            hidden: core::array::from_fn(|a| core::array::from_fn(|i| hidden(a, i))),
+            output: core::array::from_fn(|o| core::array::from_fn(|j| weight(7 + o * HIDDEN + j))),
+        }
+    }
+
+    /// Twenty commands on a circle, each with an error after it.
+    fn commands(knots: usize, gradient: Gradient) -> [Command<2>; 20] {
+        let mut settings = Settings { knots, ..Settings::DEFAULT };
+        settings.inversion.gradient = gradient;
+        let mut controller = TwoDimensional::new(net(), settings);
+        let (mut register, mut preview) = (Register::default(), Preview::new(0.001));
+        let mut offset_mm = [0.0; 2];
+        core::array::from_fn(|k| {
+            let tau_s = 0.01 * k as f64;
+            register.push(Circle.knot(tau_s));
+            preview.fill(&mut Circle, tau_s, 0.01 * f64::from(controller.schedule().preview));
+            let window =
+                Window { register: &register, preview: &preview, tau_s, feed_period_s: FEED_PERIOD_S, offset_mm };
+            let vector_mm = [0.02 * libm::sin(tau_s), 0.03];
+            let measured = Measured {
+                position_mm: sub(window.now().position_mm, vector_mm),
+                contour: ContourError { vector_mm, ..ContourError::NONE },
+            };
+            controller.observe(&measured);
+            let command = controller.command(&window, &measured);
+            offset_mm = command.offset_mm;
+            command
+        })
+    }
+
+    #[test]
+    fn with_the_printed_gradient_further_knots_change_nothing_and_with_the_exact_one_they_do() {
+        assert_eq!(commands(1, Gradient::Printed), commands(5, Gradient::Printed));
+        let (one, five) = (commands(1, Gradient::Exact), commands(5, Gradient::Exact));
+        assert!(one.iter().zip(&five).all(|(one, five)| one.offset_mm != five.offset_mm));
+    }
+
+    #[test]
+    fn asks_for_the_preview_of_its_knots_and_for_none_beyond_what_there_is() {
+        let schedule = |servo_periods, knots| {
+            TwoDimensional::new(net(), Settings { servo_periods, knots, ..Settings::DEFAULT }).schedule().preview
+        };
+        assert_eq!([schedule(10, 1), schedule(10, 5), schedule(10, 99)], [1, 5, 20]);
+        assert_eq!([schedule(100, 20), schedule(10, 0), schedule(0, 3)], [2, 1, 3]);
     }
 }

@@ -15,7 +15,12 @@ pub type MagnitudeOnly<const N: usize> = Inverting<N, Magnitude>;
 pub struct Magnitude;
 
 impl Invert for Magnitude {
-    fn invert<const N: usize>(net: &ContourIdentifier<N>, inputs: &mut Inputs<N>, settings: &inversion::Settings) {
-        inversion::invert_magnitude(net, inputs, settings);
+    fn invert<const N: usize>(
+        net: &ContourIdentifier<N>,
+        inputs: &Inputs<N>,
+        feeds: &mut [[f64; N]],
+        settings: &inversion::Settings,
+    ) {
+        inversion::invert_magnitude(net, inputs, feeds, settings);
     }
 }

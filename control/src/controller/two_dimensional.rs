@@ -15,7 +15,12 @@ pub type TwoDimensional<const N: usize> = Inverting<N, BothComponents>;
 pub struct BothComponents;
 
 impl Invert for BothComponents {
-    fn invert<const N: usize>(net: &ContourIdentifier<N>, inputs: &mut Inputs<N>, settings: &inversion::Settings) {
-        inversion::invert(net, inputs, settings);
+    fn invert<const N: usize>(
+        net: &ContourIdentifier<N>,
+        inputs: &Inputs<N>,
+        feeds: &mut [[f64; N]],
+        settings: &inversion::Settings,
+    ) {
+        inversion::invert(net, inputs, feeds, settings);
     }
 }

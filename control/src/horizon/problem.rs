@@ -105,8 +105,33 @@ impl<const N: usize> Problem<N> {
         }
     }
 
+    /// By how much the tool and the offset are off after a change of the rates, linearised, mm.
+    pub fn off_after_mm(&self, change: &Rates<N>) -> [[f64; N]; MOST_KNOTS] {
+        let mut off_mm = self.off_mm;
+        let mut offset_mm = [0.0; N];
+        for knot in 0..self.knots {
+            let mut tool_mm = [0.0; N];
+            for (felt, change) in self.felt[knot].iter().zip(change).take(knot + 1) {
+                for axis in 0..N {
+                    tool_mm[axis] += felt[axis] * change[axis];
+                }
+            }
+            offset_mm = add_scaled(offset_mm, self.knot_s, change[knot]);
+            for d in 0..N {
+                let moved_mm = if d < N - 1 { tool_mm } else { offset_mm };
+                off_mm[knot][d] += dot(self.directions[knot][d], moved_mm);
+            }
+        }
+        off_mm
+    }
+
     /// dJ/du at the plan.
     pub fn gradient(&self, rates: &Rates<N>) -> Rates<N> {
+        self.gradient_at(rates, &self.off_mm)
+    }
+
+    /// dJ/du of the linearised problem at these rates, where the tool and the offset are off by `off_mm`.
+    pub fn gradient_at(&self, rates: &Rates<N>, off_mm: &[[f64; N]; MOST_KNOTS]) -> Rates<N> {
         let mut gradient = self.weighted(rates);
         let mut row = [0.0; MOST_UNKNOWNS];
         let price = self.settings.tangential_price;
@@ -114,10 +139,10 @@ impl<const N: usize> Problem<N> {
             for d in 0..N - 1 {
                 self.row(knot, d, &mut row);
                 for (g, felt) in gradient.as_flattened_mut().iter_mut().zip(&row[..(knot + 1) * N]) {
-                    *g += felt * self.off_mm[knot][d];
+                    *g += felt * off_mm[knot][d];
                 }
             }
-            let along = price * price * self.knot_s * self.off_mm[knot][N - 1];
+            let along = price * price * self.knot_s * off_mm[knot][N - 1];
             for j in 0..=knot {
                 gradient[j] = add_scaled(gradient[j], along, self.directions[knot][N - 1]);
             }

@@ -1,0 +1,90 @@
+//! A servo identifier as the model of a horizon, one feed period a knot, that keeps the slopes of every knot.
+//!
+//! The controller's own model keeps none: the dense solvers need only what the tool feels.
+
+use std::cell::RefCell;
+
+use feedwright_control::horizon::{Felt, MOST_KNOTS, Model, Stretch};
+use feedwright_control::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
+use feedwright_control::identifier::{FEED_SCALE_MM_S, HIDDEN, INPUTS, Inputs};
+use feedwright_control::vector::{add_scaled, scale, sub};
+use feedwright_control::window::Window;
+
+/// Derivative of the growth of the following error to the inputs, knot by knot, mm for an input of 1.
+pub(crate) type Slopes<const N: usize> = [Inputs<N>; MOST_KNOTS];
+
+/// Of tnv40: what least squares give for one axis.
+const LINEAR: [f64; INPUTS] = [0.244, -0.101, -0.001_86, 0.2785, -0.4166];
+/// Output of a hidden node at its largest, mm: the slopes differ by a tenth from knot to knot.
+const HIDDEN_MM: f64 = 0.03;
+
+/// A servo like that of tnv40 with hidden nodes that are far from saturated, other ones in every axis.
+pub(crate) fn servo<const N: usize>() -> ServoIdentifier<N> {
+    let mut net = ServoIdentifier::IDEAL;
+    for axis in 0..N {
+        net.linear[axis][axis] = LINEAR;
+        for node in 0..HIDDEN {
+            let phase = (7 * axis + 3 * node) as f64;
+            net.output[axis][node] = HIDDEN_MM * phase.sin();
+            for input in 0..INPUTS {
+                net.hidden[axis][input][node] = 0.3 * (phase + 2.0 * input as f64).cos();
+            }
+        }
+    }
+    net
+}
+
+/// The model.
+#[derive(Clone)]
+pub(crate) struct Servo<'a, const N: usize> {
+    net: &'a ServoIdentifier<N>,
+    delays: Delays<N>,
+    slopes: &'a RefCell<Slopes<N>>,
+    /// Whether what the tool feels is wanted: it is the work of all knots before, at every knot.
+    felt: bool,
+    /// Derivative of the following error to the rate of each knot, s: now and one knot ago.
+    following_s: [[[f64; N]; MOST_KNOTS]; 2],
+}
+
+impl<'a, const N: usize> Servo<'a, N> {
+    /// At full feed along the first axis.
+    pub(crate) fn new(net: &'a ServoIdentifier<N>, slopes: &'a RefCell<Slopes<N>>, felt: bool) -> Self {
+        let mut one = [0.0; N];
+        one[0] = 1.0;
+        let delays = Delays { feed: [one; 2], error: [one; 2] };
+        Self { net, delays, slopes, felt, following_s: [[[0.0; N]; MOST_KNOTS]; 2] }
+    }
+
+    fn feel(&mut self, slopes: &Inputs<N>, period_s: f64, now: usize, felt: &mut Felt<N>) {
+        let [following_s, before_s] = &mut self.following_s;
+        for knot in 0..=now {
+            for axis in 0..N {
+                let [f0, f1, f2, e0, e1] = slopes[axis];
+                let of_feed = [f0, f1, f2].get(now - knot).map_or(0.0, |slope| slope / FEED_SCALE_MM_S);
+                let of_error = e0 * following_s[knot][axis] + e1 * before_s[knot][axis];
+                before_s[knot][axis] = following_s[knot][axis];
+                following_s[knot][axis] += of_feed + of_error / FOLLOWING_SCALE_MM;
+                felt[knot][axis] = period_s - following_s[knot][axis];
+            }
+        }
+    }
+}
+
+impl<const N: usize> Model<N> for Servo<'_, N> {
+    fn lag_s(&self) -> f64 {
+        self.net.lag_s()
+    }
+
+    fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>, felt: &mut Felt<N>) -> [f64; N] {
+        let [from_mm, to_mm] = stretch.command_mm;
+        let feed = scale(1.0 / (window.feed_period_s * FEED_SCALE_MM_S), sub(to_mm, from_mm));
+        let (grown_mm, slopes) = self.net.predict_with_slopes(&self.delays.inputs(feed));
+        self.slopes.borrow_mut()[stretch.knot()] = slopes;
+        if self.felt {
+            self.feel(&slopes, window.feed_period_s, stretch.knot(), felt);
+        }
+        let error = add_scaled(self.delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown_mm);
+        self.delays.push(feed, error);
+        add_scaled(to_mm, -FOLLOWING_SCALE_MM, error)
+    }
+}

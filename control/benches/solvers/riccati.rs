@@ -1,0 +1,215 @@
+//! The problem of a tick as a linear-quadratic one over time, solved exactly by the recursion of Riccati.
+//!
+//! ```text
+//! x(k+1) = A(k) x(k) + B(k) du(k)     x = e(k), e(k-1), F(k-1), F(k-2), o of each axis, as changes from the plan
+//! V(k, x) = 1/2 x'P x + p'x           what is left to pay from knot k on
+//! ```
+//!
+//! Backwards, each knot adds what its errors cost at its end, goes through the dynamics, and takes the best du out; forwards,
+//! the du follow from the x. The work grows with the knots, that of the dense solution with their cube; and it asks only for
+//! the slopes of each knot, not for what the tool feels of every earlier one.
+//!
+//! One feed period a knot.
+//!
+//! Source: Rao, Wright and Rawlings (1998), "Application of interior-point methods to model predictive control", section 3.
+
+use feedwright_control::horizon::problem::Problem;
+use feedwright_control::horizon::{MOST_KNOTS, Rates};
+use feedwright_control::identifier::servo::FOLLOWING_SCALE_MM;
+use feedwright_control::identifier::{FEED_SCALE_MM_S, INPUTS};
+
+use super::model::Slopes;
+
+/// Places of an axis in a vector: its state, and its input.
+const PLACES: usize = 6;
+const E: usize = 0;
+const E_BEFORE: usize = 1;
+const F: usize = 2;
+const F_BEFORE: usize = 3;
+const OFFSET: usize = 4;
+const INPUT: usize = 5;
+/// Places of three axes.
+const MOST_PLACES: usize = 3 * PLACES;
+
+type Vector = [f64; MOST_PLACES];
+
+/// What the recursion keeps from the way back for the way forth: du = K x + k.
+pub(crate) struct Riccati<const N: usize> {
+    gains: [[Vector; N]; MOST_KNOTS],
+    offsets: [[f64; N]; MOST_KNOTS],
+}
+
+impl<const N: usize> Default for Riccati<N> {
+    fn default() -> Self {
+        Self { gains: [[[0.0; MOST_PLACES]; N]; MOST_KNOTS], offsets: [[0.0; N]; MOST_KNOTS] }
+    }
+}
+
+impl<const N: usize> Riccati<N> {
+    /// The change of the rates that solves the problem linearised about them, mm/s.
+    pub(crate) fn solve(&mut self, problem: &Problem<N>, slopes: &Slopes<N>, rates: &Rates<N>) -> Rates<N> {
+        self.back(problem, slopes, rates);
+        self.forth(problem, slopes)
+    }
+
+    fn back(&mut self, problem: &Problem<N>, slopes: &Slopes<N>, rates: &Rates<N>) {
+        let places = N * PLACES;
+        let (mut square, mut line) = ([[0.0; MOST_PLACES]; MOST_PLACES], [0.0; MOST_PLACES]);
+        for knot in (0..problem.knots).rev() {
+            pay_errors(problem, knot, &mut square, &mut line);
+            let step = Step::new(&slopes[knot], problem.knot_s);
+            // [A B]'P [A B], from one side, then from the other: P is symmetric.
+            square[..places].iter_mut().for_each(|row| *row = step.pull(row));
+            let mut turned = [[0.0; MOST_PLACES]; MOST_PLACES];
+            for (place, row) in turned[..places].iter_mut().enumerate() {
+                let column = core::array::from_fn(|r| if r < places { square[r][place] } else { 0.0 });
+                *row = step.pull(&column);
+            }
+            square = turned;
+            line = step.pull(&line);
+            pay_rates(problem, knot, rates, &mut square, &mut line);
+            self.take_out(knot, &mut square, &mut line);
+        }
+    }
+
+    /// Takes the input out: what is left belongs to the state, and the input follows from it.
+    fn take_out(&mut self, knot: usize, square: &mut [Vector; MOST_PLACES], line: &mut Vector) {
+        for axis in (0..N).rev() {
+            let input = axis * PLACES + INPUT;
+            let row = square[input];
+            let reciprocal = 1.0 / row[input];
+            let gain = row.map(|entry| -entry * reciprocal);
+            let offset = -line[input] * reciprocal;
+            for (place, factor) in gain[..N * PLACES].iter().enumerate() {
+                line[place] += row[place] * offset;
+                for (entry, other) in square[place][..N * PLACES].iter_mut().zip(&row) {
+                    *entry += factor * other;
+                }
+            }
+            // The inputs of the axes before this one come first on the way forth.
+            (self.gains[knot][axis], self.offsets[knot][axis]) = (gain, offset);
+            for place in 0..N * PLACES {
+                (square[place][input], square[input][place]) = (0.0, 0.0);
+            }
+            line[input] = 0.0;
+        }
+    }
+
+    fn forth(&self, problem: &Problem<N>, slopes: &Slopes<N>) -> Rates<N> {
+        let mut changes = [[0.0; N]; MOST_KNOTS];
+        let mut state = [0.0; MOST_PLACES];
+        for knot in 0..problem.knots {
+            for axis in 0..N {
+                let input = axis * PLACES + INPUT;
+                state[input] = 0.0;
+                let gain = &self.gains[knot][axis];
+                let moved: f64 = gain.iter().zip(&state).map(|(gain, x)| gain * x).sum();
+                state[input] = moved + self.offsets[knot][axis];
+                changes[knot][axis] = state[input];
+            }
+            state = Step::new(&slopes[knot], problem.knot_s).push(&state);
+        }
+        changes
+    }
+}
+
+/// What the errors at the end of a knot cost there.
+fn pay_errors<const N: usize>(
+    problem: &Problem<N>,
+    knot: usize,
+    square: &mut [Vector; MOST_PLACES],
+    line: &mut Vector,
+) {
+    for (d, direction) in problem.directions[knot].iter().enumerate() {
+        // Across the path the tool counts, o - e; along it the offset alone, at its price.
+        let (price, of_error) = if d < N - 1 { (1.0, -1.0) } else { (problem.settings.tangential_price, 0.0) };
+        let off_mm = problem.off_mm[knot][d];
+        for a in 0..N {
+            let weight = price * price * direction[a];
+            let ways = [(a * PLACES + OFFSET, weight), (a * PLACES + E, weight * of_error)];
+            for (r, weight) in ways {
+                line[r] += weight * off_mm;
+                for b in 0..N {
+                    square[r][b * PLACES + OFFSET] += weight * direction[b];
+                    square[r][b * PLACES + E] += weight * direction[b] * of_error;
+                }
+            }
+        }
+    }
+}
+
+/// What the rate of a knot and its change from the one before cost.
+fn pay_rates<const N: usize>(
+    problem: &Problem<N>,
+    knot: usize,
+    rates: &Rates<N>,
+    square: &mut [Vector; MOST_PLACES],
+    line: &mut Vector,
+) {
+    let (weight, change) = (problem.settings.rate_weight, problem.settings.change_weight);
+    for axis in 0..N {
+        let (input, before) = (axis * PLACES + INPUT, axis * PLACES + F);
+        square[input][input] += weight;
+        line[input] += weight * rates[knot][axis];
+        if knot > 0 {
+            let changed = change * (rates[knot][axis] - rates[knot - 1][axis]);
+            square[input][input] += change;
+            square[before][before] += change;
+            square[input][before] -= change;
+            square[before][input] -= change;
+            line[input] += changed;
+            line[before] -= changed;
+        }
+    }
+}
+
+/// A(k) and B(k): one feed period of every axis, lengths in mm, rates in mm/s.
+struct Step<const N: usize> {
+    /// What e(k+1) takes of F(k), F(k-1), F(k-2), e(k), e(k-1).
+    of: [[f64; INPUTS]; N],
+    period_s: f64,
+}
+
+impl<const N: usize> Step<N> {
+    fn new(slopes: &[[f64; INPUTS]; N], period_s: f64) -> Self {
+        let of = slopes.map(|[f0, f1, f2, e0, e1]| {
+            let [f0, f1, f2] = [f0, f1, f2].map(|slope| slope / FEED_SCALE_MM_S);
+            [f0, f1, f2, 1.0 + e0 / FOLLOWING_SCALE_MM, e1 / FOLLOWING_SCALE_MM]
+        });
+        Self { of, period_s }
+    }
+
+    /// `[A B]' v`.
+    #[inline]
+    fn pull(&self, v: &Vector) -> Vector {
+        let mut pulled = [0.0; MOST_PLACES];
+        for axis in 0..N {
+            let [f0, f1, f2, e0, e1] = self.of[axis];
+            let at = axis * PLACES;
+            pulled[at + E] = e0 * v[at + E] + v[at + E_BEFORE];
+            pulled[at + E_BEFORE] = e1 * v[at + E];
+            pulled[at + F] = f1 * v[at + E] + v[at + F_BEFORE];
+            pulled[at + F_BEFORE] = f2 * v[at + E];
+            pulled[at + OFFSET] = v[at + OFFSET];
+            pulled[at + INPUT] = f0 * v[at + E] + v[at + F] + self.period_s * v[at + OFFSET];
+        }
+        pulled
+    }
+
+    /// `A x + B du`.
+    #[inline]
+    fn push(&self, x: &Vector) -> Vector {
+        let mut pushed = [0.0; MOST_PLACES];
+        for axis in 0..N {
+            let [f0, f1, f2, e0, e1] = self.of[axis];
+            let at = axis * PLACES;
+            let inputs = [x[at + INPUT], x[at + F], x[at + F_BEFORE], x[at + E], x[at + E_BEFORE]];
+            pushed[at + E] = [f0, f1, f2, e0, e1].iter().zip(inputs).map(|(of, x)| of * x).sum();
+            pushed[at + E_BEFORE] = x[at + E];
+            pushed[at + F] = x[at + INPUT];
+            pushed[at + F_BEFORE] = x[at + F];
+            pushed[at + OFFSET] = x[at + OFFSET] + self.period_s * x[at + INPUT];
+        }
+        pushed
+    }
+}

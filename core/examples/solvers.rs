@@ -1,0 +1,114 @@
+//! What the solver of the receding horizon does to the cut, and what a horizon does to the paper's inversion: `just solvers`,
+//! the tables of "Which solver" in examples/02_horizon.
+//!
+//! The controller is made from `tnv40`; `heavy` meets it unseen. Times are of whole decisions, medians over a cut.
+
+use feedwright::compare::Workpiece;
+use feedwright::identify::cache::identified;
+use feedwright::identify::contour::Training;
+use feedwright::identify::{Programme, servo};
+use feedwright::machine::Machine;
+use feedwright::reference::Reference;
+use feedwright::report::Statistics;
+use feedwright::simulate::{Run, simulate};
+use feedwright_control::Controller;
+use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
+use feedwright_control::controller::{inverting, two_dimensional::TwoDimensional};
+use feedwright_control::horizon::Solver;
+use feedwright_control::horizon::gauss_newton::GaussNewton;
+use feedwright_control::horizon::gradient::Gradient;
+use feedwright_control::inversion;
+
+const CONTOURS: [&str; 3] = ["circle", "star", "square"];
+const MACHINES: [&str; 2] = ["tnv40", "heavy"];
+/// Seed of all training.
+const SEED: u64 = 1;
+/// Knots of the paper's inversion.
+const KNOTS: [usize; 3] = [1, 3, 5];
+
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> Result<(), Failure> {
+    let machines = MACHINES.map(|name| Machine::load(name.as_ref()));
+    let machines = machines.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let all = Workpiece::contours();
+    let workpieces: Vec<&Workpiece> = CONTOURS.iter().filter_map(|name| all.iter().find(|w| w.name == *name)).collect();
+    horizons(&machines, &workpieces)?;
+    inversions(&machines[0], workpieces[0])
+}
+
+/// Every solver on every machine and contour.
+fn horizons(machines: &[Machine], workpieces: &[&Workpiece]) -> Result<(), Failure> {
+    print!("| RMS / max, um |");
+    for machine in machines {
+        workpieces.iter().for_each(|workpiece| print!(" {} {} |", machine.name, workpiece.name));
+    }
+    println!(" decision, us |\n|---|{}--:|", "--:|".repeat(machines.len() * workpieces.len()));
+    row::<GaussNewton>("Gauss-Newton, 1 step", 1, machines, workpieces)?;
+    row::<Gradient>("gradient, 1 step", 1, machines, workpieces)?;
+    row::<Gradient<5>>("gradient, 5 steps, linearised once", 1, machines, workpieces)?;
+    row::<Gradient<20>>("gradient, 20 steps, linearised once", 1, machines, workpieces)?;
+    row::<Gradient>("gradient, 5 steps, each rolled out", 5, machines, workpieces)?;
+    row::<Gradient>("gradient, 20 steps, each rolled out", 20, machines, workpieces)?;
+    println!();
+    Ok(())
+}
+
+fn row<S: Solver<2>>(name: &str, steps: usize, machines: &[Machine], workpieces: &[&Workpiece]) -> Result<(), Failure> {
+    print!("| {name} |");
+    let mut longest_us = 0.0_f64;
+    for machine in machines {
+        // What is known of the machine is the first's; the periods of the control are never a secret.
+        let known = Machine { period: machine.period, ..machines[0].clone() };
+        let identified = servo::identify::<2>(&known, &Programme::servo(), SEED);
+        let mut settings = receding_horizon::Settings { steps, ..receding_horizon::Settings::DEFAULT };
+        settings.servo_periods = machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
+        for workpiece in workpieces {
+            let mut controller: RecedingHorizon<2, S> =
+                RecedingHorizon::new(identified.net.clone(), &identified.spread, settings);
+            let (statistics, run) = cut(machine, workpiece, &mut controller)?;
+            print!(" {}{} |", errors(&statistics), if run.faded_out.is_some() { ", taken out" } else { "" });
+            longest_us = longest_us.max(run.ticks.quantile_us(0.5));
+        }
+    }
+    println!(" {longest_us:.0} |");
+    Ok(())
+}
+
+/// The paper's inversion over several knots.
+fn inversions(machine: &Machine, workpiece: &Workpiece) -> Result<(), Failure> {
+    let trained = identified::<2>(machine, &Programme::paper(), &Training::default(), SEED, &mut |_| {});
+    println!("| {}, {}: knots | gradient | RMS / max, um | time, s | decision, us |", machine.name, workpiece.name);
+    println!("|--:|---|--:|--:|--:|");
+    for (name, gradient) in [("printed", inversion::Gradient::Printed), ("exact", inversion::Gradient::Exact)] {
+        for knots in KNOTS {
+            let mut settings = inverting::Settings { knots, ..inverting::Settings::DEFAULT };
+            settings.servo_periods = machine.period.servo_periods(inverting::FEED_PERIOD_S);
+            settings.inversion.gradient = gradient;
+            let mut controller = TwoDimensional::new(trained.net.clone(), settings);
+            let (statistics, run) = cut(machine, workpiece, &mut controller)?;
+            print!("| {knots} | {name} | {}", errors(&statistics));
+            match run.faded_out {
+                // From then on nothing is decided.
+                Some(_) => println!(", taken out | {:.3} | |", run.time_s),
+                None => println!(" | {:.3} | {:.1} |", run.time_s, run.ticks.quantile_us(0.5)),
+            }
+        }
+    }
+    Ok(())
+}
+
+fn cut(
+    machine: &Machine,
+    workpiece: &Workpiece,
+    controller: &mut dyn Controller<2>,
+) -> Result<(Statistics, Run), Failure> {
+    let mut statistics = Statistics::new();
+    let mut reference = Reference::from_steps(workpiece.steps.clone(), &(&machine.limits).into())?;
+    let run = simulate(machine, &mut reference, controller, &mut [&mut statistics])?;
+    Ok((statistics, run))
+}
+
+fn errors(statistics: &Statistics) -> String {
+    format!("{:.2} / {:.1}", statistics.rms_um(), statistics.max_um())
+}
