@@ -2,12 +2,14 @@
 //! open loop.
 //!
 //! Where it is worse: on loops that ring by themselves, and on loops so stiff that open loop is below a micrometre anyway.
+//!
+//! And on drives that are just strong enough for the plan.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 use feedwright::compare::Workpiece;
 use feedwright::controllers::{BASELINE, BEST, Choices, Entry, Make, Setup};
-use feedwright::machine::{Machine, Transmission};
+use feedwright::machine::{Axis, Limits, Machine, Transmission};
 use feedwright::reference::Reference;
 use feedwright::report::Statistics;
 use feedwright::simulate::{Run, simulate};
@@ -119,4 +121,41 @@ fn hardly_any_machine_is_cut_worse_than_open_loop() {
     assert!((worse.len() as f64) <= WORSE * judged.len() as f64, "worse than open loop on {} cuts", worse.len());
     assert!(quantile(1.0) <= WORST_RATIO, "{} times open loop", quantile(1.0));
     assert!(judged.len() as u64 > 2 * MACHINES, "only {} cuts were judged", judged.len());
+}
+
+/// Feedrate of the contours, mm/s.
+const FEED_MM_S: f64 = 50.0;
+
+/// Torque with which an axis can do what the plan of a contour may ask of it: the largest acceleration at the programmed
+/// feedrate, against friction and disturbance, N m.
+fn torque_of_plan_nm(axis: &Axis, limits: &Limits) -> f64 {
+    let rad_per_mm = std::f64::consts::TAU / axis.lead_mm_per_rev;
+    let accel_mm_s2 = limits.normal_accel_mm_s2.hypot(limits.tangential_accel_mm_s2);
+    let friction_nm = axis.coulomb_friction_nm + axis.viscous_friction_nm_s * FEED_MM_S * rad_per_mm;
+    axis.inertia_kg_m2 * accel_mm_s2 * rad_per_mm + friction_nm + axis.disturbance_nm
+}
+
+#[test]
+fn a_drive_that_is_just_strong_enough_for_the_plan_is_strong_enough() {
+    let mut machine = tnv40();
+    let limits = machine.limits.clone();
+    for axis in &mut machine.axes {
+        axis.torque_limit_nm = torque_of_plan_nm(axis, &limits);
+    }
+    for workpiece in Workpiece::contours() {
+        let (open, open_numbers) = cut(&workpiece, &machine, &mut *controller(BASELINE));
+        let (run, numbers) = cut(&workpiece, &machine, &mut *controller(BEST));
+        let (name, rms_um, open_um) = (&workpiece.name, numbers.rms_um(), open_numbers.rms_um());
+        eprintln!(
+            "{name}: {rms_um:.2} / {:.1} um, open loop {open_um:.2} / {:.1} um",
+            numbers.max_um(),
+            open_numbers.max_um()
+        );
+        assert_eq!(
+            (open.outcome, run.outcome, run.faded_out),
+            (Outcome::Completed, Outcome::Completed, None),
+            "{name}"
+        );
+        assert!(rms_um <= 0.05 * open_um, "{name}: {rms_um} um, open loop {open_um} um");
+    }
 }
