@@ -9,7 +9,7 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Output};
 
 use feedwright::gcode::canon::{Canon, Motion, MotionKind, Plane, Shape};
 use feedwright::gcode::{Dialect, Reader, Settings, ToolTable};
@@ -111,15 +111,21 @@ fn tool_table() -> String {
     (1..=99).map(|tool| format!("T{tool} P{tool} Z0 D0.125 ;\n")).collect()
 }
 
+/// Seconds that `rs274` has for a program, one attempt after the other. One that ends without a word, late or by a signal,
+/// is asked again: on a busy machine that happens to any program.
+const PATIENCE_S: [&str; 3] = ["2", "5", "20"];
+
 /// What `rs274` says: `None` where it accepts.
 fn verdict(path: &Path, tools: &Path) -> Option<String> {
-    let output = Command::new("timeout")
-        .args(["2", "rs274", "-g", "-t"])
-        .arg(tools)
-        .arg(path)
-        .current_dir(path.parent().unwrap())
-        .output()
-        .unwrap();
+    let attempt = |seconds: &str| {
+        let mut command = Command::new("timeout");
+        command.args([seconds, "rs274", "-g", "-t"]).arg(tools).arg(path).current_dir(path.parent().unwrap());
+        command.output().unwrap()
+    };
+    let spoke = |output: &Output| output.status.success() || !output.stderr.is_empty();
+    let [first, again @ ..] = PATIENCE_S;
+    let output =
+        again.iter().fold(attempt(first), |output, seconds| if spoke(&output) { output } else { attempt(seconds) });
     if output.status.success() {
         return None;
     }
