@@ -138,7 +138,7 @@ fn torque_of_plan_nm(axis: &Axis, limits: &Limits) -> f64 {
 #[test]
 fn a_drive_that_is_just_strong_enough_for_the_plan_is_strong_enough() {
     let mut machine = tnv40();
-    let limits = machine.limits.clone();
+    let limits = machine.limits;
     for axis in &mut machine.axes {
         axis.torque_limit_nm = torque_of_plan_nm(axis, &limits);
     }
