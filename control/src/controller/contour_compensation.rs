@@ -81,14 +81,14 @@ impl<const N: usize> Controller<N> for ContourCompensation<N> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::controller::cross_coupled::tests::cut;
     use crate::controller::open_loop::OpenLoop;
     use crate::window::{Knot, Reference};
 
     /// The circle of eq. 11 at 50 mm/s.
-    struct Circle;
+    pub(crate) struct Circle;
 
     impl Reference<2> for Circle {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {

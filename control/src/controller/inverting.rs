@@ -172,18 +172,10 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
 mod tests {
     use super::*;
     use crate::contour_error::ContourError;
+    use crate::controller::contour_compensation::tests::Circle;
     use crate::controller::two_dimensional::TwoDimensional;
     use crate::identifier::{HIDDEN, INPUTS};
-    use crate::window::{Knot, Preview, Reference, Register};
-
-    struct Circle;
-
-    impl Reference<2> for Circle {
-        fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            let (sin, cos) = (libm::sin(5.0 * tau_s), libm::cos(5.0 * tau_s));
-            Knot { position_mm: [10.0 * sin, -10.0 * cos], tangent: [cos, sin], feed_mm_s: 50.0 }
-        }
-    }
+    use crate::window::{Preview, Reference, Register};
 
     fn net() -> ContourIdentifier<2> {
         let weight = |i: usize| 0.3 * libm::sin(1.7 * i as f64);
