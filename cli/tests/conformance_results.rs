@@ -68,7 +68,7 @@ fn the_comparison_has_the_documented_rows_and_its_own_part() {
     folder.file("beside.ngc", "G21 G90 F600\nT1 M6\nG41 G1 X4\nG1 X8\nG1 Y8\nG40 G1 X9 Y9\nM2\n");
     folder.file("tools.tbl", "T1 P1 D2 ;\n");
     let parts = ["--part", "circle.ngc", "--part", "beside.ngc", "--tool-table", "tools.tbl", "--dialect", "linuxcnc"];
-    let only = ["--only", "square,tnv40,rough,open-loop,contour-compensation", "--no-tuning"];
+    let only = ["--only", "square,tnv40,rough,open-loop,contour-compensation", "--machine", "rough", "--no-tuning"];
     let only = [&only[..], &parts[..]].concat();
     let outputs = ["--json", "r.json", "--html", "r.html"];
     let out = folder.run(&[&["compare"], &only[..], &outputs[..]].concat()).succeeded();

@@ -86,10 +86,20 @@ fn options(args: &CompareArgs) -> Result<Options> {
     }
     let settings = args.reader.settings()?;
     for part in &args.part {
-        workpieces.push(Workpiece::program(part, settings.clone())?);
+        let part = Workpiece::program(part, settings.clone())?;
+        if workpieces.iter().any(|w| w.name == part.name) {
+            return Err(ambiguous("--part", &part.name));
+        }
+        workpieces.push(part);
     }
     for machine in &args.machine {
-        machines.push(Machine::load(machine)?);
+        let machine = Machine::load(machine)?;
+        match machines.iter().find(|m| m.name == machine.name) {
+            // All that are built in are there already.
+            Some(there) if *there == machine => {}
+            Some(_) => return Err(ambiguous("--machine", &machine.name)),
+            None => machines.push(machine),
+        }
     }
     Ok(Options {
         workpieces,
@@ -99,6 +109,15 @@ fn options(args: &CompareArgs) -> Result<Options> {
         tuning: if args.no_tuning { Tuning::Defaults } else { Tuning::Search },
         at_tolerance: args.at_tolerance,
     })
+}
+
+/// The rows of two that have the same name could not be told apart.
+fn ambiguous(option: &str, name: &str) -> miette::Report {
+    let help = match option {
+        "--part" => "the name is that of the file: give this one another",
+        _ => "give it another `name` in its file, or choose from those that are built in with --only",
+    };
+    miette!(help = help, "{option}: there is another '{name}' in the table")
 }
 
 /// The journal of these options and this program; none where there is no place for it.

@@ -67,7 +67,8 @@ pub(super) fn duration(seconds: f64) -> String {
     out
 }
 
-/// Change from `before` to `after` in per cent: "−87 %"; nothing where `before` is zero.
+/// Change from `before` to `after` in per cent: "−87 %"; nothing where `before` is zero. Near −100 % it is what is left that
+/// tells.
 pub(super) fn change(before: f64, after: f64) -> Option<String> {
     let percent = (after / before - 1.0) * 100.0;
     if before == 0.0 || !percent.is_finite() {
@@ -75,7 +76,9 @@ pub(super) fn change(before: f64, after: f64) -> Option<String> {
     }
     Some(if percent.abs() < 0.05 {
         "±0 %".to_owned()
-    } else if percent.abs() < 10.0 {
+    } else if after > 0.0 && percent < -99.9 {
+        format!("{} %", signed(percent, 2))
+    } else if percent.abs() < 10.0 || after > 0.0 && percent < -99.0 {
         format!("{} %", signed(percent, 1))
     } else {
         format!("{} %", signed(percent, 0))
@@ -105,6 +108,9 @@ mod tests {
     #[test]
     fn changes_are_relative_to_the_first() {
         assert_eq!(change(18.0, 2.4).as_deref(), Some("−87 %"));
+        assert_eq!(change(18.0, 0.03).as_deref(), Some("−99.8 %"));
+        assert_eq!(change(1e4, 2.0).as_deref(), Some("−99.98 %"));
+        assert_eq!(change(18.0, 0.0).as_deref(), Some("−100 %"));
         assert_eq!(change(1.76, 1.69).as_deref(), Some("−4.0 %"));
         assert_eq!(change(2.0, 2.0).as_deref(), Some("±0 %"));
         assert_eq!(change(0.0, 1.0), None);
