@@ -10,6 +10,7 @@
 //! | `compare/cut.rs` | one cut |
 //! | `compare/tuning.rs` | the search that tunes every controller alike |
 //! | `compare/table.rs` | rows and their ratios |
+//! | `compare/overview.rs` | what tables over many rows are made of |
 //! | `compare/verdict.rs` | what is claimed, row by row |
 //! | `compare/tolerance.rs` | the machining time at which a tolerance just holds |
 //! | `compare/journal.rs` | finished rows on disk: an interrupted comparison goes on |
@@ -17,6 +18,7 @@
 
 mod cut;
 pub mod journal;
+pub mod overview;
 pub mod page;
 pub mod table;
 pub mod tolerance;

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::path::PathBuf;
 
+use feedwright::compare::overview::each_once;
 use feedwright::compare::table::Row;
 use feedwright::compare::{AT_HOME, Comparison};
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Knows};
@@ -84,26 +85,13 @@ const SHOWN: &[&str] = &[
     "receding-horizon",
 ];
 
-/// Names of a column, each once, in the order of the rows.
-fn each_once<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
-    let mut once: Vec<&str> = Vec::new();
-    for name in names {
-        if !once.contains(&name.as_str()) {
-            once.push(name);
-        }
-    }
-    once
-}
-
 fn controllers(comparison: &Comparison) -> Vec<&str> {
     let nominal = comparison.rows.iter().filter(|row| row.machine == comparison.nominal);
     each_once(nominal.map(|row| &row.controller))
 }
 
 fn find<'a>(comparison: &'a Comparison, contour: &str, machine: &str, controller: &str) -> Result<&'a Row> {
-    let row = comparison.rows.iter().find(|row| {
-        (row.contour.as_str(), row.machine.as_str(), row.controller.as_str()) == (contour, machine, controller)
-    });
+    let row = comparison.row(contour, machine, controller);
     Ok(row.ok_or_else(|| format!("{COMPARISON} has no {controller} on {contour} and {machine}"))?)
 }
 
@@ -117,7 +105,7 @@ fn heading(table: &mut String, first: &str, columns: &[&str]) -> Result<()> {
 
 /// One line for each controller, one column for each contour, on the nominal machine: RMS and largest error.
 fn contours(comparison: &Comparison, controllers: &[&str]) -> Result<String> {
-    let contours = each_once(comparison.rows.iter().map(|row| &row.contour));
+    let contours = comparison.contours();
     let mut table = String::new();
     heading(&mut table, "RMS / max, \u{b5}m", &contours)?;
     for controller in controllers {
@@ -137,19 +125,15 @@ fn contours(comparison: &Comparison, controllers: &[&str]) -> Result<String> {
 
 /// One line for each machine: RMS over all contours.
 fn machines(comparison: &Comparison) -> Result<String> {
-    let contours = each_once(comparison.rows.iter().map(|row| &row.contour));
-    let over_all = |machine: &str, controller: &str| -> Result<f64> {
-        let mut square = 0.0;
-        for contour in &contours {
-            square += find(comparison, contour, machine, controller)?.rms_um.powi(2);
-        }
-        Ok((square / contours.len() as f64).sqrt())
+    let over_all = |machine: &str, controller: &str| {
+        let rms_um = comparison.rms_over_contours_um(machine, controller);
+        rms_um.ok_or_else(|| format!("{COMPARISON} has not every contour of {controller} on {machine}"))
     };
     let home = format!("{BEST}{AT_HOME}");
     let mut table = String::new();
     let columns = ["open-loop", "best of those without model", BEST, "the same, identified on it"];
     heading(&mut table, "RMS over all contours, \u{b5}m", &columns)?;
-    for machine in each_once(comparison.rows.iter().map(|row| &row.machine)) {
+    for machine in comparison.machines() {
         let mut peers = Vec::new();
         for entry in CONTROLLERS {
             if matches!(entry.knows, Knows::Nothing | Knows::Identified) && ![BEST, BASELINE].contains(&entry.name) {
@@ -168,8 +152,7 @@ fn machines(comparison: &Comparison) -> Result<String> {
 fn tuned(comparison: &Comparison) -> Result<String> {
     let mut table = String::from("| controller | cuts | RMS on the eight, \u{b5}m | values |\n|---|--:|--:|---|\n");
     for tuned in &comparison.tuned {
-        let values: Vec<String> = tuned.values.iter().map(|(name, value)| format!("{name} {value:.3e}")).collect();
-        writeln!(table, "| {} | {} | {:.2} | {} |", tuned.controller, tuned.cuts, tuned.rms_um, values.join(", "))?;
+        writeln!(table, "| {} | {} | {:.2} | {} |", tuned.controller, tuned.cuts, tuned.rms_um, tuned.words())?;
     }
     Ok(table)
 }

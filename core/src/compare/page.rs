@@ -1,8 +1,9 @@
-//! The page of a comparison: what is claimed, the times at equal tolerance, and for each workpiece and machine the table and
-//! the errors side by side. One file without references to anything outside it; equal comparisons give equal bytes.
+//! The page of a comparison: all at a glance, what is claimed, the times at equal tolerance, for each workpiece and machine the
+//! table and the errors side by side, and the values of the peers. One file without references to anything outside it; equal comparisons give equal bytes.
 
 use std::io::{self, Write};
 
+use super::overview::each_once;
 use super::table::{Row, knows};
 use super::tolerance::{AtTolerance, TOLERANCE_UM};
 use super::{AT_HOME, Comparison};
@@ -21,18 +22,18 @@ const NOTABLE: f64 = 0.02;
 pub fn write(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let introduction = format!(
         "Every controller on every contour and machine. Controllers know {} at most and meet the other machines unseen; \
-         {BEST}{AT_HOME} and its like are identified on the machine that they cut on. Ratios are against {BASELINE} on the same \
-         machine. Seed {}.",
+         {BEST}{AT_HOME} and its like are identified on the machine that they cut on. Seed {}.",
         comparison.nominal, comparison.seed
     );
     write_head(out, "Comparison of controllers", &introduction, CSS)?;
+    write_machines(out, comparison)?;
     write_contents(out, comparison)?;
-    write_tuned(out, comparison)?;
-    write_verdicts(out, comparison)?;
+    write_claims(out, comparison)?;
     write_at_tolerance(out, &comparison.at_tolerance)?;
     for (index, here) in cells(&comparison.rows).into_iter().enumerate() {
         write_cell(out, index, here)?;
     }
+    write_tuned(out, comparison)?;
     write_foot(out)
 }
 
@@ -41,92 +42,152 @@ fn cells(rows: &[Row]) -> Vec<&[Row]> {
     rows.chunk_by(|a, b| a.contour == b.contour && a.machine == b.machine).collect()
 }
 
-fn write_contents(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
-    out.write_all(b"<nav>")?;
-    for (index, here) in cells(&comparison.rows).into_iter().enumerate() {
-        let (contour, machine) = (escaped(&here[0].contour), escaped(&here[0].machine));
-        writeln!(out, "<a href=\"#cell-{index}\">{contour} on {machine}</a>")?;
-    }
-    out.write_all(b"</nav>\n")
+/// The beginning of a table, up to its first row.
+fn write_heading<'a>(out: &mut impl Write, heads: impl IntoIterator<Item = &'a str>) -> io::Result<()> {
+    out.write_all(b"<div class=\"wide\"><table><thead><tr>")?;
+    heads.into_iter().try_for_each(|head| write!(out, "<th>{}</th>", escaped(head)))?;
+    out.write_all(b"</tr></thead><tbody>\n")
 }
 
-fn write_tuned(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
-    let searched: Vec<_> = comparison.tuned.iter().filter(|tuned| tuned.cuts > 0).collect();
-    if searched.is_empty() {
-        return Ok(());
-    }
-    out.write_all(b"<h2>Tuned values</h2>\n<div class=\"wide\"><table><thead><tr><th>controller</th><th>cuts</th>")?;
-    out.write_all("<th>RMS, µm</th><th>values</th></tr></thead><tbody>\n".as_bytes())?;
-    for tuned in searched {
-        let values: Vec<String> = tuned.values.iter().map(|(name, value)| format!("{name} {value:.3e}")).collect();
-        let (name, values) = (escaped(&tuned.controller), escaped(&values.join(", ")));
-        let rms = number(tuned.rms_um);
-        writeln!(out, "<tr><td>{name}</td><td>{}</td><td>{rms}</td><td>{values}</td></tr>", tuned.cuts)?;
-    }
+fn write_end(out: &mut impl Write) -> io::Result<()> {
     out.write_all(b"</tbody></table></div>\n")
 }
 
-fn write_verdicts(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
+/// All controllers on all machines.
+fn write_machines(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
+    let machines = comparison.machines();
+    out.write_all("<h2>RMS contour error over all contours, µm</h2>\n".as_bytes())?;
+    write_heading(out, std::iter::once("controller").chain(machines.iter().copied()))?;
+    for controller in comparison.controllers() {
+        write!(out, "<tr{}><td>{}</td>", ours(controller), escaped(controller))?;
+        for machine in &machines {
+            let cut = comparison.rows.iter().any(|row| row.machine == *machine && row.controller == controller);
+            let text = match comparison.rms_over_contours_um(machine, controller) {
+                Some(rms_um) => number(rms_um),
+                None if cut => "diverged".to_owned(),
+                None => String::new(),
+            };
+            write!(out, "<td>{text}</td>")?;
+        }
+        out.write_all(b"</tr>\n")?;
+    }
+    write_end(out)
+}
+
+/// Where each contour and machine is found, and what the receding horizon does there.
+fn write_contents(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
+    let (machines, cells) = (comparison.machines(), cells(&comparison.rows));
+    writeln!(out, "<h2>Contours and machines</h2>\n<p>RMS / largest contour error of {}, µm.</p>", shown(comparison))?;
+    write_heading(out, std::iter::once("contour").chain(machines.iter().copied()))?;
+    for contour in comparison.contours() {
+        write!(out, "<tr><td>{}</td>", escaped(contour))?;
+        for machine in &machines {
+            let index = cells.iter().position(|cell| cell[0].contour == contour && cell[0].machine == *machine);
+            let row = comparison.row(contour, machine, shown(comparison));
+            match (index, row) {
+                (Some(index), Some(row)) => {
+                    let (rms, max) = (number(row.rms_um), number(row.max_um));
+                    write!(out, "<td><a href=\"#cell-{index}\">{rms} / {max}</a></td>")?;
+                }
+                (Some(index), None) => write!(out, "<td><a href=\"#cell-{index}\">there</a></td>")?,
+                (None, _) => out.write_all(b"<td></td>")?,
+            }
+        }
+        out.write_all(b"</tr>\n")?;
+    }
+    write_end(out)
+}
+
+/// The controller that the contents show.
+fn shown(comparison: &Comparison) -> &str {
+    if comparison.controllers().contains(&BEST) { BEST } else { BASELINE }
+}
+
+/// Each claim in a line, and what it says of every contour and machine behind it.
+fn write_claims(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let verdicts = &comparison.verdicts;
     if verdicts.is_empty() {
         return Ok(());
     }
     let held = verdicts.iter().filter(|verdict| verdict.holds).count();
-    write!(out, "<h2>Claims: {held} of {} hold</h2>\n<div class=\"wide\"><table><thead><tr>", verdicts.len())?;
-    out.write_all(
-        b"<th>claim</th><th>contour</th><th>machine</th><th>against</th><th>ratio</th><th>limit</th><th></th>",
-    )?;
-    out.write_all(b"</tr></thead><tbody>\n")?;
-    for verdict in verdicts {
-        let (class, word) = if verdict.holds { ("better", "holds") } else { ("worse", "falls short") };
+    writeln!(out, "<h2>Claims: {held} of {} hold</h2>", verdicts.len())?;
+    for claim in each_once(verdicts.iter().map(|verdict| &verdict.claim)) {
+        let of_claim: Vec<_> = verdicts.iter().filter(|verdict| verdict.claim == claim).collect();
+        let held = of_claim.iter().filter(|verdict| verdict.holds).count();
+        let worst = of_claim.iter().map(|verdict| verdict.value).fold(0.0, f64::max);
+        let class = if held == of_claim.len() { "better" } else { "worse" };
         writeln!(
             out,
-            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.3}</td><td>{:.3}</td><td class=\"{class}\">{word}</td></tr>",
-            verdict.claim,
-            escaped(&verdict.contour),
-            escaped(&verdict.machine),
-            escaped(&verdict.against),
-            verdict.value,
-            verdict.limit
+            "<details><summary>{claim}, at most {}: <span class=\"{class}\">{held} of {} hold</span>, worst {worst:.3}</summary>",
+            of_claim[0].limit,
+            of_claim.len()
         )?;
+        write_heading(out, ["contour", "machine", "against", "ratio", ""])?;
+        for verdict in of_claim {
+            let (class, word) = if verdict.holds { ("better", "holds") } else { ("worse", "falls short") };
+            writeln!(
+                out,
+                "<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.3}</td><td class=\"{class}\">{word}</td></tr>",
+                escaped(&verdict.contour),
+                escaped(&verdict.machine),
+                escaped(&verdict.against),
+                verdict.value
+            )?;
+        }
+        write_end(out)?;
+        out.write_all(b"</details>\n")?;
     }
-    out.write_all(b"</tbody></table></div>\n")
+    Ok(())
 }
 
 fn write_at_tolerance(out: &mut impl Write, rows: &[AtTolerance]) -> io::Result<()> {
     if rows.is_empty() {
         return Ok(());
     }
-    write!(
-        out,
-        "<h2>Machining time where no error is above {TOLERANCE_UM} µm</h2>\n<div class=\"wide\"><table><thead><tr>"
-    )?;
-    out.write_all(b"<th>contour</th><th>controller</th><th>feedrate, mm/s</th><th>time, s</th><th>ratio</th></tr></thead><tbody>\n")?;
-    let cell =
-        |value: Option<f64>, decimals: usize| value.map_or("never".to_owned(), |value| format!("{value:.decimals$}"));
-    for row in rows {
+    let contours = each_once(rows.iter().map(|row| &row.contour));
+    writeln!(out, "<h2>Machining time where no error is above {TOLERANCE_UM} µm</h2>")?;
+    writeln!(out, "<p>Time against {BASELINE}, and the feedrate at which the tolerance just holds, mm/s.</p>")?;
+    write_heading(out, std::iter::once("controller").chain(contours.iter().copied()))?;
+    for controller in each_once(rows.iter().map(|row| &row.controller)) {
+        write!(out, "<tr{}><td>{}</td>", ours(controller), escaped(controller))?;
+        for contour in &contours {
+            let row = rows.iter().find(|row| row.contour == *contour && row.controller == controller);
+            match row.and_then(|row| row.time_ratio.zip(row.feed_mm_s)) {
+                Some((ratio, feed_mm_s)) => write!(out, "<td>{ratio:.2} at {feed_mm_s:.0}</td>")?,
+                None => out.write_all(b"<td>never</td>")?,
+            }
+        }
+        out.write_all(b"</tr>\n")?;
+    }
+    write_end(out)
+}
+
+/// The values that the peers were cut with.
+fn write_tuned(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
+    let searched: Vec<_> = comparison.tuned.iter().filter(|tuned| tuned.cuts > 0).collect();
+    if searched.is_empty() {
+        return Ok(());
+    }
+    out.write_all(b"<h2>Tuned values</h2>\n")?;
+    write_heading(out, ["controller", "cuts", "RMS, µm", "values"])?;
+    for tuned in searched {
+        let (name, rms) = (escaped(&tuned.controller), number(tuned.rms_um));
         writeln!(
             out,
-            "<tr{}><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>",
-            ours(&row.controller),
-            escaped(&row.contour),
-            escaped(&row.controller),
-            cell(row.feed_mm_s, 1),
-            cell(row.time_s, 3),
-            cell(row.time_ratio, 3)
+            "<tr><td>{name}</td><td>{}</td><td>{rms}</td><td class=\"words\">{}</td></tr>",
+            tuned.cuts,
+            escaped(&tuned.words())
         )?;
     }
-    out.write_all(b"</tbody></table></div>\n")
+    write_end(out)
 }
 
 fn write_cell(out: &mut impl Write, index: usize, rows: &[Row]) -> io::Result<()> {
     let (contour, machine) = (escaped(&rows[0].contour), escaped(&rows[0].machine));
     writeln!(out, "<section id=\"cell-{index}\"><h2>{contour} on {machine}</h2>")?;
-    out.write_all(
-        "<div class=\"wide\"><table><thead><tr><th>controller</th><th>time, s</th><th>RMS, µm</th><th>max, µm</th>\
-         <th>time</th><th>RMS</th><th>max</th><th>command off, µm</th><th>torque, N m</th><th></th></tr></thead><tbody>\n"
-            .as_bytes(),
-    )?;
+    let ratios = ["time ratio", "RMS ratio", "max ratio"];
+    let measured = ["controller", "time, s", "RMS, µm", "max, µm"];
+    write_heading(out, measured.into_iter().chain(ratios).chain(["command off, µm", "torque, N m", ""]))?;
     for row in rows {
         let note = match (row.completed, &row.faded_out) {
             (false, _) => "diverged".to_owned(),
@@ -148,7 +209,7 @@ fn write_cell(out: &mut impl Write, index: usize, rows: &[Row]) -> io::Result<()
         let (off, torque) = (number(row.max_deviation_um), number(row.peak_torque_nm));
         writeln!(out, "<td>{off}</td><td>{torque}</td><td class=\"note\">{}</td></tr>", escaped(&note))?;
     }
-    out.write_all(b"</tbody></table></div>\n")?;
+    write_end(out)?;
     writeln!(out, "<figure>{}</figure></section>", errors(rows).to_svg())
 }
 

@@ -51,6 +51,19 @@ impl Tuned {
     pub fn values(&self) -> Vec<f64> {
         self.values.iter().map(|(_, value)| *value).collect()
     }
+
+    /// Names and values in words, to four digits.
+    pub fn words(&self) -> String {
+        let values: Vec<String> =
+            self.values.iter().map(|(name, value)| format!("{name} {}", four_digits(*value))).collect();
+        values.join(", ")
+    }
+}
+
+/// Without an exponent where it can do without, and without zeros that say nothing.
+fn four_digits(value: f64) -> String {
+    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
+    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
 
 /// Tunes a controller on the machine.
@@ -187,6 +200,12 @@ mod tests {
             assert!((value - parameter.default).abs() < 1e-12, "{value}");
             assert_eq!([value_at(&parameter, 0.0), value_at(&parameter, 1.0)], parameter.range);
         }
+    }
+
+    #[test]
+    fn values_have_four_digits_and_no_more_zeros_than_they_need() {
+        let shown = [8.0, 117.735, 0.0301, 9.786e-1, 1.0754e-5, 1e-11, 0.0, -2e7].map(four_digits);
+        assert_eq!(shown, ["8", "117.7", "0.0301", "0.9786", "1.075e-5", "1e-11", "0", "-2e7"]);
     }
 
     #[test]
