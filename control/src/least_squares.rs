@@ -66,39 +66,65 @@ impl<const P: usize> LeastSquares<P> {
     }
 }
 
+/// Rows that are worked with together: an entry of a matrix is then read and written once for all of them.
+pub const BLOCK: usize = 4;
+
+/// Adds the products of factors and rows to as many entries as `sums` has: what solving costs, it costs here.
+#[inline]
+pub fn add_products(sums: &mut [f64], factors: [f64; BLOCK], rows: [&[f64]; BLOCK]) {
+    let [f0, f1, f2, f3] = factors;
+    let number = sums.len();
+    let [r0, r1, r2, r3] = rows.map(|row| &row[..number]);
+    for i in 0..number {
+        sums[i] += (f0 * r0[i] + f1 * r1[i]) + (f2 * r2[i] + f3 * r3[i]);
+    }
+}
+
 /// Solves A x = b in place for the lower half of a symmetric positive A, of which the first `n` rows count.
 #[inline]
 pub fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], n: usize) {
-    // Column by column, each taken from all rows below at once: sums along a row, which the processor does side by side.
-    let mut column = [0.0; P];
-    for k in 0..n {
-        // The diagonal holds the reciprocal: one division a column.
-        let pivot = 1.0 / libm::sqrt(a[k][k]);
-        a[k][k] = pivot;
-        for r in k + 1..n {
-            a[r][k] *= pivot;
-            column[r] = a[r][k];
+    // A block of columns, then what it takes off all rows below at once. b goes along as one more row, and is solved for
+    // half by it.
+    let mut columns = [[0.0; P]; BLOCK];
+    let mut first = 0;
+    while first < n {
+        let end = (first + BLOCK).min(n);
+        for k in first..end {
+            let (above, below) = a.split_at_mut(k + 1);
+            let row = &mut above[k];
+            let rest = |entries: &[f64; P]| (first..k).fold(entries[k], |sum, j| sum - entries[j] * row[j]);
+            // The diagonal holds the reciprocal: one division a column.
+            let pivot = 1.0 / libm::sqrt(rest(row));
+            for below in &mut below[..n - k - 1] {
+                below[k] = rest(below) * pivot;
+            }
+            b[k] = rest(b) * pivot;
+            row[k] = pivot;
         }
-        for r in k + 1..n {
-            let factor = column[r];
-            for (m, other) in a[r][k + 1..=r].iter_mut().zip(&column[k + 1..=r]) {
-                *m -= factor * other;
+        for r in end..n {
+            for (column, entry) in columns.iter_mut().zip(&a[r][first..end]) {
+                column[r] = *entry;
             }
         }
-    }
-    for r in 0..n {
-        let mut sum = b[r];
-        for k in 0..r {
-            sum -= a[r][k] * b[k];
+        // Only the last block is not whole, and there is nothing below it.
+        let take_off = |row: &mut [f64; P], last: usize| {
+            let factors = core::array::from_fn(|i| -row[first + i]);
+            add_products(&mut row[end..last], factors, columns.each_ref().map(|column| &column[end..last]));
+        };
+        for r in end..n {
+            take_off(&mut a[r], r + 1);
         }
-        b[r] = sum * a[r][r];
-    }
-    for r in (0..n).rev() {
-        let mut sum = b[r];
-        for k in r + 1..n {
-            sum -= a[k][r] * b[k];
+        if end < n {
+            take_off(b, n);
         }
-        b[r] = sum * a[r][r];
+        first = end;
+    }
+    for k in (0..n).rev() {
+        b[k] *= a[k][k];
+        let (known, solved) = b.split_at_mut(k);
+        for (entry, factor) in known.iter_mut().zip(&a[k]) {
+            *entry -= solved[0] * factor;
+        }
     }
 }
 
@@ -115,6 +141,24 @@ mod tests {
         }
         let found = sums.estimate(1e-9, &[0.0; 2]);
         assert!((found[0] - 2.0).abs() < 1e-9 && (found[1] + 0.5).abs() < 1e-9, "{found:?}");
+    }
+
+    #[test]
+    fn what_is_solved_gives_the_right_side_whatever_the_number_of_rows() {
+        const MOST: usize = 13;
+        for n in 1..=MOST {
+            let entry = |r: usize, c: usize| libm::cos((r * c) as f64) + if r == c { 13.0 } else { 0.0 };
+            let mut a: [[f64; MOST]; MOST] = core::array::from_fn(|r| core::array::from_fn(|c| entry(r, c)));
+            let right: [f64; MOST] = core::array::from_fn(|r| libm::sin(r as f64));
+            let mut x = right;
+            cholesky(&mut a, &mut x, n);
+            for (r, right) in right.into_iter().enumerate() {
+                let sum = (0..n).map(|c| entry(r, c) * x[c]).sum::<f64>();
+                // What does not count is left alone.
+                let expected = if r < n { sum } else { x[r] };
+                assert!((expected - right).abs() < 1e-13, "{n} {r}: {expected} {right}");
+            }
+        }
     }
 
     #[test]

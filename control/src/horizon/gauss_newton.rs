@@ -8,7 +8,7 @@
 
 use super::problem::Problem;
 use super::{MOST_UNKNOWNS, Rates, Solver};
-use crate::least_squares::cholesky;
+use crate::least_squares::{BLOCK, add_products, cholesky};
 use crate::vector::add_scaled;
 
 /// The normal equations of a tick. Kept between ticks so that none has to clear them: only the lower half is used, and of that
@@ -46,18 +46,24 @@ impl<const N: usize> Solver<N> for GaussNewton {
 }
 
 impl GaussNewton {
-    /// G'G of the errors across the path, row by row of G.
+    /// G'G of the errors across the path, a block of rows of G at a time.
     fn add_across<const N: usize>(&mut self, problem: &Problem<N>) {
-        let mut row = [0.0; MOST_UNKNOWNS];
-        for knot in 0..problem.knots {
-            for direction in 0..N - 1 {
-                problem.row(knot, direction, &mut row);
-                for r in 0..(knot + 1) * N {
-                    let factor = row[r];
-                    for (m, felt) in self.matrix[r][..=r].iter_mut().zip(&row[..=r]) {
-                        *m += factor * felt;
-                    }
+        let mut rows = [[0.0; MOST_UNKNOWNS]; BLOCK];
+        let number = problem.knots * (N - 1);
+        for first in (0..number).step_by(BLOCK) {
+            let mut last = 0;
+            for (i, row) in rows.iter_mut().enumerate() {
+                // Behind its entries a row of an earlier block has none either, and is zero.
+                if first + i < number {
+                    last = (first + i) / (N - 1);
+                    problem.row(last, (first + i) % (N - 1), row);
+                } else {
+                    row.fill(0.0);
                 }
+            }
+            for r in 0..(last + 1) * N {
+                let factors = rows.each_ref().map(|row| row[r]);
+                add_products(&mut self.matrix[r][..=r], factors, rows.each_ref().map(|row| &row[..=r]));
             }
         }
     }
