@@ -144,7 +144,7 @@ fn a_comparison_of_what_there_is_not() {
     folder.file("wrong.ngc", "G21 G90\nG1 X1\nM2\n");
     folder.file("two.ngc", "G21 G90 F600\nG1 X1\nG1 Y1\nM2\n");
     folder.file("beside.ngc", "G21 G90 F600\nT1 M6\nG41 G1 X4\nX8\nG40 X9 Y9\nM2\n");
-    folder.file("faster.toml", &TNV40.replace("kp_1_s = 50", "kp_1_s = 60"));
+    folder.file("faster.toml", TNV40.replace("kp_1_s = 50", "kp_1_s = 60"));
     let before = folder.content();
     for (arguments, says) in [
         (&["--only", "circel"][..], &["--only", "circel", "did you mean 'circle'?"][..]),
