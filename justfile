@@ -81,3 +81,22 @@ speed part="parts/pocket.ngc":
     wall_s = float(sys.argv[3]) - float(sys.argv[2])
     print(f"machining {machining_s:.2f} s, run {wall_s:.3f} s: {machining_s / wall_s:.0f} times faster, and it cuts twice")
     PYTHON
+
+# Reading a print program of so many lines, 28 bytes each (GNU time): time and resident memory, three times.
+reading lines="2200000":
+    #!/usr/bin/env bash
+    set -euo pipefail
+    cargo build --release --quiet
+    folder=$(mktemp --directory)
+    trap 'rm -r "$folder"' EXIT
+    awk -v lines="{{ lines }}" 'BEGIN {
+        srand(1); x = y = 100; z = 0.2; print "G21\nG90\nM82\nG28\nG92 E0"
+        for (i = 0; i < lines; i++) {
+            if (i % 5000 == 0) printf "G1 Z%.2f F600\n", z += 0.2
+            printf "G1 X%.2f Y%.2f E%.3f\n", x += rand() - 0.5, y += rand() - 0.5, e += 0.02
+        }
+    }' >"$folder/print.gcode"
+    stat --format '%s bytes' "$folder/print.gcode"
+    for command in check canon check canon check canon; do
+        command time --format "$command: %e s, %M KiB" target/release/feedwright --quiet "$command" "$folder/print.gcode" >/dev/null
+    done
