@@ -46,7 +46,7 @@ const DIFFERENCES: &[(&str, &str)] = &[
     ("ncfiles/useful-subroutines", "an inner arc of the tool's own radius leaves no path"),
     ("oracle_data/g5_2_outside_xy", "G5.2 is refused outside the XY plane, as G5 and G5.1 are by both"),
     ("g72-missing-iteration", "the passes of G72 that LinuxCNC's own expectation has are missing in the packaged 2.9"),
-    ("ncfiles/lathe_g70_71_demo", "pocketing cycles are not read"),
+    ("ncfiles/lathe_g70_71_demo", "G70 with cutter compensation is not read"),
     ("turning_incremental", "LinuxCNC 2.9 goes to the words of G71 as coordinates in G91, too, then to the start"),
     (
         "machinist/repeat_behind_do_continue",

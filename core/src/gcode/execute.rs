@@ -323,6 +323,9 @@ impl Interpreter {
         if code != 50 {
             self.last_bezier_end = None;
         }
+        if self.lathe.is_some() {
+            self.corner_word(block)?;
+        }
         match code {
             0 | 10 => self.straight(block, code),
             20 | 30 => self.arc(block, code == 30),

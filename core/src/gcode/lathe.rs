@@ -1,12 +1,16 @@
-//! Lathe cycles G70, G71, G72: a profile, written as a subroutine, is roughed out in straight passes or finished along itself.
+//! Lathe cycles G70 to G72.2: a profile, written as a subroutine, is roughed out in straight passes or finished along itself.
 //!
-//! The cycle's block calls the subroutine; its motions are kept here instead of handed out ([`Interpreter::keep`]). When it returns, `profile`
-//! brings them into the cycle's own coordinates and offsets them, and `roughing` and `finishing` make motions of them. What LinuxCNC 2.9 does
-//! was found by trying programs on it; see `core/tests/oracle_linuxcnc_lathe.rs`.
+//! The cycle's block calls the subroutine; its motions are kept here instead of handed out ([`Interpreter::keep`]). `words` are those that only
+//! a profile has. When it returns, `corners` and `profile` bring it into the cycle's own coordinates and offset it; `pockets` finds where it
+//! goes down, and `roughing` and `finishing` make motions of it. What LinuxCNC 2.9 does was found by trying programs on it; those that showed
+//! it are the `turning_*` of `core/tests/oracle_data`.
 
+mod corners;
 mod finishing;
+mod pockets;
 mod profile;
 mod roughing;
+mod words;
 
 use super::block::Block;
 use super::canon::{Canon, Motion, Plane, Shape};
@@ -15,6 +19,7 @@ use super::diagnostic::{Fault, Read, Short};
 use super::expression::INTEGER_WITHIN;
 use super::source::Mark;
 use super::state::{Interpreter, Position};
+use corners::Corner;
 
 /// Motions of a profile, and of all passes along it: they are kept in memory, and a drawing has far fewer.
 const MOST_MOTIONS: usize = 100_000;
@@ -47,6 +52,10 @@ pub(super) struct Lathe {
     feed: (f64, f64),
     work: Work,
     motions: Vec<Motion>,
+    /// Corner words, each with the number of the motion before the corner.
+    corners: Vec<(usize, Corner)>,
+    /// The corner word of the block under way.
+    corner: Option<Corner>,
     /// What does not belong in a profile, by its line.
     fault: Option<(u32, String)>,
 }
@@ -59,19 +68,11 @@ pub(super) struct Wanted {
 }
 
 impl Interpreter {
-    /// G70, G71, G72: goes to the start; the reader then calls the profile.
+    /// G70 to G72.2: goes to the start; the reader then calls the profile.
     pub(super) fn lathe_cycle(&mut self, block: &Block, code: u16) -> Read<()> {
         let name = spelled(code);
         let fault = |at, message: String| Fault::new("gcode::lathe", at, message);
         let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
-        if matches!(code, 711 | 712 | 721 | 722) {
-            return Err(Fault::new(
-                "gcode::unsupported",
-                at,
-                format!("the pocketing cycle {name} is not read by this version"),
-            )
-            .hint(format!("{} roughs out a profile without pockets", spelled(code - code % 10))));
-        }
         if self.lathe.is_some() {
             return Err(fault(at, format!("{name} stands inside the profile of another lathe cycle")));
         }
@@ -105,6 +106,8 @@ impl Interpreter {
             feed: (self.modal.feed, self.modal.feed_unit_mm),
             work,
             motions: Vec::new(),
+            corners: Vec::new(),
+            corner: None,
             fault: None,
         }));
         Ok(())
@@ -163,10 +166,9 @@ impl Interpreter {
         }
         let fault = match &step {
             Canon::Event(_) => Some("only motions belong in a profile".to_owned()),
-            Canon::Motion(motion) if !motion.others.is_none() => Some(
-                "the profile moves other axes than X and Z (corners by A and C, steps by U and W are not read)"
-                    .to_owned(),
-            ),
+            Canon::Motion(motion) if !motion.others.is_none() => {
+                Some("the profile moves other axes than X and Z".to_owned())
+            }
             Canon::Motion(motion) if motion.start_mm[1] != motion.end_mm[1] => {
                 Some("the profile moves Y; only X and Z form a profile".to_owned())
             }
@@ -180,7 +182,10 @@ impl Interpreter {
             (None, Canon::Motion(_)) if lathe.motions.len() >= MOST_MOTIONS => {
                 lathe.fault = Some((self.line, format!("the profile has more than {MOST_MOTIONS} motions")));
             }
-            (None, Canon::Motion(motion)) => lathe.motions.push(motion),
+            (None, Canon::Motion(motion)) => {
+                lathe.corners.extend(lathe.corner.take().map(|corner| (lathe.motions.len(), corner)));
+                lathe.motions.push(motion);
+            }
             (None, Canon::Event(_)) => {}
         }
     }
@@ -207,6 +212,13 @@ impl Interpreter {
             let message = format!("the profile of {} has fewer than two motions: nothing is cut", spelled(lathe.code));
             self.warnings.push(*refuse(message));
             return Ok(());
+        }
+        if lathe.corners.last().is_some_and(|corner| corner.0 + 1 == lathe.motions.len()) {
+            let message = format!(
+                "the corner behind the last motion of the profile of {} has no second side",
+                spelled(lathe.code)
+            );
+            self.warnings.push(*refuse(message));
         }
         let done = match lathe.work {
             Work::Finish { first_mm, last_mm, passes } => self.finish_profile(lathe, [first_mm, last_mm], passes),

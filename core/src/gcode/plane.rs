@@ -137,7 +137,7 @@ impl Curve {
 }
 
 /// Angle from start to end in the sense of `turn`, above 0 and up to a full turn.
-fn sweep(start: Point, end: Point, center: Point, turn: f64) -> f64 {
+pub(super) fn sweep(start: Point, end: Point, center: Point, turn: f64) -> f64 {
     let angle = sweep_within(start, end, center, turn);
     if angle < SLACK_RAD { std::f64::consts::TAU } else { angle }
 }

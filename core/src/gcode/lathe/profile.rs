@@ -7,14 +7,16 @@ use super::Lathe;
 use crate::gcode::canon::{Motion, Shape};
 use crate::gcode::codes::spelled;
 use crate::gcode::diagnostic::{Fault, Read};
-use crate::gcode::plane::{Curve, Point, add, cross, dot, left_of, length, minus, scaled, unit};
+use crate::gcode::plane::{Curve, Point, add, cross, dot, left_of, length, minus, scaled, sweep, unit};
 use crate::gcode::state::{Interpreter, Position};
 use crate::gcode::travel::Speed;
 
 /// Slack of comparisons, mm: far above rounding, far below anything cut.
 pub(super) const SLACK_MM: f64 = 1e-9;
+/// An arc that ends closer to its start, mm, would be read as a full turn (8e-9) or nearly.
+const SHORT_ARC_MM: f64 = 1e-7;
 /// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
-const SMOOTH_RAD: f64 = 1e-10;
+pub(super) const SMOOTH_RAD: f64 = 1e-10;
 
 /// The cycle's plane: which axes, and which way.
 #[derive(Debug, Clone, Copy)]
@@ -76,7 +78,7 @@ pub(super) const fn end_of(curve: &Curve) -> Point {
 }
 
 /// Direction at a point of the curve.
-fn direction(curve: &Curve, at: Point) -> Point {
+pub(super) fn direction(curve: &Curve, at: Point) -> Point {
     match *curve {
         Curve::Line { start, end } => unit(minus(end, start)),
         Curve::Arc { center, turn, .. } => scaled(left_of(unit(minus(at, center))), turn),
@@ -84,26 +86,24 @@ fn direction(curve: &Curve, at: Point) -> Point {
 }
 
 impl Profile {
-    /// The profile of a cycle; refuses one that goes back or, behind its entry, deeper.
+    /// The profile of a cycle; refuses one that goes back along the passes.
     pub(super) fn new(lathe: &Lathe) -> Read<Self> {
-        let axes = if lathe.code == 720 { [0, 2] } else { [2, 0] };
+        let axes = if lathe.code >= 720 { [0, 2] } else { [2, 0] };
         let along = |motion: &Motion, axis: usize| motion.end_mm[axes[axis]] - motion.start_mm[axes[axis]];
-        let sign_of = |axis: usize, skip: usize| {
-            let first =
-                lathe.motions.iter().skip(skip).map(|motion| along(motion, axis)).find(|way| way.abs() > SLACK_MM);
-            first.map(f64::signum)
-        };
-        // The profile comes back up to the surface; one that does not is left by its last point only, opposite to its entry.
-        let rest = sign_of(1, 1);
-        let entry_way = along(&lathe.motions[0], 1);
-        let up = rest.unwrap_or(if entry_way > 0.0 { -1.0 } else { 1.0 });
-        let side = Side { axes, signs: [sign_of(0, 1).unwrap_or(1.0), up] };
+        let clear = |way: f64| (way.abs() > SLACK_MM).then(|| way.signum());
+        let ahead = lathe.motions.iter().skip(1).find_map(|motion| clear(along(motion, 0)));
+        // The stock is where the profile ends, seen from its entry; where it ends as deep as it begins, the cycle starts in the stock.
+        let entry_mm = lathe.motions.first().map_or(0.0, |motion| motion.end_mm[axes[1]]);
+        let last_mm = lathe.motions.last().map_or(0.0, |motion| motion.end_mm[axes[1]]);
+        let up = clear(last_mm - entry_mm).or_else(|| clear(lathe.start[axes[1]] - entry_mm)).unwrap_or(1.0);
+        let side = Side { axes, signs: [ahead.unwrap_or(1.0), up] };
         let curves: Vec<Curve> = lathe.motions.iter().map(|motion| side.curve(motion)).collect();
         for (curve, motion) in curves.iter().zip(&lathe.motions).skip(1) {
-            if let Some(axis) = (0..2).find(|&axis| goes_back(curve, axis)) {
-                return Err(lathe.not_monotonic(motion.line, side.axes[axis]));
+            if goes_back(curve) {
+                return Err(lathe.turns_back(motion.line, side.axes[0]));
             }
         }
+        let curves = lathe.cut_corners(curves)?;
         let [first, rest @ ..] = curves.as_slice() else {
             return Ok(Self { side, start: [0.0; 2], curves });
         };
@@ -148,7 +148,7 @@ impl Profile {
             before = Some(curve);
         }
         // A curve shortened past its own start runs backwards.
-        if curves.iter().any(|curve| goes_back(curve, 0) || goes_back(curve, 1)) {
+        if curves.iter().any(goes_back) {
             return Err(refuse());
         }
         curves.retain(|curve| length(minus(end_of(curve), start_of(curve))) > SLACK_MM);
@@ -164,24 +164,24 @@ impl Profile {
     }
 }
 
-/// Whether a curve goes against the growing coordinate anywhere.
-fn goes_back(curve: &Curve, axis: usize) -> bool {
-    if end_of(curve)[axis] < start_of(curve)[axis] - SLACK_MM {
+/// Whether a curve goes against the passes anywhere.
+fn goes_back(curve: &Curve) -> bool {
+    if end_of(curve)[0] < start_of(curve)[0] - SLACK_MM {
         return true;
     }
     match *curve {
         Curve::Line { .. } => false,
-        // A monotonic arc stays within a quarter; the rounding of ends and centres turns the tangent by very little.
-        Curve::Arc { start, end, .. } => {
-            let radius_slack = 1e-6;
-            [start, end].iter().any(|&at| direction(curve, at)[axis] < -radius_slack)
-                || dot(direction(curve, start), direction(curve, end)) < -radius_slack
+        // An arc that does not lies on one half of its circle; the rounding of ends and centres turns the tangent by very little.
+        Curve::Arc { start, end, center, turn } => {
+            let slack = 1e-6;
+            [start, end].iter().any(|&at| direction(curve, at)[0] < -slack)
+                || sweep(start, end, center, turn) > std::f64::consts::PI + slack
         }
     }
 }
 
 /// The curve moved to its left; an arc that would vanish does not exist.
-fn shifted(curve: &Curve, by: f64) -> Option<Curve> {
+pub(super) fn shifted(curve: &Curve, by: f64) -> Option<Curve> {
     Some(match *curve {
         Curve::Line { start, end } => {
             let shift = scaled(left_of(unit(minus(end, start))), by);
@@ -198,13 +198,13 @@ fn shifted(curve: &Curve, by: f64) -> Option<Curve> {
     })
 }
 
-const fn set_start(curve: &mut Curve, point: Point) {
+pub(super) const fn set_start(curve: &mut Curve, point: Point) {
     match curve {
         Curve::Line { start, .. } | Curve::Arc { start, .. } => *start = point,
     }
 }
 
-const fn set_end(curve: &mut Curve, point: Point) {
+pub(super) const fn set_end(curve: &mut Curve, point: Point) {
     match curve {
         Curve::Line { end, .. } | Curve::Arc { end, .. } => *end = point,
     }
@@ -217,10 +217,10 @@ impl Lathe {
         Fault::new("gcode::lathe", self.block.at(b'q'), message)
     }
 
-    fn not_monotonic(&self, line: u32, axis: usize) -> Box<Fault> {
+    fn turns_back(&self, line: u32, axis: usize) -> Box<Fault> {
         let name = ["X", "Y", "Z"][axis];
-        self.refuse(line, &format!("{name} turns back; this version reads profiles without undercuts and pockets"))
-            .hint("the first motion goes to the depth of the profile; behind it neither X nor Z may turn back")
+        self.refuse(line, &format!("{name} turns back: an undercut cannot be reached by passes along {name}"))
+            .hint(format!("behind the first motion of the profile, {name} goes one way; a pocket has walls that do"))
     }
 }
 
@@ -233,20 +233,22 @@ impl Interpreter {
 
     /// Cuts along curves.
     pub(super) fn lathe_cut(&mut self, lathe: &Lathe, profile: &Profile) -> Read<()> {
-        let side = profile.side;
-        for curve in &profile.curves {
-            match *curve {
-                Curve::Line { end, .. } => self.lathe_line(lathe, side, end, Speed::Programmed)?,
-                Curve::Arc { end, center, turn, .. } => {
-                    let middle = self.frame.to_program(&side.position(center, &lathe.start));
-                    let target = self.frame.to_program(&side.position(end, &lathe.start));
-                    let turns = if side.turns(turn) > 0.0 { 1 } else { -1 };
-                    let round = crate::gcode::arc::Round { center: [middle[2], middle[0]], turns };
-                    self.arc_to(&lathe.block, &target, round, 0.0)?;
-                }
+        profile.curves.iter().try_for_each(|curve| self.lathe_curve(lathe, profile.side, curve))
+    }
+
+    /// Cuts along a curve.
+    pub(super) fn lathe_curve(&mut self, lathe: &Lathe, side: Side, curve: &Curve) -> Read<()> {
+        match *curve {
+            // A piece of an arc too short to be told from a full circle is as straight as it is short.
+            Curve::Arc { start, end, center, turn } if length(minus(end, start)) > SHORT_ARC_MM => {
+                let middle = self.frame.to_program(&side.position(center, &lathe.start));
+                let target = self.frame.to_program(&side.position(end, &lathe.start));
+                let turns = if side.turns(turn) > 0.0 { 1 } else { -1 };
+                let round = crate::gcode::arc::Round { center: [middle[2], middle[0]], turns };
+                self.arc_to(&lathe.block, &target, round, 0.0)
             }
+            Curve::Line { end, .. } | Curve::Arc { end, .. } => self.lathe_line(lathe, side, end, Speed::Programmed),
         }
-        Ok(())
     }
 
     /// Whether the entry of the profile is a rapid: into the cut it is, along the surface it is not.
