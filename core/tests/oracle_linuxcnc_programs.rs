@@ -48,6 +48,7 @@ const DIFFERENCES: &[(&str, &str)] = &[
     ("g72-missing-iteration", "the passes of G72 that LinuxCNC's own expectation has are missing in the packaged 2.9"),
     ("ncfiles/lathe_g70_71_demo", "G70 with cutter compensation is not read"),
     ("turning_incremental", "LinuxCNC 2.9 goes to the words of G71 as coordinates in G91, too, then to the start"),
+    ("turning_upward_entry", "on which side the stock is where a profile ends on the other side than its cycle starts"),
     (
         "machinist/repeat_behind_do_continue",
         "LinuxCNC 2.9 carries out a repeat twice as often behind a do that was continued",

@@ -1,7 +1,8 @@
 //! Corners of a profile: an arc that touches both sides (A), or the chord between the points where it would (C).
 
 use super::Lathe;
-use super::profile::{SLACK_MM, SMOOTH_RAD, direction, end_of, set_end, set_start, shifted, start_of};
+use super::offset::{SMOOTH_RAD, shifted};
+use super::profile::{SLACK_MM, direction, end_of, set_end, set_start, start_of};
 use crate::gcode::diagnostic::{Fault, Read};
 use crate::gcode::plane::{Curve, Point, add, cross, dot, length, minus, scaled, unit};
 

@@ -1,13 +1,13 @@
-//! The profile in the cycle's own plane, and the curve at a distance from it.
+//! The profile in the cycle's own plane.
 //!
 //! Coordinates: the first grows along the passes, the second grows from the finished part to the stock's surface. A profile runs towards a
-//! growing first coordinate, so the stock lies on its left; the offset curve lies there, with arcs about its outer corners.
+//! growing first coordinate, so the stock lies on its left.
 
 use super::Lathe;
 use crate::gcode::canon::{Motion, Shape};
 use crate::gcode::codes::spelled;
 use crate::gcode::diagnostic::{Fault, Read};
-use crate::gcode::plane::{Curve, Point, add, cross, dot, left_of, length, minus, scaled, sweep, unit};
+use crate::gcode::plane::{Curve, Point, left_of, length, minus, scaled, sweep, unit};
 use crate::gcode::state::{Interpreter, Position};
 use crate::gcode::travel::Speed;
 
@@ -15,9 +15,6 @@ use crate::gcode::travel::Speed;
 pub(super) const SLACK_MM: f64 = 1e-9;
 /// An arc that ends closer to its start, mm, would be read as a full turn (8e-9) or nearly.
 const SHORT_ARC_MM: f64 = 1e-7;
-/// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
-pub(super) const SMOOTH_RAD: f64 = 1e-10;
-
 /// The cycle's plane: which axes, and which way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Side {
@@ -90,13 +87,12 @@ impl Profile {
     pub(super) fn new(lathe: &Lathe) -> Read<Self> {
         let axes = if lathe.code >= 720 { [0, 2] } else { [2, 0] };
         let along = |motion: &Motion, axis: usize| motion.end_mm[axes[axis]] - motion.start_mm[axes[axis]];
-        let clear = |way: f64| (way.abs() > SLACK_MM).then(|| way.signum());
         let ahead = lathe.motions.iter().skip(1).find_map(|motion| clear(along(motion, 0)));
-        // The stock is where the profile ends, seen from its entry; where it ends as deep as it begins, the cycle starts in the stock.
-        let entry_mm = lathe.motions.first().map_or(0.0, |motion| motion.end_mm[axes[1]]);
-        let last_mm = lathe.motions.last().map_or(0.0, |motion| motion.end_mm[axes[1]]);
-        let up = clear(last_mm - entry_mm).or_else(|| clear(lathe.start[axes[1]] - entry_mm)).unwrap_or(1.0);
-        let side = Side { axes, signs: [ahead.unwrap_or(1.0), up] };
+        let start_mm = axes.map(|axis| lathe.start[axis]);
+        let entry_mm = lathe.motions.first().map_or(start_mm, |motion| axes.map(|axis| motion.end_mm[axis]));
+        let last_mm = lathe.motions.last().map_or(entry_mm[1], |motion| motion.end_mm[axes[1]]);
+        let ahead = ahead.or_else(|| clear(entry_mm[0] - start_mm[0])).unwrap_or(1.0);
+        let side = Side { axes, signs: [ahead, lathe.stock_side([start_mm[1], entry_mm[1], last_mm], axes[1])?] };
         let curves: Vec<Curve> = lathe.motions.iter().map(|motion| side.curve(motion)).collect();
         for (curve, motion) in curves.iter().zip(&lathe.motions).skip(1) {
             if goes_back(curve) {
@@ -118,54 +114,19 @@ impl Profile {
         Ok(Self { side, start, curves: rest.to_vec() })
     }
 
-    /// The profile at `distance_mm` from itself, on the side of the stock.
-    pub(super) fn offset(&self, lathe: &Lathe, distance_mm: f64) -> Read<Self> {
-        if distance_mm <= SLACK_MM {
-            return Ok(self.clone());
-        }
-        let refuse = || {
-            let message = format!("a detail of the profile is smaller than the distance of {distance_mm:.4} mm to it");
-            lathe.refuse(lathe.line, &message).hint("make D (and E) smaller")
-        };
-        let mut curves: Vec<Curve> = Vec::with_capacity(2 * self.curves.len());
-        let mut before: Option<&Curve> = None;
-        for curve in &self.curves {
-            let mut moved = shifted(curve, distance_mm).ok_or_else(refuse)?;
-            if let (Some(old), Some(last)) = (before, curves.last_mut()) {
-                let corner = start_of(curve);
-                let (from, to) = (direction(old, corner), direction(curve, corner));
-                let bend = cross(from, to).atan2(dot(from, to));
-                if bend > SMOOTH_RAD {
-                    let point = last.meet(&moved, corner).ok_or_else(refuse)?;
-                    set_end(last, point);
-                    set_start(&mut moved, point);
-                } else if bend < -SMOOTH_RAD {
-                    let (start, end) = (end_of(last), start_of(&moved));
-                    curves.push(Curve::Arc { start, end, center: corner, turn: -1.0 });
-                }
-            }
-            curves.push(moved);
-            before = Some(curve);
-        }
-        // A curve shortened past its own start runs backwards.
-        if curves.iter().any(goes_back) {
-            return Err(refuse());
-        }
-        curves.retain(|curve| length(minus(end_of(curve), start_of(curve))) > SLACK_MM);
-        if curves.is_empty() {
-            return Err(refuse());
-        }
-        Ok(Self { side: self.side, start: self.start, curves })
-    }
-
     /// Where the entry ends.
     pub(super) fn entry(&self) -> Point {
         self.curves.first().map_or(self.start, start_of)
     }
 }
 
+/// Which way a distance goes, if it is one.
+fn clear(way: f64) -> Option<f64> {
+    (way.abs() > SLACK_MM).then(|| way.signum())
+}
+
 /// Whether a curve goes against the passes anywhere.
-fn goes_back(curve: &Curve) -> bool {
+pub(super) fn goes_back(curve: &Curve) -> bool {
     if end_of(curve)[0] < start_of(curve)[0] - SLACK_MM {
         return true;
     }
@@ -178,24 +139,6 @@ fn goes_back(curve: &Curve) -> bool {
                 || sweep(start, end, center, turn) > std::f64::consts::PI + slack
         }
     }
-}
-
-/// The curve moved to its left; an arc that would vanish does not exist.
-pub(super) fn shifted(curve: &Curve, by: f64) -> Option<Curve> {
-    Some(match *curve {
-        Curve::Line { start, end } => {
-            let shift = scaled(left_of(unit(minus(end, start))), by);
-            Curve::Line { start: add(start, shift), end: add(end, shift) }
-        }
-        Curve::Arc { start, end, center, turn } => {
-            let out = |point: Point| {
-                let ray = minus(point, center);
-                let radius = length(ray);
-                (radius - turn * by > SLACK_MM).then(|| add(center, scaled(ray, (radius - turn * by) / radius)))
-            };
-            Curve::Arc { start: out(start)?, end: out(end)?, center, turn }
-        }
-    })
 }
 
 pub(super) const fn set_start(curve: &mut Curve, point: Point) {
@@ -215,6 +158,24 @@ impl Lathe {
         let place = if line == self.line { String::new() } else { format!("line {line}: ") };
         let message = format!("the profile of {} cannot be cut: {place}{message}", spelled(self.code));
         Fault::new("gcode::lathe", self.block.at(b'q'), message)
+    }
+
+    /// Whether the stock is above (1) or below (-1) the profile's entry: where the cycle starts, or, if that is as deep as the entry, where the
+    /// profile ends.
+    fn stock_side(&self, [start_mm, entry_mm, last_mm]: [f64; 3], axis: usize) -> Read<f64> {
+        let [to_start, to_last] = [start_mm, last_mm].map(|mm| clear(mm - entry_mm));
+        // Finishing needs the side for its distances only, and LinuxCNC takes that of the start.
+        if self.code != 700 && to_start.zip(to_last).is_some_and(|(start, last)| start != last) {
+            let name = ["X", "Y", "Z"][axis];
+            let message = format!(
+                "it ends on the other side of its beginning than the cycle starts ({name} of the start {start_mm:.4} mm, \
+                 of the beginning {entry_mm:.4} mm, of the end {last_mm:.4} mm): on which side is the stock?"
+            );
+            return Err(self
+                .refuse(self.line, &message)
+                .hint("let the profile end on the side where the cycle starts"));
+        }
+        Ok(to_start.or(to_last).unwrap_or(1.0))
     }
 
     fn turns_back(&self, line: u32, axis: usize) -> Box<Fault> {

@@ -1,0 +1,117 @@
+//! The curve at a distance from a profile, on the side of the stock.
+//!
+//! The profile never goes back along the passes, so all below it is part, and all within the distance of the part lies below the uppermost of
+//! these: its curves moved to their left, and circles about its outer corners. The pieces come one by one; one that begins below those before
+//! it is left out up to where it comes through them, and what it covers goes.
+
+use super::Lathe;
+use super::profile::{Profile, SLACK_MM, direction, end_of, goes_back, set_end, set_start, start_of};
+use crate::gcode::diagnostic::Read;
+use crate::gcode::plane::{Curve, Point, add, cross, dot, left_of, length, minus, scaled, unit};
+
+/// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
+pub(super) const SMOOTH_RAD: f64 = 1e-10;
+
+/// Comparisons of pieces with those before them: a distance much larger than the details of a long profile makes their number grow with its square.
+const MOST_COMPARISONS: usize = 10_000_000;
+
+impl Profile {
+    /// The profile at `distance_mm` from itself.
+    pub(super) fn offset(&self, lathe: &Lathe, distance_mm: f64) -> Read<Self> {
+        if distance_mm <= SLACK_MM {
+            return Ok(self.clone());
+        }
+        let mut above = Above { curves: Vec::with_capacity(2 * self.curves.len()), is_below: false, comparisons: 0 };
+        let mut before: Option<&Curve> = None;
+        for curve in &self.curves {
+            let corner = start_of(curve);
+            let to = direction(curve, corner);
+            if let Some(from) = before.map(|before| direction(before, corner))
+                && cross(from, to).atan2(dot(from, to)) < -SMOOTH_RAD
+            {
+                let [start, end] = [from, to].map(|along| add(corner, scaled(left_of(along), distance_mm)));
+                above.push(Curve::Arc { start, end, center: corner, turn: -1.0 });
+            }
+            // An inner arc that would vanish lies below what is beside it.
+            if let Some(moved) = shifted(curve, distance_mm) {
+                above.push(moved);
+            }
+            before = Some(curve);
+        }
+        let is_found = !above.is_below && above.comparisons <= MOST_COMPARISONS && !above.curves.iter().any(goes_back);
+        above.curves.retain(|curve| length(minus(end_of(curve), start_of(curve))) > SLACK_MM);
+        if !is_found || above.curves.is_empty() {
+            let message = format!("the distance of {distance_mm:.4} mm to it is too large for its details");
+            return Err(lathe.refuse(lathe.line, &message).hint("make D (and E) smaller"));
+        }
+        Ok(Self { side: self.side, start: self.start, curves: above.curves })
+    }
+}
+
+/// The uppermost pieces so far.
+struct Above {
+    curves: Vec<Curve>,
+    /// The last piece ended below them.
+    is_below: bool,
+    comparisons: usize,
+}
+
+impl Above {
+    fn push(&mut self, mut piece: Curve) {
+        let Some(last) = self.curves.last() else {
+            self.curves.push(piece);
+            return;
+        };
+        if !self.is_below && length(minus(start_of(&piece), end_of(last))) <= SLACK_MM {
+            self.curves.push(piece);
+            return;
+        }
+        self.is_below = true;
+        let Some((number, point)) = self.comes_through(&piece) else { return };
+        self.is_below = false;
+        self.curves.truncate(number + 1);
+        if let Some(last) = self.curves.last_mut() {
+            set_end(last, point);
+        }
+        set_start(&mut piece, point);
+        self.curves.push(piece);
+    }
+
+    /// Where a piece that begins below the others comes through them first, and through which.
+    fn comes_through(&mut self, piece: &Curve) -> Option<(usize, Point)> {
+        let mut found: Option<(usize, Point, f64)> = None;
+        for (number, curve) in self.curves.iter().enumerate().rev() {
+            self.comparisons += 1;
+            if self.comparisons > MOST_COMPARISONS || end_of(curve)[0] < start_of(piece)[0] - SLACK_MM {
+                break;
+            }
+            // What is left of a curve may be a point, which has no direction.
+            let has_length = length(minus(end_of(curve), start_of(curve))) > SLACK_MM;
+            if let Some(point) = has_length.then(|| curve.first_crossing(piece)).flatten() {
+                let way = piece.way_to(point);
+                if found.is_none_or(|(_, _, first)| way < first) {
+                    found = Some((number, point, way));
+                }
+            }
+        }
+        found.map(|(number, point, _)| (number, point))
+    }
+}
+
+/// The curve moved to its left; an arc that would vanish does not exist.
+pub(super) fn shifted(curve: &Curve, by: f64) -> Option<Curve> {
+    Some(match *curve {
+        Curve::Line { start, end } => {
+            let shift = scaled(left_of(unit(minus(end, start))), by);
+            Curve::Line { start: add(start, shift), end: add(end, shift) }
+        }
+        Curve::Arc { start, end, center, turn } => {
+            let out = |point: Point| {
+                let ray = minus(point, center);
+                let radius = length(ray);
+                (radius - turn * by > SLACK_MM).then(|| add(center, scaled(ray, (radius - turn * by) / radius)))
+            };
+            Curve::Arc { start: out(start)?, end: out(end)?, center, turn }
+        }
+    })
+}
