@@ -12,6 +12,12 @@ use crate::gcode::plane::{Curve, Point, add, cross, dot, left_of, length, minus,
 /// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
 pub(super) const SMOOTH_RAD: f64 = 1e-10;
 
+/// As LinuxCNC (measured), lines whose ends at the distance lie closer along the passes, mm, meet in a corner instead of an arc.
+const SHARP_MM: f64 = 0.01;
+/// That corner is 3 % farther away than the arc at a bend of this, rad; one that bends more is rounded in any case.
+const SHARP_RAD: f64 = 0.5;
+/// Where what is beside it covers the first or the last line, it is met within this many distances before or behind that line.
+const GO_ON: f64 = 4.0;
 /// Comparisons of pieces with those before them: a distance much larger than the details of a long profile makes their number grow with its square.
 const MOST_COMPARISONS: usize = 10_000_000;
 
@@ -22,21 +28,28 @@ impl Profile {
             return Ok(self.clone());
         }
         let mut above = Above { curves: Vec::with_capacity(2 * self.curves.len()), is_below: false, comparisons: 0 };
+        let reach_mm = GO_ON * distance_mm;
         let mut before: Option<&Curve> = None;
         for curve in &self.curves {
+            // An inner arc that would vanish lies below what is beside it.
+            let mut moved = shifted(curve, distance_mm);
             let corner = start_of(curve);
             let to = direction(curve, corner);
-            if let Some(from) = before.map(|before| direction(before, corner))
-                && cross(from, to).atan2(dot(from, to)) < -SMOOTH_RAD
-            {
+            if let Some(from) = before.map(|before| direction(before, corner)) {
+                let bend = cross(from, to).atan2(dot(from, to));
                 let [start, end] = [from, to].map(|along| add(corner, scaled(left_of(along), distance_mm)));
-                above.push(Curve::Arc { start, end, center: corner, turn: -1.0 });
+                let is_sharp = -bend < SHARP_RAD && end[0] - start[0] < SHARP_MM;
+                if bend < -SMOOTH_RAD && !(is_sharp && above.meet_sharply(moved.as_mut(), corner)) {
+                    above.push(Curve::Arc { start, end, center: corner, turn: -1.0 }, reach_mm);
+                }
             }
-            // An inner arc that would vanish lies below what is beside it.
-            if let Some(moved) = shifted(curve, distance_mm) {
-                above.push(moved);
+            if let Some(moved) = moved {
+                above.push(moved, reach_mm);
             }
             before = Some(curve);
+        }
+        if let Some(last) = self.curves.last().and_then(|last| shifted(last, distance_mm)) {
+            above.end_on(&last, reach_mm);
         }
         let is_found = !above.is_below && above.comparisons <= MOST_COMPARISONS && !above.curves.iter().any(goes_back);
         above.curves.retain(|curve| length(minus(end_of(curve), start_of(curve))) > SLACK_MM);
@@ -57,27 +70,61 @@ struct Above {
 }
 
 impl Above {
-    fn push(&mut self, mut piece: Curve) {
-        let Some(last) = self.curves.last() else {
-            self.curves.push(piece);
-            return;
-        };
-        if !self.is_below && length(minus(start_of(&piece), end_of(last))) <= SLACK_MM {
-            self.curves.push(piece);
-            return;
+    fn push(&mut self, mut piece: Curve, reach_mm: f64) {
+        let end = self.curves.last().map(end_of);
+        let goes_on = end.is_none_or(|end| !self.is_below && length(minus(start_of(&piece), end)) <= SLACK_MM);
+        if !goes_on {
+            let through = self.comes_through(&piece).or_else(|| self.comes_before(&piece, reach_mm));
+            self.is_below = through.is_none();
+            let Some((kept, point)) = through else { return };
+            self.shorten(kept, point);
+            set_start(&mut piece, point);
         }
-        self.is_below = true;
-        let Some((number, point)) = self.comes_through(&piece) else { return };
-        self.is_below = false;
-        self.curves.truncate(number + 1);
-        if let Some(last) = self.curves.last_mut() {
-            set_end(last, point);
-        }
-        set_start(&mut piece, point);
         self.curves.push(piece);
     }
 
-    /// Where a piece that begins below the others comes through them first, and through which.
+    /// Keeps so many pieces, the last of them up to `point`.
+    fn shorten(&mut self, kept: usize, point: Point) {
+        self.curves.truncate(kept);
+        if let Some(last) = self.curves.last_mut() {
+            set_end(last, point);
+        }
+    }
+
+    /// Lets two lines meet at an outer corner, if both are lines.
+    fn meet_sharply(&mut self, next: Option<&mut Curve>, corner: Point) -> bool {
+        let (Some(last @ Curve::Line { .. }), Some(next @ Curve::Line { .. })) = (self.curves.last_mut(), next) else {
+            return false;
+        };
+        let point = if self.is_below { None } else { last.meet(next, corner) };
+        if let Some(point) = point {
+            set_end(last, point);
+            set_start(next, point);
+        }
+        point.is_some()
+    }
+
+    /// Ends what is above where the last line, were it longer, would come through.
+    fn end_on(&mut self, last: &Curve, reach_mm: f64) {
+        if self.is_below
+            && let Curve::Line { start, end } = *last
+        {
+            let longer = Curve::Line { start, end: add(end, scaled(unit(minus(end, start)), reach_mm)) };
+            if let Some((kept, point)) = self.comes_through(&longer) {
+                self.shorten(kept, point);
+                self.is_below = false;
+            }
+        }
+    }
+
+    /// Where a piece meets the first line, were it to begin earlier; nothing of what is there is kept.
+    fn comes_before(&self, piece: &Curve, reach_mm: f64) -> Option<(usize, Point)> {
+        let Some(&Curve::Line { start, end }) = self.curves.first() else { return None };
+        let earlier = Curve::Line { start: add(start, scaled(unit(minus(start, end)), reach_mm)), end: start };
+        earlier.first_crossing(piece).map(|point| (0, point))
+    }
+
+    /// Where a piece that begins below the others comes through them first, and how many of them stay.
     fn comes_through(&mut self, piece: &Curve) -> Option<(usize, Point)> {
         let mut found: Option<(usize, Point, f64)> = None;
         for (number, curve) in self.curves.iter().enumerate().rev() {
@@ -94,7 +141,7 @@ impl Above {
                 }
             }
         }
-        found.map(|(number, point, _)| (number, point))
+        found.map(|(number, point, _)| (number + 1, point))
     }
 }
 

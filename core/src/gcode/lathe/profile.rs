@@ -87,12 +87,15 @@ impl Profile {
     pub(super) fn new(lathe: &Lathe) -> Read<Self> {
         let axes = if lathe.code >= 720 { [0, 2] } else { [2, 0] };
         let along = |motion: &Motion, axis: usize| motion.end_mm[axes[axis]] - motion.start_mm[axes[axis]];
+        // As LinuxCNC: towards the chuck or the axis, where the profile itself does not say.
         let ahead = lathe.motions.iter().skip(1).find_map(|motion| clear(along(motion, 0)));
         let start_mm = axes.map(|axis| lathe.start[axis]);
         let entry_mm = lathe.motions.first().map_or(start_mm, |motion| axes.map(|axis| motion.end_mm[axis]));
         let last_mm = lathe.motions.last().map_or(entry_mm[1], |motion| motion.end_mm[axes[1]]);
-        let ahead = ahead.or_else(|| clear(entry_mm[0] - start_mm[0])).unwrap_or(1.0);
-        let side = Side { axes, signs: [ahead, lathe.stock_side([start_mm[1], entry_mm[1], last_mm], axes[1])?] };
+        let side = Side {
+            axes,
+            signs: [ahead.unwrap_or(-1.0), lathe.stock_side([start_mm[1], entry_mm[1], last_mm], axes[1])?],
+        };
         let curves: Vec<Curve> = lathe.motions.iter().map(|motion| side.curve(motion)).collect();
         for (curve, motion) in curves.iter().zip(&lathe.motions).skip(1) {
             if goes_back(curve) {
