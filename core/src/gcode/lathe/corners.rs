@@ -26,49 +26,43 @@ impl Lathe {
             let corner = corners.next_if(|corner| corner.0 + 1 == number);
             if let (Some((_, corner)), Some(before)) = (corner, cut.last_mut()) {
                 let line = self.motions[number - 1].line;
-                let piece = corner.cut(before, &mut curve).map_err(|why| self.no_corner(line, corner, why))?;
-                cut.push(piece);
+                let piece = corner.cut(before, &mut curve).ok_or_else(|| self.too_large(line, corner))?;
+                cut.extend(piece);
             }
             cut.push(curve);
         }
         Ok(cut)
     }
 
-    fn no_corner(&self, line: u32, corner: &Corner, why: &str) -> Box<Fault> {
+    fn too_large(&self, line: u32, corner: &Corner) -> Box<Fault> {
         let letter = if corner.is_round { 'A' } else { 'C' };
-        let message = format!("the corner {letter} of {:.4} mm {why}", corner.radius_mm);
+        let message = format!("the corner {letter} of {:.4} mm is larger than the motions beside it", corner.radius_mm);
         self.refuse(line, &message).hint("a corner needs two sides that are longer than what it takes of them")
     }
 }
 
 impl Corner {
-    /// Shortens both sides of the corner and returns what comes between them.
-    fn cut(&self, before: &mut Curve, behind: &mut Curve) -> Result<Curve, &'static str> {
+    /// Shortens both sides of the corner and returns what comes between them: nothing where the profile goes straight on.
+    fn cut(&self, before: &mut Curve, behind: &mut Curve) -> Option<Option<Curve>> {
         let corner = start_of(behind);
         let (from, to) = (direction(before, corner), direction(behind, corner));
         let bend = cross(from, to).atan2(dot(from, to));
         if bend.abs() <= SMOOTH_RAD {
-            return Err("has no corner: the profile goes straight on");
+            return Some(None);
         }
         let turn = bend.signum();
         let inside = |curve: &Curve| shifted(curve, turn * self.radius_mm);
-        let too_large = "is larger than the motions beside it";
-        let center = match (inside(before), inside(behind)) {
-            (Some(before), Some(behind)) => before.meet(&behind, corner),
-            _ => None,
-        };
-        let center = center.ok_or(too_large)?;
+        let center = inside(before)?.meet(&inside(behind)?, corner)?;
         let (start, end) = (foot(before, center), foot(behind, center));
         if !before.ends_at(start) || !behind.begins_at(end) {
-            return Err(too_large);
+            return None;
         }
         set_end(before, start);
         set_start(behind, end);
-        let left = [&*before, &*behind].map(|curve| length(minus(end_of(curve), start_of(curve))));
-        if left.iter().any(|&left_mm| left_mm <= SLACK_MM) {
-            return Err(too_large);
+        if [&*before, &*behind].iter().any(|curve| length(minus(end_of(curve), start_of(curve))) <= SLACK_MM) {
+            return None;
         }
-        Ok(if self.is_round { Curve::Arc { start, end, center, turn } } else { Curve::Line { start, end } })
+        Some(Some(if self.is_round { Curve::Arc { start, end, center, turn } } else { Curve::Line { start, end } }))
     }
 }
 

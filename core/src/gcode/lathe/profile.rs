@@ -85,7 +85,15 @@ pub(super) fn direction(curve: &Curve, at: Point) -> Point {
 impl Profile {
     /// The profile of a cycle; refuses one that goes back along the passes.
     pub(super) fn new(lathe: &Lathe) -> Read<Self> {
-        let axes = if lathe.code >= 720 { [0, 2] } else { [2, 0] };
+        match lathe.code {
+            // Finishing has no passes: the profile is one of G71 or of G72.
+            700 => Self::along(lathe, [2, 0]).or_else(|fault| Self::along(lathe, [0, 2]).map_err(|_| fault)),
+            720.. => Self::along(lathe, [0, 2]),
+            _ => Self::along(lathe, [2, 0]),
+        }
+    }
+
+    fn along(lathe: &Lathe, axes: [usize; 2]) -> Read<Self> {
         let along = |motion: &Motion, axis: usize| motion.end_mm[axes[axis]] - motion.start_mm[axes[axis]];
         // As LinuxCNC: towards the chuck or the axis, where the profile itself does not say.
         let ahead = lathe.motions.iter().skip(1).find_map(|motion| clear(along(motion, 0)));
