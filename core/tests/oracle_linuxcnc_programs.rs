@@ -48,6 +48,18 @@ const DIFFERENCES: &[(&str, &str)] = &[
     ("g72-missing-iteration", "the passes of G72 that LinuxCNC's own expectation has are missing in the packaged 2.9"),
     ("ncfiles/lathe_g70_71_demo", "G70 with cutter compensation is not read"),
     ("turning_incremental", "LinuxCNC 2.9 goes to the words of G71 as coordinates in G91, too, then to the start"),
+    (
+        "turning_ends_below_start",
+        "on which side the stock is where a profile ends on the other side than its cycle starts",
+    ),
+    ("turning_collinear", "LinuxCNC 2.9 has no distance to two lines that go straight on"),
+    ("turning_corner_straight_on", "LinuxCNC 2.9 has no corner between two lines that go straight on"),
+    ("turning_narrow_groove", "LinuxCNC 2.9 crashes at a groove narrower than D twice"),
+    ("turning_negative_distance", "a negative D would cut into the part"),
+    ("turning_compensation_inside", "codes in a profile that LinuxCNC passes over are refused"),
+    ("turning_unit_inside", "codes in a profile that LinuxCNC passes over are refused"),
+    ("turning_empty", "an empty profile is refused"),
+    ("turning_one_motion", "LinuxCNC 2.9 goes on behind a profile of one motion as if it had made that motion"),
     ("turning_upward_entry", "on which side the stock is where a profile ends on the other side than its cycle starts"),
     (
         "machinist/repeat_behind_do_continue",

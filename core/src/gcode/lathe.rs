@@ -19,7 +19,7 @@ use super::codes::{Group, spelled};
 use super::diagnostic::{Fault, Read, Short};
 use super::expression::INTEGER_WITHIN;
 use super::source::Mark;
-use super::state::{Interpreter, Position};
+use super::state::{FeedMode, Frame, Interpreter, Position};
 use corners::Corner;
 
 /// Motions of a profile, and of all passes along it: they are kept in memory, and a drawing has far fewer.
@@ -29,6 +29,9 @@ const MOST_PASSES: f64 = 10_000.0;
 /// LinuxCNC's depth of a pass and retraction where I and R are missing, in the unit of the program.
 const DEFAULT_DEPTH: f64 = 1.0;
 const DEFAULT_RETRACTION: f64 = 0.5;
+
+const CHANGED: &str =
+    "it changes the unit, the plane, offsets, G90 or G91, G7 or G8, G90.1, cutter compensation or the mode of F";
 
 /// What the words of the cycle ask for, mm.
 #[derive(Debug, Clone, Copy)]
@@ -51,6 +54,7 @@ pub(super) struct Lathe {
     /// Where the cycle begins, machine coordinates.
     start: Position,
     feed: (f64, f64),
+    modes: Modes,
     work: Work,
     motions: Vec<Motion>,
     /// Corner words, each with the number of the motion before the corner.
@@ -59,6 +63,19 @@ pub(super) struct Lathe {
     corner: Option<Corner>,
     /// What does not belong in a profile, by its line.
     fault: Option<(u32, String)>,
+}
+
+/// Modes that give the words of a profile their meaning. LinuxCNC passes over codes in a profile that change them.
+#[derive(Debug, Clone, PartialEq)]
+struct Modes {
+    plane: Plane,
+    unit_mm: f64,
+    incremental: bool,
+    arc_absolute: bool,
+    diameter: bool,
+    feed_mode: FeedMode,
+    compensates: bool,
+    frame: Frame,
 }
 
 /// Label and place of the subroutine that a lathe cycle asks for.
@@ -84,6 +101,10 @@ impl Interpreter {
             return Err(fault(at, format!("{name} cannot run in a rotated coordinate system"))
                 .hint("rotation is R of G10 L2; write G10 L2 P0 R0 to end it"));
         }
+        if self.compensates() {
+            let message = format!("{name} with cutter compensation is not read by this version");
+            return Err(fault(at, message).hint("write G40 before it; D of the cycle is a distance to the profile"));
+        }
         let Some(number) = block.get(b'q') else {
             return Err(fault(at, format!("Q (number of the profile's subroutine) is missing for {name}"))
                 .hint("write Q100 for a profile between O100 sub and O100 endsub"));
@@ -105,6 +126,7 @@ impl Interpreter {
             level: self.call_level,
             start: self.here,
             feed: (self.modal.feed, self.modal.feed_unit_mm),
+            modes: self.lathe_modes(),
             work,
             motions: Vec::new(),
             corners: Vec::new(),
@@ -112,6 +134,19 @@ impl Interpreter {
             fault: None,
         }));
         Ok(())
+    }
+
+    fn lathe_modes(&self) -> Modes {
+        Modes {
+            plane: self.modal.plane,
+            unit_mm: self.modal.unit_mm,
+            incremental: self.modal.incremental,
+            arc_absolute: self.modal.arc_absolute,
+            diameter: self.modal.diameter,
+            feed_mode: self.modal.feed_mode,
+            compensates: self.compensates(),
+            frame: self.frame.clone(),
+        }
     }
 
     fn lathe_work(&self, block: &Block, code: u16) -> Read<Work> {
@@ -161,11 +196,13 @@ impl Interpreter {
     /// Keeps a step of the profile.
     #[cold]
     pub(super) fn keep(&mut self, step: Canon) {
+        let modes = self.lathe_modes();
         let Some(lathe) = &mut self.lathe else { return };
         if lathe.fault.is_some() {
             return;
         }
         let fault = match &step {
+            Canon::Motion(_) if modes != lathe.modes => Some(CHANGED.to_owned()),
             Canon::Event(_) => Some("only motions belong in a profile".to_owned()),
             Canon::Motion(motion) if !motion.others.is_none() => {
                 Some("the profile moves other axes than X and Z".to_owned())
@@ -206,11 +243,16 @@ impl Interpreter {
                 spelled(lathe.code)
             )));
         }
-        if self.compensates() || self.modal.plane != Plane::Zx || self.frame.rotation_deg != 0.0 {
-            return Err(refuse("the profile changes the plane, the rotation or cutter compensation".to_owned()));
+        if self.lathe_modes() != lathe.modes {
+            return Err(refuse(format!("the profile of {} cannot be used: {CHANGED}", spelled(lathe.code)))
+                .hint("write such codes before the cycle"));
+        }
+        if lathe.motions.is_empty() {
+            return Err(refuse(format!("the profile of {} is empty", spelled(lathe.code)))
+                .hint("write its motions, with G0 to G3, into the subroutine"));
         }
         if lathe.motions.len() < 2 {
-            let message = format!("the profile of {} has fewer than two motions: nothing is cut", spelled(lathe.code));
+            let message = format!("the profile of {} has one motion, its entry: nothing is cut", spelled(lathe.code));
             self.warnings.push(*refuse(message));
             return Ok(());
         }

@@ -3,7 +3,7 @@
 use super::corners::Corner;
 use crate::gcode::block::Block;
 use crate::gcode::codes::{Group, bit};
-use crate::gcode::diagnostic::{Fault, Read, Short};
+use crate::gcode::diagnostic::{Fault, Read};
 use crate::gcode::state::{Interpreter, Position};
 
 /// Words of steps: letter, axis, and the word that gives the same axis as a coordinate.
@@ -49,13 +49,6 @@ impl Interpreter {
         }
         // Along Z, a length is one in diameter mode, too.
         let radius_mm = self.length(block, letter, 2, value)?.abs();
-        if radius_mm > 0.0 {
-            return Ok(Some(Corner { radius_mm, is_round: letter == b'a' }));
-        }
-        if letter == b'c' {
-            return Ok(None);
-        }
-        let message = format!("the radius A{} of a corner must not be 0", Short(value));
-        Err(refuse(block.at(letter), message).hint("leave A out for a sharp corner"))
+        Ok((radius_mm > 0.0).then_some(Corner { radius_mm, is_round: letter == b'a' }))
     }
 }
