@@ -27,8 +27,14 @@ impl Profile {
         if distance_mm <= SLACK_MM {
             return Ok(self.clone());
         }
-        let mut above = Above { curves: Vec::with_capacity(2 * self.curves.len()), is_below: false, comparisons: 0 };
-        let reach_mm = GO_ON * distance_mm;
+        let mut above = Above {
+            curves: Vec::with_capacity(2 * self.curves.len()),
+            is_below: false,
+            is_lost: false,
+            comparisons: 0,
+            distance_mm,
+            first: self.entry(),
+        };
         let mut before: Option<&Curve> = None;
         for curve in &self.curves {
             // An inner arc that would vanish lies below what is beside it.
@@ -40,18 +46,22 @@ impl Profile {
                 let [start, end] = [from, to].map(|along| add(corner, scaled(left_of(along), distance_mm)));
                 let is_sharp = -bend < SHARP_RAD && end[0] - start[0] < SHARP_MM;
                 if bend < -SMOOTH_RAD && !(is_sharp && above.meet_sharply(moved.as_mut(), corner)) {
-                    above.push(Curve::Arc { start, end, center: corner, turn: -1.0 }, reach_mm);
+                    above.push(Curve::Arc { start, end, center: corner, turn: -1.0 });
                 }
             }
-            if let Some(moved) = moved {
-                above.push(moved, reach_mm);
+            match moved {
+                Some(moved) => above.push(moved),
+                None => above.is_below = true,
             }
             before = Some(curve);
         }
-        if let Some(last) = self.curves.last().and_then(|last| shifted(last, distance_mm)) {
-            above.end_on(&last, reach_mm);
+        if let Some(last) = self.curves.last() {
+            above.end_on(last);
         }
-        let is_found = !above.is_below && above.comparisons <= MOST_COMPARISONS && !above.curves.iter().any(goes_back);
+        let is_found = !above.is_below
+            && !above.is_lost
+            && above.comparisons <= MOST_COMPARISONS
+            && !above.curves.iter().any(goes_back);
         above.curves.retain(|curve| length(minus(end_of(curve), start_of(curve))) > SLACK_MM);
         if !is_found || above.curves.is_empty() {
             let message = format!("the distance of {distance_mm:.4} mm to it is too large for its details");
@@ -66,17 +76,26 @@ struct Above {
     curves: Vec<Curve>,
     /// The last piece ended below them.
     is_below: bool,
+    /// A piece that is not found above goes round their beginning: what is above is not known.
+    is_lost: bool,
     comparisons: usize,
+    distance_mm: f64,
+    /// Where the profile begins.
+    first: Point,
 }
 
 impl Above {
-    fn push(&mut self, mut piece: Curve, reach_mm: f64) {
+    fn push(&mut self, mut piece: Curve) {
         let end = self.curves.last().map(end_of);
-        let goes_on = end.is_none_or(|end| !self.is_below && length(minus(start_of(&piece), end)) <= SLACK_MM);
+        let goes_on = !self.is_below && end.is_none_or(|end| length(minus(start_of(&piece), end)) <= SLACK_MM);
         if !goes_on {
-            let through = self.comes_through(&piece).or_else(|| self.comes_before(&piece, reach_mm));
+            let through = self.comes_through(&piece).or_else(|| self.comes_before(&piece));
             self.is_below = through.is_none();
-            let Some((kept, point)) = through else { return };
+            let Some((kept, point)) = through else {
+                self.is_lost |=
+                    self.curves.first().is_none_or(|first| start_of(&piece)[0] < start_of(first)[0] - SLACK_MM);
+                return;
+            };
             self.shorten(kept, point);
             set_start(&mut piece, point);
         }
@@ -105,12 +124,15 @@ impl Above {
     }
 
     /// Ends what is above where the last line, were it longer, would come through.
-    fn end_on(&mut self, last: &Curve, reach_mm: f64) {
+    fn end_on(&mut self, last: &Curve) {
         if self.is_below
-            && let Curve::Line { start, end } = *last
+            && let Some(Curve::Line { start, end }) = shifted(last, self.distance_mm)
         {
-            let longer = Curve::Line { start, end: add(end, scaled(unit(minus(end, start)), reach_mm)) };
-            if let Some((kept, point)) = self.comes_through(&longer) {
+            let longer =
+                Curve::Line { start, end: add(end, scaled(unit(minus(end, start)), GO_ON * self.distance_mm)) };
+            if let Some((kept, point)) = self.comes_through(&longer)
+                && length(minus(point, end_of(last))) >= self.distance_mm - SLACK_MM
+            {
                 self.shorten(kept, point);
                 self.is_below = false;
             }
@@ -118,10 +140,12 @@ impl Above {
     }
 
     /// Where a piece meets the first line, were it to begin earlier; nothing of what is there is kept.
-    fn comes_before(&self, piece: &Curve, reach_mm: f64) -> Option<(usize, Point)> {
+    fn comes_before(&self, piece: &Curve) -> Option<(usize, Point)> {
         let Some(&Curve::Line { start, end }) = self.curves.first() else { return None };
-        let earlier = Curve::Line { start: add(start, scaled(unit(minus(start, end)), reach_mm)), end: start };
-        earlier.first_crossing(piece).map(|point| (0, point))
+        let earlier =
+            Curve::Line { start: add(start, scaled(unit(minus(start, end)), GO_ON * self.distance_mm)), end: start };
+        let point = earlier.first_crossing(piece)?;
+        (length(minus(point, self.first)) >= self.distance_mm - SLACK_MM).then_some((0, point))
     }
 
     /// Where a piece that begins below the others comes through them first, and how many of them stay.
@@ -141,7 +165,10 @@ impl Above {
                 }
             }
         }
-        found.map(|(number, point, _)| (number + 1, point))
+        let (number, point, _) = found?;
+        // It must come from below.
+        let rises = cross(direction(&self.curves[number], point), direction(piece, point)) >= -SMOOTH_RAD;
+        rises.then_some((number + 1, point))
     }
 }
 

@@ -71,7 +71,8 @@ pub(super) fn falls_through(curve: &Curve, level: f64) -> Option<Point> {
         Curve::Line { .. } => start[0] + (end[0] - start[0]) * ((level - start[1]) / (end[1] - start[1])),
         Curve::Arc { center, turn, .. } => center[0] - turn * half_chord(start, center, level),
     };
-    Some([along.clamp(start[0], end[0]), level])
+    // Rounding may leave the start behind the end, which clamp does not take.
+    Some([along.min(end[0]).max(start[0]), level])
 }
 
 /// Where a curve that is below `level` at its start, or falls from it, rises to it.
@@ -82,7 +83,7 @@ fn rises_to(curve: &Curve, level: f64) -> f64 {
         Curve::Line { .. } => start[0] + (end[0] - start[0]) * ((level - start[1]) / (end[1] - start[1])).min(1.0),
         // Rising, a left turn is on the right of its centre and a right turn on the left.
         Curve::Arc { center, turn, .. } => {
-            (center[0] + turn * half_chord(start, center, level)).clamp(start[0], end[0])
+            (center[0] + turn * half_chord(start, center, level)).min(end[0]).max(start[0])
         }
     }
 }
