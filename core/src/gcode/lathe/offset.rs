@@ -12,6 +12,10 @@ use crate::gcode::plane::{Curve, Point, add, cross, dot, left_of, length, minus,
 /// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
 pub(super) const SMOOTH_RAD: f64 = 1e-10;
 
+/// Curves that cross at less than this, rad, touch: where pieces are 1 mm off, lines that bend less end within [`SLACK_MM`].
+const TOUCH_RAD: f64 = 1e-9;
+/// Corners that turn back on themselves but for this, rad, leave walls that are one to rounding.
+const REVERSAL_RAD: f64 = 1e-6;
 /// As LinuxCNC (measured), lines whose ends at the distance lie closer along the passes, mm, meet in a corner instead of an arc.
 const SHARP_MM: f64 = 0.01;
 /// That corner is 3 % farther away than the arc at a bend of this, rad; one that bends more is rounded in any case.
@@ -43,6 +47,8 @@ impl Profile {
             let to = direction(curve, corner);
             if let Some(from) = before.map(|before| direction(before, corner)) {
                 let bend = cross(from, to).atan2(dot(from, to));
+                // A wall that is its own way back has no side to be at a distance from.
+                above.is_lost |= bend.abs() > std::f64::consts::PI - REVERSAL_RAD;
                 let [start, end] = [from, to].map(|along| add(corner, scaled(left_of(along), distance_mm)));
                 let is_sharp = -bend < SHARP_RAD && end[0] - start[0] < SHARP_MM;
                 if bend < -SMOOTH_RAD && !(is_sharp && above.meet_sharply(moved.as_mut(), corner)) {
@@ -166,8 +172,8 @@ impl Above {
             }
         }
         let (number, point, _) = found?;
-        // It must come from below.
-        let rises = cross(direction(&self.curves[number], point), direction(piece, point)) >= -SMOOTH_RAD;
+        // It must come from below, not touch or go down.
+        let rises = cross(direction(&self.curves[number], point), direction(piece, point)) > TOUCH_RAD;
         rises.then_some((number + 1, point))
     }
 }
