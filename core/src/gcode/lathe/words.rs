@@ -1,8 +1,9 @@
 //! Words that only a profile has: steps by U and W, corners by A (rounded) and C (cut straight).
 
 use super::corners::Corner;
+use crate::gcode::Dialect;
 use crate::gcode::block::Block;
-use crate::gcode::codes::{Group, bit};
+use crate::gcode::codes::{Group, bit, spelled};
 use crate::gcode::diagnostic::{Fault, Read};
 use crate::gcode::state::{Interpreter, Position};
 
@@ -10,6 +11,22 @@ use crate::gcode::state::{Interpreter, Position};
 const STEPS: [(u8, usize, u8); 2] = [(b'u', 0, b'x'), (b'w', 2, b'z')];
 
 impl Interpreter {
+    /// Refuses the cycles of Fanuc and Haas by name: the same codes, whose P and Q are the first and the last block of the profile.
+    #[cold]
+    pub(in crate::gcode) fn check_lathe_words(&self, block: &Block, code: u16) -> Read<()> {
+        let theirs = block.has(b'u') || block.has(b'w') || (block.has(b'p') && code != 700);
+        if !theirs && self.dialect != Dialect::Fanuc {
+            return Ok(());
+        }
+        let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
+        let message =
+            format!("{} of Fanuc and Haas (P and Q are blocks, U and W allowances) is not read", spelled(code));
+        Err(Fault::new("gcode::unsupported", at, message).hint(
+            "let the CAM system write the motions, or write the cycle of LinuxCNC, whose Q names a subroutine with the profile \
+             (--dialect linuxcnc)",
+        ))
+    }
+
     /// Adds the steps of a block inside a profile to where it goes.
     #[cold]
     pub(in crate::gcode) fn profile_steps(&self, block: &Block, target: &mut Position) -> Read<()> {
