@@ -108,9 +108,22 @@ fn codes_of_other_controls_are_refused_by_what_they_do() {
         ("G110", "coordinate system"),
         ("G54.1 P3", "coordinate systems"),
         ("G1 X5 ,C1.", "chamfer"),
+        ("G71 U2. R0.5", "G71 of Fanuc and Haas"),
+        ("G71 P10 Q20 U0.4 W0.1 F0.2", "G71 of Fanuc and Haas"),
+        ("G72 P10 Q20 D2.", "G72 of Fanuc and Haas"),
+        ("G70 P10 Q20", "G70 of Fanuc and Haas"),
     ] {
         let found = faults(&format!("O0001\nG21 G90 F100\nG1 X1\n{code}\nM30\n"));
         assert!(found[0].starts_with("4: ") && found[0].contains(what), "{code}: {found:?}");
+    }
+}
+
+#[test]
+fn cycles_of_fanuc_are_told_from_those_of_linuxcnc_by_their_words() {
+    for cycle in ["G71 U2 R0.5", "G71 P10 Q20", "G72 Q20 W0.1"] {
+        let text = format!("G18 G21 G90 F100\n{cycle}\nM2\n");
+        let fault = reader(&text, Dialect::LinuxCnc).find_map(Result::err).unwrap();
+        assert!(fault.message.contains("of Fanuc and Haas") && fault.hint.is_some(), "{cycle}: {}", fault.message);
     }
 }
 

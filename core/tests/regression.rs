@@ -63,3 +63,12 @@ fn a_profile_with_cutter_compensation_lets_nothing_out() {
     let out = |step: &Result<Canon, _>| matches!(step, Ok(Canon::Motion(motion)) if (5..=11).contains(&motion.line));
     assert!(!steps.iter().any(out), "{steps:?}");
 }
+
+/// Found by mutation: rounding left an arc's start behind its end, and a level was clamped between them.
+#[test]
+fn levels_of_a_profile_whose_arc_runs_back_by_rounding() {
+    let text = "G21 G18 G8 G90 F100\nG0 X30 Z5\nO100 SUB\nG0 X12\nG1 Z-15\nX9 Z-12\nZ-9\nX14 Z-7\nX21100\nG0 X30 Z5\nG0 X12\nG1\n\
+                O100 ENDSUB\nG71 Q100 X20 Z-25 D.5 I2\nX50\nM2\n";
+    let steps = Reader::from_text("back.ngc", text, Settings::default()).unwrap().count();
+    assert!(steps > 10, "{steps} steps");
+}

@@ -58,6 +58,9 @@ impl Interpreter {
 
     /// Refuses words that no code of the line gives a meaning to.
     fn check_words(&self, block: &Block, motion: Option<u16>) -> Read<()> {
+        if let Some(code @ 700..=722) = motion {
+            self.check_lathe_words(block, code)?;
+        }
         let mut known = ALWAYS;
         if self.dialect == Dialect::Printer {
             known |= codes::bit(b'e');
@@ -322,6 +325,9 @@ impl Interpreter {
         }
         if code != 50 {
             self.last_bezier_end = None;
+        }
+        if self.lathe.is_some() {
+            self.corner_word(block)?;
         }
         match code {
             0 | 10 => self.straight(block, code),

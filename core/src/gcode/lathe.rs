@@ -1,12 +1,17 @@
-//! Lathe cycles G70, G71, G72: a profile, written as a subroutine, is roughed out in straight passes or finished along itself.
+//! Lathe cycles G70 to G72.2: a profile, written as a subroutine, is roughed out in straight passes or finished along itself.
 //!
-//! The cycle's block calls the subroutine; its motions are kept here instead of handed out ([`Interpreter::keep`]). When it returns, `profile`
-//! brings them into the cycle's own coordinates and offsets them, and `roughing` and `finishing` make motions of them. What LinuxCNC 2.9 does
-//! was found by trying programs on it; see `core/tests/oracle_linuxcnc_lathe.rs`.
+//! The cycle's block calls the subroutine; its motions are kept here instead of handed out ([`Interpreter::keep`]). `words` are those that only
+//! a profile has. When it returns, `corners` and `profile` bring it into the cycle's own coordinates, and `offset` puts a curve beside it; `pockets`
+//! finds where it goes down, and `roughing` and `finishing` make motions of it. What LinuxCNC 2.9 does was found by trying programs on it; those that showed
+//! it are the `turning_*` of `core/tests/oracle_data`.
 
+mod corners;
 mod finishing;
+mod offset;
+mod pockets;
 mod profile;
 mod roughing;
+mod words;
 
 use super::block::Block;
 use super::canon::{Canon, Motion, Plane, Shape};
@@ -14,7 +19,8 @@ use super::codes::{Group, spelled};
 use super::diagnostic::{Fault, Read, Short};
 use super::expression::INTEGER_WITHIN;
 use super::source::Mark;
-use super::state::{Interpreter, Position};
+use super::state::{FeedMode, Frame, Interpreter, Position};
+use corners::Corner;
 
 /// Motions of a profile, and of all passes along it: they are kept in memory, and a drawing has far fewer.
 const MOST_MOTIONS: usize = 100_000;
@@ -23,6 +29,9 @@ const MOST_PASSES: f64 = 10_000.0;
 /// LinuxCNC's depth of a pass and retraction where I and R are missing, in the unit of the program.
 const DEFAULT_DEPTH: f64 = 1.0;
 const DEFAULT_RETRACTION: f64 = 0.5;
+
+const CHANGED: &str =
+    "it changes the unit, the plane, offsets, G90 or G91, G7 or G8, G90.1, cutter compensation or the mode of F";
 
 /// What the words of the cycle ask for, mm.
 #[derive(Debug, Clone, Copy)]
@@ -45,10 +54,28 @@ pub(super) struct Lathe {
     /// Where the cycle begins, machine coordinates.
     start: Position,
     feed: (f64, f64),
+    modes: Modes,
     work: Work,
     motions: Vec<Motion>,
+    /// Corner words, each with the number of the motion before the corner.
+    corners: Vec<(usize, Corner)>,
+    /// The corner word of the block under way.
+    corner: Option<Corner>,
     /// What does not belong in a profile, by its line.
     fault: Option<(u32, String)>,
+}
+
+/// Modes that give the words of a profile their meaning. LinuxCNC passes over codes in a profile that change them.
+#[derive(Debug, Clone, PartialEq)]
+struct Modes {
+    plane: Plane,
+    unit_mm: f64,
+    incremental: bool,
+    arc_absolute: bool,
+    diameter: bool,
+    feed_mode: FeedMode,
+    compensates: bool,
+    frame: Frame,
 }
 
 /// Label and place of the subroutine that a lathe cycle asks for.
@@ -59,19 +86,11 @@ pub(super) struct Wanted {
 }
 
 impl Interpreter {
-    /// G70, G71, G72: goes to the start; the reader then calls the profile.
+    /// G70 to G72.2: goes to the start; the reader then calls the profile.
     pub(super) fn lathe_cycle(&mut self, block: &Block, code: u16) -> Read<()> {
         let name = spelled(code);
         let fault = |at, message: String| Fault::new("gcode::lathe", at, message);
         let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
-        if matches!(code, 711 | 712 | 721 | 722) {
-            return Err(Fault::new(
-                "gcode::unsupported",
-                at,
-                format!("the pocketing cycle {name} is not read by this version"),
-            )
-            .hint(format!("{} roughs out a profile without pockets", spelled(code - code % 10))));
-        }
         if self.lathe.is_some() {
             return Err(fault(at, format!("{name} stands inside the profile of another lathe cycle")));
         }
@@ -81,6 +100,10 @@ impl Interpreter {
         if self.frame.rotation_deg != 0.0 {
             return Err(fault(at, format!("{name} cannot run in a rotated coordinate system"))
                 .hint("rotation is R of G10 L2; write G10 L2 P0 R0 to end it"));
+        }
+        if self.compensates() {
+            let message = format!("{name} with cutter compensation is not read by this version");
+            return Err(fault(at, message).hint("write G40 before it; D of the cycle is a distance to the profile"));
         }
         let Some(number) = block.get(b'q') else {
             return Err(fault(at, format!("Q (number of the profile's subroutine) is missing for {name}"))
@@ -103,11 +126,27 @@ impl Interpreter {
             level: self.call_level,
             start: self.here,
             feed: (self.modal.feed, self.modal.feed_unit_mm),
+            modes: self.lathe_modes(),
             work,
             motions: Vec::new(),
+            corners: Vec::new(),
+            corner: None,
             fault: None,
         }));
         Ok(())
+    }
+
+    fn lathe_modes(&self) -> Modes {
+        Modes {
+            plane: self.modal.plane,
+            unit_mm: self.modal.unit_mm,
+            incremental: self.modal.incremental,
+            arc_absolute: self.modal.arc_absolute,
+            diameter: self.modal.diameter,
+            feed_mode: self.modal.feed_mode,
+            compensates: self.compensates(),
+            frame: self.frame.clone(),
+        }
     }
 
     fn lathe_work(&self, block: &Block, code: u16) -> Read<Work> {
@@ -157,16 +196,17 @@ impl Interpreter {
     /// Keeps a step of the profile.
     #[cold]
     pub(super) fn keep(&mut self, step: Canon) {
+        let modes = self.lathe_modes();
         let Some(lathe) = &mut self.lathe else { return };
         if lathe.fault.is_some() {
             return;
         }
         let fault = match &step {
+            Canon::Motion(_) if modes != lathe.modes => Some(CHANGED.to_owned()),
             Canon::Event(_) => Some("only motions belong in a profile".to_owned()),
-            Canon::Motion(motion) if !motion.others.is_none() => Some(
-                "the profile moves other axes than X and Z (corners by A and C, steps by U and W are not read)"
-                    .to_owned(),
-            ),
+            Canon::Motion(motion) if !motion.others.is_none() => {
+                Some("the profile moves other axes than X and Z".to_owned())
+            }
             Canon::Motion(motion) if motion.start_mm[1] != motion.end_mm[1] => {
                 Some("the profile moves Y; only X and Z form a profile".to_owned())
             }
@@ -180,7 +220,10 @@ impl Interpreter {
             (None, Canon::Motion(_)) if lathe.motions.len() >= MOST_MOTIONS => {
                 lathe.fault = Some((self.line, format!("the profile has more than {MOST_MOTIONS} motions")));
             }
-            (None, Canon::Motion(motion)) => lathe.motions.push(motion),
+            (None, Canon::Motion(motion)) => {
+                lathe.corners.extend(lathe.corner.take().map(|corner| (lathe.motions.len(), corner)));
+                lathe.motions.push(motion);
+            }
             (None, Canon::Event(_)) => {}
         }
     }
@@ -200,13 +243,25 @@ impl Interpreter {
                 spelled(lathe.code)
             )));
         }
-        if self.compensates() || self.modal.plane != Plane::Zx || self.frame.rotation_deg != 0.0 {
-            return Err(refuse("the profile changes the plane, the rotation or cutter compensation".to_owned()));
+        if self.lathe_modes() != lathe.modes {
+            return Err(refuse(format!("the profile of {} cannot be used: {CHANGED}", spelled(lathe.code)))
+                .hint("write such codes before the cycle"));
+        }
+        if lathe.motions.is_empty() {
+            return Err(refuse(format!("the profile of {} is empty", spelled(lathe.code)))
+                .hint("write its motions, with G0 to G3, into the subroutine"));
         }
         if lathe.motions.len() < 2 {
-            let message = format!("the profile of {} has fewer than two motions: nothing is cut", spelled(lathe.code));
+            let message = format!("the profile of {} has one motion, its entry: nothing is cut", spelled(lathe.code));
             self.warnings.push(*refuse(message));
             return Ok(());
+        }
+        if lathe.corners.last().is_some_and(|corner| corner.0 + 1 == lathe.motions.len()) {
+            let message = format!(
+                "the corner behind the last motion of the profile of {} has no second side",
+                spelled(lathe.code)
+            );
+            self.warnings.push(*refuse(message));
         }
         let done = match lathe.work {
             Work::Finish { first_mm, last_mm, passes } => self.finish_profile(lathe, [first_mm, last_mm], passes),

@@ -64,18 +64,7 @@ pub(super) enum Curve {
 impl Curve {
     /// Where the one curve can end and the other begin: the meeting nearest to a point, of two as near the one that `other` has first.
     pub(super) fn meet(&self, other: &Self, near: Point) -> Option<Point> {
-        let candidates = match (*self, *other) {
-            (Self::Line { start: a, end: b }, Self::Line { start: c, end: d }) => {
-                line_line(a, minus(b, a), c, minus(d, c))
-            }
-            (Self::Line { start, end }, Self::Arc { end: on, center, .. })
-            | (Self::Arc { end: on, center, .. }, Self::Line { start, end }) => {
-                line_circle(start, unit(minus(end, start)), center, length(minus(on, center)))
-            }
-            (Self::Arc { end: a, center: c, .. }, Self::Arc { end: b, center: d, .. }) => {
-                circle_circle(c, length(minus(a, c)), d, length(minus(b, d)))
-            }
-        };
+        let candidates = self.candidates(other);
         let fits = |point: &Point| self.ends_at(*point) && other.begins_at(*point);
         let away = |point: &Point| length(minus(*point, near));
         match candidates {
@@ -87,8 +76,32 @@ impl Curve {
         }
     }
 
+    /// Where the curves cross between their ends, the first along `other`.
+    pub(super) fn first_crossing(&self, other: &Self) -> Option<Point> {
+        let on_both =
+            |point: &Point| [self, other].iter().all(|curve| curve.ends_at(*point) && curve.begins_at(*point));
+        let candidates = self.candidates(other).into_iter().flatten().filter(on_both);
+        candidates.min_by(|a, b| other.way_to(*a).total_cmp(&other.way_to(*b)))
+    }
+
+    /// Where the lines and circles that the curves lie on cross.
+    fn candidates(&self, other: &Self) -> [Option<Point>; 2] {
+        match (*self, *other) {
+            (Self::Line { start: a, end: b }, Self::Line { start: c, end: d }) => {
+                line_line(a, minus(b, a), c, minus(d, c))
+            }
+            (Self::Line { start, end }, Self::Arc { end: on, center, .. })
+            | (Self::Arc { end: on, center, .. }, Self::Line { start, end }) => {
+                line_circle(start, unit(minus(end, start)), center, length(minus(on, center)))
+            }
+            (Self::Arc { end: a, center: c, .. }, Self::Arc { end: b, center: d, .. }) => {
+                circle_circle(c, length(minus(a, c)), d, length(minus(b, d)))
+            }
+        }
+    }
+
     /// How far along the curve a point lies, mm or rad.
-    fn way_to(&self, point: Point) -> f64 {
+    pub(super) fn way_to(&self, point: Point) -> f64 {
         match *self {
             Self::Line { start, end } => dot(minus(point, start), unit(minus(end, start))),
             Self::Arc { start, center, turn, .. } => sweep_within(start, point, center, turn),
@@ -137,7 +150,7 @@ impl Curve {
 }
 
 /// Angle from start to end in the sense of `turn`, above 0 and up to a full turn.
-fn sweep(start: Point, end: Point, center: Point, turn: f64) -> f64 {
+pub(super) fn sweep(start: Point, end: Point, center: Point, turn: f64) -> f64 {
     let angle = sweep_within(start, end, center, turn);
     if angle < SLACK_RAD { std::f64::consts::TAU } else { angle }
 }

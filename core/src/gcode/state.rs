@@ -94,7 +94,7 @@ impl Modal {
 
 /// From program coordinates to machine coordinates:
 /// machine = rotate_xy(program + g92) + system + tool.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct Frame {
     /// Active coordinate system, 1 (G54) to 9 (G59.3).
     pub(super) system: usize,

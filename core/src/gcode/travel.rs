@@ -136,9 +136,15 @@ impl Interpreter {
         }
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
+                if self.lathe.is_some() && matches!(letter, b'a' | b'c' | b'u' | b'w') {
+                    continue;
+                }
                 let value = self.length(block, letter, axis, value)?;
                 target[axis] = if self.modal.incremental { self.at[axis] + value } else { value };
             }
+        }
+        if self.lathe.is_some() {
+            self.profile_steps(block, &mut target)?;
         }
         self.check_range(block, &target)?;
         Ok(target)

@@ -1,21 +1,20 @@
-//! The profile in the cycle's own plane, and the curve at a distance from it.
+//! The profile in the cycle's own plane.
 //!
 //! Coordinates: the first grows along the passes, the second grows from the finished part to the stock's surface. A profile runs towards a
-//! growing first coordinate, so the stock lies on its left; the offset curve lies there, with arcs about its outer corners.
+//! growing first coordinate, so the stock lies on its left.
 
 use super::Lathe;
 use crate::gcode::canon::{Motion, Shape};
 use crate::gcode::codes::spelled;
 use crate::gcode::diagnostic::{Fault, Read};
-use crate::gcode::plane::{Curve, Point, add, cross, dot, left_of, length, minus, scaled, unit};
+use crate::gcode::plane::{Curve, Point, left_of, length, minus, scaled, sweep, unit};
 use crate::gcode::state::{Interpreter, Position};
 use crate::gcode::travel::Speed;
 
 /// Slack of comparisons, mm: far above rounding, far below anything cut.
 pub(super) const SLACK_MM: f64 = 1e-9;
-/// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
-const SMOOTH_RAD: f64 = 1e-10;
-
+/// An arc that ends closer to its start, mm, would be read as a full turn (8e-9) or nearly.
+const SHORT_ARC_MM: f64 = 1e-7;
 /// The cycle's plane: which axes, and which way.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Side {
@@ -76,7 +75,7 @@ pub(super) const fn end_of(curve: &Curve) -> Point {
 }
 
 /// Direction at a point of the curve.
-fn direction(curve: &Curve, at: Point) -> Point {
+pub(super) fn direction(curve: &Curve, at: Point) -> Point {
     match *curve {
         Curve::Line { start, end } => unit(minus(end, start)),
         Curve::Arc { center, turn, .. } => scaled(left_of(unit(minus(at, center))), turn),
@@ -84,26 +83,34 @@ fn direction(curve: &Curve, at: Point) -> Point {
 }
 
 impl Profile {
-    /// The profile of a cycle; refuses one that goes back or, behind its entry, deeper.
+    /// The profile of a cycle; refuses one that goes back along the passes.
     pub(super) fn new(lathe: &Lathe) -> Read<Self> {
-        let axes = if lathe.code == 720 { [0, 2] } else { [2, 0] };
+        match lathe.code {
+            // Finishing has no passes: the profile is one of G71 or of G72.
+            700 => Self::along(lathe, [2, 0]).or_else(|fault| Self::along(lathe, [0, 2]).map_err(|_| fault)),
+            720.. => Self::along(lathe, [0, 2]),
+            _ => Self::along(lathe, [2, 0]),
+        }
+    }
+
+    fn along(lathe: &Lathe, axes: [usize; 2]) -> Read<Self> {
         let along = |motion: &Motion, axis: usize| motion.end_mm[axes[axis]] - motion.start_mm[axes[axis]];
-        let sign_of = |axis: usize, skip: usize| {
-            let first =
-                lathe.motions.iter().skip(skip).map(|motion| along(motion, axis)).find(|way| way.abs() > SLACK_MM);
-            first.map(f64::signum)
+        // As LinuxCNC: towards the chuck or the axis, where the profile itself does not say.
+        let ahead = lathe.motions.iter().skip(1).find_map(|motion| clear(along(motion, 0)));
+        let start_mm = axes.map(|axis| lathe.start[axis]);
+        let entry_mm = lathe.motions.first().map_or(start_mm, |motion| axes.map(|axis| motion.end_mm[axis]));
+        let last_mm = lathe.motions.last().map_or(entry_mm[1], |motion| motion.end_mm[axes[1]]);
+        let side = Side {
+            axes,
+            signs: [ahead.unwrap_or(-1.0), lathe.stock_side([start_mm[1], entry_mm[1], last_mm], axes[1])?],
         };
-        // The profile comes back up to the surface; one that does not is left by its last point only, opposite to its entry.
-        let rest = sign_of(1, 1);
-        let entry_way = along(&lathe.motions[0], 1);
-        let up = rest.unwrap_or(if entry_way > 0.0 { -1.0 } else { 1.0 });
-        let side = Side { axes, signs: [sign_of(0, 1).unwrap_or(1.0), up] };
         let curves: Vec<Curve> = lathe.motions.iter().map(|motion| side.curve(motion)).collect();
         for (curve, motion) in curves.iter().zip(&lathe.motions).skip(1) {
-            if let Some(axis) = (0..2).find(|&axis| goes_back(curve, axis)) {
-                return Err(lathe.not_monotonic(motion.line, side.axes[axis]));
+            if goes_back(curve) {
+                return Err(lathe.turns_back(motion.line, side.axes[0]));
             }
         }
+        let curves = lathe.cut_corners(curves)?;
         let [first, rest @ ..] = curves.as_slice() else {
             return Ok(Self { side, start: [0.0; 2], curves });
         };
@@ -118,93 +125,40 @@ impl Profile {
         Ok(Self { side, start, curves: rest.to_vec() })
     }
 
-    /// The profile at `distance_mm` from itself, on the side of the stock.
-    pub(super) fn offset(&self, lathe: &Lathe, distance_mm: f64) -> Read<Self> {
-        if distance_mm <= SLACK_MM {
-            return Ok(self.clone());
-        }
-        let refuse = || {
-            let message = format!("a detail of the profile is smaller than the distance of {distance_mm:.4} mm to it");
-            lathe.refuse(lathe.line, &message).hint("make D (and E) smaller")
-        };
-        let mut curves: Vec<Curve> = Vec::with_capacity(2 * self.curves.len());
-        let mut before: Option<&Curve> = None;
-        for curve in &self.curves {
-            let mut moved = shifted(curve, distance_mm).ok_or_else(refuse)?;
-            if let (Some(old), Some(last)) = (before, curves.last_mut()) {
-                let corner = start_of(curve);
-                let (from, to) = (direction(old, corner), direction(curve, corner));
-                let bend = cross(from, to).atan2(dot(from, to));
-                if bend > SMOOTH_RAD {
-                    let point = last.meet(&moved, corner).ok_or_else(refuse)?;
-                    set_end(last, point);
-                    set_start(&mut moved, point);
-                } else if bend < -SMOOTH_RAD {
-                    let (start, end) = (end_of(last), start_of(&moved));
-                    curves.push(Curve::Arc { start, end, center: corner, turn: -1.0 });
-                }
-            }
-            curves.push(moved);
-            before = Some(curve);
-        }
-        // A curve shortened past its own start runs backwards.
-        if curves.iter().any(|curve| goes_back(curve, 0) || goes_back(curve, 1)) {
-            return Err(refuse());
-        }
-        curves.retain(|curve| length(minus(end_of(curve), start_of(curve))) > SLACK_MM);
-        if curves.is_empty() {
-            return Err(refuse());
-        }
-        Ok(Self { side: self.side, start: self.start, curves })
-    }
-
     /// Where the entry ends.
     pub(super) fn entry(&self) -> Point {
         self.curves.first().map_or(self.start, start_of)
     }
 }
 
-/// Whether a curve goes against the growing coordinate anywhere.
-fn goes_back(curve: &Curve, axis: usize) -> bool {
-    if end_of(curve)[axis] < start_of(curve)[axis] - SLACK_MM {
+/// Which way a distance goes, if it is one.
+fn clear(way: f64) -> Option<f64> {
+    (way.abs() > SLACK_MM).then(|| way.signum())
+}
+
+/// Whether a curve goes against the passes anywhere.
+pub(super) fn goes_back(curve: &Curve) -> bool {
+    if end_of(curve)[0] < start_of(curve)[0] - SLACK_MM {
         return true;
     }
     match *curve {
         Curve::Line { .. } => false,
-        // A monotonic arc stays within a quarter; the rounding of ends and centres turns the tangent by very little.
-        Curve::Arc { start, end, .. } => {
-            let radius_slack = 1e-6;
-            [start, end].iter().any(|&at| direction(curve, at)[axis] < -radius_slack)
-                || dot(direction(curve, start), direction(curve, end)) < -radius_slack
+        // An arc that does not lies on one half of its circle; the rounding of ends and centres turns the tangent by very little.
+        Curve::Arc { start, end, center, turn } => {
+            let slack = 1e-6;
+            [start, end].iter().any(|&at| direction(curve, at)[0] < -slack)
+                || sweep(start, end, center, turn) > std::f64::consts::PI + slack
         }
     }
 }
 
-/// The curve moved to its left; an arc that would vanish does not exist.
-fn shifted(curve: &Curve, by: f64) -> Option<Curve> {
-    Some(match *curve {
-        Curve::Line { start, end } => {
-            let shift = scaled(left_of(unit(minus(end, start))), by);
-            Curve::Line { start: add(start, shift), end: add(end, shift) }
-        }
-        Curve::Arc { start, end, center, turn } => {
-            let out = |point: Point| {
-                let ray = minus(point, center);
-                let radius = length(ray);
-                (radius - turn * by > SLACK_MM).then(|| add(center, scaled(ray, (radius - turn * by) / radius)))
-            };
-            Curve::Arc { start: out(start)?, end: out(end)?, center, turn }
-        }
-    })
-}
-
-const fn set_start(curve: &mut Curve, point: Point) {
+pub(super) const fn set_start(curve: &mut Curve, point: Point) {
     match curve {
         Curve::Line { start, .. } | Curve::Arc { start, .. } => *start = point,
     }
 }
 
-const fn set_end(curve: &mut Curve, point: Point) {
+pub(super) const fn set_end(curve: &mut Curve, point: Point) {
     match curve {
         Curve::Line { end, .. } | Curve::Arc { end, .. } => *end = point,
     }
@@ -217,10 +171,28 @@ impl Lathe {
         Fault::new("gcode::lathe", self.block.at(b'q'), message)
     }
 
-    fn not_monotonic(&self, line: u32, axis: usize) -> Box<Fault> {
+    /// Whether the stock is above (1) or below (-1) the profile's entry: where the cycle starts, or, if that is as deep as the entry, where the
+    /// profile ends.
+    fn stock_side(&self, [start_mm, entry_mm, last_mm]: [f64; 3], axis: usize) -> Read<f64> {
+        let [to_start, to_last] = [start_mm, last_mm].map(|mm| clear(mm - entry_mm));
+        // Finishing needs the side for its distances only, and LinuxCNC takes that of the start.
+        if self.code != 700 && to_start.zip(to_last).is_some_and(|(start, last)| start != last) {
+            let name = ["X", "Y", "Z"][axis];
+            let message = format!(
+                "it ends on the other side of its beginning than the cycle starts ({name} of the start {start_mm:.4} mm, \
+                 of the beginning {entry_mm:.4} mm, of the end {last_mm:.4} mm): on which side is the stock?"
+            );
+            return Err(self
+                .refuse(self.line, &message)
+                .hint("let the profile end on the side where the cycle starts"));
+        }
+        Ok(to_start.or(to_last).unwrap_or(1.0))
+    }
+
+    fn turns_back(&self, line: u32, axis: usize) -> Box<Fault> {
         let name = ["X", "Y", "Z"][axis];
-        self.refuse(line, &format!("{name} turns back; this version reads profiles without undercuts and pockets"))
-            .hint("the first motion goes to the depth of the profile; behind it neither X nor Z may turn back")
+        self.refuse(line, &format!("{name} turns back: an undercut cannot be reached by passes along {name}"))
+            .hint(format!("behind the first motion of the profile, {name} goes one way; a pocket has walls that do"))
     }
 }
 
@@ -233,20 +205,22 @@ impl Interpreter {
 
     /// Cuts along curves.
     pub(super) fn lathe_cut(&mut self, lathe: &Lathe, profile: &Profile) -> Read<()> {
-        let side = profile.side;
-        for curve in &profile.curves {
-            match *curve {
-                Curve::Line { end, .. } => self.lathe_line(lathe, side, end, Speed::Programmed)?,
-                Curve::Arc { end, center, turn, .. } => {
-                    let middle = self.frame.to_program(&side.position(center, &lathe.start));
-                    let target = self.frame.to_program(&side.position(end, &lathe.start));
-                    let turns = if side.turns(turn) > 0.0 { 1 } else { -1 };
-                    let round = crate::gcode::arc::Round { center: [middle[2], middle[0]], turns };
-                    self.arc_to(&lathe.block, &target, round, 0.0)?;
-                }
+        profile.curves.iter().try_for_each(|curve| self.lathe_curve(lathe, profile.side, curve))
+    }
+
+    /// Cuts along a curve.
+    pub(super) fn lathe_curve(&mut self, lathe: &Lathe, side: Side, curve: &Curve) -> Read<()> {
+        match *curve {
+            // A piece of an arc too short to be told from a full circle is as straight as it is short.
+            Curve::Arc { start, end, center, turn } if length(minus(end, start)) > SHORT_ARC_MM => {
+                let middle = self.frame.to_program(&side.position(center, &lathe.start));
+                let target = self.frame.to_program(&side.position(end, &lathe.start));
+                let turns = if side.turns(turn) > 0.0 { 1 } else { -1 };
+                let round = crate::gcode::arc::Round { center: [middle[2], middle[0]], turns };
+                self.arc_to(&lathe.block, &target, round, 0.0)
             }
+            Curve::Line { end, .. } | Curve::Arc { end, .. } => self.lathe_line(lathe, side, end, Speed::Programmed),
         }
-        Ok(())
     }
 
     /// Whether the entry of the profile is a rapid: into the cut it is, along the surface it is not.
