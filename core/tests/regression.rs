@@ -72,3 +72,16 @@ fn levels_of_a_profile_whose_arc_runs_back_by_rounding() {
     let steps = Reader::from_text("back.ngc", text, Settings::default()).unwrap().count();
     assert!(steps > 10, "{steps} steps");
 }
+
+/// Found by mutation: F that is divided by next to nothing, times a length, a spindle speed or the inch.
+#[test]
+fn a_feed_beyond_all_numbers_is_still_a_number() {
+    for feed in ["G93 G1 X900000 F#1", "G95 S#1 M3 G1 X9 F#1", "G20 G94 G1 X9 F#1", "G20 G94 G1 A9 F#1"] {
+        let text = format!("G21\n#1=[1/0.{}1]\n{feed}\nM2\n", "0".repeat(307));
+        let steps: Vec<_> = Reader::from_text("fast.ngc", text, Settings::default()).unwrap().collect();
+        let finite =
+            |step: &Result<Canon, _>| matches!(step, Ok(Canon::Motion(motion)) if motion.feed_mm_s.is_finite());
+        assert!(steps.iter().any(finite), "{feed}: {steps:?}");
+        assert!(steps.iter().all(|step| !matches!(step, Ok(Canon::Motion(_))) || finite(step)), "{feed}: {steps:?}");
+    }
+}

@@ -141,7 +141,7 @@ impl Interpreter {
         }
         // F comes before G20 and G21 of the same line: it still has the old unit.
         self.modal.feed_unit_mm = if self.modal.feed_mode == FeedMode::Inverse { 1.0 } else { self.modal.unit_mm };
-        self.modal.feed = feed * self.modal.feed_unit_mm;
+        self.modal.feed = (feed * self.modal.feed_unit_mm).min(f64::MAX);
         Ok(())
     }
 

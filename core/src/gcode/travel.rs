@@ -97,14 +97,15 @@ impl Interpreter {
                 "F is missing: with G93 (inverse time) every feed motion needs its own",
             )
             .hint("F2 does the motion in half a minute; G94 goes back to feed per minute")),
-            FeedMode::Inverse if feed > 0.0 => Ok(length_mm * feed / MINUTE_S),
+            // The machine's limits hold for whatever is faster; only it must be a number.
+            FeedMode::Inverse if feed > 0.0 => Ok((length_mm * feed / MINUTE_S).min(f64::MAX)),
             FeedMode::PerRevolution if feed > 0.0 && self.modal.spindle_speed == 0.0 => Err(Fault::new(
                 "gcode::feed",
                 block.whole(),
                 "with G95 (feed per revolution) the spindle needs a speed S above 0 rev/min",
             )
             .hint("write S and M3 before it, or G94 for feed per minute")),
-            FeedMode::PerRevolution if feed > 0.0 => Ok(feed * self.modal.spindle_speed / MINUTE_S),
+            FeedMode::PerRevolution if feed > 0.0 => Ok((feed * self.modal.spindle_speed / MINUTE_S).min(f64::MAX)),
             // Printers start with a feed of their own.
             _ if self.dialect == Dialect::Printer => Ok(PRINTER_FEED_MM_S),
             _ => self.missing_feed(block),
