@@ -29,6 +29,8 @@ const TABLE: &[(&str, u32, u32, u32, &str)] = &[
     ("G1 F0 X10", 1, 4, 2, "F0 moves nothing"),
     ("G0 X1e300", 1, 6, 4, "E has no meaning with G0"),
     ("G0 X1000001", 1, 4, 8, "limit of 1000000 mm"),
+    ("G18 F1 G71 X1 Z1\nX5", 1, 8, 3, "Q (number of the profile's subroutine) is missing"),
+    ("G18 F1 G71 Q9 I0\nX5", 1, 15, 2, "I of G71 must be above 0"),
     ("G20 G0 X-99999", 1, 8, 7, "limit of 1000000 mm"),
     ("G0 G1 X1 F1", 1, 4, 2, "G0 and G1 exclude each other"),
     ("G17 G18 G0 X1", 1, 5, 3, "G17 and G18 exclude each other"),
@@ -68,6 +70,11 @@ fn every_fault_has_its_place() {
         assert_eq!((first.line, first.column, first.span), (line, column, span), "{text:?}: {first:?}");
         assert!(first.message.contains(part), "{text:?}: {}", first.message);
     }
+}
+
+#[test]
+fn behind_a_refused_lathe_cycle_axis_words_are_no_further_cycles() {
+    assert_eq!(faults("G18 F1 G71 X1 Z1\nX5\nX6").len(), 1);
 }
 
 #[test]

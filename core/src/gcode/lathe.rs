@@ -32,6 +32,7 @@ const DEFAULT_RETRACTION: f64 = 0.5;
 
 const CHANGED: &str =
     "it changes the unit, the plane, offsets, G90 or G91, G7 or G8, G90.1, cutter compensation or the mode of F";
+const BEFORE: &str = "write such codes before the cycle";
 
 /// What the words of the cycle ask for, mm.
 #[derive(Debug, Clone, Copy)]
@@ -91,6 +92,8 @@ impl Interpreter {
         let name = spelled(code);
         let fault = |at, message: String| Fault::new("gcode::lathe", at, message);
         let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
+        // Axis words alone go straight from here on, in a profile and behind a cycle that was refused.
+        self.modal.motion = 10;
         if self.lathe.is_some() {
             return Err(fault(at, format!("{name} stands inside the profile of another lathe cycle")));
         }
@@ -115,8 +118,6 @@ impl Interpreter {
         let work = self.lathe_work(block, code)?;
         let target = self.target(block)?;
         self.go(block, target, super::travel::Speed::Rapid)?;
-        // A profile that begins with axis words alone is cut straight.
-        self.modal.motion = 10;
         self.wanted = Some(Wanted { label: (number.round() as u64).to_string().into_bytes(), at: block.at(b'q') });
         self.lathe = Some(Box::new(Lathe {
             code,
@@ -238,14 +239,14 @@ impl Interpreter {
         self.at = self.frame.to_program(&self.here);
         let refuse = |message: String| Fault::new("gcode::lathe", block.at(b'q'), message);
         if let Some((line, message)) = &lathe.fault {
-            return Err(refuse(format!(
-                "the profile of {} cannot be used: line {line}: {message}",
-                spelled(lathe.code)
-            )));
+            let fault =
+                refuse(format!("the profile of {} cannot be used: line {line}: {message}", spelled(lathe.code)));
+            return Err(if message == CHANGED { fault.hint(BEFORE) } else { fault });
         }
         if self.lathe_modes() != lathe.modes {
-            return Err(refuse(format!("the profile of {} cannot be used: {CHANGED}", spelled(lathe.code)))
-                .hint("write such codes before the cycle"));
+            return Err(
+                refuse(format!("the profile of {} cannot be used: {CHANGED}", spelled(lathe.code))).hint(BEFORE)
+            );
         }
         if lathe.motions.is_empty() {
             return Err(refuse(format!("the profile of {} is empty", spelled(lathe.code)))
