@@ -328,8 +328,21 @@ fn near_the_path<const N: usize>(window: &Window<'_, N>, ahead_s: f64, offset_mm
     let offset_mm = limit_norm(offset_mm, known_mm.max(limit_mm));
     let command_mm = add_scaled(next.position_mm, 1.0, offset_mm);
     let lead_s = dot(offset_mm, next.tangent) / next.feed_mm_s;
+    // Near rest the lead says nothing, and the point of the same instant is on the path, too: what is found must be nearer.
+    let guesses = [ahead_s + lead_s, ahead_s].map(|guess_s| way_to_the_path(window, command_mm, guess_s));
+    let nearer = |a: [f64; N], b: [f64; N]| if norm(b) < norm(a) { b } else { a };
+    let back_mm = guesses.into_iter().fold(scale(-1.0, offset_mm), nearer);
+    let too_far_mm = norm(back_mm) - limit_mm;
+    if too_far_mm <= 0.0 {
+        return offset_mm;
+    }
+    add_scaled(offset_mm, too_far_mm / norm(back_mm), back_mm)
+}
+
+/// From a command to the nearest point of the path, looked for from a time after now on.
+fn way_to_the_path<const N: usize>(window: &Window<'_, N>, command_mm: [f64; N], guess_s: f64) -> [f64; N] {
     // A float that is too large, or not a number, saturates; the window clamps it.
-    let near = libm::round((ahead_s + lead_s) / window.servo_s()) as i32;
+    let near = libm::round(guess_s / window.servo_s()) as i32;
     let mut nearest = locate(window, command_mm, near, 0);
     // Behind, the knots are as far apart as the rate made them, and the guess may be off.
     for _ in 0..MOST_LOOKS {
@@ -339,10 +352,5 @@ fn near_the_path<const N: usize>(window: &Window<'_, N>, ahead_s: f64, offset_mm
         }
         nearest = again;
     }
-    let back_mm = nearest.vector_mm;
-    let too_far_mm = norm(back_mm) - limit_mm;
-    if too_far_mm <= 0.0 {
-        return offset_mm;
-    }
-    add_scaled(offset_mm, too_far_mm / norm(back_mm), back_mm)
+    nearest.vector_mm
 }

@@ -1,7 +1,13 @@
 //! What went wrong once, as small as it could be made.
 
+use feedwright::compare::Workpiece;
+use feedwright::controllers::{BEST, Choices, Entry, Make, Setup};
 use feedwright::gcode::canon::Canon;
 use feedwright::gcode::{Reader, Settings};
+use feedwright::machine::Machine;
+use feedwright::reference::Reference;
+use feedwright::report::Statistics;
+use feedwright::simulate::simulate;
 
 /// Found by mutation: each call made two more and an error, and the reader counted millions of them.
 #[test]
@@ -84,4 +90,20 @@ fn a_feed_beyond_all_numbers_is_still_a_number() {
         assert!(steps.iter().any(finite), "{feed}: {steps:?}");
         assert!(steps.iter().all(|step| !matches!(step, Ok(Canon::Motion(_))) || finite(step)), "{feed}: {steps:?}");
     }
+}
+
+/// Where the plan came to rest, a command a thousandth of a millimetre off was taken back to a point of the path 1.7 mm behind.
+#[test]
+fn without_any_deviation_the_command_stays_where_the_path_is() {
+    let mut machine = Machine::load("tnv40".as_ref()).unwrap();
+    machine.limits.max_deviation_mm = 0.0;
+    let choices = Choices::default();
+    let mut setup = Setup { machine: &machine, choices: &choices, progress: &mut |_| {} };
+    let mut controller = Make::<2>::make(Entry::find(BEST).unwrap(), &mut setup);
+    let workpiece = Workpiece::contours().into_iter().find(|workpiece| workpiece.name == "square").unwrap();
+    let mut statistics = Statistics::new();
+    let mut reference = Reference::from_steps(workpiece.steps, &(&machine.limits).into()).unwrap();
+    simulate(&machine, &mut reference, &mut *controller, &mut [&mut statistics]).unwrap();
+    let off_um = statistics.max_deviation_um();
+    assert!(off_um < 100.0, "the command is up to {off_um} um from its place on the path");
 }
