@@ -25,7 +25,7 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Result<ExitCode> {
     let mut files = Files::create(args)?;
     let journal = journal(&options);
     if journal.known() > 0 {
-        eprintln!("going on where an earlier run was interrupted: {} rows are there", journal.known());
+        eprintln!("going on where an earlier run was interrupted; rows that are there: {}", journal.known());
     }
     let bar = Bar::new(quiet, 0);
     let comparison = compare(&options, &journal, &bar)?;
@@ -67,7 +67,7 @@ fn options(args: &CompareArgs) -> Result<Options> {
             let names: Vec<&str> = known.iter().map(String::as_str).collect();
             let help = match nearest(name, &names) {
                 Some(meant) => format!("did you mean '{meant}'?"),
-                None => format!("there are {}", known.join(", ")),
+                None => format!("there are {}; what --part and --machine add is always cut", known.join(", ")),
             };
             return Err(miette!(help = help, "--only: no contour, machine or controller is called '{name}'"));
         }

@@ -96,8 +96,8 @@ fn without_corners(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
 
 fn with_corners(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
     let known = [Knows::Nothing, Knows::Identified, Knows::ExactModel];
-    let on_rms = least(peers(here, &known), |row| row.rms_um);
-    let on_max = least(peers(here, &known), |row| row.max_um);
+    let on_rms = best(here, &known, |row| row.rms_um);
+    let on_max = best(here, &known, |row| row.max_um);
     let rms = on_rms.map(|peer| RMS_CORNERS.of_rms(ours, peer));
     let max = on_max.map(|peer| MAX_CORNERS.of_max(ours, peer));
     rms.into_iter().chain(max).collect()
@@ -112,7 +112,7 @@ fn elsewhere(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
 }
 
 fn best_without_model<'a>(here: &[&'a Row]) -> Option<&'a Row> {
-    least(peers(here, &[Knows::Nothing, Knows::Identified]), |row| row.rms_um)
+    best(here, &[Knows::Nothing, Knows::Identified], |row| row.rms_um)
 }
 
 /// Rows that came to their end of others that know no more than this; none that is identified anew.
@@ -123,6 +123,8 @@ fn peers<'a>(here: &[&'a Row], known: &[Knows]) -> impl Iterator<Item = &'a Row>
     })
 }
 
-fn least<'a>(rows: impl Iterator<Item = &'a Row>, number: fn(&Row) -> f64) -> Option<&'a Row> {
-    rows.min_by(|a, b| number(a).total_cmp(&number(b)))
+/// The best of these, open loop among them; none where open loop is alone.
+fn best<'a>(here: &[&'a Row], known: &[Knows], number: fn(&Row) -> f64) -> Option<&'a Row> {
+    peers(here, known).find(|row| row.controller != BASELINE)?;
+    peers(here, known).min_by(|a, b| number(a).total_cmp(&number(b)))
 }
