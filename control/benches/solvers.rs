@@ -15,13 +15,11 @@ use feedwright_control::horizon::Solver;
 use feedwright_control::horizon::gauss_newton::GaussNewton;
 use feedwright_control::horizon::gradient::Gradient;
 use feedwright_control::horizon::problem::Problem;
-use solvers::material::{Material, difference};
-use solvers::riccati::Riccati;
+use solvers::material::Material;
+use solvers::riccati::{AGREEMENT, Riccati, apart_from_gauss_newton};
 
 /// Knots of the horizon.
 const KNOTS: usize = 20;
-/// Both solve the same equations to rounding, and these have a condition number of some 10^6.
-const AGREEMENT: f64 = 1e-9;
 
 fn main() {
     agree::<2>();
@@ -32,10 +30,9 @@ fn main() {
 /// Stops where the exact solvers differ; says how far the gradient gets.
 fn agree<const N: usize>() {
     let material = Material::<N>::new(KNOTS);
-    let (problem, slopes) = material.roll_out(true);
+    let (problem, _) = material.roll_out(true);
     let exact = material.improved(&mut GaussNewton::default(), &problem);
-    let recursion = material.after(&Riccati::default().solve(&problem, &slopes, &material.rates));
-    let apart = difference(&exact, &recursion);
+    let apart = apart_from_gauss_newton(&material);
     assert!(apart < AGREEMENT, "Riccati and Gauss-Newton differ by {apart:e}");
     println!("{N} axes, {KNOTS} knots: Riccati and Gauss-Newton agree to {apart:.0e}");
     let [before, best] = [&material.rates, &exact].map(|rates| material.cost(&problem, rates));

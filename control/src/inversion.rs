@@ -222,19 +222,13 @@ fn slopes<const N: usize>(net: &ContourIdentifier<N>, forward: &Forward<N>, inpu
 mod tests {
     use super::*;
     use crate::identifier::INPUTS;
+    use crate::identifier::contour::tests::{sample_of, sequence};
 
-    /// Weights, inputs and feedrates without symmetry, from a linear congruential sequence.
+    /// Weights, inputs and feedrates without symmetry.
     fn sample<const H: usize>() -> (ContourIdentifier<2>, Inputs<2>, [[f64; 2]; H]) {
-        let mut state = 1_u32;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state) / f64::from(u32::MAX) - 0.5
-        };
-        let hidden = core::array::from_fn(|_| core::array::from_fn(|_| core::array::from_fn(|_| next())));
-        let output = core::array::from_fn(|_| core::array::from_fn(|_| next()));
-        let inputs = core::array::from_fn(|_| core::array::from_fn(|_| 2.0 * next()));
-        let feeds = core::array::from_fn(|_| core::array::from_fn(|_| 2.0 * next()));
-        (ContourIdentifier { hidden, output }, inputs, feeds)
+        let mut next = sequence();
+        let (net, inputs) = sample_of(&mut next);
+        (net, inputs, core::array::from_fn(|_| core::array::from_fn(|_| 2.0 * next())))
     }
 
     fn settings(gradient: Gradient) -> Settings {

@@ -128,6 +128,17 @@ pub fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], n: usiz
     }
 }
 
+/// The inverse of a symmetric positive matrix, `factor` times.
+pub fn inverse<const P: usize>(matrix: &[[f64; P]; P], factor: f64) -> [[f64; P]; P] {
+    // Symmetric: its columns are its rows.
+    core::array::from_fn(|axis| {
+        let (mut factors, mut column) = (*matrix, [0.0; P]);
+        column[axis] = factor;
+        cholesky(&mut factors, &mut column, P);
+        column
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -13,11 +13,13 @@
 //!
 //! Source: Rao, Wright and Rawlings (1998), "Application of interior-point methods to model predictive control", section 3.
 
+use feedwright_control::horizon::gauss_newton::GaussNewton;
 use feedwright_control::horizon::problem::Problem;
 use feedwright_control::horizon::{MOST_KNOTS, Rates};
 use feedwright_control::identifier::servo::FOLLOWING_SCALE_MM;
 use feedwright_control::identifier::{FEED_SCALE_MM_S, INPUTS};
 
+use super::material::{Material, difference};
 use super::model::Slopes;
 
 /// Places of an axis in a vector: its state, and its input.
@@ -32,6 +34,16 @@ const INPUT: usize = 5;
 const MOST_PLACES: usize = 3 * PLACES;
 
 type Vector = [f64; MOST_PLACES];
+
+/// Both exact solutions are so to rounding, and the equations have a condition number of some 10^6.
+pub(crate) const AGREEMENT: f64 = 1e-9;
+
+/// How far the recursion and Gauss-Newton are apart, as a share of the largest rate.
+pub(crate) fn apart_from_gauss_newton<const N: usize>(material: &Material<N>) -> f64 {
+    let (problem, slopes) = material.roll_out(true);
+    let recursion = material.after(&Riccati::default().solve(&problem, &slopes, &material.rates));
+    difference(&material.improved(&mut GaussNewton::default(), &problem), &recursion)
+}
 
 /// What the recursion keeps from the way back for the way forth: du = K x + k.
 pub(crate) struct Riccati<const N: usize> {

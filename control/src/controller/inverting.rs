@@ -174,23 +174,14 @@ mod tests {
     use crate::contour_error::ContourError;
     use crate::controller::contour_compensation::tests::Circle;
     use crate::controller::two_dimensional::TwoDimensional;
-    use crate::identifier::{HIDDEN, INPUTS};
+    use crate::identifier::contour::tests::sample;
     use crate::window::{Preview, Reference, Register};
-
-    fn net() -> ContourIdentifier<2> {
-        let weight = |i: usize| 0.3 * libm::sin(1.7 * i as f64);
-        let hidden = |a: usize, i: usize| core::array::from_fn(|j| weight((a * INPUTS + i) * HIDDEN + j));
-        ContourIdentifier {
-            hidden: core::array::from_fn(|a| core::array::from_fn(|i| hidden(a, i))),
-            output: core::array::from_fn(|o| core::array::from_fn(|j| weight(7 + o * HIDDEN + j))),
-        }
-    }
 
     /// Twenty commands on a circle, each with an error after it.
     fn commands(knots: usize, gradient: Gradient) -> [Command<2>; 20] {
         let mut settings = Settings { knots, ..Settings::DEFAULT };
         settings.inversion.gradient = gradient;
-        let mut controller = TwoDimensional::new(net(), settings);
+        let mut controller = TwoDimensional::new(sample().0, settings);
         let (mut register, mut preview) = (Register::default(), Preview::new(0.001));
         let mut offset_mm = [0.0; 2];
         core::array::from_fn(|k| {
@@ -221,7 +212,7 @@ mod tests {
     #[test]
     fn asks_for_the_preview_of_its_knots_and_for_none_beyond_what_there_is() {
         let schedule = |servo_periods, knots| {
-            TwoDimensional::new(net(), Settings { servo_periods, knots, ..Settings::DEFAULT }).schedule().preview
+            TwoDimensional::new(sample().0, Settings { servo_periods, knots, ..Settings::DEFAULT }).schedule().preview
         };
         assert_eq!([schedule(10, 1), schedule(10, 5), schedule(10, 99)], [1, 5, 20]);
         assert_eq!([schedule(100, 20), schedule(10, 0), schedule(0, 3)], [2, 1, 3]);

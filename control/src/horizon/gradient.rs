@@ -15,7 +15,7 @@
 
 use super::problem::Problem;
 use super::{MOST_KNOTS, Rates, Solver};
-use crate::least_squares::cholesky;
+use crate::least_squares::inverse;
 use crate::vector::{add_scaled, dot, scale};
 
 /// mu. At 0.6 twenty steps get less far; at 0.9 five steps that are longer by 0.4 make the loop swing, at 0.8 they do not.
@@ -70,13 +70,7 @@ fn inverse_blocks<const N: usize>(problem: &Problem<N>) -> [[[f64; N]; N]; MOST_
         }
     }
     for block in &mut blocks[..problem.knots] {
-        // Symmetric: its columns are its rows.
-        *block = core::array::from_fn(|axis| {
-            let (mut factors, mut column) = (*block, [0.0; N]);
-            column[axis] = 1.0;
-            cholesky(&mut factors, &mut column, N);
-            column
-        });
+        *block = inverse(block, 1.0);
     }
     blocks
 }

@@ -18,7 +18,7 @@
 use super::residual::{self, Foresight, LAGS, Residual};
 use super::servo::ServoIdentifier;
 use super::{INPUTS, Inputs};
-use crate::least_squares::{LeastSquares, cholesky};
+use crate::least_squares::{LeastSquares, inverse};
 
 /// The other model is believed where its mean square innovation is below this part of the present one's: no change of mind
 /// over noise.
@@ -257,14 +257,9 @@ impl Axis {
 
 /// The information of a prior with this spread, against the noise of a sample: its inverse.
 fn information(spread: &[[f64; UNKNOWNS]; UNKNOWNS], settings: &Settings) -> [[f64; UNKNOWNS]; UNKNOWNS] {
-    core::array::from_fn(|column| {
-        let mut covariance = *spread;
-        for (r, row) in covariance.iter_mut().enumerate() {
-            row[r] += settings.beyond_mm * settings.beyond_mm;
-        }
-        let mut inverse = [0.0; UNKNOWNS];
-        inverse[column] = settings.noise_mm * settings.noise_mm;
-        cholesky(&mut covariance, &mut inverse, UNKNOWNS);
-        inverse
-    })
+    let mut covariance = *spread;
+    for (r, row) in covariance.iter_mut().enumerate() {
+        row[r] += settings.beyond_mm * settings.beyond_mm;
+    }
+    inverse(&covariance, settings.noise_mm * settings.noise_mm)
 }

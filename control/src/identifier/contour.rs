@@ -127,20 +127,28 @@ impl<const N: usize> ContourIdentifier<N> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
-    /// Weights and inputs without symmetry, from a linear congruential sequence.
-    fn sample() -> (ContourIdentifier<2>, Inputs<2>) {
+    /// Numbers without symmetry, -0.5 to 0.5: a linear congruential sequence.
+    pub(crate) fn sequence() -> impl FnMut() -> f64 {
         let mut state = 1_u32;
-        let mut next = || {
+        move || {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             f64::from(state) / f64::from(u32::MAX) - 0.5
-        };
+        }
+    }
+
+    /// Weights and inputs from it.
+    pub(crate) fn sample_of(mut next: impl FnMut() -> f64) -> (ContourIdentifier<2>, Inputs<2>) {
         let hidden = core::array::from_fn(|_| core::array::from_fn(|_| core::array::from_fn(|_| next())));
         let output = core::array::from_fn(|_| core::array::from_fn(|_| next()));
         let inputs = core::array::from_fn(|_| core::array::from_fn(|_| 2.0 * next()));
         (ContourIdentifier { hidden, output }, inputs)
+    }
+
+    pub(crate) fn sample() -> (ContourIdentifier<2>, Inputs<2>) {
+        sample_of(sequence())
     }
 
     #[test]
