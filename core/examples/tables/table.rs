@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use feedwright::compare::overview::each_once;
+use feedwright::compare::overview::{Claimed, each_once};
 use feedwright::compare::table::Row;
 use feedwright::compare::{AT_HOME, Comparison};
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Knows};
@@ -160,17 +160,13 @@ fn tuned(comparison: &Comparison) -> Result<String> {
 /// One line for each claim: on how many contours and machines it holds, and where it does not.
 fn claims(comparison: &Comparison) -> Result<String> {
     let mut table = String::from("| claim | limit | holds | worst | falls short on |\n|---|--:|--:|--:|---|\n");
-    for claim in each_once(comparison.verdicts.iter().map(|verdict| &verdict.claim)) {
-        let all: Vec<_> = comparison.verdicts.iter().filter(|verdict| verdict.claim == claim).collect();
-        let short: Vec<String> = all
+    for Claimed { claim, limit, held, worst, verdicts } in comparison.claims() {
+        let short: Vec<String> = verdicts
             .iter()
             .filter(|verdict| !verdict.holds)
             .map(|verdict| format!("{} on {} ({:.2})", verdict.contour, verdict.machine, verdict.value))
             .collect();
-        let worst = all.iter().map(|verdict| verdict.value).fold(0.0, f64::max);
-        let held = all.len() - short.len();
-        let limit = all[0].limit;
-        writeln!(table, "| {claim} | {limit} | {held} of {} | {worst:.3} | {} |", all.len(), short.join(", "))?;
+        writeln!(table, "| {claim} | {limit} | {held} of {} | {worst:.3} | {} |", verdicts.len(), short.join(", "))?;
     }
     Ok(table)
 }
@@ -184,8 +180,7 @@ fn tolerance(comparison: &Comparison) -> Result<String> {
     for controller in each_once(rows.iter().map(|row| &row.controller)) {
         write!(table, "| {controller} |")?;
         for contour in &contours {
-            let row = rows.iter().find(|row| (row.contour.as_str(), row.controller.as_str()) == (contour, controller));
-            match row.and_then(|row| row.feed_mm_s.zip(row.time_ratio)) {
+            match comparison.just_holding(contour, controller) {
                 Some((feed_mm_s, ratio)) => write!(table, " {feed_mm_s:.0}, {ratio:.2} |")?,
                 None => write!(table, " never |")?,
             }

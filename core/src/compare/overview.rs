@@ -1,7 +1,25 @@
-//! What tables over many rows are made of: names in their order, a row by its names, an error over all contours.
+//! What tables over many rows are made of: names in their order, a row by its names, an error over all contours, a claim over
+//! all that it was made of.
 
 use super::Comparison;
 use super::table::Row;
+use super::tolerance::AtTolerance;
+use super::verdict::Verdict;
+
+/// One claim, and what became of it everywhere.
+#[derive(Debug)]
+pub struct Claimed<'a> {
+    /// What is claimed.
+    pub claim: &'a str,
+    /// What the ratio may be.
+    pub limit: f64,
+    /// On how many it holds.
+    pub held: usize,
+    /// The largest ratio.
+    pub worst: f64,
+    /// All of them.
+    pub verdicts: Vec<&'a Verdict>,
+}
 
 impl Comparison {
     /// Contours and parts, in the order of the rows.
@@ -33,6 +51,24 @@ impl Comparison {
             sum_um2 += row.rms_um.powi(2);
         }
         Some((sum_um2 / contours.len() as f64).sqrt())
+    }
+
+    /// The claims, in the order of the verdicts.
+    pub fn claims(&self) -> Vec<Claimed<'_>> {
+        let of_claim = |claim| {
+            let verdicts: Vec<&Verdict> = self.verdicts.iter().filter(|verdict| verdict.claim == claim).collect();
+            let held = verdicts.iter().filter(|verdict| verdict.holds).count();
+            let worst = verdicts.iter().map(|verdict| verdict.value).fold(0.0, f64::max);
+            Claimed { claim, limit: verdicts[0].limit, held, worst, verdicts }
+        };
+        each_once(self.verdicts.iter().map(|verdict| &verdict.claim)).into_iter().map(of_claim).collect()
+    }
+
+    /// The feedrate at which a controller just holds the tolerance, mm/s, and its time there against open loop; none where it
+    /// never does.
+    pub fn just_holding(&self, contour: &str, controller: &str) -> Option<(f64, f64)> {
+        let is_it = |row: &&AtTolerance| row.contour == contour && row.controller == controller;
+        self.at_tolerance.iter().find(is_it).and_then(|row| row.feed_mm_s.zip(row.time_ratio))
     }
 }
 

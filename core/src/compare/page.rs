@@ -3,9 +3,9 @@
 
 use std::io::{self, Write};
 
-use super::overview::each_once;
+use super::overview::{Claimed, each_once};
 use super::table::{Row, knows};
-use super::tolerance::{AtTolerance, TOLERANCE_UM};
+use super::tolerance::TOLERANCE_UM;
 use super::{AT_HOME, Comparison};
 use crate::controllers::{BASELINE, BEST, Knows};
 use crate::report::figure::{COLORS, Curve, Figure, Panel, write_foot, write_head};
@@ -29,7 +29,7 @@ pub fn write(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     write_machines(out, comparison)?;
     write_contents(out, comparison)?;
     write_claims(out, comparison)?;
-    write_at_tolerance(out, &comparison.at_tolerance)?;
+    write_at_tolerance(out, comparison)?;
     for (index, here) in cells(&comparison.rows).into_iter().enumerate() {
         write_cell(out, index, here)?;
     }
@@ -111,19 +111,15 @@ fn write_claims(out: &mut impl Write, comparison: &Comparison) -> io::Result<()>
     }
     let held = verdicts.iter().filter(|verdict| verdict.holds).count();
     writeln!(out, "<h2>Claims: {held} of {} hold</h2>", verdicts.len())?;
-    for claim in each_once(verdicts.iter().map(|verdict| &verdict.claim)) {
-        let of_claim: Vec<_> = verdicts.iter().filter(|verdict| verdict.claim == claim).collect();
-        let held = of_claim.iter().filter(|verdict| verdict.holds).count();
-        let worst = of_claim.iter().map(|verdict| verdict.value).fold(0.0, f64::max);
-        let class = if held == of_claim.len() { "better" } else { "worse" };
+    for Claimed { claim, limit, held, worst, verdicts } in comparison.claims() {
+        let class = if held == verdicts.len() { "better" } else { "worse" };
         writeln!(
             out,
-            "<details><summary>{claim}, at most {}: <span class=\"{class}\">{held} of {} hold</span>, worst {worst:.3}</summary>",
-            of_claim[0].limit,
-            of_claim.len()
+            "<details><summary>{claim}, at most {limit}: <span class=\"{class}\">{held} of {} hold</span>, worst {worst:.3}</summary>",
+            verdicts.len()
         )?;
         write_heading(out, ["contour", "machine", "against", "ratio", ""])?;
-        for verdict in of_claim {
+        for verdict in verdicts {
             let (class, word) = if verdict.holds { ("better", "holds") } else { ("worse", "falls short") };
             writeln!(
                 out,
@@ -140,7 +136,8 @@ fn write_claims(out: &mut impl Write, comparison: &Comparison) -> io::Result<()>
     Ok(())
 }
 
-fn write_at_tolerance(out: &mut impl Write, rows: &[AtTolerance]) -> io::Result<()> {
+fn write_at_tolerance(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
+    let rows = &comparison.at_tolerance;
     if rows.is_empty() {
         return Ok(());
     }
@@ -151,9 +148,8 @@ fn write_at_tolerance(out: &mut impl Write, rows: &[AtTolerance]) -> io::Result<
     for controller in each_once(rows.iter().map(|row| &row.controller)) {
         write!(out, "<tr{}><td>{}</td>", ours(controller), escaped(controller))?;
         for contour in &contours {
-            let row = rows.iter().find(|row| row.contour == *contour && row.controller == controller);
-            match row.and_then(|row| row.time_ratio.zip(row.feed_mm_s)) {
-                Some((ratio, feed_mm_s)) => write!(out, "<td>{ratio:.2} at {feed_mm_s:.0}</td>")?,
+            match comparison.just_holding(contour, controller) {
+                Some((feed_mm_s, ratio)) => write!(out, "<td>{ratio:.2} at {feed_mm_s:.0}</td>")?,
                 None => out.write_all(b"<td>never</td>")?,
             }
         }
