@@ -195,17 +195,17 @@ impl Interpreter {
             return Err(Fault::new("gcode::compensation", block.whole(), message));
         }
         let end = add(center, scaled(minus(to, center), offset_radius / radius));
-        let end_along = scaled(left_of(unit(minus(to, center))), turn);
+        let programmed = Curve::Arc { start: from, end: to, center, turn };
+        let end_along = programmed.direction(to);
         self.at = *target;
         let center = if compensation.last.is_none() && compensation.radius_mm > 0.0 {
             entry_center([self.here[first], self.here[second]], to, end).ok_or_else(|| {
                 Fault::new("gcode::compensation", block.whole(), "the entry arc cannot reach the compensated end")
             })?
         } else {
-            let start_along = scaled(left_of(unit(minus(from, center))), turn);
             let start = add(center, scaled(unit(minus(from, center)), offset_radius));
             let curve = Curve::Arc { start, end, center, turn };
-            self.corner_to(block, &compensation, from, start_along, &curve, Speed::Programmed)?;
+            self.corner_to(block, &compensation, from, programmed.direction(from), &curve, Speed::Programmed)?;
             center
         };
         let mut machine = goal;

@@ -39,7 +39,7 @@ pub(super) fn left_of(a: Point) -> Point {
 }
 
 /// Slack of a comparison of lengths, mm: far below anything cut, far above rounding.
-const SLACK_MM: f64 = 1e-9;
+pub(super) const SLACK_MM: f64 = 1e-9;
 
 /// The same for angles, rad.
 const SLACK_RAD: f64 = 1e-9;
@@ -62,6 +62,43 @@ pub(super) enum Curve {
 }
 
 impl Curve {
+    pub(super) const fn start(&self) -> Point {
+        match *self {
+            Self::Line { start, .. } | Self::Arc { start, .. } => start,
+        }
+    }
+
+    pub(super) const fn end(&self) -> Point {
+        match *self {
+            Self::Line { end, .. } | Self::Arc { end, .. } => end,
+        }
+    }
+
+    pub(super) const fn set_start(&mut self, point: Point) {
+        match self {
+            Self::Line { start, .. } | Self::Arc { start, .. } => *start = point,
+        }
+    }
+
+    pub(super) const fn set_end(&mut self, point: Point) {
+        match self {
+            Self::Line { end, .. } | Self::Arc { end, .. } => *end = point,
+        }
+    }
+
+    /// Distance from start to end.
+    pub(super) fn chord(&self) -> f64 {
+        length(minus(self.end(), self.start()))
+    }
+
+    /// Direction at a point of the curve.
+    pub(super) fn direction(&self, at: Point) -> Point {
+        match *self {
+            Self::Line { start, end } => unit(minus(end, start)),
+            Self::Arc { center, turn, .. } => scaled(left_of(unit(minus(at, center))), turn),
+        }
+    }
+
     /// Where the one curve can end and the other begin: the meeting nearest to a point, of two as near the one that `other` has first.
     pub(super) fn meet(&self, other: &Self, near: Point) -> Option<Point> {
         let candidates = self.candidates(other);

@@ -2,9 +2,8 @@
 
 use super::Lathe;
 use super::offset::{SMOOTH_RAD, shifted};
-use super::profile::{SLACK_MM, direction, end_of, set_end, set_start, start_of};
 use crate::gcode::diagnostic::{Fault, Read};
-use crate::gcode::plane::{Curve, Point, add, cross, dot, length, minus, scaled, unit};
+use crate::gcode::plane::{Curve, Point, SLACK_MM, add, cross, dot, length, minus, scaled, unit};
 
 /// A corner word.
 #[derive(Debug, Clone, Copy)]
@@ -44,8 +43,8 @@ impl Lathe {
 impl Corner {
     /// Shortens both sides of the corner and returns what comes between them: nothing where the profile goes straight on.
     fn cut(&self, before: &mut Curve, behind: &mut Curve) -> Option<Option<Curve>> {
-        let corner = start_of(behind);
-        let (from, to) = (direction(before, corner), direction(behind, corner));
+        let corner = behind.start();
+        let (from, to) = (before.direction(corner), behind.direction(corner));
         let bend = cross(from, to).atan2(dot(from, to));
         if bend.abs() <= SMOOTH_RAD {
             return Some(None);
@@ -57,9 +56,9 @@ impl Corner {
         if !before.ends_at(start) || !behind.begins_at(end) {
             return None;
         }
-        set_end(before, start);
-        set_start(behind, end);
-        if [&*before, &*behind].iter().any(|curve| length(minus(end_of(curve), start_of(curve))) <= SLACK_MM) {
+        before.set_end(start);
+        behind.set_start(end);
+        if [&*before, &*behind].iter().any(|curve| curve.chord() <= SLACK_MM) {
             return None;
         }
         Some(Some(if self.is_round { Curve::Arc { start, end, center, turn } } else { Curve::Line { start, end } }))

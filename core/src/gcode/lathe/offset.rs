@@ -5,9 +5,9 @@
 //! it is left out up to where it comes through them, and what it covers goes.
 
 use super::Lathe;
-use super::profile::{Profile, SLACK_MM, direction, end_of, goes_back, set_end, set_start, start_of};
+use super::profile::{Profile, goes_back};
 use crate::gcode::diagnostic::Read;
-use crate::gcode::plane::{Curve, Point, add, cross, dot, left_of, length, minus, scaled, unit};
+use crate::gcode::plane::{Curve, Point, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, unit};
 
 /// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
 pub(super) const SMOOTH_RAD: f64 = 1e-10;
@@ -43,9 +43,9 @@ impl Profile {
         for curve in &self.curves {
             // An inner arc that would vanish lies below what is beside it.
             let mut moved = shifted(curve, distance_mm);
-            let corner = start_of(curve);
-            let to = direction(curve, corner);
-            if let Some(from) = before.map(|before| direction(before, corner)) {
+            let corner = curve.start();
+            let to = curve.direction(corner);
+            if let Some(from) = before.map(|before| before.direction(corner)) {
                 let bend = cross(from, to).atan2(dot(from, to));
                 // A wall that is its own way back has no side to be at a distance from.
                 above.is_lost |= bend.abs() > std::f64::consts::PI - REVERSAL_RAD;
@@ -68,7 +68,7 @@ impl Profile {
             && !above.is_lost
             && above.comparisons <= MOST_COMPARISONS
             && !above.curves.iter().any(goes_back);
-        above.curves.retain(|curve| length(minus(end_of(curve), start_of(curve))) > SLACK_MM);
+        above.curves.retain(|curve| curve.chord() > SLACK_MM);
         if !is_found || above.curves.is_empty() {
             let message = format!("the distance of {distance_mm:.4} mm to it is too large for its details");
             return Err(lathe.refuse(lathe.line, &message).hint("make D (and E) smaller"));
@@ -92,18 +92,17 @@ struct Above {
 
 impl Above {
     fn push(&mut self, mut piece: Curve) {
-        let end = self.curves.last().map(end_of);
-        let goes_on = !self.is_below && end.is_none_or(|end| length(minus(start_of(&piece), end)) <= SLACK_MM);
+        let end = self.curves.last().map(Curve::end);
+        let goes_on = !self.is_below && end.is_none_or(|end| length(minus(piece.start(), end)) <= SLACK_MM);
         if !goes_on {
             let through = self.comes_through(&piece).or_else(|| self.comes_before(&piece));
             self.is_below = through.is_none();
             let Some((kept, point)) = through else {
-                self.is_lost |=
-                    self.curves.first().is_none_or(|first| start_of(&piece)[0] < start_of(first)[0] - SLACK_MM);
+                self.is_lost |= self.curves.first().is_none_or(|first| piece.start()[0] < first.start()[0] - SLACK_MM);
                 return;
             };
             self.shorten(kept, point);
-            set_start(&mut piece, point);
+            piece.set_start(point);
         }
         self.curves.push(piece);
     }
@@ -112,7 +111,7 @@ impl Above {
     fn shorten(&mut self, kept: usize, point: Point) {
         self.curves.truncate(kept);
         if let Some(last) = self.curves.last_mut() {
-            set_end(last, point);
+            last.set_end(point);
         }
     }
 
@@ -123,8 +122,8 @@ impl Above {
         };
         let point = if self.is_below { None } else { last.meet(next, corner) };
         if let Some(point) = point {
-            set_end(last, point);
-            set_start(next, point);
+            last.set_end(point);
+            next.set_start(point);
         }
         point.is_some()
     }
@@ -137,7 +136,7 @@ impl Above {
             let longer =
                 Curve::Line { start, end: add(end, scaled(unit(minus(end, start)), GO_ON * self.distance_mm)) };
             if let Some((kept, point)) = self.comes_through(&longer)
-                && length(minus(point, end_of(last))) >= self.distance_mm - SLACK_MM
+                && length(minus(point, last.end())) >= self.distance_mm - SLACK_MM
             {
                 self.shorten(kept, point);
                 self.is_below = false;
@@ -159,11 +158,11 @@ impl Above {
         let mut found: Option<(usize, Point, f64)> = None;
         for (number, curve) in self.curves.iter().enumerate().rev() {
             self.comparisons += 1;
-            if self.comparisons > MOST_COMPARISONS || end_of(curve)[0] < start_of(piece)[0] - SLACK_MM {
+            if self.comparisons > MOST_COMPARISONS || curve.end()[0] < piece.start()[0] - SLACK_MM {
                 break;
             }
             // What is left of a curve may be a point, which has no direction.
-            let has_length = length(minus(end_of(curve), start_of(curve))) > SLACK_MM;
+            let has_length = curve.chord() > SLACK_MM;
             if let Some(point) = has_length.then(|| curve.first_crossing(piece)).flatten() {
                 let way = piece.way_to(point);
                 if found.is_none_or(|(_, _, first)| way < first) {
@@ -173,7 +172,7 @@ impl Above {
         }
         let (number, point, _) = found?;
         // It must come from below, not touch or go down.
-        let rises = cross(direction(&self.curves[number], point), direction(piece, point)) > TOUCH_RAD;
+        let rises = cross(self.curves[number].direction(point), piece.direction(point)) > TOUCH_RAD;
         rises.then_some((number + 1, point))
     }
 }

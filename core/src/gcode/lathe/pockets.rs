@@ -1,7 +1,6 @@
 //! Where a profile goes down and comes up again: falling stretches, their crossings with a level, and pockets that are left standing.
 
-use super::profile::{SLACK_MM, end_of, set_start, start_of};
-use crate::gcode::plane::{Curve, Point, length, minus};
+use crate::gcode::plane::{Curve, Point, SLACK_MM, length, minus};
 
 /// Whether a curve goes down from its start.
 pub(super) fn falls(curve: &Curve) -> bool {
@@ -56,7 +55,7 @@ fn half_chord(start: Point, center: Point, level: f64) -> f64 {
 
 /// Where a falling curve crosses `level`; its start counts, its end does not.
 pub(super) fn falls_through(curve: &Curve, level: f64) -> Option<Point> {
-    let (start, end) = (start_of(curve), end_of(curve));
+    let (start, end) = (curve.start(), curve.end());
     if !falls(curve) || level > start[1] + SLACK_MM {
         return None;
     }
@@ -77,7 +76,7 @@ pub(super) fn falls_through(curve: &Curve, level: f64) -> Option<Point> {
 
 /// Where a curve that is below `level` at its start, or falls from it, rises to it.
 fn rises_to(curve: &Curve, level: f64) -> f64 {
-    let (start, end) = (start_of(curve), end_of(curve));
+    let (start, end) = (curve.start(), curve.end());
     match *curve {
         Curve::Line { .. } if start[1] >= level - SLACK_MM => start[0],
         Curve::Line { .. } => start[0] + (end[0] - start[0]) * ((level - start[1]) / (end[1] - start[1])).min(1.0),
@@ -90,10 +89,10 @@ fn rises_to(curve: &Curve, level: f64) -> f64 {
 
 /// Where curves first rise to `level`: which of them, and where along it.
 pub(super) fn first_at(curves: &[Curve], level: f64) -> Option<(usize, f64)> {
-    let number = curves.iter().position(|curve| end_of(curve)[1] >= level - SLACK_MM)?;
+    let number = curves.iter().position(|curve| curve.end()[1] >= level - SLACK_MM)?;
     let curve = &curves[number];
-    let begins_there = start_of(curve)[1] >= level - SLACK_MM && !falls(curve);
-    Some((number, if begins_there { start_of(curve)[0] } else { rises_to(curve, level) }))
+    let begins_there = curve.start()[1] >= level - SLACK_MM && !falls(curve);
+    Some((number, if begins_there { curve.start()[0] } else { rises_to(curve, level) }))
 }
 
 /// The curves without their pockets: each is bridged at the height of its lip, and what does not come up to it again is left out.
@@ -110,7 +109,7 @@ pub(super) fn bridged(curves: &[Curve], entry_falls: bool) -> Vec<Curve> {
             number += 1;
             continue;
         }
-        let lip = start_of(&curve);
+        let lip = curve.start();
         // A hollow comes up to its own lip again, and so does, to rounding, an arc that hardly falls: it is found itself.
         let Some((ahead, along)) = first_at(&curves[number..], lip[1]) else { break };
         let end = [along, lip[1]];
@@ -118,9 +117,9 @@ pub(super) fn bridged(curves: &[Curve], entry_falls: bool) -> Vec<Curve> {
             bridged.push(Curve::Line { start: lip, end });
         }
         let mut rest = curves[number + ahead];
-        set_start(&mut rest, end);
+        rest.set_start(end);
         before_falls = false;
-        if length(minus(end_of(&rest), end)) > SLACK_MM {
+        if length(minus(rest.end(), end)) > SLACK_MM {
             before_falls = ends_falling(&rest);
             bridged.push(rest);
         }

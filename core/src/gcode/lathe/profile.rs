@@ -7,12 +7,10 @@ use super::Lathe;
 use crate::gcode::canon::{Motion, Shape};
 use crate::gcode::codes::spelled;
 use crate::gcode::diagnostic::{Fault, Read};
-use crate::gcode::plane::{Curve, Point, left_of, length, minus, scaled, sweep, unit};
+use crate::gcode::plane::{Curve, Point, SLACK_MM, length, minus, sweep};
 use crate::gcode::state::{Interpreter, Position};
 use crate::gcode::travel::Speed;
 
-/// Slack of comparisons, mm: far above rounding, far below anything cut.
-pub(super) const SLACK_MM: f64 = 1e-9;
 /// An arc that ends closer to its start, mm, would be read as a full turn (8e-9) or nearly.
 const SHORT_ARC_MM: f64 = 1e-7;
 /// The cycle's plane: which axes, and which way.
@@ -62,26 +60,6 @@ impl Side {
     }
 }
 
-pub(super) const fn start_of(curve: &Curve) -> Point {
-    match *curve {
-        Curve::Line { start, .. } | Curve::Arc { start, .. } => start,
-    }
-}
-
-pub(super) const fn end_of(curve: &Curve) -> Point {
-    match *curve {
-        Curve::Line { end, .. } | Curve::Arc { end, .. } => end,
-    }
-}
-
-/// Direction at a point of the curve.
-pub(super) fn direction(curve: &Curve, at: Point) -> Point {
-    match *curve {
-        Curve::Line { start, end } => unit(minus(end, start)),
-        Curve::Arc { center, turn, .. } => scaled(left_of(unit(minus(at, center))), turn),
-    }
-}
-
 impl Profile {
     /// The profile of a cycle; refuses one that goes back along the passes.
     pub(super) fn new(lathe: &Lathe) -> Read<Self> {
@@ -121,13 +99,13 @@ impl Profile {
         }
         // An entry that would lead back is begun above its end.
         let start = side.of([lathe.start[0], lathe.start[1], lathe.start[2]]);
-        let start = [start[0].min(end_of(first)[0]), start[1]];
+        let start = [start[0].min(first.end()[0]), start[1]];
         Ok(Self { side, start, curves: rest.to_vec() })
     }
 
     /// Where the entry ends.
     pub(super) fn entry(&self) -> Point {
-        self.curves.first().map_or(self.start, start_of)
+        self.curves.first().map_or(self.start, Curve::start)
     }
 }
 
@@ -138,7 +116,7 @@ fn clear(way: f64) -> Option<f64> {
 
 /// Whether a curve goes against the passes anywhere.
 pub(super) fn goes_back(curve: &Curve) -> bool {
-    if end_of(curve)[0] < start_of(curve)[0] - SLACK_MM {
+    if curve.end()[0] < curve.start()[0] - SLACK_MM {
         return true;
     }
     match *curve {
@@ -146,21 +124,9 @@ pub(super) fn goes_back(curve: &Curve) -> bool {
         // An arc that does not lies on one half of its circle; the rounding of ends and centres turns the tangent by very little.
         Curve::Arc { start, end, center, turn } => {
             let slack = 1e-6;
-            [start, end].iter().any(|&at| direction(curve, at)[0] < -slack)
+            [start, end].iter().any(|&at| curve.direction(at)[0] < -slack)
                 || sweep(start, end, center, turn) > std::f64::consts::PI + slack
         }
-    }
-}
-
-pub(super) const fn set_start(curve: &mut Curve, point: Point) {
-    match curve {
-        Curve::Line { start, .. } | Curve::Arc { start, .. } => *start = point,
-    }
-}
-
-pub(super) const fn set_end(curve: &mut Curve, point: Point) {
-    match curve {
-        Curve::Line { end, .. } | Curve::Arc { end, .. } => *end = point,
     }
 }
 

@@ -4,10 +4,10 @@
 //! below the lip of each.
 
 use super::pockets::{bridged, ends_falling, falls, falls_through, first_at, parted_at_tops};
-use super::profile::{Profile, SLACK_MM, end_of, set_end, set_start, start_of};
+use super::profile::Profile;
 use super::{Lathe, MOST_PASSES};
 use crate::gcode::diagnostic::{Fault, Read};
-use crate::gcode::plane::{Curve, Point};
+use crate::gcode::plane::{Curve, Point, SLACK_MM};
 use crate::gcode::state::Interpreter;
 use crate::gcode::travel::Speed;
 
@@ -49,7 +49,7 @@ impl Interpreter {
         let mut profile = Profile::new(lathe)?.offset(lathe, left_mm)?;
         let (start, entry) = (profile.start, profile.entry());
         // The last pass must meet something: a profile that ends below the surface goes up to it.
-        if let Some(last) = profile.curves.last().map(end_of)
+        if let Some(last) = profile.curves.last().map(Curve::end)
             && last[1] < start[1] - SLACK_MM
         {
             profile.curves.push(Curve::Line { start: last, end: [last[0], start[1]] });
@@ -70,7 +70,7 @@ impl Interpreter {
         let mut before_falls = entry_falls;
         for number in 0..profile.curves.len() {
             let curve = profile.curves[number];
-            let lip = start_of(&curve)[1];
+            let lip = curve.start()[1];
             if kind == Kind::PocketsOnly
                 && !before_falls
                 && falls(&curve)
@@ -102,7 +102,7 @@ impl Interpreter {
             roughing.count(lathe)?;
             let share = (start[1] - level) / (start[1] - entry[1]);
             let begin = [start[0] + share * (entry[0] - start[0]), level];
-            let last = profile.curves.last().map_or(0.0, |last| end_of(last)[0]);
+            let last = profile.curves.last().map_or(0.0, |last| last.end()[0]);
             let hit = [first_at(&profile.curves, level).map_or(last, |(_, along)| along), level];
             self.lathe_line(lathe, side, begin, Speed::Rapid)?;
             self.pass(lathe, profile, [begin, hit], Speed::Rapid, roughing.retraction_mm)?;
@@ -115,14 +115,13 @@ impl Interpreter {
         let mut rest = profile.curves[number];
         let others = profile.curves.get(number + 1..).unwrap_or_default();
         let top = roughing.top.filter(|_| falls(&rest));
-        let mut step =
-            top.map_or(0.0, |top| ((top - start_of(&rest)[1] - SLACK_MM) / roughing.depth_mm).ceil().max(0.0));
+        let mut step = top.map_or(0.0, |top| ((top - rest.start()[1] - SLACK_MM) / roughing.depth_mm).ceil().max(0.0));
         while let Some(begin) = top.and_then(|top| falls_through(&rest, top - step * roughing.depth_mm)) {
             step += 1.0;
             roughing.count(lathe)?;
             let mut piece = rest;
-            set_end(&mut piece, begin);
-            set_start(&mut rest, begin);
+            piece.set_end(begin);
+            rest.set_start(begin);
             self.lathe_curve(lathe, profile.side, &piece)?;
             let hit = first_at(&[rest], begin[1]).or_else(|| first_at(others, begin[1]));
             let Some((_, along)) = hit else {
