@@ -78,7 +78,7 @@ pub(crate) struct Rig<const N: usize, C> {
 impl<const N: usize, C: Controller<N>> Rig<N, C> {
     /// Warmed up by nearly a lap.
     pub(crate) fn new(controller: C, tool: Tool) -> Self {
-        let tick = Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0));
+        let tick = Tick::new(0.001, controller.schedule(), Bounds::new(0.5, 400.0, 400.0));
         let mut rig = Self { tick, controller, tool, tool_mm: [0.0; N] };
         for _ in 0..1000 {
             rig.servo_period();
@@ -136,6 +136,7 @@ impl<const N: usize> Surroundings<N> {
             tau_s: 0.299,
             feed_period_s: 0.01,
             offset_mm: [0.0; N],
+            offset_mm_s: [0.0; N],
         }
     }
 

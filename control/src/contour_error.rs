@@ -16,8 +16,8 @@
 //! The window of variable size: the search starts at the age where it ended last time and looks as far to both sides as
 //! the tool can be, given how far it was off and how fast the reference moves. [`MAX_ENTRIES`] bounds it.
 
-use crate::vector::{add_scaled, dot, norm, reject, scale, sub};
-use crate::window::{Knot, Window};
+use crate::vector::{add_scaled, bounded, dot, norm, reject, scale, sub};
+use crate::window::{CORNER_COSINE, Knot, Window, corner};
 
 /// Entries looked at on either side of the start, at the least: covers a feed period in which the lag changes.
 const LEAST_REACH: i32 = 12;
@@ -36,9 +36,6 @@ const STANDING: i32 = 2;
 /// Where the path runs back along itself, an old stretch is as near as the one that the tool is on, and following it leads
 /// out of the register: of feet whose distances differ by less than this, the newer counts, mm.
 const AS_NEAR_MM: f64 = 1e-4;
-/// Cosine of the turn between neighbouring knots above which there is a corner between them (0.1 rad: a curve turns so
-/// much in one servo period only where its radius is below ten steps).
-const CORNER_COSINE: f64 = 0.995;
 
 /// The nearest point of the path, as known from the register.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,7 +76,7 @@ impl Estimator {
     #[inline]
     pub fn estimate<const N: usize>(&mut self, window: &Window<'_, N>, tool_mm: [f64; N]) -> ContourError<N> {
         let [first, last] = window.range();
-        let start = if self.backwards { 0 } else { self.index }.clamp(first, last);
+        let start = if self.backwards { 0 } else { self.index }.min(last).max(first);
         let reach = self.reach();
         // On towards the current knot in any case: a tool that lags turns short of a point where the path turns back, and
         // goes on from there on a newer stretch, which need not begin near the old one.
@@ -116,9 +113,9 @@ impl Estimator {
 /// not to the one that happens to be nearer.
 #[inline]
 pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i32, reach: i32) -> ContourError<N> {
-    let reach = reach.clamp(LEAST_LOCATE_REACH, MOST_REACH);
+    let reach = reach.min(MOST_REACH).max(LEAST_LOCATE_REACH);
     let [first, last] = window.range();
-    let near = near.clamp(first, last);
+    let near = near.min(last).max(first);
     let (mut index, mut least) = (near, f64::INFINITY);
     for candidate in (near - reach).max(first)..=(near + reach).min(last) {
         let d = sub(window.knot(candidate).position_mm, tool_mm);
@@ -226,16 +223,11 @@ fn nearest_foot<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], index
 /// The nearest points on the path between two knots: the chord, or where there is a corner the two sides of it.
 fn feet_between<const N: usize>(from: &Knot<N>, to: &Knot<N>, tool_mm: [f64; N]) -> [ContourError<N>; 2] {
     let (p, q) = (from.position_mm, to.position_mm);
-    let cosine = dot(from.tangent, to.tangent);
-    let chord = sub(q, p);
-    if cosine < CORNER_COSINE && cosine > -CORNER_COSINE {
-        // The corner is where the two tangent lines meet: p + a t1, with a from the component of the chord across t2.
-        let across = |v: [f64; N]| add_scaled(v, -dot(v, to.tangent), to.tangent);
-        let (t, c) = (across(from.tangent), across(chord));
-        let a = (dot(c, t) / dot(t, t)).clamp(0.0, norm(chord));
-        let corner = add_scaled(p, a, from.tangent);
-        return [foot_on(p, corner, from.tangent, tool_mm), foot_on(corner, q, to.tangent, tool_mm)];
+    if let Some(to_corner_mm) = corner(from, to) {
+        let corner_mm = add_scaled(p, to_corner_mm, from.tangent);
+        return [foot_on(p, corner_mm, from.tangent, tool_mm), foot_on(corner_mm, q, to.tangent, tool_mm)];
     }
+    let chord = sub(q, p);
     let length = norm(chord);
     let direction = if length > 0.0 { scale(1.0 / length, chord) } else { to.tangent };
     [foot_on(p, q, direction, tool_mm); 2]
@@ -243,7 +235,7 @@ fn feet_between<const N: usize>(from: &Knot<N>, to: &Knot<N>, tool_mm: [f64; N])
 
 /// The nearest point on the stretch from `p` to `q`, which runs along the unit vector `direction`.
 fn foot_on<const N: usize>(p: [f64; N], q: [f64; N], direction: [f64; N], tool_mm: [f64; N]) -> ContourError<N> {
-    let along = dot(sub(tool_mm, p), direction).clamp(0.0, norm(sub(q, p)));
+    let along = bounded(dot(sub(tool_mm, p), direction), 0.0, norm(sub(q, p)));
     let foot = add_scaled(p, along, direction);
     ContourError { vector_mm: sub(foot, tool_mm), tangent: direction, index: 0, entries: 0 }
 }
@@ -283,6 +275,7 @@ mod tests {
                 tau_s: 0.0,
                 feed_period_s: 0.01,
                 offset_mm: [0.0; 2],
+                offset_mm_s: [0.0; 2],
             };
             Estimator::default().estimate(&window, tool_mm)
         }
@@ -290,7 +283,7 @@ mod tests {
 
     fn on_circle(a: f64) -> Knot<2> {
         let (sin, cos) = (libm::sin(a), libm::cos(a));
-        Knot { position_mm: [10.0 * (1.0 - cos), 10.0 * sin], tangent: [sin, cos], feed_mm_s: 50.0 }
+        Knot { position_mm: [10.0 * (1.0 - cos), 10.0 * sin], tangent: [sin, cos], feed_mm_s: 50.0, cutting: true }
     }
 
     #[test]
@@ -314,11 +307,13 @@ mod tests {
             position_mm: [-0.995 + 0.05 * f64::from(i), 0.0],
             tangent: [1.0, 0.0],
             feed_mm_s: 50.0,
+            cutting: true,
         });
         let in_y = (0..20).map(|i| Knot {
             position_mm: [0.0, 0.005 + 0.05 * f64::from(i)],
             tangent: [0.0, 1.0],
             feed_mm_s: 50.0,
+            cutting: true,
         });
         let error = Behind::new(in_x.chain(in_y)).estimate([0.03, -0.04]);
         assert!((norm(error.vector_mm) - 0.05).abs() < 1e-12, "{error:?}");
@@ -329,7 +324,7 @@ mod tests {
         let there_and_back = |i: i32| {
             let (x, back) =
                 if i <= 300 { (0.05 * f64::from(i), 1.0) } else { (0.05 * f64::from(600 - i) + 0.01, -1.0) };
-            Knot { position_mm: [x, 0.0], tangent: [back, 0.0], feed_mm_s: 50.0 }
+            Knot { position_mm: [x, 0.0], tangent: [back, 0.0], feed_mm_s: 50.0, cutting: true }
         };
         let mut behind = Behind::new((0..300).map(there_and_back));
         let mut estimator = Estimator::default();
@@ -345,6 +340,7 @@ mod tests {
                 tau_s: 0.0,
                 feed_period_s: 0.001,
                 offset_mm: [0.0; 2],
+                offset_mm_s: [0.0; 2],
             };
             let error = estimator.estimate(&window, [x + 0.013, 0.02]);
             assert!((norm(error.vector_mm) - 0.02).abs() < 1e-9, "{i}: {error:?}");

@@ -1,6 +1,6 @@
 //! The family of controllers: each decides, once a feed period, how fast to go on along the path and how far beside it.
 //!
-//! The command of a feed period is the path, run at `rate` times the planned feed, plus an offset that moves linearly to
+//! The command of a feed period is the path, run at `rate` times the planned feed, plus an offset that moves to
 //! `offset_mm`:
 //!
 //! ```text
@@ -24,6 +24,7 @@ pub mod two_dimensional;
 pub mod zero_phase;
 
 use crate::contour_error::ContourError;
+use crate::vector::{add_scaled, scale, sub};
 use crate::window::Window;
 
 /// How often a controller wants to decide, and how far it wants to see.
@@ -44,18 +45,53 @@ pub struct Measured<const N: usize> {
     pub contour: ContourError<N>,
 }
 
-/// What to do in the next feed period.
+/// What to do in the next feed period. Within it the offset goes from where it is to its end along
+///
+/// ```text
+/// o(s) = o(0) + s (o(1) - o(0)) - s (1 - s) bend      s = 0 .. 1
+/// ```
+///
+/// a line where the bend is zero; with `bend = T^2 a / 2` it has the acceleration a throughout.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Command<const N: usize> {
     /// Speed along the path as a multiple of the planned feedrate; 1 leaves the plan as it is.
     pub rate: f64,
     /// Offset of the command from the path at the end of the feed period, mm.
     pub offset_mm: [f64; N],
+    /// How far the way of the offset is bent, mm.
+    pub bend_mm: [f64; N],
 }
 
 impl<const N: usize> Command<N> {
     /// The path at the planned feed.
-    pub const AS_PLANNED: Self = Self { rate: 1.0, offset_mm: [0.0; N] };
+    pub const AS_PLANNED: Self = Self::straight(1.0, [0.0; N]);
+
+    /// An offset that moves along a line.
+    pub const fn straight(rate: f64, offset_mm: [f64; N]) -> Self {
+        Self { rate, offset_mm, bend_mm: [0.0; N] }
+    }
+
+    /// An offset that accelerates by so much, from the place and the speed that it has.
+    #[inline]
+    pub fn accelerated(window: &Window<'_, N>, acceleration_mm_s2: [f64; N]) -> Self {
+        let period_s = window.feed_period_s;
+        let bend_mm = scale(0.5 * period_s * period_s, acceleration_mm_s2);
+        let moved_mm = add_scaled(bend_mm, period_s, window.offset_mm_s);
+        Self { rate: 1.0, offset_mm: add_scaled(window.offset_mm, 1.0, moved_mm), bend_mm }
+    }
+
+    /// Offset after a part of the feed period, which begins at `from_mm`.
+    #[inline]
+    pub fn offset_after_mm(&self, part: f64, from_mm: [f64; N]) -> [f64; N] {
+        let line = add_scaled(from_mm, part, sub(self.offset_mm, from_mm));
+        add_scaled(line, -part * (1.0 - part), self.bend_mm)
+    }
+
+    /// Speed of the offset at the end of a feed period of `period_s`, which begins at `from_mm`.
+    #[inline]
+    pub fn offset_mm_s(&self, from_mm: [f64; N], period_s: f64) -> [f64; N] {
+        scale(1.0 / period_s, add_scaled(sub(self.offset_mm, from_mm), 1.0, self.bend_mm))
+    }
 }
 
 /// The contract. A controller is admitted by the conformance tests of the library: rest stays rest, the same input gives
@@ -75,6 +111,18 @@ pub trait Controller<const N: usize> {
     /// after each decision.
     fn missed_mm(&self) -> f64 {
         0.0
+    }
+    /// A decision without a measurement: what was commanded on the way here is in the window, where the tool is nobody knows.
+    fn bridge(&mut self, window: &Window<'_, N>) {
+        let _ = window;
+    }
+    /// By how much its offset has moved the tool, mm, where it has a model that says so.
+    fn moved_mm(&self) -> Option<[f64; N]> {
+        None
+    }
+    /// Mean squares of the contour error that the last decision foresees with its correction and without, mm^2.
+    fn foreseen_mm2(&self) -> [f64; 2] {
+        [0.0; 2]
     }
     /// Whether it means to make the contour error smaller. One that excites the machine to identify it does not, and is
     /// not taken out of the loop for making it larger.

@@ -1,30 +1,38 @@
-//! The receding-horizon inversion: one Gauss-Newton step on the offset rates of all knots of the horizon.
+//! The receding-horizon inversion: one Gauss-Newton step on the accelerations of the offset in all knots of the horizon.
 //!
-//! With the rates u_j of the command's offset from the path as the unknowns, in all axes, the plan is rolled out through a
-//! [`Model`] of the machine (the servo identifier), the contour error of every predicted tool position is exact geometry,
-//! and
+//! The command is the path and an offset o from it. With the accelerations a_j of the offset in each knot as the unknowns, in
+//! all axes, the plan is rolled out through a [`Model`] of the machine (the servo identifier). Each predicted tool position p_i
+//! is referred to the point of the path of *its own plan time less the lag of the machine*,
 //!
 //! ```text
-//! J(u) = 1/2 sum_i |eps_i(u)|^2 + h^2/2 sum_i (t_i . o_i(u))^2 + w/2 sum_j |u_j|^2 + d/2 sum_j |u_j - u_{j-1}|^2
+//! r_i = P*(tau_i - lag)     eps_i = (1 - t_i t_i')(p_i - r_i)     theta_i = t_i'(p_i - r_i)
+//!
+//! J(a) = 1/2 sum_i (|eps_i|^2 + h^2 theta_i^2) + w/2 sum_j |v_j|^2 + d/2 sum_j |v_j - v_{j-1}|^2     v_j = v_0 + T sum_{m<=j} a_m
+//! |a_j| <= A in each axis
 //! ```
 //!
-//! is made smaller by a [`Solver`], from last tick's plan, shifted. Along the path an offset only shifts the tool in time,
-//! but for corners, where it makes the command turn earlier or later; h is its price, so that nothing drifts and no time is
-//! bought or sold.
+//! and J is made smaller by a [`Solver`], from last tick's plan, shifted. Where the tool lags behind its time, or leads, nothing
+//! is cut wrong, and theta counts little (h is small); but it counts, so that no tool stays on a stretch of the path that is
+//! over: a nearest point would let it. The limits of the plan are those of the machine file: what the plan asks for is carried
+//! out as it is. Speed and deviation of the offset, and what the drives can accelerate, cost much beyond their limits
+//! ([`problem`]).
+//!
+//! On a rapid motion nothing is cut: there the offset alone counts, and goes to zero.
 //!
 //! A knot of the plan is one feed period long, or several on a machine that lags far behind: the horizon has to reach
 //! beyond the lag, whatever the machine, and takes no more unknowns for it.
 //!
 //! Source: the performance index is Lee, Cho and Jeon (2005), eq. 7, summed over a horizon; receding horizon as in Richalet
-//! et al. (1978), knots of several periods as in move blocking (Cagienard et al. 2007).
+//! et al. (1978), contour and lag error with weights of their own as in Lam, Manzie and Good (2010), knots of several periods
+//! as in move blocking (Cagienard et al. 2007).
 //!
 //! Everything is of fixed size: at most [`MOST_KNOTS`] knots, N unknowns each.
 
+pub mod interior_point;
 pub mod problem;
 pub mod gauss_newton;
-pub mod gradient;
 
-use crate::vector::add_scaled;
+use crate::vector::{add_scaled, bounded, scale, sub};
 use crate::window::Window;
 use gauss_newton::GaussNewton;
 use problem::Problem;
@@ -34,40 +42,81 @@ pub const MOST_KNOTS: usize = 20;
 /// Most feed periods of a knot.
 pub const MOST_PERIODS: usize = 4;
 /// Most axes.
-const MOST_AXES: usize = 3;
+pub const MOST_AXES: usize = 3;
 /// Most unknowns.
-const MOST_UNKNOWNS: usize = MOST_KNOTS * MOST_AXES;
+pub const MOST_UNKNOWNS: usize = MOST_KNOTS * MOST_AXES;
+
+/// Where the path runs this slowly, mm/s, an error along it is on its way to be one across it: at rest it leads beyond the end.
+const RESTING_MM_S: f64 = 0.5;
+
+/// Knots at the end of the horizon by which the tool has to be back at its time. Behind the horizon nothing is foreseen: a tool
+/// that is late or fast there when the path turns swings from one side of it to the other.
+const LAST_KNOTS: usize = 5;
 
 /// Settings of the inversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
     /// Knots of the horizon; 1 to [`MOST_KNOTS`].
     pub knots: usize,
-    /// w: weight of the offset rates, s^2. Smaller is sharper; below 1e-10 the plan rings from knot to knot, above 1e-4
-    /// nothing is corrected.
+    /// w: weight of the speed of the offset, s^2. Smaller is sharper; below 1e-10 the plan rings from knot to knot, above
+    /// 1e-4 nothing is corrected.
     pub rate_weight: f64,
-    /// d: weight of the change of the offset rates from knot to knot, s^2.
+    /// d: weight of the change of that speed from knot to knot, s^2.
     pub change_weight: f64,
-    /// h: price of an offset along the path against a contour error of the same size; 0.001 to 1.
-    pub tangential_price: f64,
-    /// Largest offset rate of an axis, mm/s. Far above what a plan asks for: a loop that runs into it swings.
-    pub rate_limit_mm_s: f64,
+    /// h: weight of an error along the path against one across it where it is small, and where it is large: the first
+    /// leaves room at a corner, the second keeps the tool from staying behind. 0.001 to 1.
+    pub tangential_weights: [f64; 2],
+    /// An error along the path half way between the two, mm.
+    pub tangential_mm: f64,
+    /// h of the last knots at the least.
+    pub last_weight: f64,
+    /// Whether rapid motions are corrected as cuts are.
+    pub on_rapids: bool,
+    /// What the plan keeps to.
+    pub limits: Limits,
 }
 
-/// The offset rates of a plan, knot by knot, mm/s.
-pub type Rates<const N: usize> = [[f64; N]; MOST_KNOTS];
+/// Limits of the correction, that is of the offset of the command from the path. Axes beyond those of the machine do not count.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// A: acceleration of the offset of each axis, mm/s^2. Never exceeded.
+    pub acceleration_mm_s2: [f64; MOST_AXES],
+    /// Speed of the offset of an axis, mm/s.
+    pub speed_mm_s: f64,
+    /// Length of the offset, mm.
+    pub deviation_mm: f64,
+    /// Acceleration of the tool in each axis at the torque limit of its drive, mm/s^2.
+    pub drive_mm_s2: [f64; MOST_AXES],
+}
 
-/// What the tool feels at the end of a knot: its displacement in each axis, mm, for an offset rate of 1 mm/s of that axis in
-/// each of the knots so far, s.
+impl Limits {
+    /// None.
+    pub const NONE: Self = Self {
+        acceleration_mm_s2: [f64::INFINITY; MOST_AXES],
+        speed_mm_s: f64::INFINITY,
+        deviation_mm: f64::INFINITY,
+        drive_mm_s2: [f64::INFINITY; MOST_AXES],
+    };
+}
+
+/// The accelerations of a plan, knot by knot, mm/s^2.
+pub type Accelerations<const N: usize> = [[f64; N]; MOST_KNOTS];
+
+/// What the tool feels at the end of a knot: its displacement in each axis, mm, for an acceleration of the offset of 1 mm/s^2 in
+/// that axis in each of the knots so far, s^2.
 pub type Felt<const N: usize> = [[f64; N]; MOST_KNOTS];
 
 /// What predicts the tool: a model of the machine, with its state at the current knot.
 pub trait Model<const N: usize>: Clone {
     /// How far the tool is behind the command in the long run, s.
     fn lag_s(&self) -> f64;
-    /// Moves on by one feed period; the tool at its end, mm. `felt` takes the derivative to the rates of the knots so far,
-    /// axis by axis: what one axis feels of another is left out.
+    /// Moves on by one feed period; the tool at its end, mm. `felt` takes the derivative to the accelerations of the knots so
+    /// far, axis by axis: what one axis feels of another is left out.
     fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>, felt: &mut Felt<N>) -> [f64; N];
+    /// By how much the offset, past and planned, has moved that tool, mm.
+    fn moved_mm(&self) -> [f64; N] {
+        [0.0; N]
+    }
 }
 
 /// What is commanded in a feed period of the horizon.
@@ -77,19 +126,48 @@ pub struct Stretch<const N: usize> {
     pub period: usize,
     /// Feed periods of a knot.
     pub periods_per_knot: usize,
+    /// Its length, s.
+    pub period_s: f64,
     /// Command at its start and end, mm.
     pub command_mm: [[f64; N]; 2],
     /// Offset from the path at its start and end, mm.
     pub offset_mm: [[f64; N]; 2],
+    /// Speed of the offset at its start and end, mm/s.
+    pub offset_mm_s: [[f64; N]; 2],
 }
 
 impl<const N: usize> Stretch<N> {
-    /// The next feed period, with this offset at its end.
-    pub fn next(window: &Window<'_, N>, offset_mm: [f64; N]) -> Self {
-        let offset_mm = [window.offset_mm, offset_mm];
-        let path_mm = [window.now().position_mm, window.ahead(1).position_mm];
-        let command_mm = [0, 1].map(|end| add_scaled(path_mm[end], 1.0, offset_mm[end]));
-        Self { period: 0, periods_per_knot: 1, command_mm, offset_mm }
+    /// Before the first feed period: where the command is now.
+    pub fn now(window: &Window<'_, N>, periods_per_knot: usize) -> Self {
+        Self {
+            period: usize::MAX,
+            periods_per_knot,
+            period_s: window.feed_period_s,
+            command_mm: [add_scaled(window.now().position_mm, 1.0, window.offset_mm); 2],
+            offset_mm: [window.offset_mm; 2],
+            offset_mm_s: [window.offset_mm_s; 2],
+        }
+    }
+
+    /// Goes on by one feed period in which the offset accelerates by so much.
+    #[inline]
+    pub fn go_on(&mut self, window: &Window<'_, N>, acceleration_mm_s2: [f64; N]) {
+        let period_s = self.period_s;
+        self.period = self.period.wrapping_add(1);
+        let [_, from_mm] = self.offset_mm;
+        let [_, from_mm_s] = self.offset_mm_s;
+        let to_mm_s = add_scaled(from_mm_s, period_s, acceleration_mm_s2);
+        let to_mm = add_scaled(add_scaled(from_mm, 0.5 * period_s, from_mm_s), 0.5 * period_s, to_mm_s);
+        self.offset_mm = [from_mm, to_mm];
+        self.offset_mm_s = [from_mm_s, to_mm_s];
+        let path_mm = window.ahead(self.period + 1).position_mm;
+        self.command_mm = [self.command_mm[1], add_scaled(path_mm, 1.0, to_mm)];
+    }
+
+    /// How far the way of the offset is bent, mm: see [`crate::Command`].
+    #[inline]
+    pub fn bend_mm(&self) -> [f64; N] {
+        scale(0.5 * self.period_s, sub(self.offset_mm_s[1], self.offset_mm_s[0]))
     }
 
     /// The knot that this feed period is in.
@@ -98,29 +176,41 @@ impl<const N: usize> Stretch<N> {
         self.period / self.periods_per_knot
     }
 
-    /// The feed periods of a knot, this one's or an earlier, that lie before this one.
+    /// How fast an acceleration of 1 mm/s^2 in a knot makes the offset on the mean of the feed period `back` before this one,
+    /// s.
     #[inline]
-    pub fn elapsed(&self, knot: usize) -> usize {
-        (self.period - knot * self.periods_per_knot).min(self.periods_per_knot)
+    pub fn gained_s(&self, knot: usize, back: usize) -> f64 {
+        let before = knot * self.periods_per_knot + back;
+        if self.period < before {
+            return 0.0;
+        }
+        let elapsed = self.period - before;
+        if elapsed < self.periods_per_knot {
+            (elapsed as f64 + 0.5) * self.period_s
+        } else {
+            self.periods_per_knot as f64 * self.period_s
+        }
     }
 
-    /// Whether the feed period `back` before this one is in a knot.
+    /// How far an acceleration of 1 mm/s^2 in a knot has moved the offset after `part` of this feed period, s^2.
     #[inline]
-    pub fn was_in(&self, knot: usize, back: usize) -> bool {
-        back <= self.period && (self.period - back) / self.periods_per_knot == knot
+    pub fn moved_s2(&self, knot: usize, part: f64) -> f64 {
+        let since = self.period as f64 + part - (knot * self.periods_per_knot) as f64;
+        let within = bounded(since, 0.0, self.periods_per_knot as f64);
+        within * (since.max(0.0) - 0.5 * within) * self.period_s * self.period_s
     }
 }
 
 /// What makes J smaller. It keeps nothing from tick to tick that the next depends on.
 pub trait Solver<const N: usize>: Default {
-    /// Changes the rates of a plan whose problem is this.
-    fn improve(&mut self, problem: &Problem<N>, rates: &mut Rates<N>);
+    /// Changes the accelerations of a plan whose problem is this, within the limits. They are within them before.
+    fn improve(&mut self, problem: &Problem<N>, accelerations_mm_s2: &mut Accelerations<N>);
 }
 
-/// A plan: the offset rate of each knot of the horizon, mm/s.
+/// A plan: the acceleration of the offset in each knot of the horizon, mm/s^2.
 #[derive(Debug, Clone)]
 pub struct Plan<const N: usize, S = GaussNewton> {
-    rates: Rates<N>,
+    accelerations_mm_s2: Accelerations<N>,
     periods: usize,
     solver: S,
 }
@@ -128,33 +218,35 @@ pub struct Plan<const N: usize, S = GaussNewton> {
 /// The first step of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step<const N: usize> {
-    /// Offset at the next feed period, mm.
-    pub offset_mm: [f64; N],
-    /// Largest change of an offset rate in this step, mm/s.
-    pub change_mm_s: f64,
+    /// Acceleration of the offset in the next feed period, mm/s^2.
+    pub acceleration_mm_s2: [f64; N],
+    /// Largest change of an acceleration by the solver, mm/s^2.
+    pub change_mm_s2: f64,
+    /// Mean squares of the contour error over the horizon, mm^2: of the plan before this step, and without any offset.
+    pub contour_mm2: [f64; 2],
 }
 
 impl<const N: usize, S: Solver<N>> Default for Plan<N, S> {
     fn default() -> Self {
-        Self { rates: [[0.0; N]; MOST_KNOTS], periods: 1, solver: S::default() }
+        Self { accelerations_mm_s2: [[0.0; N]; MOST_KNOTS], periods: 1, solver: S::default() }
     }
 }
 
 impl<const N: usize, S: Solver<N>> Plan<N, S> {
     /// Forgets the plan.
     pub fn reset(&mut self) {
-        self.rates = [[0.0; N]; MOST_KNOTS];
+        self.accelerations_mm_s2 = [[0.0; N]; MOST_KNOTS];
         self.periods = 1;
     }
 
     /// Goes over to the next tick: what was planned for it comes first. From here on a knot has `periods` feed periods, 1
     /// to [`MOST_PERIODS`].
     pub fn shift(&mut self, periods: usize, settings: &Settings) {
-        let knots = settings.knots.clamp(1, MOST_KNOTS);
-        let planned = self.rates;
+        let knots = settings.knots();
+        let planned = self.accelerations_mm_s2;
         let last = self.periods;
-        self.periods = periods.clamp(1, MOST_PERIODS);
-        for (knot, rate) in self.rates.iter_mut().enumerate() {
+        self.periods = periods.min(MOST_PERIODS).max(1);
+        for (knot, acceleration) in self.accelerations_mm_s2.iter_mut().enumerate() {
             // The mean of what was planned for its feed periods; beyond the horizon nothing was.
             let mut sum = [0.0; N];
             for period in knot * self.periods..(knot + 1) * self.periods {
@@ -163,12 +255,13 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
                     sum = add_scaled(sum, 1.0 / self.periods as f64, planned[before]);
                 }
             }
-            *rate = sum;
+            let limits = &settings.limits.acceleration_mm_s2;
+            *acceleration = core::array::from_fn(|axis| bounded(sum[axis], -limits[axis], limits[axis]));
         }
     }
 
-    /// Improves the plan by one step of the solver and returns its first command. The tool is `lag_s` behind the command
-    /// now.
+    /// Improves the plan by one step of the solver and returns what comes first. `lag_s` is how far the tool is to be behind
+    /// the plan.
     pub fn improve<M: Model<N>>(
         &mut self,
         model: &M,
@@ -176,17 +269,39 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
         lag_s: f64,
         settings: &Settings,
     ) -> Step<N> {
-        let knots = settings.knots.clamp(1, MOST_KNOTS);
-        let problem = Problem::new(model, window, lag_s, &self.rates, self.periods, settings);
-        let before = self.rates;
-        self.solver.improve(&problem, &mut self.rates);
-        let limit = settings.rate_limit_mm_s;
-        let mut change_mm_s = 0.0_f64;
-        for (rate, before) in self.rates.as_flattened_mut()[..knots * N].iter_mut().zip(before.as_flattened()) {
-            *rate = if rate.is_finite() { rate.clamp(-limit, limit) } else { 0.0 };
-            change_mm_s = change_mm_s.max((*rate - before).abs());
+        let problem = Problem::new(model, window, lag_s, &self.accelerations_mm_s2, self.periods, settings);
+        let before = self.accelerations_mm_s2;
+        self.solver.improve(&problem, &mut self.accelerations_mm_s2);
+        let mut change_mm_s2 = 0.0_f64;
+        let finite = self.accelerations_mm_s2.as_flattened().iter().all(|a| a.is_finite());
+        if !finite {
+            self.accelerations_mm_s2 = [[0.0; N]; MOST_KNOTS];
         }
-        Step { offset_mm: add_scaled(window.offset_mm, window.feed_period_s, self.rates[0]), change_mm_s }
+        for (now, before) in self.accelerations_mm_s2.iter().zip(&before) {
+            for change in sub(*now, *before) {
+                change_mm_s2 = change_mm_s2.max(change.abs());
+            }
+        }
+        Step { acceleration_mm_s2: self.accelerations_mm_s2[0], change_mm_s2, contour_mm2: problem.contour_mm2() }
+    }
+}
+
+impl Settings {
+    /// h of an error along the path at the end of a knot, where it runs at `feed_mm_s`.
+    #[inline]
+    pub fn tangential_weight(&self, knot: usize, error_mm: f64, feed_mm_s: f64) -> f64 {
+        let share = error_mm / self.tangential_mm;
+        let [small, large] = self.tangential_weights;
+        let running = large - (large - small) / (1.0 + share * share);
+        let speed = feed_mm_s / RESTING_MM_S;
+        let weight = running + (1.0 - running) / (1.0 + speed * speed * speed * speed);
+        if knot + LAST_KNOTS >= self.knots() { weight.max(self.last_weight) } else { weight }
+    }
+
+    /// Knots of the horizon, within what there is room for.
+    #[inline]
+    pub fn knots(&self) -> usize {
+        self.knots.min(MOST_KNOTS).max(1)
     }
 }
 
@@ -194,36 +309,63 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
 mod tests {
     use super::*;
 
-    const SETTINGS: Settings =
-        Settings { knots: 4, rate_weight: 1e-9, change_weight: 0.0, tangential_price: 0.1, rate_limit_mm_s: 10.0 };
+    const SETTINGS: Settings = Settings {
+        knots: 4,
+        rate_weight: 1e-9,
+        change_weight: 0.0,
+        tangential_weights: [0.1; 2],
+        tangential_mm: 0.1,
+        last_weight: 0.3,
+        on_rapids: false,
+        limits: Limits::NONE,
+    };
 
-    fn plan(rates: [f64; 4]) -> Plan<1> {
+    fn plan(accelerations: [f64; 4]) -> Plan<1> {
         let mut plan = Plan::default();
-        for (knot, rate) in rates.into_iter().enumerate() {
-            plan.rates[knot] = [rate];
+        for (knot, acceleration) in accelerations.into_iter().enumerate() {
+            plan.accelerations_mm_s2[knot] = [acceleration];
         }
         plan
     }
 
-    fn rates(plan: &Plan<1>) -> [f64; 4] {
-        core::array::from_fn(|knot| plan.rates[knot][0])
+    fn accelerations(plan: &Plan<1>) -> [f64; 4] {
+        core::array::from_fn(|knot| plan.accelerations_mm_s2[knot][0])
     }
 
     #[test]
     fn a_shifted_plan_begins_with_its_second_knot() {
         let mut plan = plan([1.0, 2.0, 3.0, 4.0]);
         plan.shift(1, &SETTINGS);
-        assert_eq!(rates(&plan), [2.0, 3.0, 4.0, 0.0]);
+        assert_eq!(accelerations(&plan), [2.0, 3.0, 4.0, 0.0]);
     }
 
     #[test]
     fn longer_knots_take_the_mean_of_what_was_planned_for_them_and_go_on_by_a_part() {
         let mut plan = plan([1.0, 2.0, 3.0, 4.0]);
         plan.shift(2, &SETTINGS);
-        assert_eq!(rates(&plan), [2.5, 2.0, 0.0, 0.0]);
+        assert_eq!(accelerations(&plan), [2.5, 2.0, 0.0, 0.0]);
         plan.shift(2, &SETTINGS);
-        assert_eq!(rates(&plan), [2.25, 1.0, 0.0, 0.0]);
+        assert_eq!(accelerations(&plan), [2.25, 1.0, 0.0, 0.0]);
         plan.shift(1, &SETTINGS);
-        assert_eq!(rates(&plan), [2.25, 1.0, 1.0, 0.0]);
+        assert_eq!(accelerations(&plan), [2.25, 1.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn an_acceleration_moves_the_offset_by_its_closed_form() {
+        let stretch = Stretch::<1> {
+            period: 5,
+            periods_per_knot: 2,
+            period_s: 0.003,
+            command_mm: [[0.0]; 2],
+            offset_mm: [[0.0]; 2],
+            offset_mm_s: [[0.0]; 2],
+        };
+        // In the second knot, from 6 ms to 12 ms; now it is 16.5 ms.
+        let moved = 0.006 * (0.006 / 2.0 + 0.0045);
+        assert!((stretch.moved_s2(1, 0.5) - moved).abs() < 1e-15);
+        assert!((stretch.gained_s(1, 0) - 0.006).abs() < 1e-15);
+        assert!((stretch.gained_s(2, 0) - 0.0045).abs() < 1e-15);
+        assert!((stretch.gained_s(2, 1) - 0.0015).abs() < 1e-15);
+        assert_eq!((stretch.gained_s(2, 2), stretch.moved_s2(3, 0.5)), (0.0, 0.0));
     }
 }

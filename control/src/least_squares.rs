@@ -119,6 +119,22 @@ pub fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], n: usiz
         }
         first = end;
     }
+    back(a, b, n);
+}
+
+/// Solves A x = b in place once more, with what [`cholesky`] has left in `a`.
+#[inline]
+pub fn substitute<const P: usize>(a: &[[f64; P]; P], b: &mut [f64; P], n: usize) {
+    for k in 0..n {
+        let sum = a[k][..k].iter().zip(&*b).fold(b[k], |sum, (factor, known)| sum - factor * known);
+        b[k] = sum * a[k][k];
+    }
+    back(a, b, n);
+}
+
+/// The second half of a solution, with the upper factor, which is the lower one's transpose.
+#[inline]
+fn back<const P: usize>(a: &[[f64; P]; P], b: &mut [f64; P], n: usize) {
     for k in (0..n).rev() {
         b[k] *= a[k][k];
         let (known, solved) = b.split_at_mut(k);
@@ -161,8 +177,10 @@ mod tests {
             let entry = |r: usize, c: usize| libm::cos((r * c) as f64) + if r == c { 13.0 } else { 0.0 };
             let mut a: [[f64; MOST]; MOST] = core::array::from_fn(|r| core::array::from_fn(|c| entry(r, c)));
             let right: [f64; MOST] = core::array::from_fn(|r| libm::sin(r as f64));
-            let mut x = right;
+            let (mut x, mut again) = (right, right);
             cholesky(&mut a, &mut x, n);
+            substitute(&a, &mut again, n);
+            assert_eq!(x.map(|x| (x * 1e12).round()), again.map(|x| (x * 1e12).round()));
             for (r, right) in right.into_iter().enumerate() {
                 let sum = (0..n).map(|c| entry(r, c) * x[c]).sum::<f64>();
                 // What does not count is left alone.

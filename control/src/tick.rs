@@ -5,8 +5,9 @@
 
 use crate::contour_error::{ContourError, Estimator};
 use crate::controller::{Command, Controller, Measured, Schedule};
-use crate::safety::{Bounds, Fade, Guard};
-use crate::vector::{add_scaled, sub};
+use crate::safety::feedback::Feedback;
+use crate::safety::{Bounds, Fade, Guard, State};
+use crate::vector::add_scaled;
 use crate::window::{Knot, Preview, Reference, Register, Window};
 
 /// The command of one servo period.
@@ -22,6 +23,30 @@ pub struct Setpoint<const N: usize> {
     pub decided: bool,
 }
 
+/// Plan time in servo periods: whole ones and a part of one. At the planned feed it is a whole number, whatever its size; a sum
+/// of seconds would be off by rounding after minutes, and then lead to the servo period before.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct PlanTime {
+    periods: u64,
+    part: f64,
+}
+
+impl PlanTime {
+    /// So many servo periods later.
+    #[inline]
+    fn after(self, periods: f64) -> Self {
+        let sum = self.part + periods;
+        let whole = libm::floor(sum);
+        // A float that is not a number saturates to zero here.
+        Self { periods: self.periods + whole as u64, part: sum - whole }
+    }
+
+    #[inline]
+    fn seconds(self, servo_s: f64) -> f64 {
+        (self.periods as f64 + self.part) * servo_s
+    }
+}
+
 /// The state between servo periods.
 #[derive(Debug, Clone)]
 pub struct Tick<const N: usize> {
@@ -29,12 +54,14 @@ pub struct Tick<const N: usize> {
     guard: Guard<N>,
     schedule: Schedule,
     register: Register<N>,
+    feedback: Feedback<N>,
     estimator: Estimator,
     contour: ContourError<N>,
     preview: Preview<N>,
-    /// Plan time, offset and rate at the start of the feed period; the offset at its end.
-    tau_s: f64,
+    /// Plan time and offset at the start of the feed period; rate and offset at its end.
+    time: PlanTime,
     offset_from_mm: [f64; N],
+    offset_from_mm_s: [f64; N],
     command: Command<N>,
     /// Servo periods since the start of the feed period.
     phase: u32,
@@ -48,11 +75,13 @@ impl<const N: usize> Tick<N> {
             guard: Guard::new(bounds),
             schedule: Schedule { servo_periods: schedule.servo_periods.max(1), ..schedule },
             register: Register::default(),
+            feedback: Feedback::NONE,
             estimator: Estimator::default(),
             contour: ContourError::NONE,
             preview: Preview::new(servo_s),
-            tau_s: 0.0,
+            time: PlanTime::default(),
             offset_from_mm: [0.0; N],
+            offset_from_mm_s: [0.0; N],
             command: Command::AS_PLANNED,
             phase: 0,
         }
@@ -66,20 +95,23 @@ impl<const N: usize> Tick<N> {
         C: Controller<N> + ?Sized,
     {
         if self.phase == self.schedule.servo_periods {
-            self.tau_s += f64::from(self.phase) * self.servo_s * self.command.rate;
+            self.time = self.time.after(f64::from(self.phase) * self.command.rate);
+            self.offset_from_mm_s = self.command.offset_mm_s(self.offset_from_mm, self.feed_period_s());
             self.offset_from_mm = self.command.offset_mm;
             self.phase = 0;
         }
         let decided = self.phase == 0;
-        let tau_s = self.tau_s + f64::from(self.phase) * self.servo_s * self.command.rate;
-        let path = reference.knot(tau_s);
+        let tau_s = self.time.after(f64::from(self.phase) * self.command.rate).seconds(self.servo_s);
+        let path = reference.knot(tau_s).or_as(self.register.knot(0));
         self.register.push(path);
         self.preview.fill(reference, tau_s, f64::from(self.schedule.preview) * self.feed_period_s());
+        let most_mm_s = self.guard.bounds().speed_mm_s;
+        self.feedback.take_in(tool_mm, path.position_mm, self.servo_s, most_mm_s);
         if decided {
             self.decide(controller, tool_mm);
         }
         let part = f64::from(self.phase) / f64::from(self.schedule.servo_periods);
-        let offset_mm = add_scaled(self.offset_from_mm, part, sub(self.command.offset_mm, self.offset_from_mm));
+        let offset_mm = self.command.offset_after_mm(part, self.offset_from_mm);
         self.phase += 1;
         Setpoint { tau_s, path, command_mm: add_scaled(path.position_mm, 1.0, offset_mm), decided }
     }
@@ -89,7 +121,12 @@ impl<const N: usize> Tick<N> {
         &self.contour
     }
 
-    /// Whether, when and why the safety layer took the controller out of the loop.
+    /// Whether the controller is in the loop.
+    pub fn state(&self) -> State {
+        self.guard.state()
+    }
+
+    /// When and why the safety layer took the controller out of the loop last.
     pub fn fade(&self) -> Option<Fade> {
         self.guard.fade()
     }
@@ -98,13 +135,14 @@ impl<const N: usize> Tick<N> {
         let window = Window {
             register: &self.register,
             preview: &self.preview,
-            tau_s: self.tau_s,
+            tau_s: self.time.seconds(self.servo_s),
             feed_period_s: self.feed_period_s(),
             offset_mm: self.offset_from_mm,
+            offset_mm_s: self.offset_from_mm_s,
         };
         self.contour = self.estimator.estimate(&window, tool_mm);
         let measured = Measured { position_mm: tool_mm, contour: self.contour };
-        self.command = self.guard.decide(controller, &window, &measured);
+        self.command = self.guard.decide(controller, &window, &measured, self.feedback.take_lost());
     }
 
     fn feed_period_s(&self) -> f64 {

@@ -52,3 +52,10 @@ pub fn limit_norm<const N: usize>(a: [f64; N], limit: f64) -> [f64; N] {
         [0.0; N]
     }
 }
+
+/// `x`, taken to the nearer end of `least` to `most` where it is beyond. Not a number becomes `least`; where the ends are
+/// crossed, or not numbers, the result is one of them or `x`. `f64::clamp` would panic.
+#[inline]
+pub fn bounded(x: f64, least: f64, most: f64) -> f64 {
+    x.max(least).min(most)
+}

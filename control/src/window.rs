@@ -3,7 +3,7 @@
 //! Source: Lee, Cho and Jeon (2005), section 2.2: "previously stored N reference position data in a shift register".
 //! Departure: a knot also carries the tangent, so that a corner between two knots is not cut off.
 
-use crate::vector::{add_scaled, norm, sub};
+use crate::vector::{add_scaled, bounded, dot, norm, reject, sub};
 
 /// Reference knots that the shift register holds. At a servo period of 1 ms they reach 0.26 s back, thirteen time
 /// constants of a position loop of 50 1/s; a tool that lags further behind than that is not following.
@@ -11,6 +11,14 @@ pub const REGISTER_KNOTS: usize = 256;
 /// Reference knots that the preview holds. At a servo period of 1 ms they reach as far ahead as the register reaches
 /// back, more than twice the settling time of such a loop.
 pub const PREVIEW_KNOTS: usize = 256;
+/// Grid points that the preview keeps: as many behind the current knot as ahead of it.
+const GRID_KNOTS: usize = 2 * PREVIEW_KNOTS;
+/// A plan time this near a grid point is at it, in parts of the grid's step: rounding is a millionth of that, and what the
+/// path turns by in so short a time is nothing.
+const AT_A_POINT: f64 = 1e-6;
+/// Cosine of the turn between neighbouring knots above which there is a corner between them (0.1 rad: a curve turns so
+/// much in one servo period only where its radius is below ten steps).
+pub(crate) const CORNER_COSINE: f64 = 0.995;
 /// A knot nearer than this to the last is not stored again, mm: at rest the register keeps its history.
 const SAME_PLACE_MM: f64 = 1e-7;
 
@@ -23,11 +31,70 @@ pub struct Knot<const N: usize> {
     pub tangent: [f64; N],
     /// Planned feedrate, mm/s.
     pub feed_mm_s: f64,
+    /// Whether the motion cuts; a rapid does not.
+    pub cutting: bool,
 }
 
 impl<const N: usize> Knot<N> {
-    /// A knot at the origin, at rest.
-    pub const REST: Self = Self { position_mm: [0.0; N], tangent: [0.0; N], feed_mm_s: 0.0 };
+    /// A knot at the origin, at rest, that looks along the first axis.
+    pub const REST: Self = {
+        let mut tangent = [0.0; N];
+        tangent[0] = 1.0;
+        Self { position_mm: [0.0; N], tangent, feed_mm_s: 0.0, cutting: false }
+    };
+
+    /// Whether every number is one, and the tangent a direction.
+    pub fn is_valid(&self) -> bool {
+        let length = norm(self.tangent);
+        (length - 1.0).abs() < 1e-3 && norm(self.position_mm).is_finite() && self.feed_mm_s.is_finite()
+    }
+
+    /// This knot, or where it is none, rest at another.
+    #[inline]
+    pub fn or_as(self, other: &Self) -> Self {
+        if self.is_valid() { self } else { Self { feed_mm_s: 0.0, ..*other } }
+    }
+
+    /// The path between this knot and one `step_s` later, after `part` of the time: a cubic that meets both with their
+    /// feedrates, or where there is a corner between them, both sides of it.
+    #[inline]
+    fn after(&self, next: &Self, step_s: f64, part: f64) -> Self {
+        let chord = sub(next.position_mm, self.position_mm);
+        let cosine = dot(self.tangent, next.tangent);
+        let feed_mm_s = self.feed_mm_s + part * (next.feed_mm_s - self.feed_mm_s);
+        let nearer = if part < 0.5 { self } else { next };
+        let mut knot = Self { feed_mm_s, ..*nearer };
+        if cosine >= CORNER_COSINE {
+            let rest = 1.0 - part;
+            let ends = [part * rest * rest * step_s * self.feed_mm_s, -part * part * rest * step_s * next.feed_mm_s];
+            let straight = add_scaled(self.position_mm, part * part * (1.0 + 2.0 * rest), chord);
+            knot.position_mm = add_scaled(add_scaled(straight, ends[0], self.tangent), ends[1], next.tangent);
+        } else if let Some(to_corner_mm) = corner(self, next) {
+            let corner_mm = add_scaled(self.position_mm, to_corner_mm, self.tangent);
+            let from_corner_mm = norm(sub(next.position_mm, corner_mm));
+            let gone_mm = part * (to_corner_mm + from_corner_mm) - to_corner_mm;
+            knot.tangent = if gone_mm < 0.0 { self.tangent } else { next.tangent };
+            knot.position_mm = add_scaled(corner_mm, gone_mm, knot.tangent);
+        } else {
+            knot.position_mm = add_scaled(self.position_mm, part, chord);
+        }
+        knot
+    }
+}
+
+/// How far the corner between two knots lies ahead of the first, mm: where the two tangent lines meet. None where the path
+/// is smooth, or turns back.
+#[inline]
+pub(crate) fn corner<const N: usize>(from: &Knot<N>, to: &Knot<N>) -> Option<f64> {
+    let cosine = dot(from.tangent, to.tangent);
+    if cosine.is_nan() || cosine.abs() >= CORNER_COSINE {
+        return None;
+    }
+    // p + a t1, with a from the component of the chord across t2.
+    let chord = sub(to.position_mm, from.position_mm);
+    let across = |v: [f64; N]| reject(v, to.tangent);
+    let (t, c) = (across(from.tangent), across(chord));
+    Some(bounded(dot(c, t) / dot(t, t), 0.0, norm(chord)))
 }
 
 /// The programmed path over plan time: where the tool is to be `tau_s` seconds into the feed plan.
@@ -83,11 +150,11 @@ impl<const N: usize> Register<N> {
     }
 }
 
-/// Reference knots ahead, on a grid of plan time with the servo period as its step.
+/// Reference knots behind and ahead, on a grid of plan time with the servo period as its step.
 #[derive(Debug, Clone)]
 pub struct Preview<const N: usize> {
-    knots: [Knot<N>; PREVIEW_KNOTS],
-    /// Grid point that is looked up next; the ring holds the [`PREVIEW_KNOTS`] before it.
+    knots: [Knot<N>; GRID_KNOTS],
+    /// Grid point that is looked up next; the ring holds the [`GRID_KNOTS`] before it.
     next: u64,
     step_s: f64,
 }
@@ -95,17 +162,21 @@ pub struct Preview<const N: usize> {
 impl<const N: usize> Preview<N> {
     /// Empty, with a grid of `step_s` seconds.
     pub fn new(step_s: f64) -> Self {
-        Self { knots: [Knot::REST; PREVIEW_KNOTS], next: 0, step_s }
+        Self { knots: [Knot::REST; GRID_KNOTS], next: 0, step_s }
     }
 
-    /// Looks knots up until the grid reaches `ahead_s` beyond `tau_s`; at most [`PREVIEW_KNOTS`] of them.
+    /// Looks knots up until the grid reaches `ahead_s` beyond `tau_s`; at most [`PREVIEW_KNOTS`] of them ahead.
     #[inline]
     pub fn fill<R: Reference<N> + ?Sized>(&mut self, reference: &mut R, tau_s: f64, ahead_s: f64) {
+        let (now, _) = self.place(tau_s);
+        let (farthest, _) = self.place(tau_s + ahead_s);
         // One more than the last grid point that a look between two points needs.
-        let end = ((tau_s + ahead_s) / self.step_s) as u64 + 2;
-        self.next = self.next.max(end.saturating_sub(PREVIEW_KNOTS as u64));
+        let end = farthest.min(now + PREVIEW_KNOTS as u64) + 2;
+        self.next = self.next.max(end.saturating_sub(GRID_KNOTS as u64));
         while self.next < end {
-            self.knots[(self.next % PREVIEW_KNOTS as u64) as usize] = reference.knot(self.next as f64 * self.step_s);
+            let before = *self.grid(self.next.saturating_sub(1));
+            let knot = reference.knot(self.next as f64 * self.step_s);
+            self.knots[(self.next % GRID_KNOTS as u64) as usize] = knot.or_as(&before);
             self.next += 1;
         }
     }
@@ -113,23 +184,29 @@ impl<const N: usize> Preview<N> {
     /// The knot at plan time `tau_s`, between two grid points.
     #[inline]
     pub fn at(&self, tau_s: f64) -> Knot<N> {
-        let place = (tau_s / self.step_s).max(0.0);
-        let before = place as u64;
-        let part = place - before as f64;
-        let (a, b) = (self.grid(before), self.grid(before + 1));
-        let between = |p: [f64; N], q: [f64; N]| add_scaled(p, part, sub(q, p));
-        Knot {
-            position_mm: between(a.position_mm, b.position_mm),
-            tangent: if part < 0.5 { a.tangent } else { b.tangent },
-            feed_mm_s: a.feed_mm_s + part * (b.feed_mm_s - a.feed_mm_s),
-        }
+        let (point, part) = self.place(tau_s);
+        let before = self.grid(point);
+        if part > 0.0 { before.after(self.grid(point + 1), self.step_s, part) } else { *before }
     }
 
     /// The knot of a grid point; the nearest that the ring holds where it does not hold it.
     #[inline]
     pub fn grid(&self, point: u64) -> &Knot<N> {
-        let held = point.clamp(self.next.saturating_sub(PREVIEW_KNOTS as u64), self.next.saturating_sub(1));
-        &self.knots[(held % PREVIEW_KNOTS as u64) as usize]
+        let held = point.min(self.next.saturating_sub(1)).max(self.next.saturating_sub(GRID_KNOTS as u64));
+        &self.knots[(held % GRID_KNOTS as u64) as usize]
+    }
+
+    /// The last grid point at or before a plan time, and the part of a step behind it. Plan time is a multiple of the step
+    /// but for rounding, which must not lead to the grid point before.
+    #[inline]
+    fn place(&self, tau_s: f64) -> (u64, f64) {
+        let place = (tau_s / self.step_s).max(0.0);
+        let nearest = libm::round(place);
+        if (place - nearest).abs() < AT_A_POINT {
+            return (nearest as u64, 0.0);
+        }
+        let point = place as u64;
+        (point, place - point as f64)
     }
 }
 
@@ -146,6 +223,8 @@ pub struct Window<'a, const N: usize> {
     pub feed_period_s: f64,
     /// Offset of the command from the path at the current knot, mm.
     pub offset_mm: [f64; N],
+    /// Speed of that offset, mm/s.
+    pub offset_mm_s: [f64; N],
 }
 
 impl<'a, const N: usize> Window<'a, N> {
@@ -164,7 +243,19 @@ impl<'a, const N: usize> Window<'a, N> {
     /// The knot `periods` feed periods ahead at the planned feed.
     #[inline]
     pub fn ahead(&self, periods: usize) -> Knot<N> {
-        self.preview.at(self.tau_s + periods as f64 * self.feed_period_s)
+        self.at(periods as f64 * self.feed_period_s)
+    }
+
+    /// The knot `ahead_s` from now in plan time; behind where that is negative.
+    #[inline]
+    pub fn at(&self, ahead_s: f64) -> Knot<N> {
+        self.preview.at(self.tau_s + ahead_s)
+    }
+
+    /// Grid point of the current knot.
+    #[inline]
+    fn point(&self) -> u64 {
+        self.preview.place(self.tau_s).0
     }
 
     /// The sequence of knots: 0 is the current one, negative behind it, positive ahead of it.
@@ -173,15 +264,14 @@ impl<'a, const N: usize> Window<'a, N> {
         if index <= 0 {
             self.register.knot(index.unsigned_abs() as usize)
         } else {
-            self.preview.grid((self.tau_s / self.preview.step_s) as u64 + u64::from(index.unsigned_abs()))
+            self.preview.grid(self.point() + u64::from(index.unsigned_abs()))
         }
     }
 
     /// The first and the last index of that sequence.
     #[inline]
     pub fn range(&self) -> [i32; 2] {
-        let now = (self.tau_s / self.preview.step_s) as u64;
-        let ahead = self.preview.next.saturating_sub(now + 1).min(PREVIEW_KNOTS as u64 - 1);
+        let ahead = self.preview.next.saturating_sub(self.point() + 1).min(PREVIEW_KNOTS as u64 - 1);
         [1 - self.register.len().max(1) as i32, ahead as i32]
     }
 }
@@ -191,7 +281,7 @@ mod tests {
     use super::*;
 
     fn at(x: f64) -> Knot<2> {
-        Knot { position_mm: [x, 0.0], tangent: [1.0, 0.0], feed_mm_s: 1.0 }
+        Knot { position_mm: [x, 0.0], tangent: [1.0, 0.0], feed_mm_s: 1.0, cutting: true }
     }
 
     #[test]

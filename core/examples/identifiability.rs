@@ -66,7 +66,7 @@ impl Controller<2> for Observer {
         self.inputs.push(self.history.inputs(feed_mm_s));
         self.history.push(feed_mm_s, error_mm);
         self.error_mm.push(dot(error_mm, normal));
-        Command { rate: 1.0, offset_mm: self.offset_mm }
+        Command::straight(1.0, self.offset_mm)
     }
 }
 

@@ -222,7 +222,7 @@ pub const CONTROLLERS: &[Entry] = &[
     ),
     entry!(
         "receding-horizon",
-        "geometry planned over 16 knots ahead through an identified servo, speed as planned",
+        "geometry planned over 20 knots ahead through an identified servo, speed as planned",
         "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
         Identified,
         laps: 1,
@@ -243,6 +243,8 @@ pub struct Choices {
     pub rho: Option<f64>,
     /// Seed of the training.
     pub seed: u64,
+    /// Whether rapid motions are corrected as cuts are, by a controller that tells them apart.
+    pub on_rapids: bool,
     /// Values of the controller's parameters in the order of [`Entry::parameters`]; all defaults where it is empty.
     pub values: Vec<f64>,
 }

@@ -146,6 +146,10 @@ pub struct Axis {
     pub kv_nm_s_per_rad: f64,
     /// Torque at which the drive saturates, N m.
     pub torque_limit_nm: f64,
+    /// Acceleration that a correction of the command may add to the plan's, mm/s2; none is the machine's
+    /// [`Limits::normal_accel_mm_s2`].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub correction_accel_mm_s2: Option<f64>,
     /// Delay between the position loop and the drive, s.
     #[serde(skip_serializing_if = "is_zero")]
     pub drive_delay_s: f64,
@@ -250,6 +254,11 @@ impl Machine {
     /// The i-th axis; one that the machine does not have is like its last.
     pub fn axis(&self, i: usize) -> &Axis {
         &self.axes[i.min(self.axes.len() - 1)]
+    }
+
+    /// Acceleration that a correction of the i-th axis may add to the plan's, mm/s2.
+    pub fn correction_accel_mm_s2(&self, i: usize) -> f64 {
+        self.axis(i).correction_accel_mm_s2.unwrap_or(self.limits.normal_accel_mm_s2)
     }
 
     /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move equally, whatever their

@@ -35,6 +35,8 @@ pub struct Sample {
     pub line: u32,
     /// Whether the motion cuts; rapids, dwells and rests do not.
     pub cutting: bool,
+    /// Whether the motion is a rapid; of a dwell, or behind the end, the motion before.
+    pub rapid: bool,
     /// In a dwell, or behind the end.
     pub resting: bool,
 }

@@ -8,7 +8,7 @@ mod tick_times;
 use std::time::Instant;
 
 use feedwright_control::controller::Controller;
-use feedwright_control::safety::Bounds;
+use feedwright_control::safety::{Bounds, State};
 use feedwright_control::{Knot, Tick};
 
 use crate::machine::Machine;
@@ -36,8 +36,12 @@ const LEAD_S: f64 = 0.05;
 pub struct Run {
     /// How it ended.
     pub outcome: Outcome,
-    /// Whether the safety layer took the controller out of the loop.
+    /// When the safety layer took the controller out of the loop last.
     pub faded_out: Option<FadedOut>,
+    /// Part of the cutting time in which the controller was in the loop, and whether it was at the end.
+    pub engaged_share: f64,
+    /// See above.
+    pub engaged_at_end: bool,
     /// Machining time: when the command has ended, s.
     pub time_s: f64,
     /// When the tool has arrived there, s.
@@ -96,13 +100,16 @@ pub fn simulate_lap<const N: usize>(
     let lag_s = LAG_TIME_CONSTANTS * slowest_s;
     let lost_mm = LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s);
     let start_mm = first(reference.at(0.0).position_mm);
-    let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s);
+    let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
+    let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s, fade_mm_s2);
     let mut tick = Tick::<N>::new(servo_s, controller.schedule(), bounds);
     let mut plant = Plant::<N>::new(machine, start_mm);
     let mut seen_mm = start_mm;
     let mut run = Run::default();
     let mut ended: Option<f64> = None;
     let mut last_tau_s = 0.0;
+    let mut fade = None;
+    let mut cut = [0_u64; 2];
     for n in 0_u64.. {
         let t_s = n as f64 * servo_s;
         let clock = Instant::now();
@@ -110,8 +117,9 @@ pub fn simulate_lap<const N: usize>(
         if setpoint.decided {
             run.ticks.add(clock.elapsed().as_nanos());
             run.most_entries = run.most_entries.max(tick.contour().entries);
-            if run.faded_out.is_none() {
-                run.faded_out = tick.fade().map(|fade| FadedOut { at_s: t_s, cause: fade.cause.words() });
+            if tick.fade() != fade {
+                fade = tick.fade();
+                run.faded_out = fade.map(|fade| FadedOut { at_s: t_s, cause: fade.cause.words() });
             }
         }
         if ended.is_none()
@@ -154,6 +162,9 @@ pub fn simulate_lap<const N: usize>(
             contour_error_mm: if N == 2 { foot.signed_mm } else { foot.distance_mm },
             corrected_mm: spread(setpoint.command_mm),
         };
+        if row.cutting {
+            cut[usize::from(tick.state() == State::Engaged)] += 1;
+        }
         while let Some(timed) = reference.next_event(setpoint.tau_s) {
             for sink in sinks.iter_mut() {
                 sink.event(t_s, &timed)?;
@@ -170,6 +181,9 @@ pub fn simulate_lap<const N: usize>(
             break;
         }
     }
+    let [out, within] = cut;
+    run.engaged_share = if out + within == 0 { 1.0 } else { within as f64 / (out + within) as f64 };
+    run.engaged_at_end = tick.state() == State::Engaged;
     Ok(run)
 }
 
@@ -183,8 +197,8 @@ struct Axes<'a, 'p>(&'a mut Reference<'p>);
 
 impl<const N: usize> feedwright_control::Reference<N> for Axes<'_, '_> {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
-        let Sample { position_mm, tangent, feed_mm_s, .. } = self.0.at(tau_s);
-        Knot { position_mm: first(position_mm), tangent: first(tangent), feed_mm_s }
+        let Sample { position_mm, tangent, feed_mm_s, rapid, .. } = self.0.at(tau_s);
+        Knot { position_mm: first(position_mm), tangent: first(tangent), feed_mm_s, cutting: !rapid }
     }
 }
 

@@ -61,7 +61,7 @@ fn commands<const N: usize>(
     controller: &mut dyn Controller<N>,
     tool: impl Fn(u32, [f64; N]) -> [f64; N],
 ) -> Vec<[f64; N]> {
-    let mut tick = Tick::new(0.001, controller.schedule(), Bounds::new(MAX_DEVIATION_MM, 400.0));
+    let mut tick = Tick::new(0.001, controller.schedule(), Bounds::new(MAX_DEVIATION_MM, 400.0, 400.0));
     (0..600)
         .map(|n| {
             let lagging = reference.knot(f64::from(n) * 0.001 - 0.02).position_mm;
@@ -123,7 +123,7 @@ fn a_lost_or_absurd_measurement_gives_a_command_within_the_limits() {
 #[test]
 fn a_tick_allocates_nothing() {
     fn check<const N: usize>(name: &str, controller: &mut dyn Controller<N>) {
-        let mut tick = Tick::new(0.001, controller.schedule(), Bounds::new(MAX_DEVIATION_MM, 400.0));
+        let mut tick = Tick::new(0.001, controller.schedule(), Bounds::new(MAX_DEVIATION_MM, 400.0, 400.0));
         let counted = allocation_counter::measure(|| {
             for n in 0..600 {
                 let lagging: Knot<N> = Circle.knot(f64::from(n) * 0.001 - 0.02);

@@ -50,7 +50,7 @@ struct Axes<'a, 'p>(&'a mut Reference<'p>);
 impl feedwright_control::Reference<3> for Axes<'_, '_> {
     fn knot(&mut self, tau_s: f64) -> Knot<3> {
         let sample = self.0.at(tau_s);
-        Knot { position_mm: sample.position_mm, tangent: sample.tangent, feed_mm_s: sample.feed_mm_s }
+        Knot { position_mm: sample.position_mm, tangent: sample.tangent, feed_mm_s: sample.feed_mm_s, cutting: true }
     }
 }
 
@@ -93,8 +93,11 @@ fn check(part: &Path, machine: &Machine, schedule: Schedule, mut tool: Tool) {
     let servo_s = machine.period.servo_s;
     let reach_s = (REGISTER_KNOTS - 1) as f64 * servo_s;
     let mut recorder = Recorder { schedule, measured: None };
-    let mut tick =
-        Tick::<3>::new(servo_s, schedule, Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s));
+    let mut tick = Tick::<3>::new(
+        servo_s,
+        schedule,
+        Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s, 400.0),
+    );
     let mut tool_mm = reference.at(0.0).position_mm;
     let (mut checked, mut worst_mm) = (0, 0.0_f64);
     let (mut from_mm, mut to_mm) = ([0.0; 3], [0.0; 3]);

@@ -25,7 +25,12 @@ struct Circle;
 impl Reference<2> for Circle {
     fn knot(&mut self, tau_s: f64) -> Knot<2> {
         let (sin, cos) = (FEED_MM_S / RADIUS_MM * tau_s).sin_cos();
-        Knot { position_mm: [RADIUS_MM * (1.0 - cos), RADIUS_MM * sin], tangent: [sin, cos], feed_mm_s: FEED_MM_S }
+        Knot {
+            position_mm: [RADIUS_MM * (1.0 - cos), RADIUS_MM * sin],
+            tangent: [sin, cos],
+            feed_mm_s: FEED_MM_S,
+            cutting: true,
+        }
     }
 }
 
@@ -139,7 +144,7 @@ proptest! {
         at in 3_u32..150, bad in prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(f64::NEG_INFINITY)], which in 0..3
     ) {
         let command = move |k: u32| {
-            let mut command = Command { rate: 0.9, offset_mm: [0.005, -0.005] };
+            let mut command = Command::straight(0.9, [0.005, -0.005]);
             if k == at {
                 match which {
                     0 => command.rate = bad,
@@ -159,7 +164,7 @@ proptest! {
 
 /// A correction that is as it should be.
 fn good(_: u32) -> Command<2> {
-    Command { rate: 1.0, offset_mm: [0.01, 0.01] }
+    Command::straight(1.0, [0.01, 0.01])
 }
 
 #[test]
@@ -206,10 +211,10 @@ fn predictions_that_are_wrong_several_times_in_a_row_end_the_controller() {
 #[test]
 fn a_correction_that_makes_it_worse_ends_the_controller() {
     // Steady, and swinging at 10 Hz.
-    let steady = |_: u32| Command { rate: 1.0, offset_mm: [0.15, 0.0] };
+    let steady = |_: u32| Command::straight(1.0, [0.15, 0.0]);
     let swinging = |k: u32| {
         let swing = 0.15 * (std::f64::consts::TAU * 10.0 * FEED_PERIOD_S * f64::from(k)).sin();
-        Command { rate: 1.0, offset_mm: [swing, swing] }
+        Command::straight(1.0, [swing, swing])
     };
     for fade in [run(3000, as_it_is, steady, |_| 0.0).fade, run(3000, as_it_is, swinging, |_| 0.0).fade] {
         assert_eq!(fade.map(|fade| fade.cause), Some(Cause::Harmful));

@@ -31,6 +31,7 @@ impl<const N: usize> Reference<N> for Helix {
             position_mm: std::array::from_fn(|axis| place[axis]),
             tangent: std::array::from_fn(|axis| tangent[axis]),
             feed_mm_s: 50.0,
+            cutting: true,
         }
     }
 }
@@ -70,6 +71,7 @@ impl<const N: usize> Material<N> {
             tau_s: 0.299,
             feed_period_s: FEED_PERIOD_S,
             offset_mm: [0.01; N],
+            offset_mm_s: [0.0; N],
         };
         let model = Servo::new(&self.net, &self.slopes, felt);
         let problem = Problem::new(&model, &window, LAG_S, &self.rates, 1, &self.settings);

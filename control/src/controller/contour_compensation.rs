@@ -66,7 +66,7 @@ impl<const N: usize> Controller<N> for ContourCompensation<N> {
         let tangent = measured.contour.tangent;
         let error_mm = measured.contour.vector_mm;
         if !norm(error_mm).is_finite() {
-            return Command { rate: 1.0, offset_mm: window.offset_mm };
+            return Command::straight(1.0, window.offset_mm);
         }
         let mut offset_mm = window.offset_mm;
         if let Some(last) = self.tangent {
@@ -76,7 +76,7 @@ impl<const N: usize> Controller<N> for ContourCompensation<N> {
         self.tangent = Some(tangent);
         let part = period_s / (period_s + self.settings.filter_s);
         self.filtered_mm = add_scaled(self.filtered_mm, part, sub(error_mm, self.filtered_mm));
-        Command { rate: 1.0, offset_mm: add_scaled(offset_mm, self.settings.rate_1_s * period_s, self.filtered_mm) }
+        Command::straight(1.0, add_scaled(offset_mm, self.settings.rate_1_s * period_s, self.filtered_mm))
     }
 }
 
@@ -93,7 +93,7 @@ pub(super) mod tests {
     impl Reference<2> for Circle {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let (sin, cos) = (libm::sin(5.0 * tau_s), libm::cos(5.0 * tau_s));
-            Knot { position_mm: [10.0 - 10.0 * cos, 10.0 * sin], tangent: [sin, cos], feed_mm_s: 50.0 }
+            Knot { position_mm: [10.0 - 10.0 * cos, 10.0 * sin], tangent: [sin, cos], feed_mm_s: 50.0, cutting: true }
         }
     }
 

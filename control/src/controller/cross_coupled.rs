@@ -87,7 +87,7 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
         let tangent = measured.contour.tangent;
         let error_mm = measured.contour.vector_mm;
         if !norm(error_mm).is_finite() {
-            return Command { rate: 1.0, offset_mm: window.offset_mm };
+            return Command::straight(1.0, window.offset_mm);
         }
         let mut held_back = false;
         if let Some(last) = self.last {
@@ -106,7 +106,7 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
         let slow_mm = add_scaled([0.0; N], ki_1_s, self.integral_mm_s);
         let offset_mm = add_scaled(add_scaled(slow_mm, kp, error_mm), kd_s, self.derivative_mm_s);
         self.last = Some(Last { error_mm, tangent, asked_mm: offset_mm });
-        Command { rate: 1.0, offset_mm }
+        Command::straight(1.0, offset_mm)
     }
 }
 
@@ -131,7 +131,14 @@ pub(super) mod tests {
         for n in 0..periods {
             let tau_s = f64::from(n) * 0.001;
             register.push(reference.knot(tau_s));
-            let window = Window { register: &register, preview: &preview, tau_s, feed_period_s: 0.001, offset_mm };
+            let window = Window {
+                register: &register,
+                preview: &preview,
+                tau_s,
+                feed_period_s: 0.001,
+                offset_mm,
+                offset_mm_s: [0.0; 2],
+            };
             let contour = estimator.estimate(&window, tool_mm);
             let measured = Measured { position_mm: tool_mm, contour };
             let pulled_to_mm = add_scaled(add_scaled(window.now().position_mm, 1.0, offset_mm), 1.0, load_mm);
@@ -146,7 +153,7 @@ pub(super) mod tests {
 
     impl Reference<2> for Line {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0 }
+            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
         }
     }
 

@@ -135,7 +135,7 @@ impl<const N: usize> Controller<N> for Feedforward<N> {
             let derivative_1_s = axis.kd / servo_s;
             (reference_rad_s / axis.rad_per_mm + derivative_1_s * window.offset_mm[i]) / (axis.kp_1_s + derivative_1_s)
         });
-        Command { rate: 1.0, offset_mm }
+        Command::straight(1.0, offset_mm)
     }
 }
 
@@ -154,7 +154,7 @@ pub(super) mod tests {
     impl Reference<2> for Parabola {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let t_s = tau_s.max(0.0);
-            Knot { position_mm: [15.0 * t_s * t_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 30.0 * t_s }
+            Knot { position_mm: [15.0 * t_s * t_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 30.0 * t_s, cutting: true }
         }
     }
 
@@ -174,7 +174,14 @@ pub(super) mod tests {
             let tau_s = n as f64 * servo_s;
             register.push(reference.knot(tau_s));
             preview.fill(reference, tau_s, f64::from(schedule.preview) * servo_s);
-            let window = Window { register: &register, preview: &preview, tau_s, feed_period_s: servo_s, offset_mm };
+            let window = Window {
+                register: &register,
+                preview: &preview,
+                tau_s,
+                feed_period_s: servo_s,
+                offset_mm,
+                offset_mm_s: [0.0; 2],
+            };
             each(n, add_scaled(window.now().position_mm, 1.0, offset_mm));
             offset_mm = controller.command(&window, &measured).offset_mm;
         }

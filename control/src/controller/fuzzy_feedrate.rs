@@ -19,7 +19,7 @@
 //! programmed one; the factor changes within the acceleration that the machine allows along the path.
 
 use super::{Command, Controller, Measured, Schedule};
-use crate::vector::norm;
+use crate::vector::{bounded, norm};
 use crate::window::Window;
 
 /// Period in which the rules are asked, s: an interpolator's, not a servo's.
@@ -63,7 +63,7 @@ impl Settings {
 
 /// Degrees in which `x` belongs to the sets with their tops at -1, 0 and 1; their sum is 1.
 fn memberships(x: f64) -> [f64; 3] {
-    let x = x.clamp(-1.0, 1.0);
+    let x = bounded(x, -1.0, 1.0);
     [(-x).max(0.0), 1.0 - x.abs(), x.max(0.0)]
 }
 
@@ -100,10 +100,10 @@ impl<const N: usize> Controller<N> for FuzzyFeedrate {
             let wanted = self.settings.rate(error_mm, change_mm_s);
             let feed_mm_s = window.now().feed_mm_s.max(f64::MIN_POSITIVE);
             let step = self.settings.acceleration_mm_s2 * window.feed_period_s / feed_mm_s;
-            self.rate = wanted.clamp(self.rate - step, self.rate + step);
+            self.rate = bounded(wanted, self.rate - step, self.rate + step);
             self.error_mm = Some(error_mm);
         }
-        Command { rate: self.rate, offset_mm: [0.0; N] }
+        Command::straight(self.rate, [0.0; N])
     }
 }
 

@@ -21,7 +21,7 @@ use super::{Command, Controller, Measured, Schedule};
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::{ERROR_SCALE_MM, FEED_SCALE_MM_S, History, Inputs};
 use crate::inversion::{self, Gradient, MOST_KNOTS};
-use crate::vector::{add_scaled, dot, norm, scale, sub};
+use crate::vector::{add_scaled, bounded, dot, norm, scale, sub};
 use crate::window::{PREVIEW_KNOTS, Window};
 
 /// The paper's feed period, s.
@@ -104,7 +104,7 @@ impl<const N: usize, I> Inverting<N, I> {
     /// Knots that are inverted together; all of them within the preview.
     fn knots(&self) -> usize {
         let seen = PREVIEW_KNOTS / self.settings.servo_periods.max(1) as usize;
-        self.settings.knots.min(seen).clamp(1, MOST_KNOTS)
+        self.settings.knots.min(seen).min(MOST_KNOTS).max(1)
     }
 }
 
@@ -146,7 +146,7 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
         let inputs = self.history.inputs(planned);
         if planned_feed < LEAST_FEED_MM_S {
             self.last = Some(inputs);
-            return Command { rate: 1.0, offset_mm: scale(1.0 - REST_LEAK, window.offset_mm) };
+            return Command::straight(1.0, scale(1.0 - REST_LEAK, window.offset_mm));
         }
         let mut feeds = [inputs.map(|axis| axis[0]); MOST_KNOTS];
         let feeds = &mut feeds[..self.knots()];
@@ -160,11 +160,11 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
         let along = dot(change, direction);
         let across = add_scaled(change, -along, direction);
         let [slowest, fastest] = self.settings.rate_range;
-        let rate = (1.0 + along / planned_feed).clamp(slowest, fastest);
+        let rate = bounded(1.0 + along / planned_feed, slowest, fastest);
         let feed = add_scaled(across, rate, planned);
         self.last = Some(self.history.inputs(feed));
         let stale = TANGENTIAL_LEAK * dot(window.offset_mm, direction);
-        Command { rate, offset_mm: add_scaled(add_scaled(window.offset_mm, period_s, across), -stale, direction) }
+        Command::straight(rate, add_scaled(add_scaled(window.offset_mm, period_s, across), -stale, direction))
     }
 }
 
@@ -188,8 +188,14 @@ mod tests {
             let tau_s = 0.01 * k as f64;
             register.push(Circle.knot(tau_s));
             preview.fill(&mut Circle, tau_s, 0.01 * f64::from(controller.schedule().preview));
-            let window =
-                Window { register: &register, preview: &preview, tau_s, feed_period_s: FEED_PERIOD_S, offset_mm };
+            let window = Window {
+                register: &register,
+                preview: &preview,
+                tau_s,
+                feed_period_s: FEED_PERIOD_S,
+                offset_mm,
+                offset_mm_s: [0.0; 2],
+            };
             let vector_mm = [0.02 * libm::sin(tau_s), 0.03];
             let measured = Measured {
                 position_mm: sub(window.now().position_mm, vector_mm),

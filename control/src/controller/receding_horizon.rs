@@ -27,10 +27,20 @@ pub const FEED_PERIOD_S: f64 = 0.003;
 
 /// How many times the lag of the machine the horizon reaches ahead: what is commanded later hardly moves the tool that is
 /// foreseen now.
-const REACH: f64 = 2.0;
+const REACH: f64 = 3.6;
 /// Knots change their length where the wanted length is further than this from the present, in feed periods: no change of
 /// mind over noise.
 const CLEARLY_OTHER: f64 = 0.7;
+
+/// A measurement is held for an outlier where it misses its prediction by this, mm, and so many times the usual; after so many
+/// in a row it is the machine that has changed.
+const OUTLIER_MM: f64 = 0.03;
+const OUTLIER: f64 = 10.0;
+const MOST_OUTLIERS: u32 = 3;
+/// A following error is strange where it is further than this, mm, and this part of it, from what the commands alone lead to: a
+/// machine that is not yet known differs by less, a position that has leapt by more.
+const STRANGE_MM: f64 = 0.2;
+const STRANGE_SHARE: f64 = 0.3;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,11 +62,14 @@ impl Settings {
     pub const DEFAULT: Self = Self {
         servo_periods: 5,
         horizon: horizon::Settings {
-            knots: 16,
+            knots: 20,
             rate_weight: 3e-10,
             change_weight: 1e-10,
-            tangential_price: 0.002,
-            rate_limit_mm_s: 1000.0,
+            tangential_weights: [0.003, 0.1],
+            tangential_mm: 0.1,
+            last_weight: 0.05,
+            on_rapids: false,
+            limits: horizon::Limits::NONE,
         },
         steps: 1,
         adaptation: adaptation::Settings::DEFAULT,
@@ -71,17 +84,22 @@ pub struct RecedingHorizon<const N: usize, S = GaussNewton> {
     settings: Settings,
     plan: Plan<N, S>,
     periods: usize,
+    /// The following error as it is measured; as it would be without measurement, from the commands alone; and the part of it
+    /// that the offset makes.
     delays: Delays<N>,
+    free: Delays<N>,
+    response: Delays<N>,
     missed_mm: f64,
-    /// The command of the last knot, mm, and the following error that was foreseen for this one.
+    outliers: u32,
+    foreseen_mm2: [f64; 2],
+    /// The command and its offset at the last decision, mm.
     last: Option<Last<N>>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Last<const N: usize> {
     command_mm: [f64; N],
-    inputs: Inputs<N>,
-    predicted_mm: [f64; N],
+    offset_mm: [f64; N],
 }
 
 impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
@@ -93,27 +111,68 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
             plan: Plan::default(),
             periods: 1,
             delays: Delays::REST,
+            free: Delays::REST,
+            response: Delays::REST,
             missed_mm: 0.0,
+            outliers: 0,
+            foreseen_mm2: [0.0; 2],
             last: None,
         }
     }
 
-    /// Takes in where the tool is now.
-    fn take_in(&mut self, command_mm: [f64; N], measured: &Measured<N>, period_s: f64) {
-        let following_mm = sub(command_mm, measured.position_mm);
-        if !norm(following_mm).is_finite() {
-            return;
-        }
-        let error = scale(1.0 / FOLLOWING_SCALE_MM, following_mm);
-        match self.last {
-            Some(last) => {
-                let before_mm = scale(FOLLOWING_SCALE_MM, self.delays.error[0]);
-                self.net.learn(&last.inputs, sub(following_mm, before_mm));
-                self.missed_mm = norm(sub(following_mm, last.predicted_mm));
-                self.delays.push(feed(last.command_mm, command_mm, period_s), error);
+    /// Takes in where the tool is now, and what was commanded on the way here: not what was asked for.
+    fn take_in(&mut self, window: &Window<'_, N>, position_mm: Option<[f64; N]>) {
+        let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
+        let following_mm = position_mm.map(|position_mm| sub(command_mm, position_mm));
+        let following_mm = following_mm.filter(|following_mm| norm(*following_mm).is_finite());
+        let now = Last { command_mm, offset_mm: window.offset_mm };
+        let Some(last) = self.last else {
+            if let Some(following_mm) = following_mm {
+                self.delays.error = [scale(1.0 / FOLLOWING_SCALE_MM, following_mm); 2];
+                self.free = self.delays;
+                self.last = Some(now);
             }
-            None => self.delays.error = [error; 2],
+            return;
+        };
+        self.last = Some(now);
+        let period_s = window.feed_period_s;
+        let feed_now = feed(last.command_mm, command_mm, period_s);
+        let inputs = self.delays.inputs(feed_now);
+        let before_mm = scale(FOLLOWING_SCALE_MM, self.delays.error[0]);
+        let mut foreseen_mm = add_scaled(before_mm, 1.0, self.net.net().predict(&inputs));
+        for (foreseen_mm, mut residual) in foreseen_mm.iter_mut().zip(self.net.residual()) {
+            *foreseen_mm += residual.next_mm();
         }
+        self.roll_free(feed_now, feed(last.offset_mm, window.offset_mm, period_s));
+        let now_mm = match following_mm {
+            Some(following_mm) if !self.is_outlier(following_mm, foreseen_mm) => {
+                self.net.learn(&inputs, sub(following_mm, before_mm));
+                following_mm
+            }
+            _ => foreseen_mm,
+        };
+        self.delays.push(feed_now, scale(1.0 / FOLLOWING_SCALE_MM, now_mm));
+    }
+
+    /// The following error from the commands alone, and what the offset makes of it.
+    fn roll_free(&mut self, feed: [f64; N], offset_feed: [f64; N]) {
+        let grown = |delays: &Delays<N>, grown_mm| add_scaled(delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown_mm);
+        let error = grown(&self.free, self.net.net().predict(&self.free.inputs(feed)));
+        self.free.push(feed, error);
+        let error = grown(&self.response, self.net.net().predict_linear(&self.response.inputs(offset_feed)));
+        self.response.push(offset_feed, error);
+    }
+
+    /// Whether a following error cannot be true: it misses the prediction by far more than any lately, for a few decisions. One
+    /// that is far from what the commands alone lead to counts as missed, however steady it is.
+    fn is_outlier(&mut self, following_mm: [f64; N], foreseen_mm: [f64; N]) -> bool {
+        let surprise_mm = norm(sub(following_mm, foreseen_mm));
+        let free_mm = scale(FOLLOWING_SCALE_MM, self.free.error[0]);
+        let strange_mm = norm(sub(following_mm, free_mm)) - STRANGE_SHARE * norm(free_mm) - STRANGE_MM;
+        self.missed_mm = surprise_mm.max(strange_mm);
+        let outlier = self.missed_mm > OUTLIER_MM + OUTLIER * self.net.innovation_mm();
+        self.outliers = if outlier { self.outliers + 1 } else { 0 };
+        outlier && self.outliers <= MOST_OUTLIERS
     }
 
     /// The weights at the quality that the predictions have now.
@@ -123,20 +182,19 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
         let mut horizon = self.settings.horizon;
         horizon.rate_weight *= blunter;
         horizon.change_weight *= blunter;
-        horizon.tangential_price = (horizon.tangential_price * libm::sqrt(libm::sqrt(blunter))).min(1.0);
         horizon
     }
 
     /// Feed periods of a knot, so that the plan reaches beyond the lag and stays within the preview.
     fn periods(&self, period_s: f64) -> usize {
-        let knots = self.settings.horizon.knots.max(1);
-        let most = PREVIEW_KNOTS / (knots * self.settings.servo_periods.max(1) as usize);
+        let knots = self.settings.horizon.knots();
+        let most = (PREVIEW_KNOTS / (knots * self.settings.servo_periods.max(1) as usize)).min(MOST_PERIODS).max(1);
         let wanted = REACH * self.net.net().lag_s() / (knots as f64 * period_s);
         if (wanted - self.periods as f64).abs() < CLEARLY_OTHER {
-            return self.periods.min(most.max(1));
+            return self.periods.min(most);
         }
         // A float that is too large, or not a number, saturates here.
-        (libm::round(wanted) as usize).clamp(1, MOST_PERIODS.min(most.max(1)))
+        (libm::round(wanted) as usize).min(most).max(1)
     }
 }
 
@@ -152,40 +210,48 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
         self.net.reset();
         self.periods = 1;
         self.delays = Delays::REST;
+        self.free = Delays::REST;
+        self.response = Delays::REST;
         self.missed_mm = 0.0;
+        self.outliers = 0;
+        self.foreseen_mm2 = [0.0; 2];
         self.last = None;
     }
 
     fn observe(&mut self, _: &Measured<N>) {}
+
+    fn bridge(&mut self, window: &Window<'_, N>) {
+        self.take_in(window, None);
+        self.plan.reset();
+    }
+
+    fn moved_mm(&self) -> Option<[f64; N]> {
+        let offset_mm = self.last.map_or([0.0; N], |last| last.offset_mm);
+        Some(add_scaled(offset_mm, -FOLLOWING_SCALE_MM, self.response.error[0]))
+    }
+
+    fn foreseen_mm2(&self) -> [f64; 2] {
+        self.foreseen_mm2
+    }
 
     fn missed_mm(&self) -> f64 {
         self.missed_mm
     }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
-        self.take_in(command_mm, measured, window.feed_period_s);
+        self.take_in(window, Some(measured.position_mm));
         self.periods = self.periods(window.feed_period_s);
         let horizon = self.weighted();
-        let lag_s = lag_s(window, measured);
-        let mut model = Identified::new(&self.net, self.delays);
+        let lag_s = self.net.net().lag_s();
+        let model = Identified::new(&self.net, self.delays, self.response);
         self.plan.shift(self.periods, &horizon);
         let mut step = self.plan.improve(&model, window, lag_s, &horizon);
         for _ in 1..self.settings.steps {
             step = self.plan.improve(&model, window, lag_s, &horizon);
         }
-        let next = Stretch::next(window, step.offset_mm);
-        let next_mm = next.command_mm[1];
-        let inputs = self.delays.inputs(feed(command_mm, next_mm, window.feed_period_s));
-        let predicted_mm = sub(next_mm, model.advance(window, &next, &mut [[0.0; N]; MOST_KNOTS]));
-        self.last = Some(Last { command_mm, inputs, predicted_mm });
-        Command { rate: 1.0, offset_mm: step.offset_mm }
+        self.foreseen_mm2 = step.contour_mm2;
+        Command::accelerated(window, step.acceleration_mm_s2)
     }
-}
-
-/// How far the tool is behind the command now, s.
-pub fn lag_s<const N: usize>(window: &Window<'_, N>, measured: &Measured<N>) -> f64 {
-    f64::from(-measured.contour.index) * window.servo_s()
 }
 
 /// The feedrate between two commands, scaled.
@@ -199,33 +265,53 @@ fn feed<const N: usize>(from_mm: [f64; N], to_mm: [f64; N], period_s: f64) -> [f
 struct Identified<'a, const N: usize> {
     net: &'a ServoIdentifier<N>,
     delays: Delays<N>,
+    /// What the offset makes of the following error, and the offset, mm.
+    response: Delays<N>,
+    offset_mm: [f64; N],
     residual: [Foresight; N],
-    /// Derivative of the following error, scaled, to the rate of each knot, s: now and one feed period ago.
+    /// Derivative of the following error, scaled, to the acceleration of each knot, s^2: now and one feed period ago.
     slopes: [[[f64; N]; MOST_KNOTS]; 2],
 }
 
 impl<'a, const N: usize> Identified<'a, N> {
-    fn new(net: &'a Adaptation<N>, delays: Delays<N>) -> Self {
-        Self { net: net.net(), delays, residual: net.residual(), slopes: [[[0.0; N]; MOST_KNOTS]; 2] }
+    fn new(net: &'a Adaptation<N>, delays: Delays<N>, response: Delays<N>) -> Self {
+        let slopes = [[[0.0; N]; MOST_KNOTS]; 2];
+        Self { net: net.net(), delays, response, offset_mm: [0.0; N], residual: net.residual(), slopes }
     }
 
     /// The derivative moves on as the following error does, along the slopes of the identifier.
     #[inline]
-    fn advance_slopes(&mut self, slopes: &Inputs<N>, period_s: f64, stretch: &Stretch<N>, felt: &mut Felt<N>) {
+    fn advance_slopes(&mut self, slopes: &Inputs<N>, stretch: &Stretch<N>, felt: &mut Felt<N>) {
         let [now, before] = &mut self.slopes;
         for knot in 0..=stretch.knot() {
-            let moved_s = (stretch.elapsed(knot) + 1).min(stretch.periods_per_knot) as f64 * period_s;
-            // F(k), F(k-1) and F(k-2) are of this knot, or not.
-            let of_it = [0, 1, 2].map(|back| if stretch.was_in(knot, back) { 1.0 / FEED_SCALE_MM_S } else { 0.0 });
+            let moved_s2 = stretch.moved_s2(knot, 1.0);
+            // Of F(k), F(k-1) and F(k-2).
+            let gained = [0, 1, 2].map(|back| stretch.gained_s(knot, back) / FEED_SCALE_MM_S);
             for axis in 0..N {
                 let [f0, f1, f2, e0, e1] = slopes[axis];
                 let grown_mm =
-                    f0 * of_it[0] + f1 * of_it[1] + f2 * of_it[2] + e0 * now[knot][axis] + e1 * before[knot][axis];
+                    f0 * gained[0] + f1 * gained[1] + f2 * gained[2] + e0 * now[knot][axis] + e1 * before[knot][axis];
                 before[knot][axis] = now[knot][axis];
                 now[knot][axis] += grown_mm / FOLLOWING_SCALE_MM;
-                felt[knot][axis] = moved_s - FOLLOWING_SCALE_MM * now[knot][axis];
+                felt[knot][axis] = moved_s2 - FOLLOWING_SCALE_MM * now[knot][axis];
             }
         }
+    }
+}
+
+impl<const N: usize> Identified<'_, N> {
+    /// What the offset makes of the following error moves on as all of it does, but for what is not linear.
+    #[inline]
+    fn respond(&mut self, stretch: &Stretch<N>) {
+        let [from_mm, to_mm] = stretch.offset_mm;
+        let feed = feed(from_mm, to_mm, stretch.period_s);
+        let inputs = self.response.inputs(feed);
+        let error = core::array::from_fn(|axis| {
+            let grown_mm: f64 = self.net.linear[axis][axis].iter().zip(&inputs[axis]).map(|(l, i)| l * i).sum();
+            self.response.error[0][axis] + grown_mm / FOLLOWING_SCALE_MM
+        });
+        self.response.push(feed, error);
+        self.offset_mm = to_mm;
     }
 }
 
@@ -242,10 +328,15 @@ impl<const N: usize> Model<N> for Identified<'_, N> {
         for axis in 0..N {
             grown_mm[axis] += self.residual[axis].next_mm();
         }
-        self.advance_slopes(&slopes, window.feed_period_s, stretch, felt);
+        self.advance_slopes(&slopes, stretch, felt);
         let error = add_scaled(self.delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown_mm);
         self.delays.push(feed, error);
+        self.respond(stretch);
         add_scaled(to_mm, -FOLLOWING_SCALE_MM, error)
+    }
+
+    fn moved_mm(&self) -> [f64; N] {
+        add_scaled(self.offset_mm, -FOLLOWING_SCALE_MM, self.response.error[0])
     }
 }
 
@@ -259,7 +350,7 @@ mod tests {
 
     impl Reference<2> for Line {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            Knot { position_mm: [40.0 * tau_s, 30.0 * tau_s], tangent: [0.8, 0.6], feed_mm_s: 50.0 }
+            Knot { position_mm: [40.0 * tau_s, 30.0 * tau_s], tangent: [0.8, 0.6], feed_mm_s: 50.0, cutting: true }
         }
     }
 
@@ -279,21 +370,17 @@ mod tests {
     }
 
     /// The tool at the end of each knot and its derivative.
-    fn roll_out(window: &Window<'_, 2>, rates: &[f64; 4], periods: usize) -> [([f64; 2], Felt<2>); 4] {
+    fn roll_out(window: &Window<'_, 2>, accelerations: &[f64; 4], periods: usize) -> [([f64; 2], Felt<2>); 4] {
         let spread = [[[0.0; UNKNOWNS]; UNKNOWNS]; 2];
         let adaptation = Adaptation::new(net(), &spread, adaptation::Settings::DEFAULT);
-        let mut model = Identified::new(&adaptation, Delays { feed: [[0.8, 0.6]; 2], error: [[0.8, 0.6]; 2] });
-        let mut stretch = Stretch { period: 0, periods_per_knot: periods, ..Stretch::next(window, [0.0; 2]) };
-        stretch.command_mm[1] = stretch.command_mm[0];
+        let mut model =
+            Identified::new(&adaptation, Delays { feed: [[0.8, 0.6]; 2], error: [[0.8, 0.6]; 2] }, Delays::REST);
+        let mut stretch = Stretch::now(window, periods);
         core::array::from_fn(|knot| {
             let (mut tool_mm, mut felt) = ([0.0; 2], [[0.0; 2]; MOST_KNOTS]);
             for _ in 0..periods {
-                let offset_mm = add_scaled(stretch.offset_mm[1], window.feed_period_s, [rates[knot]; 2]);
-                let path_mm = window.ahead(stretch.period + 1).position_mm;
-                stretch.offset_mm = [stretch.offset_mm[1], offset_mm];
-                stretch.command_mm = [stretch.command_mm[1], add_scaled(path_mm, 1.0, offset_mm)];
+                stretch.go_on(window, [accelerations[knot]; 2]);
                 tool_mm = model.advance(window, &stretch, &mut felt);
-                stretch.period += 1;
             }
             (tool_mm, felt)
         })
@@ -304,22 +391,28 @@ mod tests {
         let (mut register, mut preview) = (Register::default(), Preview::new(0.001));
         register.push(Line.knot(0.0));
         preview.fill(&mut Line, 0.0, 0.1);
-        let window =
-            Window { register: &register, preview: &preview, tau_s: 0.0, feed_period_s: 0.003, offset_mm: [0.0; 2] };
-        let rates = [3.0, -2.0, 5.0, 1.0];
+        let window = Window {
+            register: &register,
+            preview: &preview,
+            tau_s: 0.0,
+            feed_period_s: 0.003,
+            offset_mm: [0.0; 2],
+            offset_mm_s: [2.0, -1.0],
+        };
+        let accelerations = [300.0, -200.0, 500.0, 100.0];
         for periods in 1..=3 {
-            let found = roll_out(&window, &rates, periods);
+            let found = roll_out(&window, &accelerations, periods);
             for j in 0..4 {
-                let step = 1e-3;
-                let (mut more, mut less) = (rates, rates);
-                (more[j], less[j]) = (rates[j] + step, rates[j] - step);
+                let step = 0.1;
+                let (mut more, mut less) = (accelerations, accelerations);
+                (more[j], less[j]) = (accelerations[j] + step, accelerations[j] - step);
                 let (more, less) = (roll_out(&window, &more, periods), roll_out(&window, &less, periods));
                 for i in 0..4 {
                     for axis in 0..2 {
                         let felt = if j <= i { found[i].1[j][axis] } else { 0.0 };
                         let slope = (more[i].0[axis] - less[i].0[axis]) / (2.0 * step);
                         assert!(
-                            (felt - slope).abs() < 1e-6 * window.feed_period_s,
+                            (felt - slope).abs() < 1e-6 * window.feed_period_s * window.feed_period_s,
                             "{periods} {i} {j} {axis}: {felt} {slope}"
                         );
                     }

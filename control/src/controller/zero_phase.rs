@@ -107,7 +107,7 @@ impl<const N: usize> Controller<N> for ZeroPhase<N> {
             let filtered: f64 = weights.iter().zip(&reference).map(|(weight, r)| weight * (r[i] - here_mm)).sum();
             pole * (window.offset_mm[i] + now_mm[i] - here_mm) + (1.0 - pole) * filtered
         });
-        Command { rate: 1.0, offset_mm }
+        Command::straight(1.0, offset_mm)
     }
 }
 
@@ -136,7 +136,7 @@ mod tests {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let t_s = tau_s.max(0.0);
             let y = AMPLITUDE_MM * libm::sin(self.rad_s * t_s);
-            Knot { position_mm: [20.0 * t_s, y], tangent: [1.0, 0.0], feed_mm_s: 20.0 }
+            Knot { position_mm: [20.0 * t_s, y], tangent: [1.0, 0.0], feed_mm_s: 20.0, cutting: true }
         }
     }
 

@@ -1,20 +1,27 @@
-//! What a tick has to solve: the predictions along a plan, and their derivative.
+//! What a tick has to solve: the predictions along a plan, and their derivative, row by row.
 //!
-//! Linearised about the plan, with G the derivative of the errors to all rates, r the errors themselves and W the weights,
+//! Linearised about the plan, with r the errors, each with the square root of its weight, and G their derivative to all
+//! accelerations,
 //!
 //! ```text
-//! J(u + du) = 1/2 |r + G du|^2 + 1/2 (u + du)' W (u + du)
+//! J(a + da) = 1/2 |r + G da|^2 + w/2 sum_j |v_j|^2 + d/2 sum_j |v_j - v_{j-1}|^2
 //! ```
+//!
+//! A knot has N rows: the errors of the tool across the path and along it, or on a rapid those of the offset in each axis. Where
+//! the plan is beyond a limit, one more row each asks for what it is beyond.
 
-use super::{Felt, MOST_KNOTS, MOST_UNKNOWNS, Model, Rates, Settings, Stretch};
-use crate::contour_error::locate;
-use crate::vector::{add_scaled, dot, norm, reject, scale};
-use crate::window::Window;
+use super::{Accelerations, Felt, MOST_AXES, MOST_KNOTS, MOST_UNKNOWNS, Model, Settings, Stretch};
+use crate::vector::{bounded, dot, norm, reject, scale, sub};
+use crate::window::{PREVIEW_KNOTS, Window};
 
-/// The search for the nearest points starts where the tool is now and goes over to where the model has it in the long run,
-/// s: a model that is wrong about the lag then misleads late in the horizon only. It reaches as far to both sides as the tool
-/// lags: where the command stops, so much of the path is run in the last of the lag.
-const BELIEVED_AFTER_S: f64 = 0.1;
+/// Weight of the offset on a rapid: beside a cut it counts as little as an error along the path, so that it is in place when
+/// the next cut begins.
+const RAPID_WEIGHT: f64 = 0.02;
+/// Weights of what is beyond a limit, so that a hundredth of a usual limit (0.5 mm, 400 mm/s, 4000 mm/s^2) counts as much as
+/// 50 um of contour error: for the deviation, mm per mm; for the speed, s; for the drives, s^2.
+const DEVIATION_WEIGHT: f64 = 10.0;
+const SPEED_WEIGHT_S: f64 = 0.0125;
+const DRIVE_WEIGHT_S2: f64 = 1e-3;
 
 /// The problem of a tick.
 #[derive(Debug, Clone)]
@@ -23,69 +30,115 @@ pub struct Problem<const N: usize> {
     pub knots: usize,
     /// Time of a knot, s.
     pub knot_s: f64,
-    /// Directions in which the tool is off at the end of each knot, N - 1 normals of the path; the last is along the path,
-    /// and of the offset.
-    pub directions: [[[f64; N]; N]; MOST_KNOTS],
-    /// By how much, mm.
-    pub off_mm: [[f64; N]; MOST_KNOTS],
-    /// Derivative of the tool to the rates, s.
+    /// What counts at the end of each knot.
+    pub ends: [End<N>; MOST_KNOTS],
+    /// Derivative of the tool to the accelerations, s^2.
     pub felt: [Felt<N>; MOST_KNOTS],
+    /// Derivative of the offset at the end of the last knot to the acceleration of each knot, s^2: that of any other is the
+    /// same, shifted.
+    pub moved_s2: [f64; MOST_KNOTS],
     /// The settings.
     pub settings: Settings,
 }
 
+/// What is foreseen at the end of a knot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct End<const N: usize> {
+    /// Errors of the tool: across the path, and last along it, mm.
+    pub off_mm: [f64; N],
+    /// Their directions: N - 1 normals of the path, and last the tangent.
+    pub directions: [[f64; N]; N],
+    /// Planned feedrate there, mm/s.
+    pub feed_mm_s: f64,
+    /// Whether the tool cuts there, or is to be on the path.
+    pub counts: bool,
+    /// Offset, mm, and its speed, mm/s.
+    pub offset_mm: [f64; N],
+    /// See above.
+    pub offset_mm_s: [f64; N],
+    /// The tool, mm, and by how much the offset has moved it.
+    pub tool_mm: [f64; N],
+    /// See above.
+    pub moved_mm: [f64; N],
+}
+
+impl<const N: usize> End<N> {
+    const NONE: Self = Self {
+        off_mm: [0.0; N],
+        directions: [[0.0; N]; N],
+        feed_mm_s: 0.0,
+        counts: false,
+        offset_mm: [0.0; N],
+        offset_mm_s: [0.0; N],
+        tool_mm: [0.0; N],
+        moved_mm: [0.0; N],
+    };
+}
+
+/// The derivative of an error to all accelerations.
+pub type Row = [f64; MOST_UNKNOWNS];
+
 impl<const N: usize> Problem<N> {
-    /// Rolls a plan out through a model. The tool is `lag_s` behind the command now.
+    /// Rolls a plan out through a model. The tool is to be `lag_s` behind the plan.
     pub fn new<M: Model<N>>(
         model: &M,
         window: &Window<'_, N>,
         lag_s: f64,
-        rates: &Rates<N>,
+        accelerations_mm_s2: &Accelerations<N>,
         periods: usize,
         settings: &Settings,
     ) -> Self {
-        let period_s = window.feed_period_s;
-        let knots = settings.knots.clamp(1, MOST_KNOTS);
+        let knots = settings.knots();
         let mut problem = Self {
             knots,
-            knot_s: periods as f64 * period_s,
-            directions: [[[0.0; N]; N]; MOST_KNOTS],
-            off_mm: [[0.0; N]; MOST_KNOTS],
+            knot_s: periods as f64 * window.feed_period_s,
+            ends: [End::NONE; MOST_KNOTS],
             felt: [[[0.0; N]; MOST_KNOTS]; MOST_KNOTS],
+            moved_s2: [0.0; MOST_KNOTS],
             settings: *settings,
         };
+        let lag_s = bounded(lag_s, 0.0, PREVIEW_KNOTS as f64 * window.servo_s());
         let mut model = model.clone();
-        let model_lag_s = model.lag_s();
-        let mut stretch = Stretch {
-            period: 0,
-            periods_per_knot: periods,
-            command_mm: [add_scaled(window.now().position_mm, 1.0, window.offset_mm); 2],
-            offset_mm: [window.offset_mm; 2],
-        };
+        let mut stretch = Stretch::now(window, periods);
         for knot in 0..knots {
             let mut tool_mm = [0.0; N];
-            let mut ahead = window.now();
             for _ in 0..periods {
-                ahead = window.ahead(stretch.period + 1);
-                let offset_mm = add_scaled(stretch.offset_mm[1], period_s, rates[knot]);
-                stretch.offset_mm = [stretch.offset_mm[1], offset_mm];
-                stretch.command_mm = [stretch.command_mm[1], add_scaled(ahead.position_mm, 1.0, offset_mm)];
+                stretch.go_on(window, accelerations_mm_s2[knot]);
                 tool_mm = model.advance(window, &stretch, &mut problem.felt[knot]);
-                stretch.period += 1;
             }
-            let ahead_s = stretch.period as f64 * period_s;
-            let behind_s = ahead_s - lag_s - (model_lag_s - lag_s) * (ahead_s / BELIEVED_AFTER_S).min(1.0);
-            let reach = (lag_s.max(model_lag_s) / window.servo_s()) as i32;
-            let contour = locate(window, tool_mm, libm::round(behind_s / window.servo_s()) as i32, reach);
-            let normals = normals_of(contour.tangent);
-            for row in 0..N - 1 {
-                problem.directions[knot][row] = normals[row];
-                problem.off_mm[knot][row] = -dot(contour.vector_mm, normals[row]);
-            }
-            problem.directions[knot][N - 1] = ahead.tangent;
-            problem.off_mm[knot][N - 1] = dot(stretch.offset_mm[1], ahead.tangent);
+            let end_s = (stretch.period + 1) as f64 * window.feed_period_s;
+            let own = window.at(end_s - lag_s);
+            let directions = directions(own.tangent);
+            let off_mm = sub(tool_mm, own.position_mm);
+            problem.ends[knot] = End {
+                off_mm: directions.map(|direction| dot(direction, off_mm)),
+                directions,
+                feed_mm_s: own.feed_mm_s,
+                counts: own.cutting || settings.on_rapids,
+                offset_mm: stretch.offset_mm[1],
+                offset_mm_s: stretch.offset_mm_s[1],
+                tool_mm,
+                moved_mm: model.moved_mm(),
+            };
+        }
+        for (knot, moved_s2) in problem.moved_s2.iter_mut().enumerate().take(knots) {
+            *moved_s2 = stretch.moved_s2(knot, 1.0);
         }
         problem
+    }
+
+    /// Mean squares of the contour error over the knots that count, mm^2: of the plan, and without any offset. Of the first half
+    /// of the horizon: the second is still to be planned.
+    pub fn contour_mm2(&self) -> [f64; 2] {
+        let (mut sums, mut number) = ([0.0; 2], 0.0);
+        for end in self.ends[..self.knots.div_ceil(2)].iter().filter(|end| end.counts) {
+            for (off_mm, direction) in end.off_mm.iter().zip(&end.directions).take(N - 1) {
+                let open_mm = off_mm - dot(*direction, end.moved_mm);
+                sums = [sums[0] + off_mm * off_mm, sums[1] + open_mm * open_mm];
+            }
+            number += 1.0;
+        }
+        if number > 0.0 { sums.map(|sum| sum / number) } else { sums }
     }
 
     /// Unknowns.
@@ -93,97 +146,118 @@ impl<const N: usize> Problem<N> {
         self.knots * N
     }
 
-    /// The row of G that belongs to a direction of a knot: the contour error there feels the rates of the knots so far. The
-    /// number of its entries is `(knot + 1) * N`.
+    /// Hands every row and its error to `take`, with the knot that it belongs to: the number of its entries is
+    /// `(knot + 1) * N`.
     #[inline]
-    pub fn row(&self, knot: usize, direction: usize, row: &mut [f64; MOST_UNKNOWNS]) {
-        let direction = self.directions[knot][direction];
-        for j in 0..=knot {
-            for axis in 0..N {
-                row[j * N + axis] = direction[axis] * self.felt[knot][j][axis];
-            }
-        }
-    }
-
-    /// By how much the tool and the offset are off after a change of the rates, linearised, mm.
-    pub fn off_after_mm(&self, change: &Rates<N>) -> [[f64; N]; MOST_KNOTS] {
-        let mut off_mm = self.off_mm;
-        let mut offset_mm = [0.0; N];
+    pub fn rows(&self, mut take: impl FnMut(usize, f64, &dyn Fn(&mut Row))) {
         for knot in 0..self.knots {
-            let mut tool_mm = [0.0; N];
-            for (felt, change) in self.felt[knot].iter().zip(change).take(knot + 1) {
-                for axis in 0..N {
-                    tool_mm[axis] += felt[axis] * change[axis];
-                }
-            }
-            offset_mm = add_scaled(offset_mm, self.knot_s, change[knot]);
+            let end = &self.ends[knot];
             for d in 0..N {
-                let moved_mm = if d < N - 1 { tool_mm } else { offset_mm };
-                off_mm[knot][d] += dot(self.directions[knot][d], moved_mm);
-            }
-        }
-        off_mm
-    }
-
-    /// dJ/du at the plan.
-    pub fn gradient(&self, rates: &Rates<N>) -> Rates<N> {
-        self.gradient_at(rates, &self.off_mm)
-    }
-
-    /// dJ/du of the linearised problem at these rates, where the tool and the offset are off by `off_mm`.
-    pub fn gradient_at(&self, rates: &Rates<N>, off_mm: &[[f64; N]; MOST_KNOTS]) -> Rates<N> {
-        let mut gradient = self.weighted(rates);
-        let mut row = [0.0; MOST_UNKNOWNS];
-        let price = self.settings.tangential_price;
-        for knot in 0..self.knots {
-            for d in 0..N - 1 {
-                self.row(knot, d, &mut row);
-                for (g, felt) in gradient.as_flattened_mut().iter_mut().zip(&row[..(knot + 1) * N]) {
-                    *g += felt * off_mm[knot][d];
+                if end.counts {
+                    let weight = if d < N - 1 {
+                        1.0
+                    } else {
+                        self.settings.tangential_weight(knot, end.off_mm[d], end.feed_mm_s)
+                    };
+                    let direction = scale(weight, end.directions[d]);
+                    take(knot, weight * end.off_mm[d], &|row| self.tool_row(knot, direction, row));
+                } else {
+                    let mut direction = [0.0; N];
+                    direction[d] = RAPID_WEIGHT;
+                    take(knot, dot(direction, end.offset_mm), &|row| self.offset_row(knot, direction, row));
                 }
             }
-            let along = price * price * self.knot_s * off_mm[knot][N - 1];
-            for j in 0..=knot {
-                gradient[j] = add_scaled(gradient[j], along, self.directions[knot][N - 1]);
-            }
+            self.limit_rows(knot, &mut take);
         }
-        gradient
     }
 
-    /// W u.
-    fn weighted(&self, rates: &Rates<N>) -> Rates<N> {
-        let Settings { rate_weight, change_weight, .. } = self.settings;
-        let mut weighted = [[0.0; N]; MOST_KNOTS];
-        for knot in 0..self.knots {
-            weighted[knot] = add_scaled(weighted[knot], rate_weight, rates[knot]);
-            if knot > 0 {
-                let change = add_scaled(rates[knot], -1.0, rates[knot - 1]);
-                weighted[knot] = add_scaled(weighted[knot], change_weight, change);
-                weighted[knot - 1] = add_scaled(weighted[knot - 1], -change_weight, change);
+    /// The rows of the limits that the plan is beyond.
+    #[inline]
+    fn limit_rows(&self, knot: usize, take: &mut impl FnMut(usize, f64, &dyn Fn(&mut Row))) {
+        let limits = &self.settings.limits;
+        let end = &self.ends[knot];
+        let length_mm = norm(end.offset_mm);
+        if length_mm > limits.deviation_mm {
+            let outward = scale(DEVIATION_WEIGHT / length_mm, end.offset_mm);
+            let beyond_mm = DEVIATION_WEIGHT * (length_mm - limits.deviation_mm);
+            take(knot, beyond_mm, &|row| self.offset_row(knot, outward, row));
+        }
+        for axis in 0..N {
+            let speed = end.offset_mm_s[axis];
+            let beyond = speed - bounded(speed, -limits.speed_mm_s, limits.speed_mm_s);
+            if beyond != 0.0 {
+                take(knot, SPEED_WEIGHT_S * beyond, &|row| self.speed_row(knot, axis, row));
+            }
+            let most = limits.drive_mm_s2[axis.min(MOST_AXES - 1)];
+            let Some(acceleration) = self.tool_mm_s2(knot, axis) else { continue };
+            let beyond = acceleration - bounded(acceleration, -most, most);
+            if beyond != 0.0 {
+                take(knot, DRIVE_WEIGHT_S2 * beyond, &|row| self.drive_row(knot, axis, row));
             }
         }
-        weighted
+    }
+
+    /// Acceleration of the tool in an axis about the knot before this one, mm/s^2; none at the first two.
+    #[inline]
+    fn tool_mm_s2(&self, knot: usize, axis: usize) -> Option<f64> {
+        let [now, before, first] = [0, 1, 2].map(|back: usize| knot.checked_sub(back));
+        let at = |knot: Option<usize>| knot.map(|knot| self.ends[knot].tool_mm[axis]);
+        Some((at(now)? - 2.0 * at(before)? + at(first)?) / (self.knot_s * self.knot_s))
+    }
+
+    fn tool_row(&self, knot: usize, direction: [f64; N], row: &mut Row) {
+        for (entries, felt) in row.chunks_exact_mut(N).zip(&self.felt[knot]).take(knot + 1) {
+            for axis in 0..N {
+                entries[axis] = direction[axis] * felt[axis];
+            }
+        }
+    }
+
+    fn offset_row(&self, knot: usize, direction: [f64; N], row: &mut Row) {
+        let shift = self.knots - 1 - knot;
+        for (entries, moved_s2) in row.chunks_exact_mut(N).zip(&self.moved_s2[shift..]).take(knot + 1) {
+            for axis in 0..N {
+                entries[axis] = direction[axis] * moved_s2;
+            }
+        }
+    }
+
+    fn speed_row(&self, knot: usize, axis: usize, row: &mut Row) {
+        for entries in row.chunks_exact_mut(N).take(knot + 1) {
+            entries.fill(0.0);
+            entries[axis] = SPEED_WEIGHT_S * self.knot_s;
+        }
+    }
+
+    fn drive_row(&self, knot: usize, axis: usize, row: &mut Row) {
+        let gain = DRIVE_WEIGHT_S2 / (self.knot_s * self.knot_s);
+        for (j, entries) in row.chunks_exact_mut(N).enumerate().take(knot + 1) {
+            entries.fill(0.0);
+            let [now, before, first] = [0, 1, 2].map(|back| self.felt[knot.saturating_sub(back)][j][axis]);
+            entries[axis] = gain * (now - 2.0 * before + first);
+        }
     }
 }
 
-/// The normals of a tangent: the left one in the plane; in space the one nearest to an axis, and the one across both. The
-/// last row is not used.
-fn normals_of<const N: usize>(tangent: [f64; N]) -> [[f64; N]; N] {
-    let mut normals = [[0.0; N]; N];
+/// The normals of a tangent, and last itself: in the plane the left one; in space the one nearest to an axis, and the one
+/// across both.
+fn directions<const N: usize>(tangent: [f64; N]) -> [[f64; N]; N] {
+    let mut directions = [[0.0; N]; N];
+    directions[N - 1] = tangent;
     if N == 2 {
-        (normals[0][0], normals[0][1]) = (-tangent[1], tangent[0]);
-        return normals;
+        (directions[0][0], directions[0][1]) = (-tangent[1], tangent[0]);
+        return directions;
     }
     // The axis that the path runs least along.
     let least = (0..N).fold(0, |best, i| if tangent[i].abs() < tangent[best].abs() { i } else { best });
     let mut axis = [0.0; N];
     axis[least] = 1.0;
     let first = reject(axis, tangent);
-    let first = scale(1.0 / norm(first), first);
-    normals[0] = first;
-    normals[1] = core::array::from_fn(|i| {
+    let first = scale(1.0 / norm(first).max(f64::MIN_POSITIVE), first);
+    directions[0] = first;
+    directions[1] = core::array::from_fn(|i| {
         let (j, k) = ((i + 1) % N, (i + 2) % N);
         tangent[j] * first[k] - tangent[k] * first[j]
     });
-    normals
+    directions
 }

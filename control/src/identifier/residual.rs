@@ -12,6 +12,7 @@
 //! Source: autoregressive disturbance models as in Ljung and Soederstroem (1983), section 3.6.
 
 use crate::least_squares::LeastSquares;
+use crate::vector::bounded;
 
 /// P: lags.
 pub const LAGS: usize = 6;
@@ -49,7 +50,7 @@ pub struct Foresight {
 impl Foresight {
     #[inline]
     fn expected_mm(&self) -> f64 {
-        weighted(&self.coefficients, &self.past_mm).clamp(-self.largest_mm, self.largest_mm)
+        bounded(weighted(&self.coefficients, &self.past_mm), -self.largest_mm, self.largest_mm)
     }
 
     /// The next residual, mm; each call goes on by one knot.

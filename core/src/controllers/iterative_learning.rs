@@ -124,7 +124,7 @@ impl<const N: usize> Controller<N> for IterativeLearning<N> {
             *slot = error_mm;
         }
         let offset_mm = self.offsets_mm.get(now + 1).or(self.offsets_mm.last()).copied().unwrap_or([0.0; N]);
-        Command { rate: 1.0, offset_mm }
+        Command::straight(1.0, offset_mm)
     }
 }
 
@@ -172,13 +172,13 @@ mod tests {
             let angle = 10.0 * s * s * (3.0 - 2.0 * s);
             let (sin, cos) = angle.sin_cos();
             let feed_mm_s = 10.0 * 10.0 * 6.0 * s * (1.0 - s) / PROGRAM_S;
-            Knot { position_mm: [10.0 * (1.0 - cos), 10.0 * sin], tangent: [sin, cos], feed_mm_s }
+            Knot { position_mm: [10.0 * (1.0 - cos), 10.0 * sin], tangent: [sin, cos], feed_mm_s, cutting: true }
         }
     }
 
     /// One lap with two first-order loops of 50 1/s and 45 1/s: RMS of the distance from the circle, mm.
     fn lap(controller: &mut IterativeLearning<2>) -> f64 {
-        let mut tick = Tick::new(SERVO_S, controller.schedule(), Bounds::new(0.5, 400.0));
+        let mut tick = Tick::new(SERVO_S, controller.schedule(), Bounds::new(0.5, 400.0, 400.0));
         let mut tool_mm = [0.0; 2];
         let mut squares = 0.0;
         let periods = (PROGRAM_S / SERVO_S) as u32;

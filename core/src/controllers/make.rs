@@ -96,6 +96,7 @@ fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
 pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
     let receding_horizon::Settings { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
     (horizon.knots, horizon.rate_weight) = (horizon::MOST_KNOTS, values[0]);
+    horizon.limits = correction_limits(setup.machine);
     let servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
     Box::new(ModelPredictive::new(setup.machine, model_predictive::Settings { servo_periods, horizon }))
 }
@@ -125,8 +126,27 @@ pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, _: &[f64])
     let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
     let mut settings = receding_horizon::Settings::DEFAULT;
     settings.servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
+    settings.horizon.on_rapids = setup.choices.on_rapids;
+    settings.horizon.limits = correction_limits(setup.machine);
     let controller: RecedingHorizon<N> = RecedingHorizon::new(identified.net, &identified.spread, settings);
     Box::new(controller)
+}
+
+/// Part of the largest deviation that a plan uses: the rest is for what it misses, before the safety layer acts.
+const PLANNED_DEVIATION: f64 = 0.9;
+
+/// What a machine allows a correction.
+fn correction_limits(machine: &Machine) -> horizon::Limits {
+    horizon::Limits {
+        acceleration_mm_s2: std::array::from_fn(|i| machine.correction_accel_mm_s2(i)),
+        speed_mm_s: machine.limits.rapid_mm_s,
+        deviation_mm: PLANNED_DEVIATION * machine.limits.max_deviation_mm,
+        drive_mm_s2: std::array::from_fn(|i| {
+            let axis = machine.axis(i);
+            let spare_nm = (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0);
+            spare_nm / axis.inertia_kg_m2 * axis.lead_mm_per_rev / TAU
+        }),
+    }
 }
 
 /// Settings of the controllers that invert the paper's identifier.

@@ -8,11 +8,9 @@
 //! Source: Lam, Manzie and Good (2010), "Model predictive contouring control", for the contour error over a horizon; the
 //! progress along the path stays as planned here, since a time bought with error is not compared.
 
-use std::cmp::Ordering;
 use std::f64::consts::TAU;
 
 use feedwright_control::activation::tanh;
-use feedwright_control::controller::receding_horizon::lag_s;
 use feedwright_control::horizon::{self, Felt, MOST_KNOTS, Model, Plan, Stretch};
 use feedwright_control::identifier::residual::{self, Foresight, Residual};
 use feedwright_control::vector::{add_scaled, norm, sub};
@@ -22,8 +20,8 @@ use crate::machine::{Axis, Machine};
 
 /// Steps of Gauss and Newton, at most.
 const MOST_STEPS: usize = 20;
-/// Converged: no offset rate changes by more, mm/s; a nanometre in a feed period.
-const CONVERGED_MM_S: f64 = 2e-4;
+/// Converged: no acceleration of the offset changes by more, mm/s^2; a tenth of a micrometre per second in a feed period.
+const CONVERGED_MM_S2: f64 = 0.05;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -114,24 +112,25 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         self.take_in(window, measured.position_mm);
         let settings = &self.settings.horizon;
-        let lag_s = lag_s(window, measured);
+        let lag_s = self.model.lag_s;
         let mut model = self.model.clone();
         model.residual = self.residuals.each_ref().map(Residual::foresight);
         self.plan.shift(1, settings);
         let mut step = self.plan.improve(&model, window, lag_s, settings);
         for _ in 1..MOST_STEPS {
-            if step.change_mm_s <= CONVERGED_MM_S {
+            if step.change_mm_s2 <= CONVERGED_MM_S2 {
                 break;
             }
             step = self.plan.improve(&model, window, lag_s, settings);
         }
-        let stretch = Stretch::next(window, step.offset_mm);
+        let mut stretch = Stretch::now(window, 1);
+        stretch.go_on(window, step.acceleration_mm_s2);
         let expected_mm = model.advance(window, &stretch, &mut [[0.0; N]; MOST_KNOTS]);
         for (own, foreseen) in self.model.axes.iter_mut().zip(&model.axes) {
             own.state = foreseen.state;
         }
         self.expected_mm = Some([self.model.tool_mm(), expected_mm]);
-        Command { rate: 1.0, offset_mm: step.offset_mm }
+        Command::accelerated(window, step.acceleration_mm_s2)
     }
 }
 
@@ -185,19 +184,15 @@ impl<const N: usize> Model<N> for Exact<N> {
     }
 
     fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>, felt: &mut Felt<N>) -> [f64; N] {
-        let [from_mm, to_mm] = stretch.offset_mm;
+        let offset = Command { bend_mm: stretch.bend_mm(), ..Command::straight(1.0, stretch.offset_mm[1]) };
         for phase in 0..self.servo_periods {
             let ahead = stretch.period as u32 * self.servo_periods + phase;
-            let path_mm = window.preview.at(window.tau_s + f64::from(ahead) * self.step.servo_s).position_mm;
+            let path_mm = window.at(f64::from(ahead) * self.step.servo_s).position_mm;
             let part = f64::from(phase) / f64::from(self.servo_periods);
-            let moved_s = std::array::from_fn(|knot| match knot.cmp(&stretch.knot()) {
-                Ordering::Less => stretch.periods_per_knot as f64 * window.feed_period_s,
-                Ordering::Equal => (stretch.elapsed(knot) as f64 + part) * window.feed_period_s,
-                Ordering::Greater => 0.0,
-            });
+            let offset_mm = offset.offset_after_mm(part, stretch.offset_mm[0]);
+            let moved_s2 = std::array::from_fn(|knot| stretch.moved_s2(knot, part));
             for (i, axis) in self.axes.iter_mut().enumerate() {
-                let command_mm = path_mm[i] + from_mm[i] + part * (to_mm[i] - from_mm[i]);
-                axis.advance(command_mm, &moved_s, &self.step, stretch.knot());
+                axis.advance(path_mm[i] + offset_mm[i], &moved_s2, &self.step, stretch.knot());
             }
         }
         for i in 0..N {
@@ -218,7 +213,7 @@ struct ServoPeriod {
     substeps: u32,
 }
 
-/// An axis: its state, and the derivative of that to the rate of each knot, per mm/s.
+/// An axis: its state, and the derivative of that to the acceleration of each knot, per mm/s^2.
 #[derive(Debug, Clone, Copy)]
 struct ExactAxis {
     parameters: Axis,
@@ -251,14 +246,15 @@ impl State {
 }
 
 impl ExactAxis {
-    /// One servo period at a command that moves by `moved_s` mm for a rate of 1 mm/s in each of the knots up to `knot`.
-    fn advance(&mut self, command_mm: f64, moved_s: &[f64; MOST_KNOTS], step: &ServoPeriod, knot: usize) {
+    /// One servo period at a command that moves by `moved_s2` mm for an acceleration of 1 mm/s^2 in each of the knots up to `knot`.
+    fn advance(&mut self, command_mm: f64, moved_s2: &[f64; MOST_KNOTS], step: &ServoPeriod, knot: usize) {
         let axis = &self.parameters;
         let asked_rad_s = self.state.position_loop(command_mm * self.rad_per_mm, axis, step.servo_s);
         let mut slopes_asked = [0.0; MOST_KNOTS];
-        for (asked, (slope, moved_s)) in slopes_asked.iter_mut().zip(self.slopes.iter_mut().zip(moved_s)).take(knot + 1)
+        for (asked, (slope, moved_s2)) in
+            slopes_asked.iter_mut().zip(self.slopes.iter_mut().zip(moved_s2)).take(knot + 1)
         {
-            *asked = slope.position_loop(moved_s * self.rad_per_mm, axis, step.servo_s);
+            *asked = slope.position_loop(moved_s2 * self.rad_per_mm, axis, step.servo_s);
         }
         for _ in 0..step.substeps {
             let w = self.state.speed_rad_s;

@@ -112,6 +112,6 @@ impl<const N: usize> Controller<N> for Excitation<'_, N> {
             tool_mm: measured.position_mm,
             contour_mm: measured.contour.vector_mm,
         });
-        Command { rate: 1.0, offset_mm: self.offset_mm }
+        Command::straight(1.0, self.offset_mm)
     }
 }

@@ -208,6 +208,7 @@ fn axis(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> 
         torque_limit_nm: table.number("torque_limit_nm", "N m", 1e-6..=1e6, faults),
         drive_delay_s: table.optional_number("drive_delay_s", "s", 0.0..=0.02, faults).unwrap_or(0.0),
         torque_bits: table.optional_number("torque_bits", "bits", 4.0..=32.0, faults).map(|bits| bits.round() as u32),
+        correction_accel_mm_s2: table.optional_number("correction_accel_mm_s2", "mm/s2", 0.1..=1e6, faults),
         encoder_step_um: table.optional_number("encoder_step_um", "um", 0.0..=1e3, faults).unwrap_or(0.0),
         transmission: transmission.map(|table| self::transmission(table, mechanics_s, faults)),
     };

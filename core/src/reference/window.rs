@@ -71,6 +71,7 @@ impl Window {
             feed_mm_s: if resting { 0.0 } else { (phase.speed_mm_s + phase.accel_mm_s2 * along).max(0.0) },
             line: phase.rest.unwrap_or(piece.line),
             cutting: piece.cutting && !resting,
+            rapid: !piece.cutting,
             resting,
         }
     }
@@ -149,6 +150,7 @@ impl Sample {
             feed_mm_s: 0.0,
             line: 0,
             cutting: false,
+            rapid: false,
             resting: true,
         }
     }

@@ -1,0 +1,80 @@
+//! Whether the correction does any good: the contour error as it is against what it would be without.
+//!
+//! ```text
+//! eps: of the tool p     eps_open: of p - g     g: by how much the offset has moved the tool
+//! ```
+//!
+//! g is the controller's own, from its model; of one without a model, the offset behind a lag of first order with the time by
+//! which the tool is behind. Both errors are taken as mean squares and as largest values over the last [`MEMORY_S`]. The model
+//! may be wrong by some per cent, so that g is no better than that: harm counts where it is beyond doubt.
+
+use crate::contour_error::{ContourError, locate};
+use crate::vector::{add_scaled, dot, norm, scale, sub};
+use crate::window::Window;
+
+/// Time over which errors are compared, s: longer than a corner, shorter than a scrapped part.
+const MEMORY_S: f64 = 0.25;
+/// Harm in the mean square: beyond this many times that without, and this much, mm^2 (5 um).
+const CERTAIN: f64 = 1.5;
+const LEAST_MM2: f64 = 2.5e-5;
+/// Harm in a single error: beyond this many times the largest without, and this much, mm.
+const CERTAIN_PEAK: f64 = 1.5;
+const LEAST_PEAK_MM: f64 = 0.03;
+/// Part by which g may be wrong.
+const DOUBT: f64 = 0.1;
+/// As those, for a g that is only a guess.
+const GUESSED: f64 = 2.0;
+const GUESSED_MM2: f64 = 1e-4;
+
+/// Errors lately, as they are and without the correction.
+#[derive(Debug, Clone)]
+pub(super) struct Benefit<const N: usize> {
+    filtered_mm: [f64; N],
+    last_mm: [f64; N],
+    square_mm2: f64,
+    open_square_mm2: f64,
+    open_peak_mm: f64,
+}
+
+impl<const N: usize> Benefit<N> {
+    pub(super) const NONE: Self =
+        Self { filtered_mm: [0.0; N], last_mm: [0.0; N], square_mm2: 0.0, open_square_mm2: 0.0, open_peak_mm: 0.0 };
+
+    /// Takes in the error at a decision; `moved_mm` is g, where the controller knows it.
+    pub(super) fn is_harm(
+        &mut self,
+        window: &Window<'_, N>,
+        tool_mm: [f64; N],
+        contour: &ContourError<N>,
+        moved_mm: Option<[f64; N]>,
+    ) -> bool {
+        let guessed_mm = self.guessed_mm(window, contour);
+        let g_mm = moved_mm.unwrap_or(guessed_mm);
+        let open_mm = sub(tool_mm, g_mm);
+        let reach = contour.index.saturating_neg();
+        let open = locate(window, open_mm, contour.index, reach);
+        let part = (window.feed_period_s / MEMORY_S).min(1.0);
+        let square = dot(contour.vector_mm, contour.vector_mm);
+        let open_peak_mm = norm(open.vector_mm) + DOUBT * norm(g_mm);
+        let open_square = open_peak_mm * open_peak_mm;
+        self.square_mm2 += part * (square - self.square_mm2);
+        self.open_square_mm2 += part * (open_square - self.open_square_mm2);
+        self.open_peak_mm = (self.open_peak_mm * (1.0 - 0.5 * part)).max(open_peak_mm);
+        if moved_mm.is_none() {
+            return self.square_mm2 > GUESSED_MM2 + GUESSED * self.open_square_mm2;
+        }
+        self.square_mm2 > LEAST_MM2 + CERTAIN * self.open_square_mm2
+            || norm(contour.vector_mm) > LEAST_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm
+    }
+
+    fn guessed_mm(&mut self, window: &Window<'_, N>, contour: &ContourError<N>) -> [f64; N] {
+        let period_s = window.feed_period_s;
+        let lag_s = f64::from((-contour.index).max(0)) * window.servo_s();
+        // The tool has felt the offset of the feed period that ends, not the one that it ends with.
+        let felt = scale(0.5, add_scaled(window.offset_mm, 1.0, self.last_mm));
+        self.last_mm = window.offset_mm;
+        let change = sub(felt, self.filtered_mm);
+        self.filtered_mm = add_scaled(self.filtered_mm, period_s / (period_s + lag_s), change);
+        self.filtered_mm
+    }
+}

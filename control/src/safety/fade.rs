@@ -1,0 +1,59 @@
+//! The way back to the plan: the offset comes to rest at zero within an acceleration.
+//!
+//! ```text
+//! v(o) = min(o / T, sqrt(c A o))     a = (v - v(o)) / dt, at most A
+//! ```
+//!
+//! towards zero, in each axis: near the plan the offset decays with the time constant T, further away it brakes along the
+//! parabola that A allows, with a margin c.
+
+use crate::vector::bounded;
+
+/// T, s: twice that of a usual position loop, so that the tool follows without a transient of its own.
+const TIME_S: f64 = 0.03;
+/// c: 2 is all that A allows.
+const MARGIN: f64 = 1.2;
+/// An offset this small at this speed is none, mm and mm/s.
+const NONE_MM: f64 = 1e-6;
+const NONE_MM_S: f64 = 1e-3;
+
+/// The acceleration of the next period, mm/s^2, of an offset in one axis.
+#[inline]
+pub(super) fn acceleration(offset_mm: f64, offset_mm_s: f64, period_s: f64, most_mm_s2: f64) -> f64 {
+    let distance_mm = offset_mm.abs();
+    let speed = (distance_mm / TIME_S).min(libm::sqrt(MARGIN * most_mm_s2 * distance_mm));
+    let wanted_mm_s = if offset_mm > 0.0 { -speed } else { speed };
+    bounded((wanted_mm_s - offset_mm_s) / period_s, -most_mm_s2, most_mm_s2)
+}
+
+/// Whether there is nothing left to fade.
+#[inline]
+pub(super) fn is_over<const N: usize>(offset_mm: [f64; N], offset_mm_s: [f64; N]) -> bool {
+    (0..N).all(|axis| offset_mm[axis].abs() < NONE_MM && offset_mm_s[axis].abs() < NONE_MM_S)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_offset_comes_to_rest_at_zero_within_the_acceleration_whatever_its_speed() {
+        let period_s = 0.003;
+        for (offset, speed) in [(0.5, 0.0), (0.5, 10.0), (-0.02, 3.0), (1e-3, -8.0), (0.0, 0.0)] {
+            for most in [50.0, 400.0, 4000.0] {
+                let (mut o, mut v) = (offset, speed);
+                let mut farthest = 0.0_f64;
+                for _ in 0..1000 {
+                    let a = acceleration(o, v, period_s, most);
+                    assert!(a.abs() <= most);
+                    o += period_s * (v + 0.5 * period_s * a);
+                    v += period_s * a;
+                    farthest = farthest.max(o.abs());
+                }
+                assert!(is_over([o], [v]), "{offset} {speed} {most}: {o} {v}");
+                let coasts = speed * speed / (2.0 * most) + speed.abs() * period_s;
+                assert!(farthest <= offset.abs() + 1.5 * coasts + 1e-3, "{offset} {speed} {most}: {farthest}");
+            }
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! Whether the measured position can be true: looked at in every servo period.
+
+use crate::vector::{norm, sub};
+
+/// A position that has not changed at all for so long while the command moved is frozen, s.
+const FROZEN_S: f64 = 0.012;
+/// So far has the command moved by then, mm: the loop of a machine that follows at all has broken its tool loose, and moved it
+/// by more than an encoder step of a few micrometres.
+const FROZEN_MM: f64 = 0.12;
+/// No tool moves faster than this many times the highest speed.
+const LEAP: f64 = 2.0;
+
+/// What was measured lately.
+#[derive(Debug, Clone)]
+pub(crate) struct Feedback<const N: usize> {
+    /// The last position that can be true, mm, and how many servo periods ago that was.
+    last_mm: Option<[f64; N]>,
+    since: u32,
+    /// How long it has not changed, s, and how far the command has moved since, mm.
+    still_s: f64,
+    commanded_mm: f64,
+    /// Position of the command in the servo period before, mm.
+    command_mm: Option<[f64; N]>,
+    /// Whether a servo period since the last decision had no true position.
+    lost: bool,
+}
+
+impl<const N: usize> Feedback<N> {
+    pub(crate) const NONE: Self =
+        Self { last_mm: None, since: 0, still_s: 0.0, commanded_mm: 0.0, command_mm: None, lost: false };
+
+    /// Takes in the position at the start of a servo period of `servo_s`, at which the command was at `command_mm`.
+    #[inline]
+    pub(crate) fn take_in(&mut self, position_mm: [f64; N], command_mm: [f64; N], servo_s: f64, most_mm_s: f64) {
+        let before_mm = self.command_mm.replace(command_mm).unwrap_or(command_mm);
+        let moved_mm = self.last_mm.map_or(0.0, |last_mm| norm(sub(position_mm, last_mm)));
+        self.since = self.since.saturating_add(1);
+        let can_mm = LEAP * most_mm_s * servo_s * f64::from(self.since);
+        let there = moved_mm <= can_mm && norm(position_mm).is_finite();
+        if there {
+            self.since = 0;
+            self.last_mm = Some(position_mm);
+        }
+        if there && moved_mm > 0.0 {
+            (self.still_s, self.commanded_mm) = (0.0, 0.0);
+        } else {
+            self.still_s += servo_s;
+            self.commanded_mm += norm(sub(command_mm, before_mm));
+        }
+        self.lost |= !there || (self.still_s > FROZEN_S && self.commanded_mm > FROZEN_MM);
+    }
+
+    /// Whether the position was lost since the last decision.
+    #[inline]
+    pub(crate) fn take_lost(&mut self) -> bool {
+        core::mem::replace(&mut self.lost, false)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Servo periods of 1 ms until a fault that begins at the hundredth is seen, at 10 mm/s.
+    fn seen_after(fault: impl Fn(u32, f64) -> f64) -> Option<u32> {
+        let mut feedback = Feedback::<1>::NONE;
+        for n in 0..200 {
+            let command_mm = 0.01 * f64::from(n);
+            let true_mm = command_mm - 0.2;
+            let measured_mm = if n < 100 { true_mm } else { fault(n, true_mm) };
+            feedback.take_in([measured_mm], [command_mm], 0.001, 400.0);
+            if feedback.take_lost() {
+                return Some(n - 100);
+            }
+        }
+        None
+    }
+
+    #[test]
+    fn every_fault_is_seen_within_twenty_milliseconds_and_no_other() {
+        assert_eq!(seen_after(|_, position_mm| position_mm), None);
+        assert_eq!(seen_after(|_, _| f64::NAN), Some(0));
+        assert_eq!(seen_after(|n, position_mm| if n == 100 { f64::INFINITY } else { position_mm }), Some(0));
+        assert_eq!(seen_after(|_, position_mm| position_mm + 1.0), Some(0));
+        let frozen = seen_after(|_, _| 0.8).expect("a frozen position is seen");
+        assert!(frozen <= 17, "{frozen}");
+        // Steps of 1 um.
+        assert_eq!(seen_after(|_, position_mm| libm::round(position_mm * 1e3) * 1e-3), None);
+    }
+}
