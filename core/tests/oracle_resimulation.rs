@@ -6,9 +6,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
+#[path = "common/python.rs"]
+mod common;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use common::python;
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Choices, Entry};
 use feedwright::machine::Machine;
 use feedwright::pipeline::{self, Job, Outputs};
@@ -68,17 +72,6 @@ fn two() -> [&'static Entry; 2] {
 /// the integration's error does not hold.
 fn finer(entry: &Entry) -> &'static [u32] {
     if two().iter().any(|one| one.name == entry.name) { BOTH } else { &[1] }
-}
-
-/// A Python that reads TOML: 3.11 or newer; it is said where there is none.
-fn python() -> Option<&'static str> {
-    let python = ["python3", "python"].into_iter().find(|python| {
-        Command::new(python).args(["-c", "import tomllib"]).output().is_ok_and(|output| output.status.success())
-    });
-    if python.is_none() {
-        eprintln!("SKIPPED: there is no Python 3.11 or newer to re-simulate with");
-    }
-    python
 }
 
 /// Cuts a part and leaves its trace; how many axes it has.
