@@ -84,6 +84,11 @@ impl<const N: usize> Tick<N> {
         Setpoint { tau_s, path, command_mm: add_scaled(path.position_mm, 1.0, offset_mm), decided }
     }
 
+    /// Plan time goes on by servo periods at rest that nobody computes; everything else stays.
+    pub fn skip(&mut self, periods: u64) {
+        self.tau_s += periods as f64 * self.servo_s;
+    }
+
     /// The contour error at the last decision.
     pub fn contour(&self) -> &ContourError<N> {
         &self.contour

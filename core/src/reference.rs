@@ -133,6 +133,12 @@ impl<'p> Reference<'p> {
         self.window.nearest_along(point_mm, lo_mm, hi_mm.max(lo_mm))
     }
 
+    /// Start and end of the rest, a dwell or what a PLC takes, at `tau_s`; none where there is none.
+    pub fn rest(&mut self, tau_s: f64) -> Option<(f64, f64)> {
+        self.read_until(tau_s);
+        self.window.rest(tau_s)
+    }
+
     /// Total plan time, s, once the end of the program has been read.
     pub fn end_s(&self) -> Option<f64> {
         self.ended.then_some(self.planned_s)

@@ -6,10 +6,12 @@
 //! | File | What |
 //! |---|---|
 //! | `simulate/progress.rs` | how far along the path the tool has come, and so the contour error |
+//! | `simulate/rests.rs` | which part of a long rest is simulated |
 //! | `simulate/uncut.rs` | how far the tool stays away from what it should have cut |
 //! | `simulate/tick_times.rs` | how long the ticks took |
 
 mod progress;
+mod rests;
 mod tick_times;
 mod uncut;
 
@@ -107,6 +109,7 @@ pub fn simulate_lap<const N: usize>(
     let lost_mm = LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s);
     let start_mm = first(reference.at(0.0).position_mm);
     let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s);
+    let feed_periods = controller.schedule().servo_periods.max(1);
     let mut tick = Tick::<N>::new(servo_s, controller.schedule(), bounds);
     let mut plant = Plant::<N>::new(machine, start_mm);
     let mut progress = Progress::new(machine, spread(start_mm));
@@ -115,7 +118,8 @@ pub fn simulate_lap<const N: usize>(
     let mut run = Run::default();
     let mut ended: Option<f64> = None;
     let mut last_tau_s = 0.0;
-    for n in 0_u64.. {
+    let mut n = 0_u64;
+    loop {
         let t_s = n as f64 * servo_s;
         let clock = Instant::now();
         let setpoint = tick.step(&mut Axes(reference), controller, seen_mm);
@@ -182,6 +186,14 @@ pub fn simulate_lap<const N: usize>(
             run.arrival_s = t_s + servo_s;
             break;
         }
+        let left_out = if sample.resting {
+            rests::left_out(reference, setpoint.tau_s, servo_s, feed_periods, settled_s(machine))
+        } else {
+            0
+        };
+        tick.skip(left_out);
+        plant.skip(left_out);
+        n += 1 + left_out;
     }
     run.uncut_mm = uncut.finish(ARRIVED_MM);
     Ok(run)

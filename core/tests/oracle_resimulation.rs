@@ -169,6 +169,32 @@ fn so_they_do_in_space() {
     }
 }
 
+/// Longer than what is simulated of them, one beside the other, one no whole number of feed periods.
+#[test]
+fn so_they_do_over_long_rests() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let part = folder.path().join("rests.ngc");
+    let text = "G21 G90 F1200\nG1 X3 Y1\nG4 P2.3457\nG1 X1 Y4\nM6 T1\nM8\nG4 P1.5\nG1 X0 Y0\nM2\n";
+    std::fs::write(&part, text).unwrap();
+    for machine in ["tnv40", "coarse"] {
+        for entry in two() {
+            agrees(python, &part, &machine_file(machine), entry, &[1]);
+            let file = folder.path().join("trace.csv");
+            trace(&part, &machine_file(machine), entry, &file);
+            let text = std::fs::read_to_string(&file).unwrap();
+            let times: Vec<f64> =
+                text.lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
+            let gaps_s: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).filter(|gap_s| *gap_s > 0.01).collect();
+            for (gap_s, wanted_s) in gaps_s.iter().zip([1.3457, 3.0, 0.5]) {
+                assert!((gap_s - wanted_s).abs() < 0.005, "{gaps_s:?}");
+            }
+            assert_eq!(gaps_s.len(), 3, "{gaps_s:?}");
+            assert!(times[times.len() - 1] > 2.3457 + 4.0 + 1.5);
+        }
+    }
+}
+
 /// The script does not accept everything.
 #[test]
 fn a_trace_with_a_wrong_position_is_found_out() {

@@ -116,6 +116,13 @@ impl Window {
         (index, (s_mm - piece.s_mm).max(0.0).min(piece.length_mm))
     }
 
+    /// Start and end of the rest at a plan time.
+    pub(super) fn rest(&mut self, tau_s: f64) -> Option<(f64, f64)> {
+        let (phase, _) = self.phase_at(tau_s)?;
+        let end_s = phase.tau_s + phase.duration_s;
+        (phase.rest.is_some() && tau_s < end_s).then_some((phase.tau_s, end_s))
+    }
+
     fn piece(&self, number: u64) -> Option<&Piece> {
         self.pieces.get(number.checked_sub(self.first_piece)? as usize)
     }

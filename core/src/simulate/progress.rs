@@ -10,7 +10,8 @@
 //! 2. From `lo` on the tool *reaches* all `s` up to the first with `d(s) > h min(d over lo..s) + m`: beyond, the path leaves
 //!    the tool. `f` is the nearest point reached, no later than [`LEAD_S`] ahead of the reference.
 //! 3. Beyond stands a hill: a corner that the tool rounds. Of what follows, no later than [`LEAD_S`] ahead either, the first
-//!    stretch that comes nearer than the foot is reached over it, if the tool moves more along that stretch than along its own.
+//!    stretch that comes nearer than the foot is reached over it, if the tool does not move along its own (to
+//!    within 8 degrees) and moves more along that one.
 //!
 //! Where the tool takes a right angle or less, 2 alone lets it pass: midway `d = h / sqrt(2)` of the corner's distance. On
 //! a spike, or a line there and back, the tool stays on its way out until it moves back. A leg that happens to be near is
@@ -31,6 +32,8 @@ const LEAD_S: f64 = 0.05;
 const BACK_MM: f64 = 0.01;
 /// How much further than the nearest point the path may be on the way: at a right angle sqrt(2).
 const HILL: f64 = 1.5;
+/// Cosine of the angle within which the tool moves along its own stretch: there is nothing to look for beyond.
+const ALONG: f64 = 0.99;
 /// The least way of a servo period, mm: a tool at rest still looks past what an encoder cannot resolve.
 const LEAST_WAY_MM: f64 = 1e-4;
 /// Distances that differ by less are equal, mm: of two laps over each other the first counts.
@@ -130,6 +133,11 @@ impl Step<'_, '_> {
 
     /// The first stretch from `from_mm` to `hi_mm` that is nearer than `foot`, where the tool moves along it.
     fn over_the_hill(&mut self, foot: &Foot, from_mm: f64, hi_mm: f64) -> Option<Foot> {
+        let along = |foot: &Foot, moved_mm: Vector| dot(moved_mm, foot.tangent);
+        let own_mm = along(foot, self.moved_mm);
+        if own_mm > ALONG * self.way_mm {
+            return None;
+        }
         let nearer_mm = foot.distance_mm - TIE_MM;
         let mut at_mm = from_mm;
         while at_mm < hi_mm && nearer_mm > 0.0 {
@@ -139,8 +147,7 @@ impl Step<'_, '_> {
                 let nearest = self.reference.nearest_along(self.tool_mm, at_mm, next_mm);
                 if nearest.distance_mm < nearer_mm {
                     let (beyond, _) = self.reach(nearest.s_mm, hi_mm);
-                    let along = |foot: &Foot| dot(self.moved_mm, foot.tangent);
-                    return (along(&beyond) > along(foot)).then_some(beyond);
+                    return (along(&beyond, self.moved_mm) > own_mm).then_some(beyond);
                 }
             }
             at_mm = next_mm;

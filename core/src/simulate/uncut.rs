@@ -31,8 +31,6 @@ pub(super) struct Uncut {
     way_mm: f64,
     waiting: VecDeque<FeedPoint>,
     last_mm: Option<Vector>,
-    /// Where the tool would settle.
-    command_mm: Vector,
 }
 
 /// A feed point that the tool has not come near to.
@@ -54,7 +52,6 @@ impl Uncut {
             way_mm: 0.0,
             waiting: VecDeque::new(),
             last_mm: None,
-            command_mm: start_mm,
         }
     }
 
@@ -66,7 +63,6 @@ impl Uncut {
             self.waiting.push_back(FeedPoint { point_mm: row.path_mm, row: self.rows, again_mm });
         }
         self.last_mm = Some(row.path_mm);
-        self.command_mm = row.cmd_mm;
         self.go(from_mm, row.act_mm);
         self.rows += 1;
         while self.waiting.front().is_some_and(|point| point.row + self.periods <= self.rows) {
@@ -77,11 +73,13 @@ impl Uncut {
         }
     }
 
-    /// The largest distance, mm. A tool that has arrived within `arrived_mm` of its last command counts as settling on it.
+    /// The largest distance, mm. A tool within `arrived_mm` of the end has arrived there, though its rows end before it settles.
     pub(super) fn finish(mut self, arrived_mm: f64) -> f64 {
         let last_mm = self.trace_mm[self.trace_mm.len() - 1];
-        if distance(last_mm, self.command_mm) <= arrived_mm {
-            self.trace_mm.push_back(self.command_mm);
+        if let Some(end_mm) = self.last_mm
+            && distance(last_mm, end_mm) <= arrived_mm
+        {
+            self.trace_mm.push_back(end_mm);
             self.rows += 1;
         }
         while !self.waiting.is_empty() {

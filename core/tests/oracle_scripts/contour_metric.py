@@ -14,10 +14,10 @@ least 0.1 um), r(t) where the reference is, W = 5 / Kp + delay:
     the tool reaches from lo on all s up to the first with d(s) > 1.5 min(d over lo..s) + m, at most r(t + 50 ms);
     its foot is the nearest of these, and the contour error the distance to it.
     Beyond, up to r(t + 50 ms): the first stretch that comes nearer, and what is reached from there, if the tool's way lies
-    more along the path there than at the foot.
+    more along the path there than at the foot, and there no more than 0.99 m.
 
 Uncut: the largest, over the rows whose reference moves on a cutting line, of the distance from the path point of the row to the
-polyline of the tool from t to t + W. A tool within 10 um of its last command comes to rest there.
+polyline of the tool from t to t + W. A tool that ends within 10 um of the end of the path has come there.
 """
 import bisect
 import csv
@@ -30,7 +30,7 @@ import tomllib
 
 from resimulate import machine_of
 
-SETTLED, LEAD_S, BACK, HILL, LEAST_WAY, TIE, ARRIVED = 5.0, 0.05, 0.01, 1.5, 1e-4, 1e-9, 0.01
+SETTLED, LEAD_S, BACK, HILL, LEAST_WAY, TIE, ARRIVED, ALONG = 5.0, 0.05, 0.01, 1.5, 1e-4, 1e-9, 0.01, 0.99
 SAGITTA = 1e-6
 
 
@@ -155,7 +155,7 @@ def contour_errors(path, machine, rows):
                     beyond, _ = reach(path, tool, way, near[1], hi)
                     moved = (tool[0] - last[0], tool[1] - last[1])
                     along = [sum(m * t for m, t in zip(moved, path.tangent(s))) for s in (best[1], beyond[1])]
-                    if along[1] > along[0]:
+                    if along[1] > along[0] and along[0] <= ALONG * way:
                         best = beyond
                     break
         furthest, last = max(furthest, best[1]), tool
@@ -174,9 +174,9 @@ def uncut(path, machine, rows):
     """The largest distance, mm, by its definition."""
     _, window = settled(machine)
     trace = [path.at[0]] + [(row["act_x_mm"], row["act_y_mm"]) for row in rows]
-    command = (rows[-1]["cmd_x_mm"], rows[-1]["cmd_y_mm"])
-    if math.dist(command, trace[-1]) <= ARRIVED:
-        trace.append(command)
+    end = (rows[-1]["path_x_mm"], rows[-1]["path_y_mm"])
+    if math.dist(end, trace[-1]) <= ARRIVED:
+        trace.append(end)
     largest, last = 0.0, None
     for n, row in enumerate(rows):
         point = (row["path_x_mm"], row["path_y_mm"])

@@ -71,7 +71,8 @@ fn a_tool_on_the_path_has_no_error_whatever_its_lag() {
         for lag_s in [-2e-3, 0.0, 5e-3, 0.02, 0.06] {
             let feet = feet(lines(&corners), |reference, t_s| reference.at(t_s - lag_s).position_mm);
             goes_on(&feet);
-            assert!(largest(&feet) < 1e-9, "lag {lag_s}: {}", largest(&feet));
+            // Of a servo period in which the tool turns at a tip, only both ends are known.
+            assert!(largest(&feet) < 1e-4, "lag {lag_s}: {}", largest(&feet));
         }
     }
 }
