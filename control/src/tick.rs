@@ -116,6 +116,11 @@ impl<const N: usize> Tick<N> {
         Setpoint { tau_s, path, command_mm: add_scaled(path.position_mm, 1.0, offset_mm), decided }
     }
 
+    /// Plan time goes on by servo periods at rest that nobody computes; everything else stays.
+    pub fn skip(&mut self, periods: u64) {
+        self.time = PlanTime { periods: self.time.periods.saturating_add(periods), ..self.time };
+    }
+
     /// The contour error at the last decision.
     pub fn contour(&self) -> &ContourError<N> {
         &self.contour

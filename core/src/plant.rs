@@ -175,6 +175,11 @@ impl<const N: usize> Plant<N> {
         }
     }
 
+    /// Time goes on by servo periods in which nothing moves: speeds and angles stay, the disturbance is that of the time.
+    pub fn skip(&mut self, periods: u64) {
+        self.period += periods;
+    }
+
     /// The mechanics of one servo period; the torque at its end.
     fn turn(&mut self, reference_rad_s: [f64; N]) -> [f64; N] {
         let mut disturbance = self.disturbance_at_start();

@@ -123,6 +123,24 @@ impl<'p> Reference<'p> {
         self.window.nearest(point_mm, tau_lo_s, tau_hi_s.max(tau_lo_s))
     }
 
+    /// The point of the path at arc length `s_mm`, seen from `point_mm`; of what has been read and not forgotten.
+    #[inline]
+    pub fn at_length(&self, point_mm: [f64; 3], s_mm: f64) -> Foot {
+        self.window.nearest_along(point_mm, s_mm, s_mm)
+    }
+
+    /// The point of the path nearest to `point_mm` between two arc lengths; of what has been read and not forgotten.
+    #[inline]
+    pub fn nearest_along(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> Foot {
+        self.window.nearest_along(point_mm, lo_mm, hi_mm.max(lo_mm))
+    }
+
+    /// Start and end of the rest, a dwell or what a PLC takes, at `tau_s`; none where there is none.
+    pub fn rest(&mut self, tau_s: f64) -> Option<(f64, f64)> {
+        self.read_until(tau_s);
+        self.window.rest(tau_s)
+    }
+
     /// Total plan time, s, once the end of the program has been read.
     pub fn end_s(&self) -> Option<f64> {
         self.ended.then_some(self.planned_s)

@@ -2,8 +2,18 @@
 //!
 //! Row n: at t = n Ts the tick makes the position command from the reference and the tool position; the plant holds it for
 //! one servo period; the contour error is that of the tool at its end, against the exact path.
+//!
+//! | File | What |
+//! |---|---|
+//! | `simulate/progress.rs` | how far along the path the tool has come, and so the contour error |
+//! | `simulate/rests.rs` | which part of a long rest is simulated |
+//! | `simulate/uncut.rs` | how far the tool stays away from what it should have cut |
+//! | `simulate/tick_times.rs` | how long the ticks took |
 
+mod progress;
+mod rests;
 mod tick_times;
+mod uncut;
 
 use std::time::Instant;
 
@@ -15,7 +25,9 @@ use crate::machine::Machine;
 use crate::plant::{Measurement, Plant};
 use crate::reference::{Reference, Sample};
 use crate::trace::{Commanded, FadedOut, Outcome, Row, Sink};
+use progress::{Progress, settled_periods, settled_s};
 pub use tick_times::TickTimes;
+use uncut::Uncut;
 
 /// A stable loop of gain Kp lags by v / Kp. Where the command is this many times the lag of a rapid away, or
 /// [`LOST_MM`] where that is more, the tool does not follow any more.
@@ -26,10 +38,8 @@ const LOST_MM: f64 = 2.0;
 const ARRIVED_MM: f64 = 0.01;
 /// Longest wait for the tool to arrive, s: friction may hold it off for good.
 const ARRIVAL_S: f64 = 0.25;
-/// The tool lags behind the reference by no more than this many time constants of its slowest position loop.
-const LAG_TIME_CONSTANTS: f64 = 8.0;
-/// How far the tool can be ahead of the reference, in plan time, s.
-const LEAD_S: f64 = 0.05;
+/// The path is kept for this many times as long as a following tool needs to come to a point of it.
+const KEPT_SETTLED_TIMES: f64 = 3.0;
 
 /// What a run says about itself beyond its rows.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -46,6 +56,8 @@ pub struct Run {
     pub time_s: f64,
     /// When the tool has arrived there, s.
     pub arrival_s: f64,
+    /// The uncut path: the largest distance from a programmed point to what the tool did in the time that it has for it, mm.
+    pub uncut_mm: f64,
     /// The most register entries that one contour error estimate looked at.
     pub most_entries: usize,
     /// Time of the ticks in which the controller decided.
@@ -97,20 +109,24 @@ pub fn simulate_lap<const N: usize>(
 ) -> std::io::Result<Run> {
     let servo_s = machine.period.servo_s;
     let slowest_s = 1.0 / machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
-    let lag_s = LAG_TIME_CONSTANTS * slowest_s;
+    let kept_s = KEPT_SETTLED_TIMES * settled_s(machine);
     let lost_mm = LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s);
     let start_mm = first(reference.at(0.0).position_mm);
     let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
     let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s, fade_mm_s2);
+    let feed_periods = controller.schedule().servo_periods.max(1);
     let mut tick = Tick::<N>::new(servo_s, controller.schedule(), bounds);
     let mut plant = Plant::<N>::new(machine, start_mm);
+    let mut progress = Progress::new(machine, spread(start_mm));
+    let mut uncut = Uncut::new(settled_periods(machine), spread(start_mm));
     let mut seen_mm = start_mm;
     let mut run = Run::default();
     let mut ended: Option<f64> = None;
     let mut last_tau_s = 0.0;
     let mut fade = None;
     let mut cut = [0_u64; 2];
-    for n in 0_u64.. {
+    let mut n = 0_u64;
+    loop {
         let t_s = n as f64 * servo_s;
         let clock = Instant::now();
         let setpoint = tick.step(&mut Axes(reference), controller, seen_mm);
@@ -143,7 +159,7 @@ pub fn simulate_lap<const N: usize>(
         }
         let sample = reference.at(setpoint.tau_s);
         let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
-        let foot = reference.nearest(spread(tool_mm), tau_s - lag_s, tau_s + LEAD_S);
+        let foot = progress.foot(reference, tau_s, sample.s_mm, spread(tool_mm));
         let row = Row {
             t_s,
             s_mm: sample.s_mm,
@@ -173,17 +189,27 @@ pub fn simulate_lap<const N: usize>(
         for sink in sinks.iter_mut() {
             sink.row(&row)?;
         }
-        reference.forget_before(tau_s - lag_s);
+        uncut.row(&row);
+        reference.forget_before(tau_s - kept_s);
         if let Some(ended_s) = ended
             && (following_mm <= ARRIVED_MM || t_s >= ended_s + ARRIVAL_S)
         {
             run.arrival_s = t_s + servo_s;
             break;
         }
+        let left_out = if sample.resting {
+            rests::left_out(reference, setpoint.tau_s, servo_s, feed_periods, settled_s(machine))
+        } else {
+            0
+        };
+        tick.skip(left_out);
+        plant.skip(left_out);
+        n += 1 + left_out;
     }
     let [out, within] = cut;
     run.engaged_share = if out + within == 0 { 1.0 } else { within as f64 / (out + within) as f64 };
     run.engaged_at_end = tick.state() == State::Engaged;
+    run.uncut_mm = uncut.finish(ARRIVED_MM);
     Ok(run)
 }
 

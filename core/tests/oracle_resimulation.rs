@@ -6,9 +6,13 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
+#[path = "common/python.rs"]
+mod common;
+
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
+use common::python;
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Choices, Entry};
 use feedwright::machine::Machine;
 use feedwright::pipeline::{self, Job, Outputs};
@@ -68,17 +72,6 @@ fn two() -> [&'static Entry; 2] {
 /// the integration's error does not hold.
 fn finer(entry: &Entry) -> &'static [u32] {
     if two().iter().any(|one| one.name == entry.name) { BOTH } else { &[1] }
-}
-
-/// A Python that reads TOML: 3.11 or newer; it is said where there is none.
-fn python() -> Option<&'static str> {
-    let python = ["python3", "python"].into_iter().find(|python| {
-        Command::new(python).args(["-c", "import tomllib"]).output().is_ok_and(|output| output.status.success())
-    });
-    if python.is_none() {
-        eprintln!("SKIPPED: there is no Python 3.11 or newer to re-simulate with");
-    }
-    python
 }
 
 /// Cuts a part and leaves its trace; how many axes it has.
@@ -173,6 +166,32 @@ fn so_they_do_in_space() {
     }
     for machine in ["soft", "coarse"] {
         agrees(python, &short, &machine_file(machine), &CONTROLLERS[0], BOTH);
+    }
+}
+
+/// Longer than what is simulated of them, one beside the other, one no whole number of feed periods.
+#[test]
+fn so_they_do_over_long_rests() {
+    let Some(python) = python() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let part = folder.path().join("rests.ngc");
+    let text = "G21 G90 F1200\nG1 X3 Y1\nG4 P2.3457\nG1 X1 Y4\nM6 T1\nM8\nG4 P1.5\nG1 X0 Y0\nM2\n";
+    std::fs::write(&part, text).unwrap();
+    for machine in ["tnv40", "coarse"] {
+        for entry in two() {
+            agrees(python, &part, &machine_file(machine), entry, &[1]);
+            let file = folder.path().join("trace.csv");
+            trace(&part, &machine_file(machine), entry, &file);
+            let text = std::fs::read_to_string(&file).unwrap();
+            let times: Vec<f64> =
+                text.lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
+            let gaps_s: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).filter(|gap_s| *gap_s > 0.01).collect();
+            for (gap_s, wanted_s) in gaps_s.iter().zip([1.3457, 3.0, 0.5]) {
+                assert!((gap_s - wanted_s).abs() < 0.005, "{gaps_s:?}");
+            }
+            assert_eq!(gaps_s.len(), 3, "{gaps_s:?}");
+            assert!(times[times.len() - 1] > 2.3457 + 4.0 + 1.5);
+        }
     }
 }
 

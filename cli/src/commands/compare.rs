@@ -178,8 +178,8 @@ fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
         if here != heading {
             writeln!(
                 out,
-                "\n{here:<34} {:>8} {:>9} {:>9} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} {:>8}",
-                "time s", "RMS um", "max um", "time", "RMS", "max", "off um", "N m", "tick us", "99.9 %"
+                "\n{here:<34} {:>8} {:>9} {:>9} {:>9} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} {:>8}",
+                "time s", "RMS um", "max um", "uncut um", "time", "RMS", "max", "off um", "N m", "tick us", "99.9 %"
             )?;
             heading = here;
         }
@@ -192,11 +192,12 @@ fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
         };
         writeln!(
             out,
-            "{:<34} {:>8.3} {:>9.2} {:>9.2} {:>6.3} {:>6.3} {:>6.3} {:>8.0} {:>7.2} {median_us:>8} {most_us:>8}{note}",
+            "{:<34} {:>8.3} {:>9.2} {:>9.2} {:>9.2} {:>6.3} {:>6.3} {:>6.3} {:>8.0} {:>7.2} {median_us:>8} {most_us:>8}{note}",
             row.controller,
             row.time_s,
             row.rms_um,
             row.max_um,
+            row.uncut_um,
             row.time_ratio,
             row.rms_ratio,
             row.max_ratio,

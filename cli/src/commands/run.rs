@@ -76,19 +76,20 @@ fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
     let runs = &outcome.report.runs;
     writeln!(
         out,
-        "{:<18} {:>9} {:>10} {:>10} {:>8} {:>8} {:>8}",
-        "", "time s", "RMS um", "max um", "time", "RMS", "max"
+        "{:<18} {:>9} {:>10} {:>10} {:>10} {:>8} {:>8} {:>8}",
+        "", "time s", "RMS um", "max um", "uncut um", "time", "RMS", "max"
     )?;
     for run in runs {
         let (now, first) = (&run.summary, &runs[0].summary);
         let ratio = |value: fn(&RunSummary) -> f64| ratio(value(now), value(first));
         writeln!(
             out,
-            "{:<18} {:>9.3} {:>10.2} {:>10.2} {:>8} {:>8} {:>8}",
+            "{:<18} {:>9.3} {:>10.2} {:>10.2} {:>10.2} {:>8} {:>8} {:>8}",
             now.controller,
             now.time_s,
             now.rms_um,
             now.max_um,
+            now.uncut_um,
             ratio(|s| s.time_s),
             ratio(|s| s.rms_um),
             ratio(|s| s.max_um)

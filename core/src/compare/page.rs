@@ -182,7 +182,7 @@ fn write_cell(out: &mut impl Write, index: usize, rows: &[Row]) -> io::Result<()
     let (contour, machine) = (escaped(&rows[0].contour), escaped(&rows[0].machine));
     writeln!(out, "<section id=\"cell-{index}\"><h2>{contour} on {machine}</h2>")?;
     let ratios = ["time ratio", "RMS ratio", "max ratio"];
-    let measured = ["controller", "time, s", "RMS, µm", "max, µm"];
+    let measured = ["controller", "time, s", "RMS, µm", "max, µm", "uncut, µm"];
     write_heading(out, measured.into_iter().chain(ratios).chain(["command off, µm", "torque, N m", ""]))?;
     for row in rows {
         let note = match (row.completed, &row.faded_out) {
@@ -191,7 +191,8 @@ fn write_cell(out: &mut impl Write, index: usize, rows: &[Row]) -> io::Result<()
             (true, None) => String::new(),
         };
         write!(out, "<tr{}><td>{}</td><td>{:.3}</td>", ours(&row.controller), escaped(&row.controller), row.time_s)?;
-        write!(out, "<td>{}</td><td>{}</td>", number(row.rms_um), number(row.max_um))?;
+        let errors_um = [row.rms_um, row.max_um, row.uncut_um].map(number);
+        write!(out, "<td>{}</td>", errors_um.join("</td><td>"))?;
         for ratio in [row.time_ratio, row.rms_ratio, row.max_ratio] {
             let class = if ratio < 1.0 - NOTABLE {
                 " class=\"better\""

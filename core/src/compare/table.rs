@@ -24,6 +24,9 @@ pub struct Row {
     pub rms_um: f64,
     /// Largest contour error, um.
     pub max_um: f64,
+    /// Uncut path: largest distance from a programmed point to what the tool did in the time that it has for it, um.
+    #[serde(default)]
+    pub uncut_um: f64,
     /// Largest distance of the command from the point of the path of the same instant, um.
     pub max_deviation_um: f64,
     /// Largest torque of any axis, N m.
@@ -64,6 +67,7 @@ impl Row {
             time_s: run.time_s,
             rms_um: statistics.rms_um(),
             max_um: statistics.max_um(),
+            uncut_um: run.uncut_mm * 1e3,
             max_deviation_um: statistics.max_deviation_um(),
             peak_torque_nm: statistics.peak_torque_nm().into_iter().fold(0.0, f64::max),
             time_ratio: 1.0,

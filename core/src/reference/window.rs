@@ -86,12 +86,42 @@ impl Window {
         };
         let lo_mm = local_mm(&lo, first, along(&lo, tau_lo_s));
         let hi_mm = local_mm(&hi, last, along(&hi, tau_hi_s));
-        if lo.piece == hi.piece {
-            let hi_mm = hi_mm.max(lo_mm);
-            return super::foot(first, first.curve.nearest(point_mm, lo_mm, hi_mm), point_mm);
-        }
         let index = |piece: u64| (piece - self.first_piece) as usize;
-        nearest(&self.pieces, Range { first: index(lo.piece), last: index(hi.piece), lo_mm, hi_mm }, point_mm)
+        self.nearest_within(Range { first: index(lo.piece), last: index(hi.piece), lo_mm, hi_mm }, point_mm)
+    }
+
+    /// As [`Self::nearest`], between two arc lengths of the path.
+    #[inline]
+    pub(super) fn nearest_along(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> Foot {
+        if self.pieces.is_empty() {
+            return Foot::nowhere(point_mm);
+        }
+        let (first, lo_mm) = self.place_of(lo_mm);
+        let (last, hi_mm) = if hi_mm > lo_mm { self.place_of(hi_mm) } else { (first, lo_mm) };
+        self.nearest_within(Range { first, last, lo_mm, hi_mm }, point_mm)
+    }
+
+    fn nearest_within(&self, range: Range, point_mm: [f64; 3]) -> Foot {
+        if range.first == range.last {
+            let piece = &self.pieces[range.first];
+            let hi_mm = range.hi_mm.max(range.lo_mm);
+            return super::foot(piece, piece.curve.nearest(point_mm, range.lo_mm, hi_mm), point_mm);
+        }
+        nearest(&self.pieces, range, point_mm)
+    }
+
+    /// Index of the piece at an arc length, and the place in it.
+    fn place_of(&self, s_mm: f64) -> (usize, f64) {
+        let index = self.pieces.partition_point(|piece| piece.s_mm <= s_mm).saturating_sub(1);
+        let piece = &self.pieces[index];
+        (index, (s_mm - piece.s_mm).max(0.0).min(piece.length_mm))
+    }
+
+    /// Start and end of the rest at a plan time.
+    pub(super) fn rest(&mut self, tau_s: f64) -> Option<(f64, f64)> {
+        let (phase, _) = self.phase_at(tau_s)?;
+        let end_s = phase.tau_s + phase.duration_s;
+        (phase.rest.is_some() && tau_s < end_s).then_some((phase.tau_s, end_s))
     }
 
     fn piece(&self, number: u64) -> Option<&Piece> {

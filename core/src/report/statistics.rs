@@ -92,6 +92,7 @@ impl Statistics {
             time_s: facts.run.time_s,
             rms_um: self.rms_um(),
             max_um: self.max_um(),
+            uncut_um: facts.run.uncut_mm * 1e3,
             max_deviation_um: self.max_deviation_mm * 1e3,
             peak_torque_nm: self.peak_torque_nm,
             cutting_length_mm: self.cutting_length_mm,

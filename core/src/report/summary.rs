@@ -44,6 +44,8 @@ pub struct RunSummary {
     pub rms_um: f64,
     /// Largest contour error of the rows that cut, µm.
     pub max_um: f64,
+    /// Uncut path: largest distance from a programmed point to what the tool did in the time that it has for it, µm.
+    pub uncut_um: f64,
     /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.
     pub max_deviation_um: f64,
     /// Largest torque of each axis, N m.

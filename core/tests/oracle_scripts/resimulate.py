@@ -21,7 +21,8 @@ tool is the table (Altintas 2012, section 5; Nordin and Gutman 2002, eq. 4):
     L(w) = B w + Fc tanh(w / ws) + D sin(2 pi f t)
 
 Semi-implicit Euler, every mass's speed and then its angle, t at the start of the step; the axis starts at rest at the first
-cmd. x is that of the motor, or of the table where the scale is there, in whole encoder steps.
+cmd. x is that of the motor, or of the table where the scale is there, in whole encoder steps. Where t_s jumps, in a long rest,
+everything stays but t.
 
 FINER divides the step of the mechanics, and of nothing else, by this number; the difference is then what the integration
 adds to the laws, and its limit another one: see limit_nm.
@@ -72,7 +73,7 @@ def pushed(stiffness, damping, gap, twist, twist_speed):
     return side * max(0.0, stiffness * pressed + damping * side * twist_speed) if pressed > 0 else 0.0
 
 
-def cut(axis, period, commands_mm, finer):
+def cut(axis, period, times_s, commands_mm, finer):
     """Where the tool is at the end of each servo period, mm, and its largest acceleration, mm/s2."""
     servo = period["servo_s"]
     substeps = round(servo / period["mechanics_s"])
@@ -99,7 +100,8 @@ def cut(axis, period, commands_mm, finer):
     angle = tool = commands_mm[0] * per_mm
     speed = tool_speed = last_error = largest = 0.0
     references, positions_mm = [], []
-    for n, command_mm in enumerate(commands_mm):
+    for n, (time_s, command_mm) in enumerate(zip(times_s, commands_mm)):
+        start = round(time_s / servo) * servo
         measured = stepped(tool if screw and scale_on_table else angle, encoder_step)
         error = command_mm * per_mm - measured
         references.append(kp * error + kd * (error - last_error) / servo)
@@ -109,7 +111,7 @@ def cut(axis, period, commands_mm, finer):
             reference = references[sent] if sent >= 0 else 0.0
             torque = stepped(max(-limit, min(limit, kv * (reference - speed))), torque_step)
             for j in range(finer):
-                t = n * servo + (i * finer + j) * dt
+                t = start + (i * finer + j) * dt
                 load = (
                     viscous * tool_speed
                     + coulomb * math.tanh(tool_speed / smoothing)
@@ -157,13 +159,14 @@ def main(machine_file, trace_file, finer="1"):
     machine = machine_of(pathlib.Path(machine_file))
     with open(trace_file, newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
+    times_s = [float(row["t_s"]) for row in rows]
     period, finer = machine["period"], int(finer)
     holds = True
     for name in "xyz":
         if f"cmd_{name}_mm" in rows[0]:
             axis = machine["axis"][name]
             commands_mm, actual_mm = ([float(row[f"{of}_{name}_mm"]) for row in rows] for of in ("cmd", "act"))
-            tool_mm, largest_mm_s2 = cut(axis, period, commands_mm, finer)
+            tool_mm, largest_mm_s2 = cut(axis, period, times_s, commands_mm, finer)
             differences_nm = [abs(tool - actual) * 1e6 for tool, actual in zip(tool_mm, actual_mm)]
             limit = limit_nm(axis, period, largest_mm_s2, finer)
             print(f"{name}: {max(differences_nm):.6f} nm over {len(rows)} servo periods, limit {limit:.0f} nm")

@@ -16,7 +16,8 @@ pub(super) fn write_summary(out: &mut impl Write, report: &Report) -> io::Result
     out.write_all(
         b"<section aria-labelledby=\"h-summary\">\n<h2 id=\"h-summary\">Summary</h2>\n<div class=\"scroll\"><table class=\"summary\" role=\"table\">\n\
           <thead role=\"rowgroup\"><tr role=\"row\"><th scope=\"col\">Controller</th><th scope=\"col\">RMS error<i>\xc2\xb5m</i></th>\
-          <th scope=\"col\">Largest error<i>\xc2\xb5m</i></th><th scope=\"col\">Machining time</th>\
+          <th scope=\"col\">Largest error<i>\xc2\xb5m</i></th><th scope=\"col\">Uncut path<i>\xc2\xb5m</i></th>\
+          <th scope=\"col\">Machining time</th>\
           <th scope=\"col\">Command deviation<i>\xc2\xb5m</i></th>",
     )?;
     for axis in &AXES[..axes] {
@@ -61,6 +62,7 @@ fn write_summary_row(
     };
     cell("RMS error, µm", number(run.rms_um), |r, _| r.rms_um, 0)?;
     cell("Largest error, µm", number(run.max_um), |r, _| r.max_um, 0)?;
+    cell("Uncut path, µm", number(run.uncut_um), |r, _| r.uncut_um, 0)?;
     cell("Machining time", duration(run.time_s), |r, _| r.time_s, 0)?;
     cell("Command deviation, µm", number(run.max_deviation_um), |r, _| r.max_deviation_um, 0)?;
     for (k, axis) in AXES.iter().enumerate().take(axes) {

@@ -1,0 +1,14 @@
+//! The Python that the scripts of the oracles run with.
+
+use std::process::Command;
+
+/// A Python that reads TOML: 3.11 or newer; it is said where there is none.
+pub(crate) fn python() -> Option<&'static str> {
+    let python = ["python3", "python"].into_iter().find(|python| {
+        Command::new(python).args(["-c", "import tomllib"]).output().is_ok_and(|output| output.status.success())
+    });
+    if python.is_none() {
+        eprintln!("SKIPPED: there is no Python 3.11 or newer to run the script with");
+    }
+    python
+}
