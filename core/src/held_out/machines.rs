@@ -116,9 +116,9 @@ pub fn is_stable(machine: &Machine) -> bool {
 /// Phase margin of the position loop, degrees.
 fn phase_margin_deg(axis: &Axis, servo_s: f64) -> f64 {
     let speed_1_s = (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / axis.inertia_kg_m2;
-    // |L| = 1: w^2 (1 + w^2 / a^2) = Kp^2.
-    let square = speed_1_s * speed_1_s;
-    let w_1_s = (0.5 * square * ((1.0 + 4.0 * axis.kp_1_s * axis.kp_1_s / square).sqrt() - 1.0)).sqrt();
+    // |L| = 1: w^2 (1 + w^2 / a^2) = Kp^2, solved so that nothing cancels where a is large.
+    let ratio = axis.kp_1_s / speed_1_s;
+    let w_1_s = axis.kp_1_s * (2.0 / (1.0 + (1.0 + 4.0 * ratio * ratio).sqrt())).sqrt();
     let late_s = axis.drive_delay_s + 1.5 * servo_s;
     90.0 - (libm::atan(w_1_s / speed_1_s) + w_1_s * late_s) * 180.0 / PI
 }

@@ -79,8 +79,7 @@ struct Part {
     fault: Option<PathError>,
 }
 
-/// Plans the path until its time is over, and keeps what the plan has read so far: a little more than the time, as the
-/// plan looks ahead.
+/// Plans the path until its time is over, and keeps it as far as the end of the motion that is under way then.
 fn planned(steps: Steps<'_>, length: Length<'_>) -> Result<Part, LimitsError> {
     let (keep, kept) = mpsc::channel();
     let mut ended = false;
@@ -94,19 +93,26 @@ fn planned(steps: Steps<'_>, length: Length<'_>) -> Result<Part, LimitsError> {
     });
     let Machine { limits, plc, plc_events, .. } = length.machine;
     let mut plan = Plan::new(Box::new(read), &limits.into())?.with_plc(Plc::new(*plc).with_events(plc_events));
-    let (mut time_s, mut shortened) = (0.0, false);
+    let (mut time_s, mut last) = (0.0, None);
     for planned in &mut plan {
         if let Planned::Phase(phase) = planned {
             time_s = phase.tau_s + phase.duration_s;
             if time_s > length.limit_s {
-                shortened = true;
+                last = Some(phase.piece);
                 break;
             }
         }
     }
     let fault = plan.fault().cloned();
     drop(plan);
-    Ok(Part { steps: kept.into_iter().collect(), time_s, shortened, fault })
+    // The plan looks ahead: what it has read beyond that motion is left out.
+    let mut pieces = 0;
+    let within = |step: &Step| {
+        let is_within = last.is_none_or(|last| pieces <= last);
+        pieces += u64::from(matches!(step, Step::Piece(_)));
+        is_within
+    };
+    Ok(Part { steps: kept.into_iter().take_while(within).collect(), time_s, shortened: last.is_some(), fault })
 }
 
 /// A step, or the first part of a motion that takes longer than the limit by itself and ends the path.
