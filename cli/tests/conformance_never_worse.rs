@@ -1,7 +1,5 @@
 //! `feedwright never-worse`: exit codes, files, and what it refuses.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 #[expect(dead_code, reason = "each test uses its own part")]
 #[path = "common/command.rs"]
 mod common;
