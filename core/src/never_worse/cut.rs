@@ -38,8 +38,10 @@ pub struct Figures {
 
 impl Figures {
     /// What the verdict looks at, of all that a run says about itself: the one place that knows where it stands.
-    fn of(run: &Run, statistics: &Statistics) -> Self {
-        let lost = match (run.outcome, run.faded_out) {
+    fn of(run: &Run, statistics: &Statistics, entry: &Entry) -> Self {
+        // Open loop has nothing that could be taken out of the loop.
+        let faded_out = run.faded_out.filter(|_| entry.name != BASELINE);
+        let lost = match (run.outcome, faded_out) {
             (Outcome::Diverged { at_s }, _) => Some(format!("the loop diverged at {at_s:.3} s")),
             (Outcome::Completed, Some(faded)) => {
                 Some(format!("open loop from {:.3} s on: {}", faded.at_s, faded.cause))
@@ -48,7 +50,7 @@ impl Figures {
         };
         let [rms_um, max_um] = [statistics.rms_um(), statistics.max_um()];
         // A run that nobody stops is engaged throughout; one that faded does not come back.
-        let engaged_s = run.faded_out.map_or(run.time_s, |faded| faded.at_s);
+        let engaged_s = faded_out.map_or(run.time_s, |faded| faded.at_s);
         let engaged_share = (run.time_s > 0.0).then(|| (engaged_s / run.time_s).min(1.0));
         Self { rms_um, max_um, uncut_um: None, engaged_share, lost, time_s: run.time_s }
     }
@@ -129,7 +131,7 @@ where
             let choices = Choices { seed: options.seed, ..Choices::default() };
             entries.map(|entry| Make::make(entry, &mut Setup { machine, choices: &choices, progress: &mut |_| {} }))
         });
-        std::array::from_fn(|i| one(machine, program, &mut *controllers[i], entries[i].laps))
+        std::array::from_fn(|i| one(machine, program, &mut *controllers[i], entries[i]))
     }));
     // What has panicked is in no state to cut the next program.
     done.unwrap_or_else(|_| {
@@ -138,18 +140,23 @@ where
     })
 }
 
-fn one<const N: usize>(machine: &Machine, program: &Program, controller: &mut dyn Controller<N>, laps: u32) -> Figures {
+fn one<const N: usize>(
+    machine: &Machine,
+    program: &Program,
+    controller: &mut dyn Controller<N>,
+    entry: &Entry,
+) -> Figures {
     let plc = Plc::new(machine.plc).with_events(&machine.plc_events);
     let reference = || {
         let steps = program.steps.iter().cloned();
         Ok(Reference::from_steps(steps, &(&machine.limits).into())?.with_plc(plc.clone()))
     };
     let mut statistics = Statistics::new();
-    let run = practise(machine, reference, controller, laps).and_then(|()| {
+    let run = practise(machine, reference, controller, entry.laps).and_then(|()| {
         let run = simulate_lap(machine, &mut reference()?, controller, &mut [&mut statistics]);
         Ok::<_, crate::feed::LimitsError>(run.expect("sinks in memory take every row"))
     });
-    run.map_or_else(|error| Figures::failed(&error.to_string()), |run| Figures::of(&run, &statistics))
+    run.map_or_else(|error| Figures::failed(&error.to_string()), |run| Figures::of(&run, &statistics, entry))
 }
 
 #[cfg(test)]
