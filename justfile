@@ -23,6 +23,23 @@ bench:
 compare out="target/compare":
     cargo run --release -- compare --at-tolerance --json {{ out }}.json --html {{ out }}.html
 
+# Every program that is here, on every machine, against open loop: `just never-worse --sample 200` for a part of it. What was
+# interrupted goes on where it was. The corpus of foreign programs is not part of this repository.
+never-worse *options:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    programs=(parts)
+    for folder in ../shared/corpus/gcode ../shared/cases; do
+        if [ -d "$folder" ]; then programs+=("$folder"); else echo "no foreign programs at $folder: they are not cut" >&2; fi
+    done
+    cargo build --release --quiet
+    target/release/feedwright never-worse "${programs[@]}" {{ options }}
+
+# Random programs on random machines against open loop: `just held-out 20261 2000 --failures target/failures`. Seeds of a
+# verdict are drawn after the settings are frozen.
+held-out seed count *options:
+    cargo run --release -- held-out {{ seed }} {{ count }} {{ options }}
+
 # The identifier beside FANN (Debian: libfann-dev, valgrind), on one core.
 bench-fann:
     taskset --cpu-list 1 cargo bench --package feedwright-control --bench fann

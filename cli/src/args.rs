@@ -26,6 +26,10 @@ pub(crate) enum Command {
     Paper(PaperArgs),
     /// Compare all controllers on contours and machines, in one table.
     Compare(CompareArgs),
+    /// Cut programs on many machines, open loop and corrected, and list where the correction did harm.
+    NeverWorse(NeverWorseArgs),
+    /// The same with random programs on random machines, and the smallest case of what fails.
+    HeldOut(HeldOutArgs),
     /// Report all mistakes of G-code programs and machine files; of a folder, of all programs in it.
     Check(CheckArgs),
     /// Print the canonical motions of a program, one JSON object a line, in mm and s.
@@ -121,6 +125,71 @@ pub(crate) struct CompareArgs {
     pub(crate) html: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NeverWorseArgs {
+    /// G-code programs, and folders of programs.
+    #[arg(required = true)]
+    pub(crate) programs: Vec<PathBuf>,
+    /// Only programs whose path fits this pattern, such as '*circle*'.
+    #[arg(long, value_name = "GLOB")]
+    pub(crate) only: Option<String>,
+    /// Machine to cut on: built-in, or a machine file; may be given several times. Without it, 19 variants of tnv40.
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) machine: Vec<OsString>,
+    /// Cut no more of a program than this time of machining on tnv40, s.
+    #[arg(long, value_name = "S", default_value_t = 600.0)]
+    pub(crate) limit_s: f64,
+    /// Cut so many of all pairs of program and machine, drawn by the seed.
+    #[arg(long, value_name = "N")]
+    pub(crate) sample: Option<usize>,
+    #[command(flatten)]
+    pub(crate) sweep: SweepArgs,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct HeldOutArgs {
+    /// Seed of programs and machines.
+    pub(crate) drawn_by: u64,
+    /// Number of cuts.
+    pub(crate) count: usize,
+    /// Programs for each machine, which is identified once for all of them.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) programs: u16,
+    /// Only machines without encoder steps and delay.
+    #[arg(long)]
+    pub(crate) rigid: bool,
+    /// Make the worst failures smaller and write each as DIR/N.ngc and DIR/N.toml.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) failures: Option<PathBuf>,
+    /// Failures that are made smaller.
+    #[arg(long, value_name = "N", default_value_t = 10, requires = "failures")]
+    pub(crate) smallest: usize,
+    #[command(flatten)]
+    pub(crate) sweep: SweepArgs,
+}
+
+/// How a controller is held against open loop.
+#[derive(Debug, Args)]
+pub(crate) struct SweepArgs {
+    /// Controller; `feedwright controllers` lists them.
+    #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BEST)]
+    pub(crate) controller: String,
+    /// Seed of the controller's training, and of the sample.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Threads; all cores where it is left out. The result does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Where finished cuts are kept, so that an interrupted run goes on [default: in the cache, by version].
+    #[arg(long, value_name = "FILE.jsonl")]
+    pub(crate) journal: Option<PathBuf>,
+    /// Write all cuts.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

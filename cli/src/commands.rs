@@ -3,6 +3,8 @@
 pub(crate) mod canon;
 pub(crate) mod check;
 pub(crate) mod compare;
+pub(crate) mod held_out;
 pub(crate) mod list;
+pub(crate) mod never_worse;
 pub(crate) mod paper;
 pub(crate) mod run;

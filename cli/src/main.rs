@@ -8,6 +8,7 @@ mod commands;
 mod files;
 mod message;
 mod progress;
+mod sweep;
 
 use std::process::ExitCode;
 
@@ -25,6 +26,8 @@ fn main() -> ExitCode {
         Command::Run(args) => commands::run::run(*args, quiet),
         Command::Paper(args) => commands::paper::run(&args, quiet),
         Command::Compare(args) => commands::compare::run(&args, quiet),
+        Command::NeverWorse(args) => commands::never_worse::run(&args, quiet),
+        Command::HeldOut(args) => commands::held_out::run(&args, quiet),
         Command::Check(args) => commands::check::run(&args, quiet),
         Command::Canon(args) => commands::canon::run(&args, quiet),
         Command::Machines => commands::list::machines(),

@@ -36,7 +36,11 @@ impl Bar {
     }
 
     pub(crate) fn step(&self) {
-        self.0.inc(1);
+        self.advance(1);
+    }
+
+    pub(crate) fn advance(&self, steps: u64) {
+        self.0.inc(steps);
     }
 
     /// Does something that prints, with the bar out of the way.

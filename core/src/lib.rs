@@ -20,4 +20,6 @@ pub mod controllers;
 pub mod report;
 pub mod pipeline;
 pub mod paper;
+pub mod held_out;
 pub mod compare;
+pub mod never_worse;

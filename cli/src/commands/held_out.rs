@@ -1,0 +1,80 @@
+//! `feedwright held-out`: random programs on random machines, open loop and corrected, and the smallest case of what fails.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+use feedwright::held_out::machines::Class;
+use feedwright::never_worse::generated::{Generated, draw, smallest};
+use feedwright::never_worse::summary::Judged;
+use feedwright::never_worse::{Job, Options};
+use feedwright::output::OutputFile;
+use miette::{IntoDiagnostic, Result, WrapErr};
+
+use crate::args::HeldOutArgs;
+use crate::message::printed;
+use crate::progress::Bar;
+use crate::sweep::Sweep;
+
+/// Trials for each failure: enough for a few hundred lines and a machine of thirty changes.
+const TRIALS: u32 = 400;
+
+pub(crate) fn run(args: &HeldOutArgs, quiet: bool) -> Result<ExitCode> {
+    let sweep = Sweep::new(&args.sweep, &[])?;
+    if let Some(folder) = &args.failures {
+        std::fs::create_dir_all(folder)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("{}: no folder can be made there", folder.display()))?;
+    }
+    let class = if args.rigid { Class::Rigid } else { Class::Any };
+    let generated = draw(args.drawn_by, args.count, args.programs.into(), class)?;
+    eprintln!("{} cuts drawn by seed {}, {} programs for each machine", args.count, args.drawn_by, args.programs);
+    let jobs: Vec<Job> = generated.iter().map(|made| made.job.clone()).collect();
+    let options = sweep.options;
+    let done = sweep.run(&jobs, quiet)?;
+    let printing = done.print(&mut std::io::stdout().lock());
+    if let Some(folder) = &args.failures {
+        let failures = done.summary.rows.iter().filter(|judged| !judged.faults.is_empty()).take(args.smallest);
+        write_smallest(folder, failures, &generated, &options, quiet)?;
+    }
+    printed(printing, done.code())
+}
+
+/// Makes each failure smaller and writes it.
+fn write_smallest<'a>(
+    folder: &Path,
+    failures: impl Iterator<Item = &'a Judged>,
+    generated: &[Generated],
+    options: &Options,
+    quiet: bool,
+) -> Result<()> {
+    let failures: Vec<&Judged> = failures.collect();
+    let bar = Bar::new(quiet, failures.len() as u64);
+    bar.say("making failures smaller");
+    for (number, failure) in (1..).zip(failures) {
+        let is_it = |made: &&Generated| {
+            made.job.program.name == failure.row.program && made.job.machine.name == failure.row.machine
+        };
+        let Some(made) = generated.iter().find(is_it) else { continue };
+        let (case, row) = smallest(&made.case, &failure.faults, options, TRIALS);
+        let [program, machine] = ["ngc", "toml"].map(|ending| folder.join(format!("{number}.{ending}")));
+        write(&program, &case.text())?;
+        write(&machine, &case.machine.text())?;
+        let figures = row.map_or(String::new(), |row| {
+            let (before, after) = (row.open_loop, row.corrected);
+            format!(", {:.2} / {:.1} -> {:.2} / {:.1} um", before.rms_um, before.max_um, after.rms_um, after.max_um)
+        });
+        let (lines, changes) = (case.lines.len(), case.machine.changes.len());
+        bar.aside(|| eprintln!("wrote {} and .toml: {lines} lines, {changes} changes{figures}", program.display()));
+        bar.step();
+    }
+    bar.clear();
+    Ok(())
+}
+
+fn write(path: &Path, text: &str) -> Result<()> {
+    let mut file = OutputFile::create(path, &[])?;
+    file.write_all(text.as_bytes()).into_diagnostic()?;
+    file.commit()?;
+    Ok(())
+}

@@ -1,0 +1,176 @@
+//! What commands share that hold a controller against open loop on many cuts: the journal, the bar, the table.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use feedwright::controllers::Entry;
+use feedwright::identify::cache;
+use feedwright::never_worse::cut::Figures;
+use feedwright::never_worse::journal::Journal;
+use feedwright::never_worse::summary::{Judged, OPEN_LOOP_UM, Quantiles, Summary};
+use feedwright::never_worse::{Job, Options, Watch, sweep};
+use feedwright::output::OutputFile;
+use miette::{IntoDiagnostic, Result, WrapErr, miette};
+
+use crate::args::SweepArgs;
+use crate::message::OUT_OF_TOLERANCE;
+use crate::progress::Bar;
+
+/// A sweep that is about to begin: everything that can be refused has been.
+pub(crate) struct Sweep {
+    pub(crate) options: Options,
+    journal: Journal,
+    json: Option<OutputFile>,
+}
+
+impl Sweep {
+    /// `inputs` are files that no output may take the place of.
+    pub(crate) fn new(args: &SweepArgs, inputs: &[&Path]) -> Result<Self> {
+        let controller = Entry::find(&args.controller).ok_or_else(|| {
+            let help = Entry::meant_by(&args.controller).map_or_else(
+                || "feedwright controllers lists them".to_owned(),
+                |meant| format!("did you mean '{meant}'?"),
+            );
+            miette!(help = help, "no controller is called '{}'", args.controller)
+        })?;
+        let threads =
+            args.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
+        let options = Options { controller, seed: args.seed, threads };
+        let json = args.json.as_ref().map(|path| OutputFile::create(path, inputs)).transpose()?;
+        Ok(Self { options, journal: journal(args.journal.as_deref())?, json })
+    }
+
+    /// Cuts all jobs and writes what was asked for.
+    pub(crate) fn run(self, jobs: &[Job], quiet: bool) -> Result<Done> {
+        let seconds = |job: &Job| (job.program.machining_s as u64).max(1);
+        let bar = Bar::new(quiet, jobs.iter().map(seconds).sum());
+        bar.say(format!("0 of {} cuts", jobs.len()));
+        let watch = Told { bar: &bar, cuts: jobs.len(), done: 0.into(), known: 0.into() };
+        let began = Instant::now();
+        let summary = Summary::of(sweep(jobs, &self.options, &self.journal, &watch));
+        let (known, threads, took_s) = (watch.known.into_inner(), self.options.threads, began.elapsed().as_secs_f64());
+        bar.clear();
+        if let Some(mut file) = self.json {
+            serde_json::to_writer_pretty(&mut file, &summary).into_diagnostic().wrap_err("cannot write the cuts")?;
+            file.write_all(b"\n").into_diagnostic()?;
+            file.commit()?;
+        }
+        Ok(Done { summary, known, threads, took_s })
+    }
+}
+
+/// The journal: where it is asked for, or in the cache; none where there is no place for it.
+fn journal(file: Option<&Path>) -> Result<Journal> {
+    if let Some(file) = file {
+        return Journal::open(file)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("{}: no journal can be kept there", file.display()));
+    }
+    let program = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
+    let place: Option<PathBuf> = cache::folder().map(|folder| Journal::place(&folder, &cache::key_of(&[&program])));
+    Ok(place.and_then(|place| Journal::open(&place).ok()).unwrap_or_else(Journal::none))
+}
+
+struct Told<'a> {
+    bar: &'a Bar,
+    cuts: usize,
+    done: std::sync::atomic::AtomicUsize,
+    known: std::sync::atomic::AtomicUsize,
+}
+
+impl Watch for Told<'_> {
+    fn done(&self, job: &Job, known: bool) {
+        use std::sync::atomic::Ordering::Relaxed;
+
+        let done = self.done.fetch_add(1, Relaxed) + 1;
+        self.known.fetch_add(usize::from(known), Relaxed);
+        self.bar.say(format!("{done} of {} cuts", self.cuts));
+        self.bar.advance((job.program.machining_s as u64).max(1));
+    }
+}
+
+/// A sweep that is done.
+pub(crate) struct Done {
+    pub(crate) summary: Summary,
+    known: usize,
+    threads: usize,
+    took_s: f64,
+}
+
+impl Done {
+    /// 1 where any cut is worse.
+    pub(crate) fn code(&self) -> ExitCode {
+        if self.summary.worse > 0 { ExitCode::from(OUT_OF_TOLERANCE) } else { ExitCode::SUCCESS }
+    }
+
+    /// Failures, then totals.
+    pub(crate) fn print(&self, out: &mut impl Write) -> io::Result<()> {
+        let Summary { judged, not_judged, worse, by_fault, rows, .. } = &self.summary;
+        let failures: Vec<&Judged> = rows.iter().filter(|judged| !judged.faults.is_empty()).collect();
+        if !failures.is_empty() {
+            writeln!(
+                out,
+                "{:<44} {:<16} {:>19} {:>19}  worse in",
+                "RMS / max um", "machine", "open loop", "corrected"
+            )?;
+        }
+        for Judged { row, faults, .. } in failures {
+            let names: Vec<&str> = faults.iter().map(|fault| fault.name()).collect();
+            let why = row.corrected.lost.as_ref().map_or(String::new(), |why| format!(" ({why})"));
+            let [before, after] = [&row.open_loop, &row.corrected].map(figures);
+            let (program, machine) = (shortened(&row.program), &row.machine);
+            writeln!(out, "{program:<44} {machine:<16} {before:>19} {after:>19}  {}{why}", names.join(", "))?;
+        }
+        let by_fault: Vec<String> = by_fault.iter().map(|(fault, cuts)| format!("{} {cuts}", fault.name())).collect();
+        writeln!(out, "{worse} of {judged} cuts worse than open loop ({})", by_fault.join(", "))?;
+        if *not_judged > 0 {
+            writeln!(out, "not judged, because open loop itself is lost: {not_judged}")?;
+        }
+        self.print_numbers(out)
+    }
+
+    fn print_numbers(&self, out: &mut impl Write) -> io::Result<()> {
+        let Summary { rms_ratio, rms_ratio_rigid, engaged_share, machining_s, .. } = &self.summary;
+        let mut quantiles = |what: &str, ratios: &Option<Quantiles>| match ratios {
+            Some(Quantiles { cuts, median, p90, p99, largest }) => writeln!(
+                out,
+                "RMS against open loop, {what}: median {median:.3}, 90 % {p90:.3}, 99 % {p99:.3}, largest {largest:.3} ({cuts} cuts)"
+            ),
+            None => Ok(()),
+        };
+        quantiles("all cuts", rms_ratio)?;
+        quantiles(
+            &format!("rigid machines without encoder steps and delay, open loop above {OPEN_LOOP_UM} um"),
+            rms_ratio_rigid,
+        )?;
+        if let Some(share) = engaged_share {
+            writeln!(out, "share of the time with the controller in the loop: median {share:.3}")?;
+        }
+        let Self { known, threads, took_s, .. } = self;
+        let known = if *known > 0 { format!("; cuts that were in the journal: {known}") } else { String::new() };
+        writeln!(
+            out,
+            "{:.2} h of machining, cut twice, in {took_s:.0} s on {threads} threads{known}",
+            machining_s / 3600.0
+        )
+    }
+}
+
+/// RMS and largest error, um.
+fn figures(figures: &Figures) -> String {
+    format!("{:.2} / {:.1}", figures.rms_um, figures.max_um)
+}
+
+/// The end of a path that is too long for its column.
+fn shortened(path: &str) -> String {
+    /// Width of the column.
+    const WIDTH: usize = 44;
+    let letters = path.chars().count();
+    if letters <= WIDTH {
+        path.to_owned()
+    } else {
+        format!("...{}", path.chars().skip(letters + 3 - WIDTH).collect::<String>())
+    }
+}

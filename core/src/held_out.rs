@@ -1,0 +1,20 @@
+//! Held-out work: machines and programs that nobody has tuned anything on, drawn by a seed and the same on every platform.
+//!
+//! | File | What |
+//! |---|---|
+//! | `held_out/variant.rs` | a machine as what differs from a built-in one, and its file |
+//! | `held_out/random.rs` | random numbers |
+//! | `held_out/machines.rs` | machines drawn at random |
+//! | `held_out/pen.rs` | writes a program |
+//! | `held_out/programs.rs` | programs drawn at random, by families |
+//! | `held_out/shrink.rs` | makes a failing case smaller |
+
+pub mod variant;
+mod random;
+pub mod machines;
+mod pen;
+pub mod programs;
+pub mod shrink;
+
+pub use shrink::{Case, shrink};
+pub use variant::{Change, Variant};

@@ -1,0 +1,39 @@
+//! Random numbers that are the same on every platform: logarithms are those of a library that is.
+
+use rand::{RngExt, SeedableRng};
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+/// Random numbers that are the same on every platform.
+pub(super) struct Random(Xoshiro256PlusPlus);
+
+impl Random {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(Xoshiro256PlusPlus::seed_from_u64(seed))
+    }
+
+    pub(super) fn between(&mut self, [low, high]: [f64; 2]) -> f64 {
+        self.0.random_range(low..=high)
+    }
+
+    /// Evenly spread in its logarithm, to three digits.
+    pub(super) fn by_ratio(&mut self, [low, high]: [f64; 2]) -> f64 {
+        rounded(low * libm::exp(self.between([0.0, libm::log(high / low)])))
+    }
+
+    pub(super) fn whole(&mut self, low: u32, high: u32) -> u32 {
+        self.0.random_range(low..=high)
+    }
+
+    pub(super) fn sign(&mut self) -> f64 {
+        if self.one_in(2) { 1.0 } else { -1.0 }
+    }
+
+    pub(super) fn one_in(&mut self, count: u32) -> bool {
+        self.0.random_range(0..count) == 0
+    }
+}
+
+/// To three digits, as people write values.
+pub(super) fn rounded(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}

@@ -1,0 +1,118 @@
+//! Never worse: a controller beside open loop on every program and every machine, and where it did harm.
+//!
+//! A cut is worse where its RMS or its largest contour error, or the uncut path, is larger than open loop's by more than
+//! [`verdict`] allows, or where the controller is not in the loop any more at the end. Each controller is made for the
+//! machine that it cuts on. Cuts depend on nothing but program, machine and seed: the rows are the same for any number
+//! of threads, and those that a [`journal`] holds are not cut again.
+//!
+//! | File | What |
+//! |---|---|
+//! | `never_worse/program.rs` | a program as it is cut, long ones shortened |
+//! | `never_worse/machines.rs` | the machines of the sweep |
+//! | `never_worse/cut.rs` | one program on one machine, open loop and corrected |
+//! | `never_worse/generated.rs` | random programs on random machines, and the smallest case of a failure |
+//! | `never_worse/verdict.rs` | what counts as worse |
+//! | `never_worse/journal.rs` | finished cuts on disk |
+//! | `never_worse/summary.rs` | totals, quantiles, failures by severity |
+
+pub mod cut;
+pub mod generated;
+pub mod journal;
+pub mod machines;
+pub mod program;
+pub mod summary;
+pub mod verdict;
+
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_xoshiro::Xoshiro256PlusPlus;
+
+use crate::controllers::Entry;
+use crate::machine::Machine;
+use cut::{Cutter, Row};
+use journal::Journal;
+use program::Program;
+
+/// One program on one machine.
+#[derive(Debug, Clone)]
+pub struct Job {
+    /// What is cut.
+    pub program: Arc<Program>,
+    /// On what.
+    pub machine: Arc<Machine>,
+}
+
+/// What the jobs have in common.
+#[derive(Debug, Clone, Copy)]
+pub struct Options {
+    /// The controller that is held against open loop.
+    pub controller: &'static Entry,
+    /// Seed of its training.
+    pub seed: u64,
+    /// Threads.
+    pub threads: usize,
+}
+
+/// Is told of each job that is done; `known` where the journal had it.
+pub trait Watch: Sync {
+    /// One more.
+    fn done(&self, job: &Job, known: bool);
+}
+
+/// Tells nobody.
+impl Watch for () {
+    fn done(&self, _: &Job, _: bool) {}
+}
+
+/// Every program on every machine: by machine, so that each is identified once for a thread, and the longest program
+/// first, so that no thread is left alone with it.
+pub fn jobs(programs: Vec<Program>, machines: Vec<Machine>) -> Vec<Job> {
+    let mut programs: Vec<Arc<Program>> = programs.into_iter().map(Arc::new).collect();
+    programs.sort_by(|a, b| b.machining_s.total_cmp(&a.machining_s).then_with(|| a.name.cmp(&b.name)));
+    let on = |machine: Machine| {
+        let machine = Arc::new(machine);
+        programs.iter().map(move |program| Job { program: program.clone(), machine: machine.clone() })
+    };
+    machines.into_iter().flat_map(on).collect()
+}
+
+/// `count` of the jobs, drawn by the seed, in their order.
+pub fn sample(jobs: Vec<Job>, count: usize, seed: u64) -> Vec<Job> {
+    let mut drawn: Vec<usize> = (0..jobs.len()).collect();
+    drawn.shuffle(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
+    drawn.truncate(count);
+    drawn.sort_unstable();
+    drawn.into_iter().map(|i| jobs[i].clone()).collect()
+}
+
+/// Cuts all jobs, open loop and corrected; rows in the order of the jobs.
+pub fn sweep(jobs: &[Job], options: &Options, journal: &Journal, watch: &dyn Watch) -> Vec<Row> {
+    let next = AtomicUsize::new(0);
+    let rows = Mutex::new(vec![None; jobs.len()]);
+    let work = || {
+        // Made where it is needed: what it has identified serves all programs of a machine that follow each other.
+        let mut cutter: Option<Cutter> = None;
+        loop {
+            let i = next.fetch_add(1, Ordering::Relaxed);
+            let Some(job) = jobs.get(i) else { break };
+            let key = journal::key(job, options);
+            let known = journal.row(&key, job);
+            let row = known.clone().unwrap_or_else(|| {
+                let cutter = match &mut cutter {
+                    Some(cutter) if cutter.is_for(&job.machine) => cutter,
+                    other => other.insert(Cutter::new(&job.machine, options)),
+                };
+                let row = cutter.row(&job.program);
+                journal.add(&key, &row);
+                row
+            });
+            rows.lock().unwrap_or_else(PoisonError::into_inner)[i] = Some(row);
+            watch.done(job, known.is_some());
+        }
+    };
+    std::thread::scope(|scope| (0..options.threads.max(1)).for_each(|_| drop(scope.spawn(work))));
+    rows.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect()
+}

@@ -1,0 +1,179 @@
+//! One program on one machine: open loop, and with the controller that was made for the machine.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+
+use feedwright_control::Controller;
+use serde::{Deserialize, Serialize};
+
+use super::Options;
+use super::program::Program;
+use crate::controllers::{BASELINE, Choices, Entry, Make, Setup};
+use crate::machine::Machine;
+use crate::plc::Plc;
+use crate::reference::Reference;
+use crate::report::Statistics;
+use crate::simulate::{Run, practise, simulate_lap};
+use crate::trace::Outcome;
+
+/// What a cut came to.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    /// RMS contour error, um.
+    pub rms_um: f64,
+    /// Largest contour error, um.
+    pub max_um: f64,
+    /// Uncut path: the largest distance of a point of the path from what the tool did around its time, um.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub uncut_um: Option<f64>,
+    /// Part of the cutting time during which the controller was in the loop.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub engaged_share: Option<f64>,
+    /// Why it was not cut to its end, or not with the controller in the loop.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub lost: Option<String>,
+    /// Machining time, s.
+    pub time_s: f64,
+}
+
+impl Figures {
+    /// What the verdict looks at, of all that a run says about itself: the one place that knows where it stands.
+    fn of(run: &Run, statistics: &Statistics, entry: &Entry) -> Self {
+        // Open loop has nothing that could be taken out of the loop.
+        let faded_out = run.faded_out.filter(|_| entry.name != BASELINE);
+        let lost = match (run.outcome, faded_out) {
+            (Outcome::Diverged { at_s }, _) => Some(format!("the loop diverged at {at_s:.3} s")),
+            (Outcome::Completed, Some(faded)) => {
+                Some(format!("open loop from {:.3} s on: {}", faded.at_s, faded.cause))
+            }
+            (Outcome::Completed, None) => None,
+        };
+        let [rms_um, max_um] = [statistics.rms_um(), statistics.max_um()];
+        // A run that nobody stops is engaged throughout; one that faded does not come back.
+        let engaged_s = faded_out.map_or(run.time_s, |faded| faded.at_s);
+        let engaged_share = (run.time_s > 0.0).then(|| (engaged_s / run.time_s).min(1.0));
+        Self { rms_um, max_um, uncut_um: None, engaged_share, lost, time_s: run.time_s }
+    }
+
+    /// A cut that did not end.
+    fn failed(why: &str) -> Self {
+        Self { lost: Some(why.to_owned()), ..Self::default() }
+    }
+}
+
+/// A program on a machine, open loop and corrected.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Program.
+    pub program: String,
+    /// Machine.
+    pub machine: String,
+    /// Whether the machine is rigid, without encoder steps and without delay: no noise, nothing that comes late.
+    pub rigid: bool,
+    /// Open loop.
+    pub open_loop: Figures,
+    /// With the controller.
+    pub corrected: Figures,
+}
+
+/// Whether the encoder of every axis sees the tool without steps and the drive hears the command at once.
+pub fn is_rigid(machine: &Machine) -> bool {
+    machine
+        .axes
+        .iter()
+        .all(|axis| axis.transmission.is_none() && axis.encoder_step_um == 0.0 && axis.drive_delay_s == 0.0)
+}
+
+/// The two controllers of a number of axes, made where they are needed.
+type Pair<const N: usize> = Option<[Box<dyn Controller<N>>; 2]>;
+
+/// Cuts on one machine, with what was identified on it.
+pub struct Cutter {
+    machine: Arc<Machine>,
+    options: Options,
+    plane: Pair<2>,
+    space: Pair<3>,
+}
+
+impl Cutter {
+    /// For a machine; nothing is identified yet.
+    pub fn new(machine: &Arc<Machine>, options: &Options) -> Self {
+        Self { machine: machine.clone(), options: *options, plane: None, space: None }
+    }
+
+    /// Whether it is for this machine.
+    pub(super) fn is_for(&self, machine: &Arc<Machine>) -> bool {
+        Arc::ptr_eq(&self.machine, machine)
+    }
+
+    /// Cuts a program both ways.
+    pub fn row(&mut self, program: &Program) -> Row {
+        let (machine, options) = (&self.machine, &self.options);
+        let [open_loop, corrected] = match program.axes {
+            2 => both(machine, options, &mut self.plane, program),
+            _ if machine.axis_count() < 3 => [Figures::failed("the machine has no Z"), Figures::default()],
+            _ => both(machine, options, &mut self.space, program),
+        };
+        let (program, machine_name) = (program.name.clone(), machine.name.clone());
+        Row { program, machine: machine_name, rigid: is_rigid(machine), open_loop, corrected }
+    }
+}
+
+/// Open loop first.
+fn both<const N: usize>(machine: &Machine, options: &Options, pair: &mut Pair<N>, program: &Program) -> [Figures; 2]
+where
+    Entry: Make<N>,
+{
+    let base = Entry::find(BASELINE).expect("the baseline is in the table");
+    let entries = [base, options.controller];
+    let done = catch_unwind(AssertUnwindSafe(|| {
+        let controllers = pair.get_or_insert_with(|| {
+            let choices = Choices { seed: options.seed, ..Choices::default() };
+            entries.map(|entry| Make::make(entry, &mut Setup { machine, choices: &choices, progress: &mut |_| {} }))
+        });
+        std::array::from_fn(|i| one(machine, program, &mut *controllers[i], entries[i]))
+    }));
+    // What has panicked is in no state to cut the next program.
+    done.unwrap_or_else(|_| {
+        *pair = None;
+        [Figures::default(), Figures::failed("it panicked")]
+    })
+}
+
+fn one<const N: usize>(
+    machine: &Machine,
+    program: &Program,
+    controller: &mut dyn Controller<N>,
+    entry: &Entry,
+) -> Figures {
+    let plc = Plc::new(machine.plc).with_events(&machine.plc_events);
+    let reference = || {
+        let steps = program.steps.iter().cloned();
+        Ok(Reference::from_steps(steps, &(&machine.limits).into())?.with_plc(plc.clone()))
+    };
+    let mut statistics = Statistics::new();
+    let run = practise(machine, reference, controller, entry.laps).and_then(|()| {
+        let run = simulate_lap(machine, &mut reference()?, controller, &mut [&mut statistics]);
+        Ok::<_, crate::feed::LimitsError>(run.expect("sinks in memory take every row"))
+    });
+    run.map_or_else(|error| Figures::failed(&error.to_string()), |run| Figures::of(&run, &statistics, entry))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controllers::BEST;
+    use crate::never_worse::program::Length;
+
+    #[test]
+    fn a_circle_is_cut_better_with_the_controller_than_without() {
+        let machine = Arc::new(Machine::load("tnv40".as_ref()).expect("built in"));
+        let length = Length { machine: &machine, limit_s: 10.0 };
+        let program = Program::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length).expect("a program");
+        let options = Options { controller: Entry::find(BEST).expect("in the table"), seed: 1, threads: 1 };
+        let row = Cutter::new(&machine, &options).row(&program);
+        assert!(row.rigid);
+        assert!(row.corrected.rms_um < 0.1 * row.open_loop.rms_um, "{row:?}");
+        assert_eq!((row.corrected.lost, row.corrected.engaged_share), (None, Some(1.0)));
+    }
+}

@@ -1,0 +1,132 @@
+//! Totals, quantiles, and failures by their severity.
+
+use serde::Serialize;
+
+use super::cut::Row;
+use super::verdict::Fault;
+
+/// Ratios to open loop mean something above this RMS of open loop, um.
+pub const OPEN_LOOP_UM: f64 = 1.0;
+
+/// Quantiles of a number over many cuts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Quantiles {
+    /// Of so many cuts.
+    pub cuts: usize,
+    /// Half of them are below.
+    pub median: f64,
+    /// 90 % are below.
+    pub p90: f64,
+    /// 99 % are below.
+    pub p99: f64,
+    /// The largest.
+    pub largest: f64,
+}
+
+impl Quantiles {
+    /// None of nothing.
+    pub fn of(mut values: Vec<f64>) -> Option<Self> {
+        values.sort_by(f64::total_cmp);
+        let quantile = |part: f64| values[((part * values.len() as f64) as usize).min(values.len() - 1)];
+        let of = || Self {
+            cuts: values.len(),
+            median: quantile(0.5),
+            p90: quantile(0.9),
+            p99: quantile(0.99),
+            largest: quantile(1.0),
+        };
+        (!values.is_empty()).then(of)
+    }
+}
+
+/// A row and what is wrong with it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Judged {
+    /// The row.
+    #[serde(flatten)]
+    pub row: Row,
+    /// In what it is worse.
+    pub faults: Vec<Fault>,
+    /// Largest excess over open loop, in what is allowed.
+    pub severity: f64,
+}
+
+/// What a sweep came to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// Cuts that were judged.
+    pub judged: usize,
+    /// Cuts whose open loop is lost itself.
+    pub not_judged: usize,
+    /// Cuts that are worse in any way.
+    pub worse: usize,
+    /// Cuts that are worse in each way.
+    pub by_fault: Vec<(Fault, usize)>,
+    /// RMS contour error over open loop's, all judged cuts.
+    pub rms_ratio: Option<Quantiles>,
+    /// The same on rigid machines without encoder steps and delay, where open loop is above [`OPEN_LOOP_UM`].
+    pub rms_ratio_rigid: Option<Quantiles>,
+    /// Median of the part of the time during which the controller was in the loop.
+    pub engaged_share: Option<f64>,
+    /// Machining time of all cuts, one way, s.
+    pub machining_s: f64,
+    /// Cuts that are worse, worst first, then all others in the order in which they were asked for.
+    pub rows: Vec<Judged>,
+}
+
+impl Summary {
+    /// Of these rows.
+    pub fn of(rows: Vec<Row>) -> Self {
+        let judge = |row: Row| Judged { faults: row.faults(), severity: row.severity(), row };
+        let mut rows: Vec<Judged> = rows.into_iter().map(judge).collect();
+        let machining_s = rows.iter().map(|judged| judged.row.open_loop.time_s).sum();
+        // Stable: equals stay in order.
+        rows.sort_by(|a, b| {
+            let by_severity =
+                if a.faults.is_empty() { std::cmp::Ordering::Equal } else { b.severity.total_cmp(&a.severity) };
+            a.faults.is_empty().cmp(&b.faults.is_empty()).then(by_severity)
+        });
+        let judged: Vec<&Judged> = rows.iter().filter(|judged| judged.row.is_judged()).collect();
+        let having = |fault: Fault| judged.iter().filter(|judged| judged.faults.contains(&fault)).count();
+        let ratios = |wanted: &dyn Fn(&Row) -> bool| {
+            let ratios = judged.iter().filter(|judged| wanted(&judged.row)).map(|judged| judged.row.rms_ratio());
+            Quantiles::of(ratios.collect())
+        };
+        let shares = judged.iter().filter_map(|judged| judged.row.corrected.engaged_share);
+        Self {
+            judged: judged.len(),
+            not_judged: rows.len() - judged.len(),
+            worse: judged.iter().filter(|judged| !judged.faults.is_empty()).count(),
+            by_fault: Fault::ALL.map(|fault| (fault, having(fault))).to_vec(),
+            rms_ratio: ratios(&|_| true),
+            rms_ratio_rigid: ratios(&|row| row.rigid && row.open_loop.rms_um > OPEN_LOOP_UM),
+            engaged_share: Quantiles::of(shares.collect()).map(|quantiles| quantiles.median),
+            machining_s,
+            rows,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::never_worse::verdict::tests::row;
+
+    #[test]
+    fn failures_come_first_and_the_worst_of_them_foremost() {
+        let rows =
+            vec![row([10.0, 20.0], [0.1, 0.2]), row([10.0, 20.0], [11.0, 20.0]), row([10.0, 20.0], [10.0, 400.0])];
+        let summary = Summary::of(rows);
+        assert_eq!((summary.judged, summary.worse), (3, 2));
+        let maxima: Vec<f64> = summary.rows.iter().map(|judged| judged.row.corrected.max_um).collect();
+        assert_eq!(maxima, [400.0, 20.0, 0.2]);
+        assert_eq!(summary.by_fault, [(Fault::Rms, 1), (Fault::Max, 1), (Fault::Uncut, 0), (Fault::Lost, 0)]);
+    }
+
+    #[test]
+    fn quantiles_are_those_of_the_sorted_values() {
+        let quantiles = Quantiles::of((1..=100).rev().map(f64::from).collect()).expect("there are values");
+        assert_eq!((quantiles.median, quantiles.p90, quantiles.p99, quantiles.largest), (51.0, 91.0, 100.0, 100.0));
+        assert_eq!(Quantiles::of(Vec::new()), None);
+    }
+}
