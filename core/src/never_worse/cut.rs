@@ -40,19 +40,15 @@ impl Figures {
     /// What the verdict looks at, of all that a run says about itself: the one place that knows where it stands.
     fn of(run: &Run, statistics: &Statistics, entry: &Entry) -> Self {
         // Open loop has nothing that could be taken out of the loop.
-        let faded_out = run.faded_out.filter(|_| entry.name != BASELINE);
-        let lost = match (run.outcome, faded_out) {
+        let left = run.faded_out.filter(|_| entry.name != BASELINE && !run.engaged_at_end);
+        let lost = match (run.outcome, left) {
             (Outcome::Diverged { at_s }, _) => Some(format!("the loop diverged at {at_s:.3} s")),
-            (Outcome::Completed, Some(faded)) => {
-                Some(format!("open loop from {:.3} s on: {}", faded.at_s, faded.cause))
-            }
+            (Outcome::Completed, Some(left)) => Some(format!("open loop from {:.3} s on: {}", left.at_s, left.cause)),
             (Outcome::Completed, None) => None,
         };
         let [rms_um, max_um] = [statistics.rms_um(), statistics.max_um()];
-        // A run that nobody stops is engaged throughout; one that faded does not come back.
-        let engaged_s = faded_out.map_or(run.time_s, |faded| faded.at_s);
-        let engaged_share = (run.time_s > 0.0).then(|| (engaged_s / run.time_s).min(1.0));
-        Self { rms_um, max_um, uncut_um: None, engaged_share, lost, time_s: run.time_s }
+        let (uncut_um, engaged_share) = (Some(run.uncut_mm * 1e3), Some(run.engaged_share));
+        Self { rms_um, max_um, uncut_um, engaged_share, lost, time_s: run.time_s }
     }
 
     /// A cut that did not end.

@@ -89,6 +89,8 @@ impl Statistics {
             axes: facts.axes,
             outcome: facts.run.outcome,
             faded_out: facts.run.faded_out,
+            engaged_share: facts.run.engaged_share,
+            engaged_at_end: facts.run.engaged_at_end,
             time_s: facts.run.time_s,
             rms_um: self.rms_um(),
             max_um: self.max_um(),

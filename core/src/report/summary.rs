@@ -35,9 +35,13 @@ pub struct RunSummary {
     pub axes: usize,
     /// How the run ended.
     pub outcome: Outcome,
-    /// Whether the safety layer took the controller out of the loop, when and why.
+    /// When and why the safety layer took the controller out of the loop last.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub faded_out: Option<FadedOut>,
+    /// Part of the cutting time in which the controller was in the loop.
+    pub engaged_share: f64,
+    /// Whether it was at the end.
+    pub engaged_at_end: bool,
     /// Machining time: when the command has ended, s.
     pub time_s: f64,
     /// Root mean square of the contour error over the rows that cut, µm.
