@@ -64,9 +64,17 @@ fn a_program_that_may_be_for_either_machine_is_asked_about() {
     assert_eq!(unsure.dialect.0, Dialect::FanucMill);
     assert!(unsure.warnings[0].message.contains("mill or for a lathe"), "{:?}", unsure.warnings);
     assert_eq!(unsure.warnings[0].line, 2);
+    let few = summary("O1\nT0101 M6\nG90 G54 G0 X5. Y2.\nG1 W-1. F100.\nM30\n", None);
+    assert_eq!(few.dialect.0, Dialect::FanucMill);
+    assert!(
+        few.warnings[0].message.contains("a lathe (line 4: U or W") && few.warnings[0].line == 4,
+        "{:?}",
+        few.warnings
+    );
     // Other G-code systems have G90 as a mode.
     let found = faults("G90\nG0 X5.");
     assert!(found[0].contains("4: G90 without X and Z: in G-code system A it is a cycle"), "{found:?}");
+    assert!(faults("G92 S2500")[0].contains("G92 without X and Z"), "{:?}", faults("G92 S2500"));
     assert!(faults("G90 G0 X50. Z2.")[0].contains("G90 and G0 exclude each other"), "{:?}", faults("G90 G0 X50. Z2."));
 }
 
@@ -110,6 +118,12 @@ fn a_surface_speed_turns_the_spindle_faster_towards_the_axis_up_to_g50_s() {
     assert!(feeds.windows(2).all(|pair| pair[0].end_mm == pair[1].start_mm && rpm(&pair[1]) / rpm(&pair[0]) < 1.051));
     assert_eq!((feeds[0].start_mm[0], feeds.last().unwrap().end_mm[0]), (50.0, -0.5));
     assert!((rpm(feeds.last().unwrap()) - 2000.0).abs() < 1e-9);
+    // G97 alone goes on as fast as the spindle turns, and G96 alone as before.
+    let after = "O1\nG99\nG50 S2000\nG96 S200 M3\nG0 X100. Z0\nG97\nG1 Z-1. F0.3\nG96\nG1 Z-2.\nM30\n";
+    let rpm = 200_000.0 / (std::f64::consts::TAU * 50.0);
+    for motion in motions(after).iter().filter(|motion| motion.kind == MotionKind::Feed) {
+        assert!((motion.feed_mm_s - 0.3 * rpm / 60.0).abs() < 1e-9, "{motion:?}");
+    }
     // S of G50 is no speed, and neither is that of G96.
     let speeds =
         |step: &Canon| matches!(step, Canon::Event(event) if matches!(event.kind, EventKind::SpindleSpeed { .. }));
@@ -185,6 +199,10 @@ fn what_is_missing_or_wrong_is_told_by_name() {
         ("G71 U2. R.5\nG71 P1 Q2 F0.2\nN1 G0 X5.\nM98 P1\nN2 G1 Z-5.", "M98 stands inside the profile"),
         ("G71 U-2. R.5", "must be above 0"),
         ("G0 X50. Z2.\nG71 U0.0001 R.5\nG71 P1 Q2 F0.2\nN1 G0 X5.\nN2 G1 Z-5.", "passes; the limit is 10000"),
+        (
+            "G0 X50. Z2.\nG71 U2. R.5\nG71 P1 Q2 F0.2\nN1 G0 X5.\nN2 G1 Z-5.\nG70 P1 Q2\nN1 G0 X5.\nN2 G1 Z-5.",
+            "P1 is on line 7 and on line 10",
+        ),
         ("G71", "neither P and Q"),
         ("G73 P1 Q2 F0.2\nN1 G0 X5.\nN2 G1 Z-5.", "G73 has no first block"),
         ("G73 U2. W2.", "R (number of passes) is missing"),
@@ -199,6 +217,8 @@ fn what_is_missing_or_wrong_is_told_by_name() {
         ("G0 X32. Z2.\nG90 X28. F0.2", "Z or W is missing for G90"),
         ("G0 X32. Z2.\nG90 X28. Z2. F0.2", "G90 cuts nothing"),
         ("G68", "G68 (a rotation"),
+        ("G53 U5.", "U, V and W are not read with G53"),
+        ("G50 S0", "a bound of 0 rev/min"),
         ("G70 P1 Q2", "P1: there is no block N1"),
     ] {
         let found = faults(lines);

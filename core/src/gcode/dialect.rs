@@ -49,7 +49,15 @@ pub(super) fn choose(head: &[u8], name: &Arc<str>, asked: Option<Dialect>) -> Re
 /// Mill or lathe.
 fn machine(evidence: &Evidence, dialect: Dialect, reason: &'static str, name: &Arc<str>) -> Result<Choice, ReadError> {
     let of_lathe = if dialect == Dialect::Haas { Dialect::HaasLathe } else { Dialect::FanucLathe };
-    let mill = Choice { dialect: Dialect::FanucMill, reason, warning: None };
+    // Few signs against many: read, but not in silence.
+    let warning = evidence.doubt().map(|(lathe, mill)| {
+        let message = format!(
+            "signs of a lathe (line {}: {}) and of a mill (line {}: {}) stand in one program",
+            lathe.line, lathe.what, mill.line, mill.what
+        );
+        (lathe.line.max(mill.line), message)
+    });
+    let mill = Choice { dialect: Dialect::FanucMill, reason, warning };
     Ok(match evidence.kind() {
         Kind::Lathe(_) => Choice { dialect: of_lathe, ..mill },
         Kind::Mill(_) => mill,

@@ -166,8 +166,7 @@ impl Interpreter {
             ));
         }
         if self.dialect.is_fanuc() && fanuc::bounds_spindle(block) {
-            self.bound_spindle(speed);
-            return Ok(());
+            return self.bound_spindle(block, speed);
         }
         self.modal.spindle_speed = speed;
         // G96 and G97 on this line are carried out later, and mean this S.

@@ -35,6 +35,8 @@ pub(super) use codes::{LATHE_OWN, OWN};
 pub(super) struct Fanuc {
     /// S of G50 or G92: bound of the spindle speed, rev/min.
     highest_rpm: Option<f64>,
+    /// S of the last G96.
+    surface_speed: Option<f64>,
     turning: turning::Kept,
     repetitive: repetitive::Kept,
     /// The profile that is being read, and the one that a block asks for.
@@ -100,8 +102,15 @@ impl Interpreter {
     }
 
     fn prepare_lathe(&self, block: &mut Block) -> Read<()> {
+        let steps = block.set & (bit(b'u') | bit(b'v') | bit(b'w'));
+        if let Some(word) = block.code(Group::NonModal).filter(|word| matches!(word.number, 100 | 520 | 530))
+            && steps != 0
+        {
+            let message = format!("U, V and W are not read with {}", spelled(word.number));
+            return Err(Fault::new("gcode::unsupported", block.at_any(steps), message).hint("write X, Y and Z"));
+        }
         let cycle = block.code(Group::Motion).filter(|word| matches!(word.number % OWN, 900 | 920 | 940));
-        if let Some(word) = cycle.filter(|word| word.number >= LATHE_OWN && !block.has_axes() && !block.has(b's')) {
+        if let Some(word) = cycle.filter(|word| word.number >= LATHE_OWN && !block.has_axes()) {
             let code = spelled(word.number);
             let message =
                 format!("{code} without X and Z: in G-code system A it is a cycle, and other systems are not read");
@@ -151,11 +160,33 @@ impl Interpreter {
     }
 
     /// Bound of the spindle speed (G50 S).
-    pub(super) fn bound_spindle(&mut self, rpm: f64) {
+    pub(super) fn bound_spindle(&mut self, block: &Block, rpm: f64) -> Read<()> {
+        if rpm <= 0.0 {
+            return Err(Fault::new("gcode::spindle", block.at(b's'), "a bound of 0 rev/min stops the spindle")
+                .hint("write the highest speed, as in G50 S2500"));
+        }
         self.fanuc.highest_rpm = Some(rpm);
         if let Some(highest) = &mut self.modal.constant_surface {
             *highest = rpm;
         }
+        Ok(())
+    }
+
+    /// S of G96 and G97 on Fanuc: each is remembered, and G97 alone goes on as fast as the spindle turns.
+    pub(super) fn own_spindle_mode(&mut self, block: &Block, word: Word) -> Read<()> {
+        if word.number == 960 {
+            let surface = block.get(b's').or(self.fanuc.surface_speed);
+            let Some(surface) = surface else {
+                return Err(Fault::new("gcode::spindle", word.at(), "G96 has no surface speed S")
+                    .hint("write G96 S180 for 180 m/min"));
+            };
+            self.modal.spindle_speed = surface;
+            self.fanuc.surface_speed = Some(surface);
+        } else if self.modal.constant_surface.is_some() && !block.has(b's') {
+            self.modal.spindle_speed = self.spindle_rpm(&self.here);
+            self.event(EventKind::SpindleSpeed { rpm: self.modal.spindle_speed });
+        }
+        Ok(())
     }
 
     /// The highest spindle speed of G96, rev/min.

@@ -37,6 +37,9 @@ impl Interpreter {
                     "the highest spindle speed D must not be negative",
                 ));
             }
+            if self.dialect.is_fanuc() {
+                self.own_spindle_mode(block, word)?;
+            }
             let highest = block.get(b'd').unwrap_or(self.highest_rpm());
             self.modal.constant_surface = (word.number == 960).then_some(highest);
         }

@@ -114,7 +114,7 @@ impl Interpreter {
             .hint("F2 does the motion in half a minute; G94 goes back to feed per minute")),
             // The machine's limits hold for whatever is faster; only it must be a number.
             FeedMode::Inverse if feed > 0.0 => Ok((length_mm * feed / MINUTE_S).min(f64::MAX)),
-            FeedMode::PerRevolution if feed > 0.0 && self.modal.spindle_speed == 0.0 => Err(Fault::new(
+            FeedMode::PerRevolution if feed > 0.0 && self.spindle_rpm(&self.here) == 0.0 => Err(Fault::new(
                 "gcode::feed",
                 block.whole(),
                 "with G95 (feed per revolution) the spindle needs a speed S above 0 rev/min",

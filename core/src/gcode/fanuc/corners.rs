@@ -130,11 +130,26 @@ impl Interpreter {
         self.modal.incremental = block.code(Group::Distance).map_or(was_incremental, |word| word.number == 910);
         let next = self.goal(block, code);
         self.modal.incremental = was_incremental;
-        let corner = self.at;
         self.at = start;
         let next = next?;
+        let [before, piece] = self.pieces(block, &pending, &start, &next)?;
+        self.fanuc.resolved = Some(next);
+        // Up to the corner and around it with the feed and from the line of the first block.
+        let line = std::mem::replace(&mut self.line, pending.line);
+        let feed = (self.modal.feed, self.modal.feed_unit_mm);
+        (self.modal.feed, self.modal.feed_unit_mm) = pending.feed;
+        let moved =
+            [before, piece].into_iter().flatten().try_for_each(|goal| self.go_to_goal(&pending.block, goal, true));
+        self.line = line;
+        (self.modal.feed, self.modal.feed_unit_mm) = feed;
+        moved
+    }
+
+    /// The motion up to the corner and the corner itself, where they have a length.
+    fn pieces(&self, block: &Block, pending: &Pending, start: &Position, next: &Goal) -> Read<[Option<Goal>; 2]> {
+        let corner = pending.goal.target;
         let [first, second, normal] = self.modal.plane.axes();
-        if pending.goal.target[normal] != start[normal] || next.target[normal] != corner[normal] {
+        if corner[normal] != start[normal] || next.target[normal] != corner[normal] {
             let message = format!("`,{}` lies between motions that leave the plane", shown(&pending.corner));
             return Err(Fault::new("gcode::corner", block.whole(), message)
                 .hint("corners are cut in the plane of G17, G18 or G19"));
@@ -147,7 +162,7 @@ impl Interpreter {
                 None => Curve::Line { start, end },
             }
         };
-        let (mut before, mut behind) = (curve(&start, &pending.goal), curve(&corner, &next));
+        let (mut before, mut behind) = (curve(start, &pending.goal), curve(&corner, next));
         let size_mm = pending.corner.value * self.modal.unit_mm;
         let cut = if pending.corner.is_round {
             Corner { radius_mm: size_mm.abs(), is_round: true }.cut(&mut before, &mut behind)
@@ -155,12 +170,9 @@ impl Interpreter {
             chamfer(&mut before, &mut behind, size_mm)
         };
         let Some(piece) = cut.filter(|_| size_mm > 0.0) else {
-            let message = format!(
-                "`,{}{}` does not fit between this motion and the one on line {}",
-                shown(&pending.corner),
-                pending.corner.value,
-                pending.line
-            );
+            let (word, value) = (shown(&pending.corner), pending.corner.value);
+            let message =
+                format!("`,{word}{value}` does not fit between this motion and the one on line {}", pending.line);
             return Err(Fault::new("gcode::corner", block.whole(), message)
                 .hint("it must be above 0 and shorter than both; a chamfer is cut between straight lines"));
         };
@@ -169,26 +181,16 @@ impl Interpreter {
             (position[first], position[second]) = (point[0], point[1]);
             position
         };
-        // Up to the corner and around it with the feed and from the line of the first block.
-        let line = std::mem::replace(&mut self.line, pending.line);
-        let feed = (self.modal.feed, self.modal.feed_unit_mm);
-        (self.modal.feed, self.modal.feed_unit_mm) = pending.feed;
-        let mut moved = Ok(());
-        if length(minus(before.end(), before.start())) > SLACK_MM {
-            let goal = Goal { target: place(before.end()), ..pending.goal };
-            moved = self.go_to_goal(&pending.block, goal, true);
-        }
-        if let (Ok(()), Some(piece)) = (&moved, piece) {
+        let has_length = length(minus(before.end(), before.start())) > SLACK_MM;
+        let up_to = has_length.then(|| Goal { target: place(before.end()), ..pending.goal });
+        let around = piece.map(|piece| {
             let round = match piece {
                 Curve::Arc { center, turn, .. } => Some(Round { center, turns: if turn > 0.0 { 1 } else { -1 } }),
                 Curve::Line { .. } => None,
             };
-            moved = self.go_to_goal(&pending.block, Goal { target: place(piece.end()), round }, true);
-        }
-        self.line = line;
-        (self.modal.feed, self.modal.feed_unit_mm) = feed;
-        self.fanuc.resolved = Some(next);
-        moved
+            Goal { target: place(piece.end()), round }
+        });
+        Ok([up_to, around])
     }
 
     /// C on a straight motion of a lathe is a chamfer on some controls and an axis on others.

@@ -63,7 +63,12 @@ impl Evidence {
 
     /// Whether something has no meaning but on a lathe of Fanuc or Haas, LinuxCNC included.
     pub(in crate::gcode) fn certain_lathe(&self) -> Option<Sign> {
-        self.lathe.iter().copied().find(|sign| sign.is_certain)
+        // U may be an axis there, and G32 something else.
+        let others = ["G28", "G32"];
+        self.lathe
+            .iter()
+            .copied()
+            .find(|sign| sign.is_certain && !others.iter().any(|code| sign.what.starts_with(code)))
     }
 
     /// The machine.
@@ -85,6 +90,12 @@ impl Evidence {
                 std::cmp::Ordering::Equal => Kind::Both(lathe, mill),
             },
         }
+    }
+
+    /// The first signs of both machines where none is certain and the number of kinds decided.
+    pub(in crate::gcode) fn doubt(&self) -> Option<(Sign, Sign)> {
+        let is_certain = self.lathe.iter().chain(&self.mill).any(|sign| sign.is_certain);
+        if is_certain { None } else { self.lathe.first().copied().zip(self.mill.first().copied()) }
     }
 
     /// Adds a sign, once of each kind.

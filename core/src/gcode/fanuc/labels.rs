@@ -13,11 +13,23 @@ const MOST_PLACES: usize = 100_000;
 
 /// Blocks that were found, by file, offset of the line they were asked for from, and number.
 #[derive(Debug, Default)]
-pub(in crate::gcode) struct Places(HashMap<(usize, u64, u64), Option<Mark>>);
+pub(in crate::gcode) struct Places(HashMap<(usize, u64, u64), Found>);
+
+/// The first block of a number before and behind a line.
+#[derive(Debug, Clone, Copy, Default)]
+pub(in crate::gcode) struct Found {
+    pub(in crate::gcode) before: Option<Mark>,
+    pub(in crate::gcode) behind: Option<Mark>,
+}
 
 impl Flow {
     /// The line with the number `N`: the next from here on in the program or subprogram under way, or else its first.
     pub(in crate::gcode) fn find_block(&mut self, number: u64, at: &Range<usize>) -> Read<Option<Mark>> {
+        self.find_blocks(number, at).map(|found| found.behind.or(found.before))
+    }
+
+    /// The first lines with a number before here and from here on, in the program or subprogram under way.
+    pub(in crate::gcode) fn find_blocks(&mut self, number: u64, at: &Range<usize>) -> Read<Found> {
         let (here, line_start) = (self.source_ref().here(), self.source_ref().line_start);
         let key = (self.current, here.offset, number);
         if let Some(&found) = self.places.0.get(&key) {
@@ -34,23 +46,25 @@ impl Flow {
         Ok(found)
     }
 
-    fn scan(&mut self, number: u64, here: u64) -> std::io::Result<Option<Mark>> {
+    fn scan(&mut self, number: u64, here: u64) -> std::io::Result<Found> {
         let source = self.source();
         source.rewind()?;
-        let mut before = None;
+        let mut found = Found::default();
         loop {
             let range = match source.next_line()? {
-                Line::End => return Ok(before),
+                Line::End => return Ok(found),
                 Line::TooLong(_) => continue,
                 Line::Text(range) => range,
             };
             let begin = source.line_start;
             match Label::of(source.bytes(range)) {
                 // Another program begins.
-                Label::Program if begin.offset < here => before = None,
-                Label::Program => return Ok(before),
-                Label::Block(found) if found == number && begin.offset >= here => return Ok(Some(begin)),
-                Label::Block(found) if found == number => before = before.or(Some(begin)),
+                Label::Program if begin.offset < here => found = Found::default(),
+                Label::Program => return Ok(found),
+                Label::Block(label) if label == number && begin.offset >= here => {
+                    return Ok(Found { behind: Some(begin), ..found });
+                }
+                Label::Block(label) if label == number => found.before = found.before.or(Some(begin)),
                 _ => {}
             }
         }

@@ -106,7 +106,17 @@ impl Flow {
                 .hint("P and Q are the numbers N of the first and the last block of the profile")
         };
         let (mark, here) = (self.source_ref().line_start, self.source_ref().here());
-        let begin = self.find_block(first, &at)?.ok_or_else(|| missing('P', first))?;
+        let found = self.find_blocks(first, &at)?;
+        if let (Some(before), Some(behind)) = (found.before, found.behind) {
+            let [one, other] = [before, behind].map(|mark| mark.lines_before + 1);
+            let message = format!(
+                "P{first} is on line {one} and on line {other}: which of them is meant differs between controls"
+            );
+            return Err(
+                Fault::new("gcode::lathe", at, message).hint("give the blocks of every profile numbers of their own")
+            );
+        }
+        let begin = found.behind.or(found.before).ok_or_else(|| missing('P', first))?;
         self.jump_to(begin, &at)?;
         let end = self.find_block(last, &at);
         self.jump_to(here, &at)?;
