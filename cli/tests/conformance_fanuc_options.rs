@@ -24,7 +24,7 @@ fn the_increment_is_an_option_and_its_absence_a_warning() {
 #[test]
 fn a_machine_that_is_in_doubt_is_an_error_and_an_option_decides() {
     let folder = Folder::new();
-    folder.file("part.nc", "O1\nG50 S2500\nG43 H1 Z5.\nG1 X20. F100.\nM30\n");
+    folder.file("part.nc", "O1\nG50 S2500\nG0 G43 H1 Z5.\nG1 X20. F100.\nM30\n");
     let doubt = folder.run(&["check", "part.nc"]);
     assert!(
         doubt.stderr.contains("mill or for a lathe?") && doubt.stderr.contains("hint: say which"),
