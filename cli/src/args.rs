@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use feedwright::gcode::{AUTO, Dialect, INCH_MM, Settings, ToolTable};
+use feedwright::gcode::{AUTO, Dialect, INCH_MM, Increment, Settings, ToolTable};
 use miette::Result;
 
 /// Predict the contour error of a CNC program on a machine, and correct it.
@@ -213,9 +213,13 @@ pub(crate) struct CanonArgs {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Reading the program")]
 pub(crate) struct ReaderArgs {
-    /// Whose G-code it is: auto, linuxcnc, fanuc, haas, grbl, marlin or klipper. auto looks at the beginning.
+    /// Whose G-code it is: auto, linuxcnc, fanuc, haas, grbl, marlin or klipper; fanuc-mill, fanuc-lathe, haas-mill and haas-lathe where the
+    /// program does not show the machine. auto looks at the beginning.
     #[arg(long, value_name = "NAME", default_value = AUTO)]
     pub(crate) dialect: String,
+    /// What a length without a decimal point counts on a Fanuc or Haas: 0.01mm, 0.001mm or 0.0001mm [default: whole units].
+    #[arg(long, value_name = "LENGTH", value_parser = Increment::named)]
+    pub(crate) increment: Option<Increment>,
     /// Motions after which a program counts as endless.
     #[arg(long, value_name = "N", default_value_t = Settings::default().max_motions, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
     pub(crate) max_motions: u64,
@@ -247,6 +251,7 @@ impl ReaderArgs {
         let tools = self.tool_table.as_deref().map(|table| ToolTable::read(table, unit_mm)).transpose()?;
         Ok(Settings {
             dialect: Dialect::named(&self.dialect)?,
+            increment: self.increment,
             max_motions: self.max_motions,
             max_idle_lines: self.max_idle_lines,
             tools: tools.unwrap_or_default(),

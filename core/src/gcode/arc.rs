@@ -56,11 +56,16 @@ impl Interpreter {
                 return Err(fault);
             }
         };
-        if self.compensated_arc(block, &target, round)? {
+        self.arc_as(block, &target, round, extruder_mm)
+    }
+
+    /// Along a circle to a point in program coordinates, beside it under cutter compensation.
+    pub(super) fn arc_as(&mut self, block: &Block, target: &Position, round: Round, extruder_mm: f64) -> Read<()> {
+        if self.compensated_arc(block, target, round)? {
             return Ok(());
         }
-        let fed = self.arc_to(block, &target, round, extruder_mm);
-        self.at = target;
+        let fed = self.arc_to(block, target, round, extruder_mm);
+        self.at = *target;
         fed
     }
 
@@ -92,7 +97,7 @@ impl Interpreter {
     }
 
     /// Centre and turns from the words of the block.
-    fn round(&self, block: &Block, target: &Position, counter_clockwise: bool) -> Read<Round> {
+    pub(super) fn round(&self, block: &Block, target: &Position, counter_clockwise: bool) -> Read<Round> {
         let turns = if block.has(b'p') { self.integer(block, b'p', 1, MOST_TURNS)? as i32 } else { 1 };
         let turns = if counter_clockwise { turns } else { -turns };
         let [first, second, normal] = self.modal.plane.axes();

@@ -5,6 +5,8 @@ use std::ops::Range;
 use super::codes::{self, AXES, GROUPS, Group, bit, letter, slot};
 use super::diagnostic::{Fault, Read, Short};
 use super::expression::{Evaluator, INTEGER_WITHIN, Target, Values};
+use super::fanuc::codes::{CodeSet, LATHE_OWN, SYSTEM_A};
+use super::fanuc::corners::CornerWord;
 use super::foreign;
 use super::lexer::{Cursor, END, NO_EXPONENT, shown};
 
@@ -48,9 +50,14 @@ pub(super) struct Block {
     bare_words: bool,
     /// Whether to look for decimal points, and the letters whose numbers have one.
     points: bool,
-    pointed: u32,
+    pub(super) pointed: u32,
+    /// The letters whose values are computed.
+    pub(super) computed: u32,
+    codes: CodeSet,
     /// Whether a word E follows a number without a blank, as an exponent does.
     pub(super) exponent: bool,
+    /// `,R` or `,C` of Fanuc.
+    pub(super) corner: Option<CornerWord>,
     /// End of the line's text outside comments.
     pub(super) end: usize,
 }
@@ -62,6 +69,7 @@ pub(super) struct Style {
     pub(super) printer: bool,
     /// Fanuc and its relatives: a decimal point makes milliseconds seconds.
     pub(super) points: bool,
+    pub(super) codes: CodeSet,
 }
 
 impl Block {
@@ -78,7 +86,10 @@ impl Block {
             bare_words: false,
             points: false,
             pointed: 0,
+            computed: 0,
+            codes: CodeSet::Rs274,
             exponent: false,
+            corner: None,
             end: 0,
         }
     }
@@ -88,7 +99,9 @@ impl Block {
     pub(super) fn clear(&mut self) {
         self.set = 0;
         self.pointed = 0;
+        self.computed = 0;
         self.exponent = false;
+        self.corner = None;
         if !self.g.is_empty() {
             self.g.clear();
             self.group = [None; GROUPS];
@@ -102,6 +115,17 @@ impl Block {
     #[inline]
     pub(super) fn get(&self, letter: u8) -> Option<f64> {
         (self.set & bit(letter) != 0).then(|| self.value[slot(letter)])
+    }
+
+    /// Gives the line a word in place of those that it has of the letter, in the same place where there is one.
+    pub(super) const fn put(&mut self, letter: u8, value: f64) {
+        self.set |= bit(letter);
+        self.value[slot(letter)] = value;
+    }
+
+    /// Takes a word away.
+    pub(super) const fn remove(&mut self, letter: u8) {
+        self.set &= !bit(letter);
     }
 
     /// Whether the line has the letter.
@@ -151,6 +175,7 @@ impl Block {
         self.end = evaluator.cursor.at;
         self.bare_words = style.printer;
         self.points = style.points;
+        self.codes = style.codes;
         loop {
             let byte = evaluator.cursor.peek();
             let start = evaluator.cursor.at;
@@ -167,6 +192,7 @@ impl Block {
                     return Ok(());
                 }
                 b'#' => self.read_assignment(&mut evaluator, start)?,
+                b',' if style.codes != CodeSet::Rs274 => self.read_corner(&mut evaluator, start)?,
                 b'*' if style.printer => return Ok(()),
                 _ => return Err(strange(evaluator.cursor.bytes, start)),
             }
@@ -190,6 +216,9 @@ impl Block {
         let value = if self.bare_words && self.is_bare(&mut evaluator.cursor) { 0.0 } else { evaluator.value()? };
         let slot = slot(byte);
         let place = (start as u32, evaluator.cursor.at as u32);
+        if value.is_nan() {
+            return Ok(()); // A variable without a value: Fanuc leaves the word out.
+        }
         if self.set & (1 << slot) != 0 {
             let message = format!("the line already has a word {}", letter(slot));
             let hint = if byte == b'e' && self.exponent { NO_EXPONENT } else { "split the line in two" };
@@ -198,8 +227,10 @@ impl Block {
         self.set |= 1 << slot;
         self.value[slot] = value;
         self.place[slot] = place;
-        if self.points && evaluator.cursor.bytes[start..evaluator.cursor.at].contains(&b'.') {
-            self.pointed |= 1 << slot;
+        if self.points {
+            let written = &evaluator.cursor.bytes[start..evaluator.cursor.at];
+            self.pointed |= u32::from(written.contains(&b'.')) << slot;
+            self.computed |= u32::from(written.contains(&b'#') || written.contains(&b'[')) << slot;
         }
         Ok(())
     }
@@ -210,8 +241,8 @@ impl Block {
         let value = evaluator.value()?;
         let end = evaluator.cursor.at;
         let tenths = (value * 10.0).round();
-        let is_tenth = (value * 10.0 - tenths).abs() < TENTH_WITHIN && (0.0..1000.0).contains(&tenths);
-        let Some(code) = is_tenth.then(|| codes::find(tenths as u16)).flatten() else {
+        let is_tenth = (value * 10.0 - tenths).abs() < TENTH_WITHIN && (0.0..10_000.0).contains(&tenths);
+        let Some(code) = is_tenth.then(|| self.codes.find(tenths as u16)).flatten() else {
             return Err(unknown_g(value, evaluator.cursor.bytes, start..end));
         };
         let word = Word { number: code.number, start: start as u32, end: end as u32 };
@@ -227,7 +258,9 @@ impl Block {
                 codes::spelled(other.number),
                 codes::spelled(code.number)
             );
-            return Err(Fault::new("gcode::modal_group", start..end, message).hint("write them on two lines"));
+            let is_mode = [other.number, code.number].iter().any(|&number| number >= LATHE_OWN);
+            let hint = if is_mode { SYSTEM_A } else { "write them on two lines" };
+            return Err(Fault::new("gcode::modal_group", start..end, message).hint(hint));
         }
         self.g.push(word);
         Ok(())
@@ -259,7 +292,7 @@ impl Block {
                 "a parameter here must be assigned to: `=` is missing",
             ));
         }
-        let value = evaluator.value()?;
+        let value = if evaluator.is_fanuc() { evaluator.joined()? } else { evaluator.value()? };
         self.assignments.push((target, value));
         Ok(())
     }
@@ -344,7 +377,7 @@ fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
 
 /// A byte that has no meaning here.
 #[cold]
-fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
+pub(super) fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
     let byte = bytes[start];
     if byte.is_ascii() {
         let next = bytes[start + 1..].trim_ascii_start().first().map(u8::to_ascii_uppercase);

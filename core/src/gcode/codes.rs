@@ -2,6 +2,8 @@
 //!
 //! Groups and numbers: NISTIR 6556, table 4, and the LinuxCNC G-code reference. A number is ten times the code: G38.2 is 382.
 
+use super::fanuc;
+
 /// Codes of one group exclude each other on a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[repr(u8)]
@@ -21,10 +23,14 @@ pub(super) enum Group {
     Corner,
     SpindleMode,
     Diameter,
+    /// Fanuc: G68, G69.
+    Rotation,
+    /// Fanuc: G15, G16.
+    Polar,
 }
 
 /// Number of groups.
-pub(super) const GROUPS: usize = 14;
+pub(super) const GROUPS: usize = 16;
 
 /// Bit of a letter in a set of letters; `@` and `^` follow the alphabet.
 pub(super) const fn bit(letter: u8) -> u32 {
@@ -78,11 +84,11 @@ pub(super) struct Code {
     pub(super) letters: u32,
 }
 
-const fn code(number: u16, group: Group, letters: &[u8]) -> Code {
+pub(super) const fn code(number: u16, group: Group, letters: &[u8]) -> Code {
     Code { number, group, letters: bits(letters) }
 }
 
-const fn axes(number: u16, group: Group, letters: &[u8]) -> Code {
+pub(super) const fn axes(number: u16, group: Group, letters: &[u8]) -> Code {
     Code { number, group, letters: bits(letters) | AXES }
 }
 
@@ -201,12 +207,14 @@ const INDEX: [u8; 1000] = {
 pub(super) fn find(number: u16) -> Option<&'static Code> {
     match INDEX.get(usize::from(number)) {
         Some(&row) if row != NONE => CODES.get(usize::from(row)),
+        _ if number >= fanuc::codes::OWN => fanuc::codes::row(number),
         _ => None,
     }
 }
 
 /// The code as written: `G38.2`.
 pub(super) fn spelled(number: u16) -> String {
+    let number = number % fanuc::codes::OWN;
     if number.is_multiple_of(10) { format!("G{}", number / 10) } else { format!("G{}.{}", number / 10, number % 10) }
 }
 
@@ -238,7 +246,7 @@ mod tests {
             assert_eq!(find(row.number).unwrap().number, row.number);
         }
         assert!(find(15).is_none());
-        assert!(find(60_000).is_none());
+        assert!(find(u16::MAX).is_none());
     }
 
     #[test]

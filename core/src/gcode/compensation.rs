@@ -40,6 +40,10 @@ impl Interpreter {
         let Some(word) = block.code(Group::CutterCompensation) else {
             return if self.compensates() { self.check_compensated(block) } else { Ok(()) };
         };
+        if word.number >= super::fanuc::OWN {
+            self.nose_compensation(word);
+            return Ok(());
+        }
         if word.number == 400 {
             let was = self.compensation.take();
             self.left_compensation |= was.is_some_and(|was| was.last.is_some() && was.radius_mm > 0.0);

@@ -31,6 +31,13 @@ pub(super) struct Cycle {
     began_at: f64,
 }
 
+impl Cycle {
+    /// The code of the series; 0 where none is under way.
+    pub(super) const fn code(&self) -> u16 {
+        self.code
+    }
+}
+
 /// One hole.
 struct Hole {
     normal: usize,
@@ -75,11 +82,16 @@ impl Interpreter {
             let message = format!("R = {clearance} mm lies below the bottom of the hole at {bottom} mm");
             return Err(Fault::new("gcode::cycle", block.at_any(bit(b'r') | bit(letter)), message));
         }
-        let repeats = if block.has(b'l') { self.integer(block, b'l', 1, MOST_REPEATS)? } else { 1 };
+        // Fanuc and Haas: none only keeps the words for the holes that follow.
+        let least = i64::from(!self.dialect.is_fanuc());
+        let repeats = if block.has(b'l') { self.integer(block, b'l', least, MOST_REPEATS)? } else { 1 };
         if self.modal.feed <= 0.0 {
             self.feed_for(block, 0.0)?;
         }
         self.cycle = kept;
+        if repeats == 0 {
+            return Ok(());
+        }
         let corner = self.modal.corner;
         if matches!(corner, Corner::Continuous { .. }) {
             self.modal.corner = Corner::ExactPath;
@@ -230,6 +242,11 @@ impl Interpreter {
         let &Hole { normal, bottom, clearance } = hole;
         let step = self.cycle.peck.unwrap_or(clearance - bottom);
         let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };
+        if let Some(pecks) = self.fanuc.pecks {
+            self.peck_smaller(block, normal, [clearance, bottom], above, pecks)?;
+            self.pause(self.cycle.dwell_s.unwrap_or(0.0));
+            return Ok(());
+        }
         // In the program's unit, as LinuxCNC counts: elsewhere rounding makes a last peck of nothing, or leaves one out.
         let unit = self.modal.unit_mm;
         let (step, last) = (step / unit, bottom / unit);

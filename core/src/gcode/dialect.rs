@@ -2,14 +2,23 @@
 
 use std::sync::Arc;
 
+use super::fanuc::kind::{Evidence, Kind};
 use super::reader::ReadError;
 use super::settings::Dialect;
 
 /// Bytes that are looked at: past the comments that slicers and CAM systems write first.
 const LOOK_BYTES: usize = 1 << 16;
 
-/// Chooses a dialect and says why; refuses what is no G-code.
-pub(super) fn choose(head: &[u8], name: &Arc<str>) -> Result<(Dialect, &'static str), ReadError> {
+/// The dialect of a program, why, and what deserves a look: line and message.
+#[derive(Debug)]
+pub(super) struct Choice {
+    pub(super) dialect: Dialect,
+    pub(super) reason: &'static str,
+    pub(super) warning: Option<(u32, String)>,
+}
+
+/// Chooses a dialect where none is asked for, and a machine where Fanuc or Haas leave it open; refuses what is no G-code.
+pub(super) fn choose(head: &[u8], name: &Arc<str>, asked: Option<Dialect>) -> Result<Choice, ReadError> {
     if head.iter().all(u8::is_ascii_whitespace) {
         return Err(ReadError::Empty { name: name.clone() });
     }
@@ -17,6 +26,53 @@ pub(super) fn choose(head: &[u8], name: &Arc<str>) -> Result<(Dialect, &'static 
     if let Some(offset) = memchr::memchr(0, head) {
         return Err(ReadError::Binary { name: name.clone(), offset });
     }
+    let found = look(head, name)?;
+    let (dialect, reason) = asked.map_or(found, |dialect| (dialect, "as was asked for"));
+    let evidence = if matches!(dialect, Dialect::Fanuc | Dialect::Haas) || asked.is_none() {
+        Evidence::find(head)
+    } else {
+        return Ok(Choice { dialect, reason, warning: None });
+    };
+    if dialect == Dialect::LinuxCnc {
+        // A program without its O-number, or a part of one.
+        let is_lathe = !has_owords(head) && evidence.certain_lathe().is_some();
+        let lathe = (Dialect::FanucLathe, "it has words that only lathes of Fanuc and Haas have");
+        let (dialect, reason) = if is_lathe { lathe } else { (dialect, reason) };
+        return Ok(Choice { dialect, reason, warning: None });
+    }
+    if !dialect.is_fanuc() {
+        return Ok(Choice { dialect, reason, warning: None });
+    }
+    machine(&evidence, dialect, reason, name)
+}
+
+/// Mill or lathe.
+fn machine(evidence: &Evidence, dialect: Dialect, reason: &'static str, name: &Arc<str>) -> Result<Choice, ReadError> {
+    let of_lathe = if dialect == Dialect::Haas { Dialect::HaasLathe } else { Dialect::FanucLathe };
+    // Few signs against many: read, but not in silence.
+    let warning = evidence.doubt().map(|(lathe, mill)| {
+        let message = format!(
+            "signs of a lathe (line {}: {}) and of a mill (line {}: {}) stand in one program",
+            lathe.line, lathe.what, mill.line, mill.what
+        );
+        (lathe.line.max(mill.line), message)
+    });
+    let mill = Choice { dialect: Dialect::FanucMill, reason, warning };
+    Ok(match evidence.kind() {
+        Kind::Lathe(_) => Choice { dialect: of_lathe, ..mill },
+        Kind::Mill(_) => mill,
+        Kind::Unknown => Choice { warning: evidence.x_line.map(|line| (line, UNKNOWN.to_owned())), ..mill },
+        Kind::Both(lathe, mill) => {
+            let [(lathe_line, lathe), (mill_line, mill)] = [lathe, mill].map(|sign| (sign.line, sign.what));
+            return Err(ReadError::MillOrLathe { name: name.clone(), lathe_line, lathe, mill_line, mill });
+        }
+    })
+}
+
+const UNKNOWN: &str = "nothing in the program shows whether it is for a mill or for a lathe; it is read as one for a mill: \
+                       on a lathe X is a diameter and F a feed per revolution";
+
+fn look(head: &[u8], name: &Arc<str>) -> Result<(Dialect, &'static str), ReadError> {
     let mut choice = (Dialect::LinuxCnc, "nothing points to another control");
     for (number, line) in (1..).zip(head.split(|&byte| byte == b'\n')) {
         let text = String::from_utf8_lossy(line);
@@ -32,6 +88,13 @@ pub(super) fn choose(head: &[u8], name: &Arc<str>) -> Result<(Dialect, &'static 
         }
     }
     Ok(choice)
+}
+
+/// Whether there are names of parameters or O-words, which only LinuxCNC has.
+fn has_owords(head: &[u8]) -> bool {
+    let text = head.to_ascii_lowercase();
+    let owords: [&[u8]; 5] = [b"#<", b"sub", b"endif", b"endwhile", b"call"];
+    owords.iter().any(|word| memchr::memmem::find(&text, word).is_some())
 }
 
 /// The control whose language a line shows, if it is no RS-274.
@@ -50,6 +113,12 @@ fn foreign(text: &str) -> Option<&'static str> {
         return Some("Siemens Sinumerik");
     }
     None
+}
+
+/// Whether digits stand alone, or before a comment: O-words of LinuxCNC have a keyword behind them.
+fn is_program_number(text: &[u8]) -> bool {
+    let digits = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    (1..=8).contains(&digits) && matches!(text[digits..].trim_ascii_start().first(), None | Some(b'(' | b';'))
 }
 
 /// The dialect that a line shows.
@@ -74,11 +143,7 @@ fn sign_of(text: &str) -> Option<(Dialect, &'static str)> {
             .any(|name| lower.contains(name))
             .then_some((Dialect::Printer, "a slicer names itself in a comment"));
     }
-    if first == b'O'
-        && bytes.len() > 1
-        && bytes[1..].iter().take_while(|byte| byte.is_ascii_digit()).count() >= 4
-        && !text.to_ascii_lowercase().contains("sub")
-    {
+    if matches!(first, b'O' | b':') && is_program_number(&bytes[1..]) {
         return Some((Dialect::Fanuc, "the program has an O-number"));
     }
     if first == b'$' {
@@ -104,13 +169,17 @@ mod tests {
     use super::*;
 
     fn dialect(text: &str) -> Dialect {
-        choose(text.as_bytes(), &"test".into()).unwrap().0
+        choose(text.as_bytes(), &"test".into(), None).unwrap().dialect
     }
 
     #[test]
     fn dialects_are_told_apart() {
         assert_eq!(dialect("G21\nG0 X1\nM2"), Dialect::LinuxCnc);
-        assert_eq!(dialect("%\nO1234 (PART)\nG0 X1"), Dialect::Fanuc);
+        assert_eq!(dialect("%\nO1234 (PART)\nG90 G0 X1"), Dialect::FanucMill);
+        assert_eq!(dialect("%\nO7 (PART)\nG50 S2000\nG0 X1"), Dialect::FanucLathe);
+        assert_eq!(dialect(":1000\nG0 X1 Y1"), Dialect::FanucMill);
+        assert_eq!(dialect("G50 S2000\nG0 X1"), Dialect::FanucLathe);
+        assert_eq!(dialect("#<a>=1\nG92 X1 F1"), Dialect::LinuxCnc);
         assert_eq!(dialect("o100 sub\no100 endsub"), Dialect::LinuxCnc);
         assert_eq!(dialect("G28\nG1 X1 Y1 E0.5"), Dialect::Printer);
         assert_eq!(dialect("; generated by PrusaSlicer 2.7"), Dialect::Printer);
@@ -118,8 +187,20 @@ mod tests {
     }
 
     #[test]
+    fn a_machine_that_is_in_doubt_is_asked_for() {
+        let doubt = choose(b"O1\nG50 S2500\nG43 H1", &"test".into(), None).unwrap_err().to_string();
+        assert!(doubt.contains("line 2 (G50 S") && doubt.contains("line 3 (G43"), "{doubt}");
+        let known = choose(b"O1\nG50 S2500\nG43 H1", &"test".into(), Some(Dialect::HaasLathe)).unwrap();
+        assert_eq!(known.dialect, Dialect::HaasLathe);
+        let unknown = choose(b"O1\nG1 X5. F100", &"test".into(), None).unwrap();
+        assert_eq!((unknown.dialect, unknown.warning.unwrap().0), (Dialect::FanucMill, 2));
+        let haas = choose(b"O1\nG50 S2500", &"test".into(), Some(Dialect::Haas)).unwrap();
+        assert_eq!(haas.dialect, Dialect::HaasLathe);
+    }
+
+    #[test]
     fn other_languages_are_refused_by_name() {
-        let refused = |text: &str| choose(text.as_bytes(), &"test".into()).unwrap_err().to_string();
+        let refused = |text: &str| choose(text.as_bytes(), &"test".into(), None).unwrap_err().to_string();
         assert!(refused("0 BEGIN PGM PART MM\n1 BLK FORM 0.1 Z").contains("Heidenhain"));
         assert!(refused("%_N_PART_MPF\nG0").contains("Siemens"));
         assert!(refused("\0\x01").contains("NUL"));

@@ -8,6 +8,7 @@ use super::canon::{Corner, EventKind, Plane};
 use super::codes::{self, ALWAYS, Group};
 use super::diagnostic::{Fault, Read, Short};
 use super::expression::INTEGER_WITHIN;
+use super::fanuc;
 use super::lexer::NO_EXPONENT;
 use super::settings::Dialect;
 use super::state::{FeedMode, INCH_MM, Interpreter};
@@ -48,10 +49,15 @@ impl Interpreter {
             return None;
         }
         let taken = block.code(Group::NonModal).is_some_and(|word| USES_AXES.contains(&word.number))
-            || block.code(Group::ToolLength).is_some_and(|word| matches!(word.number, 431 | 432));
+            || block.code(Group::ToolLength).is_some_and(|word| matches!(word.number, 431 | 432))
+            || (self.dialect.is_fanuc() && fanuc::uses_axes(block));
         let is_center = matches!(self.modal.motion, 20 | 30)
             && block.set & codes::ARC_CENTER != 0
             && block.code(Group::NonModal).is_none();
+        let is_g53 = block.code(Group::NonModal).is_some_and(|word| word.number == 530);
+        if is_g53 && self.dialect.is_fanuc() && block.has_axes() {
+            return Some(0); // It moves by itself.
+        }
         (!taken && (block.has_axes() || is_center || (self.dialect == Dialect::Printer && block.has(b'e'))))
             .then_some(self.modal.motion)
     }
@@ -73,9 +79,6 @@ impl Interpreter {
         }
         if let Some(code) = motion.and_then(codes::find) {
             known |= code.letters;
-        }
-        if self.dialect == Dialect::Fanuc && motion == Some(830) {
-            known |= codes::bit(b'p'); // Dwell at the bottom.
         }
         let unknown = block.set & !known;
         if unknown == 0 {
@@ -142,6 +145,9 @@ impl Interpreter {
         // F comes before G20 and G21 of the same line: it still has the old unit.
         self.modal.feed_unit_mm = if self.modal.feed_mode == FeedMode::Inverse { 1.0 } else { self.modal.unit_mm };
         self.modal.feed = (feed * self.modal.feed_unit_mm).min(f64::MAX);
+        if self.dialect.is_lathe() {
+            self.check_lathe_feed(block);
+        }
         Ok(())
     }
 
@@ -159,14 +165,25 @@ impl Interpreter {
                 format!("spindle speed S{} is negative; the smallest is 0 rev/min", Short(speed)),
             ));
         }
+        if self.dialect.is_fanuc() && fanuc::bounds_spindle(block) {
+            return self.bound_spindle(block, speed);
+        }
         self.modal.spindle_speed = speed;
-        if self.modal.constant_surface.is_none() {
+        // G96 and G97 on this line are carried out later, and mean this S.
+        let is_surface = match block.code(Group::SpindleMode) {
+            Some(word) => word.number == 960,
+            None => self.modal.constant_surface.is_some(),
+        };
+        if !is_surface {
             self.event(EventKind::SpindleSpeed { rpm: speed });
         }
         Ok(())
     }
 
     fn tool_words(&mut self, block: &Block) -> Read<()> {
+        if block.has(b't') && self.dialect.is_lathe() {
+            return self.turret(block);
+        }
         if block.has(b't') {
             let tool = self.integer(block, b't', 0, 999_999)?;
             self.next_tool = tool as u32;
@@ -200,7 +217,7 @@ impl Interpreter {
             return Ok(());
         }
         if let Some(word) = block.code(Group::NonModal)
-            && word.number == 40
+            && word.number % fanuc::OWN == 40
         {
             self.dwell(block, word)?;
         }
@@ -233,6 +250,9 @@ impl Interpreter {
         if let Some(word) = block.code(Group::Return) {
             self.modal.retract_to_r = word.number == 990;
         }
+        if self.dialect.is_fanuc() {
+            self.own_modes(block)?;
+        }
         self.spindle_mode(block)
     }
 
@@ -260,11 +280,14 @@ impl Interpreter {
             (_, Some(seconds)) if printer => seconds,
             (Some(milliseconds), _) if printer => milliseconds * 1e-3,
             (Some(time), _) => self.seconds(block, time),
+            (None, _) if self.dialect.is_fanuc() && (block.has(b'x') || block.has(b'u')) => {
+                block.get(b'x').or(block.get(b'u')).unwrap_or(0.0)
+            }
             (None, _) if printer => 0.0,
             (None, _) => {
                 return Err(Fault::new("gcode::dwell", word.at(), "the dwell G4 has no time").hint(
-                    if self.dialect == Dialect::Fanuc {
-                        "write G4 P with milliseconds in place of X or U with seconds"
+                    if self.dialect.is_fanuc() {
+                        "write G4 X or U with seconds, or P with milliseconds"
                     } else {
                         "write G4 P with seconds"
                     },
@@ -274,7 +297,7 @@ impl Interpreter {
         if seconds < 0.0 {
             return Err(Fault::new(
                 "gcode::dwell",
-                block.at_any(codes::bit(b'p') | codes::bit(b's')),
+                block.at_any(codes::bit(b'p') | codes::bit(b's') | codes::bit(b'x') | codes::bit(b'u')),
                 format!("the dwell of {} s is negative; the smallest is 0 s", Short(seconds)),
             ));
         }
@@ -284,7 +307,7 @@ impl Interpreter {
 
     /// Seconds of the time P of a dwell. Fanuc and Haas count milliseconds where it has no decimal point.
     pub(super) const fn seconds(&self, block: &Block, time: f64) -> f64 {
-        if matches!(self.dialect, Dialect::Fanuc) && !block.has_point(b'p') { time * 1e-3 } else { time }
+        if self.dialect.is_fanuc() && !block.has_point(b'p') { time * 1e-3 } else { time }
     }
 
     fn motion(&mut self, block: &Block) -> Read<()> {
@@ -293,8 +316,9 @@ impl Interpreter {
         let Some(code) = motion else { return Ok(()) };
         if let Some(word) = block.code(Group::Motion) {
             // `G80 G28 Z0`: G28 takes the axis words. Fanuc: in `G0 G28 Z0` too, and G0 is only remembered.
-            let taken = block.code(Group::NonModal).is_some_and(|other| USES_AXES.contains(&other.number));
-            if taken && (code == 800 || self.dialect == Dialect::Fanuc) {
+            let taken = block.code(Group::NonModal).is_some_and(|other| USES_AXES.contains(&other.number))
+                || (self.dialect.is_fanuc() && fanuc::uses_axes(block));
+            if taken && (code == 800 || self.dialect.is_fanuc()) {
                 self.modal.motion = code;
                 return Ok(());
             }
@@ -317,8 +341,11 @@ impl Interpreter {
                 format!("G53 goes with G0 or G1, not with {}", codes::spelled(code)),
             ));
         }
-        if !matches!(code, 730 | 740 | 810..=890) {
+        if !matches!(code % fanuc::OWN, 730 | 740 | 810..=890) {
             self.end_cycles();
+        }
+        if code < fanuc::LATHE_OWN && self.dialect.is_lathe() {
+            self.end_turning();
         }
         if self.collected.is_some() && !matches!(code, 52 | 53 | 62) {
             self.check_no_curve(block)?;
@@ -330,6 +357,7 @@ impl Interpreter {
             self.corner_word(block)?;
         }
         match code {
+            0 | 10 | 20 | 30 if self.has_own_corner(block) => self.own_corner(block, code),
             0 | 10 => self.straight(block, code),
             20 | 30 => self.arc(block, code == 30),
             800 if block.has_axes() => Err(self.axes_without_motion(block, motion)),

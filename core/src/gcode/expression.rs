@@ -13,6 +13,7 @@
 //! with the named parameters and comparisons that LinuxCNC added.
 
 use super::diagnostic::{Fault, Read, Short};
+use super::fanuc::macros::without_vacancy;
 use super::lexer::{Cursor, END, NO_EXPONENT, shown};
 use super::parameters::PARAMETERS;
 
@@ -29,6 +30,14 @@ pub(super) trait Values {
     fn numbered(&self, index: usize) -> f64;
     /// Value of `#<name>`, lower case without blanks.
     fn named(&self, name: &[u8]) -> Option<f64>;
+    /// Whether expressions are those of Fanuc's macros.
+    fn is_fanuc(&self) -> bool {
+        false
+    }
+    /// Why `#index` cannot be read, if it cannot.
+    fn refused(&self, _index: usize) -> Option<String> {
+        None
+    }
 }
 
 /// What stands behind `#`.
@@ -50,7 +59,7 @@ pub(super) struct Evaluator<'a, V> {
 
 /// An operator between two values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Operator {
+pub(super) enum Operator {
     Power,
     Times,
     Over,
@@ -132,6 +141,16 @@ impl<'a, V: Values> Evaluator<'a, V> {
         }
     }
 
+    /// Whether values are those of Fanuc's macros.
+    pub(super) fn is_fanuc(&self) -> bool {
+        self.values.is_fanuc()
+    }
+
+    /// Values joined by operators without brackets, as Fanuc has them behind `=`.
+    pub(super) fn joined(&mut self) -> Read<f64> {
+        self.expression(1)
+    }
+
     /// `[ expression ]`.
     pub(super) fn bracketed(&mut self) -> Read<f64> {
         let start = self.cursor.at;
@@ -163,9 +182,12 @@ impl<'a, V: Values> Evaluator<'a, V> {
             }
             self.cursor.at = after;
             let right = self.deeper(start, |evaluator| evaluator.expression(strength + 1))?;
-            left = operator
-                .apply(left, right)
-                .map_err(|message| Fault::new("gcode::expression", start..self.cursor.at, message))?;
+            let applied = if self.values.is_fanuc() {
+                operator.apply_to_variables(left, right)
+            } else {
+                operator.apply(left, right)
+            };
+            left = applied.map_err(|message| Fault::new("gcode::expression", start..self.cursor.at, message))?;
             if !left.is_finite() {
                 return Err(not_finite(start..self.cursor.at));
             }
@@ -192,8 +214,10 @@ impl<'a, V: Values> Evaluator<'a, V> {
         if name == b"exists" {
             return self.exists();
         }
-        let argument = self.bracketed()?;
-        let value = if name == b"atan" {
+        let argument = without_vacancy(self.bracketed()?);
+        let value = if name == b"atan" && self.values.is_fanuc() && self.cursor.peek() != b'/' {
+            argument.atan().to_degrees()
+        } else if name == b"atan" {
             if !self.cursor.eat(b'/') {
                 let message = "atan needs two arguments: a `/` and a second bracket are missing";
                 return Err(Fault::new("gcode::expression", start..self.cursor.at, message).hint("write atan[y]/[x]"));
@@ -226,7 +250,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
         match nearest {
             _ if before == b'#' => fault.hint(format!("names of parameters stand in angle brackets: #<{name}>")),
             _ if MACRO_KEYWORDS.contains(&&keyword[..]) => {
-                fault.hint("loops and branches begin with an O-word, as in `o1 while [#1 LT 5]`; those of Fanuc macros are not read")
+                fault.hint("loops and branches begin with an O-word, as in `o1 while [#1 LT 5]`; --dialect fanuc reads those of Fanuc macros")
             }
             _ if name.starts_with(['o', 'O']) => fault.hint("the letter O is no zero: write 0"),
             Some(known) => fault.hint(format!("did you mean `{known}[...]`?")),
@@ -266,7 +290,8 @@ impl<'a, V: Values> Evaluator<'a, V> {
                 format!("parameter number {} is not an integer", Short(index)),
             ));
         }
-        if !(1.0..PARAMETERS as f64).contains(&rounded) {
+        let first = if self.values.is_fanuc() { 0.0 } else { 1.0 };
+        if !(first..PARAMETERS as f64).contains(&rounded) {
             let message =
                 format!("parameter #{} does not exist: the numbers go from 1 to {}", Short(rounded), PARAMETERS - 1);
             return Err(Fault::new("gcode::parameter", at, message));
@@ -301,7 +326,11 @@ impl<'a, V: Values> Evaluator<'a, V> {
 
     fn parameter(&self, target: &Target, start: usize) -> Read<f64> {
         match target {
-            Target::Numbered(index) => Ok(self.values.numbered(*index)),
+            Target::Numbered(index) => match self.values.refused(*index) {
+                Some(message) => Err(Fault::new("gcode::parameter", start..self.cursor.at, message)
+                    .hint("give it to the program as a number")),
+                None => Ok(self.values.numbered(*index)),
+            },
             Target::Named(name) => self.values.named(name).ok_or_else(|| {
                 let name = String::from_utf8_lossy(name);
                 Fault::new("gcode::parameter", start..self.cursor.at, format!("parameter #<{name}> has no value here"))
@@ -323,7 +352,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
 }
 
 impl Operator {
-    fn apply(self, left: f64, right: f64) -> Result<f64, String> {
+    pub(super) fn apply(self, left: f64, right: f64) -> Result<f64, String> {
         let (base, power) = (Short(left), Short(right));
         let truth = |value: bool| Ok(f64::from(u8::from(value)));
         let (is_left, is_right) = (left != 0.0, right != 0.0);

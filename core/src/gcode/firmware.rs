@@ -28,7 +28,7 @@ pub(super) fn command(line: &[u8], dialect: Dialect) -> Option<Command> {
             Some(Command::Speaks)
         }
         Dialect::Printer => printer_command(line),
-        Dialect::Fanuc => smooths(line).then_some(Command::Smooths),
+        dialect if dialect.is_fanuc() => smooths(line).then_some(Command::Smooths),
         _ => None,
     }
 }

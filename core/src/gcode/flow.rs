@@ -9,6 +9,8 @@ use std::path::PathBuf;
 
 use super::diagnostic::{Fault, Read};
 use super::expression::Evaluator;
+use super::fanuc::labels::Places;
+use super::fanuc::macros;
 use super::lexer::Cursor;
 use super::owords::{Arguments, Head, Keyword, read_arguments, read_head, read_rest, shown};
 use super::settings::Settings;
@@ -66,6 +68,8 @@ pub(super) struct Flow {
     /// Lines of the branches and loops met so far, by file, subroutine and label; and room for such a key.
     labels: HashMap<Vec<u8>, u32>,
     key: Vec<u8>,
+    /// Blocks that were looked for by their numbers.
+    pub(super) places: Places,
 }
 
 impl Flow {
@@ -82,6 +86,7 @@ impl Flow {
             max_depth: settings.max_depth,
             labels: HashMap::new(),
             key: Vec::new(),
+            places: Places::default(),
         }
     }
 
@@ -105,6 +110,10 @@ impl Flow {
     /// What the end of the file leaves open: the line that began it and the message.
     pub(super) fn unfinished(&self) -> Option<(u32, String)> {
         if let Some(skip) = &self.skip {
+            if let Some(number) = skip.label.strip_prefix(b"do").filter(|_| skip.purpose == Purpose::EndOfLoop) {
+                let number = String::from_utf8_lossy(number);
+                return Some((skip.line, format!("DO{number} has no END{number}")));
+            }
             let wanted = match skip.purpose {
                 Purpose::Branch | Purpose::EndOfBranches => "endif",
                 Purpose::Definition => "endsub",
@@ -113,7 +122,7 @@ impl Flow {
             return Some((skip.line, format!("{} has no {wanted}", shown(&skip.label))));
         }
         let frame = self.frames.last()?;
-        let wanted = if frame.manner == Manner::Fanuc { "M99" } else { "endsub" };
+        let wanted = if frame.manner == Manner::Rs274 { "endsub" } else { "M99" };
         Some((frame.body.lines_before, format!("the subroutine {} has no {wanted}", shown(&frame.label))))
     }
 
@@ -154,7 +163,13 @@ impl Flow {
         let Some(skip) = &self.skip else {
             return Ok(None);
         };
-        let mut cursor = Cursor::new(self.source_ref().bytes(range));
+        let bytes = self.source_ref().bytes(range);
+        if interpreter.dialect.is_fanuc()
+            && let Some(head) = macros::ends_loop(bytes, &skip.label)
+        {
+            return Ok(Some((head, None)));
+        }
+        let mut cursor = Cursor::new(bytes);
         if !at_o_word(&mut cursor) {
             return Ok(None);
         }
@@ -261,7 +276,17 @@ impl Flow {
         self.skip = Some(Skip { label: head.label.clone(), purpose, line });
     }
 
-    fn begin_loop(&mut self, head: &Head, repeats: u64) -> Read<()> {
+    /// Passes a loop over whose condition does not hold.
+    pub(super) fn pass_loop(&mut self, head: &Head, line: u32) {
+        self.pass(head, Purpose::EndOfLoop, line);
+    }
+
+    /// A line of the source under way as text.
+    pub(super) fn text_of_line(&self, range: std::ops::Range<usize>) -> String {
+        String::from_utf8_lossy(self.source_ref().bytes(range).trim_ascii()).into_owned()
+    }
+
+    pub(super) fn begin_loop(&mut self, head: &Head, repeats: u64) -> Read<()> {
         let base = self.frames.last().map_or(0, |frame| frame.loops);
         // A loop that was left by a jump ends when it begins anew.
         if let Some(old) = self.loops[base..].iter().position(|turn| turn.label == head.label) {
@@ -355,7 +380,7 @@ impl Flow {
     }
 
     /// `endwhile`, `endrepeat`.
-    fn end_round(&mut self, head: &Head) -> Read<()> {
+    pub(super) fn end_round(&mut self, head: &Head) -> Read<()> {
         let turn = self.find_loop(head)?;
         let ends = match head.keyword {
             Keyword::EndWhile => Keyword::While,
@@ -398,7 +423,7 @@ pub(super) fn at_o_word(cursor: &mut Cursor<'_>) -> bool {
     if cursor.eat(b'n') && cursor.number().is_err() {
         return false;
     }
-    cursor.peek() == b'o'
+    matches!(cursor.peek(), b'o' | b':')
 }
 
 #[cold]

@@ -22,12 +22,12 @@ const CODES: &[(&[u16], &str, &str)] = &[
     (
         &[650, 660, 661, 670],
         "a call of a macro",
-        "write the macro as a subroutine of LinuxCNC, which is called by `o<name> call [1] [2]`",
+        "--dialect fanuc reads G65; LinuxCNC calls a subroutine by `o<name> call [1] [2]`; write a modal call (G66) out",
     ),
     (
         &[680, 690],
         "a rotation of the coordinates",
-        "G10 L2 P0 R30 turns the coordinate system by 30 degrees about its origin, and R0 back",
+        "G10 L2 P0 R30 turns the coordinate system by 30 degrees about its origin, and R0 back; --dialect fanuc reads G68 of mills",
     ),
     (
         &[682, 683, 684, 2540, 2550],
@@ -35,7 +35,11 @@ const CODES: &[(&[u16], &str, &str)] = &[
         "let the CAM system write the motions of a machine with X, Y and Z",
     ),
     (&[171, 181, 191], "a plane of U, V and W", "write the arcs in X, Y and Z, in G17, G18 or G19"),
-    (&[1540], "a further coordinate system of Haas", "use G54 to G59.3, whose offsets G10 L2 writes"),
+    (
+        &[1540],
+        "a further coordinate system of Haas",
+        "write G154 P1 for G110 and so on (--dialect haas), or G54 to G59",
+    ),
     (&[1870], "the smoothness of Haas", "--dialect haas leaves it out, because it moves nothing"),
 ];
 

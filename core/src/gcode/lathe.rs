@@ -5,10 +5,10 @@
 //! finds where it goes down, and `roughing` and `finishing` make motions of it. What LinuxCNC 2.9 does was found by trying programs on it; those that showed
 //! it are the `turning_*` of `core/tests/oracle_data`.
 
-mod corners;
+pub(super) mod corners;
 mod finishing;
 mod offset;
-mod pockets;
+pub(super) mod pockets;
 mod profile;
 mod roughing;
 mod words;

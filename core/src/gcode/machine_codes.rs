@@ -23,10 +23,11 @@ impl Interpreter {
             61 => bit(b'q'),
             66 => bit(b'p') | bit(b'e') | bit(b'l') | bit(b'q'),
             67 | 68 => bit(b'e') | bit(b'q'),
+            97 if self.dialect.is_fanuc() => bit(b'p') | bit(b'l'),
             98 => bit(b'p') | bit(b'l'),
             99 => bit(b'p'),
             100..=199 => bit(b'p') | bit(b'q'),
-            _ if self.dialect == Dialect::Fanuc => bit(b'p') | bit(b'q') | bit(b'r'),
+            _ if self.dialect.is_fanuc() => bit(b'p') | bit(b'q') | bit(b'r'),
             _ => 0,
         }
     }
@@ -57,7 +58,7 @@ impl Interpreter {
                 let message = format!("M{} and M{} exclude each other on one line", other.number, word.number);
                 return Err(Fault::new("gcode::modal_group", word.at(), message).hint("write them on two lines"));
             }
-            if self.dialect == Dialect::Fanuc
+            if self.dialect.is_fanuc()
                 && let Some((what, hint)) = jump(word.number)
             {
                 let message = format!("M{} {what}, which is not read", word.number);
@@ -125,6 +126,7 @@ impl Interpreter {
         self.check_words_of(block, number)?;
         let modal = &mut self.modal;
         match number {
+            97 if self.dialect.is_fanuc() => return Ok(()),
             0 | 1 | 2 | 30 | 60 | 98 | 99 => return Ok(()), // Stops come last, calls are flow.
             3 => modal.spindle_turns = 1,
             4 => modal.spindle_turns = -1,
@@ -164,7 +166,6 @@ const fn jump(number: u16) -> Option<(&'static str, &'static str)> {
         "put the lines behind M30, O1000 before and M99 behind them, and call them by M98 P1000";
     match number {
         96 => Some(("jumps where an input is off", "write the lines that the machine will carry out")),
-        97 => Some(("calls lines of the same program by their N", AS_SUBROUTINE)),
         198 => Some(("calls a program on another device", AS_SUBROUTINE)),
         _ => None,
     }

@@ -6,6 +6,7 @@
 use super::block::{Block, Word};
 use super::codes::{AXIS_LETTERS, Group, bit, spelled};
 use super::diagnostic::{Fault, Read};
+use super::fanuc;
 use super::parameters as numbers;
 use super::settings::Dialect;
 use super::state::{Interpreter, Position};
@@ -21,6 +22,7 @@ impl Interpreter {
             return Ok(());
         };
         let system = match word.number {
+            fanuc::OWN.. => return self.further_system(block, word),
             541 => {
                 let message = "G54.1 P (additional coordinate systems) needs offsets that only the control has";
                 return Err(Fault::new("gcode::unsupported", word.at(), message)
@@ -40,6 +42,9 @@ impl Interpreter {
 
     /// Takes the offsets of the active system from the parameters.
     pub(super) fn load_system(&mut self) {
+        if self.frame.system > SYSTEMS as usize {
+            return self.load_further_system();
+        }
         let first = system_first(self.frame.system);
         self.frame.system_offset = self.parameters.nine(first);
         self.frame.rotation_deg = self.parameters.get(first + 9);
@@ -115,7 +120,7 @@ impl Interpreter {
         let Some(word) = block.code(Group::NonModal) else {
             return Ok(());
         };
-        if self.dialect != Dialect::Fanuc
+        if !self.dialect.is_fanuc()
             && matches!(word.number, 280 | 300 | 520 | 920 | 100)
             && block.code(Group::Motion).is_some_and(|motion| motion.number != 800)
             && block.has_axes()
@@ -135,6 +140,7 @@ impl Interpreter {
                 Ok(())
             }
             520 | 920 => self.shift(block, word),
+            fanuc::OWN.. => self.own_non_modal(block, word),
             921..=923 => {
                 self.shift_mode(word.number);
                 Ok(())
@@ -185,7 +191,7 @@ impl Interpreter {
             self.extruder_mm = value * self.modal.unit_mm;
         }
         if !block.has_axes() {
-            if printer {
+            if printer || (self.dialect.is_fanuc() && block.has(b's')) {
                 return Ok(());
             }
             return Err(Fault::new("gcode::no_axes", word.at(), format!("{} has no axis word", spelled(word.number))));
@@ -226,6 +232,13 @@ impl Interpreter {
             ));
         }
         match self.integer(block, b'l', 0, 99)? {
+            20 if self.dialect.is_fanuc() => self.set_further_system(block),
+            2 if self.dialect.is_fanuc() && block.get(b'p') == Some(0.0) => Err(Fault::new(
+                "gcode::unsupported",
+                block.at(b'p'),
+                "G10 L2 P0 (the offset of all systems) is not read",
+            )
+            .hint("write the offsets of G54 to G59 with P1 to P6")),
             2 => self.set_system(block, false),
             20 => self.set_system(block, true),
             kind @ (1 | 10 | 11) => self.set_tool(block, kind),
@@ -263,7 +276,7 @@ impl Interpreter {
                 let value = self.length(block, letter, axis, value)?;
                 named[axis] = value;
                 // G91 means nothing to LinuxCNC's G10 L2; on Fanuc the value is added.
-                let added = self.modal.incremental && !by_position && self.dialect == Dialect::Fanuc;
+                let added = self.modal.incremental && !by_position && self.dialect.is_fanuc();
                 offset[axis] = if added { offset[axis] + value } else { value };
             }
         }

@@ -9,6 +9,8 @@ use std::collections::HashMap;
 pub(super) const PARAMETERS: usize = 5603;
 /// `#1`-`#30` belong to the call.
 pub(super) const LOCALS: usize = 30;
+/// `#1`-`#33` belong to the call of a macro of Fanuc.
+pub(super) const MACRO_LOCALS: usize = 33;
 /// Named parameters that a program may have. Each costs about 100 bytes; a program that makes more of them builds names in
 /// an endless loop.
 const MOST_NAMES: usize = 100_000;
@@ -103,23 +105,28 @@ impl Parameters {
     }
 
     /// Begins a call: the arguments become `#1`-`#30`; returns the caller's.
-    pub(super) fn enter(&mut self, arguments: [f64; LOCALS]) -> [f64; LOCALS] {
+    pub(super) fn enter(&mut self, arguments: &[f64]) -> [f64; MACRO_LOCALS] {
         self.locals.push(HashMap::new());
         let saved = self.local_numbers();
-        self.numbered[1..=LOCALS].copy_from_slice(&arguments);
+        self.set_locals(arguments);
         saved
     }
 
-    /// Ends a call: `saved` is what `enter` returned.
-    pub(super) fn leave(&mut self, saved: [f64; LOCALS]) {
+    /// Gives the locals values, from `#1` on.
+    pub(super) fn set_locals(&mut self, values: &[f64]) {
+        self.numbered[1..=values.len()].copy_from_slice(values);
+    }
+
+    /// Ends a call: `saved` is what `enter` returned, as far as it belongs to the call.
+    pub(super) fn leave(&mut self, saved: &[f64]) {
         if self.locals.len() > 1 {
             self.names -= self.locals.pop().map_or(0, |scope| scope.len());
         }
-        self.numbered[1..=LOCALS].copy_from_slice(&saved);
+        self.set_locals(saved);
     }
 
-    /// `#1`-`#30`.
-    pub(super) fn local_numbers(&self) -> [f64; LOCALS] {
+    /// `#1`-`#33`.
+    fn local_numbers(&self) -> [f64; MACRO_LOCALS] {
         std::array::from_fn(|n| self.get(n + 1))
     }
 }
@@ -135,10 +142,10 @@ mod tests {
         parameters.set(31, 8.0);
         parameters.set_named(b"a", 1.0);
         parameters.set_named(b"_g", 2.0);
-        let saved = parameters.enter([5.0; LOCALS]);
+        let saved = parameters.enter(&[5.0; LOCALS]);
         assert_eq!((parameters.get(1), parameters.get(31)), (5.0, 8.0));
         assert_eq!((parameters.named(b"a"), parameters.named(b"_g")), (None, Some(2.0)));
-        parameters.leave(saved);
+        parameters.leave(&saved[..LOCALS]);
         assert_eq!((parameters.get(1), parameters.named(b"a")), (7.0, Some(1.0)));
     }
 

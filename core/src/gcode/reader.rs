@@ -1,5 +1,7 @@
 //! A program as an iterator of canonical steps, line by line.
 
+mod calls;
+
 use std::fs;
 use std::io;
 use std::ops::Range;
@@ -10,8 +12,11 @@ use thiserror::Error;
 
 use super::block::{Block, Style};
 use super::canon::{Canon, EventKind};
-use super::diagnostic::{Diagnostic, Fault, Read, Severity, Short};
+use super::codes::Group;
+use super::diagnostic::{Diagnostic, Fault, Read, Severity};
 use super::dialect;
+use super::fanuc::codes::CodeSet;
+use super::fanuc::{self, macros};
 use super::firmware;
 use super::flow::Flow;
 use super::lexer::{Cursor, END};
@@ -72,6 +77,25 @@ pub enum ReadError {
         line: u32,
         /// Its text.
         text: String,
+    },
+    /// Signs of a mill and of a lathe, whose words cut different parts.
+    #[error(
+        "{name}: is this program for a mill or for a lathe? line {lathe_line} ({lathe}) is one of a lathe, line {mill_line} ({mill}) one of a mill"
+    )]
+    #[diagnostic(help(
+        "say which: --dialect fanuc-lathe, haas-lathe or fanuc-mill; of lathes, G-code system A is read, in which U and W are distances and G90 is a cycle"
+    ))]
+    MillOrLathe {
+        /// As the user named it.
+        name: Arc<str>,
+        /// The first line that shows a lathe, from 1.
+        lathe_line: u32,
+        /// What is on it.
+        lathe: &'static str,
+        /// The first line that shows a mill, from 1.
+        mill_line: u32,
+        /// What is on it.
+        mill: &'static str,
     },
 }
 
@@ -135,24 +159,32 @@ impl Reader {
     }
 
     fn new(source: Source, folder: Option<PathBuf>, settings: Settings) -> Result<Self, ReadError> {
-        let choice = dialect::choose(source.head(), &source.name)?;
-        let (dialect, dialect_reason) = match settings.dialect {
-            Some(dialect) => (dialect, "as was asked for"),
-            None => choice,
+        let choice = dialect::choose(source.head(), &source.name, settings.dialect)?;
+        let dialect = choice.dialect;
+        let warning = choice.warning.map(|(line, message)| {
+            let mut warning = Diagnostic::of_file(Severity::Warning, "gcode::machine", source.name.clone(), message);
+            warning.line = line;
+            warning.hint = Some("--dialect fanuc-mill, fanuc-lathe or haas-lathe says which".to_owned());
+            warning
+        });
+        let codes = match dialect {
+            _ if dialect.is_lathe() => CodeSet::Lathe,
+            _ if dialect.is_fanuc() => CodeSet::Mill,
+            _ => CodeSet::Rs274,
         };
         Ok(Self {
             flow: Flow::new(source, folder, &settings),
             interpreter: Interpreter::new(settings, dialect),
             block: Block::new(),
-            style: Style { printer: dialect == Dialect::Printer, points: dialect == Dialect::Fanuc },
-            warnings: Vec::new(),
+            style: Style { printer: dialect == Dialect::Printer, points: dialect.is_fanuc(), codes },
+            warnings: warning.into_iter().collect(),
             faults: 0,
             idle_lines: 0,
             motions_seen: 0,
             lines: 0,
             percent: Percent::NotSeen,
             state: State::Running,
-            dialect_reason,
+            dialect_reason: choice.reason,
         })
     }
 
@@ -201,6 +233,7 @@ impl Reader {
         self.lines += 1;
         self.interpreter.line = self.flow.source().line;
         let result = self.carry_out(range);
+        let result = if self.interpreter.fanuc.capture.is_some() { self.end_own_profile(result) } else { result };
         if !self.interpreter.warnings.is_empty() {
             self.take_warnings();
         }
@@ -220,22 +253,30 @@ impl Reader {
         if self.flow.is_skipping() {
             return self.flow.passed_line(range, &self.interpreter);
         }
-        self.block.clear();
-        let Self { flow, interpreter, block, .. } = self;
+        match self.begin(&range)? {
+            Some(at) => self.carry_out_words(range, at),
+            None => Ok(()),
+        }
+    }
+
+    /// What stands before the words of a line; returns where they begin, or nothing where the line has none.
+    #[inline]
+    fn begin(&mut self, range: &Range<usize>) -> Read<Option<usize>> {
+        let Self { flow, interpreter, .. } = self;
         let bytes = flow.source_ref().bytes(range.clone());
         let mut cursor = Cursor::new(bytes);
         match cursor.peek() {
-            END => return Ok(()),
+            END => return Ok(None),
             b'%' => {
                 let at = cursor.at..cursor.at + 1;
-                return self.percent(at);
+                return self.percent(at).map(|()| None);
             }
             b'/' => {
                 if interpreter.settings.block_delete {
-                    return Ok(());
+                    return Ok(None);
                 }
                 cursor.bump();
-                if interpreter.dialect == Dialect::Fanuc && cursor.raw().is_ascii_digit() {
+                if interpreter.dialect.is_fanuc() && cursor.raw().is_ascii_digit() {
                     cursor.bump(); // The level, `/2`.
                 }
             }
@@ -251,21 +292,48 @@ impl Reader {
                 interpreter.warnings.push(*firmware::warning(bytes, command));
             }
             interpreter.event(EventKind::Message { text: String::from_utf8_lossy(bytes.trim_ascii()).into_owned() });
-            return Ok(());
+            return Ok(None);
         }
-        if cursor.eat(b'n') {
-            cursor.number()?;
-        }
-        if cursor.peek() == b'o' {
+        let number = if cursor.eat(b'n') { cursor.number()? } else { 0.0 };
+        interpreter.fanuc.block_number = number.round().max(0.0) as u64;
+        if cursor.peek() == b'o' || (interpreter.dialect.is_fanuc() && cursor.peek() == b':') {
             let at = cursor.at;
-            flow.line(range, at, interpreter)?;
-            return self.end_profile();
+            flow.line(range.clone(), at, interpreter)?;
+            return self.end_profile().map(|()| None);
         }
+        Ok(Some(cursor.at))
+    }
+
+    /// The words of a line, which begin at `at`.
+    #[inline]
+    fn carry_out_words(&mut self, range: Range<usize>, mut at: usize) -> Read<()> {
+        self.block.clear();
+        let Self { flow, interpreter, block, .. } = self;
+        if interpreter.dialect.is_fanuc()
+            && let Some(statement) =
+                macros::statement(Cursor { bytes: flow.source_ref().bytes(range.clone()), at }, interpreter)?
+        {
+            match flow.carry_out_statement(statement, &range, interpreter)? {
+                Some(rest) => at = rest,
+                None => return Ok(()),
+            }
+        }
+        let bytes = flow.source_ref().bytes(range);
+        let cursor = Cursor { bytes, at };
         block.read(cursor, interpreter, self.style)?;
         if let Some(comment) = &block.comment {
             interpreter.comment(&bytes[comment.clone()]);
         }
+        if interpreter.dialect.is_fanuc() {
+            interpreter.prepare(block)?;
+        }
+        if block.code(Group::NonModal).is_some_and(|word| word.number == fanuc::OWN + 650) {
+            return flow.call_macro(block, interpreter);
+        }
         interpreter.execute(block)?;
+        if let Some(wanted) = interpreter.fanuc.wanted.take() {
+            flow.begin_own_profile(*wanted, interpreter)?;
+        }
         if let Some(wanted) = interpreter.wanted.take() {
             flow.call_profile(&wanted, interpreter)?;
         }
@@ -273,67 +341,6 @@ impl Reader {
             interpreter.assign(&target, value)?;
         }
         if block.m.is_empty() { Ok(()) } else { self.calls() }
-    }
-
-    /// A subroutine has perhaps returned to the lathe cycle whose profile it is; faults are the cycle's.
-    fn end_profile(&mut self) -> Read<()> {
-        let Self { flow, interpreter, .. } = self;
-        let Some(lathe) = interpreter.lathe.take_if(|lathe| interpreter.call_level <= lathe.level) else {
-            return Ok(());
-        };
-        flow.source().line_start = lathe.mark;
-        interpreter.finish_lathe(&lathe)
-    }
-
-    /// M98 and M99 come after all else of their line.
-    fn calls(&mut self) -> Read<()> {
-        let Self { flow, interpreter, block, .. } = self;
-        for word in &block.m {
-            let at = word.at();
-            match word.number {
-                98 => {
-                    let Some(number) = block.get(b'p') else {
-                        return Err(Fault::new(
-                            "gcode::m98",
-                            at,
-                            "M98 calls a subroutine, but P with its number is missing",
-                        )
-                        .hint("write M98 P1000 to call O1000"));
-                    };
-                    let times =
-                        if block.has(b'l') { interpreter.integer(block, b'l', 0, i64::from(u32::MAX))? } else { 1 };
-                    if !(0.0..1e15).contains(&number) {
-                        return Err(Fault::new(
-                            "gcode::m98",
-                            block.at(b'p'),
-                            format!("P{} is no number of a subroutine", Short(number)),
-                        ));
-                    }
-                    let number = number.round() as u64;
-                    let called = flow.call_number(number, times as u32, &at, interpreter);
-                    // Fanuc: `M98 P30100` calls O100 three times, where there is no O30100.
-                    let counts = interpreter.dialect == Dialect::Fanuc && !block.has(b'l');
-                    match called {
-                        Err(fault) if counts && (10_000..100_000_000).contains(&number) => flow
-                            .call_number(number % 10_000, (number / 10_000) as u32, &at, interpreter)
-                            .map_err(|_| fault)?,
-                        called => called?,
-                    }
-                }
-                99 if block.has(b'p') && interpreter.dialect != Dialect::Printer => {
-                    return Err(Fault::new(
-                        "gcode::unsupported",
-                        block.at(b'p'),
-                        "M99 P goes on at another line than the one behind the call, which is not read",
-                    )
-                    .hint("write M99 alone"));
-                }
-                // A control would begin again for the next part.
-                99 if flow.return_number(&at, interpreter)? => interpreter.end_program(),
-                _ => {}
-            }
-        }
-        Ok(())
     }
 
     /// A line with `%`: the first opens the program, the next ends it.
@@ -344,6 +351,7 @@ impl Reader {
                 self.percent = Percent::Absent;
                 let open = self.interpreter.lathe.is_some();
                 self.interpreter.end_program();
+                self.interpreter.check_pending(at.clone())?;
                 self.interpreter.check_profile_end(open, at)?;
             }
             Percent::Absent => {
@@ -364,6 +372,12 @@ impl Reader {
             diagnostic.line = line;
             diagnostic.hint = Some("write it behind the last line that belongs to it".to_owned());
             self.interpreter.end_program();
+            return Err(diagnostic);
+        }
+        if let Err(fault) = self.interpreter.check_pending(0..0) {
+            self.interpreter.end_program();
+            let mut diagnostic = self.of_file(fault.code, fault.message);
+            diagnostic.hint = fault.hint;
             return Err(diagnostic);
         }
         if !self.interpreter.ended {
@@ -462,6 +476,7 @@ impl Iterator for Reader {
             }
             if self.state == State::Done || self.interpreter.ended || self.faults >= HOPELESS_FAULTS {
                 self.state = State::Done;
+                self.warn_of_points();
                 let rest = self.rest()?;
                 return Some(Err(*rest));
             }

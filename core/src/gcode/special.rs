@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::codes::{Group, spelled};
 use super::diagnostic::{Fault, Read};
+use super::fanuc;
 use super::state::Interpreter;
 
 impl Interpreter {
@@ -17,6 +18,7 @@ impl Interpreter {
             52 => self.nurbs_point(block),
             53 => self.nurbs_end(block),
             62 => self.nurbs_with_knots(block),
+            fanuc::OWN.. => self.own_motion(block, code),
             330 | 331 => self.synchronized(block, code),
             382..=385 => self.probe(block),
             730 | 740 | 810..=890 => self.cycle(block, code),
@@ -35,7 +37,11 @@ impl Interpreter {
                     "the highest spindle speed D must not be negative",
                 ));
             }
-            self.modal.constant_surface = (word.number == 960).then(|| block.get(b'd').unwrap_or(f64::INFINITY));
+            if self.dialect.is_fanuc() {
+                self.own_spindle_mode(block, word)?;
+            }
+            let highest = block.get(b'd').unwrap_or(self.highest_rpm());
+            self.modal.constant_surface = (word.number == 960).then_some(highest);
         }
         Ok(())
     }

@@ -7,6 +7,7 @@ use super::compensation::Compensation;
 use super::cycles::Cycle;
 use super::diagnostic::Fault;
 use super::expression::Values;
+use super::fanuc::{self, Fanuc};
 use super::lathe::{Lathe, Wanted};
 use super::parameters::{self as numbers, Parameters};
 use super::settings::{Dialect, Settings};
@@ -92,8 +93,23 @@ impl Modal {
     }
 }
 
+/// A rotation of program coordinates about a point of the XY plane (G68 of Fanuc).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Turn {
+    pub(super) center: [f64; 2],
+    pub(super) angle_deg: f64,
+}
+
+impl Turn {
+    fn of(&self, [x, y]: [f64; 2], sense: f64) -> [f64; 2] {
+        let (sin, cos) = (sense * self.angle_deg).to_radians().sin_cos();
+        let (x, y) = (x - self.center[0], y - self.center[1]);
+        [self.center[0] + cos * x - sin * y, self.center[1] + sin * x + cos * y]
+    }
+}
+
 /// From program coordinates to machine coordinates:
-/// machine = rotate_xy(program + g92) + system + tool.
+/// machine = rotate_xy(turn(program) + g92) + system + tool.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Frame {
     /// Active coordinate system, 1 (G54) to 9 (G59.3).
@@ -103,14 +119,19 @@ pub(super) struct Frame {
     pub(super) rotation_deg: f64,
     pub(super) g92: Position,
     pub(super) tool: Position,
+    pub(super) turn: Option<Turn>,
 }
 
 impl Frame {
     const fn new() -> Self {
-        Self { system: 1, system_offset: [0.0; 9], rotation_deg: 0.0, g92: [0.0; 9], tool: [0.0; 9] }
+        Self { system: 1, system_offset: [0.0; 9], rotation_deg: 0.0, g92: [0.0; 9], tool: [0.0; 9], turn: None }
     }
 
     pub(super) fn to_machine(&self, program: &Position) -> Position {
+        let mut program = *program;
+        if let Some(turn) = &self.turn {
+            [program[0], program[1]] = turn.of([program[0], program[1]], 1.0);
+        }
         let mut point: Position = std::array::from_fn(|axis| program[axis] + self.g92[axis]);
         [point[0], point[1]] = self.rotate([point[0], point[1]], 1.0);
         std::array::from_fn(|axis| point[axis] + self.system_offset[axis] + self.tool[axis])
@@ -120,7 +141,11 @@ impl Frame {
         let mut point: Position =
             std::array::from_fn(|axis| machine[axis] - self.system_offset[axis] - self.tool[axis]);
         [point[0], point[1]] = self.rotate([point[0], point[1]], -1.0);
-        std::array::from_fn(|axis| point[axis] - self.g92[axis])
+        let mut program: Position = std::array::from_fn(|axis| point[axis] - self.g92[axis]);
+        if let Some(turn) = &self.turn {
+            [program[0], program[1]] = turn.of([program[0], program[1]], -1.0);
+        }
+        program
     }
 
     /// A vector of the XY plane turned by the rotation of the system (`sense` 1) or back (-1).
@@ -162,6 +187,8 @@ pub(super) struct Interpreter {
     /// The lathe cycle whose profile is being read, and the call that it waits for.
     pub(super) lathe: Option<Box<Lathe>>,
     pub(super) wanted: Option<Wanted>,
+    /// What Fanuc and Haas have besides.
+    pub(super) fanuc: Fanuc,
     /// P and Q of the last G5, if the line before was one.
     pub(super) last_bezier_end: Option<[f64; 2]>,
     /// Tool in the spindle.
@@ -190,11 +217,15 @@ pub(super) struct Interpreter {
 
 impl Interpreter {
     pub(super) fn new(settings: Settings, dialect: Dialect) -> Self {
+        let mut parameters = Parameters::new();
+        if dialect.is_fanuc() {
+            parameters.empty_variables();
+        }
         Self {
             settings,
             dialect,
-            parameters: Parameters::new(),
-            modal: Modal::new(),
+            parameters,
+            modal: if dialect.is_lathe() { fanuc::lathe_modes() } else { Modal::new() },
             frame: Frame::new(),
             at: [0.0; 9],
             here: [0.0; 9],
@@ -207,6 +238,7 @@ impl Interpreter {
             collected: None,
             lathe: None,
             wanted: None,
+            fanuc: Fanuc::default(),
             last_bezier_end: None,
             tool: 0,
             next_tool: 0,
@@ -232,6 +264,8 @@ impl Interpreter {
     pub(super) fn push(&mut self, step: Canon) {
         if self.lathe.is_some() {
             self.keep(step);
+        } else if self.fanuc.capture.as_ref().is_some_and(|capture| capture.keeps()) {
+            self.keep_own(step);
         } else if self.held.is_empty() {
             self.out.push_back(step);
         } else {
@@ -245,7 +279,7 @@ impl Interpreter {
     }
 
     /// Programmed position in the unit of the program.
-    fn shown_position(&self, axis: usize) -> f64 {
+    pub(super) fn shown_position(&self, axis: usize) -> f64 {
         let value = self.at[axis];
         match axis {
             3..=5 => value,
@@ -328,7 +362,20 @@ impl Interpreter {
 }
 
 impl Values for Interpreter {
+    fn is_fanuc(&self) -> bool {
+        self.dialect.is_fanuc()
+    }
+
+    fn refused(&self, index: usize) -> Option<String> {
+        if self.dialect.is_fanuc() { self.refuses_variable(index) } else { None }
+    }
+
     fn numbered(&self, index: usize) -> f64 {
+        if self.dialect.is_fanuc()
+            && let Some(value) = self.own_variable(index)
+        {
+            return value;
+        }
         match index {
             numbers::POSITION_FIRST..=5428 => self.shown_position(index - numbers::POSITION_FIRST),
             _ => self.parameters.get(index),

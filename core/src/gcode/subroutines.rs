@@ -15,7 +15,7 @@ use super::flow::{Flow, at_o_word, cannot_read};
 use super::lathe::Wanted;
 use super::lexer::Cursor;
 use super::owords::{Arguments, Head, Keyword, read_head, shown};
-use super::parameters::LOCALS;
+use super::parameters::{LOCALS, MACRO_LOCALS};
 use super::source::{Line, Mark, Source};
 use super::state::Interpreter;
 
@@ -31,6 +31,8 @@ pub(super) enum Manner {
     Rs274,
     /// `O1` ... `M99`, called by `M98 P1`.
     Fanuc,
+    /// The same, called by `G65 P1` with variables of its own.
+    Macro,
 }
 
 /// A file with the places of its subroutines, once somebody has asked for one.
@@ -52,8 +54,10 @@ pub(super) struct Frame {
     /// First line of the subroutine and the calls that remain (L of M98).
     pub(super) body: Mark,
     pub(super) repeats: u32,
-    /// `#1`-`#30` of the caller.
-    pub(super) saved: [f64; LOCALS],
+    /// `#1`-`#33` of the caller.
+    pub(super) saved: [f64; MACRO_LOCALS],
+    /// Arguments of G65, anew for each of its repeats.
+    pub(super) arguments: Option<Box<[f64; MACRO_LOCALS]>>,
     /// Loops of the caller.
     pub(super) loops: usize,
 }
@@ -72,7 +76,7 @@ impl Flow {
             .hint(format!("write M98 P{number}")));
         }
         self.check_depth(&head.at)?;
-        let saved = interpreter.parameters.enter(arguments.values);
+        let saved = interpreter.parameters.enter(&arguments.values);
         self.enter(
             Frame {
                 manner,
@@ -82,12 +86,13 @@ impl Flow {
                 body,
                 repeats: 0,
                 saved,
+                arguments: None,
                 loops: self.loops.len(),
             },
             unit,
             &head.at,
         )
-        .inspect_err(|_| interpreter.parameters.leave(saved))?;
+        .inspect_err(|_| interpreter.parameters.leave(&saved[..LOCALS]))?;
         interpreter.entered(self.frames.len());
         Ok(())
     }
@@ -110,6 +115,18 @@ impl Flow {
         at: &std::ops::Range<usize>,
         interpreter: &mut Interpreter,
     ) -> Read<()> {
+        self.call_with(number, times, at, interpreter, None)
+    }
+
+    /// M98, or G65 with its arguments.
+    pub(super) fn call_with(
+        &mut self,
+        number: u64,
+        times: u32,
+        at: &std::ops::Range<usize>,
+        interpreter: &mut Interpreter,
+        arguments: Option<Box<[f64; MACRO_LOCALS]>>,
+    ) -> Read<()> {
         if times == 0 {
             return Ok(());
         }
@@ -122,6 +139,27 @@ impl Flow {
                 format!("{} has `sub`: it is called by `{} call`, not by M98", shown(&label), shown(&label)),
             ));
         }
+        let Some(arguments) = arguments else {
+            return self.enter_lines(label, manner, (unit, body), times, at, interpreter);
+        };
+        self.enter_lines(label, Manner::Macro, (unit, body), times, at, interpreter)?;
+        let saved = interpreter.parameters.enter(&arguments[..]);
+        if let Some(frame) = self.frames.last_mut() {
+            (frame.saved, frame.arguments) = (saved, Some(arguments));
+        }
+        Ok(())
+    }
+
+    /// Goes on at lines that M99 ends.
+    pub(super) fn enter_lines(
+        &mut self,
+        label: Vec<u8>,
+        manner: Manner,
+        (unit, body): (usize, Mark),
+        times: u32,
+        at: &std::ops::Range<usize>,
+        interpreter: &mut Interpreter,
+    ) -> Read<()> {
         self.check_depth(at)?;
         let frame = Frame {
             manner,
@@ -130,7 +168,8 @@ impl Flow {
             back: self.source_ref().here(),
             body,
             repeats: times - 1,
-            saved: [0.0; LOCALS],
+            saved: [0.0; MACRO_LOCALS],
+            arguments: None,
             loops: self.loops.len(),
         };
         self.enter(frame, unit, at)?;
@@ -162,7 +201,7 @@ impl Flow {
         let fault = |message: &str| Err(Fault::new("gcode::o_word", head.at.clone(), message));
         match self.frames.last() {
             None => return fault("this is not inside a subroutine"),
-            Some(frame) if frame.manner == Manner::Fanuc => {
+            Some(frame) if frame.manner != Manner::Rs274 => {
                 return fault("a subroutine called by M98 ends with M99");
             }
             Some(frame) if head.keyword == Keyword::EndSub && frame.label != head.label => {
@@ -194,6 +233,9 @@ impl Flow {
         if frame.repeats > 0 {
             frame.repeats -= 1;
             let body = frame.body;
+            if let Some(arguments) = &frame.arguments {
+                interpreter.parameters.set_locals(&arguments[..]);
+            }
             self.source().jump(body).map_err(|error| cannot_read(at.clone(), &error))?;
             return Ok(false);
         }
@@ -205,8 +247,10 @@ impl Flow {
         let Some(frame) = self.frames.pop() else {
             return Ok(());
         };
-        if frame.manner == Manner::Rs274 {
-            interpreter.parameters.leave(frame.saved);
+        match frame.manner {
+            Manner::Rs274 => interpreter.parameters.leave(&frame.saved[..LOCALS]),
+            Manner::Macro => interpreter.parameters.leave(&frame.saved),
+            Manner::Fanuc => {}
         }
         self.loops.truncate(frame.loops);
         interpreter.left(self.frames.len());

@@ -42,19 +42,20 @@ impl Interpreter {
         Ok(())
     }
 
-    fn check_spindle(&self, block: &Block, code: u16) -> Read<()> {
+    pub(super) fn check_spindle(&self, block: &Block, code: u16) -> Read<()> {
         if self.modal.spindle_turns == 0 || self.modal.spindle_speed == 0.0 {
             return Err(Fault::new(
                 "gcode::thread",
                 block.whole(),
                 format!("{} needs a turning spindle: M3 or M4, and S above 0 rev/min", spelled(code)),
-            ));
+            )
+            .hint("start it before: S500 M3"));
         }
         Ok(())
     }
 
     /// A straight motion of `pitch_mm` a revolution.
-    fn paced(&mut self, block: &Block, target: Position, pitch_mm: f64) -> Read<()> {
+    pub(super) fn paced(&mut self, block: &Block, target: Position, pitch_mm: f64) -> Read<()> {
         use super::state::FeedMode;
         let (mode, feed) = (self.modal.feed_mode, self.modal.feed);
         (self.modal.feed_mode, self.modal.feed) = (FeedMode::PerRevolution, pitch_mm.abs());

@@ -36,15 +36,27 @@ impl Interpreter {
         }
         let is_g53 = block.code(Group::NonModal).is_some_and(|word| word.number == 530);
         let target = if is_g53 { self.machine_target(block)? } else { self.target(block)? };
-        // Printers move at F with G0 too.
-        let is_feed = code == 10 || (self.dialect == Dialect::Printer && self.modal.feed > 0.0);
-        if self.compensated_straight(block, &target, is_feed)? {
+        // Printers move at F with G0 too; G53 of Fanuc is always a rapid.
+        let is_feed = (code == 10 && !(is_g53 && self.dialect.is_fanuc()))
+            || (self.dialect == Dialect::Printer && self.modal.feed > 0.0);
+        self.straight_as(block, &target, is_feed, extruder_mm)
+    }
+
+    /// Straight to a point in program coordinates, beside it under cutter compensation.
+    pub(super) fn straight_as(
+        &mut self,
+        block: &Block,
+        target: &Position,
+        is_feed: bool,
+        extruder_mm: f64,
+    ) -> Read<()> {
+        if self.compensated_straight(block, target, is_feed)? {
             return Ok(());
         }
-        let machine = self.frame.to_machine(&target);
+        let machine = self.frame.to_machine(target);
         let speed = if is_feed { Speed::Programmed } else { Speed::Rapid };
         let fed = self.line_to(block, machine, speed, extruder_mm);
-        self.at = target;
+        self.at = *target;
         fed
     }
 
@@ -55,6 +67,9 @@ impl Interpreter {
         let others = others(&start, &machine, extruder_mm);
         if others.is_none() && start[..3] == machine[..3] {
             return Ok(());
+        }
+        if speed == Speed::Programmed && self.follows_surface() && extruder_mm == 0.0 {
+            return self.line_at_surface_speed(block, &start);
         }
         let feed_mm_s = match speed {
             Speed::Rapid => 0.0,
@@ -99,13 +114,13 @@ impl Interpreter {
             .hint("F2 does the motion in half a minute; G94 goes back to feed per minute")),
             // The machine's limits hold for whatever is faster; only it must be a number.
             FeedMode::Inverse if feed > 0.0 => Ok((length_mm * feed / MINUTE_S).min(f64::MAX)),
-            FeedMode::PerRevolution if feed > 0.0 && self.modal.spindle_speed == 0.0 => Err(Fault::new(
+            FeedMode::PerRevolution if feed > 0.0 && self.spindle_rpm(&self.here) == 0.0 => Err(Fault::new(
                 "gcode::feed",
                 block.whole(),
                 "with G95 (feed per revolution) the spindle needs a speed S above 0 rev/min",
             )
             .hint("write S and M3 before it, or G94 for feed per minute")),
-            FeedMode::PerRevolution if feed > 0.0 => Ok((feed * self.modal.spindle_speed / MINUTE_S).min(f64::MAX)),
+            FeedMode::PerRevolution if feed > 0.0 => Ok((feed * self.spindle_rpm(&self.here) / MINUTE_S).min(f64::MAX)),
             // Printers start with a feed of their own.
             _ if self.dialect == Dialect::Printer => Ok(PRINTER_FEED_MM_S),
             _ => self.missing_feed(block),
@@ -135,8 +150,18 @@ impl Interpreter {
         if block.set & (bit(b'@') | bit(b'^')) != 0 {
             self.polar_target(block, &mut target)?;
         }
+        if self.fanuc.is_polar {
+            self.own_polar(block, &mut target)?;
+        }
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
+                if axis < 2 && self.fanuc.is_polar {
+                    continue;
+                }
+                if axis >= 6 && self.dialect.is_lathe() {
+                    target[axis - 6] = self.stepped(block, letter, axis - 6, value)?;
+                    continue;
+                }
                 if self.lathe.is_some() && matches!(letter, b'a' | b'c' | b'u' | b'w') {
                     continue;
                 }

@@ -25,6 +25,12 @@ impl Interpreter {
             Target::Numbered(index @ (5400..=5413 | 5420..=5428)) => {
                 return read_only(&format!("#{index}"));
             }
+            Target::Numbered(3000) if self.dialect.is_fanuc() => {
+                let message = format!("the program stops here with alarm {value} (#3000)");
+                return Err(
+                    Fault::new("gcode::alarm", 0..usize::MAX, message).hint("the macro refuses what it was given")
+                );
+            }
             Target::Numbered(index) => self.parameters.set(*index, value),
             Target::Named(name) => {
                 let shown = String::from_utf8_lossy(name);

@@ -7,10 +7,10 @@ use crate::gcode::plane::{Curve, Point, SLACK_MM, add, cross, dot, length, minus
 
 /// A corner word.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Corner {
-    pub(super) radius_mm: f64,
+pub(in crate::gcode) struct Corner {
+    pub(in crate::gcode) radius_mm: f64,
     /// A, not C.
-    pub(super) is_round: bool,
+    pub(in crate::gcode) is_round: bool,
 }
 
 impl Lathe {
@@ -42,7 +42,7 @@ impl Lathe {
 
 impl Corner {
     /// Shortens both sides of the corner and returns what comes between them: nothing where the profile goes straight on.
-    fn cut(&self, before: &mut Curve, behind: &mut Curve) -> Option<Option<Curve>> {
+    pub(in crate::gcode) fn cut(&self, before: &mut Curve, behind: &mut Curve) -> Option<Option<Curve>> {
         let corner = behind.start();
         let (from, to) = (before.direction(corner), behind.direction(corner));
         let bend = cross(from, to).atan2(dot(from, to));

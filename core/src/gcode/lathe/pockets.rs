@@ -3,7 +3,7 @@
 use crate::gcode::plane::{Curve, Point, SLACK_MM, length, minus};
 
 /// Whether a curve goes down from its start.
-pub(super) fn falls(curve: &Curve) -> bool {
+pub(in crate::gcode) fn falls(curve: &Curve) -> bool {
     match *curve {
         Curve::Line { start, end } => end[1] < start[1] - SLACK_MM,
         // Towards growing coordinates, a left turn is the lower half of a circle and a right turn the upper one.
@@ -30,7 +30,7 @@ fn bottom(curve: &Curve) -> Option<Point> {
 }
 
 /// The curves with arcs parted at their highest points.
-pub(super) fn parted_at_tops(curves: Vec<Curve>) -> Vec<Curve> {
+pub(in crate::gcode) fn parted_at_tops(curves: Vec<Curve>) -> Vec<Curve> {
     let mut parted = Vec::with_capacity(curves.len() + 1);
     for curve in curves {
         match curve {
@@ -54,7 +54,7 @@ fn half_chord(start: Point, center: Point, level: f64) -> f64 {
 }
 
 /// Where a falling curve crosses `level`; its start counts, its end does not.
-pub(super) fn falls_through(curve: &Curve, level: f64) -> Option<Point> {
+pub(in crate::gcode) fn falls_through(curve: &Curve, level: f64) -> Option<Point> {
     let (start, end) = (curve.start(), curve.end());
     if !falls(curve) || level > start[1] + SLACK_MM {
         return None;
@@ -88,7 +88,7 @@ fn rises_to(curve: &Curve, level: f64) -> f64 {
 }
 
 /// Where curves first rise to `level`: which of them, and where along it.
-pub(super) fn first_at(curves: &[Curve], level: f64) -> Option<(usize, f64)> {
+pub(in crate::gcode) fn first_at(curves: &[Curve], level: f64) -> Option<(usize, f64)> {
     let number = curves.iter().position(|curve| curve.end()[1] >= level - SLACK_MM)?;
     let curve = &curves[number];
     let begins_there = curve.start()[1] >= level - SLACK_MM && !falls(curve);

@@ -1,7 +1,6 @@
 //! Words that only a profile has: steps by U and W, corners by A (rounded) and C (cut straight).
 
 use super::corners::Corner;
-use crate::gcode::Dialect;
 use crate::gcode::block::Block;
 use crate::gcode::codes::{Group, bit, spelled};
 use crate::gcode::diagnostic::{Fault, Read};
@@ -15,15 +14,16 @@ impl Interpreter {
     #[cold]
     pub(in crate::gcode) fn check_lathe_words(&self, block: &Block, code: u16) -> Read<()> {
         let theirs = block.has(b'u') || block.has(b'w') || (block.has(b'p') && code != 700);
-        if !theirs && self.dialect != Dialect::Fanuc {
+        if !theirs && !self.dialect.is_fanuc() {
             return Ok(());
         }
         let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
-        let message =
-            format!("{} of Fanuc and Haas (P and Q are blocks, U and W allowances) is not read", spelled(code));
+        let message = format!(
+            "{} of Fanuc and Haas (P and Q are blocks, U and W allowances) is a cycle of their lathes",
+            spelled(code)
+        );
         Err(Fault::new("gcode::unsupported", at, message).hint(
-            "let the CAM system write the motions, or write the cycle of LinuxCNC, whose Q names a subroutine with the profile \
-             (--dialect linuxcnc)",
+            "--dialect fanuc-lathe or haas-lathe reads it; Q of LinuxCNC's cycle names a subroutine with the profile",
         ))
     }
 
