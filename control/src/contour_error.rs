@@ -113,7 +113,7 @@ impl Estimator {
 /// not to the one that happens to be nearer.
 #[inline]
 pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i32, reach: i32) -> ContourError<N> {
-    let reach = reach.min(MOST_REACH).max(LEAST_LOCATE_REACH);
+    let reach = reach.clamp(LEAST_LOCATE_REACH, MOST_REACH);
     let [first, last] = window.range();
     let near = near.min(last).max(first);
     let (mut index, mut least) = (near, f64::INFINITY);

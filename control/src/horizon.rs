@@ -245,7 +245,7 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
         let knots = settings.knots();
         let planned = self.accelerations_mm_s2;
         let last = self.periods;
-        self.periods = periods.min(MOST_PERIODS).max(1);
+        self.periods = periods.clamp(1, MOST_PERIODS);
         for (knot, acceleration) in self.accelerations_mm_s2.iter_mut().enumerate() {
             // The mean of what was planned for its feed periods; beyond the horizon nothing was.
             let mut sum = [0.0; N];
@@ -301,7 +301,7 @@ impl Settings {
     /// Knots of the horizon, within what there is room for.
     #[inline]
     pub fn knots(&self) -> usize {
-        self.knots.min(MOST_KNOTS).max(1)
+        self.knots.clamp(1, MOST_KNOTS)
     }
 }
 

@@ -187,7 +187,7 @@ fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
             row.tick_us.map_or(["-".to_owned(), "-".to_owned()], |us| us.map(|t| format!("{t:.1}")));
         let note = match (&row.faded_out, row.completed) {
             (_, false) => "  diverged".to_owned(),
-            (Some(cause), true) => format!("  open loop in the end: {cause}"),
+            (Some(cause), true) => format!("  left the loop: {cause}"),
             (None, true) => String::new(),
         };
         writeln!(

@@ -98,7 +98,13 @@ fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
             writeln!(out, "{:<18} diverged at {at_s:.3} s: the servo loop of this machine is unstable", "")?;
         }
         if let Some(faded) = now.faded_out {
-            writeln!(out, "{:<18} open loop from {:.3} s on, because {}", "", faded.at_s, faded.cause)?;
+            let share = 100.0 * now.engaged_share;
+            let last = if now.engaged_at_end { "last left it" } else { "left it for good" };
+            writeln!(
+                out,
+                "{:<18} in the loop for {share:.1} % of the cut; {last} at {:.3} s, because {}",
+                "", faded.at_s, faded.cause
+            )?;
         }
     }
     if let [first, .., last] = &runs[..]

@@ -104,7 +104,7 @@ impl<const N: usize, I> Inverting<N, I> {
     /// Knots that are inverted together; all of them within the preview.
     fn knots(&self) -> usize {
         let seen = PREVIEW_KNOTS / self.settings.servo_periods.max(1) as usize;
-        self.settings.knots.min(seen).min(MOST_KNOTS).max(1)
+        self.settings.knots.min(seen).clamp(1, MOST_KNOTS)
     }
 }
 

@@ -188,7 +188,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
     /// Feed periods of a knot, so that the plan reaches beyond the lag and stays within the preview.
     fn periods(&self, period_s: f64) -> usize {
         let knots = self.settings.horizon.knots();
-        let most = (PREVIEW_KNOTS / (knots * self.settings.servo_periods.max(1) as usize)).min(MOST_PERIODS).max(1);
+        let most = (PREVIEW_KNOTS / (knots * self.settings.servo_periods.max(1) as usize)).clamp(1, MOST_PERIODS);
         let wanted = REACH * self.net.net().lag_s() / (knots as f64 * period_s);
         if (wanted - self.periods as f64).abs() < CLEARLY_OTHER {
             return self.periods.min(most);

@@ -95,11 +95,8 @@ impl Engagement {
         self.good_s = if good && bad.is_none() { self.good_s + period_s } else { 0.0 };
         match (self.state, bad) {
             (State::Engaged, Some(cause)) => self.leave(cause),
-            (State::Engaged, None) => {
-                if self.for_s > FORGIVEN_S {
-                    self.wait_s = FIRST_WAIT_S;
-                }
-            }
+            (State::Engaged, None) if self.for_s > FORGIVEN_S => self.wait_s = FIRST_WAIT_S,
+            (State::Engaged, None) => {}
             _ if self.for_s >= self.wait_s && self.good_s >= GOOD_S => {
                 (self.state, self.for_s) = (State::Engaged, 0.0);
             }

@@ -187,7 +187,7 @@ fn write_cell(out: &mut impl Write, index: usize, rows: &[Row]) -> io::Result<()
     for row in rows {
         let note = match (row.completed, &row.faded_out) {
             (false, _) => "diverged".to_owned(),
-            (true, Some(cause)) => format!("open loop in the end: {cause}"),
+            (true, Some(cause)) => format!("left the loop: {cause}"),
             (true, None) => String::new(),
         };
         write!(out, "<tr{}><td>{}</td><td>{:.3}</td>", ours(&row.controller), escaped(&row.controller), row.time_s)?;

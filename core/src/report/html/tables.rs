@@ -45,7 +45,11 @@ fn write_summary_row(
     let note = match (&run.outcome, &run.faded_out) {
         (Outcome::Diverged { at_s }, _) => format!("<small class=\"alarm\">diverged at {}</small>", duration(*at_s)),
         (Outcome::Completed, Some(FadedOut { at_s, cause })) => {
-            format!("<small class=\"alarm\">open loop from {} on: {cause}</small>", duration(*at_s))
+            let share = number(100.0 * run.engaged_share);
+            format!(
+                "<small class=\"alarm\">in the loop for {share} %, left it last at {}: {cause}</small>",
+                duration(*at_s)
+            )
         }
         (Outcome::Completed, None) => String::new(),
     };

@@ -38,8 +38,9 @@ pub(super) fn verdict(report: &Report) -> String {
         None => String::new(),
     };
     let faded = last.faded_out.map_or(String::new(), |faded| {
-        let (name, from) = (name(last), duration(faded.at_s));
-        format!(" The safety layer took {name} out of the loop at {from}, because {}.", faded.cause)
+        let (name, from, share) = (name(last), duration(faded.at_s), number(100.0 * last.engaged_share));
+        let cause = faded.cause;
+        format!(" {name} was in the loop for {share} % of the cut; the safety layer took it out last at {from}, because {cause}.")
     });
     format!("{numbers}{tolerance}.{faded}")
 }
