@@ -36,6 +36,8 @@ struct Hole {
     normal: usize,
     bottom: f64,
     clearance: f64,
+    /// Height that the tool leaves it at (G98, G99).
+    retract: f64,
 }
 
 impl Interpreter {
@@ -84,9 +86,9 @@ impl Interpreter {
         if matches!(corner, Corner::Continuous { .. }) {
             self.modal.corner = Corner::ExactPath;
         }
-        let hole = Hole { normal, bottom, clearance };
         let retract = if self.modal.retract_to_r { clearance } else { clearance.max(kept.began_at) };
-        let drilled = self.drill_all(block, &hole, [first, second], retract, repeats);
+        let hole = Hole { normal, bottom, clearance, retract };
+        let drilled = self.drill_all(block, &hole, [first, second], repeats);
         self.modal.corner = corner;
         drilled
     }
@@ -144,7 +146,7 @@ impl Interpreter {
         Err(Fault::new("gcode::cycle", block.whole(), format!("{missing} is missing for {}", spelled(kept.code))))
     }
 
-    fn drill_all(&mut self, block: &Block, hole: &Hole, plane: [usize; 2], retract: f64, repeats: i64) -> Read<()> {
+    fn drill_all(&mut self, block: &Block, hole: &Hole, plane: [usize; 2], repeats: i64) -> Read<()> {
         if self.cycle.began_at < hole.clearance {
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
         }
@@ -159,19 +161,19 @@ impl Interpreter {
             let mut target = self.target(block)?;
             target[hole.normal] = self.at[hole.normal];
             if target[hole.normal] <= hole.clearance {
-                target[hole.normal] = retract;
+                target[hole.normal] = hole.retract;
             }
             self.go(block, target, Speed::Rapid)?;
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
             self.drill(block, hole, plane)?;
-            self.along(block, hole.normal, retract, Speed::Rapid)?;
+            self.along(block, hole.normal, hole.retract, Speed::Rapid)?;
         }
         Ok(())
     }
 
-    /// From R to the bottom and, where the cycle feeds out, back to R.
+    /// From R to the bottom and, where the cycle feeds out, back: of G85 to R, of the others all the way.
     fn drill(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
-        let &Hole { normal, bottom, clearance } = hole;
+        let &Hole { normal, bottom, clearance, retract } = hole;
         let cycle = self.cycle;
         match cycle.code {
             730 | 830 => return self.peck(block, hole),
@@ -193,7 +195,7 @@ impl Interpreter {
                 }
                 self.spindle(-wanted);
                 self.pause(cycle.dwell_s.unwrap_or(0.0));
-                self.along(block, normal, clearance, Speed::Programmed)?;
+                self.along(block, normal, retract, Speed::Programmed)?;
                 self.spindle(wanted);
             }
             820 => self.pause(cycle.dwell_s.unwrap_or(0.0)),
@@ -218,7 +220,7 @@ impl Interpreter {
             }
             890 => {
                 self.pause(cycle.dwell_s.unwrap_or(0.0));
-                self.along(block, normal, clearance, Speed::Programmed)?;
+                self.along(block, normal, retract, Speed::Programmed)?;
             }
             _ => {}
         }
@@ -227,7 +229,7 @@ impl Interpreter {
 
     /// G83 retracts to R after each peck, G73 only breaks the chip.
     fn peck(&mut self, block: &Block, hole: &Hole) -> Read<()> {
-        let &Hole { normal, bottom, clearance } = hole;
+        let &Hole { normal, bottom, clearance, .. } = hole;
         let step = self.cycle.peck.unwrap_or(clearance - bottom);
         let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };
         // In the program's unit, as LinuxCNC counts: elsewhere rounding makes a last peck of nothing, or leaves one out.
@@ -250,7 +252,7 @@ impl Interpreter {
 
     /// G87: beside the hole down with the spindle stopped, into its axis, up with the spindle turning to K, and out the same way.
     fn back_bore(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
-        let &Hole { normal, bottom, clearance } = hole;
+        let &Hole { normal, bottom, clearance, .. } = hole;
         let turning = self.modal.spindle_turns;
         if turning == 0 {
             return Err(Fault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)")

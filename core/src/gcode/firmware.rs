@@ -40,6 +40,9 @@ fn printer_command(line: &[u8]) -> Option<Command> {
     let end =
         line.iter().position(|byte| byte.is_ascii_whitespace() || matches!(byte, b';' | b'.')).unwrap_or(line.len());
     let word = line[..end].to_ascii_lowercase();
+    if word == b"g10" {
+        return firmware_retract(&line[end..]);
+    }
     if PRINTER_ACTS.contains(&word.as_slice()) {
         return Some(Command::Acts);
     }
@@ -49,6 +52,18 @@ fn printer_command(line: &[u8]) -> Option<Command> {
     // A macro has a name of letters: `START_PRINT BED=60`; words of G-code have a digit or a sign behind the first letter.
     let named = word.len() > 2 && word.iter().take(3).all(|byte| byte.is_ascii_alphabetic() || *byte == b'_');
     named.then_some(Command::Acts)
+}
+
+/// `G10` alone, or with the S of a long retraction, pulls filament back by a length that the firmware knows; RepRap's `G10 P1 S200` sets
+/// up a tool; with L it is LinuxCNC's.
+fn firmware_retract(words: &[u8]) -> Option<Command> {
+    let code = words.split(|&byte| byte == b';').next().unwrap_or(words);
+    let has = |letter: u8| code.iter().any(|byte| byte.eq_ignore_ascii_case(&letter));
+    match (has(b'l'), has(b'p')) {
+        (true, _) => None,
+        (false, true) => Some(Command::Speaks),
+        (false, false) => Some(Command::Acts),
+    }
 }
 
 /// Look-ahead and smoothing of Fanuc and Haas: `G5.1 Q1`, `G5 P10000`, `G8 P1`, `G187 P3 E0.01`, alone on the line.
@@ -92,6 +107,10 @@ mod tests {
         let printer = |line: &str| command(line.as_bytes(), Dialect::Printer);
         assert_eq!(printer("START_PRINT BED=60"), Some(Command::Acts));
         assert_eq!(printer("G29 ; level"), Some(Command::Acts));
+        assert_eq!(printer("G10 ; retract by the firmware's length"), Some(Command::Acts));
+        assert_eq!(printer("G10 S1"), Some(Command::Acts));
+        assert_eq!(printer("G10 P1 S200"), Some(Command::Speaks));
+        assert_eq!(printer("G10 L2 P1 X5"), None);
         assert_eq!(printer("M117 Printing..."), Some(Command::Speaks));
         assert_eq!(printer("G1 X1 E.2"), None);
         assert_eq!(printer("X1Y2"), None);

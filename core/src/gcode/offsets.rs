@@ -152,15 +152,16 @@ impl Interpreter {
         if block.has_axes() {
             self.line_to(block, self.frame.to_machine(&target), Speed::Rapid, 0.0)?;
         }
-        let stored = self.parameters.nine(home);
-        let mut machine = self.here;
+        // The axes are those of the program: in a rotated system, Y alone moves X and Y of the machine.
+        let stored = self.frame.to_program(&self.parameters.nine(home));
+        let mut goal = target;
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if block.has(letter) || !block.has_axes() {
-                machine[axis] = stored[axis];
+                goal[axis] = stored[axis];
             }
         }
-        self.line_to(block, machine, Speed::Rapid, 0.0)?;
-        self.offsets_changed();
+        self.line_to(block, self.frame.to_machine(&goal), Speed::Rapid, 0.0)?;
+        self.at = goal;
         Ok(())
     }
 
@@ -204,7 +205,7 @@ impl Interpreter {
     }
 
     /// G92.1 forgets the shift, G92.2 suspends it, G92.3 takes it up again.
-    fn shift_mode(&mut self, number: u16) {
+    pub(super) fn shift_mode(&mut self, number: u16) {
         self.frame.g92 = if number == 923 { self.parameters.nine(numbers::G92_FIRST) } else { [0.0; 9] };
         if number == 921 {
             self.parameters.set_nine(numbers::G92_FIRST, [0.0; 9]);
@@ -215,9 +216,6 @@ impl Interpreter {
 
     /// G10: coordinate systems (L2, L20) and the tool table (L1, L10, L11).
     fn set_data(&mut self, block: &Block, word: Word) -> Read<()> {
-        if self.dialect == Dialect::Printer && !block.has(b'l') {
-            return Ok(()); // Firmware retraction.
-        }
         if !block.has(b'l') || !block.has(b'p') {
             return Err(Fault::new(
                 "gcode::g10",

@@ -263,7 +263,7 @@ impl Reader {
         }
         block.read(cursor, interpreter, self.style)?;
         if let Some(comment) = &block.comment {
-            interpreter.comment(&bytes[comment.clone()]);
+            interpreter.comment(bytes, comment.clone())?;
         }
         interpreter.execute(block)?;
         if let Some(wanted) = interpreter.wanted.take() {

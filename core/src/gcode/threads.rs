@@ -163,10 +163,12 @@ impl Interpreter {
             (thread.taper > 0.0 && thread.taper_at & 1 != 0, thread.taper > 0.0 && thread.taper_at & 2 != 0);
 
         self.go(block, thread.at(safe_x, begin_z), Speed::Rapid)?;
-        let entry_x = if first_taper { top } else { bottom };
-        self.go(block, thread.at(entry_x, begin_z), Speed::Rapid)?;
         if first_taper {
-            self.coupled(block, thread.at(bottom, begin_z + direction * thread.taper), taper_pitch)?;
+            // The infeed waits for the spindle, too.
+            self.coupled(block, thread.at(top, begin_z), taper_pitch)?;
+            self.paced(block, thread.at(bottom, begin_z + direction * thread.taper), taper_pitch)?;
+        } else {
+            self.go(block, thread.at(bottom, begin_z), Speed::Rapid)?;
         }
         let straight_end = if last_taper { end_z - direction * thread.taper } else { end_z };
         self.coupled(block, thread.at(bottom, straight_end), thread.pitch)?;
