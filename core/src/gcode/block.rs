@@ -8,8 +8,8 @@ use super::expression::{Evaluator, INTEGER_WITHIN, Target, Values};
 use super::foreign;
 use super::lexer::{Cursor, END, NO_EXPONENT, shown};
 
-/// Letters, `@` and `^`.
-const LETTERS: usize = 28;
+/// Letters, `@`, `^` and `$`.
+const LETTERS: usize = 29;
 /// Distance from a tenth at which a G-code still is that tenth: expressions such as `G[54+0.1]` do not come out exactly.
 const TENTH_WITHIN: f64 = 1e-3;
 
@@ -166,6 +166,7 @@ impl Block {
                     evaluator.cursor.finish();
                     return Ok(());
                 }
+                b'$' if evaluator.cursor.is_spindle() => self.read_word(&mut evaluator, byte, start)?,
                 b'#' => self.read_assignment(&mut evaluator, start)?,
                 b'*' if style.printer => return Ok(()),
                 _ => return Err(strange(evaluator.cursor.bytes, start)),

@@ -44,7 +44,11 @@ impl Interpreter {
         let Some(word) = block.code(Group::CutterCompensation) else {
             return if self.compensates() { self.check_compensated(block) } else { Ok(()) };
         };
-        if word.number == 400 {
+        if word.number == 401 {
+            let message = "G40.1 is read as G40: it ends cutter compensation";
+            self.warnings.push(*Fault::new("gcode::compensation", word.at(), message));
+        }
+        if matches!(word.number, 400 | 401) {
             let was = self.compensation.take();
             self.left_compensation |= was.is_some_and(|was| was.last.is_some() && was.radius_mm > 0.0);
             self.release();

@@ -18,6 +18,9 @@ const MOST_PECKS: f64 = 1e5;
 /// Holes of one line (L): up to eight motions each.
 const MOST_REPEATS: i64 = 20_000;
 
+/// An axis whose lengths are never diameters: Z.
+const RADIAL: usize = 2;
+
 /// What a cycle keeps for the next line, mm and seconds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Cycle {
@@ -112,7 +115,8 @@ impl Interpreter {
     fn cycle_words(&self, block: &Block, kept: &mut Cycle, normal: usize) -> Read<()> {
         let letter = AXIS_LETTERS[normal];
         if let Some(value) = block.get(b'r') {
-            kept.clearance = self.length(block, b'r', normal, value)?;
+            // A distance along X, in G7, too: only X itself is a diameter.
+            kept.clearance = self.length(block, b'r', RADIAL, value)?;
         }
         if let Some(value) = block.get(letter) {
             kept.bottom = self.length(block, letter, normal, value)?;
@@ -212,7 +216,7 @@ impl Interpreter {
                 self.pause(cycle.dwell_s.unwrap_or(0.0));
                 self.spindle(0);
                 if cycle.code == 860 {
-                    self.along(block, normal, clearance, Speed::Rapid)?;
+                    self.along(block, normal, retract, Speed::Rapid)?;
                 } else {
                     self.event(EventKind::MCode { code: 0, p: None, q: None }); // The operator retracts by hand.
                 }
@@ -252,7 +256,7 @@ impl Interpreter {
 
     /// G87: beside the hole down with the spindle stopped, into its axis, up with the spindle turning to K, and out the same way.
     fn back_bore(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
-        let &Hole { normal, bottom, clearance, .. } = hole;
+        let &Hole { normal, bottom, retract, .. } = hole;
         let turning = self.modal.spindle_turns;
         if turning == 0 {
             return Err(Fault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)")
@@ -278,8 +282,10 @@ impl Interpreter {
         self.spindle(0);
         beside[normal] = bottom;
         self.go(block, beside, Speed::Rapid)?;
-        self.along(block, normal, clearance, Speed::Rapid)?;
-        self.go(block, center, Speed::Rapid)?;
+        self.along(block, normal, retract, Speed::Rapid)?;
+        let mut out = center;
+        out[normal] = retract;
+        self.go(block, out, Speed::Rapid)?;
         self.spindle(turning);
         Ok(())
     }

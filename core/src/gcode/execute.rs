@@ -71,6 +71,9 @@ impl Interpreter {
         for word in &block.m {
             known |= self.m_letters(word.number);
         }
+        if block.has(b's') {
+            known |= codes::bit(b'$');
+        }
         if let Some(code) = motion.and_then(codes::find) {
             known |= code.letters;
         }
@@ -146,6 +149,11 @@ impl Interpreter {
     }
 
     fn spindle_words(&mut self, block: &Block) -> Read<()> {
+        // -1 is all spindles; there is one.
+        if block.has(b'$') && !matches!(self.integer(block, b'$', -1, 100)?, -1 | 0) {
+            let message = format!("spindle ${} does not exist: the first spindle is $0, and only it is read", Short(block.get(b'$').unwrap_or_default()));
+            return Err(Fault::new("gcode::spindle", block.at(b'$'), message));
+        }
         let Some(speed) = block.get(b's') else {
             return Ok(());
         };

@@ -234,18 +234,20 @@ impl<'a, V: Values> Evaluator<'a, V> {
         }
     }
 
-    /// `exists[#<name>]`: 1 or 0.
+    /// `exists[#<name>]`: 1 or 0. A number always exists.
     fn exists(&mut self) -> Read<f64> {
         let start = self.cursor.at;
         if self.cursor.eat(b'[') && self.cursor.peek() == b'#' {
             let target = self.target()?;
-            if let Target::Named(name) = &target
-                && self.cursor.eat(b']')
-            {
-                return Ok(f64::from(u8::from(self.values.named(name).is_some())));
+            if self.cursor.eat(b']') {
+                let exists = match &target {
+                    Target::Named(name) => self.values.named(name).is_some(),
+                    Target::Numbered(_) => true,
+                };
+                return Ok(f64::from(u8::from(exists)));
             }
         }
-        Err(Fault::new("gcode::expression", start..self.cursor.at + 1, "exists takes the name of a parameter")
+        Err(Fault::new("gcode::expression", start..self.cursor.at + 1, "exists takes a parameter")
             .hint("write exists[#<name>]"))
     }
 
@@ -426,6 +428,7 @@ mod tests {
         assert_eq!(value("round[-2.5]"), -3.0);
         assert_eq!(value("EXISTS[#<known>] "), 1.0);
         assert_eq!(value("exists[#<un known>]"), 0.0);
+        assert_eq!(value("exists[#1]"), 1.0);
     }
 
     #[test]

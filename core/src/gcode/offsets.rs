@@ -226,6 +226,7 @@ impl Interpreter {
         match self.integer(block, b'l', 0, 99)? {
             2 => self.set_system(block, false),
             20 => self.set_system(block, true),
+            kind @ 10..=13 if self.dialect == Dialect::Fanuc => self.set_tool_part(block, kind),
             kind @ (1 | 10 | 11) => self.set_tool(block, kind),
             other => Err(Fault::new(
                 "gcode::g10",
@@ -280,6 +281,38 @@ impl Interpreter {
         self.parameters.set_nine(first, offset);
         if system == self.frame.system {
             self.load_system();
+        }
+        Ok(())
+    }
+
+    /// Fanuc and Haas: L10 is the length of tool P, L12 its radius, L11 and L13 the wear of both, which is added; in G91 R is added to what
+    /// is there.
+    fn set_tool_part(&mut self, block: &Block, kind: i64) -> Read<()> {
+        let number = self.integer(block, b'p', 1, 999_999)? as u32;
+        let Some(value) = block.get(b'r') else {
+            return Err(Fault::new("gcode::g10", block.whole(), format!("G10 L{kind} has no R, the value to set")));
+        };
+        let value = value * self.modal.unit_mm;
+        let mut tool = self.settings.tools.get(number).copied().unwrap_or_default();
+        let adds = self.modal.incremental;
+        let set = |old: f64| if adds { old + value } else { value };
+        match kind {
+            10 => tool.offset[2] = set(tool.offset[2] - tool.wear_mm[0]) + tool.wear_mm[0],
+            12 => tool.diameter_mm = 2.0 * (set(0.5 * tool.diameter_mm - tool.wear_mm[1]) + tool.wear_mm[1]),
+            11 => {
+                let wear = set(tool.wear_mm[0]);
+                tool.offset[2] += wear - tool.wear_mm[0];
+                tool.wear_mm[0] = wear;
+            }
+            _ => {
+                let wear = set(tool.wear_mm[1]);
+                tool.diameter_mm += 2.0 * (wear - tool.wear_mm[1]);
+                tool.wear_mm[1] = wear;
+            }
+        }
+        self.settings.tools.tools.insert(number, tool);
+        if number == self.tool {
+            self.load_tool(number);
         }
         Ok(())
     }

@@ -3,6 +3,7 @@
 use super::block::Block;
 use super::codes::{Group, spelled};
 use super::diagnostic::{Fault, Read};
+use super::settings::Dialect;
 use super::state::Interpreter;
 
 impl Interpreter {
@@ -34,6 +35,10 @@ impl Interpreter {
                     block.at(b'd'),
                     "the highest spindle speed D must not be negative",
                 ));
+            }
+            if word.number == 960 && !block.has(b's') && self.dialect == Dialect::LinuxCnc {
+                return Err(Fault::new("gcode::spindle", word.at(), "G96 (constant surface speed) needs the speed S on its line")
+                    .hint("write G96 S100 with metres per minute, in G20 feet per minute"));
             }
             self.modal.constant_surface = (word.number == 960).then(|| block.get(b'd').unwrap_or(f64::INFINITY));
         }

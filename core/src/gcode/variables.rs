@@ -2,11 +2,13 @@
 
 use std::ops::Range;
 
+use super::block::Block;
 use super::canon::EventKind;
 use super::diagnostic::{Fault, Read};
 use super::expression::{Evaluator, Target, Values};
 use super::lexer::Cursor;
 use super::parameters as numbers;
+use super::settings::Dialect;
 use super::state::{Frame, Interpreter, Modal};
 
 /// Modes that M70 or M73 has put away.
@@ -136,11 +138,15 @@ impl Interpreter {
     }
 
     /// M72.
-    pub(super) fn restore_modes(&mut self) {
+    pub(super) fn restore_modes(&mut self, block: &Block) -> Read<()> {
         let level = self.call_level;
         if let Some(saved) = self.saved.last().filter(|saved| saved.level == level).cloned() {
             self.restore(&saved);
+        } else if self.dialect == Dialect::LinuxCnc {
+            return Err(Fault::new("gcode::m_code", block.whole(), "M72 brings modes back that no M70 or M73 has put away")
+                .hint("write M70 before it, in the same subroutine"));
         }
+        Ok(())
     }
 
     fn is_shifted(&self) -> bool {
