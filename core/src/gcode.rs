@@ -8,6 +8,7 @@ pub mod canon;
 
 mod arc;
 mod block;
+mod characters;
 mod codes;
 mod compensation;
 mod cycles;
@@ -15,6 +16,7 @@ mod diagnostic;
 mod dialect;
 mod execute;
 mod expression;
+mod faults;
 mod firmware;
 mod flow;
 mod foreign;

@@ -109,7 +109,10 @@ impl Outcome {
         for (what, count) in &self.counts {
             println!("{count:7} {what}");
         }
-        println!("{:7} flat corners of cutter compensation, where LinuxCNC cuts into the contour", self.totals.flat_corners);
+        println!(
+            "{:7} flat corners of cutter compensation, where LinuxCNC cuts into the contour",
+            self.totals.flat_corners
+        );
         println!("largest differences of arcs, their lengths and points of splines: {:?} mm", self.totals.largest_mm);
         let known = known_codes();
         let missing: Vec<&str> =

@@ -10,9 +10,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// One program in this many has a slip.
 const SLIPS: u32 = 8;
 /// Tokens of a slip: what a hand writes in the wrong place.
-const SLIP_WORDS: [&str; 16] = [
-    "G1", "G2", "G17", "G40", "X1", "R5", "I2", "K1", "P2", "L3", "M3", "M4", "D2", "(open", "o9 endif", "#<none>",
-];
+const SLIP_WORDS: [&str; 16] =
+    ["G1", "G2", "G17", "G40", "X1", "R5", "I2", "K1", "P2", "L3", "M3", "M4", "D2", "(open", "o9 endif", "#<none>"];
 
 /// Writes one program.
 struct Writer {
@@ -364,8 +363,10 @@ impl Writer {
     fn expression(&mut self) {
         let value = |writer: &mut Self| writer.number(0.1, 0.9).max(0.1);
         let (a, b) = (value(self), value(self));
-        let function = self.pick(&["sin", "cos", "tan", "abs", "asin", "acos", "exp", "fix", "fup", "ln", "round", "sqrt"]);
-        let operator = self.pick(&["+", "-", "*", "/", "**", "mod", "eq", "ne", "gt", "ge", "lt", "le", "and", "or", "xor"]);
+        let function =
+            self.pick(&["sin", "cos", "tan", "abs", "asin", "acos", "exp", "fix", "fup", "ln", "round", "sqrt"]);
+        let operator =
+            self.pick(&["+", "-", "*", "/", "**", "mod", "eq", "ne", "gt", "ge", "lt", "le", "and", "or", "xor"]);
         let index = 1 + self.below(29);
         self.line(format!("#{index} = [{function}[{a}] {operator} {b}] #<value> = [#{index} + 1]"));
         self.line(format!("#{index} = [#{index} * 2 - #<value> / 3 + atan[{a}]/[-{b}] / 90 + exists[#<value>]]"));
@@ -432,17 +433,25 @@ impl Writer {
             }
             let bend: f64 = self.rng.random_range(0.3..2.0) * self.pick(&[1.0, -1.0]);
             let (arc_radius, quarter) = (length / bend.abs(), 0.5 * PI * bend.signum());
-            let center = [at[0] + arc_radius * (heading + quarter).cos(), at[1] + arc_radius * (heading + quarter).sin()];
+            let center =
+                [at[0] + arc_radius * (heading + quarter).cos(), at[1] + arc_radius * (heading + quarter).sin()];
             let [i, j] = [center[0] - at[0], center[1] - at[1]];
             heading += bend;
-            at = [center[0] + arc_radius * (heading - quarter).cos(), center[1] + arc_radius * (heading - quarter).sin()];
+            at = [
+                center[0] + arc_radius * (heading - quarter).cos(),
+                center[1] + arc_radius * (heading - quarter).sin(),
+            ];
             let code = if bend > 0.0 { "G3" } else { "G2" };
             self.line(format!("{code} X{:.4} Y{:.4} I{i:.4} J{j:.4}", at[0], at[1]));
         }
         if self.below(8) == 0 {
             self.line("G0 Z5".to_owned());
         }
-        self.line(format!("G40 G1 X{:.4} Y{:.4}", at[0] + 40.0 * (heading + side).cos(), at[1] + 40.0 * (heading + side).sin()));
+        self.line(format!(
+            "G40 G1 X{:.4} Y{:.4}",
+            at[0] + 40.0 * (heading + side).cos(),
+            at[1] + 40.0 * (heading + side).sin()
+        ));
     }
 
     /// A subroutine as Fanuc has them, called in the first line behind the modes.

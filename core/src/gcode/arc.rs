@@ -279,7 +279,8 @@ fn bezier_points(from: &Position, to: &Position, round: Round, axes: [usize; 3])
         change[normal] = (to[normal] - from[normal]) / sweep;
         (point, change)
     };
-    let along = |(point, change): ([f64; 3], [f64; 3]), by: f64| std::array::from_fn(|axis| point[axis] + by * change[axis]);
+    let along =
+        |(point, change): ([f64; 3], [f64; 3]), by: f64| std::array::from_fn(|axis| point[axis] + by * change[axis]);
     let mut points = vec![[from[0], from[1], from[2]]];
     for piece in 1..=pieces as u64 {
         let angle = step * piece as f64;

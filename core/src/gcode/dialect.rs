@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::characters::is_utf16;
 use super::reader::ReadError;
 use super::settings::Dialect;
 
@@ -17,6 +18,9 @@ pub(super) fn choose(head: &[u8], name: &Arc<str>) -> Result<(Dialect, &'static 
         return Err(ReadError::Empty { name: name.clone() });
     }
     let head = &head[..head.len().min(LOOK_BYTES)];
+    if is_utf16(head) {
+        return Err(ReadError::Utf16 { name: name.clone() });
+    }
     if let Some(offset) = memchr::memchr(0, head) {
         return Err(ReadError::Binary { name: name.clone(), offset });
     }
@@ -49,10 +53,49 @@ fn foreign(text: &str) -> Option<&'static str> {
         return Some("Heidenhain Klartext");
     }
     let siemens = ["%_N_", ";$PATH=", "DEF REAL ", "DEF INT ", "MSG(\"", "WORKPIECE(", "TRANS X", "CYCLE8", "EXTCALL"];
-    if siemens.iter().any(|start| upper.starts_with(start)) {
+    if siemens.iter().any(|start| upper.starts_with(start)) || is_siemens(&upper) {
         return Some("Siemens Sinumerik");
     }
-    None
+    is_okuma(&upper).then_some("Okuma OSP")
+}
+
+/// The line without comments.
+fn code_of(line: &str) -> &str {
+    line.split(['(', ';']).next().unwrap_or("")
+}
+
+/// The line behind its number N, in upper case.
+fn behind_number(line: &str) -> &str {
+    let digits = line.strip_prefix('N').map_or("", |rest| rest.trim_start_matches(|c: char| c.is_ascii_digit()));
+    if digits.is_empty() { line } else { digits.trim_start() }
+}
+
+/// Words that only a Sinumerik has: calls with brackets, assignments to axes and R parameters.
+fn is_siemens(line: &str) -> bool {
+    const WORDS: [&str; 9] = ["MCALL", "G500", "SUPA", "TRAFOOF", "WAITM", "FFWON", "ROT ", "AROT ", "ATRANS "];
+    let line = behind_number(code_of(line));
+    // A macro of Klipper has a name of letters: `SET_POSITION X=0`.
+    if line.bytes().take(3).filter(u8::is_ascii_alphabetic).count() == 3
+        && !WORDS.iter().any(|word| line.starts_with(word))
+    {
+        let cycle = line.strip_prefix("CYCLE").or_else(|| line.strip_prefix("POCKET"));
+        return cycle.is_some_and(|rest| rest.starts_with(|c: char| c.is_ascii_digit()));
+    }
+    let assigns = ["X=", "Y=", "Z=", "I=", "J=", "K=", "CR=", "AP=", "RP=", "X1=", "DIAMON", "DIAMOF"];
+    let words = line.split_ascii_whitespace();
+    WORDS.iter().any(|word| line.starts_with(word))
+        || words.clone().any(|word| assigns.iter().any(|assigned| word.starts_with(assigned)))
+        || words.take(1).any(|word| {
+            let digits = word.strip_prefix('R').and_then(|rest| rest.split_once('='));
+            digits.is_some_and(|(digits, _)| !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit()))
+        })
+}
+
+/// Words that only an Okuma has: its variables, its call of subprograms, its work coordinates.
+fn is_okuma(line: &str) -> bool {
+    let line = behind_number(code_of(line));
+    let starts = ["CALL O", "MODIN O", "MODOUT", "RTS", "NLAP", "VC1", "VZOF", "VTOF", "G15 H", "DEF WORK"];
+    starts.iter().any(|start| line.starts_with(start))
 }
 
 /// The dialect that a line shows.
@@ -133,6 +176,16 @@ mod tests {
         let refused = |text: &str| choose(text.as_bytes(), &"test".into()).unwrap_err().to_string();
         assert!(refused("0 BEGIN PGM PART MM\n1 BLK FORM 0.1 Z").contains("Heidenhain"));
         assert!(refused("%_N_PART_MPF\nG0").contains("Siemens"));
+        assert!(refused("N10 G0 G90 X=R1+5").contains("Siemens"));
+        assert!(refused("N20 R1=5").contains("Siemens"));
+        assert!(refused("G54\nN30 CYCLE83(10,0,2,-20)").contains("Siemens"));
+        assert_eq!(dialect("SET_POSITION X=0\nG0 X1"), Dialect::LinuxCnc);
+        assert_eq!(dialect("( X=0 is the left edge )\nG0 X1"), Dialect::LinuxCnc);
+        assert!(refused("G15 H1\nVC1=5").contains("Okuma"));
+        assert!(refused("N5 CALL O1001 Q2").contains("Okuma"));
+        assert!(refused("\u{feff}G\00\0 \0X\0").contains("NUL"));
+        assert!(refused("G\00\0 \0X\01\0").contains("UTF-16"));
+        assert_eq!(dialect("N10 R1 X1 (R1=5)\nG0 X1"), Dialect::LinuxCnc);
         assert!(refused("\0\x01").contains("NUL"));
         assert!(refused(" \n\n").contains("empty"));
     }

@@ -51,8 +51,10 @@ fn printer_command(line: &[u8]) -> Option<Command> {
     if !line.first()?.is_ascii_alphabetic() && line[0] != b'_' {
         return None;
     }
-    let end =
-        line.iter().position(|byte| byte.is_ascii_whitespace() || matches!(byte, b';' | b'.' | b'=' | b'*')).unwrap_or(line.len());
+    let end = line
+        .iter()
+        .position(|byte| byte.is_ascii_whitespace() || matches!(byte, b';' | b'.' | b'=' | b'*'))
+        .unwrap_or(line.len());
     let word = line[..end].to_ascii_lowercase();
     if word == b"g10" {
         return firmware_retract(&line[end..]);

@@ -37,8 +37,12 @@ impl Interpreter {
                 ));
             }
             if word.number == 960 && !block.has(b's') && self.dialect == Dialect::LinuxCnc {
-                return Err(Fault::new("gcode::spindle", word.at(), "G96 (constant surface speed) needs the speed S on its line")
-                    .hint("write G96 S100 with metres per minute, in G20 feet per minute"));
+                return Err(Fault::new(
+                    "gcode::spindle",
+                    word.at(),
+                    "G96 (constant surface speed) needs the speed S on its line",
+                )
+                .hint("write G96 S100 with metres per minute, in G20 feet per minute"));
             }
             self.modal.constant_surface = (word.number == 960).then(|| block.get(b'd').unwrap_or(f64::INFINITY));
         }

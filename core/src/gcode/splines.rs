@@ -49,6 +49,10 @@ impl Interpreter {
         let pair = |one: u8, two: u8| {
             (block.has(one) || block.has(two)).then(|| [one, two].map(|letter| block.get(letter).unwrap_or(0.0) * unit))
         };
+        if block.has(b'i') != block.has(b'j') {
+            let at = block.at_any(bit(b'i') | bit(b'j'));
+            return Err(Fault::new("gcode::spline", at, "the first control point needs both I and J, or neither"));
+        }
         let first = match (pair(b'i', b'j'), self.last_bezier_end) {
             (Some(offset), _) => offset,
             (None, Some([p, q])) if code == 50 => [-p, -q],

@@ -143,8 +143,12 @@ impl Interpreter {
         if let Some(saved) = self.saved.last().filter(|saved| saved.level == level).cloned() {
             self.restore(&saved);
         } else if self.dialect == Dialect::LinuxCnc {
-            return Err(Fault::new("gcode::m_code", block.whole(), "M72 brings modes back that no M70 or M73 has put away")
-                .hint("write M70 before it, in the same subroutine"));
+            return Err(Fault::new(
+                "gcode::m_code",
+                block.whole(),
+                "M72 brings modes back that no M70 or M73 has put away",
+            )
+            .hint("write M70 before it, in the same subroutine"));
         }
         Ok(())
     }

@@ -196,8 +196,8 @@ pub(crate) struct Totals {
     pub(crate) flat_corners: u64,
 }
 
-/// Corners up to this are flat to LinuxCNC's compensation, rad, and rounding.
-const FLAT_RAD: f64 = 0.0501;
+/// Corners up to 0.05 rad are flat to LinuxCNC's compensation: the chord of that angle.
+const FLAT_RAD: f64 = 0.049_994_8;
 
 /// Radius of the largest tool that the program compensates for, mm: `G41.1 D` and `G42.1 D`, or the tool table. 0 without.
 fn compensated_radius(text: &str) -> f64 {
