@@ -74,6 +74,7 @@ fn a_program_that_may_be_for_either_machine_is_asked_about() {
     // Other G-code systems have G90 as a mode.
     let found = faults("G90\nG0 X5.");
     assert!(found[0].contains("4: G90 without X and Z: in G-code system A it is a cycle"), "{found:?}");
+    assert!(faults("G90 G94")[0].contains("are cycles in G-code system A"), "{:?}", faults("G90 G94"));
     assert!(faults("G92 S2500")[0].contains("G92 without X and Z"), "{:?}", faults("G92 S2500"));
     assert!(faults("G90 G0 X50. Z2.")[0].contains("G90 and G0 exclude each other"), "{:?}", faults("G90 G0 X50. Z2."));
 }

@@ -6,7 +6,7 @@ use super::characters::not_ascii;
 use super::codes::{self, AXES, GROUPS, Group, bit, letter, slot};
 use super::diagnostic::{Fault, Read, Short};
 use super::expression::{Evaluator, INTEGER_WITHIN, Target, Values};
-use super::fanuc::codes::CodeSet;
+use super::fanuc::codes::{CodeSet, LATHE_OWN, SYSTEM_A};
 use super::fanuc::corners::CornerWord;
 use super::foreign;
 use super::lexer::{Cursor, END, NO_EXPONENT, shown};
@@ -260,7 +260,9 @@ impl Block {
                 codes::spelled(other.number),
                 codes::spelled(code.number)
             );
-            return Err(Fault::new("gcode::modal_group", start..end, message).hint("write them on two lines"));
+            let is_mode = [other.number, code.number].iter().any(|&number| number >= LATHE_OWN);
+            let hint = if is_mode { SYSTEM_A } else { "write them on two lines" };
+            return Err(Fault::new("gcode::modal_group", start..end, message).hint(hint));
         }
         self.g.push(word);
         Ok(())

@@ -114,9 +114,7 @@ impl Interpreter {
             let code = spelled(word.number);
             let message =
                 format!("{code} without X and Z: in G-code system A it is a cycle, and other systems are not read");
-            return Err(Fault::new("gcode::system_a", word.at(), message).hint(
-                "in system A, X and Z are places and U and W distances without G90 and G91; G98 and G99 are feeds per minute and per revolution",
-            ));
+            return Err(Fault::new("gcode::system_a", word.at(), message).hint(codes::SYSTEM_A));
         }
         let home = block.code(Group::NonModal).is_some_and(|word| matches!(word.number, 280 | 300));
         if home {

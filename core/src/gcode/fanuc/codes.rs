@@ -9,6 +9,10 @@ pub(in crate::gcode) const OWN: u16 = 20_000;
 /// Added to ten times a code that lathes alone have.
 pub(in crate::gcode) const LATHE_OWN: u16 = 2 * OWN;
 
+/// What is told where G90, G92 or G94 of a lathe stand as modes.
+pub(in crate::gcode) const SYSTEM_A: &str = "G90, G92 and G94 are cycles in G-code system A, the only one that is read of lathes; there U and W are distances, and \
+     G98 and G99 feeds per minute and per revolution";
+
 /// Whose G-codes a line has.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(in crate::gcode) enum CodeSet {
