@@ -8,6 +8,7 @@ pub mod canon;
 
 mod arc;
 mod block;
+mod characters;
 mod codes;
 mod compensation;
 mod cycles;
@@ -16,6 +17,7 @@ mod dialect;
 mod execute;
 mod expression;
 mod fanuc;
+mod faults;
 mod firmware;
 mod flow;
 mod foreign;

@@ -5,10 +5,14 @@
 //! 0.02 sqrt(2) mm (0.002 sqrt(2) inch), or by 0.1 % of the larger radius, but never by more than a hundred times the former, and
 //! neither may be below 0.00005 inch.
 
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
 use super::block::Block;
-use super::canon::{Plane, Shape};
+use super::canon::{Plane, Shape, Spline};
 use super::codes::{bit, letter, slot as slot_of};
 use super::diagnostic::{Fault, Read};
+use super::settings::Dialect;
 use super::spiral::Spiral;
 use super::state::{INCH_MM, Interpreter, Position};
 use super::travel::{Speed, others};
@@ -21,8 +25,8 @@ const RADIUS_SLACK_MOST: [f64; 2] = [2.0 * std::f64::consts::SQRT_2, 0.2 * std::
 const RADIUS_SLACK_SHARE: f64 = 1e-3;
 /// Smallest radius of an arc given by its centre, mm: 0.00005 inch, in both units.
 const LEAST_RADIUS_MM: f64 = 0.000_05 * INCH_MM;
-/// R may be shorter than half the chord by this much; the arc is then a half circle. mm and inch.
-const CHORD_SLACK: [f64; 2] = [0.001, 0.000_05];
+/// R may be shorter than half the chord by this much, mm: 0.00005 inch, in both units; the arc is then a half circle.
+const CHORD_SLACK_MM: f64 = 0.000_05 * INCH_MM;
 /// Full turns that P may ask for; a thread has fewer, and the turns are an i32 later.
 const MOST_TURNS: i64 = 1_000_000;
 
@@ -74,12 +78,7 @@ impl Interpreter {
         let plane = self.modal.plane;
         let [first, second, _] = plane.axes();
         if self.frame.rotation_deg != 0.0 && plane != Plane::Xy {
-            return Err(Fault::new(
-                "gcode::rotation",
-                block.whole(),
-                "an arc outside the XY plane cannot run in a rotated coordinate system",
-            )
-            .hint("rotation is R of G10 L2; write G10 L2 P0 R0 to end it"));
+            return self.turned_arc(block, target, round, extruder_mm);
         }
         let mut center = self.frame.to_program(&self.here);
         center[first] = round.center[0];
@@ -93,6 +92,32 @@ impl Interpreter {
         let others = others(&start, &machine, extruder_mm);
         let shape = Shape::Arc { plane, center_mm: [center[0], center[1], center[2]], turns: round.turns };
         self.push_motion(Speed::Programmed, &start, shape, feed_mm_s, others);
+        Ok(())
+    }
+
+    /// An arc outside XY in a coordinate system that is turned about Z: its plane is none of the three, so it is handed out as one curve of
+    /// cubic Bezier pieces.
+    fn turned_arc(&mut self, block: &Block, target: &Position, round: Round, extruder_mm: f64) -> Read<()> {
+        let from = self.frame.to_program(&self.here);
+        let control_mm: Vec<[f64; 3]> = bezier_points(&from, target, round, self.modal.plane.axes())
+            .into_iter()
+            .map(|[x, y, z]| {
+                let mut point = from;
+                (point[0], point[1], point[2]) = (x, y, z);
+                let machine = self.frame.to_machine(&point);
+                [machine[0], machine[1], machine[2]]
+            })
+            .collect();
+        let pieces = (control_mm.len() - 1) / 3;
+        // Each inner knot three times: the curve passes through the ends of the pieces.
+        let inner = (1..pieces).flat_map(|knot| [knot as f64; 3]);
+        let knots = [0.0; 4].into_iter().chain(inner).chain([pieces as f64; 4]).collect();
+        let spline = Spline { degree: 3, knots, weights: vec![1.0; control_mm.len()], control_mm };
+        let machine = self.frame.to_machine(target);
+        let start = std::mem::replace(&mut self.here, machine);
+        let feed_mm_s = self.feed_for(block, spline.length_mm())?;
+        let others = others(&start, &machine, extruder_mm);
+        self.push_motion(Speed::Programmed, &start, Shape::Spline(Arc::new(spline)), feed_mm_s, others);
         Ok(())
     }
 
@@ -112,7 +137,9 @@ impl Interpreter {
             }
             self.center_by_radius(block, target, counter_clockwise)?
         } else {
-            if block.has(CENTER_LETTERS[normal]) {
+            // Post-processors for grbl write K0.
+            let is_idle = self.dialect == Dialect::Grbl && block.get(CENTER_LETTERS[normal]) == Some(0.0);
+            if block.has(CENTER_LETTERS[normal]) && !is_idle {
                 let (wrong, plane) =
                     (letter(slot_of(CENTER_LETTERS[normal])), ["G19 (YZ)", "G18 (ZX)", "G17 (XY)"][normal]);
                 let [one, two] = [first, second].map(|axis| letter(slot_of(CENTER_LETTERS[axis])));
@@ -199,7 +226,7 @@ impl Interpreter {
                 .hint("write a full circle with I J K"));
         }
         let half = 0.5 * length;
-        if half > radius.abs() + self.slack(CHORD_SLACK) {
+        if half > radius.abs() + CHORD_SLACK_MM {
             let message = format!(
                 "R = {:.6} mm is too small to reach the end: it must be at least half the distance, {half:.6} mm",
                 radius.abs()
@@ -220,6 +247,55 @@ impl Interpreter {
     fn slack(&self, [in_mm, in_inch]: [f64; 2]) -> f64 {
         if self.modal.unit_mm == 1.0 { in_mm } else { in_inch * INCH_MM }
     }
+}
+
+/// Angle of a Bezier piece, rad: of a quarter of a circle one piece is 2.7e-4 of the radius off, with the sixth power of the angle; of
+/// this, 3e-10.
+const PIECE_RAD: f64 = 0.157;
+
+/// Control points of cubic Bezier pieces along an arc, helix or spiral.
+fn bezier_points(from: &Position, to: &Position, round: Round, axes: [usize; 3]) -> Vec<[f64; 3]> {
+    let [first, second, normal] = axes;
+    let out = |point: &Position| [point[first] - round.center[0], point[second] - round.center[1]];
+    let (a, b) = (out(from), out(to));
+    let sense = f64::from(round.turns.signum());
+    let (start_radius, end_radius) = (a[0].hypot(a[1]), b[0].hypot(b[1]));
+    let mut sweep = sense * (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
+    if sweep * start_radius < FULL_TURN_WITHIN_MM {
+        sweep += TAU;
+    }
+    sweep += TAU * f64::from(round.turns.abs() - 1);
+    let pieces = (sweep / PIECE_RAD).ceil().max(1.0);
+    let step = sweep / pieces;
+    let reach = 4.0 / 3.0 * (0.25 * step).tan();
+    let begin = a[1].atan2(a[0]);
+    // The point at an angle along the way, and its change with the angle.
+    let at = |angle: f64| {
+        let share = angle / sweep;
+        let (sin, cos) = (begin + sense * angle).sin_cos();
+        let radius = start_radius + (end_radius - start_radius) * share;
+        let slope = (end_radius - start_radius) / sweep;
+        let (mut point, mut change) = ([0.0; 3], [0.0; 3]);
+        point[first] = round.center[0] + radius * cos;
+        point[second] = round.center[1] + radius * sin;
+        point[normal] = from[normal] + (to[normal] - from[normal]) * share;
+        change[first] = slope * cos - sense * radius * sin;
+        change[second] = slope * sin + sense * radius * cos;
+        change[normal] = (to[normal] - from[normal]) / sweep;
+        (point, change)
+    };
+    let along =
+        |(point, change): ([f64; 3], [f64; 3]), by: f64| std::array::from_fn(|axis| point[axis] + by * change[axis]);
+    let mut points = vec![[from[0], from[1], from[2]]];
+    for piece in 1..=pieces as u64 {
+        let angle = step * piece as f64;
+        let (before, here) = (at(angle - step), at(angle));
+        points.extend([along(before, reach), along(here, -reach), here.0]);
+    }
+    if let Some(last) = points.last_mut() {
+        *last = [to[0], to[1], to[2]];
+    }
+    points
 }
 
 /// An arc that ends this close to its start, mm along the circle, is a full turn: as in the path stage, and on LinuxCNC.

@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use super::characters::not_ascii;
 use super::codes::{self, AXES, GROUPS, Group, bit, letter, slot};
 use super::diagnostic::{Fault, Read, Short};
 use super::expression::{Evaluator, INTEGER_WITHIN, Target, Values};
@@ -10,8 +11,8 @@ use super::fanuc::corners::CornerWord;
 use super::foreign;
 use super::lexer::{Cursor, END, NO_EXPONENT, shown};
 
-/// Letters, `@` and `^`.
-const LETTERS: usize = 28;
+/// Letters, `@`, `^` and `$`.
+const LETTERS: usize = 29;
 /// Distance from a tenth at which a G-code still is that tenth: expressions such as `G[54+0.1]` do not come out exactly.
 const TENTH_WITHIN: f64 = 1e-3;
 
@@ -191,6 +192,7 @@ impl Block {
                     evaluator.cursor.finish();
                     return Ok(());
                 }
+                b'$' if evaluator.cursor.is_spindle() => self.read_word(&mut evaluator, byte, start)?,
                 b'#' => self.read_assignment(&mut evaluator, start)?,
                 b',' if style.codes != CodeSet::Rs274 => self.read_corner(&mut evaluator, start)?,
                 b'*' if style.printer => return Ok(()),
@@ -395,6 +397,8 @@ pub(super) fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
         return match byte {
             b'/' => fault.hint("a `/` that deletes the line stands first on it"),
             b')' => fault.hint("the comment that ends here has no `(`"),
+            b'=' => fault.hint("only a parameter is assigned to: #1=5; words have no `=`"),
+            b'+' | b'-' | b'*' if start > 0 => fault.hint("a calculation stands in brackets: #1=[5+3], X[2*#1]"),
             b'[' => fault.hint("a bracket stands behind a letter or a function"),
             b',' => fault.hint("a decimal point is a point: write 1.5, not 1,5"),
             b']' => fault.hint("the bracket that ends here has no `[`"),
@@ -405,17 +409,7 @@ pub(super) fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
             _ => fault,
         };
     }
-    // Up to four bytes make one character; what follows may be the beginning of another.
-    let longest = &bytes[start..bytes.len().min(start + 4)];
-    let valid = longest.utf8_chunks().next().map_or("", |chunk| chunk.valid());
-    match valid.chars().next() {
-        Some(character) => {
-            let at = start..start + character.len_utf8();
-            Fault::new("gcode::character", at, format!("`{character}` has no meaning outside a comment"))
-        }
-        None => Fault::new("gcode::utf8", start..start + 1, format!("byte {byte:#04x} is not UTF-8 text"))
-            .hint("save the file as UTF-8 or plain ASCII"),
-    }
+    not_ascii(bytes, start)
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub(super) enum Group {
 /// Number of groups.
 pub(super) const GROUPS: usize = 16;
 
-/// Bit of a letter in a set of letters; `@` and `^` follow the alphabet.
+/// Bit of a letter in a set of letters; `@`, `^` and `$` follow the alphabet.
 pub(super) const fn bit(letter: u8) -> u32 {
     1 << slot(letter)
 }
@@ -42,6 +42,7 @@ pub(super) const fn slot(letter: u8) -> usize {
     match letter {
         b'@' => 26,
         b'^' => 27,
+        b'$' => 28,
         _ => ((letter.wrapping_sub(b'a')) & 31) as usize,
     }
 }
@@ -51,6 +52,7 @@ pub(super) const fn letter(slot: usize) -> char {
     match slot {
         26 => '@',
         27 => '^',
+        28 => '$',
         _ => (b'A' + slot as u8) as char,
     }
 }
@@ -121,13 +123,14 @@ pub(super) const CODES: &[Code] = &[
     code(281, NonModal, b""),
     axes(300, NonModal, b""),
     code(301, NonModal, b""),
-    axes(330, Motion, b"k"),
-    axes(331, Motion, b"ki"),
+    axes(330, Motion, b"k$"),
+    axes(331, Motion, b"ki$"),
     axes(382, Motion, b""),
     axes(383, Motion, b""),
     axes(384, Motion, b""),
     axes(385, Motion, b""),
     code(400, CutterCompensation, b""),
+    code(401, CutterCompensation, b""),
     code(410, CutterCompensation, b"d"),
     code(411, CutterCompensation, b"dl"),
     code(420, CutterCompensation, b"d"),
@@ -160,7 +163,7 @@ pub(super) const CODES: &[Code] = &[
     axes(722, Motion, b"qdir"),
     axes(730, Motion, b"rlq"),
     axes(740, Motion, b"rlp"),
-    axes(760, Motion, b"pijrkqhel"),
+    axes(760, Motion, b"pijrkqhel$"),
     code(800, Motion, b""),
     axes(810, Motion, b"rl"),
     axes(820, Motion, b"rlp"),
@@ -181,9 +184,9 @@ pub(super) const CODES: &[Code] = &[
     code(923, NonModal, b""),
     code(930, FeedMode, b""),
     code(940, FeedMode, b""),
-    code(950, FeedMode, b""),
-    code(960, SpindleMode, b"d"),
-    code(970, SpindleMode, b""),
+    code(950, FeedMode, b"$"),
+    code(960, SpindleMode, b"d$"),
+    code(970, SpindleMode, b"$"),
     code(980, Return, b""),
     code(990, Return, b""),
 ];
@@ -258,7 +261,7 @@ mod tests {
 
     #[test]
     fn letters_have_places_of_their_own() {
-        let all = b"abcdefghijklmnopqrstuvwxyz@^";
+        let all = b"abcdefghijklmnopqrstuvwxyz@^$";
         assert_eq!(bits(all).count_ones() as usize, all.len());
         assert_eq!(letter(slot(b'q')), 'Q');
         assert_eq!(letter(slot(b'^')), '^');

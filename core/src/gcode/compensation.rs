@@ -13,8 +13,12 @@ use super::plane::{Curve, Point, add, cross, dot, left_of, length, minus, scaled
 use super::state::{Interpreter, Position};
 use super::travel::{Speed, others};
 
-/// Corners flatter than this, rad, count as smooth: the offset curves are joined as they are, apart by less than r/800. LinuxCNC's limit.
-const SMOOTH_WITHIN_RAD: f64 = 0.05;
+/// Corners flatter than this, rad, are joined as they are where they cannot meet: up to r/800 into the contour. LinuxCNC's limit.
+const FLAT_WITHIN_RAD: f64 = 0.05;
+
+/// A corner is smooth where joining the offset curves as they are takes less than this from the contour, mm: a tenth of what a
+/// tool's distance may be off.
+const SMOOTH_WITHIN_MM: f64 = 1e-7;
 
 /// An entry may be shorter than the radius by rounding, mm.
 const ENTRY_SLACK_MM: f64 = 1e-9;
@@ -44,7 +48,11 @@ impl Interpreter {
             self.nose_compensation(word);
             return Ok(());
         }
-        if word.number == 400 {
+        if word.number == 401 {
+            let message = "G40.1 is read as G40: it ends cutter compensation";
+            self.warnings.push(*Fault::new("gcode::compensation", word.at(), message));
+        }
+        if matches!(word.number, 400 | 401) {
             let was = self.compensation.take();
             self.left_compensation |= was.is_some_and(|was| was.last.is_some() && was.radius_mm > 0.0);
             self.release();
@@ -163,13 +171,13 @@ impl Interpreter {
                 )
                 .hint("begin the line with G41 or G42 farther from the contour"));
             }
-        } else {
-            let curve = Curve::Line { start: add(from, aside), end };
-            self.corner_to(block, &compensation, from, along, &curve, speed)?;
+        }
+        // An entry that leads into an inner corner ends as if its whole length had been beside the contour.
+        let mut start = add(from, aside);
+        if compensation.last.is_some() {
+            start = self.corner_to(block, &compensation, from, along, &Curve::Line { start, end }, speed)?;
         }
         (machine[first], machine[second]) = (end[0], end[1]);
-        // An entry that leads into an inner corner ends as if its whole length had been beside the contour.
-        let start = if compensation.last.is_none() { add(from, aside) } else { [self.here[first], self.here[second]] };
         self.hold_motion(block, machine, speed, Shape::Line)?;
         self.set_last(Curve::Line { start, end }, along);
         Ok(true)
@@ -202,19 +210,20 @@ impl Interpreter {
         let programmed = Curve::Arc { start: from, end: to, center, turn };
         let end_along = programmed.direction(to);
         self.at = *target;
-        let center = if compensation.last.is_none() && compensation.radius_mm > 0.0 {
-            entry_center([self.here[first], self.here[second]], to, end).ok_or_else(|| {
+        let (start, center) = if compensation.last.is_none() && compensation.radius_mm > 0.0 {
+            let here = [self.here[first], self.here[second]];
+            let center = entry_center(here, to, end).ok_or_else(|| {
                 Fault::new("gcode::compensation", block.whole(), "the entry arc cannot reach the compensated end")
-            })?
+            })?;
+            (here, center)
         } else {
             let start = add(center, scaled(unit(minus(from, center)), offset_radius));
             let curve = Curve::Arc { start, end, center, turn };
-            self.corner_to(block, &compensation, from, programmed.direction(from), &curve, Speed::Programmed)?;
-            center
+            let along = programmed.direction(from);
+            (self.corner_to(block, &compensation, from, along, &curve, Speed::Programmed)?, center)
         };
         let mut machine = goal;
         (machine[first], machine[second]) = (end[0], end[1]);
-        let start = [self.here[first], self.here[second]];
         let mut center_mm = [self.here[0], self.here[1], self.here[2]];
         (center_mm[first], center_mm[second]) = (center[0], center[1]);
         self.hold_motion(block, machine, Speed::Programmed, Shape::Arc { plane, center_mm, turns: round.turns })?;
@@ -235,7 +244,8 @@ impl Interpreter {
         }
     }
 
-    /// Joins the held motion to `next`, which begins at the programmed `corner` in the direction `along`.
+    /// Joins the held motion to `next`, which begins at the programmed `corner` in the direction `along`; returns where `next`
+    /// begins on its own curve.
     fn corner_to(
         &mut self,
         block: &Block,
@@ -244,36 +254,87 @@ impl Interpreter {
         along: Point,
         next: &Curve,
         speed: Speed,
-    ) -> Read<()> {
-        let Some((before, before_along)) = compensation.last.as_ref().filter(|_| compensation.radius_mm > 0.0) else {
+    ) -> Read<Point> {
+        let radius_mm = compensation.radius_mm;
+        let Some((before, before_along)) = compensation.last.as_ref().filter(|_| radius_mm > 0.0) else {
             self.release();
-            return Ok(());
+            return Ok(next.start());
         };
         let angle = cross(*before_along, along).atan2(dot(*before_along, along)) * compensation.side;
-        let reverses = angle.abs() > std::f64::consts::PI - SMOOTH_WITHIN_RAD;
+        let reverses = angle.abs() > std::f64::consts::PI - FLAT_WITHIN_RAD;
         // Back the way it came: which side is inner shows in how the curves bend beside each other.
-        let is_inner =
-            if reverses { compensation.side * (before.bend() + next.bend()) < 0.0 } else { angle > SMOOTH_WITHIN_RAD };
-        let aside = scaled(left_of(along), compensation.side * compensation.radius_mm);
-        if is_inner {
-            let meeting = inner_meeting(before, next, corner, add(corner, aside)).ok_or_else(|| {
-                Fault::new("gcode::compensation", block.whole(), format!("the tool of radius {:.4} mm does not fit into the inner corner before this motion: it would cut into the contour", compensation.radius_mm))
-                    .hint("a smaller tool, a larger radius in the corner, or a longer motion")
-            })?;
-            self.move_held_end(meeting);
-        } else if angle < -SMOOTH_WITHIN_RAD || reverses {
+        let is_inner = if reverses { compensation.side * (before.bend() + next.bend()) < 0.0 } else { angle > 0.0 };
+        let is_flat = angle.abs() <= FLAT_WITHIN_RAD;
+        let beside = add(corner, scaled(left_of(along), compensation.side * radius_mm));
+        let is_smooth =
+            cut_mm(radius_mm, angle) < SMOOTH_WITHIN_MM && next.off_mm(before.end(), beside) < SMOOTH_WITHIN_MM;
+        if is_smooth || (is_flat && !is_inner && speed == Speed::Rapid) {
             self.release();
-            let [first, second, _] = self.modal.plane.axes();
-            let mut machine = self.here;
-            (machine[first], machine[second]) = (corner[0] + aside[0], corner[1] + aside[1]);
-            let mut center_mm = [self.here[0], self.here[1], self.here[2]];
-            (center_mm[first], center_mm[second]) = (corner[0], corner[1]);
-            let turns = if compensation.side > 0.0 { -1 } else { 1 };
-            let shape = Shape::Arc { plane: self.modal.plane, center_mm, turns };
-            self.hold_motion(block, machine, if self.modal.feed > 0.0 { Speed::Programmed } else { speed }, shape)?;
+            return Ok(next.start());
         }
+        if !is_inner {
+            self.release();
+            self.roll(block, corner, beside, compensation, speed)?;
+            return Ok(next.start());
+        }
+        let meeting = inner_meeting(before, next, corner, beside);
+        // Unequal radii of an arc may let a flat corner meet far away, or nowhere.
+        let meeting = meeting.filter(|meeting| !is_flat || length(minus(*meeting, beside)) <= radius_mm * angle);
+        match meeting {
+            Some(meeting) => {
+                self.move_held_end(meeting);
+                self.release();
+                Ok(meeting)
+            }
+            None if is_flat => {
+                self.warn_of_flat_corner(block, radius_mm, angle);
+                self.release();
+                Ok(next.start())
+            }
+            None => Err(does_not_fit(block, radius_mm)),
+        }
+    }
+
+    /// Round an outer corner, to `beside` it. LinuxCNC's rapids go straight there; so do these, for it is what the machine does.
+    fn roll(
+        &mut self,
+        block: &Block,
+        corner: Point,
+        beside: Point,
+        compensation: &Compensation,
+        speed: Speed,
+    ) -> Read<()> {
+        let [first, second, _] = self.modal.plane.axes();
+        let mut machine = self.here;
+        (machine[first], machine[second]) = (beside[0], beside[1]);
+        let mut center_mm = [self.here[0], self.here[1], self.here[2]];
+        let from = [self.here[first], self.here[second]];
+        (center_mm[first], center_mm[second]) = (corner[0], corner[1]);
+        let turns = if compensation.side > 0.0 { -1 } else { 1 };
+        let shape = if speed == Speed::Rapid {
+            let nearest_mm = length(minus(scaled(add(from, beside), 0.5), corner));
+            let cut_mm = compensation.radius_mm - nearest_mm;
+            let message =
+                format!("the rapid cuts the corner before it: the tool goes {cut_mm:.4} mm into the contour there");
+            let fault = Fault::new("gcode::compensation", block.whole(), message);
+            self.warnings.push(*fault.hint("round the corner with G1, or end compensation with G40 before G0"));
+            Shape::Line
+        } else {
+            Shape::Arc { plane: self.modal.plane, center_mm, turns }
+        };
+        self.hold_motion(block, machine, speed, shape)?;
         self.release();
         Ok(())
+    }
+
+    #[cold]
+    fn warn_of_flat_corner(&mut self, block: &Block, radius_mm: f64, angle: f64) {
+        let cut_mm = cut_mm(radius_mm, angle);
+        let message = format!(
+            "the tool of radius {radius_mm:.4} mm does not fit between the motions here: it cuts {cut_mm:.6} mm into the contour"
+        );
+        let fault = Fault::new("gcode::compensation", block.whole(), message);
+        self.warnings.push(*fault.hint("a smaller tool, or longer motions"));
     }
 
     /// Ends the held motion, and what follows it along the normal, at another point of the plane.
@@ -314,6 +375,20 @@ impl Interpreter {
         self.held.push(Canon::Motion(motion));
         Ok(())
     }
+}
+
+/// How far the end of one offset curve lies within the other's distance, where the contour turns by an angle: r (1 - cos).
+fn cut_mm(radius_mm: f64, angle: f64) -> f64 {
+    2.0 * radius_mm * (0.5 * angle).sin().powi(2)
+}
+
+#[cold]
+fn does_not_fit(block: &Block, radius_mm: f64) -> Box<Fault> {
+    let message = format!(
+        "the tool of radius {radius_mm:.4} mm does not fit into the inner corner before this motion: it would cut into the contour"
+    );
+    Fault::new("gcode::compensation", block.whole(), message)
+        .hint("a smaller tool, a larger radius in the corner, or a longer motion")
 }
 
 /// Where the offset curves of an inner corner meet; `beside` is the start of the second one beside the programmed corner.

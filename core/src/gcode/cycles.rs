@@ -18,6 +18,9 @@ const MOST_PECKS: f64 = 1e5;
 /// Holes of one line (L): up to eight motions each.
 const MOST_REPEATS: i64 = 20_000;
 
+/// An axis whose lengths are never diameters: Z.
+const RADIAL: usize = 2;
+
 /// What a cycle keeps for the next line, mm and seconds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Cycle {
@@ -43,6 +46,8 @@ struct Hole {
     normal: usize,
     bottom: f64,
     clearance: f64,
+    /// Height that the tool leaves it at (G98, G99).
+    retract: f64,
 }
 
 impl Interpreter {
@@ -96,9 +101,9 @@ impl Interpreter {
         if matches!(corner, Corner::Continuous { .. }) {
             self.modal.corner = Corner::ExactPath;
         }
-        let hole = Hole { normal, bottom, clearance };
         let retract = if self.modal.retract_to_r { clearance } else { clearance.max(kept.began_at) };
-        let drilled = self.drill_all(block, &hole, [first, second], retract, repeats);
+        let hole = Hole { normal, bottom, clearance, retract };
+        let drilled = self.drill_all(block, &hole, [first, second], repeats);
         self.modal.corner = corner;
         drilled
     }
@@ -122,7 +127,8 @@ impl Interpreter {
     fn cycle_words(&self, block: &Block, kept: &mut Cycle, normal: usize) -> Read<()> {
         let letter = AXIS_LETTERS[normal];
         if let Some(value) = block.get(b'r') {
-            kept.clearance = self.length(block, b'r', normal, value)?;
+            // A distance along X, in G7, too: only X itself is a diameter.
+            kept.clearance = self.length(block, b'r', RADIAL, value)?;
         }
         if let Some(value) = block.get(letter) {
             kept.bottom = self.length(block, letter, normal, value)?;
@@ -156,7 +162,7 @@ impl Interpreter {
         Err(Fault::new("gcode::cycle", block.whole(), format!("{missing} is missing for {}", spelled(kept.code))))
     }
 
-    fn drill_all(&mut self, block: &Block, hole: &Hole, plane: [usize; 2], retract: f64, repeats: i64) -> Read<()> {
+    fn drill_all(&mut self, block: &Block, hole: &Hole, plane: [usize; 2], repeats: i64) -> Read<()> {
         if self.cycle.began_at < hole.clearance {
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
         }
@@ -171,19 +177,19 @@ impl Interpreter {
             let mut target = self.target(block)?;
             target[hole.normal] = self.at[hole.normal];
             if target[hole.normal] <= hole.clearance {
-                target[hole.normal] = retract;
+                target[hole.normal] = hole.retract;
             }
             self.go(block, target, Speed::Rapid)?;
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
             self.drill(block, hole, plane)?;
-            self.along(block, hole.normal, retract, Speed::Rapid)?;
+            self.along(block, hole.normal, hole.retract, Speed::Rapid)?;
         }
         Ok(())
     }
 
-    /// From R to the bottom and, where the cycle feeds out, back to R.
+    /// From R to the bottom and, where the cycle feeds out, back: of G85 to R, of the others all the way.
     fn drill(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
-        let &Hole { normal, bottom, clearance } = hole;
+        let &Hole { normal, bottom, clearance, retract } = hole;
         let cycle = self.cycle;
         match cycle.code {
             730 | 830 => return self.peck(block, hole),
@@ -205,7 +211,7 @@ impl Interpreter {
                 }
                 self.spindle(-wanted);
                 self.pause(cycle.dwell_s.unwrap_or(0.0));
-                self.along(block, normal, clearance, Speed::Programmed)?;
+                self.along(block, normal, retract, Speed::Programmed)?;
                 self.spindle(wanted);
             }
             820 => self.pause(cycle.dwell_s.unwrap_or(0.0)),
@@ -222,7 +228,7 @@ impl Interpreter {
                 self.pause(cycle.dwell_s.unwrap_or(0.0));
                 self.spindle(0);
                 if cycle.code == 860 {
-                    self.along(block, normal, clearance, Speed::Rapid)?;
+                    self.along(block, normal, retract, Speed::Rapid)?;
                 } else {
                     self.event(EventKind::MCode { code: 0, p: None, q: None }); // The operator retracts by hand.
                 }
@@ -230,7 +236,7 @@ impl Interpreter {
             }
             890 => {
                 self.pause(cycle.dwell_s.unwrap_or(0.0));
-                self.along(block, normal, clearance, Speed::Programmed)?;
+                self.along(block, normal, retract, Speed::Programmed)?;
             }
             _ => {}
         }
@@ -239,7 +245,7 @@ impl Interpreter {
 
     /// G83 retracts to R after each peck, G73 only breaks the chip.
     fn peck(&mut self, block: &Block, hole: &Hole) -> Read<()> {
-        let &Hole { normal, bottom, clearance } = hole;
+        let &Hole { normal, bottom, clearance, .. } = hole;
         let step = self.cycle.peck.unwrap_or(clearance - bottom);
         let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };
         if let Some(pecks) = self.fanuc.pecks {
@@ -267,7 +273,7 @@ impl Interpreter {
 
     /// G87: beside the hole down with the spindle stopped, into its axis, up with the spindle turning to K, and out the same way.
     fn back_bore(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
-        let &Hole { normal, bottom, clearance } = hole;
+        let &Hole { normal, bottom, retract, .. } = hole;
         let turning = self.modal.spindle_turns;
         if turning == 0 {
             return Err(Fault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)")
@@ -293,8 +299,10 @@ impl Interpreter {
         self.spindle(0);
         beside[normal] = bottom;
         self.go(block, beside, Speed::Rapid)?;
-        self.along(block, normal, clearance, Speed::Rapid)?;
-        self.go(block, center, Speed::Rapid)?;
+        self.along(block, normal, retract, Speed::Rapid)?;
+        let mut out = center;
+        out[normal] = retract;
+        self.go(block, out, Speed::Rapid)?;
         self.spindle(turning);
         Ok(())
     }

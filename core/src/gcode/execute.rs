@@ -77,6 +77,9 @@ impl Interpreter {
         for word in &block.m {
             known |= self.m_letters(word.number);
         }
+        if block.has(b's') {
+            known |= codes::bit(b'$');
+        }
         if let Some(code) = motion.and_then(codes::find) {
             known |= code.letters;
         }
@@ -95,6 +98,9 @@ impl Interpreter {
         Err(match word {
             'E' if block.exponent => fault.hint(NO_EXPONENT),
             'E' => fault.hint("E pushes filament on 3D printers: choose the printer's dialect for its programs"),
+            'K' if matches!(motion, Some(810..=890)) => {
+                fault.hint("K is how often Fanuc repeats a cycle: LinuxCNC's word is L, or choose --dialect fanuc")
+            }
             'I' | 'J' | 'K' => fault.hint("I, J and K are the centre of an arc: write G2 or G3 on this line"),
             'R' if matches!(motion, Some(0 | 10)) => {
                 fault.hint("R is the radius of an arc (G2, G3) or a height of a cycle (G81 to G89)")
@@ -152,6 +158,14 @@ impl Interpreter {
     }
 
     fn spindle_words(&mut self, block: &Block) -> Read<()> {
+        // -1 is all spindles; there is one.
+        if block.has(b'$') && !matches!(self.integer(block, b'$', -1, 100)?, -1 | 0) {
+            let message = format!(
+                "spindle ${} does not exist: the first spindle is $0, and only it is read",
+                Short(block.get(b'$').unwrap_or_default())
+            );
+            return Err(Fault::new("gcode::spindle", block.at(b'$'), message));
+        }
         let Some(speed) = block.get(b's') else {
             return Ok(());
         };

@@ -12,6 +12,7 @@
 //! Rules: T. R. Kramer, F. M. Proctor, E. Messina, The NIST RS274NGC Interpreter - Version 3, NISTIR 6556 (2000), section 3.3,
 //! with the named parameters and comparisons that LinuxCNC added.
 
+use super::characters::not_ascii;
 use super::diagnostic::{Fault, Read, Short};
 use super::fanuc::macros::without_vacancy;
 use super::lexer::{Cursor, END, NO_EXPONENT, shown};
@@ -102,6 +103,9 @@ const FUNCTIONS: [&[u8]; 14] = [
     b"tan",
 ];
 
+/// What signs of other languages are told.
+const COMPARISONS: &str = "comparisons are spelled out: EQ, NE, GT, GE, LT, LE, as in [#1 EQ 5]";
+
 /// Words of Fanuc macros and of other languages, which programs for them hold in place of O-words.
 const MACRO_KEYWORDS: [&str; 8] = ["if", "while", "goto", "end", "endif", "else", "for", "do"];
 
@@ -156,18 +160,30 @@ impl<'a, V: Values> Evaluator<'a, V> {
         let start = self.cursor.at;
         if !self.cursor.eat(b'[') {
             let found = self.cursor.raw();
-            return Err(Fault::new(
-                "gcode::bracket",
-                start..start + 1,
-                format!("`[` is missing: {} stands in its place", text_of(found)),
-            ));
+            let message = format!("`[` is missing: {} stands in its place", text_of(found));
+            let fault = Fault::new("gcode::bracket", start..start + 1, message);
+            return Err(if found == b'(' {
+                fault.hint("arguments and calculations stand in [ ]: sin[30]; ( ) is a comment")
+            } else {
+                fault
+            });
         }
         let value = self.deeper(start, |evaluator| evaluator.expression(1))?;
         if !self.cursor.eat(b']') {
             let (found, at) = (self.cursor.raw(), self.cursor.at);
             let message = format!("`]` or an operator is missing: {} stands in its place", text_of(found));
             let fault = Fault::new("gcode::bracket", at..at + 1, message);
-            return Err(fault.hint(if self.cursor.is_exponent() { NO_EXPONENT } else { "every `[` needs its `]`" }));
+            if !found.is_ascii() {
+                return Err(not_ascii(self.cursor.bytes, at));
+            }
+            return Err(fault.hint(match found {
+                _ if self.cursor.is_exponent() => NO_EXPONENT,
+                b'=' | b'<' | b'>' | b'!' => COMPARISONS,
+                b'&' | b'|' => "logic is spelled out: AND, OR, XOR",
+                b'%' => "the remainder is MOD",
+                b'^' => "a power is **",
+                _ => "every `[` needs its `]`",
+            }));
         }
         Ok(value)
     }
@@ -253,23 +269,26 @@ impl<'a, V: Values> Evaluator<'a, V> {
                 fault.hint("loops and branches begin with an O-word, as in `o1 while [#1 LT 5]`; --dialect fanuc reads those of Fanuc macros")
             }
             _ if name.starts_with(['o', 'O']) => fault.hint("the letter O is no zero: write 0"),
+            _ if name.starts_with(['l', 'I', 'i']) => fault.hint("the letters l and I are no one: write 1"),
             Some(known) => fault.hint(format!("did you mean `{known}[...]`?")),
             None => fault,
         }
     }
 
-    /// `exists[#<name>]`: 1 or 0.
+    /// `exists[#<name>]`: 1 or 0. A number always exists.
     fn exists(&mut self) -> Read<f64> {
         let start = self.cursor.at;
         if self.cursor.eat(b'[') && self.cursor.peek() == b'#' {
             let target = self.target()?;
-            if let Target::Named(name) = &target
-                && self.cursor.eat(b']')
-            {
-                return Ok(f64::from(u8::from(self.values.named(name).is_some())));
+            if self.cursor.eat(b']') {
+                let exists = match &target {
+                    Target::Named(name) => self.values.named(name).is_some(),
+                    Target::Numbered(_) => true,
+                };
+                return Ok(f64::from(u8::from(exists)));
             }
         }
-        Err(Fault::new("gcode::expression", start..self.cursor.at + 1, "exists takes the name of a parameter")
+        Err(Fault::new("gcode::expression", start..self.cursor.at + 1, "exists takes a parameter")
             .hint("write exists[#<name>]"))
     }
 
@@ -455,6 +474,7 @@ mod tests {
         assert_eq!(value("round[-2.5]"), -3.0);
         assert_eq!(value("EXISTS[#<known>] "), 1.0);
         assert_eq!(value("exists[#<un known>]"), 0.0);
+        assert_eq!(value("exists[#1]"), 1.0);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Lines that are commands to a firmware and no G-code: macros of Klipper, texts for a display, settings of grbl, smoothing of Fanuc.
 
 use super::diagnostic::Fault;
+use super::dialect::GRBL_COMMANDS;
 use super::settings::Dialect;
 
 /// What such a line is.
@@ -18,7 +19,8 @@ pub(super) enum Command {
 const PRINTER_ACTS: [&[u8]; 12] =
     [b"g11", b"g12", b"g26", b"g27", b"g29", b"g30", b"g32", b"g33", b"g34", b"g35", b"g60", b"g425"];
 /// M-codes of printers that are followed by text.
-const PRINTER_TEXT: [&[u8]; 8] = [b"m16", b"m23", b"m28", b"m32", b"m117", b"m118", b"m862", b"m928"];
+const PRINTER_TEXT: [&[u8]; 11] =
+    [b"m16", b"m23", b"m28", b"m32", b"m110", b"m115", b"m117", b"m118", b"m486", b"m862", b"m928"];
 
 /// Whether a line is a command to the firmware of this dialect.
 pub(super) fn command(line: &[u8], dialect: Dialect) -> Option<Command> {
@@ -27,19 +29,36 @@ pub(super) fn command(line: &[u8], dialect: Dialect) -> Option<Command> {
         Dialect::Grbl if line.first() == Some(&b'$') && !line.to_ascii_lowercase().starts_with(b"$j") => {
             Some(Command::Speaks)
         }
-        Dialect::Printer => printer_command(line),
+        Dialect::Grbl if !line.is_empty() && line.iter().all(|byte| GRBL_COMMANDS.contains(byte)) => {
+            Some(Command::Speaks)
+        }
+        Dialect::Printer => printer_command(without_number(line)),
         dialect if dialect.is_fanuc() => smooths(line).then_some(Command::Smooths),
         _ => None,
     }
 }
 
+/// The line behind its number: `N3 M117 text*17`.
+fn without_number(line: &[u8]) -> &[u8] {
+    let [b'n' | b'N', rest @ ..] = line else {
+        return line;
+    };
+    let digits = rest.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    if digits > 0 { rest[digits..].trim_ascii_start() } else { line }
+}
+
 fn printer_command(line: &[u8]) -> Option<Command> {
-    if !line.first()?.is_ascii_alphabetic() {
+    if !line.first()?.is_ascii_alphabetic() && line[0] != b'_' {
         return None;
     }
-    let end =
-        line.iter().position(|byte| byte.is_ascii_whitespace() || matches!(byte, b';' | b'.')).unwrap_or(line.len());
+    let end = line
+        .iter()
+        .position(|byte| byte.is_ascii_whitespace() || matches!(byte, b';' | b'.' | b'=' | b'*'))
+        .unwrap_or(line.len());
     let word = line[..end].to_ascii_lowercase();
+    if word == b"g10" {
+        return firmware_retract(&line[end..]);
+    }
     if PRINTER_ACTS.contains(&word.as_slice()) {
         return Some(Command::Acts);
     }
@@ -47,8 +66,20 @@ fn printer_command(line: &[u8]) -> Option<Command> {
         return Some(Command::Speaks);
     }
     // A macro has a name of letters: `START_PRINT BED=60`; words of G-code have a digit or a sign behind the first letter.
-    let named = word.len() > 2 && word.iter().take(3).all(|byte| byte.is_ascii_alphabetic() || *byte == b'_');
-    named.then_some(Command::Acts)
+    let of_letters = word.len() > 2 && word.iter().take(3).all(u8::is_ascii_alphabetic);
+    (of_letters || word.contains(&b'_')).then_some(Command::Acts)
+}
+
+/// `G10` alone, or with the S of a long retraction, pulls filament back by a length that the firmware knows; RepRap's `G10 P1 S200` sets
+/// up a tool; with L it is LinuxCNC's.
+fn firmware_retract(words: &[u8]) -> Option<Command> {
+    let code = words.split(|&byte| byte == b';').next().unwrap_or(words);
+    let has = |letter: u8| code.iter().any(|byte| byte.eq_ignore_ascii_case(&letter));
+    match (has(b'l'), has(b'p')) {
+        (true, _) => None,
+        (false, true) => Some(Command::Speaks),
+        (false, false) => Some(Command::Acts),
+    }
 }
 
 /// Look-ahead and smoothing of Fanuc and Haas: `G5.1 Q1`, `G5 P10000`, `G8 P1`, `G187 P3 E0.01`, alone on the line.
@@ -92,6 +123,19 @@ mod tests {
         let printer = |line: &str| command(line.as_bytes(), Dialect::Printer);
         assert_eq!(printer("START_PRINT BED=60"), Some(Command::Acts));
         assert_eq!(printer("G29 ; level"), Some(Command::Acts));
+        assert_eq!(printer("_CLEAN_NOZZLE"), Some(Command::Acts));
+        assert_eq!(printer("M_600 X=1"), Some(Command::Acts));
+        assert_eq!(printer("M115 U6.3.0+10073"), Some(Command::Speaks));
+        assert_eq!(printer("M486 S0 Acube.stl"), Some(Command::Speaks));
+        assert_eq!(printer("N3 M117 layer 1*17"), Some(Command::Speaks));
+        assert_eq!(printer("M110 N0*125"), Some(Command::Speaks));
+        assert_eq!(printer("N4 G1 X1 E1*97"), None);
+        assert_eq!(command(b"?", Dialect::Grbl), Some(Command::Speaks));
+        assert_eq!(command(b"!~", Dialect::Grbl), Some(Command::Speaks));
+        assert_eq!(printer("G10 ; retract by the firmware's length"), Some(Command::Acts));
+        assert_eq!(printer("G10 S1"), Some(Command::Acts));
+        assert_eq!(printer("G10 P1 S200"), Some(Command::Speaks));
+        assert_eq!(printer("G10 L2 P1 X5"), None);
         assert_eq!(printer("M117 Printing..."), Some(Command::Speaks));
         assert_eq!(printer("G1 X1 E.2"), None);
         assert_eq!(printer("X1Y2"), None);

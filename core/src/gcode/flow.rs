@@ -204,19 +204,40 @@ impl Flow {
             let mut evaluator = Evaluator::new(cursor, &*interpreter);
             let head = read_head(&mut evaluator)?;
             // The condition of an `elseif` behind a taken branch is not evaluated.
-            let arguments =
-                if head.keyword == Keyword::ElseIf { None } else { Some(read_arguments(&mut evaluator, &head)?) };
-            if arguments.is_some() {
-                read_rest(&mut evaluator.cursor)?;
-            }
-            (head, arguments)
+            let read = if head.keyword == Keyword::ElseIf {
+                Ok(None)
+            } else {
+                read_arguments(&mut evaluator, &head)
+                    .and_then(|arguments| read_rest(&mut evaluator.cursor).map(|()| Some(arguments)))
+            };
+            (head, read)
         };
         let line = self.source_ref().line;
+        let arguments = match arguments {
+            Ok(arguments) => arguments,
+            Err(fault) => {
+                self.begin_anyway(&head, line);
+                return Err(fault);
+            }
+        };
         match (head.keyword, arguments) {
             (Keyword::Call, Some(arguments)) => self.call(&head, &arguments, interpreter),
             (Keyword::Return | Keyword::EndSub, Some(arguments)) => self.leave(&head, &arguments, interpreter),
             _ => self.carry_out(&head, arguments, line),
         }
+    }
+
+    /// A branch or loop with a faulty condition begins all the same: its end is no fault. The branch is read, the loop passed over.
+    #[cold]
+    fn begin_anyway(&mut self, head: &Head, line: u32) {
+        // Behind one fault, another in the same line is not told.
+        let _ = match head.keyword {
+            Keyword::If => self.take_label(head, line),
+            Keyword::Repeat => self.take_label(head, line).map(|()| self.pass(head, Purpose::EndOfLoop, line)),
+            Keyword::While if self.ends_do(head) => self.find_loop(head).map(|_| ()).map(|()| drop(self.loops.pop())),
+            Keyword::While => self.take_label(head, line).map(|()| self.pass(head, Purpose::EndOfLoop, line)),
+            _ => Ok(()),
+        };
     }
 
     /// Branches and loops.

@@ -18,6 +18,8 @@ const CODES: &[(&[u16], &str, &str)] = &[
     ),
     (&[500, 510], "scaling", "scale the part in the CAM system; on a lathe, D of G96 bounds the speed of the spindle"),
     (&[501, 511], "a mirror image", "mirror the part in the CAM system, or negate the coordinates"),
+    (&[470], "the engraving of Haas", "let the CAM system write the motions of the letters"),
+    (&[1030], "the limit of Haas's look-ahead", "leave it out: it moves nothing"),
     (&[600], "approaching from one side", "write the approach with G0"),
     (
         &[650, 660, 661, 670],

@@ -4,6 +4,7 @@
 //! 2^53 with at most 22 decimals) the value is exact arithmetic: integer divided by a power of ten, both exact in f64, is
 //! correctly rounded (W. D. Clinger, How to read floating point numbers accurately, 1990). Longer ones go through `str::parse`.
 
+use super::characters::not_ascii;
 use super::diagnostic::{Fault, Read};
 
 /// What [`Cursor::peek`] gives behind the last byte: no line contains it.
@@ -90,6 +91,12 @@ impl<'a> Cursor<'a> {
             && after.is_some_and(|byte| byte.is_ascii_digit() || matches!(byte, b'+' | b'-'))
     }
 
+    /// Whether the `$` under the cursor has a number, which is that of a spindle.
+    pub(super) fn is_spindle(&self) -> bool {
+        let after = self.bytes[self.at..].iter().skip(1).find(|byte| !is_blank(**byte));
+        after.is_some_and(|byte| byte.is_ascii_digit() || *byte == b'-')
+    }
+
     /// The bytes to the end of the line.
     pub(super) fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at.min(self.bytes.len())..]
@@ -164,6 +171,9 @@ impl<'a> Cursor<'a> {
     #[cold]
     fn not_a_number(&mut self, start: usize) -> Box<Fault> {
         let found = self.peek();
+        if !self.raw().is_ascii() {
+            return not_ascii(self.bytes, self.at);
+        }
         let what = if found == END { "the end of the line".to_owned() } else { format!("`{}`", shown(self.raw())) };
         let end = if found == END { self.at } else { self.at + 1 };
         Fault::new("gcode::number", start..end.max(start), format!("a number is missing: {what} stands in its place"))

@@ -18,7 +18,9 @@ impl Interpreter {
             return u32::MAX; // Every firmware has words of its own.
         }
         match number {
-            19 => bit(b'r') | bit(b'q') | bit(b'p'),
+            3..=5 => bit(b'$'),
+            19 => bit(b'r') | bit(b'q') | bit(b'p') | bit(b'$'),
+            51 => bit(b'p') | bit(b'$'),
             50..=53 | 62..=65 => bit(b'p'),
             61 => bit(b'q'),
             66 => bit(b'p') | bit(b'e') | bit(b'l') | bit(b'q'),
@@ -130,7 +132,8 @@ impl Interpreter {
             0 | 1 | 2 | 30 | 60 | 98 | 99 => return Ok(()), // Stops come last, calls are flow.
             3 => modal.spindle_turns = 1,
             4 => modal.spindle_turns = -1,
-            5 => modal.spindle_turns = 0,
+            // M19 orients the spindle, which stands still then.
+            5 | 19 => modal.spindle_turns = 0,
             7 => modal.mist = true,
             8 => modal.flood = true,
             9 => (modal.mist, modal.flood) = (false, false),
@@ -149,7 +152,7 @@ impl Interpreter {
             66 => self.parameters.set(INPUT, 0.0),
             70 => self.save_modes(false),
             71 => self.forget_modes(),
-            72 => self.restore_modes(),
+            72 => self.restore_modes(block)?,
             73 => self.save_modes(true),
             82 if self.dialect == Dialect::Printer => self.extruder_relative = false,
             83 if self.dialect == Dialect::Printer => self.extruder_relative = true,

@@ -158,15 +158,16 @@ impl Interpreter {
         if block.has_axes() {
             self.line_to(block, self.frame.to_machine(&target), Speed::Rapid, 0.0)?;
         }
-        let stored = self.parameters.nine(home);
-        let mut machine = self.here;
+        // The axes are those of the program: in a rotated system, Y alone moves X and Y of the machine.
+        let stored = self.frame.to_program(&self.parameters.nine(home));
+        let mut goal = target;
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if block.has(letter) || !block.has_axes() {
-                machine[axis] = stored[axis];
+                goal[axis] = stored[axis];
             }
         }
-        self.line_to(block, machine, Speed::Rapid, 0.0)?;
-        self.offsets_changed();
+        self.line_to(block, self.frame.to_machine(&goal), Speed::Rapid, 0.0)?;
+        self.at = goal;
         Ok(())
     }
 
@@ -210,7 +211,7 @@ impl Interpreter {
     }
 
     /// G92.1 forgets the shift, G92.2 suspends it, G92.3 takes it up again.
-    fn shift_mode(&mut self, number: u16) {
+    pub(super) fn shift_mode(&mut self, number: u16) {
         self.frame.g92 = if number == 923 { self.parameters.nine(numbers::G92_FIRST) } else { [0.0; 9] };
         if number == 921 {
             self.parameters.set_nine(numbers::G92_FIRST, [0.0; 9]);
@@ -221,9 +222,6 @@ impl Interpreter {
 
     /// G10: coordinate systems (L2, L20) and the tool table (L1, L10, L11).
     fn set_data(&mut self, block: &Block, word: Word) -> Read<()> {
-        if self.dialect == Dialect::Printer && !block.has(b'l') {
-            return Ok(()); // Firmware retraction.
-        }
         if !block.has(b'l') || !block.has(b'p') {
             return Err(Fault::new(
                 "gcode::g10",
@@ -241,6 +239,7 @@ impl Interpreter {
             .hint("write the offsets of G54 to G59 with P1 to P6")),
             2 => self.set_system(block, false),
             20 => self.set_system(block, true),
+            kind @ 10..=13 if self.dialect.is_fanuc() => self.set_tool_part(block, kind),
             kind @ (1 | 10 | 11) => self.set_tool(block, kind),
             other => Err(Fault::new(
                 "gcode::g10",
@@ -295,6 +294,38 @@ impl Interpreter {
         self.parameters.set_nine(first, offset);
         if system == self.frame.system {
             self.load_system();
+        }
+        Ok(())
+    }
+
+    /// Fanuc and Haas: L10 is the length of tool P, L12 its radius, L11 and L13 the wear of both, which is added; in G91 R is added to what
+    /// is there.
+    fn set_tool_part(&mut self, block: &Block, kind: i64) -> Read<()> {
+        let number = self.integer(block, b'p', 1, 999_999)? as u32;
+        let Some(value) = block.get(b'r') else {
+            return Err(Fault::new("gcode::g10", block.whole(), format!("G10 L{kind} has no R, the value to set")));
+        };
+        let value = value * self.modal.unit_mm;
+        let mut tool = self.settings.tools.get(number).copied().unwrap_or_default();
+        let adds = self.modal.incremental;
+        let set = |old: f64| if adds { old + value } else { value };
+        match kind {
+            10 => tool.offset[2] = set(tool.offset[2] - tool.wear_mm[0]) + tool.wear_mm[0],
+            12 => tool.diameter_mm = 2.0 * (set(0.5 * tool.diameter_mm - tool.wear_mm[1]) + tool.wear_mm[1]),
+            11 => {
+                let wear = set(tool.wear_mm[0]);
+                tool.offset[2] += wear - tool.wear_mm[0];
+                tool.wear_mm[0] = wear;
+            }
+            _ => {
+                let wear = set(tool.wear_mm[1]);
+                tool.diameter_mm += 2.0 * (wear - tool.wear_mm[1]);
+                tool.wear_mm[1] = wear;
+            }
+        }
+        self.settings.tools.tools.insert(number, tool);
+        if number == self.tool {
+            self.load_tool(number);
         }
         Ok(())
     }

@@ -86,6 +86,14 @@ impl Curve {
         }
     }
 
+    /// How much farther from an arc's centre, or nearer, one point is than another, mm; 0 for a line.
+    pub(super) fn off_mm(&self, point: Point, other: Point) -> f64 {
+        match *self {
+            Self::Line { .. } => 0.0,
+            Self::Arc { center, .. } => (length(minus(point, center)) - length(minus(other, center))).abs(),
+        }
+    }
+
     /// Distance from start to end.
     pub(super) fn chord(&self) -> f64 {
         length(minus(self.end(), self.start()))

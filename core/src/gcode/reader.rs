@@ -17,16 +17,13 @@ use super::diagnostic::{Diagnostic, Fault, Read, Severity};
 use super::dialect;
 use super::fanuc::codes::CodeSet;
 use super::fanuc::{self, macros};
+use super::faults::Faults;
 use super::firmware;
 use super::flow::Flow;
 use super::lexer::{Cursor, END};
 use super::settings::{Dialect, Settings};
 use super::source::{LONGEST_LINE_BYTES, Line, Source};
 use super::state::Interpreter;
-
-/// Faults after which a program is not read any further. Subroutines that call themselves twice and err each time make
-/// faults without end from a few lines.
-const HOPELESS_FAULTS: usize = 100_000;
 
 /// Why a program cannot be read at all.
 #[derive(Debug, Error, miette::Diagnostic)]
@@ -55,6 +52,13 @@ pub enum ReadError {
         name: Arc<str>,
         /// Offset of the first NUL byte.
         offset: usize,
+    },
+    /// Two bytes a character.
+    #[error("{name}: the file is UTF-16 text, which no control reads")]
+    #[diagnostic(help("save it as UTF-8 or plain ASCII; editors ask for the encoding in \"Save as\""))]
+    Utf16 {
+        /// As the user named it.
+        name: Arc<str>,
     },
     /// Nothing in it.
     #[error("{name}: the program is empty")]
@@ -109,7 +113,7 @@ pub struct Reader {
     block: Block,
     style: Style,
     warnings: Vec<Diagnostic>,
-    faults: usize,
+    faults: Faults,
     idle_lines: u64,
     motions_seen: u64,
     lines: u64,
@@ -128,6 +132,10 @@ enum Percent {
     /// The program began without.
     Absent,
 }
+
+/// Faults that a refused motion before them may be the reason of: the position or the mode is not what it was meant to be.
+const FOLLOWING: [&str; 5] =
+    ["gcode::arc_radius", "gcode::no_motion_mode", "gcode::compensation", "gcode::cycle", "gcode::unused_word"];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
@@ -178,7 +186,7 @@ impl Reader {
             block: Block::new(),
             style: Style { printer: dialect == Dialect::Printer, points: dialect.is_fanuc(), codes },
             warnings: warning.into_iter().collect(),
-            faults: 0,
+            faults: Faults::default(),
             idle_lines: 0,
             motions_seen: 0,
             lines: 0,
@@ -237,8 +245,18 @@ impl Reader {
         if !self.interpreter.warnings.is_empty() {
             self.take_warnings();
         }
-        result.map_err(|fault| self.diagnose(Severity::Error, *fault))?;
+        if let Err(fault) = result {
+            return self.refuse(fault);
+        }
         self.watch()
+    }
+
+    /// A fault of the line under way. One that only follows from the fault of an earlier line is not told.
+    #[cold]
+    fn refuse(&mut self, fault: Box<Fault>) -> Result<(), Box<Diagnostic>> {
+        let follows = self.interpreter.behind_fault && FOLLOWING.contains(&fault.code);
+        self.interpreter.assume(&self.block);
+        if follows { Ok(()) } else { Err(self.diagnose(Severity::Error, *fault)) }
     }
 
     fn take_warnings(&mut self) {
@@ -322,7 +340,7 @@ impl Reader {
         let cursor = Cursor { bytes, at };
         block.read(cursor, interpreter, self.style)?;
         if let Some(comment) = &block.comment {
-            interpreter.comment(&bytes[comment.clone()]);
+            interpreter.comment(bytes, comment.clone())?;
         }
         if interpreter.dialect.is_fanuc() {
             interpreter.prepare(block)?;
@@ -368,11 +386,10 @@ impl Reader {
     fn end_of_file(&mut self) -> Result<(), Box<Diagnostic>> {
         if let Some((line, message)) = self.flow.unfinished() {
             self.state = State::Done;
-            let mut diagnostic = self.of_file("gcode::o_word", message);
-            diagnostic.line = line;
-            diagnostic.hint = Some("write it behind the last line that belongs to it".to_owned());
             self.interpreter.end_program();
-            return Err(diagnostic);
+            self.flow.source().find(line);
+            let fault = Fault::new("gcode::o_word", 0..usize::MAX, message);
+            return Err(self.diagnose(Severity::Error, *fault.hint("write it behind the last line that belongs to it")));
         }
         if let Err(fault) = self.interpreter.check_pending(0..0) {
             self.interpreter.end_program();
@@ -416,10 +433,7 @@ impl Reader {
             return Ok(());
         };
         self.state = State::Done;
-        let mut diagnostic = self.of_file("gcode::endless", message);
-        diagnostic.line = self.interpreter.line;
-        diagnostic.hint = Some(hint.to_owned());
-        Err(diagnostic)
+        Err(self.diagnose(Severity::Error, *Fault::new("gcode::endless", 0..usize::MAX, message).hint(hint)))
     }
 
     /// The fault with its place; reads the line again, because looking for a subroutine may have moved the buffer on.
@@ -444,24 +458,21 @@ impl Reader {
         Box::new(Diagnostic::of_file(Severity::Error, code, self.flow.source().name.clone(), message))
     }
 
+    /// How often a fault or warning has come up at its place.
+    pub(super) fn times(&self, diagnostic: &Diagnostic) -> u64 {
+        self.faults.times(diagnostic)
+    }
+
     fn warn(&mut self, warning: Diagnostic) {
-        if self.warnings.len() < self.interpreter.settings.max_errors {
+        if !self.faults.is_known(&warning) && self.warnings.len() < self.interpreter.settings.max_errors {
             self.warnings.push(warning);
         }
     }
 
-    /// Counts a fault; past the limit the faults become one line at the end.
-    fn count(&mut self, diagnostic: Box<Diagnostic>) -> Option<Box<Diagnostic>> {
-        self.faults += 1;
-        (self.faults <= self.interpreter.settings.max_errors).then_some(diagnostic)
-    }
-
     /// After the last line: how many faults were not shown.
     fn rest(&mut self) -> Option<Box<Diagnostic>> {
-        let more = self.faults.saturating_sub(self.interpreter.settings.max_errors);
-        let unread = if self.faults >= HOPELESS_FAULTS { "; the rest of the program was not read" } else { "" };
-        self.faults = 0;
-        (more > 0).then(|| self.of_file("gcode::more", format!("and {more} more errors{unread}")))
+        let said = self.faults.rest(self.interpreter.settings.max_errors)?;
+        Some(self.of_file("gcode::more", said))
     }
 }
 
@@ -474,16 +485,16 @@ impl Iterator for Reader {
             if let Some(canon) = self.interpreter.out.pop_front() {
                 return Some(Ok(canon));
             }
-            if self.state == State::Done || self.interpreter.ended || self.faults >= HOPELESS_FAULTS {
+            if self.state == State::Done || self.interpreter.ended || self.faults.are_hopeless() {
                 self.state = State::Done;
                 self.warn_of_points();
                 let rest = self.rest()?;
                 return Some(Err(*rest));
             }
             if let Err(diagnostic) = self.step()
-                && let Some(shown) = self.count(diagnostic)
+                && self.faults.add(&diagnostic, self.interpreter.settings.max_errors)
             {
-                return Some(Err(*shown));
+                return Some(Err(*diagnostic));
             }
         }
     }

@@ -184,6 +184,14 @@ impl Source {
         Ok(())
     }
 
+    /// Takes a line of the file as the one that `next_line` returned last, for a message; leaves it where the file cannot be read.
+    #[cold]
+    pub(super) fn find(&mut self, line: u32) {
+        if self.rewind().is_ok() {
+            while self.line < line && matches!(self.next_line(), Ok(Line::Text(_) | Line::TooLong(_))) {}
+        }
+    }
+
     /// Where the next line begins.
     pub(super) fn here(&self) -> Mark {
         Mark { offset: self.buffer_start + self.next as u64, lines_before: self.line }

@@ -4,6 +4,7 @@ use super::block::Block;
 use super::codes::{Group, spelled};
 use super::diagnostic::{Fault, Read};
 use super::fanuc;
+use super::settings::Dialect;
 use super::state::Interpreter;
 
 impl Interpreter {
@@ -36,6 +37,14 @@ impl Interpreter {
                     block.at(b'd'),
                     "the highest spindle speed D must not be negative",
                 ));
+            }
+            if word.number == 960 && !block.has(b's') && self.dialect == Dialect::LinuxCnc {
+                return Err(Fault::new(
+                    "gcode::spindle",
+                    word.at(),
+                    "G96 (constant surface speed) needs the speed S on its line",
+                )
+                .hint("write G96 S100 with metres per minute, in G20 feet per minute"));
             }
             if self.dialect.is_fanuc() {
                 self.own_spindle_mode(block, word)?;

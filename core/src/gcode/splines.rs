@@ -25,6 +25,8 @@ const START_WITHIN_MM: f64 = 0.01;
 pub(super) struct Collected {
     code: u16,
     order: usize,
+    /// Where it starts, in program coordinates.
+    start: Position,
     points: Vec<[f64; 3]>,
     weights: Vec<f64>,
     /// G6.2 only.
@@ -47,6 +49,10 @@ impl Interpreter {
         let pair = |one: u8, two: u8| {
             (block.has(one) || block.has(two)).then(|| [one, two].map(|letter| block.get(letter).unwrap_or(0.0) * unit))
         };
+        if block.has(b'i') != block.has(b'j') {
+            let at = block.at_any(bit(b'i') | bit(b'j'));
+            return Err(Fault::new("gcode::spline", at, "the first control point needs both I and J, or neither"));
+        }
         let first = match (pair(b'i', b'j'), self.last_bezier_end) {
             (Some(offset), _) => offset,
             (None, Some([p, q])) if code == 50 => [-p, -q],
@@ -91,8 +97,14 @@ impl Interpreter {
             let order = if block.has(b'l') { self.integer(block, b'l', ORDERS.0, ORDERS.1)? as usize } else { 3 };
             let first = self.machine_point(&self.at);
             let weight = if has_point { 1.0 } else { self.weight(block, b'p')? };
-            self.collected =
-                Some(Collected { code: 52, order, points: vec![first], weights: vec![weight], knots: Vec::new() });
+            self.collected = Some(Collected {
+                code: 52,
+                order,
+                start: self.at,
+                points: vec![first],
+                weights: vec![weight],
+                knots: Vec::new(),
+            });
             if !has_point {
                 return Ok(());
             }
@@ -104,6 +116,8 @@ impl Interpreter {
             return Err(Fault::new("gcode::spline", block.whole(), "a control point of G5.2 needs its weight P"));
         }
         let weight = self.weight(block, b'p')?;
+        // In G91 every point is a distance from the start of the curve.
+        self.at = self.collected.as_ref().map_or(self.at, |collected| collected.start);
         let target = self.target(block)?;
         self.collect(block, target, weight)
     }
@@ -149,8 +163,14 @@ impl Interpreter {
                 )
                 .hint("move to the first control point before G6.2"));
             }
-            self.collected =
-                Some(Collected { code: 62, order, points: Vec::new(), weights: Vec::new(), knots: Vec::new() });
+            self.collected = Some(Collected {
+                code: 62,
+                order,
+                start: self.at,
+                points: Vec::new(),
+                weights: Vec::new(),
+                knots: Vec::new(),
+            });
         }
         let last = self.collected.as_ref().and_then(|collected| collected.knots.last().copied());
         if last.is_some_and(|last| knot < last) {

@@ -2,7 +2,9 @@
 
 use std::collections::VecDeque;
 
+use super::block::Block;
 use super::canon::{Canon, Corner, Event, EventKind, Plane};
+use super::codes::Group;
 use super::compensation::Compensation;
 use super::cycles::Cycle;
 use super::diagnostic::Fault;
@@ -205,6 +207,8 @@ pub(super) struct Interpreter {
     pub(super) warnings: Vec<Fault>,
     /// A feed motion without F was reported: one report is enough.
     pub(super) missing_feed_reported: bool,
+    /// A line was refused, and position or modes are not what they were meant to be since.
+    pub(super) behind_fault: bool,
     /// M2, M30 or the closing %.
     pub(super) ended: bool,
     /// Result of the last subroutine.
@@ -247,6 +251,7 @@ impl Interpreter {
             line: 0,
             warnings: Vec::new(),
             missing_feed_reported: false,
+            behind_fault: false,
             ended: false,
             returned: None,
             call_level: 0,
@@ -270,6 +275,20 @@ impl Interpreter {
             self.out.push_back(step);
         } else {
             self.held.push(step);
+        }
+    }
+
+    /// A line was refused: takes the mode and the position that it was meant to leave, so that what follows is judged by itself.
+    #[cold]
+    pub(super) fn assume(&mut self, block: &Block) {
+        self.behind_fault |= block.has_axes() || !block.g.is_empty();
+        if let Some(word) = block.code(Group::Motion).filter(|word| word.number <= 30) {
+            self.modal.motion = word.number;
+        }
+        let moves = matches!(self.modal.motion, 0..=30) && block.has_axes() && !self.compensates();
+        if let Some(target) = self.target(block).ok().filter(|_| moves && self.lathe.is_none()) {
+            self.at = target;
+            self.here = self.frame.to_machine(&target);
         }
     }
 

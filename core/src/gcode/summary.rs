@@ -88,11 +88,18 @@ pub fn summarize(mut reader: Reader) -> Result<Summary, CheckError> {
         fault.hint = Some(NO_MOTION_HINT.to_owned());
         faults.push(fault);
     }
+    let counted = |mut diagnostic: Diagnostic| {
+        let times = reader.times(&diagnostic);
+        if times > 1 {
+            diagnostic.message += &format!(" ({times} times)");
+        }
+        diagnostic
+    };
     if !faults.is_empty() {
-        return Err(CheckError::Faults(faults));
+        return Err(CheckError::Faults(faults.into_iter().map(counted).collect()));
     }
     summary.lines = reader.lines();
-    summary.warnings = reader.warnings().to_vec();
+    summary.warnings = reader.warnings().iter().cloned().map(counted).collect();
     Ok(summary)
 }
 

@@ -7,7 +7,7 @@ use super::canon::EventKind;
 use super::codes::{Group, bit, spelled};
 use super::diagnostic::{Fault, Read};
 use super::parameters as numbers;
-use super::state::{Interpreter, Position};
+use super::state::{FeedMode, Interpreter, Position};
 use super::travel::{Speed, distance};
 
 /// Shortest way of a probe, mm (LinuxCNC: 0.254 mm or 0.01 inch).
@@ -26,6 +26,7 @@ impl Interpreter {
             ));
         };
         self.check_spindle(block, code)?;
+        self.check_way(block, code)?;
         let target = self.target(block)?;
         let start = self.at;
         let pitch_mm = pitch * self.modal.unit_mm;
@@ -42,6 +43,13 @@ impl Interpreter {
         Ok(())
     }
 
+    fn check_way(&self, block: &Block, code: u16) -> Read<()> {
+        if block.has_axes() {
+            return Ok(());
+        }
+        Err(Fault::new("gcode::thread", block.whole(), format!("{} has no axis word: it leads nowhere", spelled(code))))
+    }
+
     pub(super) fn check_spindle(&self, block: &Block, code: u16) -> Read<()> {
         if self.modal.spindle_turns == 0 || self.modal.spindle_speed == 0.0 {
             return Err(Fault::new(
@@ -56,7 +64,6 @@ impl Interpreter {
 
     /// A straight motion of `pitch_mm` a revolution.
     pub(super) fn paced(&mut self, block: &Block, target: Position, pitch_mm: f64) -> Read<()> {
-        use super::state::FeedMode;
         let (mode, feed) = (self.modal.feed_mode, self.modal.feed);
         (self.modal.feed_mode, self.modal.feed) = (FeedMode::PerRevolution, pitch_mm.abs());
         let result = self.go(block, target, Speed::Programmed);
@@ -69,6 +76,10 @@ impl Interpreter {
         let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
         if !block.has_axes() {
             return Err(Fault::new("gcode::probe", at, "a probing motion has no axis word"));
+        }
+        if self.modal.feed_mode == FeedMode::PerRevolution {
+            return Err(Fault::new("gcode::probe", at, "a probing motion cannot have a feed per revolution (G95)")
+                .hint("write G94 with a feed F per minute before it"));
         }
         let rotary = bit(b'a') | bit(b'b') | bit(b'c');
         let target = self.target(block)?;
@@ -93,6 +104,7 @@ impl Interpreter {
     /// G76: a thread along Z in several passes.
     pub(super) fn thread(&mut self, block: &Block) -> Read<()> {
         self.check_spindle(block, 760)?;
+        self.check_way(block, 760)?;
         let unit = self.modal.unit_mm;
         let need = |letter: u8| {
             let name = char::from(letter).to_ascii_uppercase();
@@ -146,7 +158,8 @@ impl Interpreter {
         for _ in 0..=springs {
             self.thread_pass(block, &thread, full)?;
         }
-        self.go(block, thread.at(thread.start[0], thread.end_z), Speed::Rapid)
+        // X and Y of the line are where it ends.
+        self.go(block, target, Speed::Rapid)
     }
 
     /// One pass at `depth` below the peaks: in, along the thread with its tapers, out.
@@ -164,10 +177,12 @@ impl Interpreter {
             (thread.taper > 0.0 && thread.taper_at & 1 != 0, thread.taper > 0.0 && thread.taper_at & 2 != 0);
 
         self.go(block, thread.at(safe_x, begin_z), Speed::Rapid)?;
-        let entry_x = if first_taper { top } else { bottom };
-        self.go(block, thread.at(entry_x, begin_z), Speed::Rapid)?;
         if first_taper {
-            self.coupled(block, thread.at(bottom, begin_z + direction * thread.taper), taper_pitch)?;
+            // The infeed waits for the spindle, too.
+            self.coupled(block, thread.at(top, begin_z), taper_pitch)?;
+            self.paced(block, thread.at(bottom, begin_z + direction * thread.taper), taper_pitch)?;
+        } else {
+            self.go(block, thread.at(bottom, begin_z), Speed::Rapid)?;
         }
         let straight_end = if last_taper { end_z - direction * thread.taper } else { end_z };
         self.coupled(block, thread.at(bottom, straight_end), thread.pitch)?;

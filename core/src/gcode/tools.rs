@@ -20,6 +20,8 @@ pub struct Tool {
     pub offset: [f64; 9],
     /// Diameter, mm.
     pub diameter_mm: f64,
+    /// Wear of length and radius that offset and diameter contain, mm: what `G10 L11` and `L13` of Fanuc and Haas have set.
+    pub wear_mm: [f64; 2],
     /// Front angle of a lathe tool, degrees.
     pub front_angle_deg: f64,
     /// Back angle of a lathe tool, degrees.

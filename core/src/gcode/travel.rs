@@ -57,6 +57,11 @@ impl Interpreter {
         let speed = if is_feed { Speed::Programmed } else { Speed::Rapid };
         let fed = self.line_to(block, machine, speed, extruder_mm);
         self.at = *target;
+        if self.behind_fault {
+            // Known again once a line names where it goes.
+            self.behind_fault = self.modal.incremental
+                || !(block.has(b'x') && block.has(if self.dialect.is_lathe() { b'z' } else { b'y' }));
+        }
         fed
     }
 

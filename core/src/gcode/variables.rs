@@ -1,9 +1,14 @@
 //! Assignments, messages, and what a subroutine call saves.
 
+use std::ops::Range;
+
+use super::block::Block;
 use super::canon::EventKind;
 use super::diagnostic::{Fault, Read};
 use super::expression::{Evaluator, Target, Values};
 use super::lexer::Cursor;
+use super::parameters as numbers;
+use super::settings::Dialect;
 use super::state::{Frame, Interpreter, Modal};
 
 /// Modes that M70 or M73 has put away.
@@ -11,6 +16,8 @@ use super::state::{Frame, Interpreter, Modal};
 pub(super) struct Saved {
     modal: Modal,
     frame: Frame,
+    /// Whether G92 was in effect.
+    shifted: bool,
     /// M73: they come back when the subroutine returns.
     automatic: bool,
     level: usize,
@@ -51,10 +58,11 @@ impl Interpreter {
         Ok(())
     }
 
-    /// Comments that speak to the operator.
+    /// Comments that speak to the operator, at the bytes `at` of the line; one in brackets can end the program.
     #[cold]
-    pub(super) fn comment(&mut self, text: &[u8]) {
-        let text = text.trim_ascii();
+    pub(super) fn comment(&mut self, line: &[u8], at: Range<usize>) -> Read<()> {
+        let in_brackets = at.start > 0 && line[at.start - 1] == b'(';
+        let text = line[at.clone()].trim_ascii();
         let after = |keyword: &[u8]| -> Option<&[u8]> {
             let (start, rest) = text.split_at_checked(keyword.len())?;
             (start.eq_ignore_ascii_case(keyword)).then_some(rest)
@@ -63,10 +71,16 @@ impl Interpreter {
             String::from_utf8_lossy(rest).into_owned()
         } else if let Some(rest) = after(b"print,").or_else(|| after(b"debug,")) {
             self.with_values(rest)
+        } else if let Some(rest) = after(b"abort,").filter(|_| in_brackets) {
+            let message = format!("the program gives itself up here: {}", self.with_values(rest).trim());
+            self.end_program();
+            return Err(Fault::new("gcode::abort", at, message)
+                .hint("(abort, ...) ends a program on LinuxCNC; what it asks for is in its text"));
         } else {
-            return;
+            return Ok(());
         };
         self.event(EventKind::Message { text });
+        Ok(())
     }
 
     /// The text with the values of its parameters.
@@ -112,7 +126,13 @@ impl Interpreter {
 
     /// M70, M73: puts the modes away; one set for each call level.
     pub(super) fn save_modes(&mut self, automatic: bool) {
-        let saved = Saved { modal: self.modal.clone(), frame: self.frame.clone(), automatic, level: self.call_level };
+        let saved = Saved {
+            modal: self.modal.clone(),
+            frame: self.frame.clone(),
+            shifted: self.is_shifted(),
+            automatic,
+            level: self.call_level,
+        };
         self.forget_modes();
         self.saved.push(saved);
     }
@@ -124,14 +144,27 @@ impl Interpreter {
     }
 
     /// M72.
-    pub(super) fn restore_modes(&mut self) {
+    pub(super) fn restore_modes(&mut self, block: &Block) -> Read<()> {
         let level = self.call_level;
         if let Some(saved) = self.saved.last().filter(|saved| saved.level == level).cloned() {
             self.restore(&saved);
+        } else if self.dialect == Dialect::LinuxCnc {
+            return Err(Fault::new(
+                "gcode::m_code",
+                block.whole(),
+                "M72 brings modes back that no M70 or M73 has put away",
+            )
+            .hint("write M70 before it, in the same subroutine"));
         }
+        Ok(())
     }
 
-    /// Modes come back; a motion mode does not, and offsets that G10 and G92 have changed stay.
+    fn is_shifted(&self) -> bool {
+        self.parameters.get(numbers::G92_ACTIVE) != 0.0
+    }
+
+    /// Modes come back; a motion mode does not, and offsets that G10 and G92 have changed stay. Whether G92 is in effect comes
+    /// back, as if G92.2 or G92.3 stood there.
     fn restore(&mut self, saved: &Saved) {
         let motion = self.modal.motion;
         self.modal = saved.modal.clone();
@@ -139,5 +172,8 @@ impl Interpreter {
         self.frame.system = saved.frame.system;
         self.frame.tool = saved.frame.tool;
         self.load_system();
+        if self.is_shifted() != saved.shifted {
+            self.shift_mode(if saved.shifted { 923 } else { 922 });
+        }
     }
 }
