@@ -110,8 +110,7 @@ enum Percent {
 }
 
 /// Faults that a refused motion before them may be the reason of: the position or the mode is not what it was meant to be.
-const FOLLOWING: [&str; 5] =
-    ["gcode::arc_radius", "gcode::no_motion_mode", "gcode::compensation", "gcode::cycle", "gcode::unused_word"];
+const FOLLOWING: [&str; 4] = ["gcode::arc_radius", "gcode::no_motion_mode", "gcode::compensation", "gcode::cycle"];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
