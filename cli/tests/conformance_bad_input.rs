@@ -2,6 +2,7 @@
 //! nothing on stdout, no panic, and a folder in which nothing has changed.
 
 #[path = "common/command.rs"]
+#[expect(dead_code, reason = "every test file uses a part of this")]
 mod common;
 
 use std::ffi::OsStr;

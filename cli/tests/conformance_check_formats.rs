@@ -1,7 +1,5 @@
 //! `check` for other programs: formats and exit codes; and what `canon` writes of a faulty program.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 #[path = "common/command.rs"]
 #[expect(dead_code, reason = "every test file uses a part of this")]
 mod common;

@@ -4,7 +4,7 @@
 type Row = (&'static str, &'static [&'static str], &'static str);
 
 const ROWS: &[Row] = &[
-    ("Two m codes used from same modal group", &["M7", "M8"], "M7 and M8 on one line"),
+    ("Two m codes used from same modal group", &["M"], "M-codes on one line that LinuxCNC counts to one group"),
     ("L word with no G10", &["G74"], "L with G74"),
     ("K word missing with g33", &["G33"], "G28, G30 or G92 while G33 is active"),
     ("does not fit into the inner corner", &["G4"], "an entry into compensation that leads the tool into the contour"),

@@ -212,17 +212,17 @@ impl Reader {
             self.take_warnings();
         }
         if let Err(fault) = result {
-            return self.refuse(fault);
+            return self.refuse(*fault);
         }
         self.watch()
     }
 
     /// A fault of the line under way. One that only follows from the fault of an earlier line is not told.
     #[cold]
-    fn refuse(&mut self, fault: Box<Fault>) -> Result<(), Box<Diagnostic>> {
+    fn refuse(&mut self, fault: Fault) -> Result<(), Box<Diagnostic>> {
         let follows = self.interpreter.behind_fault && FOLLOWING.contains(&fault.code);
         self.interpreter.assume(&self.block);
-        if follows { Ok(()) } else { Err(self.diagnose(Severity::Error, *fault)) }
+        if follows { Ok(()) } else { Err(self.diagnose(Severity::Error, fault)) }
     }
 
     fn take_warnings(&mut self) {

@@ -327,19 +327,8 @@ pub(crate) fn compare(text: &str, ours: &[Motion], theirs: &Theirs, totals: &mut
             // An arc in a plane that is turned out of the axes': only its end can be compared.
             Shape::Spline(_) if value[0] == "arc" => None,
             Shape::Spline(_) => {
-                let mut last = value;
-                let path = path_of(motion);
-                // They cut the curve into chords and arcs, whose ends lie on it.
-                while apart(&point(&last[2]), &end) > SAME_POINT_MM {
-                    let Some(next) = moves.next_if(|next| next[0] == "feed" || next[0] == "arc") else {
-                        return place("the spline ends elsewhere", last);
-                    };
-                    let away = away_from(&path, std::array::from_fn(|axis| point(&last[2])[axis]));
-                    totals.largest_mm[2] = totals.largest_mm[2].max(away);
-                    if away.is_nan() || away > SAME_POINT_MM {
-                        return place(&format!("a point {away} mm off the spline"), last);
-                    }
-                    last = next;
+                if let Some((wrong, value)) = wrong_spline(motion, &end, value, &mut moves, totals) {
+                    return place(&wrong, value);
                 }
                 continue;
             }
@@ -387,4 +376,28 @@ fn wrong_arc(motion: &Motion, value: &serde_json::Value, totals: &mut Totals) ->
     // Not a number is far.
     let is_same = distance <= SAME_ARC_MM && length <= SAME_ARC_MM;
     (!is_same).then(|| format!("another arc, {distance} mm apart, {length} mm longer or shorter"))
+}
+
+/// What is different about the chords and arcs that LinuxCNC cuts a spline into, whose ends lie on it; and where.
+fn wrong_spline<'a>(
+    motion: &Motion,
+    end: &[f64; 9],
+    first: &'a serde_json::Value,
+    moves: &mut std::iter::Peekable<impl Iterator<Item = &'a serde_json::Value>>,
+    totals: &mut Totals,
+) -> Option<(String, &'a serde_json::Value)> {
+    let path = path_of(motion);
+    let mut last = first;
+    while apart(&point(&last[2]), end) > SAME_POINT_MM {
+        let Some(next) = moves.next_if(|next| next[0] == "feed" || next[0] == "arc") else {
+            return Some(("the spline ends elsewhere".to_owned(), last));
+        };
+        let away = away_from(&path, std::array::from_fn(|axis| point(&last[2])[axis]));
+        totals.largest_mm[2] = totals.largest_mm[2].max(away);
+        if away.is_nan() || away > SAME_POINT_MM {
+            return Some((format!("a point {away} mm off the spline"), last));
+        }
+        last = next;
+    }
+    None
 }
