@@ -22,7 +22,7 @@ const ROWS: &[Row] = &[
     ("zero feed rate", &["G94"], "G94 where it is active already"),
     ("already has a word P", &[" P"], "P twice on a line"),
     ("O9000 has no M99", &["O9000"], "a subroutine without its M99"),
-    ("seeking o-word: o<9000>", &[" O9000"], "N before the O of a subroutine"),
+    ("seeking o-word: o<9000>", &["O9000"], "a subroutine for M98 that LinuxCNC does not find"),
     ("Unexpected character after O-word", &["O9000"], "N before the O of a subroutine"),
     ("Nested subroutine definition", &[" sub"], "an O-word without its keyword in a subroutine"),
     ("another", &["G84", "G18"], "G84 and G74 outside G17"),
