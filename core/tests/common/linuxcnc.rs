@@ -273,7 +273,11 @@ fn without_flat_corners(text: &str, ours: &[Motion], totals: &mut Totals) -> Vec
     let mut kept: Vec<(Motion, f64)> = Vec::with_capacity(ours.len());
     for (number, motion) in ours.iter().enumerate() {
         let next = ours.get(number + 1).map(|next| next.line);
-        if next == Some(motion.line) && flat.contains(&motion.line) && matches!(motion.shape, Shape::Arc { .. }) {
+        // A loop may repeat its line: an arc of the program is longer than that round a flat corner, or full, its chord next to nothing.
+        let chord = (0..3).map(|axis| (motion.end_mm[axis] - motion.start_mm[axis]).powi(2)).sum::<f64>().sqrt();
+        let is_short = chord > 1e-5 && chord <= radius_mm * FLAT_RAD * 1.001;
+        let is_round = is_short && matches!(motion.shape, Shape::Arc { .. });
+        if is_round && next == Some(motion.line) && flat.contains(&motion.line) {
             totals.flat_corners += 1;
             continue;
         }
