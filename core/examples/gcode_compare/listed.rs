@@ -36,6 +36,9 @@ const ROWS: &[Row] = &[
     ("off the spline", &["G5"], "points of splines where LinuxCNC's preview has not noticed Z of an arc"),
     ("no code such as G0 or G1", &["G5"], "axis words alone behind G5 and G5.1"),
     ("needs its weight P", &["G5.2"], "G5.2 without P"),
+    ("with L word, but plane", &["G4"], "L with G41.1 and G42.1"),
+    ("I J words not allowed with G10 L2", &["G10"], "I and J with G10 L2"),
+    ("Unclosed comment", &["(open"], "a comment that is open in a line that is not carried out"),
     ("needs its word Q", &["M6"], "M67 and M68 without Q"),
 ];
 

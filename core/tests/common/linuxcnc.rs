@@ -266,6 +266,16 @@ fn flat_lines(text: &str) -> HashSet<u32> {
     flat
 }
 
+/// Whether a motion is an arc that turns no farther than a flat corner.
+fn turns_little(motion: &Motion) -> bool {
+    let Shape::Arc { center_mm, .. } = &motion.shape else {
+        return false;
+    };
+    let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt();
+    let chord = apart(motion.start_mm, motion.end_mm);
+    chord > NO_MOTION_MM && chord <= apart(motion.start_mm, *center_mm) * FLAT_RAD * 1.001
+}
+
 /// The motions without the arcs round flat corners, and how far each end may be from LinuxCNC's: elsewhere by rounding only.
 fn without_flat_corners(text: &str, ours: &[Motion], totals: &mut Totals) -> Vec<(Motion, f64)> {
     let radius_mm = compensated_radius(text);
@@ -273,10 +283,8 @@ fn without_flat_corners(text: &str, ours: &[Motion], totals: &mut Totals) -> Vec
     let mut kept: Vec<(Motion, f64)> = Vec::with_capacity(ours.len());
     for (number, motion) in ours.iter().enumerate() {
         let next = ours.get(number + 1).map(|next| next.line);
-        // A loop may repeat its line: an arc of the program is longer than that round a flat corner, or full, its chord next to nothing.
-        let chord = (0..3).map(|axis| (motion.end_mm[axis] - motion.start_mm[axis]).powi(2)).sum::<f64>().sqrt();
-        let is_short = chord > 1e-5 && chord <= radius_mm * FLAT_RAD * 1.001;
-        let is_round = is_short && matches!(motion.shape, Shape::Arc { .. });
+        // A loop may repeat its line: an arc of the program turns farther than that round a flat corner, or is full.
+        let is_round = radius_mm > 0.0 && turns_little(motion);
         if is_round && next == Some(motion.line) && flat.contains(&motion.line) {
             totals.flat_corners += 1;
             continue;
