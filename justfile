@@ -65,6 +65,10 @@ tables: paper compare
 mistakes:
     FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright-cli --test golden_gcode_mistakes
 
+# The reader beside LinuxCNC on random programs (Debian: linuxcnc-uspace): about a quarter of an hour for 20,000.
+gcode-compare programs="20000" first="1":
+    cargo run --release --quiet -p feedwright --example gcode_compare -- {{ programs }} {{ first }}
+
 # Instructions of one piece of work in the servo thread, counted by callgrind (Debian: valgrind).
 instructions:
     #!/usr/bin/env bash

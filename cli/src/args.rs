@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use feedwright::gcode::{AUTO, Dialect, INCH_MM, Increment, Settings, ToolTable};
-use miette::Result;
+use miette::{Result, miette};
 
 /// Predict the contour error of a CNC program on a machine, and correct it.
 #[derive(Debug, Parser)]
@@ -197,6 +197,9 @@ pub(crate) struct CheckArgs {
     /// G-code programs, machine files (.toml), and folders of programs.
     #[arg(required = true)]
     pub(crate) files: Vec<PathBuf>,
+    /// How mistakes are told: text for people; json, sarif (2.1.0) and github (annotations of a workflow) on the standard output.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub(crate) format: Format,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
 }
@@ -232,6 +235,18 @@ pub(crate) struct ReaderArgs {
     /// Unit of the lengths in the tool table.
     #[arg(long, value_name = "UNIT", value_enum, default_value_t = Unit::Mm, requires = "tool_table")]
     pub(crate) tool_unit: Unit,
+    /// Folder of subroutines, each in a file of its name (.ngc); may be given several times. The program's own folder comes first.
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) subroutines: Vec<PathBuf>,
+}
+
+/// How mistakes are told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    Text,
+    Json,
+    Sarif,
+    Github,
 }
 
 /// Unit of lengths.
@@ -248,6 +263,13 @@ impl ReaderArgs {
             Unit::Mm => 1.0,
             Unit::Inch => INCH_MM,
         };
+        if let Some(folder) = self.subroutines.iter().find(|folder| !folder.is_dir()) {
+            return Err(miette!(
+                help = "name the folder that holds the files of the subroutines",
+                "--subroutines {}: this is no folder",
+                folder.display()
+            ));
+        }
         let tools = self.tool_table.as_deref().map(|table| ToolTable::read(table, unit_mm)).transpose()?;
         Ok(Settings {
             dialect: Dialect::named(&self.dialect)?,
@@ -255,6 +277,7 @@ impl ReaderArgs {
             max_motions: self.max_motions,
             max_idle_lines: self.max_idle_lines,
             tools: tools.unwrap_or_default(),
+            subroutine_paths: self.subroutines.clone(),
             ..Settings::default()
         })
     }

@@ -1,11 +1,12 @@
 //! The `feedwright` command: arguments in, calls of the library, messages out. It converts and never computes.
 //!
 //! Data go to stdout, messages and progress to stderr. Exit codes: 0 within tolerance, 1 out of tolerance, 2 any error,
-//! 130 interrupted.
+//! 130 interrupted. Those of `check`: 0 at most warnings, 1 mistakes in a file, 2 a file that cannot be read.
 
 mod args;
 mod commands;
 mod files;
+mod findings;
 mod message;
 mod progress;
 mod sweep;

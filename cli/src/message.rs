@@ -7,8 +7,10 @@ use miette::{GraphicalReportHandler, GraphicalTheme, Report, Result, miette};
 
 /// The result is out of tolerance.
 pub(crate) const OUT_OF_TOLERANCE: u8 = 1;
+/// What was checked has mistakes.
+pub(crate) const MISTAKES: u8 = 1;
 /// Something is wrong with what was asked for.
-const ERROR: u8 = 2;
+pub(crate) const ERROR: u8 = 2;
 /// As shells have it for SIGINT.
 pub(crate) const INTERRUPTED: u8 = 130;
 /// Width of messages where there is no terminal to ask.
@@ -33,6 +35,11 @@ pub(crate) fn printed(result: io::Result<()>, code: ExitCode) -> Result<ExitCode
 /// Shows a warning.
 pub(crate) fn warn(report: Report) {
     show(&report);
+}
+
+/// Shows an error of something that is checked: it is no error of the command.
+pub(crate) fn tell(report: &Report) {
+    show(report);
 }
 
 /// Plain text where stderr is no terminal or `NO_COLOR` is set. Causes that the message tells already are not told twice.

@@ -29,7 +29,7 @@ fn check_reads_machine_files_too() {
     folder.file("fine.toml", tnv40);
     folder.file("bad.toml", tnv40.replace("kd = 0 ", "kd = nan "));
     assert!(folder.run(&["check", "fine.toml"]).succeeded().stdout.contains("machine tnv40, 3 axes"));
-    folder.run(&["check", "bad.toml"]).refused(&["3 faults", "bad.toml:32:6", "hint: write a finite number"]);
+    folder.run(&["check", "bad.toml"]).faulty(&["3 faults", "bad.toml:32:6", "hint: write a finite number"]);
 }
 
 /// The program takes minutes to cut; the interrupt comes once its hidden files stand there.

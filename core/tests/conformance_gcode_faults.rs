@@ -77,6 +77,71 @@ fn behind_a_refused_lathe_cycle_axis_words_are_no_further_cycles() {
     assert_eq!(faults("G18 F1 G71 X1 Z1\nX5\nX6").len(), 1);
 }
 
+/// Programs, the lines of their faults, and a part of the hint of the first.
+const HINTS: &[(&str, &[u32], &str)] = &[
+    ("G0 X\u{2212}5", &[1], "the hyphen `-` of the keyboard"),
+    ("G0\u{a0}X5", &[1], "the blank of the keyboard"),
+    ("o1 if [#1 == 5]\nG0 X1\no1 else\nG0 X2\no1 endif", &[1], "EQ, NE, GT, GE, LT, LE"),
+    ("o1 while [#1 < 5]\nG0 X1\no1 endwhile\nG0 X1", &[1], "EQ, NE, GT, GE, LT, LE"),
+    ("F100 G81 X1 Y1 Z-1 R1 K4", &[1], "LinuxCNC's word is L"),
+    ("G103 P1\nG0 X1", &[1], "it moves nothing"),
+    ("G47 P1\nG0 X1", &[1], "the motions of the letters"),
+    ("#1=5+3\nG0 X1", &[1], "#1=[5+3]"),
+    ("G0 X[sin(30)]", &[1], "sin[30]"),
+    ("Gl X5\nG0 X1", &[1], "write 1"),
+    // What follows from a refused motion is not told again.
+    ("F100\nG1 X5 Y5 Z$\nX6\nG2 X9 Y0 I1", &[2], ""),
+    ("F100\nG2 X5 Y5 I9\nG3 X0 Y0 I-1", &[2], ""),
+    ("F100\nG1 X2000000 Y1\nG2 X5 Y5 I9\nG1 X0 Y0\nG2 X5 Y5 I9", &[2, 5], ""),
+    // A branch or a loop without its end has the place of its beginning.
+    ("G0 X1\no1 if [0]\nG0 X2", &[2], "behind the last line that belongs to it"),
+    ("G0 X1\no7 sub\nG0 X2", &[2], "behind the last line that belongs to it"),
+];
+
+#[test]
+fn hints_help_and_nothing_is_told_that_follows_from_another_fault() {
+    for &(text, lines, hint) in HINTS {
+        let found = faults(text);
+        assert_eq!(found.iter().map(|fault| fault.line).collect::<Vec<_>>(), lines, "{text:?}: {found:?}");
+        assert!(found[0].hint.as_deref().unwrap_or_default().contains(hint), "{text:?}: {found:?}");
+        assert!(found[0].column > 0 && !found[0].text.is_empty(), "{text:?}: {found:?}");
+    }
+}
+
+#[test]
+fn a_fault_in_a_loop_is_told_once_with_a_count() {
+    let found = faults("F100\no1 repeat [50]\nG1 X5 Q7\no1 endrepeat\nG1 X1 Q7");
+    assert_eq!(found.iter().map(|fault| fault.line).collect::<Vec<_>>(), [3, 5]);
+    assert_eq!(found[0].message, "Q has no meaning with G1 (50 times)");
+    assert_eq!(found[1].message, "Q has no meaning with G1");
+}
+
+#[test]
+fn an_endless_loop_has_a_place() {
+    let text = "F100\nG1 X1\no1 while [1]\n#2=[#2+1]\no1 endwhile\n";
+    let settings = Settings { max_idle_lines: 100, ..Settings::default() };
+    let reader = Reader::from_text("part.ngc", text, settings).unwrap();
+    let found: Vec<_> = reader.filter_map(Result::err).collect();
+    assert!(found.len() == 1 && (3..=5).contains(&found[0].line) && found[0].column == 1, "{found:?}");
+}
+
+#[test]
+fn utf_16_is_named() {
+    let text: Vec<u8> = "G0 X1\nM2\n".encode_utf16().flat_map(u16::to_le_bytes).collect();
+    for text in [text.clone(), [b"\xff\xfe".to_vec(), text].concat()] {
+        let refused = Reader::from_text("part.ngc", text, Settings::default()).unwrap_err();
+        assert!(matches!(refused, ReadError::Utf16 { .. }), "{refused:?}");
+    }
+}
+
+#[test]
+fn long_lines_are_cut_about_their_fault() {
+    let text = format!("G0 {}X1 $ {}", "(comment) ".repeat(300), "(comment) ".repeat(300));
+    let found = faults(&text);
+    assert!(found[0].text.chars().count() <= 110 && found[0].text.contains("X1 $"), "{:?}", found[0].text);
+    assert!(found[0].text.starts_with('…') && found[0].text.ends_with('…'), "{:?}", found[0].text);
+}
+
 #[test]
 fn nothing_behind_the_end_is_read() {
     let reader = Reader::from_text("part.ngc", "G0 X1\nM2\n\0 not read \u{fffd}", Settings::default());

@@ -10,41 +10,82 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
 use feedwright::gcode::{self, CheckError, Settings};
-use feedwright::machine::Machine;
+use feedwright::machine::{Machine, MachineError, Problem};
 use miette::{Report, Result, miette};
 use rayon::iter::{ParallelBridge, ParallelIterator};
+use serde_json::{Value, json};
 
-use crate::args::CheckArgs;
+use crate::args::{CheckArgs, Format};
 use crate::files::Files;
-use crate::message::{fail, printed, warn};
+use crate::findings::{Finding, sarif};
+use crate::message::{ERROR, MISTAKES, printed, tell, warn};
 use crate::progress::Bar;
+
+/// What came of one file, best first: the worst of all files is the exit code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Outcome {
+    /// Warnings at most.
+    Fine,
+    Mistakes,
+    Unreadable,
+}
+
+impl Outcome {
+    const fn code(self) -> u8 {
+        match self {
+            Self::Fine => 0,
+            Self::Mistakes => MISTAKES,
+            Self::Unreadable => ERROR,
+        }
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Fine => "fine",
+            Self::Mistakes => "mistakes",
+            Self::Unreadable => "unreadable",
+        }
+    }
+}
 
 /// What is told of one file.
 struct Verdict {
+    outcome: Outcome,
     /// What it amounts to; `None` where it has mistakes.
     line: Option<String>,
     /// Mistakes, or warnings where there is none.
     reports: Vec<Report>,
+    /// The same for other programs.
+    findings: Vec<Finding>,
+}
+
+/// What was printed so far, and what is printed at the end.
+struct Told {
+    format: Format,
+    worst: Outcome,
+    findings: Vec<Finding>,
+    files: Vec<Value>,
 }
 
 pub(crate) fn run(args: &CheckArgs, quiet: bool) -> Result<ExitCode> {
     let settings = args.reader.settings()?;
     let found = Files::find(&args.files);
-    let bar = Bar::new(quiet, found.files.len() as u64);
-    let mut code = ExitCode::SUCCESS;
+    let bar = Bar::new(quiet || args.format != Format::Text, found.files.len() as u64);
+    let mut told = Told { format: args.format, worst: Outcome::Fine, findings: Vec::new(), files: Vec::new() };
     for remark in &found.remarks {
         eprintln!("{remark}");
     }
     for fault in &found.faults {
-        code = fail(&miette!("{fault}"));
+        tell(&miette!("{fault}"));
+        told.worst = Outcome::Unreadable;
     }
-    let result = print(&found.files, &settings, &bar, &mut code);
+    let result = print(&found.files, &settings, &bar, &mut told);
     bar.clear();
-    printed(result, code)
+    printed(result, ExitCode::from(told.worst.code()))
 }
 
 /// Checks all files and prints each verdict as soon as those before it are printed.
-fn print(files: &[PathBuf], settings: &Settings, bar: &Bar, code: &mut ExitCode) -> io::Result<()> {
+fn print(files: &[PathBuf], settings: &Settings, bar: &Bar, told: &mut Told) -> io::Result<()> {
     let enough = AtomicBool::new(false);
     let (sender, receiver) = mpsc::channel();
     rayon::in_place_scope(|scope| {
@@ -58,7 +99,7 @@ fn print(files: &[PathBuf], settings: &Settings, bar: &Bar, code: &mut ExitCode)
                 }
             });
         });
-        let result = print_in_order(files, &receiver, bar, code);
+        let result = print_in_order(files, &receiver, bar, told);
         enough.store(true, Ordering::Relaxed);
         result
     })
@@ -68,28 +109,53 @@ fn print_in_order(
     files: &[PathBuf],
     verdicts: &mpsc::Receiver<(usize, Verdict)>,
     bar: &Bar,
-    code: &mut ExitCode,
+    told: &mut Told,
 ) -> io::Result<()> {
     let mut out = io::stdout().lock();
     let (mut early, mut next, mut faulty) = (BTreeMap::new(), 0, 0);
     for (number, verdict) in verdicts {
         early.insert(number, verdict);
         while let Some(verdict) = early.remove(&next) {
-            bar.aside(|| {
-                for report in verdict.reports {
-                    if verdict.line.is_some() { warn(report) } else { *code = fail(&report) }
-                }
-                verdict.line.iter().try_for_each(|line| writeln!(out, "{}: {line}", files[next].display()))
-            })?;
-            faulty += usize::from(verdict.line.is_none());
+            faulty += usize::from(verdict.outcome != Outcome::Fine);
+            bar.aside(|| told.tell(&mut out, &files[next], verdict))?;
             bar.step();
             next += 1;
         }
     }
-    if files.len() > 1 {
-        writeln!(out, "{} files: {} without mistakes, {faulty} with mistakes", files.len(), files.len() - faulty)?;
+    match told.format {
+        Format::Text if files.len() > 1 => {
+            writeln!(out, "{} files: {} without mistakes, {faulty} with mistakes", files.len(), files.len() - faulty)
+        }
+        Format::Text | Format::Github => Ok(()),
+        Format::Json => writeln!(out, "{:#}", json!({ "files": told.files })),
+        Format::Sarif => writeln!(out, "{:#}", sarif(&told.findings)),
     }
-    Ok(())
+}
+
+impl Told {
+    /// Prints a verdict, or keeps it for the end.
+    fn tell(&mut self, out: &mut impl Write, file: &Path, verdict: Verdict) -> io::Result<()> {
+        self.worst = self.worst.max(verdict.outcome);
+        match self.format {
+            Format::Text => {
+                for report in verdict.reports {
+                    if verdict.line.is_some() { warn(report) } else { tell(&report) }
+                }
+                verdict.line.iter().try_for_each(|line| writeln!(out, "{}: {line}", file.display()))?;
+            }
+            Format::Github => {
+                verdict.findings.iter().try_for_each(|finding| writeln!(out, "{}", finding.github()))?;
+            }
+            Format::Sarif => self.findings.extend(verdict.findings),
+            Format::Json => self.files.push(json!({
+                "file": file.display().to_string(),
+                "outcome": verdict.outcome.name(),
+                "amounts_to": verdict.line,
+                "findings": verdict.findings.iter().map(Finding::json).collect::<Vec<_>>(),
+            })),
+        }
+        Ok(())
+    }
 }
 
 fn verdict(file: &Path, settings: &Settings) -> Verdict {
@@ -97,22 +163,53 @@ fn verdict(file: &Path, settings: &Settings) -> Verdict {
     if is_machine { machine(file) } else { program(file, settings.clone()) }
 }
 
+/// What is told where a file as a whole is wrong.
+fn refused(file: &Path, outcome: Outcome, report: Report) -> Verdict {
+    let findings = vec![Finding::of_file(&file.display().to_string(), &report)];
+    Verdict { outcome, line: None, reports: vec![report], findings }
+}
+
 fn machine(file: &Path) -> Verdict {
     match Machine::read(file) {
         Ok(machine) => {
             let line = Some(format!("machine {}, {} axes", machine.name, machine.axis_count()));
-            Verdict { line, reports: Vec::new() }
+            Verdict { outcome: Outcome::Fine, line, reports: Vec::new(), findings: Vec::new() }
         }
-        Err(error) => Verdict { line: None, reports: vec![error.into()] },
+        Err(error) => {
+            let findings = machine_findings(file, &error);
+            let outcome = if findings.is_empty() { Outcome::Unreadable } else { Outcome::Mistakes };
+            let refused = refused(file, outcome, error.into());
+            if findings.is_empty() { refused } else { Verdict { findings, ..refused } }
+        }
     }
+}
+
+/// The faults in the text of a machine file; none where it cannot be read.
+fn machine_findings(file: &Path, error: &MachineError) -> Vec<Finding> {
+    let MachineError::Invalid { problems, .. } = error else {
+        return Vec::new();
+    };
+    let finding = |problem: &Problem| Finding {
+        file: file.display().to_string(),
+        is_error: true,
+        code: "machine::file".to_owned(),
+        line: u32::try_from(problem.line).unwrap_or(u32::MAX),
+        column: u32::try_from(problem.column).unwrap_or(u32::MAX),
+        span: 1,
+        message: problem.message.clone(),
+        hint: problem.hint.clone(),
+    };
+    problems.iter().map(finding).collect()
 }
 
 fn program(file: &Path, settings: Settings) -> Verdict {
     let summary = match gcode::check(file, settings) {
         Ok(summary) => summary,
-        Err(CheckError::Read(error)) => return Verdict { line: None, reports: vec![error.into()] },
+        Err(CheckError::Read(error)) => return refused(file, Outcome::Unreadable, error.into()),
         Err(CheckError::Faults(faults)) => {
-            return Verdict { line: None, reports: faults.into_iter().map(Report::new).collect() };
+            let findings = faults.iter().map(Finding::of).collect();
+            let reports = faults.into_iter().map(Report::new).collect();
+            return Verdict { outcome: Outcome::Mistakes, line: None, reports, findings };
         }
     };
     let (dialect, reason) = summary.dialect;
@@ -123,7 +220,9 @@ fn program(file: &Path, settings: Settings) -> Verdict {
         summary.feed_mm,
         summary.rapid_mm
     );
-    Verdict { line: Some(line), reports: summary.warnings.into_iter().map(Report::new).collect() }
+    let findings = summary.warnings.iter().map(Finding::of).collect();
+    let reports = summary.warnings.into_iter().map(Report::new).collect();
+    Verdict { outcome: Outcome::Fine, line: Some(line), reports, findings }
 }
 
 fn counted(count: u64, what: &str) -> String {

@@ -104,7 +104,16 @@ impl Ran {
 
     /// It ended with an error that says all of `says`, and printed nothing else.
     pub(crate) fn refused(&self, says: &[&str]) {
-        assert_eq!(self.code, Some(2), "{self:?}");
+        self.ended(2, says);
+    }
+
+    /// `check` found mistakes, says all of `says`, and printed nothing else.
+    pub(crate) fn faulty(&self, says: &[&str]) {
+        self.ended(1, says);
+    }
+
+    fn ended(&self, code: i32, says: &[&str]) {
+        assert_eq!(self.code, Some(code), "{self:?}");
         assert_eq!(self.stdout, "", "{self:?}");
         assert!(!self.stderr.contains("panicked") && !self.stderr.contains('\u{1b}'), "{}", self.stderr);
         // Messages are wrapped to the width of the terminal.

@@ -4,7 +4,7 @@
 type Row = (&'static str, &'static [&'static str], &'static str);
 
 const ROWS: &[Row] = &[
-    ("Two m codes used from same modal group", &["M7", "M8"], "M7 and M8 on one line"),
+    ("Two m codes used from same modal group", &["M"], "M-codes on one line that LinuxCNC counts to one group"),
     ("L word with no G10", &["G74"], "L with G74"),
     ("K word missing with g33", &["G33"], "G28, G30 or G92 while G33 is active"),
     ("does not fit into the inner corner", &["G4"], "an entry into compensation that leads the tool into the contour"),
@@ -22,7 +22,7 @@ const ROWS: &[Row] = &[
     ("zero feed rate", &["G94"], "G94 where it is active already"),
     ("already has a word P", &[" P"], "P twice on a line"),
     ("O9000 has no M99", &["O9000"], "a subroutine without its M99"),
-    ("seeking o-word: o<9000>", &[" O9000"], "N before the O of a subroutine"),
+    ("seeking o-word: o<9000>", &["O9000"], "a subroutine for M98 that LinuxCNC does not find"),
     ("Unexpected character after O-word", &["O9000"], "N before the O of a subroutine"),
     ("Nested subroutine definition", &[" sub"], "an O-word without its keyword in a subroutine"),
     ("another", &["G84", "G18"], "G84 and G74 outside G17"),
@@ -36,6 +36,9 @@ const ROWS: &[Row] = &[
     ("off the spline", &["G5"], "points of splines where LinuxCNC's preview has not noticed Z of an arc"),
     ("no code such as G0 or G1", &["G5"], "axis words alone behind G5 and G5.1"),
     ("needs its weight P", &["G5.2"], "G5.2 without P"),
+    ("with L word, but plane", &["G4"], "L with G41.1 and G42.1"),
+    ("I J words not allowed with G10 L2", &["G10"], "I and J with G10 L2"),
+    ("Unclosed comment", &["(open"], "a comment that is open in a line that is not carried out"),
     ("needs its word Q", &["M6"], "M67 and M68 without Q"),
 ];
 

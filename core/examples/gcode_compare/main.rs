@@ -4,6 +4,8 @@
 //! (Debian: `linuxcnc-uspace`). The same numbers give the same programs. Every difference that is not listed is written to
 //! `gcode_compare_NUMBER.ngc` and ends the run with exit code 1; in the end it says which codes the programs had.
 
+#![expect(clippy::unwrap_used, reason = "shared with tests, which may stop")]
+
 #[path = "../../tests/common/linuxcnc.rs"]
 mod linuxcnc;
 mod listed;

@@ -205,17 +205,25 @@ impl Block {
     }
 
     /// Printers write `G28 X Y` and `M84 E`: a letter that only names an axis.
+    #[inline]
+    fn names_axes(&self) -> bool {
+        !self.m.is_empty() || self.g.iter().any(|word| word.number == 280)
+    }
+
     #[cold]
-    fn is_bare(&self, cursor: &mut Cursor<'_>) -> bool {
-        let names_axes = !self.m.is_empty() || self.g.iter().any(|word| word.number == 280);
-        names_axes && matches!(cursor.peek(), b'a'..=b'z' | b';' | b'*' | END)
+    fn is_bare(cursor: &mut Cursor<'_>) -> bool {
+        matches!(cursor.peek(), b'a'..=b'z' | b';' | b'*' | END)
     }
 
     #[inline]
     fn read_word<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, byte: u8, start: usize) -> Read<()> {
         self.exponent |= byte == b'e' && evaluator.cursor.is_exponent();
         evaluator.cursor.bump();
-        let value = if self.bare_words && self.is_bare(&mut evaluator.cursor) { 0.0 } else { evaluator.value()? };
+        let value = if self.bare_words && self.names_axes() && Self::is_bare(&mut evaluator.cursor) {
+            0.0
+        } else {
+            evaluator.value()?
+        };
         let slot = slot(byte);
         let place = (start as u32, evaluator.cursor.at as u32);
         if value.is_nan() {
@@ -242,7 +250,8 @@ impl Block {
         evaluator.cursor.bump();
         let value = evaluator.value()?;
         let end = evaluator.cursor.at;
-        let tenths = (value * 10.0).round();
+        // A cast is much faster than rounding, and below 0 nothing is a code.
+        let tenths = (value * 10.0 + 0.5) as u32 as f64;
         let is_tenth = (value * 10.0 - tenths).abs() < TENTH_WITHIN && (0.0..10_000.0).contains(&tenths);
         let Some(code) = is_tenth.then(|| self.codes.find(tenths as u16)).flatten() else {
             return Err(unknown_g(value, evaluator.cursor.bytes, start..end));

@@ -160,17 +160,7 @@ impl Interpreter {
         let aside = scaled(left_of(along), compensation.side * compensation.radius_mm);
         let end = add(to, aside);
         if compensation.last.is_none() {
-            if length(way) < compensation.radius_mm - ENTRY_SLACK_MM {
-                let (way, radius) = (length(way), compensation.radius_mm);
-                return Err(Fault::new(
-                    "gcode::compensation",
-                    block.whole(),
-                    format!(
-                        "the entry into cutter compensation is {way:.4} mm long: it must be as long as the tool's radius of {radius:.4} mm"
-                    ),
-                )
-                .hint("begin the line with G41 or G42 farther from the contour"));
-            }
+            check_entry(block, length(way), compensation.radius_mm)?;
         }
         // An entry that leads into an inner corner ends as if its whole length had been beside the contour.
         let mut start = add(from, aside);
@@ -375,6 +365,17 @@ impl Interpreter {
         self.held.push(Canon::Motion(motion));
         Ok(())
     }
+}
+
+fn check_entry(block: &Block, way: f64, radius: f64) -> Read<()> {
+    if way >= radius - ENTRY_SLACK_MM {
+        return Ok(());
+    }
+    let message = format!(
+        "the entry into cutter compensation is {way:.4} mm long: it must be as long as the tool's radius of {radius:.4} mm"
+    );
+    Err(Fault::new("gcode::compensation", block.whole(), message)
+        .hint("begin the line with G41 or G42 farther from the contour"))
 }
 
 /// How far the end of one offset curve lies within the other's distance, where the contour turns by an angle: r (1 - cos).

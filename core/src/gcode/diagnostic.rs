@@ -8,9 +8,10 @@ use std::sync::Arc;
 
 use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
-/// Longest excerpt of a line that a diagnostic keeps, bytes: two rows of a wide terminal, so that a line of megabytes
-/// does not fill screen and memory.
-const EXCERPT_BYTES: usize = 240;
+/// Longest excerpt of a line that a diagnostic keeps, bytes: a row of a terminal, so that the caret stands below its fault.
+const EXCERPT_BYTES: usize = 100;
+/// What stands where an excerpt is cut.
+const CUT: &str = "…";
 
 /// How bad it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,9 +60,9 @@ impl Diagnostic {
         // The window begins a third of the excerpt before the fault, so that the caret keeps some context on both sides.
         let from = if bytes.len() <= EXCERPT_BYTES { 0 } else { start.saturating_sub(EXCERPT_BYTES / 3) };
         let to = bytes.len().min(from + EXCERPT_BYTES);
-        let before = printable(&bytes[from..start]);
+        let before = if from > 0 { CUT } else { "" }.to_owned() + &printable(&bytes[from..start]);
         let inside = printable(&bytes[start..end.min(to)]);
-        let after = printable(&bytes[end.min(to)..to]);
+        let after = printable(&bytes[end.min(to)..to]) + if to < bytes.len() { CUT } else { "" };
         let column = 1 + String::from_utf8_lossy(&bytes[..start]).chars().count();
         let span = String::from_utf8_lossy(&bytes[start..end]).chars().count();
         let mark = before.len()..before.len() + inside.len();

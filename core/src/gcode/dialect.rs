@@ -264,8 +264,7 @@ mod tests {
         assert_eq!(dialect("( X=0 is the left edge )\nG0 X1"), Dialect::LinuxCnc);
         assert!(refused("G15 H1\nVC1=5").contains("Okuma"));
         assert!(refused("N5 CALL O1001 Q2").contains("Okuma"));
-        assert!(refused("\u{feff}G\00\0 \0X\0").contains("NUL"));
-        assert!(refused("G\00\0 \0X\01\0").contains("UTF-16"));
+        assert!(refused("G\u{0}0\u{0} \u{0}X\u{0}1\u{0}").contains("UTF-16"));
         assert_eq!(dialect("N10 R1 X1 (R1=5)\nG0 X1"), Dialect::LinuxCnc);
         assert!(refused("\0\x01").contains("NUL"));
         assert!(refused(" \n\n").contains("empty"));

@@ -19,8 +19,13 @@ const USES_AXES: [u16; 5] = [100, 280, 300, 520, 920];
 impl Interpreter {
     /// Carries out `block`.
     pub(super) fn execute(&mut self, block: &Block) -> Read<()> {
-        // Hot path: a line with axis words and nothing that changes a mode.
-        if block.g.is_empty()
+        // Hot path: a line with axis words, perhaps G0 or G1, and nothing that changes a mode.
+        let is_plain = match block.g[..] {
+            [] => true,
+            [word] => matches!(word.number, 0 | 10),
+            _ => false,
+        };
+        if is_plain
             && block.m.is_empty()
             && block.set & !(codes::AXES | codes::bit(b'f') | codes::bit(b'e')) == 0
             && self.modal.feed_mode == FeedMode::PerMinute

@@ -48,6 +48,10 @@ fn without_number(line: &[u8]) -> &[u8] {
 }
 
 fn printer_command(line: &[u8]) -> Option<Command> {
+    // Nearly all lines of a print: G0 to G3.
+    if matches!(line, [b'G' | b'g', b'0'..=b'3', b' ', ..]) {
+        return None;
+    }
     if !line.first()?.is_ascii_alphabetic() && line[0] != b'_' {
         return None;
     }
@@ -55,14 +59,15 @@ fn printer_command(line: &[u8]) -> Option<Command> {
         .iter()
         .position(|byte| byte.is_ascii_whitespace() || matches!(byte, b';' | b'.' | b'=' | b'*'))
         .unwrap_or(line.len());
-    let word = line[..end].to_ascii_lowercase();
-    if word == b"g10" {
+    let word = &line[..end];
+    let is_one_of = |codes: &[&[u8]]| codes.iter().any(|code| word.eq_ignore_ascii_case(code));
+    if word.eq_ignore_ascii_case(b"g10") {
         return firmware_retract(&line[end..]);
     }
-    if PRINTER_ACTS.contains(&word.as_slice()) {
+    if is_one_of(&PRINTER_ACTS) {
         return Some(Command::Acts);
     }
-    if PRINTER_TEXT.contains(&word.as_slice()) {
+    if is_one_of(&PRINTER_TEXT) {
         return Some(Command::Speaks);
     }
     // A macro has a name of letters: `START_PRINT BED=60`; words of G-code have a digit or a sign behind the first letter.

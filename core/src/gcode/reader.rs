@@ -134,8 +134,7 @@ enum Percent {
 }
 
 /// Faults that a refused motion before them may be the reason of: the position or the mode is not what it was meant to be.
-const FOLLOWING: [&str; 5] =
-    ["gcode::arc_radius", "gcode::no_motion_mode", "gcode::compensation", "gcode::cycle", "gcode::unused_word"];
+const FOLLOWING: [&str; 4] = ["gcode::arc_radius", "gcode::no_motion_mode", "gcode::compensation", "gcode::cycle"];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum State {
@@ -246,17 +245,17 @@ impl Reader {
             self.take_warnings();
         }
         if let Err(fault) = result {
-            return self.refuse(fault);
+            return self.refuse(*fault);
         }
         self.watch()
     }
 
     /// A fault of the line under way. One that only follows from the fault of an earlier line is not told.
     #[cold]
-    fn refuse(&mut self, fault: Box<Fault>) -> Result<(), Box<Diagnostic>> {
+    fn refuse(&mut self, fault: Fault) -> Result<(), Box<Diagnostic>> {
         let follows = self.interpreter.behind_fault && FOLLOWING.contains(&fault.code);
         self.interpreter.assume(&self.block);
-        if follows { Ok(()) } else { Err(self.diagnose(Severity::Error, *fault)) }
+        if follows { Ok(()) } else { Err(self.diagnose(Severity::Error, fault)) }
     }
 
     fn take_warnings(&mut self) {

@@ -266,6 +266,16 @@ fn flat_lines(text: &str) -> HashSet<u32> {
     flat
 }
 
+/// Whether a motion is an arc that turns no farther than a flat corner.
+fn turns_little(motion: &Motion) -> bool {
+    let Shape::Arc { center_mm, .. } = &motion.shape else {
+        return false;
+    };
+    let apart = |a: [f64; 3], b: [f64; 3]| (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum::<f64>().sqrt();
+    let chord = apart(motion.start_mm, motion.end_mm);
+    chord > NO_MOTION_MM && chord <= apart(motion.start_mm, *center_mm) * FLAT_RAD * 1.001
+}
+
 /// The motions without the arcs round flat corners, and how far each end may be from LinuxCNC's: elsewhere by rounding only.
 fn without_flat_corners(text: &str, ours: &[Motion], totals: &mut Totals) -> Vec<(Motion, f64)> {
     let radius_mm = compensated_radius(text);
@@ -273,7 +283,9 @@ fn without_flat_corners(text: &str, ours: &[Motion], totals: &mut Totals) -> Vec
     let mut kept: Vec<(Motion, f64)> = Vec::with_capacity(ours.len());
     for (number, motion) in ours.iter().enumerate() {
         let next = ours.get(number + 1).map(|next| next.line);
-        if next == Some(motion.line) && flat.contains(&motion.line) && matches!(motion.shape, Shape::Arc { .. }) {
+        // A loop may repeat its line: an arc of the program turns farther than that round a flat corner, or is full.
+        let is_round = radius_mm > 0.0 && turns_little(motion);
+        if is_round && next == Some(motion.line) && flat.contains(&motion.line) {
             totals.flat_corners += 1;
             continue;
         }
@@ -327,19 +339,8 @@ pub(crate) fn compare(text: &str, ours: &[Motion], theirs: &Theirs, totals: &mut
             // An arc in a plane that is turned out of the axes': only its end can be compared.
             Shape::Spline(_) if value[0] == "arc" => None,
             Shape::Spline(_) => {
-                let mut last = value;
-                let path = path_of(motion);
-                // They cut the curve into chords and arcs, whose ends lie on it.
-                while apart(&point(&last[2]), &end) > SAME_POINT_MM {
-                    let Some(next) = moves.next_if(|next| next[0] == "feed" || next[0] == "arc") else {
-                        return place("the spline ends elsewhere", last);
-                    };
-                    let away = away_from(&path, std::array::from_fn(|axis| point(&last[2])[axis]));
-                    totals.largest_mm[2] = totals.largest_mm[2].max(away);
-                    if away.is_nan() || away > SAME_POINT_MM {
-                        return place(&format!("a point {away} mm off the spline"), last);
-                    }
-                    last = next;
+                if let Some((wrong, value)) = wrong_spline(motion, &end, value, &mut moves, totals) {
+                    return place(&wrong, value);
                 }
                 continue;
             }
@@ -387,4 +388,28 @@ fn wrong_arc(motion: &Motion, value: &serde_json::Value, totals: &mut Totals) ->
     // Not a number is far.
     let is_same = distance <= SAME_ARC_MM && length <= SAME_ARC_MM;
     (!is_same).then(|| format!("another arc, {distance} mm apart, {length} mm longer or shorter"))
+}
+
+/// What is different about the chords and arcs that LinuxCNC cuts a spline into, whose ends lie on it; and where.
+fn wrong_spline<'a>(
+    motion: &Motion,
+    end: &[f64; 9],
+    first: &'a serde_json::Value,
+    moves: &mut std::iter::Peekable<impl Iterator<Item = &'a serde_json::Value>>,
+    totals: &mut Totals,
+) -> Option<(String, &'a serde_json::Value)> {
+    let path = path_of(motion);
+    let mut last = first;
+    while apart(&point(&last[2]), end) > SAME_POINT_MM {
+        let Some(next) = moves.next_if(|next| next[0] == "feed" || next[0] == "arc") else {
+            return Some(("the spline ends elsewhere".to_owned(), last));
+        };
+        let away = away_from(&path, std::array::from_fn(|axis| point(&last[2])[axis]));
+        totals.largest_mm[2] = totals.largest_mm[2].max(away);
+        if away.is_nan() || away > SAME_POINT_MM {
+            return Some((format!("a point {away} mm off the spline"), last));
+        }
+        last = next;
+    }
+    None
 }
