@@ -20,7 +20,8 @@ fn documents() -> Vec<PathBuf> {
 /// Targets of the links and figures of a text that are files.
 fn targets(text: &str) -> impl Iterator<Item = &str> {
     let links = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
-    links.map(|(target, _)| target).filter(|target| !target.contains("://") && !target.starts_with('#'))
+    let files = links.map(|(target, _)| target).filter(|target| !target.contains("://") && !target.starts_with('#'));
+    files.map(|target| target.split_once('#').map_or(target, |(file, _)| file))
 }
 
 fn lead_nowhere(document: &Path) -> Vec<String> {
