@@ -44,7 +44,7 @@ held-out seed count *options:
 bench-fann:
     taskset --cpu-list 1 cargo bench --package feedwright-control --bench fann
 
-# Solvers of the receding horizon side by side: the times of one tick, and the cuts.
+# The solver of the receding horizon: beside another exact one, the times of one tick, and the cuts.
 solvers:
     taskset --cpu-list 1 cargo bench --package feedwright-control --bench solvers
     cargo build --release --quiet --package feedwright --example solvers

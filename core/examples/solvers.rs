@@ -1,9 +1,10 @@
-//! What the solver of the receding horizon does to the cut, and what a horizon does to the paper's inversion: `just solvers`,
+//! What further steps of the solver of the receding horizon do to the cut, and what a horizon does to the paper's inversion: `just solvers`,
 //! the tables of "Which solver" in examples/02_horizon.
 //!
 //! The controller is made from `tnv40`; `heavy` meets it unseen. Times are of whole decisions, medians over a cut.
 
 use feedwright::compare::Workpiece;
+use feedwright::controllers::correction_limits;
 use feedwright::identify::cache::identified;
 use feedwright::identify::contour::Training;
 use feedwright::identify::{Programme, servo};
@@ -14,15 +15,14 @@ use feedwright::simulate::{Run, simulate};
 use feedwright_control::Controller;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::{inverting, two_dimensional::TwoDimensional};
-use feedwright_control::horizon::Solver;
-use feedwright_control::horizon::gauss_newton::GaussNewton;
-use feedwright_control::horizon::gradient::Gradient;
 use feedwright_control::inversion;
 
 const CONTOURS: [&str; 3] = ["circle", "star", "square"];
 const MACHINES: [&str; 2] = ["tnv40", "heavy"];
 /// Seed of all training.
 const SEED: u64 = 1;
+/// Steps of Gauss and Newton in a tick, each rolled out anew.
+const STEPS: [usize; 3] = [1, 2, 5];
 /// Knots of the paper's inversion.
 const KNOTS: [usize; 3] = [1, 3, 5];
 
@@ -37,34 +37,32 @@ fn main() -> Result<(), Failure> {
     inversions(&machines[0], workpieces[0])
 }
 
-/// Every solver on every machine and contour.
+/// Every number of steps of Gauss and Newton on every machine and contour.
 fn horizons(machines: &[Machine], workpieces: &[&Workpiece]) -> Result<(), Failure> {
-    print!("| RMS / max, um |");
+    print!("| RMS / max, um: steps |");
     for machine in machines {
         workpieces.iter().for_each(|workpiece| print!(" {} {} |", machine.name, workpiece.name));
     }
-    println!(" decision, us |\n|---|{}--:|", "--:|".repeat(machines.len() * workpieces.len()));
-    row::<GaussNewton>("Gauss-Newton, 1 step", 1, machines, workpieces)?;
-    row::<Gradient>("gradient, 1 step", 1, machines, workpieces)?;
-    row::<Gradient<5>>("gradient, 5 steps, linearised once", 1, machines, workpieces)?;
-    row::<Gradient<20>>("gradient, 20 steps, linearised once", 1, machines, workpieces)?;
-    row::<Gradient>("gradient, 5 steps, each rolled out", 5, machines, workpieces)?;
-    row::<Gradient>("gradient, 20 steps, each rolled out", 20, machines, workpieces)?;
+    println!(" decision, us |\n|--:|{}--:|", "--:|".repeat(machines.len() * workpieces.len()));
+    for steps in STEPS {
+        row(steps, machines, workpieces)?;
+    }
     println!();
     Ok(())
 }
 
-fn row<S: Solver<2>>(name: &str, steps: usize, machines: &[Machine], workpieces: &[&Workpiece]) -> Result<(), Failure> {
-    print!("| {name} |");
+fn row(steps: usize, machines: &[Machine], workpieces: &[&Workpiece]) -> Result<(), Failure> {
+    print!("| {steps} |");
     let mut longest_us = 0.0_f64;
     for machine in machines {
         // What is known of the machine is the first's; the periods of the control are never a secret.
         let known = Machine { period: machine.period, ..machines[0].clone() };
         let identified = servo::identify::<2>(&known, &Programme::servo(), SEED);
         let mut settings = receding_horizon::Settings { steps, ..receding_horizon::Settings::DEFAULT };
+        settings.horizon.limits = correction_limits(&known);
         settings.servo_periods = machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
         for workpiece in workpieces {
-            let mut controller: RecedingHorizon<2, S> =
+            let mut controller: RecedingHorizon<2> =
                 RecedingHorizon::new(identified.net.clone(), &identified.spread, settings);
             let (statistics, run) = cut(machine, workpiece, &mut controller)?;
             print!(" {}{} |", errors(&statistics), if run.faded_out.is_some() { ", taken out" } else { "" });

@@ -15,6 +15,7 @@ use feedwright_control::Controller;
 use feedwright_control::controller::feedforward::Gains;
 use feedwright_control::controller::inverting::Settings as Inverting;
 use feedwright_control::controller::{contour_compensation, cross_coupled, fuzzy_feedrate, receding_horizon};
+pub use make::correction_limits;
 use serde::Serialize;
 
 use crate::machine::{Machine, nearest};

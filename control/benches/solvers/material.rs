@@ -4,9 +4,9 @@ use std::cell::RefCell;
 
 use feedwright_control::controller::receding_horizon;
 use feedwright_control::horizon::problem::Problem;
-use feedwright_control::horizon::{MOST_KNOTS, Rates, Settings, Solver};
+use feedwright_control::horizon::{Accelerations, Limits, MOST_AXES, MOST_KNOTS, Settings, Solver};
 use feedwright_control::identifier::servo::ServoIdentifier;
-use feedwright_control::vector::{add_scaled, dot, sub};
+use feedwright_control::vector::add_scaled;
 use feedwright_control::window::{Knot, Preview, Reference, Register, Window};
 
 use super::model::{Servo, Slopes, servo};
@@ -16,6 +16,8 @@ const FEED_PERIOD_S: f64 = receding_horizon::FEED_PERIOD_S;
 const SERVO_S: f64 = 0.001;
 /// Lag of the tool, s.
 const LAG_S: f64 = 0.02;
+/// Largest acceleration of the plan of the tick before, mm/s^2.
+const PLANNED_MM_S2: f64 = 100.0;
 
 /// A helix of radius 10 mm at 50 mm/s in the first two axes; the third, where there is one, falls.
 struct Helix;
@@ -43,27 +45,35 @@ pub(crate) struct Material<const N: usize> {
     register: Register<N>,
     preview: Preview<N>,
     settings: Settings,
-    /// The plan of the tick before.
-    pub(crate) rates: Rates<N>,
+    /// The plan of the tick before, mm/s^2.
+    pub(crate) plan: Accelerations<N>,
 }
 
 impl<const N: usize> Material<N> {
-    /// With so many knots.
+    /// With so many knots, without limits.
     pub(crate) fn new(knots: usize) -> Self {
+        Self::within(knots, f64::INFINITY)
+    }
+
+    /// With so many knots, and accelerations of the offset of at most `most_mm_s2` in each axis.
+    pub(crate) fn within(knots: usize, most_mm_s2: f64) -> Self {
         let mut register = Register::default();
         for i in 0..300 {
             register.push(Helix.knot(f64::from(i) * SERVO_S));
         }
         let mut preview = Preview::new(SERVO_S);
         preview.fill(&mut Helix, 0.299, 0.15);
-        let settings = Settings { knots, ..receding_horizon::Settings::DEFAULT.horizon };
-        let rates = std::array::from_fn(|knot| {
-            std::array::from_fn(|axis| if knot < knots { ((3 * knot + 5 * axis) as f64).sin() } else { 0.0 })
+        let limits = Limits { acceleration_mm_s2: [most_mm_s2; MOST_AXES], ..Limits::NONE };
+        let settings = Settings { knots, limits, ..receding_horizon::Settings::DEFAULT.horizon };
+        let planned_mm_s2 = PLANNED_MM_S2.min(most_mm_s2);
+        let plan = std::array::from_fn(|knot| {
+            let planned = |axis| if knot < knots { planned_mm_s2 * ((3 * knot + 5 * axis) as f64).sin() } else { 0.0 };
+            std::array::from_fn(planned)
         });
-        Self { net: servo(), slopes: RefCell::new([[[0.0; 5]; N]; MOST_KNOTS]), register, preview, settings, rates }
+        Self { net: servo(), slopes: RefCell::new([[[0.0; 5]; N]; MOST_KNOTS]), register, preview, settings, plan }
     }
 
-    /// Rolls the plan out: the problem, and the slopes of each knot. `felt`: whether the derivative to all rates is wanted.
+    /// Rolls the plan out: the problem, and the slopes of each knot. `felt`: whether the derivative to all accelerations is wanted.
     pub(crate) fn roll_out(&self, felt: bool) -> (Problem<N>, Slopes<N>) {
         let window = Window {
             register: &self.register,
@@ -74,52 +84,32 @@ impl<const N: usize> Material<N> {
             offset_mm_s: [0.0; N],
         };
         let model = Servo::new(&self.net, &self.slopes, felt);
-        let problem = Problem::new(&model, &window, LAG_S, &self.rates, 1, &self.settings);
+        let problem = Problem::new(&model, &window, LAG_S, &self.plan, 1, &self.settings);
         (problem, *self.slopes.borrow())
     }
 
     /// The plan changed.
-    pub(crate) fn after(&self, change: &Rates<N>) -> Rates<N> {
-        std::array::from_fn(|knot| add_scaled(self.rates[knot], 1.0, change[knot]))
+    pub(crate) fn after(&self, change: &Accelerations<N>) -> Accelerations<N> {
+        std::array::from_fn(|knot| add_scaled(self.plan[knot], 1.0, change[knot]))
     }
 
     /// The plan after one call of a solver.
-    pub(crate) fn improved(&self, solver: &mut impl Solver<N>, problem: &Problem<N>) -> Rates<N> {
-        let mut rates = self.rates;
-        solver.improve(problem, &mut rates);
-        rates
-    }
-
-    /// J of the problem linearised about the plan, term by term as it is written.
-    pub(crate) fn cost(&self, problem: &Problem<N>, rates: &Rates<N>) -> f64 {
-        let Settings { rate_weight, change_weight, tangential_price, .. } = problem.settings;
-        let changed: Rates<N> = std::array::from_fn(|knot| sub(rates[knot], self.rates[knot]));
-        let square = |v: [f64; N]| dot(v, v);
-        let mut cost = 0.0;
-        let mut offset_mm = [0.0; N];
-        for knot in 0..problem.knots {
-            offset_mm = add_scaled(offset_mm, problem.knot_s, changed[knot]);
-            let mut tool_mm = [0.0; N];
-            for (felt, changed) in problem.felt[knot].iter().zip(&changed).take(knot + 1) {
-                tool_mm = std::array::from_fn(|axis| tool_mm[axis] + felt[axis] * changed[axis]);
-            }
-            let (directions, off_mm) = (&problem.directions[knot], &problem.off_mm[knot]);
-            for d in 0..N - 1 {
-                cost += 0.5 * (off_mm[d] + dot(directions[d], tool_mm)).powi(2);
-            }
-            cost += 0.5 * (tangential_price * (off_mm[N - 1] + dot(directions[N - 1], offset_mm))).powi(2);
-            cost += 0.5 * rate_weight * square(rates[knot]);
-            if knot > 0 {
-                cost += 0.5 * change_weight * square(sub(rates[knot], rates[knot - 1]));
-            }
-        }
-        cost
+    pub(crate) fn improved(&self, solver: &mut impl Solver<N>, problem: &Problem<N>) -> Accelerations<N> {
+        let mut plan = self.plan;
+        solver.improve(problem, &mut plan);
+        plan
     }
 }
 
-/// The largest difference of two plans, as a share of the largest rate.
-pub(crate) fn difference<const N: usize>(a: &Rates<N>, b: &Rates<N>) -> f64 {
-    let largest = a.as_flattened().iter().fold(0.0_f64, |most, rate| most.max(rate.abs()));
+/// What an error counts at the end of a knot: across the path 1, along it less.
+pub(crate) fn error_weight<const N: usize>(problem: &Problem<N>, knot: usize, direction: usize) -> f64 {
+    let end = &problem.ends[knot];
+    if direction + 1 < N { 1.0 } else { problem.settings.tangential_weight(knot, end.off_mm[direction], end.feed_mm_s) }
+}
+
+/// The largest difference of two plans, as a share of the largest acceleration.
+pub(crate) fn difference<const N: usize>(a: &Accelerations<N>, b: &Accelerations<N>) -> f64 {
+    let largest = a.as_flattened().iter().fold(0.0_f64, |most, a| most.max(a.abs()));
     let pairs = a.as_flattened().iter().zip(b.as_flattened());
     pairs.fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / largest
 }

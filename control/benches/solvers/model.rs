@@ -42,8 +42,8 @@ pub(crate) struct Servo<'a, const N: usize> {
     slopes: &'a RefCell<Slopes<N>>,
     /// Whether what the tool feels is wanted: it is the work of all knots before, at every knot.
     felt: bool,
-    /// Derivative of the following error to the rate of each knot, s: now and one knot ago.
-    following_s: [[[f64; N]; MOST_KNOTS]; 2],
+    /// Derivative of the following error to the acceleration of each knot, s^2: now and one knot ago.
+    following_s2: [[[f64; N]; MOST_KNOTS]; 2],
 }
 
 impl<'a, const N: usize> Servo<'a, N> {
@@ -52,19 +52,20 @@ impl<'a, const N: usize> Servo<'a, N> {
         let mut one = [0.0; N];
         one[0] = 1.0;
         let delays = Delays { feed: [one; 2], error: [one; 2] };
-        Self { net, delays, slopes, felt, following_s: [[[0.0; N]; MOST_KNOTS]; 2] }
+        Self { net, delays, slopes, felt, following_s2: [[[0.0; N]; MOST_KNOTS]; 2] }
     }
 
-    fn feel(&mut self, slopes: &Inputs<N>, period_s: f64, now: usize, felt: &mut Felt<N>) {
-        let [following_s, before_s] = &mut self.following_s;
-        for knot in 0..=now {
+    fn feel(&mut self, slopes: &Inputs<N>, stretch: &Stretch<N>, felt: &mut Felt<N>) {
+        let [following_s2, before_s2] = &mut self.following_s2;
+        for knot in 0..=stretch.knot() {
+            let gained = [0, 1, 2].map(|back| stretch.gained_s(knot, back) / FEED_SCALE_MM_S);
             for axis in 0..N {
                 let [f0, f1, f2, e0, e1] = slopes[axis];
-                let of_feed = [f0, f1, f2].get(now - knot).map_or(0.0, |slope| slope / FEED_SCALE_MM_S);
-                let of_error = e0 * following_s[knot][axis] + e1 * before_s[knot][axis];
-                before_s[knot][axis] = following_s[knot][axis];
-                following_s[knot][axis] += of_feed + of_error / FOLLOWING_SCALE_MM;
-                felt[knot][axis] = period_s - following_s[knot][axis];
+                let of_feed = f0 * gained[0] + f1 * gained[1] + f2 * gained[2];
+                let of_error = e0 * following_s2[knot][axis] + e1 * before_s2[knot][axis];
+                before_s2[knot][axis] = following_s2[knot][axis];
+                following_s2[knot][axis] += of_feed + of_error / FOLLOWING_SCALE_MM;
+                felt[knot][axis] = stretch.moved_s2(knot, 1.0) - following_s2[knot][axis];
             }
         }
     }
@@ -81,7 +82,7 @@ impl<const N: usize> Model<N> for Servo<'_, N> {
         let (grown_mm, slopes) = self.net.predict_with_slopes(&self.delays.inputs(feed));
         self.slopes.borrow_mut()[stretch.knot()] = slopes;
         if self.felt {
-            self.feel(&slopes, window.feed_period_s, stretch.knot(), felt);
+            self.feel(&slopes, stretch, felt);
         }
         let error = add_scaled(self.delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown_mm);
         self.delays.push(feed, error);

@@ -1,51 +1,53 @@
 //! The problem of a tick as a linear-quadratic one over time, solved exactly by the recursion of Riccati.
 //!
 //! ```text
-//! x(k+1) = A(k) x(k) + B(k) du(k)     x = e(k), e(k-1), F(k-1), F(k-2), o of each axis, as changes from the plan
+//! x(k+1) = A(k) x(k) + B(k) da(k)     x = e(k), e(k-1), F(k-1), F(k-2), o, v of each axis, as changes from the plan
+//! F(k) = v(k) + T/2 da(k)     o(k+1) = o(k) + T v(k) + T^2/2 da(k)     v(k+1) = v(k) + T da(k)
 //! V(k, x) = 1/2 x'P x + p'x           what is left to pay from knot k on
 //! ```
 //!
-//! Backwards, each knot adds what its errors cost at its end, goes through the dynamics, and takes the best du out; forwards,
-//! the du follow from the x. The work grows with the knots, that of the dense solution with their cube; and it asks only for
+//! Backwards, each knot adds what its errors cost at its end, goes through the dynamics, and takes the best da out; forwards,
+//! the da follow from the x. The work grows with the knots, that of the dense solution with their cube; and it asks only for
 //! the slopes of each knot, not for what the tool feels of every earlier one.
 //!
-//! One feed period a knot.
+//! One feed period a knot, no limits, and a cut throughout.
 //!
 //! Source: Rao, Wright and Rawlings (1998), "Application of interior-point methods to model predictive control", section 3.
 
 use feedwright_control::horizon::gauss_newton::GaussNewton;
 use feedwright_control::horizon::problem::Problem;
-use feedwright_control::horizon::{MOST_KNOTS, Rates};
+use feedwright_control::horizon::{Accelerations, MOST_KNOTS};
 use feedwright_control::identifier::servo::FOLLOWING_SCALE_MM;
 use feedwright_control::identifier::{FEED_SCALE_MM_S, INPUTS};
 
-use super::material::{Material, difference};
+use super::material::{Material, difference, error_weight};
 use super::model::Slopes;
 
 /// Places of an axis in a vector: its state, and its input.
-const PLACES: usize = 6;
+const PLACES: usize = 7;
 const E: usize = 0;
 const E_BEFORE: usize = 1;
 const F: usize = 2;
 const F_BEFORE: usize = 3;
 const OFFSET: usize = 4;
-const INPUT: usize = 5;
+const SPEED: usize = 5;
+const INPUT: usize = 6;
 /// Places of three axes.
 const MOST_PLACES: usize = 3 * PLACES;
 
 type Vector = [f64; MOST_PLACES];
 
-/// Both exact solutions are so to rounding, and the equations have a condition number of some 10^6.
+/// Both solutions are exact but for rounding, which the condition of the equations makes larger: it comes to 4e-10.
 pub(crate) const AGREEMENT: f64 = 1e-9;
 
-/// How far the recursion and Gauss-Newton are apart, as a share of the largest rate.
+/// How far the recursion and Gauss-Newton are apart, as a share of the largest acceleration.
 pub(crate) fn apart_from_gauss_newton<const N: usize>(material: &Material<N>) -> f64 {
     let (problem, slopes) = material.roll_out(true);
-    let recursion = material.after(&Riccati::default().solve(&problem, &slopes, &material.rates));
+    let recursion = material.after(&Riccati::default().solve(&problem, &slopes, &material.plan));
     difference(&material.improved(&mut GaussNewton::default(), &problem), &recursion)
 }
 
-/// What the recursion keeps from the way back for the way forth: du = K x + k.
+/// What the recursion keeps from the way back for the way forth: da = K x + k.
 pub(crate) struct Riccati<const N: usize> {
     gains: [[Vector; N]; MOST_KNOTS],
     offsets: [[f64; N]; MOST_KNOTS],
@@ -58,13 +60,18 @@ impl<const N: usize> Default for Riccati<N> {
 }
 
 impl<const N: usize> Riccati<N> {
-    /// The change of the rates that solves the problem linearised about them, mm/s.
-    pub(crate) fn solve(&mut self, problem: &Problem<N>, slopes: &Slopes<N>, rates: &Rates<N>) -> Rates<N> {
-        self.back(problem, slopes, rates);
+    /// The change of the plan that solves the problem linearised about it, mm/s^2.
+    pub(crate) fn solve(
+        &mut self,
+        problem: &Problem<N>,
+        slopes: &Slopes<N>,
+        plan: &Accelerations<N>,
+    ) -> Accelerations<N> {
+        self.back(problem, slopes, plan);
         self.forth(problem, slopes)
     }
 
-    fn back(&mut self, problem: &Problem<N>, slopes: &Slopes<N>, rates: &Rates<N>) {
+    fn back(&mut self, problem: &Problem<N>, slopes: &Slopes<N>, plan: &Accelerations<N>) {
         let places = N * PLACES;
         let (mut square, mut line) = ([[0.0; MOST_PLACES]; MOST_PLACES], [0.0; MOST_PLACES]);
         for knot in (0..problem.knots).rev() {
@@ -79,7 +86,7 @@ impl<const N: usize> Riccati<N> {
             }
             square = turned;
             line = step.pull(&line);
-            pay_rates(problem, knot, rates, &mut square, &mut line);
+            pay_accelerations(problem, knot, plan, &mut square, &mut line);
             self.take_out(knot, &mut square, &mut line);
         }
     }
@@ -107,7 +114,7 @@ impl<const N: usize> Riccati<N> {
         }
     }
 
-    fn forth(&self, problem: &Problem<N>, slopes: &Slopes<N>) -> Rates<N> {
+    fn forth(&self, problem: &Problem<N>, slopes: &Slopes<N>) -> Accelerations<N> {
         let mut changes = [[0.0; N]; MOST_KNOTS];
         let mut state = [0.0; MOST_PLACES];
         for knot in 0..problem.knots {
@@ -125,57 +132,50 @@ impl<const N: usize> Riccati<N> {
     }
 }
 
-/// What the errors at the end of a knot cost there.
+/// What the errors and the speed of the offset at the end of a knot cost there.
 fn pay_errors<const N: usize>(
     problem: &Problem<N>,
     knot: usize,
     square: &mut [Vector; MOST_PLACES],
     line: &mut Vector,
 ) {
-    for (d, direction) in problem.directions[knot].iter().enumerate() {
-        // Across the path the tool counts, o - e; along it the offset alone, at its price.
-        let (price, of_error) = if d < N - 1 { (1.0, -1.0) } else { (problem.settings.tangential_price, 0.0) };
-        let off_mm = problem.off_mm[knot][d];
-        for a in 0..N {
-            let weight = price * price * direction[a];
-            let ways = [(a * PLACES + OFFSET, weight), (a * PLACES + E, weight * of_error)];
-            for (r, weight) in ways {
-                line[r] += weight * off_mm;
-                for b in 0..N {
-                    square[r][b * PLACES + OFFSET] += weight * direction[b];
-                    square[r][b * PLACES + E] += weight * direction[b] * of_error;
-                }
+    let end = &problem.ends[knot];
+    for (d, direction) in end.directions.iter().enumerate() {
+        let weight = error_weight(problem, knot, d).powi(2);
+        // The tool is at o - e.
+        let ways = |axis: usize| [(axis * PLACES + OFFSET, direction[axis]), (axis * PLACES + E, -direction[axis])];
+        for (r, way) in (0..N).flat_map(ways) {
+            line[r] += weight * way * end.off_mm[d];
+            for (c, other) in (0..N).flat_map(ways) {
+                square[r][c] += weight * way * other;
             }
         }
     }
-}
-
-/// What the rate of a knot and its change from the one before cost.
-fn pay_rates<const N: usize>(
-    problem: &Problem<N>,
-    knot: usize,
-    rates: &Rates<N>,
-    square: &mut [Vector; MOST_PLACES],
-    line: &mut Vector,
-) {
-    let (weight, change) = (problem.settings.rate_weight, problem.settings.change_weight);
+    let rate_weight = problem.settings.rate_weight;
     for axis in 0..N {
-        let (input, before) = (axis * PLACES + INPUT, axis * PLACES + F);
-        square[input][input] += weight;
-        line[input] += weight * rates[knot][axis];
-        if knot > 0 {
-            let changed = change * (rates[knot][axis] - rates[knot - 1][axis]);
-            square[input][input] += change;
-            square[before][before] += change;
-            square[input][before] -= change;
-            square[before][input] -= change;
-            line[input] += changed;
-            line[before] -= changed;
-        }
+        let speed = axis * PLACES + SPEED;
+        square[speed][speed] += rate_weight;
+        line[speed] += rate_weight * end.offset_mm_s[axis];
     }
 }
 
-/// A(k) and B(k): one feed period of every axis, lengths in mm, rates in mm/s.
+/// What the change of the speed over a knot costs.
+fn pay_accelerations<const N: usize>(
+    problem: &Problem<N>,
+    knot: usize,
+    plan: &Accelerations<N>,
+    square: &mut [Vector; MOST_PLACES],
+    line: &mut Vector,
+) {
+    let weight = problem.settings.change_weight * problem.knot_s.powi(2);
+    for axis in 0..N {
+        let input = axis * PLACES + INPUT;
+        square[input][input] += weight;
+        line[input] += weight * plan[knot][axis];
+    }
+}
+
+/// A(k) and B(k): one feed period of every axis, lengths in mm, speeds in mm/s, accelerations in mm/s^2.
 struct Step<const N: usize> {
     /// What e(k+1) takes of F(k), F(k-1), F(k-2), e(k), e(k-1).
     of: [[f64; INPUTS]; N],
@@ -203,24 +203,28 @@ impl<const N: usize> Step<N> {
             pulled[at + F] = f1 * v[at + E] + v[at + F_BEFORE];
             pulled[at + F_BEFORE] = f2 * v[at + E];
             pulled[at + OFFSET] = v[at + OFFSET];
-            pulled[at + INPUT] = f0 * v[at + E] + v[at + F] + self.period_s * v[at + OFFSET];
+            let of_feed = f0 * v[at + E] + v[at + F] + self.period_s * v[at + OFFSET];
+            pulled[at + SPEED] = of_feed + v[at + SPEED];
+            pulled[at + INPUT] = 0.5 * self.period_s * of_feed + self.period_s * v[at + SPEED];
         }
         pulled
     }
 
-    /// `A x + B du`.
+    /// `A x + B da`.
     #[inline]
     fn push(&self, x: &Vector) -> Vector {
         let mut pushed = [0.0; MOST_PLACES];
         for axis in 0..N {
             let [f0, f1, f2, e0, e1] = self.of[axis];
             let at = axis * PLACES;
-            let inputs = [x[at + INPUT], x[at + F], x[at + F_BEFORE], x[at + E], x[at + E_BEFORE]];
+            let feed = x[at + SPEED] + 0.5 * self.period_s * x[at + INPUT];
+            let inputs = [feed, x[at + F], x[at + F_BEFORE], x[at + E], x[at + E_BEFORE]];
             pushed[at + E] = [f0, f1, f2, e0, e1].iter().zip(inputs).map(|(of, x)| of * x).sum();
             pushed[at + E_BEFORE] = x[at + E];
-            pushed[at + F] = x[at + INPUT];
+            pushed[at + F] = feed;
             pushed[at + F_BEFORE] = x[at + F];
-            pushed[at + OFFSET] = x[at + OFFSET] + self.period_s * x[at + INPUT];
+            pushed[at + OFFSET] = x[at + OFFSET] + self.period_s * feed;
+            pushed[at + SPEED] = x[at + SPEED] + self.period_s * x[at + INPUT];
         }
         pushed
     }

@@ -136,7 +136,7 @@ pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, _: &[f64])
 const PLANNED_DEVIATION: f64 = 0.9;
 
 /// What a machine allows a correction.
-fn correction_limits(machine: &Machine) -> horizon::Limits {
+pub fn correction_limits(machine: &Machine) -> horizon::Limits {
     horizon::Limits {
         acceleration_mm_s2: std::array::from_fn(|i| machine.correction_accel_mm_s2(i)),
         speed_mm_s: machine.limits.rapid_mm_s,
