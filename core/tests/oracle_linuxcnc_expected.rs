@@ -19,6 +19,10 @@ const DIFFERENCES: &[(&str, &str)] = &[
     ("cam-nisley", "needs the radius of a tool that its tool table has"),
     ("machine-coord-params", "prints messages only"),
     ("iniparam", "needs an INI file"),
+    (
+        "inside-corners",
+        "LinuxCNC goes straight through a flat outer corner and cuts into it; here an arc keeps the distance",
+    ),
 ];
 
 /// The tool that the threading test prints the length of, inches, and the one of the facing test.
