@@ -50,6 +50,10 @@ solvers:
     cargo build --release --quiet --package feedwright --example solvers
     taskset --cpu-list 1 target/release/examples/solvers
 
+# How the error depends on what the correction may accelerate: table, and figure for examples/02_horizon.
+correction-acceleration out="target/correction_acceleration.svg":
+    cargo run --release --quiet -p feedwright --example correction_acceleration -- {{ out }}
+
 # Percentiles of the time of a whole decision of the receding horizon, on one core; counts on an idle machine only.
 tick ticks="100000" runs="5":
     cargo build --release --quiet -p feedwright-control --example tick_percentiles

@@ -145,6 +145,22 @@ impl<const N: usize> Plant<N> {
         }
     }
 
+    /// The machine becomes another one in mid-cut, as where a workpiece is loaded: angles, speeds, errors and time go on, but what
+    /// was on its way through a drive's delay is lost. Leads and periods are to be the same.
+    pub fn change_to(&mut self, machine: &Machine) {
+        let before = std::mem::replace(self, Self::new(machine, self.position_mm()));
+        self.period = before.period;
+        (self.angle_rad, self.speed_rad_s) = (before.angle_rad, before.speed_rad_s);
+        self.last_error_rad = before.last_error_rad;
+        let Some(real) = &mut self.real else { return };
+        for (i, axis) in real.iter_mut().enumerate() {
+            (axis.table_rad, axis.table_rad_s) = match &before.real {
+                Some(real) => (real[i].table_rad, real[i].table_rad_s),
+                None => (before.angle_rad[i], before.speed_rad_s[i]),
+            };
+        }
+    }
+
     /// Where the tool is, mm.
     pub fn position_mm(&self) -> [f64; N] {
         match &self.real {

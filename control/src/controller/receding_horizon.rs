@@ -37,6 +37,9 @@ const CLEARLY_OTHER: f64 = 0.7;
 const OUTLIER_MM: f64 = 0.03;
 const OUTLIER: f64 = 10.0;
 const MOST_OUTLIERS: u32 = 3;
+/// A position that is the same to the bit although the command has moved by this since the last decision, mm, is none: from an
+/// encoder of some micrometres a tool that follows has others by then.
+const STILL_MM: f64 = 0.02;
 /// A following error is strange where it is further than this, mm, and this part of it, from what the commands alone lead to: a
 /// machine that is not yet known differs by less, a position that has leapt by more.
 const STRANGE_MM: f64 = 0.2;
@@ -92,7 +95,7 @@ pub struct RecedingHorizon<const N: usize, S = GaussNewton> {
     missed_mm: f64,
     outliers: u32,
     foreseen_mm2: [f64; 2],
-    /// The command and its offset at the last decision, mm.
+    /// What was commanded and seen at the last decision, mm.
     last: Option<Last<N>>,
 }
 
@@ -100,6 +103,8 @@ pub struct RecedingHorizon<const N: usize, S = GaussNewton> {
 struct Last<const N: usize> {
     command_mm: [f64; N],
     offset_mm: [f64; N],
+    /// The last position that was news, mm.
+    seen_mm: [f64; N],
 }
 
 impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
@@ -123,9 +128,11 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
     /// Takes in where the tool is now, and what was commanded on the way here: not what was asked for.
     fn take_in(&mut self, window: &Window<'_, N>, position_mm: Option<[f64; N]>) {
         let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
+        let position_mm = position_mm.filter(|position_mm| !self.is_frozen(command_mm, *position_mm));
         let following_mm = position_mm.map(|position_mm| sub(command_mm, position_mm));
         let following_mm = following_mm.filter(|following_mm| norm(*following_mm).is_finite());
-        let now = Last { command_mm, offset_mm: window.offset_mm };
+        let seen_mm = position_mm.or(self.last.map(|last| last.seen_mm)).unwrap_or(command_mm);
+        let now = Last { command_mm, offset_mm: window.offset_mm, seen_mm };
         let Some(last) = self.last else {
             if let Some(following_mm) = following_mm {
                 self.delays.error = [scale(1.0 / FOLLOWING_SCALE_MM, following_mm); 2];
@@ -152,6 +159,13 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
             _ => foreseen_mm,
         };
         self.delays.push(feed_now, scale(1.0 / FOLLOWING_SCALE_MM, now_mm));
+    }
+
+    /// Whether a position stands still while the command goes on. It is nothing to learn from before the safety layer, which has
+    /// to wait for certainty, calls it lost.
+    fn is_frozen(&self, command_mm: [f64; N], position_mm: [f64; N]) -> bool {
+        let moved_mm = |last: Last<N>| norm(sub(command_mm, last.command_mm));
+        self.last.is_some_and(|last| position_mm == last.seen_mm && moved_mm(last) > STILL_MM)
     }
 
     /// The following error from the commands alone, and what the offset makes of it.
