@@ -44,6 +44,8 @@ const STILL_MM: f64 = 0.02;
 /// machine that is not yet known differs by less, a position that has leapt by more.
 const STRANGE_MM: f64 = 0.2;
 const STRANGE_SHARE: f64 = 0.3;
+/// A prediction that misses by this, mm, is a leap: no machine does so within a feed period.
+const LEAP_MM: f64 = 0.3;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -94,6 +96,8 @@ pub struct RecedingHorizon<const N: usize, S = GaussNewton> {
     response: Delays<N>,
     missed_mm: f64,
     outliers: u32,
+    /// Whether the position has leapt, and stayed there.
+    leapt: bool,
     foreseen_mm2: [f64; 2],
     /// What was commanded and seen at the last decision, mm.
     last: Option<Last<N>>,
@@ -120,6 +124,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
             response: Delays::REST,
             missed_mm: 0.0,
             outliers: 0,
+            leapt: false,
             foreseen_mm2: [0.0; 2],
             last: None,
         }
@@ -183,7 +188,9 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
         let surprise_mm = norm(sub(following_mm, foreseen_mm));
         let free_mm = scale(FOLLOWING_SCALE_MM, self.free.error[0]);
         let strange_mm = norm(sub(following_mm, free_mm)) - STRANGE_SHARE * norm(free_mm) - STRANGE_MM;
-        self.missed_mm = surprise_mm.max(strange_mm);
+        // Strange for good is also a machine that is not known yet: only what came with a leap is held against the position.
+        self.leapt = (self.leapt || surprise_mm > LEAP_MM) && strange_mm > 0.0;
+        self.missed_mm = if self.leapt { surprise_mm.max(strange_mm) } else { surprise_mm };
         let outlier = self.missed_mm > OUTLIER_MM + OUTLIER * self.net.innovation_mm();
         self.outliers = if outlier { self.outliers + 1 } else { 0 };
         outlier && self.outliers <= MOST_OUTLIERS
@@ -196,6 +203,9 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
         let mut horizon = self.settings.horizon;
         horizon.rate_weight *= blunter;
         horizon.change_weight *= blunter;
+        // A tool that is not foreseen well is held to its time: what is free along the path is as wrong as the prediction.
+        let [small, large] = horizon.tangential_weights;
+        horizon.tangential_weights[0] = (small * libm::sqrt(blunter)).min(large);
         horizon
     }
 
@@ -228,6 +238,7 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
         self.response = Delays::REST;
         self.missed_mm = 0.0;
         self.outliers = 0;
+        self.leapt = false;
         self.foreseen_mm2 = [0.0; 2];
         self.last = None;
     }
