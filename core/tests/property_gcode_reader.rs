@@ -83,7 +83,7 @@ fn a_line() -> impl Strategy<Value = String> {
         "G28",
         "G61",
         "G64 P0.1",
-        "X1 Q",
+        "X1 R5",
         "G1 X#1",
         "F-3 X1",
         "F0",
