@@ -107,7 +107,7 @@ speed part="parts/pocket.ngc":
     print(f"machining {machining_s:.2f} s, run {wall_s:.3f} s: {machining_s / wall_s:.0f} times faster, and it cuts twice")
     PYTHON
 
-# Reading a print program of so many lines, 28 bytes each (GNU time): time and resident memory, three times.
+# Reading a print program of so many lines, 30 bytes each (GNU time): time, processor time and resident memory, three times.
 reading lines="2200000":
     #!/usr/bin/env bash
     set -euo pipefail
@@ -123,5 +123,5 @@ reading lines="2200000":
     }' >"$folder/print.gcode"
     stat --format '%s bytes' "$folder/print.gcode"
     for command in check canon check canon check canon; do
-        command time --format "$command: %e s, %M KiB" target/release/feedwright --quiet "$command" "$folder/print.gcode" >/dev/null
+        command time --format "$command: %e s, %U s of processor, %M KiB" target/release/feedwright --quiet "$command" "$folder/print.gcode" >/dev/null
     done

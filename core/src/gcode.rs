@@ -2,7 +2,7 @@
 //!
 //! A line passes through the files in this order: [`Reader`] takes it from its source, `lexer` and `expression` turn its bytes into values,
 //! `block` collects them as words, `execute` applies them to the modes in RS-274's order, `travel`, `arc` and their neighbours move, and the
-//! result is [`canon`].
+//! result is [`canon`]. Plain G0 and G1, nearly all lines of a long program, take the short way of `reader/plain`.
 
 pub mod canon;
 

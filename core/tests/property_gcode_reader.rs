@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use feedwright::gcode::canon::Canon;
-use feedwright::gcode::{Diagnostic, Reader, Settings};
+use feedwright::gcode::{Diagnostic, Dialect, Reader, Settings};
 use proptest::prelude::*;
 
 /// Reads all of `text`; returns the steps and the faults.
@@ -41,8 +41,80 @@ fn assert_inside(text: &[u8], faults: &[Diagnostic]) {
     }
 }
 
+/// Lines as prints and finishing passes have them, modes that change what they mean, and faults.
+fn a_line() -> impl Strategy<Value = String> {
+    let number = prop_oneof![
+        (-500i32..500).prop_map(|n| n.to_string()),
+        (-90_000i32..90_000).prop_map(|n| format!("{:.2}", f64::from(n) * 1e-3)),
+        (-9.0..9.0f64).prop_map(|x| x.to_string()),
+        prop::sample::select(vec!["-.5", "+7.", "1 2", "0", "-0.0", "00012.5", "1000000.5"]).prop_map(str::to_owned),
+    ];
+    let code = prop::sample::select(vec!["", "G1 ", "G0", "g01", "G1", "N7 G1", "n8", " "]);
+    let letters = prop::sample::select(vec!["X", "XY", "xyz", "E", "XYE", "ZF", "XF", "YX", "XX", "XA", "UW", "F", ""]);
+    let plain = (code, letters, prop::collection::vec(number, 3)).prop_map(|(code, letters, numbers)| {
+        let words: Vec<String> =
+            letters.chars().zip(&numbers).map(|(letter, number)| format!("{letter}{number}")).collect();
+        format!("{code}{}", words.join(" "))
+    });
+    let others = vec![
+        "G90",
+        "G91",
+        "G20",
+        "G21",
+        "G92 X1 Y2",
+        "G92 E0",
+        "G92.1",
+        "G7",
+        "G8",
+        "M82",
+        "M83",
+        "G93",
+        "G94",
+        "G95 S100 M3",
+        "G10 L2 P1 X3 Y4.1 R30",
+        "G10 L2 P1 X0 Y0 R0",
+        "G55",
+        "G41.1 D1",
+        "G40",
+        "G2 X1 Y1 R20",
+        "G81 X1 Y1 Z-1 R2",
+        "G80",
+        "G43.1 Z0.1 A5",
+        "G28",
+        "G61",
+        "G64 P0.1",
+        "X1 R5",
+        "G1 X#1",
+        "F-3 X1",
+        "F0",
+        "G38.2 Z-9",
+        "G5.1 X9 Y1 I3 J3",
+    ];
+    prop_oneof![6 => plain, 2 => prop::sample::select(others).prop_map(str::to_owned)]
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// G0 and G1 have a short way through the reader, which a comment closes to them.
+    #[test]
+    fn the_short_way_leads_where_the_long_one_does(
+        lines in prop::collection::vec(a_line(), 1..40),
+        dialect in prop::sample::select(vec![Dialect::LinuxCnc, Dialect::Printer, Dialect::Grbl]),
+        max_motions in prop::sample::select(vec![5, 1000]),
+    ) {
+        let read = |end: &str| {
+            let text: String = std::iter::once("G21").chain(lines.iter().map(String::as_str)).map(|line| format!("{line}{end}")).collect();
+            let settings = Settings { dialect: Some(dialect), max_motions, ..Settings::default() };
+            let steps = Reader::from_text("test", text, settings).unwrap();
+            let shown = |step: Result<Canon, Diagnostic>| match step {
+                Ok(step) => format!("{step:?}"),
+                Err(fault) => format!("{} {}: {}", fault.line, fault.code, fault.message),
+            };
+            steps.map(shown).collect::<Vec<_>>()
+        };
+        prop_assert_eq!(read("\n"), read("()\n"));
+    }
 
     #[test]
     fn printed_numbers_come_back(x in -9e5..9e5f64, decimals in 0usize..18) {

@@ -1,14 +1,17 @@
 //! `feedwright canon`: canonical motions and events, one JSON object a line.
 
+mod lines;
+
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use feedwright::gcode::{Reader, canon::Canon};
+use feedwright::gcode::Reader;
 use miette::Result;
 use rayon::prelude::*;
 
 use crate::args::CanonArgs;
 use crate::message::{fail, printed};
+use lines::Lines;
 
 pub(crate) fn run(args: &CanonArgs, quiet: bool) -> Result<ExitCode> {
     let reader = Reader::open(&args.file, args.reader.settings()?)?;
@@ -30,7 +33,7 @@ fn print(mut reader: Reader, code: &mut ExitCode) -> io::Result<()> {
     let mut out = io::stdout().lock();
     let mut batch = Vec::with_capacity(BATCH);
     // Kept from batch to batch, each with the memory that it has come to.
-    let mut texts = vec![Vec::new(); BATCH / SHARE];
+    let mut shares: Vec<Lines> = (0..BATCH / SHARE).map(|_| Lines::default()).collect();
     // Behind a faulty line nobody knows where the tool is: faults are told, motions are not written down any more.
     let mut is_faulty = false;
     loop {
@@ -49,20 +52,11 @@ fn print(mut reader: Reader, code: &mut ExitCode) -> io::Result<()> {
         if read == 0 {
             return out.flush();
         }
-        batch.par_chunks(SHARE).zip(&mut texts).try_for_each(|(steps, text)| write_lines(text, steps))?;
-        for text in &mut texts {
+        batch.par_chunks(SHARE).zip(&mut shares).try_for_each(|(steps, lines)| lines.write(steps))?;
+        for Lines { text, .. } in &mut shares {
             out.write_all(text)?;
             text.clear();
         }
         batch.clear();
     }
-}
-
-/// One JSON object a line.
-fn write_lines(text: &mut Vec<u8>, steps: &[Canon]) -> io::Result<()> {
-    for step in steps {
-        serde_json::to_writer(&mut *text, step)?;
-        text.push(b'\n');
-    }
-    Ok(())
 }

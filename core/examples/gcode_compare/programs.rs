@@ -182,7 +182,7 @@ impl Writer {
             5 => self.pick(&["G92.1", "G92.2", "G92.3"]).to_owned(),
             6 => format!("G52{words}"),
             7 => format!("G43.1{words}"),
-            8 => format!("G43.2{words}"),
+            8 => format!("G43.2 H{}", 1 + self.below(9)),
             9 => "G49".to_owned(),
             _ => format!("G92{words}"),
         };
@@ -269,7 +269,7 @@ impl Writer {
             7 => "M70\nG91 G20 F7\nM72".to_owned(),
             8 => "M70\nM71".to_owned(),
             9 => format!("M70\nG92 X{}\nM72", self.number(-9.0, 9.0)),
-            10 => self.pick(&["M0", "M1", "M60", "M66 P0 L0", "M19 R90", "(msg, hello)"]).to_owned(),
+            10 => self.pick(&["M0", "M1", "M60", "M66 P0 L0", "M19 R90", "M61 Q3", "(msg, hello)"]).to_owned(),
             _ => "M73".to_owned(),
         };
         if line.contains("G91") {
@@ -294,6 +294,7 @@ impl Writer {
     fn cycle(&mut self) {
         let plane = if self.below(4) == 0 { self.rng.random_range(0..3) } else { 0 };
         let code = self.pick(&["G81", "G82", "G83", "G73", "G84", "G74", "G85", "G86", "G89", "G87"]);
+        // G88 leaves the height to the operator, so that nothing behind it could be compared.
         // In other planes LinuxCNC 2.9 exchanges the axes of tapping.
         self.choose_plane(if code == "G84" || code == "G74" { 0 } else { plane });
         let (_, [first, second, normal], _) = PLANES[self.plane];

@@ -1,14 +1,13 @@
 //! A program as an iterator of canonical steps, line by line.
 
 mod calls;
+mod error;
+mod plain;
 
 use std::fs;
-use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-use thiserror::Error;
 
 use super::block::{Block, Style};
 use super::canon::{Canon, EventKind};
@@ -25,83 +24,7 @@ use super::settings::{Dialect, Settings};
 use super::source::{LONGEST_LINE_BYTES, Line, Source};
 use super::state::Interpreter;
 
-/// Why a program cannot be read at all.
-#[derive(Debug, Error, miette::Diagnostic)]
-pub enum ReadError {
-    /// No such file, no permission, or the disk fails.
-    #[error("{path}: the program cannot be read: {cause}")]
-    Io {
-        /// As the user named it.
-        path: PathBuf,
-        /// What the system says.
-        #[source]
-        cause: io::Error,
-    },
-    /// A folder instead of a file.
-    #[error("{path}: this is a folder, not a G-code program")]
-    #[diagnostic(help("name a program in it; `feedwright check` takes folders"))]
-    Directory {
-        /// As the user named it.
-        path: PathBuf,
-    },
-    /// Bytes that no text has.
-    #[error("{name}: byte {offset} is NUL: this is no G-code program but a binary file")]
-    #[diagnostic(help("G-code is plain text; a slicer or CAM system exports it"))]
-    Binary {
-        /// As the user named it.
-        name: Arc<str>,
-        /// Offset of the first NUL byte.
-        offset: usize,
-    },
-    /// Two bytes a character.
-    #[error("{name}: the file is UTF-16 text, which no control reads")]
-    #[diagnostic(help("save it as UTF-8 or plain ASCII; editors ask for the encoding in \"Save as\""))]
-    Utf16 {
-        /// As the user named it.
-        name: Arc<str>,
-    },
-    /// Nothing in it.
-    #[error("{name}: the program is empty")]
-    #[diagnostic(help("the export may have failed; a program has at least a motion such as G1 X10 F100"))]
-    Empty {
-        /// As the user named it.
-        name: Arc<str>,
-    },
-    /// Another language.
-    #[error("{name}: line {line} is {language}, which this reader does not read: `{text}`")]
-    #[diagnostic(help(
-        "export the program as ISO G-code (RS-274), for instance with a LinuxCNC or Fanuc post-processor"
-    ))]
-    Refused {
-        /// As the user named it.
-        name: Arc<str>,
-        /// The control whose language it is.
-        language: &'static str,
-        /// The line that shows it, from 1.
-        line: u32,
-        /// Its text.
-        text: String,
-    },
-    /// Signs of a mill and of a lathe, whose words cut different parts.
-    #[error(
-        "{name}: is this program for a mill or for a lathe? line {lathe_line} ({lathe}) is one of a lathe, line {mill_line} ({mill}) one of a mill"
-    )]
-    #[diagnostic(help(
-        "say which: --dialect fanuc-lathe, haas-lathe or fanuc-mill; of lathes, G-code system A is read, in which U and W are distances and G90 is a cycle"
-    ))]
-    MillOrLathe {
-        /// As the user named it.
-        name: Arc<str>,
-        /// The first line that shows a lathe, from 1.
-        lathe_line: u32,
-        /// What is on it.
-        lathe: &'static str,
-        /// The first line that shows a mill, from 1.
-        mill_line: u32,
-        /// What is on it.
-        mill: &'static str,
-    },
-}
+pub use error::ReadError;
 
 /// Reads a program and hands out its canonical steps as it goes; memory does not grow with the program.
 ///
@@ -267,6 +190,7 @@ impl Reader {
 
     #[inline]
     fn carry_out(&mut self, range: Range<usize>) -> Read<()> {
+        self.block.clear();
         if self.flow.is_skipping() {
             return self.flow.passed_line(range, &self.interpreter);
         }
@@ -324,7 +248,6 @@ impl Reader {
     /// The words of a line, which begin at `at`.
     #[inline]
     fn carry_out_words(&mut self, range: Range<usize>, mut at: usize) -> Read<()> {
-        self.block.clear();
         let Self { flow, interpreter, block, .. } = self;
         if interpreter.dialect.is_fanuc()
             && let Some(statement) =
@@ -489,6 +412,9 @@ impl Iterator for Reader {
                 self.warn_of_points();
                 let rest = self.rest()?;
                 return Some(Err(*rest));
+            }
+            if let Some(motion) = self.plain_line() {
+                return Some(Ok(Canon::Motion(motion)));
             }
             if let Err(diagnostic) = self.step()
                 && self.faults.add(&diagnostic, self.interpreter.settings.max_errors)

@@ -96,8 +96,7 @@ impl Source {
             let unread = &self.buffer[self.next..];
             if let Some(length) = memchr::memchr(b'\n', unread) {
                 let start = self.next;
-                self.begin_line();
-                self.next += length + 1;
+                self.pass_line(length);
                 let range = start..start + length;
                 return Ok(if length > LONGEST_LINE_BYTES { Line::TooLong(head_of(range)) } else { Line::Text(range) });
             }
@@ -122,6 +121,20 @@ impl Source {
         if range.len() > LONGEST_LINE_BYTES { Line::TooLong(head_of(range)) } else { Line::Text(range) }
     }
 
+    /// What has been read of the file behind the last line.
+    #[inline]
+    pub(super) fn unread(&self) -> &[u8] {
+        &self.buffer[self.next..]
+    }
+
+    /// Steps over the next line, which ends `length` bytes on.
+    #[inline]
+    pub(super) fn pass_line(&mut self, length: usize) {
+        self.begin_line();
+        self.next += length + 1;
+    }
+
+    #[inline]
     fn begin_line(&mut self) {
         self.line_start = Mark { offset: self.buffer_start + self.next as u64, lines_before: self.line };
         self.line = self.line.saturating_add(1);

@@ -129,6 +129,7 @@ impl Frame {
         Self { system: 1, system_offset: [0.0; 9], rotation_deg: 0.0, g92: [0.0; 9], tool: [0.0; 9], turn: None }
     }
 
+    #[inline]
     pub(super) fn to_machine(&self, program: &Position) -> Position {
         let mut program = *program;
         if let Some(turn) = &self.turn {

@@ -8,7 +8,7 @@ use super::settings::Dialect;
 use super::state::{FeedMode, Interpreter, Position};
 
 /// Seconds of a minute.
-const MINUTE_S: f64 = 60.0;
+pub(super) const MINUTE_S: f64 = 60.0;
 
 /// How fast a motion goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -280,7 +280,7 @@ impl Interpreter {
 }
 
 /// Feed of a printer before the first F, mm/s: what Marlin starts with (1500 mm/min).
-const PRINTER_FEED_MM_S: f64 = 25.0;
+pub(super) const PRINTER_FEED_MM_S: f64 = 25.0;
 
 /// What moves besides X, Y and Z.
 #[inline]
