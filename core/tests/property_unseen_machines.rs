@@ -20,7 +20,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
 /// Machines.
-const MACHINES: u64 = 200;
+const MACHINES: u64 = 48;
 /// Where the open loop itself rings by more than this, the machine is broken, um.
 const BROKEN_UM: f64 = 400.0;
 /// Part of the cuts that may be worse, and by how much at the most: what was measured, rounded up.

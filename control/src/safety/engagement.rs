@@ -6,8 +6,8 @@
 //!
 //! In Shadow and Fading the controller goes on deciding and learning, from what is commanded and measured, and nobody follows
 //! it. *Good* is a position that is there, predictions that hold with a margin (hysteresis), and a correction that would do no
-//! harm, for [`GOOD_S`] in a row. The first wait after a fault is [`FIRST_WAIT_S`]; each further one of the same making takes
-//! twice as long, and a correction that has held for [`FORGIVEN_S`] begins anew.
+//! harm, for `GOOD_S` in a row. The first wait after a fault is `FIRST_WAIT_S`; each further one of the same making takes
+//! twice as long, and a correction that has held for `FORGIVEN_S` begins anew.
 
 /// Predictions that hold for so long in a row are good, s.
 const GOOD_S: f64 = 0.1;
