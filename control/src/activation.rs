@@ -5,7 +5,6 @@
 //!
 //! Written so that a compiler vectorises it over an array: no branch, no table, no call.
 
-use crate::vector::bounded;
 
 /// Beyond this the result is 1 to the last bit, and e^-x stays a normal number.
 const SATURATED: f64 = 40.0;
@@ -37,7 +36,7 @@ const EXP_SERIES: [f64; 13] = [
 pub fn bipolar_sigmoid<const M: usize>(x: [f64; M]) -> [f64; M] {
     let mut f = [0.0; M];
     for i in 0..M {
-        let e = exp(-bounded(x[i], -SATURATED, SATURATED));
+        let e = exp(-x[i].clamp(-SATURATED, SATURATED));
         f[i] = (1.0 - e) / (1.0 + e);
     }
     f
