@@ -5,7 +5,6 @@
 //!
 //! Written so that a compiler vectorises it over an array: no branch, no table, no call.
 
-
 /// Beyond this the result is 1 to the last bit, and e^-x stays a normal number.
 const SATURATED: f64 = 40.0;
 /// ln 2 in two parts, so that `x - n ln 2` is exact for |n| < 2^20 (Cody and Waite 1980).
