@@ -108,14 +108,12 @@ fn judged(name: &str, text: &str, variant: &Variant) -> Row {
 }
 
 #[test]
-#[ignore = "the receding horizon of today leaves legs out"]
 fn teeth_smaller_than_the_lag_are_cut_no_worse_than_open_loop() {
     let row = judged("teeth", &teeth(), &Variant::of("tnv40", "tnv40"));
     assert_eq!(row.faults(), []);
 }
 
 #[test]
-#[ignore = "the receding horizon of today is lost at low gains"]
 fn two_turns_of_a_small_circle_are_cut_no_worse_than_open_loop() {
     for kp_1_s in [25.0, 40.0] {
         let variant = Variant::of("tnv40", format!("kp{kp_1_s}")).with_axes("kp_1_s", kp_1_s);
@@ -124,7 +122,6 @@ fn two_turns_of_a_small_circle_are_cut_no_worse_than_open_loop() {
 }
 
 #[test]
-#[ignore = "the receding horizon of today is lost where the spiral ends"]
 fn a_round_pocket_is_cut_no_worse_than_open_loop_by_a_machine_that_speeds_up_well() {
     let variant = Variant::of("tnv40", "accel250").with("limits", "tangential_accel_mm_s2", 250.0);
     assert_eq!(judged("round pocket", &round_pocket(), &variant).faults(), []);
