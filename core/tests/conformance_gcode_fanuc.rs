@@ -197,6 +197,21 @@ fn cycles_repeat_by_k_peck_less_and_less_and_start_the_tap() {
 }
 
 #[test]
+fn drilling_returns_to_the_level_where_it_began_unless_g99_is_there() {
+    let heights = |line: &str| -> Vec<f64> {
+        let text = format!("O1\nG21 G90 G17 F100\nG0 Z20.\n{line} X5. Z-3. R2.\nX9.\nG80\nM30\n");
+        motions(&text).iter().map(|motion| motion.end_mm[2]).collect()
+    };
+    let [returns, stays] = [
+        [20.0, 20.0, 2.0, -3.0, 20.0, 20.0, 2.0, -3.0, 20.0].as_slice(),
+        &[20.0, 20.0, 2.0, -3.0, 2.0, 2.0, -3.0, 2.0],
+    ];
+    assert_eq!(heights("G81"), returns);
+    assert_eq!(heights("G98 G81"), returns);
+    assert_eq!(heights("G99 G81"), stays);
+}
+
+#[test]
 fn the_spindle_is_bounded_by_g50_s_and_g92_s() {
     for line in ["G50 S2500", "G92 S2500"] {
         let text = format!("O1\nG21 G90 G17 G54\nS300 M3\n{line}\nG95 G1 X30. F1.\nM30\n");

@@ -58,13 +58,15 @@ pub(super) struct Fanuc {
     warned: Vec<&'static str>,
 }
 
-/// Modes that a lathe begins with.
-pub(super) const fn lathe_modes() -> Modal {
+/// Modes that a program begins with: drilling returns to the initial level (G98) on both machines.
+pub(super) const fn modes(is_lathe: bool) -> Modal {
     let mut modal = Modal::new();
-    modal.plane = Plane::Zx;
-    modal.diameter = true;
-    modal.feed_mode = FeedMode::PerRevolution;
     modal.retract_to_r = false;
+    if is_lathe {
+        modal.plane = Plane::Zx;
+        modal.diameter = true;
+        modal.feed_mode = FeedMode::PerRevolution;
+    }
     modal
 }
 

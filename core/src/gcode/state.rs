@@ -230,7 +230,7 @@ impl Interpreter {
             settings,
             dialect,
             parameters,
-            modal: if dialect.is_lathe() { fanuc::lathe_modes() } else { Modal::new() },
+            modal: if dialect.is_fanuc() { fanuc::modes(dialect.is_lathe()) } else { Modal::new() },
             frame: Frame::new(),
             at: [0.0; 9],
             here: [0.0; 9],
