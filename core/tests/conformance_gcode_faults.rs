@@ -38,6 +38,7 @@ const TABLE: &[(&str, u32, u32, u32, &str)] = &[
     ("G19 F60 G5.2 X1 Y1 P1", 1, 1, 21, "G5.2 needs the XY plane G17"),
     ("F60 G3 X0.003 I0.00175", 1, 1, 22, "radius is 0.001250 mm; the limit is 0.00127 mm"),
     ("M3 M4 G0 X1", 1, 4, 2, "M3 and M4 exclude each other"),
+    ("M19 R90 M3 G0 X1", 1, 9, 2, "M19 and M3 exclude each other"),
     ("G0 X1 X2", 1, 7, 2, "already has a word X"),
     ("X1", 1, 1, 2, "no code such as G0 or G1"),
     ("G80 X1", 1, 5, 2, "G80"),

@@ -9,7 +9,8 @@ use super::settings::Dialect;
 use super::state::Interpreter;
 
 /// M-codes of one group exclude each other on a line.
-const GROUPS: [&[u16]; 7] = [&[0, 1, 2, 30, 60], &[6, 61], &[3, 4, 5], &[7, 9], &[8, 9], &[48, 49], &[70, 71, 72, 73]];
+const GROUPS: [&[u16]; 8] =
+    [&[0, 1, 2, 30, 60], &[6, 61], &[3, 4, 5], &[3, 4, 19], &[7, 9], &[8, 9], &[48, 49], &[70, 71, 72, 73]];
 
 impl Interpreter {
     /// Letters that an M-code takes.
