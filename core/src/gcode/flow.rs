@@ -12,7 +12,7 @@ use super::expression::Evaluator;
 use super::fanuc::labels::Places;
 use super::fanuc::macros;
 use super::lexer::Cursor;
-use super::owords::{Arguments, Head, Keyword, read_arguments, read_head, read_rest, shown};
+use super::owords::{Arguments, Head, Keyword, read_arguments, read_head, read_keyword, read_label, read_rest, shown};
 use super::settings::Settings;
 use super::source::{Mark, Source};
 use super::state::Interpreter;
@@ -174,10 +174,18 @@ impl Flow {
             return Ok(None);
         }
         let mut evaluator = Evaluator::new(cursor, interpreter);
-        // Whatever else is wrong in a passed line does not matter: it is not carried out.
-        let Ok(head) = read_head(&mut evaluator) else {
+        // Whatever else is wrong in a passed line does not matter, for it is not carried out; a missing keyword may be that of the
+        // line where the passing ends.
+        let start = evaluator.cursor.at;
+        let Ok(label) = read_label(&mut evaluator) else {
             return Ok(None);
         };
+        let keyword = match read_keyword(&mut evaluator.cursor, &label, start) {
+            Ok(keyword) => keyword,
+            Err(_) if interpreter.dialect.is_fanuc() => return Ok(None),
+            Err(fault) => return Err(fault),
+        };
+        let head = Head { label, keyword, at: start..evaluator.cursor.at };
         if head.label != skip.label {
             if skip.purpose == Purpose::Definition && head.keyword == Keyword::Sub {
                 return Err(Fault::new(

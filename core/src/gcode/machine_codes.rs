@@ -1,6 +1,6 @@
 //! M-codes: those with a meaning to the interpreter change its state, all become events in program order.
 
-use super::block::Block;
+use super::block::{Block, Word};
 use super::canon::EventKind;
 use super::codes::bit;
 use super::diagnostic::{Fault, Read};
@@ -11,6 +11,24 @@ use super::state::Interpreter;
 /// M-codes of one group exclude each other on a line.
 const GROUPS: [&[u16]; 8] =
     [&[0, 1, 2, 30, 60], &[6, 61], &[3, 4, 5], &[3, 4, 19], &[7, 9], &[8, 9], &[48, 49], &[70, 71, 72, 73]];
+
+/// LinuxCNC drops what stands behind M98 and refuses what stands before it or behind M99; Fanuc carries the line out, then jumps.
+fn check_jump(block: &Block, jump: &Word) -> Read<()> {
+    let begin = match jump.number {
+        98 => 0,
+        99 => jump.at().end,
+        _ => return Ok(()),
+    };
+    let own = if jump.number == 98 { bit(b'p') | bit(b'l') } else { bit(b'p') };
+    let codes = block.g.iter().chain(&block.m).map(Word::at);
+    let letters = (b'a'..=b'z').filter(|letter| block.has(*letter) && own & bit(*letter) == 0);
+    let mut places = codes.chain(letters.map(|letter| block.at(letter)));
+    let Some(at) = places.find(|at| at.start >= begin && *at != jump.at()) else {
+        return Ok(());
+    };
+    let message = format!("LinuxCNC reads no other words beside M{}", jump.number);
+    Err(Fault::new("gcode::m98", at, message).hint("write them on a line of their own"))
+}
 
 impl Interpreter {
     /// Letters that an M-code takes.
@@ -66,6 +84,9 @@ impl Interpreter {
             {
                 let message = format!("M{} {what}, which is not read", word.number);
                 return Err(Fault::new("gcode::unsupported", word.at(), message).hint(hint));
+            }
+            if self.dialect == Dialect::LinuxCnc {
+                check_jump(block, word)?;
             }
             let known = matches!(word.number, 0..=9 | 19 | 30 | 48..=53 | 60..=68 | 70..=73 | 98 | 99 | 100..=199);
             if !known && self.dialect == Dialect::LinuxCnc {

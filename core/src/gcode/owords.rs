@@ -87,8 +87,16 @@ pub(super) struct Arguments {
 /// Reads the O-word under the cursor up to its arguments.
 pub(super) fn read_head<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<Head> {
     let start = evaluator.cursor.at;
+    let label = read_label(evaluator)?;
+    let keyword = read_keyword(&mut evaluator.cursor, &label, start)?;
+    Ok(Head { label, keyword, at: start..evaluator.cursor.at })
+}
+
+/// Reads O and the label behind it.
+pub(super) fn read_label<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<Vec<u8>> {
+    let start = evaluator.cursor.at;
     evaluator.cursor.bump();
-    let label = if evaluator.cursor.eat(b'<') {
+    Ok(if evaluator.cursor.eat(b'<') {
         evaluator.name(start)?
     } else {
         let value = evaluator.value()?;
@@ -98,23 +106,23 @@ pub(super) fn read_head<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<Hea
             return Err(Fault::new("gcode::o_word", start..evaluator.cursor.at, message));
         }
         format!("{}", rounded as u64).into_bytes()
+    })
+}
+
+/// Reads the keyword behind the label of an O-word that begins at `start`.
+pub(super) fn read_keyword(cursor: &mut Cursor<'_>, label: &[u8], start: usize) -> Read<Keyword> {
+    if matches!(cursor.peek(), END | b'(' | b';' | b'%') {
+        return Ok(Keyword::Number);
+    }
+    // The longest spelling that fits: `else` also begins `elseif`, `sub` ends `endsub`.
+    let found = KEYWORDS.iter().filter(|row| cursor.clone().eat_word(row.0)).max_by_key(|row| row.0.len());
+    let Some((spelling, keyword)) = found else {
+        let at = start..cursor.at + 1;
+        return Err(Fault::new("gcode::o_word", at, format!("{} is followed by no keyword", shown(label)))
+            .hint("sub, endsub, call, return, if, elseif, else, endif, while, endwhile, do, repeat, endrepeat, break or continue"));
     };
-    let cursor = &mut evaluator.cursor;
-    let next = cursor.peek();
-    let keyword = if matches!(next, END | b'(' | b';' | b'%') {
-        Keyword::Number
-    } else {
-        // The longest spelling that fits: `else` also begins `elseif`, `sub` ends `endsub`.
-        let found = KEYWORDS.iter().filter(|row| cursor.clone().eat_word(row.0)).max_by_key(|row| row.0.len());
-        let Some((spelling, keyword)) = found else {
-            let at = start..cursor.at + 1;
-            return Err(Fault::new("gcode::o_word", at, format!("{} is followed by no keyword", shown(&label)))
-                .hint("sub, endsub, call, return, if, elseif, else, endif, while, endwhile, do, repeat, endrepeat, break or continue"));
-        };
-        cursor.eat_word(spelling);
-        *keyword
-    };
-    Ok(Head { label, keyword, at: start..evaluator.cursor.at })
+    cursor.eat_word(spelling);
+    Ok(*keyword)
 }
 
 /// Reads bracketed arguments up to the end of the line or a comment.
