@@ -101,3 +101,45 @@ fn the_infeed_into_the_taper_of_a_thread_waits_for_the_spindle() {
     let EventKind::SpindleSync { pitch_mm: Some(pitch_mm) } = before.kind else { panic!("{before:?}") };
     assert!((pitch_mm - 1.118_034).abs() < SAME_MM, "{pitch_mm}");
 }
+
+/// `rs274` writes `START_SPEED_FEED_SYNC(1.500000,0)` around one straight motion: position and spindle are coupled, K is the way of
+/// the tool a revolution, and the spindle turns as fast as the surface speed asks for at each X.
+#[test]
+fn a_thread_at_a_surface_speed_has_its_lead_everywhere() {
+    const LEAD_MM: f64 = 1.5;
+    let text = "G21 G18 F100 G96 S100 D2000 M3\nG0 X20 Z10\nG33 X5 Z-20 K1.5\nG33 Z-30 K1.5\nM2\n";
+    let (steps, faults) = read(text);
+    assert!(faults.is_empty(), "{faults:?}");
+    let synchronous: Vec<_> = steps
+        .iter()
+        .filter_map(|step| match step {
+            Canon::Event(event) => match event.kind {
+                EventKind::SpindleSync { pitch_mm } => Some(pitch_mm),
+                _ => None,
+            },
+            Canon::Motion(_) => None,
+        })
+        .collect();
+    assert_eq!(synchronous, [Some(LEAD_MM), None, Some(LEAD_MM), None]);
+    let rpm = |x_mm: f64| (100_000.0 / (std::f64::consts::TAU * x_mm)).min(2000.0);
+    let threads = motions(text).split_off(1);
+    let [mut time_s, mut expected_s] = [0.0; 2];
+    for motion in &threads {
+        let [a, b] = [motion.start_mm[0], motion.end_mm[0]];
+        // The lead at both ends of a piece is within what the spindle changes along it.
+        for x_mm in [a, b] {
+            let lead_mm = motion.feed_mm_s / (rpm(x_mm) / 60.0);
+            assert!((lead_mm / LEAD_MM - 1.0).abs() < 0.03, "{lead_mm} at X {x_mm}: {motion:?}");
+        }
+        time_s += motion.length_mm() / motion.feed_mm_s;
+        const PARTS: u32 = 100;
+        for part in 0..PARTS {
+            let x_mm = a + (b - a) * (f64::from(part) + 0.5) / f64::from(PARTS);
+            expected_s += motion.length_mm() / f64::from(PARTS) / (LEAD_MM * rpm(x_mm) / 60.0);
+        }
+    }
+    assert!((time_s / expected_s - 1.0).abs() < 2e-4, "{time_s} s, {expected_s} s");
+    // No stop between the pieces of one thread.
+    assert!(threads.windows(2).all(|pair| pair[0].end_mm == pair[1].start_mm));
+    assert_eq!(threads.last().unwrap().end_mm, [5.0, 0.0, -30.0]);
+}

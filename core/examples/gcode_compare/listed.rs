@@ -1,52 +1,334 @@
 //! Differences from LinuxCNC that are intended: the rows of docs/gcode-differences.md that a random program can meet.
+//!
+//! A row names what is told and what the program has where it is told, so that another difference nearby does not hide behind it.
+//! `core/tests/oracle_linuxcnc_listed.rs` has a program for every row.
 
-/// A row: a part of the difference as it is told, parts that the program has, the row of the table.
-type Row = (&'static str, &'static [&'static str], &'static str);
+use std::path::Path;
 
-const ROWS: &[Row] = &[
-    ("Two m codes used from same modal group", &["M"], "M-codes on one line that LinuxCNC counts to one group"),
-    ("L word with no G10", &["G74"], "L with G74"),
-    ("K word missing with g33", &["G33"], "G28, G30 or G92 while G33 is active"),
-    ("does not fit into the inner corner", &["G4"], "an entry into compensation that leads the tool into the contour"),
-    (
-        "cannot be reached by the tool without gouging",
-        &["G4"],
-        "a corner of compensation that LinuxCNC refuses by rounding",
-    ),
-    ("G76 needs the plane G18", &["G76"], "G76 outside G18"),
-    ("inside the profile of a lathe cycle", &["sub"], "codes in the profile of a lathe cycle"),
-    ("the profile of G7", &["sub"], "profiles of lathe cycles"),
-    ("the curve of G5.2 is not complete", &["G5.2"], "a curve begun by G5.2 and left without G5.3"),
-    ("another", &["G43", "G20"], "G28, G30 and G49 under G43.1 in another unit"),
-    ("Cannot intersect parallel lines", &["sub"], "profiles of lathe cycles"),
-    ("zero feed rate", &["G94"], "G94 where it is active already"),
-    ("already has a word P", &[" P"], "P twice on a line"),
-    ("O9000 has no M99", &["O9000"], "a subroutine without its M99"),
-    ("seeking o-word: o<9000>", &["O9000"], "a subroutine for M98 that LinuxCNC does not find"),
-    ("Unexpected character after O-word", &["O9000"], "N before the O of a subroutine"),
-    ("Nested subroutine definition", &[" sub"], "an O-word without its keyword in a subroutine"),
-    ("another end", &["G96", "G33"], "G33 under G96, where we cut a thread in pieces"),
-    ("Unexpected character after O-word", &[" elseif "], "words behind an elseif that is not carried out"),
-    ("another end", &["G96", "G95"], "G95 under G96, where we cut a straight motion in pieces"),
-    ("another", &["G84", "G18"], "G84 and G74 outside G17"),
-    ("another", &["G84", "G19"], "G84 and G74 outside G17"),
-    ("another", &["G74", "G18"], "G84 and G74 outside G17"),
-    ("another", &["G74", "G19"], "G84 and G74 outside G17"),
-    ("another", &[" mod "], "MOD of a multiple, by rounding"),
-    ("another", &["endsub [5]"], "the value of a subroutine that is only defined"),
-    ("another", &["G52", "G10 L2", " R"], "rotation of the active system under G92"),
-    ("another", &["G92", "G10 L2", " R"], "rotation of the active system under G92"),
-    ("off the spline", &["G5"], "points of splines where LinuxCNC's preview has not noticed Z of an arc"),
-    ("no code such as G0 or G1", &["G5"], "axis words alone behind G5 and G5.1"),
-    ("needs its weight P", &["G5.2"], "G5.2 without P"),
-    ("with L word, but plane", &["G4"], "L with G41.1 and G42.1"),
-    ("I J words not allowed with G10 L2", &["G10"], "I and J with G10 L2"),
-    ("Unclosed comment", &["(open"], "a comment that is open in a line that is not carried out"),
-    ("needs its word Q", &["M6"], "M67 and M68 without Q"),
+use crate::linuxcnc::{Theirs, Totals, compare, cut_mm, flat_lines, ours};
+
+/// What came of a program.
+pub(crate) enum Verdict {
+    /// LinuxCNC's module crashed or hung.
+    Unknown,
+    BothRefuse,
+    Same,
+    Differ(String),
+}
+
+/// Reads the program as well, and compares.
+pub(crate) fn judge(path: &Path, text: &str, theirs: &Theirs, totals: &mut Totals) -> Verdict {
+    if !theirs.complete {
+        return Verdict::Unknown;
+    }
+    let (motions, fault) = ours(path);
+    let difference = match (&theirs.refused, fault) {
+        (Some(_), Some(_)) => return Verdict::BothRefuse,
+        (None, Some(fault)) => Some(format!("only we refuse: {fault}")),
+        (Some(refused), None) => Some(format!("only they refuse: {refused}")),
+        (None, None) => compare(text, &motions, theirs, totals),
+    };
+    difference.map_or(Verdict::Same, Verdict::Differ)
+}
+
+/// The G- and M-codes of a line or a program, in their order, without leading zeros.
+pub(crate) fn codes_of(text: &str) -> Vec<String> {
+    let upper = text.to_ascii_uppercase();
+    let code = |(at, letter): (usize, &str)| {
+        let number: String = upper[at + 1..].chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+        number.parse::<f64>().ok().map(|number| format!("{letter}{number}"))
+    };
+    upper.match_indices(['G', 'M']).filter_map(code).collect()
+}
+
+/// A difference and the program that it is in.
+struct Case<'a> {
+    text: &'a str,
+    theirs: &'a Theirs,
+    /// In capitals.
+    lines: Vec<String>,
+    /// The line where it is, from 0.
+    at: usize,
+}
+
+const PLANES: &[&str] = &["G17", "G18", "G19"];
+const MOTIONS: &[&str] = &[
+    "G0", "G1", "G2", "G3", "G5", "G5.1", "G5.2", "G5.3", "G33", "G33.1", "G38.2", "G38.3", "G38.4", "G38.5", "G70",
+    "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2", "G73", "G74", "G76", "G80", "G81", "G82", "G83", "G84", "G85",
+    "G86", "G87", "G88", "G89",
 ];
 
+impl<'a> Case<'a> {
+    /// The line of a difference. LinuxCNC names that behind a line that it could read and not carry out: then one `earlier`.
+    fn new(text: &'a str, theirs: &'a Theirs, difference: &str, earlier: usize) -> Option<Self> {
+        let number = difference.split_once("line ")?.1;
+        let number: usize = number.chars().take_while(char::is_ascii_digit).collect::<String>().parse().ok()?;
+        let lines: Vec<String> = text.lines().map(str::to_ascii_uppercase).collect();
+        let at = number.checked_sub(1 + earlier).filter(|at| *at < lines.len())?;
+        Some(Self { text, theirs, lines, at })
+    }
+
+    fn line(&self) -> &str {
+        &self.lines[self.at]
+    }
+
+    /// Whether the line has one of the codes.
+    fn has(&self, codes: &[&str]) -> bool {
+        has(self.line(), codes)
+    }
+
+    /// Whether the line has a word with this letter; O-words have none.
+    fn has_word(&self, letter: char) -> bool {
+        !self.line().starts_with('O') && self.line().contains(letter)
+    }
+
+    /// The last of some codes up to the line, as it is written, and where; that of the line included.
+    fn last(&self, codes: &[&str]) -> Option<(usize, String)> {
+        self.last_before(self.at + 1, codes)
+    }
+
+    fn last_before(&self, end: usize, codes: &[&str]) -> Option<(usize, String)> {
+        let in_line = |at: usize| codes_of(&self.lines[at]).into_iter().rfind(|code| codes.contains(&code.as_str()));
+        (0..end).rev().find_map(|at| Some((at, in_line(at)?)))
+    }
+
+    fn is_active(&self, among: &[&str], codes: &[&str]) -> bool {
+        self.last(among).is_some_and(|(_, code)| codes.contains(&code.as_str()))
+    }
+}
+
+fn has(line: &str, codes: &[&str]) -> bool {
+    codes_of(line).iter().any(|code| codes.contains(&code.as_str()))
+}
+
+/// A row: how the difference begins, a part of it, what the program has, the row of the table.
+struct Row {
+    who: &'static str,
+    says: &'static str,
+    fits: fn(&Case) -> bool,
+    what: &'static str,
+}
+
+const WE: &str = "only we refuse";
+const THEY: &str = "only they refuse";
+/// What counts as a cut into the contour, mm: far above rounding.
+const CUT_MM: f64 = 1e-3;
+/// Both read the program, and a motion is not the same.
+const MOTION: &str = "motion";
+
+const fn row(who: &'static str, says: &'static str, fits: fn(&Case) -> bool, what: &'static str) -> Row {
+    Row { who, says, fits, what }
+}
+
+const ROWS: &[Row] = &[
+    row(
+        THEY,
+        "Two m codes used from same modal group",
+        free_pair,
+        "M-codes on one line that LinuxCNC counts to one group",
+    ),
+    row(THEY, "L word with no G10", |case| case.has_word('L') && case.is_active(MOTIONS, &["G74"]), "L with G74"),
+    row(
+        WE,
+        "does not fit into the inner corner",
+        |case| cut_mm(case.text, case.theirs, case.at as u32 + 1) > CUT_MM,
+        "an inner corner where LinuxCNC cuts into the contour",
+    ),
+    row(
+        WE,
+        "does not fit into the inner corner",
+        behind_entry,
+        "an entry into compensation that meets the contour beyond its first motion",
+    ),
+    row(
+        THEY,
+        "cannot be reached by the tool without gouging",
+        // The motion may be held back, and another line stand between.
+        |case| (case.at..case.at + 2).any(|line| flat_lines(case.text).contains(&(line as u32))),
+        "a flat corner of compensation that LinuxCNC refuses by rounding",
+    ),
+    row(WE, "G76 needs the plane G18", |case| case.has(&["G76"]), "G76 outside G18"),
+    row(
+        WE,
+        "inside the profile of a lathe cycle",
+        |case| case.has(&["G41", "G41.1", "G42", "G42.1"]),
+        "codes in the profile of a lathe cycle",
+    ),
+    row(
+        WE,
+        "cannot be used:",
+        |case| case.has(&["G70", "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2"]),
+        "codes in the profile of a lathe cycle",
+    ),
+    row(
+        WE,
+        "is empty",
+        |case| case.has(&["G70", "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2"]),
+        "an empty profile of a lathe cycle",
+    ),
+    row(
+        THEY,
+        "Cannot intersect parallel lines",
+        |case| case.has(&["G70", "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2"]),
+        "lines of a profile that go straight on",
+    ),
+    row(
+        WE,
+        "the curve of G5.2 is not complete",
+        |case| case.lines.iter().any(|line| has(line, &["G5.2"])),
+        "a curve begun by G5.2 and left without G5.3",
+    ),
+    row(
+        WE,
+        "needs the XY plane G17",
+        |case| case.has(&["G5.2", "G5.3"]) && !case.is_active(PLANES, &["G17"]),
+        "G5.2 and G5.3 outside G17",
+    ),
+    row(
+        WE,
+        "no other words beside M98",
+        |case| case.line().trim_start_matches(|c: char| c == 'N' || c.is_ascii_digit() || c == ' ').starts_with("M98"),
+        "words behind M98 on its line",
+    ),
+    row(WE, "needs its weight P", |case| case.has(&["G5.2"]) && !case.has_word('P'), "G5.2 without P"),
+    row(MOTION, "another", unit_under_offset, "G28, G30, G49 and G53 under G43.1 in another unit"),
+    row(THEY, "zero feed rate", feed_forgotten, "G94 where it is active already"),
+    row(WE, "already has a word P", |case| case.is_active(MOTIONS, &["G5"]), "P twice on a line of G5"),
+    row(
+        WE,
+        "O9000 has no M99",
+        |case| !case.lines.iter().any(|line| has(line, &["M99"])),
+        "a subroutine without its M99",
+    ),
+    row(
+        THEY,
+        "Nested subroutine definition",
+        |case| case.line().starts_with('O') && case.line().split_whitespace().count() == 1,
+        "an O-word without its keyword in a subroutine",
+    ),
+    row(
+        THEY,
+        "Unexpected character after O-word",
+        |case| case.line().contains(" ELSEIF "),
+        "words behind an elseif that is not carried out",
+    ),
+    row(
+        MOTION,
+        "another",
+        |case| !case.is_active(PLANES, &["G17"]) && case.is_active(MOTIONS, &["G74", "G84"]),
+        "G84 and G74 outside G17",
+    ),
+    row(MOTION, "another", of_multiple, "MOD of a multiple, by rounding"),
+    row(MOTION, "another", value_of_definition, "the value of a subroutine that is only defined"),
+    row(MOTION, "another", turned_under_g92, "rotation of the active system under G92"),
+    row(
+        MOTION,
+        "off the spline",
+        |case| {
+            let begin = case.last_before(case.at, MOTIONS);
+            begin.is_some_and(|(at, code)| ["G2", "G3"].contains(&code.as_str()) && case.lines[at].contains('Z'))
+        },
+        "points of splines where LinuxCNC's preview has not noticed Z of an arc",
+    ),
+    row(
+        WE,
+        "no code such as G0 or G1",
+        |case| case.is_active(MOTIONS, &["G5", "G5.1"]) && !case.has(&["G5", "G5.1"]),
+        "axis words alone behind G5 and G5.1",
+    ),
+    row(
+        THEY,
+        "with L word, but plane",
+        |case| case.has_word('L') && case.has(&["G41.1", "G42.1"]),
+        "L with G41.1 and G42.1",
+    ),
+    row(THEY, "I J words not allowed with G10 L2", |case| case.has(&["G10"]), "I and J with G10 L2"),
+    row(
+        THEY,
+        "Unclosed comment",
+        |case| case.line().contains("(OPEN"),
+        "a comment that is open in a line that is not carried out",
+    ),
+    row(WE, "needs its word Q", |case| case.has(&["M67", "M68"]) && !case.has_word('Q'), "M67 and M68 without Q"),
+];
+
+/// M-codes of two groups of ours, and of one of LinuxCNC's.
+fn free_pair(case: &Case) -> bool {
+    let codes = codes_of(case.line());
+    let one_of = |group: &[&str]| codes.iter().any(|code| group.contains(&code.as_str()));
+    one_of(&["M7"]) && one_of(&["M8"])
+        || one_of(&["M70", "M71", "M72", "M73"]) && one_of(&["M3", "M4", "M5", "M19"])
+        || one_of(&["M48", "M49"]) && one_of(&["M50", "M51", "M52", "M53"])
+        || one_of(&["M5"]) && one_of(&["M19"])
+}
+
+/// Whether the line is that behind the entry into compensation.
+fn behind_entry(case: &Case) -> bool {
+    let Some((begin, _)) = case.last(&["G41", "G41.1", "G42", "G42.1"]) else {
+        return false;
+    };
+    case.lines[begin..case.at].iter().filter(|line| line.contains(['X', 'Y'])).count() == 1
+}
+
+/// Whether G28, G30, G49 or G53 stands behind a change of the unit, and that behind G43.1.
+fn unit_under_offset(case: &Case) -> bool {
+    let leaving = ["G28", "G30", "G49", "G53"];
+    case.last(&["G43.1"]).is_some_and(|(offset, _)| {
+        let unit = (offset..case.at).find(|at| has(&case.lines[*at], &["G20", "G21", "M72"]));
+        unit.is_some_and(|unit| case.lines[unit..=case.at].iter().any(|line| has(line, &leaving)))
+    })
+}
+
+/// Whether G94 was written where it was active, and no F since.
+fn feed_forgotten(case: &Case) -> bool {
+    let modes = ["G93", "G94", "G95"];
+    let Some((last, code)) = case.last(&modes) else {
+        return false;
+    };
+    let before = case.last_before(last, &modes);
+    code == "G94"
+        && before.is_some_and(|(_, code)| code == "G94")
+        && !case.lines[last..=case.at].iter().any(|line| line.contains('F'))
+}
+
+/// Whether a MOD stands in the line or the two before it, of whose values the motion is made.
+fn of_multiple(case: &Case) -> bool {
+    case.lines[case.at.saturating_sub(2)..=case.at].iter().any(|line| line.contains(" MOD "))
+}
+
+/// Whether the value of a subroutine was used that is defined before and called nowhere.
+fn value_of_definition(case: &Case) -> bool {
+    let Some(used) = (0..=case.at).rfind(|at| case.lines[*at].contains("#<_VALUE>")) else {
+        return false;
+    };
+    let label = |line: &String| line.split_once(" ENDSUB [").map(|(label, _)| label.to_owned());
+    let defined = case.lines[..used].iter().rev().find_map(label);
+    defined.is_some_and(|label| !case.lines.iter().any(|line| line.starts_with(&format!("{label} CALL "))))
+}
+
+/// Whether the active system was turned while G92 or G52 was in effect.
+fn turned_under_g92(case: &Case) -> bool {
+    let shifts = ["G52", "G92", "G92.1", "G92.2", "G92.3"];
+    (0..=case.at).any(|at| {
+        let line = &case.lines[at];
+        has(line, &["G10"])
+            && line.contains("L2 ")
+            && line.contains('R')
+            && case.last_before(at, &shifts).is_some_and(|(_, code)| !["G92.1", "G92.2"].contains(&code.as_str()))
+    })
+}
+
 /// The row that a difference belongs to.
-pub(crate) fn find(text: &str, difference: &str) -> Option<&'static str> {
-    let fits = |row: &&Row| difference.contains(row.0) && row.1.iter().all(|part| text.contains(part));
-    ROWS.iter().find(fits).map(|row| row.2)
+pub(crate) fn find(text: &str, theirs: &Theirs, difference: &str) -> Option<&'static str> {
+    let fits = |row: &Row| {
+        let earlier = if row.who == THEY { 0..2 } else { 0..1 };
+        let mut cases = earlier.filter_map(|earlier| Case::new(text, theirs, difference, earlier));
+        difference.starts_with(row.who) && difference.contains(row.says) && cases.any(|case| (row.fits)(&case))
+    };
+    ROWS.iter().find(|row| fits(row)).map(|row| row.what)
+}
+
+/// What the rows are called.
+pub(crate) fn names() -> impl Iterator<Item = &'static str> {
+    ROWS.iter().map(|row| row.what)
 }

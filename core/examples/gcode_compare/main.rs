@@ -2,7 +2,8 @@
 //!
 //! Usage: `cargo run --release --example gcode_compare -- [PROGRAMS] [FIRST]`. Needs the interpreter's Python module
 //! (Debian: `linuxcnc-uspace`). The same numbers give the same programs. Every difference that is not listed is written to
-//! `gcode_compare_NUMBER.ngc` and ends the run with exit code 1; in the end it says which codes the programs had.
+//! `gcode_compare_NUMBER.ngc` and ends the run with exit code 1; in the end it says which codes the programs had. A program
+//! alone is printed.
 
 #![expect(clippy::unwrap_used, reason = "shared with tests, which may stop")]
 
@@ -16,7 +17,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use feedwright::gcode::{Reader, Settings};
-use linuxcnc::{Theirs, Totals, compare, ours, theirs};
+use linuxcnc::{Theirs, Totals, theirs};
+use listed::{Verdict, codes_of};
 
 /// Programs that LinuxCNC is asked about at a time.
 const BATCH: u64 = 500;
@@ -56,30 +58,22 @@ impl Outcome {
     fn batch(&mut self, begin: u64, end: u64) -> std::io::Result<()> {
         let folder = tempfile::tempdir()?;
         let texts: Vec<String> = (begin..end).map(programs::program).collect();
+        if end - begin == 1 {
+            println!("{}", texts[0]);
+        }
         let mut paths: Vec<PathBuf> = Vec::new();
         for (number, text) in (begin..).zip(&texts) {
-            let path = folder.path().join(format!("{number}.ngc"));
+            // Not a number alone: LinuxCNC looks for O9000 in a file of that name first.
+            let path = folder.path().join(format!("program_{number}.ngc"));
             std::fs::write(&path, text)?;
             paths.push(path);
         }
         for (((number, text), path), theirs) in (begin..).zip(&texts).zip(&paths).zip(theirs(&paths)) {
-            let (motions, fault) = ours(path);
-            let difference = match (&theirs.refused, &fault) {
-                _ if !theirs.complete => {
-                    self.count("LinuxCNC crashed or hung");
-                    continue;
-                }
-                (Some(_), Some(_)) => {
-                    self.count("both refuse");
-                    continue;
-                }
-                (None, Some(fault)) => Some(format!("only we refuse: {fault}")),
-                (Some(refused), None) => Some(format!("only they refuse: {refused}")),
-                (None, None) => compare(text, &motions, &theirs, &mut self.totals),
-            };
-            match difference {
-                None => self.agreed(text),
-                Some(difference) => self.differ(number, text, &difference, &theirs)?,
+            match listed::judge(path, text, &theirs, &mut self.totals) {
+                Verdict::Unknown => self.count("LinuxCNC crashed or hung"),
+                Verdict::BothRefuse => self.count("both refuse"),
+                Verdict::Same => self.agreed(text),
+                Verdict::Differ(difference) => self.differ(number, text, &difference, &theirs)?,
             }
         }
         Ok(())
@@ -91,13 +85,16 @@ impl Outcome {
 
     fn agreed(&mut self, text: &str) {
         self.count("the same motions");
-        for code in codes_of(text) {
+        let mut codes = codes_of(text);
+        codes.sort();
+        codes.dedup();
+        for code in codes {
             *self.codes.entry(code).or_default() += 1;
         }
     }
 
     fn differ(&mut self, number: u64, text: &str, difference: &str, theirs: &Theirs) -> std::io::Result<()> {
-        if let Some(row) = listed::find(text, difference) {
+        if let Some(row) = listed::find(text, theirs, difference) {
             self.count(&format!("listed: {row}"));
             return Ok(());
         }
@@ -111,6 +108,12 @@ impl Outcome {
         for (what, count) in &self.counts {
             println!("{count:7} {what}");
         }
+        let unmet: Vec<&str> =
+            listed::names().filter(|name| !self.counts.contains_key(&format!("listed: {name}"))).collect();
+        println!(
+            "rows of the list that no program met: {}",
+            if unmet.is_empty() { "none".to_owned() } else { unmet.join("; ") }
+        );
         println!(
             "{:7} flat corners of cutter compensation, where LinuxCNC cuts into the contour",
             self.totals.flat_corners
@@ -126,21 +129,6 @@ impl Outcome {
         println!("{programs} programs, {} differences that are not listed", self.unlisted);
         if self.unlisted == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE }
     }
-}
-
-/// The G- and M-codes in a program, each once, without leading zeros.
-fn codes_of(text: &str) -> Vec<String> {
-    let mut codes: Vec<String> = Vec::new();
-    let upper = text.to_ascii_uppercase();
-    for (at, letter) in upper.match_indices(['G', 'M']) {
-        let number: String = upper[at + 1..].chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
-        if let Ok(number) = number.parse::<f64>() {
-            codes.push(format!("{letter}{number}"));
-        }
-    }
-    codes.sort();
-    codes.dedup();
-    codes
 }
 
 /// Every G- and M-code that the reader knows, found by asking it.

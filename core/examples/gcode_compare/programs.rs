@@ -293,14 +293,14 @@ impl Writer {
 
     fn cycle(&mut self) {
         let plane = if self.below(4) == 0 { self.rng.random_range(0..3) } else { 0 };
-        let code = self.pick(&["G81", "G82", "G83", "G73", "G84", "G74", "G85", "G86", "G89", "G87"]);
+        let code = self.pick(&["G81", "G82", "G83", "G73", "G84", "G74", "G85", "G86", "G88", "G89", "G87"]);
         // G88 leaves the height to the operator, so that nothing behind it could be compared.
         // In other planes LinuxCNC 2.9 exchanges the axes of tapping.
         self.choose_plane(if code == "G84" || code == "G74" { 0 } else { plane });
         let (_, [first, second, normal], _) = PLANES[self.plane];
         let (bottom, above) = (self.number(-12.0, -2.0), self.number(0.0, 6.0));
         let mut words = match code {
-            "G82" | "G86" | "G89" => " P0.1".to_owned(),
+            "G82" | "G86" | "G88" | "G89" => " P0.1".to_owned(),
             "G84" | "G74" => " P0".to_owned(),
             "G83" | "G73" => format!(" Q{}", self.number(0.7, 4.0).max(0.7)),
             "G87" => " I1 J0.5 K-1".to_owned(),

@@ -6,10 +6,10 @@ usage: linuxcnc_canon.py OUTPUT_FOLDER FILE...
 File number n gives OUTPUT_FOLDER/n.json: one list a line,
   ["rapid" | "feed" | "probe" | "tap", line, end]                            end: nine machine coordinates, mm and degrees
   ["arc", line, end, plane, centre of the plane's two axes, turns]           plane: 0 XY, 1 ZX, 2 YZ
-  ["error", line, message]                                                   last line of a program that is refused
+  ["error", line, message]                                                   last line of a program that is refused, or the next
 Coordinates are those of the machine: programmed + G92, rotated, + coordinate system + tool.
-The module of LinuxCNC 2.9 crashes at T and M6 when no LinuxCNC runs, so these words and G43 H are taken out first; with tool
-lengths of zero they move nothing. So it does at G41 D and G42 D, which become G41.1 and G42.1 with the diameter of all tools.
+The module of LinuxCNC 2.9 crashes at T, M6, M61 Q and G43.2 H when no LinuxCNC runs, so these words and G43 H are taken out first;
+with tool lengths of zero they move nothing. So it does at G41 D and G42 D, which become G41.1 and G42.1 with the diameter of all tools.
 A crash of the interpreter (it happens) leaves a file without a last line ["end"].
 """
 import json
@@ -122,10 +122,11 @@ class Recorder:
 
 
 TOOL_WORDS = re.compile(rb"(?i)\bT\s*\d+|\bM\s*0?6(?!\d)|G\s*43(?![.\d])")
+ADDED_WORDS = re.compile(rb"(?i)\bG\s*43\.2\s*H\s*\d+(?![.\d])|\bM\s*61\s*Q\s*\d+(?![.\d])")
 LENGTH_WORD = re.compile(rb"(?i)H\s*\d+")
 RADIUS_WORD = re.compile(rb"(?i)G\s*4([12])(?![.\d])(.*?)D\s*\d+(?![.\d])")
 RADIUS_OF_TOOL = re.compile(rb"(?i)G\s*4([12])(?![.\d])()")
-TOOL_CHANGE = re.compile(rb"(?im)^[^(;\n]*M\s*0?6(?!\d)")
+TOOL_CHANGE = re.compile(rb"(?im)^[^(;\n]*M\s*(0?6|61)(?!\d)")
 # All tools are an eighth of an inch thick, in the unit of the program.
 RADIUS_GIVEN = rb"G4\1.1 D[0.125*[1+24.4*#<_metric>]]\2"
 
@@ -133,13 +134,15 @@ RADIUS_GIVEN = rb"G4\1.1 D[0.125*[1+24.4*#<_metric>]]\2"
 def without_tools(line, has_tool):
     """The line without tool words; comments stay as they are. `has_tool`: the program puts one into the spindle."""
     code = re.split(rb"[(;]", line, maxsplit=1)[0]
+    comment = line[len(code):]
+    code = ADDED_WORDS.sub(b"", code)
     stripped = TOOL_WORDS.sub(b"", code)
     if stripped != code:
         stripped = LENGTH_WORD.sub(b"", stripped)
     stripped = RADIUS_WORD.sub(RADIUS_GIVEN, stripped)
     if has_tool:
         stripped = RADIUS_OF_TOOL.sub(RADIUS_GIVEN, stripped)
-    return stripped + line[len(code):]
+    return stripped + comment
 
 
 def run(path, output):
