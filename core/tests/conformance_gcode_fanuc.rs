@@ -321,6 +321,15 @@ fn smoothing_is_left_out_with_a_warning() {
 }
 
 #[test]
+fn a_code_that_only_linuxcnc_has_is_named_as_such() {
+    let found = faults("O1\nG21 G90 G17 F100\nG42.1 D4 G1 X5. Y0\nM30\n");
+    assert!(
+        found[0].starts_with("3: G42.1 is a G-code of LinuxCNC") && found[0].contains("--dialect linuxcnc"),
+        "{found:?}"
+    );
+}
+
+#[test]
 fn codes_of_other_controls_are_refused_by_what_they_do() {
     for (code, what) in [
         ("G12 I5.", "pocket"),

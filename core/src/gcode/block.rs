@@ -378,6 +378,14 @@ fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
         return Fault::new("gcode::unsupported", at, format!("{spelled} ({what}, on other controls) is not read"))
             .hint(hint);
     }
+    // Read with the codes of Fanuc or Haas.
+    if !has_gap
+        && (0.0..1000.0).contains(&tenths)
+        && codes::find(tenths as u16).is_some_and(|row| f64::from(row.number) == tenths)
+    {
+        let message = format!("{spelled} is a G-code of LinuxCNC, and none of Fanuc and Haas that this reader knows");
+        return Fault::new("gcode::unknown_g", at, message).hint("--dialect linuxcnc reads a program for LinuxCNC");
+    }
     let fault = Fault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"));
     if has_gap {
         fault.hint("blanks inside numbers mean nothing: is a letter missing behind the blank?")

@@ -94,7 +94,7 @@ impl Reader {
         let warning = choice.warning.map(|(line, message)| {
             let mut warning = Diagnostic::of_file(Severity::Warning, "gcode::machine", source.name.clone(), message);
             warning.line = line;
-            warning.hint = Some("--dialect fanuc-mill, fanuc-lathe or haas-lathe says which".to_owned());
+            warning.hint = Some("--dialect fanuc-mill, fanuc-lathe, haas-lathe or linuxcnc says which".to_owned());
             warning
         });
         let codes = match dialect {

@@ -22,6 +22,8 @@ pub(in crate::gcode) struct Evidence {
     /// An X that nothing says the meaning of: where it stands.
     pub(in crate::gcode) x_line: Option<u32>,
     has_tool_change: bool,
+    /// A code that lathes of LinuxCNC have and those of system A do not.
+    has_linuxcnc: bool,
 }
 
 /// The machine that a program is for.
@@ -51,6 +53,8 @@ impl Evidence {
             evidence.lathe_signs(&words, number, is_inch);
             evidence.mill_signs(&words, number);
             evidence.has_tool_change |= words.m.contains(&6);
+            // G7, G8, G33, G33.1, G64, G95.
+            evidence.has_linuxcnc |= words.has_any_g(&[70, 80, 330, 331, 640, 950]);
             if words.has(b"x") && evidence.x_line.is_none() {
                 evidence.x_line = Some(number);
             }
@@ -69,6 +73,12 @@ impl Evidence {
             .iter()
             .copied()
             .find(|sign| sign.is_certain && !others.iter().any(|code| sign.what.starts_with(code)))
+    }
+
+    /// Whether two likely signs are those of a lathe of Fanuc or Haas, and none is that of a mill or of LinuxCNC.
+    pub(in crate::gcode) fn likely_lathe(&self) -> Option<Sign> {
+        let is_likely = self.lathe.len() > 1 && self.mill.is_empty() && !self.has_linuxcnc;
+        self.lathe.first().copied().filter(|_| is_likely)
     }
 
     /// The machine.
