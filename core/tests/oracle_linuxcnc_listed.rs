@@ -39,13 +39,13 @@ fn examples() -> Vec<(&'static str, String)> {
              G40 G1 X-3.2320 Y40.7620\n",
         ),
         ("MOD of a multiple, by rounding", "#20 = [asin[0.5] mod 0.1]\nG1 X[#20 + 1]\n"),
-        ("words behind M98 on its line", "o9 sub\nG0 X1\no9 endsub\nM98 P9 G0 X3\n"),
         ("G76 outside G18", "G0 X20 Z5\nG76 P1.5 Z-20 I-2 J0.4 K1.2\n"),
         ("a curve begun by G5.2 and left without G5.3", "G5.2 X1 Y2 P1 L3\nX3 Y-4 P1\nX5 Y6 P1\nX7 Y8 P2\n"),
         ("G5.2 and G5.3 outside G17", "G18\nG5.2 X1 Y2 P1 L3\nX3 Y-4 P1\nX5 Y6 P1\nX7 Y8 P2\nG5.3\n"),
         ("G5.2 without P", "G5.2 X1 Y2 L3\nX3 Y-4 P1\nX5 Y6 P1\nX7 Y8 P2\nG5.3\n"),
-        ("G28, G30, G49 and G53 under G43.1 in another unit", "G43.1 X-7.9\nG1 X2\nG20\nG28\nG0 X1\n"),
-        ("G28, G30, G49 and G53 under G43.1 in another unit", "G43.1 X-7\nG1 X2\nG20\nG53 G0 X-3\nG0 Y1\n"),
+        ("G28, G30, G43.1, G49 and G53 under G43.1 in another unit", "G43.1 X-7.9\nG1 X2\nG20\nG28\nG0 X1\n"),
+        ("G28, G30, G43.1, G49 and G53 under G43.1 in another unit", "G43.1 X-7\nG1 X2\nG20\nG53 G0 X-3\nG0 Y1\n"),
+        ("G28, G30, G43.1, G49 and G53 under G43.1 in another unit", "G43.1 Y7.3\nG1 X2\nG20\nG43.1 Y2.986\nG1 X-3\n"),
         ("G94 where it is active already", "G94\nG1 X1\n"),
         ("P twice on a line of G5", "G5 X1 Y2 I1 J1 P-1 Q2 P-1\n"),
         ("the value of a subroutine that is only defined", "G0 X1\no1 sub\nG0 X1\no1 endsub [5]\nG1 X#<_value>\n"),
@@ -78,6 +78,7 @@ fn examples() -> Vec<(&'static str, String)> {
         examples.push((what, format!("{START}{}G71 Q1 X32 Z2 D0.3 I1 R0.5\nM2\n", PROFILE.replace(from, to))));
     }
     let without_end = format!("{START}M98 P9000 L1\nG0 X1\nM2\nO9000\nG1 X1 Y2\n");
+    examples.push(("words behind M98 on its line", without_end.replace(" L1", " G0 X3") + "M99\n"));
     examples.push(("a subroutine without its M99", without_end));
     examples
 }

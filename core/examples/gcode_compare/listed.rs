@@ -191,7 +191,7 @@ const ROWS: &[Row] = &[
         "words behind M98 on its line",
     ),
     row(WE, "needs its weight P", |case| case.has(&["G5.2"]) && !case.has_word('P'), "G5.2 without P"),
-    row(MOTION, "another", unit_under_offset, "G28, G30, G49 and G53 under G43.1 in another unit"),
+    row(MOTION, "another", unit_under_offset, "G28, G30, G43.1, G49 and G53 under G43.1 in another unit"),
     row(THEY, "zero feed rate", feed_forgotten, "G94 where it is active already"),
     row(WE, "already has a word P", |case| case.is_active(MOTIONS, &["G5"]), "P twice on a line of G5"),
     row(
@@ -270,13 +270,12 @@ fn behind_entry(case: &Case) -> bool {
     case.lines[begin..case.at].iter().filter(|line| line.contains(['X', 'Y'])).count() == 1
 }
 
-/// Whether G28, G30, G49 or G53 stands behind a change of the unit, and that behind G43.1.
+/// Whether G28, G30, G53 or another length stands behind a change of the unit, and that behind G43.1.
 fn unit_under_offset(case: &Case) -> bool {
-    let leaving = ["G28", "G30", "G49", "G53"];
-    case.last(&["G43.1"]).is_some_and(|(offset, _)| {
-        let unit = (offset..case.at).find(|at| has(&case.lines[*at], &["G20", "G21", "M72"]));
-        unit.is_some_and(|unit| case.lines[unit..=case.at].iter().any(|line| has(line, &leaving)))
-    })
+    let leaving = ["G28", "G30", "G43", "G43.1", "G43.2", "G49", "G53"];
+    let behind = |from: usize, codes: &[&str]| (from + 1..=case.at).find(|at| has(&case.lines[*at], codes));
+    let unit = behind(0, &["G43.1"]).and_then(|offset| behind(offset, &["G20", "G21", "M72"]));
+    unit.is_some_and(|unit| behind(unit, &leaving).is_some())
 }
 
 /// Whether G94 was written where it was active, and no F since.

@@ -306,7 +306,8 @@ impl Writer {
             "G87" => " I1 J0.5 K-1".to_owned(),
             _ => String::new(),
         };
-        if self.below(4) == 0 {
+        // LinuxCNC refuses L with G74.
+        if self.below(4) == 0 && code != "G74" {
             words += &format!(" L{}", 1 + self.below(3));
         }
         self.line(if code == "G74" { "M4" } else { "M3" }.to_owned());
