@@ -105,6 +105,12 @@ fn printers_speak_to_their_firmware() {
 }
 
 #[test]
+fn a_program_for_a_printer_may_be_numbered_throughout() {
+    let text = "N1 G28*18\nN2 G1 X5 F600 E1*75\nN3 M117 hi there*12\n";
+    assert_eq!(ends(text, None).last(), Some(&[5.0, 0.0, 0.0]));
+}
+
+#[test]
 fn g40_1_of_mach3_is_g40() {
     let (motions, faults, warnings) = read("G17 G40.1 G80\nG0 X1\nM2\n", None);
     assert!(faults.is_empty() && motions.len() == 1, "{faults:?}");
