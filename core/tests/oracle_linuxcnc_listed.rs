@@ -2,6 +2,8 @@
 //! and no other: the same program with the difference elsewhere is not listed.
 #![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
 
+#[path = "../examples/gcode_compare/cut.rs"]
+mod cut;
 #[path = "../examples/gcode_compare/listed.rs"]
 mod listed;
 #[path = "common/linuxcnc.rs"]

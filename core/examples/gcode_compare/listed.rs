@@ -5,7 +5,8 @@
 
 use std::path::Path;
 
-use crate::linuxcnc::{Theirs, Totals, compare, cut_mm, flat_lines, ours};
+use crate::cut::cut_mm;
+use crate::linuxcnc::{Theirs, Totals, compare, flat_lines, ours};
 
 /// What came of a program.
 pub(crate) enum Verdict {

@@ -7,6 +7,7 @@
 
 #![expect(clippy::unwrap_used, reason = "shared with tests, which may stop")]
 
+mod cut;
 #[path = "../../tests/common/linuxcnc.rs"]
 mod linuxcnc;
 mod listed;

@@ -111,7 +111,7 @@ pub(crate) fn ours(path: &Path) -> (Vec<Ours>, Option<String>) {
     (motions, None)
 }
 
-fn point(value: &serde_json::Value) -> [f64; 9] {
+pub(crate) fn point(value: &serde_json::Value) -> [f64; 9] {
     std::array::from_fn(|axis| value[axis].as_f64().unwrap_or(f64::NAN))
 }
 
@@ -135,7 +135,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// The path stage's curves of one motion.
-fn path_of(motion: &Motion) -> Vec<Piece> {
+pub(crate) fn path_of(motion: &Motion) -> Vec<Piece> {
     // Only the shape is compared.
     let motion = Motion { feed_mm_s: 1.0, ..motion.clone() };
     let steps = Pieces::new([Canon::Motion(motion)].into_iter());
@@ -143,7 +143,7 @@ fn path_of(motion: &Motion) -> Vec<Piece> {
 }
 
 /// Distance of a point from a path, mm.
-fn away_from(path: &[Piece], point: [f64; 3]) -> f64 {
+pub(crate) fn away_from(path: &[Piece], point: [f64; 3]) -> f64 {
     let to = |piece: &Piece| {
         let at = piece.curve.at(piece.curve.nearest(point, 0.0, piece.length_mm)).position_mm;
         (0..3).map(|axis| (at[axis] - point[axis]).powi(2)).sum::<f64>().sqrt()
@@ -154,7 +154,7 @@ fn away_from(path: &[Piece], point: [f64; 3]) -> f64 {
 /// LinuxCNC's motion along an arc, written without the project: about the centre that its interpreter gives out, the radius and
 /// the height change evenly with the angle. That its motion does so was measured in a running LinuxCNC 2.9 at 1 kHz; the
 /// deviation was 1.3e-6 mm, of which 0.7e-6 is the printing of six decimals and the rest the interpolation at that speed.
-struct Spiral {
+pub(crate) struct Spiral {
     center: [f64; 2],
     axes: [usize; 3],
     radius: [f64; 2],
@@ -164,7 +164,7 @@ struct Spiral {
 }
 
 impl Spiral {
-    fn new(start: [f64; 3], end: [f64; 9], center: [f64; 2], plane: Plane, turns: i32) -> Self {
+    pub(crate) fn new(start: [f64; 3], end: [f64; 9], center: [f64; 2], plane: Plane, turns: i32) -> Self {
         let axes = plane.axes();
         let [first, second, normal] = axes;
         let from = [start[first] - center[0], start[second] - center[1]];
@@ -180,7 +180,7 @@ impl Spiral {
         Self { center, axes, radius, height: [start[normal], end[normal]], angle, sweep: sense * sweep }
     }
 
-    fn at(&self, share: f64) -> [f64; 3] {
+    pub(crate) fn at(&self, share: f64) -> [f64; 3] {
         let even = |[from, to]: [f64; 2]| from + (to - from) * share;
         let (sin, cos) = (self.angle + self.sweep * share).sin_cos();
         let mut point = [0.0; 3];
@@ -223,7 +223,7 @@ pub(crate) struct Totals {
 const FLAT_RAD: f64 = 0.049_994_8;
 
 /// Radius of the largest tool that the program compensates for, mm: `G41.1 D` and `G42.1 D`, or the tool table. 0 without.
-fn compensated_radius(text: &str) -> f64 {
+pub(crate) fn compensated_radius(text: &str) -> f64 {
     let text = text.to_ascii_uppercase().replace(' ', "");
     let unit = if text.contains("G20") { 25.4 } else { 1.0 };
     let diameter = |rest: &str| {
@@ -238,7 +238,7 @@ fn compensated_radius(text: &str) -> f64 {
 }
 
 /// The program without its compensation: every motion goes along the contour.
-fn without_compensation(text: &str) -> String {
+pub(crate) fn without_compensation(text: &str) -> String {
     let line = |line: &str| {
         let mut kept = line.to_ascii_uppercase().replace([' ', '\t'], "");
         for code in ["G40", "G41.1", "G42.1", "G41", "G42"] {
@@ -289,56 +289,6 @@ pub(crate) fn flat_lines(text: &str) -> HashSet<u32> {
         before = end.or(before);
     }
     flat
-}
-
-/// Points of a motion that are looked at for the depth of a cut.
-const CUT_POINTS: u32 = 65;
-
-/// How deep LinuxCNC's compensated tool cuts into the contour about a line, mm: its motions of that line and of the one before it
-/// into the contour from there to the line behind. The entry has no contour.
-pub(crate) fn cut_mm(text: &str, theirs: &Theirs, line: u32) -> f64 {
-    let settings = Settings { dialect: Some(Dialect::LinuxCnc), max_motions: 1_000_000, ..Settings::default() };
-    let Ok(reader) = Reader::from_text("contour", without_compensation(text), settings) else {
-        return 0.0;
-    };
-    let lines: Vec<String> = text.lines().map(|line| line.to_ascii_uppercase().replace(' ', "")).collect();
-    let begins = |line: &String| ["G41", "G42"].iter().any(|code| line.contains(code));
-    let moves = |line: &String| line.contains(['X', 'Y', 'Z', 'I', 'J', 'K']);
-    let begin = lines.iter().position(begins).unwrap_or(0);
-    let entry = lines[begin..].iter().position(moves).map_or(0, |behind| (begin + behind + 1) as u32);
-    let mut contour = Vec::new();
-    for step in reader {
-        if let Ok(Canon::Motion(motion)) = step
-            && (line - 1..=line + 1).contains(&motion.line)
-            && motion.line != entry
-        {
-            contour.extend(path_of(&motion));
-        }
-    }
-    let (mut start, mut nearest_mm) = ([0.0; 3], f64::INFINITY);
-    for value in &theirs.moves {
-        let end = point(&value[2]);
-        let from = std::mem::replace(&mut start, std::array::from_fn(|axis| end[axis]));
-        if !value[1].as_u64().is_some_and(|number| (u64::from(line) - 1..=u64::from(line)).contains(&number)) {
-            continue;
-        }
-        let spiral = (value[0] == "arc").then(|| {
-            let plane = [Plane::Xy, Plane::Yz, Plane::Zx][match value[3].as_u64() {
-                Some(2) => 1,
-                Some(1) => 2,
-                _ => 0,
-            }];
-            let center = [value[4][0].as_f64().unwrap_or(f64::NAN), value[4][1].as_f64().unwrap_or(f64::NAN)];
-            Spiral::new(from, end, center, plane, value[5].as_i64().unwrap_or(1) as i32)
-        });
-        for number in 0..CUT_POINTS {
-            let share = f64::from(number) / f64::from(CUT_POINTS - 1);
-            let straight = || std::array::from_fn(|axis| from[axis] + share * (end[axis] - from[axis]));
-            let at = spiral.as_ref().map_or_else(straight, |spiral| spiral.at(share));
-            nearest_mm = nearest_mm.min(away_from(&contour, at));
-        }
-    }
-    compensated_radius(text) - nearest_mm
 }
 
 /// Whether a motion is an arc that turns no farther than a flat corner.
