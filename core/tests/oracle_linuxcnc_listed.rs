@@ -74,6 +74,7 @@ fn examples() -> Vec<(&'static str, String)> {
         ("codes in the profile of a lathe cycle", "G1 Z-5", "G1 Z-5\nG42.1 D1"),
         ("codes in the profile of a lathe cycle", "G1 Z-5", "G1 Z-5\nG91"),
         ("an empty profile of a lathe cycle", "G0 X10\nG1 Z-5\nX14 Z-9\nZ-14\nX20 Z-18\nX32\n", ""),
+        ("the side of D where a profile begins as deep as its cycle starts", "G0 X10\n", ""),
         ("lines of a profile that go straight on", "Z-14\n", "Z-10\nZ-14\n"),
     ];
     for (what, from, to) in profiles {

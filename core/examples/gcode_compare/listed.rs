@@ -173,6 +173,7 @@ const ROWS: &[Row] = &[
         |case| case.has(&["G70", "G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2"]),
         "lines of a profile that go straight on",
     ),
+    row(MOTION, "another", level_entry, "the side of D where a profile begins as deep as its cycle starts"),
     row(
         WE,
         "the curve of G5.2 is not complete",
@@ -252,6 +253,16 @@ const ROWS: &[Row] = &[
     ),
     row(WE, "needs its word Q", |case| case.has(&["M67", "M68"]) && !case.has_word('Q'), "M67 and M68 without Q"),
 ];
+
+/// Whether the first motion of a profile does not go down from where its cycle with D starts: it has no word of that axis.
+fn level_entry(case: &Case) -> bool {
+    let depth = if case.has(&["G71", "G71.1", "G71.2"]) { 'X' } else { 'Z' };
+    let begin = case.lines.iter().position(|line| line.ends_with(" SUB"));
+    let first = begin.and_then(|begin| case.lines[begin..].iter().find(|line| line.contains(['X', 'Z'])));
+    case.has(&["G71", "G71.1", "G71.2", "G72", "G72.1", "G72.2"])
+        && case.has_word('D')
+        && first.is_some_and(|line| !line.contains(depth))
+}
 
 /// M-codes of two groups of ours, and of one of LinuxCNC's.
 fn free_pair(case: &Case) -> bool {
