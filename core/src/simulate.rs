@@ -34,7 +34,7 @@ use uncut::Uncut;
 const LOST_LAGS: f64 = 4.0;
 /// As [`LOST_LAGS`], for loops so stiff that they hardly lag, mm.
 const LOST_MM: f64 = 2.0;
-/// The tool has arrived when it is this near a command at rest, mm: a usual in-position width.
+/// The tool has arrived when it is this near a path at rest, mm: a usual in-position width.
 const ARRIVED_MM: f64 = 0.01;
 /// Longest wait for the tool to arrive, s: friction may hold it off for good.
 const ARRIVAL_S: f64 = 0.25;
@@ -159,13 +159,15 @@ pub fn simulate_lap<const N: usize>(
         }
         let sample = reference.at(setpoint.tau_s);
         let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
+        // A command that a correction holds beside the end of the path is not where the tool is to rest.
+        let to_go_mm = distance(tool_mm, first(sample.position_mm));
         let foot = progress.foot(reference, tau_s, sample.s_mm, spread(tool_mm));
         let row = Row {
             t_s,
             s_mm: sample.s_mm,
             line: sample.line,
             feed_plan_mm_s: sample.feed_mm_s,
-            cutting: foot.cutting && !(sample.resting && following_mm <= ARRIVED_MM),
+            cutting: foot.cutting && !(sample.resting && to_go_mm <= ARRIVED_MM),
             commanded: match (sample.resting, sample.cutting) {
                 (true, _) => Commanded::Rest,
                 (false, true) => Commanded::Cut,
@@ -192,7 +194,7 @@ pub fn simulate_lap<const N: usize>(
         uncut.row(&row);
         reference.forget_before(tau_s - kept_s);
         if let Some(ended_s) = ended
-            && (following_mm <= ARRIVED_MM || t_s >= ended_s + ARRIVAL_S)
+            && (to_go_mm <= ARRIVED_MM || t_s >= ended_s + ARRIVAL_S)
         {
             run.arrival_s = t_s + servo_s;
             break;

@@ -54,7 +54,9 @@ impl<const N: usize> Benefit<N> {
         let reach = contour.index.saturating_neg();
         let open = locate(window, open_mm, contour.index, reach);
         let part = (window.feed_period_s / MEMORY_S).min(1.0);
-        let square = dot(contour.vector_mm, contour.vector_mm);
+        // On a rapid nothing is cut, and nothing is harm.
+        let vector_mm = if window.knot(contour.index).cutting { contour.vector_mm } else { [0.0; N] };
+        let square = dot(vector_mm, vector_mm);
         let open_peak_mm = norm(open.vector_mm) + DOUBT * norm(g_mm);
         let open_square = open_peak_mm * open_peak_mm;
         self.square_mm2 += part * (square - self.square_mm2);
@@ -64,7 +66,7 @@ impl<const N: usize> Benefit<N> {
             return self.square_mm2 > GUESSED_MM2 + GUESSED * self.open_square_mm2;
         }
         self.square_mm2 > LEAST_MM2 + CERTAIN * self.open_square_mm2
-            || norm(contour.vector_mm) > LEAST_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm
+            || norm(vector_mm) > LEAST_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm
     }
 
     fn guessed_mm(&mut self, window: &Window<'_, N>, contour: &ContourError<N>) -> [f64; N] {
