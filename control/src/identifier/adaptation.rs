@@ -22,7 +22,7 @@ use crate::least_squares::{LeastSquares, inverse};
 
 /// The other model is believed where its mean square innovation is below this part of the present one's: no change of mind
 /// over noise.
-const CLEARLY_BETTER: f64 = 0.8;
+const CLEARLY_BETTER: f64 = 0.4;
 
 /// Unknowns of an axis: its part of the linear connection, and the factor on its hidden nodes less 1.
 pub const UNKNOWNS: usize = INPUTS + 1;
@@ -55,7 +55,7 @@ impl Settings {
     /// Values that serve.
     pub const DEFAULT: Self = Self {
         forgetting: 0.998,
-        noise_mm: 1e-3,
+        noise_mm: 3e-4,
         beyond_mm: 3e-3,
         judging: 0.01,
         caution: 0.002,
