@@ -7,17 +7,23 @@
 //! ```text
 //! r_i = P*(tau_i - lag)     eps_i = (1 - t_i t_i')(p_i - r_i)     theta_i = t_i'(p_i - r_i)
 //!
-//! J(a) = 1/2 sum_i (|eps_i|^2 + h^2 theta_i^2) + w/2 sum_j |v_j|^2 + d/2 sum_j |v_j - v_{j-1}|^2     v_j = v_0 + T sum_{m<=j} a_m
-//! |a_j| <= A in each axis
+//! J(a) = 1/2 sum_i (|eps_i|^2 + h^2 theta_i^2) + q/2 sum_j |o_j|^2 + w/2 sum_j |v_j|^2 + d/2 sum_j |v_j - v_{j-1}|^2
+//! v_j = v_0 + T sum_{m<=j} a_m     |a_j| <= A in each axis
+//! q = q_0 + (n / D)^4     n = max_i |p_i - g_i - r_i|     g: by how much the offset moves the tool
 //! ```
 //!
 //! and J is made smaller by a [`Solver`], from last tick's plan, shifted. Where the tool lags behind its time, or leads, nothing
 //! is cut wrong, and theta counts little (h is small); but it counts, so that no tool stays on a stretch of the path that is
-//! over: a nearest point would let it. The limits of the plan are those of the machine file: what the plan asks for is carried
+//! over: a nearest point would let it.
+//!
+//! The price q of the offset itself keeps the correction from doing harm. Where n, by which the tool would miss its point without
+//! any offset, comes to D, the largest deviation, no offset within D undoes it; what is cut off at a limit need not be better than
+//! nothing, but of a servo that is nearly linear every *part* of a correction that helps does: with q the plan asks for that part.
+//! q_0 does the same where the model is not to be trusted ([`missed`]). The limits of the plan are those of the machine file: what the plan asks for is carried
 //! out as it is. Speed and deviation of the offset, and what the drives can accelerate, cost much beyond their limits
 //! ([`problem`]).
 //!
-//! On a rapid motion nothing is cut: there the offset alone counts, and goes to zero.
+//! On a rapid motion nothing is cut: there the offset is to move the tool as little as the cuts about it allow.
 //!
 //! A knot of the plan is one feed period long, or several on a machine that lags far behind: the horizon has to reach
 //! beyond the lag, whatever the machine, and takes no more unknowns for it.
@@ -28,9 +34,10 @@
 //!
 //! Everything is of fixed size: at most [`MOST_KNOTS`] knots, N unknowns each.
 
-pub mod interior_point;
-pub mod problem;
 pub mod gauss_newton;
+pub mod interior_point;
+pub mod missed;
+pub mod problem;
 
 use crate::vector::{add_scaled, bounded, scale, sub};
 use crate::window::Window;
@@ -53,6 +60,11 @@ const RESTING_MM_S: f64 = 0.5;
 /// that is late or fast there when the path turns swings from one side of it to the other.
 const LAST_KNOTS: usize = 5;
 
+/// q at the most.
+const MOST_OFFSET_WEIGHT: f64 = 10.0;
+/// What is left of n from one tick to the next, where it becomes smaller: the correction that was held back comes in gently.
+const NEED_LEFT: f64 = 0.97;
+
 /// Settings of the inversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -63,11 +75,11 @@ pub struct Settings {
     pub rate_weight: f64,
     /// d: weight of the change of that speed from knot to knot, s^2.
     pub change_weight: f64,
-    /// h: weight of an error along the path against one across it where it is small, and where it is large: the first
-    /// leaves room at a corner, the second keeps the tool from staying behind. 0.001 to 1.
-    pub tangential_weights: [f64; 2],
-    /// An error along the path half way between the two, mm.
-    pub tangential_mm: f64,
+    /// q_0: weight of the offset. 0 is sharpest, 10 leaves hardly any correction.
+    pub offset_weight: f64,
+    /// h: weight of an error along the path against one across it: small, it leaves room at a corner, large, it keeps the
+    /// tool from staying behind. 0.001 to 1.
+    pub tangential_weight: f64,
     /// h of the last knots at the least.
     pub last_weight: f64,
     /// Whether rapid motions are corrected as cuts are.
@@ -212,6 +224,8 @@ pub trait Solver<const N: usize>: Default {
 pub struct Plan<const N: usize, S = GaussNewton> {
     accelerations_mm_s2: Accelerations<N>,
     periods: usize,
+    /// n, mm.
+    need_mm: f64,
     solver: S,
 }
 
@@ -224,11 +238,15 @@ pub struct Step<const N: usize> {
     pub change_mm_s2: f64,
     /// Mean squares of the contour error over the horizon, mm^2: of the plan before this step, and without any offset.
     pub contour_mm2: [f64; 2],
+    /// Largest contour error over the horizon without any offset, mm.
+    pub open_error_mm: f64,
+    /// Where the tool would be without the offset [`missed::AHEAD_KNOTS`] knots from now, mm.
+    pub open_mm: [f64; N],
 }
 
 impl<const N: usize, S: Solver<N>> Default for Plan<N, S> {
     fn default() -> Self {
-        Self { accelerations_mm_s2: [[0.0; N]; MOST_KNOTS], periods: 1, solver: S::default() }
+        Self { accelerations_mm_s2: [[0.0; N]; MOST_KNOTS], periods: 1, need_mm: 0.0, solver: S::default() }
     }
 }
 
@@ -237,6 +255,7 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
     pub fn reset(&mut self) {
         self.accelerations_mm_s2 = [[0.0; N]; MOST_KNOTS];
         self.periods = 1;
+        self.need_mm = 0.0;
     }
 
     /// Goes over to the next tick: what was planned for it comes first. From here on a knot has `periods` feed periods, 1
@@ -269,7 +288,10 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
         lag_s: f64,
         settings: &Settings,
     ) -> Step<N> {
-        let problem = Problem::new(model, window, lag_s, &self.accelerations_mm_s2, self.periods, settings);
+        let settings = Settings { offset_weight: self.offset_weight(settings), ..*settings };
+        let problem = Problem::new(model, window, lag_s, &self.accelerations_mm_s2, self.periods, &settings);
+        let [need_mm, open_mm] = problem.open_errors_mm();
+        self.need_mm = need_mm.max(NEED_LEFT * self.need_mm);
         let before = self.accelerations_mm_s2;
         self.solver.improve(&problem, &mut self.accelerations_mm_s2);
         let mut change_mm_s2 = 0.0_f64;
@@ -282,17 +304,27 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
                 change_mm_s2 = change_mm_s2.max(change.abs());
             }
         }
-        Step { acceleration_mm_s2: self.accelerations_mm_s2[0], change_mm_s2, contour_mm2: problem.contour_mm2() }
+        Step {
+            acceleration_mm_s2: self.accelerations_mm_s2[0],
+            change_mm_s2,
+            contour_mm2: problem.contour_mm2(),
+            open_error_mm: open_mm,
+            open_mm: problem.open_mm(missed::AHEAD_KNOTS - 1),
+        }
+    }
+
+    /// q.
+    fn offset_weight(&self, settings: &Settings) -> f64 {
+        let share = self.need_mm / settings.limits.deviation_mm;
+        (settings.offset_weight + share * share * share * share).min(MOST_OFFSET_WEIGHT)
     }
 }
 
 impl Settings {
-    /// h of an error along the path at the end of a knot, where it runs at `feed_mm_s`.
+    /// h at the end of a knot, where the path runs at `feed_mm_s`.
     #[inline]
-    pub fn tangential_weight(&self, knot: usize, error_mm: f64, feed_mm_s: f64) -> f64 {
-        let share = error_mm / self.tangential_mm;
-        let [small, large] = self.tangential_weights;
-        let running = large - (large - small) / (1.0 + share * share);
+    pub fn weight_along(&self, knot: usize, feed_mm_s: f64) -> f64 {
+        let running = self.tangential_weight;
         let speed = feed_mm_s / RESTING_MM_S;
         let weight = running + (1.0 - running) / (1.0 + speed * speed * speed * speed);
         if knot + LAST_KNOTS >= self.knots() { weight.max(self.last_weight) } else { weight }
@@ -313,8 +345,8 @@ mod tests {
         knots: 4,
         rate_weight: 1e-9,
         change_weight: 0.0,
-        tangential_weights: [0.1; 2],
-        tangential_mm: 0.1,
+        offset_weight: 0.0,
+        tangential_weight: 0.1,
         last_weight: 0.3,
         on_rapids: false,
         limits: Limits::NONE,

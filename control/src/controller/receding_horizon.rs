@@ -4,15 +4,18 @@
 //! [`crate::horizon`], command its first step. The weights of the plan follow the quality of the predictions,
 //!
 //! ```text
-//! w = w0 b     d = d0 b     h = h0 b^(1/4)     b = 1 + (sigma / s)^4     sigma: RMS innovation, s: Settings::sure_mm
+//! w = w0 b     d = d0 b     h = h0 b^(1/2)     b = 1 + (sigma / s)^4     sigma: RMS innovation, s: Settings::sure_mm
+//! q = (mu / m)^4 + (0.7 sigma / c)^4     mu: largest miss ahead, m: Settings::foreseen_mm
+//!                                        c: largest contour error over the horizon without any offset
 //! ```
 //!
-//! so that a resonance which the identifier cannot represent is corrected gently; the fourth power leaves the small
-//! innovations of friction alone. A machine that lags far behind has longer knots, so that the plan reaches beyond the lag.
-//! The speed along the path stays as planned.
+//! so that a resonance which the identifier cannot represent is corrected gently, and a machine that it does not know less, down
+//! to not at all ([`crate::horizon::missed`]); the fourth power leaves the small innovations of friction alone. A machine that
+//! lags far behind has longer knots, so that the plan reaches beyond the lag. The speed along the path stays as planned.
 
 use super::{Command, Controller, Measured, Schedule};
 use crate::horizon::gauss_newton::GaussNewton;
+use crate::horizon::missed::Missed;
 use crate::horizon::{self, Felt, MOST_KNOTS, MOST_PERIODS, Model, Plan, Solver, Stretch};
 use crate::identifier::adaptation::{self, Adaptation, Spread};
 use crate::identifier::residual::Foresight;
@@ -44,6 +47,10 @@ const STILL_MM: f64 = 0.02;
 /// machine that is not yet known differs by less, a position that has leapt by more.
 const STRANGE_MM: f64 = 0.2;
 const STRANGE_SHARE: f64 = 0.3;
+/// h at the most, however poor the predictions are.
+const MOST_TANGENTIAL_WEIGHT: f64 = 0.1;
+/// A correction is worth its offset where the contour error without it is beyond this part of the innovations.
+const WORTHWHILE: f64 = 0.7;
 /// A prediction that misses by this, mm, is a leap: no machine does so within a feed period.
 const LEAP_MM: f64 = 0.3;
 
@@ -60,6 +67,8 @@ pub struct Settings {
     pub adaptation: adaptation::Settings,
     /// Innovations of this size make the inversion half as sharp, mm; larger ones blunter still.
     pub sure_mm: f64,
+    /// Predictions some knots ahead that miss by this make the offset count as much as a contour error, mm.
+    pub foreseen_mm: f64,
 }
 
 impl Settings {
@@ -70,8 +79,8 @@ impl Settings {
             knots: 20,
             rate_weight: 3e-10,
             change_weight: 1e-10,
-            tangential_weights: [0.003, 0.1],
-            tangential_mm: 0.1,
+            offset_weight: 0.0,
+            tangential_weight: 0.006,
             last_weight: 0.05,
             on_rapids: false,
             limits: horizon::Limits::NONE,
@@ -79,6 +88,7 @@ impl Settings {
         steps: 1,
         adaptation: adaptation::Settings::DEFAULT,
         sure_mm: 2e-4,
+        foreseen_mm: 0.03,
     };
 }
 
@@ -95,10 +105,13 @@ pub struct RecedingHorizon<const N: usize, S = GaussNewton> {
     free: Delays<N>,
     response: Delays<N>,
     missed_mm: f64,
+    missed: Missed<N>,
     outliers: u32,
     /// Whether the position has leapt, and stayed there.
     leapt: bool,
     foreseen_mm2: [f64; 2],
+    /// Largest contour error over the horizon without any offset, mm.
+    open_error_mm: f64,
     /// What was commanded and seen at the last decision, mm.
     last: Option<Last<N>>,
 }
@@ -123,9 +136,11 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
             free: Delays::REST,
             response: Delays::REST,
             missed_mm: 0.0,
+            missed: Missed::NONE,
             outliers: 0,
             leapt: false,
             foreseen_mm2: [0.0; 2],
+            open_error_mm: f64::INFINITY,
             last: None,
         }
     }
@@ -196,6 +211,20 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
         outlier && self.outliers <= MOST_OUTLIERS
     }
 
+    /// Compares where the tool is with where it was foreseen some knots ago.
+    fn look_back(&mut self, window: &Window<'_, N>) {
+        let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
+        let tool_mm = add_scaled(command_mm, -FOLLOWING_SCALE_MM, self.delays.error[0]);
+        let open_mm = add_scaled(tool_mm, -1.0, self.response_mm());
+        self.missed.look_back(open_mm, window.at(-self.net.net().lag_s()).tangent);
+    }
+
+    /// By how much the offset has moved the tool, mm.
+    fn response_mm(&self) -> [f64; N] {
+        let offset_mm = self.last.map_or([0.0; N], |last| last.offset_mm);
+        add_scaled(offset_mm, -FOLLOWING_SCALE_MM, self.response.error[0])
+    }
+
     /// The weights at the quality that the predictions have now.
     fn weighted(&self) -> horizon::Settings {
         let share = self.net.innovation_mm() / self.settings.sure_mm;
@@ -204,8 +233,13 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
         horizon.rate_weight *= blunter;
         horizon.change_weight *= blunter;
         // A tool that is not foreseen well is held to its time: what is free along the path is as wrong as the prediction.
-        let [small, large] = horizon.tangential_weights;
-        horizon.tangential_weights[0] = (small * libm::sqrt(blunter)).min(large);
+        let held = horizon.tangential_weight * libm::sqrt(blunter);
+        horizon.tangential_weight = held.min(MOST_TANGENTIAL_WEIGHT);
+        let share = self.missed.largest_mm() / self.settings.foreseen_mm;
+        horizon.offset_weight += share * share * share * share;
+        // Where there is hardly more to gain than the predictions miss by, nothing is.
+        let lost = WORTHWHILE * self.net.innovation_mm() / self.open_error_mm.max(f64::MIN_POSITIVE);
+        horizon.offset_weight += lost * lost * lost * lost;
         horizon
     }
 
@@ -237,9 +271,11 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
         self.free = Delays::REST;
         self.response = Delays::REST;
         self.missed_mm = 0.0;
+        self.missed = Missed::NONE;
         self.outliers = 0;
         self.leapt = false;
         self.foreseen_mm2 = [0.0; 2];
+        self.open_error_mm = f64::INFINITY;
         self.last = None;
     }
 
@@ -247,12 +283,12 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
 
     fn bridge(&mut self, window: &Window<'_, N>) {
         self.take_in(window, None);
+        self.look_back(window);
         self.plan.reset();
     }
 
     fn moved_mm(&self) -> Option<[f64; N]> {
-        let offset_mm = self.last.map_or([0.0; N], |last| last.offset_mm);
-        Some(add_scaled(offset_mm, -FOLLOWING_SCALE_MM, self.response.error[0]))
+        Some(self.response_mm())
     }
 
     fn foreseen_mm2(&self) -> [f64; 2] {
@@ -265,6 +301,7 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         self.take_in(window, Some(measured.position_mm));
+        self.look_back(window);
         self.periods = self.periods(window.feed_period_s);
         let horizon = self.weighted();
         let lag_s = self.net.net().lag_s();
@@ -275,6 +312,8 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
             step = self.plan.improve(&model, window, lag_s, &horizon);
         }
         self.foreseen_mm2 = step.contour_mm2;
+        self.open_error_mm = step.open_error_mm;
+        self.missed.foresee(self.periods, step.open_mm);
         Command::accelerated(window, step.acceleration_mm_s2)
     }
 }

@@ -24,6 +24,7 @@ impl<const N: usize> Solver<N> for GaussNewton {
         self.quadratic.clear(unknowns);
         self.add_errors(problem);
         self.add_speeds(problem, accelerations_mm_s2);
+        self.add_offsets(problem);
         let limits = &problem.settings.limits.acceleration_mm_s2;
         let (mut least, mut most) = ([0.0; MOST_UNKNOWNS], [0.0; MOST_UNKNOWNS]);
         for (i, now) in accelerations_mm_s2.as_flattened()[..unknowns].iter().enumerate() {
@@ -62,6 +63,31 @@ impl GaussNewton {
         }
     }
 
+    /// q: an acceleration in knot r moves the offset at the end of knot i by m_(i-r), so that the products of two knots differ
+    /// from those of the next two by one term.
+    fn add_offsets<const N: usize>(&mut self, problem: &Problem<N>) {
+        let (knots, weight) = (problem.knots, problem.settings.offset_weight);
+        if weight <= 0.0 {
+            return;
+        }
+        let moved = |since: usize| problem.moved_s2[knots - 1 - since];
+        for r in 0..knots {
+            for axis in 0..N {
+                let slope: f64 = (r..knots).map(|i| moved(i - r) * problem.ends[i].offset_mm[axis]).sum();
+                self.quadratic.add_gradient(r * N + axis, weight * slope);
+            }
+        }
+        for apart in 0..knots {
+            let mut sum = 0.0;
+            for r in (apart..knots).rev() {
+                sum += moved(knots - 1 - r) * moved(knots - 1 - r + apart);
+                for axis in 0..N {
+                    self.quadratic.add(r * N + axis, (r - apart) * N + axis, weight * sum);
+                }
+            }
+        }
+    }
+
     /// W: the speed v_j of the offset after knot j is the same sum of accelerations for all m <= j.
     fn add_speeds<const N: usize>(&mut self, problem: &Problem<N>, accelerations_mm_s2: &Accelerations<N>) {
         let (knots, knot_s) = (problem.knots, problem.knot_s);
@@ -80,6 +106,85 @@ impl GaussNewton {
                 self.quadratic.add(r * N + axis, r * N + axis, change);
                 for c in 0..=r {
                     self.quadratic.add(r * N + axis, c * N + axis, further);
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::horizon::{Felt, Limits, Model, Settings, Stretch};
+    use crate::window::{Knot, Preview, Reference, Register, Window};
+
+    const KNOTS: usize = 6;
+
+    struct Line;
+
+    impl Reference<2> for Line {
+        fn knot(&mut self, tau_s: f64) -> Knot<2> {
+            Knot { position_mm: [10.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 10.0, cutting: true }
+        }
+    }
+
+    /// A machine that the offset does nothing to: only its own price is left.
+    #[derive(Clone)]
+    struct Deaf;
+
+    impl Model<2> for Deaf {
+        fn lag_s(&self) -> f64 {
+            0.0
+        }
+
+        fn advance(&mut self, window: &Window<'_, 2>, stretch: &Stretch<2>, _: &mut Felt<2>) -> [f64; 2] {
+            window.ahead(stretch.period + 1).position_mm
+        }
+    }
+
+    const SETTINGS: Settings = Settings {
+        knots: KNOTS,
+        rate_weight: 0.0,
+        change_weight: 1e-12,
+        offset_weight: 0.7,
+        tangential_weight: 0.1,
+        last_weight: 0.1,
+        on_rapids: false,
+        limits: Limits { acceleration_mm_s2: [1e6; 3], ..Limits::NONE },
+    };
+
+    fn window<'a>(register: &'a Register<2>, preview: &'a Preview<2>) -> Window<'a, 2> {
+        let (offset_mm, offset_mm_s) = ([0.2, -0.1], [3.0, 5.0]);
+        Window { register, preview, tau_s: 0.0, feed_period_s: 0.003, offset_mm, offset_mm_s }
+    }
+
+    /// q/2 sum |o|^2 + d/2 sum |T a|^2 of a plan, rolled out.
+    fn price(window: &Window<'_, 2>, accelerations: &Accelerations<2>, periods: usize) -> f64 {
+        let problem = Problem::new(&Deaf, window, 0.0, accelerations, periods, &SETTINGS);
+        let squares = |all: &mut dyn Iterator<Item = f64>| all.map(|x| x * x).sum::<f64>();
+        let offsets = squares(&mut problem.ends[..KNOTS].iter().flat_map(|end| end.offset_mm));
+        let changes = squares(&mut accelerations[..KNOTS].as_flattened().iter().map(|a| a * problem.knot_s));
+        0.5 * (SETTINGS.offset_weight * offsets + SETTINGS.change_weight * changes)
+    }
+
+    #[test]
+    fn a_step_finds_the_least_price_of_the_offsets_whatever_the_length_of_a_knot() {
+        let (mut register, mut preview) = (Register::default(), Preview::new(0.001));
+        register.push(Line.knot(0.0));
+        preview.fill(&mut Line, 0.0, 0.1);
+        let window = window(&register, &preview);
+        for periods in 1..=3 {
+            let mut accelerations = [[0.0; 2]; MOST_KNOTS];
+            let problem = Problem::new(&Deaf, &window, 0.0, &accelerations, periods, &SETTINGS);
+            GaussNewton::default().improve(&problem, &mut accelerations);
+            let least = price(&window, &accelerations, periods);
+            for knot in 0..KNOTS {
+                for axis in 0..2 {
+                    for step in [-1.0, 1.0] {
+                        let mut other = accelerations;
+                        other[knot][axis] += step;
+                        assert!(price(&window, &other, periods) > least, "{periods} {knot} {axis}");
+                    }
                 }
             }
         }

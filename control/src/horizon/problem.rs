@@ -7,16 +7,21 @@
 //! J(a + da) = 1/2 |r + G da|^2 + w/2 sum_j |v_j|^2 + d/2 sum_j |v_j - v_{j-1}|^2
 //! ```
 //!
-//! A knot has N rows: the errors of the tool across the path and along it, or on a rapid those of the offset in each axis. Where
-//! the plan is beyond a limit, one more row each asks for what it is beyond.
+//! A knot has N rows: the errors of the tool across the path and along it, or on a rapid by how much the offset moves the tool in
+//! each axis. Where the plan is beyond a limit, one more row each asks for what it is beyond; so does one where the tool is
+//! further from its time than without the offset, about a point where the path turns back.
 
 use super::{Accelerations, Felt, MOST_AXES, MOST_KNOTS, MOST_UNKNOWNS, Model, Settings, Stretch};
 use crate::vector::{bounded, dot, norm, reject, scale, sub};
 use crate::window::{PREVIEW_KNOTS, Window};
 
-/// Weight of the offset on a rapid: beside a cut it counts as little as an error along the path, so that it is in place when
-/// the next cut begins.
-const RAPID_WEIGHT: f64 = 0.02;
+/// Weight of what the offset moves the tool by on a rapid: less than an error of a cut, so that it is in place when the next
+/// one begins.
+const RAPID_WEIGHT: f64 = 0.2;
+/// Least h in the knots before and behind a point where the path turns straight back.
+const TURN_WEIGHT: f64 = 0.2;
+/// What is left from one knot to the next of how near such a point is.
+const NEAR_TURN: f64 = 0.85;
 /// Weights of what is beyond a limit, so that a hundredth of a usual limit (0.5 mm, 400 mm/s, 4000 mm/s^2) counts as much as
 /// 50 um of contour error: for the deviation, mm per mm; for the speed, s; for the drives, s^2.
 const DEVIATION_WEIGHT: f64 = 10.0;
@@ -50,8 +55,13 @@ pub struct End<const N: usize> {
     pub directions: [[f64; N]; N],
     /// Planned feedrate there, mm/s.
     pub feed_mm_s: f64,
-    /// Whether the tool cuts there, or is to be on the path.
+    /// Whether the tool cuts there, or soon, or is to be on the path.
     pub counts: bool,
+    /// Whether the path turns back between this knot and one beside it: 0 up to a right angle, 1 where straight back; and
+    /// how near such a point is, by as much.
+    pub turn: f64,
+    /// See above.
+    pub near_turn: f64,
     /// Offset, mm, and its speed, mm/s.
     pub offset_mm: [f64; N],
     /// See above.
@@ -63,11 +73,18 @@ pub struct End<const N: usize> {
 }
 
 impl<const N: usize> End<N> {
+    /// An error of the tool as it would be without the offset, mm.
+    fn open_off_mm(&self, direction: usize) -> f64 {
+        self.off_mm[direction] - dot(self.directions[direction], self.moved_mm)
+    }
+
     const NONE: Self = Self {
         off_mm: [0.0; N],
         directions: [[0.0; N]; N],
         feed_mm_s: 0.0,
         counts: false,
+        turn: 0.0,
+        near_turn: 0.0,
         offset_mm: [0.0; N],
         offset_mm_s: [0.0; N],
         tool_mm: [0.0; N],
@@ -108,13 +125,17 @@ impl<const N: usize> Problem<N> {
             }
             let end_s = (stretch.period + 1) as f64 * window.feed_period_s;
             let own = window.at(end_s - lag_s);
+            // What leads up to a cut decides where the tool is when it begins.
+            let soon = window.at(end_s - 0.5 * lag_s).cutting || window.at(end_s).cutting;
             let directions = directions(own.tangent);
             let off_mm = sub(tool_mm, own.position_mm);
             problem.ends[knot] = End {
                 off_mm: directions.map(|direction| dot(direction, off_mm)),
                 directions,
                 feed_mm_s: own.feed_mm_s,
-                counts: own.cutting || settings.on_rapids,
+                counts: own.cutting || soon || settings.on_rapids,
+                turn: 0.0,
+                near_turn: 0.0,
                 offset_mm: stretch.offset_mm[1],
                 offset_mm_s: stretch.offset_mm_s[1],
                 tool_mm,
@@ -124,7 +145,46 @@ impl<const N: usize> Problem<N> {
         for (knot, moved_s2) in problem.moved_s2.iter_mut().enumerate().take(knots) {
             *moved_s2 = stretch.moved_s2(knot, 1.0);
         }
+        problem.find_turns();
         problem
+    }
+
+    /// Where the path turns back, no part of it is nearer than its tip, and a tool that is late there leaves it uncut.
+    fn find_turns(&mut self) {
+        let ends = &mut self.ends[..self.knots];
+        for knot in 1..ends.len() {
+            let turn = -dot(ends[knot - 1].directions[N - 1], ends[knot].directions[N - 1]);
+            ends[knot - 1].turn = ends[knot - 1].turn.max(turn);
+            ends[knot].turn = turn.max(0.0);
+        }
+        let mut near = 0.0_f64;
+        for end in ends.iter_mut() {
+            near = (NEAR_TURN * near).max(end.turn);
+            end.near_turn = near;
+        }
+        near = 0.0;
+        for end in ends.iter_mut().rev() {
+            near = (NEAR_TURN * near).max(end.turn);
+            end.near_turn = end.near_turn.max(near);
+        }
+    }
+
+    /// Where the tool would be at the end of a knot without the offset, mm.
+    pub fn open_mm(&self, knot: usize) -> [f64; N] {
+        let end = &self.ends[knot.min(self.knots - 1)];
+        sub(end.tool_mm, end.moved_mm)
+    }
+
+    /// How far the tool would be without the offset, each in the worst of the knots that count: from its own point, and from
+    /// the path, mm.
+    pub fn open_errors_mm(&self) -> [f64; 2] {
+        let mut most = [0.0_f64; 2];
+        for end in self.ends[..self.knots].iter().filter(|end| end.counts) {
+            let open_mm: [f64; N] = core::array::from_fn(|d| end.open_off_mm(d));
+            let across: f64 = open_mm[..N - 1].iter().map(|off_mm| off_mm * off_mm).sum();
+            most = [most[0].max(dot(open_mm, open_mm)), most[1].max(across)];
+        }
+        most.map(libm::sqrt)
     }
 
     /// Mean squares of the contour error over the knots that count, mm^2: of the plan, and without any offset. Of the first half
@@ -132,8 +192,8 @@ impl<const N: usize> Problem<N> {
     pub fn contour_mm2(&self) -> [f64; 2] {
         let (mut sums, mut number) = ([0.0; 2], 0.0);
         for end in self.ends[..self.knots.div_ceil(2)].iter().filter(|end| end.counts) {
-            for (off_mm, direction) in end.off_mm.iter().zip(&end.directions).take(N - 1) {
-                let open_mm = off_mm - dot(*direction, end.moved_mm);
+            for d in 0..N - 1 {
+                let (off_mm, open_mm) = (end.off_mm[d], end.open_off_mm(d));
                 sums = [sums[0] + off_mm * off_mm, sums[1] + open_mm * open_mm];
             }
             number += 1.0;
@@ -154,17 +214,22 @@ impl<const N: usize> Problem<N> {
             let end = &self.ends[knot];
             for d in 0..N {
                 if end.counts {
-                    let weight = if d < N - 1 {
-                        1.0
-                    } else {
-                        self.settings.tangential_weight(knot, end.off_mm[d], end.feed_mm_s)
-                    };
+                    let along = || self.settings.weight_along(knot, end.feed_mm_s).max(TURN_WEIGHT * end.turn);
+                    let weight = if d < N - 1 { 1.0 } else { along() };
                     let direction = scale(weight, end.directions[d]);
                     take(knot, weight * end.off_mm[d], &|row| self.tool_row(knot, direction, row));
                 } else {
                     let mut direction = [0.0; N];
                     direction[d] = RAPID_WEIGHT;
-                    take(knot, dot(direction, end.offset_mm), &|row| self.offset_row(knot, direction, row));
+                    take(knot, dot(direction, end.moved_mm), &|row| self.tool_row(knot, direction, row));
+                }
+            }
+            if end.counts && end.near_turn > 0.0 {
+                let (late_mm, open_mm) = (end.off_mm[N - 1], end.open_off_mm(N - 1).abs());
+                let beyond_mm = late_mm - bounded(late_mm, -open_mm, open_mm);
+                if beyond_mm != 0.0 {
+                    let direction = scale(end.near_turn, end.directions[N - 1]);
+                    take(knot, end.near_turn * beyond_mm, &|row| self.tool_row(knot, direction, row));
                 }
             }
             self.limit_rows(knot, &mut take);
