@@ -13,7 +13,7 @@ use feedwright_control::horizon::gauss_newton::GaussNewton;
 use feedwright_control::horizon::problem::Problem;
 use feedwright_control::horizon::{Accelerations, Settings};
 use feedwright_control::vector::{add_scaled, dot, sub};
-use solvers::material::{Material, difference, error_weight};
+use solvers::material::{Material, difference};
 use solvers::riccati::{AGREEMENT, apart_from_gauss_newton};
 
 /// What J, here some 0.4 mm^2, may be above its minimum, mm^2: ten nanometres in one knot. Where the solver does not come to its
@@ -34,7 +34,7 @@ fn cost<const N: usize>(material: &Material<N>, problem: &Problem<N>, plan: &Acc
             tool_mm = std::array::from_fn(|axis| tool_mm[axis] + felt[axis] * changed[axis]);
         }
         for (d, direction) in end.directions.iter().enumerate() {
-            let weight = error_weight(problem, knot, d);
+            let weight = problem.error_weight(knot, d);
             cost += 0.5 * (weight * (end.off_mm[d] + dot(*direction, tool_mm))).powi(2);
         }
         faster_mm_s = add_scaled(faster_mm_s, problem.knot_s, changed[knot]);

@@ -101,12 +101,6 @@ impl<const N: usize> Material<N> {
     }
 }
 
-/// What an error counts at the end of a knot: across the path 1, along it less.
-pub(crate) fn error_weight<const N: usize>(problem: &Problem<N>, knot: usize, direction: usize) -> f64 {
-    let end = &problem.ends[knot];
-    if direction + 1 < N { 1.0 } else { problem.settings.tangential_weight(knot, end.off_mm[direction], end.feed_mm_s) }
-}
-
 /// The largest difference of two plans, as a share of the largest acceleration.
 pub(crate) fn difference<const N: usize>(a: &Accelerations<N>, b: &Accelerations<N>) -> f64 {
     let largest = a.as_flattened().iter().fold(0.0_f64, |most, a| most.max(a.abs()));

@@ -20,7 +20,7 @@ use feedwright_control::horizon::{Accelerations, MOST_KNOTS};
 use feedwright_control::identifier::servo::FOLLOWING_SCALE_MM;
 use feedwright_control::identifier::{FEED_SCALE_MM_S, INPUTS};
 
-use super::material::{Material, difference, error_weight};
+use super::material::{Material, difference};
 use super::model::Slopes;
 
 /// Places of an axis in a vector: its state, and its input.
@@ -141,7 +141,7 @@ fn pay_errors<const N: usize>(
 ) {
     let end = &problem.ends[knot];
     for (d, direction) in end.directions.iter().enumerate() {
-        let weight = error_weight(problem, knot, d).powi(2);
+        let weight = problem.error_weight(knot, d).powi(2);
         // The tool is at o - e.
         let ways = |axis: usize| [(axis * PLACES + OFFSET, direction[axis]), (axis * PLACES + E, -direction[axis])];
         for (r, way) in (0..N).flat_map(ways) {

@@ -206,6 +206,16 @@ impl<const N: usize> Problem<N> {
         self.knots * N
     }
 
+    /// Weight of an error at the end of a knot, where it counts: 1 across the path, h along it, which is the last direction.
+    #[inline]
+    pub fn error_weight(&self, knot: usize, direction: usize) -> f64 {
+        if direction + 1 < N {
+            return 1.0;
+        }
+        let end = &self.ends[knot];
+        self.settings.weight_along(knot, end.feed_mm_s).max(TURN_WEIGHT * end.turn)
+    }
+
     /// Hands every row and its error to `take`, with the knot that it belongs to: the number of its entries is
     /// `(knot + 1) * N`.
     #[inline]
@@ -214,8 +224,7 @@ impl<const N: usize> Problem<N> {
             let end = &self.ends[knot];
             for d in 0..N {
                 if end.counts {
-                    let along = || self.settings.weight_along(knot, end.feed_mm_s).max(TURN_WEIGHT * end.turn);
-                    let weight = if d < N - 1 { 1.0 } else { along() };
+                    let weight = self.error_weight(knot, d);
                     let direction = scale(weight, end.directions[d]);
                     take(knot, weight * end.off_mm[d], &|row| self.tool_row(knot, direction, row));
                 } else {
