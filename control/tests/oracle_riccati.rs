@@ -16,9 +16,9 @@ use feedwright_control::vector::{add_scaled, dot, sub};
 use solvers::material::{Material, difference};
 use solvers::riccati::{AGREEMENT, apart_from_gauss_newton};
 
-/// What J, here some 0.4 mm^2, may be above its minimum, mm^2: ten nanometres in one knot. Where the solver does not come to its
-/// own tolerance, a tenth of this, within its iterations, it is beyond it by a little.
-const NEAR_ENOUGH_MM2: f64 = 1e-10;
+/// What J, here some 0.4 mm^2, may be above its minimum, mm^2: twenty nanometres in one knot. Where the solver does not come
+/// to its own tolerance, a fiftieth of this, within its iterations, it is beyond it by a little.
+const NEAR_ENOUGH_MM2: f64 = 5e-10;
 
 /// J of the problem linearised about the plan of the tick before, term by term as it is written, mm^2.
 fn cost<const N: usize>(material: &Material<N>, problem: &Problem<N>, plan: &Accelerations<N>) -> f64 {

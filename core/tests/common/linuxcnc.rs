@@ -222,18 +222,21 @@ pub(crate) struct Totals {
 /// Corners up to 0.05 rad are flat to LinuxCNC's compensation: the chord of that angle.
 const FLAT_RAD: f64 = 0.049_994_8;
 
+/// Diameter of the tool in the table, and of one that the program computes, mm.
+const TABLE_MM: f64 = 0.125 * 25.4;
+
 /// Radius of the largest tool that the program compensates for, mm: `G41.1 D` and `G42.1 D`, or the tool table. 0 without.
 pub(crate) fn compensated_radius(text: &str) -> f64 {
     let text = text.to_ascii_uppercase().replace(' ', "");
     let unit = if text.contains("G20") { 25.4 } else { 1.0 };
     let diameter = |rest: &str| {
         let number: String = rest.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
-        number.parse::<f64>().unwrap_or(0.0) * unit
+        number.parse().map_or(TABLE_MM, |d: f64| d * unit)
     };
     let given = ["G41.1D", "G42.1D"].iter().flat_map(|code| text.split(code).skip(1)).map(diameter);
     let by_table =
         ["G41", "G42"].iter().any(|code| text.match_indices(code).any(|(at, _)| !text[at + 3..].starts_with('.')));
-    let table = if by_table { 0.125 * 25.4 } else { 0.0 };
+    let table = if by_table { TABLE_MM } else { 0.0 };
     0.5 * given.fold(table, f64::max)
 }
 
