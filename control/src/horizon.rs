@@ -39,7 +39,7 @@ pub mod interior_point;
 pub mod missed;
 pub mod problem;
 
-use crate::vector::{add_scaled, bounded, scale, sub};
+use crate::vector::{add_scaled, bounded, fourth_power, scale, sub};
 use crate::window::Window;
 use gauss_newton::GaussNewton;
 use problem::Problem;
@@ -279,18 +279,11 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
         }
     }
 
-    /// Improves the plan by one step of the solver and returns what comes first. `lag_s` is how far the tool is to be behind
-    /// the plan.
-    pub fn improve<M: Model<N>>(
-        &mut self,
-        model: &M,
-        window: &Window<'_, N>,
-        lag_s: f64,
-        settings: &Settings,
-    ) -> Step<N> {
+    /// Improves the plan by one step of the solver and returns what comes first.
+    pub fn improve<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings) -> Step<N> {
         let settings = Settings { offset_weight: self.offset_weight(settings), ..*settings };
-        let problem = Problem::new(model, window, lag_s, &self.accelerations_mm_s2, self.periods, &settings);
-        let [need_mm, open_mm] = problem.open_errors_mm();
+        let problem = Problem::new(model, window, &self.accelerations_mm_s2, self.periods, &settings);
+        let [need_mm, open_error_mm] = problem.open_errors_mm();
         self.need_mm = need_mm.max(NEED_LEFT * self.need_mm);
         let before = self.accelerations_mm_s2;
         self.solver.improve(&problem, &mut self.accelerations_mm_s2);
@@ -308,7 +301,7 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
             acceleration_mm_s2: self.accelerations_mm_s2[0],
             change_mm_s2,
             contour_mm2: problem.contour_mm2(),
-            open_error_mm: open_mm,
+            open_error_mm,
             open_mm: problem.open_mm(missed::AHEAD_KNOTS - 1),
         }
     }
@@ -316,7 +309,7 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
     /// q.
     fn offset_weight(&self, settings: &Settings) -> f64 {
         let share = self.need_mm / settings.limits.deviation_mm;
-        (settings.offset_weight + share * share * share * share).min(MOST_OFFSET_WEIGHT)
+        (settings.offset_weight + fourth_power(share)).min(MOST_OFFSET_WEIGHT)
     }
 }
 
@@ -325,8 +318,7 @@ impl Settings {
     #[inline]
     pub fn weight_along(&self, knot: usize, feed_mm_s: f64) -> f64 {
         let running = self.tangential_weight;
-        let speed = feed_mm_s / RESTING_MM_S;
-        let weight = running + (1.0 - running) / (1.0 + speed * speed * speed * speed);
+        let weight = running + (1.0 - running) / (1.0 + fourth_power(feed_mm_s / RESTING_MM_S));
         if knot + LAST_KNOTS >= self.knots() { weight.max(self.last_weight) } else { weight }
     }
 

@@ -1,4 +1,4 @@
-//! Arithmetic on `[f64; N]`, N axes.
+//! Arithmetic on `[f64; N]`, N axes, and on numbers where the core has none of it.
 
 /// `a - b`.
 #[inline]
@@ -51,6 +51,12 @@ pub fn limit_norm<const N: usize>(a: [f64; N], limit: f64) -> [f64; N] {
     } else {
         [0.0; N]
     }
+}
+
+/// `x^4`.
+#[inline]
+pub fn fourth_power(x: f64) -> f64 {
+    x * x * x * x
 }
 
 /// `x`, taken to the nearer end of `least` to `most` where it is beyond. Not a number becomes `least`; where the ends are

@@ -14,8 +14,6 @@ use super::model::{Servo, Slopes, servo};
 /// Feed period, s, and servo period, s.
 const FEED_PERIOD_S: f64 = receding_horizon::FEED_PERIOD_S;
 const SERVO_S: f64 = 0.001;
-/// Lag of the tool, s.
-const LAG_S: f64 = 0.02;
 /// Largest acceleration of the plan of the tick before, mm/s^2.
 const PLANNED_MM_S2: f64 = 100.0;
 
@@ -84,7 +82,7 @@ impl<const N: usize> Material<N> {
             offset_mm_s: [0.0; N],
         };
         let model = Servo::new(&self.net, &self.slopes, felt);
-        let problem = Problem::new(&model, &window, LAG_S, &self.plan, 1, &self.settings);
+        let problem = Problem::new(&model, &window, &self.plan, 1, &self.settings);
         (problem, *self.slopes.borrow())
     }
 

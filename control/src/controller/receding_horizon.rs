@@ -21,7 +21,7 @@ use crate::identifier::adaptation::{self, Adaptation, Spread};
 use crate::identifier::residual::Foresight;
 use crate::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
 use crate::identifier::{FEED_SCALE_MM_S, Inputs};
-use crate::vector::{add_scaled, norm, scale, sub};
+use crate::vector::{add_scaled, fourth_power, norm, scale, sub};
 use crate::window::{PREVIEW_KNOTS, Window};
 
 /// Its feed period, s. Shorter foresees friction better, longer resonances: 2 ms is worse on a soft ball screw, 5 ms at every
@@ -227,19 +227,17 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
 
     /// The weights at the quality that the predictions have now.
     fn weighted(&self) -> horizon::Settings {
-        let share = self.net.innovation_mm() / self.settings.sure_mm;
-        let blunter = 1.0 + share * share * share * share;
+        let blunter = 1.0 + fourth_power(self.net.innovation_mm() / self.settings.sure_mm);
         let mut horizon = self.settings.horizon;
         horizon.rate_weight *= blunter;
         horizon.change_weight *= blunter;
         // A tool that is not foreseen well is held to its time: what is free along the path is as wrong as the prediction.
         let held = horizon.tangential_weight * libm::sqrt(blunter);
         horizon.tangential_weight = held.min(MOST_TANGENTIAL_WEIGHT);
-        let share = self.missed.largest_mm() / self.settings.foreseen_mm;
-        horizon.offset_weight += share * share * share * share;
+        horizon.offset_weight += fourth_power(self.missed.largest_mm() / self.settings.foreseen_mm);
         // Where there is hardly more to gain than the predictions miss by, nothing is.
         let lost = WORTHWHILE * self.net.innovation_mm() / self.open_error_mm.max(f64::MIN_POSITIVE);
-        horizon.offset_weight += lost * lost * lost * lost;
+        horizon.offset_weight += fourth_power(lost);
         horizon
     }
 
@@ -304,12 +302,11 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
         self.look_back(window);
         self.periods = self.periods(window.feed_period_s);
         let horizon = self.weighted();
-        let lag_s = self.net.net().lag_s();
         let model = Identified::new(&self.net, self.delays, self.response);
         self.plan.shift(self.periods, &horizon);
-        let mut step = self.plan.improve(&model, window, lag_s, &horizon);
+        let mut step = self.plan.improve(&model, window, &horizon);
         for _ in 1..self.settings.steps {
-            step = self.plan.improve(&model, window, lag_s, &horizon);
+            step = self.plan.improve(&model, window, &horizon);
         }
         self.foreseen_mm2 = step.contour_mm2;
         self.open_error_mm = step.open_error_mm;

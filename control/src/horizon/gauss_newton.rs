@@ -160,7 +160,7 @@ mod tests {
 
     /// q/2 sum |o|^2 + d/2 sum |T a|^2 of a plan, rolled out.
     fn price(window: &Window<'_, 2>, accelerations: &Accelerations<2>, periods: usize) -> f64 {
-        let problem = Problem::new(&Deaf, window, 0.0, accelerations, periods, &SETTINGS);
+        let problem = Problem::new(&Deaf, window, accelerations, periods, &SETTINGS);
         let squares = |all: &mut dyn Iterator<Item = f64>| all.map(|x| x * x).sum::<f64>();
         let offsets = squares(&mut problem.ends[..KNOTS].iter().flat_map(|end| end.offset_mm));
         let changes = squares(&mut accelerations[..KNOTS].as_flattened().iter().map(|a| a * problem.knot_s));
@@ -175,7 +175,7 @@ mod tests {
         let window = window(&register, &preview);
         for periods in 1..=3 {
             let mut accelerations = [[0.0; 2]; MOST_KNOTS];
-            let problem = Problem::new(&Deaf, &window, 0.0, &accelerations, periods, &SETTINGS);
+            let problem = Problem::new(&Deaf, &window, &accelerations, periods, &SETTINGS);
             GaussNewton::default().improve(&problem, &mut accelerations);
             let least = price(&window, &accelerations, periods);
             for knot in 0..KNOTS {

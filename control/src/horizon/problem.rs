@@ -4,7 +4,7 @@
 //! accelerations,
 //!
 //! ```text
-//! J(a + da) = 1/2 |r + G da|^2 + w/2 sum_j |v_j|^2 + d/2 sum_j |v_j - v_{j-1}|^2
+//! J(a + da) = 1/2 |r + G da|^2 + q/2 sum_j |o_j|^2 + w/2 sum_j |v_j|^2 + d/2 sum_j |v_j - v_{j-1}|^2
 //! ```
 //!
 //! A knot has N rows: the errors of the tool across the path and along it, or on a rapid by how much the offset moves the tool in
@@ -73,11 +73,6 @@ pub struct End<const N: usize> {
 }
 
 impl<const N: usize> End<N> {
-    /// An error of the tool as it would be without the offset, mm.
-    fn open_off_mm(&self, direction: usize) -> f64 {
-        self.off_mm[direction] - dot(self.directions[direction], self.moved_mm)
-    }
-
     const NONE: Self = Self {
         off_mm: [0.0; N],
         directions: [[0.0; N]; N],
@@ -90,17 +85,21 @@ impl<const N: usize> End<N> {
         tool_mm: [0.0; N],
         moved_mm: [0.0; N],
     };
+
+    /// An error of the tool as it would be without the offset, mm.
+    fn open_off_mm(&self, direction: usize) -> f64 {
+        self.off_mm[direction] - dot(self.directions[direction], self.moved_mm)
+    }
 }
 
 /// The derivative of an error to all accelerations.
 pub type Row = [f64; MOST_UNKNOWNS];
 
 impl<const N: usize> Problem<N> {
-    /// Rolls a plan out through a model. The tool is to be `lag_s` behind the plan.
+    /// Rolls a plan out through a model. The tool is to be behind the plan by the lag of the model.
     pub fn new<M: Model<N>>(
         model: &M,
         window: &Window<'_, N>,
-        lag_s: f64,
         accelerations_mm_s2: &Accelerations<N>,
         periods: usize,
         settings: &Settings,
@@ -114,7 +113,7 @@ impl<const N: usize> Problem<N> {
             moved_s2: [0.0; MOST_KNOTS],
             settings: *settings,
         };
-        let lag_s = bounded(lag_s, 0.0, PREVIEW_KNOTS as f64 * window.servo_s());
+        let lag_s = bounded(model.lag_s(), 0.0, PREVIEW_KNOTS as f64 * window.servo_s());
         let mut model = model.clone();
         let mut stretch = Stretch::now(window, periods);
         for knot in 0..knots {
@@ -126,14 +125,14 @@ impl<const N: usize> Problem<N> {
             let end_s = (stretch.period + 1) as f64 * window.feed_period_s;
             let own = window.at(end_s - lag_s);
             // What leads up to a cut decides where the tool is when it begins.
-            let soon = window.at(end_s - 0.5 * lag_s).cutting || window.at(end_s).cutting;
+            let soon = || window.at(end_s - 0.5 * lag_s).cutting || window.at(end_s).cutting;
             let directions = directions(own.tangent);
             let off_mm = sub(tool_mm, own.position_mm);
             problem.ends[knot] = End {
                 off_mm: directions.map(|direction| dot(direction, off_mm)),
                 directions,
                 feed_mm_s: own.feed_mm_s,
-                counts: own.cutting || soon || settings.on_rapids,
+                counts: own.cutting || settings.on_rapids || soon(),
                 turn: 0.0,
                 near_turn: 0.0,
                 offset_mm: stretch.offset_mm[1],

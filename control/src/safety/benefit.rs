@@ -48,8 +48,7 @@ impl<const N: usize> Benefit<N> {
         contour: &ContourError<N>,
         moved_mm: Option<[f64; N]>,
     ) -> bool {
-        let guessed_mm = self.guessed_mm(window, contour);
-        let g_mm = moved_mm.unwrap_or(guessed_mm);
+        let g_mm = moved_mm.unwrap_or_else(|| self.guessed_mm(window, contour));
         let open_mm = sub(tool_mm, g_mm);
         let reach = contour.index.saturating_neg();
         let open = locate(window, open_mm, contour.index, reach);

@@ -112,16 +112,15 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         self.take_in(window, measured.position_mm);
         let settings = &self.settings.horizon;
-        let lag_s = self.model.lag_s;
         let mut model = self.model.clone();
         model.residual = self.residuals.each_ref().map(Residual::foresight);
         self.plan.shift(1, settings);
-        let mut step = self.plan.improve(&model, window, lag_s, settings);
+        let mut step = self.plan.improve(&model, window, settings);
         for _ in 1..MOST_STEPS {
             if step.change_mm_s2 <= CONVERGED_MM_S2 {
                 break;
             }
-            step = self.plan.improve(&model, window, lag_s, settings);
+            step = self.plan.improve(&model, window, settings);
         }
         let mut stretch = Stretch::now(window, 1);
         stretch.go_on(window, step.acceleration_mm_s2);
