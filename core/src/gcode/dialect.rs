@@ -42,12 +42,12 @@ pub(super) fn choose(head: &[u8], name: &Arc<str>, asked: Option<Dialect>) -> Re
     };
     if dialect == Dialect::LinuxCnc {
         // A program without its O-number, or a part of one.
-        let is_plain = !has_owords(head);
-        if is_plain && evidence.certain_lathe().is_some() {
+        let is_plain = || !has_owords(head);
+        if evidence.certain_lathe().is_some() && is_plain() {
             let reason = "it has words that only lathes of Fanuc and Haas have";
             return Ok(Choice { dialect: Dialect::FanucLathe, reason, warning: None });
         }
-        if let Some(sign) = evidence.likely_lathe().filter(|_| is_plain) {
+        if let Some(sign) = evidence.likely_lathe().filter(|_| is_plain()) {
             let reason = "it has words of lathes of Fanuc and Haas, and none of a mill";
             let message = format!(
                 "signs of a lathe of Fanuc or Haas (line {}: {}) and none of another machine: X is read as a diameter, F as a feed per revolution",
