@@ -5,17 +5,17 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
+#[path = "common/cut.rs"]
+mod cut;
 #[path = "common/python.rs"]
-mod common;
+mod python;
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use common::python;
-use feedwright::controllers::{BASELINE, BEST, Choices, Entry};
-use feedwright::machine::Machine;
-use feedwright::pipeline::{self, Job, Outputs};
-use feedwright::report::RunSummary;
+use cut::cut;
+use feedwright::controllers::{BASELINE, BEST, Entry};
+use python::python;
 
 /// Chords in place of arcs, and steps of the reference in place of its time 50 ms ahead, um.
 const SAME_UM: f64 = 0.02;
@@ -30,22 +30,6 @@ const SPIKES: &str = "G21 G90 F3000\nG1 X10 Y0.5\nG1 X0 Y1.5\nG1 X10 Y3.5\nG1 X0
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
-}
-
-fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Path) -> RunSummary {
-    let job = Job {
-        part: part.to_owned(),
-        machine: Machine::read(machine).unwrap(),
-        controller: entry,
-        against: entry,
-        feed_mm_s: None,
-        choices: Choices::default(),
-        tolerance_um: None,
-        reader: feedwright::gcode::Settings::default(),
-        inputs: Vec::new(),
-        outputs: Outputs { trace: Some(trace.to_owned()), ..Outputs::default() },
-    };
-    pipeline::run(&job, &mut ()).unwrap().report.runs.remove(0).summary
 }
 
 #[test]

@@ -8,9 +8,10 @@ mod cut;
 mod listed;
 #[path = "common/linuxcnc.rs"]
 mod linuxcnc;
+#[path = "common/rs274.rs"]
+mod rs274;
 
 use std::path::PathBuf;
-use std::process::Command;
 
 use linuxcnc::{Totals, theirs};
 use listed::{Verdict, judge};
@@ -88,10 +89,7 @@ fn examples() -> Vec<(&'static str, String)> {
 
 #[test]
 fn every_row_has_a_program() {
-    if Command::new("rs274").arg("-h").output().is_err() {
-        eprintln!(
-            "SKIPPED: LinuxCNC is not installed; on Debian: apt-get install --no-install-recommends linuxcnc-uspace"
-        );
+    if !rs274::is_installed() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();

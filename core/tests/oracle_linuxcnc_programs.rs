@@ -8,6 +8,8 @@
 
 #[path = "common/linuxcnc.rs"]
 mod linuxcnc;
+#[path = "common/rs274.rs"]
+mod rs274;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -123,10 +125,7 @@ fn verdict(path: &Path, tools: &Path) -> Option<String> {
 
 #[test]
 fn linuxcnc_reads_the_same() {
-    if Command::new("rs274").arg("-h").output().is_err() {
-        eprintln!(
-            "SKIPPED: LinuxCNC is not installed; on Debian: apt-get install --no-install-recommends linuxcnc-uspace"
-        );
+    if !rs274::is_installed() {
         return;
     }
     let paths = programs();

@@ -6,16 +6,17 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
+#[path = "common/cut.rs"]
+mod cut;
 #[path = "common/python.rs"]
-mod common;
+mod python;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use common::python;
-use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Choices, Entry};
-use feedwright::machine::Machine;
-use feedwright::pipeline::{self, Job, Outputs};
+use cut::cut;
+use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Entry};
+use python::python;
 
 /// Lines of the pocket that are cut: tool change, dwell, rapids, the first helix and the first passes of a level.
 const POCKET_LINES: usize = 30;
@@ -74,24 +75,6 @@ fn finer(entry: &Entry) -> &'static [u32] {
     if two().iter().any(|one| one.name == entry.name) { BOTH } else { &[1] }
 }
 
-/// Cuts a part and leaves its trace; how many axes it has.
-fn trace(part: &Path, machine: &Path, entry: &'static Entry, trace: &Path) -> usize {
-    let job = Job {
-        part: part.to_owned(),
-        machine: Machine::read(machine).unwrap(),
-        controller: entry,
-        against: entry,
-        feed_mm_s: None,
-        choices: Choices::default(),
-        tolerance_um: None,
-        reader: feedwright::gcode::Settings::default(),
-        inputs: Vec::new(),
-        outputs: Outputs { trace: Some(trace.to_owned()), ..Outputs::default() },
-    };
-    let outcome = pipeline::run(&job, &mut ()).unwrap();
-    outcome.report.runs[0].summary.axes
-}
-
 /// What the script says of a trace, its mechanics stepped `finer` times as often.
 fn resimulated(python: &str, machine: &Path, trace: &Path, finer: u32) -> Output {
     let script = root().join("core/tests/oracle_scripts/resimulate.py");
@@ -102,7 +85,7 @@ fn resimulated(python: &str, machine: &Path, trace: &Path, finer: u32) -> Output
 fn agrees(python: &str, part: &Path, machine: &Path, entry: &'static Entry, finer: &[u32]) {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("trace.csv");
-    let axes = trace(part, machine, entry, &file);
+    let axes = cut(part, machine, entry, &file).axes;
     for &finer in finer {
         let output = resimulated(python, machine, &file, finer);
         let (said, failed) = (String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
@@ -184,7 +167,7 @@ fn so_they_do_over_long_rests() {
         for entry in two() {
             agrees(python, &part, &machine_file(machine), entry, &[1]);
             let file = folder.path().join("trace.csv");
-            trace(&part, &machine_file(machine), entry, &file);
+            cut(&part, &machine_file(machine), entry, &file);
             let text = std::fs::read_to_string(&file).unwrap();
             let times: Vec<f64> =
                 text.lines().skip(1).map(|row| row.split(',').next().unwrap().parse().unwrap()).collect();
@@ -204,7 +187,7 @@ fn a_trace_with_a_wrong_position_is_found_out() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("trace.csv");
-    trace(&part("circle"), &machine_file("tnv40"), &CONTROLLERS[0], &file);
+    cut(&part("circle"), &machine_file("tnv40"), &CONTROLLERS[0], &file);
     let text = std::fs::read_to_string(&file).unwrap();
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let column = lines[0].split(',').position(|name| name == "act_x_mm").unwrap();
@@ -243,7 +226,7 @@ fn a_machine_that_is_another_in_one_value_is_found_out() {
         ),
     ];
     for (name, changes) in others {
-        trace(&part("circle"), &machine_file(name), &CONTROLLERS[0], &file);
+        cut(&part("circle"), &machine_file(name), &CONTROLLERS[0], &file);
         let text = std::fs::read_to_string(machine_file(name)).unwrap();
         for [from, to] in changes {
             let other = folder.path().join("other.toml");

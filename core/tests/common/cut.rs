@@ -1,0 +1,25 @@
+//! A part cut by one controller, with its trace in a file.
+
+use std::path::Path;
+
+use feedwright::controllers::{Choices, Entry};
+use feedwright::machine::Machine;
+use feedwright::pipeline::{self, Job, Outputs};
+use feedwright::report::RunSummary;
+
+/// Cuts a part and leaves its trace.
+pub(crate) fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Path) -> RunSummary {
+    let job = Job {
+        part: part.to_owned(),
+        machine: Machine::read(machine).unwrap(),
+        controller: entry,
+        against: entry,
+        feed_mm_s: None,
+        choices: Choices::default(),
+        tolerance_um: None,
+        reader: feedwright::gcode::Settings::default(),
+        inputs: Vec::new(),
+        outputs: Outputs { trace: Some(trace.to_owned()), ..Outputs::default() },
+    };
+    pipeline::run(&job, &mut ()).unwrap().report.runs.remove(0).summary
+}
