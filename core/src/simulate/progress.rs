@@ -9,7 +9,7 @@
 //!    first order then has left.
 //! 2. From `lo` on the tool *reaches* all `s` up to the first with `d(s) > h min(d over lo..s) + m`: beyond, the path leaves
 //!    the tool. `f` is the nearest point reached, no later than [`LEAD_S`] ahead of the reference.
-//! 3. Beyond stands a hill: a corner that the tool rounds. Of what follows, no later than [`LEAD_S`] ahead either, the first
+//! 3. Beyond stands a hill: a corner that the tool rounds. Of what follows, no later than [`HILL_LEAD_S`] ahead, the first
 //!    stretch that comes nearer than the foot is reached over it, if the tool does not move along its own (to
 //!    within 8 degrees) and moves more along that one.
 //!
@@ -28,6 +28,9 @@ use crate::reference::{Foot, Reference};
 const SETTLED_TIME_CONSTANTS: f64 = 5.0;
 /// How far the tool can be ahead of the reference, in plan time, s.
 const LEAD_S: f64 = 0.05;
+/// How far ahead what is reached over a hill can be: a tool rounds a corner when the reference has come to it, not before. Of
+/// spikes side by side the next but one is not reached.
+const HILL_LEAD_S: f64 = 0.005;
 /// What vibration and settling take the tool back by at most, mm: a usual in-position width.
 const BACK_MM: f64 = 0.01;
 /// How much further than the nearest point the path may be on the way: at a right angle sqrt(2).
@@ -93,12 +96,13 @@ impl Progress {
         let settled_mm = if self.passed_mm.len() > self.periods { self.passed_mm.pop_front() } else { None };
         let lo_mm = (self.furthest_mm - BACK_MM).max(settled_mm.unwrap_or(0.0) - self.left_mm).max(0.0);
         let hi_mm = reference.at(tau_s + LEAD_S).s_mm.max(lo_mm);
+        let hill_mm = reference.at(tau_s + HILL_LEAD_S).s_mm.max(lo_mm);
         let moved_mm = sub(tool_mm, self.tool_mm);
         let way_mm = distance(tool_mm, self.tool_mm).max(LEAST_WAY_MM);
         let least_mm = (0.25 * way_mm).max((hi_mm - lo_mm) / MOST_STEPS);
         let mut step = Step { reference, tool_mm, moved_mm, way_mm, least_mm };
         let (mut foot, end_mm) = step.reach(lo_mm, hi_mm);
-        if let Some(beyond) = step.over_the_hill(&foot, end_mm, hi_mm) {
+        if let Some(beyond) = step.over_the_hill(&foot, end_mm, hill_mm) {
             foot = beyond;
         }
         self.furthest_mm = self.furthest_mm.max(foot.s_mm);

@@ -30,7 +30,8 @@ import tomllib
 
 from resimulate import machine_of
 
-SETTLED, LEAD_S, BACK, HILL, LEAST_WAY, TIE, ARRIVED, ALONG = 5.0, 0.05, 0.01, 1.5, 1e-4, 1e-9, 0.01, 0.99
+SETTLED, LEAD_S, HILL_LEAD_S, BACK, HILL, LEAST_WAY = 5.0, 0.05, 0.005, 0.01, 1.5, 1e-4
+TIE, ARRIVED, ALONG = 1e-9, 0.01, 0.99
 SAGITTA = 1e-6
 
 
@@ -141,18 +142,19 @@ def contour_errors(path, machine, rows):
     left = math.exp(-SETTLED) * machine["limits"]["rapid_mm_s"] / kp
     servo = machine["period"]["servo_s"]
     passed = [row["s_mm"] for row in rows]
-    lead = round(LEAD_S / servo)
+    lead, hill_lead = round(LEAD_S / servo), round(HILL_LEAD_S / servo)
     furthest, last = 0.0, path.at[0]
     for n, row in enumerate(rows):
         tool = (row["act_x_mm"], row["act_y_mm"])
         way = max(math.dist(tool, last), LEAST_WAY)
         lo = max(0.0, furthest - BACK, (passed[n - window] if n >= window else 0.0) - left)
         hi = max(lo, passed[min(n + lead, len(passed) - 1)])
+        hill = max(lo, passed[min(n + hill_lead, len(passed) - 1)])
         best, end = reach(path, tool, way, lo, hi)
-        if end < hi:
-            for _, near in path.parts(tool, end, hi):
+        if end < hill:
+            for _, near in path.parts(tool, end, hill):
                 if near[0] < best[0] - TIE:
-                    beyond, _ = reach(path, tool, way, near[1], hi)
+                    beyond, _ = reach(path, tool, way, near[1], hill)
                     moved = (tool[0] - last[0], tool[1] - last[1])
                     along = [sum(m * t for m, t in zip(moved, path.tangent(s))) for s in (best[1], beyond[1])]
                     if along[1] > along[0] and along[0] <= ALONG * way:

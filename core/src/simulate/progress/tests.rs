@@ -143,6 +143,26 @@ fn right_angles_and_spikes_are_passed_where_the_legs_are_equally_near() {
     }
 }
 
+/// A tool that turns before the tip of a spike, where the spike after the next comes nearer than the way back.
+#[test]
+fn of_spikes_side_by_side_the_next_but_one_is_not_reached() {
+    let corners =
+        [[0.0, 0.0, 0.0], [0.031, -0.0236, 0.0], [-0.0146, 0.0048, 0.0], [0.0365, -0.028, 0.0], [0.0, 0.0003, 0.0]];
+    let tip_mm = distance(corners[0], corners[1]);
+    let short_mm = 0.0022;
+    let feet = feet(lines(&corners), |reference, t_s| {
+        let s_mm = reference.at(t_s - 0.02).s_mm;
+        let before_tip = (tip_mm - short_mm..tip_mm + short_mm).contains(&s_mm);
+        let [from_mm, to_mm] =
+            [-short_mm, short_mm].map(|way_mm| reference.at_length([0.0; 3], tip_mm + way_mm).position_mm);
+        let part = (s_mm - tip_mm + short_mm) / (2.0 * short_mm);
+        let straight = std::array::from_fn(|k| from_mm[k] + part * (to_mm[k] - from_mm[k]));
+        if before_tip { straight } else { reference.at(t_s - 0.02).position_mm }
+    });
+    goes_on(&feet);
+    assert!(largest(&feet) < 0.001, "{}", largest(&feet));
+}
+
 #[test]
 fn vibration_along_the_path_does_not_carry_the_progress_on() {
     let mut at = Vec::new();
