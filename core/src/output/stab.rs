@@ -107,7 +107,7 @@ impl Disc {
 /// The point of the discs' intersection that lies furthest along `goal` (a unit vector); `None` where they have none in common.
 ///
 /// Incremental: a disc that holds the extreme point so far changes nothing; of one that does not, the new extreme point lies
-/// on its circle. The same argument once more gives the second circle.
+/// on its circle. What the others leave of that may be several arcs: the point is the top, or an end of any of them.
 fn extreme(discs: &[Disc], goal: [f64; 2]) -> Option<[f64; 2]> {
     let mut best = discs.first().map_or([0.0; 2], |disc| disc.top(goal));
     for (k, disc) in discs.iter().enumerate().skip(1) {
@@ -125,9 +125,10 @@ fn extreme_on(disc: &Disc, others: &[Disc], goal: [f64; 2]) -> Option<[f64; 2]> 
             continue;
         }
         let height = |c: &[f64; 2]| c[0] * goal[0] + c[1] * goal[1];
-        let mut crossings = disc.crossings(other)?;
-        crossings.sort_by(|a, b| height(b).total_cmp(&height(a)));
-        best = crossings.into_iter().find(|c| others[..j].iter().all(|before| before.holds(*c)))?;
+        let so_far = &others[..=j];
+        let ends = so_far.iter().filter_map(|other| disc.crossings(other)).flatten();
+        let left = ends.filter(|c| so_far.iter().all(|other| other.holds(*c)));
+        best = left.max_by(|a, b| height(a).total_cmp(&height(b)))?;
     }
     Some(best)
 }
@@ -204,6 +205,26 @@ mod tests {
         assert!(x.abs() < 1e-12 && (y - 4.0).abs() < 1e-12);
         assert_eq!(extreme(&discs, [1.0, 0.0]), Some([2.0, 0.0]));
         assert_eq!(extreme(&[disc(-3.0, 0.0, 2.0), disc(3.0, 0.0, 2.0)], [0.0, 1.0]), None);
+    }
+
+    #[test]
+    fn of_a_circle_that_is_left_in_two_arcs_both_count() {
+        let discs = [
+            disc(0.0, 0.8519998974446397, 1.4201293388027836),
+            disc(0.0, -0.7555555508788134, 1.1338207733087715),
+            disc(-0.675313592423269, 0.0, 0.667987396911714),
+            disc(0.44199801514314496, 0.23715657237363333, 0.7864006178481008),
+        ];
+        let goal = [f64::cos(5.657648183126011), f64::sin(5.657648183126011)];
+        let [x, y] = extreme(&discs, goal).unwrap();
+        // Of all crossings that every disc holds, one by one.
+        let mut best = f64::NEG_INFINITY;
+        for disc in &discs {
+            let crossings = discs.iter().filter_map(|other| disc.crossings(other)).flatten();
+            let held = crossings.filter(|c| discs.iter().all(|disc| disc.holds(*c)));
+            best = held.map(|c| c[0] * goal[0] + c[1] * goal[1]).fold(best, f64::max);
+        }
+        assert!((x * goal[0] + y * goal[1] - best).abs() < 1e-12);
     }
 
     #[test]
