@@ -124,6 +124,11 @@ pub trait Controller<const N: usize> {
     fn foreseen_mm2(&self) -> [f64; 2] {
         [0.0; 2]
     }
+    /// Hears after each decision by how much the correction was overdone lately, as measured: 0 where neither more nor less of it
+    /// would have been better, 1 where none at all would have been as good.
+    fn judged(&mut self, overdone: f64) {
+        let _ = overdone;
+    }
     /// Whether it means to make the contour error smaller. One that excites the machine to identify it does not, and is
     /// not taken out of the loop for making it larger.
     fn corrects(&self) -> bool {

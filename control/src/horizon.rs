@@ -8,20 +8,24 @@
 //! r_i = P*(tau_i - lag)     eps_i = (1 - t_i t_i')(p_i - r_i)     theta_i = t_i'(p_i - r_i)
 //!
 //! J(a) = 1/2 sum_i (|eps_i|^2 + h^2 theta_i^2) + q/2 sum_j |o_j|^2 + w/2 sum_j |v_j|^2 + d/2 sum_j |v_j - v_{j-1}|^2
+//!        + e/2 |o_last + lag v_last|^2
 //! v_j = v_0 + T sum_{m<=j} a_m     |a_j| <= A in each axis
-//! q = q_0 + (n / D)^4     n = max_i |p_i - g_i - r_i|     g: by how much the offset moves the tool
 //! ```
 //!
 //! and J is made smaller by a [`Solver`], from last tick's plan, shifted. Where the tool lags behind its time, or leads, nothing
 //! is cut wrong, and theta counts little (h is small); but it counts, so that no tool stays on a stretch of the path that is
 //! over: a nearest point would let it.
 //!
-//! The price q of the offset itself keeps the correction from doing harm. Where n, by which the tool would miss its point without
-//! any offset, comes to D, the largest deviation, no offset within D undoes it; what is cut off at a limit need not be better than
-//! nothing, but of a servo that is nearly linear every *part* of a correction that helps does: with q the plan asks for that part.
-//! q_0 does the same where the model is not to be trusted ([`missed`]). The limits of the plan are those of the machine file: what the plan asks for is carried
-//! out as it is. Speed and deviation of the offset, and what the drives can accelerate, cost much beyond their limits
-//! ([`problem`]).
+//! What holds the plan back from doing harm:
+//!
+//! - q, the price of the offset itself, where it cannot undo all that is wrong, at the start ([`restraint`]), and where the
+//!   model is not to be trusted ([`missed`]): then the plan asks for a part of it.
+//! - Where much is left across the path, and about points where the path turns back, a tool that is further from its time than
+//!   without the offset ([`restraint`], [`problem`]).
+//! - e, at the end of the horizon: behind it nothing is foreseen, and the offset is to be on its way back.
+//!
+//! The limits of the plan are those of the machine file: what the plan asks for is carried out as it is. Speed and deviation of
+//! the offset, and what the drives can accelerate, cost much beyond their limits ([`problem`]).
 //!
 //! On a rapid motion nothing is cut: there the offset is to move the tool as little as the cuts about it allow.
 //!
@@ -38,11 +42,13 @@ pub mod gauss_newton;
 pub mod interior_point;
 pub mod missed;
 pub mod problem;
+mod restraint;
 
 use crate::vector::{add_scaled, bounded, fourth_power, scale, sub};
 use crate::window::Window;
 use gauss_newton::GaussNewton;
 use problem::Problem;
+use restraint::Restraint;
 
 /// Most knots of a horizon.
 pub const MOST_KNOTS: usize = 20;
@@ -59,11 +65,6 @@ const RESTING_MM_S: f64 = 0.5;
 /// Knots at the end of the horizon by which the tool has to be back at its time. Behind the horizon nothing is foreseen: a tool
 /// that is late or fast there when the path turns swings from one side of it to the other.
 const LAST_KNOTS: usize = 5;
-
-/// q at the most.
-const MOST_OFFSET_WEIGHT: f64 = 10.0;
-/// What is left of n from one tick to the next, where it becomes smaller: the correction that was held back comes in gently.
-const NEED_LEFT: f64 = 0.97;
 
 /// Settings of the inversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,6 +83,8 @@ pub struct Settings {
     pub tangential_weight: f64,
     /// h of the last knots at the least.
     pub last_weight: f64,
+    /// Weight of a tool that is further from its time than without the offset; about points where the path turns back, more.
+    pub late_weight: f64,
     /// Whether rapid motions are corrected as cuts are.
     pub on_rapids: bool,
     /// What the plan keeps to.
@@ -224,8 +227,7 @@ pub trait Solver<const N: usize>: Default {
 pub struct Plan<const N: usize, S = GaussNewton> {
     accelerations_mm_s2: Accelerations<N>,
     periods: usize,
-    /// n, mm.
-    need_mm: f64,
+    restraint: Restraint,
     solver: S,
 }
 
@@ -246,7 +248,12 @@ pub struct Step<const N: usize> {
 
 impl<const N: usize, S: Solver<N>> Default for Plan<N, S> {
     fn default() -> Self {
-        Self { accelerations_mm_s2: [[0.0; N]; MOST_KNOTS], periods: 1, need_mm: 0.0, solver: S::default() }
+        Self {
+            accelerations_mm_s2: [[0.0; N]; MOST_KNOTS],
+            periods: 1,
+            restraint: Restraint::START,
+            solver: S::default(),
+        }
     }
 }
 
@@ -255,7 +262,7 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
     pub fn reset(&mut self) {
         self.accelerations_mm_s2 = [[0.0; N]; MOST_KNOTS];
         self.periods = 1;
-        self.need_mm = 0.0;
+        self.restraint = Restraint::START;
     }
 
     /// Goes over to the next tick: what was planned for it comes first. From here on a knot has `periods` feed periods, 1
@@ -281,10 +288,11 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
 
     /// Improves the plan by one step of the solver and returns what comes first.
     pub fn improve<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings) -> Step<N> {
-        let settings = Settings { offset_weight: self.offset_weight(settings), ..*settings };
+        let settings = self.restraint.on::<N>(settings, model.lag_s());
         let problem = Problem::new(model, window, &self.accelerations_mm_s2, self.periods, &settings);
         let [need_mm, open_error_mm] = problem.open_errors_mm();
-        self.need_mm = need_mm.max(NEED_LEFT * self.need_mm);
+        let contour_mm2 = problem.contour_mm2();
+        self.restraint.take_in(need_mm, contour_mm2);
         let before = self.accelerations_mm_s2;
         self.solver.improve(&problem, &mut self.accelerations_mm_s2);
         let mut change_mm_s2 = 0.0_f64;
@@ -300,16 +308,10 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
         Step {
             acceleration_mm_s2: self.accelerations_mm_s2[0],
             change_mm_s2,
-            contour_mm2: problem.contour_mm2(),
+            contour_mm2,
             open_error_mm,
             open_mm: problem.open_mm(missed::AHEAD_KNOTS - 1),
         }
-    }
-
-    /// q.
-    fn offset_weight(&self, settings: &Settings) -> f64 {
-        let share = self.need_mm / settings.limits.deviation_mm;
-        (settings.offset_weight + fourth_power(share)).min(MOST_OFFSET_WEIGHT)
     }
 }
 
@@ -340,6 +342,7 @@ mod tests {
         offset_weight: 0.0,
         tangential_weight: 0.1,
         last_weight: 0.3,
+        late_weight: 0.0,
         on_rapids: false,
         limits: Limits::NONE,
     };

@@ -130,10 +130,10 @@ impl<const N: usize> Guard<N> {
         command
     }
 
-    /// Why a controller must not be followed.
+    /// Why a controller must not be followed. It hears how well it did.
     fn judge<C>(
         &mut self,
-        controller: &C,
+        controller: &mut C,
         window: &Window<'_, N>,
         measured: &Measured<N>,
         wanted: &Command<N>,
@@ -148,6 +148,7 @@ impl<const N: usize> Guard<N> {
         let foreseen = with_mm2 > FORESEEN_MM2 + FORESEEN * without_mm2;
         self.foreseen = if foreseen { self.foreseen + 1 } else { 0 };
         let harm = self.benefit.is_harm(window, measured.position_mm, &measured.contour, controller.moved_mm());
+        controller.judged(self.benefit.overdone());
         if !sum.is_finite() {
             Some(Cause::NotANumber)
         } else if self.wrong >= WRONG_DECISIONS {

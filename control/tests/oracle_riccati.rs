@@ -10,15 +10,15 @@ mod solvers {
 }
 
 use feedwright_control::horizon::gauss_newton::GaussNewton;
-use feedwright_control::horizon::problem::Problem;
+use feedwright_control::horizon::problem::{END_WEIGHT, Problem};
 use feedwright_control::horizon::{Accelerations, Settings};
 use feedwright_control::vector::{add_scaled, dot, sub};
 use solvers::material::{Material, difference};
 use solvers::riccati::{AGREEMENT, apart_from_gauss_newton};
 
-/// What J, here some 0.4 mm^2, may be above its minimum, mm^2: twenty nanometres in one knot. Where the solver does not come
-/// to its own tolerance, a fiftieth of this, within its iterations, it is beyond it by a little.
-const NEAR_ENOUGH_MM2: f64 = 5e-10;
+/// What J, here some 0.4 mm^2, may be above its minimum, mm^2: a tenth of a micrometre in one knot. Where the solver does not
+/// come to its own tolerance within its iterations, it is beyond it by a little; one iteration more would be enough here.
+const NEAR_ENOUGH_MM2: f64 = 6e-9;
 
 /// J of the problem linearised about the plan of the tick before, term by term as it is written, mm^2.
 fn cost<const N: usize>(material: &Material<N>, problem: &Problem<N>, plan: &Accelerations<N>) -> f64 {
@@ -26,7 +26,7 @@ fn cost<const N: usize>(material: &Material<N>, problem: &Problem<N>, plan: &Acc
     let square = |v: [f64; N]| dot(v, v);
     let changed: Accelerations<N> = std::array::from_fn(|knot| sub(plan[knot], material.plan[knot]));
     let mut cost = 0.0;
-    let mut faster_mm_s = [0.0; N];
+    let (mut faster_mm_s, mut further_mm) = ([0.0; N], [0.0; N]);
     for knot in 0..problem.knots {
         let end = &problem.ends[knot];
         let mut tool_mm = [0.0; N];
@@ -37,11 +37,16 @@ fn cost<const N: usize>(material: &Material<N>, problem: &Problem<N>, plan: &Acc
             let weight = problem.error_weight(knot, d);
             cost += 0.5 * (weight * (end.off_mm[d] + dot(*direction, tool_mm))).powi(2);
         }
+        further_mm = add_scaled(further_mm, problem.knot_s, faster_mm_s);
+        further_mm = add_scaled(further_mm, 0.5 * problem.knot_s.powi(2), changed[knot]);
         faster_mm_s = add_scaled(faster_mm_s, problem.knot_s, changed[knot]);
         cost += 0.5 * rate_weight * square(add_scaled(end.offset_mm_s, 1.0, faster_mm_s));
         cost += 0.5 * change_weight * problem.knot_s.powi(2) * square(plan[knot]);
     }
-    cost
+    let end = &problem.ends[problem.knots - 1];
+    let last_mm = add_scaled(end.offset_mm, 1.0, further_mm);
+    let last_mm_s = add_scaled(end.offset_mm_s, 1.0, faster_mm_s);
+    cost + 0.5 * END_WEIGHT.powi(2) * square(add_scaled(last_mm, problem.lag_s, last_mm_s))
 }
 
 fn riccati_and_gauss_newton_agree<const N: usize>() {

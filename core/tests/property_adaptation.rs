@@ -74,7 +74,10 @@ fn circle_behind(length_mm: f64, machine: &Machine, seed: u64) -> f64 {
 fn nothing_drifts_on_a_straight_line_of_ten_minutes() {
     for name in ["tnv40", "rough", "coarse"] {
         let machine = Machine::load(name.as_ref()).unwrap();
-        let short_um = circle_behind(SHORT_LINE_MM, &machine, 1);
+        // What an unknown machine has been learnt of differs from one short line to the next, too.
+        let short_um = [1.0, 1.5, 2.5].map(|times| circle_behind(times * SHORT_LINE_MM, &machine, 1));
+        eprintln!("{name}: circle behind short lines {short_um:.3?} um");
+        let short_um = short_um.into_iter().fold(0.0, f64::max);
         let long_um = circle_behind(LONG_LINE_MM, &machine, 1);
         eprintln!("{name}: circle behind a short line {short_um:.3} um, behind ten minutes {long_um:.3} um");
         assert!(long_um <= 1.5 * short_um + 0.05, "{name}: {short_um} um, then {long_um} um");

@@ -5,12 +5,14 @@
 //!
 //! ```text
 //! w = w0 b     d = d0 b     h = h0 b^(1/2)     b = 1 + (sigma / s)^4     sigma: RMS innovation, s: Settings::sure_mm
-//! q = (mu / m)^4 + (0.7 sigma / c)^4     mu: largest miss ahead, m: Settings::foreseen_mm
-//!                                        c: largest contour error over the horizon without any offset
+//! q = (mu / m)^4 + (0.7 sigma / c)^4 + (z / 0.6)^4     mu: largest miss ahead, m: Settings::foreseen_mm
+//!                                                      c: largest contour error over the horizon without any offset
+//!                                                      z: by how much the correction was overdone lately
 //! ```
 //!
 //! so that a resonance which the identifier cannot represent is corrected gently, and a machine that it does not know less, down
-//! to not at all ([`crate::horizon::missed`]); the fourth power leaves the small innovations of friction alone. A machine that
+//! to not at all ([`crate::horizon::missed`], [`Controller::judged`]); the fourth power leaves the small innovations of friction
+//! alone. A machine that
 //! lags far behind has longer knots, so that the plan reaches beyond the lag. The speed along the path stays as planned.
 
 use super::{Command, Controller, Measured, Schedule};
@@ -51,6 +53,8 @@ const STRANGE_SHARE: f64 = 0.3;
 const MOST_TANGENTIAL_WEIGHT: f64 = 0.1;
 /// A correction is worth its offset where the contour error without it is beyond this part of the innovations.
 const WORTHWHILE: f64 = 0.7;
+/// A correction that was overdone by this much lately counts as much as a contour error.
+const OVERDONE: f64 = 0.6;
 /// A prediction that misses by this, mm, is a leap: no machine does so within a feed period.
 const LEAP_MM: f64 = 0.3;
 
@@ -82,6 +86,7 @@ impl Settings {
             offset_weight: 0.0,
             tangential_weight: 0.006,
             last_weight: 0.05,
+            late_weight: 0.0,
             on_rapids: false,
             limits: horizon::Limits::NONE,
         },
@@ -112,6 +117,8 @@ pub struct RecedingHorizon<const N: usize, S = GaussNewton> {
     foreseen_mm2: [f64; 2],
     /// Largest contour error over the horizon without any offset, mm.
     open_error_mm: f64,
+    /// By how much the correction was overdone lately.
+    overdone: f64,
     /// What was commanded and seen at the last decision, mm.
     last: Option<Last<N>>,
 }
@@ -141,6 +148,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
             leapt: false,
             foreseen_mm2: [0.0; 2],
             open_error_mm: f64::INFINITY,
+            overdone: 0.0,
             last: None,
         }
     }
@@ -237,7 +245,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
         horizon.offset_weight += fourth_power(self.missed.largest_mm() / self.settings.foreseen_mm);
         // Where there is hardly more to gain than the predictions miss by, nothing is.
         let lost = WORTHWHILE * self.net.innovation_mm() / self.open_error_mm.max(f64::MIN_POSITIVE);
-        horizon.offset_weight += fourth_power(lost);
+        horizon.offset_weight += fourth_power(lost) + fourth_power(self.overdone.max(0.0) / OVERDONE);
         horizon
     }
 
@@ -274,6 +282,7 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
         self.leapt = false;
         self.foreseen_mm2 = [0.0; 2];
         self.open_error_mm = f64::INFINITY;
+        self.overdone = 0.0;
         self.last = None;
     }
 
@@ -287,6 +296,10 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
 
     fn moved_mm(&self) -> Option<[f64; N]> {
         Some(self.response_mm())
+    }
+
+    fn judged(&mut self, overdone: f64) {
+        self.overdone = overdone;
     }
 
     fn foreseen_mm2(&self) -> [f64; 2] {

@@ -149,6 +149,7 @@ mod tests {
         offset_weight: 0.7,
         tangential_weight: 0.1,
         last_weight: 0.1,
+        late_weight: 0.0,
         on_rapids: false,
         limits: Limits { acceleration_mm_s2: [1e6; 3], ..Limits::NONE },
     };

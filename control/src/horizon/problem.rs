@@ -9,7 +9,8 @@
 //!
 //! A knot has N rows: the errors of the tool across the path and along it, or on a rapid by how much the offset moves the tool in
 //! each axis. Where the plan is beyond a limit, one more row each asks for what it is beyond; so does one where the tool is
-//! further from its time than without the offset, about a point where the path turns back.
+//! further from its time than without the offset, about a point where the path turns back, and wherever the plan leaves much of
+//! the contour error. N rows more bring the offset back behind the last knot.
 
 use super::{Accelerations, Felt, MOST_AXES, MOST_KNOTS, MOST_UNKNOWNS, Model, Settings, Stretch};
 use crate::vector::{bounded, dot, norm, reject, scale, sub};
@@ -22,6 +23,10 @@ const RAPID_WEIGHT: f64 = 0.2;
 const TURN_WEIGHT: f64 = 0.2;
 /// What is left from one knot to the next of how near such a point is.
 const NEAR_TURN: f64 = 0.85;
+/// A rapid counts as a cut for this part of the lag: the tool still leaves the last corner of the cut.
+const LATELY: f64 = 0.3;
+/// e^(1/2): weight of where the offset would come to behind the horizon.
+pub const END_WEIGHT: f64 = 0.3;
 /// Weights of what is beyond a limit, so that a hundredth of a usual limit (0.5 mm, 400 mm/s, 4000 mm/s^2) counts as much as
 /// 50 um of contour error: for the deviation, mm per mm; for the speed, s; for the drives, s^2.
 const DEVIATION_WEIGHT: f64 = 10.0;
@@ -35,6 +40,8 @@ pub struct Problem<const N: usize> {
     pub knots: usize,
     /// Time of a knot, s.
     pub knot_s: f64,
+    /// Lag of the machine, s.
+    pub lag_s: f64,
     /// What counts at the end of each knot.
     pub ends: [End<N>; MOST_KNOTS],
     /// Derivative of the tool to the accelerations, s^2.
@@ -55,10 +62,11 @@ pub struct End<const N: usize> {
     pub directions: [[f64; N]; N],
     /// Planned feedrate there, mm/s.
     pub feed_mm_s: f64,
-    /// Whether the tool cuts there, or soon, or is to be on the path.
+    /// Whether the tool cuts there, or soon, or lately, or is to be on the path.
     pub counts: bool,
-    /// Whether the path turns back between this knot and one beside it: 0 up to a right angle, 1 where straight back; and
-    /// how near such a point is, by as much.
+    /// How sharply the path turns between this knot and one beside it: 0 not at all, 1/2 at a right angle, 1 straight back.
+    pub corner: f64,
+    /// Whether it turns back there: 0 up to a right angle, 1 where straight back; and how near such a point is, by as much.
     pub turn: f64,
     /// See above.
     pub near_turn: f64,
@@ -78,6 +86,7 @@ impl<const N: usize> End<N> {
         directions: [[0.0; N]; N],
         feed_mm_s: 0.0,
         counts: false,
+        corner: 0.0,
         turn: 0.0,
         near_turn: 0.0,
         offset_mm: [0.0; N],
@@ -105,15 +114,16 @@ impl<const N: usize> Problem<N> {
         settings: &Settings,
     ) -> Self {
         let knots = settings.knots();
+        let lag_s = bounded(model.lag_s(), 0.0, PREVIEW_KNOTS as f64 * window.servo_s());
         let mut problem = Self {
             knots,
             knot_s: periods as f64 * window.feed_period_s,
+            lag_s,
             ends: [End::NONE; MOST_KNOTS],
             felt: [[[0.0; N]; MOST_KNOTS]; MOST_KNOTS],
             moved_s2: [0.0; MOST_KNOTS],
             settings: *settings,
         };
-        let lag_s = bounded(model.lag_s(), 0.0, PREVIEW_KNOTS as f64 * window.servo_s());
         let mut model = model.clone();
         let mut stretch = Stretch::now(window, periods);
         for knot in 0..knots {
@@ -126,13 +136,15 @@ impl<const N: usize> Problem<N> {
             let own = window.at(end_s - lag_s);
             // What leads up to a cut decides where the tool is when it begins.
             let soon = || window.at(end_s - 0.5 * lag_s).cutting || window.at(end_s).cutting;
+            let lately = || window.at(end_s - (1.0 + LATELY) * lag_s).cutting;
             let directions = directions(own.tangent);
             let off_mm = sub(tool_mm, own.position_mm);
             problem.ends[knot] = End {
                 off_mm: directions.map(|direction| dot(direction, off_mm)),
                 directions,
                 feed_mm_s: own.feed_mm_s,
-                counts: own.cutting || settings.on_rapids || soon(),
+                counts: own.cutting || settings.on_rapids || soon() || lately(),
+                corner: 0.0,
                 turn: 0.0,
                 near_turn: 0.0,
                 offset_mm: stretch.offset_mm[1],
@@ -153,6 +165,9 @@ impl<const N: usize> Problem<N> {
         let ends = &mut self.ends[..self.knots];
         for knot in 1..ends.len() {
             let turn = -dot(ends[knot - 1].directions[N - 1], ends[knot].directions[N - 1]);
+            let corner = 0.5 * (1.0 + turn);
+            ends[knot - 1].corner = ends[knot - 1].corner.max(corner);
+            ends[knot].corner = corner;
             ends[knot - 1].turn = ends[knot - 1].turn.max(turn);
             ends[knot].turn = turn.max(0.0);
         }
@@ -174,14 +189,15 @@ impl<const N: usize> Problem<N> {
         sub(end.tool_mm, end.moved_mm)
     }
 
-    /// How far the tool would be without the offset, each in the worst of the knots that count: from its own point, and from
-    /// the path, mm.
+    /// How far the tool would be without the offset, each in the worst of the knots that count: from its own point, along the
+    /// path only as far as it turns back near it, and from the path, mm.
     pub fn open_errors_mm(&self) -> [f64; 2] {
         let mut most = [0.0_f64; 2];
         for end in self.ends[..self.knots].iter().filter(|end| end.counts) {
             let open_mm: [f64; N] = core::array::from_fn(|d| end.open_off_mm(d));
             let across: f64 = open_mm[..N - 1].iter().map(|off_mm| off_mm * off_mm).sum();
-            most = [most[0].max(dot(open_mm, open_mm)), most[1].max(across)];
+            let along_mm = end.near_turn * open_mm[N - 1];
+            most = [most[0].max(across + along_mm * along_mm), most[1].max(across)];
         }
         most.map(libm::sqrt)
     }
@@ -212,7 +228,8 @@ impl<const N: usize> Problem<N> {
             return 1.0;
         }
         let end = &self.ends[knot];
-        self.settings.weight_along(knot, end.feed_mm_s).max(TURN_WEIGHT * end.turn)
+        let held = (TURN_WEIGHT * end.turn).max(self.settings.late_weight * end.corner);
+        self.settings.weight_along(knot, end.feed_mm_s).max(held)
     }
 
     /// Hands every row and its error to `take`, with the knot that it belongs to: the number of its entries is
@@ -232,15 +249,33 @@ impl<const N: usize> Problem<N> {
                     take(knot, dot(direction, end.moved_mm), &|row| self.tool_row(knot, direction, row));
                 }
             }
-            if end.counts && end.near_turn > 0.0 {
+            let weight = end.near_turn.max(self.settings.late_weight);
+            if end.counts && weight > 0.0 {
                 let (late_mm, open_mm) = (end.off_mm[N - 1], end.open_off_mm(N - 1).abs());
                 let beyond_mm = late_mm - bounded(late_mm, -open_mm, open_mm);
                 if beyond_mm != 0.0 {
-                    let direction = scale(end.near_turn, end.directions[N - 1]);
-                    take(knot, end.near_turn * beyond_mm, &|row| self.tool_row(knot, direction, row));
+                    let direction = scale(weight, end.directions[N - 1]);
+                    take(knot, weight * beyond_mm, &|row| self.tool_row(knot, direction, row));
                 }
             }
             self.limit_rows(knot, &mut take);
+        }
+        self.end_rows(&mut take);
+    }
+
+    /// The rows of where the offset would come to behind the last knot.
+    #[inline]
+    fn end_rows(&self, take: &mut impl FnMut(usize, f64, &dyn Fn(&mut Row))) {
+        let knot = self.knots - 1;
+        let end = &self.ends[knot];
+        for axis in 0..N {
+            let error = END_WEIGHT * (end.offset_mm[axis] + self.lag_s * end.offset_mm_s[axis]);
+            take(knot, error, &|row| {
+                for (entries, moved_s2) in row.chunks_exact_mut(N).zip(&self.moved_s2).take(knot + 1) {
+                    entries.fill(0.0);
+                    entries[axis] = END_WEIGHT * (moved_s2 + self.lag_s * self.knot_s);
+                }
+            });
         }
     }
 

@@ -22,7 +22,7 @@ use crate::least_squares::{LeastSquares, inverse};
 
 /// The other model is believed where its mean square innovation is below this part of the present one's: no change of mind
 /// over noise.
-const CLEARLY_BETTER: f64 = 0.4;
+const CLEARLY_BETTER: f64 = 0.5;
 
 /// Unknowns of an axis: its part of the linear connection, and the factor on its hidden nodes less 1.
 pub const UNKNOWNS: usize = INPUTS + 1;

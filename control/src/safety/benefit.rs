@@ -7,6 +7,16 @@
 //! g is the controller's own, from its model; of one without a model, the offset behind a lag of first order with the time by
 //! which the tool is behind. Both errors are taken as mean squares and as largest values over the last [`MEMORY_S`]. The model
 //! may be wrong by some per cent, so that g is no better than that: harm counts where it is beyond doubt.
+//!
+//! Long before it is harm, a correction may be more than it should. Of a part alpha of it eps_open + alpha c would be left, with
+//! c = eps - eps_open what it changed, so that
+//!
+//! ```text
+//! overdone = 2 <eps, c> / <c, c>
+//! ```
+//!
+//! over the last [`OVERDONE_S`] is 0 where neither more nor less would have been better, 1 where nothing would have been as
+//! good, and negative where more would have been better.
 
 use crate::contour_error::{ContourError, locate};
 use crate::vector::{add_scaled, dot, norm, scale, sub};
@@ -20,6 +30,10 @@ const LEAST_MM2: f64 = 2.5e-5;
 /// Harm in a single error: beyond this many times the largest without, and this much, mm.
 const CERTAIN_PEAK: f64 = 1.5;
 const LEAST_PEAK_MM: f64 = 0.03;
+/// Time over which it is found that a correction is overdone, s.
+const OVERDONE_S: f64 = 0.1;
+/// Mean square of what a correction changes from which on that says something, mm^2 (3 um): below, what the model misses looks like it.
+const CHANGED_MM2: f64 = 1e-5;
 /// Part by which g may be wrong.
 const DOUBT: f64 = 0.1;
 /// As those, for a g that is only a guess.
@@ -34,11 +48,25 @@ pub(super) struct Benefit<const N: usize> {
     square_mm2: f64,
     open_square_mm2: f64,
     open_peak_mm: f64,
+    /// Means of 2 <eps, c> and <c, c>, mm^2.
+    overdone_mm2: [f64; 2],
 }
 
 impl<const N: usize> Benefit<N> {
-    pub(super) const NONE: Self =
-        Self { filtered_mm: [0.0; N], last_mm: [0.0; N], square_mm2: 0.0, open_square_mm2: 0.0, open_peak_mm: 0.0 };
+    pub(super) const NONE: Self = Self {
+        filtered_mm: [0.0; N],
+        last_mm: [0.0; N],
+        square_mm2: 0.0,
+        open_square_mm2: 0.0,
+        open_peak_mm: 0.0,
+        overdone_mm2: [0.0; 2],
+    };
+
+    /// By how much the correction was overdone lately: see above.
+    pub(super) fn overdone(&self) -> f64 {
+        let [overdone_mm2, changed_mm2] = self.overdone_mm2;
+        overdone_mm2 / (changed_mm2 + CHANGED_MM2)
+    }
 
     /// Takes in the error at a decision; `moved_mm` is g, where the controller knows it.
     pub(super) fn is_harm(
@@ -55,6 +83,10 @@ impl<const N: usize> Benefit<N> {
         let part = (window.feed_period_s / MEMORY_S).min(1.0);
         // On a rapid nothing is cut, and nothing is harm.
         let vector_mm = if window.knot(contour.index).cutting { contour.vector_mm } else { [0.0; N] };
+        let changed_mm = sub(vector_mm, open.vector_mm);
+        let quick = (window.feed_period_s / OVERDONE_S).min(1.0);
+        let lately = [2.0 * dot(vector_mm, changed_mm), dot(changed_mm, changed_mm)];
+        self.overdone_mm2 = add_scaled(self.overdone_mm2, quick, sub(lately, self.overdone_mm2));
         let square = dot(vector_mm, vector_mm);
         let open_peak_mm = norm(open.vector_mm) + DOUBT * norm(g_mm);
         let open_square = open_peak_mm * open_peak_mm;

@@ -4,6 +4,8 @@ use crate::vector::{norm, sub};
 
 /// A position that has not changed at all for so long while the command moved is frozen, s.
 const FROZEN_S: f64 = 0.012;
+/// The command moves where it has moved by this since the position has changed last, mm: what comes before breaks loose no tool.
+const STIRRED_MM: f64 = 0.02;
 /// So far has the command moved by then, mm: the loop of a machine that follows at all has broken its tool loose, and moved it
 /// by more than an encoder step of a few micrometres.
 const FROZEN_MM: f64 = 0.12;
@@ -44,8 +46,8 @@ impl<const N: usize> Feedback<N> {
         if there && moved_mm > 0.0 {
             (self.still_s, self.commanded_mm) = (0.0, 0.0);
         } else {
-            self.still_s += servo_s;
             self.commanded_mm += norm(sub(command_mm, before_mm));
+            self.still_s += if self.commanded_mm > STIRRED_MM { servo_s } else { 0.0 };
         }
         self.lost |= !there || (self.still_s > FROZEN_S && self.commanded_mm > FROZEN_MM);
     }
@@ -84,6 +86,12 @@ mod tests {
         assert_eq!(seen_after(|_, position_mm| position_mm + 1.0), Some(0));
         let frozen = seen_after(|_, _| 0.8).expect("a frozen position is seen");
         assert!(frozen <= 17, "{frozen}");
+        // A machine that lags far behind starts: its first encoder step is 16 ms after the command, which is 0.2 mm away by then.
+        let mut feedback = Feedback::<1>::NONE;
+        for n in 0..16 {
+            feedback.take_in([0.0], [8e-4 * f64::from(n * n)], 0.001, 400.0);
+            assert!(!feedback.take_lost(), "{n}");
+        }
         // Steps of 1 um.
         assert_eq!(seen_after(|_, position_mm| libm::round(position_mm * 1e3) * 1e-3), None);
     }
