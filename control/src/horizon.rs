@@ -270,7 +270,7 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
     pub fn shift(&mut self, periods: usize, settings: &Settings) {
         let knots = settings.knots();
         let planned = self.accelerations_mm_s2;
-        let last = self.periods;
+        let last = self.periods.max(1);
         self.periods = periods.clamp(1, MOST_PERIODS);
         for (knot, acceleration) in self.accelerations_mm_s2.iter_mut().enumerate() {
             // The mean of what was planned for its feed periods; beyond the horizon nothing was.

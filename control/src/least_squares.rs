@@ -85,6 +85,7 @@ pub fn add_products(sums: &mut [f64], factors: [f64; BLOCK], rows: [&[f64]; BLOC
 pub fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], n: usize) {
     // A block of columns, then what it takes off all rows below at once. b goes along as one more row, and is solved for
     // half by it.
+    let n = n.min(P);
     let mut columns = [[0.0; P]; BLOCK];
     let mut first = 0;
     while first < n {
@@ -95,20 +96,20 @@ pub fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], n: usiz
             let rest = |entries: &[f64; P]| (first..k).fold(entries[k], |sum, j| sum - entries[j] * row[j]);
             // The diagonal holds the reciprocal: one division a column.
             let pivot = 1.0 / libm::sqrt(rest(row));
-            for below in &mut below[..n - k - 1] {
+            for below in below.iter_mut().take(n - k - 1) {
                 below[k] = rest(below) * pivot;
             }
             b[k] = rest(b) * pivot;
             row[k] = pivot;
         }
         for r in end..n {
-            for (column, entry) in columns.iter_mut().zip(&a[r][first..end]) {
+            for (column, entry) in columns.iter_mut().zip(a[r].iter().take(end).skip(first)) {
                 column[r] = *entry;
             }
         }
         // Only the last block is not whole, and there is nothing below it.
         let take_off = |row: &mut [f64; P], last: usize| {
-            let factors = core::array::from_fn(|i| -row[first + i]);
+            let factors = core::array::from_fn(|i| row.get(first + i).map_or(0.0, |entry| -entry));
             add_products(&mut row[end..last], factors, columns.each_ref().map(|column| &column[end..last]));
         };
         for r in end..n {
@@ -125,6 +126,7 @@ pub fn cholesky<const P: usize>(a: &mut [[f64; P]; P], b: &mut [f64; P], n: usiz
 /// Solves A x = b in place once more, with what [`cholesky`] has left in `a`.
 #[inline]
 pub fn substitute<const P: usize>(a: &[[f64; P]; P], b: &mut [f64; P], n: usize) {
+    let n = n.min(P);
     for k in 0..n {
         let sum = a[k][..k].iter().zip(&*b).fold(b[k], |sum, (factor, known)| sum - factor * known);
         b[k] = sum * a[k][k];

@@ -122,12 +122,13 @@ impl<const N: usize> Register<N> {
     /// shifted.
     #[inline]
     pub fn push(&mut self, knot: Knot<N>) -> bool {
-        let moved = self.len == 0 || norm(sub(knot.position_mm, self.knots[self.newest].position_mm)) > SAME_PLACE_MM;
+        let moved = self.len == 0
+            || norm(sub(knot.position_mm, self.knots[self.newest % REGISTER_KNOTS].position_mm)) > SAME_PLACE_MM;
         if moved {
             self.newest = (self.newest + 1) % REGISTER_KNOTS;
             self.len = (self.len + 1).min(REGISTER_KNOTS);
         }
-        self.knots[self.newest] = knot;
+        self.knots[self.newest % REGISTER_KNOTS] = knot;
         moved
     }
 

@@ -357,17 +357,17 @@ impl<'a, const N: usize> Identified<'a, N> {
     #[inline]
     fn advance_slopes(&mut self, slopes: &Inputs<N>, stretch: &Stretch<N>, felt: &mut Felt<N>) {
         let [now, before] = &mut self.slopes;
-        for knot in 0..=stretch.knot() {
+        let knots = now.iter_mut().zip(before).zip(felt).enumerate();
+        for (knot, ((now, before), felt)) in knots.take(stretch.knot() + 1) {
             let moved_s2 = stretch.moved_s2(knot, 1.0);
             // Of F(k), F(k-1) and F(k-2).
             let gained = [0, 1, 2].map(|back| stretch.gained_s(knot, back) / FEED_SCALE_MM_S);
             for axis in 0..N {
                 let [f0, f1, f2, e0, e1] = slopes[axis];
-                let grown_mm =
-                    f0 * gained[0] + f1 * gained[1] + f2 * gained[2] + e0 * now[knot][axis] + e1 * before[knot][axis];
-                before[knot][axis] = now[knot][axis];
-                now[knot][axis] += grown_mm / FOLLOWING_SCALE_MM;
-                felt[knot][axis] = moved_s2 - FOLLOWING_SCALE_MM * now[knot][axis];
+                let grown_mm = f0 * gained[0] + f1 * gained[1] + f2 * gained[2] + e0 * now[axis] + e1 * before[axis];
+                before[axis] = now[axis];
+                now[axis] += grown_mm / FOLLOWING_SCALE_MM;
+                felt[axis] = moved_s2 - FOLLOWING_SCALE_MM * now[axis];
             }
         }
     }

@@ -27,12 +27,13 @@ impl<const N: usize> Solver<N> for GaussNewton {
         self.add_offsets(problem);
         let limits = &problem.settings.limits.acceleration_mm_s2;
         let (mut least, mut most) = ([0.0; MOST_UNKNOWNS], [0.0; MOST_UNKNOWNS]);
-        for (i, now) in accelerations_mm_s2.as_flattened()[..unknowns].iter().enumerate() {
-            (least[i], most[i]) = (-limits[i % N] - now, limits[i % N] - now);
+        let bounds = least.iter_mut().zip(&mut most).enumerate().take(unknowns);
+        for ((i, (least, most)), now) in bounds.zip(accelerations_mm_s2.as_flattened()) {
+            (*least, *most) = (-limits[i % N] - now, limits[i % N] - now);
         }
         let change = self.quadratic.minimum(&least, &most);
-        for (i, now) in accelerations_mm_s2.as_flattened_mut()[..unknowns].iter_mut().enumerate() {
-            *now += change[i];
+        for (now, change) in accelerations_mm_s2.as_flattened_mut().iter_mut().zip(change).take(unknowns) {
+            *now += change;
         }
     }
 }
@@ -45,8 +46,10 @@ impl GaussNewton {
         let (mut held, mut entries) = (0, 0);
         problem.rows(|knot, error, fill| {
             // Behind its entries a row of an earlier block has none either, and is zero: rows come in the order of the knots.
-            fill(&mut rows[held]);
-            errors[held] = error;
+            // Of a block that is full nothing is held.
+            let at = held % BLOCK;
+            fill(&mut rows[at]);
+            errors[at] = error;
             entries = (knot + 1) * N;
             held += 1;
             if held == BLOCK {
@@ -66,14 +69,15 @@ impl GaussNewton {
     /// q: an acceleration in knot r moves the offset at the end of knot i by m_(i-r), so that the products of two knots differ
     /// from those of the next two by one term.
     fn add_offsets<const N: usize>(&mut self, problem: &Problem<N>) {
-        let (knots, weight) = (problem.knots, problem.settings.offset_weight);
+        let (knots, weight) = (problem.knots.min(MOST_KNOTS), problem.settings.offset_weight);
         if weight <= 0.0 {
             return;
         }
-        let moved = |since: usize| problem.moved_s2[knots - 1 - since];
+        let moved = |since: usize| problem.moved_s2.get(knots - 1 - since).copied().unwrap_or(0.0);
         for r in 0..knots {
             for axis in 0..N {
-                let slope: f64 = (r..knots).map(|i| moved(i - r) * problem.ends[i].offset_mm[axis]).sum();
+                let ends = problem.ends.iter().take(knots).enumerate().skip(r);
+                let slope: f64 = ends.map(|(i, end)| moved(i - r) * end.offset_mm[axis]).sum();
                 self.quadratic.add_gradient(r * N + axis, weight * slope);
             }
         }
@@ -90,7 +94,7 @@ impl GaussNewton {
 
     /// W: the speed v_j of the offset after knot j is the same sum of accelerations for all m <= j.
     fn add_speeds<const N: usize>(&mut self, problem: &Problem<N>, accelerations_mm_s2: &Accelerations<N>) {
-        let (knots, knot_s) = (problem.knots, problem.knot_s);
+        let (knots, knot_s) = (problem.knots.min(MOST_KNOTS), problem.knot_s);
         let change = problem.settings.change_weight * knot_s * knot_s;
         let rate = problem.settings.rate_weight * knot_s;
         let mut sum_mm_s = [[0.0; N]; MOST_KNOTS];

@@ -65,13 +65,13 @@ impl Quadratic {
         for (r, row) in self.curvature.iter_mut().enumerate().take(self.number) {
             row[..=r].fill(0.0);
         }
-        self.gradient[..self.number].fill(0.0);
+        self.gradient[..number.min(MOST_UNKNOWNS)].fill(0.0);
     }
 
     /// Adds `1/2 (error + row x)^2` for a block of rows, whose first entries count.
     #[inline]
     pub fn add_rows(&mut self, rows: &[Vector; BLOCK], errors: &[f64; BLOCK], entries: usize) {
-        let entries = entries.min(self.number);
+        let entries = entries.min(self.number());
         for (r, sums) in self.curvature.iter_mut().enumerate().take(entries) {
             let factors = rows.each_ref().map(|row| row[r]);
             add_products(&mut sums[..=r], factors, rows.each_ref().map(|row| &row[..=r]));
@@ -82,28 +82,39 @@ impl Quadratic {
     /// Adds to an entry of H in its lower half.
     #[inline]
     pub fn add(&mut self, row: usize, column: usize, curvature: f64) {
-        self.curvature[row][column] += curvature;
+        if let Some(entry) = self.curvature.get_mut(row).and_then(|row| row.get_mut(column)) {
+            *entry += curvature;
+        }
     }
 
     /// Adds to an entry of g.
     #[inline]
     pub fn add_gradient(&mut self, row: usize, slope: f64) {
-        self.gradient[row] += slope;
+        if let Some(entry) = self.gradient.get_mut(row) {
+            *entry += slope;
+        }
+    }
+
+    /// Unknowns: no more than there is room for.
+    #[inline]
+    fn number(&self) -> usize {
+        self.number.min(MOST_UNKNOWNS)
     }
 
     /// The minimum within the bounds, between which zero is.
     pub fn minimum(&mut self, least: &Vector, most: &Vector) -> Vector {
+        let number = self.number();
         let mut x = self.gradient.map(|slope| -slope);
-        for (factors, row) in self.factors.iter_mut().zip(&self.curvature).take(self.number) {
+        for (factors, row) in self.factors.iter_mut().zip(&self.curvature).take(number) {
             factors.copy_from_slice(row);
         }
-        cholesky(&mut self.factors, &mut x, self.number);
-        if (0..self.number).all(|i| x[i] >= least[i] && x[i] <= most[i]) {
+        cholesky(&mut self.factors, &mut x, number);
+        if (0..number).all(|i| x[i] >= least[i] && x[i] <= most[i]) {
             return x;
         }
         let mut point = self.first_point(least, most);
         for _ in 0..MOST_ITERATIONS {
-            let gap = point.gap(self.number);
+            let gap = point.gap(number);
             if gap.is_nan() || gap < NEAR_ENOUGH_MM2 {
                 break;
             }
@@ -116,15 +127,15 @@ impl Quadratic {
     fn first_point(&self, least: &Vector, most: &Vector) -> Point {
         let mut point =
             Point { x: [0.0; MOST_UNKNOWNS], room: [[1.0; MOST_UNKNOWNS]; 2], multipliers: [[1.0; MOST_UNKNOWNS]; 2] };
-        for i in 0..self.number {
+        for i in 0..self.number() {
             let within = WELL_WITHIN * (most[i] - least[i]);
             point.x[i] = bounded(0.0, least[i] + within, most[i] - within);
             point.room[0][i] = point.x[i] - least[i];
             point.room[1][i] = most[i] - point.x[i];
         }
         let slopes = self.slopes(&point.x);
-        let mean = slopes[..self.number].iter().map(|slope| slope.abs()).sum::<f64>() / self.number.max(1) as f64;
-        for i in 0..self.number {
+        let mean = slopes[..self.number()].iter().map(|slope| slope.abs()).sum::<f64>() / self.number().max(1) as f64;
+        for i in 0..self.number() {
             point.multipliers[0][i] = slopes[i].max(0.0) + 0.1 * mean;
             point.multipliers[1][i] = (-slopes[i]).max(0.0) + 0.1 * mean;
         }
@@ -132,7 +143,7 @@ impl Quadratic {
     }
 
     fn iterate(&mut self, point: &mut Point, gap: f64) {
-        let number = self.number;
+        let number = self.number();
         let [z, y] = point.multipliers;
         let [s, t] = point.room;
         for (r, (factors, row)) in self.factors.iter_mut().zip(&self.curvature).enumerate().take(number) {
@@ -163,7 +174,7 @@ impl Quadratic {
     /// H x + g.
     fn slopes(&self, x: &Vector) -> Vector {
         let mut slopes = self.gradient;
-        for r in 0..self.number {
+        for r in 0..self.number() {
             let row = &self.curvature[r];
             let mut sum = 0.0;
             for c in 0..r {
@@ -181,7 +192,7 @@ impl Point {
     fn gap(&self, number: usize) -> f64 {
         let mut sum = 0.0;
         for side in 0..2 {
-            for i in 0..number {
+            for i in 0..number.min(MOST_UNKNOWNS) {
                 sum += self.room[side][i] * self.multipliers[side][i];
             }
         }
@@ -193,7 +204,7 @@ impl Point {
         let mut shrinks = 1.0_f64;
         for side in 0..2 {
             let sign = if side == 0 { -1.0 } else { 1.0 };
-            for i in 0..number {
+            for i in 0..number.min(MOST_UNKNOWNS) {
                 shrinks = shrinks.max(sign * step[i] / self.room[side][i]);
                 shrinks = shrinks.max(-rates[side][i] / self.multipliers[side][i]);
             }

@@ -162,7 +162,8 @@ impl<const N: usize> Problem<N> {
 
     /// Where the path turns back, no part of it is nearer than its tip, and a tool that is late there leaves it uncut.
     fn find_turns(&mut self) {
-        let ends = &mut self.ends[..self.knots];
+        let knots = self.last_knot() + 1;
+        let ends = &mut self.ends[..knots];
         for knot in 1..ends.len() {
             let turn = -dot(ends[knot - 1].directions[N - 1], ends[knot].directions[N - 1]);
             let corner = 0.5 * (1.0 + turn);
@@ -185,7 +186,7 @@ impl<const N: usize> Problem<N> {
 
     /// Where the tool would be at the end of a knot without the offset, mm.
     pub fn open_mm(&self, knot: usize) -> [f64; N] {
-        let end = &self.ends[knot.min(self.knots - 1)];
+        let end = &self.ends[knot.min(self.last_knot())];
         sub(end.tool_mm, end.moved_mm)
     }
 
@@ -193,7 +194,7 @@ impl<const N: usize> Problem<N> {
     /// path only as far as it turns back near it, and from the path, mm.
     pub fn open_errors_mm(&self) -> [f64; 2] {
         let mut most = [0.0_f64; 2];
-        for end in self.ends[..self.knots].iter().filter(|end| end.counts) {
+        for end in self.ends.iter().take(self.knots).filter(|end| end.counts) {
             let open_mm: [f64; N] = core::array::from_fn(|d| end.open_off_mm(d));
             let across: f64 = open_mm[..N - 1].iter().map(|off_mm| off_mm * off_mm).sum();
             let along_mm = end.near_turn * open_mm[N - 1];
@@ -206,7 +207,7 @@ impl<const N: usize> Problem<N> {
     /// of the horizon: the second is still to be planned.
     pub fn contour_mm2(&self) -> [f64; 2] {
         let (mut sums, mut number) = ([0.0; 2], 0.0);
-        for end in self.ends[..self.knots.div_ceil(2)].iter().filter(|end| end.counts) {
+        for end in self.ends.iter().take(self.knots.div_ceil(2)).filter(|end| end.counts) {
             for d in 0..N - 1 {
                 let (off_mm, open_mm) = (end.off_mm[d], end.open_off_mm(d));
                 sums = [sums[0] + off_mm * off_mm, sums[1] + open_mm * open_mm];
@@ -216,9 +217,15 @@ impl<const N: usize> Problem<N> {
         if number > 0.0 { sums.map(|sum| sum / number) } else { sums }
     }
 
+    /// The last knot of the horizon.
+    #[inline]
+    fn last_knot(&self) -> usize {
+        self.knots.clamp(1, MOST_KNOTS) - 1
+    }
+
     /// Unknowns.
     pub fn unknowns(&self) -> usize {
-        self.knots * N
+        (self.last_knot() + 1) * N
     }
 
     /// Weight of an error at the end of a knot, where it counts: 1 across the path, h along it, which is the last direction.
@@ -227,7 +234,7 @@ impl<const N: usize> Problem<N> {
         if direction + 1 < N {
             return 1.0;
         }
-        let end = &self.ends[knot];
+        let end = &self.ends[knot.min(MOST_KNOTS - 1)];
         let held = (TURN_WEIGHT * end.turn).max(self.settings.late_weight * end.corner);
         self.settings.weight_along(knot, end.feed_mm_s).max(held)
     }
@@ -236,8 +243,7 @@ impl<const N: usize> Problem<N> {
     /// `(knot + 1) * N`.
     #[inline]
     pub fn rows(&self, mut take: impl FnMut(usize, f64, &dyn Fn(&mut Row))) {
-        for knot in 0..self.knots {
-            let end = &self.ends[knot];
+        for (knot, end) in self.ends.iter().enumerate().take(self.knots) {
             for d in 0..N {
                 if end.counts {
                     let weight = self.error_weight(knot, d);
@@ -258,7 +264,7 @@ impl<const N: usize> Problem<N> {
                     take(knot, weight * beyond_mm, &|row| self.tool_row(knot, direction, row));
                 }
             }
-            self.limit_rows(knot, &mut take);
+            self.limit_rows(knot, end, &mut take);
         }
         self.end_rows(&mut take);
     }
@@ -266,14 +272,13 @@ impl<const N: usize> Problem<N> {
     /// The rows of where the offset would come to behind the last knot.
     #[inline]
     fn end_rows(&self, take: &mut impl FnMut(usize, f64, &dyn Fn(&mut Row))) {
-        let knot = self.knots - 1;
+        let knot = self.last_knot();
         let end = &self.ends[knot];
         for axis in 0..N {
             let error = END_WEIGHT * (end.offset_mm[axis] + self.lag_s * end.offset_mm_s[axis]);
             take(knot, error, &|row| {
-                for (entries, moved_s2) in row.chunks_exact_mut(N).zip(&self.moved_s2).take(knot + 1) {
-                    entries.fill(0.0);
-                    entries[axis] = END_WEIGHT * (moved_s2 + self.lag_s * self.knot_s);
+                for (entries, moved_s2) in row.as_chunks_mut::<N>().0.iter_mut().zip(&self.moved_s2).take(knot + 1) {
+                    *entries = only(axis, END_WEIGHT * (moved_s2 + self.lag_s * self.knot_s));
                 }
             });
         }
@@ -281,9 +286,8 @@ impl<const N: usize> Problem<N> {
 
     /// The rows of the limits that the plan is beyond.
     #[inline]
-    fn limit_rows(&self, knot: usize, take: &mut impl FnMut(usize, f64, &dyn Fn(&mut Row))) {
+    fn limit_rows(&self, knot: usize, end: &End<N>, take: &mut impl FnMut(usize, f64, &dyn Fn(&mut Row))) {
         let limits = &self.settings.limits;
-        let end = &self.ends[knot];
         let length_mm = norm(end.offset_mm);
         if length_mm > limits.deviation_mm {
             let outward = scale(DEVIATION_WEIGHT / length_mm, end.offset_mm);
@@ -309,12 +313,14 @@ impl<const N: usize> Problem<N> {
     #[inline]
     fn tool_mm_s2(&self, knot: usize, axis: usize) -> Option<f64> {
         let [now, before, first] = [0, 1, 2].map(|back: usize| knot.checked_sub(back));
-        let at = |knot: Option<usize>| knot.map(|knot| self.ends[knot].tool_mm[axis]);
+        let at = |knot: Option<usize>| self.ends.get(knot?)?.tool_mm.get(axis).copied();
         Some((at(now)? - 2.0 * at(before)? + at(first)?) / (self.knot_s * self.knot_s))
     }
 
     fn tool_row(&self, knot: usize, direction: [f64; N], row: &mut Row) {
-        for (entries, felt) in row.chunks_exact_mut(N).zip(&self.felt[knot]).take(knot + 1) {
+        for (entries, felt) in
+            row.as_chunks_mut::<N>().0.iter_mut().zip(&self.felt[knot.min(MOST_KNOTS - 1)]).take(knot + 1)
+        {
             for axis in 0..N {
                 entries[axis] = direction[axis] * felt[axis];
             }
@@ -322,8 +328,8 @@ impl<const N: usize> Problem<N> {
     }
 
     fn offset_row(&self, knot: usize, direction: [f64; N], row: &mut Row) {
-        let shift = self.knots - 1 - knot;
-        for (entries, moved_s2) in row.chunks_exact_mut(N).zip(&self.moved_s2[shift..]).take(knot + 1) {
+        let shift = self.last_knot().saturating_sub(knot);
+        for (entries, moved_s2) in row.as_chunks_mut::<N>().0.iter_mut().zip(&self.moved_s2[shift..]).take(knot + 1) {
             for axis in 0..N {
                 entries[axis] = direction[axis] * moved_s2;
             }
@@ -331,20 +337,25 @@ impl<const N: usize> Problem<N> {
     }
 
     fn speed_row(&self, knot: usize, axis: usize, row: &mut Row) {
-        for entries in row.chunks_exact_mut(N).take(knot + 1) {
-            entries.fill(0.0);
-            entries[axis] = SPEED_WEIGHT_S * self.knot_s;
+        for entries in row.as_chunks_mut::<N>().0.iter_mut().take(knot + 1) {
+            *entries = only(axis, SPEED_WEIGHT_S * self.knot_s);
         }
     }
 
     fn drive_row(&self, knot: usize, axis: usize, row: &mut Row) {
         let gain = DRIVE_WEIGHT_S2 / (self.knot_s * self.knot_s);
-        for (j, entries) in row.chunks_exact_mut(N).enumerate().take(knot + 1) {
-            entries.fill(0.0);
-            let [now, before, first] = [0, 1, 2].map(|back| self.felt[knot.saturating_sub(back)][j][axis]);
-            entries[axis] = gain * (now - 2.0 * before + first);
+        for (j, entries) in row.as_chunks_mut::<N>().0.iter_mut().enumerate().take(knot + 1) {
+            let felt = |back: usize| self.felt.get(knot.saturating_sub(back)).and_then(|felt| felt.get(j)?.get(axis));
+            let [now, before, first] = [0, 1, 2].map(|back| felt(back).copied().unwrap_or(0.0));
+            *entries = only(axis, gain * (now - 2.0 * before + first));
         }
     }
+}
+
+/// An axis alone.
+#[inline]
+fn only<const N: usize>(axis: usize, value: f64) -> [f64; N] {
+    core::array::from_fn(|i| if i == axis { value } else { 0.0 })
 }
 
 /// The normals of a tangent, and last itself: in the plane the left one; in space the one nearest to an axis, and the one

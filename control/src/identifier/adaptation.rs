@@ -77,7 +77,8 @@ pub struct Adaptation<const N: usize> {
     square_mm2: [f64; 2],
     /// As these, of the model that was believed, over a longer time.
     long_square_mm2: f64,
-    believed: usize,
+    /// Whether the adapted model is believed.
+    adapted: bool,
     settings: Settings,
 }
 
@@ -112,7 +113,7 @@ impl<const N: usize> Adaptation<N> {
             axes: [Axis::new(&settings); N],
             square_mm2: [0.0; 2],
             long_square_mm2: 0.0,
-            believed: 0,
+            adapted: false,
             settings,
         }
     }
@@ -126,13 +127,13 @@ impl<const N: usize> Adaptation<N> {
     /// What it is expected to miss.
     #[inline]
     pub fn residual(&self) -> [Foresight; N] {
-        core::array::from_fn(|axis| self.axes[axis].residuals[self.believed].foresight())
+        core::array::from_fn(|axis| self.axes[axis].residuals[usize::from(self.adapted)].foresight())
     }
 
     /// RMS of the innovations lately, mm: how good the predictions are.
     #[inline]
     pub fn innovation_mm(&self) -> f64 {
-        libm::sqrt(self.square_mm2[self.believed].max(self.long_square_mm2))
+        libm::sqrt(self.square_mm2[usize::from(self.adapted)].max(self.long_square_mm2))
     }
 
     /// Back to what was trained.
@@ -183,19 +184,20 @@ impl<const N: usize> Adaptation<N> {
         for model in 0..2 {
             self.square_mm2[model] += judging * (squares[model] - self.square_mm2[model]);
         }
-        let surprise = squares[self.believed];
+        let surprise = squares[usize::from(self.adapted)];
         self.long_square_mm2 += caution * (surprise - self.long_square_mm2);
         self.long_square_mm2 = self.long_square_mm2.max(fright * surprise);
-        let other = 1 - self.believed;
-        if self.square_mm2[other] < CLEARLY_BETTER * self.square_mm2[self.believed] {
-            self.believed = other;
+        let [believed_mm2, other_mm2] =
+            [self.adapted, !self.adapted].map(|adapted| self.square_mm2[usize::from(adapted)]);
+        if other_mm2 < CLEARLY_BETTER * believed_mm2 {
+            self.adapted = !self.adapted;
         }
     }
 
     /// The believed model becomes the present.
     fn take_over(&mut self) {
         for axis in 0..N {
-            let change = if self.believed == 1 { self.axes[axis].change } else { [0.0; UNKNOWNS] };
+            let change = if self.adapted { self.axes[axis].change } else { [0.0; UNKNOWNS] };
             for input in 0..INPUTS {
                 self.now.linear[axis][axis][input] = self.trained.linear[axis][axis][input] + change[input];
             }
