@@ -42,7 +42,7 @@ pub mod gauss_newton;
 pub mod interior_point;
 pub mod missed;
 pub mod problem;
-mod restraint;
+pub mod restraint;
 
 use crate::vector::{add_scaled, bounded, fourth_power, scale, sub};
 use crate::window::Window;
