@@ -127,9 +127,7 @@ fn descend_in<const N: usize, const H: usize>(
     }
     for _ in 0..settings.steps {
         let gradients = gradients::<N, H>(net, inputs, feeds, settings);
-        for (knot, feed) in feeds.iter_mut().enumerate().take(H) {
-            let direction = directions[knot];
-            let gradient = gradients[knot];
+        for ((feed, direction), gradient) in feeds.iter_mut().zip(directions).zip(gradients) {
             let gradient = if magnitude { scale(dot(gradient, direction), direction) } else { gradient };
             *feed = add_scaled(*feed, 1.0, limit_norm(scale(-settings.eta, gradient), settings.step_limit));
         }
@@ -148,8 +146,7 @@ fn gradients<const N: usize, const H: usize>(
     let forwards = roll_out::<N, H>(net, inputs, feeds);
     // What later knots feel of the error and of the feedrate of this one, and of the one before.
     let (mut error_felt, mut feed_felt) = ([[0.0; N]; 2], [[0.0; N]; 2]);
-    for (knot, feed) in feeds.iter().enumerate().take(H).rev() {
-        let forward = &forwards[knot];
+    for (knot, ((feed, forward), gradient)) in feeds.iter().zip(&forwards).zip(&mut gradients).enumerate().rev() {
         let adjoint = |error: [f64; N], input: usize| through(&slopes(net, forward, input), error);
         let of_error = match settings.gradient {
             Gradient::Printed => {
@@ -162,14 +159,15 @@ fn gradients<const N: usize, const H: usize>(
                 let own = add_scaled(adjoint(error, 0), 1.0, feed_felt[0]);
                 (error_felt, feed_felt) = ([error_felt[1], [0.0; N]], [feed_felt[1], [0.0; N]]);
                 // The first knot has none before it, the second one.
-                for back in 0..knot.min(2) {
-                    feed_felt[back] = add_scaled(feed_felt[back], 1.0, adjoint(error, 1 + back));
-                    error_felt[back] = add_scaled(error_felt[back], 1.0, adjoint(error, 3 + back));
+                for (back, (feed_felt, error_felt)) in feed_felt.iter_mut().zip(&mut error_felt).enumerate().take(knot)
+                {
+                    *feed_felt = add_scaled(*feed_felt, 1.0, adjoint(error, 1 + back));
+                    *error_felt = add_scaled(*error_felt, 1.0, adjoint(error, 3 + back));
                 }
                 own
             }
         };
-        gradients[knot] = add_scaled(of_error, 1.0, time_gradient(*feed, settings.rho));
+        *gradient = add_scaled(of_error, 1.0, time_gradient(*feed, settings.rho));
     }
     gradients
 }
@@ -212,7 +210,7 @@ fn slopes<const N: usize>(net: &ContourIdentifier<N>, forward: &Forward<N>, inpu
     core::array::from_fn(|o| {
         let output_slope = slope(forward.error[o]);
         core::array::from_fn(|axis| {
-            let weights = &net.hidden[axis][input];
+            let Some(weights) = net.hidden[axis].get(input) else { return 0.0 };
             output_slope * (0..HIDDEN).map(|j| net.output[o][j] * hidden_slope[j] * weights[j]).sum::<f64>()
         })
     })

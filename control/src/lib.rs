@@ -1,7 +1,8 @@
 //! What runs in a servo thread: reference window, contour error, identifier, inversion, controllers.
 //!
-//! Nothing here allocates, panics, locks, reads a clock or does I/O in a tick; the time of a tick is bounded, and the
-//! same input gives the same bits. `N` is the number of axes throughout, 2 or 3. Lengths in mm, times in s.
+//! Nothing here allocates, panics, locks, reads a clock or does I/O in a tick; the time of a tick is bounded, and the same
+//! input gives the same bits. That no panic is left is what `tests/conformance_panics.rs` shows. `N` is the number of axes
+//! throughout, 2 or 3. Lengths in mm, times in s.
 //!
 //! The modules stand in the order in which data flows through a tick; each uses only those above it.
 #![no_std]

@@ -1,0 +1,86 @@
+//! The servo period of every controller in two and three axes, linked without the standard library.
+//!
+//! The panic handler calls a function that does not exist. Where no panic is left in what is exported, the linker drops the
+//! handler with all that it needs; otherwise it has to name that function.
+
+#![no_std]
+
+use core::panic::PanicInfo;
+use feedwright_control::Tick;
+use feedwright_control::controller::contour_compensation::ContourCompensation;
+use feedwright_control::controller::cross_coupled::CrossCoupled;
+use feedwright_control::controller::feedforward::Feedforward;
+use feedwright_control::controller::fuzzy_feedrate::FuzzyFeedrate;
+use feedwright_control::controller::magnitude_only::MagnitudeOnly;
+use feedwright_control::controller::open_loop::OpenLoop;
+use feedwright_control::controller::receding_horizon::RecedingHorizon;
+use feedwright_control::controller::two_dimensional::TwoDimensional;
+use feedwright_control::controller::zero_phase::ZeroPhase;
+use feedwright_control::window::{Knot, Reference};
+
+unsafe extern "C" {
+    fn a_panic_is_left_in_the_tick() -> !;
+}
+
+#[panic_handler]
+fn panic(_: &PanicInfo<'_>) -> ! {
+    // SAFETY: there is nothing to call: the linker refuses.
+    unsafe { a_panic_is_left_in_the_tick() }
+}
+
+/// The planned path comes from outside, of which the compiler knows nothing.
+struct Foreign<const N: usize>(extern "C" fn(f64, &mut Knot<N>));
+
+impl<const N: usize> Reference<N> for Foreign<N> {
+    fn knot(&mut self, tau_s: f64) -> Knot<N> {
+        let mut knot = Knot { position_mm: [0.0; N], tangent: [0.0; N], feed_mm_s: 0.0, cutting: true };
+        (self.0)(tau_s, &mut knot);
+        knot
+    }
+}
+
+macro_rules! servo_periods {
+    ($($name:ident: $controller:ty, $axes:literal;)*) => {
+        $(
+            /// A servo period.
+            #[unsafe(no_mangle)]
+            pub extern "C" fn $name(
+                tick: &mut Tick<$axes>,
+                controller: &mut $controller,
+                reference: extern "C" fn(f64, &mut Knot<$axes>),
+                position_mm: &[f64; $axes],
+                command_mm: &mut [f64; $axes],
+            ) {
+                *command_mm = tick.step(&mut Foreign(reference), controller, *position_mm).command_mm;
+            }
+        )*
+    };
+}
+
+servo_periods! {
+    open_loop_2: OpenLoop, 2;
+    open_loop_3: OpenLoop, 3;
+    receding_horizon_2: RecedingHorizon<2>, 2;
+    receding_horizon_3: RecedingHorizon<3>, 3;
+    magnitude_only_2: MagnitudeOnly<2>, 2;
+    magnitude_only_3: MagnitudeOnly<3>, 3;
+    two_dimensional_2: TwoDimensional<2>, 2;
+    two_dimensional_3: TwoDimensional<3>, 3;
+    contour_compensation_2: ContourCompensation<2>, 2;
+    contour_compensation_3: ContourCompensation<3>, 3;
+    cross_coupled_2: CrossCoupled<2>, 2;
+    cross_coupled_3: CrossCoupled<3>, 3;
+    feedforward_2: Feedforward<2>, 2;
+    feedforward_3: Feedforward<3>, 3;
+    fuzzy_feedrate_2: FuzzyFeedrate, 2;
+    fuzzy_feedrate_3: FuzzyFeedrate, 3;
+    zero_phase_2: ZeroPhase<2>, 2;
+    zero_phase_3: ZeroPhase<3>, 3;
+}
+
+/// What does panic.
+#[cfg(feature = "one-panic")]
+#[unsafe(no_mangle)]
+pub extern "C" fn one_panic(values: &[f64; 4], i: usize) -> f64 {
+    values[i]
+}
