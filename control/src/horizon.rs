@@ -18,8 +18,8 @@
 //!
 //! What holds the plan back from doing harm:
 //!
-//! - q, the price of the offset itself, where it cannot undo all that is wrong, at the start ([`restraint`]), and where the
-//!   model is not to be trusted ([`missed`]): then the plan asks for a part of it.
+//! - q, the price of the offset itself, where it cannot undo all that is wrong, at the start, where drives are at their limit
+//!   ([`restraint`]), and where the model is not to be trusted ([`missed`]): then the plan asks for a part of it.
 //! - Where much is left across the path, and about points where the path turns back, a tool that is further from its time than
 //!   without the offset ([`restraint`], [`problem`]).
 //! - e, at the end of the horizon: behind it nothing is foreseen, and the offset is to be on its way back.
@@ -292,7 +292,7 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
         let problem = Problem::new(model, window, &self.accelerations_mm_s2, self.periods, &settings);
         let [need_mm, open_error_mm] = problem.open_errors_mm();
         let contour_mm2 = problem.contour_mm2();
-        self.restraint.take_in(need_mm, contour_mm2);
+        self.restraint.take_in(need_mm, contour_mm2, problem.open_drive_share());
         let before = self.accelerations_mm_s2;
         self.solver.improve(&problem, &mut self.accelerations_mm_s2);
         let mut change_mm_s2 = 0.0_f64;
@@ -316,6 +316,20 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
 }
 
 impl Settings {
+    /// For tests.
+    #[cfg(test)]
+    pub(crate) const EXAMPLE: Self = Self {
+        knots: 4,
+        rate_weight: 1e-9,
+        change_weight: 0.0,
+        offset_weight: 0.0,
+        tangential_weight: 0.1,
+        last_weight: 0.3,
+        late_weight: 0.0,
+        on_rapids: false,
+        limits: Limits::NONE,
+    };
+
     /// h at the end of a knot, where the path runs at `feed_mm_s`.
     #[inline]
     pub fn weight_along(&self, knot: usize, feed_mm_s: f64) -> f64 {
@@ -335,18 +349,6 @@ impl Settings {
 mod tests {
     use super::*;
 
-    const SETTINGS: Settings = Settings {
-        knots: 4,
-        rate_weight: 1e-9,
-        change_weight: 0.0,
-        offset_weight: 0.0,
-        tangential_weight: 0.1,
-        last_weight: 0.3,
-        late_weight: 0.0,
-        on_rapids: false,
-        limits: Limits::NONE,
-    };
-
     fn plan(accelerations: [f64; 4]) -> Plan<1> {
         let mut plan = Plan::default();
         for (knot, acceleration) in accelerations.into_iter().enumerate() {
@@ -362,18 +364,18 @@ mod tests {
     #[test]
     fn a_shifted_plan_begins_with_its_second_knot() {
         let mut plan = plan([1.0, 2.0, 3.0, 4.0]);
-        plan.shift(1, &SETTINGS);
+        plan.shift(1, &Settings::EXAMPLE);
         assert_eq!(accelerations(&plan), [2.0, 3.0, 4.0, 0.0]);
     }
 
     #[test]
     fn longer_knots_take_the_mean_of_what_was_planned_for_them_and_go_on_by_a_part() {
         let mut plan = plan([1.0, 2.0, 3.0, 4.0]);
-        plan.shift(2, &SETTINGS);
+        plan.shift(2, &Settings::EXAMPLE);
         assert_eq!(accelerations(&plan), [2.5, 2.0, 0.0, 0.0]);
-        plan.shift(2, &SETTINGS);
+        plan.shift(2, &Settings::EXAMPLE);
         assert_eq!(accelerations(&plan), [2.25, 1.0, 0.0, 0.0]);
-        plan.shift(1, &SETTINGS);
+        plan.shift(1, &Settings::EXAMPLE);
         assert_eq!(accelerations(&plan), [2.25, 1.0, 1.0, 0.0]);
     }
 

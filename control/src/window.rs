@@ -122,8 +122,7 @@ impl<const N: usize> Register<N> {
     /// shifted.
     #[inline]
     pub fn push(&mut self, knot: Knot<N>) -> bool {
-        let moved = self.len == 0
-            || norm(sub(knot.position_mm, self.knots[self.newest % REGISTER_KNOTS].position_mm)) > SAME_PLACE_MM;
+        let moved = self.len == 0 || norm(sub(knot.position_mm, self.knot(0).position_mm)) > SAME_PLACE_MM;
         if moved {
             self.newest = (self.newest + 1) % REGISTER_KNOTS;
             self.len = (self.len + 1).min(REGISTER_KNOTS);

@@ -12,8 +12,8 @@
 //!
 //! so that a resonance which the identifier cannot represent is corrected gently, and a machine that it does not know less, down
 //! to not at all ([`crate::horizon::missed`], [`Controller::judged`]); the fourth power leaves the small innovations of friction
-//! alone. A machine that
-//! lags far behind has longer knots, so that the plan reaches beyond the lag. The speed along the path stays as planned.
+//! alone. A machine that lags far behind has longer knots, so that the plan reaches beyond the lag. The speed along the path
+//! stays as planned.
 
 use super::{Command, Controller, Measured, Schedule};
 use crate::horizon::gauss_newton::GaussNewton;

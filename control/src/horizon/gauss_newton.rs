@@ -151,11 +151,9 @@ mod tests {
         rate_weight: 0.0,
         change_weight: 1e-12,
         offset_weight: 0.7,
-        tangential_weight: 0.1,
         last_weight: 0.1,
-        late_weight: 0.0,
-        on_rapids: false,
         limits: Limits { acceleration_mm_s2: [1e6; 3], ..Limits::NONE },
+        ..Settings::EXAMPLE
     };
 
     fn window<'a>(register: &'a Register<2>, preview: &'a Preview<2>) -> Window<'a, 2> {

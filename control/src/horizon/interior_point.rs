@@ -61,11 +61,12 @@ struct Point {
 impl Quadratic {
     /// Begins anew, with so many unknowns.
     pub fn clear(&mut self, number: usize) {
-        self.number = number.min(MOST_UNKNOWNS);
-        for (r, row) in self.curvature.iter_mut().enumerate().take(self.number) {
+        self.number = number;
+        let number = self.number();
+        for (r, row) in self.curvature.iter_mut().enumerate().take(number) {
             row[..=r].fill(0.0);
         }
-        self.gradient[..number.min(MOST_UNKNOWNS)].fill(0.0);
+        self.gradient[..number].fill(0.0);
     }
 
     /// Adds `1/2 (error + row x)^2` for a block of rows, whose first entries count.

@@ -203,6 +203,19 @@ impl<const N: usize> Problem<N> {
         most.map(libm::sqrt)
     }
 
+    /// The largest acceleration of the tool without any offset, in parts of what the drive of its axis can.
+    pub fn open_drive_share(&self) -> f64 {
+        let mut most = 0.0_f64;
+        for knot in 0..self.knots {
+            for axis in 0..N {
+                let acceleration =
+                    self.acceleration_mm_s2(knot, axis, |end| sub(end.tool_mm, end.moved_mm)).unwrap_or(0.0);
+                most = most.max(acceleration.abs() / self.settings.limits.drive_mm_s2[axis.min(MOST_AXES - 1)]);
+            }
+        }
+        most
+    }
+
     /// Mean squares of the contour error over the knots that count, mm^2: of the plan, and without any offset. Of the first half
     /// of the horizon: the second is still to be planned.
     pub fn contour_mm2(&self) -> [f64; 2] {
@@ -277,7 +290,7 @@ impl<const N: usize> Problem<N> {
         for axis in 0..N {
             let error = END_WEIGHT * (end.offset_mm[axis] + self.lag_s * end.offset_mm_s[axis]);
             take(knot, error, &|row| {
-                for (entries, moved_s2) in row.as_chunks_mut::<N>().0.iter_mut().zip(&self.moved_s2).take(knot + 1) {
+                for (entries, moved_s2) in by_knot::<N>(row, knot).zip(&self.moved_s2) {
                     *entries = only(axis, END_WEIGHT * (moved_s2 + self.lag_s * self.knot_s));
                 }
             });
@@ -301,7 +314,7 @@ impl<const N: usize> Problem<N> {
                 take(knot, SPEED_WEIGHT_S * beyond, &|row| self.speed_row(knot, axis, row));
             }
             let most = limits.drive_mm_s2[axis.min(MOST_AXES - 1)];
-            let Some(acceleration) = self.tool_mm_s2(knot, axis) else { continue };
+            let Some(acceleration) = self.acceleration_mm_s2(knot, axis, |end| end.tool_mm) else { continue };
             let beyond = acceleration - bounded(acceleration, -most, most);
             if beyond != 0.0 {
                 take(knot, DRIVE_WEIGHT_S2 * beyond, &|row| self.drive_row(knot, axis, row));
@@ -309,18 +322,16 @@ impl<const N: usize> Problem<N> {
         }
     }
 
-    /// Acceleration of the tool in an axis about the knot before this one, mm/s^2; none at the first two.
+    /// Acceleration in an axis, of what moves with the knots, about the knot before this one, mm/s^2; none at the first two.
     #[inline]
-    fn tool_mm_s2(&self, knot: usize, axis: usize) -> Option<f64> {
+    fn acceleration_mm_s2(&self, knot: usize, axis: usize, place_mm: impl Fn(&End<N>) -> [f64; N]) -> Option<f64> {
         let [now, before, first] = [0, 1, 2].map(|back: usize| knot.checked_sub(back));
-        let at = |knot: Option<usize>| self.ends.get(knot?)?.tool_mm.get(axis).copied();
+        let at = |knot: Option<usize>| self.ends.get(knot?).and_then(|end| place_mm(end).get(axis).copied());
         Some((at(now)? - 2.0 * at(before)? + at(first)?) / (self.knot_s * self.knot_s))
     }
 
     fn tool_row(&self, knot: usize, direction: [f64; N], row: &mut Row) {
-        for (entries, felt) in
-            row.as_chunks_mut::<N>().0.iter_mut().zip(&self.felt[knot.min(MOST_KNOTS - 1)]).take(knot + 1)
-        {
+        for (entries, felt) in by_knot::<N>(row, knot).zip(&self.felt[knot.min(MOST_KNOTS - 1)]) {
             for axis in 0..N {
                 entries[axis] = direction[axis] * felt[axis];
             }
@@ -329,7 +340,7 @@ impl<const N: usize> Problem<N> {
 
     fn offset_row(&self, knot: usize, direction: [f64; N], row: &mut Row) {
         let shift = self.last_knot().saturating_sub(knot);
-        for (entries, moved_s2) in row.as_chunks_mut::<N>().0.iter_mut().zip(&self.moved_s2[shift..]).take(knot + 1) {
+        for (entries, moved_s2) in by_knot::<N>(row, knot).zip(&self.moved_s2[shift..]) {
             for axis in 0..N {
                 entries[axis] = direction[axis] * moved_s2;
             }
@@ -337,19 +348,25 @@ impl<const N: usize> Problem<N> {
     }
 
     fn speed_row(&self, knot: usize, axis: usize, row: &mut Row) {
-        for entries in row.as_chunks_mut::<N>().0.iter_mut().take(knot + 1) {
+        for entries in by_knot::<N>(row, knot) {
             *entries = only(axis, SPEED_WEIGHT_S * self.knot_s);
         }
     }
 
     fn drive_row(&self, knot: usize, axis: usize, row: &mut Row) {
         let gain = DRIVE_WEIGHT_S2 / (self.knot_s * self.knot_s);
-        for (j, entries) in row.as_chunks_mut::<N>().0.iter_mut().enumerate().take(knot + 1) {
+        for (j, entries) in by_knot::<N>(row, knot).enumerate() {
             let felt = |back: usize| self.felt.get(knot.saturating_sub(back)).and_then(|felt| felt.get(j)?.get(axis));
             let [now, before, first] = [0, 1, 2].map(|back| felt(back).copied().unwrap_or(0.0));
             *entries = only(axis, gain * (now - 2.0 * before + first));
         }
     }
+}
+
+/// The entries of a row, axis by axis, of each knot up to this one.
+#[inline]
+fn by_knot<const N: usize>(row: &mut Row, knot: usize) -> impl Iterator<Item = &mut [f64; N]> {
+    row.as_chunks_mut().0.iter_mut().take(knot + 1)
 }
 
 /// An axis alone.

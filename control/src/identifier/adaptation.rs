@@ -127,13 +127,19 @@ impl<const N: usize> Adaptation<N> {
     /// What it is expected to miss.
     #[inline]
     pub fn residual(&self) -> [Foresight; N] {
-        core::array::from_fn(|axis| self.axes[axis].residuals[usize::from(self.adapted)].foresight())
+        core::array::from_fn(|axis| self.axes[axis].residuals[self.believed()].foresight())
+    }
+
+    /// Of the two models, trained and adapted, the one that is believed.
+    #[inline]
+    fn believed(&self) -> usize {
+        usize::from(self.adapted)
     }
 
     /// RMS of the innovations lately, mm: how good the predictions are.
     #[inline]
     pub fn innovation_mm(&self) -> f64 {
-        libm::sqrt(self.square_mm2[usize::from(self.adapted)].max(self.long_square_mm2))
+        libm::sqrt(self.square_mm2[self.believed()].max(self.long_square_mm2))
     }
 
     /// Back to what was trained.
@@ -184,11 +190,10 @@ impl<const N: usize> Adaptation<N> {
         for model in 0..2 {
             self.square_mm2[model] += judging * (squares[model] - self.square_mm2[model]);
         }
-        let surprise = squares[usize::from(self.adapted)];
+        let surprise = squares[self.believed()];
         self.long_square_mm2 += caution * (surprise - self.long_square_mm2);
         self.long_square_mm2 = self.long_square_mm2.max(fright * surprise);
-        let [believed_mm2, other_mm2] =
-            [self.adapted, !self.adapted].map(|adapted| self.square_mm2[usize::from(adapted)]);
+        let (believed_mm2, other_mm2) = (self.square_mm2[self.believed()], self.square_mm2[1 - self.believed()]);
         if other_mm2 < CLEARLY_BETTER * believed_mm2 {
             self.adapted = !self.adapted;
         }

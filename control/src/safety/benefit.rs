@@ -32,7 +32,8 @@ const CERTAIN_PEAK: f64 = 1.5;
 const LEAST_PEAK_MM: f64 = 0.03;
 /// Time over which it is found that a correction is overdone, s.
 const OVERDONE_S: f64 = 0.1;
-/// Mean square of what a correction changes from which on that says something, mm^2 (3 um): below, what the model misses looks like it.
+/// Mean square of what a correction changes from which on that says something, mm^2 (3 um): below, what the model misses looks
+/// like it.
 const CHANGED_MM2: f64 = 1e-5;
 /// Part by which g may be wrong.
 const DOUBT: f64 = 0.1;
