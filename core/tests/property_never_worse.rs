@@ -122,6 +122,11 @@ fn slots() -> String {
     "G21 G90 G64 F4340\nG0 X0 Y0\n".to_owned() + &(0..6).map(slot).collect::<String>() + "M2\n"
 }
 
+/// Holes behind rapids along one axis, which alone has to brake.
+fn holes() -> &'static str {
+    "G21 G90 F254\nG0 X0 Y0 Z25.4\nG99 G81 X0 Y25.4 Z-10 R25.4\nY50.8\nY101.6\nY152.4\nX25.4\nX76.2\nX152.4\nM2\n"
+}
+
 /// What a program comes to on a machine.
 fn judged(name: &str, text: &str, variant: &Variant) -> Row {
     let machine = Arc::new(variant.machine().unwrap());
@@ -171,6 +176,16 @@ fn slots_are_cut_no_worse_than_open_loop_by_a_machine_that_is_late() {
     let row = judged("slots", &slots(), &variant);
     assert_eq!(row.faults(), []);
     assert!(row.rms_ratio() < 0.1, "{}", row.rms_ratio());
+}
+
+#[test]
+fn holes_behind_rapids_at_the_torque_limit_are_drilled_no_worse_than_open_loop() {
+    let variant = Variant::of("tnv40", "accel4000").with("limits", "tangential_accel_mm_s2", 4000.0).with(
+        "limits",
+        "normal_accel_mm_s2",
+        4000.0,
+    );
+    assert_eq!(judged("holes", holes(), &variant).faults(), []);
 }
 
 /// The contours on which it was tuned: those above can pass.
