@@ -35,6 +35,11 @@ never-worse *options:
     cargo build --release --quiet
     target/release/feedwright never-worse "${programs[@]}" {{ options }}
 
+# Whether the present state gives the same to the bit as another build's binary: after a change that is to change nothing.
+same-outputs old:
+    cargo build --release --quiet
+    scripts/same-outputs {{ old }} target/release/feedwright
+
 # Random programs on random machines against open loop: `just held-out 20261 2000 --failures target/failures`. Seeds of a
 # verdict are drawn after the settings are frozen.
 held-out seed count *options:

@@ -18,7 +18,8 @@ use feedwright_control::controller::{contour_compensation, cross_coupled, fuzzy_
 pub use make::correction_limits;
 use serde::Serialize;
 
-use crate::machine::{Machine, nearest};
+use crate::gcode::suggestion::nearest;
+use crate::machine::Machine;
 
 /// One row of the table.
 pub struct Entry {

@@ -6,7 +6,7 @@
 //! The modules stand in the order in which data flows; each uses only those above it.
 
 pub mod machine;
-pub mod gcode;
+pub use feedwright_gcode as gcode;
 pub mod plc;
 pub mod path;
 pub mod feed;

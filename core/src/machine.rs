@@ -14,7 +14,6 @@ use std::path::Path;
 use serde::Serialize;
 
 pub use error::{MachineError, Problem};
-pub use reader::nearest;
 
 /// Machines that need no file: name and text.
 pub const BUILT_IN: &[(&str, &str)] = &[

@@ -4,7 +4,8 @@
 use std::path::{Path, PathBuf};
 
 /// Crates of the workspace: folder, and which of ours it depends on, outside of tests.
-const CRATES: [(&str, &[&str]); 3] = [("control", &[]), ("core", &["feedwright-control"]), ("cli", &["feedwright"])];
+const CRATES: [(&str, &[&str]); 4] =
+    [("gcode", &[]), ("control", &[]), ("core", &["feedwright-control", "feedwright-gcode"]), ("cli", &["feedwright"])];
 
 fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))

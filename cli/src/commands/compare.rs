@@ -8,8 +8,9 @@ use feedwright::compare::journal::Journal;
 use feedwright::compare::tolerance::TOLERANCE_UM;
 use feedwright::compare::{Comparison, Options, Tuning, Watch, Workpiece, compare, page};
 use feedwright::controllers::{BASELINE, CONTROLLERS, Entry};
+use feedwright::gcode::suggestion::nearest;
 use feedwright::identify::cache;
-use feedwright::machine::{BUILT_IN, Machine, nearest};
+use feedwright::machine::{BUILT_IN, Machine};
 use feedwright::output::OutputFile;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 

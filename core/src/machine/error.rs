@@ -8,7 +8,7 @@ use miette::{Diagnostic, NamedSource, SourceSpan};
 use thiserror::Error;
 
 use super::BUILT_IN;
-use super::reader::nearest;
+use crate::gcode::suggestion::nearest;
 
 /// Why there is no machine.
 #[derive(Debug, Error, Diagnostic)]

@@ -8,19 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::error::Fault;
-
-/// Two names further apart than this (Jaro-Winkler, 1 is equal) share little more than letters: no suggestion then.
-const SUGGESTION_SIMILARITY: f64 = 0.75;
-
-/// The candidate that `word` was probably meant to be.
-pub fn nearest<'a>(word: &str, candidates: &[&'a str]) -> Option<&'a str> {
-    candidates
-        .iter()
-        .map(|candidate| (strsim::jaro_winkler(&word.to_lowercase(), candidate), *candidate))
-        .filter(|(similarity, _)| *similarity >= SUGGESTION_SIMILARITY)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map(|(_, candidate)| candidate)
-}
+use crate::gcode::suggestion::nearest;
 
 /// A table under reading.
 pub(super) struct Table<'t, 'i> {

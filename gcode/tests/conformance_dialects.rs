@@ -1,0 +1,118 @@
+//! Programs of other controls, firmware and post-processors: what is theirs is read, one program for each.
+#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
+
+use feedwright_gcode::canon::{Canon, Motion, Shape};
+use feedwright_gcode::{Diagnostic, Dialect, Reader, Settings};
+
+/// Ends of the motions, faults and warnings of a program.
+fn read(text: &str, dialect: Option<Dialect>) -> (Vec<Motion>, Vec<Diagnostic>, Vec<Diagnostic>) {
+    let settings = Settings { dialect, ..Settings::default() };
+    let mut reader = Reader::from_text("part.nc", text, settings).unwrap();
+    let (mut motions, mut faults) = (Vec::new(), Vec::new());
+    for step in reader.by_ref() {
+        match step {
+            Ok(Canon::Motion(motion)) => motions.push(motion),
+            Ok(Canon::Event(_)) => {}
+            Err(fault) => faults.push(fault),
+        }
+    }
+    let warnings = reader.warnings().to_vec();
+    (motions, faults, warnings)
+}
+
+#[track_caller]
+fn ends(text: &str, dialect: Option<Dialect>) -> Vec<[f64; 3]> {
+    let (motions, faults, _) = read(text, dialect);
+    assert!(faults.is_empty(), "{text}{faults:?}");
+    motions.iter().map(|motion| motion.end_mm).collect()
+}
+
+#[test]
+fn r_may_be_short_by_half_a_tenth_of_a_thousandth_of_an_inch() {
+    assert_eq!(ends("G21 F100\nG2 X10 Y0 R4.99875\nM2\n", None), [[10.0, 0.0, 0.0]]);
+    assert_eq!(read("G21 F100\nG2 X10 Y0 R4.9986\nM2\n", None).1.len(), 1);
+    assert_eq!(ends("G20 F100\nG2 X10 Y0 R4.99996\nM2\n", None), [[254.0, 0.0, 0.0]]);
+}
+
+#[test]
+fn the_first_spindle_may_be_named() {
+    assert_eq!(ends("M3 S100 $0\nG33.1 Z-5 K1 $0\nM5 $-1\nM2\n", None), [[0.0, 0.0, -5.0], [0.0; 3]]);
+    assert!(read("M3 S100 $1\nG0 X1\nM2\n", None).1[0].message.starts_with("spindle $1 does not exist"));
+    assert!(read("G0 X1 $0\nM2\n", None).1[0].message.starts_with("$ has no meaning with G0"));
+}
+
+#[test]
+fn arcs_outside_xy_run_in_a_rotated_system() {
+    // A quarter of a circle of 10 mm in ZX, turned by 30 degrees about Z, and a helix.
+    for (words, normal_mm) in [("X10 Z10 K10", 0.0), ("X10 Z10 K10 Y4", 4.0)] {
+        let text = format!("G21 F100\nG10 L2 P1 R30\nG18 G2 {words}\nM2\n");
+        let (motions, faults, _) = read(&text, None);
+        assert!(faults.is_empty(), "{faults:?}");
+        let Shape::Spline(spline) = &motions[0].shape else { panic!("{motions:?}") };
+        let (sin, cos) = 30.0_f64.to_radians().sin_cos();
+        let end = [10.0 * cos - normal_mm * sin, 10.0 * sin + normal_mm * cos, 10.0];
+        assert!((0..3).all(|axis| (motions[0].end_mm[axis] - end[axis]).abs() < 1e-9), "{motions:?}");
+        let length = (0.5 * std::f64::consts::PI * 10.0).hypot(normal_mm);
+        assert!((spline.length_mm() - length).abs() < 1e-3, "{}", spline.length_mm());
+        // The centre is at Z10; every third control point lies on the circle.
+        for point in spline.control_mm.iter().step_by(3) {
+            let [x, y] = [point[0] * cos + point[1] * sin, point[1] * cos - point[0] * sin];
+            assert!(((x).hypot(point[2] - 10.0) - 10.0).abs() < 1e-9, "{point:?}");
+            assert!((-1e-9..=normal_mm + 1e-9).contains(&y), "{point:?}");
+        }
+    }
+}
+
+#[test]
+fn exists_takes_numbers_too() {
+    assert_eq!(ends("G0 X[exists[#1]] Y[exists[#<none>] + 2]\nM2\n", None), [[1.0, 2.0, 0.0]]);
+}
+
+#[test]
+fn post_processors_for_grbl_write_k0() {
+    let arc = "G17 G21\nG2 X10 Y0 I5 J0 K0 F100\n";
+    assert_eq!(ends(&format!("(Post Processor: grbl_post)\n{arc}"), None), [[10.0, 0.0, 0.0]]);
+    assert_eq!(ends(arc, Some(Dialect::Grbl)), [[10.0, 0.0, 0.0]]);
+    assert_eq!(read(arc, Some(Dialect::LinuxCnc)).1.len(), 1);
+    assert_eq!(read("G2 X10 Y0 I5 J0 K1 F100\n", Some(Dialect::Grbl)).1.len(), 1);
+}
+
+#[test]
+fn what_grbl_takes_out_of_the_stream_moves_nothing() {
+    assert_eq!(ends("$H\nG0 X1\n!\n~\n?\nG0 X2\n", None), [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]]);
+}
+
+#[test]
+fn fanuc_s_g10_sets_lengths_radii_and_their_wear() {
+    let text = "%\nO1234\nG21 G90 G54\nG10 L10 P1 R50.\nG10 L11 P1 R-0.5\nG10 L12 P1 R4.\nG10 L13 P1 R0.\nT1 M6\nG43 H1\nG0 Z10.\n\
+                G0 X-20. Y-20.\nG41 D1 G1 X0. Y0. F100.\nX20.\nG40 X40. Y20.\nM30\n%\n";
+    let (motions, faults, _) = read(text, None);
+    assert!(faults.is_empty(), "{faults:?}");
+    assert_eq!(motions[0].end_mm[2], 59.5);
+    let along = motions.iter().find(|motion| motion.line == 13).unwrap();
+    assert!((along.end_mm[1] - 4.0).abs() < 1e-9, "{along:?}");
+}
+
+#[test]
+fn printers_speak_to_their_firmware() {
+    let text = "M115 U6.3.0+10073\nM486 S0 Acube.stl\nN1 M110 N0*125\n_START_PRINT BED=60\nT_ON\nN2 M117 a b*17\nN3 G1 X1 E1*97\nN4 G1 X2*11\n";
+    let (motions, faults, warnings) = read(text, Some(Dialect::Printer));
+    assert!(faults.is_empty(), "{faults:?}");
+    assert_eq!(motions.iter().map(|motion| motion.end_mm[0]).collect::<Vec<_>>(), [1.0, 2.0]);
+    assert_eq!(warnings.iter().map(|warning| warning.line).collect::<Vec<_>>(), [4, 5]);
+    let (motions, _, warnings) = read("G1 X1 E1\nG10\nG11 ; back\nG1 X2 E2\n", Some(Dialect::Printer));
+    assert_eq!((motions.len(), warnings.len()), (2, 2), "{warnings:?}");
+}
+
+#[test]
+fn a_program_for_a_printer_may_be_numbered_throughout() {
+    let text = "N1 G28*18\nN2 G1 X5 F600 E1*75\nN3 M117 hi there*12\n";
+    assert_eq!(ends(text, None).last(), Some(&[5.0, 0.0, 0.0]));
+}
+
+#[test]
+fn g40_1_of_mach3_is_g40() {
+    let (motions, faults, warnings) = read("G17 G40.1 G80\nG0 X1\nM2\n", None);
+    assert!(faults.is_empty() && motions.len() == 1, "{faults:?}");
+    assert!(warnings[0].message.contains("G40.1 is read as G40"), "{warnings:?}");
+}
