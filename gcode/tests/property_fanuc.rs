@@ -1,7 +1,5 @@
 //! Random programs of what Fanuc and Haas have besides: no panic, no endless loop, and every motion begins where the one before it ends.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright_gcode::canon::{Canon, Motion};
 use feedwright_gcode::{Dialect, Increment, Reader, Settings};
 use proptest::prelude::*;
