@@ -36,8 +36,11 @@ pub(crate) enum Command {
     Canon(CanonArgs),
     /// List the built-in machines.
     Machines,
-    /// List the controllers.
-    Controllers,
+    /// List the controllers; with a name, all of one and of its parameters.
+    Controllers {
+        /// Its name.
+        name: Option<String>,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -56,9 +59,10 @@ pub(crate) struct RunArgs {
     /// Feedrate in place of every programmed one, mm/s.
     #[arg(long, value_name = "MM_S", allow_negative_numbers = true)]
     pub(crate) feed: Option<f64>,
-    /// Weight of the machining time against the error; 0 to 0.1, for controllers that invert the paper's index.
-    #[arg(long, allow_negative_numbers = true)]
-    pub(crate) rho: Option<f64>,
+    /// Set a parameter of the controller, such as knots=10; of the other as NAME.knots=10. May be given several times;
+    /// `feedwright controllers NAME` lists them.
+    #[arg(long, value_name = "PARAMETER=VALUE")]
+    pub(crate) set: Vec<String>,
     /// Largest contour error allowed, um: exit code 1 where it is exceeded.
     #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
@@ -108,6 +112,10 @@ pub(crate) struct CompareArgs {
     /// Seed of everything random.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+    /// Set a parameter of a controller, such as two-dimensional.rho=0.01: it has its defaults then, and is not searched. May be given
+    /// several times; `feedwright controllers NAME` lists them.
+    #[arg(long, value_name = "NAME.PARAMETER=VALUE")]
+    pub(crate) set: Vec<String>,
     /// Take the default of every parameter instead of searching for the best.
     #[arg(long)]
     pub(crate) no_tuning: bool,
@@ -178,6 +186,9 @@ pub(crate) struct SweepArgs {
     /// Controller; `feedwright controllers` lists them.
     #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BEST)]
     pub(crate) controller: String,
+    /// Set a parameter of the controller, such as knots=10; may be given several times. `feedwright controllers NAME` lists them.
+    #[arg(long, value_name = "PARAMETER=VALUE")]
+    pub(crate) set: Vec<String>,
     /// Seed of the controller's training, and of the sample.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,

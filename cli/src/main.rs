@@ -5,6 +5,7 @@
 
 mod args;
 mod commands;
+mod controllers;
 mod files;
 mod findings;
 mod message;
@@ -32,7 +33,8 @@ fn main() -> ExitCode {
         Command::Check(args) => commands::check::run(&args, quiet),
         Command::Canon(args) => commands::canon::run(&args, quiet),
         Command::Machines => commands::list::machines(),
-        Command::Controllers => commands::list::controllers(),
+        Command::Controllers { name: None } => commands::list::controllers(),
+        Command::Controllers { name: Some(name) } => commands::list::controller(&name),
     };
     result.unwrap_or_else(|report| message::fail(&report))
 }

@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use feedwright::controllers::Entry;
 use feedwright::identify::cache;
 use feedwright::never_worse::cut::Figures;
 use feedwright::never_worse::journal::Journal;
 use feedwright::never_worse::summary::{Judged, OPEN_LOOP_UM, Quantiles, Summary};
 use feedwright::never_worse::{Job, Options, Watch, sweep};
 use feedwright::output::OutputFile;
-use miette::{IntoDiagnostic, Result, WrapErr, miette};
+use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::args::SweepArgs;
+use crate::controllers::{find, settings};
 use crate::message::OUT_OF_TOLERANCE;
 use crate::progress::Bar;
 
@@ -28,16 +28,11 @@ pub(crate) struct Sweep {
 impl Sweep {
     /// `inputs` are files that no output may take the place of.
     pub(crate) fn new(args: &SweepArgs, inputs: &[&Path]) -> Result<Self> {
-        let controller = Entry::find(&args.controller).ok_or_else(|| {
-            let help = Entry::meant_by(&args.controller).map_or_else(
-                || "feedwright controllers lists them".to_owned(),
-                |meant| format!("did you mean '{meant}'?"),
-            );
-            miette!(help = help, "no controller is called '{}'", args.controller)
-        })?;
+        let controller = find(&args.controller)?;
+        let set = settings(&args.set, Some(controller), &[controller])?;
         let threads =
             args.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
-        let options = Options { controller, seed: args.seed, threads };
+        let options = Options { controller, set, seed: args.seed, threads };
         let json = args.json.as_ref().map(|path| OutputFile::create(path, inputs)).transpose()?;
         Ok(Self { options, journal: journal(args.journal.as_deref())?, json })
     }

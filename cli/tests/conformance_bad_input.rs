@@ -118,8 +118,11 @@ fn a_program_in_space_on_a_machine_of_two_axes() {
 fn a_value_out_of_its_range() {
     let folder = Folder::new();
     for (option, values, says) in [
-        ("--rho", &["-1", "0.2", "nan", "1e300"][..], &["--rho", "0 to 0.1"][..]),
-        ("--feed", &["0", "-5", "nan", "inf", "1e300", "1000"], &["--feed", "mm/s", "200", "max_feed_mm_s", "F3000"]),
+        (
+            "--feed",
+            &["0", "-5", "nan", "inf", "1e300", "1000"][..],
+            &["--feed", "mm/s", "200", "max_feed_mm_s", "F3000"][..],
+        ),
         ("--tolerance", &["0", "-5", "nan", "inf", "1e300"], &["--tolerance", "um", "above 0"]),
     ] {
         for value in values {
@@ -127,7 +130,7 @@ fn a_value_out_of_its_range() {
         }
     }
     refuses(&folder, &["circle.ngc", "--feed", "1e300"], &["--feed is 1e300 mm/s"]);
-    for option in ["--rho", "--feed", "--tolerance", "--seed"] {
+    for option in ["--feed", "--tolerance", "--seed"] {
         refuses(&folder, &["circle.ngc", option, "fast"], &[option, "fast"]);
     }
     for option in ["--controller", "--against"] {
@@ -136,6 +139,25 @@ fn a_value_out_of_its_range() {
         folder.run(&["run", "circle.ngc", option, "two-dimensionl"]).refused(&says);
         assert_eq!(before, folder.content());
     }
+}
+
+#[test]
+fn a_parameter_that_cannot_be_set() {
+    let folder = Folder::new();
+    let refuses = |set: &str, says: &[&str]| {
+        let before = folder.content();
+        folder.run(&["run", "circle.ngc", "--set", set]).refused(&[&["--set", set][..], says].concat());
+        assert_eq!(before, folder.content());
+    };
+    refuses("knots", &["the value is missing", "--set knots=VALUE"]);
+    refuses("knots=30", &["1 to 20, whole", "its default is 20"]);
+    refuses("knots=nan", &["1 to 20, whole"]);
+    refuses("rho=0.01", &["receding-horizon has no parameter 'rho'", "feedwright controllers receding-horizon"]);
+    refuses("two-dimensional.rho=0.01", &["two-dimensional does not take part", "receding-horizon, open-loop"]);
+    refuses("two-dimensionl.rho=1", &["no controller is called 'two-dimensionl'", "did you mean 'two-dimensional'?"]);
+    let twice = ["run", "circle.ngc", "--set", "knots=10", "--set", "receding-horizon.knots=12"];
+    folder.run(&twice).refused(&["knots of receding-horizon is set twice"]);
+    folder.run(&["compare", "--set", "knots=10"]).refused(&["whose parameter it is is missing", "CONTROLLER.knots=10"]);
 }
 
 #[test]

@@ -214,6 +214,11 @@ fn lists_name_all_there_is() {
     let controllers = folder.run(&["controllers"]).succeeded().stdout;
     for entry in feedwright::controllers::CONTROLLERS {
         assert!(controllers.lines().any(|line| line.starts_with(entry.name)), "{controllers}");
+        let one = folder.run(&["controllers", entry.name]).succeeded().stdout;
+        for parameter in entry.parameters {
+            let named = one.lines().any(|line| line.starts_with(&format!("{} = ", parameter.name)));
+            assert!(named && one.contains(parameter.reason), "{one}");
+        }
     }
     let machines = folder.run(&["machines"]).succeeded().stdout;
     assert!(machines.starts_with("tnv40"), "{machines}");

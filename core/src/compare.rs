@@ -31,7 +31,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use crate::controllers::{Entry, Knows};
+use crate::controllers::{Entry, Knows, Setting};
 use crate::feed::LimitsError;
 use crate::gcode;
 use crate::gcode::canon::Corner;
@@ -153,6 +153,8 @@ pub struct Options {
     pub seed: u64,
     /// Values of the controllers' parameters.
     pub tuning: Tuning,
+    /// Parameters that are set; the others of such a controller have their defaults.
+    pub set: Vec<Setting>,
     /// Whether to look for the machining times at equal tolerance too.
     pub at_tolerance: bool,
 }
@@ -213,7 +215,7 @@ impl Options {
         let workpieces: Vec<_> = self.workpieces.iter().map(|w| (&w.name, format!("{:?}", w.steps))).collect();
         let machines: Vec<_> = self.machines.iter().map(|m| (&m.name, m.fingerprint())).collect();
         let names: Vec<_> = self.controllers.iter().map(|entry| entry.name).collect();
-        let content = serde_json::json!([workpieces, machines, names, self.seed, self.tuning]);
+        let content = serde_json::json!([workpieces, machines, names, self.seed, self.tuning, self.set]);
         blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
     }
 }
@@ -233,9 +235,12 @@ pub fn compare(options: &Options, journal: &Journal, watch: &dyn Watch) -> Resul
 
 /// The values of all controllers that have parameters.
 fn tuned(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Vec<Tuned>, LimitsError> {
-    let tunable: Vec<_> = options.controllers.iter().filter(|entry| !entry.parameters.is_empty()).collect();
+    let is_set = |entry: &Entry| options.set.iter().any(|set| set.controller == entry.name);
+    let has_values = |entry: &&&'static Entry| entry.searched().count() > 0 || is_set(entry);
+    let tunable: Vec<_> = options.controllers.iter().filter(has_values).collect();
     watch.tuning(tunable.len() as u64);
     let values = |entry: &'static Entry| match &options.tuning {
+        _ if is_set(entry) => Ok(Tuned::set(entry, &options.set)),
         Tuning::Search => {
             let tuned = tuning::search(entry, options.nominal(), options.seed)?;
             journal.add_tuned(&tuned);

@@ -4,18 +4,24 @@
 //!
 //! | File | What |
 //! |---|---|
+//! | `controllers/parameters.rs` | what of them can be set, by name |
 //! | `controllers/make.rs` | how each row is made for a machine |
 //! | `controllers/model_predictive.rs`, `controllers/iterative_learning.rs` | those that are not fit for a servo thread |
 
 pub mod iterative_learning;
 mod make;
 pub mod model_predictive;
+pub mod parameters;
 
 use feedwright_control::Controller;
 use feedwright_control::controller::feedforward::Gains;
 use feedwright_control::controller::inverting::Settings as Inverting;
+use feedwright_control::controller::receding_horizon::Settings as Horizon;
 use feedwright_control::controller::{contour_compensation, cross_coupled, fuzzy_feedrate, receding_horizon};
+use feedwright_control::horizon::MOST_KNOTS;
 pub use make::correction_limits;
+pub use parameters::{Parameter, Setting, SettingError};
+use parameters::{Values, number, switch, whole};
 use serde::Serialize;
 
 use crate::gcode::suggestion::nearest;
@@ -33,7 +39,7 @@ pub struct Entry {
     pub knows: Knows,
     /// Laps of the same part that it cuts; all but the last are practice.
     pub laps: u32,
-    /// What can be tuned.
+    /// What can be set; first what the comparison searches for the best of.
     pub parameters: &'static [Parameter],
     plane: Maker<2>,
     space: Maker<3>,
@@ -54,22 +60,7 @@ pub enum Knows {
 }
 
 /// Makes a controller from a setup and the values of its parameters.
-type Maker<const N: usize> = fn(&mut Setup<'_>, &[f64]) -> Box<dyn Controller<N>>;
-
-/// Something that can be tuned.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Parameter {
-    /// Name, with its unit at the end.
-    pub name: &'static str,
-    /// Range in which values make sense; searched by ratios where it begins above zero.
-    pub range: [f64; 2],
-    /// Value where none is given.
-    pub default: f64,
-}
-
-const fn parameter(name: &'static str, range: [f64; 2], default: f64) -> Parameter {
-    Parameter { name, range, default }
-}
+type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N>>;
 
 /// A row from a function of `make` that is generic over the number of axes.
 macro_rules! entry {
@@ -88,17 +79,113 @@ macro_rules! entry {
 }
 
 // Of those that invert the paper's identifier.
-const RHO: Parameter = parameter("rho", [1e-5, 0.1], Inverting::DEFAULT.inversion.rho);
-const ETA: Parameter = parameter("eta", [1e-3, 10.0], Inverting::DEFAULT.inversion.eta);
-// Of the horizon, solved to convergence.
-const RATE_WEIGHT: Parameter =
-    parameter("rate_weight_s2", [1e-11, 1e-4], receding_horizon::Settings::DEFAULT.horizon.rate_weight);
+const RHO: Parameter = number(
+    "rho",
+    Inverting::DEFAULT.inversion.rho,
+    [0.0, 0.1],
+    Some([1e-5, 0.1]),
+    "weight of the machining time against the error: 0 looks at the error alone, more is faster and less accurate",
+);
+const ETA: Parameter = number(
+    "eta",
+    Inverting::DEFAULT.inversion.eta,
+    [0.0, 10.0],
+    Some([1e-3, 10.0]),
+    "length of a gradient step: 0 inverts nothing; the paper takes 0.3",
+);
+const INVERSION_STEPS: Parameter =
+    whole("steps", Inverting::DEFAULT.inversion.steps, [1.0, 20.0], "gradient steps in a tick: the paper allows 5");
+const INVERSION_KNOTS: Parameter = whole(
+    "knots",
+    Inverting::DEFAULT.knots,
+    [1.0, 20.0],
+    "knots that are inverted together: 1 is the paper's; with the printed gradient more change nothing",
+);
+const INVERSION_PERIOD_S: Parameter =
+    number("feed_period_s", make::INVERSION_PERIOD_S, [1e-3, 0.012], None, "time between decisions: the paper's 10 ms");
+const LEARNING_STEP: Parameter = number(
+    "learning_step",
+    Inverting::DEFAULT.learning_step,
+    [0.0, 0.5],
+    None,
+    "step of back-propagation while cutting: 0 keeps what was trained, large ones forget it",
+);
+// Of those that plan over a horizon.
+const RATE_WEIGHT: Parameter = number(
+    "rate_weight_s2",
+    Horizon::DEFAULT.horizon.rate_weight,
+    [0.0, 0.01],
+    None,
+    "weight of the speed of the offset: below 1e-10 the plan rings from knot to knot, above 1e-4 nothing is corrected",
+);
+const KNOTS: Parameter = whole(
+    "knots",
+    Horizon::DEFAULT.horizon.knots,
+    [1.0, MOST_KNOTS as f64],
+    "knots of the horizon: fewer take less time in a tick, and see less of a corner ahead",
+);
+const PLAN_PERIOD_S: Parameter = number(
+    "feed_period_s",
+    receding_horizon::FEED_PERIOD_S,
+    [1e-3, 0.012],
+    None,
+    "time between decisions: 2 ms is worse on a soft ball screw, 5 ms at every reversal",
+);
+const CHANGE_WEIGHT: Parameter = number(
+    "change_weight_s2",
+    Horizon::DEFAULT.horizon.change_weight,
+    [0.0, 0.01],
+    None,
+    "weight of the change of that speed from knot to knot: more is smoother, and blunter at corners",
+);
+const TANGENTIAL_WEIGHT: Parameter = number(
+    "tangential_weight",
+    Horizon::DEFAULT.horizon.tangential_weight,
+    [0.0, 1.0],
+    None,
+    "weight of an error along the path: small leaves room at a corner, large keeps the tool from staying behind",
+);
+const LAST_WEIGHT: Parameter = number(
+    "last_weight",
+    Horizon::DEFAULT.horizon.last_weight,
+    [0.0, 1.0],
+    None,
+    "the same at the end of the horizon, at the least: where it is small, the tool swings about turns that are not seen yet",
+);
+const SURE_MM: Parameter = number(
+    "sure_mm",
+    Horizon::DEFAULT.sure_mm,
+    [1e-6, 1.0],
+    None,
+    "innovations of this size make the plan half as sharp: small is gentle, large builds on predictions that miss",
+);
+const FORESEEN_MM: Parameter = number(
+    "foreseen_mm",
+    Horizon::DEFAULT.foreseen_mm,
+    [1e-4, 10.0],
+    None,
+    "a miss by this some knots ahead makes the offset count as much as an error: large trusts a model that is wrong",
+);
+const SOLVER_STEPS: Parameter = whole(
+    "steps",
+    Horizon::DEFAULT.steps,
+    [1.0, 20.0],
+    "steps of the solver in a tick: further ones hardly change anything",
+);
+const ON_RAPIDS: Parameter =
+    switch("on_rapids", Horizon::DEFAULT.horizon.on_rapids, "whether rapids are corrected as cuts are");
 // Parts of what the exact model calls for, and scales of its parameters.
-const VELOCITY_GAIN: Parameter = parameter("velocity_gain", [0.5, 1.5], Gains::EXACT.velocity);
-const ACCELERATION_GAIN: Parameter = parameter("acceleration_gain", [0.0, 2.0], Gains::EXACT.acceleration);
-const FRICTION_GAIN: Parameter = parameter("friction_gain", [0.0, 2.0], Gains::EXACT.friction);
-const LAG_SCALE: Parameter = parameter("lag_scale", [0.5, 1.5], 1.0);
-const INERTIA_SCALE: Parameter = parameter("inertia_scale", [0.5, 2.0], 1.0);
+const VELOCITY_GAIN: Parameter =
+    number("velocity_gain", Gains::EXACT.velocity, [0.0, 10.0], Some([0.5, 1.5]), EXACT_REASON);
+const ACCELERATION_GAIN: Parameter =
+    number("acceleration_gain", Gains::EXACT.acceleration, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
+const FRICTION_GAIN: Parameter =
+    number("friction_gain", Gains::EXACT.friction, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
+const LAG_SCALE: Parameter = number("lag_scale", 1.0, [0.1, 10.0], Some([0.5, 1.5]), EXACT_REASON);
+const INERTIA_SCALE: Parameter = number("inertia_scale", 1.0, [0.01, 10.0], Some([0.5, 2.0]), EXACT_REASON);
+const CROSS_COUPLED_REASON: &str =
+    "gain of the contour error: more corrects more; beyond 8, 400 1/s and 0.03 s the tool is caught in acute corners";
+const EXACT_REASON: &str = "1 is what the exact model calls for; another makes up for a model that is not exact";
 
 /// All controllers.
 pub const CONTROLLERS: &[Entry] = &[
@@ -119,9 +206,9 @@ pub const CONTROLLERS: &[Entry] = &[
         laps: 1,
         // Beyond these gains the loop is still stable on smooth paths, but catches the tool in acute corners.
         [
-            parameter("kp", [0.1, 8.0], cross_coupled::Settings::DEFAULT.kp),
-            parameter("ki_1_s", [1.0, 400.0], cross_coupled::Settings::DEFAULT.ki_1_s),
-            parameter("kd_s", [1e-4, 0.03], cross_coupled::Settings::DEFAULT.kd_s)
+            number("kp", cross_coupled::Settings::DEFAULT.kp, [0.0, 100.0], Some([0.1, 8.0]), CROSS_COUPLED_REASON),
+            number("ki_1_s", cross_coupled::Settings::DEFAULT.ki_1_s, [0.0, 1e5], Some([1.0, 400.0]), CROSS_COUPLED_REASON),
+            number("kd_s", cross_coupled::Settings::DEFAULT.kd_s, [0.0, 1.0], Some([1e-4, 0.03]), CROSS_COUPLED_REASON)
         ],
         cross_coupled
     ),
@@ -132,8 +219,20 @@ pub const CONTROLLERS: &[Entry] = &[
         Nothing,
         laps: 1,
         [
-            parameter("rate_1_s", [1.0, 300.0], contour_compensation::Settings::DEFAULT.rate_1_s),
-            parameter("filter_s", [1e-4, 0.1], contour_compensation::Settings::DEFAULT.filter_s)
+            number(
+                "rate_1_s",
+                contour_compensation::Settings::DEFAULT.rate_1_s,
+                [0.0, 1e4],
+                Some([1.0, 300.0]),
+                "how fast the reference follows the error: small is late, large swings"
+            ),
+            number(
+                "filter_s",
+                contour_compensation::Settings::DEFAULT.filter_s,
+                [1e-5, 10.0],
+                Some([1e-4, 0.1]),
+                "time constant of the filter on the error: long takes out noise, and is late"
+            )
         ],
         contour_compensation
     ),
@@ -144,9 +243,27 @@ pub const CONTROLLERS: &[Entry] = &[
         Nothing,
         laps: 1,
         [
-            parameter("error_mm", [0.002, 0.2], fuzzy_feedrate::Settings::DEFAULT.error_mm),
-            parameter("change_mm_s", [0.05, 20.0], fuzzy_feedrate::Settings::DEFAULT.change_mm_s),
-            parameter("slowest", [0.2, 1.0], fuzzy_feedrate::Settings::DEFAULT.slowest)
+            number(
+                "error_mm",
+                fuzzy_feedrate::Settings::DEFAULT.error_mm,
+                [1e-4, 10.0],
+                Some([0.002, 0.2]),
+                "contour error that counts as large: small slows down for every error, large for none"
+            ),
+            number(
+                "change_mm_s",
+                fuzzy_feedrate::Settings::DEFAULT.change_mm_s,
+                [1e-3, 1e3],
+                Some([0.05, 20.0]),
+                "change of the error that counts as large"
+            ),
+            number(
+                "slowest",
+                fuzzy_feedrate::Settings::DEFAULT.slowest,
+                [0.05, 1.0],
+                Some([0.2, 1.0]),
+                "slowest it may run, as a part of the planned feedrate"
+            )
         ],
         fuzzy_feedrate
     ),
@@ -174,7 +291,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Lam, Manzie and Good (2010)",
         ExactModel,
         laps: 1,
-        [RATE_WEIGHT],
+        [Parameter { searched: Some([1e-11, 1e-4]), ..RATE_WEIGHT }, KNOTS, PLAN_PERIOD_S],
         model_predictive
     ),
     entry!(
@@ -210,7 +327,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Yoon and Jeon (2000)",
         Identified,
         laps: 1,
-        [RHO, ETA],
+        [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
         magnitude_only
     ),
     entry!(
@@ -219,7 +336,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Lee, Cho and Jeon (2005)",
         Identified,
         laps: 1,
-        [RHO, ETA],
+        [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
         two_dimensional
     ),
     entry!(
@@ -228,7 +345,18 @@ pub const CONTROLLERS: &[Entry] = &[
         "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
         Identified,
         laps: 1,
-        [],
+        [
+            KNOTS,
+            PLAN_PERIOD_S,
+            RATE_WEIGHT,
+            CHANGE_WEIGHT,
+            TANGENTIAL_WEIGHT,
+            LAST_WEIGHT,
+            SURE_MM,
+            FORESEEN_MM,
+            SOLVER_STEPS,
+            ON_RAPIDS
+        ],
         receding_horizon
     ),
 ];
@@ -238,17 +366,13 @@ pub const BEST: &str = "receding-horizon";
 /// What others are compared against.
 pub const BASELINE: &str = "open-loop";
 
-/// What a user can set; `None` is the controller's own default.
+/// What a user can choose.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Choices {
-    /// Weight of the machining time.
-    pub rho: Option<f64>,
     /// Seed of the training.
     pub seed: u64,
-    /// Whether rapid motions are corrected as cuts are, by a controller that tells them apart.
-    pub on_rapids: bool,
-    /// Values of the controller's parameters in the order of [`Entry::parameters`]; all defaults where it is empty.
-    pub values: Vec<f64>,
+    /// Parameters that were set, of any controller; the last of the same counts.
+    pub set: Vec<Setting>,
 }
 
 /// What a controller is made from.
@@ -267,10 +391,9 @@ impl Entry {
         CONTROLLERS.iter().find(|entry| entry.name == name)
     }
 
-    /// The values of the parameters that the choices come to.
-    fn values(&self, choices: &Choices) -> Vec<f64> {
-        let defaults = self.parameters.iter().map(|parameter| parameter.default);
-        defaults.enumerate().map(|(i, default)| choices.values.get(i).copied().unwrap_or(default)).collect()
+    /// The parameters that the comparison searches for the best of, with the ranges.
+    pub fn searched(&self) -> impl Iterator<Item = (&'static Parameter, [f64; 2])> + use<> {
+        self.parameters.iter().filter_map(|parameter| Some((parameter, parameter.searched?)))
     }
 
     /// The name that was probably meant by one that is none.
@@ -288,13 +411,13 @@ pub trait Make<const N: usize> {
 
 impl Make<2> for Entry {
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
-        (self.plane)(setup, &self.values(setup.choices))
+        (self.plane)(setup, &Values::of(self, &setup.choices.set))
     }
 }
 
 impl Make<3> for Entry {
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
-        (self.space)(setup, &self.values(setup.choices))
+        (self.space)(setup, &Values::of(self, &setup.choices.set))
     }
 }
 

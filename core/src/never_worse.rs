@@ -30,7 +30,7 @@ use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use crate::controllers::Entry;
+use crate::controllers::{Entry, Setting};
 use crate::machine::Machine;
 use cut::{Cutter, Row};
 use journal::Journal;
@@ -46,10 +46,12 @@ pub struct Job {
 }
 
 /// What the jobs have in common.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct Options {
     /// The controller that is held against open loop.
     pub controller: &'static Entry,
+    /// Its parameters that are set.
+    pub set: Vec<Setting>,
     /// Seed of its training.
     pub seed: u64,
     /// Threads.

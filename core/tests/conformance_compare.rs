@@ -18,6 +18,7 @@ fn options() -> Options {
         controllers: vec![named(BASELINE), named("contour-compensation"), named("iterative-learning-3"), named(BEST)],
         seed: 7,
         tuning: Tuning::Defaults,
+        set: Vec::new(),
         at_tolerance: false,
     }
 }
@@ -84,11 +85,16 @@ fn rows_are_complete_and_ratios_are_against_open_loop() {
 }
 
 #[test]
-fn every_default_lies_in_its_range() {
+fn every_default_lies_in_its_ranges_and_what_is_searched_in_what_is_allowed() {
     for entry in CONTROLLERS {
         for parameter in entry.parameters {
-            let [low, high] = parameter.range;
-            assert!((low..=high).contains(&parameter.default), "{}: {parameter:?}", entry.name);
+            for [low, high] in [Some(parameter.allowed), parameter.searched].into_iter().flatten() {
+                assert!((low..=high).contains(&parameter.default), "{}: {parameter:?}", entry.name);
+            }
+            if let Some(searched) = parameter.searched {
+                let [least, most] = parameter.allowed;
+                assert!(searched.iter().all(|value| (least..=most).contains(value)), "{}: {parameter:?}", entry.name);
+            }
         }
     }
 }

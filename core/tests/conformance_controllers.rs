@@ -4,7 +4,7 @@
 
 use std::sync::OnceLock;
 
-use feedwright::controllers::{CONTROLLERS, Choices, Make, Setup};
+use feedwright::controllers::{CONTROLLERS, Choices, Entry, Make, Setting, Setup};
 use feedwright::machine::Machine;
 use feedwright_control::safety::Bounds;
 use feedwright_control::{Controller, Knot, Reference, Tick};
@@ -14,13 +14,34 @@ const MAX_DEVIATION_MM: f64 = 0.2;
 /// By how much the circle bulges between two reference knots, which is how well the safety layer knows it, mm.
 const SAGITTA_MM: f64 = 0.05 * 0.05 / (8.0 * 10.0);
 
+/// By how much the way of an offset that accelerates, by 400 mm/s^2 in a feed period of 12 ms at the most, is bent between decisions, mm:
+/// A T^2 / 8.
+const BEND_MM: f64 = 400.0 * 0.012 * 0.012 / 8.0;
+
+/// Parameters that change nothing of one lap of a circle in one cut: there are no rapids, nothing is learned from a lap before, the
+/// printed gradient corrects each knot for itself, and of a tool that moves as no servo does the predictions miss as much as is of account.
+const SILENT_HERE: &[(&str, &str)] = &[
+    ("receding-horizon", "on_rapids"),
+    ("receding-horizon", "foreseen_mm"),
+    ("two-dimensional", "knots"),
+    ("iterative-learning-1", "gain"),
+    ("iterative-learning-1", "lead_s"),
+    ("iterative-learning-1", "cut-off_hz"),
+    ("iterative-learning-3", "gain"),
+    ("iterative-learning-3", "lead_s"),
+    ("iterative-learning-3", "cut-off_hz"),
+    ("iterative-learning-10", "gain"),
+    ("iterative-learning-10", "lead_s"),
+    ("iterative-learning-10", "cut-off_hz"),
+];
+
 /// The circle of eq. 11 at 50 mm/s, in the first two axes.
 struct Circle;
 
 impl<const N: usize> Reference<N> for Circle {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
         let (sin, cos) = (5.0 * tau_s).sin_cos();
-        let mut knot = Knot { feed_mm_s: 50.0, ..Knot::REST };
+        let mut knot = Knot { feed_mm_s: 50.0, cutting: true, ..Knot::REST };
         (knot.position_mm[0], knot.position_mm[1]) = (10.0 * (1.0 - cos), 10.0 * sin);
         (knot.tangent[0], knot.tangent[1]) = (sin, cos);
         knot
@@ -94,6 +115,38 @@ fn the_same_input_gives_the_same_bits_after_a_reset() {
         assert_eq!(first, second, "{name}");
     }
     for_every_controller!(check);
+}
+
+#[test]
+fn every_parameter_acts_and_at_both_ends_the_command_stays_within_the_limits() {
+    let made = |entry: &'static Entry, set: Vec<Setting>| {
+        let choices = Choices { set, ..Choices::default() };
+        let mut setup = Setup { machine: machine(), choices: &choices, progress: &mut |_| {} };
+        let swaying = |n: u32, lagging: [f64; 2]| [lagging[0] + 0.02 * (0.02 * f64::from(n)).sin(), lagging[1]];
+        commands::<2>(&mut Circle, &mut *Make::<2>::make(entry, &mut setup), swaying)
+    };
+    let mut wrong = Vec::new();
+    for entry in CONTROLLERS {
+        let default = made(entry, Vec::new());
+        for parameter in entry.parameters {
+            let at = |value| made(entry, vec![Setting { controller: entry.name, name: parameter.name, value }]);
+            let ends = parameter.allowed.map(at);
+            for command in ends.iter().flatten() {
+                let beside = (command[0] - 10.0).hypot(command[1]) - 10.0;
+                assert!(
+                    beside.abs() <= MAX_DEVIATION_MM + SAGITTA_MM + BEND_MM,
+                    "{} {parameter:?}: {beside}",
+                    entry.name
+                );
+            }
+            let acts = ends.iter().any(|commands| *commands != default);
+            let silent = SILENT_HERE.contains(&(entry.name, parameter.name));
+            if acts == silent {
+                wrong.push((entry.name, parameter.name, acts));
+            }
+        }
+    }
+    assert_eq!(wrong, [], "name, parameter, and whether it changes anything");
 }
 
 #[test]

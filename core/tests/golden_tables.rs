@@ -76,6 +76,7 @@ fn the_kept_comparison_is_what_the_program_makes() {
         controllers: controllers.iter().map(|name| Entry::find(name).unwrap()).collect(),
         seed: kept.seed,
         tuning: Tuning::Known(kept.tuned.clone()),
+        set: Vec::new(),
         at_tolerance: false,
     };
     let made = compare(&options, &Journal::none(), &()).unwrap();

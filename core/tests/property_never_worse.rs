@@ -29,7 +29,7 @@ const KNOWN: &str = "helix-836152549";
 const TRIALS: u32 = 60;
 
 fn options() -> Options {
-    Options { controller: Entry::find(BEST).unwrap(), seed: 1, threads: 1 }
+    Options { controller: Entry::find(BEST).unwrap(), set: Vec::new(), seed: 1, threads: 1 }
 }
 
 fn told(row: &Row) -> String {

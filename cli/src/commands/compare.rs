@@ -15,6 +15,7 @@ use feedwright::output::OutputFile;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use crate::args::CompareArgs;
+use crate::controllers;
 use crate::message::printed;
 use crate::progress::Bar;
 
@@ -102,12 +103,14 @@ fn options(args: &CompareArgs) -> Result<Options> {
             None => machines.push(machine),
         }
     }
+    let set = controllers::settings(&args.set, None, &controllers)?;
     Ok(Options {
         workpieces,
         machines,
         controllers,
         seed: args.seed,
         tuning: if args.no_tuning { Tuning::Defaults } else { Tuning::Search },
+        set,
         at_tolerance: args.at_tolerance,
     })
 }

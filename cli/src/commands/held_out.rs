@@ -30,7 +30,7 @@ pub(crate) fn run(args: &HeldOutArgs, quiet: bool) -> Result<ExitCode> {
     let generated = draw(args.drawn_by, args.count, args.programs.into(), class)?;
     eprintln!("{} cuts drawn by seed {}, {} programs for each machine", args.count, args.drawn_by, args.programs);
     let jobs: Vec<Job> = generated.iter().map(|made| made.job.clone()).collect();
-    let options = sweep.options;
+    let options = sweep.options.clone();
     let done = sweep.run(&jobs, quiet)?;
     let printing = done.print(&mut std::io::stdout().lock());
     if let Some(folder) = &args.failures {

@@ -3,10 +3,11 @@
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use feedwright::controllers::{BEST, CONTROLLERS};
+use feedwright::controllers::{BEST, CONTROLLERS, Knows};
 use feedwright::machine::{BUILT_IN, Machine};
 use miette::Result;
 
+use crate::controllers;
 use crate::message::printed;
 
 pub(crate) fn machines() -> Result<ExitCode> {
@@ -25,6 +26,35 @@ pub(crate) fn controllers() -> Result<ExitCode> {
         lines += &format!("{:<18} {}; {}{best}\n", entry.name, entry.summary, entry.source);
     }
     print(&lines)
+}
+
+pub(crate) fn controller(name: &str) -> Result<ExitCode> {
+    let entry = controllers::find(name)?;
+    let knows = match entry.knows {
+        Knows::Nothing => "nothing",
+        Knows::Identified => "what was identified from a recording",
+        Knows::ExactModel => "the parameters of its model",
+        Knows::EarlierLaps => "what went wrong in earlier laps of the same part",
+    };
+    let mut lines =
+        format!("{}: {}\nsource: {}\nknows of the machine: {knows}\n", entry.name, entry.summary, entry.source);
+    if entry.laps > 1 {
+        lines += &format!("laps of the part: {}, all but the last are practice\n", entry.laps);
+    }
+    if !entry.parameters.is_empty() {
+        lines += "\nparameters, for --set NAME=VALUE:\n";
+    }
+    for parameter in entry.parameters {
+        let default = shown(parameter.default);
+        lines +=
+            &format!("\n{} = {default}, allowed {}\n    {}\n", parameter.name, parameter.range(), parameter.reason);
+    }
+    print(&lines)
+}
+
+/// A number without a row of zeros.
+fn shown(value: f64) -> String {
+    if value != 0.0 && value.abs() < 1e-3 { format!("{value:e}") } else { format!("{value}") }
 }
 
 fn print(lines: &str) -> Result<ExitCode> {

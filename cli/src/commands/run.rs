@@ -4,13 +4,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use feedwright::controllers::{CONTROLLERS, Choices, Entry};
+use feedwright::controllers::Choices;
 use feedwright::machine::{self, Machine};
 use feedwright::pipeline::{self, Job, Outcome, Outputs};
 use feedwright::report::{Outcome as Ending, RunSummary};
-use miette::{Result, miette};
+use miette::Result;
 
 use crate::args::RunArgs;
+use crate::controllers::{find, settings};
 use crate::message::{OUT_OF_TOLERANCE, printed, warn};
 use crate::progress::Bar;
 
@@ -29,12 +30,14 @@ pub(crate) fn run(args: RunArgs, quiet: bool) -> Result<ExitCode> {
 
 fn job(args: RunArgs) -> Result<Job> {
     let report = args.report.unwrap_or_else(|| report_of(&args.part));
+    let (controller, against) = (find(&args.controller)?, find(&args.against)?);
+    let set = settings(&args.set, Some(controller), &[controller, against])?;
     Ok(Job {
         machine: Machine::load(&args.machine)?,
-        controller: find(&args.controller)?,
-        against: find(&args.against)?,
+        controller,
+        against,
         feed_mm_s: args.feed,
-        choices: Choices { rho: args.rho, seed: args.seed, ..Choices::default() },
+        choices: Choices { seed: args.seed, set },
         tolerance_um: args.tolerance,
         reader: args.reader.settings()?,
         inputs: Some(PathBuf::from(args.machine))
@@ -52,18 +55,6 @@ fn report_of(part: &Path) -> PathBuf {
     let mut name = part.file_stem().unwrap_or_default().to_owned();
     name.push(".report.html");
     PathBuf::from(name)
-}
-
-fn find(name: &str) -> Result<&'static Entry> {
-    Entry::find(name).ok_or_else(|| {
-        let names: Vec<&str> = CONTROLLERS.iter().map(|entry| entry.name).collect();
-        let meant = Entry::meant_by(name).map_or(String::new(), |meant| format!("did you mean '{meant}'? "));
-        miette!(
-            help = format!("{meant}'feedwright controllers' says what each does"),
-            "no controller is called '{name}'; there are {}",
-            names.join(", ")
-        )
-    })
 }
 
 /// A ratio for the table; a dash where there is none, as after a run that diverged at once.

@@ -25,8 +25,8 @@ impl Maker<'_> {
     pub(super) fn make(&self, machine: &Machine) -> Box<dyn Controller<2>> {
         let entry = self.competitor.entry;
         let values = self.tuned.iter().find(|tuned| tuned.controller == entry.name);
-        let choices =
-            Choices { seed: self.seed, values: values.map_or(Vec::new(), Tuned::values), ..Choices::default() };
+        let set = values.map_or(Vec::new(), |tuned| tuned.settings(entry));
+        let choices = Choices { seed: self.seed, set };
         // What a controller believes of the machine: the periods of the control are never a secret.
         let known = if self.competitor.at_home { machine } else { self.nominal };
         let known = Machine { period: machine.period, ..known.clone() };

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cut::{Cut, cut};
 use super::{TUNING_CONTOUR, Workpiece};
-use crate::controllers::{BASELINE, Choices, Entry, Make, Parameter, Setup};
+use crate::controllers::{BASELINE, Choices, Entry, Make, Parameter, Setting, Setup};
 use crate::feed::LimitsError;
 use crate::machine::Machine;
 
@@ -43,13 +43,29 @@ pub struct Tuned {
 impl Tuned {
     /// The defaults.
     pub fn defaults(entry: &Entry) -> Self {
-        let values = entry.parameters.iter().map(|p| (p.name.to_owned(), p.default)).collect();
+        let values = entry.searched().map(|(p, _)| (p.name.to_owned(), p.default)).collect();
         Self { controller: entry.name.to_owned(), values, cuts: 0, rms_um: 0.0 }
     }
 
-    /// The values alone.
-    pub fn values(&self) -> Vec<f64> {
-        self.values.iter().map(|(_, value)| *value).collect()
+    /// The defaults with what is set.
+    pub fn set(entry: &Entry, set: &[Setting]) -> Self {
+        let mut tuned = Self::defaults(entry);
+        for set in set.iter().filter(|set| set.controller == entry.name) {
+            match tuned.values.iter_mut().find(|(name, _)| name == set.name) {
+                Some((_, value)) => *value = set.value,
+                None => tuned.values.push((set.name.to_owned(), set.value)),
+            }
+        }
+        tuned
+    }
+
+    /// The values as they are set.
+    pub fn settings(&self, entry: &'static Entry) -> Vec<Setting> {
+        let named = |name: &str| entry.parameters.iter().find(|parameter| parameter.name == name);
+        let setting = |(name, value): &(String, f64)| {
+            Some(Setting { controller: entry.name, name: named(name)?.name, value: *value })
+        };
+        self.values.iter().filter_map(setting).collect()
     }
 
     /// Names and values in words, to four digits.
@@ -97,8 +113,8 @@ struct Point {
 
 impl Trial<'_> {
     fn search(&self) -> Result<Tuned, LimitsError> {
-        let parameters = self.entry.parameters;
-        let default: Vec<f64> = parameters.iter().map(place_of_default).collect();
+        let parameters: Vec<_> = self.entry.searched().collect();
+        let default: Vec<f64> = parameters.iter().map(|(parameter, range)| place(*range, parameter.default)).collect();
         let scattered = (1..=SCATTERED * parameters.len()).map(|i| halton(i, parameters.len()));
         let mut points = self.costs(std::iter::once(default).chain(scattered).collect())?;
         let mut cuts = points.len() as u64;
@@ -119,7 +135,7 @@ impl Trial<'_> {
         }
         let values = self.values(&best.place);
         let rms_um = self.cut(&values)?.statistics.rms_um();
-        let values = parameters.iter().zip(values).map(|(p, value)| (p.name.to_owned(), value)).collect();
+        let values = parameters.iter().zip(values).map(|((p, _), value)| (p.name.to_owned(), value)).collect();
         Ok(Tuned { controller: self.entry.name.to_owned(), values, cuts, rms_um })
     }
 
@@ -134,26 +150,29 @@ impl Trial<'_> {
     }
 
     fn cut(&self, values: &[f64]) -> Result<Cut, LimitsError> {
-        let choices = Choices { seed: self.seed, values: values.to_vec(), ..Choices::default() };
+        let setting = |((p, _), value): ((&'static Parameter, _), &f64)| Setting {
+            controller: self.entry.name,
+            name: p.name,
+            value: *value,
+        };
+        let choices = Choices { seed: self.seed, set: self.entry.searched().zip(values).map(setting).collect() };
         let mut setup = Setup { machine: self.machine, choices: &choices, progress: &mut |_| {} };
         let mut controller = Make::<2>::make(self.entry, &mut setup);
         cut(self.workpiece, self.machine, &mut *controller, self.entry.laps, &mut [])
     }
 
     fn values(&self, place: &[f64]) -> Vec<f64> {
-        self.entry.parameters.iter().zip(place).map(|(parameter, &at)| value_at(parameter, at)).collect()
+        self.entry.searched().zip(place).map(|((_, range), &at)| value_at(range, at)).collect()
     }
 }
 
-/// The value at a place from 0 to 1 of the range.
-fn value_at(parameter: &Parameter, at: f64) -> f64 {
-    let [low, high] = parameter.range;
+/// The value at a place from 0 to 1 of a range.
+fn value_at([low, high]: [f64; 2], at: f64) -> f64 {
     if low > 0.0 { low * (high / low).powf(at) } else { low + at * (high - low) }
 }
 
-fn place_of_default(parameter: &Parameter) -> f64 {
-    let [low, high] = parameter.range;
-    let value = parameter.default;
+/// The place of a value.
+fn place([low, high]: [f64; 2], value: f64) -> f64 {
     if low > 0.0 { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
 }
 
@@ -192,13 +211,10 @@ mod tests {
 
     #[test]
     fn places_and_values_are_each_others_inverse() {
-        for parameter in [
-            Parameter { name: "ratio", range: [1e-3, 10.0], default: 0.2 },
-            Parameter { name: "difference", range: [0.0, 4.0], default: 1.0 },
-        ] {
-            let value = value_at(&parameter, place_of_default(&parameter));
-            assert!((value - parameter.default).abs() < 1e-12, "{value}");
-            assert_eq!([value_at(&parameter, 0.0), value_at(&parameter, 1.0)], parameter.range);
+        for (range, wanted) in [([1e-3, 10.0], 0.2), ([0.0, 4.0], 1.0)] {
+            let value = value_at(range, place(range, wanted));
+            assert!((value - wanted).abs() < 1e-12, "{value}");
+            assert_eq!([value_at(range, 0.0), value_at(range, 1.0)], range);
         }
     }
 
@@ -222,7 +238,7 @@ mod tests {
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let entry = Entry::find("magnitude-only").unwrap();
         let tuned = search(entry, &machine, 1).unwrap();
-        assert!(tuned.cuts > 20 && tuned.values.len() == entry.parameters.len(), "{tuned:?}");
+        assert!(tuned.cuts > 20 && tuned.values.len() == entry.searched().count(), "{tuned:?}");
         assert_eq!(tuned, search(entry, &machine, 1).unwrap());
     }
 }

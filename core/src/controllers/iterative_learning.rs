@@ -22,14 +22,32 @@
 use feedwright_control::vector::{add_scaled, norm};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
-use super::{Parameter, parameter};
+use super::parameters::{Parameter, number};
 
 /// Part of the error that a lap takes up.
-pub const GAIN: Parameter = parameter("gain", [0.1, 1.5], Settings::DEFAULT.gain);
+pub const GAIN: Parameter = number(
+    "gain",
+    Settings::DEFAULT.gain,
+    [0.0, 2.0],
+    Some([0.1, 1.5]),
+    "part of the error that a lap takes up: 0 learns nothing, 2 swings from lap to lap",
+);
 /// Time by which an offset comes before the error that it is for.
-pub const LEAD_S: Parameter = parameter("lead_s", [0.005, 0.05], Settings::DEFAULT.lead_s);
+pub const LEAD_S: Parameter = number(
+    "lead_s",
+    Settings::DEFAULT.lead_s,
+    [0.0, 0.5],
+    Some([0.005, 0.05]),
+    "time by which an offset comes before the error that it is for: the lag of the loop",
+);
 /// Cut-off of Q.
-pub const CUT_OFF_HZ: Parameter = parameter("cut-off_hz", [2.0, 100.0], Settings::DEFAULT.cut_off_hz);
+pub const CUT_OFF_HZ: Parameter = number(
+    "cut-off_hz",
+    Settings::DEFAULT.cut_off_hz,
+    [0.1, 1e4],
+    Some([2.0, 100.0]),
+    "frequency above which nothing is learned: beyond the bandwidth of the loop, learning grows noise",
+);
 
 /// The end of a program is followed until the tool has arrived; its errors are learned for as long, s.
 const ARRIVAL_S: f64 = 0.25;

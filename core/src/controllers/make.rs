@@ -1,5 +1,5 @@
 //! How each controller of the table is made for a machine: one function for each row, or for several that differ in their
-//! laps alone. `values` are those of the row's parameters, in its order.
+//! laps alone.
 
 use std::f64::consts::TAU;
 
@@ -18,35 +18,44 @@ use feedwright_control::{Controller, horizon, inversion};
 use super::Setup;
 use super::iterative_learning::{self, IterativeLearning};
 use super::model_predictive::{self, ModelPredictive};
+use super::parameters::Values;
 use crate::identify::cache::identified;
 use crate::identify::contour::{Identified, Training};
 use crate::identify::{Programme, servo};
 use crate::machine::{Axis, Machine, Period};
 
-pub(super) fn open_loop<const N: usize>(_: &mut Setup<'_>, _: &[f64]) -> Box<dyn Controller<N>> {
+/// The feed period of the paper, s.
+pub(super) const INVERSION_PERIOD_S: f64 = inverting::FEED_PERIOD_S;
+
+pub(super) fn open_loop<const N: usize>(_: &mut Setup<'_>, _: &Values) -> Box<dyn Controller<N>> {
     Box::new(OpenLoop)
 }
 
-pub(super) fn cross_coupled<const N: usize>(_: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    Box::new(CrossCoupled::new(cross_coupled::Settings { kp: values[0], ki_1_s: values[1], kd_s: values[2] }))
+pub(super) fn cross_coupled<const N: usize>(_: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    Box::new(CrossCoupled::new(cross_coupled::Settings {
+        kp: values.number("kp"),
+        ki_1_s: values.number("ki_1_s"),
+        kd_s: values.number("kd_s"),
+    }))
 }
 
-pub(super) fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let settings = contour_compensation::Settings { rate_1_s: values[0], filter_s: values[1] };
+pub(super) fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let settings =
+        contour_compensation::Settings { rate_1_s: values.number("rate_1_s"), filter_s: values.number("filter_s") };
     Box::new(ContourCompensation::new(settings))
 }
 
-pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     Box::new(FuzzyFeedrate::new(fuzzy_feedrate::Settings {
         servo_periods: setup.machine.period.servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
-        error_mm: values[0],
-        change_mm_s: values[1],
-        slowest: values[2],
+        error_mm: values.number("error_mm"),
+        change_mm_s: values.number("change_mm_s"),
+        slowest: values.number("slowest"),
         acceleration_mm_s2: setup.machine.limits.tangential_accel_mm_s2,
     }))
 }
 
-pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let Period { servo_s, mechanics_s, .. } = setup.machine.period;
     let axes = axes(setup.machine).map(|axis| AxisModel {
         rad_per_mm: TAU / axis.lead_mm_per_rev,
@@ -60,12 +69,16 @@ pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &[f64])
         coulomb_friction_nm: axis.coulomb_friction_nm,
         coulomb_smoothing_rad_s: axis.coulomb_smoothing_rad_s,
     });
-    let gains = Gains { velocity: values[0], acceleration: values[1], friction: values[2] };
+    let gains = Gains {
+        velocity: values.number("velocity_gain"),
+        acceleration: values.number("acceleration_gain"),
+        friction: values.number("friction_gain"),
+    };
     Box::new(Feedforward::new(axes, gains, servo_s))
 }
 
-pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
-    let [lag_scale, inertia_scale] = [values[0], values[1]];
+pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let [lag_scale, inertia_scale] = ["lag_scale", "inertia_scale"].map(|name| values.number(name));
     let sampled = axes(setup.machine).map(|axis| {
         let inertia_kg_m2 = inertia_scale * axis.inertia_kg_m2;
         sampled(&Axis { kp_1_s: axis.kp_1_s / lag_scale, inertia_kg_m2, ..axis }, &setup.machine.period)
@@ -93,41 +106,51 @@ fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
     std::array::from_fn(|i| *machine.axis(i))
 }
 
-pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let receding_horizon::Settings { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
-    (horizon.knots, horizon.rate_weight) = (horizon::MOST_KNOTS, values[0]);
+    (horizon.knots, horizon.rate_weight) = (values.whole("knots"), values.number("rate_weight_s2"));
     horizon.limits = correction_limits(setup.machine);
-    let servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
+    let servo_periods = setup.machine.period.servo_periods(values.number("feed_period_s"));
     Box::new(ModelPredictive::new(setup.machine, model_predictive::Settings { servo_periods, horizon }))
 }
 
-pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let settings = iterative_learning::Settings {
-        gain: values[0],
-        lead_s: values[1],
-        cut_off_hz: values[2],
+        gain: values.number("gain"),
+        lead_s: values.number("lead_s"),
+        cut_off_hz: values.number("cut-off_hz"),
         ..iterative_learning::Settings::DEFAULT
     };
     Box::new(IterativeLearning::new(settings, setup.machine.period.servo_s))
 }
 
-pub(super) fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+pub(super) fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let mut settings = inverting(setup, values);
     settings.inversion.gradient = inversion::Gradient::Exact;
     Box::new(MagnitudeOnly::new(trained(setup).net, settings))
 }
 
-pub(super) fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &[f64]) -> Box<dyn Controller<N>> {
+pub(super) fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let settings = inverting(setup, values);
     Box::new(TwoDimensional::new(trained(setup).net, settings))
 }
 
-pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, _: &[f64]) -> Box<dyn Controller<N>> {
+pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
     let mut settings = receding_horizon::Settings::DEFAULT;
-    settings.servo_periods = setup.machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
-    settings.horizon.on_rapids = setup.choices.on_rapids;
-    settings.horizon.limits = correction_limits(setup.machine);
+    settings.servo_periods = setup.machine.period.servo_periods(values.number("feed_period_s"));
+    (settings.steps, settings.sure_mm, settings.foreseen_mm) =
+        (values.whole("steps"), values.number("sure_mm"), values.number("foreseen_mm"));
+    settings.horizon = horizon::Settings {
+        knots: values.whole("knots"),
+        rate_weight: values.number("rate_weight_s2"),
+        change_weight: values.number("change_weight_s2"),
+        tangential_weight: values.number("tangential_weight"),
+        last_weight: values.number("last_weight"),
+        on_rapids: values.is_on("on_rapids"),
+        limits: correction_limits(setup.machine),
+        ..settings.horizon
+    };
     let controller: RecedingHorizon<N> = RecedingHorizon::new(identified.net, &identified.spread, settings);
     Box::new(controller)
 }
@@ -150,10 +173,12 @@ pub fn correction_limits(machine: &Machine) -> horizon::Limits {
 }
 
 /// Settings of the controllers that invert the paper's identifier.
-fn inverting(setup: &Setup<'_>, values: &[f64]) -> inverting::Settings {
+fn inverting(setup: &Setup<'_>, values: &Values) -> inverting::Settings {
     let mut settings = inverting::Settings::DEFAULT;
-    settings.servo_periods = setup.machine.period.servo_periods(inverting::FEED_PERIOD_S);
-    (settings.inversion.rho, settings.inversion.eta) = (setup.choices.rho.unwrap_or(values[0]), values[1]);
+    settings.servo_periods = setup.machine.period.servo_periods(values.number("feed_period_s"));
+    (settings.knots, settings.learning_step) = (values.whole("knots"), values.number("learning_step"));
+    (settings.inversion.rho, settings.inversion.eta) = (values.number("rho"), values.number("eta"));
+    settings.inversion.steps = values.whole("steps");
     settings
 }
 

@@ -94,7 +94,7 @@ pub struct Cutter {
 impl Cutter {
     /// For a machine; nothing is identified yet.
     pub fn new(machine: &Arc<Machine>, options: &Options) -> Self {
-        Self { machine: machine.clone(), options: *options, plane: None, space: None }
+        Self { machine: machine.clone(), options: options.clone(), plane: None, space: None }
     }
 
     /// Whether it is for this machine.
@@ -124,7 +124,7 @@ where
     let entries = [base, options.controller];
     let done = catch_unwind(AssertUnwindSafe(|| {
         let controllers = pair.get_or_insert_with(|| {
-            let choices = Choices { seed: options.seed, ..Choices::default() };
+            let choices = Choices { seed: options.seed, set: options.set.clone() };
             entries.map(|entry| Make::make(entry, &mut Setup { machine, choices: &choices, progress: &mut |_| {} }))
         });
         std::array::from_fn(|i| one(machine, program, &mut *controllers[i], entries[i]))
@@ -166,7 +166,8 @@ mod tests {
         let machine = Arc::new(Machine::load("tnv40".as_ref()).expect("built in"));
         let length = Length { machine: &machine, limit_s: 10.0 };
         let program = Program::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length).expect("a program");
-        let options = Options { controller: Entry::find(BEST).expect("in the table"), seed: 1, threads: 1 };
+        let options =
+            Options { controller: Entry::find(BEST).expect("in the table"), set: Vec::new(), seed: 1, threads: 1 };
         let row = Cutter::new(&machine, &options).row(&program);
         assert!(row.rigid);
         assert!(row.corrected.rms_um < 0.1 * row.open_loop.rms_um, "{row:?}");

@@ -31,8 +31,13 @@ pub struct Journal {
 /// What a cut depends on, apart from the program that makes it.
 pub(super) fn key(job: &Job, options: &Options) -> String {
     let machine = serde_json::json!(*job.machine).to_string();
-    let Options { controller, seed, .. } = options;
-    key_of(&[job.program.key.as_bytes(), machine.as_bytes(), controller.name.as_bytes(), &seed.to_le_bytes()])
+    let Options { controller, set, seed, .. } = options;
+    let (seed, set_json) = (seed.to_le_bytes(), serde_json::json!(set).to_string());
+    let mut parts = vec![job.program.key.as_bytes(), machine.as_bytes(), controller.name.as_bytes(), &seed];
+    if !set.is_empty() {
+        parts.push(set_json.as_bytes());
+    }
+    key_of(&parts)
 }
 
 impl Journal {
@@ -110,7 +115,8 @@ mod tests {
         let programs = ["G21 F1200\nG1 X5\nG1 Y5\nM2\n", "G21 F1200\nG1 X-5\nM2\n"]
             .map(|text| Program::from_text("lines", text, length).expect("a program"));
         let jobs = jobs(programs.to_vec(), vec![machine.clone()]);
-        let options = Options { controller: Entry::find(BASELINE).expect("in the table"), seed: 1, threads: 2 };
+        let options =
+            Options { controller: Entry::find(BASELINE).expect("in the table"), set: Vec::new(), seed: 1, threads: 2 };
         let first = sweep(&jobs, &options, &Journal::open(&path).expect("a journal"), &());
         let mut text = std::fs::read_to_string(&path).expect("it was written");
         let second_line = text.find('\n').expect("two lines") + 1;

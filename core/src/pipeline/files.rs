@@ -30,8 +30,6 @@ pub struct Outputs {
 
 /// A tolerance of a metre is a mistaken unit.
 const MOST_TOLERANCE_UM: f64 = 1e6;
-/// As the inversion has it.
-const MOST_RHO: f64 = 0.1;
 
 /// What `--out` writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,11 +64,6 @@ impl Job {
             let bounds = format!("above 0 and up to {MOST_TOLERANCE_UM} um");
             let hint = Some("the unit is um: 0.01 mm is --tolerance 10");
             return Err(Error::Value { name: "--tolerance", value, unit: " um", bounds, hint });
-        }
-        if let Some(value) = self.choices.rho.filter(|rho| !(0.0..=MOST_RHO).contains(rho)) {
-            let bounds = format!("from 0 to {MOST_RHO}");
-            let hint = Some("0 looks at the contour error only; more weighs the machining time more");
-            return Err(Error::Value { name: "--rho", value, unit: "", bounds, hint });
         }
         if let Some(out) = &self.outputs.out {
             Outputs::form(out)?;

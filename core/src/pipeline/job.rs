@@ -219,8 +219,8 @@ impl Job {
             value("Program read as", format!("{}: {}", summary.dialect.0, summary.dialect.1)),
             value("Seed", self.choices.seed.to_string()),
         ];
-        if let Some(rho) = self.choices.rho {
-            settings.push(value("Weight of the machining time, rho", rho.to_string()));
+        for set in &self.choices.set {
+            settings.push(value(&format!("{}, {}", set.controller, set.name), set.value.to_string()));
         }
         if let Some(feed_mm_s) = self.feed_mm_s {
             settings.push(value("Feedrate, in place of the programmed", format!("{feed_mm_s} mm/s")));
