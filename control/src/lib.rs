@@ -10,6 +10,7 @@
 pub mod vector;
 pub mod activation;
 pub mod least_squares;
+pub mod axis;
 pub mod window;
 pub mod contour_error;
 pub mod identifier;

@@ -8,9 +8,11 @@ mod error;
 mod layout;
 mod reader;
 
+use std::f64::consts::TAU;
 use std::ffi::OsStr;
 use std::path::Path;
 
+use feedwright_control::axis;
 use serde::Serialize;
 
 pub use error::{MachineError, Problem};
@@ -67,6 +69,12 @@ pub struct Period {
 const MOST_SERVO_PERIODS: f64 = 12.0;
 
 impl Period {
+    /// As the law of an axis takes them.
+    pub fn periods(&self) -> axis::Periods {
+        let Self { servo_s, mechanics_s, mechanics_per_servo } = *self;
+        axis::Periods { servo_s, mechanics_s, mechanics_per_servo }
+    }
+
     /// Servo periods in a feed period of about `feed_period_s`: at least one, and no more than a preview has room for.
     pub fn servo_periods(&self, feed_period_s: f64) -> u32 {
         (feed_period_s / self.servo_s).round().clamp(1.0, MOST_SERVO_PERIODS) as u32
@@ -163,6 +171,23 @@ pub struct Axis {
     pub transmission: Option<Transmission>,
 }
 
+impl Axis {
+    /// As the law of an axis takes them.
+    pub fn parameters(&self) -> axis::Parameters {
+        axis::Parameters {
+            rad_per_mm: TAU / self.lead_mm_per_rev,
+            kp_1_s: self.kp_1_s,
+            kd: self.kd,
+            kv_nm_s_per_rad: self.kv_nm_s_per_rad,
+            torque_limit_nm: self.torque_limit_nm,
+            inertia_kg_m2: self.inertia_kg_m2,
+            viscous_friction_nm_s: self.viscous_friction_nm_s,
+            coulomb_friction_nm: self.coulomb_friction_nm,
+            coulomb_smoothing_rad_s: self.coulomb_smoothing_rad_s,
+        }
+    }
+}
+
 /// The ball screw between motor and table: `[axis.x.transmission]`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Transmission {
@@ -243,6 +268,11 @@ impl Machine {
         }
         let path = Path::new(file).parent().unwrap_or(Path::new("")).join(base);
         Ok((path.display().to_string(), read_text(&path)?))
+    }
+
+    /// The law of the first N axes.
+    pub fn law<const N: usize>(&self) -> [axis::Axis; N] {
+        std::array::from_fn(|i| axis::Axis::new(self.axis(i).parameters(), self.period.periods()))
     }
 
     /// Two or three.

@@ -30,6 +30,7 @@
 
 use super::{Command, Controller, Measured, Schedule};
 use crate::activation::tanh;
+use crate::axis::Parameters;
 use crate::window::Window;
 
 /// Preview behind the command of the next servo period that the differences need, servo periods.
@@ -44,27 +45,6 @@ const MOST_PREVIEW: f64 = 240.0;
 pub fn preview(lag_s: f64, servo_s: f64) -> u32 {
     // A float that is too large, or not a number, saturates here.
     libm::ceil(PREVIEW_LAGS * lag_s / servo_s + DIFFERENCES).min(MOST_PREVIEW) as u32
-}
-
-/// The model of one axis at the motor shaft.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AxisModel {
-    /// Turn of the motor for a travel of the table, rad/mm.
-    pub rad_per_mm: f64,
-    /// Proportional gain of the position loop, 1/s.
-    pub kp_1_s: f64,
-    /// Its derivative gain, dimensionless.
-    pub kd: f64,
-    /// Gain of the speed loop, N m s/rad.
-    pub kv_nm_s_per_rad: f64,
-    /// Inertia, kg m2.
-    pub inertia_kg_m2: f64,
-    /// Viscous friction, N m s/rad.
-    pub viscous_friction_nm_s: f64,
-    /// Coulomb friction, N m.
-    pub coulomb_friction_nm: f64,
-    /// Speed over which it turns its sign, rad/s.
-    pub coulomb_smoothing_rad_s: f64,
 }
 
 /// How much of each part is fed forward; 1 is the exact model.
@@ -86,14 +66,14 @@ impl Gains {
 /// Feedforward; keeps nothing between ticks.
 #[derive(Debug, Clone)]
 pub struct Feedforward<const N: usize> {
-    axes: [AxisModel; N],
+    axes: [Parameters; N],
     gains: Gains,
     preview: u32,
 }
 
 impl<const N: usize> Feedforward<N> {
     /// For a machine with these axes and a servo period of `servo_s`.
-    pub fn new(axes: [AxisModel; N], gains: Gains, servo_s: f64) -> Self {
+    pub fn new(axes: [Parameters; N], gains: Gains, servo_s: f64) -> Self {
         let lag_s = axes.iter().map(|axis| 1.0 / axis.kp_1_s + axis.inertia_kg_m2 / axis.kv_nm_s_per_rad);
         let preview = preview(lag_s.fold(0.0, f64::max), servo_s);
         Self { axes, gains, preview }
@@ -101,7 +81,7 @@ impl<const N: usize> Feedforward<N> {
 
     /// Reference speed of the speed loop, rad/s, that an axis needs to move at `speed_rad_s` and
     /// `acceleration_rad_s2`.
-    fn reference_rad_s(&self, axis: &AxisModel, speed_rad_s: f64, acceleration_rad_s2: f64) -> f64 {
+    fn reference_rad_s(&self, axis: &Parameters, speed_rad_s: f64, acceleration_rad_s2: f64) -> f64 {
         let Gains { velocity, acceleration, friction } = self.gains;
         let [sign] = tanh([speed_rad_s / axis.coulomb_smoothing_rad_s]);
         let torque_nm = acceleration * axis.inertia_kg_m2 * acceleration_rad_s2
@@ -187,12 +167,13 @@ pub(super) mod tests {
         }
     }
 
-    fn axis(kd: f64, coulomb_friction_nm: f64) -> AxisModel {
-        AxisModel {
+    fn axis(kd: f64, coulomb_friction_nm: f64) -> Parameters {
+        Parameters {
             rad_per_mm: 0.6,
             kp_1_s: 50.0,
             kd,
             kv_nm_s_per_rad: 2.0,
+            torque_limit_nm: f64::INFINITY,
             inertia_kg_m2: 0.01,
             viscous_friction_nm_s: 0.03,
             coulomb_friction_nm,
@@ -201,7 +182,7 @@ pub(super) mod tests {
     }
 
     /// Following error along the parabola at the end of a second, mm; the mechanics in steps of 1 us.
-    fn error_mm(axis: &AxisModel, gains: Gains) -> f64 {
+    fn error_mm(axis: &Parameters, gains: Gains) -> f64 {
         let mut controller = Feedforward::new([*axis; 2], gains, SERVO_S);
         let (mut angle_rad, mut speed_rad_s, mut last_rad) = (0.0, 0.0, 0.0);
         let step_s = 1e-3 * SERVO_S;

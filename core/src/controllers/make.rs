@@ -3,9 +3,10 @@
 
 use std::f64::consts::TAU;
 
+use feedwright_control::axis::{self, Parameters, State};
 use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
 use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
-use feedwright_control::controller::feedforward::{AxisModel, Feedforward, Gains};
+use feedwright_control::controller::feedforward::{Feedforward, Gains};
 use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
 use feedwright_control::controller::inverting;
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
@@ -57,17 +58,12 @@ pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Val
 
 pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let Period { servo_s, mechanics_s, .. } = setup.machine.period;
-    let axes = axes(setup.machine).map(|axis| AxisModel {
-        rad_per_mm: TAU / axis.lead_mm_per_rev,
-        kp_1_s: axis.kp_1_s,
-        kd: axis.kd,
-        kv_nm_s_per_rad: axis.kv_nm_s_per_rad,
+    let axes = axes(setup.machine).map(|axis| {
+        let parameters = axis.parameters();
         // The speed loop answers to the speed at the start of a mechanics period, and so damps less than one without
         // delay by so much inertia.
-        inertia_kg_m2: axis.inertia_kg_m2 - (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) * mechanics_s,
-        viscous_friction_nm_s: axis.viscous_friction_nm_s,
-        coulomb_friction_nm: axis.coulomb_friction_nm,
-        coulomb_smoothing_rad_s: axis.coulomb_smoothing_rad_s,
+        let early_nm_s = parameters.kv_nm_s_per_rad + parameters.viscous_friction_nm_s;
+        Parameters { inertia_kg_m2: parameters.inertia_kg_m2 - early_nm_s * mechanics_s, ..parameters }
     });
     let gains = Gains {
         velocity: values.number("velocity_gain"),
@@ -88,14 +84,15 @@ pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &Values)
 
 /// The linear part of an axis over one servo period, as the plant integrates it.
 fn sampled(axis: &Axis, period: &Period) -> SampledAxis {
-    let over = |mut speed: f64, reference: f64| {
-        let mut travel_s = 0.0;
+    let linear = Parameters { torque_limit_nm: f64::INFINITY, coulomb_friction_nm: 0.0, ..axis.parameters() };
+    let law = axis::Axis::new(linear, period.periods());
+    let over = |speed_rad_s: f64, reference_rad_s: f64| {
+        let mut state = State { speed_rad_s, ..State::default() };
         for _ in 0..period.mechanics_per_servo {
-            let torque_nm = axis.kv_nm_s_per_rad * (reference - speed) - axis.viscous_friction_nm_s * speed;
-            speed += period.mechanics_s * torque_nm / axis.inertia_kg_m2;
-            travel_s += period.mechanics_s * speed;
+            let w = state.speed_rad_s;
+            law.accelerate(law.torque_nm(reference_rad_s, w) - law.friction_nm(w, 0.0), &mut state);
         }
-        (speed, travel_s)
+        (state.speed_rad_s, state.angle_rad)
     };
     let ((alpha, gamma_s), (beta, delta_s)) = (over(1.0, 0.0), over(0.0, 1.0));
     SampledAxis { alpha, beta, gamma_s, delta_s, kp_1_s: axis.kp_1_s, kd: axis.kd }

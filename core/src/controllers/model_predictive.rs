@@ -8,15 +8,13 @@
 //! Source: Lam, Manzie and Good (2010), "Model predictive contouring control", for the contour error over a horizon; the
 //! progress along the path stays as planned here, since a time bought with error is not compared.
 
-use std::f64::consts::TAU;
-
-use feedwright_control::activation::tanh;
+use feedwright_control::axis::{self, State};
 use feedwright_control::horizon::{self, Felt, MOST_KNOTS, Model, Plan, Stretch};
 use feedwright_control::identifier::residual::{self, Foresight, Residual};
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
-use crate::machine::{Axis, Machine};
+use crate::machine::Machine;
 
 /// Steps of Gauss and Newton, at most.
 const MOST_STEPS: usize = 20;
@@ -80,12 +78,12 @@ impl<const N: usize> ModelPredictive<N> {
                 let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
                 let error_mm = sub(command_mm, position_mm);
                 for (axis, error_mm) in self.model.axes.iter_mut().zip(error_mm) {
-                    axis.state.error_rad = error_mm * axis.rad_per_mm;
+                    axis.state.error_rad = error_mm * axis.law.parameters.rad_per_mm;
                 }
             }
         }
         for (axis, position_mm) in self.model.axes.iter_mut().zip(position_mm) {
-            axis.state.angle_rad = position_mm * axis.rad_per_mm;
+            axis.state.angle_rad = position_mm * axis.law.parameters.rad_per_mm;
         }
     }
 }
@@ -138,7 +136,7 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
 struct Exact<const N: usize> {
     axes: [ExactAxis; N],
     servo_periods: u32,
-    step: ServoPeriod,
+    servo_s: f64,
     residual: [Foresight; N],
     /// Sum of what it is expected to miss on the way, mm.
     missed_mm: [f64; N],
@@ -147,25 +145,16 @@ struct Exact<const N: usize> {
 
 impl<const N: usize> Exact<N> {
     fn new(machine: &Machine, servo_periods: u32) -> Self {
+        let laws: [axis::Axis; N] = machine.law();
         let axes = std::array::from_fn(|i| {
-            let parameters = *machine.axis(i);
-            ExactAxis {
-                parameters,
-                rad_per_mm: TAU / parameters.lead_mm_per_rev,
-                state: State::default(),
-                slopes: [State::default(); MOST_KNOTS],
-            }
+            let law = laws[i];
+            ExactAxis { law, state: State::default(), slopes: [State::default(); MOST_KNOTS] }
         });
-        let lag_s = axes.iter().map(|axis: &ExactAxis| 1.0 / axis.parameters.kp_1_s).sum::<f64>() / N as f64;
-        let period = machine.period;
+        let lag_s = axes.iter().map(|axis: &ExactAxis| 1.0 / axis.law.parameters.kp_1_s).sum::<f64>() / N as f64;
         Self {
             axes,
             servo_periods,
-            step: ServoPeriod {
-                servo_s: period.servo_s,
-                mechanics_s: period.mechanics_s,
-                substeps: period.mechanics_per_servo,
-            },
+            servo_s: machine.period.servo_s,
             residual: [Residual::new(residual::Settings::DEFAULT).foresight(); N],
             missed_mm: [0.0; N],
             lag_s,
@@ -173,7 +162,9 @@ impl<const N: usize> Exact<N> {
     }
 
     fn tool_mm(&self) -> [f64; N] {
-        std::array::from_fn(|i| self.axes[i].state.angle_rad / self.axes[i].rad_per_mm + self.missed_mm[i])
+        std::array::from_fn(|i| {
+            self.axes[i].state.angle_rad / self.axes[i].law.parameters.rad_per_mm + self.missed_mm[i]
+        })
     }
 }
 
@@ -186,88 +177,54 @@ impl<const N: usize> Model<N> for Exact<N> {
         let offset = Command { bend_mm: stretch.bend_mm(), ..Command::straight(1.0, stretch.offset_mm[1]) };
         for phase in 0..self.servo_periods {
             let ahead = stretch.period as u32 * self.servo_periods + phase;
-            let path_mm = window.at(f64::from(ahead) * self.step.servo_s).position_mm;
+            let path_mm = window.at(f64::from(ahead) * self.servo_s).position_mm;
             let part = f64::from(phase) / f64::from(self.servo_periods);
             let offset_mm = offset.offset_after_mm(part, stretch.offset_mm[0]);
             let moved_s2 = std::array::from_fn(|knot| stretch.moved_s2(knot, part));
             for (i, axis) in self.axes.iter_mut().enumerate() {
-                axis.advance(path_mm[i] + offset_mm[i], &moved_s2, &self.step, stretch.knot());
+                axis.advance(path_mm[i] + offset_mm[i], &moved_s2, stretch.knot());
             }
         }
         for i in 0..N {
             self.missed_mm[i] += self.residual[i].next_mm();
             for knot in 0..=stretch.knot() {
-                felt[knot][i] = self.axes[i].slopes[knot].angle_rad / self.axes[i].rad_per_mm;
+                felt[knot][i] = self.axes[i].slopes[knot].angle_rad / self.axes[i].law.parameters.rad_per_mm;
             }
         }
         self.tool_mm()
     }
 }
 
-/// How a servo period is integrated.
-#[derive(Debug, Clone, Copy)]
-struct ServoPeriod {
-    servo_s: f64,
-    mechanics_s: f64,
-    substeps: u32,
-}
-
 /// An axis: its state, and the derivative of that to the acceleration of each knot, per mm/s^2.
 #[derive(Debug, Clone, Copy)]
 struct ExactAxis {
-    parameters: Axis,
-    rad_per_mm: f64,
+    law: axis::Axis,
     state: State,
     slopes: [State; MOST_KNOTS],
 }
 
-#[derive(Debug, Clone, Copy, Default)]
-struct State {
-    angle_rad: f64,
-    speed_rad_s: f64,
-    /// Following error that the position loop saw last.
-    error_rad: f64,
-}
-
-impl State {
-    /// The position loop: takes in a command; the speed that it asks for, rad/s. Linear, and so its own derivative.
-    fn position_loop(&mut self, command_rad: f64, axis: &Axis, servo_s: f64) -> f64 {
-        let error_rad = command_rad - self.angle_rad;
-        let rate_rad_s = (error_rad - self.error_rad) / servo_s;
-        self.error_rad = error_rad;
-        axis.kp_1_s * error_rad + axis.kd * rate_rad_s
-    }
-
-    fn accelerate(&mut self, torque_nm: f64, axis: &Axis, mechanics_s: f64) {
-        self.speed_rad_s += mechanics_s / axis.inertia_kg_m2 * torque_nm;
-        self.angle_rad += mechanics_s * self.speed_rad_s;
-    }
-}
-
 impl ExactAxis {
     /// One servo period at a command that moves by `moved_s2` mm for an acceleration of 1 mm/s^2 in each of the knots up to `knot`.
-    fn advance(&mut self, command_mm: f64, moved_s2: &[f64; MOST_KNOTS], step: &ServoPeriod, knot: usize) {
-        let axis = &self.parameters;
-        let asked_rad_s = self.state.position_loop(command_mm * self.rad_per_mm, axis, step.servo_s);
+    fn advance(&mut self, command_mm: f64, moved_s2: &[f64; MOST_KNOTS], knot: usize) {
+        let law = self.law;
+        let asked = |moved_mm: f64, state: &mut State| {
+            law.position_loop(moved_mm * law.parameters.rad_per_mm - state.angle_rad, state)
+        };
+        let asked_rad_s = asked(command_mm, &mut self.state);
         let mut slopes_asked = [0.0; MOST_KNOTS];
-        for (asked, (slope, moved_s2)) in
+        for (slope_asked, (slope, moved_s2)) in
             slopes_asked.iter_mut().zip(self.slopes.iter_mut().zip(moved_s2)).take(knot + 1)
         {
-            *asked = slope.position_loop(moved_s2 * self.rad_per_mm, axis, step.servo_s);
+            *slope_asked = asked(*moved_s2, slope);
         }
-        for _ in 0..step.substeps {
+        for _ in 0..law.periods.mechanics_per_servo {
             let w = self.state.speed_rad_s;
-            let wanted_nm = axis.kv_nm_s_per_rad * (asked_rad_s - w);
-            let torque_nm = wanted_nm.clamp(-axis.torque_limit_nm, axis.torque_limit_nm);
-            let [sign] = tanh([w / axis.coulomb_smoothing_rad_s]);
-            let load_nm = axis.viscous_friction_nm_s * w + axis.coulomb_friction_nm * sign;
-            self.state.accelerate(torque_nm - load_nm, axis, step.mechanics_s);
-            let gain = if torque_nm == wanted_nm { axis.kv_nm_s_per_rad } else { 0.0 };
-            let friction = axis.coulomb_friction_nm * (1.0 - sign * sign) / axis.coulomb_smoothing_rad_s;
-            let damping = axis.viscous_friction_nm_s + friction;
+            let torque_nm = law.torque_nm(asked_rad_s, w);
+            let [sign] = axis::signs(&[law], [w]);
+            law.accelerate(torque_nm - law.friction_nm(w, sign), &mut self.state);
+            let [gain, damping] = law.slopes_nm_s(torque_nm, sign);
             for (slope, asked) in self.slopes.iter_mut().zip(&slopes_asked).take(knot + 1) {
-                let torque_nm = gain * (asked - slope.speed_rad_s) - damping * slope.speed_rad_s;
-                slope.accelerate(torque_nm, axis, step.mechanics_s);
+                law.accelerate(gain * asked - damping * slope.speed_rad_s, slope);
             }
         }
     }
