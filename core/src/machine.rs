@@ -2,9 +2,10 @@
 //!
 //! A machine is a file; `machines/tnv40.toml` explains every key beside its value. [`Machine::load`] takes the name of a
 //! machine that is built in or the path of a file. A later part of a machine (a compliant transmission, an encoder) is an
-//! optional table of the file: one struct here, one `Option` field in [`Machine`] or [`Axis`], one reader in `layout`.
+//! optional table of the file: one struct here, one `Option` field in [`Machine`] or [`Axis`], one table in [`keys`], one reader in `layout`.
 
 mod error;
+pub mod keys;
 mod layout;
 mod reader;
 
@@ -55,7 +56,7 @@ pub struct Machine {
 }
 
 /// Periods of the control and of its simulation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Period {
     /// Period of the position loop, s.
     pub servo_s: f64,
@@ -82,7 +83,7 @@ impl Period {
 }
 
 /// What the machine may be asked for.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Limits {
     /// Speed of a rapid motion, mm/s.
     pub rapid_mm_s: f64,
@@ -129,7 +130,7 @@ pub struct PlcEvent {
 }
 
 /// A servo axis: mechanics at the motor shaft and the two control loops.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Axis {
     /// Travel for one motor turn, mm.
     pub lead_mm_per_rev: f64,
@@ -166,6 +167,15 @@ pub struct Axis {
     /// Step of the position encoder, um of travel; 0 is without steps.
     #[serde(skip_serializing_if = "is_zero")]
     pub encoder_step_um: f64,
+    /// Most that the axis can, for planners that plan axis by axis; none is what [`Limits`] and the drive allow. Speed, mm/s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_velocity_mm_s: Option<f64>,
+    /// Acceleration, mm/s2.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_accel_mm_s2: Option<f64>,
+    /// Jerk, mm/s3.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_jerk_mm_s3: Option<f64>,
     /// Ball screw; none is rigid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub transmission: Option<Transmission>,
@@ -189,7 +199,7 @@ impl Axis {
 }
 
 /// The ball screw between motor and table: `[axis.x.transmission]`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct Transmission {
     /// Part of the axis's inertia that is on the table's side.
     pub table_share: f64,
@@ -258,6 +268,29 @@ impl Machine {
         layout::machine(&document, Some(&base_document)).map_err(invalid)
     }
 
+    /// The text of a machine file that reads as this machine, without a base.
+    pub fn text(&self) -> String {
+        let texts = [("name", &self.name), ("description", &self.description), ("source", &self.source)];
+        let mut text: String = texts.iter().map(|(key, value)| format!("{key} = {}\n", quoted(value))).collect();
+        let mut table = |name: &str, lines: String| text += &format!("\n[{name}]\n{lines}");
+        table("period", keys::write(keys::PERIOD, &self.period));
+        table("limits", keys::write(keys::LIMITS, &self.limits));
+        for (axis, name) in self.axes.iter().zip(AXIS_NAMES) {
+            table(&format!("axis.{name}"), keys::write(keys::AXIS, axis));
+            if let Some(transmission) = &axis.transmission {
+                table(&format!("axis.{name}.transmission"), keys::write(keys::TRANSMISSION, transmission));
+            }
+        }
+        table("plc", keys::write(keys::PLC, &self.plc));
+        for event in &self.plc_events {
+            let p = event.p.map_or(String::new(), |p| format!(" P{p}"));
+            let [row, label] = [&event.row, &event.label].map(|value| quoted(value));
+            let lines = format!("row = {row}\nlabel = {label}\ntakes_s = {:?}\n", event.takes_s);
+            table(&format!("plc.event.\"M{}{p}\"", event.code), lines);
+        }
+        text
+    }
+
     /// Name and text of a base: a built-in machine, or a file beside the one that names it.
     fn base_text(file: &str, base: &str) -> Result<(String, String), MachineError> {
         if let Some((name, text)) = BUILT_IN.iter().find(|(name, _)| *name == base) {
@@ -299,6 +332,11 @@ impl Machine {
         let content = serde_json::json!([self.period, self.limits, self.axes]);
         blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
     }
+}
+
+/// A text as TOML quotes it.
+fn quoted(text: &str) -> String {
+    toml::Value::from(text).to_string()
 }
 
 /// Whether `--machine` means a file rather than the name of a built-in machine.

@@ -1,7 +1,4 @@
-//! The layout of a machine file: its tables, keys, units and ranges.
-//!
-//! Ranges are wide: they keep out what no machine has (a negative inertia, a unit mistaken by a factor of a million), not
-//! what is unusual. A machine that is tuned badly is a result of the simulation, not a fault of its file.
+//! The layout of a machine file: its tables, and what holds between their values.
 
 use std::f64::consts::TAU;
 
@@ -9,7 +6,7 @@ use toml::de::DeTable;
 
 use super::error::Fault;
 use super::reader::Table;
-use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Period, PlcEvent, Transmission};
+use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Period, PlcEvent, Transmission, keys};
 
 /// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
 /// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.
@@ -76,8 +73,7 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
 }
 
 fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
-    let servo_s = table.number("servo_s", "s", 1e-5..=0.1, faults);
-    let mechanics_s = table.number("mechanics_s", "s", 1e-7..=0.1, faults);
+    let Period { servo_s, mechanics_s, .. } = keys::read(keys::PERIOD, &mut table, faults);
     let ratio = servo_s / mechanics_s;
     // A value that has a fault of its own is NaN here and gets no second one.
     let is_whole = (ratio - ratio.round()).abs() <= WHOLE_RATIO_TOLERANCE * ratio;
@@ -97,26 +93,13 @@ fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
 }
 
 fn limits(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Limits {
-    let limits = Limits {
-        rapid_mm_s: table.number("rapid_mm_s", "mm/s", 0.01..=1e4, faults),
-        max_feed_mm_s: table.number("max_feed_mm_s", "mm/s", 0.01..=1e4, faults),
-        tangential_accel_mm_s2: table.number("tangential_accel_mm_s2", "mm/s2", 0.1..=1e6, faults),
-        normal_accel_mm_s2: table.number("normal_accel_mm_s2", "mm/s2", 0.1..=1e6, faults),
-        corner_jump_mm_s: table.number("corner_jump_mm_s", "mm/s", 0.0..=1e4, faults),
-        max_deviation_mm: table.number("max_deviation_mm", "mm", 0.0..=100.0, faults),
-    };
+    let limits = keys::read(keys::LIMITS, &mut table, faults);
     table.finish(faults);
     limits
 }
 
 fn plc(mut table: Table<'_, '_>, events: &mut Vec<PlcEvent>, faults: &mut Vec<Fault>) -> Durations {
-    let durations = Durations {
-        tool_change_s: table.number("tool_change_s", "s", 0.0..=1e4, faults),
-        coolant_s: table.number("coolant_s", "s", 0.0..=1e4, faults),
-        pallet_change_s: table.number("pallet_change_s", "s", 0.0..=1e5, faults),
-        spindle_rev_min_s: table.number("spindle_rev_min_s", "rev/min/s", 0.0..=1e7, faults),
-        rotary_deg_s: table.optional_number("rotary_deg_s", "degrees/s", 0.0..=1e5, faults).unwrap_or(0.0),
-    };
+    let durations = keys::read(keys::PLC, &mut table, faults);
     if let Some(named) = table.optional_table("event", faults) {
         for (key, table) in named.tables(faults) {
             events.extend(plc_event(&key, table, events, faults));
@@ -194,24 +177,8 @@ fn axes(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> 
 
 fn axis(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Axis {
     let transmission = table.optional_table("transmission", faults);
-    let axis = Axis {
-        lead_mm_per_rev: table.number("lead_mm_per_rev", "mm/rev", 0.01..=1e3, faults),
-        inertia_kg_m2: table.number("inertia_kg_m2", "kg m2", 1e-9..=1e3, faults),
-        viscous_friction_nm_s: table.number("viscous_friction_nm_s", "N m s/rad", 0.0..=1e4, faults),
-        coulomb_friction_nm: table.number("coulomb_friction_nm", "N m", 0.0..=1e5, faults),
-        coulomb_smoothing_rad_s: table.number("coulomb_smoothing_rad_s", "rad/s", 1e-6..=1e3, faults),
-        disturbance_nm: table.number("disturbance_nm", "N m", 0.0..=1e5, faults),
-        disturbance_hz: table.number("disturbance_hz", "Hz", 0.0..=1e5, faults),
-        kp_1_s: table.number("kp_1_s", "1/s", 1e-3..=1e5, faults),
-        kd: table.number("kd", "(no unit)", 0.0..=1e3, faults),
-        kv_nm_s_per_rad: table.number("kv_nm_s_per_rad", "N m s/rad", 1e-9..=1e6, faults),
-        torque_limit_nm: table.number("torque_limit_nm", "N m", 1e-6..=1e6, faults),
-        drive_delay_s: table.optional_number("drive_delay_s", "s", 0.0..=0.02, faults).unwrap_or(0.0),
-        torque_bits: table.optional_number("torque_bits", "bits", 4.0..=32.0, faults).map(|bits| bits.round() as u32),
-        correction_accel_mm_s2: table.optional_number("correction_accel_mm_s2", "mm/s2", 0.1..=1e6, faults),
-        encoder_step_um: table.optional_number("encoder_step_um", "um", 0.0..=1e3, faults).unwrap_or(0.0),
-        transmission: transmission.map(|table| self::transmission(table, mechanics_s, faults)),
-    };
+    let mut axis: Axis = keys::read(keys::AXIS, &mut table, faults);
+    axis.transmission = transmission.map(|table| self::transmission(table, mechanics_s, faults));
     table.finish(faults);
     axis
 }
@@ -221,15 +188,7 @@ fn axis(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> 
 const MOST_PHASE_RAD: f64 = 0.5;
 
 fn transmission(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Transmission {
-    let transmission = Transmission {
-        table_share: table.number("table_share", "(no unit)", 0.01..=0.99, faults),
-        resonance_hz: table.number("resonance_hz", "Hz", 0.1..=1e4, faults),
-        damping_ratio: table.number("damping_ratio", "(no unit)", 0.0..=1.0, faults),
-        backlash_um: table.number("backlash_um", "um", 0.0..=1e4, faults),
-        scale_on_table: table
-            .optional_number("scale_on_table", "(0 or 1)", 0.0..=1.0, faults)
-            .is_some_and(|on| on > 0.5),
-    };
+    let transmission: Transmission = keys::read(keys::TRANSMISSION, &mut table, faults);
     let free_rad_s = TAU * transmission.resonance_hz / (1.0 - transmission.table_share).sqrt();
     if free_rad_s * mechanics_s > MOST_PHASE_RAD {
         let finest = MOST_PHASE_RAD / free_rad_s;

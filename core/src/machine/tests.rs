@@ -292,3 +292,46 @@ fn faults_of_named_m_codes_have_their_places() {
     let found = faults("[plc.event.M100]\nrow = ' '\nlabel = 3\ntakes_s = -1\nlamp = 1\n");
     assert_eq!(found.len(), 4, "{found:?}");
 }
+
+#[test]
+fn what_is_written_reads_as_the_same_machine() {
+    for (name, _) in BUILT_IN {
+        let machine = Machine::load(name.as_ref()).unwrap();
+        assert_eq!(Machine::parse("written.toml", &machine.text()).unwrap(), machine, "{}", machine.text());
+    }
+    let mut odd = Machine::load("soft".as_ref()).unwrap();
+    odd.description = "a \"quoted\" \\ text\nof two lines".to_owned();
+    odd.axes[0].max_jerk_mm_s3 = Some(2.5e5);
+    odd.axes[1].torque_bits = Some(12);
+    odd.axes[1].encoder_step_um = 0.1 + 0.2;
+    odd.plc_events = vec![PlcEvent { code: 64, p: Some(3), row: "lamp".into(), label: "lamp on".into(), takes_s: 0.1 }];
+    assert_eq!(Machine::parse("written.toml", &odd.text()).unwrap(), odd);
+}
+
+/// The document's tables begin `| `key` | unit | range |`.
+#[test]
+fn the_document_has_the_units_and_ranges_of_all_keys() {
+    let document = include_str!("../../../docs/machine-file.md");
+    let number = |value: f64| {
+        let plain = value == 0.0 || (0.01..1000.0).contains(&value);
+        if plain { format!("{value}") } else { format!("{value:e}") }
+    };
+    let row = |name: &str, unit: &str, [least, most]: [f64; 2]| match unit {
+        "(no unit)" => format!("| `{name}` | 1 | {} to {} |", number(least), number(most)),
+        "(0 or 1)" => format!("| `{name}` | | 0 or 1 |"),
+        unit => format!("| `{name}` | {unit} | {} to {} |", number(least), number(most)),
+    };
+    fn rows<T>(keys: &[keys::Key<T>], row: impl Fn(&str, &str, [f64; 2]) -> String) -> Vec<String> {
+        keys.iter().map(|key| row(key.name, key.unit, key.range)).collect()
+    }
+    let all = [
+        rows(keys::PERIOD, row),
+        rows(keys::LIMITS, row),
+        rows(keys::AXIS, row),
+        rows(keys::TRANSMISSION, row),
+        rows(keys::PLC, row),
+    ];
+    for row in all.concat() {
+        assert!(document.contains(&row), "docs/machine-file.md has no row that begins {row}");
+    }
+}
