@@ -1,55 +1,28 @@
 //! G-code as LinuxCNC, Fanuc, Haas, grbl, Marlin and Klipper read it: text to motions and events, in millimetres and seconds.
-//!
-//! A line passes through the files in this order: [`Reader`] takes it from its source, `lexer` and `expression` turn its bytes into values,
-//! `block` collects them as words, `execute` applies them to the modes in RS-274's order, `travel`, `arc` and their neighbours move, and the
-//! result is [`canon`]. Plain G0 and G1, nearly all lines of a long program, take the short way of `reader/plain`.
+
+mod text;
 
 pub mod canon;
-pub mod suggestion;
 
-mod arc;
-mod block;
-mod characters;
-mod codes;
-mod compensation;
-mod cycles;
-mod diagnostic;
-mod dialect;
-mod execute;
-mod expression;
-mod fanuc;
-mod faults;
-mod firmware;
-mod flow;
-mod foreign;
-mod lathe;
-mod length;
-mod lexer;
-mod machine_codes;
-mod offsets;
-mod owords;
-mod parameters;
-mod plane;
-mod reader;
+mod geometry;
+
 mod settings;
-mod source;
-mod special;
-mod spiral;
-mod splines;
-mod state;
-mod subroutines;
-mod summary;
-mod surface_speed;
-mod threads;
-mod tools;
-mod travel;
-mod variables;
 
-#[doc(hidden)]
-pub use block::count_words;
-pub use diagnostic::{Diagnostic, Severity};
-pub use reader::{ReadError, Reader};
+mod state;
+
+mod motion;
+
+mod dialects;
+
+mod flow;
+
+pub use flow::reader::Reader;
+pub use flow::summary::{CheckError, Summary, check, summarize};
+pub use settings::tools::{Tool, ToolTable, ToolTableError};
 pub use settings::{AUTO, DIALECTS, Dialect, Increment, Settings, UnknownDialect, UnknownIncrement};
-pub use state::INCH_MM;
-pub use summary::{CheckError, Summary, check, summarize};
-pub use tools::{Tool, ToolTable, ToolTableError};
+pub use state::modal::INCH_MM;
+#[doc(hidden)]
+pub use text::block::count_words;
+pub use text::diagnostic::{Diagnostic, Severity};
+pub use text::read_error::ReadError;
+pub use text::suggestion;

@@ -1,12 +1,14 @@
 //! What the reader has to know besides the program: dialect, limits, tools, and where subroutines are.
 
+pub(crate) mod tools;
+
 use std::fmt;
 use std::path::PathBuf;
 
 use thiserror::Error;
 
-use super::tools::ToolTable;
-use crate::suggestion::nearest;
+use crate::settings::tools::ToolTable;
+use crate::text::suggestion::nearest;
 
 /// Name under which the dialect is chosen by the beginning of the file.
 pub const AUTO: &str = "auto";
@@ -130,7 +132,7 @@ impl Increment {
     }
 
     /// What one counts, in the unit of the program.
-    pub(super) const fn units(self, inch: bool) -> f64 {
+    pub(crate) const fn units(self, inch: bool) -> f64 {
         if inch { 0.1 * self.mm } else { self.mm }
     }
 }

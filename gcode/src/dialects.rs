@@ -1,0 +1,5 @@
+//! What controls other than LinuxCNC mean by the same words, and whose program it is.
+
+pub(crate) mod fanuc;
+pub(crate) mod choice;
+pub(crate) mod firmware;

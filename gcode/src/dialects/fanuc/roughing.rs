@@ -1,0 +1,302 @@
+//! G71 (passes along Z) and G72 (passes along X): straight passes down to the profile, then along it.
+//!
+//! The allowance U W moves the profile and the start of the cycle. From the moved start C, pass n cuts at the depth n times that of a pass, up to the
+//! profile; there the tool goes off at 45 degrees by R and returns in a rapid. Then it cuts along the moved profile and goes back to the start of
+//! the cycle. A profile that comes down again has pockets, which need X and Z in its first block (type II); they are cut level by level.
+//!
+//! Coordinates as in the cycles of LinuxCNC: the first grows along the passes, the second from the part to the stock's surface.
+
+use crate::canon::{Motion, MotionKind, Shape};
+use crate::geometry::plane::{Curve, Point, Round, SLACK_MM, add, length, minus, sweep};
+use crate::motion::feed::Speed;
+use crate::motion::lathe::pockets::{falls, falls_through, first_at, parted_at_tops};
+use crate::state::Interpreter;
+use crate::state::capture::{Capture, ProfileWork};
+use crate::state::frame::Position;
+use crate::text::codes::{bit, spelled};
+use crate::text::diagnostic::{Fault, Read};
+
+/// Passes of one cycle: more is a mistake in the depth of a pass.
+const MOST_PASSES: f64 = 10_000.0;
+/// A profile comes down, or turns back, where it does so by more, mm: coordinates of three decimals turn the ends of arcs by as little.
+const LEAST_TURN_MM: f64 = 1e-3;
+/// An arc that ends closer to its start, mm, would be read as a full turn.
+const SHORT_ARC_MM: f64 = 1e-7;
+/// The cycle's plane: which axes, and which way.
+#[derive(Debug, Clone, Copy)]
+struct PassPlane {
+    axes: [usize; 2],
+    signs: [f64; 2],
+}
+
+impl PassPlane {
+    pub(crate) fn of(self, point: [f64; 3]) -> Point {
+        std::array::from_fn(|n| self.signs[n] * point[self.axes[n]])
+    }
+
+    fn position(self, point: Point, like: &Position) -> Position {
+        let mut position = *like;
+        for n in 0..2 {
+            position[self.axes[n]] = self.signs[n] * point[n];
+        }
+        position
+    }
+
+    /// Whether an arc that turns left here turns counter-clockwise in G18.
+    pub(crate) fn turns(self, turn: f64) -> f64 {
+        let exchanged = if self.axes == [2, 0] { 1.0 } else { -1.0 };
+        turn * exchanged * self.signs[0] * self.signs[1]
+    }
+
+    fn curve(self, motion: &Motion, shift: Point) -> Curve {
+        let [start, end] = [motion.start_mm, motion.end_mm].map(|point| add(self.of(point), shift));
+        match &motion.shape {
+            Shape::Arc { center_mm, turns, .. } => {
+                let center = add(self.of(*center_mm), shift);
+                Curve::Arc { start, end, center, turn: self.turns(f64::from(turns.signum())) }
+            }
+            _ => Curve::Line { start, end },
+        }
+    }
+}
+
+/// A cycle with its profile, moved by the allowance.
+struct Roughing<'a> {
+    capture: &'a Capture,
+    side: PassPlane,
+    /// Start of the passes.
+    start: Point,
+    curves: Vec<Curve>,
+    depth_mm: f64,
+    escape_mm: f64,
+    /// How the first block of the profile moves.
+    infeed: Speed,
+}
+
+impl<'a> Roughing<'a> {
+    fn new(capture: &'a Capture) -> Read<Self> {
+        let ProfileWork::Rough { is_facing, depth_mm, escape_mm, allowance_mm } = capture.wanted.work else {
+            return Err(capture.refuse(capture.wanted.line, "it is none of G71 or G72"));
+        };
+        let axes = if is_facing { [0, 2] } else { [2, 0] };
+        let (entry, rest) =
+            capture.motions.split_first().ok_or_else(|| capture.refuse(capture.wanted.line, "it is empty"))?;
+        let clear = |way: f64| (way.abs() > SLACK_MM).then(|| way.signum());
+        let along = |motion: &Motion, n: usize| clear(motion.end_mm[axes[n]] - motion.start_mm[axes[n]]);
+        let start_mm = [capture.wanted.start[0], capture.wanted.start[1], capture.wanted.start[2]];
+        let last = rest.last().unwrap_or(entry);
+        let infeed = clear(start_mm[axes[1]] - entry.end_mm[axes[1]]);
+        let outward = infeed.or_else(|| clear(last.end_mm[axes[1]] - entry.end_mm[axes[1]])).unwrap_or(1.0);
+        let side =
+            PassPlane { axes, signs: [rest.iter().find_map(|motion| along(motion, 0)).unwrap_or(-1.0), outward] };
+        let by_axis = [allowance_mm[0], 0.0, allowance_mm[1]];
+        let shift = side.of(by_axis);
+        let curves: Vec<Curve> = rest.iter().map(|motion| side.curve(motion, shift)).collect();
+        let roughing = Self {
+            capture,
+            side,
+            start: add(side.of(start_mm), shift),
+            curves: parted_at_tops(curves),
+            depth_mm,
+            escape_mm,
+            infeed: if entry.kind == MotionKind::Rapid { Speed::Rapid } else { Speed::Programmed },
+        };
+        roughing.check(rest, shift)?;
+        Ok(roughing)
+    }
+
+    /// What no pass of this kind can cut.
+    fn check(&self, motions: &[Motion], shift: Point) -> Read<()> {
+        let name = ["X", "Y", "Z"][self.side.axes[0]];
+        let depth = ["X", "Y", "Z"][self.side.axes[1]];
+        let has_pockets = [[b'x', b'u'], [b'z', b'w']]
+            .iter()
+            .all(|words| self.capture.first_words & (bit(words[0]) | bit(words[1])) != 0);
+        for motion in motions {
+            let curve = self.side.curve(motion, shift);
+            if goes_back_mm(&curve) > LEAST_TURN_MM {
+                let message = format!("{name} turns back: an undercut cannot be reached by passes along {name}");
+                return Err(self
+                    .capture
+                    .refuse(motion.line, &message)
+                    .hint(format!("behind the first block, {name} goes one way")));
+            }
+            if comes_down(&curve) && !has_pockets {
+                let message = format!(
+                    "{depth} turns back: the first block has not both X and Z, so the control expects no pocket"
+                );
+                return Err(self
+                    .capture
+                    .refuse(motion.line, &message)
+                    .hint("with W0 on the first block the profile may have pockets (type II)"));
+            }
+        }
+        if self.start[0] > self.entry()[0] + SLACK_MM {
+            let message = format!("the cycle starts behind the beginning of its profile along {name}");
+            return Err(self.capture.refuse(self.capture.wanted.line, &message).hint("start it before the part"));
+        }
+        Ok(())
+    }
+
+    pub(crate) fn entry(&self) -> Point {
+        self.curves.first().map_or(self.start, Curve::start)
+    }
+
+    fn lowest(&self) -> f64 {
+        self.curves.iter().map(lowest_of).fold(self.entry()[1], f64::min)
+    }
+
+    /// Where the profile lies below a level: beginnings and ends along the passes.
+    fn open_at(&self, level: f64) -> Vec<[f64; 2]> {
+        let mut open = (self.entry()[1] < level - SLACK_MM).then_some(self.start[0]);
+        let mut found = Vec::new();
+        for curve in &self.curves {
+            let mut rest = *curve;
+            if open.is_none()
+                && let Some(begin) = falls_through(curve, level)
+            {
+                open = Some(begin[0]);
+                rest.set_start(begin);
+                if rest.chord() <= SLACK_MM {
+                    continue;
+                }
+            }
+            if let Some(begin) = open
+                && let Some((_, end)) = first_at(&[rest], level)
+                && !(falls(&rest) && rest.end()[1] < level - SLACK_MM)
+            {
+                found.push([begin, end]);
+                open = None;
+            }
+        }
+        if let (Some(begin), Some(last)) = (open, self.curves.last()) {
+            found.push([begin, last.end()[0]]);
+        }
+        found.retain(|[begin, end]| end - begin > SLACK_MM);
+        found
+    }
+}
+
+/// The lowest point of a curve.
+fn lowest_of(curve: &Curve) -> f64 {
+    match *curve {
+        Curve::Arc { start, end, center, turn } if turn > 0.0 && start[0] < center[0] && end[0] > center[0] => {
+            center[1] - length(minus(start, center))
+        }
+        _ => curve.end()[1],
+    }
+}
+
+/// How far a curve goes back along the passes.
+fn goes_back_mm(curve: &Curve) -> f64 {
+    let straight = (curve.start()[0] - curve.end()[0]).max(0.0);
+    let Curve::Arc { start, end, center, turn } = *curve else { return straight };
+    // Both ends of a half circle may lie a little beyond it, and no more.
+    if sweep(start, end, center, turn) > 1.1 * std::f64::consts::PI {
+        return f64::INFINITY;
+    }
+    let radius = length(minus(start, center));
+    let before = if curve.direction(start)[0] < 0.0 { start[0] - (center[0] - radius) } else { 0.0 };
+    let behind = if curve.direction(end)[0] < 0.0 { center[0] + radius - end[0] } else { 0.0 };
+    straight.max(before).max(behind)
+}
+
+/// Whether a curve goes down anywhere.
+fn comes_down(curve: &Curve) -> bool {
+    parted_at_tops(vec![*curve]).iter().any(|part| part.start()[1] - lowest_of(part) > LEAST_TURN_MM)
+}
+
+impl Interpreter {
+    pub(super) fn rough_own_profile(&mut self, capture: &Capture) -> Read<()> {
+        let roughing = Roughing::new(capture)?;
+        self.warn_of_allowance(&roughing);
+        let (start, depth) = (roughing.start, roughing.depth_mm);
+        let passes = ((start[1] - roughing.lowest() - SLACK_MM) / depth).ceil() - 1.0;
+        if passes > MOST_PASSES {
+            let message =
+                format!("the depth of a pass of {depth} mm makes {passes} passes; the limit is {MOST_PASSES}");
+            return Err(Fault::new("gcode::lathe", capture.wanted.block.at(b'p'), message)
+                .hint("make the depth of a pass larger"));
+        }
+        self.rough_line(&roughing, start, Speed::Rapid)?;
+        let mut pass = 1.0;
+        while pass <= passes {
+            self.rough_level(&roughing, start[1] - pass * depth)?;
+            pass += 1.0;
+        }
+        let here = roughing.side.of([self.here[0], self.here[1], self.here[2]]);
+        self.rough_line(&roughing, [here[0], start[1]], Speed::Rapid)?;
+        self.rough_line(&roughing, roughing.entry(), roughing.infeed)?;
+        for curve in &roughing.curves {
+            self.rough_curve_of(&roughing, curve)?;
+        }
+        if roughing.curves.iter().any(comes_down) {
+            let end = roughing.curves.last().map_or(start, Curve::end);
+            self.rough_line(&roughing, [end[0], start[1].max(end[1])], Speed::Rapid)?;
+        }
+        self.line_to(&capture.wanted.block, capture.wanted.start, Speed::Rapid, 0.0)
+    }
+
+    /// The passes at one level: the first from the start of the cycle, those of pockets from above them.
+    fn rough_level(&mut self, roughing: &Roughing<'_>, level: f64) -> Read<()> {
+        let start = roughing.start;
+        for [begin, end] in roughing.open_at(level) {
+            let from_start = begin <= start[0];
+            if from_start {
+                self.rough_line(roughing, [start[0], level], roughing.infeed)?;
+            } else {
+                let here = roughing.side.of([self.here[0], self.here[1], self.here[2]]);
+                self.rough_line(roughing, [here[0], start[1]], Speed::Rapid)?;
+                self.rough_line(roughing, [begin, start[1]], Speed::Rapid)?;
+                self.rough_line(roughing, [begin, (level + roughing.depth_mm).min(start[1])], Speed::Rapid)?;
+                self.rough_line(roughing, [begin, level], Speed::Programmed)?;
+            }
+            self.rough_line(roughing, [end, level], Speed::Programmed)?;
+            let off = roughing.escape_mm.min(end - begin);
+            self.rough_line(roughing, [end - off, level + off], Speed::Rapid)?;
+            if from_start {
+                self.rough_line(roughing, [start[0], level + off], Speed::Rapid)?;
+            } else {
+                self.rough_line(roughing, [end - off, start[1]], Speed::Rapid)?;
+                self.rough_line(roughing, start, Speed::Rapid)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn warn_of_allowance(&mut self, roughing: &Roughing<'_>) {
+        let ProfileWork::Rough { allowance_mm, .. } = roughing.capture.wanted.work else { return };
+        let shift = roughing.side.of([allowance_mm[0], 0.0, allowance_mm[1]]);
+        let (letter, block) = match shift {
+            [along, _] if along > SLACK_MM => (roughing.side.axes[0], &roughing.capture.wanted.block),
+            [_, out] if out < -SLACK_MM => (roughing.side.axes[1], &roughing.capture.wanted.block),
+            _ => return,
+        };
+        let letter = if letter == 0 { b'u' } else { b'w' };
+        let name = char::from(letter).to_ascii_uppercase();
+        let message = format!("{name} of {} moves the profile into the part", spelled(roughing.capture.wanted.code));
+        self.output.warnings.push(
+            *Fault::new("gcode::lathe", block.at(letter), message)
+                .hint("the allowance is left standing with the other sign"),
+        );
+    }
+
+    fn rough_line(&mut self, roughing: &Roughing<'_>, point: Point, speed: Speed) -> Read<()> {
+        let wanted = &roughing.capture.wanted;
+        self.line_to(&wanted.block, roughing.side.position(point, &wanted.start), speed, 0.0)
+    }
+
+    fn rough_curve_of(&mut self, roughing: &Roughing<'_>, curve: &Curve) -> Read<()> {
+        match *curve {
+            Curve::Arc { start, end, center, turn } if length(minus(end, start)) > SHORT_ARC_MM => {
+                let like = &roughing.capture.wanted.start;
+                let [middle, target] =
+                    [center, end].map(|point| self.frame.to_program(&roughing.side.position(point, like)));
+                let turns = if roughing.side.turns(turn) > 0.0 { 1 } else { -1 };
+                let round = Round { center: [middle[2], middle[0]], turns };
+                self.arc_to(&roughing.capture.wanted.block, &target, round, 0.0)
+            }
+            Curve::Line { end, .. } | Curve::Arc { end, .. } => self.rough_line(roughing, end, Speed::Programmed),
+        }
+    }
+}

@@ -1,0 +1,158 @@
+//! The files of a program, the place in them, and the calls and loops under way.
+
+use std::collections::HashMap;
+use std::io;
+use std::ops::Range;
+use std::path::PathBuf;
+
+use crate::flow::owords::Keyword;
+use crate::settings::Settings;
+use crate::state::parameters::MACRO_LOCALS;
+use crate::text::diagnostic::{Fault, Read};
+use crate::text::source::{Mark, Source};
+
+/// How a subroutine is written and called.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Manner {
+    /// `O1 sub` ... `O1 endsub`, called by `O1 call`.
+    Rs274,
+    /// `O1` ... `M99`, called by `M98 P1`.
+    Fanuc,
+    /// The same, called by `G65 P1` with variables of its own.
+    Macro,
+}
+
+/// A file with the places of its subroutines, once somebody has asked for one.
+#[derive(Debug)]
+pub(super) struct Unit {
+    pub(crate) source: Source,
+    pub(crate) path: Option<PathBuf>,
+    pub(super) subroutines: Option<HashMap<Vec<u8>, (Manner, Mark)>>,
+}
+
+/// A call under way.
+#[derive(Debug)]
+pub(super) struct Call {
+    pub(super) manner: Manner,
+    pub(crate) label: Vec<u8>,
+    /// File and line to return to.
+    pub(crate) unit: usize,
+    pub(crate) back: Mark,
+    /// First line of the subroutine and the calls that remain (L of M98).
+    pub(super) body: Mark,
+    pub(crate) repeats: u32,
+    /// `#1`-`#33` of the caller.
+    pub(crate) saved: [f64; MACRO_LOCALS],
+    /// Arguments of G65, anew for each of its repeats.
+    pub(crate) arguments: Option<Box<[f64; MACRO_LOCALS]>>,
+    /// Loops of the caller.
+    pub(crate) loops: usize,
+}
+
+/// A loop under way.
+#[derive(Debug)]
+pub(super) struct Loop {
+    pub(crate) label: Vec<u8>,
+    pub(crate) kind: Keyword,
+    /// The line of its O-word.
+    pub(crate) begin: Mark,
+    /// The line behind it.
+    pub(super) body: Mark,
+    pub(crate) repeats: u64,
+}
+
+/// Lines that are passed over.
+#[derive(Debug)]
+pub(super) struct Skip {
+    pub(crate) label: Vec<u8>,
+    pub(super) purpose: Purpose,
+    /// The line that began it, for the message when its end is missing.
+    pub(crate) line: u32,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// A false `if`: up to a true `elseif`, `else`, `endif`.
+    Branch,
+    /// Behind a branch that was taken: up to `endif`.
+    EndOfBranches,
+    Definition,
+    /// Out of a loop.
+    EndOfLoop,
+    /// `continue`: to the end of the loop, which is then carried out.
+    NextRound,
+}
+
+/// Blocks that were found, by file, offset of the line they were asked for from, and number.
+#[derive(Debug, Default)]
+pub(crate) struct Places(pub(crate) HashMap<(usize, u64, u64), Found>);
+
+/// The first block of a number before and behind a line.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Found {
+    pub(crate) before: Option<Mark>,
+    pub(crate) behind: Option<Mark>,
+}
+
+/// The files of a program, the place in them, and the calls and loops under way.
+#[derive(Debug)]
+pub(super) struct Flow {
+    pub(crate) units: Vec<Unit>,
+    pub(super) current: usize,
+    pub(crate) folders: Vec<PathBuf>,
+    pub(super) frames: Vec<Call>,
+    pub(crate) loops: Vec<Loop>,
+    pub(crate) skip: Option<Skip>,
+    pub(crate) max_depth: usize,
+    /// Lines of the branches and loops met so far, by file, subroutine and label; and room for such a key.
+    pub(crate) labels: HashMap<Vec<u8>, u32>,
+    pub(super) key: Vec<u8>,
+    /// Blocks that were looked for by their numbers.
+    pub(super) places: Places,
+}
+
+impl Flow {
+    pub(crate) fn new(source: Source, folder: Option<PathBuf>, settings: &Settings) -> Self {
+        let folders = folder.into_iter().chain(settings.subroutine_paths.iter().cloned()).collect();
+        let unit = Unit { source, path: None, subroutines: None };
+        Self {
+            units: vec![unit],
+            current: 0,
+            folders,
+            frames: Vec::new(),
+            loops: Vec::new(),
+            skip: None,
+            max_depth: settings.max_depth,
+            labels: HashMap::new(),
+            key: Vec::new(),
+            places: Places::default(),
+        }
+    }
+
+    /// The file under way.
+    #[inline]
+    pub(crate) fn source(&mut self) -> &mut Source {
+        &mut self.units[self.current].source
+    }
+
+    /// The file under way.
+    pub(super) fn source_ref(&self) -> &Source {
+        &self.units[self.current].source
+    }
+
+    /// Whether lines are passed over.
+    #[inline]
+    pub(super) const fn is_skipping(&self) -> bool {
+        self.skip.is_some()
+    }
+
+    /// Goes on at a line.
+    pub(super) fn jump_to(&mut self, mark: Mark, at: &Range<usize>) -> Read<()> {
+        self.source().jump(mark).map_err(|error| cannot_read(at.clone(), &error))
+    }
+}
+
+#[cold]
+pub(super) fn cannot_read(at: Range<usize>, error: &io::Error) -> Box<Fault> {
+    Fault::new("gcode::read", at, format!("the program cannot be read on: {error}"))
+}

@@ -1,0 +1,176 @@
+//! The curve at a distance from a profile, on the side of the stock.
+//!
+//! The profile never goes back along the passes, so all below it is part, and all within the distance of the part lies below the uppermost of
+//! these: its curves moved to their left, and circles about its outer corners. The pieces come one by one; one that begins below those before
+//! it is left out up to where it comes through them, and what it covers goes.
+
+use crate::geometry::plane::{Curve, Point, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, shifted, unit};
+use crate::motion::lathe::corners::SMOOTH_RAD;
+use crate::motion::lathe::profile::{Profile, goes_back};
+use crate::state::lathe::Lathe;
+use crate::text::diagnostic::Read;
+
+/// Curves that cross at less than this, rad, touch: where pieces are 1 mm off, lines that bend less end within [`SLACK_MM`].
+const TOUCH_RAD: f64 = 1e-9;
+/// Corners that turn back on themselves but for this, rad, leave walls that are one to rounding.
+const REVERSAL_RAD: f64 = 1e-6;
+/// As LinuxCNC (measured), lines whose ends at the distance lie closer along the passes, mm, meet in a corner instead of an arc.
+const SHARP_MM: f64 = 0.01;
+/// That corner is 3 % farther away than the arc at a bend of this, rad; one that bends more is rounded in any case.
+const SHARP_RAD: f64 = 0.5;
+/// Where what is beside it covers the first or the last line, it is met within this many distances before or behind that line.
+const GO_ON: f64 = 4.0;
+/// Comparisons of pieces with those before them: a distance much larger than the details of a long profile makes their number grow with its square.
+const MOST_COMPARISONS: usize = 10_000_000;
+
+impl Profile {
+    /// The profile at `distance_mm` from itself.
+    pub(crate) fn offset(&self, lathe: &Lathe, distance_mm: f64) -> Read<Self> {
+        if distance_mm <= SLACK_MM {
+            return Ok(self.clone());
+        }
+        let mut above = Above {
+            curves: Vec::with_capacity(2 * self.curves.len()),
+            is_below: false,
+            is_lost: false,
+            comparisons: 0,
+            distance_mm,
+            first: self.entry(),
+        };
+        let mut before: Option<&Curve> = None;
+        for curve in &self.curves {
+            // An inner arc that would vanish lies below what is beside it.
+            let mut moved = shifted(curve, distance_mm);
+            let corner = curve.start();
+            let to = curve.direction(corner);
+            if let Some(from) = before.map(|before| before.direction(corner)) {
+                let bend = cross(from, to).atan2(dot(from, to));
+                // A wall that is its own way back has no side to be at a distance from.
+                above.is_lost |= bend.abs() > std::f64::consts::PI - REVERSAL_RAD;
+                let [start, end] = [from, to].map(|along| add(corner, scaled(left_of(along), distance_mm)));
+                let is_sharp = -bend < SHARP_RAD && end[0] - start[0] < SHARP_MM;
+                if bend < -SMOOTH_RAD && !(is_sharp && above.meet_sharply(moved.as_mut(), corner)) {
+                    above.push(Curve::Arc { start, end, center: corner, turn: -1.0 });
+                }
+            }
+            match moved {
+                Some(moved) => above.push(moved),
+                None => above.is_below = true,
+            }
+            before = Some(curve);
+        }
+        if let Some(last) = self.curves.last() {
+            above.end_on(last);
+        }
+        let is_found = !above.is_below
+            && !above.is_lost
+            && above.comparisons <= MOST_COMPARISONS
+            && !above.curves.iter().any(goes_back);
+        above.curves.retain(|curve| curve.chord() > SLACK_MM);
+        if !is_found || above.curves.is_empty() {
+            let message = format!("the distance of {distance_mm:.4} mm to it is too large for its details");
+            return Err(lathe.refuse(lathe.line, &message).hint("make D (and E) smaller"));
+        }
+        Ok(Self { side: self.side, start: self.start, curves: above.curves })
+    }
+}
+
+/// The uppermost pieces so far.
+struct Above {
+    curves: Vec<Curve>,
+    /// The last piece ended below them.
+    is_below: bool,
+    /// A piece that is not found above goes round their beginning: what is above is not known.
+    is_lost: bool,
+    comparisons: usize,
+    distance_mm: f64,
+    /// Where the profile begins.
+    first: Point,
+}
+
+impl Above {
+    pub(crate) fn push(&mut self, mut piece: Curve) {
+        let end = self.curves.last().map(Curve::end);
+        let goes_on = !self.is_below && end.is_none_or(|end| length(minus(piece.start(), end)) <= SLACK_MM);
+        if !goes_on {
+            let through = self.comes_through(&piece).or_else(|| self.comes_before(&piece));
+            self.is_below = through.is_none();
+            let Some((kept, point)) = through else {
+                self.is_lost |= self.curves.first().is_none_or(|first| piece.start()[0] < first.start()[0] - SLACK_MM);
+                return;
+            };
+            self.shorten(kept, point);
+            piece.set_start(point);
+        }
+        self.curves.push(piece);
+    }
+
+    /// Keeps so many pieces, the last of them up to `point`.
+    fn shorten(&mut self, kept: usize, point: Point) {
+        self.curves.truncate(kept);
+        if let Some(last) = self.curves.last_mut() {
+            last.set_end(point);
+        }
+    }
+
+    /// Lets two lines meet at an outer corner, if both are lines.
+    fn meet_sharply(&mut self, next: Option<&mut Curve>, corner: Point) -> bool {
+        let (Some(last @ Curve::Line { .. }), Some(next @ Curve::Line { .. })) = (self.curves.last_mut(), next) else {
+            return false;
+        };
+        let point = if self.is_below { None } else { last.meet(next, corner) };
+        if let Some(point) = point {
+            last.set_end(point);
+            next.set_start(point);
+        }
+        point.is_some()
+    }
+
+    /// Ends what is above where the last line, were it longer, would come through.
+    fn end_on(&mut self, last: &Curve) {
+        if self.is_below
+            && let Some(Curve::Line { start, end }) = shifted(last, self.distance_mm)
+        {
+            let longer =
+                Curve::Line { start, end: add(end, scaled(unit(minus(end, start)), GO_ON * self.distance_mm)) };
+            if let Some((kept, point)) = self.comes_through(&longer)
+                && length(minus(point, last.end())) >= self.distance_mm - SLACK_MM
+            {
+                self.shorten(kept, point);
+                self.is_below = false;
+            }
+        }
+    }
+
+    /// Where a piece meets the first line, were it to begin earlier; nothing of what is there is kept.
+    fn comes_before(&self, piece: &Curve) -> Option<(usize, Point)> {
+        let Some(&Curve::Line { start, end }) = self.curves.first() else { return None };
+        let earlier =
+            Curve::Line { start: add(start, scaled(unit(minus(start, end)), GO_ON * self.distance_mm)), end: start };
+        let point = earlier.first_crossing(piece)?;
+        (length(minus(point, self.first)) >= self.distance_mm - SLACK_MM).then_some((0, point))
+    }
+
+    /// Where a piece that begins below the others comes through them first, and how many of them stay.
+    fn comes_through(&mut self, piece: &Curve) -> Option<(usize, Point)> {
+        let mut found: Option<(usize, Point, f64)> = None;
+        for (number, curve) in self.curves.iter().enumerate().rev() {
+            self.comparisons += 1;
+            if self.comparisons > MOST_COMPARISONS || curve.end()[0] < piece.start()[0] - SLACK_MM {
+                break;
+            }
+            // What is left of a curve may be a point, which has no direction.
+            let has_length = curve.chord() > SLACK_MM;
+            if let Some(point) = has_length.then(|| curve.first_crossing(piece)).flatten() {
+                let way = piece.way_to(point);
+                if found.is_none_or(|(_, _, first)| way < first) {
+                    found = Some((number, point, way));
+                }
+            }
+        }
+        let (number, point, _) = found?;
+        // It must come from below, not touch or go down.
+        let rises = cross(self.curves[number].direction(point), piece.direction(point)) > TOUCH_RAD;
+        rises.then_some((number + 1, point))
+    }
+}
