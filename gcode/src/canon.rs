@@ -1,6 +1,6 @@
 //! What a G-code program asks for, once modes, units, offsets and expressions are resolved.
 //!
-//! Lengths in millimetres, feeds in mm/s, times in seconds, in machine-independent program coordinates.
+//! Lengths in millimetres, feeds in mm/s, times in seconds, in machine coordinates: offsets and tool lengths are added.
 
 use std::sync::Arc;
 

@@ -148,7 +148,7 @@ pub struct UnknownIncrement {
     pub name: String,
 }
 
-/// Settings of a [`super::Reader`].
+/// Settings of a [`Reader`](crate::Reader).
 #[derive(Debug, Clone)]
 pub struct Settings {
     /// Dialect; `None` chooses by the beginning of the file.

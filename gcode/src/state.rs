@@ -1,4 +1,4 @@
-//! State of the interpreter: modes, offsets, position, parameters, and the canonical steps that wait to be fetched.
+//! What a program has brought about so far: modes, offsets, position, parameters, and the steps that wait to be fetched.
 
 pub(crate) mod modal;
 pub(crate) mod frame;
@@ -53,7 +53,7 @@ pub(crate) struct Output {
     pub(crate) warnings: Vec<Fault>,
 }
 
-/// Carries out blocks.
+/// What the lines so far have left; `motion`, `dialects` and `flow` carry blocks out on it.
 #[derive(Debug)]
 pub(crate) struct Interpreter {
     pub(crate) settings: Settings,

@@ -87,7 +87,7 @@ fn files() -> Vec<File> {
             walk(&child, &code, found);
         }
     }
-    let lib = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/src/lib.rs")).unwrap();
+    let lib = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/src/lib.rs")).expect("lib.rs can be read");
     let mut found = Vec::new();
     walk("", &code(&lib), &mut found);
     found

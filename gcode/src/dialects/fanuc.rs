@@ -1,6 +1,6 @@
 //! What Fanuc and Haas mean by words that LinuxCNC reads otherwise.
 //!
-//! `kind` tells a program for a lathe from one for a mill, and `codes` holds the G-codes that are theirs. Of lathes, G-code system A is read: X, U
+//! `kind` tells a program for a lathe from one for a mill, and `text/codes/fanuc.rs` holds the G-codes that are theirs. Of lathes, G-code system A is read: X, U
 //! and the position are diameters, U and W are distances, F is a feed per revolution (G99) unless G98 makes it one per minute. `turning` has the
 //! cycles of one block, `repetitive` those of two (G70 to G76), `profile` the blocks P to Q that they refer to.
 

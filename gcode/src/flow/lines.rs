@@ -1,7 +1,4 @@
-//! Where the next line comes from: subroutines, branches and loops, in the program and in files of subroutines.
-//!
-//! A definition is stepped over when the flow meets it and entered by a call. Branches not taken are skipped line by line, looking
-//! only for the O-word that ends them, so that nothing of a program has to be kept in memory except the places of its subroutines.
+//! Lines with O-words, and lines that are passed over, which are looked at only for the O-word that ends the passing.
 
 use crate::flow::owords::{
     Arguments, Head, Keyword, at_o_word, read_arguments, read_head, read_keyword, read_label, read_rest, shown,

@@ -1,4 +1,4 @@
-//! Points, lines and arcs of a plane, as far as cutter compensation needs them.
+//! Points, lines and arcs of a plane, as far as cutter compensation and the cycles of lathes need them.
 
 /// A point or a vector.
 pub(crate) type Point = [f64; 2];
@@ -243,7 +243,7 @@ fn circle_circle(c: Point, r: f64, d: Point, q: f64) -> [Option<Point>; 2] {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Round {
     pub(crate) center: [f64; 2],
-    /// As in [`Shape::Arc`].
+    /// As in [`Shape::Arc`](crate::canon::Shape::Arc).
     pub(crate) turns: i32,
 }
 

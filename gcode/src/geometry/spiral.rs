@@ -26,7 +26,7 @@ pub(crate) struct Spiral {
 }
 
 impl Spiral {
-    /// The arc of a motion; `turns` as in [`Shape::Arc`](super::canon::Shape::Arc).
+    /// The arc of a motion; `turns` as in [`Shape::Arc`](crate::canon::Shape::Arc).
     pub(crate) fn new(start: [f64; 3], end: [f64; 3], center: [f64; 3], plane: Plane, turns: i32) -> Self {
         let axes = plane.axes();
         let [first, second, normal] = axes;

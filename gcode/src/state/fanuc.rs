@@ -37,7 +37,7 @@ pub(crate) struct Fanuc {
     pub(super) warned: Vec<&'static str>,
 }
 
-/// Words of the last such block, by axis: a place, or a distance from where the cycle begins, mm.
+/// Words of the last G90, G92 or G94 of a lathe, by axis: a place, or a distance from where the cycle begins, mm.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct TurningWords {
     pub(crate) code: u16,
@@ -46,7 +46,7 @@ pub(crate) struct TurningWords {
     pub(crate) taper_mm: f64,
 }
 
-/// Words of first blocks, mm.
+/// Words of the first blocks of G70 to G76, mm.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct RepetitiveWords {
     /// Depth of a pass of G71 and of G72.
@@ -60,7 +60,7 @@ pub(crate) struct RepetitiveWords {
     pub(crate) thread: Option<ThreadingWords>,
 }
 
-/// What the first block says.
+/// What the first block of G76 says.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ThreadingWords {
     pub(crate) finishing: u32,

@@ -1,6 +1,6 @@
 //! Coordinate systems and their offsets: G10 L2 and L20, G52, G54 to G59.3, G54.1 P, G92.
 //!
-//! machine = rotate(program + G92 offset) + coordinate system + tool offset; see [`super::frame::Frame`]. None of these codes moves the
+//! machine = rotate(program + G92 offset) + coordinate system + tool offset; see [`Frame`](super::frame::Frame). None of these codes moves the
 //! machine; they change what its position is called.
 
 use crate::settings::Dialect;

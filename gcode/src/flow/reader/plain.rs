@@ -1,6 +1,6 @@
 //! The lines that long programs consist of, G0 or G1 with X, Y, Z, E and F as short decimals, read straight into a motion.
 //!
-//! Such a line needs little of what [`Block`](super::Block) and `execute` do for any line. Where no other mode has a say it becomes
+//! Such a line needs little of what [`Block`](crate::text::block::Block) and `execute` do for any line. Where no other mode has a say it becomes
 //! the same motion, to the last bit, with the same arithmetic in the same order; whatever is out of the ordinary in the line or in
 //! the modes leaves everything as it was, and the line goes the long way.
 

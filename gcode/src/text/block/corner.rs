@@ -1,4 +1,4 @@
-//! `,R` and `,C` of Fanuc: the corner at the end of a block.
+//! `,R` and `,C` of Fanuc: the corner at the end of a block. `dialects/fanuc/corners.rs` cuts it.
 
 use std::ops::Range;
 
