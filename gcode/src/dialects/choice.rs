@@ -64,7 +64,7 @@ pub(crate) fn choose(head: &[u8], name: &Arc<str>, asked: Option<Dialect>) -> Re
 }
 
 /// Mill or lathe.
-pub(crate) fn machine(
+pub(super) fn machine(
     evidence: &Evidence,
     dialect: Dialect,
     reason: &'static str,

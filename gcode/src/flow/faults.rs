@@ -16,7 +16,7 @@ type Place = (Arc<str>, u32, u32, &'static str);
 
 /// Faults so far.
 #[derive(Debug, Default)]
-pub(crate) struct Faults {
+pub(super) struct Faults {
     /// Those of new places.
     count: usize,
     /// All, with those of loops.
@@ -24,13 +24,13 @@ pub(crate) struct Faults {
     times: HashMap<Place, u64>,
 }
 
-pub(crate) fn place(diagnostic: &Diagnostic) -> Place {
+pub(super) fn place(diagnostic: &Diagnostic) -> Place {
     (diagnostic.file.clone(), diagnostic.line, diagnostic.column, diagnostic.code)
 }
 
 impl Faults {
     /// Counts a fault; true where it is to be shown: the first of its place, and within the limit.
-    pub(crate) fn add(&mut self, diagnostic: &Diagnostic, most: usize) -> bool {
+    pub(super) fn add(&mut self, diagnostic: &Diagnostic, most: usize) -> bool {
         self.met += 1;
         if self.is_known(diagnostic) {
             return false;
@@ -40,7 +40,7 @@ impl Faults {
     }
 
     /// Whether the place had this fault or warning before; counts it.
-    pub(crate) fn is_known(&mut self, diagnostic: &Diagnostic) -> bool {
+    pub(super) fn is_known(&mut self, diagnostic: &Diagnostic) -> bool {
         if let Some(times) = self.times.get_mut(&place(diagnostic)) {
             *times += 1;
             return true;
@@ -62,7 +62,7 @@ impl Faults {
     }
 
     /// What is said behind the last line of those that were not shown; once.
-    pub(crate) fn rest(&mut self, most: usize) -> Option<String> {
+    pub(super) fn rest(&mut self, most: usize) -> Option<String> {
         let more = self.count.saturating_sub(most);
         let unread = if self.are_hopeless() { "; the rest of the program was not read" } else { "" };
         let said = match (more, unread) {

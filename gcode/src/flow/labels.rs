@@ -68,7 +68,7 @@ enum Label {
 }
 
 impl Label {
-    pub(crate) fn of(line: &[u8]) -> Self {
+    pub(super) fn of(line: &[u8]) -> Self {
         let mut cursor = Cursor::new(line);
         if cursor.eat(b'/') && cursor.raw().is_ascii_digit() {
             cursor.bump();

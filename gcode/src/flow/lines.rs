@@ -109,7 +109,7 @@ impl Flow {
     }
 
     /// A line that is an O-word: reads it at `at` and carries it out.
-    pub(crate) fn line(&mut self, range: std::ops::Range<usize>, at: usize, interpreter: &mut Interpreter) -> Read<()> {
+    pub(super) fn line(&mut self, range: std::ops::Range<usize>, at: usize, interpreter: &mut Interpreter) -> Read<()> {
         let (head, arguments) = {
             let mut cursor = Cursor::new(self.source_ref().bytes(range));
             cursor.at = at;

@@ -75,7 +75,7 @@ impl Flow {
         };
     }
 
-    pub(crate) fn pass(&mut self, head: &Head, purpose: Purpose, line: u32) {
+    pub(super) fn pass(&mut self, head: &Head, purpose: Purpose, line: u32) {
         self.skip = Some(Skip { label: head.label.clone(), purpose, line });
     }
 

@@ -197,7 +197,7 @@ const fn jump(number: u16) -> Option<(&'static str, &'static str)> {
 }
 
 /// When an M-code acts relative to the others of its line.
-pub(crate) const fn order(number: u16) -> u8 {
+pub(super) const fn order(number: u16) -> u8 {
     match number {
         6 | 61 => 0,
         3..=5 | 19 => 1,

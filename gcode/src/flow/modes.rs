@@ -11,7 +11,7 @@ use crate::text::codes::{self, Group};
 use crate::text::diagnostic::{Fault, Read, Short};
 
 impl Interpreter {
-    pub(crate) fn feed_mode(&mut self, block: &Block) -> Read<()> {
+    pub(super) fn feed_mode(&mut self, block: &Block) -> Read<()> {
         if let Some(word) = block.code(Group::FeedMode) {
             let mode = match word.number {
                 930 => FeedMode::Inverse,
@@ -98,7 +98,7 @@ impl Interpreter {
     }
 
     /// Modes that a G-code of the line changes.
-    pub(crate) fn modes(&mut self, block: &Block) -> Read<()> {
+    pub(super) fn modes(&mut self, block: &Block) -> Read<()> {
         if block.g.is_empty() {
             return Ok(());
         }

@@ -49,7 +49,7 @@ const KEYWORDS: [(&[u8], Keyword); 15] = [
 
 impl Keyword {
     /// How it is written.
-    pub(crate) fn spelled(self) -> String {
+    pub(super) fn spelled(self) -> String {
         let row = KEYWORDS.iter().find(|row| row.1 == self);
         row.map_or_else(String::new, |row| String::from_utf8_lossy(row.0).into_owned())
     }
@@ -59,21 +59,21 @@ impl Keyword {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Head {
     /// Digits or a name, lower case without blanks.
-    pub(crate) label: Vec<u8>,
-    pub(crate) keyword: Keyword,
+    pub(super) label: Vec<u8>,
+    pub(super) keyword: Keyword,
     /// Where it stands in the line.
-    pub(crate) at: std::ops::Range<usize>,
+    pub(super) at: std::ops::Range<usize>,
 }
 
 impl Head {
     /// The label as a message shows it.
-    pub(crate) fn shown(&self) -> String {
+    pub(super) fn shown(&self) -> String {
         shown(&self.label)
     }
 }
 
 /// A label as a message shows it.
-pub(crate) fn shown(label: &[u8]) -> String {
+pub(super) fn shown(label: &[u8]) -> String {
     let text = String::from_utf8_lossy(label);
     if label.iter().all(u8::is_ascii_digit) { format!("O{text}") } else { format!("O<{text}>") }
 }
@@ -81,8 +81,8 @@ pub(crate) fn shown(label: &[u8]) -> String {
 /// Arguments of an O-word.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Arguments {
-    pub(crate) values: [f64; LOCALS],
-    pub(crate) count: usize,
+    pub(super) values: [f64; LOCALS],
+    pub(super) count: usize,
 }
 
 /// Reads the O-word under the cursor up to its arguments.

@@ -25,8 +25,8 @@ pub(super) enum Manner {
 /// A file with the places of its subroutines, once somebody has asked for one.
 #[derive(Debug)]
 pub(super) struct Unit {
-    pub(crate) source: Source,
-    pub(crate) path: Option<PathBuf>,
+    pub(super) source: Source,
+    pub(super) path: Option<PathBuf>,
     pub(super) subroutines: Option<HashMap<Vec<u8>, (Manner, Mark)>>,
 }
 
@@ -34,40 +34,40 @@ pub(super) struct Unit {
 #[derive(Debug)]
 pub(super) struct Call {
     pub(super) manner: Manner,
-    pub(crate) label: Vec<u8>,
+    pub(super) label: Vec<u8>,
     /// File and line to return to.
-    pub(crate) unit: usize,
-    pub(crate) back: Mark,
+    pub(super) unit: usize,
+    pub(super) back: Mark,
     /// First line of the subroutine and the calls that remain (L of M98).
     pub(super) body: Mark,
-    pub(crate) repeats: u32,
+    pub(super) repeats: u32,
     /// `#1`-`#33` of the caller.
-    pub(crate) saved: [f64; MACRO_LOCALS],
+    pub(super) saved: [f64; MACRO_LOCALS],
     /// Arguments of G65, anew for each of its repeats.
-    pub(crate) arguments: Option<Box<[f64; MACRO_LOCALS]>>,
+    pub(super) arguments: Option<Box<[f64; MACRO_LOCALS]>>,
     /// Loops of the caller.
-    pub(crate) loops: usize,
+    pub(super) loops: usize,
 }
 
 /// A loop under way.
 #[derive(Debug)]
 pub(super) struct Loop {
-    pub(crate) label: Vec<u8>,
-    pub(crate) kind: Keyword,
+    pub(super) label: Vec<u8>,
+    pub(super) kind: Keyword,
     /// The line of its O-word.
-    pub(crate) begin: Mark,
+    pub(super) begin: Mark,
     /// The line behind it.
     pub(super) body: Mark,
-    pub(crate) repeats: u64,
+    pub(super) repeats: u64,
 }
 
 /// Lines that are passed over.
 #[derive(Debug)]
 pub(super) struct Skip {
-    pub(crate) label: Vec<u8>,
+    pub(super) label: Vec<u8>,
     pub(super) purpose: Purpose,
     /// The line that began it, for the message when its end is missing.
-    pub(crate) line: u32,
+    pub(super) line: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,34 +85,34 @@ pub(super) enum Purpose {
 
 /// Blocks that were found, by file, offset of the line they were asked for from, and number.
 #[derive(Debug, Default)]
-pub(crate) struct Places(pub(crate) HashMap<(usize, u64, u64), Found>);
+pub(super) struct Places(pub(super) HashMap<(usize, u64, u64), Found>);
 
 /// The first block of a number before and behind a line.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Found {
-    pub(crate) before: Option<Mark>,
-    pub(crate) behind: Option<Mark>,
+    pub(super) before: Option<Mark>,
+    pub(super) behind: Option<Mark>,
 }
 
 /// The files of a program, the place in them, and the calls and loops under way.
 #[derive(Debug)]
 pub(super) struct Flow {
-    pub(crate) units: Vec<Unit>,
+    pub(super) units: Vec<Unit>,
     pub(super) current: usize,
-    pub(crate) folders: Vec<PathBuf>,
+    pub(super) folders: Vec<PathBuf>,
     pub(super) frames: Vec<Call>,
-    pub(crate) loops: Vec<Loop>,
-    pub(crate) skip: Option<Skip>,
-    pub(crate) max_depth: usize,
+    pub(super) loops: Vec<Loop>,
+    pub(super) skip: Option<Skip>,
+    pub(super) max_depth: usize,
     /// Lines of the branches and loops met so far, by file, subroutine and label; and room for such a key.
-    pub(crate) labels: HashMap<Vec<u8>, u32>,
+    pub(super) labels: HashMap<Vec<u8>, u32>,
     pub(super) key: Vec<u8>,
     /// Blocks that were looked for by their numbers.
     pub(super) places: Places,
 }
 
 impl Flow {
-    pub(crate) fn new(source: Source, folder: Option<PathBuf>, settings: &Settings) -> Self {
+    pub(super) fn new(source: Source, folder: Option<PathBuf>, settings: &Settings) -> Self {
         let folders = folder.into_iter().chain(settings.subroutine_paths.iter().cloned()).collect();
         let unit = Unit { source, path: None, subroutines: None };
         Self {
@@ -131,7 +131,7 @@ impl Flow {
 
     /// The file under way.
     #[inline]
-    pub(crate) fn source(&mut self) -> &mut Source {
+    pub(super) fn source(&mut self) -> &mut Source {
         &mut self.units[self.current].source
     }
 

@@ -127,7 +127,7 @@ impl Reader {
     }
 
     /// The file's name as the user gave it.
-    pub(crate) fn name(&mut self) -> Arc<str> {
+    pub(super) fn name(&mut self) -> Arc<str> {
         self.flow.source().name.clone()
     }
 
@@ -173,7 +173,7 @@ impl Reader {
 
     /// A fault of the line under way. One that only follows from the fault of an earlier line is not told.
     #[cold]
-    pub(crate) fn refuse(&mut self, fault: Fault) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn refuse(&mut self, fault: Fault) -> Result<(), Box<Diagnostic>> {
         let follows = self.interpreter.behind_fault && FOLLOWING.contains(&fault.code);
         self.interpreter.assume(&self.block);
         if follows { Ok(()) } else { Err(self.diagnose(Severity::Error, fault)) }
@@ -374,7 +374,7 @@ impl Reader {
         Box::new(diagnostic)
     }
 
-    pub(crate) fn of_file(&mut self, code: &'static str, message: String) -> Box<Diagnostic> {
+    pub(super) fn of_file(&mut self, code: &'static str, message: String) -> Box<Diagnostic> {
         Box::new(Diagnostic::of_file(Severity::Error, code, self.flow.source().name.clone(), message))
     }
 

@@ -93,7 +93,7 @@ pub(super) fn is_true<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<bool>
 }
 
 /// Number of a block.
-pub(crate) fn label<V: Values>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<u64> {
+pub(super) fn label<V: Values>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<u64> {
     let number = evaluator.value()?;
     let at = start..evaluator.cursor.at;
     if (1.0..1e9).contains(&number.round()) {

@@ -26,7 +26,7 @@ const MOST_SUBROUTINES: usize = 100_000;
 
 impl Flow {
     /// `O1 call [..]`.
-    pub(crate) fn call(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
+    pub(super) fn call(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
         let (unit, manner, body) = self.find_subroutine(&head.label, &head.at)?;
         if manner == Manner::Fanuc {
             let number = String::from_utf8_lossy(&head.label).into_owned();
@@ -159,7 +159,7 @@ impl Flow {
     }
 
     /// `endsub`, `return`.
-    pub(crate) fn leave(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
+    pub(super) fn leave(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
         let fault = |message: &str| Err(Fault::new("gcode::o_word", head.at.clone(), message));
         match self.frames.last() {
             None => return fault("this is not inside a subroutine"),

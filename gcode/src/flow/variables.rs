@@ -10,7 +10,7 @@ use crate::text::lexer::Cursor;
 
 impl Interpreter {
     /// `#target = value`, in effect from the next line on.
-    pub(crate) fn assign(&mut self, target: &Target, value: f64) -> Read<()> {
+    pub(super) fn assign(&mut self, target: &Target, value: f64) -> Read<()> {
         let read_only =
             |name: &str| Err(Fault::new("gcode::parameter", 0..usize::MAX, format!("{name} can only be read")));
         match target {
@@ -45,7 +45,7 @@ impl Interpreter {
 
     /// Comments that speak to the operator, at the bytes `at` of the line; one in brackets can end the program.
     #[cold]
-    pub(crate) fn comment(&mut self, line: &[u8], at: Range<usize>) -> Read<()> {
+    pub(super) fn comment(&mut self, line: &[u8], at: Range<usize>) -> Read<()> {
         let in_brackets = at.start > 0 && line[at.start - 1] == b'(';
         let text = line[at.clone()].trim_ascii();
         let after = |keyword: &[u8]| -> Option<&[u8]> {

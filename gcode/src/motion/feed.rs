@@ -121,7 +121,7 @@ impl Interpreter {
 
 /// What moves besides X, Y and Z.
 #[inline]
-pub(crate) fn others(start: &Position, end: &Position, extruder_mm: f64) -> Others {
+pub(super) fn others(start: &Position, end: &Position, extruder_mm: f64) -> Others {
     let axes = (start[3..] != end[3..]).then(|| {
         let six = |position: &Position| std::array::from_fn(|axis| position[axis + 3]);
         Box::new([six(start), six(end)])
@@ -130,7 +130,7 @@ pub(crate) fn others(start: &Position, end: &Position, extruder_mm: f64) -> Othe
 }
 
 /// Length that F refers to: of X Y Z if they move, else of U V W, else degrees of A B C.
-pub(crate) fn distance(start: &Position, end: &Position) -> f64 {
+pub(super) fn distance(start: &Position, end: &Position) -> f64 {
     let along = |axes: std::ops::Range<usize>| axes.map(|axis| (end[axis] - start[axis]).powi(2)).sum::<f64>().sqrt();
     [along(0..3), along(6..9), along(3..6)].into_iter().find(|&length| length > 0.0).unwrap_or(0.0)
 }

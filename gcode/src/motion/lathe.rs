@@ -24,7 +24,7 @@ use crate::text::expression::INTEGER_WITHIN;
 use crate::text::source::Mark;
 
 /// Passes of one cycle: more is a mistake in I or P.
-pub(crate) const MOST_PASSES: f64 = 10_000.0;
+pub(super) const MOST_PASSES: f64 = 10_000.0;
 /// LinuxCNC's depth of a pass and retraction where I and R are missing, in the unit of the program.
 const DEFAULT_DEPTH: f64 = 1.0;
 const DEFAULT_RETRACTION: f64 = 0.5;

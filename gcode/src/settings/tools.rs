@@ -93,7 +93,7 @@ const CODE: &str = "gcode::tool_table";
 const MOST_MM: f64 = 1e6;
 
 /// The words of a line with their places.
-pub(crate) fn words(line: &[u8]) -> impl Iterator<Item = (Range<usize>, &[u8])> {
+pub(super) fn words(line: &[u8]) -> impl Iterator<Item = (Range<usize>, &[u8])> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).map(move |word| {
         let start = word.as_ptr().addr() - line.as_ptr().addr();
         (start..start + word.len(), word)

@@ -29,7 +29,7 @@ pub(crate) struct Fanuc {
     /// G16: X is a radius and Y an angle.
     pub(crate) is_polar: bool,
     /// Offsets of the systems of G54.1 P and G154 P.
-    pub(crate) systems: HashMap<usize, Position>,
+    pub(super) systems: HashMap<usize, Position>,
     pub(crate) points: Points,
     /// Number N of the line under way.
     pub(crate) block_number: u64,

@@ -11,7 +11,7 @@ pub(crate) struct Turn {
 }
 
 impl Turn {
-    pub(crate) fn of(&self, [x, y]: [f64; 2], sense: f64) -> [f64; 2] {
+    pub(super) fn of(&self, [x, y]: [f64; 2], sense: f64) -> [f64; 2] {
         let (sin, cos) = (sense * self.angle_deg).to_radians().sin_cos();
         let (x, y) = (x - self.center[0], y - self.center[1]);
         [self.center[0] + cos * x - sin * y, self.center[1] + sin * x + cos * y]
@@ -23,17 +23,17 @@ impl Turn {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Frame {
     /// Active coordinate system, 1 (G54) to 9 (G59.3).
-    pub(crate) system: usize,
+    pub(super) system: usize,
     pub(super) system_offset: Position,
     /// Rotation of the system about Z, degrees.
     pub(crate) rotation_deg: f64,
     pub(crate) g92: Position,
-    pub(crate) tool: Position,
+    pub(super) tool: Position,
     pub(crate) turn: Option<Turn>,
 }
 
 impl Frame {
-    pub(crate) const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self { system: 1, system_offset: [0.0; 9], rotation_deg: 0.0, g92: [0.0; 9], tool: [0.0; 9], turn: None }
     }
 

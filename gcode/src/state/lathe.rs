@@ -48,14 +48,14 @@ pub(crate) struct Lathe {
 /// ProfileModes that give the words of a profile their meaning. LinuxCNC passes over codes in a profile that change them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ProfileModes {
-    pub(crate) plane: Plane,
-    pub(crate) unit_mm: f64,
-    pub(crate) incremental: bool,
-    pub(crate) arc_absolute: bool,
-    pub(crate) diameter: bool,
-    pub(crate) feed_mode: FeedMode,
-    pub(crate) compensates: bool,
-    pub(crate) frame: Frame,
+    pub(super) plane: Plane,
+    pub(super) unit_mm: f64,
+    pub(super) incremental: bool,
+    pub(super) arc_absolute: bool,
+    pub(super) diameter: bool,
+    pub(super) feed_mode: FeedMode,
+    pub(super) compensates: bool,
+    pub(super) frame: Frame,
 }
 
 /// Label and place of the subroutine that a lathe cycle asks for.

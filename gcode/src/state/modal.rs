@@ -51,7 +51,7 @@ pub(crate) struct Modal {
 }
 
 impl Modal {
-    pub(crate) const fn new() -> Self {
+    pub(super) const fn new() -> Self {
         Self {
             motion: 800,
             plane: Plane::Xy,

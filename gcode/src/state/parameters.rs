@@ -50,14 +50,14 @@ pub(crate) struct Parameters {
 }
 
 impl Parameters {
-    pub(crate) fn new() -> Self {
+    pub(super) fn new() -> Self {
         let mut numbered = vec![0.0; PARAMETERS];
         numbered[SYSTEM] = 1.0;
         Self { numbered, globals: HashMap::new(), locals: vec![HashMap::new()], names: 0 }
     }
 
     /// Value of `#index`; `index` is below [`PARAMETERS`].
-    pub(crate) fn get(&self, index: usize) -> f64 {
+    pub(super) fn get(&self, index: usize) -> f64 {
         self.numbered.get(index).copied().unwrap_or(0.0)
     }
 

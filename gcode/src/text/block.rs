@@ -62,7 +62,7 @@ pub(crate) struct Block {
     /// `,R` or `,C` of Fanuc.
     pub(crate) corner: Option<CornerWord>,
     /// End of the line's text outside comments.
-    pub(crate) end: usize,
+    pub(super) end: usize,
 }
 
 /// Ways to read a line that depend on the dialect.

@@ -30,7 +30,7 @@ pub(crate) enum Group {
 }
 
 /// Number of groups.
-pub(crate) const GROUPS: usize = 16;
+pub(super) const GROUPS: usize = 16;
 
 /// Bit of a letter in a set of letters; `@`, `^` and `$` follow the alphabet.
 pub(crate) const fn bit(letter: u8) -> u32 {
@@ -80,17 +80,17 @@ pub(crate) const ALWAYS: u32 = bits(b"fstngmo");
 #[derive(Debug)]
 pub(crate) struct Code {
     /// Ten times the code.
-    pub(crate) number: u16,
+    pub(super) number: u16,
     pub(crate) group: Group,
     /// Letters that it gives a meaning to, axes included where it uses them.
     pub(crate) letters: u32,
 }
 
-pub(crate) const fn code(number: u16, group: Group, letters: &[u8]) -> Code {
+pub(super) const fn code(number: u16, group: Group, letters: &[u8]) -> Code {
     Code { number, group, letters: bits(letters) }
 }
 
-pub(crate) const fn axes(number: u16, group: Group, letters: &[u8]) -> Code {
+pub(super) const fn axes(number: u16, group: Group, letters: &[u8]) -> Code {
     Code { number, group, letters: bits(letters) | AXES }
 }
 
@@ -222,7 +222,7 @@ pub(crate) fn spelled(number: u16) -> String {
 }
 
 /// The known codes closest to an unknown number, as a hint.
-pub(crate) fn nearest(number: f64) -> String {
+pub(super) fn nearest(number: f64) -> String {
     let mut best: Vec<u16> = Vec::new();
     let mut distance = f64::INFINITY;
     for row in CODES {

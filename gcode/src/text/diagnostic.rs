@@ -168,7 +168,7 @@ impl fmt::Display for Short {
 #[derive(Debug)]
 pub(crate) struct Fault {
     pub(crate) code: &'static str,
-    pub(crate) at: Range<usize>,
+    pub(super) at: Range<usize>,
     pub(crate) message: String,
     pub(crate) hint: Option<String>,
 }

@@ -106,7 +106,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
     }
 
     /// Whether values are those of Fanuc's macros.
-    pub(crate) fn is_fanuc(&self) -> bool {
+    pub(super) fn is_fanuc(&self) -> bool {
         self.values.is_fanuc()
     }
 
@@ -253,7 +253,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
     }
 
     /// What stands behind the `#` under the cursor.
-    pub(crate) fn target(&mut self) -> Read<Target> {
+    pub(super) fn target(&mut self) -> Read<Target> {
         let start = self.cursor.at;
         self.cursor.bump();
         if self.cursor.eat(b'<') {

@@ -46,7 +46,7 @@ const CODES: &[(&[u16], &str, &str)] = &[
 ];
 
 /// What a code of another control does, and what helps.
-pub(crate) fn what(tenths: f64) -> Option<(&'static str, &'static str)> {
+pub(super) fn what(tenths: f64) -> Option<(&'static str, &'static str)> {
     let row = CODES.iter().find(|(codes, ..)| codes.iter().any(|&code| f64::from(code) == tenths));
     // G110 to G129 are G54 and so on of Haas.
     let haas_systems = (1100.0..=1290.0).contains(&tenths).then_some(1540.0);

@@ -98,7 +98,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// The bytes to the end of the line.
-    pub(crate) fn rest(&self) -> &'a [u8] {
+    pub(super) fn rest(&self) -> &'a [u8] {
         &self.bytes[self.at.min(self.bytes.len())..]
     }
 
@@ -187,7 +187,7 @@ pub(crate) const fn is_blank(byte: u8) -> bool {
 }
 
 /// A byte as a message shows it.
-pub(crate) fn shown(byte: u8) -> String {
+pub(super) fn shown(byte: u8) -> String {
     if byte.is_ascii_graphic() { char::from(byte).to_string() } else { format!("byte {byte:#04x}") }
 }
 

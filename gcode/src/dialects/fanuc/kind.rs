@@ -208,7 +208,7 @@ struct LineWords {
 }
 
 impl LineWords {
-    pub(crate) fn of(line: &[u8]) -> Self {
+    pub(super) fn of(line: &[u8]) -> Self {
         let mut words = Self::default();
         let mut at = 0;
         let is_statement = ["IF", "WHILE", "GOTO", "END", "DO", "#"].iter().any(|start| {

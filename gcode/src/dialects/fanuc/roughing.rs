@@ -30,7 +30,7 @@ struct PassPlane {
 }
 
 impl PassPlane {
-    pub(crate) fn of(self, point: [f64; 3]) -> Point {
+    pub(super) fn of(self, point: [f64; 3]) -> Point {
         std::array::from_fn(|n| self.signs[n] * point[self.axes[n]])
     }
 
@@ -43,7 +43,7 @@ impl PassPlane {
     }
 
     /// Whether an arc that turns left here turns counter-clockwise in G18.
-    pub(crate) fn turns(self, turn: f64) -> f64 {
+    pub(super) fn turns(self, turn: f64) -> f64 {
         let exchanged = if self.axes == [2, 0] { 1.0 } else { -1.0 };
         turn * exchanged * self.signs[0] * self.signs[1]
     }
@@ -138,7 +138,7 @@ impl<'a> Roughing<'a> {
         Ok(())
     }
 
-    pub(crate) fn entry(&self) -> Point {
+    pub(super) fn entry(&self) -> Point {
         self.curves.first().map_or(self.start, Curve::start)
     }
 

@@ -16,7 +16,7 @@ impl Reader {
     }
 
     /// The line that was read may be the last of a profile; without its faults the cycle is carried out.
-    pub(crate) fn end_own_profile(&mut self, result: Read<()>) -> Read<()> {
+    pub(super) fn end_own_profile(&mut self, result: Read<()>) -> Read<()> {
         let number = std::mem::take(&mut self.interpreter.fanuc.block_number);
         let Some(capture) = self.interpreter.fanuc.capture.take_if(|capture| capture.last() == number) else {
             return result;
@@ -28,7 +28,7 @@ impl Reader {
     }
 
     /// M98 and M99 come after all else of their line.
-    pub(crate) fn calls(&mut self) -> Read<()> {
+    pub(super) fn calls(&mut self) -> Read<()> {
         let Self { flow, interpreter, block, .. } = self;
         for word in &block.m {
             let at = word.at();

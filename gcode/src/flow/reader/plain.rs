@@ -97,7 +97,7 @@ impl PlainWords {
     }
 
     #[inline]
-    pub(crate) const fn names_axes(&self) -> bool {
+    pub(super) const fn names_axes(&self) -> bool {
         self.set & (1 << X | 1 << Y | 1 << Z) != 0
     }
 }
@@ -117,7 +117,7 @@ fn straight_code(bytes: &[u8], at: &mut usize) -> Option<u16> {
 }
 
 /// How many digits come first, at least one and few.
-pub(crate) fn digits(bytes: &[u8]) -> Option<usize> {
+pub(super) fn digits(bytes: &[u8]) -> Option<usize> {
     let count = bytes.iter().take_while(|byte| byte.is_ascii_digit()).count();
     (1..=MOST_DIGITS).contains(&count).then_some(count)
 }

@@ -60,7 +60,7 @@ impl CornerCut {
 }
 
 /// The point of the curve nearest to `point`.
-pub(crate) fn foot(curve: &Curve, point: Point) -> Point {
+pub(super) fn foot(curve: &Curve, point: Point) -> Point {
     match *curve {
         Curve::Line { start, end } => {
             let along = unit(minus(end, start));

@@ -25,7 +25,7 @@ const MOST_COMPARISONS: usize = 10_000_000;
 
 impl Profile {
     /// The profile at `distance_mm` from itself.
-    pub(crate) fn offset(&self, lathe: &Lathe, distance_mm: f64) -> Read<Self> {
+    pub(super) fn offset(&self, lathe: &Lathe, distance_mm: f64) -> Read<Self> {
         if distance_mm <= SLACK_MM {
             return Ok(self.clone());
         }
@@ -89,7 +89,7 @@ struct Above {
 }
 
 impl Above {
-    pub(crate) fn push(&mut self, mut piece: Curve) {
+    pub(super) fn push(&mut self, mut piece: Curve) {
         let end = self.curves.last().map(Curve::end);
         let goes_on = !self.is_below && end.is_none_or(|end| length(minus(piece.start(), end)) <= SLACK_MM);
         if !goes_on {

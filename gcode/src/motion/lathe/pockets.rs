@@ -18,7 +18,7 @@ pub(super) fn ends_falling(curve: &Curve) -> bool {
 }
 
 /// The lowest point of an arc that has one between its ends.
-pub(crate) fn bottom(curve: &Curve) -> Option<Point> {
+pub(super) fn bottom(curve: &Curve) -> Option<Point> {
     match *curve {
         Curve::Arc { start, end, center, turn }
             if turn > 0.0 && start[0] < center[0] - SLACK_MM && end[0] > center[0] + SLACK_MM =>

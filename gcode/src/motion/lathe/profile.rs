@@ -16,7 +16,7 @@ use crate::text::diagnostic::{Fault, Read};
 const SHORT_ARC_MM: f64 = 1e-7;
 /// The cycle's plane: which axes, and which way.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Side {
+pub(super) struct Side {
     /// Axis along the passes, and of their depth.
     axes: [usize; 2],
     signs: [f64; 2],
@@ -24,19 +24,19 @@ pub(crate) struct Side {
 
 /// Start of the cycle, end of the entry, and the curves behind it.
 #[derive(Debug, Clone)]
-pub(crate) struct Profile {
-    pub(crate) side: Side,
-    pub(crate) start: Point,
-    pub(crate) curves: Vec<Curve>,
+pub(super) struct Profile {
+    pub(super) side: Side,
+    pub(super) start: Point,
+    pub(super) curves: Vec<Curve>,
 }
 
 impl Side {
-    pub(crate) fn of(self, point: [f64; 3]) -> Point {
+    pub(super) fn of(self, point: [f64; 3]) -> Point {
         std::array::from_fn(|n| self.signs[n] * point[self.axes[n]])
     }
 
     /// The machine position of a point; the other axes stay.
-    pub(crate) fn position(self, point: Point, like: &Position) -> Position {
+    pub(super) fn position(self, point: Point, like: &Position) -> Position {
         let mut position = *like;
         for n in 0..2 {
             position[self.axes[n]] = self.signs[n] * point[n];
@@ -45,7 +45,7 @@ impl Side {
     }
 
     /// Whether an arc that turns left here turns counter-clockwise in G18 (Z, then X).
-    pub(crate) fn turns(self, turn: f64) -> f64 {
+    pub(super) fn turns(self, turn: f64) -> f64 {
         let exchanged = if self.axes == [2, 0] { 1.0 } else { -1.0 };
         turn * exchanged * self.signs[0] * self.signs[1]
     }
@@ -63,7 +63,7 @@ impl Side {
 
 impl Profile {
     /// The profile of a cycle; refuses one that goes back along the passes.
-    pub(crate) fn new(lathe: &Lathe) -> Read<Self> {
+    pub(super) fn new(lathe: &Lathe) -> Read<Self> {
         match lathe.code {
             // Finishing has no passes: the profile is one of G71 or of G72.
             700 => Self::along(lathe, [2, 0]).or_else(|fault| Self::along(lathe, [0, 2]).map_err(|_| fault)),
@@ -72,7 +72,7 @@ impl Profile {
         }
     }
 
-    pub(crate) fn along(lathe: &Lathe, axes: [usize; 2]) -> Read<Self> {
+    pub(super) fn along(lathe: &Lathe, axes: [usize; 2]) -> Read<Self> {
         let along = |motion: &Motion, axis: usize| motion.end_mm[axes[axis]] - motion.start_mm[axes[axis]];
         // As LinuxCNC: towards the chuck or the axis, where the profile itself does not say.
         let ahead = lathe.motions.iter().skip(1).find_map(|motion| clear(along(motion, 0)));
@@ -105,13 +105,13 @@ impl Profile {
     }
 
     /// Where the entry ends.
-    pub(crate) fn entry(&self) -> Point {
+    pub(super) fn entry(&self) -> Point {
         self.curves.first().map_or(self.start, Curve::start)
     }
 }
 
 /// Which way a distance goes, if it is one.
-pub(crate) fn clear(way: f64) -> Option<f64> {
+pub(super) fn clear(way: f64) -> Option<f64> {
     (way.abs() > SLACK_MM).then(|| way.signum())
 }
 
@@ -132,7 +132,7 @@ pub(super) fn goes_back(curve: &Curve) -> bool {
 }
 
 impl Lathe {
-    pub(crate) fn refuse(&self, line: u32, message: &str) -> Box<Fault> {
+    pub(super) fn refuse(&self, line: u32, message: &str) -> Box<Fault> {
         let place = if line == self.line { String::new() } else { format!("line {line}: ") };
         let message = format!("the profile of {} cannot be cut: {place}{message}", spelled(self.code));
         Fault::new("gcode::lathe", self.block.at(b'q'), message)
@@ -165,7 +165,7 @@ impl Lathe {
 
 impl Interpreter {
     /// Moves straight to a point of the cycle's plane.
-    pub(crate) fn lathe_line(&mut self, lathe: &Lathe, side: Side, point: Point, speed: Speed) -> Read<()> {
+    pub(super) fn lathe_line(&mut self, lathe: &Lathe, side: Side, point: Point, speed: Speed) -> Read<()> {
         let target = side.position(point, &lathe.start);
         self.line_to(&lathe.block, target, speed, 0.0)
     }

@@ -41,7 +41,7 @@ impl Progress {
 }
 
 impl Interpreter {
-    pub(crate) fn rough(&mut self, lathe: &Lathe, depth_mm: f64, retraction_mm: f64, left_mm: f64) -> Read<()> {
+    pub(super) fn rough(&mut self, lathe: &Lathe, depth_mm: f64, retraction_mm: f64, left_mm: f64) -> Read<()> {
         let kind = match lathe.code % 10 {
             1 => Extent::WithoutPockets,
             2 => Extent::PocketsOnly,
@@ -134,7 +134,7 @@ impl Interpreter {
     }
 
     /// Cuts straight on, and comes back to where it began.
-    pub(crate) fn pass(
+    pub(super) fn pass(
         &mut self,
         lathe: &Lathe,
         profile: &Profile,
