@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use crate::canon::{Canon, EventKind};
 use crate::dialects::choice;
-use crate::dialects::firmware::{self};
+use crate::dialects::firmware;
 use crate::flow::faults::Faults;
 use crate::flow::program::Flow;
 use crate::flow::statements::statement;

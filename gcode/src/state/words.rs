@@ -2,7 +2,7 @@
 
 use crate::state::Interpreter;
 use crate::text::block::Block;
-use crate::text::codes::{self};
+use crate::text::codes;
 use crate::text::diagnostic::{Fault, Read, Short};
 use crate::text::expression::INTEGER_WITHIN;
 

@@ -10,7 +10,7 @@ use crate::text::codes::fanuc::{CodeSet, LATHE_OWN, SYSTEM_A};
 use crate::text::codes::{self, AXES, GROUPS, Group, bit, letter, slot};
 use crate::text::diagnostic::{Fault, Read, Short};
 use crate::text::expression::{Evaluator, INTEGER_WITHIN, Target, Values};
-use crate::text::foreign::{self};
+use crate::text::foreign;
 use crate::text::lexer::{Cursor, END, NO_EXPONENT, shown};
 
 /// Letters, `@`, `^` and `$`.
