@@ -207,6 +207,16 @@ fn an_inner_corner_behind_a_flat_one_lies_beside_its_own_line() {
     assert!((corner.end_mm[1] - 9.963_636).abs() < 1e-6, "{corner:?}");
 }
 
+/// A line that an inner corner before it has nearly used up, and another behind it: it met the far side of the arc's circle, and the
+/// tool was 7 um in the contour.
+#[test]
+fn a_line_too_short_for_both_its_corners_is_refused_before_an_arc_too() {
+    let text = "G21 G17 G90 F600\nG0 X-50 Y0\nG42.1 D22.963978615 G1 X0 Y0\nG1 X3.276279918 Y-6.353381369\n\
+                G3 X5.746732698 Y-10.690850765 I22.850233972 J10.142327516\nG40 G1 X-35 Y-39\nM2\n";
+    let (_, faults) = read(text);
+    assert!(faults[0].message.contains("does not fit") && faults[0].line == 5, "{faults:?}");
+}
+
 /// LinuxCNC's rapids go straight past an outer corner, and the tool into it: it is told.
 #[test]
 fn a_rapid_past_an_outer_corner_is_straight_and_told() {

@@ -5,7 +5,7 @@
 //! back. The first motion ends beside its end point, the motion behind G40 leaves from there. All in machine coordinates of the plane.
 
 use crate::canon::{Canon, Motion, Plane, Shape};
-use crate::geometry::plane::{Curve, Point, Round, add, cross, dot, left_of, length, minus, scaled, unit};
+use crate::geometry::plane::{Curve, Point, Round, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, unit};
 use crate::motion::feed::{Speed, others};
 use crate::state::Interpreter;
 use crate::state::frame::Position;
@@ -371,7 +371,10 @@ fn inner_meeting(before: &Curve, next: &Curve, corner: Point, beside: Point) -> 
     match (before, next) {
         (Curve::Line { .. }, Curve::Arc { start, .. }) => {
             let shift = minus(beside, *start);
-            Some(minus(before.meet(&next.moved(shift), corner)?, shift))
+            let meeting = before.meet(&next.moved(shift), corner)?;
+            // An inner corner makes the line shorter: where it is longer than that, it has met the far side of the circle.
+            let longer_mm = before.way_to(meeting) - before.way_to(before.end());
+            (longer_mm <= length(shift) + SLACK_MM).then(|| minus(meeting, shift))
         }
         _ => before.meet(next, corner),
     }
