@@ -13,7 +13,6 @@
 //! | `contour.rs` | the closed-form contours of the benchmark |
 //! | `pieces.rs` | motions to pieces |
 //! | `arcs.rs` | an arc motion to arcs that meet both of its ends |
-//! | `vector.rs` | vectors of three components |
 
 pub mod arc;
 mod arcs;
@@ -23,7 +22,6 @@ pub mod line;
 pub mod pieces;
 pub mod smooth;
 pub mod spline;
-pub(crate) mod vector;
 
 use crate::gcode::canon::{Corner, Event};
 use arc::Arc;

@@ -17,6 +17,7 @@ use crate::gcode::canon::Canon;
 use crate::path::pieces::Pieces;
 use crate::path::{PathError, Piece, Step};
 use crate::plc::Plc;
+use crate::vector::{norm, sub};
 use std::collections::VecDeque;
 use window::Window;
 
@@ -208,8 +209,8 @@ impl<'p> Reference<'p> {
 #[inline]
 fn foot(piece: &Piece, local_mm: f64, point_mm: [f64; 3]) -> Foot {
     let at = piece.curve.at(local_mm);
-    let away = [0, 1, 2].map(|k| point_mm[k] - at.position_mm[k]);
-    let distance_mm = (away[0] * away[0] + away[1] * away[1] + away[2] * away[2]).sqrt();
+    let away = sub(point_mm, at.position_mm);
+    let distance_mm = norm(away);
     let left = at.tangent[0] * away[1] - at.tangent[1] * away[0];
     Foot {
         s_mm: piece.s_mm + local_mm,

@@ -25,6 +25,7 @@ use crate::machine::Machine;
 use crate::plant::{Measurement, Plant};
 use crate::reference::{Reference, Sample};
 use crate::trace::{Commanded, FadedOut, Outcome, Row, Sink};
+use crate::vector::distance;
 use progress::{Progress, settled_periods, settled_s};
 pub use tick_times::TickTimes;
 use uncut::Uncut;
@@ -236,8 +237,4 @@ fn first<const N: usize>(v: [f64; 3]) -> [f64; N] {
 
 fn spread<const N: usize>(v: [f64; N]) -> [f64; 3] {
     std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
-}
-
-fn distance<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
-    feedwright_control::vector::norm(feedwright_control::vector::sub(a, b))
 }

@@ -16,7 +16,7 @@
 
 use super::Limits;
 use crate::gcode::canon::Corner;
-use crate::path::vector::angle;
+use crate::vector::angle;
 
 /// A turn below this is no corner: the velocity jumps by a thousandth of the speed, 0.05 mm/s at 50 mm/s; and programs that
 /// round to 0.001 mm leave turns of this size where arcs of a few mm should join without any. Smaller would stop there

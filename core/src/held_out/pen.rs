@@ -4,6 +4,7 @@
 //! still a program.
 
 use super::random::Random;
+use crate::vector::distance;
 
 /// Acceleration by which the time of a short leg is estimated, mm/s2.
 const ACCEL_MM_S2: f64 = 400.0;
@@ -124,10 +125,6 @@ impl Pen {
         const LEAST_S: f64 = 0.002;
         self.left_s -= (leg_mm / self.feed_mm_s).max((leg_mm / ACCEL_MM_S2).sqrt()).max(LEAST_S);
     }
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|k| (a[k] - b[k]) * (a[k] - b[k])).sum::<f64>().sqrt()
 }
 
 /// As programs write places: four decimals, and no zero with a sign.

@@ -2,9 +2,9 @@
 //!
 //! Source: Lee, Cho and Jeon (2005), section 3.2, eq. 6. The paper does not say on what the network was trained.
 
+use crate::vector::{scale, sub};
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::{ERROR_SCALE_MM, HIDDEN, History, INPUTS, Inputs};
-use feedwright_control::vector::{scale, sub};
 use rand::{RngExt, SeedableRng, seq::SliceRandom};
 use serde::Serialize;
 

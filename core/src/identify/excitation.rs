@@ -1,7 +1,7 @@
 //! The identification programme, cut: laps of circles under a controller that disturbs the command and records.
 
+use crate::vector::add_scaled;
 use feedwright_control::controller::{Command, Controller, Measured, Schedule};
-use feedwright_control::vector::add_scaled;
 use feedwright_control::window::Window;
 use rand::RngExt;
 

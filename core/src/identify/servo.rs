@@ -13,11 +13,11 @@
 //! Source: ridge regression, Hoerl and Kennard (1970); hidden layers that are laid instead of trained, Schmidt, Kraaijveld
 //! and Duin (1992); generalised least squares, Clarke (1967).
 
+use crate::vector::{scale, sub};
 use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::residual::LAGS;
 use feedwright_control::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
 use feedwright_control::identifier::{FEED_SCALE_MM_S, HIDDEN, INPUTS, Inputs};
-use feedwright_control::vector::{scale, sub};
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 

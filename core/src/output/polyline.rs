@@ -5,7 +5,8 @@
 //! the tolerance, with the vertices as they are printed. The number of vertices is not the proven minimum, which would need
 //! the whole path at once; tests compare it with the optimum over vertices on the points themselves.
 
-use super::stab::{P3, dot, norm, passes, stab, sub};
+use super::stab::{passes, stab};
+use crate::vector::{Vector, dot, norm, sub};
 
 /// Points that a segment covers at most: bounds the memory, and costs one block in 16 s of straight motion at 1 ms.
 const MAX_POINTS: usize = 1 << 14;
@@ -18,17 +19,17 @@ pub(super) struct Simplifier {
     tolerance_mm: f64,
     /// Points per mm of the printed grid.
     steps_per_mm: f64,
-    anchor: Option<P3>,
+    anchor: Option<Vector>,
     /// Points after the last vertex that no segment covers yet.
-    pending: Vec<P3>,
+    pending: Vec<Vector>,
     /// The longest prefix of `pending` known to fit one segment, and an end for it.
-    fits: Option<(usize, P3)>,
+    fits: Option<(usize, Vector)>,
 }
 
 /// A segment to `end_mm` that covers `points` points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Segment {
-    pub(super) end_mm: P3,
+    pub(super) end_mm: Vector,
     pub(super) points: usize,
 }
 
@@ -38,7 +39,7 @@ impl Simplifier {
     }
 
     /// Takes the next point; hands segments that are finished to `emit`.
-    pub(super) fn push(&mut self, point: P3, emit: &mut impl FnMut(Segment)) {
+    pub(super) fn push(&mut self, point: Vector, emit: &mut impl FnMut(Segment)) {
         if self.anchor.is_none() {
             self.anchor = Some(self.printed(point));
             return;
@@ -51,7 +52,7 @@ impl Simplifier {
     }
 
     /// A new polyline from `point` on, which has no points that wait; gives its vertex.
-    pub(super) fn restart(&mut self, point: P3) -> P3 {
+    pub(super) fn restart(&mut self, point: Vector) -> Vector {
         let vertex = self.printed(point);
         self.anchor = Some(vertex);
         vertex
@@ -105,7 +106,7 @@ impl Simplifier {
     }
 
     /// A printed end for a segment past the first `length` points.
-    fn end_of(&self, length: usize) -> Option<P3> {
+    fn end_of(&self, length: usize) -> Option<Vector> {
         let anchor = self.anchor?;
         let points = &self.pending[..length];
         let next = self.pending.get(length).copied();
@@ -124,7 +125,7 @@ impl Simplifier {
             .or_else(on_point)
     }
 
-    fn is_corner(&self, length: usize, next: P3) -> bool {
+    fn is_corner(&self, length: usize, next: Vector) -> bool {
         let last = self.pending[length - 1];
         let before = if length > 1 { self.pending[length - 2] } else { self.anchor.unwrap_or(last) };
         let (arriving, leaving) = (sub(last, before), sub(next, last));
@@ -132,7 +133,7 @@ impl Simplifier {
     }
 
     /// A point as it is printed.
-    pub(super) fn printed(&self, point: P3) -> P3 {
+    pub(super) fn printed(&self, point: Vector) -> Vector {
         point.map(|c| (c * self.steps_per_mm).round() / self.steps_per_mm)
     }
 }
@@ -145,7 +146,7 @@ mod tests {
     const TOLERANCE: f64 = 1e-3;
     const STEPS: f64 = 1e5;
 
-    fn simplified(points: &[P3]) -> Vec<Segment> {
+    fn simplified(points: &[Vector]) -> Vec<Segment> {
         let mut simplifier = Simplifier::new(TOLERANCE, STEPS);
         let mut segments = Vec::new();
         for point in points {
@@ -156,7 +157,7 @@ mod tests {
     }
 
     /// Every segment passes its points in order within the tolerance, and together they cover all points.
-    fn assert_guarantee(points: &[P3], segments: &[Segment]) {
+    fn assert_guarantee(points: &[Vector], segments: &[Segment]) {
         let printed = points[0].map(|c| (c * STEPS).round() / STEPS);
         let (mut at, mut covered) = (printed, 1);
         for segment in segments {
@@ -168,8 +169,8 @@ mod tests {
     }
 
     /// Fewest segments of any polyline whose vertices are printed points of the path, by dynamic programming.
-    fn optimum_on_points(points: &[P3]) -> usize {
-        let printed: Vec<P3> = points.iter().map(|p| p.map(|c| (c * STEPS).round() / STEPS)).collect();
+    fn optimum_on_points(points: &[Vector]) -> usize {
+        let printed: Vec<Vector> = points.iter().map(|p| p.map(|c| (c * STEPS).round() / STEPS)).collect();
         let mut fewest = vec![0; points.len()];
         for j in 1..points.len() {
             fewest[j] = (0..j)
@@ -181,16 +182,16 @@ mod tests {
         fewest[points.len() - 1]
     }
 
-    fn circle(count: usize, radius: f64, step: f64) -> Vec<P3> {
+    fn circle(count: usize, radius: f64, step: f64) -> Vec<Vector> {
         (0..count).map(|k| (k as f64 * step / radius).sin_cos()).map(|(s, c)| [radius * c, radius * s, 0.0]).collect()
     }
 
     #[test]
     fn a_straight_line_is_one_block_and_a_corner_is_exact() {
-        let line: Vec<P3> = (0..=5000).map(|k| [f64::from(k) * 0.05, f64::from(k) * 0.01, 0.0]).collect();
+        let line: Vec<Vector> = (0..=5000).map(|k| [f64::from(k) * 0.05, f64::from(k) * 0.01, 0.0]).collect();
         assert_eq!(simplified(&line), [Segment { end_mm: [250.0, 50.0, 0.0], points: 5000 }]);
-        let corner: Vec<P3> = (0..=100).map(|k| [f64::from(k.min(50)), f64::from((k - 50).max(0)), 0.0]).collect();
-        let ends: Vec<P3> = simplified(&corner).iter().map(|segment| segment.end_mm).collect();
+        let corner: Vec<Vector> = (0..=100).map(|k| [f64::from(k.min(50)), f64::from((k - 50).max(0)), 0.0]).collect();
+        let ends: Vec<Vector> = simplified(&corner).iter().map(|segment| segment.end_mm).collect();
         assert_eq!(ends, [[50.0, 0.0, 0.0], [50.0, 50.0, 0.0]]);
     }
 
@@ -216,7 +217,7 @@ mod tests {
 
     #[test]
     fn a_long_line_is_split_to_bound_the_memory() {
-        let line: Vec<P3> = (0..=40_000).map(|k| [f64::from(k) * 0.05, 0.0, 0.0]).collect();
+        let line: Vec<Vector> = (0..=40_000).map(|k| [f64::from(k) * 0.05, 0.0, 0.0]).collect();
         let segments = simplified(&line);
         assert_guarantee(&line, &segments);
         assert_eq!(segments.len(), 3);

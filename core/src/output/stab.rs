@@ -15,7 +15,7 @@
 //! strict: 1e-6 of r where the ray turns by 1.4 mrad. Points within r of a are met at a itself. Every answer is verified by
 //! [`passes`] with true distances, so rounding can cost a block but never the guarantee.
 
-pub(super) type P3 = [f64; 3];
+use crate::vector::{Vector, add_scaled, cross, dot, norm, scale, sub};
 
 /// The ray may leave a disc by this share of its radius: rounding of coordinates of 1000 mm against discs of 1e-5.
 const SLACK: f64 = 1e-9;
@@ -23,7 +23,7 @@ const SLACK: f64 = 1e-9;
 /// An end for a segment from `anchor` past all `points` within `r`, as far as possible away from `next`.
 ///
 /// On a curve the end then lies on its outer side, from where the following segment reaches further.
-pub(super) fn stab(anchor: P3, points: &[P3], next: Option<P3>, r: f64) -> Option<P3> {
+pub(super) fn stab(anchor: Vector, points: &[Vector], next: Option<Vector>, r: f64) -> Option<Vector> {
     let last = *points.last()?;
     let reach = sub(last, anchor);
     let length = norm(reach);
@@ -31,7 +31,7 @@ pub(super) fn stab(anchor: P3, points: &[P3], next: Option<P3>, r: f64) -> Optio
     if length <= r {
         return points.iter().all(|p| norm(sub(*p, anchor)) <= r).then_some(anchor);
     }
-    let frame = Frame::along(scale(reach, 1.0 / length));
+    let frame = Frame::along(scale(1.0 / length, reach));
     // From the far end to the near one: far discs are small, so that few of the others still matter.
     let mut discs = Vec::with_capacity(points.len());
     for p in points.iter().rev() {
@@ -48,14 +48,14 @@ pub(super) fn stab(anchor: P3, points: &[P3], next: Option<P3>, r: f64) -> Optio
     let goal = next.and_then(|next| frame.away_from(sub(next, anchor))).unwrap_or([1.0, 0.0]);
     let [alpha, beta] = extreme(&discs, goal)?;
     let direction = frame.direction(alpha, beta);
-    Some([0, 1, 2].map(|i| anchor[i] + length * direction[i]))
+    Some(add_scaled(anchor, length, direction))
 }
 
 /// Whether all `points` lie within `r` of the segment from `a` to `b`, in order, the last one within `r` of `b`.
-pub(super) fn passes(a: P3, b: P3, points: &[P3], r: f64) -> bool {
+pub(super) fn passes(a: Vector, b: Vector, points: &[Vector], r: f64) -> bool {
     let along = sub(b, a);
     let length = norm(along);
-    let unit = if length > 0.0 { scale(along, 1.0 / length) } else { [0.0; 3] };
+    let unit = if length > 0.0 { scale(1.0 / length, along) } else { [0.0; 3] };
     // The smallest parameter that the points so far allow.
     let mut reached = 0.0_f64;
     let in_order = points.iter().all(|p| {
@@ -135,58 +135,38 @@ fn extreme_on(disc: &Disc, others: &[Disc], goal: [f64; 2]) -> Option<[f64; 2]> 
 
 /// Right-handed axes: along, and two across.
 struct Frame {
-    u: P3,
-    v: P3,
-    w: P3,
+    u: Vector,
+    v: Vector,
+    w: Vector,
 }
 
 impl Frame {
-    fn along(u: P3) -> Self {
+    fn along(u: Vector) -> Self {
         // Across u in the XY plane where there is such a direction, so that a plane path stays plane.
         let level = u[0].hypot(u[1]);
         let v = if level > 1e-6 { [-u[1] / level, u[0] / level, 0.0] } else { [1.0, 0.0, 0.0] };
-        let v = unit(sub(v, scale(u, dot(u, v))));
+        let v = unit(sub(v, scale(dot(u, v), u)));
         Self { u, v, w: cross(u, v) }
     }
 
-    fn coordinates(&self, p: P3) -> P3 {
+    fn coordinates(&self, p: Vector) -> Vector {
         [dot(p, self.u), dot(p, self.v), dot(p, self.w)]
     }
 
-    fn direction(&self, alpha: f64, beta: f64) -> P3 {
-        [0, 1, 2].map(|i| self.u[i] + alpha * self.v[i] + beta * self.w[i])
+    fn direction(&self, alpha: f64, beta: f64) -> Vector {
+        add_scaled(add_scaled(self.u, alpha, self.v), beta, self.w)
     }
 
     /// Unit vector across u, away from where `p` lies; `None` where it lies on u.
-    fn away_from(&self, p: P3) -> Option<[f64; 2]> {
+    fn away_from(&self, p: Vector) -> Option<[f64; 2]> {
         let (y, z) = (dot(p, self.v), dot(p, self.w));
         let size = y.hypot(z);
         (size > 1e-9).then(|| [-y / size, -z / size])
     }
 }
 
-pub(super) fn sub(a: P3, b: P3) -> P3 {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-pub(super) fn dot(a: P3, b: P3) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-pub(super) fn norm(a: P3) -> f64 {
-    dot(a, a).sqrt()
-}
-
-fn scale(a: P3, k: f64) -> P3 {
-    a.map(|c| k * c)
-}
-
-fn unit(a: P3) -> P3 {
-    scale(a, 1.0 / norm(a))
-}
-
-fn cross(a: P3, b: P3) -> P3 {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+fn unit(a: Vector) -> Vector {
+    scale(1.0 / norm(a), a)
 }
 
 #[cfg(test)]
@@ -263,7 +243,7 @@ mod tests {
             let count = noise.len() as f64;
             let direction = unit([1.0, tilt.0, tilt.1]);
             let frame = Frame::along(direction);
-            let points: Vec<P3> = noise.iter().enumerate().map(|(k, n)| {
+            let points: Vec<Vector> = noise.iter().enumerate().map(|(k, n)| {
                 let x = far * (k as f64 + 0.5 + 0.4 * n.0) / count + 2.0 * r;
                 [0, 1, 2].map(|i| x * frame.u[i] + r * (n.1 * frame.v[i] + n.2 * frame.w[i]))
             }).collect();

@@ -9,8 +9,8 @@
 //! `1 - cos(phi) = 2 sin(phi/2)^2`.
 
 use super::Point;
-use super::vector::{Vector, distance, dot, sub};
 use crate::gcode::canon::Plane;
+use crate::vector::{Vector, distance, dot, sub};
 use std::f64::consts::{PI, TAU};
 
 /// Newton steps for the nearest point of a helix; the iteration is monotone and quadratic, it needs about six.
@@ -215,8 +215,8 @@ pub(super) fn recenter(chord: [f64; 2], to_center: [f64; 2], sense: f64) -> ([f6
 
 #[cfg(test)]
 mod tests {
-    use super::super::vector::{add_scaled, norm};
     use super::*;
+    use crate::vector::{add_scaled, norm};
 
     #[test]
     fn recentering_puts_both_ends_on_the_circle() {

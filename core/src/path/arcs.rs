@@ -13,9 +13,9 @@
 //! four choose `d`.
 
 use super::arc::{Arc, recenter};
-use super::vector::Vector;
 use super::{MIN_LENGTH_MM, PathError};
 use crate::gcode::canon::Plane;
+use crate::vector::Vector;
 use std::f64::consts::{PI, TAU};
 
 /// An arc whose ends are this close, seen along the circle, is a full turn. Measured on LinuxCNC 2.9 with radii of 2 and
@@ -234,7 +234,7 @@ mod tests {
             let mut here = start_mm;
             let mut length = 0.0;
             for (start, arc) in &arcs {
-                prop_assert!(super::super::vector::distance(here, *start) < 1e-9);
+                prop_assert!(crate::vector::distance(here, *start) < 1e-9);
                 here = arc.at(arc.length_mm()).position_mm;
                 length += arc.length_mm();
                 for i in 0..=20 {
@@ -243,7 +243,7 @@ mod tests {
                     prop_assert!((distance - radius).abs() <= miss.abs() + 1e-6, "{} {}", distance, radius);
                 }
             }
-            prop_assert!(super::super::vector::distance(here, end_mm) < 1e-9);
+            prop_assert!(crate::vector::distance(here, end_mm) < 1e-9);
             let turned = sweep + TAU * (f64::from(turns).abs() - 1.0);
             let request = Request { line: 1, start_mm, end_mm, plane, center_mm: center, turns };
             prop_assert!(off_the_spiral_mm(&arcs, &request, turned) < 3e-7);

@@ -13,9 +13,9 @@
 use super::butterfly::butterfly;
 use super::pieces::Pieces;
 use super::smooth::{Jet, Parametric, Smooth};
-use super::vector::scale;
 use super::{Curve, PathError, Piece, Step};
 use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape, Spline};
+use crate::vector::scale;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Straight line by arc length: `p(s) = start + s t`.
 
 use super::Point;
-use super::vector::{Vector, add_scaled, dot, norm, scale, sub};
+use crate::vector::{Vector, add_scaled, dot, norm, scale, sub};
 
 /// Straight line.
 #[derive(Debug, Clone, Copy, PartialEq)]

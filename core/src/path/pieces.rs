@@ -6,9 +6,9 @@
 use super::arcs::{Request, arcs};
 use super::line::Line;
 use super::spline::curves;
-use super::vector::{Vector, distance};
 use super::{Curve, MAX_COORDINATE_MM, MAX_GAP_MM, MAX_REST_S, MIN_FEED_MM_S, MIN_LENGTH_MM, PathError, Piece, Step};
 use crate::gcode::canon::{Canon, Event, EventKind, Motion, MotionKind, Shape};
+use crate::vector::{Vector, distance};
 use std::collections::VecDeque;
 use std::sync::Arc;
 

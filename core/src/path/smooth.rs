@@ -8,7 +8,7 @@
 mod nearest;
 
 use super::Point;
-use super::vector::{Vector, angle, cross, dot, norm, scale};
+use crate::vector::{Vector, angle, cross, dot, norm, scale};
 use std::fmt::Debug;
 
 /// Arc length within a cell is right to this: a tenth of what the path promises, and far above rounding.

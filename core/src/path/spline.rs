@@ -12,9 +12,9 @@
 
 use super::PathError;
 use super::smooth::{Jet, Parametric, Smooth};
-use super::vector::{Vector, add_scaled, angle, distance, norm, scale, sub};
 use super::{MAX_COORDINATE_MM, MIN_LENGTH_MM};
 use crate::gcode::canon::Spline;
+use crate::vector::{Vector, add_scaled, angle, distance, norm, scale, sub};
 
 /// Highest degree: a cut that no program reaches, so that evaluation needs no memory but the stack's.
 pub const MAX_DEGREE: usize = 15;

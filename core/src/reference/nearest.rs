@@ -7,7 +7,7 @@
 
 use super::{Foot, foot};
 use crate::path::Piece;
-use crate::path::vector::{distance, dot, sub};
+use crate::vector::{distance, dot, sub};
 use std::collections::VecDeque;
 
 /// Joints meet only to rounding; a reach is shortened by this, far more than that and far less than any piece.

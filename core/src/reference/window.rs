@@ -4,6 +4,7 @@ use super::nearest::{Range, nearest};
 use super::{Foot, Sample};
 use crate::feed::Phase;
 use crate::path::Piece;
+use crate::vector::norm;
 use std::collections::VecDeque;
 
 /// Times that a servo period looks at: two or three samples, and both ends of the range for the nearest point.
@@ -189,15 +190,14 @@ impl Sample {
 impl Foot {
     /// A program without motion has its origin only.
     fn nowhere(point_mm: [f64; 3]) -> Self {
-        let [x, y, z] = point_mm;
-        let distance_mm = (x * x + y * y + z * z).sqrt();
+        let distance_mm = norm(point_mm);
         Self {
             s_mm: 0.0,
             position_mm: [0.0; 3],
             tangent: [1.0, 0.0, 0.0],
             line: 0,
             distance_mm,
-            signed_mm: if y < 0.0 { -distance_mm } else { distance_mm },
+            signed_mm: if point_mm[1] < 0.0 { -distance_mm } else { distance_mm },
             cutting: false,
         }
     }

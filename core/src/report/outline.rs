@@ -4,6 +4,8 @@
 //! its chord by more than a tolerance; when the vertices are too many, the tolerance doubles and they are thinned again, so
 //! that the outline is within twice the last tolerance of the path.
 
+use crate::vector::{add_scaled, dot, sub};
+
 /// Most vertices kept. A page holds one outline; this many are some 150 kB of it.
 const MAX_VERTICES: usize = 20_000;
 
@@ -84,12 +86,10 @@ impl Outline {
 
     /// Whether `p` is within the tolerance of the chord from `a` to `b`.
     fn near(&self, a: [f64; 3], b: [f64; 3], p: [f64; 3]) -> bool {
-        let chord = [b[0] - a[0], b[1] - a[1], b[2] - a[2]];
-        let to_p = [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
-        let dot = |u: [f64; 3], v: [f64; 3]| u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+        let (chord, to_p) = (sub(b, a), sub(p, a));
         let length2 = dot(chord, chord);
         let along = if length2 > 0.0 { (dot(to_p, chord) / length2).clamp(0.0, 1.0) } else { 0.0 };
-        let away = [0, 1, 2].map(|k| to_p[k] - along * chord[k]);
+        let away = add_scaled(to_p, -along, chord);
         dot(away, away) <= self.tolerance_mm * self.tolerance_mm
     }
 }

@@ -9,6 +9,7 @@ use std::io;
 use super::foot::FootFinder;
 use super::outline::{Outline, Vertex};
 use crate::trace::{Row, Sink};
+use crate::vector::distance;
 
 /// One point of a [`Series`]: a few successive rows, told by the one with the largest contour error.
 ///
@@ -191,10 +192,6 @@ impl Bucket {
             span_s: self.span_s + next.span_s,
         }
     }
-}
-
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (a[0] - b[0]).hypot(a[1] - b[1]).hypot(a[2] - b[2])
 }
 
 #[cfg(test)]

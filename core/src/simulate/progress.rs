@@ -21,8 +21,8 @@
 use std::collections::VecDeque;
 
 use crate::machine::Machine;
-use crate::path::vector::{Vector, distance, dot, sub};
 use crate::reference::{Foot, Reference};
+use crate::vector::{Vector, distance, dot, sub};
 
 /// Time constants after which a loop of first order has followed.
 const SETTLED_TIME_CONSTANTS: f64 = 5.0;

@@ -15,8 +15,8 @@
 
 use std::collections::VecDeque;
 
-use crate::path::vector::{Vector, add_scaled, distance, dot, sub};
 use crate::trace::{Commanded, Row};
+use crate::vector::{Vector, add_scaled, distance, dot, sub};
 
 /// The uncut path of a run.
 pub(super) struct Uncut {

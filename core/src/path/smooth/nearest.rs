@@ -11,7 +11,7 @@
 //! their ends puts out of reach.
 
 use super::{Cell, MIN_SPEED_MM, Smooth};
-use crate::path::vector::{Vector, distance, dot, norm, sub};
+use crate::vector::{Vector, distance, dot, norm, sub};
 use std::f64::consts::FRAC_PI_2;
 
 /// Distances that differ by less are equal, and a foot wins over the end of a cell: rounding of a distance must not move the
