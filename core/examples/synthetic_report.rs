@@ -8,10 +8,13 @@ use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::Path;
 
+use feedwright::path::signed_distance_mm;
 use feedwright::report::{Report, Run, RunFacts, Series, Statistics, TimelineEvent, write_html};
 use feedwright::trace::{Commanded, Row, Sink};
 
 const DT_S: f64 = 1e-3;
+/// Step along the path that gives its tangent, mm.
+const STEP_MM: f64 = 1e-6;
 
 /// A made-up job: where the command is after an arc length.
 struct Job {
@@ -128,10 +131,9 @@ fn row(
     (path_mm, act_mm, torque_nm): ([f64; 3], [f64; 3], [f64; 3]),
 ) -> Row {
     let foot = (job.at)(foot_s_mm);
-    let ahead = (job.at)(foot_s_mm + 1e-6);
-    let away = [act_mm[0] - foot[0], act_mm[1] - foot[1], act_mm[2] - foot[2]];
-    let size = away[0].hypot(away[1]).hypot(away[2]);
-    let left = (ahead[0] - foot[0]) * away[1] - (ahead[1] - foot[1]) * away[0] >= 0.0;
+    let ahead = (job.at)(foot_s_mm + STEP_MM);
+    let tangent = [0, 1, 2].map(|k| (ahead[k] - foot[k]) / STEP_MM);
+    let signed_mm = signed_distance_mm(tangent, [0, 1, 2].map(|k| act_mm[k] - foot[k]));
     Row {
         t_s,
         s_mm,
@@ -140,11 +142,12 @@ fn row(
         cutting: s_mm > 0.04 * job.length_mm.min(200.0),
         commanded: Commanded::Cut,
         path_mm,
-        cmd_mm: path_mm,
+        cmd_mm: [path_mm[0] + 0.01, path_mm[1], path_mm[2]],
         act_mm,
         torque_nm,
-        contour_error_mm: if job.axes == 2 && !left { -size } else { size },
-        corrected_mm: [path_mm[0] + 0.01, path_mm[1], path_mm[2]],
+        foot_mm: foot,
+        tangent,
+        contour_error_mm: if job.axes == 2 { signed_mm } else { signed_mm.abs() },
     }
 }
 

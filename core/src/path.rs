@@ -24,6 +24,7 @@ pub mod smooth;
 pub mod spline;
 
 use crate::gcode::canon::{Corner, Event};
+use crate::vector::norm;
 use arc::Arc;
 use line::Line;
 use smooth::Smooth;
@@ -46,6 +47,17 @@ pub const MAX_REST_S: f64 = 1e9;
 
 /// Arc length of a nearest point is exact to this.
 pub const NEAREST_TOLERANCE_MM: f64 = 1e-9;
+
+/// Length of `away_mm` with the sign of the side: positive where, seen along `tangent` in the XY plane, it points to the left.
+///
+/// The one place where the sign of a contour error is decided: `tangent` is that of the path at the foot of the tool,
+/// `away_mm` runs from the foot to the tool.
+#[inline]
+pub fn signed_distance_mm(tangent: [f64; 3], away_mm: [f64; 3]) -> f64 {
+    let left = tangent[0] * away_mm[1] - tangent[1] * away_mm[0];
+    let distance_mm = norm(away_mm);
+    if left < 0.0 { -distance_mm } else { distance_mm }
+}
 
 /// Position and unit tangent at one arc length.
 #[derive(Debug, Clone, Copy, PartialEq)]

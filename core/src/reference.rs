@@ -15,9 +15,9 @@ use crate::feed::plan::{Plan, Planned};
 use crate::feed::{Limits, LimitsError, Phase, TimedEvent};
 use crate::gcode::canon::Canon;
 use crate::path::pieces::Pieces;
-use crate::path::{PathError, Piece, Step};
+use crate::path::{PathError, Piece, Step, signed_distance_mm};
 use crate::plc::Plc;
-use crate::vector::{norm, sub};
+use crate::vector::sub;
 use std::collections::VecDeque;
 use window::Window;
 
@@ -55,7 +55,7 @@ pub struct Foot {
     pub line: u32,
     /// Distance, mm.
     pub distance_mm: f64,
-    /// Distance with a sign: positive where the other point lies left of travel in the XY plane.
+    /// [Distance with a sign](signed_distance_mm): positive where the other point lies left of travel in the XY plane.
     pub signed_mm: f64,
     /// Whether the motion cuts.
     pub cutting: bool,
@@ -205,20 +205,17 @@ impl<'p> Reference<'p> {
     }
 }
 
-/// Left of travel in the XY plane is positive.
 #[inline]
 fn foot(piece: &Piece, local_mm: f64, point_mm: [f64; 3]) -> Foot {
     let at = piece.curve.at(local_mm);
-    let away = sub(point_mm, at.position_mm);
-    let distance_mm = norm(away);
-    let left = at.tangent[0] * away[1] - at.tangent[1] * away[0];
+    let signed_mm = signed_distance_mm(at.tangent, sub(point_mm, at.position_mm));
     Foot {
         s_mm: piece.s_mm + local_mm,
         position_mm: at.position_mm,
         tangent: at.tangent,
         line: piece.line,
-        distance_mm,
-        signed_mm: if left < 0.0 { -distance_mm } else { distance_mm },
+        distance_mm: signed_mm.abs(),
+        signed_mm,
         cutting: piece.cutting,
     }
 }

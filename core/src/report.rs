@@ -7,7 +7,6 @@
 //! Only rows that cut count for the contour error; rapids and dwells are recorded and drawn, but not judged.
 
 pub mod figure;
-mod foot;
 mod html;
 mod island;
 mod outline;

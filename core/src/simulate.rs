@@ -178,8 +178,9 @@ pub fn simulate_lap<const N: usize>(
             cmd_mm: spread(setpoint.command_mm),
             act_mm: spread(tool_mm),
             torque_nm: spread(torque_nm),
+            foot_mm: foot.position_mm,
+            tangent: foot.tangent,
             contour_error_mm: if N == 2 { foot.signed_mm } else { foot.distance_mm },
-            corrected_mm: spread(setpoint.command_mm),
         };
         if row.cutting {
             cut[usize::from(tick.state() == State::Engaged)] += 1;

@@ -40,10 +40,12 @@ pub struct Row {
     pub act_mm: [f64; 3],
     /// Motor torque at the end of this servo period, N m.
     pub torque_nm: [f64; 3],
-    /// Contour error of `act_mm`, mm: signed in the plane (left of travel is positive), magnitude in space.
+    /// Foot of `act_mm`: the point of the programmed path that the contour error is measured to.
+    pub foot_mm: [f64; 3],
+    /// Unit tangent of the path at the foot, in the direction of travel.
+    pub tangent: [f64; 3],
+    /// Contour error of `act_mm`, mm: from the foot, in the plane [signed](crate::path::signed_distance_mm), magnitude in space.
     pub contour_error_mm: f64,
-    /// Corrected reference as the controller asked for it, before limits of the drive.
-    pub corrected_mm: [f64; 3],
 }
 
 /// How a run ended.

@@ -39,8 +39,9 @@ fn run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Run {
             cmd_mm: path_mm,
             act_mm,
             torque_nm: [0.1 * noise(), 0.1 * noise(), 0.1 * noise()],
+            foot_mm: path_mm,
+            tangent: [1.0, 0.0, 0.0],
             contour_error_mm: if axes == 3 { error_mm.abs() } else { error_mm },
-            corrected_mm: path_mm,
         };
         series.row(&row).unwrap();
         statistics.row(&row).unwrap();

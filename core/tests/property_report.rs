@@ -9,13 +9,21 @@ use proptest::prelude::*;
 /// Rows enough for a record to halve twice.
 const ROWS: usize = 2 * Series::MAX_POINTS + 777;
 
+/// The row of a tool that is `error_mm` to the left of its foot.
+fn beside(row: Row, error_mm: f64) -> Row {
+    let ([x, y, z], [along_x, along_y, _]) = (row.foot_mm, row.tangent);
+    Row { act_mm: [x - error_mm * along_y, y + error_mm * along_x, z], contour_error_mm: error_mm, ..row }
+}
+
 /// A run with spikes at given rows and rapids at given stretches.
 fn rows(spikes: &[(usize, f64)], rapids: &[(usize, usize)]) -> Vec<Row> {
     let mut rows: Vec<Row> = (0..ROWS)
         .map(|k| {
             let t_s = k as f64 * 1e-3;
             let path_mm = [20.0 * (0.3 * t_s).cos(), 20.0 * (0.7 * t_s).sin(), 0.0];
-            Row {
+            let along = [-6.0 * (0.3 * t_s).sin(), 14.0 * (0.7 * t_s).cos()];
+            let speed = along[0].hypot(along[1]);
+            let row = Row {
                 t_s,
                 s_mm: 10.0 * t_s,
                 line: 1 + k as u32 / 500,
@@ -26,13 +34,15 @@ fn rows(spikes: &[(usize, f64)], rapids: &[(usize, usize)]) -> Vec<Row> {
                 cmd_mm: path_mm,
                 act_mm: path_mm,
                 torque_nm: [0.1 * t_s.sin(), 0.0, 0.0],
-                contour_error_mm: 1e-3 * (2.0 * t_s).sin(),
-                corrected_mm: path_mm,
-            }
+                foot_mm: path_mm,
+                tangent: [along[0] / speed, along[1] / speed, 0.0],
+                contour_error_mm: 0.0,
+            };
+            beside(row, 1e-3 * (2.0 * t_s).sin())
         })
         .collect();
     for &(k, error_mm) in spikes {
-        rows[k].contour_error_mm = error_mm;
+        rows[k] = beside(rows[k], error_mm);
     }
     rows
 }
@@ -68,11 +78,8 @@ proptest! {
         for p in &points {
             let (low, high) = (p.error_min_mm, p.error_max_mm);
             prop_assert!(p.error_mm == low || p.error_mm == high, "{:?}", p);
-            // A rapid's deviation is drawn as it is; a cut's is as long as its error.
-            if p.cutting {
-                let length = p.deviation_mm.iter().map(|x| x * x).sum::<f64>().sqrt();
-                prop_assert!((length - p.error_mm.abs()).abs() < 1e-12, "{:?}", p);
-            }
+            let length = p.deviation_mm.iter().map(|x| x * x).sum::<f64>().sqrt();
+            prop_assert!((length - p.error_mm.abs()).abs() < 1e-12, "{:?}", p);
         }
     }
 

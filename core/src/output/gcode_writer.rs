@@ -140,7 +140,7 @@ impl<W: Write> Sink for GcodeWriter<W> {
         let mut point = match row.commanded {
             Commanded::Rest => return Ok(()),
             Commanded::Rapid => row.path_mm,
-            Commanded::Cut => row.corrected_mm,
+            Commanded::Cut => row.cmd_mm,
         };
         let starts = row.commanded == Commanded::Cut && self.commanded != Commanded::Cut;
         self.commanded = row.commanded;

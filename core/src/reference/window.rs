@@ -3,8 +3,7 @@
 use super::nearest::{Range, nearest};
 use super::{Foot, Sample};
 use crate::feed::Phase;
-use crate::path::Piece;
-use crate::vector::norm;
+use crate::path::{Piece, signed_distance_mm};
 use std::collections::VecDeque;
 
 /// Times that a servo period looks at: two or three samples, and both ends of the range for the nearest point.
@@ -190,14 +189,15 @@ impl Sample {
 impl Foot {
     /// A program without motion has its origin only.
     fn nowhere(point_mm: [f64; 3]) -> Self {
-        let distance_mm = norm(point_mm);
+        let tangent = [1.0, 0.0, 0.0];
+        let signed_mm = signed_distance_mm(tangent, point_mm);
         Self {
             s_mm: 0.0,
             position_mm: [0.0; 3],
-            tangent: [1.0, 0.0, 0.0],
+            tangent,
             line: 0,
-            distance_mm,
-            signed_mm: if point_mm[1] < 0.0 { -distance_mm } else { distance_mm },
+            distance_mm: signed_mm.abs(),
+            signed_mm,
             cutting: false,
         }
     }

@@ -6,10 +6,9 @@
 
 use std::io;
 
-use super::foot::FootFinder;
 use super::outline::{Outline, Vertex};
 use crate::trace::{Row, Sink};
-use crate::vector::distance;
+use crate::vector::{distance, sub};
 
 /// One point of a [`Series`]: a few successive rows, told by the one with the largest contour error.
 ///
@@ -32,7 +31,7 @@ pub struct Point {
     pub error_max_mm: f64,
     /// Point of the programmed path nearest to the tool, mm.
     pub foot_mm: [f64; 3],
-    /// From there to the tool, mm; as long as `error_mm`.
+    /// From there to the tool, mm: as long as `error_mm`, which it draws with its direction.
     pub deviation_mm: [f64; 3],
     /// Mean planned feedrate, mm/s.
     pub feed_plan_mm_s: f64,
@@ -47,7 +46,6 @@ pub struct Point {
 pub struct Series {
     buckets: Vec<Bucket>,
     rows_per_point: u64,
-    feet: FootFinder,
     outline: Outline,
     previous: Option<(f64, [f64; 3])>,
 }
@@ -75,13 +73,7 @@ impl Series {
 
     /// An empty record.
     pub fn new() -> Self {
-        Self {
-            buckets: Vec::new(),
-            rows_per_point: 1,
-            feet: FootFinder::default(),
-            outline: Outline::default(),
-            previous: None,
-        }
+        Self { buckets: Vec::new(), rows_per_point: 1, outline: Outline::default(), previous: None }
     }
 
     /// Rows that one point stands for.
@@ -123,7 +115,7 @@ impl Series {
 impl Sink for Series {
     /// Rows with a number that is not finite are left out: only a run that diverged has them.
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let numbers = [row.path_mm, row.act_mm, row.torque_nm, [row.t_s, row.s_mm, row.contour_error_mm]];
+        let numbers = [row.path_mm, row.act_mm, row.foot_mm, row.torque_nm, [row.t_s, row.s_mm, row.contour_error_mm]];
         if !numbers.iter().flatten().all(|x| x.is_finite()) || !row.feed_plan_mm_s.is_finite() {
             return Ok(());
         }
@@ -133,7 +125,6 @@ impl Sink for Series {
         };
         self.previous = Some((row.t_s, row.act_mm));
         self.outline.push(Vertex { point_mm: row.path_mm, cutting: row.cutting });
-        let foot = self.feet.find(row);
         self.push(Bucket {
             point: Point {
                 t_s: row.t_s,
@@ -143,8 +134,8 @@ impl Sink for Series {
                 error_mm: row.contour_error_mm,
                 error_min_mm: row.contour_error_mm,
                 error_max_mm: row.contour_error_mm,
-                foot_mm: foot.foot_mm,
-                deviation_mm: foot.deviation_mm,
+                foot_mm: row.foot_mm,
+                deviation_mm: sub(row.act_mm, row.foot_mm),
                 feed_plan_mm_s: row.feed_plan_mm_s,
                 feed_act_mm_s: 0.0,
                 torque_nm: row.torque_nm,
@@ -211,8 +202,9 @@ pub(super) mod tests {
             cmd_mm: [0.0; 3],
             act_mm: [0.0; 3],
             torque_nm: [0.0; 3],
+            foot_mm: [0.0; 3],
+            tangent: [1.0, 0.0, 0.0],
             contour_error_mm: 0.0,
-            corrected_mm: [0.0; 3],
         }
     }
 

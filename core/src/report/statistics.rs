@@ -194,7 +194,7 @@ impl Histogram {
 
 impl Sink for Statistics {
     fn row(&mut self, row: &Row) -> io::Result<()> {
-        let numbers = [row.path_mm, row.act_mm, row.corrected_mm, row.torque_nm];
+        let numbers = [row.path_mm, row.act_mm, row.cmd_mm, row.torque_nm];
         let scalars = [row.t_s, row.s_mm, row.contour_error_mm];
         if !numbers.iter().flatten().chain(&scalars).all(|x| x.is_finite()) {
             return Ok(());
@@ -203,7 +203,7 @@ impl Sink for Statistics {
         for k in 0..3 {
             self.peak_torque_nm[k] = self.peak_torque_nm[k].max(row.torque_nm[k].abs());
         }
-        let (c, p) = (row.corrected_mm, row.path_mm);
+        let (c, p) = (row.cmd_mm, row.path_mm);
         let deviation_mm = (c[0] - p[0]).hypot(c[1] - p[1]).hypot(c[2] - p[2]);
         self.max_deviation_mm = self.max_deviation_mm.max(deviation_mm);
         if row.cutting {

@@ -138,8 +138,9 @@ mod tests {
             cmd_mm: act_mm,
             act_mm,
             torque_nm: [0.0; 3],
+            foot_mm: act_mm,
+            tangent: [1.0, 0.0, 0.0],
             contour_error_mm: 0.0,
-            corrected_mm: act_mm,
         }
     }
 

@@ -9,7 +9,7 @@ use crate::gcode::canon::Event;
 const ROUNDING_MM: f64 = 1e-9;
 const DT_S: f64 = 1e-3;
 
-fn row(k: usize, corrected_mm: [f64; 3], cutting: bool) -> Row {
+fn row(k: usize, cmd_mm: [f64; 3], cutting: bool) -> Row {
     Row {
         t_s: k as f64 * DT_S,
         s_mm: 0.0,
@@ -17,12 +17,13 @@ fn row(k: usize, corrected_mm: [f64; 3], cutting: bool) -> Row {
         feed_plan_mm_s: 0.0,
         cutting,
         commanded: if cutting { Commanded::Cut } else { Commanded::Rapid },
-        path_mm: corrected_mm,
-        cmd_mm: corrected_mm,
-        act_mm: corrected_mm,
+        path_mm: cmd_mm,
+        cmd_mm,
+        act_mm: cmd_mm,
         torque_nm: [0.0; 3],
+        foot_mm: cmd_mm,
+        tangent: [1.0, 0.0, 0.0],
         contour_error_mm: 0.0,
-        corrected_mm,
     }
 }
 
@@ -174,8 +175,7 @@ fn cuts_follow_the_correction_rapids_the_program_and_rests_nothing() {
             300.. => Commanded::Rest,
             _ => Commanded::Cut,
         };
-        let row =
-            Row { commanded, path_mm: [x, 0.0, 0.0], corrected_mm: [x, offset(k), 0.0], ..row(k, [0.0; 3], false) };
+        let row = Row { commanded, path_mm: [x, 0.0, 0.0], cmd_mm: [x, offset(k), 0.0], ..row(k, [0.0; 3], false) };
         writer.row(&row).unwrap();
     }
     let text = String::from_utf8(writer.finish().unwrap()).unwrap();
