@@ -3,11 +3,15 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
+#[path = "common/missing.rs"]
+mod missing;
+
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 use feedwright::report::{Outcome, Report, Run, RunFacts, Series, Statistics, TimelineEvent, write_html};
 use feedwright::trace::{Commanded, Row, Sink};
+use missing::missing;
 
 const HOSTILE: &str = "</script><script>document.title='x'</script><img src=x onerror=alert(1)>\"'&\u{2028}<!--";
 
@@ -168,7 +172,7 @@ fn a_report_without_runs_or_rows_is_still_a_page() {
     assert!(page(&bare).contains("diverged at 0.25 s"));
 }
 
-/// The page's scripts run to their end in a browser. Skipped, loudly, where there is none.
+/// The page's scripts run to their end in a browser. Where there is none, it says so, and under CI fails.
 #[test]
 fn the_scripts_run_in_a_browser() {
     let directory = tempfile::tempdir().unwrap();
@@ -187,7 +191,7 @@ fn the_scripts_run_in_a_browser() {
             .spawn()
             .ok()
     }) else {
-        eprintln!("SKIPPED the_scripts_run_in_a_browser: none of {browsers:?} is installed");
+        missing(&format!("none of {browsers:?} is installed"));
         return;
     };
     let start = Instant::now();
@@ -195,14 +199,14 @@ fn the_scripts_run_in_a_browser() {
         if start.elapsed() > Duration::from_secs(60) {
             child.kill().unwrap();
             child.wait().unwrap();
-            eprintln!("SKIPPED the_scripts_run_in_a_browser: the browser did not answer");
+            missing("the browser did not answer");
             return;
         }
         std::thread::sleep(Duration::from_millis(50));
     }
     let dom = std::fs::read_to_string(directory.path().join("dom.html")).unwrap();
     if dom.is_empty() {
-        eprintln!("SKIPPED the_scripts_run_in_a_browser: the browser did not start");
+        missing("the browser did not start");
         return;
     }
     let head = &dom[..dom.find("<head").unwrap()];
