@@ -1,0 +1,107 @@
+//! Every controller of the table does on the circle what it is there for: it reduces the contour error, or trades it for time.
+//!
+//! A controller that does nothing cuts as open loop does, and fails here.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+use feedwright::compare::Workpiece;
+use feedwright::controllers::{BASELINE, CONTROLLERS, Choices, Entry, Make, Setup};
+use feedwright::machine::Machine;
+use feedwright::reference::Reference;
+use feedwright::report::Statistics;
+use feedwright::simulate::{practise, simulate_lap};
+
+/// What a controller makes of the circle of 10 mm radius at 50 mm/s on tnv40, against open loop.
+struct Held {
+    name: &'static str,
+    /// Values of its parameters; the defaults where there are none.
+    values: &'static [f64],
+    /// The largest RMS contour error.
+    rms: f64,
+    /// The machining time, from and to.
+    time: [f64; 2],
+}
+
+/// At the planned feed: the command is the plan's.
+const PLANNED: [f64; 2] = [1.0, 1.0];
+
+const fn held(name: &'static str, rms: f64, time: [f64; 2]) -> Held {
+    Held { name, values: &[], rms, time }
+}
+
+/// The RMS that was measured, with a half more, or twice that where little is left.
+///
+/// Two change the speed alone. The fuzzy rules pay for the error with time: 0.52 of it in 1.32 of the time. The inversion of the speed
+/// saves time at the same error by default (0.963 at 1.013); with steps as large as they may be it pays 1 % of time for 14 % of the
+/// error.
+const HELD: &[Held] = &[
+    held("cross-coupled", 0.05, PLANNED),
+    held("contour-compensation", 0.16, PLANNED),
+    held("fuzzy-feedrate", 0.7, [1.1, 1.5]),
+    held("feedforward", 0.04, PLANNED),
+    held("zero-phase", 0.22, PLANNED),
+    held("model-predictive", 0.005, PLANNED),
+    held("iterative-learning-1", 0.05, PLANNED),
+    held("iterative-learning-3", 0.04, PLANNED),
+    held("iterative-learning-10", 0.03, PLANNED),
+    held("magnitude-only", 1.05, [0.9, 0.98]),
+    Held { name: "magnitude-only", values: &[0.001, 10.0], rms: 0.93, time: [1.001, 1.03] },
+    held("two-dimensional", 0.15, [0.9, 0.98]),
+    held("receding-horizon", 0.006, PLANNED),
+];
+
+/// RMS contour error, um, and machining time, s.
+fn cut<const N: usize>(machine: &Machine, entry: &Entry, values: &[f64]) -> [f64; 2]
+where
+    Entry: Make<N>,
+{
+    let circle = Workpiece::contours().into_iter().find(|workpiece| workpiece.name == "circle").unwrap();
+    let choices = Choices { values: values.to_vec(), ..Choices::default() };
+    let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
+    let mut controller = Make::<N>::make(entry, &mut setup);
+    let reference = || Reference::from_steps(circle.steps.clone(), &(&machine.limits).into());
+    practise(machine, reference, &mut *controller, entry.laps).unwrap();
+    let mut statistics = Statistics::new();
+    let run = simulate_lap(machine, &mut reference().unwrap(), &mut *controller, &mut [&mut statistics]).unwrap();
+    assert!(run.faded_out.is_none(), "{}: {run:?}", entry.name);
+    [statistics.rms_um(), run.time_s]
+}
+
+fn all_are_held<const N: usize>()
+where
+    Entry: Make<N>,
+{
+    let machine = Machine::load("tnv40".as_ref()).unwrap();
+    let [open_um, open_s] = cut::<N>(&machine, Entry::find(BASELINE).unwrap(), &[]);
+    let mut failures = Vec::new();
+    // Identifiers of two and of three axes are not the same: values that were chosen are so for the plane.
+    for Held { name, values, rms, time } in HELD.iter().filter(|held| N == 2 || held.values.is_empty()) {
+        let [rms_um, time_s] = cut::<N>(&machine, Entry::find(name).unwrap(), values);
+        let (of_rms, of_time) = (rms_um / open_um, time_s / open_s);
+        let what = format!("{name} {values:?}: RMS {of_rms:.4} of open loop's, time {of_time:.4}");
+        println!("{what}");
+        let [shortest, longest] = *time;
+        // Rounding of the instant at which the plan ends.
+        if of_rms > *rms || !(shortest - 1e-9..=longest + 1e-9).contains(&of_time) {
+            failures.push(format!("{what}; held to {rms} and {time:?}"));
+        }
+    }
+    assert!(failures.is_empty(), "{N} axes:\n{}", failures.join("\n"));
+}
+
+#[test]
+fn every_controller_does_in_the_plane_what_it_is_there_for() {
+    all_are_held::<2>();
+}
+
+#[test]
+fn every_controller_does_in_space_what_it_is_there_for() {
+    all_are_held::<3>();
+}
+
+#[test]
+fn no_controller_is_left_out() {
+    for entry in CONTROLLERS.iter().filter(|entry| entry.name != BASELINE) {
+        assert!(HELD.iter().any(|held| held.name == entry.name), "{} is not held to anything", entry.name);
+    }
+}
