@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 use feedwright::compare::journal::Journal;
+use feedwright::compare::verdict::Verdict;
 use feedwright::compare::{AT_HOME, Comparison, Options, Tuning, Workpiece, compare, page};
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Entry};
 use feedwright::machine::Machine;
@@ -72,9 +73,22 @@ fn rows_are_complete_and_ratios_are_against_open_loop() {
         assert!(row.completed && row.faded_out.is_none(), "{row:?}");
     }
     assert!(comparison.rows.iter().any(|row| row.controller == format!("{BEST}{AT_HOME}") && row.machine == "rough"));
-    for verdict in &comparison.verdicts {
-        assert!(verdict.value.is_finite() && (!verdict.holds || verdict.value <= verdict.limit), "{verdict:?}");
-    }
+    let claims: Vec<(&str, &str, &str)> =
+        comparison.verdicts.iter().map(|v| (v.contour.as_str(), v.machine.as_str(), v.claim.as_str())).collect();
+    let expected = [
+        ("circle", "tnv40", "RMS against open loop"),
+        ("circle", "tnv40", "max against open loop"),
+        ("circle", "tnv40", "RMS against the best peer without model"),
+        ("circle", "rough", "RMS, unseen machine, against the best peer without model"),
+        ("circle", "rough", "RMS, identified machine, against the best peer without model"),
+        ("square", "tnv40", "RMS at corners against the best peer"),
+        ("square", "tnv40", "max at corners against the best peer"),
+        ("square", "rough", "RMS, unseen machine, against the best peer without model"),
+        ("square", "rough", "RMS, identified machine, against the best peer without model"),
+    ];
+    assert_eq!(claims, expected);
+    let circle = |v: &&Verdict| v.contour == "circle" && v.machine == "tnv40";
+    assert!(comparison.verdicts.iter().filter(circle).all(|v| v.holds), "{:?}", comparison.verdicts);
     let mut html = Vec::new();
     page::write(&mut html, &comparison).unwrap();
     let html = String::from_utf8(html).unwrap();

@@ -128,3 +128,106 @@ fn best<'a>(here: &[&'a Row], known: &[Knows], number: fn(&Row) -> f64) -> Optio
     peers(here, known).find(|row| row.controller != BASELINE)?;
     peers(here, known).min_by(|a, b| number(a).total_cmp(&number(b)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TNV40: &str = "tnv40";
+
+    fn row(contour: &str, machine: &str, controller: &str, [rms_um, max_um]: [f64; 2]) -> Row {
+        Row {
+            contour: contour.to_owned(),
+            machine: machine.to_owned(),
+            controller: controller.to_owned(),
+            time_s: 1.0,
+            rms_um,
+            max_um,
+            uncut_um: 0.0,
+            max_deviation_um: 0.0,
+            peak_torque_nm: 0.0,
+            time_ratio: 1.0,
+            // Of every open loop below.
+            rms_ratio: rms_um / 10.0,
+            max_ratio: max_um / 20.0,
+            completed: true,
+            faded_out: None,
+            error_um: Vec::new(),
+            tick_us: None,
+        }
+    }
+
+    /// What is compared with, the ratio in thousandths, and whether the claim holds.
+    fn told(rows: &[Row]) -> Vec<(String, f64, bool)> {
+        let contours: Vec<Workpiece> = Workpiece::contours();
+        let verdicts = verdicts(rows, TNV40, &contours);
+        verdicts.into_iter().map(|v| (v.against, (v.value * 1e3).round(), v.holds)).collect()
+    }
+
+    fn of(against: &str, thousandths: f64, holds: bool) -> (String, f64, bool) {
+        (against.to_owned(), thousandths, holds)
+    }
+
+    #[test]
+    fn without_corners_four_claims_each_with_its_limit() {
+        let rows = |ours: [f64; 2]| {
+            [
+                row("circle", TNV40, BASELINE, [10.0, 20.0]),
+                row("circle", TNV40, "cross-coupled", [1.0, 3.0]),
+                // It has the exact model: no peer without one.
+                row("circle", TNV40, "feedforward", [0.01, 0.01]),
+                row("circle", TNV40, UPPER_BOUND, [0.1, 0.2]),
+                row("circle", TNV40, BEST, ours),
+            ]
+        };
+        let good = [
+            of(BASELINE, 11.0, true),
+            of(BASELINE, 75.0, true),
+            of("cross-coupled", 110.0, true),
+            of(UPPER_BOUND, 1100.0, true),
+        ];
+        assert_eq!(told(&rows([0.11, 1.5])), good);
+        let bad = [
+            of(BASELINE, 50.0, false),
+            of(BASELINE, 150.0, false),
+            of("cross-coupled", 500.0, false),
+            of(UPPER_BOUND, 5000.0, false),
+        ];
+        assert_eq!(told(&rows([0.5, 3.0])), bad);
+    }
+
+    #[test]
+    fn at_corners_the_best_of_each_number_counts_open_loop_too() {
+        let mut rows = vec![
+            row("square", TNV40, BASELINE, [10.0, 20.0]),
+            row("square", TNV40, "feedforward", [8.0, 25.0]),
+            row("square", TNV40, "zero-phase", [1.0, 1.0]),
+            row("square", TNV40, BEST, [8.4, 19.0]),
+        ];
+        // It did not come to its end.
+        rows[2].completed = false;
+        assert_eq!(told(&rows), [of("feedforward", 1050.0, false), of(BASELINE, 950.0, true)]);
+    }
+
+    #[test]
+    fn elsewhere_the_unseen_and_the_identified_row_are_held_against_the_same_peer() {
+        let rows = [
+            row("circle", "rough", BASELINE, [10.0, 20.0]),
+            row("circle", "rough", "contour-compensation", [4.0, 9.0]),
+            row("circle", "rough", BEST, [2.4, 5.0]),
+            row("circle", "rough", &format!("{BEST}{AT_HOME}"), [0.8, 2.0]),
+        ];
+        assert_eq!(told(&rows), [of("contour-compensation", 600.0, false), of("contour-compensation", 200.0, true)]);
+    }
+
+    #[test]
+    fn nothing_holds_that_took_longer_or_did_not_end() {
+        let mut rows = [row("circle", TNV40, BASELINE, [10.0, 20.0]), row("circle", TNV40, BEST, [0.1, 1.0])];
+        assert_eq!(told(&rows), [of(BASELINE, 10.0, true), of(BASELINE, 50.0, true)]);
+        rows[1].time_ratio = 1.001;
+        assert_eq!(told(&rows), [of(BASELINE, 10.0, false), of(BASELINE, 50.0, false)]);
+        rows[1].time_ratio = 1.0;
+        rows[1].completed = false;
+        assert_eq!(told(&rows), [of(BASELINE, 10.0, false), of(BASELINE, 50.0, false)]);
+    }
+}
