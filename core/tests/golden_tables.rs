@@ -1,6 +1,6 @@
 //! The tables of the documents are what the program makes today: `just tables` regenerates them.
 //!
-//! Golden: that they have not changed says nothing on whether they are right; `oracle_paper` does.
+//! Golden: that they have not changed says nothing on whether they are right; `conformance_paper` holds bounds from elsewhere.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 

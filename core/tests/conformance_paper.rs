@@ -1,7 +1,8 @@
 //! The paper's circle: what an independent prototype reached is reached here, for every seed.
 //!
 //! The bounds are not this program's own numbers: they come from a prototype of the same equations, written before it in
-//! another language, and from the closed form of the feed plan.
+//! another language, and from the closed form of the feed plan. The prototype is not in this repository, so it is no oracle that
+//! anyone can ask again.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
