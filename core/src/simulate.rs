@@ -18,12 +18,13 @@ mod uncut;
 use std::time::Instant;
 
 use feedwright_control::controller::Controller;
-use feedwright_control::safety::{Bounds, State};
+use feedwright_control::safety::{Bounds, Fade, State};
+use feedwright_control::tick::Setpoint;
 use feedwright_control::{Knot, Tick};
 
 use crate::machine::Machine;
 use crate::plant::{Measurement, Plant};
-use crate::reference::{Reference, Sample};
+use crate::reference::{Foot, Reference, Sample};
 use crate::trace::{Commanded, FadedOut, Outcome, Row, Sink};
 use crate::vector::distance;
 use progress::{Progress, settled_periods, settled_s};
@@ -108,82 +109,87 @@ pub fn simulate_lap<const N: usize>(
     controller: &mut dyn Controller<N>,
     sinks: &mut [&mut dyn Sink],
 ) -> std::io::Result<Run> {
-    let servo_s = machine.period.servo_s;
-    let slowest_s = 1.0 / machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
-    let kept_s = KEPT_SETTLED_TIMES * settled_s(machine);
-    let lost_mm = LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s);
-    let start_mm = first(reference.at(0.0).position_mm);
-    let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
-    let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s, fade_mm_s2);
-    let feed_periods = controller.schedule().servo_periods.max(1);
-    let mut tick = Tick::<N>::new(servo_s, controller.schedule(), bounds);
-    let mut plant = Plant::<N>::new(machine, start_mm);
-    let mut progress = Progress::new(machine, spread(start_mm));
-    let mut uncut = Uncut::new(settled_periods(machine), spread(start_mm));
-    let mut seen_mm = start_mm;
-    let mut run = Run::default();
-    let mut ended: Option<f64> = None;
-    let mut last_tau_s = 0.0;
-    let mut fade = None;
-    let mut cut = [0_u64; 2];
+    let mut lap = Lap::new(machine, reference, controller);
     let mut n = 0_u64;
-    loop {
-        let t_s = n as f64 * servo_s;
-        let clock = Instant::now();
-        let setpoint = tick.step(&mut Axes(reference), controller, seen_mm);
-        if setpoint.decided {
-            run.ticks.add(clock.elapsed().as_nanos());
-            run.most_entries = run.most_entries.max(tick.contour().entries);
-            if tick.fade() != fade {
-                fade = tick.fade();
-                run.faded_out = fade.map(|fade| FadedOut { at_s: t_s, cause: fade.cause.words() });
-            }
+    while let Some(periods) = lap.servo_period(n, reference, controller, sinks)? {
+        n += periods;
+    }
+    Ok(lap.finish())
+}
+
+/// A lap under way.
+struct Lap<'a, const N: usize> {
+    machine: &'a Machine,
+    servo_s: f64,
+    kept_s: f64,
+    lost_mm: f64,
+    feed_periods: u32,
+    tick: Tick<N>,
+    plant: Plant<N>,
+    progress: Progress,
+    uncut: Uncut,
+    /// The measured position.
+    seen_mm: [f64; N],
+    run: Run,
+    /// When the command has ended.
+    ended_s: Option<f64>,
+    last_tau_s: f64,
+    fade: Option<Fade>,
+    /// Servo periods that cut: without the controller in the loop, and with it.
+    cut: [u64; 2],
+}
+
+impl<'a, const N: usize> Lap<'a, N> {
+    /// At rest at the start of the path.
+    fn new(machine: &'a Machine, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
+        let servo_s = machine.period.servo_s;
+        let slowest_s = 1.0 / machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
+        let start_mm = first(reference.at(0.0).position_mm);
+        let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
+        let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s, fade_mm_s2);
+        Self {
+            machine,
+            servo_s,
+            kept_s: KEPT_SETTLED_TIMES * settled_s(machine),
+            lost_mm: LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s),
+            feed_periods: controller.schedule().servo_periods.max(1),
+            tick: Tick::new(servo_s, controller.schedule(), bounds),
+            plant: Plant::new(machine, start_mm),
+            progress: Progress::new(machine, spread(start_mm)),
+            uncut: Uncut::new(settled_periods(machine), spread(start_mm)),
+            seen_mm: start_mm,
+            run: Run::default(),
+            ended_s: None,
+            last_tau_s: 0.0,
+            fade: None,
+            cut: [0; 2],
         }
-        if ended.is_none()
-            && let Some(end_s) = reference.end_s()
-            && setpoint.tau_s >= end_s
-        {
-            ended = Some(t_s);
-            run.time_s = crossing(t_s, servo_s, last_tau_s, setpoint.tau_s, end_s);
-        }
-        last_tau_s = setpoint.tau_s;
-        let Measurement { position_mm: tool_mm, measured_mm, torque_nm } = plant.step(setpoint.command_mm);
-        seen_mm = measured_mm;
-        let following_mm = distance(tool_mm, setpoint.command_mm);
-        if following_mm.is_nan() || following_mm > lost_mm {
-            run.outcome = Outcome::Diverged { at_s: t_s };
-            run.arrival_s = t_s;
-            if ended.is_none() {
-                run.time_s = t_s;
-            }
-            break;
+    }
+
+    /// Cuts servo period `n`, and says how many on the next to simulate is: more than one in a long rest. None where the lap
+    /// is over.
+    fn servo_period(
+        &mut self,
+        n: u64,
+        reference: &mut Reference<'_>,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> std::io::Result<Option<u64>> {
+        let t_s = n as f64 * self.servo_s;
+        let setpoint = self.command(t_s, reference, controller);
+        let measurement = self.plant.step(setpoint.command_mm);
+        self.seen_mm = measurement.measured_mm;
+        if self.is_lost(t_s, distance(measurement.position_mm, setpoint.command_mm)) {
+            return Ok(None);
         }
         let sample = reference.at(setpoint.tau_s);
         let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
         // A command that a correction holds beside the end of the path is not where the tool is to rest.
-        let to_go_mm = distance(tool_mm, first(sample.position_mm));
-        let foot = progress.foot(reference, tau_s, sample.s_mm, spread(tool_mm));
-        let row = Row {
-            t_s,
-            s_mm: sample.s_mm,
-            line: sample.line,
-            feed_plan_mm_s: sample.feed_mm_s,
-            cutting: foot.cutting && !(sample.resting && to_go_mm <= ARRIVED_MM),
-            commanded: match (sample.resting, sample.cutting) {
-                (true, _) => Commanded::Rest,
-                (false, true) => Commanded::Cut,
-                (false, false) => Commanded::Rapid,
-            },
-            path_mm: sample.position_mm,
-            cmd_mm: spread(setpoint.command_mm),
-            act_mm: spread(tool_mm),
-            torque_nm: spread(torque_nm),
-            foot_mm: foot.position_mm,
-            tangent: foot.tangent,
-            contour_error_mm: if N == 2 { foot.signed_mm } else { foot.distance_mm },
-        };
+        let to_go_mm = distance(measurement.position_mm, first(sample.position_mm));
+        let foot = self.progress.foot(reference, tau_s, sample.s_mm, spread(measurement.position_mm));
+        let row = row(t_s, &setpoint, &measurement, &sample, &foot, to_go_mm <= ARRIVED_MM);
         if row.cutting {
-            cut[usize::from(tick.state() == State::Engaged)] += 1;
+            self.cut[usize::from(self.tick.state() == State::Engaged)] += 1;
         }
         while let Some(timed) = reference.next_event(setpoint.tau_s) {
             for sink in sinks.iter_mut() {
@@ -193,28 +199,99 @@ pub fn simulate_lap<const N: usize>(
         for sink in sinks.iter_mut() {
             sink.row(&row)?;
         }
-        uncut.row(&row);
-        reference.forget_before(tau_s - kept_s);
-        if let Some(ended_s) = ended
+        self.uncut.row(&row);
+        reference.forget_before(tau_s - self.kept_s);
+        if let Some(ended_s) = self.ended_s
             && (to_go_mm <= ARRIVED_MM || t_s >= ended_s + ARRIVAL_S)
         {
-            run.arrival_s = t_s + servo_s;
-            break;
+            self.run.arrival_s = t_s + self.servo_s;
+            return Ok(None);
         }
-        let left_out = if sample.resting {
-            rests::left_out(reference, setpoint.tau_s, servo_s, feed_periods, settled_s(machine))
-        } else {
-            0
-        };
-        tick.skip(left_out);
-        plant.skip(left_out);
-        n += 1 + left_out;
+        let left_out = if sample.resting { self.left_out(reference, setpoint.tau_s) } else { 0 };
+        self.tick.skip(left_out);
+        self.plant.skip(left_out);
+        Ok(Some(1 + left_out))
     }
-    let [out, within] = cut;
-    run.engaged_share = if out + within == 0 { 1.0 } else { within as f64 / (out + within) as f64 };
-    run.engaged_at_end = tick.state() == State::Engaged;
-    run.uncut_mm = uncut.finish(ARRIVED_MM);
-    Ok(run)
+
+    /// The tick of a servo period, and what it says about the run.
+    fn command(&mut self, t_s: f64, reference: &mut Reference<'_>, controller: &mut dyn Controller<N>) -> Setpoint<N> {
+        let clock = Instant::now();
+        let setpoint = self.tick.step(&mut Axes(reference), controller, self.seen_mm);
+        if setpoint.decided {
+            self.run.ticks.add(clock.elapsed().as_nanos());
+            self.run.most_entries = self.run.most_entries.max(self.tick.contour().entries);
+            if self.tick.fade() != self.fade {
+                self.fade = self.tick.fade();
+                self.run.faded_out = self.fade.map(|fade| FadedOut { at_s: t_s, cause: fade.cause.words() });
+            }
+        }
+        if self.ended_s.is_none()
+            && let Some(end_s) = reference.end_s()
+            && setpoint.tau_s >= end_s
+        {
+            self.ended_s = Some(t_s);
+            self.run.time_s = crossing(t_s, self.servo_s, self.last_tau_s, setpoint.tau_s, end_s);
+        }
+        self.last_tau_s = setpoint.tau_s;
+        setpoint
+    }
+
+    /// Whether the tool does not follow any more; then the run ends here.
+    fn is_lost(&mut self, t_s: f64, following_mm: f64) -> bool {
+        let lost = following_mm.is_nan() || following_mm > self.lost_mm;
+        if lost {
+            self.run.outcome = Outcome::Diverged { at_s: t_s };
+            self.run.arrival_s = t_s;
+            if self.ended_s.is_none() {
+                self.run.time_s = t_s;
+            }
+        }
+        lost
+    }
+
+    fn left_out(&self, reference: &mut Reference<'_>, tau_s: f64) -> u64 {
+        rests::left_out(reference, tau_s, self.servo_s, self.feed_periods, settled_s(self.machine))
+    }
+
+    fn finish(self) -> Run {
+        let [out, within] = self.cut;
+        Run {
+            engaged_share: if out + within == 0 { 1.0 } else { within as f64 / (out + within) as f64 },
+            engaged_at_end: self.tick.state() == State::Engaged,
+            uncut_mm: self.uncut.finish(ARRIVED_MM),
+            ..self.run
+        }
+    }
+}
+
+/// The row of a servo period; `arrived` says whether the tool is where the path is.
+fn row<const N: usize>(
+    t_s: f64,
+    setpoint: &Setpoint<N>,
+    measurement: &Measurement<N>,
+    sample: &Sample,
+    foot: &Foot,
+    arrived: bool,
+) -> Row {
+    Row {
+        t_s,
+        s_mm: sample.s_mm,
+        line: sample.line,
+        feed_plan_mm_s: sample.feed_mm_s,
+        cutting: foot.cutting && !(sample.resting && arrived),
+        commanded: match (sample.resting, sample.cutting) {
+            (true, _) => Commanded::Rest,
+            (false, true) => Commanded::Cut,
+            (false, false) => Commanded::Rapid,
+        },
+        path_mm: sample.position_mm,
+        cmd_mm: spread(setpoint.command_mm),
+        act_mm: spread(measurement.position_mm),
+        torque_nm: spread(measurement.torque_nm),
+        foot_mm: foot.position_mm,
+        tangent: foot.tangent,
+        contour_error_mm: if N == 2 { foot.signed_mm } else { foot.distance_mm },
+    }
 }
 
 /// When plan time passed `end_s` between the last servo period and this one.

@@ -55,15 +55,12 @@ pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
         return Err(PathError::ArcTurns { line });
     }
     let [first, second, normal] = plane.axes();
-    let from = [start_mm[first] - center_mm[first], start_mm[second] - center_mm[second]];
-    let to = [end_mm[first] - center_mm[first], end_mm[second] - center_mm[second]];
-    let radius_from = from[0].hypot(from[1]);
-    let radius_to = to[0].hypot(to[1]);
+    let [from, to] = [start_mm, end_mm].map(|at| [at[first] - center_mm[first], at[second] - center_mm[second]]);
+    let [radius_from, radius_to] = [from, to].map(|at| at[0].hypot(at[1]));
     let radius_mm = radius_from.min(radius_to);
     if radius_mm < MIN_LENGTH_MM {
         return Err(PathError::ArcRadius { line, radius_mm });
     }
-
     let sense = f64::from(turns.signum());
     let between = sense * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
     let last_turn = if between * radius_mm > FULL_TURN_MM { between } else { between + TAU };
