@@ -1,7 +1,12 @@
 //! The order of the modules in `lib.rs` is the order in which data flows: a module uses only modules above it, and a crate
 //! only crates below it.
 
+#[path = "common/source.rs"]
+mod source;
+
 use std::path::{Path, PathBuf};
+
+use source::code;
 
 /// Crates of the workspace: folder, and which of ours it depends on, outside of tests.
 const CRATES: [(&str, &[&str]); 4] =
@@ -13,44 +18,6 @@ fn root() -> PathBuf {
 
 fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
-}
-
-/// The text without comments and without what strings and characters hold, line for line.
-fn code(text: &str) -> String {
-    let mut code = String::new();
-    let mut rest = text;
-    while let Some(c) = rest.chars().next() {
-        let skipped = if rest.starts_with("//") {
-            rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with("/*") {
-            rest.find("*/").map_or(rest.len(), |end| end + 2)
-        } else if c == '"' {
-            end_of_string(rest)
-        } else if rest.starts_with("r#\"") {
-            rest.find("\"#").map_or(rest.len(), |end| end + 2)
-        } else if rest.starts_with("'\"'") || rest.starts_with("'\\\"'") {
-            rest[1..].find('\'').map_or(rest.len(), |end| end + 2)
-        } else {
-            code.push(c);
-            rest = &rest[c.len_utf8()..];
-            continue;
-        };
-        code.extend(rest[..skipped].chars().filter(|&c| c == '\n'));
-        rest = &rest[skipped..];
-    }
-    code
-}
-
-/// Where the string that starts the text ends.
-fn end_of_string(text: &str) -> usize {
-    let mut escaped = false;
-    for (at, c) in text.char_indices().skip(1) {
-        match c {
-            '"' if !escaped => return at + 1,
-            _ => escaped = c == '\\' && !escaped,
-        }
-    }
-    text.len()
 }
 
 /// The modules that a file uses, with lines: first words after `crate::`, or after as many `super::` as lead to the root.

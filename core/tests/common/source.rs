@@ -1,0 +1,47 @@
+//! Source text, for tests that hold rules over it.
+
+/// The text without comments and without what strings and characters hold, line for line.
+pub(crate) fn code(text: &str) -> String {
+    let mut code = String::new();
+    let mut rest = text;
+    while let Some(c) = rest.chars().next() {
+        let skipped = if rest.starts_with("//") {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if rest.starts_with("/*") {
+            rest.find("*/").map_or(rest.len(), |end| end + 2)
+        } else if c == '"' {
+            end_of_string(rest)
+        } else if rest.starts_with("r#\"") {
+            rest.find("\"#").map_or(rest.len(), |end| end + 2)
+        } else if let Some(length) = character(rest) {
+            length
+        } else {
+            code.push(c);
+            rest = &rest[c.len_utf8()..];
+            continue;
+        };
+        code.extend(rest[..skipped].chars().filter(|&c| c == '\n'));
+        rest = &rest[skipped..];
+    }
+    code
+}
+
+/// Where the string that starts the text ends.
+fn end_of_string(text: &str) -> usize {
+    let mut escaped = false;
+    for (at, c) in text.char_indices().skip(1) {
+        match c {
+            '"' if !escaped => return at + 1,
+            _ => escaped = c == '\\' && !escaped,
+        }
+    }
+    text.len()
+}
+
+/// How long the character is that starts the text, with its quotes; a lifetime is none.
+fn character(text: &str) -> Option<usize> {
+    let inside = text.strip_prefix('\'')?;
+    let escape = usize::from(inside.starts_with('\\'));
+    let length = escape + inside[escape..].chars().next()?.len_utf8();
+    inside[length..].starts_with('\'').then_some(length + 2)
+}
