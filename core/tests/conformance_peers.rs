@@ -5,7 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 use feedwright::compare::Workpiece;
-use feedwright::controllers::{BASELINE, CONTROLLERS, Choices, Entry, Make, Setup};
+use feedwright::controllers::{BASELINE, CONTROLLERS, Choices, Entry, Make, Setting, Setup};
 use feedwright::machine::Machine;
 use feedwright::reference::Reference;
 use feedwright::report::Statistics;
@@ -15,7 +15,7 @@ use feedwright::simulate::{practise, simulate_lap};
 struct Held {
     name: &'static str,
     /// Values of its parameters; the defaults where there are none.
-    values: &'static [f64],
+    set: &'static [Setting],
     /// The largest RMS contour error.
     rms: f64,
     /// The machining time, from and to.
@@ -26,8 +26,10 @@ struct Held {
 const PLANNED: [f64; 2] = [1.0, 1.0];
 
 const fn held(name: &'static str, rms: f64, time: [f64; 2]) -> Held {
-    Held { name, values: &[], rms, time }
+    Held { name, set: &[], rms, time }
 }
+
+const LARGEST_STEPS: Setting = Setting { controller: "magnitude-only", name: "eta", value: 10.0 };
 
 /// The RMS that was measured, with a half more, or twice that where little is left.
 ///
@@ -45,18 +47,18 @@ const HELD: &[Held] = &[
     held("iterative-learning-3", 0.04, PLANNED),
     held("iterative-learning-10", 0.03, PLANNED),
     held("magnitude-only", 1.05, [0.9, 0.98]),
-    Held { name: "magnitude-only", values: &[0.001, 10.0], rms: 0.93, time: [1.001, 1.03] },
+    Held { name: "magnitude-only", set: &[LARGEST_STEPS], rms: 0.93, time: [1.001, 1.03] },
     held("two-dimensional", 0.15, [0.9, 0.98]),
     held("receding-horizon", 0.006, PLANNED),
 ];
 
 /// RMS contour error, um, and machining time, s.
-fn cut<const N: usize>(machine: &Machine, entry: &Entry, values: &[f64]) -> [f64; 2]
+fn cut<const N: usize>(machine: &Machine, entry: &Entry, set: &[Setting]) -> [f64; 2]
 where
     Entry: Make<N>,
 {
     let circle = Workpiece::contours().into_iter().find(|workpiece| workpiece.name == "circle").unwrap();
-    let choices = Choices { values: values.to_vec(), ..Choices::default() };
+    let choices = Choices { set: set.to_vec(), ..Choices::default() };
     let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
     let mut controller = Make::<N>::make(entry, &mut setup);
     let reference = || Reference::from_steps(circle.steps.clone(), &(&machine.limits).into());
@@ -75,10 +77,10 @@ where
     let [open_um, open_s] = cut::<N>(&machine, Entry::find(BASELINE).unwrap(), &[]);
     let mut failures = Vec::new();
     // Identifiers of two and of three axes are not the same: values that were chosen are so for the plane.
-    for Held { name, values, rms, time } in HELD.iter().filter(|held| N == 2 || held.values.is_empty()) {
-        let [rms_um, time_s] = cut::<N>(&machine, Entry::find(name).unwrap(), values);
+    for Held { name, set, rms, time } in HELD.iter().filter(|held| N == 2 || held.set.is_empty()) {
+        let [rms_um, time_s] = cut::<N>(&machine, Entry::find(name).unwrap(), set);
         let (of_rms, of_time) = (rms_um / open_um, time_s / open_s);
-        let what = format!("{name} {values:?}: RMS {of_rms:.4} of open loop's, time {of_time:.4}");
+        let what = format!("{name} {set:?}: RMS {of_rms:.4} of open loop's, time {of_time:.4}");
         println!("{what}");
         let [shortest, longest] = *time;
         // Rounding of the instant at which the plan ends.

@@ -12,14 +12,6 @@ use source::code;
 /// Lines that a function may have, from `fn` to its closing brace.
 const MOST_LINES: usize = 60;
 
-/// Functions that are longer for the time being: file, name, and the lines that they may have.
-const LONGER: &[(&str, &str, usize)] = &[
-    ("cli/src/commands/compare.rs", "print", 95),
-    ("gcode/src/splines.rs", "nurbs_with_knots", 74),
-    ("gcode/src/compensation.rs", "compensation_mode", 70),
-    ("gcode/src/state.rs", "predefined", 70),
-];
-
 /// A function of a file.
 #[derive(Debug, PartialEq)]
 struct Function {
@@ -94,10 +86,8 @@ fn no_function_is_longer_than_a_screen() {
             let name = file.strip_prefix(root).unwrap().to_str().unwrap().to_owned();
             for Function { name: function, line, lines } in functions(&text) {
                 seen += 1;
-                let known = LONGER.iter().find(|(file, known, _)| (*file, *known) == (&name, &function));
-                let most = known.map_or(MOST_LINES, |(.., lines)| *lines);
-                if lines > most {
-                    longer.push(format!("{name}:{line}: {function} has {lines} lines; {most} are the most"));
+                if lines > MOST_LINES {
+                    longer.push(format!("{name}:{line}: {function} has {lines} lines; {MOST_LINES} are the most"));
                 }
             }
         }

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright::compare::journal::Journal;
-use feedwright::compare::tolerance::TOLERANCE_UM;
+use feedwright::compare::table::Row;
+use feedwright::compare::tolerance::{AtTolerance, TOLERANCE_UM};
+use feedwright::compare::verdict::Verdict;
 use feedwright::compare::{Comparison, Options, Tuning, Watch, Workpiece, compare, page};
 use feedwright::controllers::{BASELINE, CONTROLLERS, Entry};
 use feedwright::gcode::suggestion::nearest;
@@ -164,7 +166,6 @@ impl Files {
 
 fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
-    let (verdicts, tolerances) = (&comparison.verdicts, &comparison.at_tolerance);
     for tuned in comparison.tuned.iter().filter(|tuned| tuned.cuts > 0) {
         let values: Vec<String> = tuned.values.iter().map(|(name, value)| format!("{name} {value:.3e}")).collect();
         writeln!(
@@ -176,8 +177,18 @@ fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
             tuned.rms_um
         )?;
     }
+    print_rows(&mut out, &comparison.rows)?;
+    print_at_tolerance(&mut out, &comparison.at_tolerance)?;
+    print_verdicts(&mut out, &comparison.verdicts)?;
+    for path in [&args.json, &args.html].into_iter().flatten() {
+        writeln!(out, "wrote {}", path.display())?;
+    }
+    Ok(())
+}
+
+fn print_rows(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
     let mut heading = String::new();
-    for row in &comparison.rows {
+    for row in rows {
         let here = format!("{} on {}", row.contour, row.machine);
         if here != heading {
             writeln!(
@@ -209,32 +220,29 @@ fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
             row.peak_torque_nm,
         )?;
     }
-    if !tolerances.is_empty() {
-        writeln!(
-            out,
-            "\n{:<20} {:<28} {:>9} {:>9} {:>6}",
-            format!("max {TOLERANCE_UM} um"),
-            "",
-            "feed mm/s",
-            "time s",
-            "time"
-        )?;
-        let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
-        for row in tolerances {
-            writeln!(
-                out,
-                "{:<20} {:<28} {:>9} {:>9} {:>6}",
-                row.contour,
-                row.controller,
-                row.feed_mm_s.map_or("-".to_owned(), |feed| format!("{feed:.1}")),
-                number(row.time_s),
-                number(row.time_ratio)
-            )?;
-        }
+    Ok(())
+}
+
+fn print_at_tolerance(out: &mut impl Write, rows: &[AtTolerance]) -> std::io::Result<()> {
+    if rows.is_empty() {
+        return Ok(());
     }
-    if !verdicts.is_empty() {
-        writeln!(out, "\n{:<66} {:<18} {:<10} {:>6} {:>6}", "", "", "", "ratio", "limit")?;
+    let limit = format!("max {TOLERANCE_UM} um");
+    writeln!(out, "\n{limit:<20} {:<28} {:>9} {:>9} {:>6}", "", "feed mm/s", "time s", "time")?;
+    let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
+    for row in rows {
+        let feed = row.feed_mm_s.map_or("-".to_owned(), |feed| format!("{feed:.1}"));
+        let (time, ratio) = (number(row.time_s), number(row.time_ratio));
+        writeln!(out, "{:<20} {:<28} {feed:>9} {time:>9} {ratio:>6}", row.contour, row.controller)?;
     }
+    Ok(())
+}
+
+fn print_verdicts(out: &mut impl Write, verdicts: &[Verdict]) -> std::io::Result<()> {
+    if verdicts.is_empty() {
+        return Ok(());
+    }
+    writeln!(out, "\n{:<66} {:<18} {:<10} {:>6} {:>6}", "", "", "", "ratio", "limit")?;
     for verdict in verdicts {
         writeln!(
             out,
@@ -248,12 +256,6 @@ fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
             verdict.against
         )?;
     }
-    if !verdicts.is_empty() {
-        let held = verdicts.iter().filter(|verdict| verdict.holds).count();
-        writeln!(out, "{held} of {} claims hold", verdicts.len())?;
-    }
-    for path in [&args.json, &args.html].into_iter().flatten() {
-        writeln!(out, "wrote {}", path.display())?;
-    }
-    Ok(())
+    let held = verdicts.iter().filter(|verdict| verdict.holds).count();
+    writeln!(out, "{held} of {} claims hold", verdicts.len())
 }
