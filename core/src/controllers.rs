@@ -183,8 +183,10 @@ const FRICTION_GAIN: Parameter =
     number("friction_gain", Gains::EXACT.friction, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
 const LAG_SCALE: Parameter = number("lag_scale", 1.0, [0.1, 10.0], Some([0.5, 1.5]), EXACT_REASON);
 const INERTIA_SCALE: Parameter = number("inertia_scale", 1.0, [0.01, 10.0], Some([0.5, 2.0]), EXACT_REASON);
-const CROSS_COUPLED_REASON: &str =
-    "gain of the contour error: more corrects more; beyond 8, 400 1/s and 0.03 s the tool is caught in acute corners";
+const KP_REASON: &str = "gain of the contour error: more corrects more; beyond 8 the tool is caught in acute corners";
+const KI_REASON: &str =
+    "gain of its integral: 0 leaves a part of a steady error; beyond 400 the tool is caught in acute corners";
+const KD_REASON: &str = "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners";
 const EXACT_REASON: &str = "1 is what the exact model calls for; another makes up for a model that is not exact";
 
 /// All controllers.
@@ -206,9 +208,9 @@ pub const CONTROLLERS: &[Entry] = &[
         laps: 1,
         // Beyond these gains the loop is still stable on smooth paths, but catches the tool in acute corners.
         [
-            number("kp", cross_coupled::Settings::DEFAULT.kp, [0.0, 100.0], Some([0.1, 8.0]), CROSS_COUPLED_REASON),
-            number("ki_1_s", cross_coupled::Settings::DEFAULT.ki_1_s, [0.0, 1e5], Some([1.0, 400.0]), CROSS_COUPLED_REASON),
-            number("kd_s", cross_coupled::Settings::DEFAULT.kd_s, [0.0, 1.0], Some([1e-4, 0.03]), CROSS_COUPLED_REASON)
+            number("kp", cross_coupled::Settings::DEFAULT.kp, [0.0, 100.0], Some([0.1, 8.0]), KP_REASON),
+            number("ki_1_s", cross_coupled::Settings::DEFAULT.ki_1_s, [0.0, 1e5], Some([1.0, 400.0]), KI_REASON),
+            number("kd_s", cross_coupled::Settings::DEFAULT.kd_s, [0.0, 1.0], Some([1e-4, 0.03]), KD_REASON)
         ],
         cross_coupled
     ),
