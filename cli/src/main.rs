@@ -5,6 +5,7 @@
 
 mod args;
 mod commands;
+mod console;
 mod controllers;
 mod files;
 mod findings;
@@ -17,31 +18,32 @@ use std::process::ExitCode;
 use clap::Parser;
 
 use args::{Cli, Command};
+use console::Console;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
-    if let Err(error) = ctrlc::set_handler(interrupted) {
-        eprintln!("warning: an interrupt may leave unfinished files behind: {error}");
+    let console = Console::new(cli.quiet);
+    // The others write no files.
+    let writes =
+        !matches!(cli.command, Command::Check(_) | Command::Canon(_) | Command::Machines | Command::Controllers { .. });
+    if writes {
+        console.listen();
     }
-    let quiet = cli.quiet;
     let result = match cli.command {
-        Command::Run(args) => commands::run::run(*args, quiet),
-        Command::Paper(args) => commands::paper::run(&args, quiet),
-        Command::Compare(args) => commands::compare::run(&args, quiet),
-        Command::NeverWorse(args) => commands::never_worse::run(&args, quiet),
-        Command::HeldOut(args) => commands::held_out::run(&args, quiet),
-        Command::Check(args) => commands::check::run(&args, quiet),
-        Command::Canon(args) => commands::canon::run(&args, quiet),
+        Command::Run(args) => commands::run::run(*args, &console),
+        Command::Paper(args) => commands::paper::run(&args, &console),
+        Command::Compare(args) => commands::compare::run(&args, &console),
+        Command::NeverWorse(args) => commands::never_worse::run(&args, &console),
+        Command::HeldOut(args) => commands::held_out::run(&args, &console),
+        Command::Check(args) => commands::check::run(&args, &console),
+        Command::Canon(args) => commands::canon::run(&args, &console),
         Command::Machines => commands::list::machines(),
         Command::Controllers { name: None } => commands::list::controllers(),
         Command::Controllers { name: Some(name) } => commands::list::controller(&name),
     };
-    result.unwrap_or_else(|report| message::fail(&report))
-}
-
-/// Ctrl-C and a request to terminate: nothing half-written stays.
-fn interrupted() {
-    feedwright::output::abandon_all();
-    eprintln!("interrupted; no file was written");
-    std::process::exit(message::INTERRUPTED.into());
+    match result {
+        Ok(code) => code,
+        Err(_) if console.is_interrupted() => message::interrupted(),
+        Err(report) => message::fail(&report),
+    }
 }

@@ -22,6 +22,12 @@ pub(crate) fn fail(report: &Report) -> ExitCode {
     ExitCode::from(ERROR)
 }
 
+/// Tells that an interrupt ended the work.
+pub(crate) fn interrupted() -> ExitCode {
+    eprintln!("{}", feedwright::watch::Cancelled);
+    ExitCode::from(INTERRUPTED)
+}
+
 /// The exit code after something was printed on stdout. A reader that went away (`| head`) has seen enough: no error.
 pub(crate) fn printed(result: io::Result<()>, code: ExitCode) -> Result<ExitCode> {
     match result {

@@ -9,14 +9,14 @@ use feedwright::identify::cache;
 use feedwright::never_worse::cut::Figures;
 use feedwright::never_worse::journal::Journal;
 use feedwright::never_worse::summary::{Judged, OPEN_LOOP_UM, Quantiles, Summary};
-use feedwright::never_worse::{Job, Options, Watch, sweep};
-use feedwright::output::OutputFile;
+use feedwright::never_worse::{Job, Options, Swept, sweep};
+use feedwright::output::{OutputFile, OutputFiles};
 use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::args::SweepArgs;
+use crate::console::Console;
 use crate::controllers::{find, settings};
 use crate::message::OUT_OF_TOLERANCE;
-use crate::progress::Bar;
 
 /// A sweep that is about to begin: everything that can be refused has been.
 pub(crate) struct Sweep {
@@ -33,24 +33,24 @@ impl Sweep {
         let threads =
             args.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
         let options = Options { controller, set, seed: args.seed, threads };
-        let json = args.json.as_ref().map(|path| OutputFile::create(path, inputs)).transpose()?;
+        let mut files = OutputFiles::new(inputs.iter().copied());
+        let json = args.json.as_ref().map(|path| files.start(path)).transpose()?;
         Ok(Self { options, journal: journal(args.journal.as_deref())?, json })
     }
 
     /// Cuts all jobs and writes what was asked for.
-    pub(crate) fn run(self, jobs: &[Job], quiet: bool) -> Result<Done> {
-        let seconds = |job: &Job| (job.program.machining_s as u64).max(1);
-        let bar = Bar::new(quiet, jobs.iter().map(seconds).sum());
-        bar.say(format!("0 of {} cuts", jobs.len()));
-        let watch = Told { bar: &bar, cuts: jobs.len(), done: 0.into(), known: 0.into() };
+    pub(crate) fn run(self, jobs: &[Job], console: &Console) -> Result<Done> {
+        let bar = console.bar(0);
         let began = Instant::now();
-        let summary = Summary::of(sweep(jobs, &self.options, &self.journal, &watch));
-        let (known, threads, took_s) = (watch.known.into_inner(), self.options.threads, began.elapsed().as_secs_f64());
+        let swept = sweep(jobs, &self.options, &self.journal, &bar);
         bar.clear();
+        let Swept { rows, known } = swept?;
+        let summary = Summary::of(rows);
+        let (threads, took_s) = (self.options.threads, began.elapsed().as_secs_f64());
         if let Some(mut file) = self.json {
             serde_json::to_writer_pretty(&mut file, &summary).into_diagnostic().wrap_err("cannot write the cuts")?;
             file.write_all(b"\n").into_diagnostic()?;
-            file.commit()?;
+            OutputFile::commit_all(vec![file], &bar)?;
         }
         Ok(Done { summary, known, threads, took_s })
     }
@@ -66,24 +66,6 @@ fn journal(file: Option<&Path>) -> Result<Journal> {
     let program = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
     let place: Option<PathBuf> = cache::folder().map(|folder| Journal::place(&folder, &cache::key_of(&[&program])));
     Ok(place.and_then(|place| Journal::open(&place).ok()).unwrap_or_else(Journal::none))
-}
-
-struct Told<'a> {
-    bar: &'a Bar,
-    cuts: usize,
-    done: std::sync::atomic::AtomicUsize,
-    known: std::sync::atomic::AtomicUsize,
-}
-
-impl Watch for Told<'_> {
-    fn done(&self, job: &Job, known: bool) {
-        use std::sync::atomic::Ordering::Relaxed;
-
-        let done = self.done.fetch_add(1, Relaxed) + 1;
-        self.known.fetch_add(usize::from(known), Relaxed);
-        self.bar.say(format!("{done} of {} cuts", self.cuts));
-        self.bar.advance((job.program.machining_s as u64).max(1));
-    }
 }
 
 /// A sweep that is done.

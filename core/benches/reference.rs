@@ -44,10 +44,10 @@ fn wave() -> Canon {
 
 fn reference(name: &str) -> Reference<'static> {
     let reference = match name {
-        "line" => Reference::new(vec![line([0.0; 3], [100.0, 50.0, 0.0], 50.0, BLEND)], &LIMITS),
-        "spline" => Reference::new([wave()], &LIMITS),
-        "10 um chords" => Reference::new(chords(10_000), &LIMITS),
-        _ => Reference::from_steps(
+        "line" => Reference::of_program(vec![line([0.0; 3], [100.0, 50.0, 0.0], 50.0, BLEND)], &LIMITS),
+        "spline" => Reference::of_program([wave()], &LIMITS),
+        "10 um chords" => Reference::of_program(chords(10_000), &LIMITS),
+        _ => Reference::of_steps(
             contour(name).expect("a name of the table").steps(50.0, BLEND).expect("a feed"),
             &LIMITS,
         ),
@@ -98,7 +98,7 @@ fn nearest(bencher: Bencher<'_, '_>, name: &str) {
 #[divan::bench(args = [1_000, 10_000, 100_000])]
 fn plan_chords(bencher: Bencher<'_, '_>, count: u32) {
     bencher.counter(ItemsCount::new(count)).bench_local(|| {
-        let mut reference = Reference::new(chords(count), &LIMITS).expect("limits are sound");
+        let mut reference = Reference::of_program(chords(count), &LIMITS).expect("limits are sound");
         let mut tau_s = 0.0;
         while reference.end_s().is_none() {
             reference.at(tau_s);

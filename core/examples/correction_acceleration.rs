@@ -6,10 +6,9 @@
 use feedwright::compare::Workpiece;
 use feedwright::controllers::{BASELINE, BEST, Choices, Entry, Make, Setup};
 use feedwright::machine::Machine;
-use feedwright::reference::Reference;
+use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
 use feedwright::report::figure::{COLORS, Curve, Figure, Line, Panel};
-use feedwright::simulate::simulate;
 
 const CONTOURS: [&str; 4] = ["square", "circle", "star", "butterfly"];
 /// What the correction may accelerate in each axis, mm/s2; the default on tnv40 is 400.
@@ -47,8 +46,7 @@ fn row(machine: &Machine, workpieces: &[&Workpiece], name: &str) -> Result<Vec<E
     let mut controller = Make::<2>::make(entry, &mut setup);
     let cut = |workpiece: &&Workpiece| -> Result<Errors, Failure> {
         let mut statistics = Statistics::new();
-        let mut reference = Reference::from_steps(workpiece.steps.clone(), &(&machine.limits).into())?;
-        simulate(machine, &mut reference, &mut *controller, &mut [&mut statistics])?;
+        Run::on(machine).cut_steps(&workpiece.steps, &mut *controller, &mut [&mut statistics])?;
         Ok([statistics.rms_um(), statistics.max_um()])
     };
     workpieces.iter().map(cut).collect()

@@ -7,9 +7,8 @@ use feedwright::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane,
 use feedwright::identify::Programme;
 use feedwright::identify::contour::{Recording, Training};
 use feedwright::machine::Machine;
-use feedwright::reference::Reference;
+use feedwright::pipeline::{Run, pieces};
 use feedwright::report::Statistics;
-use feedwright::simulate::simulate;
 use feedwright::trace::Sink;
 use feedwright_control::controller::{Command, Controller, Measured, Schedule};
 use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
@@ -82,9 +81,9 @@ fn cut(machine: &Machine, controller: &mut dyn Controller<2>, sinks: &mut [&mut 
         corner: Corner::ExactStop,
         others: Others::default(),
     };
-    let mut reference = Reference::new(std::iter::once(Canon::Motion(motion)), &(&machine.limits).into())
-        .expect("the limits of a machine file are checked when it is read");
-    simulate(machine, &mut reference, controller, sinks).expect("sinks in memory take every row");
+    Run::on(machine)
+        .cut(|| Ok(pieces([Canon::Motion(motion.clone())])), controller, sinks)
+        .expect("a circle on a machine that was checked, sinks in memory");
 }
 
 /// d eps / d F of the machine, across the path, at the end of the feed period of F and of those after it; scaled.

@@ -9,9 +9,9 @@ use feedwright::identify::cache::identified;
 use feedwright::identify::contour::Training;
 use feedwright::identify::{Programme, servo};
 use feedwright::machine::Machine;
-use feedwright::reference::Reference;
+use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
-use feedwright::simulate::{Run, simulate};
+use feedwright::simulate::RunResult;
 use feedwright_control::Controller;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::{inverting, two_dimensional::TwoDimensional};
@@ -100,10 +100,9 @@ fn cut(
     machine: &Machine,
     workpiece: &Workpiece,
     controller: &mut dyn Controller<2>,
-) -> Result<(Statistics, Run), Failure> {
+) -> Result<(Statistics, RunResult), Failure> {
     let mut statistics = Statistics::new();
-    let mut reference = Reference::from_steps(workpiece.steps.clone(), &(&machine.limits).into())?;
-    let run = simulate(machine, &mut reference, controller, &mut [&mut statistics])?;
+    let run = Run::on(machine).cut_steps(&workpiece.steps, controller, &mut [&mut statistics])?;
     Ok((statistics, run))
 }
 

@@ -9,7 +9,7 @@ use std::io::{self, BufWriter};
 use std::path::Path;
 
 use feedwright::path::signed_distance_mm;
-use feedwright::report::{Report, Run, RunFacts, Series, Statistics, TimelineEvent, write_html};
+use feedwright::report::{Report, ReportedRun, RunFacts, Series, Statistics, TimelineEvent, write_html};
 use feedwright::trace::{Commanded, Row, Sink};
 
 const DT_S: f64 = 1e-3;
@@ -55,7 +55,7 @@ fn pocket(s_mm: f64) -> [f64; 3] {
     [x, row * step + (along - width).max(0.0), 0.0]
 }
 
-fn run(job: &Job, name: &str, lag_s: [f64; 3]) -> io::Result<Run> {
+fn run(job: &Job, name: &str, lag_s: [f64; 3]) -> io::Result<ReportedRun> {
     let (mut series, mut statistics) = (Series::new(), Statistics::new());
     let (mut act, mut speed) = ((job.at)(0.0), [0.0; 3]);
     let rows = (job.length_mm / job.feed_mm_s / DT_S) as u32;
@@ -83,7 +83,7 @@ fn run(job: &Job, name: &str, lag_s: [f64; 3]) -> io::Result<Run> {
         machine: "made-up lag".to_owned(),
         part: job.name.to_owned(),
         axes: job.axes,
-        run: feedwright::simulate::Run { time_s, ..Default::default() },
+        run: feedwright::simulate::RunResult { time_s, ..Default::default() },
     };
     let text = |line: u32| format!("N{line} G1 X1 Y2 (</script><img src=x onerror=alert(1)> & \"quoted\")");
     let event = |t_s: f64, duration_s: f64, row: &str, label: &str| TimelineEvent {
@@ -99,7 +99,7 @@ fn run(job: &Job, name: &str, lag_s: [f64; 3]) -> io::Result<Run> {
         event(0.6 * time_s, 0.05 * time_s, "dwell", "dwell"),
         event(time_s, 0.0, "stop", "end of program"),
     ];
-    Ok(Run { summary: statistics.summary(facts, text), series, events })
+    Ok(ReportedRun { summary: statistics.summary(facts, text), series, events })
 }
 
 /// Arc length of the path point nearest to `point`, from a little behind `before_mm` up to `newest_mm`.

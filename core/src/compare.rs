@@ -32,13 +32,14 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::controllers::{Entry, Knows, Setting};
-use crate::feed::LimitsError;
 use crate::gcode;
 use crate::gcode::canon::Corner;
 use crate::machine::Machine;
 use crate::path::contour::CONTOURS;
 use crate::path::pieces::Pieces;
 use crate::path::{PathError, Step};
+use crate::pipeline::RunError;
+use crate::watch::Watch;
 use cut::Maker;
 use journal::Journal;
 use table::Row;
@@ -82,14 +83,14 @@ impl Workpiece {
     /// # Errors
     /// A program with mistakes, one that leaves the XY plane, or one without a path.
     pub fn program(file: &Path, settings: gcode::Settings) -> Result<Self, PartError> {
-        let summary = gcode::check(file, settings.clone()).map_err(crate::pipeline::Error::from)?;
+        let summary = gcode::check(file, settings.clone()).map_err(crate::job::JobError::from)?;
         if summary.moves[2] {
             return Err(PartError::LeavesPlane { part: file.to_owned() });
         }
-        let steps = gcode::Reader::open(file, settings).map_err(crate::pipeline::Error::from)?.map_while(Result::ok);
+        let steps = gcode::Reader::open(file, settings).map_err(crate::job::JobError::from)?.map_while(Result::ok);
         let steps: Result<Vec<Step>, PathError> = Pieces::new(steps).collect();
         let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
-        let steps = steps.map_err(|fault| crate::pipeline::Error::Path { part: file.to_owned(), fault })?;
+        let steps = steps.map_err(|fault| crate::job::JobError::Path { part: file.to_owned(), fault })?;
         Ok(Self { name, smooth: false, steps })
     }
 }
@@ -100,7 +101,7 @@ pub enum PartError {
     /// It cannot be read, or has mistakes.
     #[error(transparent)]
     #[diagnostic(transparent)]
-    Program(#[from] crate::pipeline::Error),
+    Program(#[from] crate::job::JobError),
     /// The comparison is of two axes.
     #[error("{} moves Z; the comparison is of motions in the XY plane", part.display())]
     #[diagnostic(help("feedwright run compares two controllers on programs in space"))]
@@ -159,26 +160,6 @@ pub struct Options {
     pub at_tolerance: bool,
 }
 
-/// Progress of a comparison: how many cuts there are, and that one more is done.
-pub trait Watch: Sync {
-    /// The controllers are tuned: so many searches.
-    fn tuning(&self, searches: u64);
-    /// The table is made: so many cuts, some of which an earlier run has left.
-    fn cutting(&self, cuts: u64);
-    /// Machining times at equal tolerance are looked for: so many searches.
-    fn holding(&self, searches: u64);
-    /// One is done.
-    fn done(&self);
-}
-
-/// Tells nobody.
-impl Watch for () {
-    fn tuning(&self, _: u64) {}
-    fn cutting(&self, _: u64) {}
-    fn holding(&self, _: u64) {}
-    fn done(&self) {}
-}
-
 /// A finished comparison.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
@@ -223,8 +204,8 @@ impl Options {
 /// Compares. Rows that the journal holds are not cut again.
 ///
 /// # Errors
-/// Where a machine has no sensible limits.
-pub fn compare(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Comparison, LimitsError> {
+/// Where a machine has no sensible limits, or where it is ended from outside.
+pub fn compare(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Comparison, RunError> {
     let tuned = tuned(options, journal, watch)?;
     let rows = table::in_order(&cuts(options, &tuned, journal, watch)?, options);
     let at_tolerance = if options.at_tolerance { tolerance::at_tolerance(options, &tuned, watch)? } else { Vec::new() };
@@ -234,36 +215,38 @@ pub fn compare(options: &Options, journal: &Journal, watch: &dyn Watch) -> Resul
 }
 
 /// The values of all controllers that have parameters.
-fn tuned(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Vec<Tuned>, LimitsError> {
+fn tuned(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Vec<Tuned>, RunError> {
     let is_set = |entry: &Entry| options.set.iter().any(|set| set.controller == entry.name);
     let has_values = |entry: &&&'static Entry| entry.searched().count() > 0 || is_set(entry);
     let tunable: Vec<_> = options.controllers.iter().filter(has_values).collect();
-    watch.tuning(tunable.len() as u64);
-    let values = |entry: &'static Entry| match &options.tuning {
-        _ if is_set(entry) => Ok(Tuned::set(entry, &options.set)),
-        Tuning::Search => {
-            let tuned = tuning::search(entry, options.nominal(), options.seed)?;
-            journal.add_tuned(&tuned);
-            Ok(tuned)
-        }
-        Tuning::Defaults => Ok(Tuned::defaults(entry)),
-        Tuning::Known(known) => {
-            let known = known.iter().find(|tuned| tuned.controller == entry.name);
-            Ok(known.cloned().unwrap_or_else(|| Tuned::defaults(entry)))
-        }
+    watch.begin("tuning every controller alike", tunable.len() as u64);
+    let values = |entry: &'static Entry| -> Result<Tuned, RunError> {
+        Ok(match &options.tuning {
+            _ if is_set(entry) => Tuned::set(entry, &options.set),
+            Tuning::Search => {
+                let tuned = tuning::search(entry, options.nominal(), options.seed, watch)?;
+                journal.add_tuned(&tuned);
+                tuned
+            }
+            Tuning::Defaults => Tuned::defaults(entry),
+            Tuning::Known(known) => {
+                let known = known.iter().find(|tuned| tuned.controller == entry.name);
+                known.cloned().unwrap_or_else(|| Tuned::defaults(entry))
+            }
+        })
     };
     tunable
         .par_iter()
         .map(|entry| {
             let tuned = journal.tuned(entry.name).map_or_else(|| values(entry), Ok)?;
-            watch.done();
+            watch.advance(1);
             Ok(tuned)
         })
         .collect()
 }
 
 /// One row for every workpiece, machine and competitor, by machine and competitor, ratios still open.
-fn cuts(options: &Options, tuned: &[Tuned], journal: &Journal, watch: &dyn Watch) -> Result<Vec<Row>, LimitsError> {
+fn cuts(options: &Options, tuned: &[Tuned], journal: &Journal, watch: &dyn Watch) -> Result<Vec<Row>, RunError> {
     let nominal = options.nominal();
     let competitors = options.competitors();
     let pairs: Vec<(&Machine, &Competitor)> = options
@@ -273,8 +256,8 @@ fn cuts(options: &Options, tuned: &[Tuned], journal: &Journal, watch: &dyn Watch
         // At home on the nominal machine is the unseen controller once more.
         .filter(|(machine, competitor)| !competitor.at_home || machine.name != nominal.name)
         .collect();
-    watch.cutting((pairs.len() * options.workpieces.len()) as u64);
-    let rows: Result<Vec<Vec<Row>>, LimitsError> = pairs
+    watch.begin("cutting", (pairs.len() * options.workpieces.len()) as u64);
+    let rows: Result<Vec<Vec<Row>>, RunError> = pairs
         .par_iter()
         .map(|(machine, competitor)| {
             let maker = Maker { competitor, nominal, seed: options.seed, tuned };
@@ -285,12 +268,12 @@ fn cuts(options: &Options, tuned: &[Tuned], journal: &Journal, watch: &dyn Watch
                     Some(row) => row,
                     None => {
                         let controller = controller.get_or_insert_with(|| maker.make(machine));
-                        let row = cut::row(workpiece, machine, competitor, &mut **controller)?;
+                        let row = cut::row(workpiece, machine, competitor, &mut **controller, watch)?;
                         journal.add(&row);
                         row
                     }
                 };
-                watch.done();
+                watch.advance(1);
                 Ok(row)
             };
             options.workpieces.iter().map(&mut row).collect()

@@ -6,20 +6,25 @@
 //! The modules stand in the order in which data flows; each uses only those above it.
 
 mod vector;
+pub mod watch;
+pub mod kinematics;
 pub mod machine;
 pub use feedwright_gcode as gcode;
 pub mod plc;
+pub mod constraints;
 pub mod path;
+pub mod blend;
 pub mod feed;
 pub mod reference;
 pub mod plant;
 pub mod trace;
 pub mod output;
 pub mod simulate;
+pub mod pipeline;
 pub mod identify;
 pub mod controllers;
 pub mod report;
-pub mod pipeline;
+pub mod job;
 pub mod paper;
 pub mod held_out;
 pub mod compare;

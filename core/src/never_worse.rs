@@ -32,6 +32,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::controllers::{Entry, Setting};
 use crate::machine::Machine;
+use crate::watch::{Cancelled, Watch};
 use cut::{Cutter, Row};
 use journal::Journal;
 use program::Program;
@@ -58,17 +59,6 @@ pub struct Options {
     pub threads: usize,
 }
 
-/// Is told of each job that is done; `known` where the journal had it.
-pub trait Watch: Sync {
-    /// One more.
-    fn done(&self, job: &Job, known: bool);
-}
-
-/// Tells nobody.
-impl Watch for () {
-    fn done(&self, _: &Job, _: bool) {}
-}
-
 /// Every program on every machine: by machine, so that each is identified once for a thread, and the longest program
 /// first, so that no thread is left alone with it.
 pub fn jobs(programs: Vec<Program>, machines: Vec<Machine>) -> Vec<Job> {
@@ -90,9 +80,29 @@ pub fn sample(jobs: Vec<Job>, count: usize, seed: u64) -> Vec<Job> {
     drawn.into_iter().map(|i| jobs[i].clone()).collect()
 }
 
-/// Cuts all jobs, open loop and corrected; rows in the order of the jobs.
-pub fn sweep(jobs: &[Job], options: &Options, journal: &Journal, watch: &dyn Watch) -> Vec<Row> {
-    let next = AtomicUsize::new(0);
+/// What a sweep came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Swept {
+    /// In the order of the jobs.
+    pub rows: Vec<Row>,
+    /// How many of them the journal had.
+    pub known: usize,
+}
+
+impl Job {
+    /// Steps of its progress: seconds of machining.
+    pub fn steps(&self) -> u64 {
+        (self.program.machining_s as u64).max(1)
+    }
+}
+
+/// Cuts all jobs, open loop and corrected.
+///
+/// # Errors
+/// An end from outside; what was cut is in the journal.
+pub fn sweep(jobs: &[Job], options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Swept, Cancelled> {
+    watch.begin(&format!("{} cuts", jobs.len()), jobs.iter().map(Job::steps).sum());
+    let (next, known) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let rows = Mutex::new(vec![None; jobs.len()]);
     let work = || {
         // Made where it is needed: what it has identified serves all programs of a machine that follow each other.
@@ -101,20 +111,27 @@ pub fn sweep(jobs: &[Job], options: &Options, journal: &Journal, watch: &dyn Wat
             let i = next.fetch_add(1, Ordering::Relaxed);
             let Some(job) = jobs.get(i) else { break };
             let key = journal::key(job, options);
-            let known = journal.row(&key, job);
-            let row = known.clone().unwrap_or_else(|| {
-                let cutter = match &mut cutter {
-                    Some(cutter) if cutter.is_for(&job.machine) => cutter,
-                    other => other.insert(Cutter::new(&job.machine, options)),
-                };
-                let row = cutter.row(&job.program);
-                journal.add(&key, &row);
-                row
-            });
+            let row = match journal.row(&key, job) {
+                Some(row) => {
+                    known.fetch_add(1, Ordering::Relaxed);
+                    row
+                }
+                None => {
+                    let cutter = match &mut cutter {
+                        Some(cutter) if cutter.is_for(&job.machine) => cutter,
+                        other => other.insert(Cutter::new(&job.machine, options)),
+                    };
+                    let Ok(row) = cutter.row(&job.program, watch) else { break };
+                    journal.add(&key, &row);
+                    row
+                }
+            };
             rows.lock().unwrap_or_else(PoisonError::into_inner)[i] = Some(row);
-            watch.done(job, known.is_some());
+            watch.advance(job.steps());
         }
     };
     std::thread::scope(|scope| (0..options.threads.max(1)).for_each(|_| drop(scope.spawn(work))));
-    rows.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect()
+    watch.check()?;
+    let rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect();
+    Ok(Swept { rows, known: known.into_inner() })
 }

@@ -1,8 +1,8 @@
 //! Output files that are there whole or not at all.
 //!
-//! An [`OutputFile`] is written to a temporary file beside its target and renamed by [`OutputFile::commit`]. Dropped before
-//! that (an error, a panic), it leaves nothing; [`abandon_all`] does the same from a Ctrl-C handler. The data is not forced
-//! to the disk: it survives the end of the process, not of the power.
+//! An [`OutputFile`] is written to a temporary file beside its target and renamed by [`OutputFile::commit_all`]. Dropped before
+//! that (an error, a panic, an end from outside), it leaves nothing. The data is not forced to the disk: it survives the end of
+//! the process, not of the power.
 
 mod error;
 
@@ -13,28 +13,21 @@ mod stab;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::TempPath;
+
+use crate::watch::Watch;
 
 pub use error::{OutputError, Step};
 
 /// Rows of a trace are 150-300 bytes: a few hundred rows for one call of the operating system.
 const BUFFER_BYTES: usize = 64 << 10;
 
-/// Output files under way in this process, so that an interrupt can remove them.
-static LIVE: Mutex<Live> = Mutex::new(Live { closed: false, files: Vec::new() });
-
-struct Live {
-    /// Set by an interrupt: nothing is created or renamed any more.
-    closed: bool,
-    files: Vec<LiveFile>,
-}
-
-struct LiveFile {
-    target: PathBuf,
-    /// `None` where the target is written directly.
-    temporary: Option<PathBuf>,
+/// The output files of a run, as they are started: none takes the place of an input or of another.
+#[derive(Debug, Default)]
+pub struct OutputFiles {
+    inputs: Vec<PathBuf>,
+    targets: Vec<PathBuf>,
 }
 
 /// A file under way to its target.
@@ -55,24 +48,34 @@ struct Named {
     folder: PathBuf,
 }
 
-impl OutputFile {
-    /// Starts a file that shall stand at `path` when it is complete; `inputs` are files of this run that it must not replace.
+impl OutputFiles {
+    /// None yet; `inputs` are files of this run that no output must replace.
+    pub fn new<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> Self {
+        Self { inputs: inputs.into_iter().map(Path::to_owned).collect(), targets: Vec::new() }
+    }
+
+    /// Starts a file that shall stand at `path` when it is complete.
     ///
     /// # Errors
-    /// A target that is a directory, that is one of `inputs` or that another output of this run goes to; a directory that is
+    /// A target that is a directory, that is one of the inputs or that another output of this run goes to; a directory that is
     /// missing or cannot be written to.
-    pub fn create(path: &Path, inputs: &[&Path]) -> Result<Self, OutputError> {
+    pub fn start(&mut self, path: &Path) -> Result<OutputFile, OutputError> {
         let target = resolve(path)?;
-        if let Some(input) = inputs.iter().find(|input| fs::canonicalize(input).is_ok_and(|input| input == target)) {
-            return Err(OutputError::IsInput { path: path.to_owned(), input: input.to_path_buf() });
+        if let Some(input) = self.inputs.iter().find(|input| fs::canonicalize(input).is_ok_and(|input| input == target))
+        {
+            return Err(OutputError::IsInput { path: path.to_owned(), input: input.clone() });
         }
-        let mut live = live();
-        if live.closed {
-            return Err(OutputError::Interrupted { path: path.to_owned() });
-        }
-        if live.files.iter().any(|file| file.target == target) {
+        if self.targets.contains(&target) {
             return Err(OutputError::Twice { path: path.to_owned() });
         }
+        let file = OutputFile::create(path, target.clone())?;
+        self.targets.push(target);
+        Ok(file)
+    }
+}
+
+impl OutputFile {
+    fn create(path: &Path, target: PathBuf) -> Result<Self, OutputError> {
         let folder = target.parent().unwrap_or(Path::new("/")).to_owned();
         let failed = |error| OutputError::io(Step::Create, path, &folder, error);
         let (file, temporary) = if fs::metadata(&target).is_ok_and(|found| !found.is_file()) {
@@ -81,8 +84,6 @@ impl OutputFile {
             let (file, temporary) = create_beside(&target, &folder).map_err(failed)?;
             (file, Some(temporary))
         };
-        live.files
-            .push(LiveFile { target: target.clone(), temporary: temporary.as_ref().map(|path| path.to_path_buf()) });
         let named = Named { file, shown: path.to_owned(), folder };
         Ok(Self { shown: path.to_owned(), target, out: BufWriter::with_capacity(BUFFER_BYTES, named), temporary })
     }
@@ -93,36 +94,24 @@ impl OutputFile {
     }
 
     /// All files of a run are complete: they take their places. The last bytes of all are written before the first moves,
-    /// so that a disk that is full at the very end leaves no part of the results either.
+    /// so that a disk that is full at the very end leaves no part of the results either; then nothing ends it any more.
     ///
     /// # Errors
-    /// As [`Self::commit`], for the first that fails.
-    pub fn commit_all(mut files: Vec<Self>) -> Result<(), OutputError> {
+    /// Where the last bytes or the renaming fail, for the first file that does, or an end from outside.
+    pub fn commit_all(mut files: Vec<Self>, watch: &dyn Watch) -> Result<(), OutputError> {
         for file in &mut files {
             file.out.flush().map_err(|error| OutputError::from_io(error, &file.shown))?;
         }
+        watch.check()?;
         files.into_iter().try_for_each(Self::commit)
     }
 
-    /// The file is complete: it takes its place.
-    ///
-    /// # Errors
-    /// Where the last bytes or the renaming fail; nothing is left then.
-    pub fn commit(mut self) -> Result<(), OutputError> {
-        self.out.flush().map_err(|error| OutputError::from_io(error, &self.shown))?;
-        let live = live();
-        if live.closed {
-            return Err(OutputError::Interrupted { path: self.shown.clone() });
-        }
-        if let Some(temporary) = self.temporary.take() {
-            // The lock is held: an interrupt comes before the renaming or finds nothing left to remove.
-            temporary.persist(&self.target).map_err(|failed| {
-                let folder = &self.out.get_ref().folder;
-                OutputError::io(Step::Rename, &self.shown, folder, failed.error)
-            })?;
-        }
-        drop(live);
-        Ok(())
+    fn commit(mut self) -> Result<(), OutputError> {
+        let Some(temporary) = self.temporary.take() else { return Ok(()) };
+        temporary.persist(&self.target).map_err(|failed| {
+            let folder = &self.out.get_ref().folder;
+            OutputError::io(Step::Rename, &self.shown, folder, failed.error)
+        })
     }
 }
 
@@ -133,15 +122,6 @@ impl Write for OutputFile {
 
     fn flush(&mut self) -> io::Result<()> {
         self.out.flush()
-    }
-}
-
-impl Drop for OutputFile {
-    fn drop(&mut self) {
-        let mut live = live();
-        // Removed under the lock: an interrupt finds the file in the list, or gone.
-        self.temporary = None;
-        live.files.retain(|file| file.target != self.target);
     }
 }
 
@@ -159,22 +139,6 @@ impl Write for Named {
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }
-}
-
-/// Removes every unfinished output of this process and lets none be started or finished after it: for an interrupt handler
-/// that is about to end the process.
-pub fn abandon_all() {
-    let mut live = live();
-    live.closed = true;
-    for temporary in live.files.drain(..).filter_map(|file| file.temporary) {
-        // The process ends: there is nobody left who could do more about a file that cannot be removed.
-        let _ = fs::remove_file(temporary);
-    }
-}
-
-/// The list of live files stays consistent whatever panics while it is locked.
-fn live() -> MutexGuard<'static, Live> {
-    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// The real place of `path`, which need not exist yet.

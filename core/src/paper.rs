@@ -20,10 +20,10 @@ use crate::identify::Programme;
 use crate::identify::cache::identified;
 use crate::identify::contour::{Identified, Training};
 use crate::machine::Machine;
-use crate::reference::Reference;
+use crate::pipeline::{Run, RunError, pieces};
 use crate::report::Statistics;
-use crate::simulate::simulate;
 use crate::trace::{Outcome, Sink};
+use crate::watch::Watch;
 
 /// Radius of the circle, mm.
 const RADIUS_MM: f64 = 10.0;
@@ -88,18 +88,24 @@ pub struct Paper {
     pub worst_time_ratio: f64,
 }
 
-/// Runs the experiment for each seed, in parallel; `progress` is told after each how many are done.
-pub fn experiment(machine: &Machine, seeds: &[u64], progress: &(dyn Fn() + Sync)) -> Paper {
-    let seeds: Vec<SeedResult> = seeds
+/// Runs the experiment for each seed, in parallel.
+///
+/// # Errors
+/// A machine without sensible limits, or an end from outside.
+pub fn experiment(machine: &Machine, seeds: &[u64], watch: &dyn Watch) -> Result<Paper, RunError> {
+    watch.begin("training and cutting", seeds.len() as u64);
+    let bench = Bench { machine, watch };
+    let seeds: Result<Vec<SeedResult>, RunError> = seeds
         .par_iter()
         .map(|&seed| {
-            let result = cut_all(machine, seed);
-            progress();
-            result
+            let result = bench.cut_all(seed)?;
+            watch.advance(1);
+            Ok(result)
         })
         .collect();
+    let seeds = seeds?;
     let worst = |ratio: fn(&SeedResult) -> f64| seeds.iter().map(ratio).fold(0.0, f64::max);
-    Paper {
+    Ok(Paper {
         machine: machine.name.clone(),
         radius_mm: RADIUS_MM,
         feed_mm_s: FEED_MM_S,
@@ -107,36 +113,82 @@ pub fn experiment(machine: &Machine, seeds: &[u64], progress: &(dyn Fn() + Sync)
         worst_max_ratio: worst(|s| s.two_dimensional.max_um / s.magnitude_only.max_um),
         worst_time_ratio: worst(|s| s.two_dimensional.time_s / s.open_loop.time_s),
         seeds,
+    })
+}
+
+/// What all cuts are made on.
+#[derive(Clone, Copy)]
+struct Bench<'a> {
+    machine: &'a Machine,
+    watch: &'a dyn Watch,
+}
+
+impl Bench<'_> {
+    fn cut_all(&self, seed: u64) -> Result<SeedResult, RunError> {
+        let trained = self.train(seed);
+        let net = &trained.net;
+        let settings = Settings::DEFAULT;
+        let two_dimensional = self.cut_two_dimensional(net, settings)?;
+        let same_time = self.rho_for_time(net, two_dimensional.time_s)?;
+        Ok(SeedResult {
+            seed,
+            fit_um: trained.fit_um,
+            open_loop: Numbers { rho: None, ..self.cut(&mut OpenLoop, &mut [], 0.0)? },
+            magnitude_only: self.cut_magnitude_only(net, same_time)?,
+            magnitude_only_same_rho: self.cut_magnitude_only(net, settings.inversion.rho)?,
+            two_dimensional_exact_gradient: self.cut_two_dimensional(net, with_gradient(settings, Gradient::Exact))?,
+            two_dimensional,
+        })
     }
-}
 
-fn cut_all(machine: &Machine, seed: u64) -> SeedResult {
-    let trained = train(machine, seed);
-    let net = &trained.net;
-    let settings = Settings::DEFAULT;
-    let two_dimensional = cut_two_dimensional(machine, net, settings);
-    SeedResult {
-        seed,
-        fit_um: trained.fit_um,
-        open_loop: Numbers { rho: None, ..cut(machine, &mut OpenLoop, &mut [], 0.0) },
-        magnitude_only: cut_magnitude_only(machine, net, rho_for_time(machine, net, two_dimensional.time_s)),
-        magnitude_only_same_rho: cut_magnitude_only(machine, net, settings.inversion.rho),
-        two_dimensional_exact_gradient: cut_two_dimensional(machine, net, with_gradient(settings, Gradient::Exact)),
-        two_dimensional,
+    /// The identifier as the paper trains it: on the circle.
+    fn train(&self, seed: u64) -> Identified<2> {
+        identified(self.machine, &Programme::paper(), &Training::default(), seed, &mut |_| {})
     }
-}
 
-/// The identifier as the paper trains it: on the circle.
-fn train(machine: &Machine, seed: u64) -> Identified<2> {
-    identified(machine, &Programme::paper(), &Training::default(), seed, &mut |_| {})
-}
+    fn cut_two_dimensional(&self, net: &ContourIdentifier<2>, settings: Settings) -> Result<Numbers, RunError> {
+        self.cut(&mut TwoDimensional::new(net.clone(), settings), &mut [], settings.inversion.rho)
+    }
 
-fn cut_two_dimensional(machine: &Machine, net: &ContourIdentifier<2>, settings: Settings) -> Numbers {
-    cut(machine, &mut TwoDimensional::new(net.clone(), settings), &mut [], settings.inversion.rho)
-}
+    fn cut_magnitude_only(&self, net: &ContourIdentifier<2>, rho: f64) -> Result<Numbers, RunError> {
+        self.cut(&mut magnitude_only(net, rho), &mut [], rho)
+    }
 
-fn cut_magnitude_only(machine: &Machine, net: &ContourIdentifier<2>, rho: f64) -> Numbers {
-    cut(machine, &mut magnitude_only(net, rho), &mut [], rho)
+    /// The rho at which magnitude-only takes `time_s`: bisection on its logarithm, since more rho is less time.
+    fn rho_for_time(&self, net: &ContourIdentifier<2>, time_s: f64) -> Result<f64, RunError> {
+        let (mut low, mut high) = (-6.0_f64, -1.0_f64);
+        let mut rho = 0.0;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            rho = 10_f64.powf(middle);
+            let ratio = self.cut_magnitude_only(net, rho)?.time_s / time_s;
+            if (ratio - 1.0).abs() <= SAME_TIME {
+                break;
+            }
+            if ratio > 1.0 { low = middle } else { high = middle }
+        }
+        Ok(rho)
+    }
+
+    /// Cuts the circle.
+    fn cut(
+        &self,
+        controller: &mut dyn Controller<2>,
+        sinks: &mut [&mut dyn Sink],
+        rho: f64,
+    ) -> Result<Numbers, RunError> {
+        let mut statistics = Statistics::new();
+        let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];
+        all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
+        let run = Run::on(self.machine).watched(self.watch).cut(|| Ok(pieces([circle()])), controller, &mut all)?;
+        Ok(Numbers {
+            time_s: run.time_s,
+            rms_um: statistics.rms_um(),
+            max_um: statistics.max_um(),
+            rho: Some(rho),
+            completed: run.outcome == Outcome::Completed,
+        })
+    }
 }
 
 /// The baseline gets the true gradient: with the printed sign it would speed up where the error is large.
@@ -154,22 +206,6 @@ fn with_gradient(mut settings: Settings, gradient: Gradient) -> Settings {
     settings
 }
 
-/// The rho at which magnitude-only takes `time_s`: bisection on its logarithm, since more rho is less time.
-fn rho_for_time(machine: &Machine, net: &ContourIdentifier<2>, time_s: f64) -> f64 {
-    let (mut low, mut high) = (-6.0_f64, -1.0_f64);
-    let mut rho = 0.0;
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (low + high);
-        rho = 10_f64.powf(middle);
-        let ratio = cut_magnitude_only(machine, net, rho).time_s / time_s;
-        if (ratio - 1.0).abs() <= SAME_TIME {
-            break;
-        }
-        if ratio > 1.0 { low = middle } else { high = middle }
-    }
-    rho
-}
-
 /// The circle of eq. 11 as a program: clockwise about (R, 0) from the origin.
 fn circle() -> Canon {
     Canon::Motion(Motion {
@@ -182,21 +218,4 @@ fn circle() -> Canon {
         corner: Corner::ExactStop,
         others: Others::default(),
     })
-}
-
-/// Cuts the circle.
-fn cut(machine: &Machine, controller: &mut dyn Controller<2>, sinks: &mut [&mut dyn Sink], rho: f64) -> Numbers {
-    let mut statistics = Statistics::new();
-    let mut reference = Reference::new(std::iter::once(circle()), &(&machine.limits).into())
-        .expect("the limits of a machine file are checked when it is read");
-    let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];
-    all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
-    let run = simulate(machine, &mut reference, controller, &mut all).expect("sinks in memory take every row");
-    Numbers {
-        time_s: run.time_s,
-        rms_um: statistics.rms_um(),
-        max_um: statistics.max_um(),
-        rho: Some(rho),
-        completed: run.outcome == Outcome::Completed,
-    }
 }

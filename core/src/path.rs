@@ -68,6 +68,19 @@ pub struct Point {
     pub tangent: [f64; 3],
 }
 
+/// Derivatives of a curve by its arc length, for planners that bound what each axis does: with the speed v along the path and its
+/// acceleration a and jerk j, an axis has the velocity `p' v`, the acceleration `p'' v^2 + p' a` and the jerk
+/// `p''' v^3 + 3 p'' v a + p' j`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Derivatives {
+    /// p': the unit tangent.
+    pub first: [f64; 3],
+    /// p'': towards the centre of curvature, as long as the curvature, 1/mm.
+    pub second_1_mm: [f64; 3],
+    /// p''', 1/mm2.
+    pub third_1_mm2: [f64; 3],
+}
+
 /// One exact curve, parameterised by its arc length.
 #[derive(Debug, Clone)]
 pub enum Curve {
@@ -105,6 +118,15 @@ impl Curve {
             Self::Line(_) => 0.0,
             Self::Arc(arc) => arc.curvature(),
             Self::Smooth(smooth) => smooth.curvature(s_mm),
+        }
+    }
+
+    /// Derivatives at `s_mm`.
+    pub fn derivatives(&self, s_mm: f64) -> Derivatives {
+        match self {
+            Self::Line(line) => line.derivatives(),
+            Self::Arc(arc) => arc.derivatives(s_mm),
+            Self::Smooth(smooth) => smooth.derivatives(s_mm),
         }
     }
 
@@ -152,16 +174,20 @@ pub enum Step {
     /// Something else happens.
     Event(Event),
     /// The tool stands still while something else moves: a rotary axis, an extruder.
-    Rest {
-        /// Line of the program.
-        line: u32,
-        /// How long the programmed feed makes it; 0 for a rapid.
-        seconds: f64,
-        /// Largest angle that one of A, B and C turns, degrees: at the machine's rate it takes no less.
-        turn_deg: f64,
-        /// Way of U, V and W, mm: at the machine's rapid rate it takes no less.
-        further_mm: f64,
-    },
+    Rest(Rest),
+}
+
+/// A rest of the tool while something else moves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rest {
+    /// Line of the program.
+    pub line: u32,
+    /// How long the programmed feed makes it; 0 for a rapid.
+    pub seconds: f64,
+    /// Largest angle that one of A, B and C turns, degrees: at the machine's rate it takes no less.
+    pub turn_deg: f64,
+    /// Way of U, V and W, mm: at the machine's rapid rate it takes no less.
+    pub further_mm: f64,
 }
 
 /// Steps in program order; the first error ends the path.

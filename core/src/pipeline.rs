@@ -1,105 +1,172 @@
-//! The main job, in the order in which data flows: program in, every controller's cut, report and files out.
+//! One run: from the steps of a program to the rows of its cut, in the order in which data flows.
 //!
-//! Calls, no arithmetic. The program is read twice: once to find every mistake before anything is written, once for each
-//! cut, as a stream.
-
-mod files;
-mod job;
+//! ```text
+//! pieces -> blend -> plan -> reference -> loop of controller and plant -> rows
+//! ```
+//!
+//! Whatever cuts goes through [`Run`]: the main job, the comparison, the experiments of the paper, the excitation of an
+//! identification, tests.
 
 use feedwright_control::Controller;
+use thiserror::Error;
 
-use crate::controllers::{Entry, Make, Setup};
-use crate::gcode::{self, Summary};
+use crate::blend::{self, BlendMember};
+use crate::constraints::{Constraints, LimitsError};
+use crate::feed::plan::Plan;
+use crate::feed::{self, Member};
+use crate::gcode::ReadError;
+use crate::gcode::canon::Canon;
+use crate::machine::Machine;
+use crate::path::pieces::Pieces;
+use crate::path::{PathError, Step, Steps};
 use crate::plc::Plc;
 use crate::reference::Reference;
-use crate::report::{Report, Run, RunFacts, Series, Statistics};
-use crate::simulate::{practise, simulate_lap};
+use crate::simulate::{RunResult, Stopped, simulate};
 use crate::trace::Sink;
-pub use files::Outputs;
-use files::{Files, Timeline};
-pub use job::{Error, Job, Progress, Stage};
+use crate::watch::{Cancelled, Watch};
 
-/// What a job came to. The runs stand in the order in which they were made: what is compared against, then the
-/// controller that was asked for.
-#[derive(Debug)]
-pub struct Outcome {
-    /// Everything that the page shows.
-    pub report: Report,
-    /// What the reader warned of.
-    pub warnings: Vec<gcode::Diagnostic>,
-    /// Whether the last run was cut to its end and within the tolerance, where one was asked for.
-    pub within_tolerance: bool,
+/// The members of the families that make a plan of a path.
+#[derive(Debug, Clone, Copy)]
+pub struct Stages {
+    /// From the programmed path to the planned one.
+    pub blend: &'static BlendMember,
+    /// Speed over the planned path.
+    pub planner: &'static Member,
 }
 
-/// Runs a job and writes its files.
-///
-/// # Errors
-/// A program with mistakes, more axes than the machine has, or a file that cannot be written. No file appears then.
-pub fn run(job: &Job, progress: &mut dyn Progress) -> Result<Outcome, Error> {
-    progress.stage(Stage::Reading);
-    job.check_values()?;
-    let summary = gcode::check(&job.part, job.reader.clone())?;
-    let outcome = match job.axes(&summary)? {
-        2 => cut::<2>(job, &summary, progress),
-        _ => cut::<3>(job, &summary, progress),
-    }?;
-    Ok(outcome)
-}
-
-fn cut<const N: usize>(job: &Job, summary: &Summary, progress: &mut dyn Progress) -> Result<Outcome, Error>
-where
-    Entry: Make<N>,
-{
-    let mut files = Files::create(job, N)?;
-    let mut runs = Vec::new();
-    for entry in job.controllers() {
-        progress.stage(Stage::Preparing { controller: entry.name });
-        let mut told = |part: f64| progress.part(part);
-        let mut setup = Setup { machine: &job.machine, choices: &job.choices, progress: &mut told };
-        let mut controller = Make::<N>::make(entry, &mut setup);
-        progress.stage(Stage::Cutting { controller: entry.name });
-        let judged = entry.name == job.controller.name;
-        runs.push(cut_once(job, summary, entry, &mut *controller, judged.then_some(&mut files), progress)?);
+impl Default for Stages {
+    /// The first of each family.
+    fn default() -> Self {
+        Self { blend: &blend::MEMBERS[0], planner: &feed::MEMBERS[0] }
     }
-    progress.stage(Stage::Writing);
-    let report = job.report(N, summary, runs);
-    let within_tolerance = job.within_tolerance(&report);
-    files.finish(job, &report)?;
-    let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
-    Ok(Outcome { report, warnings, within_tolerance })
 }
 
-fn cut_once<const N: usize>(
-    job: &Job,
-    summary: &Summary,
-    entry: &Entry,
-    controller: &mut dyn Controller<N>,
-    files: Option<&mut Files>,
-    progress: &mut dyn Progress,
-) -> Result<Run, Error> {
-    let plc = Plc::new(job.machine.plc).with_events(&job.machine.plc_events);
-    let reference = || -> Result<Reference<'_>, Error> {
-        Ok(Reference::new(job.program()?, &(&job.machine.limits).into())?.with_plc(plc.clone()))
-    };
-    practise(&job.machine, reference, controller, entry.laps)?;
-    let mut reference = reference()?;
-    let (mut statistics, mut series, mut timeline) =
-        (Statistics::new(), Series::new(), Timeline::new(&job.machine.plc_events));
-    let mut told = job::Told::new(progress, summary);
-    let mut sinks: Vec<&mut dyn Sink> = vec![&mut statistics, &mut series, &mut timeline, &mut told];
-    sinks.extend(files.map(|files| files as &mut dyn Sink));
-    let run = simulate_lap(&job.machine, &mut reference, controller, &mut sinks)?;
-    if let Some(fault) = reference.fault() {
-        return Err(Error::Path { part: job.part.clone(), fault: fault.clone() });
+impl Stages {
+    /// The reference of the steps of a program on a machine.
+    ///
+    /// # Errors
+    /// Where a limit of the machine is none.
+    pub fn reference<'p>(self, steps: Steps<'p>, machine: &Machine) -> Result<Reference<'p>, LimitsError> {
+        let constraints = Constraints::from(machine);
+        let blended = (self.blend.make)(steps, &constraints);
+        let plan = Plan::new(blended, &constraints, self.planner, Plc::of(machine))?;
+        Ok(Reference::new(plan))
     }
-    let facts = RunFacts {
-        controller: entry.name.to_owned(),
-        machine: job.machine.name.clone(),
-        part: job.part_name(),
-        axes: N,
-        run,
-    };
-    let mut summary = statistics.summary(facts, |_| String::new());
-    job.fill_in_texts(&mut summary.worst)?;
-    Ok(Run { summary, series, events: timeline.events })
+}
+
+/// The pieces of a program.
+pub fn pieces<'p>(program: impl IntoIterator<Item = Canon, IntoIter: Send + 'p>) -> Steps<'p> {
+    Box::new(Pieces::new(program.into_iter()))
+}
+
+/// A cut that is about to be made.
+#[derive(Clone, Copy)]
+pub struct Run<'a> {
+    machine: &'a Machine,
+    stages: Stages,
+    laps: u32,
+    watch: &'a dyn Watch,
+}
+
+/// Why a cut was not made to its end.
+#[derive(Debug, Error, miette::Diagnostic)]
+pub enum RunError {
+    /// The program cannot be read.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Read(#[from] ReadError),
+    /// A limit of the machine is none.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Limits(#[from] LimitsError),
+    /// A motion has no path.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Path(#[from] PathError),
+    /// A sink takes no more rows.
+    #[error("cannot write the rows: {0}")]
+    Write(std::io::Error),
+    /// Ended from outside.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl From<Stopped> for RunError {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Write(error) => Self::Write(error),
+            Stopped::Cancelled(cancelled) => Self::Cancelled(cancelled),
+        }
+    }
+}
+
+impl<'a> Run<'a> {
+    /// One lap on a machine.
+    pub fn on(machine: &'a Machine) -> Self {
+        Self { machine, stages: Stages::default(), laps: 1, watch: &() }
+    }
+
+    /// With laps of practice: the last of so many counts.
+    #[must_use]
+    pub const fn laps(self, laps: u32) -> Self {
+        Self { laps, ..self }
+    }
+
+    /// With other members of the families than the first.
+    #[must_use]
+    pub const fn stages(self, stages: Stages) -> Self {
+        Self { stages, ..self }
+    }
+
+    /// Ended by this one.
+    #[must_use]
+    pub const fn watched(self, watch: &'a dyn Watch) -> Self {
+        Self { watch, ..self }
+    }
+
+    /// Cuts a path that is in memory, with a controller that begins anew; every row of the last lap goes to every sink.
+    ///
+    /// # Errors
+    /// A machine without sensible limits, a sink that takes no more, or an end from outside.
+    pub fn cut_steps<const N: usize>(
+        &self,
+        steps: &[Step],
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        self.cut(|| Ok(Box::new(steps.iter().cloned().map(Ok))), controller, sinks)
+    }
+
+    /// As [`Run::cut_steps`], of a path that is read for each lap anew.
+    ///
+    /// # Errors
+    /// A path that cannot be read or is none, too.
+    pub fn cut<'p, const N: usize>(
+        &self,
+        mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        controller.reset();
+        for _ in 1..self.laps {
+            self.lap(steps()?, controller, &mut [])?;
+            controller.next_lap();
+        }
+        self.lap(steps()?, controller, sinks)
+    }
+
+    fn lap<const N: usize>(
+        &self,
+        steps: Steps<'_>,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        let mut reference = self.stages.reference(steps, self.machine)?;
+        let result = simulate(self.machine, &mut reference, controller, sinks, self.watch)?;
+        match reference.fault() {
+            Some(fault) => Err(fault.clone().into()),
+            None => Ok(result),
+        }
+    }
 }

@@ -6,7 +6,7 @@
 mod rows;
 
 use crate::gcode::canon::EventKind;
-use crate::machine::{Durations, PlcEvent};
+use crate::machine::{Durations, Machine, PlcEvent};
 pub use rows::{Named, named};
 
 /// The state that durations depend on.
@@ -24,6 +24,11 @@ impl Plc {
     /// At rest, with these durations.
     pub const fn new(durations: Durations) -> Self {
         Self { durations, events: Vec::new(), speed_rev_min: 0.0, spindle_rev_min: 0.0 }
+    }
+
+    /// That of a machine.
+    pub fn of(machine: &Machine) -> Self {
+        Self::new(machine.plc).with_events(&machine.plc_events)
     }
 
     /// With M-codes that the machine builder gave a meaning and a duration.

@@ -1,4 +1,4 @@
-//! Reference: the point of the path at each plan time, and the point of the path nearest to a given point.
+//! Reference: the point of the planned path at each plan time, and the point of the programmed path nearest to a given point.
 //!
 //! Plan time `tau` runs in seconds from 0 at the start of the program. [`Reference`] reads as much of the program as it is
 //! asked for, keeps what has not been forgotten, and looks up.
@@ -11,11 +11,13 @@
 mod nearest;
 mod window;
 
+use crate::blend;
+use crate::constraints::{Constraints, LimitsError};
 use crate::feed::plan::{Plan, Planned};
-use crate::feed::{Limits, LimitsError, Phase, TimedEvent};
+use crate::feed::{self, Phase, TimedEvent};
 use crate::gcode::canon::Canon;
 use crate::path::pieces::Pieces;
-use crate::path::{PathError, Piece, Step, signed_distance_mm};
+use crate::path::{PathError, Piece, Step, Steps, signed_distance_mm};
 use crate::plc::Plc;
 use crate::vector::sub;
 use std::collections::VecDeque;
@@ -24,12 +26,14 @@ use window::Window;
 /// Where the reference is at a plan time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sample {
-    /// Point of the path, mm.
+    /// Point of the planned path, mm.
     pub position_mm: [f64; 3],
-    /// Unit tangent; at rest that of the motion before, at the start that of the first motion.
+    /// Its unit tangent; at rest that of the motion before, at the start that of the first motion.
     pub tangent: [f64; 3],
-    /// Arc length from the start of the path, mm.
+    /// Arc length of the programmed path from its start, mm.
     pub s_mm: f64,
+    /// Point of the programmed path there, mm.
+    pub programmed_mm: [f64; 3],
     /// Planned feedrate, mm/s.
     pub feed_mm_s: f64,
     /// Line of the program that is under way; in a dwell, the dwell's.
@@ -42,7 +46,7 @@ pub struct Sample {
     pub resting: bool,
 }
 
-/// A point of the path nearest to another.
+/// A point of the programmed path nearest to another.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Foot {
     /// Arc length from the start of the path, mm.
@@ -75,38 +79,36 @@ pub struct Reference<'p> {
 }
 
 impl<'p> Reference<'p> {
-    /// The reference of a program.
-    ///
-    /// # Errors
-    /// Where a limit is none. Errors of the program end it early: see [`Reference::fault`].
-    pub fn new(
-        source: impl IntoIterator<Item = Canon, IntoIter: Send + 'p>,
-        limits: &Limits,
-    ) -> Result<Self, LimitsError> {
-        Ok(Self::from_plan(Plan::new(Box::new(Pieces::new(source.into_iter())), limits)?))
-    }
-
-    /// The reference of a path, such as a [contour](crate::path::contour).
-    ///
-    /// # Errors
-    /// Where a limit is none.
-    pub fn from_steps(
-        steps: impl IntoIterator<Item = Step, IntoIter: Send + 'p>,
-        limits: &Limits,
-    ) -> Result<Self, LimitsError> {
-        Ok(Self::from_plan(Plan::new(Box::new(steps.into_iter().map(Ok)), limits)?))
-    }
-
     /// The reference of a plan.
-    pub fn from_plan(plan: Plan<'p>) -> Self {
+    pub fn new(plan: Plan<'p>) -> Self {
         Self { plan, window: Window::default(), events: VecDeque::new(), planned_s: 0.0, ended: false }
     }
 
-    /// The reference of a machine whose PLC and spindle hold the motion up. Before anything was looked up.
-    #[must_use]
-    pub fn with_plc(mut self, plc: Plc) -> Self {
-        self.plan = self.plan.with_plc(plc);
-        self
+    /// The reference of a program, blended and planned by the first members of their families, without a PLC.
+    ///
+    /// # Errors
+    /// Where a limit is none. Errors of the program end it early: see [`Reference::fault`].
+    pub fn of_program(
+        source: impl IntoIterator<Item = Canon, IntoIter: Send + 'p>,
+        constraints: impl Into<Constraints>,
+    ) -> Result<Self, LimitsError> {
+        Self::planned(Box::new(Pieces::new(source.into_iter())), &constraints.into())
+    }
+
+    /// As [`Reference::of_program`], of a path such as a [contour](crate::path::contour).
+    ///
+    /// # Errors
+    /// Where a limit is none.
+    pub fn of_steps(
+        steps: impl IntoIterator<Item = Step, IntoIter: Send + 'p>,
+        constraints: impl Into<Constraints>,
+    ) -> Result<Self, LimitsError> {
+        Self::planned(Box::new(steps.into_iter().map(Ok)), &constraints.into())
+    }
+
+    fn planned(steps: Steps<'p>, constraints: &Constraints) -> Result<Self, LimitsError> {
+        let blended = (blend::MEMBERS[0].make)(steps, constraints);
+        Ok(Self::new(Plan::new(blended, constraints, &feed::MEMBERS[0], Plc::default())?))
     }
 
     /// Where the reference is at `tau_s`; before the start (or what has been forgotten) at the first point, behind the end
@@ -172,7 +174,7 @@ impl<'p> Reference<'p> {
         }
     }
 
-    /// Number of pieces and phases in memory.
+    /// Number of planned pieces and phases in memory.
     pub fn kept(&self) -> (usize, usize) {
         self.window.kept()
     }
@@ -191,7 +193,8 @@ impl<'p> Reference<'p> {
     fn read_on(&mut self, tau_s: f64) {
         while self.planned_s <= tau_s && !self.ended {
             match self.plan.next() {
-                Some(Planned::Piece(piece)) => self.window.push_piece(piece),
+                Some(Planned::Programmed(piece)) => self.window.push_programmed(piece),
+                Some(Planned::Piece(piece)) => self.window.push_planned(piece),
                 Some(Planned::Phase(phase)) => self.push_phase(phase),
                 Some(Planned::Event(event)) => self.events.push_back(event),
                 None => self.ended = true,

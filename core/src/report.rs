@@ -38,12 +38,12 @@ pub struct Report {
     /// Largest contour error that the part allows, µm, where one was asked for.
     pub tolerance_um: Option<f64>,
     /// One for each controller. The first is what the others are compared with; the last is the one that is judged.
-    pub runs: Vec<Run>,
+    pub runs: Vec<ReportedRun>,
 }
 
 /// One controller's run.
 #[derive(Debug, Clone)]
-pub struct Run {
+pub struct ReportedRun {
     /// Its numbers.
     pub summary: RunSummary,
     /// Its record.

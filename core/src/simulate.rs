@@ -22,11 +22,13 @@ use feedwright_control::safety::{Bounds, Fade, State};
 use feedwright_control::tick::Setpoint;
 use feedwright_control::{Knot, Tick};
 
+use crate::kinematics::{joints_of, tool_of};
 use crate::machine::Machine;
 use crate::plant::{Measurement, Plant};
 use crate::reference::{Foot, Reference, Sample};
 use crate::trace::{Commanded, FadedOut, Outcome, Row, Sink};
 use crate::vector::distance;
+use crate::watch::{Cancelled, Watch};
 use progress::{Progress, settled_periods, settled_s};
 pub use tick_times::TickTimes;
 use uncut::Uncut;
@@ -43,9 +45,12 @@ const ARRIVAL_S: f64 = 0.25;
 /// The path is kept for this many times as long as a following tool needs to come to a point of it.
 const KEPT_SETTLED_TIMES: f64 = 3.0;
 
+/// Rows between two questions whether to go on: some milliseconds.
+const ROWS_BETWEEN_CHECKS: u64 = 1000;
+
 /// What a run says about itself beyond its rows.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Run {
+pub struct RunResult {
     /// How it ended.
     pub outcome: Outcome,
     /// When the safety layer took the controller out of the loop last.
@@ -66,53 +71,47 @@ pub struct Run {
     pub ticks: TickTimes,
 }
 
-/// Cuts the whole reference with a controller that begins anew; every row goes to every sink.
+/// Why a lap did not go on to its end.
+#[derive(Debug)]
+pub enum Stopped {
+    /// A sink takes no more rows.
+    Write(std::io::Error),
+    /// Ended from outside.
+    Cancelled(Cancelled),
+}
+
+impl From<std::io::Error> for Stopped {
+    fn from(error: std::io::Error) -> Self {
+        Self::Write(error)
+    }
+}
+
+impl From<Cancelled> for Stopped {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::Cancelled(cancelled)
+    }
+}
+
+/// Cuts the whole reference, one lap; every row goes to every sink. The controller is as the caller has it: at its beginning, or
+/// with what it learnt in the laps before.
 ///
 /// # Errors
-/// What a sink says when it takes no more.
+/// What a sink says when it takes no more, or an end from outside.
 pub fn simulate<const N: usize>(
     machine: &Machine,
     reference: &mut Reference<'_>,
     controller: &mut dyn Controller<N>,
     sinks: &mut [&mut dyn Sink],
-) -> std::io::Result<Run> {
-    controller.reset();
-    simulate_lap(machine, reference, controller, sinks)
-}
-
-/// Makes a controller ready for the lap that counts, the last of `laps`: it begins anew and cuts the others as practice,
-/// each on a reference of its own. The last is cut by [`simulate_lap`].
-///
-/// # Errors
-/// Where there is no reference.
-pub fn practise<'p, const N: usize, E>(
-    machine: &Machine,
-    mut reference: impl FnMut() -> Result<Reference<'p>, E>,
-    controller: &mut dyn Controller<N>,
-    laps: u32,
-) -> Result<(), E> {
-    controller.reset();
-    for _ in 1..laps {
-        simulate_lap(machine, &mut reference()?, controller, &mut []).expect("without sinks nothing is written");
-        controller.next_lap();
-    }
-    Ok(())
-}
-
-/// As [`simulate`], with a controller that remembers the laps before.
-///
-/// # Errors
-/// What a sink says when it takes no more.
-pub fn simulate_lap<const N: usize>(
-    machine: &Machine,
-    reference: &mut Reference<'_>,
-    controller: &mut dyn Controller<N>,
-    sinks: &mut [&mut dyn Sink],
-) -> std::io::Result<Run> {
+    watch: &dyn Watch,
+) -> Result<RunResult, Stopped> {
     let mut lap = Lap::new(machine, reference, controller);
-    let mut n = 0_u64;
+    let (mut n, mut rows) = (0_u64, 0_u64);
     while let Some(periods) = lap.servo_period(n, reference, controller, sinks)? {
         n += periods;
+        rows += 1;
+        if rows.is_multiple_of(ROWS_BETWEEN_CHECKS) {
+            watch.check()?;
+        }
     }
     Ok(lap.finish())
 }
@@ -130,7 +129,7 @@ struct Lap<'a, const N: usize> {
     uncut: Uncut,
     /// The measured position.
     seen_mm: [f64; N],
-    run: Run,
+    run: RunResult,
     /// When the command has ended.
     ended_s: Option<f64>,
     last_tau_s: f64,
@@ -144,7 +143,7 @@ impl<'a, const N: usize> Lap<'a, N> {
     fn new(machine: &'a Machine, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
         let servo_s = machine.period.servo_s;
         let slowest_s = 1.0 / machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
-        let start_mm = first(reference.at(0.0).position_mm);
+        let start_mm = joints_of(reference.at(0.0).position_mm);
         let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
         let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s, fade_mm_s2);
         Self {
@@ -155,10 +154,10 @@ impl<'a, const N: usize> Lap<'a, N> {
             feed_periods: controller.schedule().servo_periods.max(1),
             tick: Tick::new(servo_s, controller.schedule(), bounds),
             plant: Plant::new(machine, start_mm),
-            progress: Progress::new(machine, spread(start_mm)),
-            uncut: Uncut::new(settled_periods(machine), spread(start_mm)),
+            progress: Progress::new(machine, tool_of(start_mm)),
+            uncut: Uncut::new(settled_periods(machine), tool_of(start_mm)),
             seen_mm: start_mm,
-            run: Run::default(),
+            run: RunResult::default(),
             ended_s: None,
             last_tau_s: 0.0,
             fade: None,
@@ -185,8 +184,8 @@ impl<'a, const N: usize> Lap<'a, N> {
         let sample = reference.at(setpoint.tau_s);
         let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
         // A command that a correction holds beside the end of the path is not where the tool is to rest.
-        let to_go_mm = distance(measurement.position_mm, first(sample.position_mm));
-        let foot = self.progress.foot(reference, tau_s, sample.s_mm, spread(measurement.position_mm));
+        let to_go_mm = distance(measurement.position_mm, joints_of(sample.position_mm));
+        let foot = self.progress.foot(reference, tau_s, sample.s_mm, tool_of(measurement.position_mm));
         let row = row(t_s, &setpoint, &measurement, &sample, &foot, to_go_mm <= ARRIVED_MM);
         if row.cutting {
             self.cut[usize::from(self.tick.state() == State::Engaged)] += 1;
@@ -253,9 +252,9 @@ impl<'a, const N: usize> Lap<'a, N> {
         rests::left_out(reference, tau_s, self.servo_s, self.feed_periods, settled_s(self.machine))
     }
 
-    fn finish(self) -> Run {
+    fn finish(self) -> RunResult {
         let [out, within] = self.cut;
-        Run {
+        RunResult {
             engaged_share: if out + within == 0 { 1.0 } else { within as f64 / (out + within) as f64 },
             engaged_at_end: self.tick.state() == State::Engaged,
             uncut_mm: self.uncut.finish(ARRIVED_MM),
@@ -284,10 +283,10 @@ fn row<const N: usize>(
             (false, true) => Commanded::Cut,
             (false, false) => Commanded::Rapid,
         },
-        path_mm: sample.position_mm,
-        cmd_mm: spread(setpoint.command_mm),
-        act_mm: spread(measurement.position_mm),
-        torque_nm: spread(measurement.torque_nm),
+        path_mm: sample.programmed_mm,
+        cmd_mm: tool_of(setpoint.command_mm),
+        act_mm: tool_of(measurement.position_mm),
+        torque_nm: tool_of(measurement.torque_nm),
         foot_mm: foot.position_mm,
         tangent: foot.tangent,
         contour_error_mm: if N == 2 { foot.signed_mm } else { foot.distance_mm },
@@ -299,20 +298,12 @@ fn crossing(t_s: f64, servo_s: f64, last_tau_s: f64, tau_s: f64, end_s: f64) -> 
     if tau_s > last_tau_s { t_s - servo_s * (tau_s - end_s) / (tau_s - last_tau_s) } else { t_s }
 }
 
-/// The path as the tick sees it: the first N axes.
+/// The planned path as the tick sees it: the joints.
 struct Axes<'a, 'p>(&'a mut Reference<'p>);
 
 impl<const N: usize> feedwright_control::Reference<N> for Axes<'_, '_> {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
         let Sample { position_mm, tangent, feed_mm_s, rapid, .. } = self.0.at(tau_s);
-        Knot { position_mm: first(position_mm), tangent: first(tangent), feed_mm_s, cutting: !rapid }
+        Knot { position_mm: joints_of(position_mm), tangent: joints_of(tangent), feed_mm_s, cutting: !rapid }
     }
-}
-
-fn first<const N: usize>(v: [f64; 3]) -> [f64; N] {
-    std::array::from_fn(|i| v[i])
-}
-
-fn spread<const N: usize>(v: [f64; N]) -> [f64; 3] {
-    std::array::from_fn(|i| v.get(i).copied().unwrap_or(0.0))
 }

@@ -6,8 +6,7 @@
 use feedwright::controllers::{BEST, Choices, Entry, Make, Setup};
 use feedwright::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
 use feedwright::machine::Machine;
-use feedwright::reference::Reference;
-use feedwright::simulate::simulate;
+use feedwright::pipeline::{Run, pieces};
 use feedwright::trace::{Row, Sink};
 use rayon::prelude::*;
 
@@ -63,9 +62,9 @@ fn circle_behind(length_mm: f64, machine: &Machine, seed: u64) -> f64 {
     let choices = Choices { seed, ..Choices::default() };
     let mut setup = Setup { machine: &nominal, choices: &choices, progress: &mut |_| {} };
     let mut controller = Make::<2>::make(Entry::find(BEST).unwrap(), &mut setup);
-    let mut reference = Reference::new(line_and_circle(length_mm), &(&machine.limits).into()).unwrap();
     let mut error = LineError { line: 2, square_um2: 0.0, rows: 0 };
-    let run = simulate(machine, &mut reference, &mut *controller, &mut [&mut error]).unwrap();
+    let program = || Ok(pieces(line_and_circle(length_mm)));
+    let run = Run::on(machine).cut(program, &mut *controller, &mut [&mut error]).unwrap();
     assert_eq!(run.faded_out, None);
     error.rms_um()
 }

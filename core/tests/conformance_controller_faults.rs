@@ -93,7 +93,7 @@ fn laps(name: &str) -> Vec<Step> {
 }
 
 fn reference(machine: &Machine, steps: &[Step]) -> Reference<'static> {
-    Reference::from_steps(steps.to_vec(), &(&machine.limits).into()).unwrap()
+    Reference::of_steps(steps.to_vec(), machine).unwrap()
 }
 
 fn controller(machine: &Machine, name: &str) -> Box<dyn Controller<2>> {

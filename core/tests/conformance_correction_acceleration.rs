@@ -5,9 +5,8 @@
 use feedwright::compare::Workpiece;
 use feedwright::controllers::{BASELINE, BEST, Choices, Entry, Make, Setup};
 use feedwright::machine::Machine;
-use feedwright::reference::Reference;
+use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
-use feedwright::simulate::simulate;
 use rayon::prelude::*;
 
 const CONTOURS: [&str; 4] = ["square", "circle", "star", "butterfly"];
@@ -21,8 +20,7 @@ fn errors_um(machine: &Machine, workpiece: &Workpiece, name: &str) -> [f64; 2] {
     let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
     let mut controller = Make::<2>::make(Entry::find(name).unwrap(), &mut setup);
     let mut statistics = Statistics::new();
-    let mut reference = Reference::from_steps(workpiece.steps.clone(), &(&machine.limits).into()).unwrap();
-    let run = simulate(machine, &mut reference, &mut *controller, &mut [&mut statistics]).unwrap();
+    let run = Run::on(machine).cut_steps(&workpiece.steps, &mut *controller, &mut [&mut statistics]).unwrap();
     assert!(run.engaged_at_end, "{}: {name} is out of the loop at the end", workpiece.name);
     [statistics.rms_um(), statistics.max_um()]
 }

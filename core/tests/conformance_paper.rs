@@ -41,7 +41,7 @@ fn machine() -> Machine {
 
 fn paper() -> &'static Paper {
     static PAPER: OnceLock<Paper> = OnceLock::new();
-    PAPER.get_or_init(|| experiment(&machine(), &(1..=SEEDS).collect::<Vec<_>>(), &|| {}))
+    PAPER.get_or_init(|| experiment(&machine(), &(1..=SEEDS).collect::<Vec<_>>(), &()).unwrap())
 }
 
 #[test]

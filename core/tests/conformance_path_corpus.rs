@@ -37,7 +37,7 @@ fn every_program_has_a_path_and_a_plan() {
             Canon::Event(_) => None,
         });
         let motions = canon.len();
-        let mut reference = Reference::new(canon, &LIMITS).unwrap();
+        let mut reference = Reference::of_program(canon, &LIMITS).unwrap();
         let mut tau_s = 0.0;
         let mut most = 0;
         while reference.end_s().is_none_or(|end_s| tau_s < end_s) {

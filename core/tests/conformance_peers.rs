@@ -7,9 +7,8 @@
 use feedwright::compare::Workpiece;
 use feedwright::controllers::{BASELINE, CONTROLLERS, Choices, Entry, Make, Setting, Setup};
 use feedwright::machine::Machine;
-use feedwright::reference::Reference;
+use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
-use feedwright::simulate::{practise, simulate_lap};
 
 /// What a controller makes of the circle of 10 mm radius at 50 mm/s on tnv40, against open loop.
 struct Held {
@@ -61,10 +60,9 @@ where
     let choices = Choices { set: set.to_vec(), ..Choices::default() };
     let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
     let mut controller = Make::<N>::make(entry, &mut setup);
-    let reference = || Reference::from_steps(circle.steps.clone(), &(&machine.limits).into());
-    practise(machine, reference, &mut *controller, entry.laps).unwrap();
     let mut statistics = Statistics::new();
-    let run = simulate_lap(machine, &mut reference().unwrap(), &mut *controller, &mut [&mut statistics]).unwrap();
+    let run =
+        Run::on(machine).laps(entry.laps).cut_steps(&circle.steps, &mut *controller, &mut [&mut statistics]).unwrap();
     assert!(run.faded_out.is_none(), "{}: {run:?}", entry.name);
     [statistics.rms_um(), run.time_s]
 }

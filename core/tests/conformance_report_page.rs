@@ -9,7 +9,7 @@ mod missing;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use feedwright::report::{Outcome, Report, Run, RunFacts, Series, Statistics, TimelineEvent, write_html};
+use feedwright::report::{Outcome, Report, ReportedRun, RunFacts, Series, Statistics, TimelineEvent, write_html};
 use feedwright::trace::{Commanded, Row, Sink};
 use missing::missing;
 
@@ -18,7 +18,7 @@ const HOSTILE: &str = "</script><script>document.title='x'</script><img src=x on
 /// Largest page for two controllers and three axes at full resolution, bytes.
 const LARGEST_PAGE: usize = 3_000_000;
 
-fn run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Run {
+fn run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> ReportedRun {
     let (mut series, mut statistics) = (Series::new(), Statistics::new());
     // Noise of a linear congruential generator: smooth signals would make the page smaller than a real one.
     let mut state = 1u64;
@@ -55,11 +55,11 @@ fn run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Run {
         machine: HOSTILE.to_owned(),
         part: HOSTILE.to_owned(),
         axes,
-        run: feedwright::simulate::Run { time_s: rows as f64 * 1e-3, ..Default::default() },
+        run: feedwright::simulate::RunResult { time_s: rows as f64 * 1e-3, ..Default::default() },
     };
     let event =
         TimelineEvent { t_s: 0.1, duration_s: 0.5, line: 3, row: HOSTILE.to_owned(), label: HOSTILE.to_owned() };
-    Run { summary: statistics.summary(facts, |_| HOSTILE.to_owned()), series, events: vec![event] }
+    ReportedRun { summary: statistics.summary(facts, |_| HOSTILE.to_owned()), series, events: vec![event] }
 }
 
 fn report(axes: usize, rows: usize) -> Report {

@@ -9,8 +9,7 @@ use feedwright::controllers::{BASELINE, Choices, Entry, Make, Setup};
 use feedwright::gcode::{Reader, Settings};
 use feedwright::machine::Machine;
 use feedwright::path::{Step, signed_distance_mm};
-use feedwright::reference::Reference;
-use feedwright::simulate::simulate;
+use feedwright::pipeline::{Run, pieces};
 use feedwright::trace::{Row, Sink};
 
 /// Rounding of coordinates of some ten millimetres, mm.
@@ -28,7 +27,7 @@ impl Sink for Rows {
     }
 }
 
-fn rows<const N: usize>(machine: &Machine, mut reference: Reference<'_>) -> Vec<Row>
+fn rows<const N: usize>(machine: &Machine, steps: &[Step]) -> Vec<Row>
 where
     Entry: Make<N>,
 {
@@ -36,16 +35,12 @@ where
     let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
     let mut controller = Make::<N>::make(Entry::find(BASELINE).unwrap(), &mut setup);
     let mut rows = Rows::default();
-    simulate(machine, &mut reference, &mut *controller, &mut [&mut rows]).unwrap();
+    Run::on(machine).cut_steps(steps, &mut *controller, &mut [&mut rows]).unwrap();
     rows.0
 }
 
 fn tnv40() -> Machine {
     Machine::load("tnv40".as_ref()).unwrap()
-}
-
-fn reference(steps: Vec<Step>, machine: &Machine) -> Reference<'static> {
-    Reference::from_steps(steps, &(&machine.limits).into()).unwrap()
 }
 
 fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
@@ -65,7 +60,7 @@ fn agrees(row: &Row, axes: usize) {
 fn on_every_contour_the_error_is_from_the_foot_to_the_tool() {
     let machine = tnv40();
     for workpiece in Workpiece::contours() {
-        let rows = rows::<2>(&machine, reference(workpiece.steps.clone(), &machine));
+        let rows = rows::<2>(&machine, &workpiece.steps);
         assert!(rows.len() > 100, "{}: {} rows", workpiece.name, rows.len());
         rows.iter().for_each(|row| agrees(row, 2));
     }
@@ -75,7 +70,7 @@ fn on_every_contour_the_error_is_from_the_foot_to_the_tool() {
 fn on_the_circle_foot_and_tangent_are_those_of_the_circle() {
     let machine = tnv40();
     let circle = Workpiece::contours().into_iter().find(|workpiece| workpiece.name == "circle").unwrap();
-    let rows = rows::<2>(&machine, reference(circle.steps, &machine));
+    let rows = rows::<2>(&machine, &circle.steps);
     let mut largest_mm: f64 = 0.0;
     // The ends of the path are feet of a tool before and beyond them.
     for row in rows.iter().filter(|row| row.cutting && row.s_mm > 1.0 && row.s_mm < 60.0) {
@@ -93,11 +88,9 @@ fn on_the_circle_foot_and_tangent_are_those_of_the_circle() {
 fn in_space_the_error_is_the_distance_of_the_foot() {
     let machine = tnv40();
     let program = "G21 G90 F1500\nG1 X10 Y5 Z-3\nG2 X20 Y5 I5 J0 Z-6\nG1 X0 Y0 Z0\nM2\n";
-    let canon: Vec<_> = Reader::from_text("lines and a helix", program, Settings::default())
-        .unwrap()
-        .map(|step| step.unwrap())
-        .collect();
-    let rows = rows::<3>(&machine, Reference::new(canon, &(&machine.limits).into()).unwrap());
+    let canon = Reader::from_text("lines and a helix", program, Settings::default()).unwrap().map(|step| step.unwrap());
+    let steps: Vec<Step> = pieces(canon).map(|step| step.unwrap()).collect();
+    let rows = rows::<3>(&machine, &steps);
     assert!(rows.iter().any(|row| row.foot_mm[2] < -5.0 && row.contour_error_mm > 1e-4));
     rows.iter().for_each(|row| agrees(row, 3));
 }

@@ -7,7 +7,7 @@
 
 use std::path::{Path, PathBuf};
 
-use feedwright::feed::Limits;
+use feedwright::constraints::PathLimits;
 use feedwright::gcode::{Reader, Settings};
 use feedwright::machine::Machine;
 use feedwright::plant::Plant;
@@ -87,9 +87,9 @@ enum Tool {
 /// Follows a program and checks every estimate.
 fn check(part: &Path, machine: &Machine, schedule: Schedule, mut tool: Tool) {
     let name = part.file_name().unwrap().to_string_lossy();
-    let limits = Limits::from(&machine.limits);
+    let limits = PathLimits::from(&machine.limits);
     let program = || Reader::open(part, Settings::default()).unwrap().map(Result::unwrap);
-    let mut reference = Reference::new(program(), &limits).unwrap();
+    let mut reference = Reference::of_program(program(), &limits).unwrap();
     let servo_s = machine.period.servo_s;
     let reach_s = (REGISTER_KNOTS - 1) as f64 * servo_s;
     let mut recorder = Recorder { schedule, measured: None };
@@ -187,7 +187,7 @@ fn a_tool_in_open_loop_is_where_the_estimate_says() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     for part in &parts() {
         let program = Reader::open(part, Settings::default()).unwrap().map(Result::unwrap);
-        let start_mm = Reference::new(program, &Limits::from(&machine.limits)).unwrap().at(0.0).position_mm;
+        let start_mm = Reference::of_program(program, &machine).unwrap().at(0.0).position_mm;
         for schedule in SCHEDULES {
             check(part, &machine, schedule, Tool::Machine(Box::new(Plant::new(&machine, start_mm))));
         }

@@ -5,11 +5,14 @@
 mod common;
 
 use common::{BLEND, LIMITS, arc, line, polyline};
-use feedwright::feed::Limits;
+use feedwright::blend;
+use feedwright::constraints::{Constraints, PathLimits};
+use feedwright::feed::{self, plan::Plan};
 use feedwright::gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Others, Shape};
 use feedwright::gcode::{Reader, Settings};
 use feedwright::machine::Durations;
 use feedwright::path::contour::contour;
+use feedwright::pipeline::pieces;
 use feedwright::plc::Plc;
 use feedwright::reference::Reference;
 use std::f64::consts::PI;
@@ -17,8 +20,8 @@ use std::f64::consts::PI;
 /// Sums of a few hundred durations of order 1 s.
 const ROUNDING_S: f64 = 1e-11;
 
-fn plan_s(canon: Vec<Canon>, limits: &Limits) -> f64 {
-    let mut reference = Reference::new(canon, limits).expect("limits are sound");
+fn plan_s(canon: Vec<Canon>, limits: &PathLimits) -> f64 {
+    let mut reference = Reference::of_program(canon, limits).expect("limits are sound");
     let end_s = reference.read_to_end_s();
     assert_eq!(reference.fault(), None);
     end_s
@@ -29,7 +32,7 @@ fn circle_takes_its_length_over_the_feed_and_one_ramp() {
     let circle = vec![arc([0.0; 3], [0.0; 3], [10.0, 0.0, 0.0], -1, 50.0)];
     let expected = 2.0 * PI * 10.0 / 50.0 + 0.5;
     assert!((plan_s(circle, &LIMITS) - expected).abs() < ROUNDING_S);
-    let mut contour = Reference::from_steps(contour("circle").unwrap().steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
+    let mut contour = Reference::of_steps(contour("circle").unwrap().steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
     assert!((contour.read_to_end_s() - expected).abs() < ROUNDING_S);
 }
 
@@ -50,7 +53,7 @@ fn short_line_is_a_triangle() {
 fn square_with_exact_stops_is_four_times_its_side() {
     for corner in [Corner::ExactStop, Corner::ExactPath] {
         let square = contour("square").unwrap().steps(20.0, corner).unwrap();
-        let mut reference = Reference::from_steps(square, &LIMITS).unwrap();
+        let mut reference = Reference::of_steps(square, &LIMITS).unwrap();
         // Each side: 20 mm at 20 mm/s and one ramp of 0.2 s.
         assert!((reference.read_to_end_s() - 4.0 * 1.2).abs() < ROUNDING_S);
     }
@@ -61,7 +64,7 @@ fn square_in_continuous_mode_passes_corners_at_the_jump() {
     // At a right angle the jump is v sqrt(2).
     let v = 8.0 / 2.0f64.sqrt();
     let square = contour("square").unwrap().steps(20.0, BLEND).unwrap();
-    let mut reference = Reference::from_steps(square, &LIMITS).unwrap();
+    let mut reference = Reference::of_steps(square, &LIMITS).unwrap();
     // Time lost against 20 mm/s by a ramp between u and 20: (20 - u)^2 / (2 a 20).
     let lost = |u: f64| (20.0 - u).powi(2) / (2.0 * 100.0 * 20.0);
     let expected = 4.0 + 2.0 * lost(0.0) + 6.0 * lost(v);
@@ -88,7 +91,7 @@ fn rapid_runs_at_the_rapid_rate() {
 
 #[test]
 fn feed_is_capped_by_the_machine() {
-    let limits = Limits { max_feed_mm_s: 10.0, ..LIMITS };
+    let limits = PathLimits { max_feed_mm_s: 10.0, ..LIMITS };
     let long = vec![line([0.0; 3], [10.0, 0.0, 0.0], 50.0, BLEND)];
     assert!((plan_s(long, &limits) - 1.1).abs() < ROUNDING_S);
 }
@@ -122,7 +125,7 @@ fn dwell_stops_and_holds() {
         line([20.0, 0.0, 0.0], [30.0, 0.0, 0.0], 10.0, BLEND),
         event(8, EventKind::ProgramEnd),
     ];
-    let mut reference = Reference::new(program, &LIMITS).unwrap();
+    let mut reference = Reference::of_program(program, &LIMITS).unwrap();
     // 0.25 s, 20 mm at 10 mm/s with a ramp of 0.1 s, 2 s, 10 mm with a ramp.
     assert!((reference.read_to_end_s() - (0.25 + 2.1 + 2.0 + 1.1)).abs() < ROUNDING_S);
     let mut events = Vec::new();
@@ -146,7 +149,7 @@ fn dwell_stops_and_holds() {
 
 #[test]
 fn empty_program_rests_at_the_origin() {
-    let mut reference = Reference::new(vec![], &LIMITS).unwrap();
+    let mut reference = Reference::of_program(vec![], &LIMITS).unwrap();
     assert!(reference.at(1.0).resting);
     assert_eq!(reference.end_s(), Some(0.0));
     assert_eq!(reference.nearest([3.0, 4.0, 0.0], 0.0, 1.0).distance_mm, 5.0);
@@ -156,7 +159,7 @@ fn empty_program_rests_at_the_origin() {
 fn a_fault_ends_the_path_where_it_occurs() {
     let program =
         vec![line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND), line([10.0, 0.0, 0.0], [f64::NAN, 0.0, 0.0], 10.0, BLEND)];
-    let mut reference = Reference::new(program, &LIMITS).unwrap();
+    let mut reference = Reference::of_program(program, &LIMITS).unwrap();
     assert!((reference.read_to_end_s() - 1.1).abs() < ROUNDING_S);
     assert!(reference.fault().is_some());
     assert_eq!(reference.at(5.0).position_mm, [10.0, 0.0, 0.0]);
@@ -176,7 +179,7 @@ fn the_tool_rests_while_something_else_moves() {
         standing(turn, 30.0),
         line([10.0, 0.0, 0.0], [20.0, 0.0, 0.0], 10.0, BLEND),
     ];
-    let mut reference = Reference::new(program, &LIMITS).unwrap();
+    let mut reference = Reference::of_program(program, &LIMITS).unwrap();
     // 2 mm of filament at 40 mm/s, 90 degrees at 30 degrees/s.
     assert!((reference.read_to_end_s() - (1.1 + 0.05 + 3.0 + 1.1)).abs() < ROUNDING_S);
     let standing = reference.at(2.0);
@@ -188,7 +191,11 @@ fn program_s(text: &str, rotary_deg_s: f64) -> f64 {
     let reader = Reader::from_text("test", text, Settings::default()).expect("it is a program");
     let canon: Vec<Canon> = reader.map(|step| step.expect("it has no mistakes")).collect();
     let plc = Plc::new(Durations { rotary_deg_s, ..Durations::default() });
-    let mut reference = Reference::new(canon, &LIMITS).expect("limits are sound").with_plc(plc);
+    let rotary_deg_s = if rotary_deg_s > 0.0 { rotary_deg_s } else { f64::INFINITY };
+    let constraints = Constraints { rotary_deg_s, ..Constraints::from(&LIMITS) };
+    let blended = (blend::MEMBERS[0].make)(pieces(canon), &constraints);
+    let plan = Plan::new(blended, &constraints, &feed::MEMBERS[0], plc).expect("limits are sound");
+    let mut reference = Reference::new(plan);
     let end_s = reference.read_to_end_s();
     assert_eq!(reference.fault(), None);
     end_s

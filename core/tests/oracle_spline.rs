@@ -73,6 +73,11 @@ fn splines_agree_with_25_digits() {
             assert!(distance(at.tangent, vector(&sample["tangent"])) < 1e-9, "{name} {s_mm}");
             let curvature = sample["curvature_1_mm"].as_f64().unwrap();
             assert!((curve.curvature(s_mm) / curvature - 1.0).abs() < 1e-8, "{name} {s_mm}");
+            let derivatives = curve.derivatives(s_mm);
+            let [second, third] = [vector(&sample["second_1_mm"]), vector(&sample["third_1_mm2"])];
+            let size = distance(third, [0.0; 3]);
+            assert!(distance(derivatives.second_1_mm, second) < 1e-8 * curvature, "{name} {s_mm} {derivatives:?}");
+            assert!(distance(derivatives.third_1_mm2, third) < 1e-7 * size, "{name} {s_mm} {derivatives:?} {third:?}");
         }
     }
 }
@@ -142,7 +147,7 @@ fn butterfly_keeps_the_normal_limit_and_its_feet() {
     let (start, end) = ends(&spline);
     let motion = motion(spline, start, end);
     let pieces = pieces(motion.clone());
-    let mut reference = Reference::new([motion], &LIMITS).unwrap();
+    let mut reference = Reference::of_program([motion], &LIMITS).unwrap();
     let end_s = reference.read_to_end_s();
     let mut random = Random(4);
     for _ in 0..50_000 {

@@ -4,8 +4,10 @@
 mod common;
 
 use common::{BLEND, LIMITS, Random, arc, distance, line, polyline};
+use feedwright::constraints::PathLimits;
+use feedwright::feed::Span;
+use feedwright::feed::sections::{Section, SectionPlanner};
 use feedwright::feed::trapezoid::Trapezoid;
-use feedwright::feed::{FeedPlanner, Limits, Section, Span};
 use feedwright::gcode::canon::{Canon, Corner};
 use feedwright::path::contour::CONTOURS;
 use feedwright::path::pieces::Pieces;
@@ -76,13 +78,13 @@ fn check_limits(spans: &[Span], sections: &[Section], accel: f64) {
     let mut speed: f64 = 0.0;
     let mut place = (0, 0.0);
     for span in spans {
-        let section = &sections[span.section as usize];
+        let section = &sections[span.piece as usize];
         assert!((span.speed_mm_s.powi(2) - speed.powi(2)).abs() <= ROUNDING, "speed jumps: {speed} {span:?}");
         assert!(span.accel_mm_s2.abs() <= accel * (1.0 + 1e-12), "{span:?}");
-        if place.0 == span.section {
+        if place.0 == span.piece {
             assert!((span.from_mm - place.1).abs() < 1e-9, "gap: {place:?} {span:?}");
         } else {
-            assert!(span.section == place.0 + 1 && span.from_mm.abs() < 1e-9);
+            assert!(span.piece == place.0 + 1 && span.from_mm.abs() < 1e-9);
         }
         for i in 0..=4 {
             let t = span.duration_s * f64::from(i) / 4.0;
@@ -94,7 +96,7 @@ fn check_limits(spans: &[Span], sections: &[Section], accel: f64) {
         }
         speed = (span.speed_mm_s + span.accel_mm_s2 * span.duration_s).max(0.0);
         let t = span.duration_s;
-        place = (span.section, span.from_mm + t * (span.speed_mm_s + 0.5 * span.accel_mm_s2 * t));
+        place = (span.piece, span.from_mm + t * (span.speed_mm_s + 0.5 * span.accel_mm_s2 * t));
     }
     assert!(speed.powi(2) < ROUNDING, "ends at rest: {speed}");
 }
@@ -111,11 +113,11 @@ proptest! {
         let joints = joints(&sections, accel);
         let mut last = u64::MAX;
         for span in &spans {
-            if span.section != last {
+            if span.piece != last {
                 // The same bits as with unlimited look-ahead.
-                prop_assert_eq!(span.speed_mm_s, joints[span.section as usize].sqrt());
+                prop_assert_eq!(span.speed_mm_s, joints[span.piece as usize].sqrt());
             }
-            last = span.section;
+            last = span.piece;
         }
     }
 
@@ -159,7 +161,7 @@ fn random_program(seed: u64, count: usize, corner: Corner) -> Vec<Canon> {
 }
 
 /// Speed, curvature limit and feed at many times of a whole program.
-fn check_program(reference: &mut Reference<'_>, pieces: &[Piece], limits: &Limits) {
+fn check_program(reference: &mut Reference<'_>, pieces: &[Piece], limits: &PathLimits) {
     let end_s = reference.read_to_end_s();
     let steps = 20_000;
     let dt = end_s / f64::from(steps);
@@ -193,7 +195,7 @@ fn programs_keep_every_limit() {
         let program = random_program(seed, 200, corner);
         let steps: Vec<Step> = Pieces::new(program.into_iter()).map(Result::unwrap).collect();
         let pieces = pieces_of(&steps);
-        check_program(&mut Reference::from_steps(steps, &LIMITS).unwrap(), &pieces, &LIMITS);
+        check_program(&mut Reference::of_steps(steps, &LIMITS).unwrap(), &pieces, &LIMITS);
     }
 }
 
@@ -203,7 +205,7 @@ fn contours_keep_every_limit_and_waste_no_time() {
         for feed in [20.0, 50.0, 150.0] {
             let steps = contour.steps(feed, BLEND).unwrap();
             let pieces = pieces_of(&steps);
-            let mut reference = Reference::from_steps(steps, &LIMITS).unwrap();
+            let mut reference = Reference::of_steps(steps, &LIMITS).unwrap();
             check_program(&mut reference, &pieces, &LIMITS);
             // Against the same equations on a fine uniform grid of the exact bound.
             if pieces.len() == 1 {
@@ -241,7 +243,7 @@ fn chords_of_a_curve_do_not_escape_the_normal_limit() {
         points.push([2.0 * angle.cos(), 2.0 * angle.sin(), 0.0]);
         angle += random.between(0.002, 0.006);
     }
-    let mut reference = Reference::new(polyline(&points, 80.0, BLEND), &LIMITS).unwrap();
+    let mut reference = Reference::of_program(polyline(&points, 80.0, BLEND), &LIMITS).unwrap();
     let end_s = reference.read_to_end_s();
     // sqrt(400 * 2) = 28.3 mm/s.
     let window_s = 2e-3;

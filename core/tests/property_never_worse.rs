@@ -55,7 +55,7 @@ fn random_programs_on_random_machines_are_cut_no_worse_than_open_loop() {
     for of_machine in generated.chunks(FOR_EACH) {
         let mut cutter = Cutter::new(&of_machine[0].job.machine, &options);
         for made in of_machine {
-            let row = cutter.row(&made.job.program);
+            let row = cutter.row(&made.job.program, &()).unwrap();
             assert!(row.is_judged(), "open loop is lost: {row:?}");
             if row.program == KNOWN {
                 let more = row.corrected.uncut_um.unwrap() / row.open_loop.uncut_um.unwrap();
@@ -68,7 +68,7 @@ fn random_programs_on_random_machines_are_cut_no_worse_than_open_loop() {
     failures.sort_by(|a, b| b.0.severity().total_cmp(&a.0.severity()));
     failures.iter().for_each(|(row, _)| eprintln!("{}", told(row)));
     if let Some((row, made)) = failures.first() {
-        let (case, _) = smallest(&made.case, &row.faults(), &options, TRIALS);
+        let (case, _) = smallest(&made.case, &row.faults(), &options, TRIALS, &()).unwrap();
         let (program, machine) = (case.text(), case.machine.text());
         panic!("{} of {CUTS} cuts are worse; the worst, made small:\n{program}\n{machine}", failures.len());
     }

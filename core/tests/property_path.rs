@@ -77,6 +77,20 @@ fn check_curve(curve: &Curve, random: &mut Random) {
         }
         let turn = distance(after.tangent, before.tangent) / (2.0 * h);
         assert!((turn - curve.curvature(s)).abs() < 1e-4 * (1.0 + turn), "{s} {turn} {}", curve.curvature(s));
+        let derivatives = curve.derivatives(s);
+        assert!(distance(derivatives.first, here.tangent) < 1e-14, "{s} {derivatives:?} {here:?}");
+        for k in 0..3 {
+            let bend = (after.tangent[k] - before.tangent[k]) / (2.0 * h);
+            assert!((bend - derivatives.second_1_mm[k]).abs() < 1e-4 * (1.0 + turn), "{s} {bend} {derivatives:?}");
+        }
+        let second = |s: f64| curve.derivatives(s).second_1_mm;
+        let (before, after) = (second(s - h), second(s + h));
+        let third = derivatives.third_1_mm2;
+        let size = distance(third, [0.0; 3]);
+        for k in 0..3 {
+            let twist = (after[k] - before[k]) / (2.0 * h);
+            assert!((twist - third[k]).abs() < 1e-3 * (1.0 + size), "{s} {twist} {derivatives:?}");
+        }
         let unit = distance(here.tangent, [0.0; 3]);
         assert!((unit - 1.0).abs() < 1e-14);
     }

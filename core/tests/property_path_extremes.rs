@@ -89,7 +89,7 @@ proptest! {
     #[test]
     fn nothing_panics_and_all_is_finite(program in program(), seed in 1u64..u64::MAX) {
         let mut random = Random(seed);
-        let mut reference = Reference::new(program, &LIMITS).unwrap();
+        let mut reference = Reference::of_program(program, &LIMITS).unwrap();
         let end_s = reference.read_to_end_s();
         prop_assert!(end_s.is_finite() && end_s >= 0.0, "{}", end_s);
         for tau in [-1.0, 0.0, 0.3 * end_s, random.next() * end_s, end_s, 2.0 * end_s + 1.0, f64::NAN, f64::INFINITY] {

@@ -61,7 +61,7 @@ proptest! {
     #[test]
     fn nearest_over_pieces_is_the_nearest(seed in 1u64..u64::MAX, size in prop::sample::select(vec![0.01, 0.3, 5.0])) {
         let mut random = Random(seed);
-        let mut reference = Reference::new(program(seed, 120, size), &LIMITS).unwrap();
+        let mut reference = Reference::of_program(program(seed, 120, size), &LIMITS).unwrap();
         for span_s in [0.02, 0.2, 5.0] {
             for away_mm in [1e-3, 0.03, 1.0] {
                 check_nearest(&mut reference, &mut random, span_s, away_mm);
@@ -73,17 +73,17 @@ proptest! {
     fn order_of_calls_does_not_matter(seed in 1u64..u64::MAX) {
         let mut random = Random(seed);
         let times: Vec<f64> = (0..300).map(|_| random.between(-0.1, 12.0)).collect();
-        let mut all = Reference::new(program(seed, 60, 3.0), &LIMITS).unwrap();
+        let mut all = Reference::of_program(program(seed, 60, 3.0), &LIMITS).unwrap();
         all.read_to_end_s();
-        let mut lazy = Reference::new(program(seed, 60, 3.0), &LIMITS).unwrap();
+        let mut lazy = Reference::of_program(program(seed, 60, 3.0), &LIMITS).unwrap();
         for &tau in &times {
             prop_assert_eq!(all.at(tau), lazy.at(tau));
         }
-        let mut once = Reference::new(program(seed, 60, 3.0), &LIMITS).unwrap();
+        let mut once = Reference::of_program(program(seed, 60, 3.0), &LIMITS).unwrap();
         prop_assert_eq!(once.at(times[0]), all.at(times[0]));
         for tau in times {
             let point = [random.next(), random.next(), 0.0];
-            let mut fresh = Reference::new(program(seed, 60, 3.0), &LIMITS).unwrap();
+            let mut fresh = Reference::of_program(program(seed, 60, 3.0), &LIMITS).unwrap();
             prop_assert_eq!(fresh.nearest(point, tau, tau + 0.1), all.nearest(point, tau, tau + 0.1));
             if tau > 11.0 { break; }
         }
@@ -94,7 +94,7 @@ proptest! {
 fn nearest_on_contours() {
     let mut random = Random(3);
     for contour in CONTOURS {
-        let mut reference = Reference::from_steps(contour.steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
+        let mut reference = Reference::of_steps(contour.steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
         for _ in 0..50 {
             check_nearest(&mut reference, &mut random, 0.1, 0.03);
             check_nearest(&mut reference, &mut random, 10.0, 5.0);
@@ -104,22 +104,22 @@ fn nearest_on_contours() {
 
 #[test]
 fn sign_is_left_of_travel() {
-    let mut reference = Reference::new(vec![line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND)], &LIMITS).unwrap();
+    let mut reference = Reference::of_program(vec![line([0.0; 3], [10.0, 0.0, 0.0], 10.0, BLEND)], &LIMITS).unwrap();
     assert_eq!(reference.nearest([5.0, 0.5, 0.0], 0.0, 2.0).signed_mm, 0.5);
     assert_eq!(reference.nearest([5.0, -0.5, 0.0], 0.0, 2.0).signed_mm, -0.5);
     // Clockwise circle of the paper: its inside is on the right.
-    let mut reference = Reference::from_steps(CONTOURS[0].steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
+    let mut reference = Reference::of_steps(CONTOURS[0].steps(50.0, BLEND).unwrap(), &LIMITS).unwrap();
     assert!(reference.nearest([10.0, 9.9, 0.0], 0.0, 2.0).signed_mm < 0.0);
 }
 
 #[test]
 fn before_the_start_is_the_start() {
     for tau in [-1.0, f64::NAN, f64::NEG_INFINITY] {
-        let mut reference = Reference::new(program(5, 10, 3.0), &LIMITS).unwrap();
+        let mut reference = Reference::of_program(program(5, 10, 3.0), &LIMITS).unwrap();
         let first = reference.at(tau);
         assert_eq!(first, reference.at(0.0));
         assert!(first.cutting && !first.resting);
-        let mut reference = Reference::new(program(5, 10, 3.0), &LIMITS).unwrap();
+        let mut reference = Reference::of_program(program(5, 10, 3.0), &LIMITS).unwrap();
         assert_eq!(reference.nearest([0.1, 0.0, 0.0], tau, tau).s_mm, 0.0);
     }
 }
@@ -132,7 +132,7 @@ fn tiny_segments(count: u32) -> impl Iterator<Item = Canon> + Send {
 
 #[test]
 fn memory_does_not_grow_with_the_program() {
-    let mut reference = Reference::new(tiny_segments(100_000), &LIMITS).unwrap();
+    let mut reference = Reference::of_program(tiny_segments(100_000), &LIMITS).unwrap();
     let mut most = (0, 0);
     let mut tau = 0.0;
     let mut s_mm = 0.0;
@@ -154,9 +154,9 @@ fn memory_does_not_grow_with_the_program() {
 #[test]
 fn forgetting_changes_nothing_that_is_kept() {
     let program = program(99, 400, 2.0);
-    let mut all = Reference::new(program.clone(), &LIMITS).unwrap();
+    let mut all = Reference::of_program(program.clone(), &LIMITS).unwrap();
     let end_s = all.read_to_end_s();
-    let mut forgetful = Reference::new(program, &LIMITS).unwrap();
+    let mut forgetful = Reference::of_program(program, &LIMITS).unwrap();
     let mut tau = 0.0;
     while tau < end_s {
         forgetful.forget_before(tau - 0.05);
@@ -169,7 +169,8 @@ fn forgetting_changes_nothing_that_is_kept() {
 
 #[test]
 fn a_polyline_of_one_point_has_no_length() {
-    let mut reference = Reference::new(polyline(&[[1.0, 2.0, 3.0], [1.0, 2.0, 3.0]], 10.0, BLEND), &LIMITS).unwrap();
+    let mut reference =
+        Reference::of_program(polyline(&[[1.0, 2.0, 3.0], [1.0, 2.0, 3.0]], 10.0, BLEND), &LIMITS).unwrap();
     assert_eq!(reference.read_to_end_s(), 0.0);
     assert_eq!(reference.at(0.0).s_mm, 0.0);
 }

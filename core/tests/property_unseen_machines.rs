@@ -10,9 +10,9 @@
 use feedwright::compare::Workpiece;
 use feedwright::controllers::{BASELINE, BEST, Choices, Entry, Make, Setup};
 use feedwright::machine::{Axis, Limits, Machine, Transmission};
-use feedwright::reference::Reference;
+use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
-use feedwright::simulate::{Run, simulate};
+use feedwright::simulate::RunResult;
 use feedwright::trace::Outcome;
 use feedwright_control::Controller;
 use rand::{RngExt, SeedableRng};
@@ -71,10 +71,9 @@ fn controller(name: &str) -> Box<dyn Controller<2>> {
     Make::<2>::make(Entry::find(name).unwrap(), &mut setup)
 }
 
-fn cut(workpiece: &Workpiece, machine: &Machine, controller: &mut dyn Controller<2>) -> (Run, Statistics) {
+fn cut(workpiece: &Workpiece, machine: &Machine, controller: &mut dyn Controller<2>) -> (RunResult, Statistics) {
     let mut statistics = Statistics::new();
-    let mut reference = Reference::from_steps(workpiece.steps.clone(), &(&machine.limits).into()).unwrap();
-    let run = simulate(machine, &mut reference, controller, &mut [&mut statistics]).unwrap();
+    let run = Run::on(machine).cut_steps(&workpiece.steps, controller, &mut [&mut statistics]).unwrap();
     (run, statistics)
 }
 

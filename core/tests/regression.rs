@@ -5,9 +5,8 @@ use feedwright::controllers::{BEST, Choices, Entry, Make, Setup};
 use feedwright::gcode::canon::Canon;
 use feedwright::gcode::{Reader, Settings};
 use feedwright::machine::Machine;
-use feedwright::reference::Reference;
+use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
-use feedwright::simulate::simulate;
 
 /// Found by mutation: each call made two more and an error, and the reader counted millions of them.
 #[test]
@@ -102,8 +101,7 @@ fn without_any_deviation_the_command_stays_where_the_path_is() {
     let mut controller = Make::<2>::make(Entry::find(BEST).unwrap(), &mut setup);
     let workpiece = Workpiece::contours().into_iter().find(|workpiece| workpiece.name == "square").unwrap();
     let mut statistics = Statistics::new();
-    let mut reference = Reference::from_steps(workpiece.steps, &(&machine.limits).into()).unwrap();
-    simulate(&machine, &mut reference, &mut *controller, &mut [&mut statistics]).unwrap();
+    Run::on(&machine).cut_steps(&workpiece.steps, &mut *controller, &mut [&mut statistics]).unwrap();
     let off_um = statistics.max_deviation_um();
     assert!(off_um < 100.0, "the command is up to {off_um} um from its place on the path");
 }

@@ -10,12 +10,13 @@ use miette::Result;
 use rayon::prelude::*;
 
 use crate::args::CanonArgs;
+use crate::console::Console;
 use crate::message::{fail, printed};
 use lines::Lines;
 
-pub(crate) fn run(args: &CanonArgs, quiet: bool) -> Result<ExitCode> {
+pub(crate) fn run(args: &CanonArgs, console: &Console) -> Result<ExitCode> {
     let reader = Reader::open(&args.file, args.reader.settings()?)?;
-    if !quiet {
+    if !console.is_quiet() {
         let (dialect, reason) = reader.dialect();
         eprintln!("{}: read as {dialect}: {reason}", args.file.display());
     }

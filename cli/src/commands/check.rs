@@ -11,11 +11,13 @@ use std::sync::mpsc;
 
 use feedwright::gcode::{self, CheckError, Settings};
 use feedwright::machine::{Machine, MachineError, Problem};
+use feedwright::watch::Watch;
 use miette::{Report, Result, miette};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use serde_json::{Value, json};
 
 use crate::args::{CheckArgs, Format};
+use crate::console::Console;
 use crate::files::Files;
 use crate::findings::{Finding, sarif};
 use crate::message::{ERROR, MISTAKES, printed, tell, warn};
@@ -67,10 +69,10 @@ struct Told {
     files: Vec<Value>,
 }
 
-pub(crate) fn run(args: &CheckArgs, quiet: bool) -> Result<ExitCode> {
+pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<ExitCode> {
     let settings = args.reader.settings()?;
     let found = Files::find(&args.files);
-    let bar = Bar::new(quiet || args.format != Format::Text, found.files.len() as u64);
+    let bar = console.bar_unless(args.format != Format::Text, found.files.len() as u64);
     let mut told = Told { format: args.format, worst: Outcome::Fine, findings: Vec::new(), files: Vec::new() };
     for remark in &found.remarks {
         eprintln!("{remark}");
@@ -118,7 +120,7 @@ fn print_in_order(
         while let Some(verdict) = early.remove(&next) {
             faulty += usize::from(verdict.outcome != Outcome::Fine);
             bar.aside(|| told.tell(&mut out, &files[next], verdict))?;
-            bar.step();
+            bar.advance(1);
             next += 1;
         }
     }

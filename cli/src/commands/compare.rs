@@ -8,20 +8,21 @@ use feedwright::compare::journal::Journal;
 use feedwright::compare::table::Row;
 use feedwright::compare::tolerance::{AtTolerance, TOLERANCE_UM};
 use feedwright::compare::verdict::Verdict;
-use feedwright::compare::{Comparison, Options, Tuning, Watch, Workpiece, compare, page};
+use feedwright::compare::{Comparison, Options, Tuning, Workpiece, compare, page};
 use feedwright::controllers::{BASELINE, CONTROLLERS, Entry};
 use feedwright::gcode::suggestion::nearest;
 use feedwright::identify::cache;
 use feedwright::machine::{BUILT_IN, Machine};
-use feedwright::output::OutputFile;
+use feedwright::output::{OutputFile, OutputFiles};
+use feedwright::watch::Watch;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use crate::args::CompareArgs;
+use crate::console::Console;
 use crate::controllers;
 use crate::message::printed;
-use crate::progress::Bar;
 
-pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Result<ExitCode> {
+pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
     let options = options(args)?;
     if let Some(threads) = args.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global().into_diagnostic()?;
@@ -31,30 +32,13 @@ pub(crate) fn run(args: &CompareArgs, quiet: bool) -> Result<ExitCode> {
     if journal.known() > 0 {
         eprintln!("going on where an earlier run was interrupted; rows that are there: {}", journal.known());
     }
-    let bar = Bar::new(quiet, 0);
-    let comparison = compare(&options, &journal, &bar)?;
+    let bar = console.bar(0);
+    let comparison = compare(&options, &journal, &bar);
     bar.clear();
-    files.write(&comparison)?;
+    let comparison = comparison?;
+    files.write(&comparison, &bar)?;
     journal.remove();
     printed(print(args, &comparison), ExitCode::SUCCESS)
-}
-
-impl Watch for Bar {
-    fn tuning(&self, searches: u64) {
-        self.begin("tuning every controller alike", searches);
-    }
-
-    fn cutting(&self, cuts: u64) {
-        self.begin("cutting", cuts);
-    }
-
-    fn holding(&self, searches: u64) {
-        self.begin("raising the feed to the tolerance", searches);
-    }
-
-    fn done(&self) {
-        self.step();
-    }
 }
 
 fn options(args: &CompareArgs) -> Result<Options> {
@@ -144,11 +128,12 @@ impl Files {
         let machines: Vec<PathBuf> = args.machine.iter().map(PathBuf::from).collect();
         let inputs: Vec<&Path> =
             args.part.iter().chain(&machines).chain(&args.reader.tool_table).map(PathBuf::as_path).collect();
-        let create = |path: &Option<PathBuf>| path.as_ref().map(|path| OutputFile::create(path, &inputs)).transpose();
-        Ok(Self { json: create(&args.json)?, html: create(&args.html)? })
+        let mut files = OutputFiles::new(inputs);
+        let mut start = |path: &Option<PathBuf>| path.as_ref().map(|path| files.start(path)).transpose();
+        Ok(Self { json: start(&args.json)?, html: start(&args.html)? })
     }
 
-    fn write(&mut self, comparison: &Comparison) -> Result<()> {
+    fn write(&mut self, comparison: &Comparison, watch: &dyn Watch) -> Result<()> {
         let mut complete = Vec::new();
         if let Some(mut file) = self.json.take() {
             serde_json::to_writer_pretty(&mut file, comparison).into_diagnostic().wrap_err("cannot write the rows")?;
@@ -159,7 +144,7 @@ impl Files {
             page::write(&mut file, comparison).into_diagnostic()?;
             complete.push(file);
         }
-        OutputFile::commit_all(complete)?;
+        OutputFile::commit_all(complete, watch)?;
         Ok(())
     }
 }

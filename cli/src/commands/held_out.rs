@@ -8,18 +8,19 @@ use feedwright::held_out::machines::Class;
 use feedwright::never_worse::generated::{Generated, draw, smallest};
 use feedwright::never_worse::summary::Judged;
 use feedwright::never_worse::{Job, Options};
-use feedwright::output::OutputFile;
+use feedwright::output::{OutputFile, OutputFiles};
+use feedwright::watch::Watch;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::args::HeldOutArgs;
+use crate::console::Console;
 use crate::message::printed;
-use crate::progress::Bar;
 use crate::sweep::Sweep;
 
 /// Trials for each failure: enough for a few hundred lines and a machine of thirty changes.
 const TRIALS: u32 = 400;
 
-pub(crate) fn run(args: &HeldOutArgs, quiet: bool) -> Result<ExitCode> {
+pub(crate) fn run(args: &HeldOutArgs, console: &Console) -> Result<ExitCode> {
     let sweep = Sweep::new(&args.sweep, &[])?;
     if let Some(folder) = &args.failures {
         std::fs::create_dir_all(folder)
@@ -31,11 +32,11 @@ pub(crate) fn run(args: &HeldOutArgs, quiet: bool) -> Result<ExitCode> {
     eprintln!("{} cuts drawn by seed {}, {} programs for each machine", args.count, args.drawn_by, args.programs);
     let jobs: Vec<Job> = generated.iter().map(|made| made.job.clone()).collect();
     let options = sweep.options.clone();
-    let done = sweep.run(&jobs, quiet)?;
+    let done = sweep.run(&jobs, console)?;
     let printing = done.print(&mut std::io::stdout().lock());
     if let Some(folder) = &args.failures {
         let failures = done.summary.rows.iter().filter(|judged| !judged.faults.is_empty()).take(args.smallest);
-        write_smallest(folder, failures, &generated, &options, quiet)?;
+        write_smallest(folder, failures, &generated, &options, console)?;
     }
     printed(printing, done.code())
 }
@@ -46,35 +47,35 @@ fn write_smallest<'a>(
     failures: impl Iterator<Item = &'a Judged>,
     generated: &[Generated],
     options: &Options,
-    quiet: bool,
+    console: &Console,
 ) -> Result<()> {
     let failures: Vec<&Judged> = failures.collect();
-    let bar = Bar::new(quiet, failures.len() as u64);
+    let bar = console.bar(failures.len() as u64);
     bar.say("making failures smaller");
     for (number, failure) in (1..).zip(failures) {
         let is_it = |made: &&Generated| {
             made.job.program.name == failure.row.program && made.job.machine.name == failure.row.machine
         };
         let Some(made) = generated.iter().find(is_it) else { continue };
-        let (case, row) = smallest(&made.case, &failure.faults, options, TRIALS);
+        let (case, row) = smallest(&made.case, &failure.faults, options, TRIALS, &bar)?;
         let [program, machine] = ["ngc", "toml"].map(|ending| folder.join(format!("{number}.{ending}")));
-        write(&program, &case.text())?;
-        write(&machine, &case.machine.text())?;
+        write(&program, &case.text(), &bar)?;
+        write(&machine, &case.machine.text(), &bar)?;
         let figures = row.map_or(String::new(), |row| {
             let (before, after) = (row.open_loop, row.corrected);
             format!(", {:.2} / {:.1} -> {:.2} / {:.1} um", before.rms_um, before.max_um, after.rms_um, after.max_um)
         });
         let (lines, changes) = (case.lines.len(), case.machine.changes.len());
         bar.aside(|| eprintln!("wrote {} and .toml: {lines} lines, {changes} changes{figures}", program.display()));
-        bar.step();
+        bar.advance(1);
     }
     bar.clear();
     Ok(())
 }
 
-fn write(path: &Path, text: &str) -> Result<()> {
-    let mut file = OutputFile::create(path, &[])?;
+fn write(path: &Path, text: &str, watch: &dyn Watch) -> Result<()> {
+    let mut file = OutputFiles::default().start(path)?;
     file.write_all(text.as_bytes()).into_diagnostic()?;
-    file.commit()?;
+    OutputFile::commit_all(vec![file], watch)?;
     Ok(())
 }

@@ -7,14 +7,15 @@ use feedwright::gcode::Settings;
 use feedwright::machine::Machine;
 use feedwright::never_worse::program::{Length, Program};
 use feedwright::never_worse::{Job, jobs, machines, sample};
+use feedwright::watch::Watch;
 use glob::Pattern;
 use miette::{Result, miette};
 use rayon::prelude::*;
 
 use crate::args::NeverWorseArgs;
+use crate::console::Console;
 use crate::files::Files;
 use crate::message::printed;
-use crate::progress::Bar;
 use crate::sweep::Sweep;
 
 /// The machine whose time counts where long programs are shortened.
@@ -22,7 +23,7 @@ const PACE: &str = "tnv40";
 /// A week of machining, s: more is a mistaken unit.
 const MOST_S: f64 = 7.0 * 24.0 * 3600.0;
 
-pub(crate) fn run(args: &NeverWorseArgs, quiet: bool) -> Result<ExitCode> {
+pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> {
     if !(args.limit_s > 0.0 && args.limit_s <= MOST_S) {
         let help = "600 is the first ten minutes of machining";
         return Err(miette!(help = help, "--limit-s is {} s; it must lie above 0 and up to {MOST_S} s", args.limit_s));
@@ -32,14 +33,14 @@ pub(crate) fn run(args: &NeverWorseArgs, quiet: bool) -> Result<ExitCode> {
     let machine_files = args.machine.iter().map(PathBuf::from).collect::<Vec<_>>();
     let inputs: Vec<&Path> = files.iter().chain(&machine_files).map(PathBuf::as_path).collect();
     let sweep = Sweep::new(&args.sweep, &inputs)?;
-    let programs = read(&files, &args.reader.settings()?, args.limit_s, quiet)?;
+    let programs = read(&files, &args.reader.settings()?, args.limit_s, console)?;
     let jobs = jobs(programs, machines);
     let jobs = match args.sample {
         Some(count) => sample(jobs, count, args.sweep.seed),
         None => jobs,
     };
     announce(&jobs);
-    let done = sweep.run(&jobs, quiet)?;
+    let done = sweep.run(&jobs, console)?;
     printed(done.print(&mut std::io::stdout().lock()), done.code())
 }
 
@@ -73,18 +74,19 @@ fn files(args: &NeverWorseArgs) -> Result<Vec<PathBuf>> {
 }
 
 /// Reads all programs; those with mistakes are counted and left out.
-fn read(files: &[PathBuf], settings: &Settings, limit_s: f64, quiet: bool) -> Result<Vec<Program>> {
+fn read(files: &[PathBuf], settings: &Settings, limit_s: f64, console: &Console) -> Result<Vec<Program>> {
     let pace = Machine::load(PACE.as_ref())?;
     let length = Length { machine: &pace, limit_s };
-    let bar = Bar::new(quiet, files.len() as u64);
-    bar.say("reading the programs");
+    let bar = console.bar(0);
+    bar.begin("reading the programs", files.len() as u64);
     let read = |file: &PathBuf| {
-        let program = Program::read(file, settings, length);
-        bar.step();
-        program.ok()
+        let program = if bar.is_cancelled() { None } else { Program::read(file, settings, length).ok() };
+        bar.advance(1);
+        program
     };
     let programs: Vec<Program> = files.par_iter().filter_map(read).collect();
     bar.clear();
+    bar.check()?;
     let refused = files.len() - programs.len();
     if refused > 0 {
         eprintln!(

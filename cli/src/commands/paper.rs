@@ -5,41 +5,41 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use feedwright::machine::Machine;
-use feedwright::output::OutputFile;
+use feedwright::output::{OutputFile, OutputFiles};
 use feedwright::paper::{self, Paper, figures::figures};
 use feedwright::report::figure::{CaptionedFigure, write_page};
+use feedwright::watch::Watch;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::args::PaperArgs;
+use crate::console::Console;
 use crate::message::printed;
-use crate::progress::Bar;
 
 /// Introduction of the page.
 const INTRODUCTION: &str = "The experiments of S. S. Lee, J. H. Cho and G. J. Jeon, \"Two dimensional feedrate control for \
     high performance CNC machine tools\" (IFAC 2005), section 4: a circle of 10 mm radius at 50 mm/s on a model of the \
     TNV-40, repeated with feedwright.";
 
-pub(crate) fn run(args: &PaperArgs, quiet: bool) -> Result<ExitCode> {
+pub(crate) fn run(args: &PaperArgs, console: &Console) -> Result<ExitCode> {
     let machine = Machine::load(&args.machine)?;
     std::fs::create_dir_all(&args.out)
         .into_diagnostic()
         .wrap_err_with(|| format!("cannot make the folder {}", args.out.display()))?;
     let seeds: Vec<u64> = (1..=args.seeds).collect();
-    let bar = Bar::new(quiet, args.seeds);
-    bar.say("training and cutting");
-    let paper = paper::experiment(&machine, &seeds, &|| bar.step());
-    bar.say("drawing");
-    let figures = figures(&machine, seeds[0]);
+    let bar = console.bar(0);
+    let made =
+        paper::experiment(&machine, &seeds, &bar).and_then(|paper| Ok((paper, figures(&machine, seeds[0], &bar)?)));
     bar.clear();
-    write(&args.out, &paper, &figures)?;
+    let (paper, figures) = made?;
+    write(&args.out, &paper, &figures, &bar)?;
     printed(print(&args.out, &paper), ExitCode::SUCCESS)
 }
 
 /// Writes everything, and moves it to its place only when all is written.
-fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure]) -> Result<()> {
-    let mut complete = Vec::new();
+fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure], watch: &dyn Watch) -> Result<()> {
+    let (mut files, mut complete) = (OutputFiles::default(), Vec::new());
     let mut start = |name: &str, write: &dyn Fn(&mut OutputFile) -> std::io::Result<()>| -> Result<()> {
-        let mut file = OutputFile::create(&folder.join(name), &[])?;
+        let mut file = files.start(&folder.join(name))?;
         write(&mut file).into_diagnostic()?;
         complete.push(file);
         Ok(())
@@ -53,7 +53,7 @@ fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure]) -> Result<()
         start(&name, &|file| file.write_all(figure.figure.to_svg().as_bytes()))?;
     }
     start("paper.html", &|file| write_page(file, "Two-dimensional feedrate control", INTRODUCTION, figures))?;
-    OutputFile::commit_all(complete)?;
+    OutputFile::commit_all(complete, watch)?;
     Ok(())
 }
 

@@ -5,20 +5,20 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright::controllers::Choices;
+use feedwright::job::{Job, JobOutcome, Outputs};
 use feedwright::machine::{self, Machine};
-use feedwright::pipeline::{self, Job, Outcome, Outputs};
 use feedwright::report::{Outcome as Ending, RunSummary};
 use miette::Result;
 
 use crate::args::RunArgs;
+use crate::console::Console;
 use crate::controllers::{find, settings};
 use crate::message::{OUT_OF_TOLERANCE, printed, warn};
-use crate::progress::Bar;
 
-pub(crate) fn run(args: RunArgs, quiet: bool) -> Result<ExitCode> {
+pub(crate) fn run(args: RunArgs, console: &Console) -> Result<ExitCode> {
     let job = job(args)?;
-    let mut bar = Bar::of_job(quiet);
-    let outcome = pipeline::run(&job, &mut bar);
+    let bar = console.bar(0);
+    let outcome = job.run(&bar);
     bar.clear();
     let outcome = outcome?;
     for warning in outcome.warnings.iter().cloned() {
@@ -62,7 +62,7 @@ fn ratio(value: f64, base: f64) -> String {
     if value.is_finite() && base > 0.0 { format!("{:.3}", value / base) } else { "-".to_owned() }
 }
 
-fn print(job: &Job, outcome: &Outcome) -> std::io::Result<()> {
+fn print(job: &Job, outcome: &JobOutcome) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     let runs = &outcome.report.runs;
     writeln!(

@@ -192,7 +192,7 @@ fn tolerance(comparison: &Comparison) -> Result<String> {
 
 /// One line for each seed.
 fn paper() -> Result<String> {
-    let paper = experiment(&Machine::load(MACHINE.as_ref())?, &(1..=SEEDS).collect::<Vec<_>>(), &|| {});
+    let paper = experiment(&Machine::load(MACHINE.as_ref())?, &(1..=SEEDS).collect::<Vec<_>>(), &())?;
     let mut table = String::from(
         "| seed | fit | open loop | magnitude only, same time | magnitude only, same rho | two-dimensional | RMS ratio | max ratio \
          | time ratio | exact gradient |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",

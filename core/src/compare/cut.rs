@@ -6,12 +6,12 @@ use super::table::Row;
 use super::tuning::Tuned;
 use super::{Competitor, Workpiece};
 use crate::controllers::{Choices, Make, Setup};
-use crate::feed::LimitsError;
 use crate::machine::Machine;
-use crate::reference::Reference;
+use crate::pipeline::{Run, RunError};
 use crate::report::Statistics;
-use crate::simulate::{Run, practise, simulate_lap};
+use crate::simulate::RunResult;
 use crate::trace::{Outcome, Row as TraceRow, Sink};
+use crate::watch::Watch;
 
 /// Makes a competitor for a machine.
 pub(super) struct Maker<'a> {
@@ -37,7 +37,7 @@ impl Maker<'_> {
 /// What a run leaves for the table.
 pub(super) struct Cut {
     pub(super) statistics: Statistics,
-    pub(super) run: Run,
+    pub(super) run: RunResult,
 }
 
 impl Cut {
@@ -50,17 +50,14 @@ impl Cut {
 /// Cuts a workpiece, after as many laps of practice as the controller needs.
 pub(super) fn cut(
     workpiece: &Workpiece,
-    machine: &Machine,
     controller: &mut dyn Controller<2>,
-    laps: u32,
+    run: Run<'_>,
     sinks: &mut [&mut dyn Sink],
-) -> Result<Cut, LimitsError> {
-    let reference = || Reference::from_steps(workpiece.steps.clone(), &(&machine.limits).into());
-    practise(machine, reference, controller, laps)?;
+) -> Result<Cut, RunError> {
     let mut statistics = Statistics::new();
     let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];
     all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
-    let run = simulate_lap(machine, &mut reference()?, controller, &mut all).expect("sinks in memory take every row");
+    let run = run.cut_steps(&workpiece.steps, controller, &mut all)?;
     Ok(Cut { statistics, run })
 }
 
@@ -70,9 +67,11 @@ pub(super) fn row(
     machine: &Machine,
     competitor: &Competitor,
     controller: &mut dyn Controller<2>,
-) -> Result<Row, LimitsError> {
+    watch: &dyn Watch,
+) -> Result<Row, RunError> {
     let mut errors = Errors::default();
-    let Cut { statistics, run } = cut(workpiece, machine, controller, competitor.entry.laps, &mut [&mut errors])?;
+    let run = Run::on(machine).laps(competitor.entry.laps).watched(watch);
+    let Cut { statistics, run } = cut(workpiece, controller, run, &mut [&mut errors])?;
     Ok(Row::new(workpiece, machine, competitor, &statistics, &run, errors.thinned()))
 }
 

@@ -6,7 +6,7 @@ use super::{Competitor, Options, Workpiece};
 use crate::controllers::{BASELINE, Knows};
 use crate::machine::Machine;
 use crate::report::Statistics;
-use crate::simulate::Run;
+use crate::simulate::RunResult;
 use crate::trace::Outcome;
 
 /// One row.
@@ -57,7 +57,7 @@ impl Row {
         machine: &Machine,
         competitor: &Competitor,
         statistics: &Statistics,
-        run: &Run,
+        run: &RunResult,
         error_um: Vec<f32>,
     ) -> Self {
         Self {

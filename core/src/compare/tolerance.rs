@@ -5,11 +5,12 @@ use serde::{Deserialize, Serialize};
 
 use super::cut::{Maker, cut};
 use super::tuning::Tuned;
-use super::{CORNER, Competitor, Options, Watch, Workpiece};
+use super::{CORNER, Competitor, Options, Workpiece};
 use crate::controllers::BASELINE;
-use crate::feed::LimitsError;
 use crate::path::contour::{CONTOURS, Contour};
+use crate::pipeline::{Run, RunError};
 use crate::trace::Outcome;
+use crate::watch::Watch;
 
 /// What the largest contour error may be, um.
 pub const TOLERANCE_UM: f64 = 10.0;
@@ -39,17 +40,17 @@ pub(super) fn at_tolerance(
     options: &Options,
     tuned: &[Tuned],
     watch: &dyn Watch,
-) -> Result<Vec<AtTolerance>, LimitsError> {
+) -> Result<Vec<AtTolerance>, RunError> {
     let named = |name: &str| CONTOURS.iter().find(|contour| contour.name == name && contour.is_smooth());
     let contours = options.workpieces.iter().filter_map(|workpiece| named(&workpiece.name));
     let pairs: Vec<_> =
         contours.flat_map(|contour| options.controllers.iter().map(move |&entry| (contour, entry))).collect();
-    watch.holding(pairs.len() as u64);
-    let found: Result<Vec<AtTolerance>, LimitsError> = pairs
+    watch.begin("raising the feed to the tolerance", pairs.len() as u64);
+    let found: Result<Vec<AtTolerance>, RunError> = pairs
         .par_iter()
         .map(|&(contour, entry)| {
             let competitor = Competitor { entry, at_home: false };
-            let best = fastest(contour, &competitor, options, tuned)?;
+            let best = fastest(contour, &competitor, options, tuned, watch)?;
             let row = AtTolerance {
                 contour: contour.name.to_owned(),
                 controller: competitor.name(),
@@ -57,7 +58,7 @@ pub(super) fn at_tolerance(
                 time_s: best.map(|best| best.time_s),
                 time_ratio: None,
             };
-            watch.done();
+            watch.advance(1);
             Ok(row)
         })
         .collect();
@@ -83,13 +84,15 @@ fn fastest(
     competitor: &Competitor,
     options: &Options,
     tuned: &[Tuned],
-) -> Result<Option<Holding>, LimitsError> {
+    watch: &dyn Watch,
+) -> Result<Option<Holding>, RunError> {
     let machine = options.nominal();
     let mut controller = Maker { competitor, nominal: machine, seed: options.seed, tuned }.make(machine);
-    let mut holding = |feed_mm_s: f64| -> Result<Option<Holding>, LimitsError> {
+    let run = Run::on(machine).laps(competitor.entry.laps).watched(watch);
+    let mut holding = |feed_mm_s: f64| -> Result<Option<Holding>, RunError> {
         let steps = contour.steps(feed_mm_s, CORNER).expect("the feedrate is one");
         let workpiece = Workpiece { name: contour.name.to_owned(), smooth: true, steps };
-        let cut = cut(&workpiece, machine, &mut *controller, competitor.entry.laps, &mut [])?;
+        let cut = cut(&workpiece, &mut *controller, run, &mut [])?;
         let holds = cut.run.outcome == Outcome::Completed && cut.statistics.max_um() <= TOLERANCE_UM;
         Ok(holds.then_some(Holding { feed_mm_s, time_s: cut.run.time_s }))
     };

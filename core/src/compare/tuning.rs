@@ -11,8 +11,9 @@ use serde::{Deserialize, Serialize};
 use super::cut::{Cut, cut};
 use super::{TUNING_CONTOUR, Workpiece};
 use crate::controllers::{BASELINE, Choices, Entry, Make, Parameter, Setting, Setup};
-use crate::feed::LimitsError;
 use crate::machine::Machine;
+use crate::pipeline::{Run, RunError};
+use crate::watch::Watch;
 
 /// Points of the Halton sequence for each parameter.
 const SCATTERED: usize = 12;
@@ -86,13 +87,13 @@ fn four_digits(value: f64) -> String {
 ///
 /// # Errors
 /// Where the machine has no sensible limits.
-pub fn search(entry: &'static Entry, machine: &Machine, seed: u64) -> Result<Tuned, LimitsError> {
+pub fn search(entry: &'static Entry, machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Tuned, RunError> {
     let workpiece = Workpiece::contours().into_iter().find(|w| w.name == TUNING_CONTOUR);
     let workpiece = workpiece.expect("the tuning contour is one of the contours");
     let base = Entry::find(BASELINE).expect("the baseline is in the table");
-    let open_loop = Trial { entry: base, machine, workpiece: &workpiece, seed, open_time_s: f64::INFINITY };
+    let open_loop = Trial { entry: base, machine, workpiece: &workpiece, seed, watch, open_time_s: f64::INFINITY };
     let open_time_s = open_loop.cut(&[])?.run.time_s;
-    let trial = Trial { entry, machine, workpiece: &workpiece, seed, open_time_s };
+    let trial = Trial { entry, machine, workpiece: &workpiece, seed, watch, open_time_s };
     trial.search()
 }
 
@@ -101,6 +102,7 @@ struct Trial<'a> {
     machine: &'a Machine,
     workpiece: &'a Workpiece,
     seed: u64,
+    watch: &'a dyn Watch,
     open_time_s: f64,
 }
 
@@ -112,7 +114,7 @@ struct Point {
 }
 
 impl Trial<'_> {
-    fn search(&self) -> Result<Tuned, LimitsError> {
+    fn search(&self) -> Result<Tuned, RunError> {
         let parameters: Vec<_> = self.entry.searched().collect();
         let default: Vec<f64> = parameters.iter().map(|(parameter, range)| place(*range, parameter.default)).collect();
         let scattered = (1..=SCATTERED * parameters.len()).map(|i| halton(i, parameters.len()));
@@ -139,17 +141,17 @@ impl Trial<'_> {
         Ok(Tuned { controller: self.entry.name.to_owned(), values, cuts, rms_um })
     }
 
-    fn costs(&self, places: Vec<Vec<f64>>) -> Result<Vec<Point>, LimitsError> {
+    fn costs(&self, places: Vec<Vec<f64>>) -> Result<Vec<Point>, RunError> {
         places.into_par_iter().map(|place| Ok(Point { cost: self.cost(&place)?, place })).collect()
     }
 
-    fn cost(&self, place: &[f64]) -> Result<f64, LimitsError> {
+    fn cost(&self, place: &[f64]) -> Result<f64, RunError> {
         let cut = self.cut(&self.values(place))?;
         let longer = (cut.run.time_s / self.open_time_s - 1.0).max(0.0);
         Ok(if cut.is_sound() { cut.statistics.rms_um() * (1.0 + TIME_PRICE * longer) } else { f64::INFINITY })
     }
 
-    fn cut(&self, values: &[f64]) -> Result<Cut, LimitsError> {
+    fn cut(&self, values: &[f64]) -> Result<Cut, RunError> {
         let setting = |((p, _), value): ((&'static Parameter, _), &f64)| Setting {
             controller: self.entry.name,
             name: p.name,
@@ -158,7 +160,8 @@ impl Trial<'_> {
         let choices = Choices { seed: self.seed, set: self.entry.searched().zip(values).map(setting).collect() };
         let mut setup = Setup { machine: self.machine, choices: &choices, progress: &mut |_| {} };
         let mut controller = Make::<2>::make(self.entry, &mut setup);
-        cut(self.workpiece, self.machine, &mut *controller, self.entry.laps, &mut [])
+        let run = Run::on(self.machine).laps(self.entry.laps).watched(self.watch);
+        cut(self.workpiece, &mut *controller, run, &mut [])
     }
 
     fn values(&self, place: &[f64]) -> Vec<f64> {
@@ -240,7 +243,14 @@ mod tests {
         // Its defaults take a third longer than open loop, which the search may not.
         let entry = Entry::find("fuzzy-feedrate").unwrap();
         let cut = |entry: &'static Entry, values: &[f64]| {
-            let trial = Trial { entry, machine: &machine, workpiece: &workpiece, seed: 1, open_time_s: f64::INFINITY };
+            let trial = Trial {
+                entry,
+                machine: &machine,
+                workpiece: &workpiece,
+                seed: 1,
+                watch: &(),
+                open_time_s: f64::INFINITY,
+            };
             let cut = trial.cut(values).unwrap();
             (cut.statistics.rms_um(), cut.run.time_s)
         };
@@ -248,7 +258,7 @@ mod tests {
         let cost = |(rms_um, time_s): (f64, f64)| rms_um * (1.0 + 10.0 * (time_s / open_s - 1.0).max(0.0));
         let values = |tuned: &Tuned| tuned.values.iter().map(|(_, value)| *value).collect::<Vec<f64>>();
         let defaults = cost(cut(entry, &values(&Tuned::defaults(entry))));
-        let tuned = search(entry, &machine, 1).unwrap();
+        let tuned = search(entry, &machine, 1, &()).unwrap();
         let found = cut(entry, &values(&tuned));
         assert!(cost(found) < defaults, "{} of {defaults}: {tuned:?}", cost(found));
         assert!(cost(found) <= open_um * (1.0 + 1e-9), "{} of {open_um}: {tuned:?}", cost(found));
@@ -256,6 +266,6 @@ mod tests {
         for ((parameter, [low, high]), (name, value)) in entry.searched().zip(&tuned.values) {
             assert!(parameter.name == name && (low..=high).contains(value), "{tuned:?}");
         }
-        assert_eq!(tuned, search(entry, &machine, 1).unwrap());
+        assert_eq!(tuned, search(entry, &machine, 1, &()).unwrap());
     }
 }

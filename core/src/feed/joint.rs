@@ -14,7 +14,7 @@
 //!   exactly, corners included, so that the contour error is what is left of the program's own geometry.
 //! * Stop. G61.1 stops at every joint, G61 at those that are not tangent-continuous.
 
-use super::Limits;
+use crate::constraints::PathLimits;
 use crate::gcode::canon::Corner;
 use crate::vector::angle;
 
@@ -29,7 +29,7 @@ const LENGTH_RATIO: f64 = 3.0;
 
 /// One side of a joint.
 #[derive(Debug, Clone, Copy)]
-pub struct Side {
+pub struct JointSide {
     /// Unit tangent at the joint.
     pub tangent: [f64; 3],
     /// Curvature at the joint, 1/mm.
@@ -39,7 +39,7 @@ pub struct Side {
 }
 
 /// Bound on the square of the speed at the joint, mm2/s2, infinite where there is none.
-pub fn joint_cap(before: &Side, after: &Side, corner: Corner, limits: &Limits) -> f64 {
+pub fn joint_cap(before: &JointSide, after: &JointSide, corner: Corner, limits: &PathLimits) -> f64 {
     let theta = angle(before.tangent, after.tangent);
     let corner_cap = match corner {
         Corner::ExactStop => 0.0,
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 
-    const LIMITS: Limits = Limits {
+    const LIMITS: PathLimits = PathLimits {
         rapid_mm_s: 100.0,
         max_feed_mm_s: 50.0,
         tangential_accel_mm_s2: 100.0,
@@ -67,8 +67,8 @@ mod tests {
     };
     const BLEND: Corner = Corner::Continuous { tolerance_mm: None };
 
-    fn side(direction: f64, length_mm: f64) -> Side {
-        Side { tangent: [direction.cos(), direction.sin(), 0.0], curvature_1_mm: 0.0, length_mm }
+    fn side(direction: f64, length_mm: f64) -> JointSide {
+        JointSide { tangent: [direction.cos(), direction.sin(), 0.0], curvature_1_mm: 0.0, length_mm }
     }
 
     #[test]

@@ -1,11 +1,11 @@
 //! Pieces, phases and events on the clock, in the order in which they become known.
 
-use super::joint::{Side, joint_cap};
-use super::sections::sections;
-use super::{FeedPlanner, Limits, LimitsError, MEMBERS, Member, Phase, Span, TimedEvent};
-use crate::gcode::canon::{Corner, Event, EventKind};
+use super::{FeedPlanner, Member, Phase, Span, TimedEvent};
+use crate::blend::{BlendedStep, BlendedSteps, PlannedPiece};
+use crate::constraints::{Constraints, LimitsError};
+use crate::gcode::canon::{Event, EventKind};
 use crate::path::pieces::ArcLength;
-use crate::path::{MAX_REST_S, PathError, Piece, Step, Steps};
+use crate::path::{MAX_REST_S, PathError, Piece, Rest};
 use crate::plc::Plc;
 use std::collections::VecDeque;
 
@@ -16,8 +16,10 @@ const CODES_THAT_DO_NOT_STOP: [u16; 3] = [62, 63, 67];
 /// What a plan hands out.
 #[derive(Debug, Clone)]
 pub enum Planned {
-    /// The next piece of the path; its phases come later.
-    Piece(Piece),
+    /// The next piece of the programmed path.
+    Programmed(Piece),
+    /// The next piece of the planned path; its phases come later.
+    Piece(PlannedPiece),
     /// The next phase.
     Phase(Phase),
     /// The next event; it happens between the phase before and the phase after.
@@ -26,15 +28,13 @@ pub enum Planned {
 
 /// The plan of a path, made as it is read; `None` when all has been handed out.
 pub struct Plan<'p> {
-    steps: Steps<'p>,
-    limits: Limits,
+    steps: BlendedSteps<'p>,
+    rapid_mm_s: f64,
     plc: Plc,
     planner: Box<dyn FeedPlanner>,
-    /// Where the last piece ends, and how its corner is taken.
-    last: Option<(Side, Corner, f64)>,
-    /// Pieces and sections so far.
+    /// Planned pieces so far, and the length of the last.
     pieces: u64,
-    sections: u64,
+    last_mm: f64,
     /// The next piece starts from rest.
     stop: bool,
     /// What happens between pieces, in order.
@@ -48,8 +48,8 @@ pub struct Plan<'p> {
 /// Something between two pieces.
 #[derive(Debug, Clone)]
 struct Between {
-    /// Number of the section that it comes before.
-    section: u64,
+    /// Number of the planned piece that it comes before.
+    before: u64,
     /// Where the tool is then.
     piece: u64,
     from_mm: f64,
@@ -59,28 +59,24 @@ struct Between {
 }
 
 impl<'p> Plan<'p> {
-    /// Plans `steps` with the default planner.
+    /// Plans both paths with a planner, on a machine whose PLC and spindle hold the motion up.
     ///
     /// # Errors
     /// Where a limit is none.
-    pub fn new(steps: Steps<'p>, limits: &Limits) -> Result<Self, LimitsError> {
-        Self::with_planner(steps, limits, &MEMBERS[0])
-    }
-
-    /// Plans `steps` with a planner of choice.
-    ///
-    /// # Errors
-    /// Where a limit is none.
-    pub fn with_planner(steps: Steps<'p>, limits: &Limits, member: &Member) -> Result<Self, LimitsError> {
-        limits.check()?;
+    pub fn new(
+        steps: BlendedSteps<'p>,
+        constraints: &Constraints,
+        planner: &Member,
+        plc: Plc,
+    ) -> Result<Self, LimitsError> {
+        constraints.check()?;
         Ok(Self {
             steps,
-            limits: *limits,
-            plc: Plc::default(),
-            planner: (member.make)(limits),
-            last: None,
+            rapid_mm_s: constraints.path.rapid_mm_s,
+            plc,
+            planner: (planner.make)(constraints),
             pieces: 0,
-            sections: 0,
+            last_mm: 0.0,
             stop: true,
             between: VecDeque::new(),
             clock: ArcLength::default(),
@@ -90,13 +86,6 @@ impl<'p> Plan<'p> {
         })
     }
 
-    /// The plan of a machine whose PLC and spindle hold the motion up.
-    #[must_use]
-    pub fn with_plc(mut self, plc: Plc) -> Self {
-        self.plc = plc;
-        self
-    }
-
     /// Why the path ends early, if it does; known once the plan has ended.
     pub const fn fault(&self) -> Option<&PathError> {
         self.fault.as_ref()
@@ -104,14 +93,10 @@ impl<'p> Plan<'p> {
 
     fn read_step(&mut self) {
         match self.steps.next() {
-            Some(Ok(Step::Piece(piece))) => self.piece(piece),
-            Some(Ok(Step::Event(event))) => self.event(event),
-            Some(Ok(Step::Rest { line, seconds, turn_deg, further_mm })) => {
-                self.stop = true;
-                let least_s = self.plc.turn_s(turn_deg).max(further_mm / self.limits.rapid_mm_s);
-                let seconds = seconds.max(least_s).min(MAX_REST_S);
-                self.between(None, Some((seconds, line)));
-            }
+            Some(Ok(BlendedStep::Programmed(piece))) => self.ready.push_back(Planned::Programmed(piece)),
+            Some(Ok(BlendedStep::Planned(piece))) => self.piece(piece),
+            Some(Ok(BlendedStep::Event(event))) => self.event(event),
+            Some(Ok(BlendedStep::Rest(rest))) => self.rest(rest),
             Some(Err(error)) => {
                 self.fault = Some(error);
                 self.finish();
@@ -120,30 +105,21 @@ impl<'p> Plan<'p> {
         }
     }
 
-    fn piece(&mut self, piece: Piece) {
-        let end = piece.curve.at(piece.length_mm);
-        let side =
-            |tangent, s_mm| Side { tangent, curvature_1_mm: piece.curve.curvature(s_mm), length_mm: piece.length_mm };
-        let cap = match &self.last {
-            Some((before, corner, _)) if !self.stop => {
-                let after = side(piece.curve.at(0.0).tangent, 0.0);
-                joint_cap(before, &after, *corner, &self.limits)
-            }
-            _ => 0.0,
-        };
+    fn piece(&mut self, planned: PlannedPiece) {
+        self.planner.push(&planned.piece, self.stop);
         self.stop = false;
-        // The slowest axis of a motion bounds the others; nothing that moves along is no bound (division by zero).
-        let rotary_mm_s = self.plc.most_deg_s() / piece.turn_deg_mm;
-        let most_mm_s = rotary_mm_s.min(self.limits.rapid_mm_s / piece.further_mm_mm);
-        let (planner, count) = (&mut self.planner, &mut self.sections);
-        sections(&piece, self.pieces, cap, most_mm_s, &self.limits, |section| {
-            planner.push(section);
-            *count += 1;
-        });
-        self.last = Some((side(end.tangent, piece.length_mm), piece.corner, piece.length_mm));
         self.pieces += 1;
-        self.ready.push_back(Planned::Piece(piece));
+        self.last_mm = planned.piece.length_mm;
+        self.ready.push_back(Planned::Piece(planned));
         self.take_spans();
+    }
+
+    fn rest(&mut self, rest: Rest) {
+        let Rest { line, seconds, turn_deg, further_mm } = rest;
+        self.stop = true;
+        let least_s = self.plc.turn_s(turn_deg).max(further_mm / self.rapid_mm_s);
+        let seconds = seconds.max(least_s).min(MAX_REST_S);
+        self.between(None, Some((seconds, line)));
     }
 
     fn event(&mut self, event: Event) {
@@ -160,11 +136,8 @@ impl<'p> Plan<'p> {
 
     fn between(&mut self, event: Option<Event>, rest: Option<(f64, u32)>) {
         // Before the first piece the tool is at the start of it.
-        let (piece, from_mm) = match &self.last {
-            Some((_, _, length_mm)) => (self.pieces - 1, *length_mm),
-            None => (0, 0.0),
-        };
-        self.between.push_back(Between { section: self.sections, piece, from_mm, event, rest });
+        let piece = self.pieces.saturating_sub(1);
+        self.between.push_back(Between { before: self.pieces, piece, from_mm: self.last_mm, event, rest });
     }
 
     fn finish(&mut self) {
@@ -178,17 +151,17 @@ impl<'p> Plan<'p> {
 
     fn take_spans(&mut self) {
         while let Some(span) = self.planner.pop() {
-            self.happen_before(span.section);
-            let Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, .. } = span;
+            self.happen_before(span.piece);
+            let Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, jerk_mm_s3 } = span;
             let tau_s = self.clock.advance(duration_s);
-            let phase = Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, rest: None };
+            let phase = Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, jerk_mm_s3, rest: None };
             self.ready.push_back(Planned::Phase(phase));
         }
     }
 
-    /// Hands out what comes before a section.
-    fn happen_before(&mut self, section: u64) {
-        while self.between.front().is_some_and(|between| between.section <= section) {
+    /// Hands out what comes before a planned piece.
+    fn happen_before(&mut self, piece: u64) {
+        while self.between.front().is_some_and(|between| between.before <= piece) {
             let Some(Between { piece, from_mm, event, rest, .. }) = self.between.pop_front() else {
                 return;
             };
@@ -201,8 +174,9 @@ impl<'p> Plan<'p> {
             }
             if let Some((duration_s, line)) = rest.filter(|(seconds, _)| *seconds > 0.0) {
                 let tau_s = self.clock.advance(duration_s);
-                let (speed_mm_s, accel_mm_s2, rest) = (0.0, 0.0, Some(line));
-                let phase = Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, rest };
+                let (speed_mm_s, accel_mm_s2, jerk_mm_s3) = (0.0, 0.0, 0.0);
+                let rest = Some(line);
+                let phase = Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, jerk_mm_s3, rest };
                 self.ready.push_back(Planned::Phase(phase));
             }
         }

@@ -1,11 +1,17 @@
-//! A piece of the path to sections with a bound on the speed.
+//! The path as sections with a bound on the speed, for planners that need no more of it.
+//!
+//! Within a section the square of the speed stays below a straight line over arc length (constant on lines and arcs, following
+//! `a_n / curvature` on other curves); at the joint before it, below a cap of its own.
 //!
 //! On a line or an arc the bound `f = min(feed^2, a_n / curvature)` on the square of the speed is constant: one section. On
 //! other curves the piece is halved until the straight line between the bounds at both ends of a section lies no more than
 //! `OVER` above `f`, so that v^2 times curvature keeps a_n to 0.1 %, and no more than `UNDER` below it, so that no time
 //! is given away. Neighbouring sections that are both bounded by the same feedrate alone are joined.
 
-use super::{Limits, Section};
+use super::joint::{JointSide, joint_cap};
+use super::{FeedPlanner, Span};
+use crate::constraints::{Constraints, PathLimits};
+use crate::gcode::canon::Corner;
 use crate::path::smooth::{MAX_CURVATURE_1_MM, Smooth};
 use crate::path::{Curve, Piece};
 
@@ -22,24 +28,93 @@ const MIN_SECTION_MM: f64 = 1e-6;
 /// most: five or six halvings do for curves, twelve for their inflections, and no more where curvature is mere rounding.
 const MIN_PART: f64 = 1.0 / 4096.0;
 
-/// Bound on the square of the speed on a piece without its curvature, mm2/s2.
-fn feed_cap(piece: &Piece, most_mm_s: f64, limits: &Limits) -> f64 {
-    let feed = if piece.cutting { piece.feed_mm_s.min(limits.max_feed_mm_s) } else { limits.rapid_mm_s };
-    feed.min(most_mm_s).powi(2)
+/// Part of a piece with a bound on the speed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// Number of the piece, from 0.
+    pub piece: u64,
+    /// Where it starts in the piece, mm.
+    pub from_mm: f64,
+    /// How long it is, mm, more than 0.
+    pub length_mm: f64,
+    /// Bound on the square of the speed at the joint before it, mm2/s2.
+    pub joint_cap: f64,
+    /// Bound on the square of the speed just after its start, mm2/s2, more than 0; straight over arc length to
+    pub start_cap: f64,
+    /// the bound just before its end.
+    pub end_cap: f64,
 }
 
-/// Hands the sections of a piece to `push`, in order; `joint_cap` belongs to the first, `most_mm_s` is what other axes that move
-/// along allow.
-pub fn sections(
-    piece: &Piece,
-    number: u64,
-    joint_cap: f64,
-    most_mm_s: f64,
-    limits: &Limits,
-    mut push: impl FnMut(Section),
-) {
-    let feed = feed_cap(piece, most_mm_s, limits);
-    let bound = |curvature: f64| feed.min(limits.normal_accel_mm_s2 / curvature.clamp(0.0, MAX_CURVATURE_1_MM));
+/// Plans speeds over sections, as a [`FeedPlanner`] does over pieces.
+pub trait SectionPlanner: Send {
+    /// Adds a section behind those before.
+    fn push(&mut self, section: Section);
+
+    /// There are no more sections: the motion ends at rest.
+    fn finish(&mut self);
+
+    /// Takes the next span that is final.
+    fn pop(&mut self) -> Option<Span>;
+}
+
+/// A planner of sections as one of pieces.
+#[derive(Debug)]
+pub struct Capped<P> {
+    constraints: Constraints,
+    planner: P,
+    /// Where the last piece ends, and how its corner is taken.
+    last: Option<(JointSide, Corner)>,
+    /// Pieces so far.
+    pieces: u64,
+}
+
+impl<P> Capped<P> {
+    /// At rest before the first piece.
+    pub fn new(constraints: &Constraints, planner: P) -> Self {
+        Self { constraints: constraints.clone(), planner, last: None, pieces: 0 }
+    }
+}
+
+impl<P: SectionPlanner> FeedPlanner for Capped<P> {
+    fn push(&mut self, piece: &Piece, from_rest: bool) {
+        let end = piece.curve.at(piece.length_mm);
+        let side = |tangent, s_mm| JointSide {
+            tangent,
+            curvature_1_mm: piece.curve.curvature(s_mm),
+            length_mm: piece.length_mm,
+        };
+        let cap = match &self.last {
+            Some((before, corner)) if !from_rest => {
+                joint_cap(before, &side(piece.curve.at(0.0).tangent, 0.0), *corner, &self.constraints.path)
+            }
+            _ => 0.0,
+        };
+        sections(piece, self.pieces, cap, &self.constraints, |section| self.planner.push(section));
+        self.last = Some((side(end.tangent, piece.length_mm), piece.corner));
+        self.pieces += 1;
+    }
+
+    fn finish(&mut self) {
+        self.planner.finish();
+    }
+
+    fn pop(&mut self) -> Option<Span> {
+        self.planner.pop()
+    }
+}
+
+/// Bound on the square of the speed on a piece without its curvature, mm2/s2.
+fn feed_cap(piece: &Piece, constraints: &Constraints) -> f64 {
+    let PathLimits { max_feed_mm_s, rapid_mm_s, .. } = constraints.path;
+    let feed = if piece.cutting { piece.feed_mm_s.min(max_feed_mm_s) } else { rapid_mm_s };
+    feed.min(constraints.along_mm_s(piece.turn_deg_mm, piece.further_mm_mm)).powi(2)
+}
+
+/// Hands the sections of a piece to `push`, in order; `joint_cap` belongs to the first.
+pub fn sections(piece: &Piece, number: u64, joint_cap: f64, constraints: &Constraints, mut push: impl FnMut(Section)) {
+    let feed = feed_cap(piece, constraints);
+    let normal_accel_mm_s2 = constraints.path.normal_accel_mm_s2;
+    let bound = |curvature: f64| feed.min(normal_accel_mm_s2 / curvature.clamp(0.0, MAX_CURVATURE_1_MM));
     match &piece.curve {
         Curve::Line(_) | Curve::Arc(_) => {
             let cap = bound(piece.curve.curvature(0.0));

@@ -17,7 +17,8 @@
 //! the waiting length cannot exceed the braking distance for long. Should half of [`MAX_WAITING`] sections be shorter than
 //! that, half of those that wait are committed so that the motion could stop at the end of the last: slower, and safe.
 
-use super::{FeedPlanner, Section, Span};
+use super::Span;
+use super::sections::{Section, SectionPlanner};
 use std::collections::VecDeque;
 
 /// Sections that may wait: twice two and a half times the braking distance from 50 mm/s at 100 mm/s2 (12.5 mm) in blocks of 1 um, finer than
@@ -28,7 +29,7 @@ pub const MAX_WAITING: usize = 65_536;
 const BATCH: usize = 32;
 
 #[derive(Debug, Clone, Copy)]
-struct Waiting {
+struct WaitingSection {
     section: Section,
     /// Cap at the joint before the section.
     cap: f64,
@@ -42,12 +43,10 @@ struct Waiting {
 #[derive(Debug)]
 pub struct Trapezoid {
     accel_mm_s2: f64,
-    waiting: VecDeque<Waiting>,
+    waiting: VecDeque<WaitingSection>,
     max_waiting: usize,
     /// Number of waiting sections at which the next backward pass runs.
     next_pass: usize,
-    /// Number of the first waiting section.
-    first: u64,
     ready: VecDeque<Span>,
 }
 
@@ -64,7 +63,6 @@ impl Trapezoid {
             waiting: VecDeque::new(),
             max_waiting: max_waiting.max(2),
             next_pass: BATCH.min(max_waiting.max(2)),
-            first: 0,
             ready: VecDeque::new(),
         }
     }
@@ -95,10 +93,9 @@ impl Trapezoid {
             let waiting = self.waiting[i];
             let before = waiting.forward.min(waiting.backward);
             let after = self.waiting.get(i + 1).map_or(0.0, |next| next.forward.min(next.backward));
-            self.spans(self.first + i as u64, &waiting.section, before, after);
+            self.spans(&waiting.section, before, after);
         }
         self.waiting.drain(..count);
-        self.first += count as u64;
     }
 
     /// The look-ahead is full: commits half as if the motion ended behind the last section, and goes on
@@ -119,7 +116,7 @@ impl Trapezoid {
     }
 
     /// Spans of one section between the given E at its ends.
-    fn spans(&mut self, number: u64, section: &Section, before: f64, after: f64) {
+    fn spans(&mut self, section: &Section, before: f64, after: f64) {
         let length = section.length_mm;
         let two_a = 2.0 * self.accel_mm_s2;
         let slope = (section.end_cap - section.start_cap) / length;
@@ -144,12 +141,12 @@ impl Trapezoid {
             let duration_s = 2.0 * along / (speed + end);
             if duration_s > 0.0 && duration_s.is_finite() {
                 self.ready.push_back(Span {
-                    section: number,
                     piece: section.piece,
                     from_mm: section.from_mm + from,
                     duration_s,
                     speed_mm_s: speed,
                     accel_mm_s2: 0.5 * slope,
+                    jerk_mm_s3: 0.0,
                 });
             }
             speed = end;
@@ -157,7 +154,7 @@ impl Trapezoid {
     }
 }
 
-impl FeedPlanner for Trapezoid {
+impl SectionPlanner for Trapezoid {
     fn push(&mut self, section: Section) {
         let (cap, forward) = match self.waiting.back() {
             Some(last) => {
@@ -167,7 +164,7 @@ impl FeedPlanner for Trapezoid {
             // Only the very first section finds nobody waiting: a commit always keeps the last section.
             None => (0.0, 0.0),
         };
-        self.waiting.push_back(Waiting { section, cap, forward, backward: 0.0 });
+        self.waiting.push_back(WaitingSection { section, cap, forward, backward: 0.0 });
         if self.waiting.len() >= self.next_pass {
             let full = self.waiting.len() >= self.max_waiting;
             self.backward_pass();

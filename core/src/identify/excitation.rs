@@ -8,8 +8,7 @@ use rand::RngExt;
 use super::{Programme, Rng};
 use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
 use crate::machine::Machine;
-use crate::reference::Reference;
-use crate::simulate::simulate;
+use crate::pipeline::{Run, pieces};
 
 /// Every third lap runs undisturbed: the network sees the plain circle as well.
 const UNDISTURBED_EVERY: u32 = 3;
@@ -33,8 +32,6 @@ pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, r
     (0..programme.laps)
         .map(|lap| {
             let motion = circle::<N>(programme, lap, rng);
-            let mut reference = Reference::new(std::iter::once(Canon::Motion(motion)), &(&machine.limits).into())
-                .expect("the limits of a machine file are checked when it is read");
             let undisturbed = lap.is_multiple_of(UNDISTURBED_EVERY);
             let mut excitation = Excitation {
                 programme,
@@ -45,7 +42,9 @@ pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, r
                 lap: Vec::new(),
             };
             // A lap that diverges simply ends.
-            simulate(machine, &mut reference, &mut excitation, &mut []).expect("without sinks nothing is written");
+            Run::on(machine)
+                .cut(|| Ok(pieces([Canon::Motion(motion.clone())])), &mut excitation, &mut [])
+                .expect("a circle on a machine that was checked, no sinks");
             excitation.lap
         })
         .collect()

@@ -10,11 +10,11 @@ use super::Options;
 use super::program::Program;
 use crate::controllers::{BASELINE, Choices, Entry, Make, Setup};
 use crate::machine::Machine;
-use crate::plc::Plc;
-use crate::reference::Reference;
+use crate::pipeline::{Run, RunError};
 use crate::report::Statistics;
-use crate::simulate::{Run, practise, simulate_lap};
+use crate::simulate::RunResult;
 use crate::trace::Outcome;
+use crate::watch::{Cancelled, Watch};
 
 /// What a cut came to.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
@@ -38,7 +38,7 @@ pub struct Figures {
 
 impl Figures {
     /// What the verdict looks at, of all that a run says about itself: the one place that knows where it stands.
-    fn of(run: &Run, statistics: &Statistics, entry: &Entry) -> Self {
+    fn of(run: &RunResult, statistics: &Statistics, entry: &Entry) -> Self {
         // Open loop has nothing that could be taken out of the loop.
         let left = run.faded_out.filter(|_| entry.name != BASELINE && !run.engaged_at_end);
         let lost = match (run.outcome, left) {
@@ -103,20 +103,29 @@ impl Cutter {
     }
 
     /// Cuts a program both ways.
-    pub fn row(&mut self, program: &Program) -> Row {
+    ///
+    /// # Errors
+    /// An end from outside.
+    pub fn row(&mut self, program: &Program, watch: &dyn Watch) -> Result<Row, Cancelled> {
         let (machine, options) = (&self.machine, &self.options);
         let [open_loop, corrected] = match program.axes {
-            2 => both(machine, options, &mut self.plane, program),
+            2 => both(machine, options, &mut self.plane, program, watch)?,
             _ if machine.axis_count() < 3 => [Figures::failed("the machine has no Z"), Figures::default()],
-            _ => both(machine, options, &mut self.space, program),
+            _ => both(machine, options, &mut self.space, program, watch)?,
         };
         let (program, machine_name) = (program.name.clone(), machine.name.clone());
-        Row { program, machine: machine_name, rigid: is_rigid(machine), open_loop, corrected }
+        Ok(Row { program, machine: machine_name, rigid: is_rigid(machine), open_loop, corrected })
     }
 }
 
 /// Open loop first.
-fn both<const N: usize>(machine: &Machine, options: &Options, pair: &mut Pair<N>, program: &Program) -> [Figures; 2]
+fn both<const N: usize>(
+    machine: &Machine,
+    options: &Options,
+    pair: &mut Pair<N>,
+    program: &Program,
+    watch: &dyn Watch,
+) -> Result<[Figures; 2], Cancelled>
 where
     Entry: Make<N>,
 {
@@ -127,32 +136,23 @@ where
             let choices = Choices { seed: options.seed, set: options.set.clone() };
             entries.map(|entry| Make::make(entry, &mut Setup { machine, choices: &choices, progress: &mut |_| {} }))
         });
-        std::array::from_fn(|i| one(machine, program, &mut *controllers[i], entries[i]))
+        let [first, second] = controllers;
+        let one = |controller: &mut dyn Controller<N>, entry: &Entry| {
+            let mut statistics = Statistics::new();
+            let run = Run::on(machine).laps(entry.laps).watched(watch);
+            match run.cut_steps(&program.steps, controller, &mut [&mut statistics]) {
+                Ok(run) => Ok(Figures::of(&run, &statistics, entry)),
+                Err(RunError::Cancelled(cancelled)) => Err(cancelled),
+                Err(error) => Ok(Figures::failed(&error.to_string())),
+            }
+        };
+        Ok([one(&mut **first, entries[0])?, one(&mut **second, entries[1])?])
     }));
     // What has panicked is in no state to cut the next program.
     done.unwrap_or_else(|_| {
         *pair = None;
-        [Figures::default(), Figures::failed("it panicked")]
+        Ok([Figures::default(), Figures::failed("it panicked")])
     })
-}
-
-fn one<const N: usize>(
-    machine: &Machine,
-    program: &Program,
-    controller: &mut dyn Controller<N>,
-    entry: &Entry,
-) -> Figures {
-    let plc = Plc::new(machine.plc).with_events(&machine.plc_events);
-    let reference = || {
-        let steps = program.steps.iter().cloned();
-        Ok(Reference::from_steps(steps, &(&machine.limits).into())?.with_plc(plc.clone()))
-    };
-    let mut statistics = Statistics::new();
-    let run = practise(machine, reference, controller, entry.laps).and_then(|()| {
-        let run = simulate_lap(machine, &mut reference()?, controller, &mut [&mut statistics]);
-        Ok::<_, crate::feed::LimitsError>(run.expect("sinks in memory take every row"))
-    });
-    run.map_or_else(|error| Figures::failed(&error.to_string()), |run| Figures::of(&run, &statistics, entry))
 }
 
 #[cfg(test)]
@@ -168,7 +168,7 @@ mod tests {
         let program = Program::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length).expect("a program");
         let options =
             Options { controller: Entry::find(BEST).expect("in the table"), set: Vec::new(), seed: 1, threads: 1 };
-        let row = Cutter::new(&machine, &options).row(&program);
+        let row = Cutter::new(&machine, &options).row(&program, &()).expect("nobody ends it");
         assert!(row.rigid);
         assert!(row.corrected.rms_um < 0.1 * row.open_loop.rms_um, "{row:?}");
         assert_eq!((row.corrected.lost, row.corrected.engaged_share), (None, Some(1.0)));

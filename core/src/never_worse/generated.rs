@@ -11,6 +11,8 @@ use super::verdict::Fault;
 use super::{Job, Options};
 use crate::held_out::machines::{self, Class};
 use crate::held_out::{Case, Change, programs, shrink};
+use crate::job::JobError;
+use crate::watch::{Cancelled, Watch};
 
 /// Machining time of a program beyond which the rest is left out, s: a feedrate of 100 mm/min makes a long path last.
 pub const LIMIT_S: f64 = 30.0;
@@ -31,7 +33,7 @@ pub struct Generated {
 ///
 /// # Errors
 /// What the reader says of a generated program: a fault of the generator.
-pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Vec<Generated>, crate::pipeline::Error> {
+pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Vec<Generated>, JobError> {
     let mut seeds = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut all = Vec::with_capacity(count);
     while all.len() < count {
@@ -52,16 +54,18 @@ pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Ve
 /// Cuts cases, and keeps the controller as long as the machine stays the same.
 pub struct Trials<'a> {
     options: &'a Options,
+    watch: &'a dyn Watch,
     cutter: Option<(Vec<Change>, Cutter)>,
 }
 
 impl<'a> Trials<'a> {
     /// None yet.
-    pub const fn new(options: &'a Options) -> Self {
-        Self { options, cutter: None }
+    pub const fn new(options: &'a Options, watch: &'a dyn Watch) -> Self {
+        Self { options, watch, cutter: None }
     }
 
-    /// What a case comes to; nothing where it is no program, or no machine that anybody would hand over.
+    /// What a case comes to; nothing where it is no program, no machine that anybody would hand over, or ended from
+    /// outside.
     pub fn row(&mut self, case: &Case) -> Option<Row> {
         let machine = case.machine.machine().ok().filter(machines::is_stable)?;
         let length = Length { machine: &machine, limit_s: LIMIT_S };
@@ -70,20 +74,30 @@ impl<'a> Trials<'a> {
         if is_other {
             self.cutter = Some((case.machine.changes.clone(), Cutter::new(&Arc::new(machine), self.options)));
         }
-        self.cutter.as_mut().map(|(_, cutter)| cutter.row(&program))
+        self.cutter.as_mut()?.1.row(&program, self.watch).ok()
     }
 }
 
 /// The smallest case that is worse in the same way, found within so many trials, and what it comes to.
-pub fn smallest(case: &Case, faults: &[Fault], options: &Options, trials: u32) -> (Case, Option<Row>) {
-    let mut made = Trials::new(options);
+///
+/// # Errors
+/// An end from outside.
+pub fn smallest(
+    case: &Case,
+    faults: &[Fault],
+    options: &Options,
+    trials: u32,
+    watch: &dyn Watch,
+) -> Result<(Case, Option<Row>), Cancelled> {
+    let mut made = Trials::new(options, watch);
     let mut fails = |case: &Case| {
         let found = made.row(case).map(|row| row.faults()).unwrap_or_default();
         found.iter().any(|fault| faults.contains(fault))
     };
     let small = shrink(case.clone(), trials, &mut fails);
     let row = made.row(&small);
-    (small, row)
+    watch.check()?;
+    Ok((small, row))
 }
 
 #[cfg(test)]

@@ -5,13 +5,15 @@ use std::fmt::Write;
 use std::path::Path;
 use std::sync::mpsc;
 
-use crate::feed::LimitsError;
+use crate::blend;
+use crate::constraints::{Constraints, LimitsError};
+use crate::feed;
 use crate::feed::plan::{Plan, Planned};
 use crate::gcode::{ReadError, Reader, Settings, summarize};
+use crate::job::JobError;
 use crate::machine::Machine;
 use crate::path::pieces::Pieces;
 use crate::path::{PathError, Step, Steps};
-use crate::pipeline::Error;
 use crate::plc::Plc;
 
 /// A program, ready to be cut on any machine.
@@ -45,7 +47,7 @@ impl Program {
     ///
     /// # Errors
     /// A program with mistakes, without motion or without a path.
-    pub fn read(file: &Path, settings: &Settings, length: Length<'_>) -> Result<Self, Error> {
+    pub fn read(file: &Path, settings: &Settings, length: Length<'_>) -> Result<Self, JobError> {
         let name = file.display().to_string();
         Self::new(name, || Reader::open(file, settings.clone()), length)
     }
@@ -54,17 +56,17 @@ impl Program {
     ///
     /// # Errors
     /// As [`Program::read`].
-    pub fn from_text(name: &str, text: &str, length: Length<'_>) -> Result<Self, Error> {
+    pub fn from_text(name: &str, text: &str, length: Length<'_>) -> Result<Self, JobError> {
         Self::new(name.to_owned(), || Reader::from_text(name, text, Settings::default()), length)
     }
 
-    fn new(name: String, open: impl Fn() -> Result<Reader, ReadError>, length: Length<'_>) -> Result<Self, Error> {
+    fn new(name: String, open: impl Fn() -> Result<Reader, ReadError>, length: Length<'_>) -> Result<Self, JobError> {
         let summary = summarize(open()?)?;
         let axes = if summary.moves[2] { 3 } else { 2 };
         let steps = Box::new(Pieces::new(open()?.map_while(Result::ok)));
         let planned = planned(steps, length)?;
         if let Some(fault) = planned.fault {
-            return Err(Error::Path { part: name.into(), fault });
+            return Err(JobError::Path { part: name.into(), fault });
         }
         let Part { steps, time_s: machining_s, shortened, .. } = planned;
         Ok(Self { name, axes, machining_s, shortened, key: key(axes, &steps), steps })
@@ -91,8 +93,9 @@ fn planned(steps: Steps<'_>, length: Length<'_>) -> Result<Part, LimitsError> {
             let _ = keep.send(step.clone());
         }
     });
-    let Machine { limits, plc, plc_events, .. } = length.machine;
-    let mut plan = Plan::new(Box::new(read), &limits.into())?.with_plc(Plc::new(*plc).with_events(plc_events));
+    let constraints = Constraints::from(length.machine);
+    let blended = (blend::MEMBERS[0].make)(Box::new(read), &constraints);
+    let mut plan = Plan::new(blended, &constraints, &feed::MEMBERS[0], Plc::of(length.machine))?;
     let (mut time_s, mut last) = (0.0, None);
     for planned in &mut plan {
         if let Planned::Phase(phase) = planned {

@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 use miette::Diagnostic;
 use thiserror::Error;
 
+use crate::watch::Cancelled;
+
 /// An output file cannot be written.
 #[derive(Debug, Error, Diagnostic)]
 pub enum OutputError {
@@ -32,12 +34,10 @@ pub enum OutputError {
         /// The target.
         path: PathBuf,
     },
-    /// The run was interrupted.
-    #[error("{} was not written: the run was interrupted", path.display())]
-    Interrupted {
-        /// The target.
-        path: PathBuf,
-    },
+    /// The run was ended from outside.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Cancelled(#[from] Cancelled),
     /// The operating system refuses.
     #[error("cannot {step} {}: {source}{}", path.display(), room(*free_bytes))]
     Io {

@@ -11,15 +11,19 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+fn start(path: &Path) -> OutputFile {
+    OutputFiles::default().start(path).unwrap()
+}
+
 fn refusal(path: &Path, inputs: &[&Path]) -> OutputError {
-    OutputFile::create(path, inputs).err().expect("the output is refused")
+    OutputFiles::new(inputs.iter().copied()).start(path).err().expect("the output is refused")
 }
 
 #[test]
 fn the_target_appears_on_commit_and_not_before() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("trace.csv");
-    let mut file = OutputFile::create(&path, &[]).unwrap();
+    let mut file = start(&path);
     file.write_all(b"t_s\n").unwrap();
     assert!(!path.exists());
     file.commit().unwrap();
@@ -32,7 +36,7 @@ fn a_dropped_output_leaves_the_old_file_and_nothing_else() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("trace.csv");
     fs::write(&path, "old").unwrap();
-    let mut file = OutputFile::create(&path, &[]).unwrap();
+    let mut file = start(&path);
     file.write_all(&vec![b'x'; 3 * BUFFER_BYTES]).unwrap();
     assert_eq!(names(folder.path()).len(), 2);
     drop(file);
@@ -41,17 +45,35 @@ fn a_dropped_output_leaves_the_old_file_and_nothing_else() {
 }
 
 #[test]
+fn an_end_from_outside_leaves_the_old_files_and_nothing_else() {
+    struct Ended;
+    impl Watch for Ended {
+        fn is_cancelled(&self) -> bool {
+            true
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let [old, new] = ["old.csv", "new.csv"].map(|name| folder.path().join(name));
+    fs::write(&old, "old").unwrap();
+    let mut files = OutputFiles::default();
+    let files = [&old, &new].map(|path| files.start(path).unwrap());
+    assert!(matches!(OutputFile::commit_all(files.into(), &Ended), Err(OutputError::Cancelled(_))));
+    assert_eq!(names(folder.path()), ["old.csv"]);
+    assert_eq!(fs::read(&old).unwrap(), b"old");
+}
+
+#[test]
 fn a_panic_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("trace.csv");
     let panicked = std::panic::catch_unwind(|| {
-        let mut file = OutputFile::create(&path, &[]).unwrap();
+        let mut file = start(&path);
         file.write_all(b"half").unwrap();
         panic!("in the middle");
     });
     assert!(panicked.is_err());
     assert!(names(folder.path()).is_empty());
-    OutputFile::create(&path, &[]).unwrap().commit().unwrap();
+    start(&path).commit().unwrap();
 }
 
 #[test]
@@ -85,10 +107,9 @@ fn inputs_are_never_replaced_even_through_links() {
 fn two_outputs_do_not_share_a_target() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("same.csv");
-    let first = OutputFile::create(&path, &[]).unwrap();
-    assert!(matches!(refusal(&path, &[]), OutputError::Twice { .. }));
-    drop(first);
-    OutputFile::create(&path, &[]).unwrap().commit().unwrap();
+    let mut files = OutputFiles::default();
+    files.start(&path).unwrap().commit().unwrap();
+    assert!(matches!(files.start(&path).err(), Some(OutputError::Twice { .. })));
 }
 
 #[cfg(unix)]
@@ -100,7 +121,7 @@ fn a_link_is_followed_and_permissions_are_kept() {
     fs::write(&real, "old").unwrap();
     fs::set_permissions(&real, fs::Permissions::from_mode(0o640)).unwrap();
     std::os::unix::fs::symlink(&real, &link).unwrap();
-    let mut file = OutputFile::create(&link, &[]).unwrap();
+    let mut file = start(&link);
     file.write_all(b"new").unwrap();
     file.commit().unwrap();
     assert_eq!(fs::read(&real).unwrap(), b"new");
@@ -111,7 +132,7 @@ fn a_link_is_followed_and_permissions_are_kept() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_device_is_reported_by_name() {
-    let mut file = OutputFile::create(Path::new("/dev/full"), &[]).unwrap();
+    let mut file = start(Path::new("/dev/full"));
     let error = file.write_all(&vec![0; 2 * BUFFER_BYTES]).unwrap_err();
     let error = OutputError::from_io(error, Path::new("elsewhere"));
     let text = error.to_string();
@@ -134,7 +155,7 @@ fn a_full_disk_leaves_neither_file_nor_temporary() {
         return;
     }
     let path = folder.path().join("trace.csv");
-    let mut file = OutputFile::create(&path, &[]).unwrap();
+    let mut file = start(&path);
     let error = (0..64).find_map(|_| file.write_all(&[b'x'; 8192]).err());
     drop(file);
     let left = names(folder.path());

@@ -6,9 +6,11 @@ use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDi
 use feedwright_control::inversion::Gradient;
 
 use super::curves::Curves;
-use super::{Numbers, RADIUS_MM, cut, magnitude_only, rho_for_time, train, with_gradient, with_rho};
+use super::{Bench, Numbers, RADIUS_MM, magnitude_only, with_gradient, with_rho};
 use crate::machine::Machine;
+use crate::pipeline::RunError;
 use crate::report::figure::{COLORS, CaptionedFigure, Curve, Figure, Line, Panel};
+use crate::watch::Watch;
 
 /// The weights of Fig. 7: from none to the paper's choice.
 const RHO_OF_FIGURE_7: [f64; 4] = [0.0, 0.0001, 0.001, 0.01];
@@ -23,33 +25,38 @@ struct Drawn {
 }
 
 /// All four figures, in order.
-pub fn figures(machine: &Machine, seed: u64) -> Vec<CaptionedFigure> {
-    let net = train(machine, seed).net;
+///
+/// # Errors
+/// As [`experiment`](super::experiment).
+pub fn figures(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Vec<CaptionedFigure>, RunError> {
+    watch.begin("drawing", 1);
+    let bench = Bench { machine, watch };
+    let net = bench.train(seed).net;
     let settings = Settings::DEFAULT;
     let rho = settings.inversion.rho;
     let draw = |controller: &mut dyn Controller<2>, rho: f64| {
         let mut curves = Curves::default();
-        let numbers = cut(machine, controller, &mut [&mut curves], rho);
-        Drawn { curves, numbers }
+        let numbers = bench.cut(controller, &mut [&mut curves], rho)?;
+        Ok::<_, RunError>(Drawn { curves, numbers })
     };
-    let open = draw(&mut OpenLoop, 0.0);
-    let both = draw(&mut TwoDimensional::new(net.clone(), settings), rho);
-    let same_time = rho_for_time(machine, &net, both.numbers.time_s);
-    let magnitude = draw(&mut magnitude_only(&net, same_time), same_time);
-    let magnitude_same_rho = draw(&mut magnitude_only(&net, rho), rho);
-    let time_only: Vec<Drawn> = RHO_OF_FIGURE_7
+    let open = draw(&mut OpenLoop, 0.0)?;
+    let both = draw(&mut TwoDimensional::new(net.clone(), settings), rho)?;
+    let same_time = bench.rho_for_time(&net, both.numbers.time_s)?;
+    let magnitude = draw(&mut magnitude_only(&net, same_time), same_time)?;
+    let magnitude_same_rho = draw(&mut magnitude_only(&net, rho), rho)?;
+    let time_only: Result<Vec<Drawn>, RunError> = RHO_OF_FIGURE_7
         .iter()
         .map(|&rho| {
             let settings = with_gradient(with_rho(settings, rho), Gradient::Absent);
             draw(&mut TwoDimensional::new(net.clone(), settings), rho)
         })
         .collect();
-    vec![
-        figure_7(&magnitude, &time_only),
+    Ok(vec![
+        figure_7(&magnitude, &time_only?),
         figure_8(&open, &magnitude, &magnitude_same_rho, &both),
         figure_9(&open, &magnitude, &both),
         figure_10(&open, &magnitude, &both),
-    ]
+    ])
 }
 
 fn figure_7(magnitude: &Drawn, time_only: &[Drawn]) -> CaptionedFigure {

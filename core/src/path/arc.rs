@@ -8,9 +8,9 @@
 //! The centre does not appear, so that a flat arc of enormous radius loses nothing to cancellation:
 //! `1 - cos(phi) = 2 sin(phi/2)^2`.
 
-use super::Point;
+use super::{Derivatives, Point};
 use crate::gcode::canon::Plane;
-use crate::vector::{Vector, distance, dot, sub};
+use crate::vector::{Vector, add_scaled, distance, dot, scale, sub};
 use std::f64::consts::{PI, TAU};
 
 /// Newton steps for the nearest point of a helix; the iteration is monotone and quadratic, it needs about six.
@@ -102,6 +102,19 @@ impl Arc {
             tangent[k] = forward * self.tangent0[k] + sideways * self.normal0[k] + self.rise[k];
         }
         Point { position_mm, tangent }
+    }
+
+    /// Derivatives at `s_mm`: with `phi' = k`, `p'' = R k^2 (cos(phi) n0 - sin(phi) t0)`, `p''' = -R k^3 (cos(phi) t0 + sin(phi) n0)`.
+    pub fn derivatives(&self, s_mm: f64) -> Derivatives {
+        let (sin, cos) = (self.turn_rad_mm * s_mm).sin_cos();
+        let along = add_scaled(scale(cos, self.tangent0), sin, self.normal0);
+        let inward = add_scaled(scale(cos, self.normal0), -sin, self.tangent0);
+        let curvature = self.curvature();
+        Derivatives {
+            first: add_scaled(self.rise, self.in_plane, along),
+            second_1_mm: scale(curvature, inward),
+            third_1_mm2: scale(-curvature * self.turn_rad_mm, along),
+        }
     }
 
     /// Arc length of the nearest point between the bounds.
@@ -216,7 +229,7 @@ pub(super) fn recenter(chord: [f64; 2], to_center: [f64; 2], sense: f64) -> ([f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::{add_scaled, norm};
+    use crate::vector::norm;
 
     #[test]
     fn recentering_puts_both_ends_on_the_circle() {

@@ -35,8 +35,8 @@ enum Outline {
     Polygon(&'static [[f64; 2]]),
     /// Corner points, then a full turn about a centre; negative is clockwise.
     Circle(&'static [[f64; 2]], [f64; 2], i32),
-    /// A closed curve.
-    Curve(fn(f64) -> Jet),
+    /// A closed curve, and its third derivative.
+    Curve(fn(f64) -> Jet, fn(f64) -> [f64; 3]),
     /// A NURBS.
     Spline(fn() -> Spline),
 }
@@ -48,9 +48,9 @@ pub const CONTOURS: &[Contour] = &[
         about: "circle of radius 10 mm, from the origin, clockwise",
         outline: Outline::Circle(&[[0.0, 0.0]], [10.0, 0.0], -1),
     },
-    Contour { name: "ellipse", about: "half axes 20 and 10 mm", outline: Outline::Curve(ellipse) },
-    Contour { name: "eight", about: "figure of eight, 30 x 20 mm", outline: Outline::Curve(eight) },
-    Contour { name: "star", about: "five soft points, radius 8 to 16 mm", outline: Outline::Curve(star) },
+    Contour { name: "ellipse", about: "half axes 20 and 10 mm", outline: Outline::Curve(ellipse, ellipse_third) },
+    Contour { name: "eight", about: "figure of eight, 30 x 20 mm", outline: Outline::Curve(eight, eight_third) },
+    Contour { name: "star", about: "five soft points, radius 8 to 16 mm", outline: Outline::Curve(star, star_third) },
     Contour { name: "butterfly", about: "NURBS with sharp tips, 103 x 62 mm", outline: Outline::Spline(butterfly) },
     Contour {
         name: "square",
@@ -75,7 +75,7 @@ impl Contour {
         match self.outline {
             Outline::Polygon(_) => false,
             Outline::Circle(points, ..) => points.len() == 1,
-            Outline::Curve(_) | Outline::Spline(_) => true,
+            Outline::Curve(..) | Outline::Spline(_) => true,
         }
     }
 
@@ -119,8 +119,8 @@ impl Contour {
                 };
                 Pieces::new(std::iter::once(Canon::Motion(motion))).collect()
             }
-            Outline::Curve(jet) => {
-                let smooth = Smooth::new(Box::new(Closed { jet }));
+            Outline::Curve(jet, third) => {
+                let smooth = Smooth::new(Box::new(Closed { jet, third }));
                 Ok(vec![Step::Piece(Piece {
                     start_mm: jet(0.0).position_mm,
                     length_mm: smooth.length_mm(),
@@ -166,6 +166,7 @@ const SPANS: usize = 16;
 /// A closed curve over the angle `a`.
 struct Closed {
     jet: fn(f64) -> Jet,
+    third: fn(f64) -> [f64; 3],
 }
 
 impl std::fmt::Debug for Closed {
@@ -188,6 +189,11 @@ impl Parametric for Closed {
             second: scale(per_span * per_span, jet.second),
         }
     }
+
+    fn third(&self, span: usize, u: f64) -> [f64; 3] {
+        let per_span = TAU / SPANS as f64;
+        scale(per_span.powi(3), (self.third)(per_span * (span as f64 + u)))
+    }
 }
 
 fn ellipse(a: f64) -> Jet {
@@ -199,6 +205,10 @@ fn ellipse(a: f64) -> Jet {
     }
 }
 
+fn ellipse_third(a: f64) -> [f64; 3] {
+    [20.0 * a.sin(), -10.0 * a.cos(), 0.0]
+}
+
 fn eight(a: f64) -> Jet {
     let (sin, cos) = a.sin_cos();
     let (sin2, cos2) = (2.0 * sin * cos, 1.0 - 2.0 * sin * sin);
@@ -207,6 +217,10 @@ fn eight(a: f64) -> Jet {
         first: [15.0 * cos, 20.0 * cos2, 0.0],
         second: [-15.0 * sin, -40.0 * sin2, 0.0],
     }
+}
+
+fn eight_third(a: f64) -> [f64; 3] {
+    [-15.0 * a.cos(), -80.0 * (2.0 * a).cos(), 0.0]
 }
 
 fn star(a: f64) -> Jet {
@@ -223,4 +237,12 @@ fn star(a: f64) -> Jet {
         first: [dr * cos - r * sin, dr * sin + r * cos, 0.0],
         second: [(ddr - r) * cos - 2.0 * dr * sin, (ddr - r) * sin + 2.0 * dr * cos, 0.0],
     }
+}
+
+fn star_third(a: f64) -> [f64; 3] {
+    let (sin, cos) = a.sin_cos();
+    let (sin5, cos5) = (5.0 * a).sin_cos();
+    let (r, dr, ddr, dddr) = (12.0 + 4.0 * cos5, -20.0 * sin5, -100.0 * cos5, 500.0 * sin5);
+    let (inward, around) = (dddr - 3.0 * dr, 3.0 * ddr - r);
+    [inward * cos - around * sin, inward * sin + around * cos, 0.0]
 }

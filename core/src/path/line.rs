@@ -1,6 +1,6 @@
 //! Straight line by arc length: `p(s) = start + s t`.
 
-use super::Point;
+use super::{Derivatives, Point};
 use crate::vector::{Vector, add_scaled, dot, norm, scale, sub};
 
 /// Straight line.
@@ -28,6 +28,11 @@ impl Line {
     #[inline]
     pub fn at(&self, s_mm: f64) -> Point {
         Point { position_mm: add_scaled(self.start_mm, s_mm, self.tangent), tangent: self.tangent }
+    }
+
+    /// Derivatives, the same everywhere.
+    pub const fn derivatives(&self) -> Derivatives {
+        Derivatives { first: self.tangent, second_1_mm: [0.0; 3], third_1_mm2: [0.0; 3] }
     }
 
     /// Arc length of the nearest point: the foot of the perpendicular, kept between the bounds.

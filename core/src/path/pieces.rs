@@ -6,7 +6,9 @@
 use super::arcs::{Request, arcs};
 use super::line::Line;
 use super::spline::curves;
-use super::{Curve, MAX_COORDINATE_MM, MAX_GAP_MM, MAX_REST_S, MIN_FEED_MM_S, MIN_LENGTH_MM, PathError, Piece, Step};
+use super::{
+    Curve, MAX_COORDINATE_MM, MAX_GAP_MM, MAX_REST_S, MIN_FEED_MM_S, MIN_LENGTH_MM, PathError, Piece, Rest, Step,
+};
 use crate::gcode::canon::{Canon, Event, EventKind, Motion, MotionKind, Shape};
 use crate::vector::{Vector, distance};
 use std::collections::VecDeque;
@@ -172,12 +174,12 @@ fn rest(motion: &Motion) -> Step {
     let ways = [further_mm(axes), turned, motion.others.extruder_mm.abs()];
     let way = ways.into_iter().find(|&way| way > 0.0).unwrap_or(0.0);
     let is_rapid = motion.kind == MotionKind::Rapid;
-    Step::Rest {
+    Step::Rest(Rest {
         line: motion.line,
         seconds: if is_rapid { 0.0 } else { (way / motion.feed_mm_s).min(MAX_REST_S) },
         turn_deg: turn_deg(axes),
         further_mm: further_mm(axes),
-    }
+    })
 }
 
 /// Largest angle that one of A, B and C turns, degrees.

@@ -7,8 +7,8 @@
 
 mod nearest;
 
-use super::Point;
-use crate::vector::{Vector, angle, cross, dot, norm, scale};
+use super::{Derivatives, Point};
+use crate::vector::{Vector, add_scaled, angle, cross, dot, norm, scale};
 use std::fmt::Debug;
 
 /// Arc length within a cell is right to this: a tenth of what the path promises, and far above rounding.
@@ -53,6 +53,9 @@ pub trait Parametric: Debug + Send + Sync {
 
     /// Position and derivatives at `u` of a span.
     fn jet(&self, span: usize, u: f64) -> Jet;
+
+    /// C'''(u) of a span.
+    fn third(&self, span: usize, u: f64) -> Vector;
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -130,6 +133,27 @@ impl Smooth {
     /// Curvature at `s_mm`, 1/mm.
     pub fn curvature(&self, s_mm: f64) -> f64 {
         curvature(&self.jet_at(s_mm))
+    }
+
+    /// Derivatives at `s_mm`. With `u' = 1/|C'|`, `g = C'.C''` and
+    ///
+    /// `u'' = -g u'^4`, `u''' = (4 g^2 u'^2 - C''.C'' - C'.C''') u'^5`:
+    ///
+    /// `p'' = C'' u'^2 + C' u''`, `p''' = C''' u'^3 + 3 C'' u' u'' + C' u'''`. At a cusp there are none.
+    pub fn derivatives(&self, s_mm: f64) -> Derivatives {
+        let cell = &self.cells[self.cell_of(s_mm)];
+        let u = cell.parameter(s_mm);
+        let Jet { first, second, .. } = self.shape.jet(cell.span, u);
+        let third = self.shape.third(cell.span, u);
+        let u1 = 1.0 / norm(first).max(MIN_SPEED_MM);
+        let g = dot(first, second);
+        let u2 = -g * u1.powi(4);
+        let u3 = (4.0 * g * g * u1 * u1 - dot(second, second) - dot(first, third)) * u1.powi(5);
+        Derivatives {
+            first: self.at(s_mm).tangent,
+            second_1_mm: add_scaled(scale(u1 * u1, second), u2, first),
+            third_1_mm2: add_scaled(add_scaled(scale(u1.powi(3), third), 3.0 * u1 * u2, second), u3, first),
+        }
     }
 
     /// Number of cells of the table; within each, the curve is gentle.

@@ -5,7 +5,7 @@
 //! approach to splines, 1987), evaluated by de Casteljau's scheme, which is stable for any degree. With `A` the homogeneous
 //! position and `w` the weight,
 //!
-//! `C = A / w`, `C' = (A' - w' C) / w`, `C'' = (A'' - 2 w' C' - w'' C) / w`
+//! `C = A / w`, `C' = (A' - w' C) / w`, `C'' = (A'' - 2 w' C' - w'' C) / w`, `C''' = (A''' - 3 w' C'' - 3 w'' C' - w''' C) / w`
 //!
 //! Where the direction jumps between two spans (a knot of full multiplicity, or control points that coincide) the spline has
 //! a corner, and is cut into several curves there.
@@ -191,6 +191,33 @@ impl Parametric for Beziers {
         let first = scale(w, add_scaled(xyz(slope), -slope[3], position_mm));
         let second = add_scaled(add_scaled(xyz(bend), -2.0 * slope[3], first), -bend[3], position_mm);
         Jet { position_mm, first, second: scale(w, second) }
+    }
+
+    fn third(&self, span: usize, u: f64) -> Vector {
+        let degree = self.degree;
+        let from = span * (degree + 1);
+        let mut points = [[0.0; 4]; MAX_DEGREE + 1];
+        points[..=degree].copy_from_slice(&self.points[from..=from + degree]);
+        // A, A', A'', A''': the control points of a derivative are differences of those before.
+        let mut derivatives = [[0.0; 4]; 4];
+        for (order, value) in derivatives.iter_mut().enumerate().take(degree.min(3) + 1) {
+            let left = degree - order;
+            let mut scheme = points;
+            for level in (0..left).rev() {
+                for i in 0..=level {
+                    scheme[i] = mix(scheme[i], scheme[i + 1], u);
+                }
+            }
+            *value = scheme[0];
+            for i in 0..left {
+                points[i] = minus(points[i + 1], points[i]).map(|x| left as f64 * x);
+            }
+        }
+        let [value, slope, bend, [x, y, z, twist]] = derivatives;
+        let Jet { position_mm, first, second } = self.jet(span, u);
+        let third = add_scaled([x, y, z], -3.0 * slope[3], second);
+        let third = add_scaled(add_scaled(third, -3.0 * bend[3], first), -twist, position_mm);
+        scale(1.0 / value[3], third)
     }
 }
 

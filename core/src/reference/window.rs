@@ -1,7 +1,8 @@
-//! Pieces and phases that are kept, looked up by plan time and by arc length.
+//! Pieces and phases that are kept: the planned path looked up by plan time, the programmed one by arc length.
 
 use super::nearest::{Range, nearest};
 use super::{Foot, Sample};
+use crate::blend::{Origin, PlannedPiece};
 use crate::feed::Phase;
 use crate::path::{Piece, signed_distance_mm};
 use std::collections::VecDeque;
@@ -12,9 +13,11 @@ const HINTS: usize = 6;
 /// Pieces and phases in order, the oldest forgotten.
 #[derive(Debug, Default)]
 pub(super) struct Window {
-    pieces: VecDeque<Piece>,
-    /// Number of the first piece kept.
-    first_piece: u64,
+    programmed: VecDeque<Piece>,
+    planned: VecDeque<PlannedPiece>,
+    /// Numbers of the first pieces kept.
+    first_programmed: u64,
+    first_planned: u64,
     phases: VecDeque<Phase>,
     /// Indices of phases found before: where to look first, never what to answer. A control loop looks at a few times that
     /// move on together; each comes to have a hint of its own.
@@ -22,8 +25,12 @@ pub(super) struct Window {
 }
 
 impl Window {
-    pub(super) fn push_piece(&mut self, piece: Piece) {
-        self.pieces.push_back(piece);
+    pub(super) fn push_programmed(&mut self, piece: Piece) {
+        self.programmed.push_back(piece);
+    }
+
+    pub(super) fn push_planned(&mut self, piece: PlannedPiece) {
+        self.planned.push_back(piece);
     }
 
     pub(super) fn push_phase(&mut self, phase: Phase) {
@@ -31,7 +38,7 @@ impl Window {
     }
 
     pub(super) fn kept(&self) -> (usize, usize) {
-        (self.pieces.len(), self.phases.len())
+        (self.planned.len(), self.phases.len())
     }
 
     /// Drops phases that end before `tau_s` and pieces that no phase kept needs; the last of each stays.
@@ -45,9 +52,18 @@ impl Window {
         let Some(first) = self.phases.front() else {
             return;
         };
-        while self.first_piece < first.piece && self.pieces.len() > 1 {
-            self.pieces.pop_front();
-            self.first_piece += 1;
+        while self.first_planned < first.piece && self.planned.len() > 1 {
+            self.planned.pop_front();
+            self.first_planned += 1;
+        }
+        let keeps = |piece: &Piece, number: u64| match self.planned.front().map(|planned| planned.origin) {
+            Some(Origin::Unchanged(first)) => number >= first,
+            Some(Origin::Part { from_mm, .. }) => piece.s_mm + piece.length_mm > from_mm,
+            None => true,
+        };
+        while self.programmed.len() > 1 && !keeps(&self.programmed[0], self.first_programmed) {
+            self.programmed.pop_front();
+            self.first_programmed += 1;
         }
     }
 
@@ -57,18 +73,26 @@ impl Window {
             return Sample::nowhere();
         };
         let ended = index + 1 == self.phases.len() && tau_s >= phase.tau_s + phase.duration_s;
-        let Some(piece) = self.piece(phase.piece) else {
+        let Some(PlannedPiece { piece, origin }) = self.planned(phase.piece) else {
             return Sample::nowhere();
         };
-        let along = along(&phase, tau_s);
-        let local_mm = local_mm(&phase, piece, along);
+        let along_s = along(&phase, tau_s);
+        let local_mm = local_mm(&phase, piece, along_s);
         let at = piece.curve.at(local_mm);
+        let (s_mm, programmed_mm) = match *origin {
+            Origin::Unchanged(_) => (piece.s_mm + local_mm, at.position_mm),
+            Origin::Part { from_mm, to_mm } => {
+                let s_mm = from_mm + local_mm / piece.length_mm * (to_mm - from_mm);
+                (s_mm, self.nearest_along(at.position_mm, s_mm, s_mm).position_mm)
+            }
+        };
         let resting = ended || phase.rest.is_some();
         Sample {
             position_mm: at.position_mm,
             tangent: at.tangent,
-            s_mm: piece.s_mm + local_mm,
-            feed_mm_s: if resting { 0.0 } else { (phase.speed_mm_s + phase.accel_mm_s2 * along).max(0.0) },
+            s_mm,
+            programmed_mm,
+            feed_mm_s: if resting { 0.0 } else { phase.speed_mm_s(along_s) },
             line: phase.rest.unwrap_or(piece.line),
             cutting: piece.cutting && !resting,
             rapid: !piece.cutting,
@@ -78,22 +102,27 @@ impl Window {
 
     #[inline]
     pub(super) fn nearest(&mut self, point_mm: [f64; 3], tau_lo_s: f64, tau_hi_s: f64) -> Foot {
-        let (Some((lo, _)), Some((hi, _))) = (self.phase_at(tau_lo_s), self.phase_at(tau_hi_s)) else {
+        let (Some((first, lo_mm)), Some((last, hi_mm))) = (self.place_at(tau_lo_s), self.place_at(tau_hi_s)) else {
             return Foot::nowhere(point_mm);
         };
-        let (Some(first), Some(last)) = (self.piece(lo.piece), self.piece(hi.piece)) else {
-            return Foot::nowhere(point_mm);
-        };
-        let lo_mm = local_mm(&lo, first, along(&lo, tau_lo_s));
-        let hi_mm = local_mm(&hi, last, along(&hi, tau_hi_s));
-        let index = |piece: u64| (piece - self.first_piece) as usize;
-        self.nearest_within(Range { first: index(lo.piece), last: index(hi.piece), lo_mm, hi_mm }, point_mm)
+        self.nearest_within(Range { first, last, lo_mm, hi_mm }, point_mm)
+    }
+
+    /// Index of the programmed piece at a plan time, and the place in it.
+    fn place_at(&mut self, tau_s: f64) -> Option<(usize, f64)> {
+        let (phase, _) = self.phase_at(tau_s)?;
+        let PlannedPiece { piece, origin } = self.planned(phase.piece)?;
+        let local_mm = local_mm(&phase, piece, along(&phase, tau_s));
+        Some(match *origin {
+            Origin::Unchanged(number) => ((number - self.first_programmed) as usize, local_mm),
+            Origin::Part { from_mm, to_mm } => self.place_of(from_mm + local_mm / piece.length_mm * (to_mm - from_mm)),
+        })
     }
 
     /// As [`Self::nearest`], between two arc lengths of the path.
     #[inline]
     pub(super) fn nearest_along(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> Foot {
-        if self.pieces.is_empty() {
+        if self.programmed.is_empty() {
             return Foot::nowhere(point_mm);
         }
         let (first, lo_mm) = self.place_of(lo_mm);
@@ -103,17 +132,17 @@ impl Window {
 
     fn nearest_within(&self, range: Range, point_mm: [f64; 3]) -> Foot {
         if range.first == range.last {
-            let piece = &self.pieces[range.first];
+            let piece = &self.programmed[range.first];
             let hi_mm = range.hi_mm.max(range.lo_mm);
             return super::foot(piece, piece.curve.nearest(point_mm, range.lo_mm, hi_mm), point_mm);
         }
-        nearest(&self.pieces, range, point_mm)
+        nearest(&self.programmed, range, point_mm)
     }
 
     /// Index of the piece at an arc length, and the place in it.
     fn place_of(&self, s_mm: f64) -> (usize, f64) {
-        let index = self.pieces.partition_point(|piece| piece.s_mm <= s_mm).saturating_sub(1);
-        let piece = &self.pieces[index];
+        let index = self.programmed.partition_point(|piece| piece.s_mm <= s_mm).saturating_sub(1);
+        let piece = &self.programmed[index];
         (index, (s_mm - piece.s_mm).max(0.0).min(piece.length_mm))
     }
 
@@ -124,8 +153,8 @@ impl Window {
         (phase.rest.is_some() && tau_s < end_s).then_some((phase.tau_s, end_s))
     }
 
-    fn piece(&self, number: u64) -> Option<&Piece> {
-        self.pieces.get(number.checked_sub(self.first_piece)? as usize)
+    fn planned(&self, number: u64) -> Option<&PlannedPiece> {
+        self.planned.get(number.checked_sub(self.first_planned)? as usize)
     }
 
     /// The last phase that starts at `tau_s` or before, or else the first.
@@ -167,7 +196,7 @@ fn along(phase: &Phase, tau_s: f64) -> f64 {
 
 #[inline]
 fn local_mm(phase: &Phase, piece: &Piece, along: f64) -> f64 {
-    (phase.from_mm + along * (phase.speed_mm_s + 0.5 * phase.accel_mm_s2 * along)).min(piece.length_mm)
+    phase.place_mm(along).min(piece.length_mm)
 }
 
 impl Sample {
@@ -177,6 +206,7 @@ impl Sample {
             position_mm: [0.0; 3],
             tangent: [1.0, 0.0, 0.0],
             s_mm: 0.0,
+            programmed_mm: [0.0; 3],
             feed_mm_s: 0.0,
             line: 0,
             cutting: false,

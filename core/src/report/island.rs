@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use serde_json::json;
 
 use super::series::Point;
-use super::{Report, Run};
+use super::{Report, ReportedRun};
 
 /// What one count of a column stands for.
 mod units {
@@ -68,7 +68,7 @@ fn meta(report: &Report) -> serde_json::Value {
     })
 }
 
-fn run_meta(run: &Run) -> serde_json::Value {
+fn run_meta(run: &ReportedRun) -> serde_json::Value {
     let summary = &run.summary;
     let worst: Vec<_> = summary
         .worst
@@ -84,7 +84,7 @@ fn run_meta(run: &Run) -> serde_json::Value {
     })
 }
 
-fn write_outline(out: &mut impl Write, run: &Run) -> io::Result<()> {
+fn write_outline(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
     let vertices: Vec<_> = run.series.outline().collect();
     let mut object = Object::begin(out)?;
     for (k, name) in ["x", "y", "z"].into_iter().enumerate().take(run.summary.axes) {
@@ -94,7 +94,7 @@ fn write_outline(out: &mut impl Write, run: &Run) -> io::Result<()> {
     object.end()
 }
 
-fn write_run(out: &mut impl Write, run: &Run) -> io::Result<()> {
+fn write_run(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
     let points: Vec<Point> = run.series.points().collect();
     let column = |value: fn(&Point) -> f64| points.iter().map(value);
     let mut object = Object::begin(out)?;

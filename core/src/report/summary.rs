@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::statistics::Histogram;
 use super::worst::WorstPlace;
-use crate::simulate::Run;
+use crate::simulate::RunResult;
 use crate::trace::{FadedOut, Outcome};
 
 /// What [`Statistics`](super::Statistics) cannot see in the rows of a run.
@@ -19,7 +19,7 @@ pub struct RunFacts {
     /// Axes of the machine, 2 or 3.
     pub axes: usize,
     /// What the loop says about the run.
-    pub run: Run,
+    pub run: RunResult,
 }
 
 /// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions.

@@ -33,7 +33,6 @@ pub(super) fn left_out(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::feed::Limits;
     use crate::gcode::{Reader, Settings};
     use crate::machine::Machine;
 
@@ -45,7 +44,7 @@ mod tests {
         for (dwell_s, wanted) in [(0.9, 0), (1.0, 0), (1.1, 99), (4.0, 2997), (1e6, 999_998_997)] {
             let text = format!("G21 G90 F600\nG1 X1\nG4 P{dwell_s}\nG1 X2\nM2\n");
             let program = Reader::from_text("dwell.ngc", text, Settings::default()).unwrap().map(Result::unwrap);
-            let mut reference = Reference::new(program, &Limits::from(&machine.limits)).unwrap();
+            let mut reference = Reference::of_program(program, &machine).unwrap();
             let end_s = reference.read_to_end_s();
             let (mut tau_s, mut found) = (0.0, 0);
             while tau_s < end_s {

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use feedwright::controllers::{Choices, Entry};
+use feedwright::job::{Job, Outputs};
 use feedwright::machine::Machine;
-use feedwright::pipeline::{self, Job, Outputs};
 use feedwright::report::RunSummary;
 
 /// Cuts a part and leaves its trace.
@@ -21,5 +21,5 @@ pub(crate) fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Pa
         inputs: Vec::new(),
         outputs: Outputs { trace: Some(trace.to_owned()), ..Outputs::default() },
     };
-    pipeline::run(&job, &mut ()).unwrap().report.runs.remove(0).summary
+    job.run(&()).unwrap().report.runs.remove(0).summary
 }

@@ -1,9 +1,9 @@
 //! Motions and limits for the tests of path, feed and reference.
 
-use feedwright::feed::Limits;
+use feedwright::constraints::PathLimits;
 use feedwright::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
 
-pub(crate) const LIMITS: Limits = Limits {
+pub(crate) const LIMITS: PathLimits = PathLimits {
     rapid_mm_s: 100.0,
     max_feed_mm_s: 200.0,
     tangential_accel_mm_s2: 100.0,

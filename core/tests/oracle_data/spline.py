@@ -2,13 +2,14 @@
 
 Run: python3 spline.py > spline.json
 
-For each spline: its length, and at several arc lengths the position, the unit tangent and the curvature; the arc length
-is inverted by Newton on the integral of |C'|. Nothing is shared with the Rust code: no Bezier form, no table.
+For each spline: its length, and at several arc lengths the position, the unit tangent, the curvature and the second and third
+derivative by arc length (numerical differences of the tangent in 40 digits); the arc length is inverted by Newton on the integral
+of |C'|. Nothing is shared with the Rust code: no Bezier form, no table.
 """
 
 import json
 
-from mpmath import mp, mpf, quad, sqrt
+from mpmath import diff, mp, mpf, quad, sqrt, workdps
 
 mp.dps = 25
 
@@ -104,12 +105,24 @@ def compute(spline):
         position, d1, d2 = jet(u, span)
         cross = [d1[1] * d2[2] - d1[2] * d2[1], d1[2] * d2[0] - d1[0] * d2[2], d1[0] * d2[1] - d1[1] * d2[0]]
         v = sqrt(sum(d * d for d in d1))
+
+        def tangent(k, u, span=span):
+            return jet(u, span)[1][k] / speed(u, span)
+
+        def bend(k, u, span=span):
+            return diff(lambda u: tangent(k, u), u) / speed(u, span)
+
+        with workdps(40):
+            second = [float(bend(k, u)) for k in range(3)]
+            third = [float(diff(lambda u: bend(k, u), u, h=mpf("1e-8")) / v) for k in range(3)]
         samples.append(
             {
                 "s_mm": float(s),
                 "position_mm": [float(x) for x in position],
                 "tangent": [float(d / v) for d in d1],
                 "curvature_1_mm": float(sqrt(sum(c * c for c in cross)) / v**3),
+                "second_1_mm": second,
+                "third_1_mm2": third,
             }
         )
     return {**spline, "length_mm": float(total), "samples": samples}

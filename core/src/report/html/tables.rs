@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::report::text::{change, duration, escaped, fixed, number, signed};
-use crate::report::{FadedOut, Outcome, Report, Run, RunSummary, TimelineEvent, WorstPlace};
+use crate::report::{FadedOut, Outcome, Report, ReportedRun, RunSummary, TimelineEvent, WorstPlace};
 
 const AXES: [&str; 3] = ["X", "Y", "Z"];
 
@@ -84,7 +84,7 @@ fn swatch(index: usize) -> String {
 const SHOWN_ROWS: usize = 24;
 
 /// The events of a run on strips as long as the run, one for each unit of the machine, and as a list.
-fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()> {
+fn write_events(out: &mut impl Write, index: usize, run: &ReportedRun) -> io::Result<()> {
     if run.events.is_empty() {
         return Ok(());
     }
@@ -112,7 +112,7 @@ fn write_events(out: &mut impl Write, index: usize, run: &Run) -> io::Result<()>
 }
 
 /// A strip for each unit of the machine that has events, in the order in which they first come.
-fn write_rows(out: &mut impl Write, run: &Run, percent: impl Fn(f64) -> f64) -> io::Result<()> {
+fn write_rows(out: &mut impl Write, run: &ReportedRun, percent: impl Fn(f64) -> f64) -> io::Result<()> {
     let mut rows: Vec<&str> = Vec::new();
     for event in &run.events {
         if !rows.contains(&event.row.as_str()) && rows.len() < SHOWN_ROWS {

@@ -1,5 +1,4 @@
 use super::*;
-use crate::feed::Limits;
 use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
 
 const SERVO_S: f64 = 1e-3;
@@ -20,7 +19,7 @@ fn lines(corners_mm: &[Vector]) -> Vec<Canon> {
 /// The feet of a tool that is where `tool` says, given the reference and the time at the end of a servo period.
 fn feet(program: Vec<Canon>, mut tool: impl FnMut(&mut Reference<'_>, f64) -> Vector) -> Vec<Foot> {
     let machine = machine();
-    let mut reference = Reference::new(program, &Limits::from(&machine.limits)).unwrap();
+    let mut reference = Reference::of_program(program, &machine).unwrap();
     let start_mm = reference.at(0.0).position_mm;
     let end_s = reference.read_to_end_s();
     let mut progress = Progress::new(&machine, start_mm);

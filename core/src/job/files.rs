@@ -5,15 +5,16 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
-use super::job::{Error, Job};
+use super::{Job, JobError};
 use crate::feed::TimedEvent;
 use crate::machine::PlcEvent;
 use crate::output::gcode_writer::GcodeWriter;
-use crate::output::{OutputError, OutputFile};
+use crate::output::{OutputError, OutputFile, OutputFiles};
 use crate::plc;
 use crate::report::{Report, RunSummary, TimelineEvent, write_html};
 use crate::trace::csv::{SetpointWriter, TraceWriter};
 use crate::trace::{Row, Sink};
+use crate::watch::Watch;
 
 /// Where to write what; `None` is not written.
 #[derive(Debug, Clone, Default)]
@@ -39,31 +40,31 @@ enum Form {
 }
 
 impl Outputs {
-    fn form(path: &Path) -> Result<Form, Error> {
+    fn form(path: &Path) -> Result<Form, JobError> {
         let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
         match ending.as_deref() {
             Some("csv") => Ok(Form::Setpoints),
             Some("ngc" | "nc" | "gcode" | "tap") => Ok(Form::Gcode),
-            _ => Err(Error::Ending { path: path.to_owned() }),
+            _ => Err(JobError::Ending { path: path.to_owned() }),
         }
     }
 }
 
 impl Job {
     /// Refuses values out of range, and outputs of no known form.
-    pub(super) fn check_values(&self) -> Result<(), Error> {
+    pub(super) fn check_values(&self) -> Result<(), JobError> {
         let positive = |value: &f64, limit: f64| *value > 0.0 && *value <= limit;
         // A feed that the machine lowers to its limit is not the feed that was asked for.
         let most_mm_s = self.machine.limits.max_feed_mm_s;
         if let Some(value) = self.feed_mm_s.filter(|feed| !positive(feed, most_mm_s)) {
             let bounds = format!("above 0 and up to {most_mm_s} mm/s, the machine's max_feed_mm_s");
             let hint = Some("the unit is mm/s: F3000 in a program, which is mm/min, is --feed 50");
-            return Err(Error::Value { name: "--feed", value, unit: " mm/s", bounds, hint });
+            return Err(JobError::Value { name: "--feed", value, unit: " mm/s", bounds, hint });
         }
         if let Some(value) = self.tolerance_um.filter(|tolerance| !positive(tolerance, MOST_TOLERANCE_UM)) {
             let bounds = format!("above 0 and up to {MOST_TOLERANCE_UM} um");
             let hint = Some("the unit is um: 0.01 mm is --tolerance 10");
-            return Err(Error::Value { name: "--tolerance", value, unit: " um", bounds, hint });
+            return Err(JobError::Value { name: "--tolerance", value, unit: " um", bounds, hint });
         }
         if let Some(out) = &self.outputs.out {
             Outputs::form(out)?;
@@ -83,25 +84,25 @@ pub(super) struct Files {
 
 impl Files {
     /// Starts all of them, so that a place that cannot be written is known before the part is cut.
-    pub(super) fn create(job: &Job, axes: usize) -> Result<Self, Error> {
+    pub(super) fn create(job: &Job, axes: usize) -> Result<Self, JobError> {
         let outputs = &job.outputs;
-        let inputs: Vec<&Path> = job.inputs.iter().chain([&job.part]).map(PathBuf::as_path).collect();
-        let start = |path: &Option<PathBuf>| path.as_deref().map(|path| OutputFile::create(path, &inputs)).transpose();
+        let mut files = OutputFiles::new(job.inputs.iter().chain([&job.part]).map(PathBuf::as_path));
+        let mut start = |path: Option<&PathBuf>| path.map(|path| files.start(path)).transpose();
         let form = outputs.out.as_deref().map(Outputs::form).transpose()?;
-        let out = |wanted: Form| start(&outputs.out.clone().filter(|_| form == Some(wanted)));
+        let out = |wanted: Form| outputs.out.as_ref().filter(|_| form == Some(wanted));
         let note = format!("corrected by feedwright, controller {}", job.controller.name);
         let notes = [job.part_name(), format!("for the machine {}", job.machine.name), note];
         Ok(Self {
-            report: start(&outputs.report)?,
-            json: start(&outputs.json)?,
-            trace: start(&outputs.trace)?.map(|output| TraceWriter::new(output, axes)).transpose()?,
-            setpoints: out(Form::Setpoints)?.map(|output| SetpointWriter::new(output, axes)).transpose()?,
-            gcode: out(Form::Gcode)?.map(|output| GcodeWriter::new(output, axes, &notes)).transpose()?,
+            report: start(outputs.report.as_ref())?,
+            json: start(outputs.json.as_ref())?,
+            trace: start(outputs.trace.as_ref())?.map(|output| TraceWriter::new(output, axes)).transpose()?,
+            setpoints: start(out(Form::Setpoints))?.map(|output| SetpointWriter::new(output, axes)).transpose()?,
+            gcode: start(out(Form::Gcode))?.map(|output| GcodeWriter::new(output, axes, &notes)).transpose()?,
         })
     }
 
     /// Writes the rest and moves all files to their places.
-    pub(super) fn finish(self, job: &Job, report: &Report) -> Result<(), Error> {
+    pub(super) fn finish(self, job: &Job, report: &Report, watch: &dyn Watch) -> Result<(), JobError> {
         let mut complete = Vec::new();
         let named = |path: &Path| {
             let path = path.to_owned();
@@ -118,7 +119,7 @@ impl Files {
         complete.extend(self.trace.map(TraceWriter::finish).transpose()?);
         complete.extend(self.setpoints.map(SetpointWriter::finish).transpose()?);
         complete.extend(self.gcode.map(GcodeWriter::finish).transpose()?);
-        OutputFile::commit_all(complete)?;
+        OutputFile::commit_all(complete, watch)?;
         Ok(())
     }
 }

@@ -1,0 +1,216 @@
+//! The main job: a program and a machine in, every controller's cut, report and files out.
+//!
+//! Calls, no arithmetic. The program is read twice: once to find every mistake before anything is written, once for each
+//! cut, as a stream. A cut is a [`Run`].
+//!
+//! | File | What |
+//! |---|---|
+//! | `job/error.rs` | what can go wrong |
+//! | `job/files.rs` | the files that it writes, all of them or none |
+//! | `job/report.rs` | what the page shows |
+
+mod error;
+mod files;
+mod report;
+
+use std::path::PathBuf;
+
+use feedwright_control::Controller;
+
+use crate::controllers::{Choices, Entry, Make, Setup};
+use crate::gcode::canon::{Canon, MotionKind};
+use crate::gcode::{self, ReadError, Reader, Summary};
+use crate::machine::Machine;
+use crate::pipeline::{Run, pieces};
+use crate::report::{Report, ReportedRun, RunFacts, Series, Statistics};
+use crate::trace::{Row, Sink};
+use crate::watch::Watch;
+pub use error::JobError;
+pub use files::Outputs;
+use files::{Files, Timeline};
+
+/// A part, a machine, two controllers, and what to write.
+#[derive(Debug, Clone)]
+pub struct Job {
+    /// The G-code program.
+    pub part: PathBuf,
+    /// The machine that cuts it.
+    pub machine: Machine,
+    /// The controller that is asked for.
+    pub controller: &'static Entry,
+    /// What it is compared against.
+    pub against: &'static Entry,
+    /// Replaces every programmed feedrate, mm/s.
+    pub feed_mm_s: Option<f64>,
+    /// Settings of the controllers.
+    pub choices: Choices,
+    /// Largest contour error that is allowed, um.
+    pub tolerance_um: Option<f64>,
+    /// Settings of the reader.
+    pub reader: gcode::Settings,
+    /// Files that were read to make this job, besides the program: no output may take their place.
+    pub inputs: Vec<PathBuf>,
+    /// Files to write.
+    pub outputs: Outputs,
+}
+
+/// What a job came to. The runs stand in the order in which they were made: what is compared against, then the
+/// controller that was asked for.
+#[derive(Debug)]
+pub struct JobOutcome {
+    /// Everything that the page shows.
+    pub report: Report,
+    /// What the reader warned of.
+    pub warnings: Vec<gcode::Diagnostic>,
+    /// Whether the last run was cut to its end and within the tolerance, where one was asked for.
+    pub within_tolerance: bool,
+}
+
+/// Steps of a stage whose length is not known before it begins.
+const STEPS: u64 = 1000;
+
+impl Job {
+    /// Runs it and writes its files.
+    ///
+    /// # Errors
+    /// A program with mistakes, more axes than the machine has, a file that cannot be written, or an end from outside. No file
+    /// appears then.
+    pub fn run(&self, watch: &dyn Watch) -> Result<JobOutcome, JobError> {
+        watch.begin("reading the program", STEPS);
+        self.check_values()?;
+        let summary = gcode::check(&self.part, self.reader.clone())?;
+        match self.axes(&summary)? {
+            2 => self.cut::<2>(&summary, watch),
+            _ => self.cut::<3>(&summary, watch),
+        }
+    }
+
+    fn cut<const N: usize>(&self, summary: &Summary, watch: &dyn Watch) -> Result<JobOutcome, JobError>
+    where
+        Entry: Make<N>,
+    {
+        let mut files = Files::create(self, N)?;
+        let mut runs = Vec::new();
+        for entry in self.controllers() {
+            watch.check()?;
+            watch.begin(&format!("identifying for {}", entry.name), STEPS);
+            let mut steps = Steps::new(watch);
+            let mut progress = |part: f64| steps.reach(part);
+            let mut setup = Setup { machine: &self.machine, choices: &self.choices, progress: &mut progress };
+            let mut controller = Make::<N>::make(entry, &mut setup);
+            watch.begin(&format!("cutting, {}", entry.name), STEPS);
+            let judged = entry.name == self.controller.name;
+            runs.push(self.cut_once(summary, entry, &mut *controller, judged.then_some(&mut files), watch)?);
+        }
+        watch.begin("writing", STEPS);
+        let report = self.report(N, summary, runs);
+        let within_tolerance = self.within_tolerance(&report);
+        files.finish(self, &report, watch)?;
+        let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
+        Ok(JobOutcome { report, warnings, within_tolerance })
+    }
+
+    fn cut_once<const N: usize>(
+        &self,
+        summary: &Summary,
+        entry: &Entry,
+        controller: &mut dyn Controller<N>,
+        files: Option<&mut Files>,
+        watch: &dyn Watch,
+    ) -> Result<ReportedRun, JobError> {
+        let (mut statistics, mut series, mut timeline) =
+            (Statistics::new(), Series::new(), Timeline::new(&self.machine.plc_events));
+        let mut cut = CutProgress { steps: Steps::new(watch), length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
+        let mut sinks: Vec<&mut dyn Sink> = vec![&mut statistics, &mut series, &mut timeline, &mut cut];
+        sinks.extend(files.map(|files| files as &mut dyn Sink));
+        let run = Run::on(&self.machine)
+            .laps(entry.laps)
+            .watched(watch)
+            .cut(|| Ok(pieces(self.program()?)), controller, &mut sinks)
+            .map_err(|error| JobError::of_run(&self.part, error))?;
+        let facts = RunFacts {
+            controller: entry.name.to_owned(),
+            machine: self.machine.name.clone(),
+            part: self.part_name(),
+            axes: N,
+            run,
+        };
+        let mut summary = statistics.summary(facts, |_| String::new());
+        self.fill_in_texts(&mut summary.worst)?;
+        Ok(ReportedRun { summary, series, events: timeline.events })
+    }
+
+    /// The controllers in the order in which they cut: the one that is asked for last, and once.
+    fn controllers(&self) -> Vec<&'static Entry> {
+        if self.against.name == self.controller.name {
+            vec![self.controller]
+        } else {
+            vec![self.against, self.controller]
+        }
+    }
+
+    /// Two axes where the program stays in the XY plane and the third would only stand still.
+    fn axes(&self, summary: &Summary) -> Result<usize, JobError> {
+        match (summary.moves[2], self.machine.axis_count()) {
+            (false, _) => Ok(2),
+            (true, 3..) => Ok(3),
+            (true, _) => Err(JobError::NoZ { part: self.part.clone(), machine: self.machine.name.clone() }),
+        }
+    }
+
+    /// The canonical steps of the program, with the feedrate replaced where that was asked for.
+    fn program(&self) -> Result<impl Iterator<Item = Canon> + Send + use<>, ReadError> {
+        let feed_mm_s = self.feed_mm_s;
+        // The program was checked from end to end before: a mistake here means that the file changed, and ends it.
+        let steps = Reader::open(&self.part, self.reader.clone())?.map_while(Result::ok);
+        Ok(steps.map(move |mut step| {
+            if let (Canon::Motion(motion), Some(feed_mm_s)) = (&mut step, feed_mm_s)
+                && motion.kind == MotionKind::Feed
+            {
+                motion.feed_mm_s = feed_mm_s;
+            }
+            step
+        }))
+    }
+}
+
+/// The steps of a stage by the part of it that is done.
+struct Steps<'a> {
+    watch: &'a dyn Watch,
+    done: u64,
+}
+
+impl<'a> Steps<'a> {
+    const fn new(watch: &'a dyn Watch) -> Self {
+        Self { watch, done: 0 }
+    }
+
+    /// So large a part is done, 0 to 1.
+    fn reach(&mut self, part: f64) {
+        // A float that is not a number saturates to zero here.
+        let done = ((part * STEPS as f64) as u64).min(STEPS).max(self.done);
+        self.watch.advance(done - self.done);
+        self.done = done;
+    }
+}
+
+/// Tells the progress of a cut by its arc length.
+struct CutProgress<'a> {
+    steps: Steps<'a>,
+    length_mm: f64,
+    rows: u32,
+}
+
+/// Rows between two steps at the least: a tenth of a second of machining.
+const ROWS_BETWEEN: u32 = 100;
+
+impl Sink for CutProgress<'_> {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        self.rows += 1;
+        if self.rows == ROWS_BETWEEN {
+            self.rows = 0;
+            self.steps.reach(row.s_mm / self.length_mm);
+        }
+        Ok(())
+    }
+}

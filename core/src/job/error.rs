@@ -1,0 +1,133 @@
+//! What can go wrong with a job.
+
+use std::path::{Path, PathBuf};
+
+use thiserror::Error;
+
+use crate::constraints::LimitsError;
+use crate::gcode::{self, CheckError, ReadError};
+use crate::output::OutputError;
+use crate::path::PathError;
+use crate::pipeline::RunError;
+use crate::watch::Cancelled;
+
+/// Why a job cannot be done.
+#[derive(Debug, Error, miette::Diagnostic)]
+pub enum JobError {
+    /// The program cannot be read at all.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Read(#[from] ReadError),
+    /// The program has mistakes.
+    #[error("{}: {} mistake{}, nothing was cut", part.display(), faults.len(), if faults.len() == 1 { "" } else { "s" })]
+    Faults {
+        /// The program.
+        part: PathBuf,
+        /// All of them, in program order.
+        #[related]
+        faults: Vec<gcode::Diagnostic>,
+    },
+    /// A motion has no path.
+    #[error("{}: {fault}", part.display())]
+    Path {
+        /// The program.
+        part: PathBuf,
+        /// Why.
+        fault: PathError,
+    },
+    /// The program moves an axis that the machine does not have.
+    #[error("{} moves Z, and the machine `{machine}` has no [axis.z]", part.display())]
+    #[diagnostic(help("give the machine file a section [axis.z], or choose a machine with three axes"))]
+    NoZ {
+        /// The program.
+        part: PathBuf,
+        /// The machine.
+        machine: String,
+    },
+    /// A value on the command line is out of its range.
+    #[error("{name} is {}{unit}; it must lie {bounds}", shown(*value))]
+    Value {
+        /// Name of the option.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit after a space, where it has one.
+        unit: &'static str,
+        /// The range in words.
+        bounds: String,
+        /// Remedy.
+        #[help]
+        hint: Option<&'static str>,
+    },
+    /// `--out` with an ending that says nothing.
+    #[error("{} does not say what to write", path.display())]
+    #[diagnostic(help("the ending decides: .csv for setpoints, .ngc for G-code"))]
+    Ending {
+        /// The place.
+        path: PathBuf,
+    },
+    /// The cut did not come to its end.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Run(RunError),
+    /// Ended from outside.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A file cannot be written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Output(#[from] OutputError),
+    /// The program went away, or changed, while it was cut.
+    #[error("{}: {cause}", part.display())]
+    Reread {
+        /// The program.
+        part: PathBuf,
+        /// What the system says.
+        cause: std::io::Error,
+    },
+}
+
+/// A number for people: with an exponent where it would be a row of zeros.
+fn shown(value: f64) -> String {
+    let plain = value == 0.0 || !value.is_finite() || (1e-5..1e9).contains(&value.abs());
+    if plain { value.to_string() } else { format!("{value:e}") }
+}
+
+impl JobError {
+    /// Of a cut of a part.
+    pub(crate) fn of_run(part: &Path, error: RunError) -> Self {
+        match error {
+            RunError::Read(error) => Self::Read(error),
+            RunError::Path(fault) => Self::Path { part: part.to_owned(), fault },
+            RunError::Write(error) => error.into(),
+            RunError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            RunError::Limits(_) => Self::Run(error),
+        }
+    }
+}
+
+impl From<LimitsError> for JobError {
+    fn from(error: LimitsError) -> Self {
+        Self::Run(error.into())
+    }
+}
+
+/// Rows go to files whose errors name them; anything else is of the program.
+impl From<std::io::Error> for JobError {
+    fn from(error: std::io::Error) -> Self {
+        Self::Output(OutputError::from_io(error, Path::new("the output")))
+    }
+}
+
+impl From<CheckError> for JobError {
+    fn from(error: CheckError) -> Self {
+        match error {
+            CheckError::Read(error) => Self::Read(error),
+            CheckError::Faults(faults) => {
+                let part = faults.first().map(|fault| PathBuf::from(&*fault.file)).unwrap_or_default();
+                Self::Faults { part, faults }
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! What the page of a job shows.
+
+use std::io::BufRead;
+
+use super::{Job, JobError};
+use crate::gcode::Summary;
+use crate::machine::Machine;
+use crate::report::{Outcome, Report, ReportedRun, WorstPlace};
+
+impl Job {
+    /// The part as the report calls it: the file's name.
+    pub(super) fn part_name(&self) -> String {
+        self.part.file_name().unwrap_or(self.part.as_os_str()).to_string_lossy().into_owned()
+    }
+
+    /// Looks up the texts of the worst places' lines, in one pass over the program.
+    pub(super) fn fill_in_texts(&self, worst: &mut [WorstPlace]) -> Result<(), JobError> {
+        let reread = |cause| JobError::Reread { part: self.part.clone(), cause };
+        let last = worst.iter().map(|place| place.line).max().unwrap_or(0);
+        let mut file = std::io::BufReader::new(std::fs::File::open(&self.part).map_err(reread)?);
+        let mut text = Vec::new();
+        for line in 1..=last {
+            text.clear();
+            file.read_until(b'\n', &mut text).map_err(reread)?;
+            for place in worst.iter_mut().filter(|place| place.line == line) {
+                place.text = String::from_utf8_lossy(&text).trim_end().to_owned();
+            }
+        }
+        Ok(())
+    }
+
+    /// Everything that the page shows.
+    pub(super) fn report(&self, axes: usize, summary: &Summary, runs: Vec<ReportedRun>) -> Report {
+        let value = |name: &str, value: String| (name.to_owned(), value);
+        let mut settings = vec![
+            value("Compared against", self.against.name.to_owned()),
+            value("Controller", format!("{}: {}", self.controller.name, self.controller.summary)),
+            value("Source of the method", self.controller.source.to_owned()),
+            value("Axes controlled", axes.to_string()),
+            value("Program read as", format!("{}: {}", summary.dialect.0, summary.dialect.1)),
+            value("Seed", self.choices.seed.to_string()),
+        ];
+        for set in &self.choices.set {
+            settings.push(value(&format!("{}, {}", set.controller, set.name), set.value.to_string()));
+        }
+        if let Some(feed_mm_s) = self.feed_mm_s {
+            settings.push(value("Feedrate, in place of the programmed", format!("{feed_mm_s} mm/s")));
+        }
+        Report {
+            title: format!("{} on {}", self.part_name(), self.machine.name),
+            part: self.part_name(),
+            machine: describe(&self.machine),
+            settings,
+            tolerance_um: self.tolerance_um,
+            runs,
+        }
+    }
+
+    /// Whether the run that was asked for is one to be content with.
+    pub(super) fn within_tolerance(&self, report: &Report) -> bool {
+        report.runs.last().is_some_and(|run| {
+            run.summary.outcome == Outcome::Completed
+                && self.tolerance_um.is_none_or(|tolerance_um| run.summary.max_um <= tolerance_um)
+        })
+    }
+}
+
+/// The machine's values, named and with units.
+fn describe(machine: &Machine) -> Vec<(String, String)> {
+    let mut lines = vec![
+        ("Machine".to_owned(), format!("{}: {}", machine.name, machine.description)),
+        ("Source".to_owned(), machine.source.clone()),
+    ];
+    // The keys of the file carry their units; the serialisation lists all of them without a second list here.
+    let sections = [
+        ("period".to_owned(), serde_json::json!(machine.period)),
+        ("limits".to_owned(), serde_json::json!(machine.limits)),
+    ];
+    let axes =
+        ["x", "y", "z"].iter().zip(&machine.axes).map(|(name, axis)| (format!("axis.{name}"), serde_json::json!(axis)));
+    for (section, values) in sections.into_iter().chain(axes) {
+        for (key, value) in values.as_object().into_iter().flatten() {
+            lines.push((format!("{section}.{key}"), value.to_string()));
+        }
+    }
+    lines
+}

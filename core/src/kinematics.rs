@@ -1,0 +1,19 @@
+//! Kinematics: between the tool in space and the positions of the joints that servo loops move.
+//!
+//! Path, contour error and rows are of the tool in space, controllers and plant of N joints. Of a Cartesian machine the first N
+//! coordinates are the joints; a machine whose third axis the program does not need stands still in it. This file is the one
+//! place that knows: a rotary table or a robot puts its own transformation here.
+
+use crate::vector::Vector;
+
+/// Positions of the joints that bring the tool to a place, mm; also of tangents and other differences.
+#[inline]
+pub fn joints_of<const N: usize>(tool: Vector) -> [f64; N] {
+    std::array::from_fn(|joint| tool.get(joint).copied().unwrap_or(0.0))
+}
+
+/// Where the joints bring the tool, mm.
+#[inline]
+pub fn tool_of<const N: usize>(joints: [f64; N]) -> Vector {
+    std::array::from_fn(|axis| joints.get(axis).copied().unwrap_or(0.0))
+}

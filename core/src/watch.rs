@@ -1,0 +1,39 @@
+//! Who is told how long work goes on, and can end it.
+
+use thiserror::Error;
+
+/// Is told of the progress of long work, from any of its threads, and is asked whether it shall go on.
+///
+/// Work of one stage has a number of steps; it is asked at least every second of a core's time.
+pub trait Watch: Sync {
+    /// A stage of so many steps begins.
+    fn begin(&self, stage: &str, steps: u64) {
+        let _ = (stage, steps);
+    }
+
+    /// So many more steps are done.
+    fn advance(&self, steps: u64) {
+        let _ = steps;
+    }
+
+    /// Whether to end the work: nothing that is unfinished is kept.
+    fn is_cancelled(&self) -> bool {
+        false
+    }
+
+    /// Ends the work where that is asked for.
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn check(&self) -> Result<(), Cancelled> {
+        if self.is_cancelled() { Err(Cancelled) } else { Ok(()) }
+    }
+}
+
+/// Tells nobody, and goes on to the end.
+impl Watch for () {}
+
+/// The work was ended from outside.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error, miette::Diagnostic)]
+#[error("interrupted; no file was written")]
+pub struct Cancelled;
