@@ -1,10 +1,11 @@
 //! Lathe cycles G70 to G72.2: a profile, written as a subroutine, is roughed out in straight passes or finished along itself.
 //!
 //! The cycle's block calls the subroutine; `state/lathe.rs` keeps its motions instead of handing them out. `words` are those that only
-//! a profile has. When it returns, `corners` and `profile` bring it into the cycle's own coordinates, and `offset` puts a curve beside it; `pockets`
+//! a profile has. When it returns, `corners` and `profile` bring it into the cycle's own coordinates (`side`), and `offset` puts a curve beside it; `pockets`
 //! finds where it goes down, and `roughing` and `finishing` make motions of it. What LinuxCNC 2.9 does was found by trying programs on it; those that showed
 //! it are the `turning_*` of `core/tests/oracle_data`.
 
+pub(crate) mod side;
 mod corners;
 mod profile;
 mod offset;

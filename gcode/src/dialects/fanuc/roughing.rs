@@ -4,15 +4,15 @@
 //! profile; there the tool goes off at 45 degrees by R and returns in a rapid. Then it cuts along the moved profile and goes back to the start of
 //! the cycle. A profile that comes down again has pockets, which need X and Z in its first block (type II); they are cut level by level.
 //!
-//! Coordinates as in the cycles of LinuxCNC: the first grows along the passes, the second from the part to the stock's surface.
+//! Coordinates as in the cycles of LinuxCNC, `motion/lathe/side.rs`.
 
-use crate::canon::{Motion, MotionKind, Shape};
-use crate::geometry::plane::{Curve, Point, Round, SLACK_MM, add, length, minus, sweep};
+use crate::canon::{Motion, MotionKind};
+use crate::geometry::plane::{Curve, Point, SLACK_MM, add, length, minus, sweep};
 use crate::motion::feed::Speed;
 use crate::motion::lathe::pockets::{falls, falls_through, first_at, parted_at_tops};
+use crate::motion::lathe::side::{Side, clear};
 use crate::state::Interpreter;
 use crate::state::capture::{Capture, ProfileWork};
-use crate::state::frame::Position;
 use crate::text::codes::{bit, spelled};
 use crate::text::diagnostic::{Fault, Read};
 
@@ -20,50 +20,11 @@ use crate::text::diagnostic::{Fault, Read};
 const MOST_PASSES: f64 = 10_000.0;
 /// A profile comes down, or turns back, where it does so by more, mm: coordinates of three decimals turn the ends of arcs by as little.
 const LEAST_TURN_MM: f64 = 1e-3;
-/// An arc that ends closer to its start, mm, would be read as a full turn.
-const SHORT_ARC_MM: f64 = 1e-7;
-/// The cycle's plane: which axes, and which way.
-#[derive(Debug, Clone, Copy)]
-struct PassPlane {
-    axes: [usize; 2],
-    signs: [f64; 2],
-}
-
-impl PassPlane {
-    pub(super) fn of(self, point: [f64; 3]) -> Point {
-        std::array::from_fn(|n| self.signs[n] * point[self.axes[n]])
-    }
-
-    fn position(self, point: Point, like: &Position) -> Position {
-        let mut position = *like;
-        for n in 0..2 {
-            position[self.axes[n]] = self.signs[n] * point[n];
-        }
-        position
-    }
-
-    /// Whether an arc that turns left here turns counter-clockwise in G18.
-    pub(super) fn turns(self, turn: f64) -> f64 {
-        let exchanged = if self.axes == [2, 0] { 1.0 } else { -1.0 };
-        turn * exchanged * self.signs[0] * self.signs[1]
-    }
-
-    fn curve(self, motion: &Motion, shift: Point) -> Curve {
-        let [start, end] = [motion.start_mm, motion.end_mm].map(|point| add(self.of(point), shift));
-        match &motion.shape {
-            Shape::Arc { center_mm, turns, .. } => {
-                let center = add(self.of(*center_mm), shift);
-                Curve::Arc { start, end, center, turn: self.turns(f64::from(turns.signum())) }
-            }
-            _ => Curve::Line { start, end },
-        }
-    }
-}
 
 /// A cycle with its profile, moved by the allowance.
 struct Roughing<'a> {
     capture: &'a Capture,
-    side: PassPlane,
+    side: Side,
     /// Start of the passes.
     start: Point,
     curves: Vec<Curve>,
@@ -81,17 +42,15 @@ impl<'a> Roughing<'a> {
         let axes = if is_facing { [0, 2] } else { [2, 0] };
         let (entry, rest) =
             capture.motions.split_first().ok_or_else(|| capture.refuse(capture.wanted.line, "it is empty"))?;
-        let clear = |way: f64| (way.abs() > SLACK_MM).then(|| way.signum());
         let along = |motion: &Motion, n: usize| clear(motion.end_mm[axes[n]] - motion.start_mm[axes[n]]);
         let start_mm = [capture.wanted.start[0], capture.wanted.start[1], capture.wanted.start[2]];
         let last = rest.last().unwrap_or(entry);
         let infeed = clear(start_mm[axes[1]] - entry.end_mm[axes[1]]);
         let outward = infeed.or_else(|| clear(last.end_mm[axes[1]] - entry.end_mm[axes[1]])).unwrap_or(1.0);
-        let side =
-            PassPlane { axes, signs: [rest.iter().find_map(|motion| along(motion, 0)).unwrap_or(-1.0), outward] };
+        let side = Side { axes, signs: [rest.iter().find_map(|motion| along(motion, 0)).unwrap_or(-1.0), outward] };
         let by_axis = [allowance_mm[0], 0.0, allowance_mm[1]];
         let shift = side.of(by_axis);
-        let curves: Vec<Curve> = rest.iter().map(|motion| side.curve(motion, shift)).collect();
+        let curves: Vec<Curve> = rest.iter().map(|motion| side.curve(motion).moved(shift)).collect();
         let roughing = Self {
             capture,
             side,
@@ -113,7 +72,7 @@ impl<'a> Roughing<'a> {
             .iter()
             .all(|words| self.capture.first_words & (bit(words[0]) | bit(words[1])) != 0);
         for motion in motions {
-            let curve = self.side.curve(motion, shift);
+            let curve = self.side.curve(motion).moved(shift);
             if goes_back_mm(&curve) > LEAST_TURN_MM {
                 let message = format!("{name} turns back: an undercut cannot be reached by passes along {name}");
                 return Err(self
@@ -283,20 +242,11 @@ impl Interpreter {
 
     fn rough_line(&mut self, roughing: &Roughing<'_>, point: Point, speed: Speed) -> Read<()> {
         let wanted = &roughing.capture.wanted;
-        self.line_to(&wanted.block, roughing.side.position(point, &wanted.start), speed, 0.0)
+        self.pass_line(&wanted.block, &wanted.start, roughing.side, point, speed)
     }
 
     fn rough_curve_of(&mut self, roughing: &Roughing<'_>, curve: &Curve) -> Read<()> {
-        match *curve {
-            Curve::Arc { start, end, center, turn } if length(minus(end, start)) > SHORT_ARC_MM => {
-                let like = &roughing.capture.wanted.start;
-                let [middle, target] =
-                    [center, end].map(|point| self.frame.to_program(&roughing.side.position(point, like)));
-                let turns = if roughing.side.turns(turn) > 0.0 { 1 } else { -1 };
-                let round = Round { center: [middle[2], middle[0]], turns };
-                self.arc_to(&roughing.capture.wanted.block, &target, round, 0.0)
-            }
-            Curve::Line { end, .. } | Curve::Arc { end, .. } => self.rough_line(roughing, end, Speed::Programmed),
-        }
+        let wanted = &roughing.capture.wanted;
+        self.pass_curve(&wanted.block, &wanted.start, roughing.side, curve)
     }
 }

@@ -1,26 +1,15 @@
 //! The profile in the cycle's own plane.
 //!
-//! Coordinates: the first grows along the passes, the second grows from the finished part to the stock's surface. A profile runs towards a
-//! growing first coordinate, so the stock lies on its left.
+//! Coordinates as in `side`. A profile runs towards a growing first coordinate, so the stock lies on its left.
 
-use crate::canon::{Motion, Shape};
-use crate::geometry::plane::{Curve, Point, Round, SLACK_MM, length, minus, sweep};
+use crate::canon::Motion;
+use crate::geometry::plane::{Curve, Point, SLACK_MM, sweep};
 use crate::motion::feed::Speed;
+use crate::motion::lathe::side::{Side, clear};
 use crate::state::Interpreter;
-use crate::state::frame::Position;
 use crate::state::lathe::Lathe;
 use crate::text::codes::spelled;
 use crate::text::diagnostic::{Fault, Read};
-
-/// An arc that ends closer to its start, mm, would be read as a full turn (8e-9) or nearly.
-const SHORT_ARC_MM: f64 = 1e-7;
-/// The cycle's plane: which axes, and which way.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Side {
-    /// Axis along the passes, and of their depth.
-    axes: [usize; 2],
-    signs: [f64; 2],
-}
 
 /// Start of the cycle, end of the entry, and the curves behind it.
 #[derive(Debug, Clone)]
@@ -28,37 +17,6 @@ pub(super) struct Profile {
     pub(super) side: Side,
     pub(super) start: Point,
     pub(super) curves: Vec<Curve>,
-}
-
-impl Side {
-    pub(super) fn of(self, point: [f64; 3]) -> Point {
-        std::array::from_fn(|n| self.signs[n] * point[self.axes[n]])
-    }
-
-    /// The machine position of a point; the other axes stay.
-    pub(super) fn position(self, point: Point, like: &Position) -> Position {
-        let mut position = *like;
-        for n in 0..2 {
-            position[self.axes[n]] = self.signs[n] * point[n];
-        }
-        position
-    }
-
-    /// Whether an arc that turns left here turns counter-clockwise in G18 (Z, then X).
-    pub(super) fn turns(self, turn: f64) -> f64 {
-        let exchanged = if self.axes == [2, 0] { 1.0 } else { -1.0 };
-        turn * exchanged * self.signs[0] * self.signs[1]
-    }
-
-    fn curve(self, motion: &Motion) -> Curve {
-        let (start, end) = (self.of(motion.start_mm), self.of(motion.end_mm));
-        match &motion.shape {
-            Shape::Arc { center_mm, turns, .. } => {
-                Curve::Arc { start, end, center: self.of(*center_mm), turn: self.turns(f64::from(*turns)) }
-            }
-            _ => Curve::Line { start, end },
-        }
-    }
 }
 
 impl Profile {
@@ -108,11 +66,6 @@ impl Profile {
     pub(super) fn entry(&self) -> Point {
         self.curves.first().map_or(self.start, Curve::start)
     }
-}
-
-/// Which way a distance goes, if it is one.
-pub(super) fn clear(way: f64) -> Option<f64> {
-    (way.abs() > SLACK_MM).then(|| way.signum())
 }
 
 /// Whether a curve goes against the passes anywhere.
@@ -166,28 +119,17 @@ impl Lathe {
 impl Interpreter {
     /// Moves straight to a point of the cycle's plane.
     pub(super) fn lathe_line(&mut self, lathe: &Lathe, side: Side, point: Point, speed: Speed) -> Read<()> {
-        let target = side.position(point, &lathe.start);
-        self.line_to(&lathe.block, target, speed, 0.0)
+        self.pass_line(&lathe.block, &lathe.start, side, point, speed)
+    }
+
+    /// Cuts along a curve.
+    pub(super) fn lathe_curve(&mut self, lathe: &Lathe, side: Side, curve: &Curve) -> Read<()> {
+        self.pass_curve(&lathe.block, &lathe.start, side, curve)
     }
 
     /// Cuts along curves.
     pub(super) fn lathe_cut(&mut self, lathe: &Lathe, profile: &Profile) -> Read<()> {
         profile.curves.iter().try_for_each(|curve| self.lathe_curve(lathe, profile.side, curve))
-    }
-
-    /// Cuts along a curve.
-    pub(super) fn lathe_curve(&mut self, lathe: &Lathe, side: Side, curve: &Curve) -> Read<()> {
-        match *curve {
-            // A piece of an arc too short to be told from a full circle is as straight as it is short.
-            Curve::Arc { start, end, center, turn } if length(minus(end, start)) > SHORT_ARC_MM => {
-                let middle = self.frame.to_program(&side.position(center, &lathe.start));
-                let target = self.frame.to_program(&side.position(end, &lathe.start));
-                let turns = if side.turns(turn) > 0.0 { 1 } else { -1 };
-                let round = Round { center: [middle[2], middle[0]], turns };
-                self.arc_to(&lathe.block, &target, round, 0.0)
-            }
-            Curve::Line { end, .. } | Curve::Arc { end, .. } => self.lathe_line(lathe, side, end, Speed::Programmed),
-        }
     }
 
     /// Whether the entry of the profile is a rapid: into the cut it is, along the surface it is not.
