@@ -1,6 +1,5 @@
 //! The identification programme, cut: laps of circles under a controller that disturbs the command and records.
 
-use crate::vector::add_scaled;
 use feedwright_control::controller::{Command, Controller, Measured, Schedule};
 use feedwright_control::window::Window;
 use rand::RngExt;
@@ -10,6 +9,7 @@ use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shap
 use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::simulate::simulate;
+use crate::vector::add_scaled;
 
 /// Every third lap runs undisturbed: the network sees the plain circle as well.
 const UNDISTURBED_EVERY: u32 = 3;
