@@ -61,9 +61,8 @@ impl Tuned {
 
     /// The values as they are set.
     pub fn settings(&self, entry: &'static Entry) -> Vec<Setting> {
-        let named = |name: &str| entry.parameters.iter().find(|parameter| parameter.name == name);
         let setting = |(name, value): &(String, f64)| {
-            Some(Setting { controller: entry.name, name: named(name)?.name, value: *value })
+            Some(Setting { controller: entry.name, name: entry.parameter(name)?.name, value: *value })
         };
         self.values.iter().filter_map(setting).collect()
     }
@@ -133,9 +132,9 @@ impl Trial<'_> {
             }
             step *= 0.5;
         }
-        let values = self.values(&best.place);
-        let rms_um = self.cut(&values)?.statistics.rms_um();
-        let values = parameters.iter().zip(values).map(|((p, _), value)| (p.name.to_owned(), value)).collect();
+        let settings = self.settings(&best.place);
+        let rms_um = self.cut(&settings)?.statistics.rms_um();
+        let values = settings.iter().map(|setting| (setting.name.to_owned(), setting.value)).collect();
         Ok(Tuned { controller: self.entry.name.to_owned(), values, cuts, rms_um })
     }
 
@@ -144,25 +143,27 @@ impl Trial<'_> {
     }
 
     fn cost(&self, place: &[f64]) -> Result<f64, LimitsError> {
-        let cut = self.cut(&self.values(place))?;
+        let cut = self.cut(&self.settings(place))?;
         let longer = (cut.run.time_s / self.open_time_s - 1.0).max(0.0);
         Ok(if cut.is_sound() { cut.statistics.rms_um() * (1.0 + TIME_PRICE * longer) } else { f64::INFINITY })
     }
 
-    fn cut(&self, values: &[f64]) -> Result<Cut, LimitsError> {
-        let setting = |((p, _), value): ((&'static Parameter, _), &f64)| Setting {
-            controller: self.entry.name,
-            name: p.name,
-            value: *value,
-        };
-        let choices = Choices { seed: self.seed, set: self.entry.searched().zip(values).map(setting).collect() };
+    fn cut(&self, settings: &[Setting]) -> Result<Cut, LimitsError> {
+        let choices = Choices { seed: self.seed, set: settings.to_vec() };
         let mut setup = Setup { machine: self.machine, choices: &choices, progress: &mut |_| {} };
         let mut controller = Make::<2>::make(self.entry, &mut setup);
         cut(self.workpiece, self.machine, &mut *controller, self.entry.laps, &mut [])
     }
 
-    fn values(&self, place: &[f64]) -> Vec<f64> {
-        self.entry.searched().zip(place).map(|((_, range), &at)| value_at(range, at)).collect()
+    /// The values of the parameters that are searched, at a point of the unit cube.
+    fn settings(&self, place: &[f64]) -> Vec<Setting> {
+        let controller = self.entry.name;
+        let setting = |((parameter, range), &at): ((&'static Parameter, _), &f64)| Setting {
+            controller,
+            name: parameter.name,
+            value: value_at(range, at),
+        };
+        self.entry.searched().zip(place).map(setting).collect()
     }
 }
 
@@ -239,17 +240,16 @@ mod tests {
         let workpiece = Workpiece::contours().into_iter().find(|w| w.name == TUNING_CONTOUR).unwrap();
         // Its defaults take a third longer than open loop, which the search may not.
         let entry = Entry::find("fuzzy-feedrate").unwrap();
-        let cut = |entry: &'static Entry, values: &[f64]| {
+        let cut = |entry: &'static Entry, settings: &[Setting]| {
             let trial = Trial { entry, machine: &machine, workpiece: &workpiece, seed: 1, open_time_s: f64::INFINITY };
-            let cut = trial.cut(values).unwrap();
+            let cut = trial.cut(settings).unwrap();
             (cut.statistics.rms_um(), cut.run.time_s)
         };
         let (open_um, open_s) = cut(Entry::find(BASELINE).unwrap(), &[]);
         let cost = |(rms_um, time_s): (f64, f64)| rms_um * (1.0 + 10.0 * (time_s / open_s - 1.0).max(0.0));
-        let values = |tuned: &Tuned| tuned.values.iter().map(|(_, value)| *value).collect::<Vec<f64>>();
-        let defaults = cost(cut(entry, &values(&Tuned::defaults(entry))));
+        let defaults = cost(cut(entry, &Tuned::defaults(entry).settings(entry)));
         let tuned = search(entry, &machine, 1).unwrap();
-        let found = cut(entry, &values(&tuned));
+        let found = cut(entry, &tuned.settings(entry));
         assert!(cost(found) < defaults, "{} of {defaults}: {tuned:?}", cost(found));
         assert!(cost(found) <= open_um * (1.0 + 1e-9), "{} of {open_um}: {tuned:?}", cost(found));
         assert_eq!(tuned.rms_um, found.0, "{tuned:?}");
