@@ -6,6 +6,7 @@
 //! The modules stand in the order in which data flows; each uses only those above it.
 
 mod vector;
+pub mod number;
 pub mod machine;
 pub use feedwright_gcode as gcode;
 pub mod plc;

@@ -11,6 +11,7 @@ use crate::feed::LimitsError;
 use crate::gcode::canon::{Canon, MotionKind};
 use crate::gcode::{self, CheckError, ReadError, Reader, Summary};
 use crate::machine::Machine;
+use crate::number::shown;
 use crate::output::OutputError;
 use crate::path::PathError;
 use crate::report::{Report, Run, WorstPlace};
@@ -145,12 +146,6 @@ pub enum Error {
         /// What the system says.
         cause: std::io::Error,
     },
-}
-
-/// A number for people: with an exponent where it would be a row of zeros.
-fn shown(value: f64) -> String {
-    let plain = value == 0.0 || !value.is_finite() || (1e-5..1e9).contains(&value.abs());
-    if plain { value.to_string() } else { format!("{value:e}") }
 }
 
 impl Job {
