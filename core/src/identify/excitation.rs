@@ -5,7 +5,7 @@ use feedwright_control::window::Window;
 use rand::RngExt;
 
 use super::{Programme, Rng};
-use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::simulate::simulate;
@@ -73,7 +73,7 @@ fn circle<const N: usize>(programme: &Programme, lap: u32, rng: &mut Rng) -> Mot
         shape: Shape::Arc { plane, center_mm, turns: programme.turns[lap_index % programme.turns.len()] },
         feed_mm_s: rng.random_range(slow..=fast),
         corner: Corner::ExactStop,
-        others: Others::default(),
+        others: AuxiliaryAxes::default(),
     }
 }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::flow::program::{Flow, Found, cannot_read};
 use crate::text::diagnostic::Read;
 use crate::text::lexer::Cursor;
-use crate::text::source::{Line, Mark};
+use crate::text::source::{Mark, SourceLine};
 
 /// Places that are remembered; a program that jumps to more begins anew.
 const MOST_PLACES: usize = 100_000;
@@ -40,9 +40,9 @@ impl Flow {
         let mut found = Found::default();
         loop {
             let range = match source.next_line()? {
-                Line::End => return Ok(found),
-                Line::TooLong(_) => continue,
-                Line::Text(range) => range,
+                SourceLine::End => return Ok(found),
+                SourceLine::TooLong(_) => continue,
+                SourceLine::Text(range) => range,
             };
             let begin = source.line_start;
             match Label::of(source.bytes(range)) {

@@ -6,7 +6,7 @@ use crate::flow::owords::{
 use crate::flow::program::{Flow, Manner, Purpose};
 use crate::flow::statements::ends_loop;
 use crate::state::Interpreter;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 use crate::text::expression::Evaluator;
 use crate::text::lexer::Cursor;
 
@@ -92,7 +92,7 @@ impl Flow {
         let head = Head { label, keyword, at: start..evaluator.cursor.at };
         if head.label != skip.label {
             if skip.purpose == Purpose::Definition && head.keyword == Keyword::Sub {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::o_word",
                     head.at,
                     format!("a subroutine is defined inside {}", shown(&skip.label)),

@@ -2,7 +2,7 @@
 
 use crate::flow::owords::{Arguments, Head, Keyword};
 use crate::flow::program::{Flow, Loop, Manner, Purpose, Skip, cannot_read};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 use crate::text::source::Mark;
 
 /// Labels of branches and loops that are remembered, far more than anybody writes by hand; what comes then is not checked.
@@ -23,14 +23,14 @@ impl Flow {
             Keyword::Number | Keyword::EndIf | Keyword::Call | Keyword::Return | Keyword::EndSub => {}
             Keyword::Sub => {
                 if self.frames.last().is_some_and(|frame| frame.manner == Manner::Fanuc && frame.label == head.label) {
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::o_word",
                         head.at.clone(),
                         "a subroutine with `sub` is called by `call`, not by M98",
                     ));
                 }
                 if !self.frames.is_empty() {
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::o_word",
                         head.at.clone(),
                         "a subroutine is defined inside a subroutine",
@@ -91,7 +91,7 @@ impl Flow {
             self.loops.truncate(base + old);
         }
         if self.loops.len() >= base + self.max_depth {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::depth",
                 head.at.clone(),
                 format!("more than {} loops inside each other", self.max_depth),
@@ -108,7 +108,7 @@ impl Flow {
         let base = self.frames.last().map_or(0, |frame| frame.loops);
         let Some(found) = self.loops[base..].iter().rposition(|turn| turn.label == head.label) else {
             let message = format!("{}: no loop {} is under way here", head.keyword.spelled(), head.shown());
-            return Err(Fault::new("gcode::o_word", head.at.clone(), message));
+            return Err(LineFault::new("gcode::o_word", head.at.clone(), message));
         };
         self.loops.truncate(base + found + 1);
         Ok(&mut self.loops[base + found])
@@ -126,7 +126,7 @@ impl Flow {
         match self.labels.get(&self.key) {
             Some(&other) if other != line => {
                 let message = format!("the label {} is that of line {other} already", head.shown());
-                Err(Fault::new("gcode::o_word", head.at.clone(), message)
+                Err(LineFault::new("gcode::o_word", head.at.clone(), message)
                     .hint("give every subroutine, branch and loop a number of its own"))
             }
             Some(_) => Ok(()),
@@ -146,7 +146,7 @@ impl Flow {
             return Ok(());
         }
         let message = format!("{}: no `{} if` stands before it", head.keyword.spelled(), head.shown());
-        Err(Fault::new("gcode::o_word", head.at.clone(), message))
+        Err(LineFault::new("gcode::o_word", head.at.clone(), message))
     }
 
     fn label_key(&mut self, head: &Head) {
@@ -188,7 +188,7 @@ impl Flow {
         if turn.kind != ends {
             let (end, kind) = (head.keyword.spelled(), turn.kind.spelled());
             let message = format!("{end} ends no `{} {kind}`", head.shown());
-            return Err(Fault::new("gcode::o_word", head.at.clone(), message));
+            return Err(LineFault::new("gcode::o_word", head.at.clone(), message));
         }
         match turn.kind {
             Keyword::Repeat => {

@@ -18,7 +18,7 @@ use crate::state::frame::Position;
 use crate::state::modal::INCH_MM;
 use crate::text::block::Block;
 use crate::text::codes::{bit, letter, slot as slot_of};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Difference of the radii that is always accepted, mm and inch.
 const RADIUS_SLACK: [f64; 2] = [0.02 * std::f64::consts::SQRT_2, 0.002 * std::f64::consts::SQRT_2];
@@ -41,9 +41,9 @@ impl Interpreter {
     pub(crate) fn arc(&mut self, block: &Block, counter_clockwise: bool) -> Read<()> {
         let extruder_mm = self.extruder_word(block);
         let target = self.target(block)?;
-        if std::mem::take(&mut self.waiting.left_compensation) {
+        if std::mem::take(&mut self.carried.left_compensation) {
             let message = "the first motion behind G40 must be straight, not an arc";
-            return Err(Fault::new("gcode::compensation", block.whole(), message)
+            return Err(LineFault::new("gcode::compensation", block.whole(), message)
                 .hint("the tool stands beside the contour: lead it away with G1 or G0 first"));
         }
         let round = match self.round(block, &target, counter_clockwise) {
@@ -124,7 +124,7 @@ impl Interpreter {
         let offsets = bit(b'i') | bit(b'j') | bit(b'k');
         let center = if block.has(b'r') {
             if block.set & offsets != 0 {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::arc_format",
                     block.at_any(offsets),
                     "an arc has a radius R or a centre I J K, not both",
@@ -139,14 +139,16 @@ impl Interpreter {
                     (letter(slot_of(CENTER_LETTERS[normal])), ["G19 (YZ)", "G18 (ZX)", "G17 (XY)"][normal]);
                 let [one, two] = [first, second].map(|axis| letter(slot_of(CENTER_LETTERS[axis])));
                 let message = format!("{wrong} lies outside the arc's plane {plane}");
-                return Err(Fault::new("gcode::arc_plane", block.at(CENTER_LETTERS[normal]), message).hint(format!(
-                    "the centre of this plane is {} and {}, or choose another plane",
-                    one.min(two),
-                    one.max(two)
-                )));
+                return Err(LineFault::new("gcode::arc_plane", block.at(CENTER_LETTERS[normal]), message).hint(
+                    format!(
+                        "the centre of this plane is {} and {}, or choose another plane",
+                        one.min(two),
+                        one.max(two)
+                    ),
+                ));
             }
             if block.set & offsets == 0 {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::arc_format",
                     block.whole(),
                     "the arc has neither a radius R nor a centre I J K",
@@ -172,7 +174,7 @@ impl Interpreter {
                 None if self.modal.arc_absolute => {
                     let message =
                         format!("{} is missing: with G90.1 the centre needs both coordinates", letter(slot_of(name)));
-                    return Err(Fault::new("gcode::arc_format", block.whole(), message));
+                    return Err(LineFault::new("gcode::arc_format", block.whole(), message));
                 }
                 None => {}
             }
@@ -188,7 +190,7 @@ impl Interpreter {
             } else {
                 format!("the arc's radius is {least:.6} mm; the limit is {LEAST_RADIUS_MM} mm")
             };
-            return Err(Fault::new("gcode::arc_radius", block.whole(), message));
+            return Err(LineFault::new("gcode::arc_radius", block.whole(), message));
         }
         if difference > self.slack(RADIUS_SLACK_MOST)
             || (difference > self.slack(RADIUS_SLACK) && difference > RADIUS_SLACK_SHARE * largest)
@@ -197,7 +199,7 @@ impl Interpreter {
             let message = format!(
                 "the arc does not close: its radius is {at_start:.6} mm at the start and {at_end:.6} mm at the end, {difference:.6} mm apart; the limit is {limit:.6} mm"
             );
-            let fault = Fault::new("gcode::arc_radius", block.whole(), message);
+            let fault = LineFault::new("gcode::arc_radius", block.whole(), message);
             return Err(if self.modal.arc_absolute {
                 fault.hint("G90.1 is active: I J K are the centre itself, not its distance from the start")
             } else {
@@ -217,7 +219,7 @@ impl Interpreter {
         let chord = [target[first] - self.at[first], target[second] - self.at[second]];
         let length = chord[0].hypot(chord[1]);
         if length == 0.0 {
-            return Err(Fault::new("gcode::arc_radius", at, "an arc with R must end elsewhere than it starts")
+            return Err(LineFault::new("gcode::arc_radius", at, "an arc with R must end elsewhere than it starts")
                 .hint("write a full circle with I J K"));
         }
         let half = 0.5 * length;
@@ -226,7 +228,7 @@ impl Interpreter {
                 "R = {:.6} mm is too small to reach the end: it must be at least half the distance, {half:.6} mm",
                 radius.abs()
             );
-            return Err(Fault::new("gcode::arc_radius", at, message));
+            return Err(LineFault::new("gcode::arc_radius", at, message));
         }
         let height = (radius * radius - half * half).max(0.0).sqrt();
         // Left of the chord for a counter-clockwise arc of up to half a circle; a negative R is the longer way round.

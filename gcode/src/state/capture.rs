@@ -6,7 +6,7 @@ use crate::state::frame::Position;
 use crate::state::modal::Modal;
 use crate::text::block::Block;
 use crate::text::codes::spelled;
-use crate::text::diagnostic::Fault;
+use crate::text::diagnostic::LineFault;
 use crate::text::source::Mark;
 
 /// Motions of a profile: they are kept in memory, and a drawing has far fewer.
@@ -82,10 +82,10 @@ impl Capture {
     }
 
     /// Refuses the profile; `line` is that of the block that does not fit.
-    pub(crate) fn refuse(&self, line: u32, message: &str) -> Box<Fault> {
+    pub(crate) fn refuse(&self, line: u32, message: &str) -> Box<LineFault> {
         let place = if line == self.wanted.line { String::new() } else { format!("line {line}: ") };
         let message = format!("the profile of {} cannot be cut: {place}{message}", spelled(self.wanted.code));
-        Fault::new("gcode::lathe", self.wanted.block.at(b'p'), message)
+        LineFault::new("gcode::lathe", self.wanted.block.at(b'p'), message)
     }
 }
 

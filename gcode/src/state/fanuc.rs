@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use crate::geometry::plane::Round;
 use crate::state::capture::{Capture, ProfileBlocks};
+use crate::state::carried_over::Pecks;
 use crate::state::frame::Position;
-use crate::state::waiting::Pecks;
 use crate::text::block::Block;
 use crate::text::block::corner::CornerWord;
 

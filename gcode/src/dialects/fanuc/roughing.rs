@@ -4,17 +4,17 @@
 //! profile; there the tool goes off at 45 degrees by R and returns in a rapid. Then it cuts along the moved profile and goes back to the start of
 //! the cycle. A profile that comes down again has pockets, which need X and Z in its first block (type II); they are cut level by level.
 //!
-//! Coordinates as in the cycles of LinuxCNC, `motion/lathe/side.rs`.
+//! Coordinates as in the cycles of LinuxCNC, `motion/lathe/cycle_plane.rs`.
 
 use crate::canon::{Motion, MotionKind};
-use crate::geometry::plane::{Curve, Point, SLACK_MM, add, length, minus, sweep};
+use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM, add, length, minus, sweep};
 use crate::motion::feed::Speed;
+use crate::motion::lathe::cycle_plane::{CyclePlane, clear};
 use crate::motion::lathe::pockets::{falls, falls_through, first_at, parted_at_tops};
-use crate::motion::lathe::side::{Side, clear};
 use crate::state::Interpreter;
 use crate::state::capture::{Capture, ProfileWork};
 use crate::text::codes::{bit, spelled};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Passes of one cycle: more is a mistake in the depth of a pass.
 const MOST_PASSES: f64 = 10_000.0;
@@ -24,10 +24,10 @@ const LEAST_TURN_MM: f64 = 1e-3;
 /// A cycle with its profile, moved by the allowance.
 struct Roughing<'a> {
     capture: &'a Capture,
-    side: Side,
+    plane: CyclePlane,
     /// Start of the passes.
-    start: Point,
-    curves: Vec<Curve>,
+    start: PlanePoint,
+    curves: Vec<PlaneCurve>,
     depth_mm: f64,
     escape_mm: f64,
     /// How the first block of the profile moves.
@@ -47,14 +47,15 @@ impl<'a> Roughing<'a> {
         let last = rest.last().unwrap_or(entry);
         let infeed = clear(start_mm[axes[1]] - entry.end_mm[axes[1]]);
         let outward = infeed.or_else(|| clear(last.end_mm[axes[1]] - entry.end_mm[axes[1]])).unwrap_or(1.0);
-        let side = Side { axes, signs: [rest.iter().find_map(|motion| along(motion, 0)).unwrap_or(-1.0), outward] };
+        let plane =
+            CyclePlane { axes, signs: [rest.iter().find_map(|motion| along(motion, 0)).unwrap_or(-1.0), outward] };
         let by_axis = [allowance_mm[0], 0.0, allowance_mm[1]];
-        let shift = side.of(by_axis);
-        let curves: Vec<Curve> = rest.iter().map(|motion| side.curve(motion).moved(shift)).collect();
+        let shift = plane.of(by_axis);
+        let curves: Vec<PlaneCurve> = rest.iter().map(|motion| plane.curve(motion).moved(shift)).collect();
         let roughing = Self {
             capture,
-            side,
-            start: add(side.of(start_mm), shift),
+            plane,
+            start: add(plane.of(start_mm), shift),
             curves: parted_at_tops(curves),
             depth_mm,
             escape_mm,
@@ -65,14 +66,14 @@ impl<'a> Roughing<'a> {
     }
 
     /// What no pass of this kind can cut.
-    fn check(&self, motions: &[Motion], shift: Point) -> Read<()> {
-        let name = ["X", "Y", "Z"][self.side.axes[0]];
-        let depth = ["X", "Y", "Z"][self.side.axes[1]];
+    fn check(&self, motions: &[Motion], shift: PlanePoint) -> Read<()> {
+        let name = ["X", "Y", "Z"][self.plane.axes[0]];
+        let depth = ["X", "Y", "Z"][self.plane.axes[1]];
         let has_pockets = [[b'x', b'u'], [b'z', b'w']]
             .iter()
             .all(|words| self.capture.first_words & (bit(words[0]) | bit(words[1])) != 0);
         for motion in motions {
-            let curve = self.side.curve(motion).moved(shift);
+            let curve = self.plane.curve(motion).moved(shift);
             if goes_back_mm(&curve) > LEAST_TURN_MM {
                 let message = format!("{name} turns back: an undercut cannot be reached by passes along {name}");
                 return Err(self
@@ -97,8 +98,8 @@ impl<'a> Roughing<'a> {
         Ok(())
     }
 
-    pub(super) fn entry(&self) -> Point {
-        self.curves.first().map_or(self.start, Curve::start)
+    pub(super) fn entry(&self) -> PlanePoint {
+        self.curves.first().map_or(self.start, PlaneCurve::start)
     }
 
     fn lowest(&self) -> f64 {
@@ -137,9 +138,9 @@ impl<'a> Roughing<'a> {
 }
 
 /// The lowest point of a curve.
-fn lowest_of(curve: &Curve) -> f64 {
+fn lowest_of(curve: &PlaneCurve) -> f64 {
     match *curve {
-        Curve::Arc { start, end, center, turn } if turn > 0.0 && start[0] < center[0] && end[0] > center[0] => {
+        PlaneCurve::Arc { start, end, center, turn } if turn > 0.0 && start[0] < center[0] && end[0] > center[0] => {
             center[1] - length(minus(start, center))
         }
         _ => curve.end()[1],
@@ -147,9 +148,9 @@ fn lowest_of(curve: &Curve) -> f64 {
 }
 
 /// How far a curve goes back along the passes.
-fn goes_back_mm(curve: &Curve) -> f64 {
+fn goes_back_mm(curve: &PlaneCurve) -> f64 {
     let straight = (curve.start()[0] - curve.end()[0]).max(0.0);
-    let Curve::Arc { start, end, center, turn } = *curve else { return straight };
+    let PlaneCurve::Arc { start, end, center, turn } = *curve else { return straight };
     // Both ends of a half circle may lie a little beyond it, and no more.
     if sweep(start, end, center, turn) > 1.1 * std::f64::consts::PI {
         return f64::INFINITY;
@@ -161,7 +162,7 @@ fn goes_back_mm(curve: &Curve) -> f64 {
 }
 
 /// Whether a curve goes down anywhere.
-fn comes_down(curve: &Curve) -> bool {
+fn comes_down(curve: &PlaneCurve) -> bool {
     parted_at_tops(vec![*curve]).iter().any(|part| part.start()[1] - lowest_of(part) > LEAST_TURN_MM)
 }
 
@@ -174,7 +175,7 @@ impl Interpreter {
         if passes > MOST_PASSES {
             let message =
                 format!("the depth of a pass of {depth} mm makes {passes} passes; the limit is {MOST_PASSES}");
-            return Err(Fault::new("gcode::lathe", capture.wanted.block.at(b'p'), message)
+            return Err(LineFault::new("gcode::lathe", capture.wanted.block.at(b'p'), message)
                 .hint("make the depth of a pass larger"));
         }
         self.rough_line(&roughing, start, Speed::Rapid)?;
@@ -183,14 +184,14 @@ impl Interpreter {
             self.rough_level(&roughing, start[1] - pass * depth)?;
             pass += 1.0;
         }
-        let here = roughing.side.of([self.here[0], self.here[1], self.here[2]]);
+        let here = roughing.plane.of([self.here[0], self.here[1], self.here[2]]);
         self.rough_line(&roughing, [here[0], start[1]], Speed::Rapid)?;
         self.rough_line(&roughing, roughing.entry(), roughing.infeed)?;
         for curve in &roughing.curves {
             self.rough_curve_of(&roughing, curve)?;
         }
         if roughing.curves.iter().any(comes_down) {
-            let end = roughing.curves.last().map_or(start, Curve::end);
+            let end = roughing.curves.last().map_or(start, PlaneCurve::end);
             self.rough_line(&roughing, [end[0], start[1].max(end[1])], Speed::Rapid)?;
         }
         self.line_to(&capture.wanted.block, capture.wanted.start, Speed::Rapid, 0.0)
@@ -204,7 +205,7 @@ impl Interpreter {
             if from_start {
                 self.rough_line(roughing, [start[0], level], roughing.infeed)?;
             } else {
-                let here = roughing.side.of([self.here[0], self.here[1], self.here[2]]);
+                let here = roughing.plane.of([self.here[0], self.here[1], self.here[2]]);
                 self.rough_line(roughing, [here[0], start[1]], Speed::Rapid)?;
                 self.rough_line(roughing, [begin, start[1]], Speed::Rapid)?;
                 self.rough_line(roughing, [begin, (level + roughing.depth_mm).min(start[1])], Speed::Rapid)?;
@@ -225,28 +226,28 @@ impl Interpreter {
 
     fn warn_of_allowance(&mut self, roughing: &Roughing<'_>) {
         let ProfileWork::Rough { allowance_mm, .. } = roughing.capture.wanted.work else { return };
-        let shift = roughing.side.of([allowance_mm[0], 0.0, allowance_mm[1]]);
+        let shift = roughing.plane.of([allowance_mm[0], 0.0, allowance_mm[1]]);
         let (letter, block) = match shift {
-            [along, _] if along > SLACK_MM => (roughing.side.axes[0], &roughing.capture.wanted.block),
-            [_, out] if out < -SLACK_MM => (roughing.side.axes[1], &roughing.capture.wanted.block),
+            [along, _] if along > SLACK_MM => (roughing.plane.axes[0], &roughing.capture.wanted.block),
+            [_, out] if out < -SLACK_MM => (roughing.plane.axes[1], &roughing.capture.wanted.block),
             _ => return,
         };
         let letter = if letter == 0 { b'u' } else { b'w' };
         let name = char::from(letter).to_ascii_uppercase();
         let message = format!("{name} of {} moves the profile into the part", spelled(roughing.capture.wanted.code));
         self.output.warnings.push(
-            *Fault::new("gcode::lathe", block.at(letter), message)
+            *LineFault::new("gcode::lathe", block.at(letter), message)
                 .hint("the allowance is left standing with the other sign"),
         );
     }
 
-    fn rough_line(&mut self, roughing: &Roughing<'_>, point: Point, speed: Speed) -> Read<()> {
+    fn rough_line(&mut self, roughing: &Roughing<'_>, point: PlanePoint, speed: Speed) -> Read<()> {
         let wanted = &roughing.capture.wanted;
-        self.pass_line(&wanted.block, &wanted.start, roughing.side, point, speed)
+        self.pass_line(&wanted.block, &wanted.start, roughing.plane, point, speed)
     }
 
-    fn rough_curve_of(&mut self, roughing: &Roughing<'_>, curve: &Curve) -> Read<()> {
+    fn rough_curve_of(&mut self, roughing: &Roughing<'_>, curve: &PlaneCurve) -> Read<()> {
         let wanted = &roughing.capture.wanted;
-        self.pass_curve(&wanted.block, &wanted.start, roughing.side, curve)
+        self.pass_curve(&wanted.block, &wanted.start, roughing.plane, curve)
     }
 }

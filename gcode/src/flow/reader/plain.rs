@@ -4,7 +4,7 @@
 //! the same motion, to the last bit, with the same arithmetic in the same order; whatever is out of the ordinary in the line or in
 //! the modes leaves everything as it was, and the line goes the long way.
 
-use crate::canon::{Motion, Others, Shape};
+use crate::canon::{AuxiliaryAxes, Motion, Shape};
 use crate::flow::reader::{Percent, Reader};
 use crate::motion::feed::{MINUTE_S, PRINTER_FEED_MM_S, Speed};
 use crate::settings::Dialect;
@@ -160,9 +160,9 @@ impl Interpreter {
     fn is_plain(&self) -> bool {
         self.modal.feed_mode == FeedMode::PerMinute
             && self.output.motions < self.settings.max_motions
-            && self.waiting.held.is_empty()
-            && self.waiting.compensation.is_none()
-            && self.waiting.collected.is_none()
+            && self.carried.held.is_empty()
+            && self.carried.compensation.is_none()
+            && self.carried.collected.is_none()
             && self.lathe.is_none()
             && !self.behind_fault
             && !self.dialect.is_fanuc()
@@ -206,8 +206,8 @@ impl Interpreter {
         }
         self.modal.motion = code;
         self.end_cycles();
-        self.waiting.bezier_end = None;
-        self.waiting.left_compensation = false;
+        self.carried.bezier_end = None;
+        self.carried.left_compensation = false;
         (self.at, self.here) = (target, machine);
         self.output.motions += 1;
         self.line = line;
@@ -219,7 +219,7 @@ impl Interpreter {
             shape: Shape::Line,
             feed_mm_s,
             corner: self.modal.corner,
-            others: Others { extruder_mm: pushed_mm, axes: None },
+            others: AuxiliaryAxes { extruder_mm: pushed_mm, axes: None },
         })
     }
 

@@ -1,22 +1,22 @@
 //! The profile in the cycle's own plane.
 //!
-//! Coordinates as in `side`. A profile runs towards a growing first coordinate, so the stock lies on its left.
+//! Coordinates as in `cycle_plane`. A profile runs towards a growing first coordinate, so the stock lies on its left.
 
 use crate::canon::Motion;
-use crate::geometry::plane::{Curve, Point, SLACK_MM, sweep};
+use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM, sweep};
 use crate::motion::feed::Speed;
-use crate::motion::lathe::side::{Side, clear};
+use crate::motion::lathe::cycle_plane::{CyclePlane, clear};
 use crate::state::Interpreter;
 use crate::state::lathe::Lathe;
 use crate::text::codes::spelled;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Start of the cycle, end of the entry, and the curves behind it.
 #[derive(Debug, Clone)]
 pub(super) struct Profile {
-    pub(super) side: Side,
-    pub(super) start: Point,
-    pub(super) curves: Vec<Curve>,
+    pub(super) plane: CyclePlane,
+    pub(super) start: PlanePoint,
+    pub(super) curves: Vec<PlaneCurve>,
 }
 
 impl Profile {
@@ -37,46 +37,46 @@ impl Profile {
         let start_mm = axes.map(|axis| lathe.start[axis]);
         let entry_mm = lathe.motions.first().map_or(start_mm, |motion| axes.map(|axis| motion.end_mm[axis]));
         let last_mm = lathe.motions.last().map_or(entry_mm[1], |motion| motion.end_mm[axes[1]]);
-        let side = Side {
+        let plane = CyclePlane {
             axes,
             signs: [ahead.unwrap_or(-1.0), lathe.stock_side([start_mm[1], entry_mm[1], last_mm], axes[1])?],
         };
-        let curves: Vec<Curve> = lathe.motions.iter().map(|motion| side.curve(motion)).collect();
+        let curves: Vec<PlaneCurve> = lathe.motions.iter().map(|motion| plane.curve(motion)).collect();
         for (curve, motion) in curves.iter().zip(&lathe.motions).skip(1) {
             if goes_back(curve) {
-                return Err(lathe.turns_back(motion.line, side.axes[0]));
+                return Err(lathe.turns_back(motion.line, plane.axes[0]));
             }
         }
         let curves = lathe.cut_corners(curves)?;
         let [first, rest @ ..] = curves.as_slice() else {
-            return Ok(Self { side, start: [0.0; 2], curves });
+            return Ok(Self { plane, start: [0.0; 2], curves });
         };
-        if matches!(first, Curve::Arc { .. }) {
+        if matches!(first, PlaneCurve::Arc { .. }) {
             return Err(
                 lathe.refuse(lathe.motions[0].line, "the first motion leads to the profile and must be straight")
             );
         }
         // An entry that would lead back is begun above its end.
-        let start = side.of([lathe.start[0], lathe.start[1], lathe.start[2]]);
+        let start = plane.of([lathe.start[0], lathe.start[1], lathe.start[2]]);
         let start = [start[0].min(first.end()[0]), start[1]];
-        Ok(Self { side, start, curves: rest.to_vec() })
+        Ok(Self { plane, start, curves: rest.to_vec() })
     }
 
     /// Where the entry ends.
-    pub(super) fn entry(&self) -> Point {
-        self.curves.first().map_or(self.start, Curve::start)
+    pub(super) fn entry(&self) -> PlanePoint {
+        self.curves.first().map_or(self.start, PlaneCurve::start)
     }
 }
 
 /// Whether a curve goes against the passes anywhere.
-pub(super) fn goes_back(curve: &Curve) -> bool {
+pub(super) fn goes_back(curve: &PlaneCurve) -> bool {
     if curve.end()[0] < curve.start()[0] - SLACK_MM {
         return true;
     }
     match *curve {
-        Curve::Line { .. } => false,
+        PlaneCurve::Line { .. } => false,
         // An arc that does not lies on one half of its circle; the rounding of ends and centres turns the tangent by very little.
-        Curve::Arc { start, end, center, turn } => {
+        PlaneCurve::Arc { start, end, center, turn } => {
             let slack = 1e-6;
             [start, end].iter().any(|&at| curve.direction(at)[0] < -slack)
                 || sweep(start, end, center, turn) > std::f64::consts::PI + slack
@@ -85,10 +85,10 @@ pub(super) fn goes_back(curve: &Curve) -> bool {
 }
 
 impl Lathe {
-    pub(super) fn refuse(&self, line: u32, message: &str) -> Box<Fault> {
+    pub(super) fn refuse(&self, line: u32, message: &str) -> Box<LineFault> {
         let place = if line == self.line { String::new() } else { format!("line {line}: ") };
         let message = format!("the profile of {} cannot be cut: {place}{message}", spelled(self.code));
-        Fault::new("gcode::lathe", self.block.at(b'q'), message)
+        LineFault::new("gcode::lathe", self.block.at(b'q'), message)
     }
 
     /// Whether the stock is above (1) or below (-1) the profile's entry: where the cycle starts, or, if that is as deep as the entry, where the
@@ -109,7 +109,7 @@ impl Lathe {
         Ok(to_start.or(to_last).unwrap_or(1.0))
     }
 
-    fn turns_back(&self, line: u32, axis: usize) -> Box<Fault> {
+    fn turns_back(&self, line: u32, axis: usize) -> Box<LineFault> {
         let name = ["X", "Y", "Z"][axis];
         self.refuse(line, &format!("{name} turns back: an undercut cannot be reached by passes along {name}"))
             .hint(format!("behind the first motion of the profile, {name} goes one way; a pocket has walls that do"))
@@ -118,18 +118,18 @@ impl Lathe {
 
 impl Interpreter {
     /// Moves straight to a point of the cycle's plane.
-    pub(super) fn lathe_line(&mut self, lathe: &Lathe, side: Side, point: Point, speed: Speed) -> Read<()> {
-        self.pass_line(&lathe.block, &lathe.start, side, point, speed)
+    pub(super) fn lathe_line(&mut self, lathe: &Lathe, plane: CyclePlane, point: PlanePoint, speed: Speed) -> Read<()> {
+        self.pass_line(&lathe.block, &lathe.start, plane, point, speed)
     }
 
     /// Cuts along a curve.
-    pub(super) fn lathe_curve(&mut self, lathe: &Lathe, side: Side, curve: &Curve) -> Read<()> {
-        self.pass_curve(&lathe.block, &lathe.start, side, curve)
+    pub(super) fn lathe_curve(&mut self, lathe: &Lathe, plane: CyclePlane, curve: &PlaneCurve) -> Read<()> {
+        self.pass_curve(&lathe.block, &lathe.start, plane, curve)
     }
 
     /// Cuts along curves.
     pub(super) fn lathe_cut(&mut self, lathe: &Lathe, profile: &Profile) -> Read<()> {
-        profile.curves.iter().try_for_each(|curve| self.lathe_curve(lathe, profile.side, curve))
+        profile.curves.iter().try_for_each(|curve| self.lathe_curve(lathe, profile.plane, curve))
     }
 
     /// Whether the entry of the profile is a rapid: into the cut it is, along the surface it is not.

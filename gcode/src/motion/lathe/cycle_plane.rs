@@ -3,7 +3,7 @@
 //! Coordinates, mm: the first grows along the passes, the second grows from the finished part to the stock's surface.
 
 use crate::canon::{Motion, Shape};
-use crate::geometry::plane::{Curve, Point, Round, SLACK_MM, length, minus};
+use crate::geometry::plane::{PlaneCurve, PlanePoint, Round, SLACK_MM, length, minus};
 use crate::motion::feed::Speed;
 use crate::state::Interpreter;
 use crate::state::frame::Position;
@@ -15,19 +15,19 @@ const SHORT_ARC_MM: f64 = 1e-7;
 
 /// The cycle's plane: which axes, and which way.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Side {
+pub(crate) struct CyclePlane {
     /// Axis along the passes, and of their depth.
     pub(crate) axes: [usize; 2],
     pub(crate) signs: [f64; 2],
 }
 
-impl Side {
-    pub(crate) fn of(self, point: [f64; 3]) -> Point {
+impl CyclePlane {
+    pub(crate) fn of(self, point: [f64; 3]) -> PlanePoint {
         std::array::from_fn(|n| self.signs[n] * point[self.axes[n]])
     }
 
     /// The machine position of a point; the other axes stay.
-    fn position(self, point: Point, like: &Position) -> Position {
+    fn position(self, point: PlanePoint, like: &Position) -> Position {
         let mut position = *like;
         for n in 0..2 {
             position[self.axes[n]] = self.signs[n] * point[n];
@@ -42,13 +42,13 @@ impl Side {
     }
 
     /// A motion of a profile: a line, or an arc of up to one turn.
-    pub(crate) fn curve(self, motion: &Motion) -> Curve {
+    pub(crate) fn curve(self, motion: &Motion) -> PlaneCurve {
         let (start, end) = (self.of(motion.start_mm), self.of(motion.end_mm));
         match &motion.shape {
             Shape::Arc { center_mm, turns, .. } => {
-                Curve::Arc { start, end, center: self.of(*center_mm), turn: self.turns(f64::from(*turns)) }
+                PlaneCurve::Arc { start, end, center: self.of(*center_mm), turn: self.turns(f64::from(*turns)) }
             }
-            _ => Curve::Line { start, end },
+            _ => PlaneCurve::Line { start, end },
         }
     }
 }
@@ -64,26 +64,32 @@ impl Interpreter {
         &mut self,
         block: &Block,
         start_like: &Position,
-        side: Side,
-        point: Point,
+        plane: CyclePlane,
+        point: PlanePoint,
         speed: Speed,
     ) -> Read<()> {
-        self.line_to(block, side.position(point, start_like), speed, 0.0)
+        self.line_to(block, plane.position(point, start_like), speed, 0.0)
     }
 
     /// Cuts along a curve.
-    pub(crate) fn pass_curve(&mut self, block: &Block, start_like: &Position, side: Side, curve: &Curve) -> Read<()> {
+    pub(crate) fn pass_curve(
+        &mut self,
+        block: &Block,
+        start_like: &Position,
+        plane: CyclePlane,
+        curve: &PlaneCurve,
+    ) -> Read<()> {
         match *curve {
             // A piece of an arc too short to be told from a full circle is as straight as it is short.
-            Curve::Arc { start, end, center, turn } if length(minus(end, start)) > SHORT_ARC_MM => {
+            PlaneCurve::Arc { start, end, center, turn } if length(minus(end, start)) > SHORT_ARC_MM => {
                 let [middle, target] =
-                    [center, end].map(|point| self.frame.to_program(&side.position(point, start_like)));
-                let turns = if side.turns(turn) > 0.0 { 1 } else { -1 };
+                    [center, end].map(|point| self.frame.to_program(&plane.position(point, start_like)));
+                let turns = if plane.turns(turn) > 0.0 { 1 } else { -1 };
                 let round = Round { center: [middle[2], middle[0]], turns };
                 self.arc_to(block, &target, round, 0.0)
             }
-            Curve::Line { end, .. } | Curve::Arc { end, .. } => {
-                self.pass_line(block, start_like, side, end, Speed::Programmed)
+            PlaneCurve::Line { end, .. } | PlaneCurve::Arc { end, .. } => {
+                self.pass_line(block, start_like, plane, end, Speed::Programmed)
             }
         }
     }
