@@ -6,7 +6,7 @@
 mod args;
 mod commands;
 mod controllers;
-mod files;
+mod files_to_check;
 mod findings;
 mod message;
 mod progress;
@@ -16,7 +16,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Cli, Command};
+use args::{Cli, CommandArgs};
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -25,16 +25,16 @@ fn main() -> ExitCode {
     }
     let quiet = cli.quiet;
     let result = match cli.command {
-        Command::Run(args) => commands::run::run(*args, quiet),
-        Command::Paper(args) => commands::paper::run(&args, quiet),
-        Command::Compare(args) => commands::compare::run(&args, quiet),
-        Command::NeverWorse(args) => commands::never_worse::run(&args, quiet),
-        Command::HeldOut(args) => commands::held_out::run(&args, quiet),
-        Command::Check(args) => commands::check::run(&args, quiet),
-        Command::Canon(args) => commands::canon::run(&args, quiet),
-        Command::Machines => commands::list::machines(),
-        Command::Controllers { name: None } => commands::list::controllers(),
-        Command::Controllers { name: Some(name) } => commands::list::controller(&name),
+        CommandArgs::Run(args) => commands::run::run(*args, quiet),
+        CommandArgs::Paper(args) => commands::paper::run(&args, quiet),
+        CommandArgs::Compare(args) => commands::compare::run(&args, quiet),
+        CommandArgs::NeverWorse(args) => commands::never_worse::run(&args, quiet),
+        CommandArgs::HeldOut(args) => commands::held_out::run(&args, quiet),
+        CommandArgs::Check(args) => commands::check::run(&args, quiet),
+        CommandArgs::Canon(args) => commands::canon::run(&args, quiet),
+        CommandArgs::Machines => commands::list::machines(),
+        CommandArgs::Controllers { name: None } => commands::list::controllers(),
+        CommandArgs::Controllers { name: Some(name) } => commands::list::controller(&name),
     };
     result.unwrap_or_else(|report| message::fail(&report))
 }

@@ -13,11 +13,9 @@
 //! | `compare/overview.rs` | what tables over many rows are made of |
 //! | `compare/verdict.rs` | what is claimed, row by row |
 //! | `compare/tolerance.rs` | the machining time at which a tolerance just holds |
-//! | `compare/journal.rs` | finished rows on disk: an interrupted comparison goes on |
 //! | `compare/page.rs` | the page |
 
 mod cut;
-pub mod journal;
 pub mod overview;
 pub mod page;
 pub mod table;
@@ -35,13 +33,13 @@ use crate::controllers::{Entry, Knows, Setting};
 use crate::feed::LimitsError;
 use crate::gcode;
 use crate::gcode::canon::Corner;
+use crate::journal::Journal;
 use crate::machine::Machine;
 use crate::path::contour::CONTOURS;
 use crate::path::pieces::Pieces;
 use crate::path::{PathError, Step};
 use cut::Maker;
-use journal::Journal;
-use table::Row;
+use table::ComparisonRow;
 use tolerance::AtTolerance;
 use tuning::Tuned;
 use verdict::Verdict;
@@ -142,7 +140,7 @@ pub enum Tuning {
 
 /// What is to be compared.
 #[derive(Debug, Clone)]
-pub struct Options {
+pub struct ComparisonOptions {
     /// Contours and parts.
     pub workpieces: Vec<Workpiece>,
     /// Machines; the first is the nominal one.
@@ -160,7 +158,7 @@ pub struct Options {
 }
 
 /// Progress of a comparison: how many cuts there are, and that one more is done.
-pub trait Watch: Sync {
+pub trait ComparisonProgress: Sync {
     /// The controllers are tuned: so many searches.
     fn tuning(&self, searches: u64);
     /// The table is made: so many cuts, some of which an earlier run has left.
@@ -171,8 +169,8 @@ pub trait Watch: Sync {
     fn done(&self);
 }
 
-/// Tells nobody.
-impl Watch for () {
+/// Shows nothing.
+impl ComparisonProgress for () {
     fn tuning(&self, _: u64) {}
     fn cutting(&self, _: u64) {}
     fn holding(&self, _: u64) {}
@@ -189,7 +187,7 @@ pub struct Comparison {
     /// The values that the controllers ran with.
     pub tuned: Vec<Tuned>,
     /// All rows: by workpiece, then machine, then controller.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ComparisonRow>,
     /// What is claimed, row by row.
     pub verdicts: Vec<Verdict>,
     /// Machining times at equal tolerance, where they were asked for.
@@ -197,7 +195,7 @@ pub struct Comparison {
     pub at_tolerance: Vec<AtTolerance>,
 }
 
-impl Options {
+impl ComparisonOptions {
     /// The machine that controllers know.
     fn nominal(&self) -> &Machine {
         &self.machines[0]
@@ -220,30 +218,61 @@ impl Options {
     }
 }
 
+/// What a journal holds of a comparison that was interrupted.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum Finished {
+    /// The values of a controller.
+    Tuned(Tuned),
+    /// A row.
+    Row(ComparisonRow),
+}
+
+/// The journal of a comparison in a folder. The key is that of the options and of the program.
+pub fn journal_path(folder: &Path, key: &str) -> PathBuf {
+    folder.join(format!("compare-{key}.jsonl"))
+}
+
+fn tuned_key(entry: &Entry) -> String {
+    serde_json::json!([entry.name]).to_string()
+}
+
+fn row_key(workpiece: &Workpiece, machine: &Machine, competitor: &Competitor) -> String {
+    serde_json::json!([workpiece.name, machine.name, competitor.name()]).to_string()
+}
+
 /// Compares. Rows that the journal holds are not cut again.
 ///
 /// # Errors
 /// Where a machine has no sensible limits.
-pub fn compare(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Comparison, LimitsError> {
-    let tuned = tuned(options, journal, watch)?;
-    let rows = table::in_order(&cuts(options, &tuned, journal, watch)?, options);
-    let at_tolerance = if options.at_tolerance { tolerance::at_tolerance(options, &tuned, watch)? } else { Vec::new() };
+pub fn compare(
+    options: &ComparisonOptions,
+    journal: &Journal<Finished>,
+    progress: &dyn ComparisonProgress,
+) -> Result<Comparison, LimitsError> {
+    let tuned = tuned(options, journal, progress)?;
+    let rows = table::in_order(&cuts(options, &tuned, journal, progress)?, options);
+    let at_tolerance =
+        if options.at_tolerance { tolerance::at_tolerance(options, &tuned, progress)? } else { Vec::new() };
     let nominal = options.nominal().name.clone();
     let verdicts = verdict::verdicts(&rows, &nominal, &options.workpieces);
     Ok(Comparison { nominal, seed: options.seed, tuned, rows, verdicts, at_tolerance })
 }
 
 /// The values of all controllers that have parameters.
-fn tuned(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Vec<Tuned>, LimitsError> {
+fn tuned(
+    options: &ComparisonOptions,
+    journal: &Journal<Finished>,
+    progress: &dyn ComparisonProgress,
+) -> Result<Vec<Tuned>, LimitsError> {
     let is_set = |entry: &Entry| options.set.iter().any(|set| set.controller == entry.name);
     let has_values = |entry: &&&'static Entry| entry.searched().count() > 0 || is_set(entry);
     let tunable: Vec<_> = options.controllers.iter().filter(has_values).collect();
-    watch.tuning(tunable.len() as u64);
+    progress.tuning(tunable.len() as u64);
     let values = |entry: &'static Entry| match &options.tuning {
         _ if is_set(entry) => Ok(Tuned::set(entry, &options.set)),
         Tuning::Search => {
             let tuned = tuning::search(entry, options.nominal(), options.seed)?;
-            journal.add_tuned(&tuned);
+            journal.add(&tuned_key(entry), &Finished::Tuned(tuned.clone()));
             Ok(tuned)
         }
         Tuning::Defaults => Ok(Tuned::defaults(entry)),
@@ -255,15 +284,23 @@ fn tuned(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Vec<
     tunable
         .par_iter()
         .map(|entry| {
-            let tuned = journal.tuned(entry.name).map_or_else(|| values(entry), Ok)?;
-            watch.done();
+            let tuned = match journal.get(&tuned_key(entry)) {
+                Some(Finished::Tuned(tuned)) => tuned.clone(),
+                _ => values(entry)?,
+            };
+            progress.done();
             Ok(tuned)
         })
         .collect()
 }
 
 /// One row for every workpiece, machine and competitor, by machine and competitor, ratios still open.
-fn cuts(options: &Options, tuned: &[Tuned], journal: &Journal, watch: &dyn Watch) -> Result<Vec<Row>, LimitsError> {
+fn cuts(
+    options: &ComparisonOptions,
+    tuned: &[Tuned],
+    journal: &Journal<Finished>,
+    progress: &dyn ComparisonProgress,
+) -> Result<Vec<ComparisonRow>, LimitsError> {
     let nominal = options.nominal();
     let competitors = options.competitors();
     let pairs: Vec<(&Machine, &Competitor)> = options
@@ -273,24 +310,25 @@ fn cuts(options: &Options, tuned: &[Tuned], journal: &Journal, watch: &dyn Watch
         // At home on the nominal machine is the unseen controller once more.
         .filter(|(machine, competitor)| !competitor.at_home || machine.name != nominal.name)
         .collect();
-    watch.cutting((pairs.len() * options.workpieces.len()) as u64);
-    let rows: Result<Vec<Vec<Row>>, LimitsError> = pairs
+    progress.cutting((pairs.len() * options.workpieces.len()) as u64);
+    let rows: Result<Vec<Vec<ComparisonRow>>, LimitsError> = pairs
         .par_iter()
         .map(|(machine, competitor)| {
             let maker = Maker { competitor, nominal, seed: options.seed, tuned };
             // Made once and where it is needed: what it has identified serves all workpieces.
             let mut controller = None;
             let mut row = |workpiece: &Workpiece| {
-                let row = match journal.row(&workpiece.name, machine, competitor) {
-                    Some(row) => row,
-                    None => {
+                let key = row_key(workpiece, machine, competitor);
+                let row = match journal.get(&key) {
+                    Some(Finished::Row(row)) => row.clone(),
+                    _ => {
                         let controller = controller.get_or_insert_with(|| maker.make(machine));
                         let row = cut::row(workpiece, machine, competitor, &mut **controller)?;
-                        journal.add(&row);
+                        journal.add(&key, &Finished::Row(row.clone()));
                         row
                     }
                 };
-                watch.done();
+                progress.done();
                 Ok(row)
             };
             options.workpieces.iter().map(&mut row).collect()

@@ -16,6 +16,7 @@ pub mod reference;
 pub mod plant;
 pub mod trace;
 pub mod output;
+pub mod journal;
 pub mod simulate;
 pub mod identify;
 pub mod controllers;

@@ -3,7 +3,7 @@
 //! A cut is worse where its RMS or its largest contour error, or the uncut path, is larger than open loop's by more than
 //! [`verdict`] allows, or where the controller is not in the loop any more at the end. Each controller is made for the
 //! machine that it cuts on. Cuts depend on nothing but program, machine and seed: the rows are the same for any number
-//! of threads, and those that a [`journal`] holds are not cut again.
+//! of threads, and those that a [`Journal`] holds are not cut again.
 //!
 //! | File | What |
 //! |---|---|
@@ -12,17 +12,16 @@
 //! | `never_worse/cut.rs` | one program on one machine, open loop and corrected |
 //! | `never_worse/generated.rs` | random programs on random machines, and the smallest case of a failure |
 //! | `never_worse/verdict.rs` | what counts as worse |
-//! | `never_worse/journal.rs` | finished cuts on disk |
 //! | `never_worse/summary.rs` | totals, quantiles, failures by severity |
 
 pub mod cut;
 pub mod generated;
-pub mod journal;
 pub mod machines;
 pub mod program;
 pub mod summary;
 pub mod verdict;
 
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -31,14 +30,15 @@ use rand::seq::SliceRandom;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::controllers::{Entry, Setting};
+use crate::identify::cache::key_of;
+use crate::journal::Journal;
 use crate::machine::Machine;
 use cut::{Cutter, Row};
-use journal::Journal;
 use program::Program;
 
 /// One program on one machine.
 #[derive(Debug, Clone)]
-pub struct Job {
+pub struct SweepJob {
     /// What is cut.
     pub program: Arc<Program>,
     /// On what.
@@ -47,7 +47,7 @@ pub struct Job {
 
 /// What the jobs have in common.
 #[derive(Debug, Clone)]
-pub struct Options {
+pub struct SweepOptions {
     /// The controller that is held against open loop.
     pub controller: &'static Entry,
     /// Its parameters that are set.
@@ -58,31 +58,31 @@ pub struct Options {
     pub threads: usize,
 }
 
-/// Is told of each job that is done; `known` where the journal had it.
-pub trait Watch: Sync {
+/// Progress of a sweep: one more job is done; `known` where the journal had it.
+pub trait SweepProgress: Sync {
     /// One more.
-    fn done(&self, job: &Job, known: bool);
+    fn done(&self, job: &SweepJob, known: bool);
 }
 
-/// Tells nobody.
-impl Watch for () {
-    fn done(&self, _: &Job, _: bool) {}
+/// Shows nothing.
+impl SweepProgress for () {
+    fn done(&self, _: &SweepJob, _: bool) {}
 }
 
 /// Every program on every machine: by machine, so that each is identified once for a thread, and the longest program
 /// first, so that no thread is left alone with it.
-pub fn jobs(programs: Vec<Program>, machines: Vec<Machine>) -> Vec<Job> {
+pub fn jobs(programs: Vec<Program>, machines: Vec<Machine>) -> Vec<SweepJob> {
     let mut programs: Vec<Arc<Program>> = programs.into_iter().map(Arc::new).collect();
     programs.sort_by(|a, b| b.machining_s.total_cmp(&a.machining_s).then_with(|| a.name.cmp(&b.name)));
     let on = |machine: Machine| {
         let machine = Arc::new(machine);
-        programs.iter().map(move |program| Job { program: program.clone(), machine: machine.clone() })
+        programs.iter().map(move |program| SweepJob { program: program.clone(), machine: machine.clone() })
     };
     machines.into_iter().flat_map(on).collect()
 }
 
 /// `count` of the jobs, drawn by the seed, in their order.
-pub fn sample(jobs: Vec<Job>, count: usize, seed: u64) -> Vec<Job> {
+pub fn sample(jobs: Vec<SweepJob>, count: usize, seed: u64) -> Vec<SweepJob> {
     let mut drawn: Vec<usize> = (0..jobs.len()).collect();
     drawn.shuffle(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
     drawn.truncate(count);
@@ -90,8 +90,35 @@ pub fn sample(jobs: Vec<Job>, count: usize, seed: u64) -> Vec<Job> {
     drawn.into_iter().map(|i| jobs[i].clone()).collect()
 }
 
+/// What a cut depends on, apart from the program that makes it.
+fn key(job: &SweepJob, options: &SweepOptions) -> String {
+    let machine = serde_json::json!(*job.machine).to_string();
+    let SweepOptions { controller, set, seed, .. } = options;
+    let (seed, set_json) = (seed.to_le_bytes(), serde_json::json!(set).to_string());
+    let mut parts = vec![job.program.key.as_bytes(), machine.as_bytes(), controller.name.as_bytes(), &seed];
+    if !set.is_empty() {
+        parts.push(set_json.as_bytes());
+    }
+    key_of(&parts)
+}
+
+/// A row under the names that program and machine have now.
+fn named(row: &Row, job: &SweepJob) -> Row {
+    Row { program: job.program.name.clone(), machine: job.machine.name.clone(), ..row.clone() }
+}
+
+/// The journal of a version in a folder.
+pub fn journal_path(folder: &Path, version: &str) -> PathBuf {
+    folder.join(format!("never-worse-{version}.jsonl"))
+}
+
 /// Cuts all jobs, open loop and corrected; rows in the order of the jobs.
-pub fn sweep(jobs: &[Job], options: &Options, journal: &Journal, watch: &dyn Watch) -> Vec<Row> {
+pub fn sweep(
+    jobs: &[SweepJob],
+    options: &SweepOptions,
+    journal: &Journal<Row>,
+    progress: &dyn SweepProgress,
+) -> Vec<Row> {
     let next = AtomicUsize::new(0);
     let rows = Mutex::new(vec![None; jobs.len()]);
     let work = || {
@@ -100,8 +127,8 @@ pub fn sweep(jobs: &[Job], options: &Options, journal: &Journal, watch: &dyn Wat
         loop {
             let i = next.fetch_add(1, Ordering::Relaxed);
             let Some(job) = jobs.get(i) else { break };
-            let key = journal::key(job, options);
-            let known = journal.row(&key, job);
+            let key = key(job, options);
+            let known = journal.get(&key).map(|row| named(row, job));
             let row = known.clone().unwrap_or_else(|| {
                 let cutter = match &mut cutter {
                     Some(cutter) if cutter.is_for(&job.machine) => cutter,
@@ -112,9 +139,57 @@ pub fn sweep(jobs: &[Job], options: &Options, journal: &Journal, watch: &dyn Wat
                 row
             });
             rows.lock().unwrap_or_else(PoisonError::into_inner)[i] = Some(row);
-            watch.done(job, known.is_some());
+            progress.done(job, known.is_some());
         }
     };
     std::thread::scope(|scope| (0..options.threads.max(1)).for_each(|_| drop(scope.spawn(work))));
     rows.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controllers::BASELINE;
+    use crate::never_worse::program::Length;
+
+    #[derive(Default)]
+    struct Known(AtomicUsize);
+
+    impl SweepProgress for Known {
+        fn done(&self, _: &SweepJob, known: bool) {
+            self.0.fetch_add(usize::from(known), Ordering::Relaxed);
+        }
+    }
+
+    #[test]
+    fn what_was_cut_is_not_cut_again_and_half_a_line_does_no_harm() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = journal_path(folder.path(), "version");
+        let machine = Machine::load("tnv40".as_ref()).expect("built in");
+        let length = Length { machine: &machine, limit_s: 10.0 };
+        let programs = ["G21 F1200\nG1 X5\nG1 Y5\nM2\n", "G21 F1200\nG1 X-5\nM2\n"]
+            .map(|text| Program::from_text("lines", text, length).expect("a program"));
+        let jobs = jobs(programs.to_vec(), vec![machine.clone()]);
+        let options = SweepOptions {
+            controller: Entry::find(BASELINE).expect("in the table"),
+            set: Vec::new(),
+            seed: 1,
+            threads: 2,
+        };
+        let first = sweep(&jobs, &options, &Journal::open(&path).expect("a journal"), &());
+        let mut text = std::fs::read_to_string(&path).expect("it was written");
+        let second_line = text.find('\n').expect("two lines") + 1;
+        text.truncate(second_line + 40);
+        std::fs::write(&path, text).expect("it can be written");
+        let known = Known::default();
+        let again = sweep(&jobs, &options, &Journal::open(&path).expect("a journal"), &known);
+        assert_eq!(known.0.load(Ordering::Relaxed), 1);
+        assert_eq!(first, again);
+        let renamed = SweepJob {
+            program: Arc::new(Program { name: "other".to_owned(), ..(*jobs[0].program).clone() }),
+            ..jobs[0].clone()
+        };
+        let named = sweep(&[renamed], &options, &Journal::open(&path).expect("a journal"), &());
+        assert_eq!((named[0].program.as_str(), &named[0].open_loop), ("other", &first[0].open_loop));
+    }
 }

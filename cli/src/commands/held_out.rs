@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use feedwright::held_out::machines::Class;
 use feedwright::never_worse::generated::{Generated, draw, smallest};
 use feedwright::never_worse::summary::Judged;
-use feedwright::never_worse::{Job, Options};
+use feedwright::never_worse::{SweepJob, SweepOptions};
 use feedwright::output::OutputFile;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &HeldOutArgs, quiet: bool) -> Result<ExitCode> {
     let class = if args.rigid { Class::Rigid } else { Class::Any };
     let generated = draw(args.drawn_by, args.count, args.programs.into(), class)?;
     eprintln!("{} cuts drawn by seed {}, {} programs for each machine", args.count, args.drawn_by, args.programs);
-    let jobs: Vec<Job> = generated.iter().map(|made| made.job.clone()).collect();
+    let jobs: Vec<SweepJob> = generated.iter().map(|made| made.job.clone()).collect();
     let options = sweep.options.clone();
     let done = sweep.run(&jobs, quiet)?;
     let printing = done.print(&mut std::io::stdout().lock());
@@ -45,7 +45,7 @@ fn write_smallest<'a>(
     folder: &Path,
     failures: impl Iterator<Item = &'a Judged>,
     generated: &[Generated],
-    options: &Options,
+    options: &SweepOptions,
     quiet: bool,
 ) -> Result<()> {
     let failures: Vec<&Judged> = failures.collect();

@@ -6,13 +6,13 @@ use std::process::ExitCode;
 use feedwright::gcode::Settings;
 use feedwright::machine::Machine;
 use feedwright::never_worse::program::{Length, Program};
-use feedwright::never_worse::{Job, jobs, machines, sample};
+use feedwright::never_worse::{SweepJob, jobs, machines, sample};
 use glob::Pattern;
 use miette::{Result, miette};
 use rayon::prelude::*;
 
 use crate::args::NeverWorseArgs;
-use crate::files::Files;
+use crate::files_to_check::FilesToCheck;
 use crate::message::printed;
 use crate::progress::Bar;
 use crate::sweep::Sweep;
@@ -59,7 +59,7 @@ fn files(args: &NeverWorseArgs) -> Result<Vec<PathBuf>> {
             missing.display()
         ));
     }
-    let found = Files::find(&args.programs);
+    let found = FilesToCheck::find(&args.programs);
     if let Some(fault) = found.faults.first() {
         return Err(miette!("{fault}"));
     }
@@ -98,7 +98,7 @@ fn read(files: &[PathBuf], settings: &Settings, limit_s: f64, quiet: bool) -> Re
     Ok(programs)
 }
 
-fn announce(jobs: &[Job]) {
+fn announce(jobs: &[SweepJob]) {
     let hours = jobs.iter().map(|job| job.program.machining_s).sum::<f64>() / 3600.0;
     let shortened = jobs.iter().filter(|job| job.program.shortened).count();
     eprintln!("{} cuts, {hours:.1} h of machining on {PACE}; of a part of the program: {shortened}", jobs.len());

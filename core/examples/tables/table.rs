@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use feedwright::compare::overview::{Claimed, each_once};
-use feedwright::compare::table::Row;
+use feedwright::compare::table::ComparisonRow;
 use feedwright::compare::{AT_HOME, Comparison};
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Knows};
 use feedwright::machine::Machine;
@@ -90,7 +90,7 @@ fn controllers(comparison: &Comparison) -> Vec<&str> {
     each_once(nominal.map(|row| &row.controller))
 }
 
-fn find<'a>(comparison: &'a Comparison, contour: &str, machine: &str, controller: &str) -> Result<&'a Row> {
+fn find<'a>(comparison: &'a Comparison, contour: &str, machine: &str, controller: &str) -> Result<&'a ComparisonRow> {
     let row = comparison.row(contour, machine, controller);
     Ok(row.ok_or_else(|| format!("{COMPARISON} has no {controller} on {contour} and {machine}"))?)
 }

@@ -2,7 +2,7 @@
 
 use feedwright_control::Controller;
 
-use super::table::Row;
+use super::table::ComparisonRow;
 use super::tuning::Tuned;
 use super::{Competitor, Workpiece};
 use crate::controllers::{Choices, Make, Setup};
@@ -11,7 +11,7 @@ use crate::machine::Machine;
 use crate::reference::Reference;
 use crate::report::Statistics;
 use crate::simulate::{Run, practise, simulate_lap};
-use crate::trace::{Outcome, Row as TraceRow, Sink};
+use crate::trace::{Outcome, Row, Sink};
 
 /// Makes a competitor for a machine.
 pub(super) struct Maker<'a> {
@@ -70,10 +70,10 @@ pub(super) fn row(
     machine: &Machine,
     competitor: &Competitor,
     controller: &mut dyn Controller<2>,
-) -> Result<Row, LimitsError> {
+) -> Result<ComparisonRow, LimitsError> {
     let mut errors = Errors::default();
     let Cut { statistics, run } = cut(workpiece, machine, controller, competitor.entry.laps, &mut [&mut errors])?;
-    Ok(Row::new(workpiece, machine, competitor, &statistics, &run, errors.thinned()))
+    Ok(ComparisonRow::new(workpiece, machine, competitor, &statistics, &run, errors.thinned()))
 }
 
 /// Points of an error plot.
@@ -84,7 +84,7 @@ const PLOT_POINTS: usize = 160;
 struct Errors(Vec<f32>);
 
 impl Sink for Errors {
-    fn row(&mut self, row: &TraceRow) -> std::io::Result<()> {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
         self.0.push((row.contour_error_mm * 1e3) as f32);
         Ok(())
     }

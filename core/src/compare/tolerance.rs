@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cut::{Maker, cut};
 use super::tuning::Tuned;
-use super::{CORNER, Competitor, Options, Watch, Workpiece};
+use super::{CORNER, ComparisonOptions, ComparisonProgress, Competitor, Workpiece};
 use crate::controllers::BASELINE;
 use crate::feed::LimitsError;
 use crate::path::contour::{CONTOURS, Contour};
@@ -36,15 +36,15 @@ pub struct AtTolerance {
 
 /// All smooth contours, all controllers, on the nominal machine.
 pub(super) fn at_tolerance(
-    options: &Options,
+    options: &ComparisonOptions,
     tuned: &[Tuned],
-    watch: &dyn Watch,
+    progress: &dyn ComparisonProgress,
 ) -> Result<Vec<AtTolerance>, LimitsError> {
     let named = |name: &str| CONTOURS.iter().find(|contour| contour.name == name && contour.is_smooth());
     let contours = options.workpieces.iter().filter_map(|workpiece| named(&workpiece.name));
     let pairs: Vec<_> =
         contours.flat_map(|contour| options.controllers.iter().map(move |&entry| (contour, entry))).collect();
-    watch.holding(pairs.len() as u64);
+    progress.holding(pairs.len() as u64);
     let found: Result<Vec<AtTolerance>, LimitsError> = pairs
         .par_iter()
         .map(|&(contour, entry)| {
@@ -57,7 +57,7 @@ pub(super) fn at_tolerance(
                 time_s: best.map(|best| best.time_s),
                 time_ratio: None,
             };
-            watch.done();
+            progress.done();
             Ok(row)
         })
         .collect();
@@ -81,7 +81,7 @@ struct Holding {
 fn fastest(
     contour: &Contour,
     competitor: &Competitor,
-    options: &Options,
+    options: &ComparisonOptions,
     tuned: &[Tuned],
 ) -> Result<Option<Holding>, LimitsError> {
     let machine = options.nominal();

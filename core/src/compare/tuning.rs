@@ -100,7 +100,7 @@ struct Trial<'a> {
 
 /// A point of the unit cube and its cost.
 #[derive(Debug, Clone)]
-struct Point {
+struct Candidate {
     place: Vec<f64>,
     cost: f64,
 }
@@ -133,8 +133,8 @@ impl Trial<'_> {
         Ok(Tuned { controller: self.entry.name.to_owned(), values, cuts, rms_um })
     }
 
-    fn costs(&self, places: Vec<Vec<f64>>) -> Result<Vec<Point>, LimitsError> {
-        places.into_par_iter().map(|place| Ok(Point { cost: self.cost(&place)?, place })).collect()
+    fn costs(&self, places: Vec<Vec<f64>>) -> Result<Vec<Candidate>, LimitsError> {
+        places.into_par_iter().map(|place| Ok(Candidate { cost: self.cost(&place)?, place })).collect()
     }
 
     fn cost(&self, place: &[f64]) -> Result<f64, LimitsError> {

@@ -37,7 +37,7 @@ const APART_MM: f64 = 20.0;
 
 /// A program of a family.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Drawn {
+pub struct RandomProgram {
     /// Family and seed.
     pub name: String,
     /// The program.
@@ -45,7 +45,7 @@ pub struct Drawn {
 }
 
 /// The program of a seed; the same on every platform.
-pub fn program(seed: u64) -> Drawn {
+pub fn program(seed: u64) -> RandomProgram {
     let mut random = Random::new(seed);
     let family = FAMILIES[random.whole(0, FAMILIES.len() as u32 - 1) as usize];
     let name = format!("{}-{seed}", family.name);
@@ -58,7 +58,7 @@ pub fn program(seed: u64) -> Drawn {
         pen.begin_part(time_s);
         (family.write)(&mut pen);
     }
-    Drawn { name, text: pen.finish() }
+    RandomProgram { name, text: pen.finish() }
 }
 
 /// Between two parts: a rapid, and perhaps a dwell, a tool change, another feedrate, a motion without a corner.
@@ -271,7 +271,7 @@ mod tests {
     /// Seeds that are looked at.
     const SEEDS: u64 = 400;
 
-    fn read(drawn: &Drawn) -> Summary {
+    fn read(drawn: &RandomProgram) -> Summary {
         let reader = Reader::from_text(&drawn.name, drawn.text.as_str(), Settings::default()).expect("a program");
         summarize(reader).unwrap_or_else(|error| panic!("{}\n{error:?}", drawn.text))
     }

@@ -7,8 +7,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::cut::{Cutter, Row};
 use super::program::{Length, Program};
-use super::verdict::Fault;
-use super::{Job, Options};
+use super::verdict::Failure;
+use super::{SweepJob, SweepOptions};
 use crate::held_out::machines::{self, Class};
 use crate::held_out::{Case, Change, programs, shrink};
 
@@ -23,7 +23,7 @@ pub struct Generated {
     /// Program and machine as text.
     pub case: Case,
     /// The same, ready to be cut.
-    pub job: Job,
+    pub job: SweepJob,
 }
 
 /// `count` jobs of a seed, so many programs to a machine: identifying it takes as long as several cuts. The first jobs of a
@@ -42,7 +42,7 @@ pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Ve
             let length = Length { machine: &machine, limit_s: LIMIT_S };
             let program = Arc::new(Program::from_text(&drawn.name, &drawn.text, length)?);
             let case = Case::new(&drawn.text, variant.clone());
-            all.push(Generated { case, job: Job { program, machine: machine.clone() } });
+            all.push(Generated { case, job: SweepJob { program, machine: machine.clone() } });
         }
     }
     all.truncate(count);
@@ -51,13 +51,13 @@ pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Ve
 
 /// Cuts cases, and keeps the controller as long as the machine stays the same.
 pub struct Trials<'a> {
-    options: &'a Options,
+    options: &'a SweepOptions,
     cutter: Option<(Vec<Change>, Cutter)>,
 }
 
 impl<'a> Trials<'a> {
     /// None yet.
-    pub const fn new(options: &'a Options) -> Self {
+    pub const fn new(options: &'a SweepOptions) -> Self {
         Self { options, cutter: None }
     }
 
@@ -75,7 +75,7 @@ impl<'a> Trials<'a> {
 }
 
 /// The smallest case that is worse in the same way, found within so many trials, and what it comes to.
-pub fn smallest(case: &Case, faults: &[Fault], options: &Options, trials: u32) -> (Case, Option<Row>) {
+pub fn smallest(case: &Case, faults: &[Failure], options: &SweepOptions, trials: u32) -> (Case, Option<Row>) {
     let mut made = Trials::new(options);
     let mut fails = |case: &Case| {
         let found = made.row(case).map(|row| row.faults()).unwrap_or_default();
