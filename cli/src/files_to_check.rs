@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// Endings of programs in a folder. A file that is named itself may have any.
 const ENDINGS: [&str; 5] = ["ngc", "nc", "gcode", "tap", "cnc"];
 /// Folders inside each other. Real trees have a dozen.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// What there is to check.
 #[derive(Debug, Default)]
@@ -69,8 +69,8 @@ impl FilesToCheck {
 
     fn walk(&mut self, folder: &Path, depth: usize, left_out: &mut LeftOut) -> Result<(), (PathBuf, io::Error)> {
         let fault = |error| (folder.to_owned(), error);
-        if depth > DEEPEST {
-            return Err(fault(io::Error::other(format!("more than {DEEPEST} folders inside each other"))));
+        if depth > MAX_DEPTH {
+            return Err(fault(io::Error::other(format!("more than {MAX_DEPTH} folders inside each other"))));
         }
         let mut entries: Vec<_> = folder.read_dir().map_err(fault)?.collect::<Result<_, _>>().map_err(fault)?;
         entries.sort_by_key(std::fs::DirEntry::file_name);

@@ -20,7 +20,7 @@ use crate::settings::{Dialect, Settings};
 use crate::state::carried_over::CarriedOver;
 use crate::state::fanuc::Fanuc;
 use crate::state::frame::{Frame, Position};
-use crate::state::lathe::{Lathe, ProfileCall};
+use crate::state::lathe::{LatheCycle, ProfileCall};
 use crate::state::modal::{Modal, fanuc_modes};
 use crate::state::parameters::ParameterTable;
 use crate::state::saved::Calls;
@@ -69,7 +69,7 @@ pub(crate) struct Interpreter {
     pub(crate) tool: LoadedTool,
     pub(crate) carried: CarriedOver,
     /// The lathe cycle whose profile is being read, and the call that it waits for.
-    pub(crate) lathe: Option<Box<Lathe>>,
+    pub(crate) lathe: Option<Box<LatheCycle>>,
     pub(crate) wanted: Option<ProfileCall>,
     /// What Fanuc and Haas have besides.
     pub(crate) fanuc: Fanuc,

@@ -20,12 +20,12 @@ use crate::sweep::Sweep;
 /// The machine whose time counts where long programs are shortened.
 const PACE: &str = "tnv40";
 /// A week of machining, s: more is a mistaken unit.
-const MOST_S: f64 = 7.0 * 24.0 * 3600.0;
+const MAX_S: f64 = 7.0 * 24.0 * 3600.0;
 
 pub(crate) fn run(args: &NeverWorseArgs, quiet: bool) -> Result<ExitCode> {
-    if !(args.limit_s > 0.0 && args.limit_s <= MOST_S) {
+    if !(args.limit_s > 0.0 && args.limit_s <= MAX_S) {
         let help = "600 is the first ten minutes of machining";
-        return Err(miette!(help = help, "--limit-s is {} s; it must lie above 0 and up to {MOST_S} s", args.limit_s));
+        return Err(miette!(help = help, "--limit-s is {} s; it must lie above 0 and up to {MAX_S} s", args.limit_s));
     }
     let machines = machines_of(args)?;
     let files = files(args)?;

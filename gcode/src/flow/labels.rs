@@ -8,7 +8,7 @@ use crate::text::lexer::Cursor;
 use crate::text::source::{Mark, SourceLine};
 
 /// Places that are remembered; a program that jumps to more begins anew.
-const MOST_PLACES: usize = 100_000;
+const MAX_PLACES: usize = 100_000;
 
 impl Flow {
     /// The line with the number `N`: the next from here on in the program or subprogram under way, or else its first.
@@ -27,7 +27,7 @@ impl Flow {
         self.jump_to(here, at)?;
         self.source().line_start = line_start;
         let found = found.map_err(|error| cannot_read(at.clone(), &error))?;
-        if self.places.0.len() >= MOST_PLACES {
+        if self.places.0.len() >= MAX_PLACES {
             self.places.0.clear();
         }
         self.places.0.insert(key, found);

@@ -1,12 +1,12 @@
 //! Branches and loops: what is carried out, what is passed over.
 
 use crate::flow::owords::{Arguments, Head, Keyword};
-use crate::flow::program::{Flow, Loop, Manner, Purpose, Skip, cannot_read};
+use crate::flow::program::{Flow, Loop, Purpose, Skip, SubroutineKind, cannot_read};
 use crate::text::diagnostic::{LineFault, Read};
 use crate::text::source::Mark;
 
 /// Labels of branches and loops that are remembered, far more than anybody writes by hand; what comes then is not checked.
-const MOST_LABELS: usize = 100_000;
+const MAX_LABELS: usize = 100_000;
 
 impl Flow {
     /// Branches and loops.
@@ -22,7 +22,11 @@ impl Flow {
         match head.keyword {
             Keyword::Number | Keyword::EndIf | Keyword::Call | Keyword::Return | Keyword::EndSub => {}
             Keyword::Sub => {
-                if self.frames.last().is_some_and(|frame| frame.manner == Manner::Fanuc && frame.label == head.label) {
+                if self
+                    .frames
+                    .last()
+                    .is_some_and(|frame| frame.kind == SubroutineKind::Fanuc && frame.label == head.label)
+                {
                     return Err(LineFault::new(
                         "gcode::o_word",
                         head.at.clone(),
@@ -131,7 +135,7 @@ impl Flow {
             }
             Some(_) => Ok(()),
             None => {
-                if self.labels.len() < MOST_LABELS {
+                if self.labels.len() < MAX_LABELS {
                     self.labels.insert(self.key.clone(), line);
                 }
                 Ok(())
@@ -142,7 +146,7 @@ impl Flow {
     /// A branch goes on or ends: it must have begun.
     fn find_label(&mut self, head: &Head) -> Read<()> {
         self.label_key(head);
-        if self.labels.contains_key(&self.key) || self.labels.len() == MOST_LABELS {
+        if self.labels.contains_key(&self.key) || self.labels.len() == MAX_LABELS {
             return Ok(());
         }
         let message = format!("{}: no `{} if` stands before it", head.keyword.spelled(), head.shown());

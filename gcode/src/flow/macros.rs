@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::canon::EventKind;
 use crate::flow::owords::{Head, Keyword};
-use crate::flow::program::{Flow, Manner};
+use crate::flow::program::{Flow, SubroutineKind};
 use crate::flow::statements::Statement;
 use crate::state::Interpreter;
 use crate::state::parameters::MACRO_LOCALS;
@@ -121,7 +121,7 @@ impl Flow {
             return Ok(());
         }
         let label = format!("N{number}").into_bytes();
-        self.enter_lines(label, Manner::Fanuc, (self.current, mark), times as u32, at, interpreter)
+        self.enter_lines(label, SubroutineKind::Fanuc, (self.current, mark), times as u32, at, interpreter)
     }
 
     /// A line of the source under way as text.

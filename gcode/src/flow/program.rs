@@ -13,7 +13,7 @@ use crate::text::source::{Mark, Source};
 
 /// How a subroutine is written and called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Manner {
+pub(super) enum SubroutineKind {
     /// `O1 sub` ... `O1 endsub`, called by `O1 call`.
     Rs274,
     /// `O1` ... `M99`, called by `M98 P1`.
@@ -27,13 +27,13 @@ pub(super) enum Manner {
 pub(super) struct ProgramFile {
     pub(super) source: Source,
     pub(super) path: Option<PathBuf>,
-    pub(super) subroutines: Option<HashMap<Vec<u8>, (Manner, Mark)>>,
+    pub(super) subroutines: Option<HashMap<Vec<u8>, (SubroutineKind, Mark)>>,
 }
 
 /// A call under way.
 #[derive(Debug)]
 pub(super) struct Call {
-    pub(super) manner: Manner,
+    pub(super) kind: SubroutineKind,
     pub(super) label: Vec<u8>,
     /// File and line to return to.
     pub(super) file: usize,

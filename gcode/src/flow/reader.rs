@@ -22,7 +22,7 @@ use crate::text::codes::fanuc::{CodeSet, OWN};
 use crate::text::diagnostic::{Diagnostic, LineFault, Read, Severity};
 use crate::text::lexer::{Cursor, END};
 use crate::text::read_error::ReadError;
-use crate::text::source::{LONGEST_LINE_BYTES, Source, SourceLine};
+use crate::text::source::{MAX_LINE_BYTES, Source, SourceLine};
 
 /// Reads a program and hands out its canonical steps as it goes; memory does not grow with the program.
 ///
@@ -153,7 +153,7 @@ impl Reader {
                 let fault = LineFault::new(
                     "gcode::line_length",
                     0..1,
-                    format!("the line is longer than {LONGEST_LINE_BYTES} bytes: this is no G-code"),
+                    format!("the line is longer than {MAX_LINE_BYTES} bytes: this is no G-code"),
                 );
                 return Err(self.diagnose(Severity::Error, *fault));
             }

@@ -24,7 +24,7 @@ pub(super) enum Statement {
 }
 
 /// Largest number of a loop; controls have three.
-const MOST_LOOPS: f64 = 3.0;
+const MAX_LOOPS: f64 = 3.0;
 
 /// The line at the cursor as a statement, if it is one.
 pub(super) fn statement<V: ParameterSource>(cursor: Cursor<'_>, values: &V) -> Read<Option<Statement>> {
@@ -107,7 +107,7 @@ pub(super) fn label<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, start:
 fn loop_head<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<Head> {
     let number = evaluator.cursor.number()?;
     let at = start..evaluator.cursor.at;
-    if !(1.0..=MOST_LOOPS).contains(&number) || number.fract() != 0.0 {
+    if !(1.0..=MAX_LOOPS).contains(&number) || number.fract() != 0.0 {
         let message = format!("a loop DO{} does not exist: DO1 to DO3 do", Short(number));
         return Err(LineFault::new("gcode::macro", at, message).hint("loops inside each other have different numbers"));
     }

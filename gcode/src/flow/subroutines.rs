@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::flow::owords::{Arguments, Head, Keyword, at_o_word, read_head, shown};
-use crate::flow::program::{Call, Flow, Manner, ProgramFile, cannot_read};
+use crate::flow::program::{Call, Flow, ProgramFile, SubroutineKind, cannot_read};
 use crate::state::Interpreter;
 use crate::state::lathe::ProfileCall;
 use crate::state::parameters::{LOCALS, MACRO_LOCALS};
@@ -20,15 +20,15 @@ use crate::text::lexer::Cursor;
 use crate::text::source::{Mark, Source, SourceLine};
 
 /// Files of subroutines that stay open. A program uses a handful; each may hold a buffer of 256 KiB.
-const MOST_FILES: usize = 100;
+const MAX_FILES: usize = 100;
 /// Subroutines that one file may define.
-const MOST_SUBROUTINES: usize = 100_000;
+const MAX_SUBROUTINES: usize = 100_000;
 
 impl Flow {
     /// `O1 call [..]`.
     pub(super) fn call(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
-        let (file, manner, body) = self.find_subroutine(&head.label, &head.at)?;
-        if manner == Manner::Fanuc {
+        let (file, kind, body) = self.find_subroutine(&head.label, &head.at)?;
+        if kind == SubroutineKind::Fanuc {
             let number = String::from_utf8_lossy(&head.label).into_owned();
             return Err(LineFault::new(
                 "gcode::o_word",
@@ -41,7 +41,7 @@ impl Flow {
         let saved = interpreter.parameters.enter(&arguments.values);
         self.enter(
             Call {
-                manner,
+                kind,
                 label: head.label.clone(),
                 file: self.current,
                 back: self.source_ref().here(),
@@ -93,8 +93,8 @@ impl Flow {
             return Ok(());
         }
         let label = number.to_string().into_bytes();
-        let (file, manner, body) = self.find_subroutine(&label, at)?;
-        if manner == Manner::Rs274 {
+        let (file, kind, body) = self.find_subroutine(&label, at)?;
+        if kind == SubroutineKind::Rs274 {
             return Err(LineFault::new(
                 "gcode::o_word",
                 at.clone(),
@@ -102,9 +102,9 @@ impl Flow {
             ));
         }
         let Some(arguments) = arguments else {
-            return self.enter_lines(label, manner, (file, body), times, at, interpreter);
+            return self.enter_lines(label, kind, (file, body), times, at, interpreter);
         };
-        self.enter_lines(label, Manner::Macro, (file, body), times, at, interpreter)?;
+        self.enter_lines(label, SubroutineKind::Macro, (file, body), times, at, interpreter)?;
         let saved = interpreter.parameters.enter(&arguments[..]);
         if let Some(frame) = self.frames.last_mut() {
             (frame.saved, frame.arguments) = (saved, Some(arguments));
@@ -116,7 +116,7 @@ impl Flow {
     pub(super) fn enter_lines(
         &mut self,
         label: Vec<u8>,
-        manner: Manner,
+        kind: SubroutineKind,
         (file, body): (usize, Mark),
         times: u32,
         at: &std::ops::Range<usize>,
@@ -124,7 +124,7 @@ impl Flow {
     ) -> Read<()> {
         self.check_depth(at)?;
         let frame = Call {
-            manner,
+            kind,
             label,
             file: self.current,
             back: self.source_ref().here(),
@@ -163,7 +163,7 @@ impl Flow {
         let fault = |message: &str| Err(LineFault::new("gcode::o_word", head.at.clone(), message));
         match self.frames.last() {
             None => return fault("this is not inside a subroutine"),
-            Some(frame) if frame.manner != Manner::Rs274 => {
+            Some(frame) if frame.kind != SubroutineKind::Rs274 => {
                 return fault("a subroutine called by M98 ends with M99");
             }
             Some(frame) if head.keyword == Keyword::EndSub && frame.label != head.label => {
@@ -185,7 +185,7 @@ impl Flow {
         let Some(frame) = self.frames.last_mut() else {
             return Ok(true);
         };
-        if frame.manner == Manner::Rs274 {
+        if frame.kind == SubroutineKind::Rs274 {
             return Err(LineFault::new(
                 "gcode::o_word",
                 at.clone(),
@@ -209,10 +209,10 @@ impl Flow {
         let Some(frame) = self.frames.pop() else {
             return Ok(());
         };
-        match frame.manner {
-            Manner::Rs274 => interpreter.parameters.leave(&frame.saved[..LOCALS]),
-            Manner::Macro => interpreter.parameters.leave(&frame.saved),
-            Manner::Fanuc => {}
+        match frame.kind {
+            SubroutineKind::Rs274 => interpreter.parameters.leave(&frame.saved[..LOCALS]),
+            SubroutineKind::Macro => interpreter.parameters.leave(&frame.saved),
+            SubroutineKind::Fanuc => {}
         }
         self.loops.truncate(frame.loops);
         interpreter.left(self.frames.len());
@@ -221,10 +221,10 @@ impl Flow {
     }
 
     /// File, manner and first line of a subroutine: in the file under way, in the program, in a file of its name.
-    fn find_subroutine(&mut self, label: &[u8], at: &std::ops::Range<usize>) -> Read<(usize, Manner, Mark)> {
+    fn find_subroutine(&mut self, label: &[u8], at: &std::ops::Range<usize>) -> Read<(usize, SubroutineKind, Mark)> {
         for file in [self.current, 0] {
-            if let Some((manner, mark)) = self.index(file, at)?.get(label).copied() {
-                return Ok((file, manner, mark));
+            if let Some((kind, mark)) = self.index(file, at)?.get(label).copied() {
+                return Ok((file, kind, mark));
             }
         }
         let name = format!("{}.ngc", String::from_utf8_lossy(label));
@@ -242,7 +242,7 @@ impl Flow {
         };
         let file = self.open(&path, at)?;
         match self.index(file, at)?.get(label).copied() {
-            Some((manner, mark)) => Ok((file, manner, mark)),
+            Some((kind, mark)) => Ok((file, kind, mark)),
             None => Err(LineFault::new(
                 "gcode::o_word",
                 at.clone(),
@@ -255,11 +255,11 @@ impl Flow {
         if let Some(file) = self.files.iter().position(|file| file.path.as_deref() == Some(path)) {
             return Ok(file);
         }
-        if self.files.len() > MOST_FILES {
+        if self.files.len() > MAX_FILES {
             return Err(LineFault::new(
                 "gcode::o_word",
                 at.clone(),
-                format!("more than {MOST_FILES} files of subroutines"),
+                format!("more than {MAX_FILES} files of subroutines"),
             ));
         }
         let name: Arc<str> = path.display().to_string().into();
@@ -271,7 +271,7 @@ impl Flow {
     }
 
     /// The subroutines of a file, found by one pass over it at the first call.
-    fn index(&mut self, file: usize, at: &std::ops::Range<usize>) -> Read<&HashMap<Vec<u8>, (Manner, Mark)>> {
+    fn index(&mut self, file: usize, at: &std::ops::Range<usize>) -> Read<&HashMap<Vec<u8>, (SubroutineKind, Mark)>> {
         let file = &mut self.files[file];
         if file.subroutines.is_none() {
             let here = file.source.here();
@@ -287,7 +287,7 @@ impl Flow {
 }
 
 /// Definitions of subroutines in a file; the first of a label counts.
-fn find_definitions(source: &mut Source) -> io::Result<HashMap<Vec<u8>, (Manner, Mark)>> {
+fn find_definitions(source: &mut Source) -> io::Result<HashMap<Vec<u8>, (SubroutineKind, Mark)>> {
     struct NoValues;
     impl ParameterSource for NoValues {
         fn numbered(&self, _index: usize) -> f64 {
@@ -313,13 +313,13 @@ fn find_definitions(source: &mut Source) -> io::Result<HashMap<Vec<u8>, (Manner,
         let Ok(head) = read_head(&mut Evaluator::new(cursor, &NoValues)) else {
             continue;
         };
-        let manner = match head.keyword {
-            Keyword::Sub => Manner::Rs274,
-            Keyword::Number => Manner::Fanuc,
+        let kind = match head.keyword {
+            Keyword::Sub => SubroutineKind::Rs274,
+            Keyword::Number => SubroutineKind::Fanuc,
             _ => continue,
         };
-        if found.len() < MOST_SUBROUTINES {
-            found.entry(head.label).or_insert((manner, source.here()));
+        if found.len() < MAX_SUBROUTINES {
+            found.entry(head.label).or_insert((kind, source.here()));
         }
     }
 }

@@ -241,7 +241,7 @@ fn circle_circle(c: PlanePoint, r: f64, d: PlanePoint, q: f64) -> [Option<PlaneP
 
 /// An arc in the plane's own two coordinates.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Round {
+pub(crate) struct PlaneArc {
     pub(crate) center: [f64; 2],
     /// As in [`Shape::Arc`](crate::canon::Shape::Arc).
     pub(crate) turns: i32,

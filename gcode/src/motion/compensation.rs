@@ -6,7 +6,7 @@
 
 use crate::canon::{Canon, Motion, Plane, Shape};
 use crate::geometry::plane::{
-    PlaneCurve, PlanePoint, Round, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, unit,
+    PlaneArc, PlaneCurve, PlanePoint, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, unit,
 };
 use crate::motion::feed::{Speed, others};
 use crate::state::Interpreter;
@@ -146,7 +146,7 @@ impl Interpreter {
     }
 
     /// An arc; false where compensation is off.
-    pub(super) fn compensated_arc(&mut self, block: &Block, target: &Position, round: Round) -> Read<bool> {
+    pub(super) fn compensated_arc(&mut self, block: &Block, target: &Position, round: PlaneArc) -> Read<bool> {
         let Some(compensation) = self.carried.compensation.clone() else {
             return Ok(false);
         };

@@ -16,9 +16,9 @@ use crate::text::diagnostic::{LineFault, Read, Short};
 /// Distance that a peck backs off or stays above the last depth, mm and inch.
 const PECK_CLEARANCE: [f64; 2] = [0.254, 0.010];
 /// Pecks of one line, over all its holes: they are held in memory until they are read, and more would be a mistake in Q or L.
-const MOST_PECKS: f64 = 1e5;
+const MAX_PECKS: f64 = 1e5;
 /// Holes of one line (L): up to eight motions each.
-const MOST_REPEATS: i64 = 20_000;
+const MAX_REPEATS: i64 = 20_000;
 
 /// An axis whose lengths are never diameters: Z.
 const RADIAL: usize = 2;
@@ -71,7 +71,7 @@ impl Interpreter {
         }
         // Fanuc and Haas: none only keeps the words for the holes that follow.
         let least = i64::from(!self.dialect.is_fanuc());
-        let repeats = if block.has(b'l') { self.integer(block, b'l', least, MOST_REPEATS)? } else { 1 };
+        let repeats = if block.has(b'l') { self.integer(block, b'l', least, MAX_REPEATS)? } else { 1 };
         if self.modal.feed <= 0.0 {
             self.feed_for(block, 0.0)?;
         }
@@ -149,9 +149,9 @@ impl Interpreter {
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
         }
         let pecks = (hole.clearance - hole.bottom) / self.carried.cycle.peck.unwrap_or(f64::INFINITY) * repeats as f64;
-        if matches!(self.carried.cycle.code, 730 | 830) && pecks > MOST_PECKS {
+        if matches!(self.carried.cycle.code, 730 | 830) && pecks > MAX_PECKS {
             let step = Short(self.carried.cycle.peck.unwrap_or_default());
-            let message = format!("{pecks:.0} pecks of {step} mm in one line; it may have {MOST_PECKS}");
+            let message = format!("{pecks:.0} pecks of {step} mm in one line; it may have {MAX_PECKS}");
             let hint = "is Q, the depth of a peck, or L, the number of holes, a slip?";
             return Err(LineFault::new("gcode::cycle", block.at_any(bit(b'q') | bit(b'l')), message).hint(hint));
         }
@@ -317,8 +317,8 @@ impl Interpreter {
             peck = (peck - pecks.less_mm).max(pecks.least_mm);
             depth -= peck;
             count += 1;
-            if f64::from(count) > MOST_PECKS {
-                let message = format!("more than {MOST_PECKS} pecks; the smallest, K, is {} mm", Short(pecks.least_mm));
+            if f64::from(count) > MAX_PECKS {
+                let message = format!("more than {MAX_PECKS} pecks; the smallest, K, is {} mm", Short(pecks.least_mm));
                 return Err(LineFault::new("gcode::cycle", block.whole(), message).hint("make K larger"));
             }
         }

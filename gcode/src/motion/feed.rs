@@ -17,7 +17,7 @@ pub(crate) const MINUTE_S: f64 = 60.0;
 pub(crate) const PRINTER_FEED_MM_S: f64 = 25.0;
 
 /// Nothing is turned closer to the axis than this, mm: the speed there is what it is here.
-pub(super) const LEAST_RADIUS_MM: f64 = 0.01;
+pub(super) const MIN_RADIUS_MM: f64 = 0.01;
 
 /// How fast a motion goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +54,7 @@ impl Interpreter {
     pub(super) fn rpm_at(&self, x_mm: f64, highest: f64) -> f64 {
         // Metres or feet per minute.
         let surface_mm = self.modal.spindle_speed * if self.modal.unit_mm == 1.0 { 1000.0 } else { 304.8 };
-        (surface_mm / (TAU * x_mm.abs().max(LEAST_RADIUS_MM))).min(highest)
+        (surface_mm / (TAU * x_mm.abs().max(MIN_RADIUS_MM))).min(highest)
     }
 
     /// The feedrate of a motion of `length_mm`, mm/s.

@@ -17,7 +17,7 @@ mod words;
 use crate::canon::Plane;
 use crate::motion::feed::Speed;
 use crate::state::Interpreter;
-use crate::state::lathe::{CHANGED, Lathe, LatheWork, ProfileCall};
+use crate::state::lathe::{CHANGED, LatheCycle, LatheWork, ProfileCall};
 use crate::text::block::Block;
 use crate::text::codes::{Group, spelled};
 use crate::text::diagnostic::{LineFault, Read, Short};
@@ -25,7 +25,7 @@ use crate::text::expression::INTEGER_WITHIN;
 use crate::text::source::Mark;
 
 /// Passes of one cycle: more is a mistake in I or P.
-pub(super) const MOST_PASSES: f64 = 10_000.0;
+pub(super) const MAX_PASSES: f64 = 10_000.0;
 /// LinuxCNC's depth of a pass and retraction where I and R are missing, in the unit of the program.
 const DEFAULT_DEPTH: f64 = 1.0;
 const DEFAULT_RETRACTION: f64 = 0.5;
@@ -65,7 +65,7 @@ impl Interpreter {
         let target = self.target(block)?;
         self.go(block, target, Speed::Rapid)?;
         self.wanted = Some(ProfileCall { label: (number.round() as u64).to_string().into_bytes(), at: block.at(b'q') });
-        self.lathe = Some(Box::new(Lathe {
+        self.lathe = Some(Box::new(LatheCycle {
             code,
             block: block.clone(),
             line: self.line,
@@ -100,7 +100,7 @@ impl Interpreter {
             if block.has(b'r') {
                 return Err(LineFault::new("gcode::unused_word", block.at(b'r'), "R has no meaning with G70"));
             }
-            let passes = if block.has(b'p') { self.integer(block, b'p', 1, MOST_PASSES as i64)? as u32 } else { 1 };
+            let passes = if block.has(b'p') { self.integer(block, b'p', 1, MAX_PASSES as i64)? as u32 } else { 1 };
             return Ok(LatheWork::Finish { first_mm: distance(b'd', 0.0)?, last_mm: distance(b'e', 0.0)?, passes });
         }
         let depth_mm = distance(b'i', DEFAULT_DEPTH)?;
@@ -132,7 +132,7 @@ impl Interpreter {
     }
 
     /// The profile has been read: carries the cycle out.
-    pub(crate) fn finish_lathe(&mut self, lathe: &Lathe) -> Read<()> {
+    pub(crate) fn finish_lathe(&mut self, lathe: &LatheCycle) -> Read<()> {
         let block = &lathe.block;
         self.line = lathe.line;
         (self.modal.feed, self.modal.feed_unit_mm) = lathe.feed;

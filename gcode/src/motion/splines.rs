@@ -16,7 +16,7 @@ use crate::text::codes::{AXES, bit, spelled};
 use crate::text::diagnostic::{LineFault, Read};
 
 /// Control points of one curve: each costs 32 bytes, and no curve of a CAM system has more than some hundreds.
-const MOST_POINTS: usize = 100_000;
+const MAX_POINTS: usize = 100_000;
 /// Order of a curve. LinuxCNC takes 3 up; beyond 10 the basis loses digits.
 const ORDERS: (i64, i64) = (2, 10);
 /// Distance of the first control point of G6.2 from the position, mm: what three printed decimals leave.
@@ -282,11 +282,11 @@ impl Interpreter {
         let Some(collected) = &mut self.carried.collected else {
             return Ok(());
         };
-        if collected.points.len() == MOST_POINTS {
+        if collected.points.len() == MAX_POINTS {
             return Err(LineFault::new(
                 "gcode::spline",
                 block.whole(),
-                format!("the curve has more than {MOST_POINTS} control points"),
+                format!("the curve has more than {MAX_POINTS} control points"),
             ));
         }
         collected.points.push(point);

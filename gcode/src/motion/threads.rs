@@ -15,7 +15,7 @@ use crate::text::diagnostic::{LineFault, Read};
 /// Shortest way of a probe, mm (LinuxCNC: 0.254 mm or 0.01 inch).
 const PROBE_LEAST_MM: f64 = 0.254;
 /// Passes of a thread: more is a mistake in J or R.
-const MOST_PASSES: u32 = 20_000;
+const MAX_PASSES: u32 = 20_000;
 
 impl Interpreter {
     /// G33 and G33.1: along with the spindle, `K` mm a revolution.
@@ -160,7 +160,7 @@ impl Interpreter {
         while depth < full {
             self.thread_pass(block, &thread, depth)?;
             pass += 1;
-            if pass > MOST_PASSES {
+            if pass > MAX_PASSES {
                 return bad(b'j', "the thread needs too many passes");
             }
             depth = first * f64::from(pass).powf(1.0 / degression);

@@ -90,7 +90,7 @@ impl ToolTable {
 /// Kind of all faults here.
 const CODE: &str = "gcode::tool_table";
 /// Larger lengths are typing errors, as in programs: 1 km.
-const MOST_MM: f64 = 1e6;
+const MAX_MM: f64 = 1e6;
 
 /// The words of a line with their places.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = (Range<usize>, &[u8])> {
@@ -125,7 +125,7 @@ fn parse_tool(line: &[u8], unit_mm: f64) -> Read<(u32, Tool)> {
         };
         let length = || -> Read<f64> {
             let length = value * unit_mm;
-            if length.abs() <= MOST_MM { Ok(length) } else { Err(fault(&format!("beyond the limit of {MOST_MM} mm"))) }
+            if length.abs() <= MAX_MM { Ok(length) } else { Err(fault(&format!("beyond the limit of {MAX_MM} mm"))) }
         };
         match letter {
             b't' => number = Some(whole()?),

@@ -10,7 +10,7 @@ use crate::text::diagnostic::LineFault;
 use crate::text::source::Mark;
 
 /// Motions of a profile: they are kept in memory, and a drawing has far fewer.
-const MOST_MOTIONS: usize = 100_000;
+const MAX_MOTIONS: usize = 100_000;
 
 /// What a cycle does with its profile, mm.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +66,7 @@ impl Capture {
         let Canon::Motion(motion) = step else { return };
         let line = motion.line;
         let fault = match &motion {
-            _ if self.motions.len() >= MOST_MOTIONS => Some("the profile has more than 100000 motions"),
+            _ if self.motions.len() >= MAX_MOTIONS => Some("the profile has more than 100000 motions"),
             Motion { others, .. } if !others.is_none() => Some("it moves other axes than X and Z"),
             Motion { start_mm, end_mm, .. } if start_mm[1] != end_mm[1] => {
                 Some("it moves Y; only X and Z form a profile")

@@ -15,7 +15,7 @@ use crate::text::diagnostic::{LineFault, Read};
 const SYSTEMS: i64 = 9;
 
 /// Further systems that a control may have.
-const MOST_SYSTEMS: i64 = 300;
+const MAX_SYSTEMS: i64 = 300;
 
 impl Interpreter {
     /// G54 to G59.3; Fanuc's G54.1 P1 and up are further systems.
@@ -151,7 +151,7 @@ impl Interpreter {
             let message = format!("P (number of the coordinate system) is missing for {}", spelled(word.number));
             return Err(LineFault::new("gcode::coordinates", word.at(), message).hint("write G54.1 P1"));
         }
-        let system = SYSTEMS as usize + self.integer(block, b'p', 1, MOST_SYSTEMS)? as usize;
+        let system = SYSTEMS as usize + self.integer(block, b'p', 1, MAX_SYSTEMS)? as usize;
         self.frame.system = system;
         self.load_further_system();
         if !self.fanuc.systems.contains_key(&system) && self.warn_once("gcode::coordinates") {
@@ -176,7 +176,7 @@ impl Interpreter {
 
     /// `G10 L20 P3 X Y Z`.
     pub(crate) fn set_further_system(&mut self, block: &Block) -> Read<()> {
-        let system = SYSTEMS as usize + self.integer(block, b'p', 1, MOST_SYSTEMS)? as usize;
+        let system = SYSTEMS as usize + self.integer(block, b'p', 1, MAX_SYSTEMS)? as usize;
         let mut offset = self.fanuc.systems.get(&system).copied().unwrap_or_default();
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {

@@ -14,7 +14,7 @@ pub(crate) const LOCALS: usize = 30;
 pub(crate) const MACRO_LOCALS: usize = 33;
 /// Named parameters that a program may have. Each costs about 100 bytes; a program that makes more of them builds names in
 /// an endless loop.
-const MOST_NAMES: usize = 100_000;
+const MAX_NAMES: usize = 100_000;
 
 /// First of the nine coordinates that G28 goes to.
 pub(crate) const HOME_1: usize = 5161;
@@ -96,7 +96,7 @@ impl ParameterTable {
         };
         if let Some(slot) = scope.get_mut(name) {
             *slot = value;
-        } else if self.names >= MOST_NAMES {
+        } else if self.names >= MAX_NAMES {
             return false;
         } else {
             scope.insert(name.to_vec(), value);
@@ -165,7 +165,7 @@ mod tests {
     #[test]
     fn names_are_limited() {
         let mut parameters = ParameterTable::new();
-        assert!((0..MOST_NAMES).all(|n| parameters.set_named(format!("n{n}").as_bytes(), 0.0)));
+        assert!((0..MAX_NAMES).all(|n| parameters.set_named(format!("n{n}").as_bytes(), 0.0)));
         assert!(!parameters.set_named(b"one_more", 0.0));
         assert!(parameters.set_named(b"n5", 3.0));
     }

@@ -20,7 +20,7 @@ use crate::text::expression::operators::{OPERATORS, Operator, apply_function, wi
 use crate::text::lexer::{Cursor, END, NO_EXPONENT, shown};
 
 /// Brackets, signs and `#` inside each other. Each level costs stack; no written program has more than a dozen.
-const DEEPEST: u32 = 200;
+const MAX_DEPTH: u32 = 200;
 /// An index or number this close to an integer is that integer, as in LinuxCNC.
 pub(crate) const INTEGER_WITHIN: f64 = 1e-4;
 
@@ -325,8 +325,8 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
     }
 
     fn deeper<T>(&mut self, start: usize, read: impl FnOnce(&mut Self) -> Read<T>) -> Read<T> {
-        if self.depth == DEEPEST {
-            let message = format!("more than {DEEPEST} brackets, signs or # inside each other");
+        if self.depth == MAX_DEPTH {
+            let message = format!("more than {MAX_DEPTH} brackets, signs or # inside each other");
             return Err(LineFault::new("gcode::depth", start..self.cursor.at + 1, message));
         }
         self.depth += 1;

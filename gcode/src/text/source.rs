@@ -9,7 +9,7 @@ use std::sync::Arc;
 const CHUNK_BYTES: usize = 1 << 18;
 /// Longest line. Real programs stay below 300 bytes (LinuxCNC stops at 255, comments included); a longer line is a
 /// damaged file or no program, and must not fill the memory.
-pub(crate) const LONGEST_LINE_BYTES: usize = 1 << 16;
+pub(crate) const MAX_LINE_BYTES: usize = 1 << 16;
 
 /// A place to come back to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -25,7 +25,7 @@ pub(crate) struct Mark {
 pub(crate) enum SourceLine {
     /// A line without its end.
     Text(Range<usize>),
-    /// A line of more than [`LONGEST_LINE_BYTES`], skipped; the range holds its beginning.
+    /// A line of more than [`MAX_LINE_BYTES`], skipped; the range holds its beginning.
     TooLong(Range<usize>),
     /// No more lines.
     End,
@@ -98,7 +98,7 @@ impl Source {
                 let start = self.next;
                 self.pass_line(length);
                 let range = start..start + length;
-                return Ok(if length > LONGEST_LINE_BYTES {
+                return Ok(if length > MAX_LINE_BYTES {
                     SourceLine::TooLong(head_of(range))
                 } else {
                     SourceLine::Text(range)
@@ -107,7 +107,7 @@ impl Source {
             if self.at_end {
                 return Ok(self.last_line());
             }
-            if unread.len() > LONGEST_LINE_BYTES {
+            if unread.len() > MAX_LINE_BYTES {
                 return self.skip_long_line();
             }
             self.refill()?;
@@ -122,7 +122,7 @@ impl Source {
         }
         self.begin_line();
         self.next = self.buffer.len();
-        if range.len() > LONGEST_LINE_BYTES { SourceLine::TooLong(head_of(range)) } else { SourceLine::Text(range) }
+        if range.len() > MAX_LINE_BYTES { SourceLine::TooLong(head_of(range)) } else { SourceLine::Text(range) }
     }
 
     /// What has been read of the file behind the last line.
@@ -148,7 +148,7 @@ impl Source {
     #[cold]
     fn skip_long_line(&mut self) -> io::Result<SourceLine> {
         self.begin_line();
-        let beginning: Vec<u8> = self.buffer[self.next..self.next + LONGEST_LINE_BYTES].to_vec();
+        let beginning: Vec<u8> = self.buffer[self.next..self.next + MAX_LINE_BYTES].to_vec();
         loop {
             if let Some(length) = memchr::memchr(b'\n', &self.buffer[self.next..]) {
                 self.next += length + 1;
@@ -226,7 +226,7 @@ impl Source {
 }
 
 fn head_of(range: Range<usize>) -> Range<usize> {
-    range.start..range.end.min(range.start + LONGEST_LINE_BYTES)
+    range.start..range.end.min(range.start + MAX_LINE_BYTES)
 }
 
 #[cfg(test)]

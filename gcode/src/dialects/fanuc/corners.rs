@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use crate::geometry::plane::{PlaneCurve, Round, SLACK_MM, add, length, minus, scaled, unit};
+use crate::geometry::plane::{PlaneArc, PlaneCurve, SLACK_MM, add, length, minus, scaled, unit};
 use crate::state::Interpreter;
 use crate::state::fanuc::{Goal, Pending};
 use crate::state::frame::Position;
@@ -105,7 +105,7 @@ impl Interpreter {
         let curve = |from: &Position, goal: &Goal| {
             let (start, end) = (in_plane(from), in_plane(&goal.target));
             match goal.round {
-                Some(Round { center, turns }) => {
+                Some(PlaneArc { center, turns }) => {
                     PlaneCurve::Arc { start, end, center, turn: f64::from(turns.signum()) }
                 }
                 None => PlaneCurve::Line { start, end },
@@ -134,7 +134,9 @@ impl Interpreter {
         let up_to = has_length.then(|| Goal { target: place(before.end()), ..pending.goal });
         let around = piece.map(|piece| {
             let round = match piece {
-                PlaneCurve::Arc { center, turn, .. } => Some(Round { center, turns: if turn > 0.0 { 1 } else { -1 } }),
+                PlaneCurve::Arc { center, turn, .. } => {
+                    Some(PlaneArc { center, turns: if turn > 0.0 { 1 } else { -1 } })
+                }
                 PlaneCurve::Line { .. } => None,
             };
             Goal { target: place(piece.end()), round }

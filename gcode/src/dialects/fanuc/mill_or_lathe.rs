@@ -195,7 +195,7 @@ impl Evidence {
     }
 }
 
-/// LineWords of a line as far as they are signs.
+/// Words of a line as far as they are signs of a machine.
 #[derive(Debug, Default)]
 struct LineWords {
     /// Ten times the codes.

@@ -17,9 +17,9 @@ use crate::text::codes::{bit, spelled};
 use crate::text::diagnostic::{LineFault, Read};
 
 /// Passes of one cycle: more is a mistake in the depth of a pass.
-const MOST_PASSES: f64 = 10_000.0;
+const MAX_PASSES: f64 = 10_000.0;
 /// A profile comes down, or turns back, where it does so by more, mm: coordinates of three decimals turn the ends of arcs by as little.
-const LEAST_TURN_MM: f64 = 1e-3;
+const MIN_TURN_MM: f64 = 1e-3;
 
 /// A cycle with its profile, moved by the allowance.
 struct Roughing<'a> {
@@ -74,7 +74,7 @@ impl<'a> Roughing<'a> {
             .all(|words| self.capture.first_words & (bit(words[0]) | bit(words[1])) != 0);
         for motion in motions {
             let curve = self.plane.curve(motion).moved(shift);
-            if goes_back_mm(&curve) > LEAST_TURN_MM {
+            if goes_back_mm(&curve) > MIN_TURN_MM {
                 let message = format!("{name} turns back: an undercut cannot be reached by passes along {name}");
                 return Err(self
                     .capture
@@ -163,7 +163,7 @@ fn goes_back_mm(curve: &PlaneCurve) -> f64 {
 
 /// Whether a curve goes down anywhere.
 fn comes_down(curve: &PlaneCurve) -> bool {
-    parted_at_tops(vec![*curve]).iter().any(|part| part.start()[1] - lowest_of(part) > LEAST_TURN_MM)
+    parted_at_tops(vec![*curve]).iter().any(|part| part.start()[1] - lowest_of(part) > MIN_TURN_MM)
 }
 
 impl Interpreter {
@@ -172,9 +172,8 @@ impl Interpreter {
         self.warn_of_allowance(&roughing);
         let (start, depth) = (roughing.start, roughing.depth_mm);
         let passes = ((start[1] - roughing.lowest() - SLACK_MM) / depth).ceil() - 1.0;
-        if passes > MOST_PASSES {
-            let message =
-                format!("the depth of a pass of {depth} mm makes {passes} passes; the limit is {MOST_PASSES}");
+        if passes > MAX_PASSES {
+            let message = format!("the depth of a pass of {depth} mm makes {passes} passes; the limit is {MAX_PASSES}");
             return Err(LineFault::new("gcode::lathe", capture.wanted.block.at(b'p'), message)
                 .hint("make the depth of a pass larger"));
         }

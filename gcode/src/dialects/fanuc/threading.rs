@@ -13,7 +13,7 @@ use crate::text::block::{Block, Word};
 use crate::text::diagnostic::{LineFault, Read};
 
 /// Passes of a thread: more is a mistake in Q.
-const MOST_PASSES: u32 = 1000;
+const MAX_PASSES: u32 = 1000;
 
 /// A thread, mm.
 struct FanucThread {
@@ -93,8 +93,7 @@ impl Interpreter {
             ahead,
         };
         let depths = depths(height, cut, &first).ok_or_else(|| {
-            let message =
-                format!("the thread of {height} mm needs more than {MOST_PASSES} passes of {cut} mm at first");
+            let message = format!("the thread of {height} mm needs more than {MAX_PASSES} passes of {cut} mm at first");
             LineFault::new("gcode::thread", word.at(), message).hint("make the first pass deeper")
         })?;
         for depth in depths {
@@ -169,7 +168,7 @@ fn depths(height: f64, cut: f64, first: &ThreadingWords) -> Option<Vec<f64>> {
     let (mut depths, mut depth, mut pass) = (Vec::new(), 0.0_f64, 0_u32);
     while depth < rough - 1e-9 {
         pass += 1;
-        if pass > MOST_PASSES {
+        if pass > MAX_PASSES {
             return None;
         }
         depth = (cut * f64::from(pass).sqrt()).max(depth + first.least_mm).min(rough);

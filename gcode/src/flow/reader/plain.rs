@@ -11,10 +11,10 @@ use crate::settings::Dialect;
 use crate::state::Interpreter;
 use crate::state::modal::FeedMode;
 use crate::text::lexer::{EXACT_POWERS, is_blank};
-use crate::text::source::LONGEST_LINE_BYTES;
+use crate::text::source::MAX_LINE_BYTES;
 
 /// Digits that a short decimal has at most: 10^15 is below 2^53, so that the mantissa is exact.
-const MOST_DIGITS: usize = 15;
+const MAX_DIGITS: usize = 15;
 
 /// Places of the words in [`PlainWords`].
 const X: usize = 0;
@@ -88,7 +88,7 @@ impl PlainWords {
             words.value[place] = short_decimal(bytes, &mut at)?;
         }
         words.length = at - 1;
-        (words.length <= LONGEST_LINE_BYTES).then_some(words)
+        (words.length <= MAX_LINE_BYTES).then_some(words)
     }
 
     #[inline]
@@ -119,7 +119,7 @@ fn straight_code(bytes: &[u8], at: &mut usize) -> Option<u16> {
 /// How many digits come first, at least one and few.
 pub(super) fn digits(bytes: &[u8]) -> Option<usize> {
     let count = bytes.iter().take_while(|byte| byte.is_ascii_digit()).count();
-    (1..=MOST_DIGITS).contains(&count).then_some(count)
+    (1..=MAX_DIGITS).contains(&count).then_some(count)
 }
 
 /// A decimal of few digits without blanks: an exact integer divided by an exact power of ten, as the lexer reads it.
@@ -139,7 +139,7 @@ fn short_decimal(bytes: &[u8], at: &mut usize) -> Option<f64> {
         decimals = *at - point;
         digits += decimals;
     }
-    if !(1..=MOST_DIGITS).contains(&digits) {
+    if !(1..=MAX_DIGITS).contains(&digits) {
         return None;
     }
     let value = mantissa as f64 / EXACT_POWERS[decimals];

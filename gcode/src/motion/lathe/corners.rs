@@ -1,13 +1,13 @@
 //! Corners of a profile: an arc that touches both sides (A), or the chord between the points where it would (C).
 
 use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM, add, cross, dot, length, minus, scaled, shifted, unit};
-use crate::state::lathe::{CornerCut, Lathe};
+use crate::state::lathe::{CornerCut, LatheCycle};
 use crate::text::diagnostic::{LineFault, Read};
 
 /// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
 pub(super) const SMOOTH_RAD: f64 = 1e-10;
 
-impl Lathe {
+impl LatheCycle {
     /// The profile's curves, one for each motion, with its corners cut.
     pub(super) fn cut_corners(&self, curves: Vec<PlaneCurve>) -> Read<Vec<PlaneCurve>> {
         if self.corners.is_empty() {

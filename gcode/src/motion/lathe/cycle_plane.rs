@@ -3,7 +3,7 @@
 //! Coordinates, mm: the first grows along the passes, the second grows from the finished part to the stock's surface.
 
 use crate::canon::{Motion, Shape};
-use crate::geometry::plane::{PlaneCurve, PlanePoint, Round, SLACK_MM, length, minus};
+use crate::geometry::plane::{PlaneArc, PlaneCurve, PlanePoint, SLACK_MM, length, minus};
 use crate::motion::feed::Speed;
 use crate::state::Interpreter;
 use crate::state::frame::Position;
@@ -85,7 +85,7 @@ impl Interpreter {
                 let [middle, target] =
                     [center, end].map(|point| self.frame.to_program(&plane.position(point, start_like)));
                 let turns = if plane.turns(turn) > 0.0 { 1 } else { -1 };
-                let round = Round { center: [middle[2], middle[0]], turns };
+                let round = PlaneArc { center: [middle[2], middle[0]], turns };
                 self.arc_to(block, &target, round, 0.0)
             }
             PlaneCurve::Line { end, .. } | PlaneCurve::Arc { end, .. } => {

@@ -3,15 +3,20 @@
 use crate::motion::feed::Speed;
 use crate::motion::lathe::profile::Profile;
 use crate::state::Interpreter;
-use crate::state::lathe::{Lathe, MOST_MOTIONS};
+use crate::state::lathe::{LatheCycle, MAX_MOTIONS};
 use crate::text::codes::bit;
 use crate::text::diagnostic::{LineFault, Read};
 
 impl Interpreter {
-    pub(super) fn finish_profile(&mut self, lathe: &Lathe, [first_mm, last_mm]: [f64; 2], passes: u32) -> Read<()> {
+    pub(super) fn finish_profile(
+        &mut self,
+        lathe: &LatheCycle,
+        [first_mm, last_mm]: [f64; 2],
+        passes: u32,
+    ) -> Read<()> {
         let profile = Profile::new(lathe)?;
         let motions = lathe.motions.len() as u64 * u64::from(passes);
-        if motions > MOST_MOTIONS as u64 {
+        if motions > MAX_MOTIONS as u64 {
             let message = format!("{passes} passes along {} motions in one line", lathe.motions.len());
             let fault = LineFault::new("gcode::lathe", lathe.block.at_any(bit(b'p') | bit(b'q')), message);
             return Err(fault.hint("the product may be 100000: cut the last passes with a G70 of their own"));

@@ -9,7 +9,7 @@ use crate::geometry::plane::{
 };
 use crate::motion::lathe::corners::SMOOTH_RAD;
 use crate::motion::lathe::profile::{Profile, goes_back};
-use crate::state::lathe::Lathe;
+use crate::state::lathe::LatheCycle;
 use crate::text::diagnostic::Read;
 
 /// Curves that cross at less than this, rad, touch: where pieces are 1 mm off, lines that bend less end within [`SLACK_MM`].
@@ -23,15 +23,15 @@ const SHARP_RAD: f64 = 0.5;
 /// Where what is beside it covers the first or the last line, it is met within this many distances before or behind that line.
 const GO_ON: f64 = 4.0;
 /// Comparisons of pieces with those before them: a distance much larger than the details of a long profile makes their number grow with its square.
-const MOST_COMPARISONS: usize = 10_000_000;
+const MAX_COMPARISONS: usize = 10_000_000;
 
 impl Profile {
     /// The profile at `distance_mm` from itself.
-    pub(super) fn offset(&self, lathe: &Lathe, distance_mm: f64) -> Read<Self> {
+    pub(super) fn offset(&self, lathe: &LatheCycle, distance_mm: f64) -> Read<Self> {
         if distance_mm <= SLACK_MM {
             return Ok(self.clone());
         }
-        let mut above = Above {
+        let mut above = UpperEnvelope {
             curves: Vec::with_capacity(2 * self.curves.len()),
             is_below: false,
             is_lost: false,
@@ -66,7 +66,7 @@ impl Profile {
         }
         let is_found = !above.is_below
             && !above.is_lost
-            && above.comparisons <= MOST_COMPARISONS
+            && above.comparisons <= MAX_COMPARISONS
             && !above.curves.iter().any(goes_back);
         above.curves.retain(|curve| curve.chord() > SLACK_MM);
         if !is_found || above.curves.is_empty() {
@@ -78,7 +78,7 @@ impl Profile {
 }
 
 /// The uppermost pieces so far.
-struct Above {
+struct UpperEnvelope {
     curves: Vec<PlaneCurve>,
     /// The last piece ended below them.
     is_below: bool,
@@ -90,7 +90,7 @@ struct Above {
     first: PlanePoint,
 }
 
-impl Above {
+impl UpperEnvelope {
     pub(super) fn push(&mut self, mut piece: PlaneCurve) {
         let end = self.curves.last().map(PlaneCurve::end);
         let goes_on = !self.is_below && end.is_none_or(|end| length(minus(piece.start(), end)) <= SLACK_MM);
@@ -162,7 +162,7 @@ impl Above {
         let mut found: Option<(usize, PlanePoint, f64)> = None;
         for (number, curve) in self.curves.iter().enumerate().rev() {
             self.comparisons += 1;
-            if self.comparisons > MOST_COMPARISONS || curve.end()[0] < piece.start()[0] - SLACK_MM {
+            if self.comparisons > MAX_COMPARISONS || curve.end()[0] < piece.start()[0] - SLACK_MM {
                 break;
             }
             // What is left of a curve may be a point, which has no direction.

@@ -7,7 +7,7 @@ use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM, sweep};
 use crate::motion::feed::Speed;
 use crate::motion::lathe::cycle_plane::{CyclePlane, clear};
 use crate::state::Interpreter;
-use crate::state::lathe::Lathe;
+use crate::state::lathe::LatheCycle;
 use crate::text::codes::spelled;
 use crate::text::diagnostic::{LineFault, Read};
 
@@ -21,7 +21,7 @@ pub(super) struct Profile {
 
 impl Profile {
     /// The profile of a cycle; refuses one that goes back along the passes.
-    pub(super) fn new(lathe: &Lathe) -> Read<Self> {
+    pub(super) fn new(lathe: &LatheCycle) -> Read<Self> {
         match lathe.code {
             // Finishing has no passes: the profile is one of G71 or of G72.
             700 => Self::along(lathe, [2, 0]).or_else(|fault| Self::along(lathe, [0, 2]).map_err(|_| fault)),
@@ -30,7 +30,7 @@ impl Profile {
         }
     }
 
-    pub(super) fn along(lathe: &Lathe, axes: [usize; 2]) -> Read<Self> {
+    pub(super) fn along(lathe: &LatheCycle, axes: [usize; 2]) -> Read<Self> {
         let along = |motion: &Motion, axis: usize| motion.end_mm[axes[axis]] - motion.start_mm[axes[axis]];
         // As LinuxCNC: towards the chuck or the axis, where the profile itself does not say.
         let ahead = lathe.motions.iter().skip(1).find_map(|motion| clear(along(motion, 0)));
@@ -84,7 +84,7 @@ pub(super) fn goes_back(curve: &PlaneCurve) -> bool {
     }
 }
 
-impl Lathe {
+impl LatheCycle {
     pub(super) fn refuse(&self, line: u32, message: &str) -> Box<LineFault> {
         let place = if line == self.line { String::new() } else { format!("line {line}: ") };
         let message = format!("the profile of {} cannot be cut: {place}{message}", spelled(self.code));
@@ -118,17 +118,23 @@ impl Lathe {
 
 impl Interpreter {
     /// Moves straight to a point of the cycle's plane.
-    pub(super) fn lathe_line(&mut self, lathe: &Lathe, plane: CyclePlane, point: PlanePoint, speed: Speed) -> Read<()> {
+    pub(super) fn lathe_line(
+        &mut self,
+        lathe: &LatheCycle,
+        plane: CyclePlane,
+        point: PlanePoint,
+        speed: Speed,
+    ) -> Read<()> {
         self.pass_line(&lathe.block, &lathe.start, plane, point, speed)
     }
 
     /// Cuts along a curve.
-    pub(super) fn lathe_curve(&mut self, lathe: &Lathe, plane: CyclePlane, curve: &PlaneCurve) -> Read<()> {
+    pub(super) fn lathe_curve(&mut self, lathe: &LatheCycle, plane: CyclePlane, curve: &PlaneCurve) -> Read<()> {
         self.pass_curve(&lathe.block, &lathe.start, plane, curve)
     }
 
     /// Cuts along curves.
-    pub(super) fn lathe_cut(&mut self, lathe: &Lathe, profile: &Profile) -> Read<()> {
+    pub(super) fn lathe_cut(&mut self, lathe: &LatheCycle, profile: &Profile) -> Read<()> {
         profile.curves.iter().try_for_each(|curve| self.lathe_curve(lathe, profile.plane, curve))
     }
 

@@ -5,11 +5,11 @@
 
 use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM};
 use crate::motion::feed::Speed;
-use crate::motion::lathe::MOST_PASSES;
+use crate::motion::lathe::MAX_PASSES;
 use crate::motion::lathe::pockets::{bridged, ends_falling, falls, falls_through, first_at, parted_at_tops};
 use crate::motion::lathe::profile::Profile;
 use crate::state::Interpreter;
-use crate::state::lathe::Lathe;
+use crate::state::lathe::LatheCycle;
 use crate::text::diagnostic::{LineFault, Read};
 
 /// Last digit of the code.
@@ -30,18 +30,18 @@ struct RoughingState {
 }
 
 impl RoughingState {
-    fn count(&mut self, lathe: &Lathe) -> Read<()> {
+    fn count(&mut self, lathe: &LatheCycle) -> Read<()> {
         self.passes += 1.0;
-        if self.passes <= MOST_PASSES {
+        if self.passes <= MAX_PASSES {
             return Ok(());
         }
-        let message = format!("the depth of a pass of {} mm makes more than {MOST_PASSES} passes", self.depth_mm);
+        let message = format!("the depth of a pass of {} mm makes more than {MAX_PASSES} passes", self.depth_mm);
         Err(LineFault::new("gcode::lathe", lathe.block.at(b'q'), message).hint("make I larger"))
     }
 }
 
 impl Interpreter {
-    pub(super) fn rough(&mut self, lathe: &Lathe, depth_mm: f64, retraction_mm: f64, left_mm: f64) -> Read<()> {
+    pub(super) fn rough(&mut self, lathe: &LatheCycle, depth_mm: f64, retraction_mm: f64, left_mm: f64) -> Read<()> {
         let kind = match lathe.code % 10 {
             1 => Extent::WithoutPockets,
             2 => Extent::PocketsOnly,
@@ -92,7 +92,7 @@ impl Interpreter {
     }
 
     /// Passes from the way to the profile's entry.
-    fn rough_to_entry(&mut self, lathe: &Lathe, profile: &Profile, roughing: &mut RoughingState) -> Read<()> {
+    fn rough_to_entry(&mut self, lathe: &LatheCycle, profile: &Profile, roughing: &mut RoughingState) -> Read<()> {
         let (start, entry, plane) = (profile.start, profile.entry(), profile.plane);
         let mut pass = 0_u32;
         loop {
@@ -114,7 +114,7 @@ impl Interpreter {
     /// Along a curve of the profile, with a pass at each level that it falls through.
     fn rough_curve(
         &mut self,
-        lathe: &Lathe,
+        lathe: &LatheCycle,
         profile: &Profile,
         number: usize,
         roughing: &mut RoughingState,
@@ -142,7 +142,7 @@ impl Interpreter {
     /// Cuts straight on, and comes back to where it began.
     pub(super) fn pass(
         &mut self,
-        lathe: &Lathe,
+        lathe: &LatheCycle,
         profile: &Profile,
         [begin, hit]: [PlanePoint; 2],
         back: Speed,
