@@ -114,16 +114,16 @@ pub struct Competitor {
     /// Its row in the table of controllers.
     pub entry: &'static Entry,
     /// Whether it is identified on the machine that it cuts on, instead of the nominal one.
-    pub at_home: bool,
+    pub identified_here: bool,
 }
 
 /// What stands behind the name of a competitor that is identified on the machine that it cuts on.
-pub const AT_HOME: &str = "+identified";
+pub const IDENTIFIED_HERE: &str = "+identified";
 
 impl Competitor {
     /// Its name in the table.
     pub fn name(&self) -> String {
-        format!("{}{}", self.entry.name, if self.at_home { AT_HOME } else { "" })
+        format!("{}{}", self.entry.name, if self.identified_here { IDENTIFIED_HERE } else { "" })
     }
 }
 
@@ -203,9 +203,9 @@ impl ComparisonOptions {
 
     /// All competitors in the order of the table.
     pub fn competitors(&self) -> Vec<Competitor> {
-        let unseen = self.controllers.iter().map(|&entry| Competitor { entry, at_home: false });
+        let unseen = self.controllers.iter().map(|&entry| Competitor { entry, identified_here: false });
         let identifying = self.controllers.iter().filter(|entry| entry.knows == Knows::Identified);
-        unseen.chain(identifying.map(|&entry| Competitor { entry, at_home: true })).collect()
+        unseen.chain(identifying.map(|&entry| Competitor { entry, identified_here: true })).collect()
     }
 
     /// What the result depends on, apart from the program: the key of the journal.
@@ -307,8 +307,8 @@ fn cuts(
         .machines
         .iter()
         .flat_map(|machine| competitors.iter().map(move |competitor| (machine, competitor)))
-        // At home on the nominal machine is the unseen controller once more.
-        .filter(|(machine, competitor)| !competitor.at_home || machine.name != nominal.name)
+        // Identified on the nominal machine it is the unseen controller once more.
+        .filter(|(machine, competitor)| !competitor.identified_here || machine.name != nominal.name)
         .collect();
     progress.cutting((pairs.len() * options.workpieces.len()) as u64);
     let rows: Result<Vec<Vec<ComparisonRow>>, LimitsError> = pairs

@@ -8,7 +8,7 @@
 
 pub mod figure;
 mod html;
-mod island;
+mod embedded_data;
 mod outline;
 mod series;
 mod statistics;

@@ -4,7 +4,7 @@
 
 use feedwright::compare::verdict::Verdict;
 use feedwright::compare::{
-    AT_HOME, Comparison, ComparisonOptions, Finished, Tuning, Workpiece, compare, journal_path, page,
+    Comparison, ComparisonOptions, Finished, IDENTIFIED_HERE, Tuning, Workpiece, compare, journal_path, page,
 };
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Entry};
 use feedwright::journal::Journal;
@@ -74,7 +74,12 @@ fn rows_are_complete_and_ratios_are_against_open_loop() {
         assert_eq!(row.time_ratio, row.time_s / base.time_s);
         assert!(row.completed && row.faded_out.is_none(), "{row:?}");
     }
-    assert!(comparison.rows.iter().any(|row| row.controller == format!("{BEST}{AT_HOME}") && row.machine == "rough"));
+    assert!(
+        comparison
+            .rows
+            .iter()
+            .any(|row| row.controller == format!("{BEST}{IDENTIFIED_HERE}") && row.machine == "rough")
+    );
     let claims: Vec<(&str, &str, &str)> =
         comparison.verdicts.iter().map(|v| (v.contour.as_str(), v.machine.as_str(), v.claim.as_str())).collect();
     let expected = [

@@ -28,7 +28,7 @@ impl Maker<'_> {
         let set = values.map_or(Vec::new(), |tuned| tuned.settings(entry));
         let choices = Choices { seed: self.seed, set };
         // What a controller believes of the machine: the periods of the control are never a secret.
-        let known = if self.competitor.at_home { machine } else { self.nominal };
+        let known = if self.competitor.identified_here { machine } else { self.nominal };
         let known = Machine { period: machine.period, ..known.clone() };
         Make::<2>::make(entry, &mut Setup { machine: &known, choices: &choices, progress: &mut |_| {} })
     }

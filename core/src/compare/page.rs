@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use super::overview::{Claimed, each_once};
 use super::table::{ComparisonRow, knows};
 use super::tolerance::TOLERANCE_UM;
-use super::{AT_HOME, Comparison};
+use super::{Comparison, IDENTIFIED_HERE};
 use crate::controllers::{BASELINE, BEST, Knows};
 use crate::report::figure::{COLORS, Figure, Panel, Polyline, write_foot, write_head};
 use crate::report::text::{escaped, number};
@@ -22,7 +22,7 @@ const NOTABLE: f64 = 0.02;
 pub fn write(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let introduction = format!(
         "Every controller on every contour and machine. Controllers know {} at most and meet the other machines unseen; \
-         {BEST}{AT_HOME} and its like are identified on the machine that they cut on. Seed {}.",
+         {BEST}{IDENTIFIED_HERE} and its like are identified on the machine that they cut on. Seed {}.",
         comparison.nominal, comparison.seed
     );
     write_head(out, "Comparison of controllers", &introduction, CSS)?;

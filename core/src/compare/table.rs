@@ -105,6 +105,6 @@ fn against(mut row: ComparisonRow, base: Option<&ComparisonRow>) -> ComparisonRo
 
 /// What the controller of a row knows; nothing where its name is none.
 pub fn knows(row: &ComparisonRow) -> Option<Knows> {
-    let name = row.controller.strip_suffix(super::AT_HOME).unwrap_or(&row.controller);
+    let name = row.controller.strip_suffix(super::IDENTIFIED_HERE).unwrap_or(&row.controller);
     crate::controllers::Entry::find(name).map(|entry| entry.knows)
 }

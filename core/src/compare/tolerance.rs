@@ -48,7 +48,7 @@ pub(super) fn at_tolerance(
     let found: Result<Vec<AtTolerance>, LimitsError> = pairs
         .par_iter()
         .map(|&(contour, entry)| {
-            let competitor = Competitor { entry, at_home: false };
+            let competitor = Competitor { entry, identified_here: false };
             let best = fastest(contour, &competitor, options, tuned)?;
             let row = AtTolerance {
                 contour: contour.name.to_owned(),

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::table::{ComparisonRow, knows};
-use super::{AT_HOME, Workpiece};
+use super::{IDENTIFIED_HERE, Workpiece};
 use crate::controllers::{BASELINE, BEST, Knows};
 
 /// One claim on one contour of one machine.
@@ -105,7 +105,7 @@ fn with_corners(ours: &ComparisonRow, here: &[&ComparisonRow]) -> Vec<Verdict> {
 
 fn elsewhere(ours: &ComparisonRow, here: &[&ComparisonRow]) -> Vec<Verdict> {
     let Some(peer) = best_without_model(here) else { return Vec::new() };
-    let home = here.iter().find(|row| row.controller == format!("{BEST}{AT_HOME}"));
+    let home = here.iter().find(|row| row.controller == format!("{BEST}{IDENTIFIED_HERE}"));
     let mut verdicts = vec![RMS_UNSEEN.of_rms(ours, peer)];
     verdicts.extend(home.map(|home| RMS_IDENTIFIED.of_rms(home, peer)));
     verdicts
@@ -118,7 +118,8 @@ fn best_without_model<'a>(here: &[&'a ComparisonRow]) -> Option<&'a ComparisonRo
 /// Rows that came to their end of others that know no more than this; none that is identified anew.
 fn peers<'a>(here: &[&'a ComparisonRow], known: &[Knows]) -> impl Iterator<Item = &'a ComparisonRow> {
     here.iter().copied().filter(|row| {
-        let is_other = row.controller != BEST && row.controller != UPPER_BOUND && !row.controller.ends_with(AT_HOME);
+        let is_other =
+            row.controller != BEST && row.controller != UPPER_BOUND && !row.controller.ends_with(IDENTIFIED_HERE);
         is_other && row.completed && knows(row).is_some_and(|knows| known.contains(&knows))
     })
 }
@@ -219,7 +220,7 @@ mod tests {
             row("circle", "rough", BASELINE, [10.0, 20.0]),
             row("circle", "rough", "contour-compensation", [4.0, 9.0]),
             row("circle", "rough", BEST, [2.4, 5.0]),
-            row("circle", "rough", &format!("{BEST}{AT_HOME}"), [0.8, 2.0]),
+            row("circle", "rough", &format!("{BEST}{IDENTIFIED_HERE}"), [0.8, 2.0]),
         ];
         assert_eq!(told(&rows), [of("contour-compensation", 600.0, false), of("contour-compensation", 200.0, true)]);
     }

@@ -75,8 +75,8 @@ impl Row {
     /// RMS contour error over open loop's.
     pub fn rms_ratio(&self) -> f64 {
         /// An open loop below this is as good as none, um.
-        const LEAST_UM: f64 = 1e-3;
-        self.corrected.rms_um / self.open_loop.rms_um.max(LEAST_UM)
+        const MIN_UM: f64 = 1e-3;
+        self.corrected.rms_um / self.open_loop.rms_um.max(MIN_UM)
     }
 }
 

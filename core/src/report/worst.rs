@@ -16,7 +16,7 @@ const PLACES: usize = 10;
 const PEAK_ENDS: f64 = 0.7;
 
 /// Peaks smaller than this fraction of the largest are not told: they are not what is wrong with the part.
-const LEAST_SHARE: f64 = 0.01;
+const MIN_SHARE: f64 = 0.01;
 
 /// Peaks nearer to each other than this along the path are one place, mm.
 const APART_MM: f64 = 0.5;
@@ -109,7 +109,7 @@ impl WorstFinder {
             t_s: p.t_s,
             s_mm: p.s_mm,
         };
-        let least_mm = last.found.first().map_or(0.0, |p| LEAST_SHARE * p.error_mm.abs());
+        let least_mm = last.found.first().map_or(0.0, |p| MIN_SHARE * p.error_mm.abs());
         last.found.iter().filter(|p| p.error_mm.abs() >= least_mm).map(place).collect()
     }
 
