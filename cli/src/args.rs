@@ -15,11 +15,11 @@ pub(crate) struct Cli {
     #[arg(short, long, global = true)]
     pub(crate) quiet: bool,
     #[command(subcommand)]
-    pub(crate) command: Command,
+    pub(crate) command: CommandArgs,
 }
 
 #[derive(Debug, Subcommand)]
-pub(crate) enum Command {
+pub(crate) enum CommandArgs {
     /// Cut a part on a simulated machine, open loop and with a controller, and write the report.
     Run(Box<RunArgs>),
     /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.

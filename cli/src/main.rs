@@ -7,7 +7,7 @@ mod args;
 mod commands;
 mod console;
 mod controllers;
-mod files;
+mod files_to_check;
 mod findings;
 mod message;
 mod progress;
@@ -17,29 +17,31 @@ use std::process::ExitCode;
 
 use clap::Parser;
 
-use args::{Cli, Command};
+use args::{Cli, CommandArgs};
 use console::Console;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
     let console = Console::new(cli.quiet);
     // The others write no files.
-    let writes =
-        !matches!(cli.command, Command::Check(_) | Command::Canon(_) | Command::Machines | Command::Controllers { .. });
+    let writes = !matches!(
+        cli.command,
+        CommandArgs::Check(_) | CommandArgs::Canon(_) | CommandArgs::Machines | CommandArgs::Controllers { .. }
+    );
     if writes {
         console.listen();
     }
     let result = match cli.command {
-        Command::Run(args) => commands::run::run(*args, &console),
-        Command::Paper(args) => commands::paper::run(&args, &console),
-        Command::Compare(args) => commands::compare::run(&args, &console),
-        Command::NeverWorse(args) => commands::never_worse::run(&args, &console),
-        Command::HeldOut(args) => commands::held_out::run(&args, &console),
-        Command::Check(args) => commands::check::run(&args, &console),
-        Command::Canon(args) => commands::canon::run(&args, &console),
-        Command::Machines => commands::list::machines(),
-        Command::Controllers { name: None } => commands::list::controllers(),
-        Command::Controllers { name: Some(name) } => commands::list::controller(&name),
+        CommandArgs::Run(args) => commands::run::run(*args, &console),
+        CommandArgs::Paper(args) => commands::paper::run(&args, &console),
+        CommandArgs::Compare(args) => commands::compare::run(&args, &console),
+        CommandArgs::NeverWorse(args) => commands::never_worse::run(&args, &console),
+        CommandArgs::HeldOut(args) => commands::held_out::run(&args, &console),
+        CommandArgs::Check(args) => commands::check::run(&args, &console),
+        CommandArgs::Canon(args) => commands::canon::run(&args, &console),
+        CommandArgs::Machines => commands::list::machines(),
+        CommandArgs::Controllers { name: None } => commands::list::controllers(),
+        CommandArgs::Controllers { name: Some(name) } => commands::list::controller(&name),
     };
     match result {
         Ok(code) => code,

@@ -1,15 +1,15 @@
 //! What commands share that hold a controller against open loop on many cuts: the journal, the bar, the table.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
 use feedwright::identify::cache;
-use feedwright::never_worse::cut::Figures;
-use feedwright::never_worse::journal::Journal;
-use feedwright::never_worse::summary::{Judged, OPEN_LOOP_UM, Quantiles, Summary};
-use feedwright::never_worse::{Job, Options, Swept, sweep};
+use feedwright::journal::Journal;
+use feedwright::never_worse::cut::{Figures, Row};
+use feedwright::never_worse::summary::{Judged, OPEN_LOOP_UM, Quantiles, SweepSummary};
+use feedwright::never_worse::{SweepJob, SweepOptions, Swept, journal_path, sweep};
 use feedwright::output::{OutputFile, OutputFiles};
 use miette::{IntoDiagnostic, Result, WrapErr};
 
@@ -20,8 +20,8 @@ use crate::message::OUT_OF_TOLERANCE;
 
 /// A sweep that is about to begin: everything that can be refused has been.
 pub(crate) struct Sweep {
-    pub(crate) options: Options,
-    journal: Journal,
+    pub(crate) options: SweepOptions,
+    journal: Journal<Row>,
     json: Option<OutputFile>,
 }
 
@@ -32,20 +32,20 @@ impl Sweep {
         let set = settings(&args.set, Some(controller), &[controller])?;
         let threads =
             args.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
-        let options = Options { controller, set, seed: args.seed, threads };
+        let options = SweepOptions { controller, set, seed: args.seed, threads };
         let mut files = OutputFiles::new(inputs.iter().copied());
         let json = args.json.as_ref().map(|path| files.start(path)).transpose()?;
         Ok(Self { options, journal: journal(args.journal.as_deref())?, json })
     }
 
     /// Cuts all jobs and writes what was asked for.
-    pub(crate) fn run(self, jobs: &[Job], console: &Console) -> Result<Done> {
+    pub(crate) fn run(self, jobs: &[SweepJob], console: &Console) -> Result<Done> {
         let bar = console.bar(0);
         let began = Instant::now();
         let swept = sweep(jobs, &self.options, &self.journal, &bar);
         bar.clear();
         let Swept { rows, known } = swept?;
-        let summary = Summary::of(rows);
+        let summary = SweepSummary::of(rows);
         let (threads, took_s) = (self.options.threads, began.elapsed().as_secs_f64());
         if let Some(mut file) = self.json {
             serde_json::to_writer_pretty(&mut file, &summary).into_diagnostic().wrap_err("cannot write the cuts")?;
@@ -57,20 +57,20 @@ impl Sweep {
 }
 
 /// The journal: where it is asked for, or in the cache; none where there is no place for it.
-fn journal(file: Option<&Path>) -> Result<Journal> {
+fn journal(file: Option<&Path>) -> Result<Journal<Row>> {
     if let Some(file) = file {
         return Journal::open(file)
             .into_diagnostic()
             .wrap_err_with(|| format!("{}: no journal can be kept there", file.display()));
     }
     let program = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
-    let place: Option<PathBuf> = cache::folder().map(|folder| Journal::place(&folder, &cache::key_of(&[&program])));
-    Ok(place.and_then(|place| Journal::open(&place).ok()).unwrap_or_else(Journal::none))
+    let path = cache::folder().map(|folder| journal_path(&folder, &cache::key_of(&[&program])));
+    Ok(path.and_then(|path| Journal::open(&path).ok()).unwrap_or_else(Journal::none))
 }
 
 /// A sweep that is done.
 pub(crate) struct Done {
-    pub(crate) summary: Summary,
+    pub(crate) summary: SweepSummary,
     known: usize,
     threads: usize,
     took_s: f64,
@@ -84,7 +84,7 @@ impl Done {
 
     /// Failures, then totals.
     pub(crate) fn print(&self, out: &mut impl Write) -> io::Result<()> {
-        let Summary { judged, not_judged, worse, by_fault, rows, .. } = &self.summary;
+        let SweepSummary { judged, not_judged, worse, by_fault, rows, .. } = &self.summary;
         let failures: Vec<&Judged> = rows.iter().filter(|judged| !judged.faults.is_empty()).collect();
         if !failures.is_empty() {
             writeln!(
@@ -109,7 +109,7 @@ impl Done {
     }
 
     fn print_numbers(&self, out: &mut impl Write) -> io::Result<()> {
-        let Summary { rms_ratio, rms_ratio_rigid, engaged_share, machining_s, .. } = &self.summary;
+        let SweepSummary { rms_ratio, rms_ratio_rigid, engaged_share, machining_s, .. } = &self.summary;
         let mut quantiles = |what: &str, ratios: &Option<Quantiles>| match ratios {
             Some(Quantiles { cuts, median, p90, p99, largest }) => writeln!(
                 out,

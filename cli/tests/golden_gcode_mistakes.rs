@@ -14,7 +14,7 @@ use common::Folder;
 const UPDATE: &str = "FEEDWRIGHT_UPDATE_DOCUMENTS";
 const DOCUMENT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/gcode-mistakes.md");
 /// Fewer would mean that the programs in the document were not found.
-const LEAST_PROGRAMS: usize = 15;
+const MIN_PROGRAMS: usize = 15;
 const PROGRAM: &str = "```gcode\n";
 const MESSAGE: &str = "```text\n";
 const END: &str = "```\n";
@@ -47,7 +47,7 @@ fn written_anew(document: &str) -> (String, usize) {
 fn the_messages_in_the_document_are_those_of_the_program() {
     let document = std::fs::read_to_string(DOCUMENT).unwrap();
     let (anew, count) = written_anew(&document);
-    assert!(count >= LEAST_PROGRAMS, "{count}");
+    assert!(count >= MIN_PROGRAMS, "{count}");
     if std::env::var_os(UPDATE).is_some() {
         return std::fs::write(DOCUMENT, anew).unwrap();
     }
@@ -60,7 +60,7 @@ fn every_mistake_has_a_place_and_all_but_few_a_hint() {
     let document = std::fs::read_to_string(DOCUMENT).unwrap();
     let messages: Vec<&str> =
         document.split(MESSAGE).skip(1).filter_map(|rest| Some(rest.split_once("\n```\n")?.0)).collect();
-    assert!(messages.len() >= LEAST_PROGRAMS);
+    assert!(messages.len() >= MIN_PROGRAMS);
     let mistakes = messages.iter().filter(|message| message.contains('×'));
     let without_hint: Vec<_> = mistakes.filter(|message| !message.contains("hint: ")).collect();
     assert!(messages.iter().filter(|message| message.contains('×')).all(|message| message.contains("─[part.ngc:")));

@@ -7,7 +7,7 @@ mod common;
 use common::{BLEND, LIMITS, Random, line};
 use divan::Bencher;
 use divan::counter::ItemsCount;
-use feedwright::gcode::canon::{Canon, Motion, MotionKind, Others, Shape, Spline};
+use feedwright::gcode::canon::{AuxiliaryAxes, Canon, Motion, MotionKind, Shape, Spline};
 use feedwright::path::contour::contour;
 use feedwright::reference::Reference;
 use std::sync::Arc;
@@ -38,7 +38,7 @@ fn wave() -> Canon {
         shape: Shape::Spline(Arc::new(Spline { degree: 3, knots, control_mm, weights: vec![1.0; POINTS] })),
         feed_mm_s: 50.0,
         corner: BLEND,
-        others: Others::default(),
+        others: AuxiliaryAxes::default(),
     })
 }
 

@@ -8,7 +8,7 @@ use feedwright::controllers::{BASELINE, BEST, Choices, Entry, Make, Setup};
 use feedwright::machine::Machine;
 use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
-use feedwright::report::figure::{COLORS, Curve, Figure, Line, Panel};
+use feedwright::report::figure::{COLORS, Figure, LineStyle, Panel, Polyline};
 
 const CONTOURS: [&str; 4] = ["square", "circle", "star", "butterfly"];
 /// What the correction may accelerate in each axis, mm/s2; the default on tnv40 is 400.
@@ -68,19 +68,20 @@ fn print_table(open: &[Errors], rows: &[Vec<Errors>]) {
 
 /// Largest and RMS errors over the acceleration, as powers of ten on both axes.
 fn figure(open: &[Errors], rows: &[Vec<Errors>]) -> Figure {
-    let curve = |contour: usize, which: usize, line: Line| {
+    let curve = |contour: usize, which: usize, line: LineStyle| {
         let points = rows.iter().zip(ACCELERATIONS_MM_S2);
         let at = |errors: Errors, acceleration: f64| [acceleration.log10(), errors[which].log10()];
         let points = match line {
-            Line::Dashed => ACCELERATIONS_MM_S2.iter().map(|a| at(open[contour], *a)).collect(),
+            LineStyle::Dashed => ACCELERATIONS_MM_S2.iter().map(|a| at(open[contour], *a)).collect(),
             _ => points.map(|(row, a)| at(row[contour], a)).collect(),
         };
-        let label = format!("{}{}", CONTOURS[contour], if line == Line::Dashed { ", open loop" } else { "" });
-        Curve { label, points, line, color: COLORS[contour].to_owned() }
+        let label = format!("{}{}", CONTOURS[contour], if line == LineStyle::Dashed { ", open loop" } else { "" });
+        Polyline { label, points, line, color: COLORS[contour].to_owned() }
     };
     let panel = |which: usize, title: &str| {
-        let mut curves: Vec<Curve> = (0..CONTOURS.len()).map(|contour| curve(contour, which, Line::Dashed)).collect();
-        curves.extend((0..CONTOURS.len()).map(|contour| curve(contour, which, Line::Solid)));
+        let mut curves: Vec<Polyline> =
+            (0..CONTOURS.len()).map(|contour| curve(contour, which, LineStyle::Dashed)).collect();
+        curves.extend((0..CONTOURS.len()).map(|contour| curve(contour, which, LineStyle::Solid)));
         Panel {
             title: title.to_owned(),
             x_title: "log10 of the acceleration [mm/s²]".to_owned(),
@@ -91,10 +92,10 @@ fn figure(open: &[Errors], rows: &[Vec<Errors>]) -> Figure {
     };
     let mut largest = panel(1, "(b) Largest");
     let optimum = ACCELERATIONS_MM_S2.iter().zip(OPTIMUM_UM).map(|(a, um)| [a.log10(), um.log10()]).collect();
-    largest.curves.push(Curve {
+    largest.curves.push(Polyline {
         label: "square, optimum".to_owned(),
         points: optimum,
-        line: Line::Dotted,
+        line: LineStyle::Dotted,
         color: COLORS[0].to_owned(),
     });
     Figure { panels: vec![panel(0, "(a) RMS"), largest], columns: 2, aspect: 0.9 }

@@ -3,7 +3,7 @@
 //! Prints the effect of the feedrate on the contour error as the simulated machine has it, then as networks have learnt it from
 //! several training programmes, and what the two-dimensional controller makes of each on the circle of eq. 11.
 
-use feedwright::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use feedwright::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright::identify::Programme;
 use feedwright::identify::contour::{Recording, Training};
 use feedwright::machine::Machine;
@@ -79,7 +79,7 @@ fn cut(machine: &Machine, controller: &mut dyn Controller<2>, sinks: &mut [&mut 
         shape: Shape::Arc { plane: Plane::Xy, center_mm: [RADIUS_MM, 0.0, 0.0], turns: -1 },
         feed_mm_s: FEED_MM_S,
         corner: Corner::ExactStop,
-        others: Others::default(),
+        others: AuxiliaryAxes::default(),
     };
     Run::on(machine)
         .cut(|| Ok(pieces([Canon::Motion(motion.clone())])), controller, sinks)

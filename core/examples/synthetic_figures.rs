@@ -6,14 +6,14 @@ use std::f64::consts::TAU;
 use std::fs::File;
 use std::io::{self, BufWriter};
 
-use feedwright::report::figure::{COLORS, CaptionedFigure, Curve, Figure, Line, Panel, write_page};
+use feedwright::report::figure::{COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, write_page};
 
-fn curve(label: &str, color: usize, line: Line, count: u32, at: impl Fn(f64) -> [f64; 2]) -> Curve {
+fn curve(label: &str, color: usize, line: LineStyle, count: u32, at: impl Fn(f64) -> [f64; 2]) -> Polyline {
     let points = (0..=count).map(|k| at(f64::from(k) / f64::from(count))).collect();
-    Curve { label: label.to_owned(), points, line, color: COLORS[color].to_owned() }
+    Polyline { label: label.to_owned(), points, line, color: COLORS[color].to_owned() }
 }
 
-fn panel(title: &str, x_title: &str, y_title: &str, curves: Vec<Curve>) -> Panel {
+fn panel(title: &str, x_title: &str, y_title: &str, curves: Vec<Polyline>) -> Panel {
     Panel {
         title: title.to_owned(),
         x_title: x_title.to_owned(),
@@ -33,9 +33,9 @@ fn main() -> io::Result<()> {
     };
     let path = || {
         vec![
-            curve("programmed path", 0, Line::Thin, 400, wobbly(0.0)),
-            curve("without correction", 1, Line::Dashed, 2000, wobbly(0.8)),
-            curve("with correction", 2, Line::Solid, 2000, wobbly(0.2)),
+            curve("programmed path", 0, LineStyle::Thin, 400, wobbly(0.0)),
+            curve("without correction", 1, LineStyle::Dashed, 2000, wobbly(0.8)),
+            curve("with correction", 2, LineStyle::Solid, 2000, wobbly(0.2)),
         ]
     };
     let mut whole = panel("(a) Path, deviation ×50", "X [mm]", "Y [mm]", path());
@@ -44,11 +44,11 @@ fn main() -> io::Result<()> {
     detail.equal_axes = true;
     (detail.x_range, detail.y_range) = (Some([5.0, 9.0]), Some([5.0, 9.0]));
     let errors = vec![
-        curve("without correction", 1, Line::Dashed, 20_000, error(25.0)),
-        curve("with correction", 2, Line::Solid, 20_000, error(5.0)),
+        curve("without correction", 1, LineStyle::Dashed, 20_000, error(25.0)),
+        curve("with correction", 2, LineStyle::Solid, 20_000, error(5.0)),
     ];
     let torque =
-        |k: f64| vec![curve("with correction", 2, Line::Solid, 2000, move |u| [1.76 * u, 0.2 * (k * u).sin()])];
+        |k: f64| vec![curve("with correction", 2, LineStyle::Solid, 2000, move |u| [1.76 * u, 0.2 * (k * u).sin()])];
     let figures = [
         CaptionedFigure {
             figure: Figure { panels: vec![whole, detail], columns: 2, aspect: 1.0 },

@@ -13,11 +13,9 @@
 //! | `compare/overview.rs` | what tables over many rows are made of |
 //! | `compare/verdict.rs` | what is claimed, row by row |
 //! | `compare/tolerance.rs` | the machining time at which a tolerance just holds |
-//! | `compare/journal.rs` | finished rows on disk: an interrupted comparison goes on |
 //! | `compare/page.rs` | the page |
 
 mod cut;
-pub mod journal;
 pub mod overview;
 pub mod page;
 pub mod table;
@@ -34,6 +32,7 @@ use thiserror::Error;
 use crate::controllers::{Entry, Knows, Setting};
 use crate::gcode;
 use crate::gcode::canon::Corner;
+use crate::journal::Journal;
 use crate::machine::Machine;
 use crate::path::contour::CONTOURS;
 use crate::path::pieces::Pieces;
@@ -41,8 +40,7 @@ use crate::path::{PathError, Step};
 use crate::pipeline::RunError;
 use crate::watch::Watch;
 use cut::Maker;
-use journal::Journal;
-use table::Row;
+use table::ComparisonRow;
 use tolerance::AtTolerance;
 use tuning::Tuned;
 use verdict::Verdict;
@@ -117,16 +115,16 @@ pub struct Competitor {
     /// Its row in the table of controllers.
     pub entry: &'static Entry,
     /// Whether it is identified on the machine that it cuts on, instead of the nominal one.
-    pub at_home: bool,
+    pub identified_here: bool,
 }
 
 /// What stands behind the name of a competitor that is identified on the machine that it cuts on.
-pub const AT_HOME: &str = "+identified";
+pub const IDENTIFIED_HERE: &str = "+identified";
 
 impl Competitor {
     /// Its name in the table.
     pub fn name(&self) -> String {
-        format!("{}{}", self.entry.name, if self.at_home { AT_HOME } else { "" })
+        format!("{}{}", self.entry.name, if self.identified_here { IDENTIFIED_HERE } else { "" })
     }
 }
 
@@ -143,7 +141,7 @@ pub enum Tuning {
 
 /// What is to be compared.
 #[derive(Debug, Clone)]
-pub struct Options {
+pub struct ComparisonOptions {
     /// Contours and parts.
     pub workpieces: Vec<Workpiece>,
     /// Machines; the first is the nominal one.
@@ -170,7 +168,7 @@ pub struct Comparison {
     /// The values that the controllers ran with.
     pub tuned: Vec<Tuned>,
     /// All rows: by workpiece, then machine, then controller.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ComparisonRow>,
     /// What is claimed, row by row.
     pub verdicts: Vec<Verdict>,
     /// Machining times at equal tolerance, where they were asked for.
@@ -178,7 +176,7 @@ pub struct Comparison {
     pub at_tolerance: Vec<AtTolerance>,
 }
 
-impl Options {
+impl ComparisonOptions {
     /// The machine that controllers know.
     fn nominal(&self) -> &Machine {
         &self.machines[0]
@@ -186,9 +184,9 @@ impl Options {
 
     /// All competitors in the order of the table.
     pub fn competitors(&self) -> Vec<Competitor> {
-        let unseen = self.controllers.iter().map(|&entry| Competitor { entry, at_home: false });
+        let unseen = self.controllers.iter().map(|&entry| Competitor { entry, identified_here: false });
         let identifying = self.controllers.iter().filter(|entry| entry.knows == Knows::Identified);
-        unseen.chain(identifying.map(|&entry| Competitor { entry, at_home: true })).collect()
+        unseen.chain(identifying.map(|&entry| Competitor { entry, identified_here: true })).collect()
     }
 
     /// What the result depends on, apart from the program: the key of the journal.
@@ -201,11 +199,37 @@ impl Options {
     }
 }
 
+/// What a journal holds of a comparison that was interrupted.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub enum Finished {
+    /// The values of a controller.
+    Tuned(Tuned),
+    /// A row.
+    Row(ComparisonRow),
+}
+
+/// The journal of a comparison in a folder. The key is that of the options and of the program.
+pub fn journal_path(folder: &Path, key: &str) -> PathBuf {
+    folder.join(format!("compare-{key}.jsonl"))
+}
+
+fn tuned_key(entry: &Entry) -> String {
+    serde_json::json!([entry.name]).to_string()
+}
+
+fn row_key(workpiece: &Workpiece, machine: &Machine, competitor: &Competitor) -> String {
+    serde_json::json!([workpiece.name, machine.name, competitor.name()]).to_string()
+}
+
 /// Compares. Rows that the journal holds are not cut again.
 ///
 /// # Errors
 /// Where a machine has no sensible limits, or where it is ended from outside.
-pub fn compare(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Comparison, RunError> {
+pub fn compare(
+    options: &ComparisonOptions,
+    journal: &Journal<Finished>,
+    watch: &dyn Watch,
+) -> Result<Comparison, RunError> {
     let tuned = tuned(options, journal, watch)?;
     let rows = table::in_order(&cuts(options, &tuned, journal, watch)?, options);
     let at_tolerance = if options.at_tolerance { tolerance::at_tolerance(options, &tuned, watch)? } else { Vec::new() };
@@ -215,7 +239,7 @@ pub fn compare(options: &Options, journal: &Journal, watch: &dyn Watch) -> Resul
 }
 
 /// The values of all controllers that have parameters.
-fn tuned(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Vec<Tuned>, RunError> {
+fn tuned(options: &ComparisonOptions, journal: &Journal<Finished>, watch: &dyn Watch) -> Result<Vec<Tuned>, RunError> {
     let is_set = |entry: &Entry| options.set.iter().any(|set| set.controller == entry.name);
     let has_values = |entry: &&&'static Entry| entry.searched().count() > 0 || is_set(entry);
     let tunable: Vec<_> = options.controllers.iter().filter(has_values).collect();
@@ -225,7 +249,7 @@ fn tuned(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Vec<
             _ if is_set(entry) => Tuned::set(entry, &options.set),
             Tuning::Search => {
                 let tuned = tuning::search(entry, options.nominal(), options.seed, watch)?;
-                journal.add_tuned(&tuned);
+                journal.add(&tuned_key(entry), &Finished::Tuned(tuned.clone()));
                 tuned
             }
             Tuning::Defaults => Tuned::defaults(entry),
@@ -238,7 +262,10 @@ fn tuned(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Vec<
     tunable
         .par_iter()
         .map(|entry| {
-            let tuned = journal.tuned(entry.name).map_or_else(|| values(entry), Ok)?;
+            let tuned = match journal.get(&tuned_key(entry)) {
+                Some(Finished::Tuned(tuned)) => tuned.clone(),
+                _ => values(entry)?,
+            };
             watch.advance(1);
             Ok(tuned)
         })
@@ -246,30 +273,36 @@ fn tuned(options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Vec<
 }
 
 /// One row for every workpiece, machine and competitor, by machine and competitor, ratios still open.
-fn cuts(options: &Options, tuned: &[Tuned], journal: &Journal, watch: &dyn Watch) -> Result<Vec<Row>, RunError> {
+fn cuts(
+    options: &ComparisonOptions,
+    tuned: &[Tuned],
+    journal: &Journal<Finished>,
+    watch: &dyn Watch,
+) -> Result<Vec<ComparisonRow>, RunError> {
     let nominal = options.nominal();
     let competitors = options.competitors();
     let pairs: Vec<(&Machine, &Competitor)> = options
         .machines
         .iter()
         .flat_map(|machine| competitors.iter().map(move |competitor| (machine, competitor)))
-        // At home on the nominal machine is the unseen controller once more.
-        .filter(|(machine, competitor)| !competitor.at_home || machine.name != nominal.name)
+        // Identified on the nominal machine it is the unseen controller once more.
+        .filter(|(machine, competitor)| !competitor.identified_here || machine.name != nominal.name)
         .collect();
     watch.begin("cutting", (pairs.len() * options.workpieces.len()) as u64);
-    let rows: Result<Vec<Vec<Row>>, RunError> = pairs
+    let rows: Result<Vec<Vec<ComparisonRow>>, RunError> = pairs
         .par_iter()
         .map(|(machine, competitor)| {
             let maker = Maker { competitor, nominal, seed: options.seed, tuned };
             // Made once and where it is needed: what it has identified serves all workpieces.
             let mut controller = None;
             let mut row = |workpiece: &Workpiece| {
-                let row = match journal.row(&workpiece.name, machine, competitor) {
-                    Some(row) => row,
-                    None => {
+                let key = row_key(workpiece, machine, competitor);
+                let row = match journal.get(&key) {
+                    Some(Finished::Row(row)) => row.clone(),
+                    _ => {
                         let controller = controller.get_or_insert_with(|| maker.make(machine));
                         let row = cut::row(workpiece, machine, competitor, &mut **controller, watch)?;
-                        journal.add(&row);
+                        journal.add(&key, &Finished::Row(row.clone()));
                         row
                     }
                 };

@@ -15,7 +15,7 @@ pub mod parameters;
 
 use feedwright_control::Controller;
 use feedwright_control::controller::feedforward::Gains;
-use feedwright_control::controller::inverting::Settings as Inverting;
+use feedwright_control::controller::inverting::{self, Settings as Inverting};
 use feedwright_control::controller::receding_horizon::Settings as Horizon;
 use feedwright_control::controller::{contour_compensation, cross_coupled, fuzzy_feedrate, receding_horizon};
 use feedwright_control::horizon::MOST_KNOTS;
@@ -102,7 +102,7 @@ const INVERSION_KNOTS: Parameter = whole(
     "knots that are inverted together: 1 is the paper's; with the printed gradient more change nothing",
 );
 const INVERSION_PERIOD_S: Parameter =
-    number("feed_period_s", make::INVERSION_PERIOD_S, [1e-3, 0.012], None, "time between decisions: the paper's 10 ms");
+    number("feed_period_s", inverting::FEED_PERIOD_S, [1e-3, 0.012], None, "time between decisions: the paper's 10 ms");
 const LEARNING_STEP: Parameter = number(
     "learning_step",
     Inverting::DEFAULT.learning_step,
@@ -183,10 +183,6 @@ const FRICTION_GAIN: Parameter =
     number("friction_gain", Gains::EXACT.friction, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
 const LAG_SCALE: Parameter = number("lag_scale", 1.0, [0.1, 10.0], Some([0.5, 1.5]), EXACT_REASON);
 const INERTIA_SCALE: Parameter = number("inertia_scale", 1.0, [0.01, 10.0], Some([0.5, 2.0]), EXACT_REASON);
-const KP_REASON: &str = "gain of the contour error: more corrects more; beyond 8 the tool is caught in acute corners";
-const KI_REASON: &str =
-    "gain of its integral: 0 leaves a part of a steady error; beyond 400 the tool is caught in acute corners";
-const KD_REASON: &str = "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners";
 const EXACT_REASON: &str = "1 is what the exact model calls for; another makes up for a model that is not exact";
 
 /// All controllers.
@@ -208,9 +204,27 @@ pub const CONTROLLERS: &[Entry] = &[
         laps: 1,
         // Beyond these gains the loop is still stable on smooth paths, but catches the tool in acute corners.
         [
-            number("kp", cross_coupled::Settings::DEFAULT.kp, [0.0, 100.0], Some([0.1, 8.0]), KP_REASON),
-            number("ki_1_s", cross_coupled::Settings::DEFAULT.ki_1_s, [0.0, 1e5], Some([1.0, 400.0]), KI_REASON),
-            number("kd_s", cross_coupled::Settings::DEFAULT.kd_s, [0.0, 1.0], Some([1e-4, 0.03]), KD_REASON)
+            number(
+                "kp",
+                cross_coupled::Settings::DEFAULT.kp,
+                [0.0, 100.0],
+                Some([0.1, 8.0]),
+                "gain of the contour error: more corrects more; beyond 8 the tool is caught in acute corners"
+            ),
+            number(
+                "ki_1_s",
+                cross_coupled::Settings::DEFAULT.ki_1_s,
+                [0.0, 1e5],
+                Some([1.0, 400.0]),
+                "gain of its integral: 0 leaves a part of a steady error; beyond 400 the tool is caught in acute corners"
+            ),
+            number(
+                "kd_s",
+                cross_coupled::Settings::DEFAULT.kd_s,
+                [0.0, 1.0],
+                Some([1e-4, 0.03]),
+                "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners"
+            )
         ],
         cross_coupled
     ),
@@ -391,6 +405,11 @@ impl Entry {
     /// Finds a row by its name.
     pub fn find(name: &str) -> Option<&'static Self> {
         CONTROLLERS.iter().find(|entry| entry.name == name)
+    }
+
+    /// A parameter by its name.
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|parameter| parameter.name == name)
     }
 
     /// The parameters that the comparison searches for the best of, with the ranges.

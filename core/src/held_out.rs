@@ -5,14 +5,14 @@
 //! | `held_out/variant.rs` | a machine as what differs from a built-in one, and its file |
 //! | `held_out/random.rs` | random numbers |
 //! | `held_out/machines.rs` | machines drawn at random |
-//! | `held_out/pen.rs` | writes a program |
+//! | `held_out/program_writer.rs` | writes a program |
 //! | `held_out/programs.rs` | programs drawn at random, by families |
 //! | `held_out/shrink.rs` | makes a failing case smaller |
 
 pub mod variant;
 mod random;
 pub mod machines;
-mod pen;
+mod program_writer;
 pub mod programs;
 pub mod shrink;
 

@@ -8,6 +8,7 @@
 mod vector;
 pub mod watch;
 pub mod kinematics;
+pub mod number;
 pub mod machine;
 pub use feedwright_gcode as gcode;
 pub mod plc;
@@ -19,6 +20,7 @@ pub mod reference;
 pub mod plant;
 pub mod trace;
 pub mod output;
+pub mod journal;
 pub mod simulate;
 pub mod pipeline;
 pub mod identify;

@@ -1,8 +1,9 @@
 //! Machine files: what the simulated or real machine is, read from TOML and checked value by value.
 //!
-//! A machine is a file; `machines/tnv40.toml` explains every key beside its value. [`Machine::load`] takes the name of a
-//! machine that is built in or the path of a file. A later part of a machine (a compliant transmission, an encoder) is an
-//! optional table of the file: one struct here, one `Option` field in [`Machine`] or [`Axis`], one table in [`keys`], one reader in `layout`.
+//! A machine is a file; `machines/tnv40.toml` explains every key beside its value. [`Machine::load`] takes the name of
+//! a machine that is built in or the path of a file. A later part of a machine (a compliant transmission, an encoder)
+//! is an optional table of the file: one struct here, one `Option` field in [`Machine`] or [`Axis`], one table in
+//! [`keys`], one reader in `layout`.
 
 mod error;
 pub mod keys;
@@ -167,7 +168,8 @@ pub struct Axis {
     /// Step of the position encoder, um of travel; 0 is without steps.
     #[serde(skip_serializing_if = "is_zero")]
     pub encoder_step_um: f64,
-    /// Most that the axis can, for planners that plan axis by axis; none is what [`Limits`] and the drive allow. Speed, mm/s.
+    /// Most that the axis can, for planners that plan axis by axis; none is what [`Limits`] and the drive allow. Speed,
+    /// mm/s.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max_velocity_mm_s: Option<f64>,
     /// Acceleration, mm/s2.
@@ -323,8 +325,8 @@ impl Machine {
         self.axis(i).correction_accel_mm_s2.unwrap_or(self.limits.normal_accel_mm_s2)
     }
 
-    /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move equally, whatever their
-    /// names and however long their PLC takes.
+    /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move equally, whatever
+    /// their names and however long their PLC takes.
     ///
     /// Hashed is the JSON of periods, limits and axes; field order and the shortest round-trip form of numbers make it
     /// canonical.

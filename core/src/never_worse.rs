@@ -3,7 +3,7 @@
 //! A cut is worse where its RMS or its largest contour error, or the uncut path, is larger than open loop's by more than
 //! [`verdict`] allows, or where the controller is not in the loop any more at the end. Each controller is made for the
 //! machine that it cuts on. Cuts depend on nothing but program, machine and seed: the rows are the same for any number
-//! of threads, and those that a [`journal`] holds are not cut again.
+//! of threads, and those that a [`Journal`] holds are not cut again.
 //!
 //! | File | What |
 //! |---|---|
@@ -12,17 +12,16 @@
 //! | `never_worse/cut.rs` | one program on one machine, open loop and corrected |
 //! | `never_worse/generated.rs` | random programs on random machines, and the smallest case of a failure |
 //! | `never_worse/verdict.rs` | what counts as worse |
-//! | `never_worse/journal.rs` | finished cuts on disk |
 //! | `never_worse/summary.rs` | totals, quantiles, failures by severity |
 
 pub mod cut;
 pub mod generated;
-pub mod journal;
 pub mod machines;
 pub mod program;
 pub mod summary;
 pub mod verdict;
 
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -31,15 +30,16 @@ use rand::seq::SliceRandom;
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::controllers::{Entry, Setting};
+use crate::identify::cache::key_of;
+use crate::journal::Journal;
 use crate::machine::Machine;
 use crate::watch::{Cancelled, Watch};
 use cut::{Cutter, Row};
-use journal::Journal;
 use program::Program;
 
 /// One program on one machine.
 #[derive(Debug, Clone)]
-pub struct Job {
+pub struct SweepJob {
     /// What is cut.
     pub program: Arc<Program>,
     /// On what.
@@ -48,7 +48,7 @@ pub struct Job {
 
 /// What the jobs have in common.
 #[derive(Debug, Clone)]
-pub struct Options {
+pub struct SweepOptions {
     /// The controller that is held against open loop.
     pub controller: &'static Entry,
     /// Its parameters that are set.
@@ -61,23 +61,45 @@ pub struct Options {
 
 /// Every program on every machine: by machine, so that each is identified once for a thread, and the longest program
 /// first, so that no thread is left alone with it.
-pub fn jobs(programs: Vec<Program>, machines: Vec<Machine>) -> Vec<Job> {
+pub fn jobs(programs: Vec<Program>, machines: Vec<Machine>) -> Vec<SweepJob> {
     let mut programs: Vec<Arc<Program>> = programs.into_iter().map(Arc::new).collect();
     programs.sort_by(|a, b| b.machining_s.total_cmp(&a.machining_s).then_with(|| a.name.cmp(&b.name)));
     let on = |machine: Machine| {
         let machine = Arc::new(machine);
-        programs.iter().map(move |program| Job { program: program.clone(), machine: machine.clone() })
+        programs.iter().map(move |program| SweepJob { program: program.clone(), machine: machine.clone() })
     };
     machines.into_iter().flat_map(on).collect()
 }
 
 /// `count` of the jobs, drawn by the seed, in their order.
-pub fn sample(jobs: Vec<Job>, count: usize, seed: u64) -> Vec<Job> {
+pub fn sample(jobs: Vec<SweepJob>, count: usize, seed: u64) -> Vec<SweepJob> {
     let mut drawn: Vec<usize> = (0..jobs.len()).collect();
     drawn.shuffle(&mut Xoshiro256PlusPlus::seed_from_u64(seed));
     drawn.truncate(count);
     drawn.sort_unstable();
     drawn.into_iter().map(|i| jobs[i].clone()).collect()
+}
+
+/// What a cut depends on, apart from the program that makes it.
+fn key(job: &SweepJob, options: &SweepOptions) -> String {
+    let machine = serde_json::json!(*job.machine).to_string();
+    let SweepOptions { controller, set, seed, .. } = options;
+    let (seed, set_json) = (seed.to_le_bytes(), serde_json::json!(set).to_string());
+    let mut parts = vec![job.program.key.as_bytes(), machine.as_bytes(), controller.name.as_bytes(), &seed];
+    if !set.is_empty() {
+        parts.push(set_json.as_bytes());
+    }
+    key_of(&parts)
+}
+
+/// A row under the names that program and machine have now.
+fn named(row: &Row, job: &SweepJob) -> Row {
+    Row { program: job.program.name.clone(), machine: job.machine.name.clone(), ..row.clone() }
+}
+
+/// The journal of a version in a folder.
+pub fn journal_path(folder: &Path, version: &str) -> PathBuf {
+    folder.join(format!("never-worse-{version}.jsonl"))
 }
 
 /// What a sweep came to.
@@ -89,7 +111,7 @@ pub struct Swept {
     pub known: usize,
 }
 
-impl Job {
+impl SweepJob {
     /// Steps of its progress: seconds of machining.
     pub fn steps(&self) -> u64 {
         (self.program.machining_s as u64).max(1)
@@ -100,8 +122,13 @@ impl Job {
 ///
 /// # Errors
 /// An end from outside; what was cut is in the journal.
-pub fn sweep(jobs: &[Job], options: &Options, journal: &Journal, watch: &dyn Watch) -> Result<Swept, Cancelled> {
-    watch.begin(&format!("{} cuts", jobs.len()), jobs.iter().map(Job::steps).sum());
+pub fn sweep(
+    jobs: &[SweepJob],
+    options: &SweepOptions,
+    journal: &Journal<Row>,
+    watch: &dyn Watch,
+) -> Result<Swept, Cancelled> {
+    watch.begin(&format!("{} cuts", jobs.len()), jobs.iter().map(SweepJob::steps).sum());
     let (next, known) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let rows = Mutex::new(vec![None; jobs.len()]);
     let work = || {
@@ -110,8 +137,8 @@ pub fn sweep(jobs: &[Job], options: &Options, journal: &Journal, watch: &dyn Wat
         loop {
             let i = next.fetch_add(1, Ordering::Relaxed);
             let Some(job) = jobs.get(i) else { break };
-            let key = journal::key(job, options);
-            let row = match journal.row(&key, job) {
+            let key = key(job, options);
+            let row = match journal.get(&key).map(|row| named(row, job)) {
                 Some(row) => {
                     known.fetch_add(1, Ordering::Relaxed);
                     row
@@ -134,4 +161,45 @@ pub fn sweep(jobs: &[Job], options: &Options, journal: &Journal, watch: &dyn Wat
     watch.check()?;
     let rows = rows.into_inner().unwrap_or_else(PoisonError::into_inner).into_iter().flatten().collect();
     Ok(Swept { rows, known: known.into_inner() })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::controllers::BASELINE;
+    use crate::never_worse::program::Length;
+
+    #[test]
+    fn what_was_cut_is_not_cut_again_and_half_a_line_does_no_harm() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = journal_path(folder.path(), "version");
+        let machine = Machine::load("tnv40".as_ref()).expect("built in");
+        let length = Length { machine: &machine, limit_s: 10.0 };
+        let programs = ["G21 F1200\nG1 X5\nG1 Y5\nM2\n", "G21 F1200\nG1 X-5\nM2\n"]
+            .map(|text| Program::from_text("lines", text, length).expect("a program"));
+        let jobs = jobs(programs.to_vec(), vec![machine.clone()]);
+        let options = SweepOptions {
+            controller: Entry::find(BASELINE).expect("in the table"),
+            set: Vec::new(),
+            seed: 1,
+            threads: 2,
+        };
+        let swept = |jobs: &[SweepJob]| {
+            sweep(jobs, &options, &Journal::open(&path).expect("a journal"), &()).expect("nobody ends it")
+        };
+        let first = swept(&jobs);
+        let mut text = std::fs::read_to_string(&path).expect("it was written");
+        let second_line = text.find('\n').expect("two lines") + 1;
+        text.truncate(second_line + 40);
+        std::fs::write(&path, text).expect("it can be written");
+        let again = swept(&jobs);
+        assert_eq!((first.known, again.known), (0, 1));
+        assert_eq!(first.rows, again.rows);
+        let renamed = SweepJob {
+            program: Arc::new(Program { name: "other".to_owned(), ..(*jobs[0].program).clone() }),
+            ..jobs[0].clone()
+        };
+        let named = swept(&[renamed]).rows;
+        assert_eq!((named[0].program.as_str(), &named[0].open_loop), ("other", &first.rows[0].open_loop));
+    }
 }

@@ -18,7 +18,7 @@ use tempfile::TempPath;
 
 use crate::watch::Watch;
 
-pub use error::{OutputError, Step};
+pub use error::{FileOperation, OutputError};
 
 /// Rows of a trace are 150-300 bytes: a few hundred rows for one call of the operating system.
 const BUFFER_BYTES: usize = 64 << 10;
@@ -77,7 +77,7 @@ impl OutputFiles {
 impl OutputFile {
     fn create(path: &Path, target: PathBuf) -> Result<Self, OutputError> {
         let folder = target.parent().unwrap_or(Path::new("/")).to_owned();
-        let failed = |error| OutputError::io(Step::Create, path, &folder, error);
+        let failed = |error| OutputError::io(FileOperation::Create, path, &folder, error);
         let (file, temporary) = if fs::metadata(&target).is_ok_and(|found| !found.is_file()) {
             (File::options().write(true).open(&target).map_err(failed)?, None)
         } else {
@@ -110,7 +110,7 @@ impl OutputFile {
         let Some(temporary) = self.temporary.take() else { return Ok(()) };
         temporary.persist(&self.target).map_err(|failed| {
             let folder = &self.out.get_ref().folder;
-            OutputError::io(Step::Rename, &self.shown, folder, failed.error)
+            OutputError::io(FileOperation::Rename, &self.shown, folder, failed.error)
         })
     }
 }
@@ -132,7 +132,7 @@ impl Write for Named {
                 return error;
             }
             let kind = error.kind();
-            io::Error::new(kind, OutputError::io(Step::Write, &self.shown, &self.folder, error))
+            io::Error::new(kind, OutputError::io(FileOperation::Write, &self.shown, &self.folder, error))
         })
     }
 
@@ -156,7 +156,7 @@ fn resolve(path: &Path) -> Result<PathBuf, OutputError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match fs::canonicalize(folder) {
         Ok(folder) => Ok(folder.join(name)),
-        Err(error) => Err(OutputError::io(Step::Create, path, folder, error)),
+        Err(error) => Err(OutputError::io(FileOperation::Create, path, folder, error)),
     }
 }
 

@@ -15,7 +15,7 @@ use feedwright_control::inversion::Gradient;
 use rayon::prelude::*;
 use serde::Serialize;
 
-use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use crate::identify::Programme;
 use crate::identify::cache::identified;
 use crate::identify::contour::{Identified, Training};
@@ -216,6 +216,6 @@ fn circle() -> Canon {
         shape: Shape::Arc { plane: Plane::Xy, center_mm: [RADIUS_MM, 0.0, 0.0], turns: -1 },
         feed_mm_s: FEED_MM_S,
         corner: Corner::ExactStop,
-        others: Others::default(),
+        others: AuxiliaryAxes::default(),
     })
 }

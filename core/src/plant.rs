@@ -25,7 +25,7 @@ use feedwright_control::axis::{self, Periods, State};
 
 use crate::machine::{Axis, Machine};
 use drive::{Delay, in_steps, torque_step_nm};
-use transmission::Joint;
+use transmission::Coupling;
 
 /// What the machine did in one servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,29 +52,29 @@ pub struct Plant<const N: usize> {
     /// The motors.
     states: [State; N],
     /// What a rigid axis with an ideal drive and encoder does not have; none where no axis has any of it.
-    real: Option<Box<[Real; N]>>,
+    nonideal: Option<Box<[NonidealAxis; N]>>,
 }
 
 /// What an axis has on top of the ideal one, and its state.
 #[derive(Debug, Clone)]
-struct Real {
+struct NonidealAxis {
     encoder_step_rad: f64,
     delay: Delay,
     torque_step_nm: f64,
-    joint: Option<Joint>,
+    coupling: Option<Coupling>,
     scale_on_table: bool,
-    /// Angle of the table at the motor shaft, rad, and its speed, rad/s; those of the motor where there is no joint.
+    /// Angle of the table at the motor shaft, rad, and its speed, rad/s; those of the motor where there is no coupling.
     table_rad: f64,
     table_rad_s: f64,
 }
 
-impl Real {
+impl NonidealAxis {
     fn new(axis: &Axis, machine: &Machine, angle_rad: f64) -> Self {
         Self {
             encoder_step_rad: axis.encoder_step_um * 1e-3 * TAU / axis.lead_mm_per_rev,
             delay: Delay::new(axis, &machine.period),
             torque_step_nm: torque_step_nm(axis),
-            joint: axis.transmission.as_ref().map(|transmission| Joint::new(axis, transmission)),
+            coupling: axis.transmission.as_ref().map(|transmission| Coupling::new(axis, transmission)),
             scale_on_table: axis.transmission.is_some_and(|transmission| transmission.scale_on_table),
             table_rad: angle_rad,
             table_rad_s: 0.0,
@@ -100,7 +100,7 @@ impl<const N: usize> Plant<N> {
             angle_rad: start_mm[i] * laws[i].parameters.rad_per_mm,
             ..State::default()
         });
-        let real = (0..N).any(|i| !Real::is_ideal(machine.axis(i)));
+        let nonideal = (0..N).any(|i| !NonidealAxis::is_ideal(machine.axis(i)));
         Self {
             laws,
             periods,
@@ -112,8 +112,9 @@ impl<const N: usize> Plant<N> {
                 [cos, sin]
             }),
             states,
-            real: real
-                .then(|| Box::new(std::array::from_fn(|i| Real::new(machine.axis(i), machine, states[i].angle_rad)))),
+            nonideal: nonideal.then(|| {
+                Box::new(std::array::from_fn(|i| NonidealAxis::new(machine.axis(i), machine, states[i].angle_rad)))
+            }),
         }
     }
 
@@ -123,10 +124,10 @@ impl<const N: usize> Plant<N> {
         let before = std::mem::replace(self, Self::new(machine, self.position_mm()));
         self.period = before.period;
         self.states = before.states;
-        let Some(real) = &mut self.real else { return };
-        for (i, axis) in real.iter_mut().enumerate() {
-            (axis.table_rad, axis.table_rad_s) = match &before.real {
-                Some(real) => (real[i].table_rad, real[i].table_rad_s),
+        let Some(nonideal) = &mut self.nonideal else { return };
+        for (i, axis) in nonideal.iter_mut().enumerate() {
+            (axis.table_rad, axis.table_rad_s) = match &before.nonideal {
+                Some(nonideal) => (nonideal[i].table_rad, nonideal[i].table_rad_s),
                 None => (before.states[i].angle_rad, before.states[i].speed_rad_s),
             };
         }
@@ -134,8 +135,8 @@ impl<const N: usize> Plant<N> {
 
     /// Where the tool is, mm.
     pub fn position_mm(&self) -> [f64; N] {
-        match &self.real {
-            Some(real) => self.in_mm(std::array::from_fn(|i| real[i].table_rad)),
+        match &self.nonideal {
+            Some(nonideal) => self.in_mm(std::array::from_fn(|i| nonideal[i].table_rad)),
             None => self.in_mm(self.states.map(|state| state.angle_rad)),
         }
     }
@@ -147,17 +148,18 @@ impl<const N: usize> Plant<N> {
 
     /// The position as it is measured, rad at the motor shaft.
     fn measured_rad(&self) -> [f64; N] {
-        let Some(real) = &self.real else { return self.states.map(|state| state.angle_rad) };
+        let Some(nonideal) = &self.nonideal else { return self.states.map(|state| state.angle_rad) };
         std::array::from_fn(|i| {
-            let at = if real[i].scale_on_table { real[i].table_rad } else { self.states[i].angle_rad };
-            in_steps(at, real[i].encoder_step_rad)
+            let at = if nonideal[i].scale_on_table { nonideal[i].table_rad } else { self.states[i].angle_rad };
+            in_steps(at, nonideal[i].encoder_step_rad)
         })
     }
 
     /// One servo period at the position command `command_mm`.
     pub fn step(&mut self, command_mm: [f64; N]) -> Measurement<N> {
         let reference_rad_s = self.position_loop(command_mm);
-        let torque_nm = if self.real.is_some() { self.turn_real(reference_rad_s) } else { self.turn(reference_rad_s) };
+        let torque_nm =
+            if self.nonideal.is_some() { self.turn_nonideal(reference_rad_s) } else { self.turn(reference_rad_s) };
         self.period += 1;
         Measurement { position_mm: self.position_mm(), measured_mm: self.in_mm(self.measured_rad()), torque_nm }
     }
@@ -184,29 +186,29 @@ impl<const N: usize> Plant<N> {
         torque_nm
     }
 
-    /// As [`Self::turn`], of real axes.
-    fn turn_real(&mut self, reference_rad_s: [f64; N]) -> [f64; N] {
+    /// As [`Self::turn`], of axes that are not ideal.
+    fn turn_nonideal(&mut self, reference_rad_s: [f64; N]) -> [f64; N] {
         let mut disturbance = self.disturbance_at_start();
         let mut torque_nm = [0.0; N];
-        let Some(real) = &mut self.real else { return torque_nm };
-        for (axis, reference_rad_s) in real.iter_mut().zip(reference_rad_s) {
+        let Some(nonideal) = &mut self.nonideal else { return torque_nm };
+        for (axis, reference_rad_s) in nonideal.iter_mut().zip(reference_rad_s) {
             axis.delay.send(reference_rad_s);
         }
         let dt_s = self.periods.mechanics_s;
         for substep in 0..self.periods.mechanics_per_servo {
-            for (i, axis) in real.iter_mut().enumerate() {
+            for (i, axis) in nonideal.iter_mut().enumerate() {
                 let (law, state) = (&self.laws[i], &mut self.states[i]);
                 let wanted = law.torque_nm(axis.delay.arrived(substep), state.speed_rad_s);
                 torque_nm[i] = in_steps(wanted, axis.torque_step_nm);
-                let sliding = if axis.joint.is_some() { axis.table_rad_s } else { state.speed_rad_s };
+                let sliding = if axis.coupling.is_some() { axis.table_rad_s } else { state.speed_rad_s };
                 let [sign] = axis::signs(&[*law], [sliding]);
                 let load = law.friction_nm(sliding, sign) + self.disturbance_nm[i] * disturbance[i][1];
-                match &axis.joint {
-                    Some(joint) => {
+                match &axis.coupling {
+                    Some(coupling) => {
                         let twist_rad = state.angle_rad - axis.table_rad;
-                        let through = joint.torque_nm(twist_rad, state.speed_rad_s - axis.table_rad_s);
-                        state.speed_rad_s += dt_s * joint.inverse_motor_inertia * (torque_nm[i] - through);
-                        axis.table_rad_s += dt_s * joint.inverse_table_inertia * (through - load);
+                        let through = coupling.torque_nm(twist_rad, state.speed_rad_s - axis.table_rad_s);
+                        state.speed_rad_s += dt_s * coupling.inverse_motor_inertia * (torque_nm[i] - through);
+                        axis.table_rad_s += dt_s * coupling.inverse_table_inertia * (through - load);
                         state.angle_rad += dt_s * state.speed_rad_s;
                         axis.table_rad += dt_s * axis.table_rad_s;
                     }

@@ -7,7 +7,7 @@ mod rows;
 
 use crate::gcode::canon::EventKind;
 use crate::machine::{Durations, Machine, PlcEvent};
-pub use rows::{Named, named};
+pub use rows::{EventName, named};
 
 /// The state that durations depend on.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -8,7 +8,7 @@
 
 pub mod figure;
 mod html;
-mod island;
+mod embedded_data;
 mod outline;
 mod series;
 mod statistics;
@@ -17,7 +17,7 @@ pub(crate) mod text;
 mod worst;
 
 pub use html::write_html;
-pub use series::{Point, Series};
+pub use series::{Series, SeriesPoint};
 pub use statistics::{Histogram, Statistics};
 pub use summary::{RunFacts, RunSummary};
 pub use worst::WorstPlace;

@@ -4,7 +4,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 use feedwright::controllers::{BEST, Choices, Entry, Make, Setup};
-use feedwright::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use feedwright::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright::machine::Machine;
 use feedwright::pipeline::{Run, pieces};
 use feedwright::trace::{Row, Sink};
@@ -49,7 +49,7 @@ fn line_and_circle(length_mm: f64) -> Vec<Canon> {
             shape,
             feed_mm_s: FEED_MM_S,
             corner: Corner::Continuous { tolerance_mm: None },
-            others: Others::default(),
+            others: AuxiliaryAxes::default(),
         })
     };
     let circle = Shape::Arc { plane: Plane::Xy, center_mm: [length_mm, 10.0, 0.0], turns: 1 };

@@ -2,15 +2,17 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use feedwright::compare::journal::Journal;
 use feedwright::compare::verdict::Verdict;
-use feedwright::compare::{AT_HOME, Comparison, Options, Tuning, Workpiece, compare, page};
+use feedwright::compare::{
+    Comparison, ComparisonOptions, Finished, IDENTIFIED_HERE, Tuning, Workpiece, compare, journal_path, page,
+};
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Entry};
+use feedwright::journal::Journal;
 use feedwright::machine::Machine;
 
-fn options() -> Options {
+fn options() -> ComparisonOptions {
     let named = |name: &str| Entry::find(name).unwrap();
-    Options {
+    ComparisonOptions {
         workpieces: Workpiece::contours()
             .into_iter()
             .filter(|w| ["circle", "square"].contains(&w.name.as_str()))
@@ -24,7 +26,7 @@ fn options() -> Options {
     }
 }
 
-fn with_threads(threads: usize, options: &Options, journal: &Journal) -> Comparison {
+fn with_threads(threads: usize, options: &ComparisonOptions, journal: &Journal<Finished>) -> Comparison {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| compare(options, journal, &())).unwrap()
 }
@@ -40,15 +42,15 @@ fn the_table_is_the_same_for_any_number_of_threads_and_after_an_interruption() {
     assert_eq!(json(&one), json(&with_threads(3, &options, &Journal::none())));
 
     let folder = tempfile::tempdir().unwrap();
-    let journal = Journal::open(folder.path(), "key").unwrap();
+    let journal = Journal::open(&journal_path(folder.path(), "key")).unwrap();
     with_threads(2, &options, &journal);
     drop(journal);
     let file = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
     let text = std::fs::read_to_string(&file).unwrap();
     // Killed in the middle of a line.
     std::fs::write(&file, &text[..text.len() * 2 / 3]).unwrap();
-    let journal = Journal::open(folder.path(), "key").unwrap();
-    let known = journal.known();
+    let journal = Journal::open(&journal_path(folder.path(), "key")).unwrap();
+    let known = journal.rows().filter(|finished| matches!(finished, Finished::Row(_))).count();
     assert!(known > 0 && known < one.rows.len(), "{known} of {}", one.rows.len());
     assert_eq!(json(&one), json(&with_threads(2, &options, &journal)));
     journal.remove();
@@ -72,7 +74,12 @@ fn rows_are_complete_and_ratios_are_against_open_loop() {
         assert_eq!(row.time_ratio, row.time_s / base.time_s);
         assert!(row.completed && row.faded_out.is_none(), "{row:?}");
     }
-    assert!(comparison.rows.iter().any(|row| row.controller == format!("{BEST}{AT_HOME}") && row.machine == "rough"));
+    assert!(
+        comparison
+            .rows
+            .iter()
+            .any(|row| row.controller == format!("{BEST}{IDENTIFIED_HERE}") && row.machine == "rough")
+    );
     let claims: Vec<(&str, &str, &str)> =
         comparison.verdicts.iter().map(|v| (v.contour.as_str(), v.machine.as_str(), v.claim.as_str())).collect();
     let expected = [

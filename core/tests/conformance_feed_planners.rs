@@ -1,5 +1,7 @@
 //! Every planner of the table: gapless spans in order, bounds kept, the same however the calls are spread, no piece lost.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 #[expect(dead_code, reason = "each test uses its own part")]
 #[path = "common/programs.rs"]
 mod common;

@@ -1,7 +1,7 @@
 //! The order of the modules in `lib.rs` is the order in which data flows: a module uses only modules above it, and a crate
 //! only crates below it.
 
-#[path = "common/source.rs"]
+#[path = "../../gcode/tests/common/source.rs"]
 mod source;
 
 use std::path::{Path, PathBuf};

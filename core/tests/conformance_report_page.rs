@@ -80,7 +80,7 @@ fn page(report: &Report) -> String {
 }
 
 /// The data of a page.
-fn island(page: &str) -> serde_json::Value {
+fn embedded_data(page: &str) -> serde_json::Value {
     let start = page.find("id=\"data\">").unwrap() + "id=\"data\">".len();
     let end = start + page[start..].find("</script>").unwrap();
     serde_json::from_str(&page[start..end]).unwrap()
@@ -100,7 +100,7 @@ fn program_text_never_becomes_markup() {
     let page = page(&report(2, 500));
     assert_eq!((page.matches("<script").count(), page.matches("</script>").count()), (3, 3));
     assert_eq!((page.matches("<img").count(), page.matches("<!--").count()), (0, 0));
-    assert_eq!(island(&page)["meta"]["runs"][0]["controller"], HOSTILE);
+    assert_eq!(embedded_data(&page)["meta"]["runs"][0]["controller"], HOSTILE);
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn equal_reports_give_equal_bytes() {
 #[test]
 fn the_data_are_the_series() {
     let report = report(3, 3000);
-    let data = island(&page(&report));
+    let data = embedded_data(&page(&report));
     let units = &data["meta"]["units"];
     let unit = |name: &str| units[name].as_f64().unwrap();
     for (run, columns) in report.runs.iter().zip(data["runs"].as_array().unwrap()) {

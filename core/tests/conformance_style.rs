@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/source.rs"]
+#[path = "../../gcode/tests/common/source.rs"]
 mod source;
 
 use std::path::{Path, PathBuf};

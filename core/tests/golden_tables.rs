@@ -7,10 +7,10 @@
 #[path = "../examples/tables/table.rs"]
 mod table;
 
-use feedwright::compare::journal::Journal;
-use feedwright::compare::table::Row;
-use feedwright::compare::{Options, Tuning, Workpiece, compare};
+use feedwright::compare::table::ComparisonRow;
+use feedwright::compare::{ComparisonOptions, Tuning, Workpiece, compare};
 use feedwright::controllers::Entry;
+use feedwright::journal::Journal;
 use feedwright::machine::Machine;
 use table::{Place, root};
 
@@ -70,7 +70,7 @@ const SAME_RATIO: f64 = 1e-3;
 fn the_kept_comparison_is_what_the_program_makes() {
     let kept = table::comparison().unwrap();
     let [contours, machines, controllers] = AGAIN;
-    let options = Options {
+    let options = ComparisonOptions {
         workpieces: Workpiece::contours().into_iter().filter(|w| contours.contains(&w.name.as_str())).collect(),
         machines: machines.iter().map(|name| Machine::load(name.as_ref()).unwrap()).collect(),
         controllers: controllers.iter().map(|name| Entry::find(name).unwrap()).collect(),
@@ -81,7 +81,7 @@ fn the_kept_comparison_is_what_the_program_makes() {
     };
     let made = compare(&options, &Journal::none(), &()).unwrap();
     for row in &made.rows {
-        let place = |other: &&Row| {
+        let place = |other: &&ComparisonRow| {
             (&other.contour, &other.machine, &other.controller) == (&row.contour, &row.machine, &row.controller)
         };
         let was = kept.rows.iter().find(place).unwrap();

@@ -8,7 +8,7 @@ use common::{BLEND, LIMITS, arc, line, polyline};
 use feedwright::blend;
 use feedwright::constraints::{Constraints, PathLimits};
 use feedwright::feed::{self, plan::Plan};
-use feedwright::gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Others, Shape};
+use feedwright::gcode::canon::{AuxiliaryAxes, Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
 use feedwright::gcode::{Reader, Settings};
 use feedwright::machine::Durations;
 use feedwright::path::contour::contour;
@@ -84,7 +84,7 @@ fn rapid_runs_at_the_rapid_rate() {
         shape: Shape::Line,
         feed_mm_s: f64::NAN,
         corner: BLEND,
-        others: Others::default(),
+        others: AuxiliaryAxes::default(),
     };
     assert!((plan_s(vec![Canon::Motion(rapid)], &LIMITS) - 4.0).abs() < ROUNDING_S);
 }
@@ -167,8 +167,8 @@ fn a_fault_ends_the_path_where_it_occurs() {
 
 #[test]
 fn the_tool_rests_while_something_else_moves() {
-    let others = Others { extruder_mm: -2.0, axes: None };
-    let turn = Others { extruder_mm: 0.0, axes: Some(Box::new([[0.0; 6], [90.0, 0.0, 0.0, 0.0, 0.0, 0.0]])) };
+    let others = AuxiliaryAxes { extruder_mm: -2.0, axes: None };
+    let turn = AuxiliaryAxes { extruder_mm: 0.0, axes: Some(Box::new([[0.0; 6], [90.0, 0.0, 0.0, 0.0, 0.0, 0.0]])) };
     let standing = |others, feed_mm_s| {
         let Canon::Motion(motion) = line([10.0, 0.0, 0.0], [10.0, 0.0, 0.0], feed_mm_s, BLEND) else { panic!() };
         Canon::Motion(Motion { others, line: 9, ..motion })

@@ -5,7 +5,7 @@
 mod common;
 
 use common::{BLEND, LIMITS, Random, distance};
-use feedwright::gcode::canon::{Canon, Motion, MotionKind, Others, Shape, Spline};
+use feedwright::gcode::canon::{AuxiliaryAxes, Canon, Motion, MotionKind, Shape, Spline};
 use feedwright::gcode::{Reader, Settings};
 use feedwright::path::pieces::Pieces;
 use feedwright::path::{Piece, Step};
@@ -36,7 +36,7 @@ fn motion(spline: Spline, start_mm: [f64; 3], end_mm: [f64; 3]) -> Canon {
         shape: Shape::Spline(Arc::new(spline)),
         feed_mm_s: 50.0,
         corner: BLEND,
-        others: Others::default(),
+        others: AuxiliaryAxes::default(),
     })
 }
 

@@ -11,7 +11,7 @@ use std::sync::Arc;
 use feedwright::controllers::{BEST, Entry};
 use feedwright::held_out::Variant;
 use feedwright::held_out::machines::Class;
-use feedwright::never_worse::Options;
+use feedwright::never_worse::SweepOptions;
 use feedwright::never_worse::cut::{Cutter, Row};
 use feedwright::never_worse::generated::{Generated, draw, smallest};
 use feedwright::never_worse::program::{Length, Program};
@@ -28,8 +28,8 @@ const KNOWN: &str = "helix-836152549";
 /// Trials until a failure is small: a minute at the most.
 const TRIALS: u32 = 60;
 
-fn options() -> Options {
-    Options { controller: Entry::find(BEST).unwrap(), set: Vec::new(), seed: 1, threads: 1 }
+fn options() -> SweepOptions {
+    SweepOptions { controller: Entry::find(BEST).unwrap(), set: Vec::new(), seed: 1, threads: 1 }
 }
 
 fn told(row: &Row) -> String {
@@ -131,7 +131,7 @@ fn holes() -> &'static str {
 fn judged(name: &str, text: &str, variant: &Variant) -> Row {
     let machine = Arc::new(variant.machine().unwrap());
     let length = Length { machine: &machine, limit_s: 60.0 };
-    let row = Cutter::new(&machine, &options()).row(&Program::from_text(name, text, length).unwrap());
+    let row = Cutter::new(&machine, &options()).row(&Program::from_text(name, text, length).unwrap(), &()).unwrap();
     eprintln!("{}", told(&row));
     row
 }

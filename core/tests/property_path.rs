@@ -5,7 +5,7 @@
 mod common;
 
 use common::{BLEND, Random, distance};
-use feedwright::gcode::canon::{Canon, Motion, MotionKind, Others, Plane, Shape};
+use feedwright::gcode::canon::{AuxiliaryAxes, Canon, Motion, MotionKind, Plane, Shape};
 use feedwright::path::contour::{CONTOURS, contour};
 use feedwright::path::pieces::Pieces;
 use feedwright::path::{Curve, Piece, Step};
@@ -42,7 +42,7 @@ fn arc(plane: Plane, radius: f64, from: f64, sweep: f64, rise: f64, turns: i32) 
         shape: Shape::Arc { plane, center_mm: center, turns },
         feed_mm_s: 10.0,
         corner: BLEND,
-        others: Others::default(),
+        others: AuxiliaryAxes::default(),
     };
     let mut pieces = pieces(vec![Canon::Motion(motion)]);
     assert_eq!(pieces.len(), 1, "radii are equal to rounding");
@@ -241,7 +241,7 @@ proptest! {
             shape: Shape::Arc { plane: Plane::Xy, center_mm: [0.0; 3], turns },
             feed_mm_s: 1.0,
             corner: BLEND,
-            others: Others::default(),
+            others: AuxiliaryAxes::default(),
         };
         let length_mm = motion.length_mm();
         let path_mm: f64 = pieces(vec![Canon::Motion(motion)]).iter().map(|piece| piece.length_mm).sum();

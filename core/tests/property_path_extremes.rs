@@ -5,7 +5,9 @@
 mod common;
 
 use common::{LIMITS, Random};
-use feedwright::gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Others, Plane, Shape, Spline};
+use feedwright::gcode::canon::{
+    AuxiliaryAxes, Canon, Corner, Event, EventKind, Motion, MotionKind, Plane, Shape, Spline,
+};
 use feedwright::reference::Reference;
 use proptest::prelude::*;
 use std::sync::Arc;
@@ -72,7 +74,7 @@ fn program() -> impl Strategy<Value = Vec<Canon>> {
                 shape,
                 feed_mm_s,
                 corner,
-                others: Others::default(),
+                others: AuxiliaryAxes::default(),
             }));
             if seconds > 40.0 {
                 canon.push(Canon::Event(Event { line: 2, kind: EventKind::Dwell { seconds } }));

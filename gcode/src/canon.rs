@@ -34,13 +34,13 @@ pub struct Motion {
     /// How the corner at the end of this motion is taken.
     pub corner: Corner,
     /// What moves along with X, Y and Z.
-    #[serde(skip_serializing_if = "Others::is_none")]
-    pub others: Others,
+    #[serde(skip_serializing_if = "AuxiliaryAxes::is_none")]
+    pub others: AuxiliaryAxes,
 }
 
-/// What moves along with X, Y and Z during a motion; `Others::default()` is nothing.
+/// What moves along with X, Y and Z during a motion; `AuxiliaryAxes::default()` is nothing.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Others {
+pub struct AuxiliaryAxes {
     /// Filament pushed during the motion (E of 3D printers), mm; negative pulls back.
     pub extruder_mm: f64,
     /// Start and end of A, B, C in degrees and U, V, W in mm; present only where one of them moves.
@@ -48,7 +48,7 @@ pub struct Others {
     pub axes: Option<Box<[[f64; 6]; 2]>>,
 }
 
-impl Others {
+impl AuxiliaryAxes {
     /// Whether nothing else moves.
     pub fn is_none(&self) -> bool {
         self.extruder_mm == 0.0 && self.axes.is_none()

@@ -3,7 +3,7 @@
 pub(crate) mod modal;
 pub(crate) mod frame;
 pub(crate) mod parameters;
-pub(crate) mod waiting;
+pub(crate) mod carried_over;
 pub(crate) mod lathe;
 pub(crate) mod capture;
 pub(crate) mod fanuc;
@@ -17,14 +17,14 @@ use std::collections::VecDeque;
 
 use crate::canon::{Canon, Event, EventKind};
 use crate::settings::{Dialect, Settings};
+use crate::state::carried_over::CarriedOver;
 use crate::state::fanuc::Fanuc;
 use crate::state::frame::{Frame, Position};
-use crate::state::lathe::{Lathe, ProfileCall};
+use crate::state::lathe::{LatheCycle, ProfileCall};
 use crate::state::modal::{Modal, fanuc_modes};
-use crate::state::parameters::Parameters;
+use crate::state::parameters::ParameterTable;
 use crate::state::saved::Calls;
-use crate::state::waiting::Waiting;
-use crate::text::diagnostic::Fault;
+use crate::text::diagnostic::LineFault;
 
 /// The extruder of a printer.
 #[derive(Debug, Default)]
@@ -50,7 +50,7 @@ pub(crate) struct Output {
     /// Motions so far.
     pub(crate) motions: u64,
     /// Warnings of the line under way.
-    pub(crate) warnings: Vec<Fault>,
+    pub(crate) warnings: Vec<LineFault>,
 }
 
 /// What the lines so far have left; `motion`, `dialects` and `flow` carry blocks out on it.
@@ -58,7 +58,7 @@ pub(crate) struct Output {
 pub(crate) struct Interpreter {
     pub(crate) settings: Settings,
     pub(crate) dialect: Dialect,
-    pub(crate) parameters: Parameters,
+    pub(crate) parameters: ParameterTable,
     pub(crate) modal: Modal,
     pub(crate) frame: Frame,
     /// Programmed position in program coordinates.
@@ -67,9 +67,9 @@ pub(crate) struct Interpreter {
     pub(crate) here: Position,
     pub(crate) extruder: Extruder,
     pub(crate) tool: LoadedTool,
-    pub(crate) waiting: Waiting,
+    pub(crate) carried: CarriedOver,
     /// The lathe cycle whose profile is being read, and the call that it waits for.
-    pub(crate) lathe: Option<Box<Lathe>>,
+    pub(crate) lathe: Option<Box<LatheCycle>>,
     pub(crate) wanted: Option<ProfileCall>,
     /// What Fanuc and Haas have besides.
     pub(crate) fanuc: Fanuc,
@@ -87,7 +87,7 @@ pub(crate) struct Interpreter {
 
 impl Interpreter {
     pub(crate) fn new(settings: Settings, dialect: Dialect) -> Self {
-        let mut parameters = Parameters::new();
+        let mut parameters = ParameterTable::new();
         if dialect.is_fanuc() {
             parameters.empty_variables();
         }
@@ -101,7 +101,7 @@ impl Interpreter {
             here: [0.0; 9],
             extruder: Extruder::default(),
             tool: LoadedTool::default(),
-            waiting: Waiting::default(),
+            carried: CarriedOver::default(),
             lathe: None,
             wanted: None,
             fanuc: Fanuc::default(),
@@ -126,10 +126,10 @@ impl Interpreter {
             self.keep(step);
         } else if self.fanuc.capture.as_ref().is_some_and(|capture| capture.keeps()) {
             self.keep_own(step);
-        } else if self.waiting.held.is_empty() {
+        } else if self.carried.held.is_empty() {
             self.output.steps.push_back(step);
         } else {
-            self.waiting.held.push(step);
+            self.carried.held.push(step);
         }
     }
 
@@ -150,12 +150,12 @@ impl Interpreter {
 
     /// Whether cutter compensation is on.
     pub(crate) const fn compensates(&self) -> bool {
-        self.waiting.compensation.is_some()
+        self.carried.compensation.is_some()
     }
 
     /// Hands out the motions that were held back.
     pub(crate) fn release(&mut self) {
-        self.output.steps.extend(self.waiting.held.drain(..));
+        self.output.steps.extend(self.carried.held.drain(..));
     }
 
     /// Hands out the end of the program.
@@ -163,7 +163,7 @@ impl Interpreter {
         if !self.ended {
             self.ended = true;
             self.lathe = None;
-            self.waiting.compensation = None;
+            self.carried.compensation = None;
             self.release();
             self.event(EventKind::ProgramEnd);
         }

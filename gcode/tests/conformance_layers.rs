@@ -1,8 +1,13 @@
 //! Layers: the `mod` lines of every file stand in the order in which data flows, and a file uses only files above it. A parent
 //! and its children belong together. Methods count, too: `self.arc(..)` is a use of the file that implements `arc`.
 
+#[path = "common/source.rs"]
+mod source;
+
 use std::collections::HashMap;
 use std::path::PathBuf;
+
+use source::code;
 
 /// Uses of a file below: who, whom, and why it has to be.
 const EXCEPTIONS: [(&str, &str, &str); 0] = [];
@@ -20,40 +25,6 @@ impl File {
     fn new(module: &str, text: &str) -> Self {
         Self { module: module.to_owned(), code: code(text) }
     }
-}
-
-/// The text without comments and without what strings and characters hold, line for line.
-fn code(text: &str) -> String {
-    let mut code = String::new();
-    let mut rest = text;
-    while let Some(c) = rest.chars().next() {
-        let skipped = if rest.starts_with("//") {
-            rest.find('\n').unwrap_or(rest.len())
-        } else if c == '"' {
-            end_of_string(rest)
-        } else if rest.starts_with("'\"'") || rest.starts_with("'{'") || rest.starts_with("'}'") {
-            3
-        } else {
-            code.push(c);
-            rest = &rest[c.len_utf8()..];
-            continue;
-        };
-        code.extend(rest[..skipped].chars().filter(|&c| c == '\n'));
-        rest = &rest[skipped..];
-    }
-    code
-}
-
-/// Where the string that starts the text ends.
-fn end_of_string(text: &str) -> usize {
-    let mut escaped = false;
-    for (at, c) in text.char_indices().skip(1) {
-        match c {
-            '"' if !escaped => return at + 1,
-            _ => escaped = c == '\\' && !escaped,
-        }
-    }
-    text.len()
 }
 
 fn is_word(c: char) -> bool {

@@ -5,7 +5,7 @@ use feedwright_gcode::{Dialect, Increment, Reader, Settings};
 use proptest::prelude::*;
 
 /// Motions and lines without one after which a program is given up.
-const MOST: u64 = 3000;
+const LIMIT: u64 = 3000;
 
 const LINES: [&str; 62] = [
     "G0 X50. Z2.",
@@ -103,8 +103,8 @@ proptest! {
         let settings = Settings {
             dialect: Some(dialect),
             increment,
-            max_motions: MOST,
-            max_idle_lines: MOST,
+            max_motions: LIMIT,
+            max_idle_lines: LIMIT,
             ..Settings::default()
         };
         let Ok(reader) = Reader::from_text("part.nc", text.clone(), settings) else { return Ok(()) };

@@ -18,21 +18,21 @@ use serde_json::{Value, json};
 
 use crate::args::{CheckArgs, Format};
 use crate::console::Console;
-use crate::files::Files;
+use crate::files_to_check::FilesToCheck;
 use crate::findings::{Finding, sarif};
 use crate::message::{ERROR, MISTAKES, printed, tell, warn};
 use crate::progress::Bar;
 
 /// What came of one file, best first: the worst of all files is the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Outcome {
+enum FileOutcome {
     /// Warnings at most.
     Fine,
     Mistakes,
     Unreadable,
 }
 
-impl Outcome {
+impl FileOutcome {
     const fn code(self) -> u8 {
         match self {
             Self::Fine => 0,
@@ -50,9 +50,9 @@ impl Outcome {
     }
 }
 
-/// What is told of one file.
-struct Verdict {
-    outcome: Outcome,
+/// What was found in one file.
+struct CheckedFile {
+    outcome: FileOutcome,
     /// What it amounts to; `None` where it has mistakes.
     line: Option<String>,
     /// Mistakes, or warnings where there is none.
@@ -62,46 +62,47 @@ struct Verdict {
 }
 
 /// What was printed so far, and what is printed at the end.
-struct Told {
+struct CheckOutput {
     format: Format,
-    worst: Outcome,
+    worst: FileOutcome,
     findings: Vec<Finding>,
     files: Vec<Value>,
 }
 
 pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<ExitCode> {
     let settings = args.reader.settings()?;
-    let found = Files::find(&args.files);
+    let found = FilesToCheck::find(&args.files);
     let bar = console.bar_unless(args.format != Format::Text, found.files.len() as u64);
-    let mut told = Told { format: args.format, worst: Outcome::Fine, findings: Vec::new(), files: Vec::new() };
+    let mut output =
+        CheckOutput { format: args.format, worst: FileOutcome::Fine, findings: Vec::new(), files: Vec::new() };
     for remark in &found.remarks {
         eprintln!("{remark}");
     }
     for fault in &found.faults {
         tell(&miette!("{fault}"));
-        told.worst = Outcome::Unreadable;
+        output.worst = FileOutcome::Unreadable;
     }
-    let result = print(&found.files, &settings, &bar, &mut told);
+    let result = print(&found.files, &settings, &bar, &mut output);
     bar.clear();
-    printed(result, ExitCode::from(told.worst.code()))
+    printed(result, ExitCode::from(output.worst.code()))
 }
 
-/// Checks all files and prints each verdict as soon as those before it are printed.
-fn print(files: &[PathBuf], settings: &Settings, bar: &Bar, told: &mut Told) -> io::Result<()> {
+/// Checks all files and prints what is found in each as soon as those before it are printed.
+fn print(files: &[PathBuf], settings: &Settings, bar: &Bar, output: &mut CheckOutput) -> io::Result<()> {
     let enough = AtomicBool::new(false);
     let (sender, receiver) = mpsc::channel();
     rayon::in_place_scope(|scope| {
         let enough = &enough;
         scope.spawn(move |_| {
-            // A bridge hands the files out one by one, so that verdicts come about in their order.
+            // A bridge hands the files out one by one, so that results come about in their order.
             files.iter().enumerate().par_bridge().for_each_with(sender, |sender, (number, file)| {
                 // Nobody listens any more once printing has failed.
                 if !enough.load(Ordering::Relaxed) {
-                    let _ = sender.send((number, verdict(file, settings)));
+                    let _ = sender.send((number, check_file(file, settings)));
                 }
             });
         });
-        let result = print_in_order(files, &receiver, bar, told);
+        let result = print_in_order(files, &receiver, bar, output);
         enough.store(true, Ordering::Relaxed);
         result
     })
@@ -109,79 +110,79 @@ fn print(files: &[PathBuf], settings: &Settings, bar: &Bar, told: &mut Told) -> 
 
 fn print_in_order(
     files: &[PathBuf],
-    verdicts: &mpsc::Receiver<(usize, Verdict)>,
+    checked_files: &mpsc::Receiver<(usize, CheckedFile)>,
     bar: &Bar,
-    told: &mut Told,
+    output: &mut CheckOutput,
 ) -> io::Result<()> {
     let mut out = io::stdout().lock();
     let (mut early, mut next, mut faulty) = (BTreeMap::new(), 0, 0);
-    for (number, verdict) in verdicts {
-        early.insert(number, verdict);
-        while let Some(verdict) = early.remove(&next) {
-            faulty += usize::from(verdict.outcome != Outcome::Fine);
-            bar.aside(|| told.tell(&mut out, &files[next], verdict))?;
+    for (number, checked) in checked_files {
+        early.insert(number, checked);
+        while let Some(checked) = early.remove(&next) {
+            faulty += usize::from(checked.outcome != FileOutcome::Fine);
+            bar.aside(|| output.tell(&mut out, &files[next], checked))?;
             bar.advance(1);
             next += 1;
         }
     }
-    match told.format {
+    match output.format {
         Format::Text if files.len() > 1 => {
             writeln!(out, "{} files: {} without mistakes, {faulty} with mistakes", files.len(), files.len() - faulty)
         }
         Format::Text | Format::Github => Ok(()),
-        Format::Json => writeln!(out, "{:#}", json!({ "files": told.files })),
-        Format::Sarif => writeln!(out, "{:#}", sarif(&told.findings)),
+        Format::Json => writeln!(out, "{:#}", json!({ "files": output.files })),
+        Format::Sarif => writeln!(out, "{:#}", sarif(&output.findings)),
     }
 }
 
-impl Told {
-    /// Prints a verdict, or keeps it for the end.
-    fn tell(&mut self, out: &mut impl Write, file: &Path, verdict: Verdict) -> io::Result<()> {
-        self.worst = self.worst.max(verdict.outcome);
+impl CheckOutput {
+    /// Prints what was found in a file, or keeps it for the end.
+    fn tell(&mut self, out: &mut impl Write, file: &Path, checked: CheckedFile) -> io::Result<()> {
+        self.worst = self.worst.max(checked.outcome);
         match self.format {
             Format::Text => {
-                for report in verdict.reports {
-                    if verdict.line.is_some() { warn(report) } else { tell(&report) }
+                for report in checked.reports {
+                    if checked.line.is_some() { warn(report) } else { tell(&report) }
                 }
-                verdict.line.iter().try_for_each(|line| writeln!(out, "{}: {line}", file.display()))?;
+                checked.line.iter().try_for_each(|line| writeln!(out, "{}: {line}", file.display()))?;
             }
             Format::Github => {
-                verdict.findings.iter().try_for_each(|finding| writeln!(out, "{}", finding.github()))?;
+                checked.findings.iter().try_for_each(|finding| writeln!(out, "{}", finding.github()))?;
             }
-            Format::Sarif => self.findings.extend(verdict.findings),
+            Format::Sarif => self.findings.extend(checked.findings),
             Format::Json => self.files.push(json!({
                 "file": file.display().to_string(),
-                "outcome": verdict.outcome.name(),
-                "amounts_to": verdict.line,
-                "findings": verdict.findings.iter().map(Finding::json).collect::<Vec<_>>(),
+                "outcome": checked.outcome.name(),
+                "amounts_to": checked.line,
+                "findings": checked.findings.iter().map(Finding::json).collect::<Vec<_>>(),
             })),
         }
         Ok(())
     }
 }
 
-fn verdict(file: &Path, settings: &Settings) -> Verdict {
+fn check_file(file: &Path, settings: &Settings) -> CheckedFile {
     let is_machine = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
     if is_machine { machine(file) } else { program(file, settings.clone()) }
 }
 
 /// What is told where a file as a whole is wrong.
-fn refused(file: &Path, outcome: Outcome, report: Report) -> Verdict {
+fn refused(file: &Path, outcome: FileOutcome, report: Report) -> CheckedFile {
     let findings = vec![Finding::of_file(&file.display().to_string(), &report)];
-    Verdict { outcome, line: None, reports: vec![report], findings }
+    CheckedFile { outcome, line: None, reports: vec![report], findings }
 }
 
-fn machine(file: &Path) -> Verdict {
+fn machine(file: &Path) -> CheckedFile {
     match Machine::read(file) {
         Ok(machine) => {
             let line = Some(format!("machine {}, {} axes", machine.name, machine.axis_count()));
-            Verdict { outcome: Outcome::Fine, line, reports: Vec::new(), findings: Vec::new() }
+            CheckedFile { outcome: FileOutcome::Fine, line, reports: Vec::new(), findings: Vec::new() }
         }
         Err(error) => {
             let findings = machine_findings(file, &error);
-            let outcome = if findings.is_empty() { Outcome::Unreadable } else { Outcome::Mistakes };
+            let outcome = if findings.is_empty() { FileOutcome::Unreadable } else { FileOutcome::Mistakes };
             let refused = refused(file, outcome, error.into());
-            if findings.is_empty() { refused } else { Verdict { findings, ..refused } }
+            if findings.is_empty() { refused } else { CheckedFile { findings, ..refused } }
         }
     }
 }
@@ -204,14 +205,14 @@ fn machine_findings(file: &Path, error: &MachineError) -> Vec<Finding> {
     problems.iter().map(finding).collect()
 }
 
-fn program(file: &Path, settings: Settings) -> Verdict {
+fn program(file: &Path, settings: Settings) -> CheckedFile {
     let summary = match gcode::check(file, settings) {
         Ok(summary) => summary,
-        Err(CheckError::Read(error)) => return refused(file, Outcome::Unreadable, error.into()),
+        Err(CheckError::Read(error)) => return refused(file, FileOutcome::Unreadable, error.into()),
         Err(CheckError::Faults(faults)) => {
             let findings = faults.iter().map(Finding::of).collect();
             let reports = faults.into_iter().map(Report::new).collect();
-            return Verdict { outcome: Outcome::Mistakes, line: None, reports, findings };
+            return CheckedFile { outcome: FileOutcome::Mistakes, line: None, reports, findings };
         }
     };
     let (dialect, reason) = summary.dialect;
@@ -224,7 +225,7 @@ fn program(file: &Path, settings: Settings) -> Verdict {
     );
     let findings = summary.warnings.iter().map(Finding::of).collect();
     let reports = summary.warnings.into_iter().map(Report::new).collect();
-    Verdict { outcome: Outcome::Fine, line: Some(line), reports, findings }
+    CheckedFile { outcome: FileOutcome::Fine, line: Some(line), reports, findings }
 }
 
 fn counted(count: u64, what: &str) -> String {

@@ -4,14 +4,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use feedwright::compare::journal::Journal;
-use feedwright::compare::table::Row;
+use feedwright::compare::table::ComparisonRow;
 use feedwright::compare::tolerance::{AtTolerance, TOLERANCE_UM};
 use feedwright::compare::verdict::Verdict;
-use feedwright::compare::{Comparison, Options, Tuning, Workpiece, compare, page};
+use feedwright::compare::{Comparison, ComparisonOptions, Finished, Tuning, Workpiece, compare, journal_path, page};
 use feedwright::controllers::{BASELINE, CONTROLLERS, Entry};
 use feedwright::gcode::suggestion::nearest;
 use feedwright::identify::cache;
+use feedwright::journal::Journal;
 use feedwright::machine::{BUILT_IN, Machine};
 use feedwright::output::{OutputFile, OutputFiles};
 use feedwright::watch::Watch;
@@ -27,10 +27,11 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
     if let Some(threads) = args.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global().into_diagnostic()?;
     }
-    let mut files = Files::create(args)?;
+    let mut files = ResultFiles::create(args)?;
     let journal = journal(&options);
-    if journal.known() > 0 {
-        eprintln!("going on where an earlier run was interrupted; rows that are there: {}", journal.known());
+    let known = journal.rows().filter(|finished| matches!(finished, Finished::Row(_))).count();
+    if known > 0 {
+        eprintln!("going on where an earlier run was interrupted; rows that are there: {known}");
     }
     let bar = console.bar(0);
     let comparison = compare(&options, &journal, &bar);
@@ -41,7 +42,7 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
     printed(print(args, &comparison), ExitCode::SUCCESS)
 }
 
-fn options(args: &CompareArgs) -> Result<Options> {
+fn options(args: &CompareArgs) -> Result<ComparisonOptions> {
     let mut workpieces = Workpiece::contours();
     let mut machines: Vec<Machine> =
         BUILT_IN.iter().map(|(name, _)| Machine::load(name.as_ref())).collect::<Result<_, _>>()?;
@@ -90,7 +91,7 @@ fn options(args: &CompareArgs) -> Result<Options> {
         }
     }
     let set = controllers::settings(&args.set, None, &controllers)?;
-    Ok(Options {
+    Ok(ComparisonOptions {
         workpieces,
         machines,
         controllers,
@@ -111,19 +112,20 @@ fn ambiguous(option: &str, name: &str) -> miette::Report {
 }
 
 /// The journal of these options and this program; none where there is no place for it.
-fn journal(options: &Options) -> Journal {
+fn journal(options: &ComparisonOptions) -> Journal<Finished> {
     let program = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
     let key = cache::key_of(&[options.fingerprint().as_bytes(), &program]);
-    cache::folder().and_then(|folder| Journal::open(&folder, &key).ok()).unwrap_or_else(Journal::none)
+    let path = cache::folder().map(|folder| journal_path(&folder, &key));
+    path.and_then(|path| Journal::open(&path).ok()).unwrap_or_else(Journal::none)
 }
 
 /// The files that are asked for, made before the work begins.
-struct Files {
+struct ResultFiles {
     json: Option<OutputFile>,
     html: Option<OutputFile>,
 }
 
-impl Files {
+impl ResultFiles {
     fn create(args: &CompareArgs) -> Result<Self> {
         let machines: Vec<PathBuf> = args.machine.iter().map(PathBuf::from).collect();
         let inputs: Vec<&Path> =
@@ -171,7 +173,7 @@ fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
     Ok(())
 }
 
-fn print_rows(out: &mut impl Write, rows: &[Row]) -> std::io::Result<()> {
+fn print_rows(out: &mut impl Write, rows: &[ComparisonRow]) -> std::io::Result<()> {
     let mut heading = String::new();
     for row in rows {
         let here = format!("{} on {}", row.contour, row.machine);

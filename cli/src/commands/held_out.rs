@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use feedwright::held_out::machines::Class;
 use feedwright::never_worse::generated::{Generated, draw, smallest};
 use feedwright::never_worse::summary::Judged;
-use feedwright::never_worse::{Job, Options};
+use feedwright::never_worse::{SweepJob, SweepOptions};
 use feedwright::output::{OutputFile, OutputFiles};
 use feedwright::watch::Watch;
 use miette::{IntoDiagnostic, Result, WrapErr};
@@ -30,7 +30,7 @@ pub(crate) fn run(args: &HeldOutArgs, console: &Console) -> Result<ExitCode> {
     let class = if args.rigid { Class::Rigid } else { Class::Any };
     let generated = draw(args.drawn_by, args.count, args.programs.into(), class)?;
     eprintln!("{} cuts drawn by seed {}, {} programs for each machine", args.count, args.drawn_by, args.programs);
-    let jobs: Vec<Job> = generated.iter().map(|made| made.job.clone()).collect();
+    let jobs: Vec<SweepJob> = generated.iter().map(|made| made.job.clone()).collect();
     let options = sweep.options.clone();
     let done = sweep.run(&jobs, console)?;
     let printing = done.print(&mut std::io::stdout().lock());
@@ -46,7 +46,7 @@ fn write_smallest<'a>(
     folder: &Path,
     failures: impl Iterator<Item = &'a Judged>,
     generated: &[Generated],
-    options: &Options,
+    options: &SweepOptions,
     console: &Console,
 ) -> Result<()> {
     let failures: Vec<&Judged> = failures.collect();

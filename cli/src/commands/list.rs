@@ -5,6 +5,7 @@ use std::process::ExitCode;
 
 use feedwright::controllers::{BEST, CONTROLLERS, Knows};
 use feedwright::machine::{BUILT_IN, Machine};
+use feedwright::number::shown;
 use miette::Result;
 
 use crate::controllers;
@@ -50,11 +51,6 @@ pub(crate) fn controller(name: &str) -> Result<ExitCode> {
             &format!("\n{} = {default}, allowed {}\n    {}\n", parameter.name, parameter.range(), parameter.reason);
     }
     print(&lines)
-}
-
-/// A number without a row of zeros.
-fn shown(value: f64) -> String {
-    if value != 0.0 && value.abs() < 1e-3 { format!("{value:e}") } else { format!("{value}") }
 }
 
 fn print(lines: &str) -> Result<ExitCode> {

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use feedwright::gcode::Settings;
 use feedwright::machine::Machine;
 use feedwright::never_worse::program::{Length, Program};
-use feedwright::never_worse::{Job, jobs, machines, sample};
+use feedwright::never_worse::{SweepJob, jobs, machines, sample};
 use feedwright::watch::Watch;
 use glob::Pattern;
 use miette::{Result, miette};
@@ -14,19 +14,19 @@ use rayon::prelude::*;
 
 use crate::args::NeverWorseArgs;
 use crate::console::Console;
-use crate::files::Files;
+use crate::files_to_check::FilesToCheck;
 use crate::message::printed;
 use crate::sweep::Sweep;
 
 /// The machine whose time counts where long programs are shortened.
 const PACE: &str = "tnv40";
 /// A week of machining, s: more is a mistaken unit.
-const MOST_S: f64 = 7.0 * 24.0 * 3600.0;
+const MAX_S: f64 = 7.0 * 24.0 * 3600.0;
 
 pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> {
-    if !(args.limit_s > 0.0 && args.limit_s <= MOST_S) {
+    if !(args.limit_s > 0.0 && args.limit_s <= MAX_S) {
         let help = "600 is the first ten minutes of machining";
-        return Err(miette!(help = help, "--limit-s is {} s; it must lie above 0 and up to {MOST_S} s", args.limit_s));
+        return Err(miette!(help = help, "--limit-s is {} s; it must lie above 0 and up to {MAX_S} s", args.limit_s));
     }
     let machines = machines_of(args)?;
     let files = files(args)?;
@@ -60,7 +60,7 @@ fn files(args: &NeverWorseArgs) -> Result<Vec<PathBuf>> {
             missing.display()
         ));
     }
-    let found = Files::find(&args.programs);
+    let found = FilesToCheck::find(&args.programs);
     if let Some(fault) = found.faults.first() {
         return Err(miette!("{fault}"));
     }
@@ -100,7 +100,7 @@ fn read(files: &[PathBuf], settings: &Settings, limit_s: f64, console: &Console)
     Ok(programs)
 }
 
-fn announce(jobs: &[Job]) {
+fn announce(jobs: &[SweepJob]) {
     let hours = jobs.iter().map(|job| job.program.machining_s).sum::<f64>() / 3600.0;
     let shortened = jobs.iter().filter(|job| job.program.shortened).count();
     eprintln!("{} cuts, {hours:.1} h of machining on {PACE}; of a part of the program: {shortened}", jobs.len());

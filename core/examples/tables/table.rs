@@ -5,8 +5,8 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use feedwright::compare::overview::{Claimed, each_once};
-use feedwright::compare::table::Row;
-use feedwright::compare::{AT_HOME, Comparison};
+use feedwright::compare::table::ComparisonRow;
+use feedwright::compare::{Comparison, IDENTIFIED_HERE};
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Knows};
 use feedwright::machine::Machine;
 use feedwright::paper::{Numbers, experiment};
@@ -90,7 +90,7 @@ fn controllers(comparison: &Comparison) -> Vec<&str> {
     each_once(nominal.map(|row| &row.controller))
 }
 
-fn find<'a>(comparison: &'a Comparison, contour: &str, machine: &str, controller: &str) -> Result<&'a Row> {
+fn find<'a>(comparison: &'a Comparison, contour: &str, machine: &str, controller: &str) -> Result<&'a ComparisonRow> {
     let row = comparison.row(contour, machine, controller);
     Ok(row.ok_or_else(|| format!("{COMPARISON} has no {controller} on {contour} and {machine}"))?)
 }
@@ -129,7 +129,7 @@ fn machines(comparison: &Comparison) -> Result<String> {
         let rms_um = comparison.rms_over_contours_um(machine, controller);
         rms_um.ok_or_else(|| format!("{COMPARISON} has not every contour of {controller} on {machine}"))
     };
-    let home = format!("{BEST}{AT_HOME}");
+    let home = format!("{BEST}{IDENTIFIED_HERE}");
     let mut table = String::new();
     let columns = ["open-loop", "best of those without model", BEST, "the same, identified on it"];
     heading(&mut table, "RMS over all contours, \u{b5}m", &columns)?;

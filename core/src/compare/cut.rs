@@ -2,7 +2,7 @@
 
 use feedwright_control::Controller;
 
-use super::table::Row;
+use super::table::ComparisonRow;
 use super::tuning::Tuned;
 use super::{Competitor, Workpiece};
 use crate::controllers::{Choices, Make, Setup};
@@ -10,7 +10,7 @@ use crate::machine::Machine;
 use crate::pipeline::{Run, RunError};
 use crate::report::Statistics;
 use crate::simulate::RunResult;
-use crate::trace::{Outcome, Row as TraceRow, Sink};
+use crate::trace::{Outcome, Row, Sink};
 use crate::watch::Watch;
 
 /// Makes a competitor for a machine.
@@ -28,7 +28,7 @@ impl Maker<'_> {
         let set = values.map_or(Vec::new(), |tuned| tuned.settings(entry));
         let choices = Choices { seed: self.seed, set };
         // What a controller believes of the machine: the periods of the control are never a secret.
-        let known = if self.competitor.at_home { machine } else { self.nominal };
+        let known = if self.competitor.identified_here { machine } else { self.nominal };
         let known = Machine { period: machine.period, ..known.clone() };
         Make::<2>::make(entry, &mut Setup { machine: &known, choices: &choices, progress: &mut |_| {} })
     }
@@ -68,11 +68,11 @@ pub(super) fn row(
     competitor: &Competitor,
     controller: &mut dyn Controller<2>,
     watch: &dyn Watch,
-) -> Result<Row, RunError> {
+) -> Result<ComparisonRow, RunError> {
     let mut errors = Errors::default();
     let run = Run::on(machine).laps(competitor.entry.laps).watched(watch);
     let Cut { statistics, run } = cut(workpiece, controller, run, &mut [&mut errors])?;
-    Ok(Row::new(workpiece, machine, competitor, &statistics, &run, errors.thinned()))
+    Ok(ComparisonRow::new(workpiece, machine, competitor, &statistics, &run, errors.thinned()))
 }
 
 /// Points of an error plot.
@@ -83,7 +83,7 @@ const PLOT_POINTS: usize = 160;
 struct Errors(Vec<f32>);
 
 impl Sink for Errors {
-    fn row(&mut self, row: &TraceRow) -> std::io::Result<()> {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
         self.0.push((row.contour_error_mm * 1e3) as f32);
         Ok(())
     }

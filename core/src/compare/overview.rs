@@ -2,7 +2,7 @@
 //! all that it was made of.
 
 use super::Comparison;
-use super::table::Row;
+use super::table::ComparisonRow;
 use super::tolerance::AtTolerance;
 use super::verdict::Verdict;
 
@@ -38,7 +38,7 @@ impl Comparison {
     }
 
     /// The row of a cut; none where it was not asked for.
-    pub fn row(&self, contour: &str, machine: &str, controller: &str) -> Option<&Row> {
+    pub fn row(&self, contour: &str, machine: &str, controller: &str) -> Option<&ComparisonRow> {
         self.rows.iter().find(|row| row.contour == contour && row.machine == machine && row.controller == controller)
     }
 

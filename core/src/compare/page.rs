@@ -4,11 +4,11 @@
 use std::io::{self, Write};
 
 use super::overview::{Claimed, each_once};
-use super::table::{Row, knows};
+use super::table::{ComparisonRow, knows};
 use super::tolerance::TOLERANCE_UM;
-use super::{AT_HOME, Comparison};
+use super::{Comparison, IDENTIFIED_HERE};
 use crate::controllers::{BASELINE, BEST, Knows};
-use crate::report::figure::{COLORS, Curve, Figure, Panel, write_foot, write_head};
+use crate::report::figure::{COLORS, Figure, Panel, Polyline, write_foot, write_head};
 use crate::report::text::{escaped, number};
 
 const CSS: &str = include_str!("../../assets/report/compare.css");
@@ -22,7 +22,7 @@ const NOTABLE: f64 = 0.02;
 pub fn write(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let introduction = format!(
         "Every controller on every contour and machine. Controllers know {} at most and meet the other machines unseen; \
-         {BEST}{AT_HOME} and its like are identified on the machine that they cut on. Seed {}.",
+         {BEST}{IDENTIFIED_HERE} and its like are identified on the machine that they cut on. Seed {}.",
         comparison.nominal, comparison.seed
     );
     write_head(out, "Comparison of controllers", &introduction, CSS)?;
@@ -38,7 +38,7 @@ pub fn write(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
 }
 
 /// The rows of each workpiece and machine.
-fn cells(rows: &[Row]) -> Vec<&[Row]> {
+fn cells(rows: &[ComparisonRow]) -> Vec<&[ComparisonRow]> {
     rows.chunk_by(|a, b| a.contour == b.contour && a.machine == b.machine).collect()
 }
 
@@ -178,7 +178,7 @@ fn write_tuned(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> 
     write_end(out)
 }
 
-fn write_cell(out: &mut impl Write, index: usize, rows: &[Row]) -> io::Result<()> {
+fn write_cell(out: &mut impl Write, index: usize, rows: &[ComparisonRow]) -> io::Result<()> {
     let (contour, machine) = (escaped(&rows[0].contour), escaped(&rows[0].machine));
     writeln!(out, "<section id=\"cell-{index}\"><h2>{contour} on {machine}</h2>")?;
     let ratios = ["time ratio", "RMS ratio", "max ratio"];
@@ -215,23 +215,23 @@ fn ours(controller: &str) -> &'static str {
 }
 
 /// Error over the cut: open loop, the best peer that knows no model, and the receding horizon, on one scale.
-fn errors(rows: &[Row]) -> Figure {
+fn errors(rows: &[ComparisonRow]) -> Figure {
     let peers = rows.iter().filter(|row| {
         let blind = matches!(knows(row), Some(Knows::Nothing | Knows::Identified));
         blind && row.completed && row.controller != BASELINE && !row.controller.starts_with(BEST)
     });
     let peer = peers.min_by(|a, b| a.rms_um.total_cmp(&b.rms_um));
     let named = |name: &str| rows.iter().find(|row| row.controller == name);
-    let shown: Vec<&Row> = [named(BASELINE), peer, named(BEST)].into_iter().flatten().collect();
+    let shown: Vec<&ComparisonRow> = [named(BASELINE), peer, named(BEST)].into_iter().flatten().collect();
     let largest = shown.iter().filter(|row| row.completed).map(|row| row.max_um).fold(0.0, f64::max);
-    let panel = |(row, color): (&&Row, &str)| {
+    let panel = |(row, color): (&&ComparisonRow, &str)| {
         let step = 1.0 / row.error_um.len().max(1) as f64;
         let points = row.error_um.iter().enumerate().map(|(i, &e)| [i as f64 * step * row.time_s, f64::from(e)]);
         Panel {
             title: row.controller.clone(),
             x_title: "Time [s]".to_owned(),
             y_title: "Contour error [µm]".to_owned(),
-            curves: vec![Curve { points: points.collect(), color: color.to_owned(), ..Curve::default() }],
+            curves: vec![Polyline { points: points.collect(), color: color.to_owned(), ..Polyline::default() }],
             y_range: (largest > 0.0).then_some([-largest, largest]),
             ..Panel::default()
         }

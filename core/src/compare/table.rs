@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Competitor, Options, Workpiece};
+use super::{ComparisonOptions, Competitor, Workpiece};
 use crate::controllers::{BASELINE, Knows};
 use crate::machine::Machine;
 use crate::report::Statistics;
@@ -11,7 +11,7 @@ use crate::trace::Outcome;
 
 /// One row.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct ComparisonRow {
     /// Contour or part.
     pub contour: String,
     /// Machine that was cut on.
@@ -51,7 +51,7 @@ pub struct Row {
     pub tick_us: Option<[f64; 2]>,
 }
 
-impl Row {
+impl ComparisonRow {
     pub(super) fn new(
         workpiece: &Workpiece,
         machine: &Machine,
@@ -82,7 +82,7 @@ impl Row {
 }
 
 /// All rows by workpiece, then machine, in the order of the cuts otherwise; ratios filled in.
-pub(super) fn in_order(cuts: &[Row], options: &Options) -> Vec<Row> {
+pub(super) fn in_order(cuts: &[ComparisonRow], options: &ComparisonOptions) -> Vec<ComparisonRow> {
     let mut rows = Vec::with_capacity(cuts.len());
     for workpiece in &options.workpieces {
         for machine in &options.machines {
@@ -94,7 +94,7 @@ pub(super) fn in_order(cuts: &[Row], options: &Options) -> Vec<Row> {
     rows
 }
 
-fn against(mut row: Row, base: Option<&Row>) -> Row {
+fn against(mut row: ComparisonRow, base: Option<&ComparisonRow>) -> ComparisonRow {
     if let Some(base) = base {
         row.time_ratio = row.time_s / base.time_s;
         row.rms_ratio = row.rms_um / base.rms_um;
@@ -104,7 +104,7 @@ fn against(mut row: Row, base: Option<&Row>) -> Row {
 }
 
 /// What the controller of a row knows; nothing where its name is none.
-pub fn knows(row: &Row) -> Option<Knows> {
-    let name = row.controller.strip_suffix(super::AT_HOME).unwrap_or(&row.controller);
+pub fn knows(row: &ComparisonRow) -> Option<Knows> {
+    let name = row.controller.strip_suffix(super::IDENTIFIED_HERE).unwrap_or(&row.controller);
     crate::controllers::Entry::find(name).map(|entry| entry.knows)
 }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cut::{Maker, cut};
 use super::tuning::Tuned;
-use super::{CORNER, Competitor, Options, Workpiece};
+use super::{CORNER, ComparisonOptions, Competitor, Workpiece};
 use crate::controllers::BASELINE;
 use crate::path::contour::{CONTOURS, Contour};
 use crate::pipeline::{Run, RunError};
@@ -37,7 +37,7 @@ pub struct AtTolerance {
 
 /// All smooth contours, all controllers, on the nominal machine.
 pub(super) fn at_tolerance(
-    options: &Options,
+    options: &ComparisonOptions,
     tuned: &[Tuned],
     watch: &dyn Watch,
 ) -> Result<Vec<AtTolerance>, RunError> {
@@ -49,7 +49,7 @@ pub(super) fn at_tolerance(
     let found: Result<Vec<AtTolerance>, RunError> = pairs
         .par_iter()
         .map(|&(contour, entry)| {
-            let competitor = Competitor { entry, at_home: false };
+            let competitor = Competitor { entry, identified_here: false };
             let best = fastest(contour, &competitor, options, tuned, watch)?;
             let row = AtTolerance {
                 contour: contour.name.to_owned(),
@@ -82,7 +82,7 @@ struct Holding {
 fn fastest(
     contour: &Contour,
     competitor: &Competitor,
-    options: &Options,
+    options: &ComparisonOptions,
     tuned: &[Tuned],
     watch: &dyn Watch,
 ) -> Result<Option<Holding>, RunError> {

@@ -12,6 +12,7 @@ use super::cut::{Cut, cut};
 use super::{TUNING_CONTOUR, Workpiece};
 use crate::controllers::{BASELINE, Choices, Entry, Make, Parameter, Setting, Setup};
 use crate::machine::Machine;
+use crate::number::to_four_digits;
 use crate::pipeline::{Run, RunError};
 use crate::watch::Watch;
 
@@ -62,9 +63,8 @@ impl Tuned {
 
     /// The values as they are set.
     pub fn settings(&self, entry: &'static Entry) -> Vec<Setting> {
-        let named = |name: &str| entry.parameters.iter().find(|parameter| parameter.name == name);
         let setting = |(name, value): &(String, f64)| {
-            Some(Setting { controller: entry.name, name: named(name)?.name, value: *value })
+            Some(Setting { controller: entry.name, name: entry.parameter(name)?.name, value: *value })
         };
         self.values.iter().filter_map(setting).collect()
     }
@@ -72,15 +72,9 @@ impl Tuned {
     /// Names and values in words, to four digits.
     pub fn words(&self) -> String {
         let values: Vec<String> =
-            self.values.iter().map(|(name, value)| format!("{name} {}", four_digits(*value))).collect();
+            self.values.iter().map(|(name, value)| format!("{name} {}", to_four_digits(*value))).collect();
         values.join(", ")
     }
-}
-
-/// Without an exponent where it can do without, and without zeros that say nothing.
-fn four_digits(value: f64) -> String {
-    let rounded: f64 = format!("{value:.3e}").parse().unwrap_or(value);
-    if rounded == 0.0 || (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
 
 /// Tunes a controller on the machine.
@@ -108,7 +102,7 @@ struct Trial<'a> {
 
 /// A point of the unit cube and its cost.
 #[derive(Debug, Clone)]
-struct Point {
+struct Candidate {
     place: Vec<f64>,
     cost: f64,
 }
@@ -135,37 +129,39 @@ impl Trial<'_> {
             }
             step *= 0.5;
         }
-        let values = self.values(&best.place);
-        let rms_um = self.cut(&values)?.statistics.rms_um();
-        let values = parameters.iter().zip(values).map(|((p, _), value)| (p.name.to_owned(), value)).collect();
+        let settings = self.settings(&best.place);
+        let rms_um = self.cut(&settings)?.statistics.rms_um();
+        let values = settings.iter().map(|setting| (setting.name.to_owned(), setting.value)).collect();
         Ok(Tuned { controller: self.entry.name.to_owned(), values, cuts, rms_um })
     }
 
-    fn costs(&self, places: Vec<Vec<f64>>) -> Result<Vec<Point>, RunError> {
-        places.into_par_iter().map(|place| Ok(Point { cost: self.cost(&place)?, place })).collect()
+    fn costs(&self, places: Vec<Vec<f64>>) -> Result<Vec<Candidate>, RunError> {
+        places.into_par_iter().map(|place| Ok(Candidate { cost: self.cost(&place)?, place })).collect()
     }
 
     fn cost(&self, place: &[f64]) -> Result<f64, RunError> {
-        let cut = self.cut(&self.values(place))?;
+        let cut = self.cut(&self.settings(place))?;
         let longer = (cut.run.time_s / self.open_time_s - 1.0).max(0.0);
         Ok(if cut.is_sound() { cut.statistics.rms_um() * (1.0 + TIME_PRICE * longer) } else { f64::INFINITY })
     }
 
-    fn cut(&self, values: &[f64]) -> Result<Cut, RunError> {
-        let setting = |((p, _), value): ((&'static Parameter, _), &f64)| Setting {
-            controller: self.entry.name,
-            name: p.name,
-            value: *value,
-        };
-        let choices = Choices { seed: self.seed, set: self.entry.searched().zip(values).map(setting).collect() };
+    fn cut(&self, settings: &[Setting]) -> Result<Cut, RunError> {
+        let choices = Choices { seed: self.seed, set: settings.to_vec() };
         let mut setup = Setup { machine: self.machine, choices: &choices, progress: &mut |_| {} };
         let mut controller = Make::<2>::make(self.entry, &mut setup);
         let run = Run::on(self.machine).laps(self.entry.laps).watched(self.watch);
         cut(self.workpiece, &mut *controller, run, &mut [])
     }
 
-    fn values(&self, place: &[f64]) -> Vec<f64> {
-        self.entry.searched().zip(place).map(|((_, range), &at)| value_at(range, at)).collect()
+    /// The values of the parameters that are searched, at a point of the unit cube.
+    fn settings(&self, place: &[f64]) -> Vec<Setting> {
+        let controller = self.entry.name;
+        let setting = |((parameter, range), &at): ((&'static Parameter, _), &f64)| Setting {
+            controller,
+            name: parameter.name,
+            value: value_at(range, at),
+        };
+        self.entry.searched().zip(place).map(setting).collect()
     }
 }
 
@@ -222,12 +218,6 @@ mod tests {
     }
 
     #[test]
-    fn values_have_four_digits_and_no_more_zeros_than_they_need() {
-        let shown = [8.0, 117.735, 0.0301, 9.786e-1, 1.0754e-5, 1e-11, 0.0, -2e7].map(four_digits);
-        assert_eq!(shown, ["8", "117.7", "0.0301", "0.9786", "1.075e-5", "1e-11", "0", "-2e7"]);
-    }
-
-    #[test]
     fn the_halton_sequence_is_the_published_one() {
         let first: Vec<Vec<f64>> = (1..=4).map(|i| halton(i, 2)).collect();
         let expected = [[0.5, 1.0 / 3.0], [0.25, 2.0 / 3.0], [0.75, 1.0 / 9.0], [0.125, 4.0 / 9.0]];
@@ -242,7 +232,7 @@ mod tests {
         let workpiece = Workpiece::contours().into_iter().find(|w| w.name == TUNING_CONTOUR).unwrap();
         // Its defaults take a third longer than open loop, which the search may not.
         let entry = Entry::find("fuzzy-feedrate").unwrap();
-        let cut = |entry: &'static Entry, values: &[f64]| {
+        let cut = |entry: &'static Entry, settings: &[Setting]| {
             let trial = Trial {
                 entry,
                 machine: &machine,
@@ -251,15 +241,14 @@ mod tests {
                 watch: &(),
                 open_time_s: f64::INFINITY,
             };
-            let cut = trial.cut(values).unwrap();
+            let cut = trial.cut(settings).unwrap();
             (cut.statistics.rms_um(), cut.run.time_s)
         };
         let (open_um, open_s) = cut(Entry::find(BASELINE).unwrap(), &[]);
         let cost = |(rms_um, time_s): (f64, f64)| rms_um * (1.0 + 10.0 * (time_s / open_s - 1.0).max(0.0));
-        let values = |tuned: &Tuned| tuned.values.iter().map(|(_, value)| *value).collect::<Vec<f64>>();
-        let defaults = cost(cut(entry, &values(&Tuned::defaults(entry))));
+        let defaults = cost(cut(entry, &Tuned::defaults(entry).settings(entry)));
         let tuned = search(entry, &machine, 1, &()).unwrap();
-        let found = cut(entry, &values(&tuned));
+        let found = cut(entry, &tuned.settings(entry));
         assert!(cost(found) < defaults, "{} of {defaults}: {tuned:?}", cost(found));
         assert!(cost(found) <= open_um * (1.0 + 1e-9), "{} of {open_um}: {tuned:?}", cost(found));
         assert_eq!(tuned.rms_um, found.0, "{tuned:?}");

@@ -2,8 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::table::{Row, knows};
-use super::{AT_HOME, Workpiece};
+use super::table::{ComparisonRow, knows};
+use super::{IDENTIFIED_HERE, Workpiece};
 use crate::controllers::{BASELINE, BEST, Knows};
 
 /// One claim on one contour of one machine.
@@ -48,7 +48,7 @@ const RMS_IDENTIFIED: Claim = Claim("RMS, identified machine, against the best p
 
 impl Claim {
     /// What a row makes of it: `value` is its ratio to the row of `against`.
-    fn of(&self, row: &Row, against: &str, value: f64) -> Verdict {
+    fn of(&self, row: &ComparisonRow, against: &str, value: f64) -> Verdict {
         let Self(claim, limit) = *self;
         Verdict {
             claim: claim.to_owned(),
@@ -61,20 +61,20 @@ impl Claim {
         }
     }
 
-    fn of_rms(&self, row: &Row, against: &Row) -> Verdict {
+    fn of_rms(&self, row: &ComparisonRow, against: &ComparisonRow) -> Verdict {
         self.of(row, &against.controller, row.rms_um / against.rms_um)
     }
 
-    fn of_max(&self, row: &Row, against: &Row) -> Verdict {
+    fn of_max(&self, row: &ComparisonRow, against: &ComparisonRow) -> Verdict {
         self.of(row, &against.controller, row.max_um / against.max_um)
     }
 }
 
 /// All claims that the rows can bear out.
-pub(super) fn verdicts(rows: &[Row], nominal: &str, workpieces: &[Workpiece]) -> Vec<Verdict> {
+pub(super) fn verdicts(rows: &[ComparisonRow], nominal: &str, workpieces: &[Workpiece]) -> Vec<Verdict> {
     let is_smooth = |contour: &str| workpieces.iter().any(|workpiece| workpiece.name == contour && workpiece.smooth);
-    let of_contour_and_machine = |ours: &Row| {
-        let here: Vec<&Row> =
+    let of_contour_and_machine = |ours: &ComparisonRow| {
+        let here: Vec<&ComparisonRow> =
             rows.iter().filter(|row| row.contour == ours.contour && row.machine == ours.machine).collect();
         match (ours.machine == nominal, is_smooth(&ours.contour)) {
             (true, true) => without_corners(ours, &here),
@@ -85,7 +85,7 @@ pub(super) fn verdicts(rows: &[Row], nominal: &str, workpieces: &[Workpiece]) ->
     rows.iter().filter(|row| row.controller == BEST).flat_map(of_contour_and_machine).collect()
 }
 
-fn without_corners(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
+fn without_corners(ours: &ComparisonRow, here: &[&ComparisonRow]) -> Vec<Verdict> {
     let bound = here.iter().find(|row| row.controller == UPPER_BOUND);
     let mut verdicts =
         vec![RMS_OPEN_LOOP.of(ours, BASELINE, ours.rms_ratio), MAX_OPEN_LOOP.of(ours, BASELINE, ours.max_ratio)];
@@ -94,7 +94,7 @@ fn without_corners(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
     verdicts
 }
 
-fn with_corners(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
+fn with_corners(ours: &ComparisonRow, here: &[&ComparisonRow]) -> Vec<Verdict> {
     let known = [Knows::Nothing, Knows::Identified, Knows::ExactModel];
     let on_rms = best(here, &known, |row| row.rms_um);
     let on_max = best(here, &known, |row| row.max_um);
@@ -103,28 +103,33 @@ fn with_corners(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
     rms.into_iter().chain(max).collect()
 }
 
-fn elsewhere(ours: &Row, here: &[&Row]) -> Vec<Verdict> {
+fn elsewhere(ours: &ComparisonRow, here: &[&ComparisonRow]) -> Vec<Verdict> {
     let Some(peer) = best_without_model(here) else { return Vec::new() };
-    let home = here.iter().find(|row| row.controller == format!("{BEST}{AT_HOME}"));
+    let home = here.iter().find(|row| row.controller == format!("{BEST}{IDENTIFIED_HERE}"));
     let mut verdicts = vec![RMS_UNSEEN.of_rms(ours, peer)];
     verdicts.extend(home.map(|home| RMS_IDENTIFIED.of_rms(home, peer)));
     verdicts
 }
 
-fn best_without_model<'a>(here: &[&'a Row]) -> Option<&'a Row> {
+fn best_without_model<'a>(here: &[&'a ComparisonRow]) -> Option<&'a ComparisonRow> {
     best(here, &[Knows::Nothing, Knows::Identified], |row| row.rms_um)
 }
 
 /// Rows that came to their end of others that know no more than this; none that is identified anew.
-fn peers<'a>(here: &[&'a Row], known: &[Knows]) -> impl Iterator<Item = &'a Row> {
+fn peers<'a>(here: &[&'a ComparisonRow], known: &[Knows]) -> impl Iterator<Item = &'a ComparisonRow> {
     here.iter().copied().filter(|row| {
-        let is_other = row.controller != BEST && row.controller != UPPER_BOUND && !row.controller.ends_with(AT_HOME);
+        let is_other =
+            row.controller != BEST && row.controller != UPPER_BOUND && !row.controller.ends_with(IDENTIFIED_HERE);
         is_other && row.completed && knows(row).is_some_and(|knows| known.contains(&knows))
     })
 }
 
 /// The best of these, open loop among them; none where open loop is alone.
-fn best<'a>(here: &[&'a Row], known: &[Knows], number: fn(&Row) -> f64) -> Option<&'a Row> {
+fn best<'a>(
+    here: &[&'a ComparisonRow],
+    known: &[Knows],
+    number: fn(&ComparisonRow) -> f64,
+) -> Option<&'a ComparisonRow> {
     peers(here, known).find(|row| row.controller != BASELINE)?;
     peers(here, known).min_by(|a, b| number(a).total_cmp(&number(b)))
 }
@@ -135,8 +140,8 @@ mod tests {
 
     const TNV40: &str = "tnv40";
 
-    fn row(contour: &str, machine: &str, controller: &str, [rms_um, max_um]: [f64; 2]) -> Row {
-        Row {
+    fn row(contour: &str, machine: &str, controller: &str, [rms_um, max_um]: [f64; 2]) -> ComparisonRow {
+        ComparisonRow {
             contour: contour.to_owned(),
             machine: machine.to_owned(),
             controller: controller.to_owned(),
@@ -158,7 +163,7 @@ mod tests {
     }
 
     /// What is compared with, the ratio in thousandths, and whether the claim holds.
-    fn told(rows: &[Row]) -> Vec<(String, f64, bool)> {
+    fn told(rows: &[ComparisonRow]) -> Vec<(String, f64, bool)> {
         let contours: Vec<Workpiece> = Workpiece::contours();
         let verdicts = verdicts(rows, TNV40, &contours);
         verdicts.into_iter().map(|v| (v.against, (v.value * 1e3).round(), v.holds)).collect()
@@ -215,7 +220,7 @@ mod tests {
             row("circle", "rough", BASELINE, [10.0, 20.0]),
             row("circle", "rough", "contour-compensation", [4.0, 9.0]),
             row("circle", "rough", BEST, [2.4, 5.0]),
-            row("circle", "rough", &format!("{BEST}{AT_HOME}"), [0.8, 2.0]),
+            row("circle", "rough", &format!("{BEST}{IDENTIFIED_HERE}"), [0.8, 2.0]),
         ];
         assert_eq!(told(&rows), [of("contour-compensation", 600.0, false), of("contour-compensation", 200.0, true)]);
     }

@@ -25,9 +25,6 @@ use crate::identify::contour::{Identified, Training};
 use crate::identify::{Programme, servo};
 use crate::machine::{Axis, Machine, Period};
 
-/// The feed period of the paper, s.
-pub(super) const INVERSION_PERIOD_S: f64 = inverting::FEED_PERIOD_S;
-
 pub(super) fn open_loop<const N: usize>(_: &mut Setup<'_>, _: &Values) -> Box<dyn Controller<N>> {
     Box::new(OpenLoop)
 }

@@ -145,12 +145,12 @@ struct Exact<const N: usize> {
 
 impl<const N: usize> Exact<N> {
     fn new(machine: &Machine, servo_periods: u32) -> Self {
-        let laws: [axis::Axis; N] = machine.law();
-        let axes = std::array::from_fn(|i| {
-            let law = laws[i];
-            ExactAxis { law, state: State::default(), slopes: [State::default(); MOST_KNOTS] }
+        let axes = machine.law::<N>().map(|law| ExactAxis {
+            law,
+            state: State::default(),
+            slopes: [State::default(); MOST_KNOTS],
         });
-        let lag_s = axes.iter().map(|axis: &ExactAxis| 1.0 / axis.law.parameters.kp_1_s).sum::<f64>() / N as f64;
+        let lag_s = axes.iter().map(|axis| 1.0 / axis.law.parameters.kp_1_s).sum::<f64>() / N as f64;
         Self {
             axes,
             servo_periods,

@@ -116,7 +116,7 @@ impl Setting {
                 return fail("whose parameter it is is missing".to_owned(), format!("write --set CONTROLLER.{text}"));
             }
         };
-        let Some(parameter) = entry.parameters.iter().find(|parameter| parameter.name == name) else {
+        let Some(parameter) = entry.parameter(name) else {
             return fail(format!("{} has no parameter '{name}'", entry.name), meant_parameter(entry, name));
         };
         let Ok(number) = value.parse::<f64>() else {
@@ -145,25 +145,22 @@ fn meant_parameter(entry: &Entry, name: &str) -> String {
 
 /// The values of all parameters of a controller.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Values {
-    parameters: &'static [Parameter],
-    values: Vec<f64>,
-}
+pub struct Values(Vec<(&'static str, f64)>);
 
 impl Values {
     /// The defaults, where nothing else is set.
     pub(super) fn of(entry: &Entry, settings: &[Setting]) -> Self {
         let value = |parameter: &Parameter| {
             let set = settings.iter().rev().find(|set| set.controller == entry.name && set.name == parameter.name);
-            set.map_or(parameter.default, |set| set.value)
+            (parameter.name, set.map_or(parameter.default, |set| set.value))
         };
-        Self { parameters: entry.parameters, values: entry.parameters.iter().map(value).collect() }
+        Self(entry.parameters.iter().map(value).collect())
     }
 
     /// A value by its name, which the row of the table has.
     pub(super) fn number(&self, name: &str) -> f64 {
-        let place = self.parameters.iter().position(|parameter| parameter.name == name);
-        self.values[place.expect("what makes a controller asks for the parameters of its row")]
+        let found = self.0.iter().find(|(of, _)| *of == name);
+        found.expect("what makes a controller asks for the parameters of its row").1
     }
 
     /// A value that is a whole number.
@@ -193,9 +190,10 @@ mod tests {
         assert_eq!((set.controller, set.name, set.value), ("receding-horizon", "knots", 10.0));
         let set = Setting::parse(" cross-coupled.kp = 2.5 ", best).unwrap();
         assert_eq!((set.controller, set.name, set.value), ("cross-coupled", "kp", 2.5));
-        let values = Values::of(Entry::find("cross-coupled").unwrap(), &[set]);
+        let entry = Entry::find("cross-coupled").unwrap();
+        let values = Values::of(entry, &[set]);
         assert_eq!(values.number("kp"), 2.5);
-        assert_eq!(values.number("ki_1_s"), values.parameters[1].default);
+        assert_eq!(values.number("ki_1_s"), entry.parameter("ki_1_s").unwrap().default);
     }
 
     #[test]

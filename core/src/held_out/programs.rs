@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use super::pen::Pen;
+use super::program_writer::ProgramWriter;
 use super::random::Random;
 
 /// A kind of program.
@@ -10,7 +10,7 @@ use super::random::Random;
 pub struct Family {
     /// Name.
     pub name: &'static str,
-    write: fn(&mut Pen),
+    write: fn(&mut ProgramWriter),
 }
 
 /// All of them.
@@ -37,7 +37,7 @@ const APART_MM: f64 = 20.0;
 
 /// A program of a family.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Drawn {
+pub struct RandomProgram {
     /// Family and seed.
     pub name: String,
     /// The program.
@@ -45,114 +45,114 @@ pub struct Drawn {
 }
 
 /// The program of a seed; the same on every platform.
-pub fn program(seed: u64) -> Drawn {
+pub fn program(seed: u64) -> RandomProgram {
     let mut random = Random::new(seed);
     let family = FAMILIES[random.whole(0, FAMILIES.len() as u32 - 1) as usize];
     let name = format!("{}-{seed}", family.name);
-    let mut pen = Pen::new(random, &name);
-    for part in 0..pen.random.whole(1, PARTS) {
+    let mut writer = ProgramWriter::new(random, &name);
+    for part in 0..writer.random.whole(1, PARTS) {
         if part > 0 {
-            interruption(&mut pen);
+            interruption(&mut writer);
         }
-        let time_s = pen.random.between(PART_S);
-        pen.begin_part(time_s);
-        (family.write)(&mut pen);
+        let time_s = writer.random.between(PART_S);
+        writer.begin_part(time_s);
+        (family.write)(&mut writer);
     }
-    Drawn { name, text: pen.finish() }
+    RandomProgram { name, text: writer.finish() }
 }
 
 /// Between two parts: a rapid, and perhaps a dwell, a tool change, another feedrate, a motion without a corner.
-fn interruption(pen: &mut Pen) {
-    match pen.random.whole(0, 7) {
-        0 => pen.say("T1 M6"),
+fn interruption(writer: &mut ProgramWriter) {
+    match writer.random.whole(0, 7) {
+        0 => writer.say("T1 M6"),
         1 | 2 => {
-            let seconds = pen.random.by_ratio([0.01, 0.5]);
-            pen.say(&format!("G4 P{seconds}"));
+            let seconds = writer.random.by_ratio([0.01, 0.5]);
+            writer.say(&format!("G4 P{seconds}"));
         }
         3 => return,
-        _ => pen.feed(),
+        _ => writer.feed(),
     }
-    let [x, y, z] = pen.at_mm();
-    let [dx, dy] = [0, 1].map(|_| pen.random.between([-APART_MM, APART_MM]));
-    pen.rapid([x + dx, y + dy, z]);
+    let [x, y, z] = writer.at_mm();
+    let [dx, dy] = [0, 1].map(|_| writer.random.between([-APART_MM, APART_MM]));
+    writer.rapid([x + dx, y + dy, z]);
 }
 
 /// Legs of 0.1 to 5 mm in any direction.
-fn polyline(pen: &mut Pen) {
-    let scale = pen.random.by_ratio([0.2, 1.0]);
-    while pen.goes_on() {
-        let leg_mm = pen.random.by_ratio([0.1, 5.0 * scale]);
-        let heading = pen.random.between([-PI, PI]);
-        pen.by(leg_mm * libm::cos(heading), leg_mm * libm::sin(heading));
+fn polyline(writer: &mut ProgramWriter) {
+    let scale = writer.random.by_ratio([0.2, 1.0]);
+    while writer.goes_on() {
+        let leg_mm = writer.random.by_ratio([0.1, 5.0 * scale]);
+        let heading = writer.random.between([-PI, PI]);
+        writer.by(leg_mm * libm::cos(heading), leg_mm * libm::sin(heading));
     }
 }
 
 /// Arcs of 0.5 to 50 mm, most of them going on where the last one ended, some at a corner.
-fn arcs(pen: &mut Pen) {
-    let mut heading = pen.random.between([-PI, PI]);
-    while pen.goes_on() {
-        if pen.random.one_in(4) {
-            heading += pen.random.between([-PI, PI]);
+fn arcs(writer: &mut ProgramWriter) {
+    let mut heading = writer.random.between([-PI, PI]);
+    while writer.goes_on() {
+        if writer.random.one_in(4) {
+            heading += writer.random.between([-PI, PI]);
         }
-        let radius_mm = pen.random.by_ratio([0.5, 50.0]);
-        let side = pen.random.sign();
+        let radius_mm = writer.random.by_ratio([0.5, 50.0]);
+        let side = writer.random.sign();
         // At least a tenth of a millimetre, or four decimals are no circle.
-        let sweep = pen.random.by_ratio([0.2, 3.0]) * (3.0 / radius_mm).min(1.0);
+        let sweep = writer.random.by_ratio([0.2, 3.0]) * (3.0 / radius_mm).min(1.0);
         let to_center = heading + side * 0.5 * PI;
-        pen.arc([radius_mm * libm::cos(to_center), radius_mm * libm::sin(to_center)], side * sweep, 0.0);
+        writer.arc([radius_mm * libm::cos(to_center), radius_mm * libm::sin(to_center)], side * sweep, 0.0);
         heading += side * sweep;
     }
 }
 
 /// A smooth curve as CAM writes it: short chords, with the noise of its tolerance.
-fn cam(pen: &mut Pen) {
-    let chord_mm = pen.random.by_ratio([0.02, 0.5]);
-    let noise_mm = pen.random.by_ratio([0.0005, 0.02]);
-    let waves = [0, 1, 2].map(|_| (pen.random.by_ratio([2.0, 40.0]), pen.random.between([-1.2, 1.2])));
-    let [x0, y0, z] = pen.at_mm();
+fn cam(writer: &mut ProgramWriter) {
+    let chord_mm = writer.random.by_ratio([0.02, 0.5]);
+    let noise_mm = writer.random.by_ratio([0.0005, 0.02]);
+    let waves = [0, 1, 2].map(|_| (writer.random.by_ratio([2.0, 40.0]), writer.random.between([-1.2, 1.2])));
+    let [x0, y0, z] = writer.at_mm();
     let (mut s_mm, mut at) = (0.0, [x0, y0]);
-    while pen.goes_on() {
-        s_mm += chord_mm * pen.random.between([0.7, 1.3]);
+    while writer.goes_on() {
+        s_mm += chord_mm * writer.random.between([0.7, 1.3]);
         let heading: f64 = waves.iter().map(|(length_mm, turn)| turn * libm::sin(TAU * s_mm / length_mm)).sum();
         at = [at[0] + chord_mm * libm::cos(heading), at[1] + chord_mm * libm::sin(heading)];
-        let [dx, dy] = [0, 1].map(|_| pen.random.between([-noise_mm, noise_mm]));
-        pen.line([at[0] + dx, at[1] + dy, z]);
+        let [dx, dy] = [0, 1].map(|_| writer.random.between([-noise_mm, noise_mm]));
+        writer.line([at[0] + dx, at[1] + dy, z]);
     }
 }
 
 /// There and almost back again.
-fn spikes(pen: &mut Pen) {
-    let mut heading = pen.random.between([-PI, PI]);
-    let most_mm = pen.random.by_ratio([0.5, 8.0]);
-    while pen.goes_on() {
-        let leg_mm = pen.random.between([0.2 * most_mm, most_mm]);
-        heading += PI - pen.random.sign() * pen.random.by_ratio([0.01, 0.5]);
-        pen.by(leg_mm * libm::cos(heading), leg_mm * libm::sin(heading));
+fn spikes(writer: &mut ProgramWriter) {
+    let mut heading = writer.random.between([-PI, PI]);
+    let most_mm = writer.random.by_ratio([0.5, 8.0]);
+    while writer.goes_on() {
+        let leg_mm = writer.random.between([0.2 * most_mm, most_mm]);
+        heading += PI - writer.random.sign() * writer.random.by_ratio([0.01, 0.5]);
+        writer.by(leg_mm * libm::cos(heading), leg_mm * libm::sin(heading));
     }
 }
 
 /// Up, along, down, along: legs that are shorter than the lag.
-fn battlement(pen: &mut Pen) {
-    let [high_mm, long_mm] = [pen.random.by_ratio([0.1, 2.0]), pen.random.by_ratio([0.1, 2.0])];
-    let run_in_mm = pen.random.by_ratio([0.5, 10.0]);
-    pen.by(run_in_mm, 0.0);
-    while pen.goes_on() {
-        pen.by(0.0, high_mm);
-        pen.by(long_mm, 0.0);
-        pen.by(0.0, -high_mm);
-        pen.by(long_mm, 0.0);
+fn battlement(writer: &mut ProgramWriter) {
+    let [high_mm, long_mm] = [writer.random.by_ratio([0.1, 2.0]), writer.random.by_ratio([0.1, 2.0])];
+    let run_in_mm = writer.random.by_ratio([0.5, 10.0]);
+    writer.by(run_in_mm, 0.0);
+    while writer.goes_on() {
+        writer.by(0.0, high_mm);
+        writer.by(long_mm, 0.0);
+        writer.by(0.0, -high_mm);
+        writer.by(long_mm, 0.0);
     }
-    pen.by(run_in_mm, 0.0);
+    writer.by(run_in_mm, 0.0);
 }
 
 /// Narrow slots with round ends, side by side.
-fn slots(pen: &mut Pen) {
-    let [long_mm, wide_mm] = [pen.random.by_ratio([0.5, 10.0]), pen.random.by_ratio([0.1, 2.0])];
-    while pen.goes_on() {
-        pen.by(long_mm, 0.0);
-        pen.arc([0.0, 0.5 * wide_mm], PI, 0.0);
-        pen.by(-long_mm, 0.0);
-        pen.arc([0.0, 0.5 * wide_mm], -PI, 0.0);
+fn slots(writer: &mut ProgramWriter) {
+    let [long_mm, wide_mm] = [writer.random.by_ratio([0.5, 10.0]), writer.random.by_ratio([0.1, 2.0])];
+    while writer.goes_on() {
+        writer.by(long_mm, 0.0);
+        writer.arc([0.0, 0.5 * wide_mm], PI, 0.0);
+        writer.by(-long_mm, 0.0);
+        writer.arc([0.0, 0.5 * wide_mm], -PI, 0.0);
     }
 }
 
@@ -181,20 +181,20 @@ struct Stroke {
 }
 
 /// A word, with rapids from stroke to stroke.
-fn letters(pen: &mut Pen) {
-    let size_mm = pen.random.by_ratio([0.3, 5.0]);
-    let [mut left_mm, bottom_mm, z] = pen.at_mm();
-    while pen.goes_on() {
-        let letter = LETTERS[pen.random.whole(0, LETTERS.len() as u32 - 1) as usize];
+fn letters(writer: &mut ProgramWriter) {
+    let size_mm = writer.random.by_ratio([0.3, 5.0]);
+    let [mut left_mm, bottom_mm, z] = writer.at_mm();
+    while writer.goes_on() {
+        let letter = LETTERS[writer.random.whole(0, LETTERS.len() as u32 - 1) as usize];
         for stroke in letter {
             let place = |[x, y]: [f64; 2]| [left_mm + size_mm * x, bottom_mm + size_mm * y, z];
-            pen.rapid(place(stroke.from));
+            writer.rapid(place(stroke.from));
             for &(to, side) in stroke.to {
                 if side == 0.0 {
-                    pen.line(place(to));
+                    writer.line(place(to));
                 } else {
-                    let ([x, y, _], end) = (pen.at_mm(), place(to));
-                    pen.arc([0.5 * (end[0] - x), 0.5 * (end[1] - y)], side * PI, 0.0);
+                    let ([x, y, _], end) = (writer.at_mm(), place(to));
+                    writer.arc([0.5 * (end[0] - x), 0.5 * (end[1] - y)], side * PI, 0.0);
                 }
             }
         }
@@ -203,62 +203,62 @@ fn letters(pen: &mut Pen) {
 }
 
 /// A small circle, several times round.
-fn circles(pen: &mut Pen) {
-    let radius_mm = pen.random.by_ratio([0.3, 6.0]);
-    let sweep = pen.random.sign() * TAU;
-    for _ in 0..pen.random.whole(1, 5) {
-        pen.arc([-radius_mm, 0.0], sweep, 0.0);
-        if !pen.goes_on() {
+fn circles(writer: &mut ProgramWriter) {
+    let radius_mm = writer.random.by_ratio([0.3, 6.0]);
+    let sweep = writer.random.sign() * TAU;
+    for _ in 0..writer.random.whole(1, 5) {
+        writer.arc([-radius_mm, 0.0], sweep, 0.0);
+        if !writer.goes_on() {
             return;
         }
     }
 }
 
 /// Down in turns.
-fn helix(pen: &mut Pen) {
-    let (radius_mm, pitch_mm) = (pen.random.by_ratio([0.5, 10.0]), pen.random.by_ratio([0.05, 2.0]));
-    let sweep = pen.random.sign() * TAU;
-    while pen.goes_on() {
-        pen.arc([-radius_mm, 0.0], sweep, -pitch_mm);
+fn helix(writer: &mut ProgramWriter) {
+    let (radius_mm, pitch_mm) = (writer.random.by_ratio([0.5, 10.0]), writer.random.by_ratio([0.05, 2.0]));
+    let sweep = writer.random.sign() * TAU;
+    while writer.goes_on() {
+        writer.arc([-radius_mm, 0.0], sweep, -pitch_mm);
     }
-    let [x, y, _] = pen.at_mm();
-    pen.rapid([x, y, 1.0]);
+    let [x, y, _] = writer.at_mm();
+    writer.rapid([x, y, 1.0]);
 }
 
 /// Rectangles from within outwards, layer by layer.
-fn pocket(pen: &mut Pen) {
-    let (over_mm, deep_mm) = (pen.random.by_ratio([0.1, 2.0]), pen.random.by_ratio([0.05, 1.0]));
-    let rings = pen.random.whole(2, 6);
-    let [x, y, _] = pen.at_mm();
-    while pen.goes_on() {
-        let [_, _, z] = pen.at_mm();
-        pen.line([x, y, z - deep_mm]);
+fn pocket(writer: &mut ProgramWriter) {
+    let (over_mm, deep_mm) = (writer.random.by_ratio([0.1, 2.0]), writer.random.by_ratio([0.05, 1.0]));
+    let rings = writer.random.whole(2, 6);
+    let [x, y, _] = writer.at_mm();
+    while writer.goes_on() {
+        let [_, _, z] = writer.at_mm();
+        writer.line([x, y, z - deep_mm]);
         for ring in 1..=rings {
             let side_mm = 2.0 * over_mm * f64::from(ring);
-            pen.by(-over_mm, -over_mm);
-            pen.by(side_mm, 0.0);
-            pen.by(0.0, side_mm);
-            pen.by(-side_mm, 0.0);
-            pen.by(0.0, -side_mm);
+            writer.by(-over_mm, -over_mm);
+            writer.by(side_mm, 0.0);
+            writer.by(0.0, side_mm);
+            writer.by(-side_mm, 0.0);
+            writer.by(0.0, -side_mm);
         }
-        let [from_x, from_y, z] = pen.at_mm();
-        pen.rapid([from_x, from_y, z + 1.0]);
-        pen.rapid([x, y, z + 1.0]);
-        pen.rapid([x, y, z]);
+        let [from_x, from_y, z] = writer.at_mm();
+        writer.rapid([from_x, from_y, z + 1.0]);
+        writer.rapid([x, y, z + 1.0]);
+        writer.rapid([x, y, z]);
     }
 }
 
 /// The same way there and back.
-fn retraced(pen: &mut Pen) {
-    while pen.goes_on() {
-        let mut passed = vec![pen.at_mm()];
-        for _ in 0..pen.random.whole(1, 6) {
-            let (leg_mm, heading) = (pen.random.by_ratio([0.1, 5.0]), pen.random.between([-PI, PI]));
-            pen.by(leg_mm * libm::cos(heading), leg_mm * libm::sin(heading));
-            passed.push(pen.at_mm());
+fn retraced(writer: &mut ProgramWriter) {
+    while writer.goes_on() {
+        let mut passed = vec![writer.at_mm()];
+        for _ in 0..writer.random.whole(1, 6) {
+            let (leg_mm, heading) = (writer.random.by_ratio([0.1, 5.0]), writer.random.between([-PI, PI]));
+            writer.by(leg_mm * libm::cos(heading), leg_mm * libm::sin(heading));
+            passed.push(writer.at_mm());
         }
         for &place in passed.iter().rev().skip(1) {
-            pen.line(place);
+            writer.line(place);
         }
     }
 }
@@ -271,7 +271,7 @@ mod tests {
     /// Seeds that are looked at.
     const SEEDS: u64 = 400;
 
-    fn read(drawn: &Drawn) -> Summary {
+    fn read(drawn: &RandomProgram) -> Summary {
         let reader = Reader::from_text(&drawn.name, drawn.text.as_str(), Settings::default()).expect("a program");
         summarize(reader).unwrap_or_else(|error| panic!("{}\n{error:?}", drawn.text))
     }

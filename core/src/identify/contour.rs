@@ -2,7 +2,6 @@
 //!
 //! Source: Lee, Cho and Jeon (2005), section 3.2, eq. 6. The paper does not say on what the network was trained.
 
-use crate::vector::{scale, sub};
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::{ERROR_SCALE_MM, HIDDEN, History, INPUTS, Inputs};
 use rand::{RngExt, SeedableRng, seq::SliceRandom};
@@ -11,6 +10,7 @@ use serde::Serialize;
 use super::excitation::{Lap, record};
 use super::{Programme, Rng};
 use crate::machine::Machine;
+use crate::vector::{scale, sub};
 
 /// How the network is trained.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,14 +1,14 @@
 //! The identification programme, cut: laps of circles under a controller that disturbs the command and records.
 
-use crate::vector::add_scaled;
 use feedwright_control::controller::{Command, Controller, Measured, Schedule};
 use feedwright_control::window::Window;
 use rand::RngExt;
 
 use super::{Programme, Rng};
-use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use crate::machine::Machine;
 use crate::pipeline::{Run, pieces};
+use crate::vector::add_scaled;
 
 /// Every third lap runs undisturbed: the network sees the plain circle as well.
 const UNDISTURBED_EVERY: u32 = 3;
@@ -72,7 +72,7 @@ fn circle<const N: usize>(programme: &Programme, lap: u32, rng: &mut Rng) -> Mot
         shape: Shape::Arc { plane, center_mm, turns: programme.turns[lap_index % programme.turns.len()] },
         feed_mm_s: rng.random_range(slow..=fast),
         corner: Corner::ExactStop,
-        others: Others::default(),
+        others: AuxiliaryAxes::default(),
     }
 }
 

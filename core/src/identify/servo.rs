@@ -13,7 +13,6 @@
 //! Source: ridge regression, Hoerl and Kennard (1970); hidden layers that are laid instead of trained, Schmidt, Kraaijveld
 //! and Duin (1992); generalised least squares, Clarke (1967).
 
-use crate::vector::{scale, sub};
 use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::residual::LAGS;
 use feedwright_control::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
@@ -25,6 +24,7 @@ use super::excitation::{Lap, record};
 use super::spread::spread;
 use super::{Programme, Rng};
 use crate::machine::Machine;
+use crate::vector::{scale, sub};
 
 /// r: keeps the equations regular where two inputs always move together, and is far below what tells any others apart.
 const RIDGE: f64 = 1e-9;

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use crate::constraints::LimitsError;
 use crate::gcode::{self, CheckError, ReadError};
+use crate::number::shown;
 use crate::output::OutputError;
 use crate::path::PathError;
 use crate::pipeline::RunError;
@@ -86,12 +87,6 @@ pub enum JobError {
         /// What the system says.
         cause: std::io::Error,
     },
-}
-
-/// A number for people: with an exponent where it would be a row of zeros.
-fn shown(value: f64) -> String {
-    let plain = value == 0.0 || !value.is_finite() || (1e-5..1e9).contains(&value.abs());
-    if plain { value.to_string() } else { format!("{value:e}") }
 }
 
 impl JobError {

@@ -187,7 +187,7 @@ impl Sink for Timeline<'_> {
     fn event(&mut self, t_s: f64, event: &TimedEvent) -> io::Result<()> {
         if self.events.len() < MOST_EVENTS {
             let TimedEvent { duration_s, event, .. } = event;
-            let plc::Named { row, label } = plc::named(&event.kind, self.named);
+            let plc::EventName { row, label } = plc::named(&event.kind, self.named);
             self.events.push(TimelineEvent { t_s, duration_s: *duration_s, line: event.line, row, label });
         }
         Ok(())

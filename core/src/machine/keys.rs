@@ -1,4 +1,4 @@
-//! The keys of a machine file that are numbers: name, unit, range, meaning, and the field that each fills.
+//! The keys of a machine file that are numbers: name, unit, range, and the field that each fills.
 //!
 //! Reading, writing, the bounds in messages and the tables of docs/machine-file.md all go by these tables. To add a key is one field
 //! and one row.
@@ -24,7 +24,7 @@ pub struct Key<T> {
     pub set: fn(&mut T, f64),
 }
 
-/// `field, unit, least, most`; `optional field` is an `Option`, `field or value` has that where it is left out.
+/// `field, unit, least, most`; `optional field` is an `Option`, `field or zero` is 0 where it is left out.
 macro_rules! key {
     (optional $field:ident, $unit:literal, $least:literal, $most:literal) => {
         Key {

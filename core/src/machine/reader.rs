@@ -9,6 +9,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::error::Fault;
 use crate::gcode::suggestion::nearest;
+use crate::number::shown;
 
 /// A table under reading.
 pub(super) struct Table<'t, 'i> {
@@ -261,10 +262,4 @@ fn out_of_range(at: Range<usize>, key: &str, number: f64, unit: &str, range: &Ra
         ),
         hint,
     }
-}
-
-/// A number for people: plain where that is short, with an exponent where it would be a row of zeros.
-fn shown(number: f64) -> String {
-    let plain = number == 0.0 || !number.is_finite() || (1e-3..1e6).contains(&number.abs());
-    if plain { format!("{number}") } else { format!("{number:e}") }
 }

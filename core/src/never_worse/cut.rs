@@ -6,7 +6,7 @@ use std::sync::Arc;
 use feedwright_control::Controller;
 use serde::{Deserialize, Serialize};
 
-use super::Options;
+use super::SweepOptions;
 use super::program::Program;
 use crate::controllers::{BASELINE, Choices, Entry, Make, Setup};
 use crate::machine::Machine;
@@ -86,14 +86,14 @@ type Pair<const N: usize> = Option<[Box<dyn Controller<N>>; 2]>;
 /// Cuts on one machine, with what was identified on it.
 pub struct Cutter {
     machine: Arc<Machine>,
-    options: Options,
+    options: SweepOptions,
     plane: Pair<2>,
     space: Pair<3>,
 }
 
 impl Cutter {
     /// For a machine; nothing is identified yet.
-    pub fn new(machine: &Arc<Machine>, options: &Options) -> Self {
+    pub fn new(machine: &Arc<Machine>, options: &SweepOptions) -> Self {
         Self { machine: machine.clone(), options: options.clone(), plane: None, space: None }
     }
 
@@ -121,7 +121,7 @@ impl Cutter {
 /// Open loop first.
 fn both<const N: usize>(
     machine: &Machine,
-    options: &Options,
+    options: &SweepOptions,
     pair: &mut Pair<N>,
     program: &Program,
     watch: &dyn Watch,
@@ -167,7 +167,7 @@ mod tests {
         let length = Length { machine: &machine, limit_s: 10.0 };
         let program = Program::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length).expect("a program");
         let options =
-            Options { controller: Entry::find(BEST).expect("in the table"), set: Vec::new(), seed: 1, threads: 1 };
+            SweepOptions { controller: Entry::find(BEST).expect("in the table"), set: Vec::new(), seed: 1, threads: 1 };
         let row = Cutter::new(&machine, &options).row(&program, &()).expect("nobody ends it");
         assert!(row.rigid);
         assert!(row.corrected.rms_um < 0.1 * row.open_loop.rms_um, "{row:?}");

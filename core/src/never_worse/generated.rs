@@ -7,8 +7,8 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::cut::{Cutter, Row};
 use super::program::{Length, Program};
-use super::verdict::Fault;
-use super::{Job, Options};
+use super::verdict::Failure;
+use super::{SweepJob, SweepOptions};
 use crate::held_out::machines::{self, Class};
 use crate::held_out::{Case, Change, programs, shrink};
 use crate::job::JobError;
@@ -25,7 +25,7 @@ pub struct Generated {
     /// Program and machine as text.
     pub case: Case,
     /// The same, ready to be cut.
-    pub job: Job,
+    pub job: SweepJob,
 }
 
 /// `count` jobs of a seed, so many programs to a machine: identifying it takes as long as several cuts. The first jobs of a
@@ -44,7 +44,7 @@ pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Ve
             let length = Length { machine: &machine, limit_s: LIMIT_S };
             let program = Arc::new(Program::from_text(&drawn.name, &drawn.text, length)?);
             let case = Case::new(&drawn.text, variant.clone());
-            all.push(Generated { case, job: Job { program, machine: machine.clone() } });
+            all.push(Generated { case, job: SweepJob { program, machine: machine.clone() } });
         }
     }
     all.truncate(count);
@@ -53,14 +53,14 @@ pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Ve
 
 /// Cuts cases, and keeps the controller as long as the machine stays the same.
 pub struct Trials<'a> {
-    options: &'a Options,
+    options: &'a SweepOptions,
     watch: &'a dyn Watch,
     cutter: Option<(Vec<Change>, Cutter)>,
 }
 
 impl<'a> Trials<'a> {
     /// None yet.
-    pub const fn new(options: &'a Options, watch: &'a dyn Watch) -> Self {
+    pub const fn new(options: &'a SweepOptions, watch: &'a dyn Watch) -> Self {
         Self { options, watch, cutter: None }
     }
 
@@ -84,8 +84,8 @@ impl<'a> Trials<'a> {
 /// An end from outside.
 pub fn smallest(
     case: &Case,
-    faults: &[Fault],
-    options: &Options,
+    faults: &[Failure],
+    options: &SweepOptions,
     trials: u32,
     watch: &dyn Watch,
 ) -> Result<(Case, Option<Row>), Cancelled> {

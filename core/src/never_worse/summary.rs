@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use super::cut::Row;
-use super::verdict::Fault;
+use super::verdict::Failure;
 
 /// Ratios to open loop mean something above this RMS of open loop, um.
 pub const OPEN_LOOP_UM: f64 = 1.0;
@@ -46,14 +46,14 @@ pub struct Judged {
     #[serde(flatten)]
     pub row: Row,
     /// In what it is worse.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<Failure>,
     /// Largest excess over open loop, in what is allowed.
     pub severity: f64,
 }
 
 /// What a sweep came to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Summary {
+pub struct SweepSummary {
     /// Cuts that were judged.
     pub judged: usize,
     /// Cuts whose open loop is lost itself.
@@ -61,7 +61,7 @@ pub struct Summary {
     /// Cuts that are worse in any way.
     pub worse: usize,
     /// Cuts that are worse in each way.
-    pub by_fault: Vec<(Fault, usize)>,
+    pub by_fault: Vec<(Failure, usize)>,
     /// RMS contour error over open loop's, all judged cuts.
     pub rms_ratio: Option<Quantiles>,
     /// The same on rigid machines without encoder steps and delay, where open loop is above [`OPEN_LOOP_UM`].
@@ -74,7 +74,7 @@ pub struct Summary {
     pub rows: Vec<Judged>,
 }
 
-impl Summary {
+impl SweepSummary {
     /// Of these rows.
     pub fn of(rows: Vec<Row>) -> Self {
         let judge = |row: Row| Judged { faults: row.faults(), severity: row.severity(), row };
@@ -87,7 +87,7 @@ impl Summary {
             a.faults.is_empty().cmp(&b.faults.is_empty()).then(by_severity)
         });
         let judged: Vec<&Judged> = rows.iter().filter(|judged| judged.row.is_judged()).collect();
-        let having = |fault: Fault| judged.iter().filter(|judged| judged.faults.contains(&fault)).count();
+        let having = |fault: Failure| judged.iter().filter(|judged| judged.faults.contains(&fault)).count();
         let ratios = |wanted: &dyn Fn(&Row) -> bool| {
             let ratios = judged.iter().filter(|judged| wanted(&judged.row)).map(|judged| judged.row.rms_ratio());
             Quantiles::of(ratios.collect())
@@ -97,7 +97,7 @@ impl Summary {
             judged: judged.len(),
             not_judged: rows.len() - judged.len(),
             worse: judged.iter().filter(|judged| !judged.faults.is_empty()).count(),
-            by_fault: Fault::ALL.map(|fault| (fault, having(fault))).to_vec(),
+            by_fault: Failure::ALL.map(|fault| (fault, having(fault))).to_vec(),
             rms_ratio: ratios(&|_| true),
             rms_ratio_rigid: ratios(&|row| row.rigid && row.open_loop.rms_um > OPEN_LOOP_UM),
             engaged_share: Quantiles::of(shares.collect()).map(|quantiles| quantiles.median),
@@ -116,11 +116,11 @@ mod tests {
     fn failures_come_first_and_the_worst_of_them_foremost() {
         let rows =
             vec![row([10.0, 20.0], [0.1, 0.2]), row([10.0, 20.0], [11.0, 20.0]), row([10.0, 20.0], [10.0, 400.0])];
-        let summary = Summary::of(rows);
+        let summary = SweepSummary::of(rows);
         assert_eq!((summary.judged, summary.worse), (3, 2));
         let maxima: Vec<f64> = summary.rows.iter().map(|judged| judged.row.corrected.max_um).collect();
         assert_eq!(maxima, [400.0, 20.0, 0.2]);
-        assert_eq!(summary.by_fault, [(Fault::Rms, 1), (Fault::Max, 1), (Fault::Uncut, 0), (Fault::Lost, 0)]);
+        assert_eq!(summary.by_fault, [(Failure::Rms, 1), (Failure::Max, 1), (Failure::Uncut, 0), (Failure::Lost, 0)]);
     }
 
     #[test]

@@ -14,7 +14,7 @@ pub const UNCUT_UM: f64 = 1.0;
 /// A way of being worse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Fault {
+pub enum Failure {
     /// RMS contour error.
     Rms,
     /// Largest contour error.
@@ -25,7 +25,7 @@ pub enum Fault {
     Lost,
 }
 
-impl Fault {
+impl Failure {
     /// All of them.
     pub const ALL: [Self; 4] = [Self::Rms, Self::Max, Self::Uncut, Self::Lost];
 
@@ -47,15 +47,15 @@ impl Row {
     }
 
     /// In what it is worse; nothing where it is not judged.
-    pub fn faults(&self) -> Vec<Fault> {
-        let is_fault = |fault: &Fault| match fault {
+    pub fn faults(&self) -> Vec<Failure> {
+        let is_fault = |fault: &Failure| match fault {
             // A number that is none is above no limit, and no good result either.
-            Fault::Lost => self.corrected.lost.is_some(),
-            Fault::Rms => self.excesses()[0] > 1.0,
-            Fault::Max => self.excesses()[1] > 1.0,
-            Fault::Uncut => self.excesses()[2] > 1.0,
+            Failure::Lost => self.corrected.lost.is_some(),
+            Failure::Rms => self.excesses()[0] > 1.0,
+            Failure::Max => self.excesses()[1] > 1.0,
+            Failure::Uncut => self.excesses()[2] > 1.0,
         };
-        if self.is_judged() { Fault::ALL.into_iter().filter(is_fault).collect() } else { Vec::new() }
+        if self.is_judged() { Failure::ALL.into_iter().filter(is_fault).collect() } else { Vec::new() }
     }
 
     /// By how much RMS, largest error and uncut path are larger than open loop's, in what they may be larger.
@@ -75,8 +75,8 @@ impl Row {
     /// RMS contour error over open loop's.
     pub fn rms_ratio(&self) -> f64 {
         /// An open loop below this is as good as none, um.
-        const LEAST_UM: f64 = 1e-3;
-        self.corrected.rms_um / self.open_loop.rms_um.max(LEAST_UM)
+        const MIN_UM: f64 = 1e-3;
+        self.corrected.rms_um / self.open_loop.rms_um.max(MIN_UM)
     }
 }
 
@@ -100,9 +100,9 @@ pub(super) mod tests {
     #[test]
     fn worse_is_what_is_above_the_allowance() {
         assert_eq!(row([10.0, 20.0], [10.04, 20.9]).faults(), []);
-        assert_eq!(row([10.0, 20.0], [10.06, 20.9]).faults(), [Fault::Rms]);
-        assert_eq!(row([10.0, 20.0], [1.0, 21.1]).faults(), [Fault::Max]);
-        assert_eq!(row([10.0, 20.0], [f64::NAN, 2.0]).faults(), [Fault::Rms]);
+        assert_eq!(row([10.0, 20.0], [10.06, 20.9]).faults(), [Failure::Rms]);
+        assert_eq!(row([10.0, 20.0], [1.0, 21.1]).faults(), [Failure::Max]);
+        assert_eq!(row([10.0, 20.0], [f64::NAN, 2.0]).faults(), [Failure::Rms]);
     }
 
     #[test]
@@ -111,7 +111,7 @@ pub(super) mod tests {
         uncut.corrected.uncut_um = Some(400.0);
         assert_eq!(uncut.faults(), []);
         uncut.open_loop.uncut_um = Some(20.0);
-        assert_eq!(uncut.faults(), [Fault::Uncut]);
+        assert_eq!(uncut.faults(), [Failure::Uncut]);
         assert!((uncut.severity() - 380.0).abs() < 1e-9);
     }
 
@@ -119,7 +119,7 @@ pub(super) mod tests {
     fn lost_is_worse_however_small_the_error_and_is_not_judged_where_open_loop_is_lost() {
         let mut lost = row([10.0, 20.0], [1.0, 2.0]);
         lost.corrected.lost = Some("faded".to_owned());
-        assert_eq!(lost.faults(), [Fault::Lost]);
+        assert_eq!(lost.faults(), [Failure::Lost]);
         assert!(lost.severity() >= 1.0);
         lost.open_loop.lost = Some("diverged".to_owned());
         assert_eq!(lost.faults(), []);

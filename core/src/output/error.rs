@@ -42,7 +42,7 @@ pub enum OutputError {
     #[error("cannot {step} {}: {source}{}", path.display(), room(*free_bytes))]
     Io {
         /// What was under way.
-        step: Step,
+        step: FileOperation,
         /// The target.
         path: PathBuf,
         /// Bytes free where it goes; known where the disk is full.
@@ -57,7 +57,7 @@ pub enum OutputError {
 
 /// What was under way when the operating system refused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Step {
+pub enum FileOperation {
     /// Creating the file beside its target.
     Create,
     /// Writing to it.
@@ -66,7 +66,7 @@ pub enum Step {
     Rename,
 }
 
-impl std::fmt::Display for Step {
+impl std::fmt::Display for FileOperation {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Create => "create",
@@ -78,7 +78,7 @@ impl std::fmt::Display for Step {
 
 impl OutputError {
     /// An error of the operating system, with the remedy that fits it.
-    pub(super) fn io(step: Step, path: &Path, folder: &Path, source: io::Error) -> Self {
+    pub(super) fn io(step: FileOperation, path: &Path, folder: &Path, source: io::Error) -> Self {
         let (mut free_bytes, mut hint) = (None, None);
         match source.kind() {
             // Some folders exist and take no files.
@@ -111,7 +111,9 @@ impl OutputError {
     pub fn from_io(error: io::Error, path: &Path) -> Self {
         match error.downcast::<Self>() {
             Ok(inner) => inner,
-            Err(source) => Self::Io { step: Step::Write, path: path.to_owned(), free_bytes: None, source, hint: None },
+            Err(source) => {
+                Self::Io { step: FileOperation::Write, path: path.to_owned(), free_bytes: None, source, hint: None }
+            }
         }
     }
 }

@@ -24,7 +24,7 @@ const DECIMALS: usize = 5;
 const STEPS_PER_MM: f64 = 1e5;
 
 /// Coordinates beyond this have no 10 nm left in an f64 and are no machine's.
-const LARGEST_MM: f64 = 1e6;
+const MAX_MM: f64 = 1e6;
 
 /// Writes a program from the rows and events of a run, in order.
 pub struct GcodeWriter<W> {
@@ -145,7 +145,7 @@ impl<W: Write> Sink for GcodeWriter<W> {
         let starts = row.commanded == Commanded::Cut && self.commanded != Commanded::Cut;
         self.commanded = row.commanded;
         point[self.axes..].fill(0.0);
-        if let Some(wrong) = point.iter().find(|c| c.is_nan() || c.abs() > LARGEST_MM) {
+        if let Some(wrong) = point.iter().find(|c| c.is_nan() || c.abs() > MAX_MM) {
             let text = format!("position of {wrong} mm at {} s: no program can hold it", row.t_s);
             return Err(io::Error::new(io::ErrorKind::InvalidData, text));
         }

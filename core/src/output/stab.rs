@@ -31,7 +31,7 @@ pub(super) fn stab(anchor: Vector, points: &[Vector], next: Option<Vector>, r: f
     if length <= r {
         return points.iter().all(|p| norm(sub(*p, anchor)) <= r).then_some(anchor);
     }
-    let frame = Frame::along(scale(1.0 / length, reach));
+    let frame = SegmentAxes::along(scale(1.0 / length, reach));
     // From the far end to the near one: far discs are small, so that few of the others still matter.
     let mut discs = Vec::with_capacity(points.len());
     for p in points.iter().rev() {
@@ -134,13 +134,13 @@ fn extreme_on(disc: &Disc, others: &[Disc], goal: [f64; 2]) -> Option<[f64; 2]> 
 }
 
 /// Right-handed axes: along, and two across.
-struct Frame {
+struct SegmentAxes {
     u: Vector,
     v: Vector,
     w: Vector,
 }
 
-impl Frame {
+impl SegmentAxes {
     fn along(u: Vector) -> Self {
         // Across u in the XY plane where there is such a direction, so that a plane path stays plane.
         let level = u[0].hypot(u[1]);
@@ -242,7 +242,7 @@ mod tests {
             let r = 1e-3;
             let count = noise.len() as f64;
             let direction = unit([1.0, tilt.0, tilt.1]);
-            let frame = Frame::along(direction);
+            let frame = SegmentAxes::along(direction);
             let points: Vec<Vector> = noise.iter().enumerate().map(|(k, n)| {
                 let x = far * (k as f64 + 0.5 + 0.4 * n.0) / count + 2.0 * r;
                 [0, 1, 2].map(|i| x * frame.u[i] + r * (n.1 * frame.v[i] + n.2 * frame.w[i]))

@@ -84,7 +84,10 @@ fn targets_that_are_no_files_are_refused() {
     let missing = refusal(&folder.path().join("none/trace.csv"), &[]);
     assert!(missing.help().unwrap().to_string().starts_with("create the directory first: mkdir -p "), "{missing}");
     fs::write(folder.path().join("file"), "").unwrap();
-    assert!(matches!(refusal(&folder.path().join("file/trace.csv"), &[]), OutputError::Io { step: Step::Create, .. }));
+    assert!(matches!(
+        refusal(&folder.path().join("file/trace.csv"), &[]),
+        OutputError::Io { step: FileOperation::Create, .. }
+    ));
 }
 
 #[test]

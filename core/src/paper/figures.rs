@@ -9,7 +9,7 @@ use super::curves::Curves;
 use super::{Bench, Numbers, RADIUS_MM, magnitude_only, with_gradient, with_rho};
 use crate::machine::Machine;
 use crate::pipeline::RunError;
-use crate::report::figure::{COLORS, CaptionedFigure, Curve, Figure, Line, Panel};
+use crate::report::figure::{COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline};
 use crate::watch::Watch;
 
 /// The weights of Fig. 7: from none to the paper's choice.
@@ -60,11 +60,11 @@ pub fn figures(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Vec<Ca
 }
 
 fn figure_7(magnitude: &Drawn, time_only: &[Drawn]) -> CaptionedFigure {
-    let mut curves = vec![error("magnitude only", magnitude, 0, Line::Dashed)];
+    let mut curves = vec![error("magnitude only", magnitude, 0, LineStyle::Dashed)];
     for (i, drawn) in time_only.iter().enumerate() {
         let rho = drawn.numbers.rho.unwrap_or_default();
         let label = format!("ρ = {rho}");
-        curves.push(error(&label, drawn, i + 1, Line::Solid));
+        curves.push(error(&label, drawn, i + 1, LineStyle::Solid));
     }
     let times: Vec<String> = time_only
         .iter()
@@ -85,9 +85,9 @@ fn figure_7(magnitude: &Drawn, time_only: &[Drawn]) -> CaptionedFigure {
 fn figure_8(open: &Drawn, magnitude: &Drawn, same_rho: &Drawn, both: &Drawn) -> CaptionedFigure {
     let curves = |magnitude: &Drawn, label: &str| {
         vec![
-            error("open loop", open, 3, Line::Dotted),
-            error(label, magnitude, 1, Line::Dashed),
-            error("two-dimensional", both, 2, Line::Solid),
+            error("open loop", open, 3, LineStyle::Dotted),
+            error(label, magnitude, 1, LineStyle::Dashed),
+            error("two-dimensional", both, 2, LineStyle::Solid),
         ]
     };
     let (at, time) = (magnitude.numbers.rho.unwrap_or_default(), magnitude.numbers.time_s);
@@ -106,8 +106,9 @@ fn figure_8(open: &Drawn, magnitude: &Drawn, same_rho: &Drawn, both: &Drawn) -> 
 }
 
 fn figure_9(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
-    let feed =
-        |label: &str, drawn: &Drawn, color: usize, line: Line| curve(label, drawn.curves.feed.clone(), color, line);
+    let feed = |label: &str, drawn: &Drawn, color: usize, line: LineStyle| {
+        curve(label, drawn.curves.feed.clone(), color, line)
+    };
     captioned(
         "Figure 9",
         "Magnitude of the commanded feedrate. The magnitudes are much the same; what differs is the direction.",
@@ -116,16 +117,16 @@ fn figure_9(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
             "Time [s]",
             "Feedrate [mm/s]",
             vec![
-                feed("open loop", open, 3, Line::Dotted),
-                feed("magnitude only", magnitude, 1, Line::Dashed),
-                feed("two-dimensional", both, 2, Line::Solid),
+                feed("open loop", open, 3, LineStyle::Dotted),
+                feed("magnitude only", magnitude, 1, LineStyle::Dashed),
+                feed("two-dimensional", both, 2, LineStyle::Solid),
             ],
         )],
     )
 }
 
 fn figure_10(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
-    let programmed = || curve("programmed path", open.curves.path.clone(), 0, Line::Thin);
+    let programmed = || curve("programmed path", open.curves.path.clone(), 0, LineStyle::Thin);
     let view = |title: &str, drawn: &Drawn| Panel {
         equal_axes: true,
         ..panel(
@@ -134,8 +135,8 @@ fn figure_10(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
             "Y [mm]",
             vec![
                 programmed(),
-                curve("command", enlarged(&drawn.curves.command), 2, Line::Solid),
-                curve("tool", enlarged(&drawn.curves.tool), 1, Line::Dashed),
+                curve("command", enlarged(&drawn.curves.command), 2, LineStyle::Solid),
+                curve("tool", enlarged(&drawn.curves.tool), 1, LineStyle::Dashed),
             ],
         )
     };
@@ -169,15 +170,15 @@ fn enlarged(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         .collect()
 }
 
-fn error(label: &str, drawn: &Drawn, color: usize, line: Line) -> Curve {
+fn error(label: &str, drawn: &Drawn, color: usize, line: LineStyle) -> Polyline {
     curve(label, drawn.curves.error.clone(), color, line)
 }
 
-fn curve(label: &str, points: Vec<[f64; 2]>, color: usize, line: Line) -> Curve {
-    Curve { label: label.to_owned(), points, line, color: COLORS[color % COLORS.len()].to_owned() }
+fn curve(label: &str, points: Vec<[f64; 2]>, color: usize, line: LineStyle) -> Polyline {
+    Polyline { label: label.to_owned(), points, line, color: COLORS[color % COLORS.len()].to_owned() }
 }
 
-fn panel(title: &str, x_title: &str, y_title: &str, curves: Vec<Curve>) -> Panel {
+fn panel(title: &str, x_title: &str, y_title: &str, curves: Vec<Polyline>) -> Panel {
     Panel {
         title: title.to_owned(),
         x_title: x_title.to_owned(),

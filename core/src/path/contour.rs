@@ -14,7 +14,7 @@ use super::butterfly::butterfly;
 use super::pieces::Pieces;
 use super::smooth::{Jet, Parametric, Smooth};
 use super::{Curve, PathError, Piece, Step};
-use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape, Spline};
+use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape, Spline};
 use crate::vector::scale;
 use std::f64::consts::TAU;
 use std::sync::Arc;
@@ -100,7 +100,7 @@ impl Contour {
                     shape: Shape::Arc { plane: Plane::Xy, center_mm: space(center), turns },
                     feed_mm_s,
                     corner,
-                    others: Others::default(),
+                    others: AuxiliaryAxes::default(),
                 }));
                 Pieces::new(canon.into_iter()).collect()
             }
@@ -115,7 +115,7 @@ impl Contour {
                     shape: Shape::Spline(spline),
                     feed_mm_s,
                     corner,
-                    others: Others::default(),
+                    others: AuxiliaryAxes::default(),
                 };
                 Pieces::new(std::iter::once(Canon::Motion(motion))).collect()
             }
@@ -154,7 +154,7 @@ fn lines(points: &[[f64; 2]], feed_mm_s: f64, corner: Corner) -> Vec<Canon> {
                 shape: Shape::Line,
                 feed_mm_s,
                 corner,
-                others: Others::default(),
+                others: AuxiliaryAxes::default(),
             })
         })
         .collect()

@@ -241,7 +241,7 @@ mod tests {
             shape,
             feed_mm_s: 10.0,
             corner,
-            others: crate::gcode::canon::Others::default(),
+            others: crate::gcode::canon::AuxiliaryAxes::default(),
         })
     }
 

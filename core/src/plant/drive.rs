@@ -12,13 +12,13 @@
 use crate::machine::{Axis, Period};
 
 /// Longest delay, in servo periods.
-const MOST_PERIODS: usize = 64;
+const MAX_PERIODS: usize = 64;
 
 /// References on their way to the drive; one for each axis.
 #[derive(Debug, Clone)]
 pub(super) struct Delay {
     /// A ring, one reference a servo period, rad/s.
-    sent_rad_s: [f64; MOST_PERIODS],
+    sent_rad_s: [f64; MAX_PERIODS],
     newest: usize,
     /// Whole servo periods of the delay, and the mechanics periods beyond.
     periods: usize,
@@ -29,11 +29,11 @@ impl Delay {
     pub(super) fn new(axis: &Axis, period: &Period) -> Self {
         let total = (axis.drive_delay_s / period.mechanics_s).round();
         // The reader of machine files keeps it below the ring; what is made by hand is held to it.
-        let most = ((MOST_PERIODS - 2) as u64 * u64::from(period.mechanics_per_servo)) as f64;
+        let most = ((MAX_PERIODS - 2) as u64 * u64::from(period.mechanics_per_servo)) as f64;
         let total = total.clamp(0.0, most) as u64;
         let per_servo = u64::from(period.mechanics_per_servo);
         Self {
-            sent_rad_s: [0.0; MOST_PERIODS],
+            sent_rad_s: [0.0; MAX_PERIODS],
             newest: 0,
             periods: (total / per_servo) as usize,
             substeps: (total % per_servo) as u32,
@@ -42,7 +42,7 @@ impl Delay {
 
     /// A new reference leaves the position loop.
     pub(super) fn send(&mut self, reference_rad_s: f64) {
-        self.newest = (self.newest + 1) % MOST_PERIODS;
+        self.newest = (self.newest + 1) % MAX_PERIODS;
         self.sent_rad_s[self.newest] = reference_rad_s;
     }
 
@@ -50,7 +50,7 @@ impl Delay {
     #[inline]
     pub(super) fn arrived(&self, substep: u32) -> f64 {
         let age = self.periods + usize::from(substep < self.substeps);
-        self.sent_rad_s[(self.newest + MOST_PERIODS - age) % MOST_PERIODS]
+        self.sent_rad_s[(self.newest + MAX_PERIODS - age) % MAX_PERIODS]
     }
 }
 

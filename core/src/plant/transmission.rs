@@ -20,9 +20,9 @@ use std::f64::consts::TAU;
 
 use crate::machine::{Axis, Transmission};
 
-/// The joint of one axis.
+/// The coupling of motor and table of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Joint {
+pub(super) struct Coupling {
     pub(super) inverse_motor_inertia: f64,
     pub(super) inverse_table_inertia: f64,
     stiffness_nm_rad: f64,
@@ -30,7 +30,7 @@ pub(super) struct Joint {
     half_gap_rad: f64,
 }
 
-impl Joint {
+impl Coupling {
     pub(super) fn new(axis: &Axis, transmission: &Transmission) -> Self {
         let table = axis.inertia_kg_m2 * transmission.table_share;
         let resonance_rad_s = TAU * transmission.resonance_hz;
@@ -64,20 +64,20 @@ mod tests {
 
     const DT_S: f64 = 1e-5;
 
-    fn soft(backlash_um: f64) -> (Joint, Transmission, f64) {
+    fn soft(backlash_um: f64) -> (Coupling, Transmission, f64) {
         let machine = Machine::load("soft".as_ref()).unwrap();
         let axis = machine.axes[0];
         let transmission = Transmission { backlash_um, ..axis.transmission.unwrap() };
-        (Joint::new(&axis, &transmission), transmission, axis.lead_mm_per_rev)
+        (Coupling::new(&axis, &transmission), transmission, axis.lead_mm_per_rev)
     }
 
     /// The table swings against the held motor: angle over time from a twist of a milliradian.
-    fn ring_down(joint: &Joint, seconds: f64) -> Vec<f64> {
+    fn ring_down(coupling: &Coupling, seconds: f64) -> Vec<f64> {
         let (mut angle, mut speed) = (1e-3, 0.0);
         let steps = (seconds / DT_S) as usize;
         (0..steps)
             .map(|_| {
-                speed += DT_S * joint.inverse_table_inertia * joint.torque_nm(-angle, -speed);
+                speed += DT_S * coupling.inverse_table_inertia * coupling.torque_nm(-angle, -speed);
                 angle += DT_S * speed;
                 angle
             })
@@ -86,8 +86,8 @@ mod tests {
 
     #[test]
     fn the_table_rings_at_the_frequency_and_with_the_damping_of_the_file() {
-        let (joint, transmission, _) = soft(0.0);
-        let angle = ring_down(&joint, 0.5);
+        let (coupling, transmission, _) = soft(0.0);
+        let angle = ring_down(&coupling, 0.5);
         let upward: Vec<usize> = (1..angle.len()).filter(|&i| angle[i - 1] < 0.0 && angle[i] >= 0.0).collect();
         let periods = upward.len() - 1;
         let period_s = (upward[periods] - upward[0]) as f64 * DT_S / periods as f64;
@@ -103,22 +103,22 @@ mod tests {
 
     #[test]
     fn a_torque_twists_the_screw_by_its_stiffness_behind_the_gap() {
-        let (joint, transmission, lead_mm) = soft(5.0);
+        let (coupling, transmission, lead_mm) = soft(5.0);
         let half_gap_rad = 0.5 * 5e-3 * TAU / lead_mm;
         for twist in [-1e-4, 0.0, 1e-3, half_gap_rad * 0.999] {
-            let held = joint.torque_nm(twist, 0.0);
+            let held = coupling.torque_nm(twist, 0.0);
             assert_eq!(held != 0.0, twist.abs() > half_gap_rad, "{twist}");
         }
-        let stiffness = (TAU * transmission.resonance_hz).powi(2) / joint.inverse_table_inertia;
-        let torque = joint.torque_nm(half_gap_rad + 1e-3, 0.0);
+        let stiffness = (TAU * transmission.resonance_hz).powi(2) / coupling.inverse_table_inertia;
+        let torque = coupling.torque_nm(half_gap_rad + 1e-3, 0.0);
         assert!((torque - stiffness * 1e-3).abs() < 1e-9, "{torque}");
     }
 
     #[test]
     fn flanks_push_and_do_not_pull() {
-        let (joint, ..) = soft(5.0);
+        let (coupling, ..) = soft(5.0);
         for speed in [-1e3, -1.0, 0.0, 1.0, 1e3] {
-            assert!(joint.torque_nm(0.01, speed) >= 0.0 && joint.torque_nm(-0.01, speed) <= 0.0);
+            assert!(coupling.torque_nm(0.01, speed) >= 0.0 && coupling.torque_nm(-0.01, speed) <= 0.0);
         }
     }
 }

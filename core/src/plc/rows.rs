@@ -5,7 +5,7 @@ use crate::machine::PlcEvent;
 
 /// An event for people.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Named {
+pub struct EventName {
     /// Row of the timeline: the unit of the machine that is at work.
     pub row: String,
     /// What happens.
@@ -13,9 +13,9 @@ pub struct Named {
 }
 
 /// Names an event; what the machine builder named goes first.
-pub fn named(kind: &EventKind, events: &[PlcEvent]) -> Named {
+pub fn named(kind: &EventKind, events: &[PlcEvent]) -> EventName {
     if let Some(event) = builders(kind, events) {
-        return Named { row: event.row.clone(), label: event.label.clone() };
+        return EventName { row: event.row.clone(), label: event.label.clone() };
     }
     let (row, label) = match kind {
         EventKind::Dwell { seconds } => ("dwell", format!("dwell {seconds} s")),
@@ -30,7 +30,7 @@ pub fn named(kind: &EventKind, events: &[PlcEvent]) -> Named {
         EventKind::Probe => ("probe", "probe".to_owned()),
         EventKind::ProgramEnd => ("stop", "program end".to_owned()),
     };
-    Named { row: row.to_owned(), label }
+    EventName { row: row.to_owned(), label }
 }
 
 /// What the machine builder made of an M-code: the entry with its P word before the one for any.

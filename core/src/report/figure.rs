@@ -31,7 +31,7 @@ pub struct Panel {
     /// Title of the vertical axis with its unit.
     pub y_title: String,
     /// What is drawn, the first at the bottom.
-    pub curves: Vec<Curve>,
+    pub curves: Vec<Polyline>,
     /// Whether a unit has the same length on both axes, as a path needs it.
     pub equal_axes: bool,
     /// Range of the horizontal axis; from the curves where there is none.
@@ -42,20 +42,20 @@ pub struct Panel {
 
 /// A polyline.
 #[derive(Debug, Clone, Default)]
-pub struct Curve {
+pub struct Polyline {
     /// Name in the legend; curves of equal name in several panels share an entry, an empty name has none.
     pub label: String,
     /// Points; one that is not finite leaves a gap.
     pub points: Vec<[f64; 2]>,
     /// Stroke.
-    pub line: Line,
+    pub line: LineStyle,
     /// CSS colour, as in [`COLORS`].
     pub color: String,
 }
 
-/// Stroke of a [`Curve`].
+/// Stroke of a [`Polyline`].
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Line {
+pub enum LineStyle {
     /// Drawn through.
     #[default]
     Solid,
@@ -137,7 +137,7 @@ mod tests {
 
     fn sine() -> Figure {
         let points = (0..=100).map(|k| [f64::from(k) * 0.02, 30.0 * (f64::from(k) * 0.1).sin()]).collect();
-        let curve = Curve { label: "a <b>".to_owned(), points, color: COLORS[0].to_owned(), ..Curve::default() };
+        let curve = Polyline { label: "a <b>".to_owned(), points, color: COLORS[0].to_owned(), ..Polyline::default() };
         Figure { panels: vec![Panel { curves: vec![curve], ..Panel::default() }], ..Figure::default() }
     }
 

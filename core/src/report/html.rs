@@ -1,13 +1,13 @@
 //! The page: one HTML file, readable without a network and without scripts.
 //!
 //! Headings, verdict and tables are written here, so that the numbers are there before any script runs; the drawings
-//! are made in the browser by `assets/report/*.js` from the data that [`island`] writes. A content security policy in
+//! are made in the browser by `assets/report/*.js` from the data that [`embedded_data`] writes. A content security policy in
 //! the page forbids every request.
 
 use std::io::{self, Write};
 
 use super::Report;
-use super::island;
+use super::embedded_data;
 use super::text::escaped;
 
 mod tables;
@@ -42,7 +42,7 @@ pub fn write_html(out: &mut impl Write, report: &Report) -> io::Result<()> {
     tables::write_notes(out, report)?;
     out.write_all(b"</main>\n<footer>Simulated and written by feedwright. Charts: uPlot (MIT).</footer>\n")?;
     out.write_all(b"<script type=\"application/json\" id=\"data\">")?;
-    island::write(out, report)?;
+    embedded_data::write(out, report)?;
     write!(out, "</script>\n<script>{UPLOT_JS}</script>\n<script>(() => {{\n\"use strict\";\n")?;
     for script in SCRIPTS {
         out.write_all(script.as_bytes())?;

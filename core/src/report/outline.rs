@@ -25,20 +25,20 @@ pub(super) struct Vertex {
 
 /// Collects an outline.
 #[derive(Debug, Clone)]
-pub(super) struct Outline {
+pub(super) struct OutlineBuilder {
     tolerance_mm: f64,
     vertices: Vec<Vertex>,
     /// Points since the last vertex, all closer than the tolerance to the chord that leads to the last of them.
     open: Vec<Vertex>,
 }
 
-impl Default for Outline {
+impl Default for OutlineBuilder {
     fn default() -> Self {
         Self { tolerance_mm: FIRST_TOLERANCE_MM, vertices: Vec::new(), open: Vec::new() }
     }
 }
 
-impl Outline {
+impl OutlineBuilder {
     pub(super) fn push(&mut self, vertex: Vertex) {
         self.extend(vertex);
         while self.vertices.len() >= MAX_VERTICES {
@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn corners_stay_and_straight_lines_thin_out() {
-        let mut outline = Outline::default();
+        let mut outline = OutlineBuilder::default();
         for k in 0..=100_i32 {
             let d = 0.1 * f64::from(k);
             let point_mm = if k <= 50 { [d, 0.0, 0.0] } else { [5.0, d - 5.0, 0.0] };
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn a_long_path_stays_bounded_and_true() {
-        let mut outline = Outline::default();
+        let mut outline = OutlineBuilder::default();
         // A rosette: curved everywhere, so that nothing thins out for free.
         let at = |k: u32| {
             let a = f64::from(k) * 2e-3;
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn endless_changes_between_rapid_and_cut_stay_bounded() {
-        let mut outline = Outline::default();
+        let mut outline = OutlineBuilder::default();
         for k in 0..100_000_u32 {
             let (hole, depth) = (f64::from(k / 2), f64::from(k % 2));
             outline.push(Vertex { point_mm: [hole, 0.0, depth], cutting: k % 2 == 0 });

@@ -6,7 +6,7 @@
 
 use std::io;
 
-use super::outline::{Outline, Vertex};
+use super::outline::{OutlineBuilder, Vertex};
 use crate::trace::{Row, Sink};
 use crate::vector::{distance, sub};
 
@@ -14,7 +14,7 @@ use crate::vector::{distance, sub};
 ///
 /// Where at least one of the rows cuts, only those that cut are considered for the error.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Point {
+pub struct SeriesPoint {
     /// Time of the row, s.
     pub t_s: f64,
     /// Arc length along the programmed path, mm.
@@ -46,14 +46,14 @@ pub struct Point {
 pub struct Series {
     buckets: Vec<Bucket>,
     rows_per_point: u64,
-    outline: Outline,
+    outline: OutlineBuilder,
     previous: Option<(f64, [f64; 3])>,
 }
 
 #[derive(Debug, Clone, Copy)]
 struct Bucket {
     /// The representative; its feeds are filled in when it is read.
-    point: Point,
+    point: SeriesPoint,
     rows: u64,
     plan_sum_mm_s: f64,
     travel_mm: f64,
@@ -73,7 +73,7 @@ impl Series {
 
     /// An empty record.
     pub fn new() -> Self {
-        Self { buckets: Vec::new(), rows_per_point: 1, outline: Outline::default(), previous: None }
+        Self { buckets: Vec::new(), rows_per_point: 1, outline: OutlineBuilder::default(), previous: None }
     }
 
     /// Rows that one point stands for.
@@ -82,7 +82,7 @@ impl Series {
     }
 
     /// The points in order of time.
-    pub fn points(&self) -> impl ExactSizeIterator<Item = Point> {
+    pub fn points(&self) -> impl ExactSizeIterator<Item = SeriesPoint> {
         self.buckets.iter().map(Bucket::point)
     }
 
@@ -126,7 +126,7 @@ impl Sink for Series {
         self.previous = Some((row.t_s, row.act_mm));
         self.outline.push(Vertex { point_mm: row.path_mm, cutting: row.cutting });
         self.push(Bucket {
-            point: Point {
+            point: SeriesPoint {
                 t_s: row.t_s,
                 s_mm: row.s_mm,
                 line: row.line,
@@ -150,8 +150,8 @@ impl Sink for Series {
 }
 
 impl Bucket {
-    fn point(&self) -> Point {
-        Point {
+    fn point(&self) -> SeriesPoint {
+        SeriesPoint {
             feed_plan_mm_s: self.plan_sum_mm_s / self.rows as f64,
             feed_act_mm_s: if self.span_s > 0.0 { self.travel_mm / self.span_s } else { 0.0 },
             ..self.point

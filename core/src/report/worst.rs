@@ -16,7 +16,7 @@ const PLACES: usize = 10;
 const PEAK_ENDS: f64 = 0.7;
 
 /// Peaks smaller than this fraction of the largest are not told: they are not what is wrong with the part.
-const LEAST_SHARE: f64 = 0.01;
+const MIN_SHARE: f64 = 0.01;
 
 /// Peaks nearer to each other than this along the path are one place, mm.
 const APART_MM: f64 = 0.5;
@@ -52,7 +52,7 @@ struct Peak {
 
 /// Whether the error is on its way up to a peak or has left one.
 #[derive(Debug, Clone, Copy)]
-enum Slope {
+enum Trend {
     Rising(Peak),
     Falling { least_mm: f64 },
 }
@@ -60,7 +60,7 @@ enum Slope {
 /// Finds the worst places, row by row.
 #[derive(Debug, Clone)]
 pub(super) struct WorstFinder {
-    slope: Slope,
+    trend: Trend,
     /// The last peak, which a larger one close behind may still replace.
     pending: Option<Peak>,
     /// Largest first, at most [`PLACES`].
@@ -69,7 +69,7 @@ pub(super) struct WorstFinder {
 
 impl Default for WorstFinder {
     fn default() -> Self {
-        Self { slope: Slope::Falling { least_mm: 0.0 }, pending: None, found: Vec::new() }
+        Self { trend: Trend::Falling { least_mm: 0.0 }, pending: None, found: Vec::new() }
     }
 }
 
@@ -77,25 +77,25 @@ impl WorstFinder {
     /// Takes a row that cuts.
     pub(super) fn row(&mut self, row: &Row) {
         let error_mm = row.contour_error_mm.abs();
-        match &mut self.slope {
-            Slope::Rising(peak) if error_mm > peak.error_mm.abs() => *peak = Peak::of(row),
-            Slope::Rising(peak) if error_mm < PEAK_ENDS * peak.error_mm.abs() => {
+        match &mut self.trend {
+            Trend::Rising(peak) if error_mm > peak.error_mm.abs() => *peak = Peak::of(row),
+            Trend::Rising(peak) if error_mm < PEAK_ENDS * peak.error_mm.abs() => {
                 let peak = *peak;
-                self.slope = Slope::Falling { least_mm: error_mm };
+                self.trend = Trend::Falling { least_mm: error_mm };
                 self.close(peak);
             }
-            Slope::Rising(_) => {}
-            Slope::Falling { least_mm } if PEAK_ENDS * error_mm > *least_mm => {
-                self.slope = Slope::Rising(Peak::of(row));
+            Trend::Rising(_) => {}
+            Trend::Falling { least_mm } if PEAK_ENDS * error_mm > *least_mm => {
+                self.trend = Trend::Rising(Peak::of(row));
             }
-            Slope::Falling { least_mm } => *least_mm = least_mm.min(error_mm),
+            Trend::Falling { least_mm } => *least_mm = least_mm.min(error_mm),
         }
     }
 
     /// The places, largest first; `text` gives the text of a program line.
     pub(super) fn places(&self, mut text: impl FnMut(u32) -> String) -> Vec<WorstPlace> {
         let mut last = self.clone();
-        if let Slope::Rising(peak) = last.slope {
+        if let Trend::Rising(peak) = last.trend {
             last.close(peak);
         }
         if let Some(peak) = last.pending {
@@ -109,7 +109,7 @@ impl WorstFinder {
             t_s: p.t_s,
             s_mm: p.s_mm,
         };
-        let least_mm = last.found.first().map_or(0.0, |p| LEAST_SHARE * p.error_mm.abs());
+        let least_mm = last.found.first().map_or(0.0, |p| MIN_SHARE * p.error_mm.abs());
         last.found.iter().filter(|p| p.error_mm.abs() >= least_mm).map(place).collect()
     }
 

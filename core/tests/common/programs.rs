@@ -1,7 +1,7 @@
 //! Motions and limits for the tests of path, feed and reference.
 
 use feedwright::constraints::PathLimits;
-use feedwright::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use feedwright::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 
 pub(crate) const LIMITS: PathLimits = PathLimits {
     rapid_mm_s: 100.0,
@@ -23,7 +23,7 @@ pub(crate) fn line(start_mm: [f64; 3], end_mm: [f64; 3], feed_mm_s: f64, corner:
         shape: Shape::Line,
         feed_mm_s,
         corner,
-        others: Others::default(),
+        others: AuxiliaryAxes::default(),
     })
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn arc(start_mm: [f64; 3], end_mm: [f64; 3], center_mm: [f64; 3], tur
         shape,
         feed_mm_s,
         corner: BLEND,
-        others: Others::default(),
+        others: AuxiliaryAxes::default(),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use crate::dialects::fanuc::kind::{Evidence, Kind};
+use crate::dialects::fanuc::mill_or_lathe::{Evidence, MillOrLathe};
 use crate::settings::Dialect;
 use crate::text::characters::is_utf16;
 use crate::text::read_error::ReadError;
@@ -80,11 +80,11 @@ pub(super) fn machine(
         (lathe.line.max(mill.line), message)
     });
     let mill = Choice { dialect: Dialect::FanucMill, reason, warning };
-    Ok(match evidence.kind() {
-        Kind::Lathe(_) => Choice { dialect: of_lathe, ..mill },
-        Kind::Mill(_) => mill,
-        Kind::Unknown => Choice { warning: evidence.x_line.map(|line| (line, UNKNOWN.to_owned())), ..mill },
-        Kind::Both(lathe, mill) => {
+    Ok(match evidence.mill_or_lathe() {
+        MillOrLathe::Lathe(_) => Choice { dialect: of_lathe, ..mill },
+        MillOrLathe::Mill(_) => mill,
+        MillOrLathe::Unknown => Choice { warning: evidence.x_line.map(|line| (line, UNKNOWN.to_owned())), ..mill },
+        MillOrLathe::Both(lathe, mill) => {
             let [(lathe_line, lathe), (mill_line, mill)] = [lathe, mill].map(|sign| (sign.line, sign.what));
             return Err(ReadError::MillOrLathe { name: name.clone(), lathe_line, lathe, mill_line, mill });
         }

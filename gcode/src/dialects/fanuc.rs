@@ -1,10 +1,10 @@
 //! What Fanuc and Haas mean by words that LinuxCNC reads otherwise.
 //!
-//! `kind` tells a program for a lathe from one for a mill, and `text/codes/fanuc.rs` holds the G-codes that are theirs. Of lathes, G-code system A is read: X, U
+//! `mill_or_lathe` tells a program for a lathe from one for a mill, and `text/codes/fanuc.rs` holds the G-codes that are theirs. Of lathes, G-code system A is read: X, U
 //! and the position are diameters, U and W are distances, F is a feed per revolution (G99) unless G98 makes it one per minute. `turning` has the
 //! cycles of one block, `repetitive` those of two (G70 to G76), `profile` the blocks P to Q that they refer to.
 
-pub(super) mod kind;
+pub(super) mod mill_or_lathe;
 mod words;
 mod increment;
 mod coordinates;
@@ -25,7 +25,7 @@ use crate::state::modal::FeedMode;
 use crate::text::block::{Block, Word};
 use crate::text::codes::fanuc::{LATHE_OWN, OWN, SYSTEM_A, row};
 use crate::text::codes::{AXES, Group, bit, spelled};
-use crate::text::diagnostic::{Fault, Read, Short};
+use crate::text::diagnostic::{LineFault, Read, Short};
 
 /// Whether a code of the line other than a motion uses its axis words.
 pub(crate) fn uses_axes(block: &Block) -> bool {
@@ -66,14 +66,14 @@ impl Interpreter {
             && steps != 0
         {
             let message = format!("U, V and W are not read with {}", spelled(word.number));
-            return Err(Fault::new("gcode::unsupported", block.at_any(steps), message).hint("write X, Y and Z"));
+            return Err(LineFault::new("gcode::unsupported", block.at_any(steps), message).hint("write X, Y and Z"));
         }
         let cycle = block.code(Group::Motion).filter(|word| matches!(word.number % OWN, 900 | 920 | 940));
         if let Some(word) = cycle.filter(|word| word.number >= LATHE_OWN && !block.has_axes()) {
             let code = spelled(word.number);
             let message =
                 format!("{code} without X and Z: in G-code system A it is a cycle, and other systems are not read");
-            return Err(Fault::new("gcode::system_a", word.at(), message).hint(SYSTEM_A));
+            return Err(LineFault::new("gcode::system_a", word.at(), message).hint(SYSTEM_A));
         }
         let home = block.code(Group::NonModal).is_some_and(|word| matches!(word.number, 280 | 300));
         if home {
@@ -100,7 +100,7 @@ impl Interpreter {
             && self.warn_once("gcode::feed")
         {
             let message = format!("the feed is {} mm per revolution (G99, as a lathe begins)", Short(self.modal.feed));
-            let warning = Fault::new("gcode::feed", block.at(b'f'), message);
+            let warning = LineFault::new("gcode::feed", block.at(b'f'), message);
             self.output.warnings.push(*warning.hint("G98 makes F a feed per minute"));
         }
     }
@@ -108,7 +108,7 @@ impl Interpreter {
     /// Bound of the spindle speed (G50 S).
     pub(crate) fn bound_spindle(&mut self, block: &Block, rpm: f64) -> Read<()> {
         if rpm <= 0.0 {
-            return Err(Fault::new("gcode::spindle", block.at(b's'), "a bound of 0 rev/min stops the spindle")
+            return Err(LineFault::new("gcode::spindle", block.at(b's'), "a bound of 0 rev/min stops the spindle")
                 .hint("write the highest speed, as in G50 S2500"));
         }
         self.fanuc.highest_rpm = Some(rpm);
@@ -123,7 +123,7 @@ impl Interpreter {
         if word.number == 960 {
             let surface = block.get(b's').or(self.fanuc.surface_speed);
             let Some(surface) = surface else {
-                return Err(Fault::new("gcode::spindle", word.at(), "G96 has no surface speed S")
+                return Err(LineFault::new("gcode::spindle", word.at(), "G96 has no surface speed S")
                     .hint("write G96 S180 for 180 m/min"));
             };
             self.modal.spindle_speed = surface;
@@ -161,7 +161,7 @@ impl Interpreter {
                 "{}: the tool's nose radius is in the control; the path that is read is the programmed contour, which the nose then cuts",
                 spelled(word.number)
             );
-            self.output.warnings.push(*Fault::new("gcode::nose_radius", word.at(), message));
+            self.output.warnings.push(*LineFault::new("gcode::nose_radius", word.at(), message));
         }
     }
 
@@ -170,7 +170,7 @@ impl Interpreter {
         match word.number % OWN {
             500 if word.number >= LATHE_OWN => self.shift_by_g50(block),
             500 if block.has_axes() => {
-                Err(Fault::new("gcode::unsupported", word.at(), "G50 with axis words is not read")
+                Err(LineFault::new("gcode::unsupported", word.at(), "G50 with axis words is not read")
                     .hint("G50 alone ends scaling; on a lathe (--dialect fanuc-lathe) G50 X Z names the position"))
             }
             700..=760 if word.number >= LATHE_OWN => self.repetitive_cycle(block, word),

@@ -11,7 +11,7 @@ use crate::state::modal::FeedMode;
 use crate::text::block::Block;
 use crate::text::codes::fanuc::{LATHE_OWN, OWN};
 use crate::text::codes::{self, Group, spelled};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Non-modal codes that use the axis words of their line.
 const USES_AXES: [u16; 5] = [100, 280, 300, 520, 920];
@@ -84,12 +84,12 @@ impl Interpreter {
             {
                 let message =
                     format!("{} and {} would both use the axis words", spelled(word.number), spelled(other.number));
-                return Err(Fault::new("gcode::modal_group", other.at(), message).hint("write them on two lines"));
+                return Err(LineFault::new("gcode::modal_group", other.at(), message).hint("write them on two lines"));
             }
             self.modal.motion = code;
         }
         if block.code(Group::NonModal).is_some_and(|word| word.number == 530) && !matches!(code, 0 | 10) {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::g53",
                 block.whole(),
                 format!("G53 goes with G0 or G1, not with {}", spelled(code)),
@@ -101,11 +101,11 @@ impl Interpreter {
         if code < LATHE_OWN && self.dialect.is_lathe() {
             self.end_turning();
         }
-        if self.waiting.collected.is_some() && !matches!(code, 52 | 53 | 62) {
+        if self.carried.collected.is_some() && !matches!(code, 52 | 53 | 62) {
             self.check_no_curve(block)?;
         }
         if code != 50 {
-            self.waiting.bezier_end = None;
+            self.carried.bezier_end = None;
         }
         if self.lathe.is_some() {
             self.corner_word(block)?;
@@ -141,7 +141,7 @@ impl Interpreter {
     fn special_motion(&mut self, block: &Block, code: u16) -> Read<()> {
         if self.compensates() && !matches!(code, 50..=53) {
             let message = format!("{} cannot run with cutter compensation", spelled(code));
-            return Err(Fault::new("gcode::compensation", block.whole(), message).hint("end it with G40 first"));
+            return Err(LineFault::new("gcode::compensation", block.whole(), message).hint("end it with G40 first"));
         }
         match code {
             50 | 51 => self.bezier(block, code),

@@ -9,7 +9,7 @@ use crate::text::diagnostic::Diagnostic;
 /// faults without end from a few lines.
 const HOPELESS: usize = 100_000;
 /// Places that are remembered; beyond, every fault counts as new.
-const MOST_PLACES: usize = 10_000;
+const MAX_PLACES: usize = 10_000;
 
 /// File, line, column and kind of a fault.
 type Place = (Arc<str>, u32, u32, &'static str);
@@ -45,7 +45,7 @@ impl Faults {
             *times += 1;
             return true;
         }
-        if self.times.len() < MOST_PLACES {
+        if self.times.len() < MAX_PLACES {
             self.times.insert(place(diagnostic), 1);
         }
         false

@@ -5,10 +5,10 @@ use std::ops::Range;
 use crate::flow::program::{Flow, Found, cannot_read};
 use crate::text::diagnostic::Read;
 use crate::text::lexer::Cursor;
-use crate::text::source::{Line, Mark};
+use crate::text::source::{Mark, SourceLine};
 
 /// Places that are remembered; a program that jumps to more begins anew.
-const MOST_PLACES: usize = 100_000;
+const MAX_PLACES: usize = 100_000;
 
 impl Flow {
     /// The line with the number `N`: the next from here on in the program or subprogram under way, or else its first.
@@ -27,7 +27,7 @@ impl Flow {
         self.jump_to(here, at)?;
         self.source().line_start = line_start;
         let found = found.map_err(|error| cannot_read(at.clone(), &error))?;
-        if self.places.0.len() >= MOST_PLACES {
+        if self.places.0.len() >= MAX_PLACES {
             self.places.0.clear();
         }
         self.places.0.insert(key, found);
@@ -40,9 +40,9 @@ impl Flow {
         let mut found = Found::default();
         loop {
             let range = match source.next_line()? {
-                Line::End => return Ok(found),
-                Line::TooLong(_) => continue,
-                Line::Text(range) => range,
+                SourceLine::End => return Ok(found),
+                SourceLine::TooLong(_) => continue,
+                SourceLine::Text(range) => range,
             };
             let begin = source.line_start;
             match Label::of(source.bytes(range)) {

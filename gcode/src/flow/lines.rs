@@ -3,10 +3,10 @@
 use crate::flow::owords::{
     Arguments, Head, Keyword, at_o_word, read_arguments, read_head, read_keyword, read_label, read_rest, shown,
 };
-use crate::flow::program::{Flow, Manner, Purpose};
+use crate::flow::program::{Flow, Purpose, SubroutineKind};
 use crate::flow::statements::ends_loop;
 use crate::state::Interpreter;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 use crate::text::expression::Evaluator;
 use crate::text::lexer::Cursor;
 
@@ -26,7 +26,7 @@ impl Flow {
             return Some((skip.line, format!("{} has no {wanted}", shown(&skip.label))));
         }
         let frame = self.frames.last()?;
-        let wanted = if frame.manner == Manner::Rs274 { "endsub" } else { "M99" };
+        let wanted = if frame.kind == SubroutineKind::Rs274 { "endsub" } else { "M99" };
         Some((frame.body.lines_before, format!("the subroutine {} has no {wanted}", shown(&frame.label))))
     }
 
@@ -92,7 +92,7 @@ impl Flow {
         let head = Head { label, keyword, at: start..evaluator.cursor.at };
         if head.label != skip.label {
             if skip.purpose == Purpose::Definition && head.keyword == Keyword::Sub {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::o_word",
                     head.at,
                     format!("a subroutine is defined inside {}", shown(&skip.label)),

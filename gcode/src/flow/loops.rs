@@ -1,12 +1,12 @@
 //! Branches and loops: what is carried out, what is passed over.
 
 use crate::flow::owords::{Arguments, Head, Keyword};
-use crate::flow::program::{Flow, Loop, Manner, Purpose, Skip, cannot_read};
-use crate::text::diagnostic::{Fault, Read};
+use crate::flow::program::{Flow, Loop, Purpose, Skip, SubroutineKind, cannot_read};
+use crate::text::diagnostic::{LineFault, Read};
 use crate::text::source::Mark;
 
 /// Labels of branches and loops that are remembered, far more than anybody writes by hand; what comes then is not checked.
-const MOST_LABELS: usize = 100_000;
+const MAX_LABELS: usize = 100_000;
 
 impl Flow {
     /// Branches and loops.
@@ -22,15 +22,19 @@ impl Flow {
         match head.keyword {
             Keyword::Number | Keyword::EndIf | Keyword::Call | Keyword::Return | Keyword::EndSub => {}
             Keyword::Sub => {
-                if self.frames.last().is_some_and(|frame| frame.manner == Manner::Fanuc && frame.label == head.label) {
-                    return Err(Fault::new(
+                if self
+                    .frames
+                    .last()
+                    .is_some_and(|frame| frame.kind == SubroutineKind::Fanuc && frame.label == head.label)
+                {
+                    return Err(LineFault::new(
                         "gcode::o_word",
                         head.at.clone(),
                         "a subroutine with `sub` is called by `call`, not by M98",
                     ));
                 }
                 if !self.frames.is_empty() {
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::o_word",
                         head.at.clone(),
                         "a subroutine is defined inside a subroutine",
@@ -91,7 +95,7 @@ impl Flow {
             self.loops.truncate(base + old);
         }
         if self.loops.len() >= base + self.max_depth {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::depth",
                 head.at.clone(),
                 format!("more than {} loops inside each other", self.max_depth),
@@ -108,7 +112,7 @@ impl Flow {
         let base = self.frames.last().map_or(0, |frame| frame.loops);
         let Some(found) = self.loops[base..].iter().rposition(|turn| turn.label == head.label) else {
             let message = format!("{}: no loop {} is under way here", head.keyword.spelled(), head.shown());
-            return Err(Fault::new("gcode::o_word", head.at.clone(), message));
+            return Err(LineFault::new("gcode::o_word", head.at.clone(), message));
         };
         self.loops.truncate(base + found + 1);
         Ok(&mut self.loops[base + found])
@@ -126,12 +130,12 @@ impl Flow {
         match self.labels.get(&self.key) {
             Some(&other) if other != line => {
                 let message = format!("the label {} is that of line {other} already", head.shown());
-                Err(Fault::new("gcode::o_word", head.at.clone(), message)
+                Err(LineFault::new("gcode::o_word", head.at.clone(), message)
                     .hint("give every subroutine, branch and loop a number of its own"))
             }
             Some(_) => Ok(()),
             None => {
-                if self.labels.len() < MOST_LABELS {
+                if self.labels.len() < MAX_LABELS {
                     self.labels.insert(self.key.clone(), line);
                 }
                 Ok(())
@@ -142,11 +146,11 @@ impl Flow {
     /// A branch goes on or ends: it must have begun.
     fn find_label(&mut self, head: &Head) -> Read<()> {
         self.label_key(head);
-        if self.labels.contains_key(&self.key) || self.labels.len() == MOST_LABELS {
+        if self.labels.contains_key(&self.key) || self.labels.len() == MAX_LABELS {
             return Ok(());
         }
         let message = format!("{}: no `{} if` stands before it", head.keyword.spelled(), head.shown());
-        Err(Fault::new("gcode::o_word", head.at.clone(), message))
+        Err(LineFault::new("gcode::o_word", head.at.clone(), message))
     }
 
     fn label_key(&mut self, head: &Head) {
@@ -188,7 +192,7 @@ impl Flow {
         if turn.kind != ends {
             let (end, kind) = (head.keyword.spelled(), turn.kind.spelled());
             let message = format!("{end} ends no `{} {kind}`", head.shown());
-            return Err(Fault::new("gcode::o_word", head.at.clone(), message));
+            return Err(LineFault::new("gcode::o_word", head.at.clone(), message));
         }
         match turn.kind {
             Keyword::Repeat => {

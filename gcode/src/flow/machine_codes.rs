@@ -6,7 +6,7 @@ use crate::state::Interpreter;
 use crate::state::parameters::INPUT;
 use crate::text::block::{Block, Word};
 use crate::text::codes::bit;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// M-codes of one group exclude each other on a line.
 const GROUPS: [&[u16]; 8] =
@@ -27,7 +27,7 @@ fn check_jump(block: &Block, jump: &Word) -> Read<()> {
         return Ok(());
     };
     let message = format!("LinuxCNC reads no other words beside M{}", jump.number);
-    Err(Fault::new("gcode::m98", at, message).hint("write them on a line of their own"))
+    Err(LineFault::new("gcode::m98", at, message).hint("write them on a line of their own"))
 }
 
 impl Interpreter {
@@ -77,20 +77,20 @@ impl Interpreter {
             });
             if let Some(other) = clash {
                 let message = format!("M{} and M{} exclude each other on one line", other.number, word.number);
-                return Err(Fault::new("gcode::modal_group", word.at(), message).hint("write them on two lines"));
+                return Err(LineFault::new("gcode::modal_group", word.at(), message).hint("write them on two lines"));
             }
             if self.dialect.is_fanuc()
                 && let Some((what, hint)) = jump(word.number)
             {
                 let message = format!("M{} {what}, which is not read", word.number);
-                return Err(Fault::new("gcode::unsupported", word.at(), message).hint(hint));
+                return Err(LineFault::new("gcode::unsupported", word.at(), message).hint(hint));
             }
             if self.dialect == Dialect::LinuxCnc {
                 check_jump(block, word)?;
             }
             let known = matches!(word.number, 0..=9 | 19 | 30 | 48..=53 | 60..=68 | 70..=73 | 98 | 99 | 100..=199);
             if !known && self.dialect == Dialect::LinuxCnc {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::unknown_m",
                     word.at(),
                     format!("M{} is not an M-code that LinuxCNC knows", word.number),
@@ -115,14 +115,14 @@ impl Interpreter {
         for &letter in needed {
             if !block.has(letter) {
                 let name = char::from(letter).to_ascii_uppercase();
-                return Err(Fault::new("gcode::m_code", block.whole(), format!("M{number} needs its word {name}")));
+                return Err(LineFault::new("gcode::m_code", block.whole(), format!("M{number} needs its word {name}")));
             }
         }
         if number != 66 {
             return Ok(());
         }
         if block.has(b'p') == block.has(b'e') {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::m_code",
                 block.whole(),
                 "M66 waits for a digital input P or an analog input E: exactly one of them",
@@ -130,14 +130,14 @@ impl Interpreter {
         }
         let mode = if block.has(b'l') { self.integer(block, b'l', 0, 4)? } else { 0 };
         if mode != 0 && block.get(b'q').unwrap_or(0.0) <= 0.0 {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::m_code",
                 block.whole(),
                 format!("M66 L{mode} waits and needs a time limit Q above 0 s"),
             ));
         }
         if mode != 0 && block.has(b'e') {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::m_code",
                 block.at(b'e'),
                 "M66 reads an analog input at once: only L0 goes with E",

@@ -6,12 +6,12 @@ use std::ops::Range;
 
 use crate::canon::EventKind;
 use crate::flow::owords::{Head, Keyword};
-use crate::flow::program::{Flow, Manner};
+use crate::flow::program::{Flow, SubroutineKind};
 use crate::flow::statements::Statement;
 use crate::state::Interpreter;
 use crate::state::parameters::MACRO_LOCALS;
 use crate::text::block::Block;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Letters of the arguments of G65 and the variables that they become, `#1` to `#26`.
 const ARGUMENTS: [(u8, usize); 21] = [
@@ -70,7 +70,7 @@ impl Flow {
     pub(super) fn go_to_block(&mut self, number: u64, by: &str, at: &Range<usize>) -> Read<()> {
         let Some(mark) = self.find_block(number, at)? else {
             let message = format!("{by}{number}: there is no block N{number} in this program");
-            return Err(Fault::new("gcode::macro", at.clone(), message)
+            return Err(LineFault::new("gcode::macro", at.clone(), message)
                 .hint("the line to go on at begins with N and that number"));
         };
         self.jump_to(mark, at)
@@ -80,7 +80,7 @@ impl Flow {
     pub(super) fn call_macro(&mut self, block: &Block, interpreter: &mut Interpreter) -> Read<()> {
         let at = block.at(b'p');
         let Some(number) = block.get(b'p').filter(|number| (1.0..1e9).contains(number)) else {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::macro",
                 block.whole(),
                 "G65 calls a macro, but P with its number is missing",
@@ -103,21 +103,25 @@ impl Flow {
     /// `M97 P100`: blocks of the same program as a subroutine.
     pub(super) fn call_block(&mut self, block: &Block, at: &Range<usize>, interpreter: &mut Interpreter) -> Read<()> {
         let Some(number) = block.get(b'p').filter(|number| (1.0..1e9).contains(number)) else {
-            return Err(Fault::new("gcode::m98", at.clone(), "M97 calls a block, but P with its number is missing")
-                .hint("write M97 P100 to call the lines from N100 to M99"));
+            return Err(LineFault::new(
+                "gcode::m98",
+                at.clone(),
+                "M97 calls a block, but P with its number is missing",
+            )
+            .hint("write M97 P100 to call the lines from N100 to M99"));
         };
         let times = if block.has(b'l') { interpreter.integer(block, b'l', 0, i64::from(u32::MAX))? } else { 1 };
         let number = number.round() as u64;
         let Some(mark) = self.find_block(number, at)? else {
             let message = format!("M97 P{number}: there is no block N{number} in this program");
-            return Err(Fault::new("gcode::m98", at.clone(), message)
+            return Err(LineFault::new("gcode::m98", at.clone(), message)
                 .hint("the lines to call begin with N and that number and end with M99"));
         };
         if times == 0 {
             return Ok(());
         }
         let label = format!("N{number}").into_bytes();
-        self.enter_lines(label, Manner::Fanuc, (self.current, mark), times as u32, at, interpreter)
+        self.enter_lines(label, SubroutineKind::Fanuc, (self.current, mark), times as u32, at, interpreter)
     }
 
     /// A line of the source under way as text.

@@ -8,7 +8,7 @@ use crate::state::modal::{FeedMode, INCH_MM};
 use crate::text::block::{Block, Word};
 use crate::text::codes::fanuc::OWN;
 use crate::text::codes::{self, Group};
-use crate::text::diagnostic::{Fault, Read, Short};
+use crate::text::diagnostic::{LineFault, Read, Short};
 
 impl Interpreter {
     pub(super) fn feed_mode(&mut self, block: &Block) -> Read<()> {
@@ -33,7 +33,7 @@ impl Interpreter {
             return Ok(());
         };
         if feed < 0.0 {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::feed",
                 block.at(b'f'),
                 format!("feed F{} is negative; the smallest is 0", Short(feed)),
@@ -55,7 +55,7 @@ impl Interpreter {
                 "spindle ${} does not exist: the first spindle is $0, and only it is read",
                 Short(block.get(b'$').unwrap_or_default())
             );
-            return Err(Fault::new("gcode::spindle", block.at(b'$'), message));
+            return Err(LineFault::new("gcode::spindle", block.at(b'$'), message));
         }
         let Some(speed) = block.get(b's') else {
             return Ok(());
@@ -64,7 +64,7 @@ impl Interpreter {
             return Ok(()); // Temperatures, seconds of G4, servo angles: S belongs to another code of the line.
         }
         if speed < 0.0 {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::spindle",
                 block.at(b's'),
                 format!("spindle speed S{} is negative; the smallest is 0 rev/min", Short(speed)),
@@ -152,7 +152,7 @@ impl Interpreter {
             _ => {
                 let tolerance = block.get(b'p').map(|p| p * self.modal.unit_mm);
                 if tolerance.is_some_and(|p| p < 0.0) {
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::range",
                         block.at(b'p'),
                         "the tolerance P of G64 is negative; the smallest is 0",
@@ -174,7 +174,7 @@ impl Interpreter {
             }
             (None, _) if printer => 0.0,
             (None, _) => {
-                return Err(Fault::new("gcode::dwell", word.at(), "the dwell G4 has no time").hint(
+                return Err(LineFault::new("gcode::dwell", word.at(), "the dwell G4 has no time").hint(
                     if self.dialect.is_fanuc() {
                         "write G4 X or U with seconds, or P with milliseconds"
                     } else {
@@ -184,7 +184,7 @@ impl Interpreter {
             }
         };
         if seconds < 0.0 {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::dwell",
                 block.at_any(codes::bit(b'p') | codes::bit(b's') | codes::bit(b'x') | codes::bit(b'u')),
                 format!("the dwell of {} s is negative; the smallest is 0 s", Short(seconds)),
@@ -198,14 +198,14 @@ impl Interpreter {
     fn spindle_mode(&mut self, block: &Block) -> Read<()> {
         if let Some(word) = block.code(Group::SpindleMode) {
             if block.get(b'd').is_some_and(|most| most < 0.0) {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::spindle",
                     block.at(b'd'),
                     "the highest spindle speed D must not be negative",
                 ));
             }
             if word.number == 960 && !block.has(b's') && self.dialect == Dialect::LinuxCnc {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::spindle",
                     word.at(),
                     "G96 (constant surface speed) needs the speed S on its line",

@@ -5,7 +5,7 @@ use crate::state::parameters as numbers;
 use crate::text::block::{Block, Word};
 use crate::text::codes::Group;
 use crate::text::codes::fanuc::OWN;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 impl Interpreter {
     /// Codes that act once.
@@ -45,7 +45,7 @@ impl Interpreter {
     /// G10: coordinate systems (L2, L20) and the tool table (L1, L10, L11).
     fn set_data(&mut self, block: &Block, word: Word) -> Read<()> {
         if !block.has(b'l') || !block.has(b'p') {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::g10",
                 word.at(),
                 "G10 needs L (what to set) and P (of which system or tool)",
@@ -53,7 +53,7 @@ impl Interpreter {
         }
         match self.integer(block, b'l', 0, 99)? {
             20 if self.dialect.is_fanuc() => self.set_further_system(block),
-            2 if self.dialect.is_fanuc() && block.get(b'p') == Some(0.0) => Err(Fault::new(
+            2 if self.dialect.is_fanuc() && block.get(b'p') == Some(0.0) => Err(LineFault::new(
                 "gcode::unsupported",
                 block.at(b'p'),
                 "G10 L2 P0 (the offset of all systems) is not read",
@@ -63,7 +63,7 @@ impl Interpreter {
             20 => self.set_system(block, true),
             kind @ 10..=13 if self.dialect.is_fanuc() => self.set_tool_part(block, kind),
             kind @ (1 | 10 | 11) => self.set_tool(block, kind),
-            other => Err(Fault::new(
+            other => Err(LineFault::new(
                 "gcode::g10",
                 block.at(b'l'),
                 format!("G10 L{other} does not exist: L1, L2, L10, L11, L20 do"),

@@ -2,8 +2,8 @@
 
 use crate::state::parameters::LOCALS;
 use crate::text::block::read_comment;
-use crate::text::diagnostic::{Fault, Read, Short};
-use crate::text::expression::{Evaluator, INTEGER_WITHIN, Values};
+use crate::text::diagnostic::{LineFault, Read, Short};
+use crate::text::expression::{Evaluator, INTEGER_WITHIN, ParameterSource};
 use crate::text::lexer::{Cursor, END};
 
 /// What an O-word asks for.
@@ -86,7 +86,7 @@ pub(super) struct Arguments {
 }
 
 /// Reads the O-word under the cursor up to its arguments.
-pub(super) fn read_head<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<Head> {
+pub(super) fn read_head<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>) -> Read<Head> {
     let start = evaluator.cursor.at;
     let label = read_label(evaluator)?;
     let keyword = read_keyword(&mut evaluator.cursor, &label, start)?;
@@ -94,7 +94,7 @@ pub(super) fn read_head<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<Hea
 }
 
 /// Reads O and the label behind it.
-pub(super) fn read_label<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<Vec<u8>> {
+pub(super) fn read_label<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>) -> Read<Vec<u8>> {
     let start = evaluator.cursor.at;
     evaluator.cursor.bump();
     Ok(if evaluator.cursor.eat(b'<') {
@@ -104,7 +104,7 @@ pub(super) fn read_label<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<Ve
         let rounded = value.round();
         if (value - rounded).abs() > INTEGER_WITHIN || !(0.0..1e15).contains(&rounded) {
             let message = format!("the label O{} is not a whole number", Short(value));
-            return Err(Fault::new("gcode::o_word", start..evaluator.cursor.at, message));
+            return Err(LineFault::new("gcode::o_word", start..evaluator.cursor.at, message));
         }
         format!("{}", rounded as u64).into_bytes()
     })
@@ -119,7 +119,7 @@ pub(super) fn read_keyword(cursor: &mut Cursor<'_>, label: &[u8], start: usize) 
     let found = KEYWORDS.iter().filter(|row| cursor.clone().eat_word(row.0)).max_by_key(|row| row.0.len());
     let Some((spelling, keyword)) = found else {
         let at = start..cursor.at + 1;
-        return Err(Fault::new("gcode::o_word", at, format!("{} is followed by no keyword", shown(label)))
+        return Err(LineFault::new("gcode::o_word", at, format!("{} is followed by no keyword", shown(label)))
             .hint("sub, endsub, call, return, if, elseif, else, endif, while, endwhile, do, repeat, endrepeat, break or continue"));
     };
     cursor.eat_word(spelling);
@@ -127,7 +127,7 @@ pub(super) fn read_keyword(cursor: &mut Cursor<'_>, label: &[u8], start: usize) 
 }
 
 /// Reads bracketed arguments up to the end of the line or a comment.
-pub(super) fn read_arguments<V: Values>(evaluator: &mut Evaluator<'_, V>, head: &Head) -> Read<Arguments> {
+pub(super) fn read_arguments<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, head: &Head) -> Read<Arguments> {
     let mut arguments = Arguments { values: [0.0; LOCALS], count: 0 };
     loop {
         match evaluator.cursor.peek() {
@@ -140,7 +140,7 @@ pub(super) fn read_arguments<V: Values>(evaluator: &mut Evaluator<'_, V>, head: 
         }
         if arguments.count == LOCALS {
             let at = evaluator.cursor.at;
-            return Err(Fault::new("gcode::o_word", at..at + 1, format!("more than {LOCALS} arguments")));
+            return Err(LineFault::new("gcode::o_word", at..at + 1, format!("more than {LOCALS} arguments")));
         }
         arguments.values[arguments.count] = evaluator.bracketed()?;
         arguments.count += 1;
@@ -159,7 +159,11 @@ pub(super) fn read_arguments<V: Values>(evaluator: &mut Evaluator<'_, V>, head: 
         } else {
             "no arguments"
         };
-        return Err(Fault::new("gcode::o_word", head.at.clone(), format!("{} takes {wanted}", head.keyword.spelled())));
+        return Err(LineFault::new(
+            "gcode::o_word",
+            head.at.clone(),
+            format!("{} takes {wanted}", head.keyword.spelled()),
+        ));
     }
     Ok(arguments)
 }
@@ -174,7 +178,7 @@ pub(super) fn read_rest(cursor: &mut Cursor<'_>) -> Read<()> {
                 read_comment(cursor)?;
             }
             _ => {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::o_word",
                     start..start + 1,
                     "nothing but a comment may follow an O-word on its line",
@@ -201,7 +205,7 @@ mod tests {
 
     struct Nothing;
 
-    impl Values for Nothing {
+    impl ParameterSource for Nothing {
         fn numbered(&self, index: usize) -> f64 {
             index as f64
         }

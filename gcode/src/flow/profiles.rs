@@ -4,9 +4,9 @@ use crate::flow::program::{Flow, cannot_read};
 use crate::state::Interpreter;
 use crate::state::capture::{Capture, ProfileBlocks, ProfileWork};
 use crate::text::codes::spelled;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 use crate::text::lexer::{Cursor, END};
-use crate::text::source::Line;
+use crate::text::source::SourceLine;
 
 impl Flow {
     /// Goes to the first block of the profile that a cycle wants.
@@ -15,7 +15,7 @@ impl Flow {
         let at = wanted.block.at(b'p');
         let missing = |letter: char, number: u64| {
             let message = format!("{letter}{number}: there is no block N{number} in this program");
-            Fault::new("gcode::lathe", wanted.block.at(letter.to_ascii_lowercase() as u8), message)
+            LineFault::new("gcode::lathe", wanted.block.at(letter.to_ascii_lowercase() as u8), message)
                 .hint("P and Q are the numbers N of the first and the last block of the profile")
         };
         let (mark, here) = (self.source_ref().line_start, self.source_ref().here());
@@ -25,9 +25,8 @@ impl Flow {
             let message = format!(
                 "P{first} is on line {one} and on line {other}: which of them is meant differs between controls"
             );
-            return Err(
-                Fault::new("gcode::lathe", at, message).hint("give the blocks of every profile numbers of their own")
-            );
+            return Err(LineFault::new("gcode::lathe", at, message)
+                .hint("give the blocks of every profile numbers of their own"));
         }
         let begin = found.behind.or(found.before).ok_or_else(|| missing('P', first))?;
         self.jump_to(begin, &at)?;
@@ -40,7 +39,7 @@ impl Flow {
                 end.lines_before + 1,
                 begin.lines_before + 1
             );
-            return Err(Fault::new("gcode::lathe", wanted.block.at(b'q'), message));
+            return Err(LineFault::new("gcode::lathe", wanted.block.at(b'q'), message));
         }
         let is_finish = matches!(wanted.work, ProfileWork::Finish);
         let is_behind = begin.offset >= here.offset;
@@ -49,7 +48,9 @@ impl Flow {
                 "there are blocks between {} and its profile, which begins with N{first}",
                 spelled(wanted.code)
             );
-            return Err(Fault::new("gcode::lathe", at, message).hint("the profile stands right behind its first cycle"));
+            return Err(
+                LineFault::new("gcode::lathe", at, message).hint("the profile stands right behind its first cycle")
+            );
         }
         self.jump_to(begin, &at)?;
         let back = (is_finish || !is_behind).then_some(here);
@@ -72,8 +73,8 @@ impl Flow {
         let (here, line_start) = (self.source_ref().here(), self.source_ref().line_start);
         let found = loop {
             let range = match self.source().next_line().map_err(|error| cannot_read(at.clone(), &error))? {
-                Line::End => break None,
-                Line::TooLong(range) | Line::Text(range) => range,
+                SourceLine::End => break None,
+                SourceLine::TooLong(range) | SourceLine::Text(range) => range,
             };
             let mut cursor = Cursor::new(self.source_ref().bytes(range));
             if !matches!(cursor.peek(), END | b'(' | b';') {

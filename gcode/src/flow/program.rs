@@ -8,12 +8,12 @@ use std::path::PathBuf;
 use crate::flow::owords::Keyword;
 use crate::settings::Settings;
 use crate::state::parameters::MACRO_LOCALS;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 use crate::text::source::{Mark, Source};
 
 /// How a subroutine is written and called.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Manner {
+pub(super) enum SubroutineKind {
     /// `O1 sub` ... `O1 endsub`, called by `O1 call`.
     Rs274,
     /// `O1` ... `M99`, called by `M98 P1`.
@@ -24,19 +24,19 @@ pub(super) enum Manner {
 
 /// A file with the places of its subroutines, once somebody has asked for one.
 #[derive(Debug)]
-pub(super) struct Unit {
+pub(super) struct ProgramFile {
     pub(super) source: Source,
     pub(super) path: Option<PathBuf>,
-    pub(super) subroutines: Option<HashMap<Vec<u8>, (Manner, Mark)>>,
+    pub(super) subroutines: Option<HashMap<Vec<u8>, (SubroutineKind, Mark)>>,
 }
 
 /// A call under way.
 #[derive(Debug)]
 pub(super) struct Call {
-    pub(super) manner: Manner,
+    pub(super) kind: SubroutineKind,
     pub(super) label: Vec<u8>,
     /// File and line to return to.
-    pub(super) unit: usize,
+    pub(super) file: usize,
     pub(super) back: Mark,
     /// First line of the subroutine and the calls that remain (L of M98).
     pub(super) body: Mark,
@@ -97,7 +97,7 @@ pub(super) struct Found {
 /// The files of a program, the place in them, and the calls and loops under way.
 #[derive(Debug)]
 pub(super) struct Flow {
-    pub(super) units: Vec<Unit>,
+    pub(super) files: Vec<ProgramFile>,
     pub(super) current: usize,
     pub(super) folders: Vec<PathBuf>,
     pub(super) frames: Vec<Call>,
@@ -114,9 +114,9 @@ pub(super) struct Flow {
 impl Flow {
     pub(super) fn new(source: Source, folder: Option<PathBuf>, settings: &Settings) -> Self {
         let folders = folder.into_iter().chain(settings.subroutine_paths.iter().cloned()).collect();
-        let unit = Unit { source, path: None, subroutines: None };
+        let file = ProgramFile { source, path: None, subroutines: None };
         Self {
-            units: vec![unit],
+            files: vec![file],
             current: 0,
             folders,
             frames: Vec::new(),
@@ -132,12 +132,12 @@ impl Flow {
     /// The file under way.
     #[inline]
     pub(super) fn source(&mut self) -> &mut Source {
-        &mut self.units[self.current].source
+        &mut self.files[self.current].source
     }
 
     /// The file under way.
     pub(super) fn source_ref(&self) -> &Source {
-        &self.units[self.current].source
+        &self.files[self.current].source
     }
 
     /// Whether lines are passed over.
@@ -153,6 +153,6 @@ impl Flow {
 }
 
 #[cold]
-pub(super) fn cannot_read(at: Range<usize>, error: &io::Error) -> Box<Fault> {
-    Fault::new("gcode::read", at, format!("the program cannot be read on: {error}"))
+pub(super) fn cannot_read(at: Range<usize>, error: &io::Error) -> Box<LineFault> {
+    LineFault::new("gcode::read", at, format!("the program cannot be read on: {error}"))
 }

@@ -19,10 +19,10 @@ use crate::state::Interpreter;
 use crate::text::block::{Block, Style};
 use crate::text::codes::Group;
 use crate::text::codes::fanuc::{CodeSet, OWN};
-use crate::text::diagnostic::{Diagnostic, Fault, Read, Severity};
+use crate::text::diagnostic::{Diagnostic, LineFault, Read, Severity};
 use crate::text::lexer::{Cursor, END};
 use crate::text::read_error::ReadError;
-use crate::text::source::{LONGEST_LINE_BYTES, Line, Source};
+use crate::text::source::{MAX_LINE_BYTES, Source, SourceLine};
 
 /// Reads a program and hands out its canonical steps as it goes; memory does not grow with the program.
 ///
@@ -39,7 +39,7 @@ pub struct Reader {
     motions_seen: u64,
     lines: u64,
     percent: Percent,
-    state: State,
+    state: ReaderState,
     dialect_reason: &'static str,
 }
 
@@ -58,7 +58,7 @@ enum Percent {
 const FOLLOWING: [&str; 4] = ["gcode::arc_radius", "gcode::no_motion_mode", "gcode::compensation", "gcode::cycle"];
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum State {
+enum ReaderState {
     Running,
     Done,
 }
@@ -111,7 +111,7 @@ impl Reader {
             motions_seen: 0,
             lines: 0,
             percent: Percent::NotSeen,
-            state: State::Running,
+            state: ReaderState::Running,
             dialect_reason: choice.reason,
         })
     }
@@ -141,19 +141,19 @@ impl Reader {
         let line = match self.flow.source().next_line() {
             Ok(line) => line,
             Err(error) => {
-                self.state = State::Done;
+                self.state = ReaderState::Done;
                 let message = format!("the program cannot be read on: {error}");
                 return Err(self.of_file("gcode::read", message));
             }
         };
         let range = match line {
-            Line::End => return self.end_of_file(),
-            Line::Text(range) => range,
-            Line::TooLong(_) => {
-                let fault = Fault::new(
+            SourceLine::End => return self.end_of_file(),
+            SourceLine::Text(range) => range,
+            SourceLine::TooLong(_) => {
+                let fault = LineFault::new(
                     "gcode::line_length",
                     0..1,
-                    format!("the line is longer than {LONGEST_LINE_BYTES} bytes: this is no G-code"),
+                    format!("the line is longer than {MAX_LINE_BYTES} bytes: this is no G-code"),
                 );
                 return Err(self.diagnose(Severity::Error, *fault));
             }
@@ -173,7 +173,7 @@ impl Reader {
 
     /// A fault of the line under way. One that only follows from the fault of an earlier line is not told.
     #[cold]
-    pub(super) fn refuse(&mut self, fault: Fault) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn refuse(&mut self, fault: LineFault) -> Result<(), Box<Diagnostic>> {
         let follows = self.interpreter.behind_fault && FOLLOWING.contains(&fault.code);
         self.interpreter.assume(&self.block);
         if follows { Ok(()) } else { Err(self.diagnose(Severity::Error, fault)) }
@@ -227,7 +227,7 @@ impl Reader {
         if interpreter.dialect != Dialect::LinuxCnc
             && let Some(command) = firmware::command(bytes, interpreter.dialect)
         {
-            if command != firmware::Command::Speaks {
+            if command != firmware::FirmwareCommand::Speaks {
                 interpreter.output.warnings.push(*firmware::warning(bytes, command));
             }
             interpreter.event(EventKind::Message { text: String::from_utf8_lossy(bytes.trim_ascii()).into_owned() });
@@ -293,7 +293,7 @@ impl Reader {
                 self.interpreter.check_profile_end(open, at)?;
             }
             Percent::Absent => {
-                let fault = Fault::new("gcode::percent", at, "`%` ends the program, but no `%` begins it")
+                let fault = LineFault::new("gcode::percent", at, "`%` ends the program, but no `%` begins it")
                     .hint("write `%` as the first line, too, or M2 instead of this one");
                 self.interpreter.output.warnings.push(*fault);
                 self.interpreter.end_program();
@@ -305,10 +305,10 @@ impl Reader {
     /// The text ends, perhaps without having said so.
     fn end_of_file(&mut self) -> Result<(), Box<Diagnostic>> {
         if let Some((line, message)) = self.flow.unfinished() {
-            self.state = State::Done;
+            self.state = ReaderState::Done;
             self.interpreter.end_program();
             self.flow.source().find(line);
-            let fault = Fault::new("gcode::o_word", 0..usize::MAX, message);
+            let fault = LineFault::new("gcode::o_word", 0..usize::MAX, message);
             return Err(self.diagnose(Severity::Error, *fault.hint("write it behind the last line that belongs to it")));
         }
         if let Err(fault) = self.interpreter.check_pending(0..0) {
@@ -352,24 +352,24 @@ impl Reader {
         } else {
             return Ok(());
         };
-        self.state = State::Done;
-        Err(self.diagnose(Severity::Error, *Fault::new("gcode::endless", 0..usize::MAX, message).hint(hint)))
+        self.state = ReaderState::Done;
+        Err(self.diagnose(Severity::Error, *LineFault::new("gcode::endless", 0..usize::MAX, message).hint(hint)))
     }
 
     /// The fault with its place; reads the line again, because looking for a subroutine may have moved the buffer on.
     #[cold]
-    fn diagnose(&mut self, severity: Severity, fault: Fault) -> Box<Diagnostic> {
+    fn diagnose(&mut self, severity: Severity, fault: LineFault) -> Box<Diagnostic> {
         let source = self.flow.source();
         let (begin, here) = (source.line_start, source.here());
         let name = source.name.clone();
         let found = source.jump(begin).and_then(|()| source.next_line());
         let bytes = match found {
-            Ok(Line::Text(range) | Line::TooLong(range)) => source.bytes(range),
+            Ok(SourceLine::Text(range) | SourceLine::TooLong(range)) => source.bytes(range),
             _ => &[],
         };
         let diagnostic = Diagnostic::of_line(severity, fault, name, begin.lines_before.saturating_add(1), bytes);
         if source.jump(here).is_err() {
-            self.state = State::Done;
+            self.state = ReaderState::Done;
         }
         Box::new(diagnostic)
     }
@@ -405,8 +405,8 @@ impl Iterator for Reader {
             if let Some(canon) = self.interpreter.output.steps.pop_front() {
                 return Some(Ok(canon));
             }
-            if self.state == State::Done || self.interpreter.ended || self.faults.are_hopeless() {
-                self.state = State::Done;
+            if self.state == ReaderState::Done || self.interpreter.ended || self.faults.are_hopeless() {
+                self.state = ReaderState::Done;
                 self.warn_of_points();
                 let rest = self.rest()?;
                 return Some(Err(*rest));

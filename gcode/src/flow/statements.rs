@@ -4,8 +4,8 @@
 //! is otherwise.
 
 use crate::flow::owords::{Head, Keyword, read_rest};
-use crate::text::diagnostic::{Fault, Read, Short};
-use crate::text::expression::{Evaluator, Values};
+use crate::text::diagnostic::{LineFault, Read, Short};
+use crate::text::expression::{Evaluator, ParameterSource};
 use crate::text::lexer::Cursor;
 
 /// What a line of a macro asks for.
@@ -24,10 +24,10 @@ pub(super) enum Statement {
 }
 
 /// Largest number of a loop; controls have three.
-const MOST_LOOPS: f64 = 3.0;
+const MAX_LOOPS: f64 = 3.0;
 
 /// The line at the cursor as a statement, if it is one.
-pub(super) fn statement<V: Values>(cursor: Cursor<'_>, values: &V) -> Read<Option<Statement>> {
+pub(super) fn statement<V: ParameterSource>(cursor: Cursor<'_>, values: &V) -> Read<Option<Statement>> {
     let start = cursor.at;
     let mut evaluator = Evaluator::new(cursor, values);
     let printed: [&[u8]; 4] = [b"dprnt", b"bprnt", b"popen", b"pclos"];
@@ -42,7 +42,7 @@ pub(super) fn statement<V: Values>(cursor: Cursor<'_>, values: &V) -> Read<Optio
         if !evaluator.cursor.eat_word(b"do") {
             let at = start..evaluator.cursor.at + 1;
             return Err(
-                Fault::new("gcode::macro", at, "DO is missing behind WHILE [..]").hint("write WHILE [#1 LT 5] DO1")
+                LineFault::new("gcode::macro", at, "DO is missing behind WHILE [..]").hint("write WHILE [#1 LT 5] DO1")
             );
         }
         Statement::While(loop_head(&mut evaluator, start)?, is_true)
@@ -72,7 +72,7 @@ pub(super) fn ends_loop(line: &[u8], label: &[u8]) -> Option<Head> {
     ends.then(|| Head { label: label.to_vec(), keyword: Keyword::EndWhile, at: start..cursor.at })
 }
 
-fn condition<V: Values>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<Statement> {
+fn condition<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<Statement> {
     let is_true = is_true(evaluator)?;
     if evaluator.cursor.eat_word(b"goto") {
         let number = label(evaluator, start)?;
@@ -83,33 +83,33 @@ fn condition<V: Values>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<
         return Ok(if is_true { Statement::Then(evaluator.cursor.at) } else { Statement::Nothing });
     }
     let at = start..evaluator.cursor.at + 1;
-    Err(Fault::new("gcode::macro", at, "neither GOTO nor THEN stands behind IF [..]")
+    Err(LineFault::new("gcode::macro", at, "neither GOTO nor THEN stands behind IF [..]")
         .hint("write IF [#1 GT 5] GOTO 10, or IF [#1 GT 5] THEN #2=0"))
 }
 
-pub(super) fn is_true<V: Values>(evaluator: &mut Evaluator<'_, V>) -> Read<bool> {
+pub(super) fn is_true<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>) -> Read<bool> {
     let value = evaluator.bracketed()?;
     Ok(!value.is_nan() && value != 0.0)
 }
 
 /// Number of a block.
-pub(super) fn label<V: Values>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<u64> {
+pub(super) fn label<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<u64> {
     let number = evaluator.value()?;
     let at = start..evaluator.cursor.at;
     if (1.0..1e9).contains(&number.round()) {
         return Ok(number.round() as u64);
     }
     let shown = if number.is_nan() { "a variable without a value".to_owned() } else { format!("{}", Short(number)) };
-    Err(Fault::new("gcode::macro", at, format!("GOTO {shown}: that is no number of a block"))
+    Err(LineFault::new("gcode::macro", at, format!("GOTO {shown}: that is no number of a block"))
         .hint("GOTO 10 goes on at the line that begins with N10"))
 }
 
-fn loop_head<V: Values>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<Head> {
+fn loop_head<V: ParameterSource>(evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<Head> {
     let number = evaluator.cursor.number()?;
     let at = start..evaluator.cursor.at;
-    if !(1.0..=MOST_LOOPS).contains(&number) || number.fract() != 0.0 {
+    if !(1.0..=MAX_LOOPS).contains(&number) || number.fract() != 0.0 {
         let message = format!("a loop DO{} does not exist: DO1 to DO3 do", Short(number));
-        return Err(Fault::new("gcode::macro", at, message).hint("loops inside each other have different numbers"));
+        return Err(LineFault::new("gcode::macro", at, message).hint("loops inside each other have different numbers"));
     }
     Ok(Head { label: format!("do{number}").into_bytes(), keyword: Keyword::While, at })
 }
@@ -120,7 +120,7 @@ mod tests {
 
     struct Numbers;
 
-    impl Values for Numbers {
+    impl ParameterSource for Numbers {
         fn numbered(&self, index: usize) -> f64 {
             if index == 0 { f64::NAN } else { index as f64 }
         }

@@ -10,27 +10,27 @@ use std::path::Path;
 use std::sync::Arc;
 
 use crate::flow::owords::{Arguments, Head, Keyword, at_o_word, read_head, shown};
-use crate::flow::program::{Call, Flow, Manner, Unit, cannot_read};
+use crate::flow::program::{Call, Flow, ProgramFile, SubroutineKind, cannot_read};
 use crate::state::Interpreter;
 use crate::state::lathe::ProfileCall;
 use crate::state::parameters::{LOCALS, MACRO_LOCALS};
-use crate::text::diagnostic::{Fault, Read};
-use crate::text::expression::{Evaluator, Values};
+use crate::text::diagnostic::{LineFault, Read};
+use crate::text::expression::{Evaluator, ParameterSource};
 use crate::text::lexer::Cursor;
-use crate::text::source::{Line, Mark, Source};
+use crate::text::source::{Mark, Source, SourceLine};
 
 /// Files of subroutines that stay open. A program uses a handful; each may hold a buffer of 256 KiB.
-const MOST_FILES: usize = 100;
+const MAX_FILES: usize = 100;
 /// Subroutines that one file may define.
-const MOST_SUBROUTINES: usize = 100_000;
+const MAX_SUBROUTINES: usize = 100_000;
 
 impl Flow {
     /// `O1 call [..]`.
     pub(super) fn call(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
-        let (unit, manner, body) = self.find_subroutine(&head.label, &head.at)?;
-        if manner == Manner::Fanuc {
+        let (file, kind, body) = self.find_subroutine(&head.label, &head.at)?;
+        if kind == SubroutineKind::Fanuc {
             let number = String::from_utf8_lossy(&head.label).into_owned();
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::o_word",
                 head.at.clone(),
                 format!("{} has no `sub`: it is called by M98", head.shown()),
@@ -41,9 +41,9 @@ impl Flow {
         let saved = interpreter.parameters.enter(&arguments.values);
         self.enter(
             Call {
-                manner,
+                kind,
                 label: head.label.clone(),
-                unit: self.current,
+                file: self.current,
                 back: self.source_ref().here(),
                 body,
                 repeats: 0,
@@ -51,7 +51,7 @@ impl Flow {
                 arguments: None,
                 loops: self.loops.len(),
             },
-            unit,
+            file,
             &head.at,
         )
         .inspect_err(|_| interpreter.parameters.leave(&saved[..LOCALS]))?;
@@ -93,18 +93,18 @@ impl Flow {
             return Ok(());
         }
         let label = number.to_string().into_bytes();
-        let (unit, manner, body) = self.find_subroutine(&label, at)?;
-        if manner == Manner::Rs274 {
-            return Err(Fault::new(
+        let (file, kind, body) = self.find_subroutine(&label, at)?;
+        if kind == SubroutineKind::Rs274 {
+            return Err(LineFault::new(
                 "gcode::o_word",
                 at.clone(),
                 format!("{} has `sub`: it is called by `{} call`, not by M98", shown(&label), shown(&label)),
             ));
         }
         let Some(arguments) = arguments else {
-            return self.enter_lines(label, manner, (unit, body), times, at, interpreter);
+            return self.enter_lines(label, kind, (file, body), times, at, interpreter);
         };
-        self.enter_lines(label, Manner::Macro, (unit, body), times, at, interpreter)?;
+        self.enter_lines(label, SubroutineKind::Macro, (file, body), times, at, interpreter)?;
         let saved = interpreter.parameters.enter(&arguments[..]);
         if let Some(frame) = self.frames.last_mut() {
             (frame.saved, frame.arguments) = (saved, Some(arguments));
@@ -116,17 +116,17 @@ impl Flow {
     pub(super) fn enter_lines(
         &mut self,
         label: Vec<u8>,
-        manner: Manner,
-        (unit, body): (usize, Mark),
+        kind: SubroutineKind,
+        (file, body): (usize, Mark),
         times: u32,
         at: &std::ops::Range<usize>,
         interpreter: &mut Interpreter,
     ) -> Read<()> {
         self.check_depth(at)?;
         let frame = Call {
-            manner,
+            kind,
             label,
-            unit: self.current,
+            file: self.current,
             back: self.source_ref().here(),
             body,
             repeats: times - 1,
@@ -134,14 +134,14 @@ impl Flow {
             arguments: None,
             loops: self.loops.len(),
         };
-        self.enter(frame, unit, at)?;
+        self.enter(frame, file, at)?;
         interpreter.entered(self.frames.len());
         Ok(())
     }
 
-    fn enter(&mut self, frame: Call, unit: usize, at: &std::ops::Range<usize>) -> Read<()> {
-        self.units[unit].source.jump(frame.body).map_err(|error| cannot_read(at.clone(), &error))?;
-        self.current = unit;
+    fn enter(&mut self, frame: Call, file: usize, at: &std::ops::Range<usize>) -> Read<()> {
+        self.files[file].source.jump(frame.body).map_err(|error| cannot_read(at.clone(), &error))?;
+        self.current = file;
         self.frames.push(frame);
         Ok(())
     }
@@ -150,7 +150,7 @@ impl Flow {
         if self.frames.len() < self.max_depth {
             return Ok(());
         }
-        Err(Fault::new(
+        Err(LineFault::new(
             "gcode::depth",
             at.clone(),
             format!("more than {} subroutine calls inside each other", self.max_depth),
@@ -160,14 +160,14 @@ impl Flow {
 
     /// `endsub`, `return`.
     pub(super) fn leave(&mut self, head: &Head, arguments: &Arguments, interpreter: &mut Interpreter) -> Read<()> {
-        let fault = |message: &str| Err(Fault::new("gcode::o_word", head.at.clone(), message));
+        let fault = |message: &str| Err(LineFault::new("gcode::o_word", head.at.clone(), message));
         match self.frames.last() {
             None => return fault("this is not inside a subroutine"),
-            Some(frame) if frame.manner != Manner::Rs274 => {
+            Some(frame) if frame.kind != SubroutineKind::Rs274 => {
                 return fault("a subroutine called by M98 ends with M99");
             }
             Some(frame) if head.keyword == Keyword::EndSub && frame.label != head.label => {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::o_word",
                     head.at.clone(),
                     format!("endsub of {} ends {}", head.shown(), shown(&frame.label)),
@@ -185,8 +185,8 @@ impl Flow {
         let Some(frame) = self.frames.last_mut() else {
             return Ok(true);
         };
-        if frame.manner == Manner::Rs274 {
-            return Err(Fault::new(
+        if frame.kind == SubroutineKind::Rs274 {
+            return Err(LineFault::new(
                 "gcode::o_word",
                 at.clone(),
                 "a subroutine with `sub` ends with `endsub` or `return`, not with M99",
@@ -209,22 +209,22 @@ impl Flow {
         let Some(frame) = self.frames.pop() else {
             return Ok(());
         };
-        match frame.manner {
-            Manner::Rs274 => interpreter.parameters.leave(&frame.saved[..LOCALS]),
-            Manner::Macro => interpreter.parameters.leave(&frame.saved),
-            Manner::Fanuc => {}
+        match frame.kind {
+            SubroutineKind::Rs274 => interpreter.parameters.leave(&frame.saved[..LOCALS]),
+            SubroutineKind::Macro => interpreter.parameters.leave(&frame.saved),
+            SubroutineKind::Fanuc => {}
         }
         self.loops.truncate(frame.loops);
         interpreter.left(self.frames.len());
-        self.current = frame.unit;
+        self.current = frame.file;
         self.source().jump(frame.back).map_err(|error| cannot_read(at.clone(), &error))
     }
 
     /// File, manner and first line of a subroutine: in the file under way, in the program, in a file of its name.
-    fn find_subroutine(&mut self, label: &[u8], at: &std::ops::Range<usize>) -> Read<(usize, Manner, Mark)> {
-        for unit in [self.current, 0] {
-            if let Some((manner, mark)) = self.index(unit, at)?.get(label).copied() {
-                return Ok((unit, manner, mark));
+    fn find_subroutine(&mut self, label: &[u8], at: &std::ops::Range<usize>) -> Read<(usize, SubroutineKind, Mark)> {
+        for file in [self.current, 0] {
+            if let Some((kind, mark)) = self.index(file, at)?.get(label).copied() {
+                return Ok((file, kind, mark));
             }
         }
         let name = format!("{}.ngc", String::from_utf8_lossy(label));
@@ -233,14 +233,17 @@ impl Flow {
             .then(|| self.folders.iter().map(|folder| folder.join(&name)).find(|path| path.is_file()))
             .flatten();
         let Some(path) = path else {
-            let fault =
-                Fault::new("gcode::o_word", at.clone(), format!("the subroutine {} is defined nowhere", shown(label)));
+            let fault = LineFault::new(
+                "gcode::o_word",
+                at.clone(),
+                format!("the subroutine {} is defined nowhere", shown(label)),
+            );
             return Err(fault.hint(format!("define it in this program, or put {name} into a folder of subroutines")));
         };
-        let unit = self.open(&path, at)?;
-        match self.index(unit, at)?.get(label).copied() {
-            Some((manner, mark)) => Ok((unit, manner, mark)),
-            None => Err(Fault::new(
+        let file = self.open(&path, at)?;
+        match self.index(file, at)?.get(label).copied() {
+            Some((kind, mark)) => Ok((file, kind, mark)),
+            None => Err(LineFault::new(
                 "gcode::o_word",
                 at.clone(),
                 format!("{} does not define {}", path.display(), shown(label)),
@@ -249,44 +252,44 @@ impl Flow {
     }
 
     fn open(&mut self, path: &Path, at: &std::ops::Range<usize>) -> Read<usize> {
-        if let Some(unit) = self.units.iter().position(|unit| unit.path.as_deref() == Some(path)) {
-            return Ok(unit);
+        if let Some(file) = self.files.iter().position(|file| file.path.as_deref() == Some(path)) {
+            return Ok(file);
         }
-        if self.units.len() > MOST_FILES {
-            return Err(Fault::new(
+        if self.files.len() > MAX_FILES {
+            return Err(LineFault::new(
                 "gcode::o_word",
                 at.clone(),
-                format!("more than {MOST_FILES} files of subroutines"),
+                format!("more than {MAX_FILES} files of subroutines"),
             ));
         }
         let name: Arc<str> = path.display().to_string().into();
         let source = File::open(path)
             .and_then(|file| Source::from_file(name, file))
             .map_err(|error| cannot_read(at.clone(), &error))?;
-        self.units.push(Unit { source, path: Some(path.to_owned()), subroutines: None });
-        Ok(self.units.len() - 1)
+        self.files.push(ProgramFile { source, path: Some(path.to_owned()), subroutines: None });
+        Ok(self.files.len() - 1)
     }
 
     /// The subroutines of a file, found by one pass over it at the first call.
-    fn index(&mut self, unit: usize, at: &std::ops::Range<usize>) -> Read<&HashMap<Vec<u8>, (Manner, Mark)>> {
-        let unit = &mut self.units[unit];
-        if unit.subroutines.is_none() {
-            let here = unit.source.here();
-            let line_start = unit.source.line_start;
-            let found = find_definitions(&mut unit.source).and_then(|found| unit.source.jump(here).map(|()| found));
-            unit.source.line_start = line_start;
-            unit.subroutines = Some(found.map_err(|error| cannot_read(at.clone(), &error))?);
+    fn index(&mut self, file: usize, at: &std::ops::Range<usize>) -> Read<&HashMap<Vec<u8>, (SubroutineKind, Mark)>> {
+        let file = &mut self.files[file];
+        if file.subroutines.is_none() {
+            let here = file.source.here();
+            let line_start = file.source.line_start;
+            let found = find_definitions(&mut file.source).and_then(|found| file.source.jump(here).map(|()| found));
+            file.source.line_start = line_start;
+            file.subroutines = Some(found.map_err(|error| cannot_read(at.clone(), &error))?);
         }
-        unit.subroutines
+        file.subroutines
             .as_ref()
-            .ok_or_else(|| Fault::new("gcode::o_word", at.clone(), "the subroutines cannot be found"))
+            .ok_or_else(|| LineFault::new("gcode::o_word", at.clone(), "the subroutines cannot be found"))
     }
 }
 
 /// Definitions of subroutines in a file; the first of a label counts.
-fn find_definitions(source: &mut Source) -> io::Result<HashMap<Vec<u8>, (Manner, Mark)>> {
+fn find_definitions(source: &mut Source) -> io::Result<HashMap<Vec<u8>, (SubroutineKind, Mark)>> {
     struct NoValues;
-    impl Values for NoValues {
+    impl ParameterSource for NoValues {
         fn numbered(&self, _index: usize) -> f64 {
             0.0
         }
@@ -299,9 +302,9 @@ fn find_definitions(source: &mut Source) -> io::Result<HashMap<Vec<u8>, (Manner,
     source.rewind()?;
     loop {
         let range = match source.next_line()? {
-            Line::End => return Ok(found),
-            Line::TooLong(_) => continue,
-            Line::Text(range) => range,
+            SourceLine::End => return Ok(found),
+            SourceLine::TooLong(_) => continue,
+            SourceLine::Text(range) => range,
         };
         let mut cursor = Cursor::new(source.bytes(range));
         if !at_o_word(&mut cursor) {
@@ -310,13 +313,13 @@ fn find_definitions(source: &mut Source) -> io::Result<HashMap<Vec<u8>, (Manner,
         let Ok(head) = read_head(&mut Evaluator::new(cursor, &NoValues)) else {
             continue;
         };
-        let manner = match head.keyword {
-            Keyword::Sub => Manner::Rs274,
-            Keyword::Number => Manner::Fanuc,
+        let kind = match head.keyword {
+            Keyword::Sub => SubroutineKind::Rs274,
+            Keyword::Number => SubroutineKind::Fanuc,
             _ => continue,
         };
-        if found.len() < MOST_SUBROUTINES {
-            found.entry(head.label).or_insert((manner, source.here()));
+        if found.len() < MAX_SUBROUTINES {
+            found.entry(head.label).or_insert((kind, source.here()));
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::settings::Dialect;
 use crate::state::Interpreter;
 use crate::text::block::Block;
 use crate::text::codes::{self, ALWAYS, Group};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 use crate::text::lexer::NO_EXPONENT;
 
 impl Interpreter {
@@ -40,7 +40,7 @@ impl Interpreter {
             return Err(self.axes_without_motion(block, motion));
         }
         let with = motion.map_or_else(|| "this line".to_owned(), codes::spelled);
-        let fault = Fault::new("gcode::unused_word", at, format!("{word} has no meaning with {with}"));
+        let fault = LineFault::new("gcode::unused_word", at, format!("{word} has no meaning with {with}"));
         Err(match word {
             'E' if block.exponent => fault.hint(NO_EXPONENT),
             'E' => fault.hint("E pushes filament on 3D printers: choose the printer's dialect for its programs"),
@@ -56,13 +56,13 @@ impl Interpreter {
     }
 
     #[cold]
-    pub(super) fn axes_without_motion(&self, block: &Block, motion: Option<u16>) -> Box<Fault> {
+    pub(super) fn axes_without_motion(&self, block: &Block, motion: Option<u16>) -> Box<LineFault> {
         let at = block.at_any(codes::AXES);
         if motion == Some(800) && block.code(Group::Motion).is_some() {
-            return Fault::new("gcode::no_motion_mode", at, "G80 ends motion modes and takes no axis words")
+            return LineFault::new("gcode::no_motion_mode", at, "G80 ends motion modes and takes no axis words")
                 .hint("write G0 or G1 with them on the next line");
         }
-        Fault::new("gcode::no_motion_mode", at, "axis words, but no code such as G0 or G1 says how to move")
+        LineFault::new("gcode::no_motion_mode", at, "axis words, but no code such as G0 or G1 says how to move")
             .hint("write G0, G1, G2 or G3 on this line or one before it")
     }
 }

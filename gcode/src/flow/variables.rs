@@ -4,15 +4,15 @@ use std::ops::Range;
 
 use crate::canon::EventKind;
 use crate::state::Interpreter;
-use crate::text::diagnostic::{Fault, Read};
-use crate::text::expression::{Evaluator, Target, Values};
+use crate::text::diagnostic::{LineFault, Read};
+use crate::text::expression::{Evaluator, ParameterSource, Target};
 use crate::text::lexer::Cursor;
 
 impl Interpreter {
     /// `#target = value`, in effect from the next line on.
     pub(super) fn assign(&mut self, target: &Target, value: f64) -> Read<()> {
         let read_only =
-            |name: &str| Err(Fault::new("gcode::parameter", 0..usize::MAX, format!("{name} can only be read")));
+            |name: &str| Err(LineFault::new("gcode::parameter", 0..usize::MAX, format!("{name} can only be read")));
         match target {
             Target::Numbered(index @ (5400..=5413 | 5420..=5428)) => {
                 return read_only(&format!("#{index}"));
@@ -20,7 +20,7 @@ impl Interpreter {
             Target::Numbered(3000) if self.dialect.is_fanuc() => {
                 let message = format!("the program stops here with alarm {value} (#3000)");
                 return Err(
-                    Fault::new("gcode::alarm", 0..usize::MAX, message).hint("the macro refuses what it was given")
+                    LineFault::new("gcode::alarm", 0..usize::MAX, message).hint("the macro refuses what it was given")
                 );
             }
             Target::Numbered(index) => self.parameters.set(*index, value),
@@ -32,7 +32,7 @@ impl Interpreter {
                     return read_only(&format!("#<{shown}>"));
                 }
                 if !self.parameters.set_named(name, value) {
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::parameter",
                         0..usize::MAX,
                         format!("no room for #<{shown}>: the program has too many named parameters"),
@@ -59,7 +59,7 @@ impl Interpreter {
         } else if let Some(rest) = after(b"abort,").filter(|_| in_brackets) {
             let message = format!("the program gives itself up here: {}", self.with_values(rest).trim());
             self.end_program();
-            return Err(Fault::new("gcode::abort", at, message)
+            return Err(LineFault::new("gcode::abort", at, message)
                 .hint("(abort, ...) ends a program on LinuxCNC; what it asks for is in its text"));
         } else {
             return Ok(());

@@ -1,40 +1,40 @@
 //! Points, lines and arcs of a plane, as far as cutter compensation and the cycles of lathes need them.
 
 /// A point or a vector.
-pub(crate) type Point = [f64; 2];
+pub(crate) type PlanePoint = [f64; 2];
 
-pub(crate) fn add(a: Point, b: Point) -> Point {
+pub(crate) fn add(a: PlanePoint, b: PlanePoint) -> PlanePoint {
     [a[0] + b[0], a[1] + b[1]]
 }
 
-pub(crate) fn minus(a: Point, b: Point) -> Point {
+pub(crate) fn minus(a: PlanePoint, b: PlanePoint) -> PlanePoint {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-pub(crate) fn scaled(a: Point, by: f64) -> Point {
+pub(crate) fn scaled(a: PlanePoint, by: f64) -> PlanePoint {
     [a[0] * by, a[1] * by]
 }
 
-pub(crate) fn dot(a: Point, b: Point) -> f64 {
+pub(crate) fn dot(a: PlanePoint, b: PlanePoint) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 
-pub(crate) fn cross(a: Point, b: Point) -> f64 {
+pub(crate) fn cross(a: PlanePoint, b: PlanePoint) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-pub(crate) fn length(a: Point) -> f64 {
+pub(crate) fn length(a: PlanePoint) -> f64 {
     a[0].hypot(a[1])
 }
 
 /// The vector at length 1; zero stays zero.
-pub(crate) fn unit(a: Point) -> Point {
+pub(crate) fn unit(a: PlanePoint) -> PlanePoint {
     let length = length(a);
     if length > 0.0 { scaled(a, 1.0 / length) } else { a }
 }
 
 /// The vector turned left by a quarter.
-pub(crate) fn left_of(a: Point) -> Point {
+pub(crate) fn left_of(a: PlanePoint) -> PlanePoint {
     [-a[1], a[0]]
 }
 
@@ -46,48 +46,48 @@ const SLACK_RAD: f64 = 1e-9;
 
 /// A line or an arc.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Curve {
+pub(crate) enum PlaneCurve {
     Line {
-        start: Point,
-        end: Point,
+        start: PlanePoint,
+        end: PlanePoint,
     },
     /// `turn` is 1 counter-clockwise, -1 clockwise; up to one full turn. Where start and end are not equally far from the centre,
     /// it counts as a circle through the end.
     Arc {
-        start: Point,
-        end: Point,
-        center: Point,
+        start: PlanePoint,
+        end: PlanePoint,
+        center: PlanePoint,
         turn: f64,
     },
 }
 
-impl Curve {
-    pub(crate) const fn start(&self) -> Point {
+impl PlaneCurve {
+    pub(crate) const fn start(&self) -> PlanePoint {
         match *self {
             Self::Line { start, .. } | Self::Arc { start, .. } => start,
         }
     }
 
-    pub(crate) const fn end(&self) -> Point {
+    pub(crate) const fn end(&self) -> PlanePoint {
         match *self {
             Self::Line { end, .. } | Self::Arc { end, .. } => end,
         }
     }
 
-    pub(crate) const fn set_start(&mut self, point: Point) {
+    pub(crate) const fn set_start(&mut self, point: PlanePoint) {
         match self {
             Self::Line { start, .. } | Self::Arc { start, .. } => *start = point,
         }
     }
 
-    pub(crate) const fn set_end(&mut self, point: Point) {
+    pub(crate) const fn set_end(&mut self, point: PlanePoint) {
         match self {
             Self::Line { end, .. } | Self::Arc { end, .. } => *end = point,
         }
     }
 
     /// How much farther from an arc's centre, or nearer, one point is than another, mm; 0 for a line.
-    pub(crate) fn off_mm(&self, point: Point, other: Point) -> f64 {
+    pub(crate) fn off_mm(&self, point: PlanePoint, other: PlanePoint) -> f64 {
         match *self {
             Self::Line { .. } => 0.0,
             Self::Arc { center, .. } => (length(minus(point, center)) - length(minus(other, center))).abs(),
@@ -100,7 +100,7 @@ impl Curve {
     }
 
     /// Direction at a point of the curve.
-    pub(crate) fn direction(&self, at: Point) -> Point {
+    pub(crate) fn direction(&self, at: PlanePoint) -> PlanePoint {
         match *self {
             Self::Line { start, end } => unit(minus(end, start)),
             Self::Arc { center, turn, .. } => scaled(left_of(unit(minus(at, center))), turn),
@@ -108,10 +108,10 @@ impl Curve {
     }
 
     /// Where the one curve can end and the other begin: the meeting nearest to a point, of two as near the one that `other` has first.
-    pub(crate) fn meet(&self, other: &Self, near: Point) -> Option<Point> {
+    pub(crate) fn meet(&self, other: &Self, near: PlanePoint) -> Option<PlanePoint> {
         let candidates = self.candidates(other);
-        let fits = |point: &Point| self.ends_at(*point) && other.begins_at(*point);
-        let away = |point: &Point| length(minus(*point, near));
+        let fits = |point: &PlanePoint| self.ends_at(*point) && other.begins_at(*point);
+        let away = |point: &PlanePoint| length(minus(*point, near));
         match candidates {
             // Both as near: a line that turns back into an arc. The arc is entered as early as it can be.
             [Some(a), Some(b)] if fits(&a) && fits(&b) && (away(&a) - away(&b)).abs() < SLACK_MM => {
@@ -122,15 +122,15 @@ impl Curve {
     }
 
     /// Where the curves cross between their ends, the first along `other`.
-    pub(crate) fn first_crossing(&self, other: &Self) -> Option<Point> {
+    pub(crate) fn first_crossing(&self, other: &Self) -> Option<PlanePoint> {
         let on_both =
-            |point: &Point| [self, other].iter().all(|curve| curve.ends_at(*point) && curve.begins_at(*point));
+            |point: &PlanePoint| [self, other].iter().all(|curve| curve.ends_at(*point) && curve.begins_at(*point));
         let candidates = self.candidates(other).into_iter().flatten().filter(on_both);
         candidates.min_by(|a, b| other.way_to(*a).total_cmp(&other.way_to(*b)))
     }
 
     /// Where the lines and circles that the curves lie on cross.
-    fn candidates(&self, other: &Self) -> [Option<Point>; 2] {
+    fn candidates(&self, other: &Self) -> [Option<PlanePoint>; 2] {
         match (*self, *other) {
             (Self::Line { start: a, end: b }, Self::Line { start: c, end: d }) => {
                 line_line(a, minus(b, a), c, minus(d, c))
@@ -146,7 +146,7 @@ impl Curve {
     }
 
     /// How far along the curve a point lies, mm or rad.
-    pub(crate) fn way_to(&self, point: Point) -> f64 {
+    pub(crate) fn way_to(&self, point: PlanePoint) -> f64 {
         match *self {
             Self::Line { start, end } => dot(minus(point, start), unit(minus(end, start))),
             Self::Arc { start, center, turn, .. } => sweep_within(start, point, center, turn),
@@ -154,7 +154,7 @@ impl Curve {
     }
 
     /// The curve moved by a vector.
-    pub(crate) fn moved(&self, by: Point) -> Self {
+    pub(crate) fn moved(&self, by: PlanePoint) -> Self {
         match *self {
             Self::Line { start, end } => Self::Line { start: add(start, by), end: add(end, by) },
             Self::Arc { start, end, center, turn } => {
@@ -172,7 +172,7 @@ impl Curve {
     }
 
     /// Whether the curve, shortened at its end, can end at `point`.
-    pub(crate) fn ends_at(&self, point: Point) -> bool {
+    pub(crate) fn ends_at(&self, point: PlanePoint) -> bool {
         match *self {
             Self::Line { start, end } => dot(minus(point, start), unit(minus(end, start))) >= -SLACK_MM,
             Self::Arc { start, end, center, turn } => {
@@ -184,7 +184,7 @@ impl Curve {
     }
 
     /// Whether the curve, shortened at its start, can begin at `point`.
-    pub(crate) fn begins_at(&self, point: Point) -> bool {
+    pub(crate) fn begins_at(&self, point: PlanePoint) -> bool {
         match *self {
             Self::Line { start, end } => Self::Line { start: end, end: start }.ends_at(point),
             Self::Arc { start, end, center, turn } => {
@@ -195,19 +195,19 @@ impl Curve {
 }
 
 /// Angle from start to end in the sense of `turn`, above 0 and up to a full turn.
-pub(crate) fn sweep(start: Point, end: Point, center: Point, turn: f64) -> f64 {
+pub(crate) fn sweep(start: PlanePoint, end: PlanePoint, center: PlanePoint, turn: f64) -> f64 {
     let angle = sweep_within(start, end, center, turn);
     if angle < SLACK_RAD { std::f64::consts::TAU } else { angle }
 }
 
 /// The same from 0.
-fn sweep_within(start: Point, end: Point, center: Point, turn: f64) -> f64 {
+fn sweep_within(start: PlanePoint, end: PlanePoint, center: PlanePoint, turn: f64) -> f64 {
     let (a, b) = (minus(start, center), minus(end, center));
     let angle = turn * cross(a, b).atan2(dot(a, b));
     if angle < -SLACK_RAD { angle + std::f64::consts::TAU } else { angle.max(0.0) }
 }
 
-fn line_line(a: Point, along: Point, c: Point, other: Point) -> [Option<Point>; 2] {
+fn line_line(a: PlanePoint, along: PlanePoint, c: PlanePoint, other: PlanePoint) -> [Option<PlanePoint>; 2] {
     let determinant = cross(along, other);
     if determinant == 0.0 {
         return [None, None];
@@ -216,7 +216,7 @@ fn line_line(a: Point, along: Point, c: Point, other: Point) -> [Option<Point>; 
     [Some(add(a, scaled(along, t))), None]
 }
 
-fn line_circle(a: Point, along: Point, center: Point, radius: f64) -> [Option<Point>; 2] {
+fn line_circle(a: PlanePoint, along: PlanePoint, center: PlanePoint, radius: f64) -> [Option<PlanePoint>; 2] {
     let foot = add(a, scaled(along, dot(minus(center, a), along)));
     let distance = length(minus(center, foot));
     if distance > radius + SLACK_MM {
@@ -226,7 +226,7 @@ fn line_circle(a: Point, along: Point, center: Point, radius: f64) -> [Option<Po
     [Some(add(foot, scaled(along, half))), Some(add(foot, scaled(along, -half)))]
 }
 
-fn circle_circle(c: Point, r: f64, d: Point, q: f64) -> [Option<Point>; 2] {
+fn circle_circle(c: PlanePoint, r: f64, d: PlanePoint, q: f64) -> [Option<PlanePoint>; 2] {
     let apart = minus(d, c);
     let distance = length(apart);
     if distance == 0.0 || distance > r + q + SLACK_MM || distance < (r - q).abs() - SLACK_MM {
@@ -241,26 +241,26 @@ fn circle_circle(c: Point, r: f64, d: Point, q: f64) -> [Option<Point>; 2] {
 
 /// An arc in the plane's own two coordinates.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Round {
+pub(crate) struct PlaneArc {
     pub(crate) center: [f64; 2],
     /// As in [`Shape::Arc`](crate::canon::Shape::Arc).
     pub(crate) turns: i32,
 }
 
 /// The curve moved to its left; an arc that would vanish does not exist.
-pub(crate) fn shifted(curve: &Curve, by: f64) -> Option<Curve> {
+pub(crate) fn shifted(curve: &PlaneCurve, by: f64) -> Option<PlaneCurve> {
     Some(match *curve {
-        Curve::Line { start, end } => {
+        PlaneCurve::Line { start, end } => {
             let shift = scaled(left_of(unit(minus(end, start))), by);
-            Curve::Line { start: add(start, shift), end: add(end, shift) }
+            PlaneCurve::Line { start: add(start, shift), end: add(end, shift) }
         }
-        Curve::Arc { start, end, center, turn } => {
-            let out = |point: Point| {
+        PlaneCurve::Arc { start, end, center, turn } => {
+            let out = |point: PlanePoint| {
                 let ray = minus(point, center);
                 let radius = length(ray);
                 (radius - turn * by > SLACK_MM).then(|| add(center, scaled(ray, (radius - turn * by) / radius)))
             };
-            Curve::Arc { start: out(start)?, end: out(end)?, center, turn }
+            PlaneCurve::Arc { start: out(start)?, end: out(end)?, center, turn }
         }
     })
 }
@@ -271,25 +271,31 @@ mod tests {
 
     #[test]
     fn curves_meet_where_they_should() {
-        let floor = Curve::Line { start: [0.0, 0.0], end: [4.0, 0.0] };
-        let wall = Curve::Line { start: [3.0, -1.0], end: [3.0, 5.0] };
+        let floor = PlaneCurve::Line { start: [0.0, 0.0], end: [4.0, 0.0] };
+        let wall = PlaneCurve::Line { start: [3.0, -1.0], end: [3.0, 5.0] };
         assert_eq!(floor.meet(&wall, [0.0, 0.0]).unwrap(), [3.0, 0.0]);
-        let circle = Curve::Arc { start: [5.0, 0.0], end: [0.0, 5.0], center: [0.0, 0.0], turn: 1.0 };
+        let circle = PlaneCurve::Arc { start: [5.0, 0.0], end: [0.0, 5.0], center: [0.0, 0.0], turn: 1.0 };
         assert_eq!(
             floor
-                .meet(&Curve::Arc { start: [3.0, 0.0], end: [0.0, 3.0], center: [0.0, 0.0], turn: 1.0 }, [4.0, 1.0])
+                .meet(
+                    &PlaneCurve::Arc { start: [3.0, 0.0], end: [0.0, 3.0], center: [0.0, 0.0], turn: 1.0 },
+                    [4.0, 1.0]
+                )
                 .unwrap(),
             [3.0, 0.0]
         );
-        let other = Curve::Arc { start: [1.0, 0.0], end: [6.0, 5.0], center: [6.0, 0.0], turn: -1.0 };
+        let other = PlaneCurve::Arc { start: [1.0, 0.0], end: [6.0, 5.0], center: [6.0, 0.0], turn: -1.0 };
         let point = circle.meet(&other, [3.0, 9.0]).unwrap();
         assert!((point[0] - 3.0).abs() < 1e-12 && (point[1] - 4.0).abs() < 1e-12);
         assert!(circle.ends_at(point) && !circle.ends_at([3.0, -4.0]));
         assert!(floor.begins_at([1.0, 0.0]) && !floor.begins_at([4.5, 0.0]));
         // A spiral's end is what the next motion meets.
-        let spiral = Curve::Arc { start: [3.5, 0.0], end: [0.0, 3.0], center: [0.0, 0.0], turn: 1.0 };
-        assert_eq!(spiral.meet(&Curve::Line { start: [0.0, 0.0], end: [0.0, 9.0] }, [0.0, 3.0]).unwrap(), [0.0, 3.0]);
-        let Curve::Arc { center, end, .. } = spiral.moved([1.0, 2.0]) else { panic!("an arc stays an arc") };
+        let spiral = PlaneCurve::Arc { start: [3.5, 0.0], end: [0.0, 3.0], center: [0.0, 0.0], turn: 1.0 };
+        assert_eq!(
+            spiral.meet(&PlaneCurve::Line { start: [0.0, 0.0], end: [0.0, 9.0] }, [0.0, 3.0]).unwrap(),
+            [0.0, 3.0]
+        );
+        let PlaneCurve::Arc { center, end, .. } = spiral.moved([1.0, 2.0]) else { panic!("an arc stays an arc") };
         assert_eq!((center, end), ([1.0, 2.0], [1.0, 5.0]));
     }
 }

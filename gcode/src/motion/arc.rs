@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use crate::canon::{Plane, Shape, Spline};
-use crate::geometry::plane::Round;
+use crate::geometry::plane::PlaneArc;
 use crate::geometry::spiral::{FULL_TURN_WITHIN_MM, Spiral};
 use crate::motion::feed::{Speed, others};
 use crate::settings::Dialect;
@@ -18,7 +18,7 @@ use crate::state::frame::Position;
 use crate::state::modal::INCH_MM;
 use crate::text::block::Block;
 use crate::text::codes::{bit, letter, slot as slot_of};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Difference of the radii that is always accepted, mm and inch.
 const RADIUS_SLACK: [f64; 2] = [0.02 * std::f64::consts::SQRT_2, 0.002 * std::f64::consts::SQRT_2];
@@ -27,11 +27,11 @@ const RADIUS_SLACK_MOST: [f64; 2] = [2.0 * std::f64::consts::SQRT_2, 0.2 * std::
 /// Between the two, the difference must be below this share of the radius.
 const RADIUS_SLACK_SHARE: f64 = 1e-3;
 /// Smallest radius of an arc given by its centre, mm: 0.00005 inch, in both units.
-const LEAST_RADIUS_MM: f64 = 0.000_05 * INCH_MM;
+const MIN_RADIUS_MM: f64 = 0.000_05 * INCH_MM;
 /// R may be shorter than half the chord by this much, mm: 0.00005 inch, in both units; the arc is then a half circle.
 const CHORD_SLACK_MM: f64 = 0.000_05 * INCH_MM;
 /// Full turns that P may ask for; a thread has fewer, and the turns are an i32 later.
-const MOST_TURNS: i64 = 1_000_000;
+const MAX_TURNS: i64 = 1_000_000;
 
 /// Letters of the centre along X, Y, Z.
 const CENTER_LETTERS: [u8; 3] = *b"ijk";
@@ -41,9 +41,9 @@ impl Interpreter {
     pub(crate) fn arc(&mut self, block: &Block, counter_clockwise: bool) -> Read<()> {
         let extruder_mm = self.extruder_word(block);
         let target = self.target(block)?;
-        if std::mem::take(&mut self.waiting.left_compensation) {
+        if std::mem::take(&mut self.carried.left_compensation) {
             let message = "the first motion behind G40 must be straight, not an arc";
-            return Err(Fault::new("gcode::compensation", block.whole(), message)
+            return Err(LineFault::new("gcode::compensation", block.whole(), message)
                 .hint("the tool stands beside the contour: lead it away with G1 or G0 first"));
         }
         let round = match self.round(block, &target, counter_clockwise) {
@@ -59,7 +59,7 @@ impl Interpreter {
     }
 
     /// Along a circle to a point in program coordinates, beside it under cutter compensation.
-    pub(crate) fn arc_as(&mut self, block: &Block, target: &Position, round: Round, extruder_mm: f64) -> Read<()> {
+    pub(crate) fn arc_as(&mut self, block: &Block, target: &Position, round: PlaneArc, extruder_mm: f64) -> Read<()> {
         if self.compensated_arc(block, target, round)? {
             return Ok(());
         }
@@ -69,7 +69,7 @@ impl Interpreter {
     }
 
     /// Moves along an arc given in program coordinates.
-    pub(crate) fn arc_to(&mut self, block: &Block, target: &Position, round: Round, extruder_mm: f64) -> Read<()> {
+    pub(crate) fn arc_to(&mut self, block: &Block, target: &Position, round: PlaneArc, extruder_mm: f64) -> Read<()> {
         let plane = self.modal.plane;
         let [first, second, _] = plane.axes();
         if self.frame.rotation_deg != 0.0 && plane != Plane::Xy {
@@ -92,7 +92,7 @@ impl Interpreter {
 
     /// An arc outside XY in a coordinate system that is turned about Z: its plane is none of the three, so it is handed out as one curve of
     /// cubic Bezier pieces.
-    fn turned_arc(&mut self, block: &Block, target: &Position, round: Round, extruder_mm: f64) -> Read<()> {
+    fn turned_arc(&mut self, block: &Block, target: &Position, round: PlaneArc, extruder_mm: f64) -> Read<()> {
         let from = self.frame.to_program(&self.here);
         let control_mm: Vec<[f64; 3]> = bezier_points(&from, target, round, self.modal.plane.axes())
             .into_iter()
@@ -117,14 +117,14 @@ impl Interpreter {
     }
 
     /// Centre and turns from the words of the block.
-    pub(crate) fn round(&self, block: &Block, target: &Position, counter_clockwise: bool) -> Read<Round> {
-        let turns = if block.has(b'p') { self.integer(block, b'p', 1, MOST_TURNS)? as i32 } else { 1 };
+    pub(crate) fn round(&self, block: &Block, target: &Position, counter_clockwise: bool) -> Read<PlaneArc> {
+        let turns = if block.has(b'p') { self.integer(block, b'p', 1, MAX_TURNS)? as i32 } else { 1 };
         let turns = if counter_clockwise { turns } else { -turns };
         let [first, second, normal] = self.modal.plane.axes();
         let offsets = bit(b'i') | bit(b'j') | bit(b'k');
         let center = if block.has(b'r') {
             if block.set & offsets != 0 {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::arc_format",
                     block.at_any(offsets),
                     "an arc has a radius R or a centre I J K, not both",
@@ -139,14 +139,16 @@ impl Interpreter {
                     (letter(slot_of(CENTER_LETTERS[normal])), ["G19 (YZ)", "G18 (ZX)", "G17 (XY)"][normal]);
                 let [one, two] = [first, second].map(|axis| letter(slot_of(CENTER_LETTERS[axis])));
                 let message = format!("{wrong} lies outside the arc's plane {plane}");
-                return Err(Fault::new("gcode::arc_plane", block.at(CENTER_LETTERS[normal]), message).hint(format!(
-                    "the centre of this plane is {} and {}, or choose another plane",
-                    one.min(two),
-                    one.max(two)
-                )));
+                return Err(LineFault::new("gcode::arc_plane", block.at(CENTER_LETTERS[normal]), message).hint(
+                    format!(
+                        "the centre of this plane is {} and {}, or choose another plane",
+                        one.min(two),
+                        one.max(two)
+                    ),
+                ));
             }
             if block.set & offsets == 0 {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::arc_format",
                     block.whole(),
                     "the arc has neither a radius R nor a centre I J K",
@@ -154,7 +156,7 @@ impl Interpreter {
             }
             self.center_by_offsets(block, target, [first, second])?
         };
-        Ok(Round { center, turns })
+        Ok(PlaneArc { center, turns })
     }
 
     fn center_by_offsets(&self, block: &Block, target: &Position, plane: [usize; 2]) -> Read<[f64; 2]> {
@@ -172,7 +174,7 @@ impl Interpreter {
                 None if self.modal.arc_absolute => {
                     let message =
                         format!("{} is missing: with G90.1 the centre needs both coordinates", letter(slot_of(name)));
-                    return Err(Fault::new("gcode::arc_format", block.whole(), message));
+                    return Err(LineFault::new("gcode::arc_format", block.whole(), message));
                 }
                 None => {}
             }
@@ -182,13 +184,13 @@ impl Interpreter {
         let difference = (at_start - at_end).abs();
         let largest = at_start.max(at_end);
         let least = at_start.min(at_end);
-        if least < LEAST_RADIUS_MM {
+        if least < MIN_RADIUS_MM {
             let message = if largest == 0.0 {
                 "the arc's radius is 0 mm: centre, start and end are one point".to_owned()
             } else {
-                format!("the arc's radius is {least:.6} mm; the limit is {LEAST_RADIUS_MM} mm")
+                format!("the arc's radius is {least:.6} mm; the limit is {MIN_RADIUS_MM} mm")
             };
-            return Err(Fault::new("gcode::arc_radius", block.whole(), message));
+            return Err(LineFault::new("gcode::arc_radius", block.whole(), message));
         }
         if difference > self.slack(RADIUS_SLACK_MOST)
             || (difference > self.slack(RADIUS_SLACK) && difference > RADIUS_SLACK_SHARE * largest)
@@ -197,7 +199,7 @@ impl Interpreter {
             let message = format!(
                 "the arc does not close: its radius is {at_start:.6} mm at the start and {at_end:.6} mm at the end, {difference:.6} mm apart; the limit is {limit:.6} mm"
             );
-            let fault = Fault::new("gcode::arc_radius", block.whole(), message);
+            let fault = LineFault::new("gcode::arc_radius", block.whole(), message);
             return Err(if self.modal.arc_absolute {
                 fault.hint("G90.1 is active: I J K are the centre itself, not its distance from the start")
             } else {
@@ -217,7 +219,7 @@ impl Interpreter {
         let chord = [target[first] - self.at[first], target[second] - self.at[second]];
         let length = chord[0].hypot(chord[1]);
         if length == 0.0 {
-            return Err(Fault::new("gcode::arc_radius", at, "an arc with R must end elsewhere than it starts")
+            return Err(LineFault::new("gcode::arc_radius", at, "an arc with R must end elsewhere than it starts")
                 .hint("write a full circle with I J K"));
         }
         let half = 0.5 * length;
@@ -226,7 +228,7 @@ impl Interpreter {
                 "R = {:.6} mm is too small to reach the end: it must be at least half the distance, {half:.6} mm",
                 radius.abs()
             );
-            return Err(Fault::new("gcode::arc_radius", at, message));
+            return Err(LineFault::new("gcode::arc_radius", at, message));
         }
         let height = (radius * radius - half * half).max(0.0).sqrt();
         // Left of the chord for a counter-clockwise arc of up to half a circle; a negative R is the longer way round.
@@ -249,7 +251,7 @@ impl Interpreter {
 const PIECE_RAD: f64 = 0.157;
 
 /// Control points of cubic Bezier pieces along an arc, helix or spiral.
-fn bezier_points(from: &Position, to: &Position, round: Round, axes: [usize; 3]) -> Vec<[f64; 3]> {
+fn bezier_points(from: &Position, to: &Position, round: PlaneArc, axes: [usize; 3]) -> Vec<[f64; 3]> {
     let [first, second, normal] = axes;
     let out = |point: &Position| [point[first] - round.center[0], point[second] - round.center[1]];
     let (a, b) = (out(from), out(to));

@@ -5,14 +5,16 @@
 //! back. The first motion ends beside its end point, the motion behind G40 leaves from there. All in machine coordinates of the plane.
 
 use crate::canon::{Canon, Motion, Plane, Shape};
-use crate::geometry::plane::{Curve, Point, Round, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, unit};
+use crate::geometry::plane::{
+    PlaneArc, PlaneCurve, PlanePoint, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, unit,
+};
 use crate::motion::feed::{Speed, others};
 use crate::state::Interpreter;
+use crate::state::carried_over::Compensation;
 use crate::state::frame::Position;
-use crate::state::waiting::Compensation;
 use crate::text::block::{Block, Word};
 use crate::text::codes::{Group, spelled};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Corners flatter than this, rad, are joined as they are where they cannot meet: up to r/800 into the contour. LinuxCNC's limit.
 const FLAT_WITHIN_RAD: f64 = 0.05;
@@ -32,20 +34,20 @@ impl Interpreter {
         };
         if word.number == 401 {
             let message = "G40.1 is read as G40: it ends cutter compensation";
-            self.output.warnings.push(*Fault::new("gcode::compensation", word.at(), message));
+            self.output.warnings.push(*LineFault::new("gcode::compensation", word.at(), message));
         }
         if matches!(word.number, 400 | 401) {
-            let was = self.waiting.compensation.take();
-            self.waiting.left_compensation |= was.is_some_and(|was| was.last.is_some() && was.radius_mm > 0.0);
+            let was = self.carried.compensation.take();
+            self.carried.left_compensation |= was.is_some_and(|was| was.last.is_some() && was.radius_mm > 0.0);
             self.release();
             return Ok(());
         }
         if self.compensates() {
-            return Err(Fault::new("gcode::compensation", word.at(), "cutter compensation is already on")
+            return Err(LineFault::new("gcode::compensation", word.at(), "cutter compensation is already on")
                 .hint("end it with G40 first"));
         }
         if self.modal.plane == Plane::Yz {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::compensation",
                 word.at(),
                 "cutter compensation needs the plane G17 or G18, not G19",
@@ -55,12 +57,12 @@ impl Interpreter {
         let diameter = self.cutter_diameter(block, word)?;
         if self.lathe.is_some() {
             let message = format!("{} inside the profile of a lathe cycle", spelled(word.number));
-            let fault = Fault::new("gcode::compensation", word.at(), message);
+            let fault = LineFault::new("gcode::compensation", word.at(), message);
             return Err(fault.hint("the profile is the part's; leave the radius of the tool to the cycle's D"));
         }
         // A negative diameter is the other side.
         let side = if diameter < 0.0 { -left } else { left };
-        self.waiting.compensation = Some(Compensation { side, radius_mm: 0.5 * diameter.abs(), last: None });
+        self.carried.compensation = Some(Compensation { side, radius_mm: 0.5 * diameter.abs(), last: None });
         Ok(())
     }
 
@@ -69,7 +71,7 @@ impl Interpreter {
         if matches!(word.number, 411 | 421) {
             let diameter = block.get(b'd').map(|diameter| diameter * self.modal.unit_mm);
             let message = || format!("{} needs the diameter D", spelled(word.number));
-            return diameter.ok_or_else(|| Fault::new("gcode::compensation", word.at(), message()));
+            return diameter.ok_or_else(|| LineFault::new("gcode::compensation", word.at(), message()));
         }
         let tool = if block.has(b'd') { self.integer(block, b'd', 0, 999_999)? as u32 } else { self.tool.number };
         match self.settings.tools.get(tool) {
@@ -78,7 +80,7 @@ impl Interpreter {
             None => {
                 let at = if block.has(b'd') { block.at(b'd') } else { word.at() };
                 let message = format!("tool {tool} is not in the tool table: its radius is not known");
-                Err(Fault::new("gcode::compensation", at, message).hint(format!(
+                Err(LineFault::new("gcode::compensation", at, message).hint(format!(
                     "give a tool table with --tool-table, or write {}.1 D with the diameter",
                     spelled(word.number)
                 )))
@@ -93,7 +95,7 @@ impl Interpreter {
             .iter()
             .find(|word| matches!(word.number, 100 | 170..=190 | 280 | 300 | 520 | 530 | 540..=593 | 920..=923));
         match forbidden {
-            Some(word) if !(matches!(word.number, 170 | 180) && self.is_plane(word.number)) => Err(Fault::new(
+            Some(word) if !(matches!(word.number, 170 | 180) && self.is_plane(word.number)) => Err(LineFault::new(
                 "gcode::compensation",
                 word.at(),
                 format!("{} cannot be used while cutter compensation is on", spelled(word.number)),
@@ -109,7 +111,7 @@ impl Interpreter {
 
     /// A straight motion; false where compensation is off.
     pub(super) fn compensated_straight(&mut self, block: &Block, target: &Position, is_feed: bool) -> Read<bool> {
-        let Some(compensation) = self.waiting.compensation.clone() else {
+        let Some(compensation) = self.carried.compensation.clone() else {
             return Ok(false);
         };
         let speed = if is_feed { Speed::Programmed } else { Speed::Rapid };
@@ -135,17 +137,17 @@ impl Interpreter {
         // An entry that leads into an inner corner ends as if its whole length had been beside the contour.
         let mut start = add(from, aside);
         if compensation.last.is_some() {
-            start = self.corner_to(block, &compensation, from, along, &Curve::Line { start, end }, speed)?;
+            start = self.corner_to(block, &compensation, from, along, &PlaneCurve::Line { start, end }, speed)?;
         }
         (machine[first], machine[second]) = (end[0], end[1]);
         self.hold_motion(block, machine, speed, Shape::Line)?;
-        self.set_last(Curve::Line { start, end }, along);
+        self.set_last(PlaneCurve::Line { start, end }, along);
         Ok(true)
     }
 
     /// An arc; false where compensation is off.
-    pub(super) fn compensated_arc(&mut self, block: &Block, target: &Position, round: Round) -> Read<bool> {
-        let Some(compensation) = self.waiting.compensation.clone() else {
+    pub(super) fn compensated_arc(&mut self, block: &Block, target: &Position, round: PlaneArc) -> Read<bool> {
+        let Some(compensation) = self.carried.compensation.clone() else {
             return Ok(false);
         };
         let plane = self.modal.plane;
@@ -164,21 +166,21 @@ impl Interpreter {
                 "the arc's radius of {radius:.4} mm must exceed the tool's radius of {:.4} mm",
                 compensation.radius_mm
             );
-            return Err(Fault::new("gcode::compensation", block.whole(), message));
+            return Err(LineFault::new("gcode::compensation", block.whole(), message));
         }
         let end = add(center, scaled(minus(to, center), offset_radius / radius));
-        let programmed = Curve::Arc { start: from, end: to, center, turn };
+        let programmed = PlaneCurve::Arc { start: from, end: to, center, turn };
         let end_along = programmed.direction(to);
         self.at = *target;
         let (start, center) = if compensation.last.is_none() && compensation.radius_mm > 0.0 {
             let here = [self.here[first], self.here[second]];
             let center = entry_center(here, to, end).ok_or_else(|| {
-                Fault::new("gcode::compensation", block.whole(), "the entry arc cannot reach the compensated end")
+                LineFault::new("gcode::compensation", block.whole(), "the entry arc cannot reach the compensated end")
             })?;
             (here, center)
         } else {
             let start = add(center, scaled(unit(minus(from, center)), offset_radius));
-            let curve = Curve::Arc { start, end, center, turn };
+            let curve = PlaneCurve::Arc { start, end, center, turn };
             let along = programmed.direction(from);
             (self.corner_to(block, &compensation, from, along, &curve, Speed::Programmed)?, center)
         };
@@ -187,19 +189,19 @@ impl Interpreter {
         let mut center_mm = [self.here[0], self.here[1], self.here[2]];
         (center_mm[first], center_mm[second]) = (center[0], center[1]);
         self.hold_motion(block, machine, Speed::Programmed, Shape::Arc { plane, center_mm, turns: round.turns })?;
-        self.set_last(Curve::Arc { start, end, center, turn }, end_along);
+        self.set_last(PlaneCurve::Arc { start, end, center, turn }, end_along);
         Ok(true)
     }
 
     /// The programmed position in the plane, machine coordinates.
-    fn programmed_point(&self) -> Point {
+    fn programmed_point(&self) -> PlanePoint {
         let [first, second, _] = self.modal.plane.axes();
         let machine = self.frame.to_machine(&self.at);
         [machine[first], machine[second]]
     }
 
-    fn set_last(&mut self, curve: Curve, along: Point) {
-        if let Some(compensation) = &mut self.waiting.compensation {
+    fn set_last(&mut self, curve: PlaneCurve, along: PlanePoint) {
+        if let Some(compensation) = &mut self.carried.compensation {
             compensation.last = Some((curve, along));
         }
     }
@@ -210,11 +212,11 @@ impl Interpreter {
         &mut self,
         block: &Block,
         compensation: &Compensation,
-        corner: Point,
-        along: Point,
-        next: &Curve,
+        corner: PlanePoint,
+        along: PlanePoint,
+        next: &PlaneCurve,
         speed: Speed,
-    ) -> Read<Point> {
+    ) -> Read<PlanePoint> {
         let radius_mm = compensation.radius_mm;
         let Some((before, before_along)) = compensation.last.as_ref().filter(|_| radius_mm > 0.0) else {
             self.release();
@@ -259,8 +261,8 @@ impl Interpreter {
     fn roll(
         &mut self,
         block: &Block,
-        corner: Point,
-        beside: Point,
+        corner: PlanePoint,
+        beside: PlanePoint,
         compensation: &Compensation,
         speed: Speed,
     ) -> Read<()> {
@@ -276,7 +278,7 @@ impl Interpreter {
             let cut_mm = compensation.radius_mm - nearest_mm;
             let message =
                 format!("the rapid cuts the corner before it: the tool goes {cut_mm:.4} mm into the contour there");
-            let fault = Fault::new("gcode::compensation", block.whole(), message);
+            let fault = LineFault::new("gcode::compensation", block.whole(), message);
             self.output.warnings.push(*fault.hint("round the corner with G1, or end compensation with G40 before G0"));
             Shape::Line
         } else {
@@ -293,15 +295,15 @@ impl Interpreter {
         let message = format!(
             "the tool of radius {radius_mm:.4} mm does not fit between the motions here: it cuts {cut_mm:.6} mm into the contour"
         );
-        let fault = Fault::new("gcode::compensation", block.whole(), message);
+        let fault = LineFault::new("gcode::compensation", block.whole(), message);
         self.output.warnings.push(*fault.hint("a smaller tool, or longer motions"));
     }
 
     /// Ends the held motion, and what follows it along the normal, at another point of the plane.
-    fn move_held_end(&mut self, point: Point) {
+    fn move_held_end(&mut self, point: PlanePoint) {
         let [first, second, _] = self.modal.plane.axes();
         let mut is_first = true;
-        for step in &mut self.waiting.held {
+        for step in &mut self.carried.held {
             let Canon::Motion(motion) = step else {
                 continue;
             };
@@ -331,8 +333,8 @@ impl Interpreter {
             motion.feed_mm_s = self.feed_for(block, motion.length_mm())?;
         }
         self.output.motions += 1;
-        self.waiting.left_compensation = false;
-        self.waiting.held.push(Canon::Motion(motion));
+        self.carried.left_compensation = false;
+        self.carried.held.push(Canon::Motion(motion));
         Ok(())
     }
 }
@@ -344,7 +346,7 @@ fn check_entry(block: &Block, way: f64, radius: f64) -> Read<()> {
     let message = format!(
         "the entry into cutter compensation is {way:.4} mm long: it must be as long as the tool's radius of {radius:.4} mm"
     );
-    Err(Fault::new("gcode::compensation", block.whole(), message)
+    Err(LineFault::new("gcode::compensation", block.whole(), message)
         .hint("begin the line with G41 or G42 farther from the contour"))
 }
 
@@ -354,11 +356,11 @@ fn cut_mm(radius_mm: f64, angle: f64) -> f64 {
 }
 
 #[cold]
-fn does_not_fit(block: &Block, radius_mm: f64) -> Box<Fault> {
+fn does_not_fit(block: &Block, radius_mm: f64) -> Box<LineFault> {
     let message = format!(
         "the tool of radius {radius_mm:.4} mm does not fit into the inner corner before this motion: it would cut into the contour"
     );
-    Fault::new("gcode::compensation", block.whole(), message)
+    LineFault::new("gcode::compensation", block.whole(), message)
         .hint("a smaller tool, a larger radius in the corner, or a longer motion")
 }
 
@@ -367,9 +369,9 @@ fn does_not_fit(block: &Block, radius_mm: f64) -> Box<Fault> {
 /// An arc with unequal radii has that of its end, so that its offset circle does not pass through `beside`. LinuxCNC 2.9 moves the
 /// circle there before it meets a line, and the meeting back with it: the line then ends up to the difference of the radii off
 /// itself. Two arcs meet as they are. Found by trying corners on it.
-fn inner_meeting(before: &Curve, next: &Curve, corner: Point, beside: Point) -> Option<Point> {
+fn inner_meeting(before: &PlaneCurve, next: &PlaneCurve, corner: PlanePoint, beside: PlanePoint) -> Option<PlanePoint> {
     match (before, next) {
-        (Curve::Line { .. }, Curve::Arc { start, .. }) => {
+        (PlaneCurve::Line { .. }, PlaneCurve::Arc { start, .. }) => {
             let shift = minus(beside, *start);
             let meeting = before.meet(&next.moved(shift), corner)?;
             // An inner corner makes the line shorter: where it is longer than that, it has met the far side of the circle.
@@ -381,7 +383,7 @@ fn inner_meeting(before: &Curve, next: &Curve, corner: Point, beside: Point) -> 
 }
 
 /// Centre of an entry arc: on the normal of the contour at its end, equally far from the start and from the compensated end.
-fn entry_center(start: Point, contour_end: Point, end: Point) -> Option<Point> {
+fn entry_center(start: PlanePoint, contour_end: PlanePoint, end: PlanePoint) -> Option<PlanePoint> {
     let normal = unit(minus(end, contour_end));
     let chord = minus(start, end);
     let along = dot(chord, normal);

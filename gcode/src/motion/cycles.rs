@@ -7,18 +7,18 @@
 use crate::canon::{Corner, EventKind};
 use crate::motion::feed::Speed;
 use crate::state::Interpreter;
+use crate::state::carried_over::{Cycle, Pecks};
 use crate::state::modal::INCH_MM;
-use crate::state::waiting::{Cycle, Pecks};
 use crate::text::block::Block;
 use crate::text::codes::{AXIS_LETTERS, bit, spelled};
-use crate::text::diagnostic::{Fault, Read, Short};
+use crate::text::diagnostic::{LineFault, Read, Short};
 
 /// Distance that a peck backs off or stays above the last depth, mm and inch.
 const PECK_CLEARANCE: [f64; 2] = [0.254, 0.010];
 /// Pecks of one line, over all its holes: they are held in memory until they are read, and more would be a mistake in Q or L.
-const MOST_PECKS: f64 = 1e5;
+const MAX_PECKS: f64 = 1e5;
 /// Holes of one line (L): up to eight motions each.
-const MOST_REPEATS: i64 = 20_000;
+const MAX_REPEATS: i64 = 20_000;
 
 /// An axis whose lengths are never diameters: Z.
 const RADIAL: usize = 2;
@@ -38,11 +38,11 @@ impl Interpreter {
         self.check_cycle(block, code)?;
         let [first, second, normal] = self.modal.plane.axes();
         let letter = AXIS_LETTERS[normal];
-        let mut kept = self.waiting.cycle;
+        let mut kept = self.carried.cycle;
         let is_series = kept.code != 0;
         if kept.code != code {
             if !block.has(b'r') {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::cycle",
                     block.whole(),
                     format!("R (height to begin at) is missing for {}", spelled(code)),
@@ -51,7 +51,7 @@ impl Interpreter {
             }
             if !block.has(letter) {
                 let name = char::from(letter).to_ascii_uppercase();
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::cycle",
                     block.whole(),
                     format!("{name} (bottom of the hole) is missing for {}", spelled(code)),
@@ -67,15 +67,15 @@ impl Interpreter {
         let bottom = if incremental { clearance + kept.bottom } else { kept.bottom };
         if clearance < bottom {
             let message = format!("R = {clearance} mm lies below the bottom of the hole at {bottom} mm");
-            return Err(Fault::new("gcode::cycle", block.at_any(bit(b'r') | bit(letter)), message));
+            return Err(LineFault::new("gcode::cycle", block.at_any(bit(b'r') | bit(letter)), message));
         }
         // Fanuc and Haas: none only keeps the words for the holes that follow.
         let least = i64::from(!self.dialect.is_fanuc());
-        let repeats = if block.has(b'l') { self.integer(block, b'l', least, MOST_REPEATS)? } else { 1 };
+        let repeats = if block.has(b'l') { self.integer(block, b'l', least, MAX_REPEATS)? } else { 1 };
         if self.modal.feed <= 0.0 {
             self.feed_for(block, 0.0)?;
         }
-        self.waiting.cycle = kept;
+        self.carried.cycle = kept;
         if repeats == 0 {
             return Ok(());
         }
@@ -93,14 +93,14 @@ impl Interpreter {
     fn check_cycle(&self, block: &Block, code: u16) -> Read<()> {
         let others = block.set & (bit(b'a') | bit(b'b') | bit(b'c') | bit(b'u') | bit(b'v') | bit(b'w'));
         if others != 0 {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::cycle",
                 block.at_any(others),
                 format!("{} moves X, Y and Z only", spelled(code)),
             ));
         }
         if !block.has_axes() {
-            return Err(Fault::new("gcode::cycle", block.whole(), format!("{} has no axis word", spelled(code))));
+            return Err(LineFault::new("gcode::cycle", block.whole(), format!("{} has no axis word", spelled(code))));
         }
         Ok(())
     }
@@ -117,7 +117,7 @@ impl Interpreter {
         }
         if let Some(value) = block.get(b'q') {
             if value <= 0.0 {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::cycle",
                     block.at(b'q'),
                     format!("the depth of a peck Q{} must be above 0", Short(value)),
@@ -127,7 +127,7 @@ impl Interpreter {
         }
         if let Some(value) = block.get(b'p') {
             if value < 0.0 {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::cycle",
                     block.at(b'p'),
                     format!("the dwell P{} is negative; the smallest is 0 s", Short(value)),
@@ -141,19 +141,19 @@ impl Interpreter {
             870 if block.set & (bit(b'i') | bit(b'j') | bit(b'k')) != bit(b'i') | bit(b'j') | bit(b'k') => "I, J or K",
             _ => return Ok(()),
         };
-        Err(Fault::new("gcode::cycle", block.whole(), format!("{missing} is missing for {}", spelled(kept.code))))
+        Err(LineFault::new("gcode::cycle", block.whole(), format!("{missing} is missing for {}", spelled(kept.code))))
     }
 
     fn drill_all(&mut self, block: &Block, hole: &Hole, plane: [usize; 2], repeats: i64) -> Read<()> {
-        if self.waiting.cycle.began_at < hole.clearance {
+        if self.carried.cycle.began_at < hole.clearance {
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
         }
-        let pecks = (hole.clearance - hole.bottom) / self.waiting.cycle.peck.unwrap_or(f64::INFINITY) * repeats as f64;
-        if matches!(self.waiting.cycle.code, 730 | 830) && pecks > MOST_PECKS {
-            let step = Short(self.waiting.cycle.peck.unwrap_or_default());
-            let message = format!("{pecks:.0} pecks of {step} mm in one line; it may have {MOST_PECKS}");
+        let pecks = (hole.clearance - hole.bottom) / self.carried.cycle.peck.unwrap_or(f64::INFINITY) * repeats as f64;
+        if matches!(self.carried.cycle.code, 730 | 830) && pecks > MAX_PECKS {
+            let step = Short(self.carried.cycle.peck.unwrap_or_default());
+            let message = format!("{pecks:.0} pecks of {step} mm in one line; it may have {MAX_PECKS}");
             let hint = "is Q, the depth of a peck, or L, the number of holes, a slip?";
-            return Err(Fault::new("gcode::cycle", block.at_any(bit(b'q') | bit(b'l')), message).hint(hint));
+            return Err(LineFault::new("gcode::cycle", block.at_any(bit(b'q') | bit(b'l')), message).hint(hint));
         }
         for _ in 0..repeats {
             let mut target = self.target(block)?;
@@ -172,7 +172,7 @@ impl Interpreter {
     /// From R to the bottom and, where the cycle feeds out, back: of G85 to R, of the others all the way.
     fn drill(&mut self, block: &Block, hole: &Hole, plane: [usize; 2]) -> Read<()> {
         let &Hole { normal, bottom, clearance, retract } = hole;
-        let cycle = self.waiting.cycle;
+        let cycle = self.carried.cycle;
         match cycle.code {
             730 | 830 => return self.peck(block, hole),
             870 => return self.back_bore(block, hole, plane),
@@ -184,7 +184,7 @@ impl Interpreter {
                 let wanted = if cycle.code == 840 { 1 } else { -1 };
                 if turning != wanted {
                     let (code, how) = if wanted == 1 { ("G84", "M3") } else { ("G74", "M4") };
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::cycle",
                         block.whole(),
                         format!("{code} taps with the spindle turning by {how}, which it does not"),
@@ -200,7 +200,7 @@ impl Interpreter {
             850 => self.along(block, normal, clearance, Speed::Programmed)?,
             860 | 880 => {
                 if turning == 0 {
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::cycle",
                         block.whole(),
                         format!("{} needs a turning spindle (M3 or M4)", spelled(cycle.code)),
@@ -228,11 +228,11 @@ impl Interpreter {
     /// G83 retracts to R after each peck, G73 only breaks the chip.
     fn peck(&mut self, block: &Block, hole: &Hole) -> Read<()> {
         let &Hole { normal, bottom, clearance, .. } = hole;
-        let step = self.waiting.cycle.peck.unwrap_or(clearance - bottom);
+        let step = self.carried.cycle.peck.unwrap_or(clearance - bottom);
         let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };
         if let Some(pecks) = self.fanuc.pecks {
             self.peck_smaller(block, normal, [clearance, bottom], above, pecks)?;
-            self.pause(self.waiting.cycle.dwell_s.unwrap_or(0.0));
+            self.pause(self.carried.cycle.dwell_s.unwrap_or(0.0));
             return Ok(());
         }
         // In the program's unit, as LinuxCNC counts: elsewhere rounding makes a last peck of nothing, or leaves one out.
@@ -242,14 +242,14 @@ impl Interpreter {
         while counted > last {
             let depth = counted * unit;
             self.along(block, normal, depth, Speed::Programmed)?;
-            if self.waiting.cycle.code == 830 {
+            if self.carried.cycle.code == 830 {
                 self.along(block, normal, clearance, Speed::Rapid)?;
             }
             self.along(block, normal, depth + above, Speed::Rapid)?;
             counted -= step;
         }
         self.along(block, normal, bottom, Speed::Programmed)?;
-        self.pause(self.waiting.cycle.dwell_s.unwrap_or(0.0));
+        self.pause(self.carried.cycle.dwell_s.unwrap_or(0.0));
         Ok(())
     }
 
@@ -258,7 +258,7 @@ impl Interpreter {
         let &Hole { normal, bottom, retract, .. } = hole;
         let turning = self.modal.spindle_turns;
         if turning == 0 {
-            return Err(Fault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)")
+            return Err(LineFault::new("gcode::cycle", block.whole(), "G87 needs a turning spindle (M3 or M4)")
                 .hint("start it before: S500 M3"));
         }
         let scale = self.modal.unit_mm;
@@ -297,7 +297,7 @@ impl Interpreter {
 
     /// Any other motion ends the series.
     pub(crate) fn end_cycles(&mut self) {
-        self.waiting.cycle.code = 0;
+        self.carried.cycle.code = 0;
     }
 
     /// A hole in pecks that grow smaller; `above_mm` is how far a rapid stays above the last depth.
@@ -317,9 +317,9 @@ impl Interpreter {
             peck = (peck - pecks.less_mm).max(pecks.least_mm);
             depth -= peck;
             count += 1;
-            if f64::from(count) > MOST_PECKS {
-                let message = format!("more than {MOST_PECKS} pecks; the smallest, K, is {} mm", Short(pecks.least_mm));
-                return Err(Fault::new("gcode::cycle", block.whole(), message).hint("make K larger"));
+            if f64::from(count) > MAX_PECKS {
+                let message = format!("more than {MAX_PECKS} pecks; the smallest, K, is {} mm", Short(pecks.least_mm));
+                return Err(LineFault::new("gcode::cycle", block.whole(), message).hint("make K larger"));
             }
         }
         self.along(block, normal, bottom, Speed::Programmed)

@@ -2,13 +2,13 @@
 
 use std::f64::consts::TAU;
 
-use crate::canon::{Canon, Motion, MotionKind, Others, Shape};
+use crate::canon::{AuxiliaryAxes, Canon, Motion, MotionKind, Shape};
 use crate::settings::Dialect;
 use crate::state::Interpreter;
 use crate::state::frame::Position;
 use crate::state::modal::FeedMode;
 use crate::text::block::Block;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Seconds of a minute.
 pub(crate) const MINUTE_S: f64 = 60.0;
@@ -17,7 +17,7 @@ pub(crate) const MINUTE_S: f64 = 60.0;
 pub(crate) const PRINTER_FEED_MM_S: f64 = 25.0;
 
 /// Nothing is turned closer to the axis than this, mm: the speed there is what it is here.
-pub(super) const LEAST_RADIUS_MM: f64 = 0.01;
+pub(super) const MIN_RADIUS_MM: f64 = 0.01;
 
 /// How fast a motion goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -54,7 +54,7 @@ impl Interpreter {
     pub(super) fn rpm_at(&self, x_mm: f64, highest: f64) -> f64 {
         // Metres or feet per minute.
         let surface_mm = self.modal.spindle_speed * if self.modal.unit_mm == 1.0 { 1000.0 } else { 304.8 };
-        (surface_mm / (TAU * x_mm.abs().max(LEAST_RADIUS_MM))).min(highest)
+        (surface_mm / (TAU * x_mm.abs().max(MIN_RADIUS_MM))).min(highest)
     }
 
     /// The feedrate of a motion of `length_mm`, mm/s.
@@ -63,7 +63,7 @@ impl Interpreter {
         let feed = self.modal.feed;
         match self.modal.feed_mode {
             FeedMode::PerMinute if feed > 0.0 => Ok(feed / MINUTE_S),
-            FeedMode::Inverse if !block.has(b'f') => Err(Fault::new(
+            FeedMode::Inverse if !block.has(b'f') => Err(LineFault::new(
                 "gcode::feed",
                 block.whole(),
                 "F is missing: with G93 (inverse time) every feed motion needs its own",
@@ -71,7 +71,7 @@ impl Interpreter {
             .hint("F2 does the motion in half a minute; G94 goes back to feed per minute")),
             // The machine's limits hold for whatever is faster; only it must be a number.
             FeedMode::Inverse if feed > 0.0 => Ok((length_mm * feed / MINUTE_S).min(f64::MAX)),
-            FeedMode::PerRevolution if feed > 0.0 && self.spindle_rpm(&self.here) == 0.0 => Err(Fault::new(
+            FeedMode::PerRevolution if feed > 0.0 && self.spindle_rpm(&self.here) == 0.0 => Err(LineFault::new(
                 "gcode::feed",
                 block.whole(),
                 "with G95 (feed per revolution) the spindle needs a speed S above 0 rev/min",
@@ -97,15 +97,23 @@ impl Interpreter {
         } else {
             "a feed motion, but no feed F was given so far"
         };
-        Err(Fault::new("gcode::feed", at, message).hint("add F with the feed per minute to this line or one before it"))
+        Err(LineFault::new("gcode::feed", at, message)
+            .hint("add F with the feed per minute to this line or one before it"))
     }
 
     /// Hands out the motion from `start` to the current position.
     #[inline]
-    pub(super) fn push_motion(&mut self, speed: Speed, start: &Position, shape: Shape, feed_mm_s: f64, others: Others) {
+    pub(super) fn push_motion(
+        &mut self,
+        speed: Speed,
+        start: &Position,
+        shape: Shape,
+        feed_mm_s: f64,
+        others: AuxiliaryAxes,
+    ) {
         let kind = speed.kind();
         self.output.motions += 1;
-        self.waiting.left_compensation = false;
+        self.carried.left_compensation = false;
         self.push(Canon::Motion(Motion {
             line: self.line,
             kind,
@@ -121,12 +129,12 @@ impl Interpreter {
 
 /// What moves besides X, Y and Z.
 #[inline]
-pub(super) fn others(start: &Position, end: &Position, extruder_mm: f64) -> Others {
+pub(super) fn others(start: &Position, end: &Position, extruder_mm: f64) -> AuxiliaryAxes {
     let axes = (start[3..] != end[3..]).then(|| {
         let six = |position: &Position| std::array::from_fn(|axis| position[axis + 3]);
         Box::new([six(start), six(end)])
     });
-    Others { extruder_mm, axes }
+    AuxiliaryAxes { extruder_mm, axes }
 }
 
 /// Length that F refers to: of X Y Z if they move, else of U V W, else degrees of A B C.

@@ -1,10 +1,11 @@
 //! Lathe cycles G70 to G72.2: a profile, written as a subroutine, is roughed out in straight passes or finished along itself.
 //!
 //! The cycle's block calls the subroutine; `state/lathe.rs` keeps its motions instead of handing them out. `words` are those that only
-//! a profile has. When it returns, `corners` and `profile` bring it into the cycle's own coordinates, and `offset` puts a curve beside it; `pockets`
+//! a profile has. When it returns, `corners` and `profile` bring it into the cycle's own coordinates (`cycle_plane`), and `offset` puts a curve beside it; `pockets`
 //! finds where it goes down, and `roughing` and `finishing` make motions of it. What LinuxCNC 2.9 does was found by trying programs on it; those that showed
 //! it are the `turning_*` of `core/tests/oracle_data`.
 
+pub(crate) mod cycle_plane;
 mod corners;
 mod profile;
 mod offset;
@@ -16,15 +17,15 @@ mod words;
 use crate::canon::Plane;
 use crate::motion::feed::Speed;
 use crate::state::Interpreter;
-use crate::state::lathe::{CHANGED, Lathe, LatheWork, ProfileCall};
+use crate::state::lathe::{CHANGED, LatheCycle, LatheWork, ProfileCall};
 use crate::text::block::Block;
 use crate::text::codes::{Group, spelled};
-use crate::text::diagnostic::{Fault, Read, Short};
+use crate::text::diagnostic::{LineFault, Read, Short};
 use crate::text::expression::INTEGER_WITHIN;
 use crate::text::source::Mark;
 
 /// Passes of one cycle: more is a mistake in I or P.
-pub(super) const MOST_PASSES: f64 = 10_000.0;
+pub(super) const MAX_PASSES: f64 = 10_000.0;
 /// LinuxCNC's depth of a pass and retraction where I and R are missing, in the unit of the program.
 const DEFAULT_DEPTH: f64 = 1.0;
 const DEFAULT_RETRACTION: f64 = 0.5;
@@ -35,7 +36,7 @@ impl Interpreter {
     /// G70 to G72.2: goes to the start; the reader then calls the profile.
     pub(crate) fn lathe_cycle(&mut self, block: &Block, code: u16) -> Read<()> {
         let name = spelled(code);
-        let fault = |at, message: String| Fault::new("gcode::lathe", at, message);
+        let fault = |at, message: String| LineFault::new("gcode::lathe", at, message);
         let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
         // Axis words alone go straight from here on, in a profile and behind a cycle that was refused.
         self.modal.motion = 10;
@@ -64,7 +65,7 @@ impl Interpreter {
         let target = self.target(block)?;
         self.go(block, target, Speed::Rapid)?;
         self.wanted = Some(ProfileCall { label: (number.round() as u64).to_string().into_bytes(), at: block.at(b'q') });
-        self.lathe = Some(Box::new(Lathe {
+        self.lathe = Some(Box::new(LatheCycle {
             code,
             block: block.clone(),
             line: self.line,
@@ -93,18 +94,18 @@ impl Interpreter {
             let name = char::from(letter).to_ascii_uppercase();
             let limit = self.settings.coordinate_limit_mm;
             let message = format!("{name}{} of {} is out of range: 0 to {limit} mm", Short(value), spelled(code));
-            Err(Fault::new("gcode::lathe", block.at(letter), message))
+            Err(LineFault::new("gcode::lathe", block.at(letter), message))
         };
         if code == 700 {
             if block.has(b'r') {
-                return Err(Fault::new("gcode::unused_word", block.at(b'r'), "R has no meaning with G70"));
+                return Err(LineFault::new("gcode::unused_word", block.at(b'r'), "R has no meaning with G70"));
             }
-            let passes = if block.has(b'p') { self.integer(block, b'p', 1, MOST_PASSES as i64)? as u32 } else { 1 };
+            let passes = if block.has(b'p') { self.integer(block, b'p', 1, MAX_PASSES as i64)? as u32 } else { 1 };
             return Ok(LatheWork::Finish { first_mm: distance(b'd', 0.0)?, last_mm: distance(b'e', 0.0)?, passes });
         }
         let depth_mm = distance(b'i', DEFAULT_DEPTH)?;
         if depth_mm == 0.0 {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::lathe",
                 block.at(b'i'),
                 format!("the depth of a pass I of {} must be above 0", spelled(code)),
@@ -122,7 +123,7 @@ impl Interpreter {
         if !open {
             return Ok(());
         }
-        Err(Fault::new(
+        Err(LineFault::new(
             "gcode::lathe",
             at,
             "the program ends inside the profile of a lathe cycle: nothing of it is cut",
@@ -131,14 +132,14 @@ impl Interpreter {
     }
 
     /// The profile has been read: carries the cycle out.
-    pub(crate) fn finish_lathe(&mut self, lathe: &Lathe) -> Read<()> {
+    pub(crate) fn finish_lathe(&mut self, lathe: &LatheCycle) -> Read<()> {
         let block = &lathe.block;
         self.line = lathe.line;
         (self.modal.feed, self.modal.feed_unit_mm) = lathe.feed;
         // Reading the profile has moved the reader, and not the tool.
         self.here = lathe.start;
         self.at = self.frame.to_program(&self.here);
-        let refuse = |message: String| Fault::new("gcode::lathe", block.at(b'q'), message);
+        let refuse = |message: String| LineFault::new("gcode::lathe", block.at(b'q'), message);
         if let Some((line, message)) = &lathe.fault {
             let fault =
                 refuse(format!("the profile of {} cannot be used: line {line}: {message}", spelled(lathe.code)));

@@ -9,14 +9,14 @@ use std::sync::Arc;
 use crate::canon::{Plane, Shape, Spline};
 use crate::motion::feed::{Speed, others};
 use crate::state::Interpreter;
+use crate::state::carried_over::Collected;
 use crate::state::frame::Position;
-use crate::state::waiting::Collected;
 use crate::text::block::Block;
 use crate::text::codes::{AXES, bit, spelled};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Control points of one curve: each costs 32 bytes, and no curve of a CAM system has more than some hundreds.
-const MOST_POINTS: usize = 100_000;
+const MAX_POINTS: usize = 100_000;
 /// Order of a curve. LinuxCNC takes 3 up; beyond 10 the basis loses digits.
 const ORDERS: (i64, i64) = (2, 10);
 /// Distance of the first control point of G6.2 from the position, mm: what three printed decimals leave.
@@ -29,7 +29,7 @@ impl Interpreter {
         let unit = self.modal.unit_mm;
         let target = self.target(block)?;
         if !block.has(b'x') && !block.has(b'y') {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::spline",
                 block.whole(),
                 format!("{} has no end: X and Y are missing", spelled(code)),
@@ -40,13 +40,17 @@ impl Interpreter {
         };
         if block.has(b'i') != block.has(b'j') {
             let at = block.at_any(bit(b'i') | bit(b'j'));
-            return Err(Fault::new("gcode::spline", at, "the first control point needs both I and J, or neither"));
+            return Err(LineFault::new("gcode::spline", at, "the first control point needs both I and J, or neither"));
         }
-        let first = match (pair(b'i', b'j'), self.waiting.bezier_end) {
+        let first = match (pair(b'i', b'j'), self.carried.bezier_end) {
             (Some(offset), _) => offset,
             (None, Some([p, q])) if code == 50 => [-p, -q],
             _ => {
-                return Err(Fault::new("gcode::spline", block.whole(), "I and J (first control point) are missing"));
+                return Err(LineFault::new(
+                    "gcode::spline",
+                    block.whole(),
+                    "I and J (first control point) are missing",
+                ));
             }
         };
         let start = self.at;
@@ -55,7 +59,7 @@ impl Interpreter {
         let mut end_offset = None;
         if code == 50 {
             if block.has(b'p') != block.has(b'q') || !block.has(b'p') {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::spline",
                     block.whole(),
                     "G5 needs P and Q (second control point, from the end)",
@@ -72,7 +76,7 @@ impl Interpreter {
         let control_mm = points.iter().map(|point| self.machine_point(point)).collect();
         let spline = Spline { degree, knots, control_mm, weights: vec![1.0; degree + 1] };
         self.spline_to(block, spline, target)?;
-        self.waiting.bezier_end = end_offset;
+        self.carried.bezier_end = end_offset;
         // The next line needs its own G5.
         self.modal.motion = 800;
         Ok(())
@@ -82,11 +86,11 @@ impl Interpreter {
     pub(crate) fn nurbs_point(&mut self, block: &Block) -> Read<()> {
         self.check_spline(block, 52)?;
         let has_point = block.has(b'x') || block.has(b'y');
-        if self.waiting.collected.is_none() {
+        if self.carried.collected.is_none() {
             let order = if block.has(b'l') { self.integer(block, b'l', ORDERS.0, ORDERS.1)? as usize } else { 3 };
             let first = self.machine_point(&self.at);
             let weight = if has_point { 1.0 } else { self.weight(block, b'p')? };
-            self.waiting.collected = Some(Collected {
+            self.carried.collected = Some(Collected {
                 code: 52,
                 order,
                 start: self.at,
@@ -99,26 +103,26 @@ impl Interpreter {
             }
         }
         if !(block.has(b'x') && block.has(b'y')) {
-            return Err(Fault::new("gcode::spline", block.whole(), "a control point of G5.2 needs both X and Y"));
+            return Err(LineFault::new("gcode::spline", block.whole(), "a control point of G5.2 needs both X and Y"));
         }
         if !block.has(b'p') {
-            return Err(Fault::new("gcode::spline", block.whole(), "a control point of G5.2 needs its weight P"));
+            return Err(LineFault::new("gcode::spline", block.whole(), "a control point of G5.2 needs its weight P"));
         }
         let weight = self.weight(block, b'p')?;
         // In G91 every point is a distance from the start of the curve.
-        self.at = self.waiting.collected.as_ref().map_or(self.at, |collected| collected.start);
+        self.at = self.carried.collected.as_ref().map_or(self.at, |collected| collected.start);
         let target = self.target(block)?;
         self.collect(block, target, weight)
     }
 
     /// G5.3: the curve of G5.2 is complete.
     pub(crate) fn nurbs_end(&mut self, block: &Block) -> Read<()> {
-        let Some(collected) = self.waiting.collected.take().filter(|collected| collected.code == 52) else {
-            return Err(Fault::new("gcode::spline", block.whole(), "G5.3 ends a curve that no G5.2 began"));
+        let Some(collected) = self.carried.collected.take().filter(|collected| collected.code == 52) else {
+            return Err(LineFault::new("gcode::spline", block.whole(), "G5.3 ends a curve that no G5.2 began"));
         };
         let (count, order) = (collected.points.len(), collected.order);
         if count < order {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::spline",
                 block.whole(),
                 format!("a curve of order {order} needs at least {order} control points, this has {count}"),
@@ -134,14 +138,14 @@ impl Interpreter {
     /// One line of G6.2: a control point with weight R and knot K, or a closing knot alone.
     pub(crate) fn nurbs_with_knots(&mut self, block: &Block) -> Read<()> {
         let Some(knot) = block.get(b'k') else {
-            return Err(Fault::new("gcode::spline", block.whole(), "every line of G6.2 needs its knot K"));
+            return Err(LineFault::new("gcode::spline", block.whole(), "every line of G6.2 needs its knot K"));
         };
-        if self.waiting.collected.is_none() {
+        if self.carried.collected.is_none() {
             self.begin_with_knots(block)?;
         }
-        let last = self.waiting.collected.as_ref().and_then(|collected| collected.knots.last().copied());
+        let last = self.carried.collected.as_ref().and_then(|collected| collected.knots.last().copied());
         if last.is_some_and(|last| knot < last) {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::spline",
                 block.at(b'k'),
                 format!("the knot K{knot} is below the one before it"),
@@ -152,14 +156,14 @@ impl Interpreter {
             let target = self.target(block)?;
             self.collect(block, target, weight)?;
         }
-        let Some(collected) = &mut self.waiting.collected else {
+        let Some(collected) = &mut self.carried.collected else {
             return Ok(());
         };
         collected.knots.push(knot);
         if collected.knots.len() < collected.points.len() + collected.order || block.has_axes() {
             return Ok(());
         }
-        let Some(collected) = self.waiting.collected.take() else {
+        let Some(collected) = self.carried.collected.take() else {
             return Ok(());
         };
         self.complete(block, collected)
@@ -168,21 +172,21 @@ impl Interpreter {
     /// The first line of G6.2: its order P, and that it begins where the tool is.
     fn begin_with_knots(&mut self, block: &Block) -> Read<()> {
         if !block.has(b'p') {
-            return Err(Fault::new("gcode::spline", block.whole(), "the first line of G6.2 needs the order P"));
+            return Err(LineFault::new("gcode::spline", block.whole(), "the first line of G6.2 needs the order P"));
         }
         let order = self.integer(block, b'p', ORDERS.0, ORDERS.1)? as usize;
         let target = self.target(block)?;
         let (first, here) = (self.machine_point(&target), self.machine_point(&self.at));
         let away = (0..3).map(|axis| (first[axis] - here[axis]).powi(2)).sum::<f64>().sqrt();
         if away > START_WITHIN_MM {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::spline",
                 block.whole(),
                 format!("the curve begins {away:.4} mm from the position; the limit is {START_WITHIN_MM} mm"),
             )
             .hint("move to the first control point before G6.2"));
         }
-        self.waiting.collected = Some(Collected {
+        self.carried.collected = Some(Collected {
             code: 62,
             order,
             start: self.at,
@@ -199,14 +203,14 @@ impl Interpreter {
         let (order, count) = (collected.order, collected.points.len());
         let knots = collected.knots;
         if count < order || knots[order - 1] >= knots[count] {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::spline",
                 block.whole(),
                 format!("{count} control points and their knots make no curve of order {order}"),
             ));
         }
         if knots[0] != knots[order - 1] || knots[count] != knots[count + order - 1] {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::spline",
                 block.whole(),
                 format!(
@@ -220,11 +224,11 @@ impl Interpreter {
 
     /// What happens in the middle of a curve that is not complete.
     pub(crate) fn check_no_curve(&mut self, block: &Block) -> Read<()> {
-        match self.waiting.collected.take() {
+        match self.carried.collected.take() {
             None => Ok(()),
             Some(collected) => {
                 let end = if collected.code == 52 { "G5.3" } else { "its last knots K" };
-                Err(Fault::new(
+                Err(LineFault::new(
                     "gcode::spline",
                     block.whole(),
                     format!("the curve of {} is not complete: {end} is missing", spelled(collected.code)),
@@ -235,7 +239,7 @@ impl Interpreter {
 
     fn check_spline(&self, block: &Block, code: u16) -> Read<()> {
         if self.modal.plane != Plane::Xy {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::spline",
                 block.whole(),
                 format!("{} needs the XY plane G17", spelled(code)),
@@ -244,14 +248,14 @@ impl Interpreter {
         }
         let others = block.set & AXES & !(bit(b'x') | bit(b'y'));
         if others != 0 {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::spline",
                 block.at_any(others),
                 format!("{} moves X and Y only", spelled(code)),
             ));
         }
         if self.compensates() {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::spline",
                 block.whole(),
                 format!("{} cannot run with cutter compensation", spelled(code)),
@@ -265,7 +269,7 @@ impl Interpreter {
         if weight > 0.0 {
             return Ok(weight);
         }
-        Err(Fault::new(
+        Err(LineFault::new(
             "gcode::spline",
             block.at(letter),
             format!("the weight {weight} of a control point must be above 0"),
@@ -275,14 +279,14 @@ impl Interpreter {
     fn collect(&mut self, block: &Block, target: Position, weight: f64) -> Read<()> {
         let point = self.machine_point(&target);
         self.at = target;
-        let Some(collected) = &mut self.waiting.collected else {
+        let Some(collected) = &mut self.carried.collected else {
             return Ok(());
         };
-        if collected.points.len() == MOST_POINTS {
-            return Err(Fault::new(
+        if collected.points.len() == MAX_POINTS {
+            return Err(LineFault::new(
                 "gcode::spline",
                 block.whole(),
-                format!("the curve has more than {MOST_POINTS} control points"),
+                format!("the curve has more than {MAX_POINTS} control points"),
             ));
         }
         collected.points.push(point);

@@ -4,7 +4,7 @@
 //! pieces along each of which n changes by at most 5 %; an arc has the speed of its end.
 
 use crate::canon::{Corner, Shape};
-use crate::motion::feed::{LEAST_RADIUS_MM, Speed, others};
+use crate::motion::feed::{MIN_RADIUS_MM, Speed, others};
 use crate::state::Interpreter;
 use crate::state::frame::Position;
 use crate::text::block::Block;
@@ -51,7 +51,7 @@ impl Interpreter {
         let ends = if crosses { vec![[from, 0.0], [0.0, to]] } else { vec![[from, to]] };
         let least = {
             let surface = self.rpm_at(1.0, f64::INFINITY);
-            (surface / highest).max(LEAST_RADIUS_MM)
+            (surface / highest).max(MIN_RADIUS_MM)
         };
         let share_of = |x: f64| (x - from) / (to - from);
         for [from, to] in ends {

@@ -4,7 +4,7 @@ use crate::state::Interpreter;
 use crate::state::frame::Position;
 use crate::text::block::Block;
 use crate::text::codes::{AXIS_LETTERS, bit};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Words of steps: letter, axis, and the word that gives the same axis as a coordinate.
 const STEPS: [(u8, usize, u8); 2] = [(b'u', 0, b'x'), (b'w', 2, b'z')];
@@ -46,7 +46,7 @@ impl Interpreter {
     /// G53: the words are machine coordinates.
     pub(super) fn machine_target(&self, block: &Block) -> Read<Position> {
         if self.modal.incremental {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::g53",
                 block.whole(),
                 "G53 means machine coordinates, which G91 (distances) cannot give",
@@ -54,7 +54,7 @@ impl Interpreter {
             .hint("write G90 before it"));
         }
         // Behind G40 the tool stands beside the contour, and every motion starts from the contour.
-        let mut machine = if self.waiting.left_compensation { self.frame.to_machine(&self.at) } else { self.here };
+        let mut machine = if self.carried.left_compensation { self.frame.to_machine(&self.at) } else { self.here };
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
                 machine[axis] = self.length(block, letter, axis, value)?;
@@ -79,17 +79,17 @@ impl Interpreter {
     fn polar_target(&self, block: &Block, target: &mut Position) -> Read<()> {
         let at = block.at_any(bit(b'@') | bit(b'^'));
         if block.set & (bit(b'x') | bit(b'y')) != 0 {
-            return Err(Fault::new("gcode::polar", at, "polar coordinates @ and ^ exclude X and Y"));
+            return Err(LineFault::new("gcode::polar", at, "polar coordinates @ and ^ exclude X and Y"));
         }
         let [first, second, _] = self.modal.plane.axes();
         let (old_radius, old_angle) = (self.at[0].hypot(self.at[1]), self.at[1].atan2(self.at[0]).to_degrees());
         if [first, second] != [0, 1] {
-            return Err(Fault::new("gcode::polar", at, "polar coordinates need the XY plane G17"));
+            return Err(LineFault::new("gcode::polar", at, "polar coordinates need the XY plane G17"));
         }
         let radius = block.get(b'@').map(|radius| radius * self.modal.unit_mm);
         let angle = block.get(b'^');
         if angle.is_none() && old_radius == 0.0 {
-            return Err(Fault::new("gcode::polar", at, "at the origin the angle ^ is needed"));
+            return Err(LineFault::new("gcode::polar", at, "at the origin the angle ^ is needed"));
         }
         let (radius, angle) = if self.modal.incremental {
             (old_radius + radius.unwrap_or(0.0), old_angle + angle.unwrap_or(0.0))
@@ -107,7 +107,7 @@ impl Interpreter {
             return Ok(());
         }
         if self.modal.incremental && block.has(b'x') {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::polar",
                 block.at(b'x'),
                 "a radius in G91 counts from where the tool is, which is not read",
@@ -124,7 +124,7 @@ impl Interpreter {
             Some(angle) if self.modal.incremental => old_angle + angle,
             Some(angle) => angle,
             None if old_radius == 0.0 => {
-                return Err(Fault::new(
+                return Err(LineFault::new(
                     "gcode::polar",
                     block.at(b'x'),
                     "Y (the angle) is missing: the tool is at the origin",
@@ -144,7 +144,7 @@ impl Interpreter {
         if block.has(place) {
             let [step, place] = [letter, place].map(|letter| char::from(letter).to_ascii_uppercase());
             let message = format!("{step} and {place} on one line: {step} is a distance along {place}");
-            return Err(Fault::new("gcode::repeated", block.at(letter), message).hint("write one of the two"));
+            return Err(LineFault::new("gcode::repeated", block.at(letter), message).hint("write one of the two"));
         }
         Ok(self.at[axis] + self.length(block, place, axis, value)?)
     }
@@ -157,7 +157,7 @@ impl Interpreter {
             if block.has(coordinate) {
                 let [step, place] = [letter, coordinate].map(|letter| char::from(letter).to_ascii_uppercase());
                 let message = format!("{step} and {place} in one block of a profile: {step} is a step along {place}");
-                return Err(Fault::new("gcode::lathe", block.at(letter), message).hint("write one of the two"));
+                return Err(LineFault::new("gcode::lathe", block.at(letter), message).hint("write one of the two"));
             }
             target[axis] = self.at[axis] + self.length(block, coordinate, axis, value)?;
         }

@@ -10,18 +10,18 @@ use crate::state::modal::FeedMode;
 use crate::state::parameters as numbers;
 use crate::text::block::Block;
 use crate::text::codes::{Group, bit, spelled};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Shortest way of a probe, mm (LinuxCNC: 0.254 mm or 0.01 inch).
 const PROBE_LEAST_MM: f64 = 0.254;
 /// Passes of a thread: more is a mistake in J or R.
-const MOST_PASSES: u32 = 20_000;
+const MAX_PASSES: u32 = 20_000;
 
 impl Interpreter {
     /// G33 and G33.1: along with the spindle, `K` mm a revolution.
     pub(crate) fn synchronized(&mut self, block: &Block, code: u16) -> Read<()> {
         let Some(pitch) = block.get(b'k') else {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::thread",
                 block.whole(),
                 format!("K (way per revolution) is missing for {}", spelled(code)),
@@ -49,12 +49,16 @@ impl Interpreter {
         if block.has_axes() {
             return Ok(());
         }
-        Err(Fault::new("gcode::thread", block.whole(), format!("{} has no axis word: it leads nowhere", spelled(code))))
+        Err(LineFault::new(
+            "gcode::thread",
+            block.whole(),
+            format!("{} has no axis word: it leads nowhere", spelled(code)),
+        ))
     }
 
     pub(crate) fn check_spindle(&self, block: &Block, code: u16) -> Read<()> {
         if self.modal.spindle_turns == 0 || self.modal.spindle_speed == 0.0 {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::thread",
                 block.whole(),
                 format!("{} needs a turning spindle: M3 or M4, and S above 0 rev/min", spelled(code)),
@@ -77,20 +81,24 @@ impl Interpreter {
     pub(crate) fn probe(&mut self, block: &Block) -> Read<()> {
         let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
         if !block.has_axes() {
-            return Err(Fault::new("gcode::probe", at, "a probing motion has no axis word"));
+            return Err(LineFault::new("gcode::probe", at, "a probing motion has no axis word"));
         }
         if self.modal.feed_mode == FeedMode::PerRevolution {
-            return Err(Fault::new("gcode::probe", at, "a probing motion cannot have a feed per revolution (G95)")
+            return Err(LineFault::new("gcode::probe", at, "a probing motion cannot have a feed per revolution (G95)")
                 .hint("write G94 with a feed F per minute before it"));
         }
         let rotary = bit(b'a') | bit(b'b') | bit(b'c');
         let target = self.target(block)?;
         if block.set & rotary != 0 && (3..6).any(|axis| target[axis] != self.at[axis]) {
-            return Err(Fault::new("gcode::probe", block.at_any(rotary), "a probing motion cannot turn a rotary axis"));
+            return Err(LineFault::new(
+                "gcode::probe",
+                block.at_any(rotary),
+                "a probing motion cannot turn a rotary axis",
+            ));
         }
         let way = distance(&self.at, &target);
         if way < PROBE_LEAST_MM {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::probe",
                 at,
                 format!("the probing way of {way:.3} mm is too short: at least {PROBE_LEAST_MM} mm"),
@@ -112,7 +120,7 @@ impl Interpreter {
             let name = char::from(letter).to_ascii_uppercase();
             block
                 .get(letter)
-                .ok_or_else(|| Fault::new("gcode::thread", block.whole(), format!("{name} is missing for G76")))
+                .ok_or_else(|| LineFault::new("gcode::thread", block.whole(), format!("{name} is missing for G76")))
         };
         let (pitch, offset, first, full) =
             (need(b'p')? * unit, need(b'i')? * unit, need(b'j')? * unit, need(b'k')? * unit);
@@ -122,9 +130,9 @@ impl Interpreter {
             (block.get(b'e').unwrap_or(0.0) * unit, if block.has(b'l') { self.integer(block, b'l', 0, 3)? } else { 0 });
         let angle = block.get(b'q').unwrap_or(0.0);
         let target = self.target(block)?;
-        let bad = |letter: u8, message: &str| Err(Fault::new("gcode::thread", block.at(letter), message));
+        let bad = |letter: u8, message: &str| Err(LineFault::new("gcode::thread", block.at(letter), message));
         if self.modal.plane != Plane::Zx {
-            return Err(Fault::new("gcode::thread", block.whole(), "G76 needs the plane G18"));
+            return Err(LineFault::new("gcode::thread", block.whole(), "G76 needs the plane G18"));
         }
         if pitch <= 0.0 {
             return bad(b'p', "the pitch P must be above 0");
@@ -152,7 +160,7 @@ impl Interpreter {
         while depth < full {
             self.thread_pass(block, &thread, depth)?;
             pass += 1;
-            if pass > MOST_PASSES {
+            if pass > MAX_PASSES {
                 return bad(b'j', "the thread needs too many passes");
             }
             depth = first * f64::from(pass).powf(1.0 / degression);

@@ -11,7 +11,7 @@ use std::{fs, io};
 use thiserror::Error;
 
 use crate::text::codes::AXIS_LETTERS;
-use crate::text::diagnostic::{Diagnostic, Fault, Read, Severity};
+use crate::text::diagnostic::{Diagnostic, LineFault, Read, Severity};
 
 /// One tool.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -81,7 +81,7 @@ impl ToolTable {
         let (number, tool) = parse_tool(words, unit_mm)?;
         if self.tools.insert(number, tool).is_some() {
             let message = format!("tool {number} stands on an earlier line, too");
-            return Err(Fault::new(CODE, 0..words.trim_ascii_end().len(), message).hint("a tool has one line"));
+            return Err(LineFault::new(CODE, 0..words.trim_ascii_end().len(), message).hint("a tool has one line"));
         }
         Ok(())
     }
@@ -90,7 +90,7 @@ impl ToolTable {
 /// Kind of all faults here.
 const CODE: &str = "gcode::tool_table";
 /// Larger lengths are typing errors, as in programs: 1 km.
-const MOST_MM: f64 = 1e6;
+const MAX_MM: f64 = 1e6;
 
 /// The words of a line with their places.
 pub(super) fn words(line: &[u8]) -> impl Iterator<Item = (Range<usize>, &[u8])> {
@@ -105,7 +105,7 @@ fn parse_tool(line: &[u8], unit_mm: f64) -> Read<(u32, Tool)> {
     let mut number = None;
     for (at, bytes) in words(line) {
         let word = String::from_utf8_lossy(bytes);
-        let fault = |what: &str| Fault::new(CODE, at.clone(), format!("`{word}`: {what}"));
+        let fault = |what: &str| LineFault::new(CODE, at.clone(), format!("`{word}`: {what}"));
         let letter = bytes[0].to_ascii_lowercase();
         let value = word.get(1..).and_then(|rest| rest.parse().ok()).filter(|value: &f64| value.is_finite());
         let Some(value) = value else {
@@ -125,7 +125,7 @@ fn parse_tool(line: &[u8], unit_mm: f64) -> Read<(u32, Tool)> {
         };
         let length = || -> Read<f64> {
             let length = value * unit_mm;
-            if length.abs() <= MOST_MM { Ok(length) } else { Err(fault(&format!("beyond the limit of {MOST_MM} mm"))) }
+            if length.abs() <= MAX_MM { Ok(length) } else { Err(fault(&format!("beyond the limit of {MAX_MM} mm"))) }
         };
         match letter {
             b't' => number = Some(whole()?),
@@ -145,7 +145,7 @@ fn parse_tool(line: &[u8], unit_mm: f64) -> Read<(u32, Tool)> {
             }
         }
     }
-    let missing = || Fault::new(CODE, 0..line.trim_ascii_end().len(), "the tool number T is missing");
+    let missing = || LineFault::new(CODE, 0..line.trim_ascii_end().len(), "the tool number T is missing");
     number.map(|number| (number, tool)).ok_or_else(|| missing().hint("begin the line with T and the number: T1 P1 D6"))
 }
 

@@ -6,11 +6,11 @@ use crate::state::frame::Position;
 use crate::state::modal::Modal;
 use crate::text::block::Block;
 use crate::text::codes::spelled;
-use crate::text::diagnostic::Fault;
+use crate::text::diagnostic::LineFault;
 use crate::text::source::Mark;
 
 /// Motions of a profile: they are kept in memory, and a drawing has far fewer.
-const MOST_MOTIONS: usize = 100_000;
+const MAX_MOTIONS: usize = 100_000;
 
 /// What a cycle does with its profile, mm.
 #[derive(Debug, Clone, Copy)]
@@ -66,7 +66,7 @@ impl Capture {
         let Canon::Motion(motion) = step else { return };
         let line = motion.line;
         let fault = match &motion {
-            _ if self.motions.len() >= MOST_MOTIONS => Some("the profile has more than 100000 motions"),
+            _ if self.motions.len() >= MAX_MOTIONS => Some("the profile has more than 100000 motions"),
             Motion { others, .. } if !others.is_none() => Some("it moves other axes than X and Z"),
             Motion { start_mm, end_mm, .. } if start_mm[1] != end_mm[1] => {
                 Some("it moves Y; only X and Z form a profile")
@@ -82,10 +82,10 @@ impl Capture {
     }
 
     /// Refuses the profile; `line` is that of the block that does not fit.
-    pub(crate) fn refuse(&self, line: u32, message: &str) -> Box<Fault> {
+    pub(crate) fn refuse(&self, line: u32, message: &str) -> Box<LineFault> {
         let place = if line == self.wanted.line { String::new() } else { format!("line {line}: ") };
         let message = format!("the profile of {} cannot be cut: {place}{message}", spelled(self.wanted.code));
-        Fault::new("gcode::lathe", self.wanted.block.at(b'p'), message)
+        LineFault::new("gcode::lathe", self.wanted.block.at(b'p'), message)
     }
 }
 

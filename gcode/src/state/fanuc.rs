@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use crate::geometry::plane::Round;
+use crate::geometry::plane::PlaneArc;
 use crate::state::capture::{Capture, ProfileBlocks};
+use crate::state::carried_over::Pecks;
 use crate::state::frame::Position;
-use crate::state::waiting::Pecks;
 use crate::text::block::Block;
 use crate::text::block::corner::CornerWord;
 
@@ -86,7 +86,7 @@ pub(crate) struct Pending {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Goal {
     pub(crate) target: Position,
-    pub(crate) round: Option<Round>,
+    pub(crate) round: Option<PlaneArc>,
 }
 
 /// What is written without a decimal point in a program, and whether anything has one.

@@ -8,7 +8,7 @@ use crate::text::block::Block;
 use crate::text::source::Mark;
 
 /// Motions of a profile, and of all passes along it: they are kept in memory, and a drawing has far fewer.
-pub(crate) const MOST_MOTIONS: usize = 100_000;
+pub(crate) const MAX_MOTIONS: usize = 100_000;
 
 pub(crate) const CHANGED: &str =
     "it changes the unit, the plane, offsets, G90 or G91, G7 or G8, G90.1, cutter compensation or the mode of F";
@@ -24,7 +24,7 @@ pub(crate) enum LatheWork {
 
 /// A cycle whose profile is being read.
 #[derive(Debug)]
-pub(crate) struct Lathe {
+pub(crate) struct LatheCycle {
     pub(crate) code: u16,
     pub(crate) block: Block,
     /// Line of the cycle, its place, and the depth of calls it stands at.
@@ -37,7 +37,7 @@ pub(crate) struct Lathe {
     pub(crate) modes: ProfileModes,
     pub(crate) work: LatheWork,
     pub(crate) motions: Vec<Motion>,
-    /// CornerCut words, each with the number of the motion before the corner.
+    /// Corner words, each with the number of the motion before the corner.
     pub(crate) corners: Vec<(usize, CornerCut)>,
     /// The corner word of the block under way.
     pub(crate) corner: Option<CornerCut>,
@@ -45,7 +45,7 @@ pub(crate) struct Lathe {
     pub(crate) fault: Option<(u32, String)>,
 }
 
-/// ProfileModes that give the words of a profile their meaning. LinuxCNC passes over codes in a profile that change them.
+/// Modes that give the words of a profile their meaning. LinuxCNC passes over codes in a profile that change them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct ProfileModes {
     pub(super) plane: Plane,
@@ -111,8 +111,8 @@ impl Interpreter {
         };
         match (fault, step) {
             (Some(fault), _) => lathe.fault = Some((self.line, fault)),
-            (None, Canon::Motion(_)) if lathe.motions.len() >= MOST_MOTIONS => {
-                lathe.fault = Some((self.line, format!("the profile has more than {MOST_MOTIONS} motions")));
+            (None, Canon::Motion(_)) if lathe.motions.len() >= MAX_MOTIONS => {
+                lathe.fault = Some((self.line, format!("the profile has more than {MAX_MOTIONS} motions")));
             }
             (None, Canon::Motion(motion)) => {
                 lathe.corners.extend(lathe.corner.take().map(|corner| (lathe.motions.len(), corner)));

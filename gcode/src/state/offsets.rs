@@ -9,13 +9,13 @@ use crate::state::parameters as numbers;
 use crate::text::block::{Block, Word};
 use crate::text::codes::fanuc::OWN;
 use crate::text::codes::{AXIS_LETTERS, Group, spelled};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Coordinate systems G54 to G59.3.
 const SYSTEMS: i64 = 9;
 
 /// Further systems that a control may have.
-const MOST_SYSTEMS: i64 = 300;
+const MAX_SYSTEMS: i64 = 300;
 
 impl Interpreter {
     /// G54 to G59.3; Fanuc's G54.1 P1 and up are further systems.
@@ -27,7 +27,7 @@ impl Interpreter {
             OWN.. => return self.further_system(block, word),
             541 => {
                 let message = "G54.1 P (additional coordinate systems) needs offsets that only the control has";
-                return Err(Fault::new("gcode::unsupported", word.at(), message)
+                return Err(LineFault::new("gcode::unsupported", word.at(), message)
                     .hint("use G54 to G59, or write the offsets with G10 L2"));
             }
             number @ 591..=593 => usize::from(number - 584),
@@ -63,7 +63,11 @@ impl Interpreter {
             if printer || (self.dialect.is_fanuc() && block.has(b's')) {
                 return Ok(());
             }
-            return Err(Fault::new("gcode::no_axes", word.at(), format!("{} has no axis word", spelled(word.number))));
+            return Err(LineFault::new(
+                "gcode::no_axes",
+                word.at(),
+                format!("{} has no axis word", spelled(word.number)),
+            ));
         }
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {
@@ -97,7 +101,11 @@ impl Interpreter {
         let first = system_first(system);
         if let Some(rotation) = block.get(b'r') {
             if by_position {
-                return Err(Fault::new("gcode::g10", block.at(b'r'), "R (rotation) goes with G10 L2, not with L20"));
+                return Err(LineFault::new(
+                    "gcode::g10",
+                    block.at(b'r'),
+                    "R (rotation) goes with G10 L2, not with L20",
+                ));
             }
             self.parameters.set(first + 9, rotation);
         }
@@ -141,9 +149,9 @@ impl Interpreter {
     fn further_system(&mut self, block: &Block, word: Word) -> Read<()> {
         if !block.has(b'p') {
             let message = format!("P (number of the coordinate system) is missing for {}", spelled(word.number));
-            return Err(Fault::new("gcode::coordinates", word.at(), message).hint("write G54.1 P1"));
+            return Err(LineFault::new("gcode::coordinates", word.at(), message).hint("write G54.1 P1"));
         }
-        let system = SYSTEMS as usize + self.integer(block, b'p', 1, MOST_SYSTEMS)? as usize;
+        let system = SYSTEMS as usize + self.integer(block, b'p', 1, MAX_SYSTEMS)? as usize;
         self.frame.system = system;
         self.load_further_system();
         if !self.fanuc.systems.contains_key(&system) && self.warn_once("gcode::coordinates") {
@@ -153,7 +161,7 @@ impl Interpreter {
                 system - SYSTEMS as usize
             );
             self.output.warnings.push(
-                *Fault::new("gcode::coordinates", word.at(), message)
+                *LineFault::new("gcode::coordinates", word.at(), message)
                     .hint("G10 L20 P1 X Y Z writes them into the program"),
             );
         }
@@ -168,7 +176,7 @@ impl Interpreter {
 
     /// `G10 L20 P3 X Y Z`.
     pub(crate) fn set_further_system(&mut self, block: &Block) -> Read<()> {
-        let system = SYSTEMS as usize + self.integer(block, b'p', 1, MOST_SYSTEMS)? as usize;
+        let system = SYSTEMS as usize + self.integer(block, b'p', 1, MAX_SYSTEMS)? as usize;
         let mut offset = self.fanuc.systems.get(&system).copied().unwrap_or_default();
         for (axis, letter) in AXIS_LETTERS.into_iter().enumerate() {
             if let Some(value) = block.get(letter) {

@@ -14,7 +14,7 @@ pub(crate) const LOCALS: usize = 30;
 pub(crate) const MACRO_LOCALS: usize = 33;
 /// Named parameters that a program may have. Each costs about 100 bytes; a program that makes more of them builds names in
 /// an endless loop.
-const MOST_NAMES: usize = 100_000;
+const MAX_NAMES: usize = 100_000;
 
 /// First of the nine coordinates that G28 goes to.
 pub(crate) const HOME_1: usize = 5161;
@@ -41,7 +41,7 @@ pub(super) const POSITION_FIRST: usize = 5420;
 
 /// Values of all parameters.
 #[derive(Debug)]
-pub(crate) struct Parameters {
+pub(crate) struct ParameterTable {
     numbered: Vec<f64>,
     globals: HashMap<Vec<u8>, f64>,
     /// Named locals of each call level, the main program first.
@@ -49,7 +49,7 @@ pub(crate) struct Parameters {
     names: usize,
 }
 
-impl Parameters {
+impl ParameterTable {
     pub(super) fn new() -> Self {
         let mut numbered = vec![0.0; PARAMETERS];
         numbered[SYSTEM] = 1.0;
@@ -96,7 +96,7 @@ impl Parameters {
         };
         if let Some(slot) = scope.get_mut(name) {
             *slot = value;
-        } else if self.names >= MOST_NAMES {
+        } else if self.names >= MAX_NAMES {
             return false;
         } else {
             scope.insert(name.to_vec(), value);
@@ -135,7 +135,7 @@ impl Parameters {
 /// Variables that are vacant when a program begins.
 const VACANT: [Range<usize>; 3] = [1..34, 100..200, 500..1000];
 
-impl Parameters {
+impl ParameterTable {
     /// Variables of macros begin without a value.
     pub(super) fn empty_variables(&mut self) {
         for index in VACANT.into_iter().flatten() {
@@ -150,7 +150,7 @@ mod tests {
 
     #[test]
     fn a_call_has_its_own_locals_and_shares_globals() {
-        let mut parameters = Parameters::new();
+        let mut parameters = ParameterTable::new();
         parameters.set(1, 7.0);
         parameters.set(31, 8.0);
         parameters.set_named(b"a", 1.0);
@@ -164,8 +164,8 @@ mod tests {
 
     #[test]
     fn names_are_limited() {
-        let mut parameters = Parameters::new();
-        assert!((0..MOST_NAMES).all(|n| parameters.set_named(format!("n{n}").as_bytes(), 0.0)));
+        let mut parameters = ParameterTable::new();
+        assert!((0..MAX_NAMES).all(|n| parameters.set_named(format!("n{n}").as_bytes(), 0.0)));
         assert!(!parameters.set_named(b"one_more", 0.0));
         assert!(parameters.set_named(b"n5", 3.0));
     }

@@ -6,7 +6,7 @@ use crate::state::frame::Frame;
 use crate::state::modal::Modal;
 use crate::state::parameters as numbers;
 use crate::text::block::Block;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Modes that M70 or M73 has put away.
 #[derive(Debug, Clone)]
@@ -74,7 +74,7 @@ impl Interpreter {
         if let Some(saved) = self.calls.saved.last().filter(|saved| saved.level == level).cloned() {
             self.restore(&saved);
         } else if self.dialect == Dialect::LinuxCnc {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::m_code",
                 block.whole(),
                 "M72 brings modes back that no M70 or M73 has put away",

@@ -6,7 +6,7 @@ use crate::state::offsets::system_first;
 use crate::state::parameters as numbers;
 use crate::text::block::{Block, Word};
 use crate::text::codes::{AXIS_LETTERS, Group, bit};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 impl Interpreter {
     /// G43, G43.1, G43.2, G49.
@@ -49,12 +49,12 @@ impl Interpreter {
         }
         if number != 0 && !self.settings.tools.tools.is_empty() {
             let at = if block.has(b'h') { block.at(b'h') } else { word.at() };
-            return Err(Fault::new("gcode::tool", at, format!("tool {number} is not in the tool table")));
+            return Err(LineFault::new("gcode::tool", at, format!("tool {number} is not in the tool table")));
         }
         if number != 0 {
             let at = if block.has(b'h') { block.at(b'h') } else { word.at() };
             let message = format!("tool {number} is not in the tool table: its length counts as 0 mm");
-            let fault = Fault::new("gcode::tool", at, message);
+            let fault = LineFault::new("gcode::tool", at, message);
             self.output
                 .warnings
                 .push(*fault.hint("give a tool table with --tool-table, or nothing if the program's Z is the tip"));
@@ -79,7 +79,7 @@ impl Interpreter {
     pub(crate) fn set_tool_part(&mut self, block: &Block, kind: i64) -> Read<()> {
         let number = self.integer(block, b'p', 1, 999_999)? as u32;
         let Some(value) = block.get(b'r') else {
-            return Err(Fault::new("gcode::g10", block.whole(), format!("G10 L{kind} has no R, the value to set")));
+            return Err(LineFault::new("gcode::g10", block.whole(), format!("G10 L{kind} has no R, the value to set")));
         };
         let value = value * self.modal.unit_mm;
         let mut tool = self.settings.tools.get(number).copied().unwrap_or_default();

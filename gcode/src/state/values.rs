@@ -6,7 +6,7 @@ use crate::state::modal::{FeedMode, Modal};
 use crate::state::parameters as numbers;
 use crate::text::codes::AXIS_LETTERS;
 use crate::text::codes::fanuc::OWN;
-use crate::text::expression::Values;
+use crate::text::expression::ParameterSource;
 
 impl Interpreter {
     /// The parameters that the interpreter itself keeps.
@@ -131,7 +131,7 @@ impl Modal {
     }
 }
 
-impl Values for Interpreter {
+impl ParameterSource for Interpreter {
     fn is_fanuc(&self) -> bool {
         self.dialect.is_fanuc()
     }

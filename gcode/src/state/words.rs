@@ -3,7 +3,7 @@
 use crate::state::Interpreter;
 use crate::text::block::Block;
 use crate::text::codes;
-use crate::text::diagnostic::{Fault, Read, Short};
+use crate::text::diagnostic::{LineFault, Read, Short};
 use crate::text::expression::INTEGER_WITHIN;
 
 impl Interpreter {
@@ -13,11 +13,11 @@ impl Interpreter {
         let name = codes::letter(codes::slot(letter));
         let at = block.at(letter);
         if (value - value.round()).abs() > INTEGER_WITHIN {
-            return Err(Fault::new("gcode::integer", at, format!("{name}{} is not an integer", Short(value))));
+            return Err(LineFault::new("gcode::integer", at, format!("{name}{} is not an integer", Short(value))));
         }
         let rounded = value.round() as i64;
         if !(low..=high).contains(&rounded) {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::range",
                 at,
                 format!("{name}{} is out of range: {low} to {high}", Short(value.round())),
@@ -46,12 +46,12 @@ impl Interpreter {
     }
 
     #[cold]
-    pub(crate) fn too_far(&self, block: &Block, letter: u8, value: f64) -> Box<Fault> {
+    pub(crate) fn too_far(&self, block: &Block, letter: u8, value: f64) -> Box<LineFault> {
         let name = char::from(letter).to_ascii_uppercase();
         let limit = self.settings.coordinate_limit_mm;
         let unit = if matches!(letter, b'a' | b'b' | b'c') { "degrees" } else { "mm" };
         let message = format!("{name} = {} {unit} is beyond the limit of {limit} {unit}", Short(value));
-        Fault::new("gcode::coordinate", block.at(letter), message).hint(if self.modal.unit_mm == 1.0 {
+        LineFault::new("gcode::coordinate", block.at(letter), message).hint(if self.modal.unit_mm == 1.0 {
             "is a decimal point missing?"
         } else {
             "is a decimal point missing? G20 is active: lengths are inches"

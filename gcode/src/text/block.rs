@@ -8,8 +8,8 @@ use crate::text::block::corner::CornerWord;
 use crate::text::characters::not_ascii;
 use crate::text::codes::fanuc::{CodeSet, LATHE_OWN, SYSTEM_A};
 use crate::text::codes::{self, AXES, GROUPS, Group, bit, letter, slot};
-use crate::text::diagnostic::{Fault, Read, Short};
-use crate::text::expression::{Evaluator, INTEGER_WITHIN, Target, Values};
+use crate::text::diagnostic::{LineFault, Read, Short};
+use crate::text::expression::{Evaluator, INTEGER_WITHIN, ParameterSource, Target};
 use crate::text::foreign;
 use crate::text::lexer::{Cursor, END, NO_EXPONENT, shown};
 
@@ -173,7 +173,7 @@ impl Block {
     }
 
     /// Reads the words from the cursor to the end of the line.
-    pub(crate) fn read<V: Values>(&mut self, cursor: Cursor<'_>, values: &V, style: Style) -> Read<()> {
+    pub(crate) fn read<V: ParameterSource>(&mut self, cursor: Cursor<'_>, values: &V, style: Style) -> Read<()> {
         let mut evaluator = Evaluator::new(cursor, values);
         self.end = evaluator.cursor.at;
         self.bare_words = style.printer;
@@ -218,7 +218,7 @@ impl Block {
     }
 
     #[inline]
-    fn read_word<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, byte: u8, start: usize) -> Read<()> {
+    fn read_word<V: ParameterSource>(&mut self, evaluator: &mut Evaluator<'_, V>, byte: u8, start: usize) -> Read<()> {
         self.exponent |= byte == b'e' && evaluator.cursor.is_exponent();
         evaluator.cursor.bump();
         let value = if self.bare_words && self.names_axes() && Self::is_bare(&mut evaluator.cursor) {
@@ -234,7 +234,7 @@ impl Block {
         if self.set & (1 << slot) != 0 {
             let message = format!("the line already has a word {}", letter(slot));
             let hint = if byte == b'e' && self.exponent { NO_EXPONENT } else { "split the line in two" };
-            return Err(Fault::new("gcode::repeated", start..evaluator.cursor.at, message).hint(hint));
+            return Err(LineFault::new("gcode::repeated", start..evaluator.cursor.at, message).hint(hint));
         }
         self.set |= 1 << slot;
         self.value[slot] = value;
@@ -248,7 +248,7 @@ impl Block {
     }
 
     #[inline]
-    fn read_g<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
+    fn read_g<V: ParameterSource>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
         evaluator.cursor.bump();
         let value = evaluator.value()?;
         let end = evaluator.cursor.at;
@@ -273,19 +273,19 @@ impl Block {
             );
             let is_mode = [other.number, code.number].iter().any(|&number| number >= LATHE_OWN);
             let hint = if is_mode { SYSTEM_A } else { "write them on two lines" };
-            return Err(Fault::new("gcode::modal_group", start..end, message).hint(hint));
+            return Err(LineFault::new("gcode::modal_group", start..end, message).hint(hint));
         }
         self.g.push(word);
         Ok(())
     }
 
-    fn read_m<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
+    fn read_m<V: ParameterSource>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
         evaluator.cursor.bump();
         let value = evaluator.value()?;
         let end = evaluator.cursor.at;
         let number = value.round();
         if (value - number).abs() > INTEGER_WITHIN || !(0.0..=9999.0).contains(&number) {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::m_code",
                 start..end,
                 format!("M{} is no M-code: the number must be an integer from 0 to 9999", Short(value)),
@@ -295,11 +295,11 @@ impl Block {
         Ok(())
     }
 
-    fn read_assignment<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
+    fn read_assignment<V: ParameterSource>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
         let target = evaluator.target()?;
         if !evaluator.cursor.eat(b'=') {
             let at = evaluator.cursor.at;
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::assignment",
                 start..at,
                 "a parameter here must be assigned to: `=` is missing",
@@ -316,7 +316,7 @@ impl Block {
 #[doc(hidden)]
 pub fn count_words(text: &[u8]) -> usize {
     struct Zeros;
-    impl Values for Zeros {
+    impl ParameterSource for Zeros {
         fn numbered(&self, _index: usize) -> f64 {
             0.0
         }
@@ -348,26 +348,28 @@ pub(crate) fn read_comment(cursor: &mut Cursor<'_>) -> Read<Range<usize>> {
         }
         Some(length) => {
             let at = start + 1 + length;
-            Err(Fault::new("gcode::comment", at..at + 1, "a comment begins inside a comment")
+            Err(LineFault::new("gcode::comment", at..at + 1, "a comment begins inside a comment")
                 .hint("close the first comment with `)` before the second `(`"))
         }
-        None => {
-            Err(Fault::new("gcode::comment", start..cursor.bytes.len(), "the comment is not closed: `)` is missing")
-                .hint("close it on the same line, or begin it with `;`"))
-        }
+        None => Err(LineFault::new(
+            "gcode::comment",
+            start..cursor.bytes.len(),
+            "the comment is not closed: `)` is missing",
+        )
+        .hint("close it on the same line, or begin it with `;`")),
     }
 }
 
 #[cold]
-fn misplaced(byte: u8, start: usize) -> Box<Fault> {
+fn misplaced(byte: u8, start: usize) -> Box<LineFault> {
     let what = if byte == b'n' { "the line number N" } else { "an O-word" };
     let fault =
-        Fault::new("gcode::misplaced", start..start + 1, format!("{what} must stand at the beginning of the line"));
+        LineFault::new("gcode::misplaced", start..start + 1, format!("{what} must stand at the beginning of the line"));
     if byte == b'o' { fault.hint("the letter O is no zero: write 0 in numbers") } else { fault }
 }
 
 #[cold]
-fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
+fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<LineFault> {
     let tenths = (value * 10.0).round();
     let spelled = if (value * 10.0 - tenths).abs() < TENTH_WITHIN {
         format!("G{}", Short(tenths / 10.0))
@@ -377,7 +379,7 @@ fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
     // `G1 10`: digits, a blank, digits.
     let has_gap = bytes[at.clone()].windows(3).any(|w| w[0].is_ascii_digit() && w[1] == b' ' && w[2].is_ascii_digit());
     if let Some((what, hint)) = foreign::what(tenths).filter(|_| !has_gap) {
-        return Fault::new("gcode::unsupported", at, format!("{spelled} ({what}, on other controls) is not read"))
+        return LineFault::new("gcode::unsupported", at, format!("{spelled} ({what}, on other controls) is not read"))
             .hint(hint);
     }
     // Read with the codes of Fanuc or Haas.
@@ -386,9 +388,9 @@ fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
         && codes::find(tenths as u16).is_some_and(|row| f64::from(row.number) == tenths)
     {
         let message = format!("{spelled} is a G-code of LinuxCNC, and none of Fanuc and Haas that this reader knows");
-        return Fault::new("gcode::unknown_g", at, message).hint("--dialect linuxcnc reads a program for LinuxCNC");
+        return LineFault::new("gcode::unknown_g", at, message).hint("--dialect linuxcnc reads a program for LinuxCNC");
     }
-    let fault = Fault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"));
+    let fault = LineFault::new("gcode::unknown_g", at, format!("{spelled} is not a G-code that this reader knows"));
     if has_gap {
         fault.hint("blanks inside numbers mean nothing: is a letter missing behind the blank?")
     } else {
@@ -398,7 +400,7 @@ fn unknown_g(value: f64, bytes: &[u8], at: Range<usize>) -> Box<Fault> {
 
 /// A byte that has no meaning here.
 #[cold]
-fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
+fn strange(bytes: &[u8], start: usize) -> Box<LineFault> {
     let byte = bytes[start];
     if byte.is_ascii() {
         let next = bytes[start + 1..].trim_ascii_start().first().map(u8::to_ascii_uppercase);
@@ -409,10 +411,11 @@ fn strange(bytes: &[u8], start: usize) -> Box<Fault> {
                 _ => "gives the angle of the line",
             };
             let message = format!("`,{}` {what} on other controls and is not read", char::from(next));
-            return Fault::new("gcode::unsupported", start..start + 1, message)
+            return LineFault::new("gcode::unsupported", start..start + 1, message)
                 .hint("write the corner as a motion of its own, with its end point");
         }
-        let fault = Fault::new("gcode::character", start..start + 1, format!("`{}` has no meaning here", shown(byte)));
+        let fault =
+            LineFault::new("gcode::character", start..start + 1, format!("`{}` has no meaning here", shown(byte)));
         return match byte {
             b'/' => fault.hint("a `/` that deletes the line stands first on it"),
             b')' => fault.hint("the comment that ends here has no `(`"),
@@ -437,7 +440,7 @@ mod tests {
 
     struct Nothing;
 
-    impl Values for Nothing {
+    impl ParameterSource for Nothing {
         fn numbered(&self, _index: usize) -> f64 {
             0.0
         }

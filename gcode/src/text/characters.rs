@@ -1,6 +1,6 @@
 //! Characters that look like G-code and are not: what word processors, web pages and other encodings leave in a program.
 
-use crate::text::diagnostic::Fault;
+use crate::text::diagnostic::LineFault;
 
 /// A character, its name, and what helps.
 const LOOKALIKES: &[(char, &str, &str)] = &[
@@ -30,21 +30,21 @@ const BLANK: &str = "write the blank of the keyboard; the text was perhaps copie
 
 /// What is wrong with the byte at `start`, which is no ASCII.
 #[cold]
-pub(super) fn not_ascii(bytes: &[u8], start: usize) -> Box<Fault> {
+pub(super) fn not_ascii(bytes: &[u8], start: usize) -> Box<LineFault> {
     // Up to four bytes make one character; what follows may be the beginning of another.
     let longest = &bytes[start..bytes.len().min(start + 4)];
     let valid = longest.utf8_chunks().next().map_or("", |chunk| chunk.valid());
     let Some(character) = valid.chars().next() else {
         let message = format!("byte {:#04x} is not UTF-8 text", bytes[start]);
-        return Fault::new("gcode::utf8", start..start + 1, message).hint("save the file as UTF-8 or plain ASCII");
+        return LineFault::new("gcode::utf8", start..start + 1, message).hint("save the file as UTF-8 or plain ASCII");
     };
     let at = start..start + character.len_utf8();
     match LOOKALIKES.iter().find(|row| row.0 == character) {
         Some((_, name, hint)) => {
             let message = format!("{name} (U+{:04X}) has no meaning outside a comment", u32::from(character));
-            Fault::new("gcode::character", at, message).hint(*hint)
+            LineFault::new("gcode::character", at, message).hint(*hint)
         }
-        None => Fault::new("gcode::character", at, format!("`{character}` has no meaning outside a comment")),
+        None => LineFault::new("gcode::character", at, format!("`{character}` has no meaning outside a comment")),
     }
 }
 

@@ -54,7 +54,7 @@ impl Diagnostic {
     }
 
     /// The fault `fault` of the line `bytes`.
-    pub(crate) fn of_line(severity: Severity, fault: Fault, file: Arc<str>, line: u32, bytes: &[u8]) -> Self {
+    pub(crate) fn of_line(severity: Severity, fault: LineFault, file: Arc<str>, line: u32, bytes: &[u8]) -> Self {
         let start = fault.at.start.min(bytes.len());
         let end = fault.at.end.clamp(start, bytes.len());
         // The window begins a third of the excerpt before the fault, so that the caret keeps some context on both sides.
@@ -166,7 +166,7 @@ impl fmt::Display for Short {
 
 /// A fault found while a line is read: the place is known only within the line.
 #[derive(Debug)]
-pub(crate) struct Fault {
+pub(crate) struct LineFault {
     pub(crate) code: &'static str,
     pub(super) at: Range<usize>,
     pub(crate) message: String,
@@ -174,9 +174,9 @@ pub(crate) struct Fault {
 }
 
 /// Result of reading something within a line; boxed, because the success path must stay small and fast.
-pub(crate) type Read<T> = Result<T, Box<Fault>>;
+pub(crate) type Read<T> = Result<T, Box<LineFault>>;
 
-impl Fault {
+impl LineFault {
     /// A fault at the bytes `at` of the line.
     #[cold]
     pub(crate) fn new(code: &'static str, at: Range<usize>, message: impl Into<String>) -> Box<Self> {

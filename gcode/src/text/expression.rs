@@ -15,17 +15,17 @@
 mod operators;
 
 use crate::text::characters::not_ascii;
-use crate::text::diagnostic::{Fault, Read, Short};
+use crate::text::diagnostic::{LineFault, Read, Short};
 use crate::text::expression::operators::{OPERATORS, Operator, apply_function, without_vacancy};
 use crate::text::lexer::{Cursor, END, NO_EXPONENT, shown};
 
 /// Brackets, signs and `#` inside each other. Each level costs stack; no written program has more than a dozen.
-const DEEPEST: u32 = 200;
+const MAX_DEPTH: u32 = 200;
 /// An index or number this close to an integer is that integer, as in LinuxCNC.
 pub(crate) const INTEGER_WITHIN: f64 = 1e-4;
 
 /// Where parameter values come from.
-pub(crate) trait Values {
+pub(crate) trait ParameterSource {
     /// Value of `#index`, `index` from 1 to 5602.
     fn numbered(&self, index: usize) -> f64;
     /// Value of `#<name>`, lower case without blanks.
@@ -69,7 +69,7 @@ const COMPARISONS: &str = "comparisons are spelled out: EQ, NE, GT, GE, LT, LE, 
 /// Words of Fanuc macros and of other languages, which programs for them hold in place of O-words.
 const MACRO_KEYWORDS: [&str; 8] = ["if", "while", "goto", "end", "endif", "else", "for", "do"];
 
-impl<'a, V: Values> Evaluator<'a, V> {
+impl<'a, V: ParameterSource> Evaluator<'a, V> {
     pub(crate) const fn new(cursor: Cursor<'a>, values: &'a V) -> Self {
         Self { cursor, values, depth: 0 }
     }
@@ -121,7 +121,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
         if !self.cursor.eat(b'[') {
             let found = self.cursor.raw();
             let message = format!("`[` is missing: {} stands in its place", text_of(found));
-            let fault = Fault::new("gcode::bracket", start..start + 1, message);
+            let fault = LineFault::new("gcode::bracket", start..start + 1, message);
             return Err(if found == b'(' {
                 fault.hint("arguments and calculations stand in [ ]: sin[30]; ( ) is a comment")
             } else {
@@ -132,7 +132,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
         if !self.cursor.eat(b']') {
             let (found, at) = (self.cursor.raw(), self.cursor.at);
             let message = format!("`]` or an operator is missing: {} stands in its place", text_of(found));
-            let fault = Fault::new("gcode::bracket", at..at + 1, message);
+            let fault = LineFault::new("gcode::bracket", at..at + 1, message);
             if !found.is_ascii() {
                 return Err(not_ascii(self.cursor.bytes, at));
             }
@@ -163,7 +163,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
             } else {
                 operator.apply(left, right)
             };
-            left = applied.map_err(|message| Fault::new("gcode::expression", start..self.cursor.at, message))?;
+            left = applied.map_err(|message| LineFault::new("gcode::expression", start..self.cursor.at, message))?;
             if !left.is_finite() {
                 return Err(not_finite(start..self.cursor.at));
             }
@@ -196,22 +196,24 @@ impl<'a, V: Values> Evaluator<'a, V> {
         } else if name == b"atan" {
             if !self.cursor.eat(b'/') {
                 let message = "atan needs two arguments: a `/` and a second bracket are missing";
-                return Err(Fault::new("gcode::expression", start..self.cursor.at, message).hint("write atan[y]/[x]"));
+                return Err(
+                    LineFault::new("gcode::expression", start..self.cursor.at, message).hint("write atan[y]/[x]")
+                );
             }
             argument.atan2(self.bracketed()?).to_degrees()
         } else {
             apply_function(name, argument)
-                .map_err(|message| Fault::new("gcode::expression", start..self.cursor.at, message))?
+                .map_err(|message| LineFault::new("gcode::expression", start..self.cursor.at, message))?
         };
         if value.is_finite() { Ok(value) } else { Err(not_finite(start..self.cursor.at)) }
     }
 
     #[cold]
-    fn unknown_function(&mut self, start: usize) -> Box<Fault> {
+    fn unknown_function(&mut self, start: usize) -> Box<LineFault> {
         let letters: Vec<u8> =
             self.cursor.rest().iter().copied().take_while(u8::is_ascii_alphabetic).take(12).collect();
         let name = String::from_utf8_lossy(&letters).into_owned();
-        let fault = Fault::new(
+        let fault = LineFault::new(
             "gcode::number",
             start..start + letters.len(),
             format!("a value is missing: `{name}` is neither a number nor a function"),
@@ -248,7 +250,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
                 return Ok(f64::from(u8::from(exists)));
             }
         }
-        Err(Fault::new("gcode::expression", start..self.cursor.at + 1, "exists takes a parameter")
+        Err(LineFault::new("gcode::expression", start..self.cursor.at + 1, "exists takes a parameter")
             .hint("write exists[#<name>]"))
     }
 
@@ -263,7 +265,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
         let rounded = index.round();
         let at = start..self.cursor.at;
         if (index - rounded).abs() > INTEGER_WITHIN {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::parameter",
                 at,
                 format!("parameter number {} is not an integer", Short(index)),
@@ -273,7 +275,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
         if !(first..PARAMETERS as f64).contains(&rounded) {
             let message =
                 format!("parameter #{} does not exist: the numbers go from 1 to {}", Short(rounded), PARAMETERS - 1);
-            return Err(Fault::new("gcode::parameter", at, message));
+            return Err(LineFault::new("gcode::parameter", at, message));
         }
         Ok(Target::Numbered(rounded as usize))
     }
@@ -285,7 +287,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
             match self.cursor.peek() {
                 b'>' => break,
                 END => {
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::parameter",
                         start..self.cursor.at,
                         "the name is not closed: `>` is missing",
@@ -297,7 +299,7 @@ impl<'a, V: Values> Evaluator<'a, V> {
         }
         self.cursor.bump();
         if name.is_empty() {
-            Err(Fault::new("gcode::parameter", start..self.cursor.at, "the name is empty"))
+            Err(LineFault::new("gcode::parameter", start..self.cursor.at, "the name is empty"))
         } else {
             Ok(name)
         }
@@ -306,22 +308,26 @@ impl<'a, V: Values> Evaluator<'a, V> {
     fn parameter(&self, target: &Target, start: usize) -> Read<f64> {
         match target {
             Target::Numbered(index) => match self.values.refused(*index) {
-                Some(message) => Err(Fault::new("gcode::parameter", start..self.cursor.at, message)
+                Some(message) => Err(LineFault::new("gcode::parameter", start..self.cursor.at, message)
                     .hint("give it to the program as a number")),
                 None => Ok(self.values.numbered(*index)),
             },
             Target::Named(name) => self.values.named(name).ok_or_else(|| {
                 let name = String::from_utf8_lossy(name);
-                Fault::new("gcode::parameter", start..self.cursor.at, format!("parameter #<{name}> has no value here"))
-                    .hint("assign it first; names without a leading underscore are local to their subroutine")
+                LineFault::new(
+                    "gcode::parameter",
+                    start..self.cursor.at,
+                    format!("parameter #<{name}> has no value here"),
+                )
+                .hint("assign it first; names without a leading underscore are local to their subroutine")
             }),
         }
     }
 
     fn deeper<T>(&mut self, start: usize, read: impl FnOnce(&mut Self) -> Read<T>) -> Read<T> {
-        if self.depth == DEEPEST {
-            let message = format!("more than {DEEPEST} brackets, signs or # inside each other");
-            return Err(Fault::new("gcode::depth", start..self.cursor.at + 1, message));
+        if self.depth == MAX_DEPTH {
+            let message = format!("more than {MAX_DEPTH} brackets, signs or # inside each other");
+            return Err(LineFault::new("gcode::depth", start..self.cursor.at + 1, message));
         }
         self.depth += 1;
         let result = read(self);
@@ -331,8 +337,8 @@ impl<'a, V: Values> Evaluator<'a, V> {
 }
 
 #[cold]
-fn not_finite(at: std::ops::Range<usize>) -> Box<Fault> {
-    Fault::new("gcode::expression", at, "the result is not a finite number")
+fn not_finite(at: std::ops::Range<usize>) -> Box<LineFault> {
+    LineFault::new("gcode::expression", at, "the result is not a finite number")
 }
 
 fn text_of(byte: u8) -> String {
@@ -348,7 +354,7 @@ mod tests {
 
     struct Fixed;
 
-    impl Values for Fixed {
+    impl ParameterSource for Fixed {
         fn numbered(&self, index: usize) -> f64 {
             index as f64 * 10.0
         }

@@ -5,7 +5,7 @@
 //! correctly rounded (W. D. Clinger, How to read floating point numbers accurately, 1990). Longer ones go through `str::parse`.
 
 use crate::text::characters::not_ascii;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// What [`Cursor::peek`] gives behind the last byte: no line contains it.
 pub(crate) const END: u8 = b'\n';
@@ -160,7 +160,7 @@ impl<'a> Cursor<'a> {
             .collect();
         match digits.parse::<f64>() {
             Ok(value) if value.is_finite() => Ok(value),
-            _ => Err(Fault::new(
+            _ => Err(LineFault::new(
                 "gcode::number",
                 start..self.at,
                 "a number this long is beyond what any control can hold",
@@ -169,14 +169,18 @@ impl<'a> Cursor<'a> {
     }
 
     #[cold]
-    fn not_a_number(&mut self, start: usize) -> Box<Fault> {
+    fn not_a_number(&mut self, start: usize) -> Box<LineFault> {
         let found = self.peek();
         if !self.raw().is_ascii() {
             return not_ascii(self.bytes, self.at);
         }
         let what = if found == END { "the end of the line".to_owned() } else { format!("`{}`", shown(self.raw())) };
         let end = if found == END { self.at } else { self.at + 1 };
-        Fault::new("gcode::number", start..end.max(start), format!("a number is missing: {what} stands in its place"))
+        LineFault::new(
+            "gcode::number",
+            start..end.max(start),
+            format!("a number is missing: {what} stands in its place"),
+        )
     }
 }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 const CHUNK_BYTES: usize = 1 << 18;
 /// Longest line. Real programs stay below 300 bytes (LinuxCNC stops at 255, comments included); a longer line is a
 /// damaged file or no program, and must not fill the memory.
-pub(crate) const LONGEST_LINE_BYTES: usize = 1 << 16;
+pub(crate) const MAX_LINE_BYTES: usize = 1 << 16;
 
 /// A place to come back to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -22,10 +22,10 @@ pub(crate) struct Mark {
 
 /// One line, as a range of [`Source::bytes`].
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) enum Line {
+pub(crate) enum SourceLine {
     /// A line without its end.
     Text(Range<usize>),
-    /// A line of more than [`LONGEST_LINE_BYTES`], skipped; the range holds its beginning.
+    /// A line of more than [`MAX_LINE_BYTES`], skipped; the range holds its beginning.
     TooLong(Range<usize>),
     /// No more lines.
     End,
@@ -83,7 +83,7 @@ impl Source {
         &self.buffer
     }
 
-    /// The bytes that [`Line`] ranges refer to, valid until the next call of `next_line`.
+    /// The bytes that [`SourceLine`] ranges refer to, valid until the next call of `next_line`.
     #[inline]
     pub(crate) fn bytes(&self, range: Range<usize>) -> &[u8] {
         &self.buffer[range]
@@ -91,19 +91,23 @@ impl Source {
 
     /// The next line.
     #[inline]
-    pub(crate) fn next_line(&mut self) -> io::Result<Line> {
+    pub(crate) fn next_line(&mut self) -> io::Result<SourceLine> {
         loop {
             let unread = &self.buffer[self.next..];
             if let Some(length) = memchr::memchr(b'\n', unread) {
                 let start = self.next;
                 self.pass_line(length);
                 let range = start..start + length;
-                return Ok(if length > LONGEST_LINE_BYTES { Line::TooLong(head_of(range)) } else { Line::Text(range) });
+                return Ok(if length > MAX_LINE_BYTES {
+                    SourceLine::TooLong(head_of(range))
+                } else {
+                    SourceLine::Text(range)
+                });
             }
             if self.at_end {
                 return Ok(self.last_line());
             }
-            if unread.len() > LONGEST_LINE_BYTES {
+            if unread.len() > MAX_LINE_BYTES {
                 return self.skip_long_line();
             }
             self.refill()?;
@@ -111,14 +115,14 @@ impl Source {
     }
 
     /// What stands behind the last line end.
-    fn last_line(&mut self) -> Line {
+    fn last_line(&mut self) -> SourceLine {
         let range = self.next..self.buffer.len();
         if range.is_empty() {
-            return Line::End;
+            return SourceLine::End;
         }
         self.begin_line();
         self.next = self.buffer.len();
-        if range.len() > LONGEST_LINE_BYTES { Line::TooLong(head_of(range)) } else { Line::Text(range) }
+        if range.len() > MAX_LINE_BYTES { SourceLine::TooLong(head_of(range)) } else { SourceLine::Text(range) }
     }
 
     /// What has been read of the file behind the last line.
@@ -142,9 +146,9 @@ impl Source {
 
     /// Skips a line that does not fit; keeps its beginning for the message.
     #[cold]
-    fn skip_long_line(&mut self) -> io::Result<Line> {
+    fn skip_long_line(&mut self) -> io::Result<SourceLine> {
         self.begin_line();
-        let beginning: Vec<u8> = self.buffer[self.next..self.next + LONGEST_LINE_BYTES].to_vec();
+        let beginning: Vec<u8> = self.buffer[self.next..self.next + MAX_LINE_BYTES].to_vec();
         loop {
             if let Some(length) = memchr::memchr(b'\n', &self.buffer[self.next..]) {
                 self.next += length + 1;
@@ -164,7 +168,7 @@ impl Source {
         self.buffer.extend_from_slice(&unread);
         self.next = length;
         self.buffer_start = file_offset.saturating_sub(length as u64);
-        Ok(Line::TooLong(0..length))
+        Ok(SourceLine::TooLong(0..length))
     }
 
     /// Drops what has been read and reads the next chunk behind what has not.
@@ -201,7 +205,7 @@ impl Source {
     #[cold]
     pub(crate) fn find(&mut self, line: u32) {
         if self.rewind().is_ok() {
-            while self.line < line && matches!(self.next_line(), Ok(Line::Text(_) | Line::TooLong(_))) {}
+            while self.line < line && matches!(self.next_line(), Ok(SourceLine::Text(_) | SourceLine::TooLong(_))) {}
         }
     }
 
@@ -222,7 +226,7 @@ impl Source {
 }
 
 fn head_of(range: Range<usize>) -> Range<usize> {
-    range.start..range.end.min(range.start + LONGEST_LINE_BYTES)
+    range.start..range.end.min(range.start + MAX_LINE_BYTES)
 }
 
 #[cfg(test)]
@@ -240,7 +244,7 @@ mod tests {
 
     fn lines(source: &mut Source) -> Vec<(u32, Vec<u8>)> {
         let mut all = Vec::new();
-        while let Line::Text(range) = source.next_line().unwrap() {
+        while let SourceLine::Text(range) = source.next_line().unwrap() {
             all.push((source.line, source.bytes(range).to_vec()));
         }
         all
@@ -264,9 +268,9 @@ mod tests {
             source.next_line().unwrap();
         }
         let mark = source.line_start;
-        while source.next_line().unwrap() != Line::End {}
+        while source.next_line().unwrap() != SourceLine::End {}
         source.jump(mark).unwrap();
-        let Line::Text(range) = source.next_line().unwrap() else { panic!("no line") };
+        let SourceLine::Text(range) = source.next_line().unwrap() else { panic!("no line") };
         assert_eq!((source.line, source.bytes(range)), (10, &b"N9 X9"[..]));
     }
 
@@ -275,7 +279,7 @@ mod tests {
         let mut text = vec![b'x'; 3 * CHUNK_BYTES];
         text.extend_from_slice(b"\nG0\nG1");
         let mut source = file_with(&text);
-        assert!(matches!(source.next_line().unwrap(), Line::TooLong(_)));
+        assert!(matches!(source.next_line().unwrap(), SourceLine::TooLong(_)));
         assert_eq!(lines(&mut source), [(2, b"G0".to_vec()), (3, b"G1".to_vec())]);
     }
 

@@ -110,7 +110,7 @@ impl Lines {
 
 #[cfg(test)]
 mod tests {
-    use feedwright::gcode::canon::Others;
+    use feedwright::gcode::canon::AuxiliaryAxes;
     use feedwright::gcode::{Dialect, Reader, Settings};
 
     use super::*;
@@ -151,7 +151,7 @@ mod tests {
                     shape: Shape::Line,
                     feed_mm_s: value,
                     corner: Corner::ExactPath,
-                    others: Others { extruder_mm: value, axes: None },
+                    others: AuxiliaryAxes { extruder_mm: value, axes: None },
                 })
             })
             .collect();

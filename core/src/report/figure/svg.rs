@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Curve, Figure, Line, Panel, axis};
+use super::{Figure, LineStyle, Panel, Polyline, axis};
 use crate::report::text::escaped;
 
 /// Width of a figure, px: a text column at 96 px/in.
@@ -157,7 +157,7 @@ fn put_axes(out: &mut String, area: &Area) {
     put!(out, "<path d=\"M0 0H{width:.2}V{height:.2}H0Z{marks}\" fill=\"none\" stroke=\"currentColor\"/>\n{labels}");
 }
 
-fn path_data(curve: &Curve, area: &Area) -> String {
+fn path_data(curve: &Polyline, area: &Area) -> String {
     let mut d = String::new();
     let mut last: Option<[f64; 2]> = None;
     for (i, p) in curve.points.iter().enumerate() {
@@ -176,20 +176,20 @@ fn path_data(curve: &Curve, area: &Area) -> String {
     d
 }
 
-fn stroke(curve: &Curve) -> String {
+fn stroke(curve: &Polyline) -> String {
     let color = if curve.color.is_empty() { "currentColor".to_owned() } else { escaped(&curve.color) };
     let (width, dash) = match curve.line {
-        Line::Solid => (1.4, ""),
-        Line::Dashed => (1.4, " stroke-dasharray=\"6 3\""),
-        Line::Dotted => (1.4, " stroke-dasharray=\"1.5 2.5\""),
-        Line::Thin => (0.7, ""),
+        LineStyle::Solid => (1.4, ""),
+        LineStyle::Dashed => (1.4, " stroke-dasharray=\"6 3\""),
+        LineStyle::Dotted => (1.4, " stroke-dasharray=\"1.5 2.5\""),
+        LineStyle::Thin => (0.7, ""),
     };
     format!("stroke=\"{color}\" stroke-width=\"{width}\"{dash}")
 }
 
 /// The first curve of each name.
-fn legend(figure: &Figure) -> Vec<&Curve> {
-    let mut entries: Vec<&Curve> = Vec::new();
+fn legend(figure: &Figure) -> Vec<&Polyline> {
+    let mut entries: Vec<&Polyline> = Vec::new();
     for curve in figure.panels.iter().flat_map(|p| &p.curves) {
         if !curve.label.is_empty() && entries.iter().all(|e| e.label != curve.label) {
             entries.push(curve);
@@ -198,7 +198,7 @@ fn legend(figure: &Figure) -> Vec<&Curve> {
     entries
 }
 
-fn put_legend(out: &mut String, entries: &[&Curve]) {
+fn put_legend(out: &mut String, entries: &[&Polyline]) {
     let mut x = 0.0;
     for curve in entries {
         put!(out, "<path d=\"M{x:.1} 11h28\" fill=\"none\" {}/>\n", stroke(curve));

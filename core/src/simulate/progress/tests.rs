@@ -1,5 +1,5 @@
 use super::*;
-use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Others, Plane, Shape};
+use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 
 const SERVO_S: f64 = 1e-3;
 
@@ -9,7 +9,16 @@ fn machine() -> Machine {
 
 fn motion(start_mm: Vector, end_mm: Vector, shape: Shape) -> Canon {
     let (kind, corner) = (MotionKind::Feed, Corner::Continuous { tolerance_mm: None });
-    Canon::Motion(Motion { line: 1, kind, start_mm, end_mm, shape, feed_mm_s: 50.0, corner, others: Others::default() })
+    Canon::Motion(Motion {
+        line: 1,
+        kind,
+        start_mm,
+        end_mm,
+        shape,
+        feed_mm_s: 50.0,
+        corner,
+        others: AuxiliaryAxes::default(),
+    })
 }
 
 fn lines(corners_mm: &[Vector]) -> Vec<Canon> {

@@ -6,7 +6,7 @@ use crate::state::frame::Turn;
 use crate::text::block::{Block, Word};
 use crate::text::codes::fanuc::OWN;
 use crate::text::codes::{Group, bit};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 impl Interpreter {
     /// G15, G16, G68, G69.
@@ -23,7 +23,7 @@ impl Interpreter {
         }
         if (self.fanuc.is_polar || self.frame.turn.is_some()) && self.modal.plane != Plane::Xy {
             let what = if self.fanuc.is_polar { "G16" } else { "G68" };
-            return Err(Fault::new("gcode::unsupported", block.whole(), format!("{what} outside G17 is not read"))
+            return Err(LineFault::new("gcode::unsupported", block.whole(), format!("{what} outside G17 is not read"))
                 .hint("write G17 before it, and G15 or G69 before another plane"));
         }
         Ok(())
@@ -33,11 +33,11 @@ impl Interpreter {
     fn turn(&mut self, block: &Block, word: Word) -> Read<()> {
         let other = block.set & (bit(b'z') | bit(b'a') | bit(b'b') | bit(b'c'));
         if other != 0 {
-            return Err(Fault::new("gcode::unsupported", block.at_any(other), "G68 in space is not read")
+            return Err(LineFault::new("gcode::unsupported", block.at_any(other), "G68 in space is not read")
                 .hint("G68 X Y R turns in the XY plane"));
         }
         let Some(angle_deg) = block.get(b'r') else {
-            return Err(Fault::new("gcode::rotation", word.at(), "R (angle in degrees) is missing for G68")
+            return Err(LineFault::new("gcode::rotation", word.at(), "R (angle in degrees) is missing for G68")
                 .hint("write G68 X0 Y0 R30."));
         };
         let mut center = [self.at[0], self.at[1]];

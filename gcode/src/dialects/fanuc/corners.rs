@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use crate::geometry::plane::{Curve, Round, SLACK_MM, add, length, minus, scaled, unit};
+use crate::geometry::plane::{PlaneArc, PlaneCurve, SLACK_MM, add, length, minus, scaled, unit};
 use crate::state::Interpreter;
 use crate::state::fanuc::{Goal, Pending};
 use crate::state::frame::Position;
@@ -13,7 +13,7 @@ use crate::state::lathe::CornerCut;
 use crate::text::block::Block;
 use crate::text::block::corner::CornerWord;
 use crate::text::codes::{Group, bit, letter, slot, spelled};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 impl Interpreter {
     /// G1 to G3 with a corner at their end, or behind one.
@@ -27,7 +27,7 @@ impl Interpreter {
         };
         if code == 0 {
             let message = format!("`,{}` stands on a rapid; corners are cut between G1, G2 and G3", shown(&corner));
-            return Err(Fault::new("gcode::corner", corner.at, message).hint("write G1 on this line"));
+            return Err(LineFault::new("gcode::corner", corner.at, message).hint("write G1 on this line"));
         }
         let feed = (self.modal.feed, self.modal.feed_unit_mm);
         self.fanuc.pending = Some(Box::new(Pending { block: block.clone(), goal, corner, line: self.line, feed }));
@@ -98,15 +98,17 @@ impl Interpreter {
         let [first, second, normal] = self.modal.plane.axes();
         if corner[normal] != start[normal] || next.target[normal] != corner[normal] {
             let message = format!("`,{}` lies between motions that leave the plane", shown(&pending.corner));
-            return Err(Fault::new("gcode::corner", block.whole(), message)
+            return Err(LineFault::new("gcode::corner", block.whole(), message)
                 .hint("corners are cut in the plane of G17, G18 or G19"));
         }
         let in_plane = |position: &Position| [position[first], position[second]];
         let curve = |from: &Position, goal: &Goal| {
             let (start, end) = (in_plane(from), in_plane(&goal.target));
             match goal.round {
-                Some(Round { center, turns }) => Curve::Arc { start, end, center, turn: f64::from(turns.signum()) },
-                None => Curve::Line { start, end },
+                Some(PlaneArc { center, turns }) => {
+                    PlaneCurve::Arc { start, end, center, turn: f64::from(turns.signum()) }
+                }
+                None => PlaneCurve::Line { start, end },
             }
         };
         let (mut before, mut behind) = (curve(start, &pending.goal), curve(&corner, next));
@@ -120,7 +122,7 @@ impl Interpreter {
             let (word, value) = (shown(&pending.corner), pending.corner.value);
             let message =
                 format!("`,{word}{value}` does not fit between this motion and the one on line {}", pending.line);
-            return Err(Fault::new("gcode::corner", block.whole(), message)
+            return Err(LineFault::new("gcode::corner", block.whole(), message)
                 .hint("it must be above 0 and shorter than both; a chamfer is cut between straight lines"));
         };
         let place = |point: [f64; 2]| {
@@ -132,8 +134,10 @@ impl Interpreter {
         let up_to = has_length.then(|| Goal { target: place(before.end()), ..pending.goal });
         let around = piece.map(|piece| {
             let round = match piece {
-                Curve::Arc { center, turn, .. } => Some(Round { center, turns: if turn > 0.0 { 1 } else { -1 } }),
-                Curve::Line { .. } => None,
+                PlaneCurve::Arc { center, turn, .. } => {
+                    Some(PlaneArc { center, turns: if turn > 0.0 { 1 } else { -1 } })
+                }
+                PlaneCurve::Line { .. } => None,
             };
             Goal { target: place(piece.end()), round }
         });
@@ -146,7 +150,7 @@ impl Interpreter {
         let moves = block.set & (bit(b'x') | bit(b'z') | bit(b'u') | bit(b'w')) != 0;
         if plain && moves && block.has(b'c') && block.code(Group::NonModal).is_none() {
             let message = "C on a straight motion is a chamfer on some lathes and an axis on others: it is not read";
-            return Err(Fault::new("gcode::unsupported", block.at(b'c'), message).hint("write the chamfer as ,C"));
+            return Err(LineFault::new("gcode::unsupported", block.at(b'c'), message).hint("write the chamfer as ,C"));
         }
         if plain
             && moves
@@ -154,7 +158,7 @@ impl Interpreter {
         {
             let name = letter(slot(word));
             let message = format!("{name} on a straight motion, a corner on some lathes, is not read");
-            return Err(Fault::new("gcode::unsupported", block.at(word), message)
+            return Err(LineFault::new("gcode::unsupported", block.at(word), message)
                 .hint("write a rounded corner as ,R and a chamfer as ,C"));
         }
         Ok(())
@@ -162,8 +166,10 @@ impl Interpreter {
 }
 
 /// Cuts two straight lines off at the same distance from where they meet.
-fn chamfer(before: &mut Curve, behind: &mut Curve, size_mm: f64) -> Option<Option<Curve>> {
-    let (&mut Curve::Line { start, end: corner }, &mut Curve::Line { end, .. }) = (&mut *before, &mut *behind) else {
+fn chamfer(before: &mut PlaneCurve, behind: &mut PlaneCurve, size_mm: f64) -> Option<Option<PlaneCurve>> {
+    let (&mut PlaneCurve::Line { start, end: corner }, &mut PlaneCurve::Line { end, .. }) =
+        (&mut *before, &mut *behind)
+    else {
         return None;
     };
     let (to, from) = (minus(corner, start), minus(end, corner));
@@ -173,20 +179,20 @@ fn chamfer(before: &mut Curve, behind: &mut Curve, size_mm: f64) -> Option<Optio
     let [first, second] = [add(corner, scaled(unit(to), -size_mm)), add(corner, scaled(unit(from), size_mm))];
     before.set_end(first);
     behind.set_start(second);
-    Some(Some(Curve::Line { start: first, end: second }))
+    Some(Some(PlaneCurve::Line { start: first, end: second }))
 }
 
 fn shown(corner: &CornerWord) -> char {
     if corner.is_round { 'R' } else { 'C' }
 }
 
-fn no_second_side(pending: &Pending, at: Range<usize>) -> Box<Fault> {
+fn no_second_side(pending: &Pending, at: Range<usize>) -> Box<LineFault> {
     let code = spelled(10);
     let message = format!(
         "the corner `,{}` of line {} has no second side: no G1, G2 or G3 follows",
         shown(&pending.corner),
         pending.line
     );
-    Fault::new("gcode::corner", at, message)
+    LineFault::new("gcode::corner", at, message)
         .hint(format!("the next block is {code}, G2 or G3 in the same plane, with no other G-code than G90 or G91"))
 }

@@ -5,10 +5,10 @@
 use crate::canon::Plane;
 use crate::settings::Dialect;
 use crate::state::Interpreter;
-use crate::state::waiting::Pecks;
+use crate::state::carried_over::Pecks;
 use crate::text::block::Block;
 use crate::text::codes::fanuc::{LATHE_OWN, OWN};
-use crate::text::diagnostic::{Fault, Read, Short};
+use crate::text::diagnostic::{LineFault, Read, Short};
 
 impl Interpreter {
     pub(super) fn drilling_cycle(&mut self, block: &Block, code: u16) -> Read<()> {
@@ -20,7 +20,7 @@ impl Interpreter {
             block.remove(b'k');
             block.put(b'l', repeats);
         }
-        if matches!(base, 820 | 860 | 880 | 890) && !block.has(b'p') && self.waiting.cycle.code() != base {
+        if matches!(base, 820 | 860 | 880 | 890) && !block.has(b'p') && self.carried.cycle.code() != base {
             block.put(b'p', 0.0);
         }
         if matches!(base, 740 | 840) {
@@ -40,13 +40,13 @@ impl Interpreter {
         let unit = self.modal.unit_mm;
         let begin = self.at[2] / unit;
         // Without Q there are no pecks.
-        let is_new = !matches!(self.waiting.cycle.code(), 820 | 830) || base != 830;
+        let is_new = !matches!(self.carried.cycle.code(), 820 | 830) || base != 830;
         let base =
-            if base == 830 && !block.has(b'q') && (is_new || self.waiting.cycle.code() == 820) { 820 } else { base };
-        if base == 820 && !block.has(b'p') && self.waiting.cycle.code() != base {
+            if base == 830 && !block.has(b'q') && (is_new || self.carried.cycle.code() == 820) { 820 } else { base };
+        if base == 820 && !block.has(b'p') && self.carried.cycle.code() != base {
             block.put(b'p', 0.0);
         }
-        let is_first = self.waiting.cycle.code() != base;
+        let is_first = self.carried.cycle.code() != base;
         if block.has(b'r') || is_first {
             let is_distance = self.dialect == Dialect::FanucLathe;
             let word = block.get(b'r');
@@ -78,7 +78,7 @@ impl Interpreter {
             let how =
                 if is_distance { "a distance from where the tool is, as on Fanuc" } else { "a coordinate, as on Haas" };
             let message = format!("R of a drilling cycle is read as {how}");
-            let warning = Fault::new("gcode::drilling_level", block.at(b'r'), message);
+            let warning = LineFault::new("gcode::drilling_level", block.at(b'r'), message);
             self.output.warnings.push(*warning.hint("--dialect fanuc-lathe or haas-lathe says which"));
         }
     }
@@ -96,7 +96,7 @@ impl Interpreter {
                 Short(pecks.first_mm),
                 Short(pecks.least_mm)
             );
-            return Err(Fault::new("gcode::cycle", block.at(b'i'), message)
+            return Err(LineFault::new("gcode::cycle", block.at(b'i'), message)
                 .hint("I is the first peck, J how much smaller each is than the one before, K the smallest"));
         }
         let first = block.get(b'i').unwrap_or(0.0);

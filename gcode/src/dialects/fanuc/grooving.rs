@@ -9,12 +9,12 @@ use crate::state::Interpreter;
 use crate::text::block::{Block, Word};
 use crate::text::codes::fanuc::OWN;
 use crate::text::codes::spelled;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Pecks of one block, and motions: they are held in memory until they are read. At constant surface speed a peck can be some
 /// hundred motions.
-const MOST_PECKS: f64 = 1e5;
-const MOST_MOTIONS: usize = 400_000;
+const MAX_PECKS: f64 = 1e5;
+const MAX_MOTIONS: usize = 400_000;
 
 impl Interpreter {
     pub(super) fn grooving_cycle(&mut self, block: &Block, word: Word) -> Read<()> {
@@ -37,9 +37,8 @@ impl Interpreter {
                 spelled(word.number),
                 ["X", "Y", "Z"][deep]
             );
-            return Err(
-                Fault::new("gcode::lathe", block.whole(), message).hint("X and Z are the bottom of the last groove")
-            );
+            return Err(LineFault::new("gcode::lathe", block.whole(), message)
+                .hint("X and Z are the bottom of the last groove"));
         }
         let steps = match step_mm {
             _ if width == 0.0 => 0.0,
@@ -47,14 +46,14 @@ impl Interpreter {
             None => {
                 let name = char::from(step).to_ascii_uppercase();
                 let message = format!("{name} (step from groove to groove) is missing for {}", spelled(word.number));
-                return Err(Fault::new("gcode::lathe", word.at(), message)
+                return Err(LineFault::new("gcode::lathe", word.at(), message)
                     .hint("without a decimal point it counts 0.001 mm: 2000 is 2 mm"));
             }
         };
         let pecks = (depth.abs() / peck_mm - 1e-9).ceil();
-        if (steps + 1.0) * pecks > MOST_PECKS {
-            let message = format!("{:.0} pecks in one block; it may have {MOST_PECKS}", (steps + 1.0) * pecks);
-            return Err(Fault::new("gcode::lathe", word.at(), message)
+        if (steps + 1.0) * pecks > MAX_PECKS {
+            let message = format!("{:.0} pecks in one block; it may have {MAX_PECKS}", (steps + 1.0) * pecks);
+            return Err(LineFault::new("gcode::lathe", word.at(), message)
                 .hint("P and Q count 0.001 mm (0.0001 inch) without a decimal point"));
         }
         let mut groove = 0.0;
@@ -80,9 +79,9 @@ impl Interpreter {
         let back_mm = self.fanuc.repetitive.back_mm;
         let mut pecks = 1.0;
         while pecks * peck_mm < (to - from).abs() - 1e-9 {
-            if self.output.steps.len() > MOST_MOTIONS {
-                let message = format!("more than {MOST_MOTIONS} motions in one block, at constant surface speed (G96)");
-                return Err(Fault::new("gcode::lathe", block.whole(), message)
+            if self.output.steps.len() > MAX_MOTIONS {
+                let message = format!("more than {MAX_MOTIONS} motions in one block, at constant surface speed (G96)");
+                return Err(LineFault::new("gcode::lathe", block.whole(), message)
                     .hint("G97, or a bound on the spindle (G50 S...), makes fewer of them"));
             }
             let depth = from + sense * pecks * peck_mm;

@@ -3,7 +3,7 @@
 //! Pass n of N is moved by the allowance U W and by (N - n)/(N - 1) of the U W of the first block. Each begins at the start of the cycle, moved alike.
 
 use crate::canon::{MotionKind, Shape};
-use crate::geometry::plane::Round;
+use crate::geometry::plane::PlaneArc;
 use crate::motion::feed::Speed;
 use crate::state::Interpreter;
 use crate::state::capture::Capture;
@@ -11,7 +11,7 @@ use crate::state::frame::Position;
 use crate::text::diagnostic::Read;
 
 /// Motions of all passes: they are held in memory until they are read.
-const MOST_MOTIONS: usize = 100_000;
+const MAX_MOTIONS: usize = 100_000;
 
 impl Interpreter {
     pub(super) fn cut_pattern(
@@ -22,9 +22,9 @@ impl Interpreter {
         allowance_mm: [f64; 2],
     ) -> Read<()> {
         let wanted = &capture.wanted;
-        if capture.motions.len() * passes as usize > MOST_MOTIONS {
+        if capture.motions.len() * passes as usize > MAX_MOTIONS {
             let message =
-                format!("{passes} passes along {} motions; the product may be {MOST_MOTIONS}", capture.motions.len());
+                format!("{passes} passes along {} motions; the product may be {MAX_MOTIONS}", capture.motions.len());
             return Err(capture.refuse(wanted.line, &message));
         }
         for pass in 1..=passes {
@@ -42,7 +42,7 @@ impl Interpreter {
                 match &motion.shape {
                     Shape::Arc { center_mm, turns, .. } => {
                         let [middle, target] = [moved(*center_mm), end].map(|point| self.frame.to_program(&point));
-                        let round = Round { center: [middle[2], middle[0]], turns: *turns };
+                        let round = PlaneArc { center: [middle[2], middle[0]], turns: *turns };
                         self.arc_to(&wanted.block, &target, round, 0.0)?;
                     }
                     _ if motion.kind == MotionKind::Rapid => self.line_to(&wanted.block, end, Speed::Rapid, 0.0)?,

@@ -9,7 +9,7 @@ use crate::state::Interpreter;
 use crate::state::capture::{Capture, ProfileWork};
 use crate::text::block::Block;
 use crate::text::codes::spelled;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 impl Interpreter {
     /// Remembers what the first block of a profile has, and refuses what no profile can have.
@@ -22,7 +22,7 @@ impl Interpreter {
             return Ok(());
         };
         let message = format!("M{} stands inside the profile of {}", word.number, spelled(capture.wanted.code));
-        Err(Fault::new("gcode::lathe", word.at(), message).hint("a profile has G0 to G3 alone, up to its block Q"))
+        Err(LineFault::new("gcode::lathe", word.at(), message).hint("a profile has G0 to G3 alone, up to its block Q"))
     }
 
     /// Carries out a cycle whose profile has been read.

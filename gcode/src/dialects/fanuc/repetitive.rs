@@ -9,7 +9,7 @@ use crate::state::capture::{ProfileBlocks, ProfileWork};
 use crate::text::block::{Block, Word};
 use crate::text::codes::fanuc::OWN;
 use crate::text::codes::spelled;
-use crate::text::diagnostic::{Fault, Read, Short};
+use crate::text::diagnostic::{LineFault, Read, Short};
 
 /// Escape where a program has none: a setting of the control, away from the part.
 const ESCAPE_MM: f64 = 0.5;
@@ -18,7 +18,7 @@ impl Interpreter {
     pub(super) fn repetitive_cycle(&mut self, block: &Block, word: Word) -> Read<()> {
         if self.fanuc.capture.is_some() {
             let message = format!("{} stands inside the profile of another cycle", spelled(word.number));
-            return Err(Fault::new("gcode::lathe", word.at(), message));
+            return Err(LineFault::new("gcode::lathe", word.at(), message));
         }
         let is_second = block.has(b'p') && block.has(b'q');
         match word.number % OWN {
@@ -29,7 +29,7 @@ impl Interpreter {
             }
             730 if is_second => {
                 let Some((shift_mm, passes)) = self.fanuc.repetitive.pattern else {
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::lathe",
                         word.at(),
                         "G73 has no first block: how far it begins off the profile is not known",
@@ -62,7 +62,7 @@ impl Interpreter {
                 "{} has neither P and Q (blocks of the profile) nor {name} (depth of a pass)",
                 spelled(word.number)
             );
-            return Err(Fault::new("gcode::lathe", word.at(), message)
+            return Err(LineFault::new("gcode::lathe", word.at(), message)
                 .hint("write G71 U2. R0.5 and then G71 P100 Q200 U0.4 W0.1 F0.25"));
         }
         if let Some(escape_mm) = self.not_negative(block, b'r')? {
@@ -77,7 +77,7 @@ impl Interpreter {
         if let Some(letter) = [b'i', b'k'].into_iter().find(|&letter| block.has(letter)) {
             let message =
                 format!("{} of {} is not read", char::from(letter).to_ascii_uppercase(), spelled(word.number));
-            return Err(Fault::new("gcode::unsupported", block.at(letter), message)
+            return Err(LineFault::new("gcode::unsupported", block.at(letter), message)
                 .hint("it is an allowance of the last roughing pass; U and W are those of all"));
         }
         if let Some(value) = block.get(b'd') {
@@ -89,7 +89,7 @@ impl Interpreter {
                 format!("the depth of a pass of {} is nowhere: it is a parameter of the control", spelled(word.number));
             let first = if row == 0 { "G71 U2. R0.5" } else { "G72 W2. R0.5" };
             return Err(
-                Fault::new("gcode::lathe", word.at(), message).hint(format!("write {first} before it, or D on it"))
+                LineFault::new("gcode::lathe", word.at(), message).hint(format!("write {first} before it, or D on it"))
             );
         };
         let escape_mm = self.fanuc.repetitive.escape_mm.unwrap_or(ESCAPE_MM);
@@ -108,12 +108,12 @@ impl Interpreter {
         let shift_mm =
             [self.distance_word(block, b'u')?.unwrap_or(0.0), self.distance_word(block, b'w')?.unwrap_or(0.0)];
         let Some(passes) = block.get(b'r') else {
-            return Err(Fault::new("gcode::lathe", word.at(), "R (number of passes) is missing for G73")
+            return Err(LineFault::new("gcode::lathe", word.at(), "R (number of passes) is missing for G73")
                 .hint("write G73 U5. W2. R4 and then G73 P100 Q200 U0.4 W0.1 F0.25"));
         };
         if !(1.0..=999.0).contains(&passes) || passes.fract() != 0.0 {
             let message = format!("R{} of G73 is no number of passes: 1 to 999", Short(passes));
-            return Err(Fault::new("gcode::lathe", block.at(b'r'), message));
+            return Err(LineFault::new("gcode::lathe", block.at(b'r'), message));
         }
         self.fanuc.repetitive.pattern = Some((shift_mm, passes as u32));
         Ok(())
@@ -127,9 +127,8 @@ impl Interpreter {
                 let name = char::from(letter).to_ascii_uppercase();
                 let message =
                     format!("{name} (number of a block of the profile) is missing for {}", spelled(word.number));
-                return Err(
-                    Fault::new("gcode::lathe", word.at(), message).hint("write P100 Q200 for the blocks N100 to N200")
-                );
+                return Err(LineFault::new("gcode::lathe", word.at(), message)
+                    .hint("write P100 Q200 for the blocks N100 to N200"));
             }
             *number = self.integer(block, letter, 1, 99_999_999)? as u64;
         }

@@ -4,69 +4,30 @@
 //! profile; there the tool goes off at 45 degrees by R and returns in a rapid. Then it cuts along the moved profile and goes back to the start of
 //! the cycle. A profile that comes down again has pockets, which need X and Z in its first block (type II); they are cut level by level.
 //!
-//! Coordinates as in the cycles of LinuxCNC: the first grows along the passes, the second from the part to the stock's surface.
+//! Coordinates as in the cycles of LinuxCNC, `motion/lathe/cycle_plane.rs`.
 
-use crate::canon::{Motion, MotionKind, Shape};
-use crate::geometry::plane::{Curve, Point, Round, SLACK_MM, add, length, minus, sweep};
+use crate::canon::{Motion, MotionKind};
+use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM, add, length, minus, sweep};
 use crate::motion::feed::Speed;
+use crate::motion::lathe::cycle_plane::{CyclePlane, clear};
 use crate::motion::lathe::pockets::{falls, falls_through, first_at, parted_at_tops};
 use crate::state::Interpreter;
 use crate::state::capture::{Capture, ProfileWork};
-use crate::state::frame::Position;
 use crate::text::codes::{bit, spelled};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Passes of one cycle: more is a mistake in the depth of a pass.
-const MOST_PASSES: f64 = 10_000.0;
+const MAX_PASSES: f64 = 10_000.0;
 /// A profile comes down, or turns back, where it does so by more, mm: coordinates of three decimals turn the ends of arcs by as little.
-const LEAST_TURN_MM: f64 = 1e-3;
-/// An arc that ends closer to its start, mm, would be read as a full turn.
-const SHORT_ARC_MM: f64 = 1e-7;
-/// The cycle's plane: which axes, and which way.
-#[derive(Debug, Clone, Copy)]
-struct PassPlane {
-    axes: [usize; 2],
-    signs: [f64; 2],
-}
-
-impl PassPlane {
-    pub(super) fn of(self, point: [f64; 3]) -> Point {
-        std::array::from_fn(|n| self.signs[n] * point[self.axes[n]])
-    }
-
-    fn position(self, point: Point, like: &Position) -> Position {
-        let mut position = *like;
-        for n in 0..2 {
-            position[self.axes[n]] = self.signs[n] * point[n];
-        }
-        position
-    }
-
-    /// Whether an arc that turns left here turns counter-clockwise in G18.
-    pub(super) fn turns(self, turn: f64) -> f64 {
-        let exchanged = if self.axes == [2, 0] { 1.0 } else { -1.0 };
-        turn * exchanged * self.signs[0] * self.signs[1]
-    }
-
-    fn curve(self, motion: &Motion, shift: Point) -> Curve {
-        let [start, end] = [motion.start_mm, motion.end_mm].map(|point| add(self.of(point), shift));
-        match &motion.shape {
-            Shape::Arc { center_mm, turns, .. } => {
-                let center = add(self.of(*center_mm), shift);
-                Curve::Arc { start, end, center, turn: self.turns(f64::from(turns.signum())) }
-            }
-            _ => Curve::Line { start, end },
-        }
-    }
-}
+const MIN_TURN_MM: f64 = 1e-3;
 
 /// A cycle with its profile, moved by the allowance.
 struct Roughing<'a> {
     capture: &'a Capture,
-    side: PassPlane,
+    plane: CyclePlane,
     /// Start of the passes.
-    start: Point,
-    curves: Vec<Curve>,
+    start: PlanePoint,
+    curves: Vec<PlaneCurve>,
     depth_mm: f64,
     escape_mm: f64,
     /// How the first block of the profile moves.
@@ -81,21 +42,20 @@ impl<'a> Roughing<'a> {
         let axes = if is_facing { [0, 2] } else { [2, 0] };
         let (entry, rest) =
             capture.motions.split_first().ok_or_else(|| capture.refuse(capture.wanted.line, "it is empty"))?;
-        let clear = |way: f64| (way.abs() > SLACK_MM).then(|| way.signum());
         let along = |motion: &Motion, n: usize| clear(motion.end_mm[axes[n]] - motion.start_mm[axes[n]]);
         let start_mm = [capture.wanted.start[0], capture.wanted.start[1], capture.wanted.start[2]];
         let last = rest.last().unwrap_or(entry);
         let infeed = clear(start_mm[axes[1]] - entry.end_mm[axes[1]]);
         let outward = infeed.or_else(|| clear(last.end_mm[axes[1]] - entry.end_mm[axes[1]])).unwrap_or(1.0);
-        let side =
-            PassPlane { axes, signs: [rest.iter().find_map(|motion| along(motion, 0)).unwrap_or(-1.0), outward] };
+        let plane =
+            CyclePlane { axes, signs: [rest.iter().find_map(|motion| along(motion, 0)).unwrap_or(-1.0), outward] };
         let by_axis = [allowance_mm[0], 0.0, allowance_mm[1]];
-        let shift = side.of(by_axis);
-        let curves: Vec<Curve> = rest.iter().map(|motion| side.curve(motion, shift)).collect();
+        let shift = plane.of(by_axis);
+        let curves: Vec<PlaneCurve> = rest.iter().map(|motion| plane.curve(motion).moved(shift)).collect();
         let roughing = Self {
             capture,
-            side,
-            start: add(side.of(start_mm), shift),
+            plane,
+            start: add(plane.of(start_mm), shift),
             curves: parted_at_tops(curves),
             depth_mm,
             escape_mm,
@@ -106,15 +66,15 @@ impl<'a> Roughing<'a> {
     }
 
     /// What no pass of this kind can cut.
-    fn check(&self, motions: &[Motion], shift: Point) -> Read<()> {
-        let name = ["X", "Y", "Z"][self.side.axes[0]];
-        let depth = ["X", "Y", "Z"][self.side.axes[1]];
+    fn check(&self, motions: &[Motion], shift: PlanePoint) -> Read<()> {
+        let name = ["X", "Y", "Z"][self.plane.axes[0]];
+        let depth = ["X", "Y", "Z"][self.plane.axes[1]];
         let has_pockets = [[b'x', b'u'], [b'z', b'w']]
             .iter()
             .all(|words| self.capture.first_words & (bit(words[0]) | bit(words[1])) != 0);
         for motion in motions {
-            let curve = self.side.curve(motion, shift);
-            if goes_back_mm(&curve) > LEAST_TURN_MM {
+            let curve = self.plane.curve(motion).moved(shift);
+            if goes_back_mm(&curve) > MIN_TURN_MM {
                 let message = format!("{name} turns back: an undercut cannot be reached by passes along {name}");
                 return Err(self
                     .capture
@@ -138,8 +98,8 @@ impl<'a> Roughing<'a> {
         Ok(())
     }
 
-    pub(super) fn entry(&self) -> Point {
-        self.curves.first().map_or(self.start, Curve::start)
+    pub(super) fn entry(&self) -> PlanePoint {
+        self.curves.first().map_or(self.start, PlaneCurve::start)
     }
 
     fn lowest(&self) -> f64 {
@@ -178,9 +138,9 @@ impl<'a> Roughing<'a> {
 }
 
 /// The lowest point of a curve.
-fn lowest_of(curve: &Curve) -> f64 {
+fn lowest_of(curve: &PlaneCurve) -> f64 {
     match *curve {
-        Curve::Arc { start, end, center, turn } if turn > 0.0 && start[0] < center[0] && end[0] > center[0] => {
+        PlaneCurve::Arc { start, end, center, turn } if turn > 0.0 && start[0] < center[0] && end[0] > center[0] => {
             center[1] - length(minus(start, center))
         }
         _ => curve.end()[1],
@@ -188,9 +148,9 @@ fn lowest_of(curve: &Curve) -> f64 {
 }
 
 /// How far a curve goes back along the passes.
-fn goes_back_mm(curve: &Curve) -> f64 {
+fn goes_back_mm(curve: &PlaneCurve) -> f64 {
     let straight = (curve.start()[0] - curve.end()[0]).max(0.0);
-    let Curve::Arc { start, end, center, turn } = *curve else { return straight };
+    let PlaneCurve::Arc { start, end, center, turn } = *curve else { return straight };
     // Both ends of a half circle may lie a little beyond it, and no more.
     if sweep(start, end, center, turn) > 1.1 * std::f64::consts::PI {
         return f64::INFINITY;
@@ -202,8 +162,8 @@ fn goes_back_mm(curve: &Curve) -> f64 {
 }
 
 /// Whether a curve goes down anywhere.
-fn comes_down(curve: &Curve) -> bool {
-    parted_at_tops(vec![*curve]).iter().any(|part| part.start()[1] - lowest_of(part) > LEAST_TURN_MM)
+fn comes_down(curve: &PlaneCurve) -> bool {
+    parted_at_tops(vec![*curve]).iter().any(|part| part.start()[1] - lowest_of(part) > MIN_TURN_MM)
 }
 
 impl Interpreter {
@@ -212,10 +172,9 @@ impl Interpreter {
         self.warn_of_allowance(&roughing);
         let (start, depth) = (roughing.start, roughing.depth_mm);
         let passes = ((start[1] - roughing.lowest() - SLACK_MM) / depth).ceil() - 1.0;
-        if passes > MOST_PASSES {
-            let message =
-                format!("the depth of a pass of {depth} mm makes {passes} passes; the limit is {MOST_PASSES}");
-            return Err(Fault::new("gcode::lathe", capture.wanted.block.at(b'p'), message)
+        if passes > MAX_PASSES {
+            let message = format!("the depth of a pass of {depth} mm makes {passes} passes; the limit is {MAX_PASSES}");
+            return Err(LineFault::new("gcode::lathe", capture.wanted.block.at(b'p'), message)
                 .hint("make the depth of a pass larger"));
         }
         self.rough_line(&roughing, start, Speed::Rapid)?;
@@ -224,14 +183,14 @@ impl Interpreter {
             self.rough_level(&roughing, start[1] - pass * depth)?;
             pass += 1.0;
         }
-        let here = roughing.side.of([self.here[0], self.here[1], self.here[2]]);
+        let here = roughing.plane.of([self.here[0], self.here[1], self.here[2]]);
         self.rough_line(&roughing, [here[0], start[1]], Speed::Rapid)?;
         self.rough_line(&roughing, roughing.entry(), roughing.infeed)?;
         for curve in &roughing.curves {
             self.rough_curve_of(&roughing, curve)?;
         }
         if roughing.curves.iter().any(comes_down) {
-            let end = roughing.curves.last().map_or(start, Curve::end);
+            let end = roughing.curves.last().map_or(start, PlaneCurve::end);
             self.rough_line(&roughing, [end[0], start[1].max(end[1])], Speed::Rapid)?;
         }
         self.line_to(&capture.wanted.block, capture.wanted.start, Speed::Rapid, 0.0)
@@ -245,7 +204,7 @@ impl Interpreter {
             if from_start {
                 self.rough_line(roughing, [start[0], level], roughing.infeed)?;
             } else {
-                let here = roughing.side.of([self.here[0], self.here[1], self.here[2]]);
+                let here = roughing.plane.of([self.here[0], self.here[1], self.here[2]]);
                 self.rough_line(roughing, [here[0], start[1]], Speed::Rapid)?;
                 self.rough_line(roughing, [begin, start[1]], Speed::Rapid)?;
                 self.rough_line(roughing, [begin, (level + roughing.depth_mm).min(start[1])], Speed::Rapid)?;
@@ -266,37 +225,28 @@ impl Interpreter {
 
     fn warn_of_allowance(&mut self, roughing: &Roughing<'_>) {
         let ProfileWork::Rough { allowance_mm, .. } = roughing.capture.wanted.work else { return };
-        let shift = roughing.side.of([allowance_mm[0], 0.0, allowance_mm[1]]);
+        let shift = roughing.plane.of([allowance_mm[0], 0.0, allowance_mm[1]]);
         let (letter, block) = match shift {
-            [along, _] if along > SLACK_MM => (roughing.side.axes[0], &roughing.capture.wanted.block),
-            [_, out] if out < -SLACK_MM => (roughing.side.axes[1], &roughing.capture.wanted.block),
+            [along, _] if along > SLACK_MM => (roughing.plane.axes[0], &roughing.capture.wanted.block),
+            [_, out] if out < -SLACK_MM => (roughing.plane.axes[1], &roughing.capture.wanted.block),
             _ => return,
         };
         let letter = if letter == 0 { b'u' } else { b'w' };
         let name = char::from(letter).to_ascii_uppercase();
         let message = format!("{name} of {} moves the profile into the part", spelled(roughing.capture.wanted.code));
         self.output.warnings.push(
-            *Fault::new("gcode::lathe", block.at(letter), message)
+            *LineFault::new("gcode::lathe", block.at(letter), message)
                 .hint("the allowance is left standing with the other sign"),
         );
     }
 
-    fn rough_line(&mut self, roughing: &Roughing<'_>, point: Point, speed: Speed) -> Read<()> {
+    fn rough_line(&mut self, roughing: &Roughing<'_>, point: PlanePoint, speed: Speed) -> Read<()> {
         let wanted = &roughing.capture.wanted;
-        self.line_to(&wanted.block, roughing.side.position(point, &wanted.start), speed, 0.0)
+        self.pass_line(&wanted.block, &wanted.start, roughing.plane, point, speed)
     }
 
-    fn rough_curve_of(&mut self, roughing: &Roughing<'_>, curve: &Curve) -> Read<()> {
-        match *curve {
-            Curve::Arc { start, end, center, turn } if length(minus(end, start)) > SHORT_ARC_MM => {
-                let like = &roughing.capture.wanted.start;
-                let [middle, target] =
-                    [center, end].map(|point| self.frame.to_program(&roughing.side.position(point, like)));
-                let turns = if roughing.side.turns(turn) > 0.0 { 1 } else { -1 };
-                let round = Round { center: [middle[2], middle[0]], turns };
-                self.arc_to(&roughing.capture.wanted.block, &target, round, 0.0)
-            }
-            Curve::Line { end, .. } | Curve::Arc { end, .. } => self.rough_line(roughing, end, Speed::Programmed),
-        }
+    fn rough_curve_of(&mut self, roughing: &Roughing<'_>, curve: &PlaneCurve) -> Read<()> {
+        let wanted = &roughing.capture.wanted;
+        self.pass_curve(&wanted.block, &wanted.start, roughing.plane, curve)
     }
 }

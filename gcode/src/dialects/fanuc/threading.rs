@@ -10,10 +10,10 @@ use crate::state::Interpreter;
 use crate::state::fanuc::ThreadingWords;
 use crate::state::frame::Position;
 use crate::text::block::{Block, Word};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Passes of a thread: more is a mistake in Q.
-const MOST_PASSES: u32 = 1000;
+const MAX_PASSES: u32 = 1000;
 
 /// A thread, mm.
 struct FanucThread {
@@ -68,7 +68,7 @@ impl Interpreter {
             self.increments(block, letter)?.filter(|&mm| mm > 0.0).ok_or_else(|| {
                 let name = char::from(letter).to_ascii_uppercase();
                 let message = format!("{name} ({what}) above 0 mm is missing for G76");
-                Fault::new("gcode::thread", word.at(), message)
+                LineFault::new("gcode::thread", word.at(), message)
                     .hint("without a decimal point it counts 0.001 mm (0.0001 inch): P1300 Q400 is 1.3 mm and 0.4 mm")
             })
         };
@@ -77,9 +77,8 @@ impl Interpreter {
         let (start, end) = (self.at, self.target(block)?);
         if start[2] == end[2] || start[0] == end[0] {
             let message = "G76 needs X and Z that differ from where it begins";
-            return Err(
-                Fault::new("gcode::thread", block.whole(), message).hint("X is the bottom of the thread, Z its end")
-            );
+            return Err(LineFault::new("gcode::thread", block.whole(), message)
+                .hint("X is the bottom of the thread, Z its end"));
         }
         let taper = self.distance_word(block, if is_one_block { b'i' } else { b'r' })?.unwrap_or(0.0);
         let (outward, ahead) = ((start[0] - end[0]).signum(), (end[2] - start[2]).signum());
@@ -94,9 +93,8 @@ impl Interpreter {
             ahead,
         };
         let depths = depths(height, cut, &first).ok_or_else(|| {
-            let message =
-                format!("the thread of {height} mm needs more than {MOST_PASSES} passes of {cut} mm at first");
-            Fault::new("gcode::thread", word.at(), message).hint("make the first pass deeper")
+            let message = format!("the thread of {height} mm needs more than {MAX_PASSES} passes of {cut} mm at first");
+            LineFault::new("gcode::thread", word.at(), message).hint("make the first pass deeper")
         })?;
         for depth in depths {
             self.pass_of_thread(block, &thread, depth)?;
@@ -108,7 +106,7 @@ impl Interpreter {
     fn first_of_thread(&mut self, block: &Block, word: Word, is_one_block: bool) -> Read<ThreadingWords> {
         if !is_one_block {
             return self.fanuc.repetitive.thread.ok_or_else(|| {
-                Fault::new(
+                LineFault::new(
                     "gcode::thread",
                     word.at(),
                     "G76 has no first block: finishing passes, run-out and angle are parameters of the control",
@@ -118,16 +116,16 @@ impl Interpreter {
         }
         if block.get(b'p').is_some_and(|method| method != 1.0) {
             let message = "this way of infeed (P of G76) is not read";
-            return Err(Fault::new("gcode::unsupported", block.at(b'p'), message)
+            return Err(LineFault::new("gcode::unsupported", block.at(b'p'), message)
                 .hint("P1 or no P cuts with one edge and a constant cross-section"));
         }
         if self.warn_once("gcode::run_out") {
             let message = "run-out, finishing passes and smallest depth of this thread are settings of the control: they are read as none";
-            self.output.warnings.push(*Fault::new("gcode::run_out", word.at(), message));
+            self.output.warnings.push(*LineFault::new("gcode::run_out", word.at(), message));
         }
         let angle_deg = block.get(b'a').unwrap_or(0.0);
         if !(0.0..=120.0).contains(&angle_deg) {
-            return Err(Fault::new(
+            return Err(LineFault::new(
                 "gcode::thread",
                 block.at(b'a'),
                 "the angle of a thread A must be from 0 to 120 degrees",
@@ -140,7 +138,7 @@ impl Interpreter {
         let begin = thread.start[2] + thread.ahead * depth * thread.tangent;
         if (thread.end[2] - begin) * thread.ahead <= thread.run_out {
             let message = "the thread is shorter than its infeed and run-out";
-            return Err(Fault::new("gcode::thread", block.whole(), message).hint("begin it farther from its end"));
+            return Err(LineFault::new("gcode::thread", block.whole(), message).hint("begin it farther from its end"));
         }
         let out = |z: f64| thread.point(thread.start[0], z);
         self.go(block, out(begin), Speed::Rapid)?;
@@ -170,7 +168,7 @@ fn depths(height: f64, cut: f64, first: &ThreadingWords) -> Option<Vec<f64>> {
     let (mut depths, mut depth, mut pass) = (Vec::new(), 0.0_f64, 0_u32);
     while depth < rough - 1e-9 {
         pass += 1;
-        if pass > MOST_PASSES {
+        if pass > MAX_PASSES {
             return None;
         }
         depth = (cut * f64::from(pass).sqrt()).max(depth + first.least_mm).min(rough);

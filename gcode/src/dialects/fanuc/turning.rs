@@ -13,7 +13,7 @@ use crate::state::frame::Position;
 use crate::text::block::Block;
 use crate::text::codes::fanuc::OWN;
 use crate::text::codes::spelled;
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 impl Interpreter {
     pub(super) fn turning_cycle(&mut self, block: &Block, code: u16) -> Read<()> {
@@ -33,7 +33,7 @@ impl Interpreter {
         if begin[along] == end[along] {
             let axis = ["X", "Y", "Z"][along];
             let message = format!("{} cuts nothing: it ends at the {axis} where it begins", spelled(code));
-            return Err(Fault::new("gcode::lathe", block.whole(), message)
+            return Err(LineFault::new("gcode::lathe", block.whole(), message)
                 .hint("it begins where the tool is; as modes, G90 and G91 belong to other G-code systems than A"));
         }
         self.go(block, begin, Speed::Rapid)?;
@@ -41,7 +41,7 @@ impl Interpreter {
             self.check_thread(block, code)?;
             if self.warn_once("gcode::run_out") {
                 let message = "how a thread of G92 runs out is a parameter of the control: it is read as a right angle at its end";
-                self.output.warnings.push(*Fault::new("gcode::run_out", block.whole(), message));
+                self.output.warnings.push(*LineFault::new("gcode::run_out", block.whole(), message));
             }
             self.cut_thread(block, end)?;
             self.go(block, out, Speed::Rapid)?;
@@ -78,7 +78,7 @@ impl Interpreter {
                 Some(place) => end[axis] = place,
                 None => {
                     let name = ["X or U", "", "Z or W"][axis];
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::lathe",
                         block.whole(),
                         format!("{name} is missing for {}", spelled(code)),
@@ -103,7 +103,7 @@ impl Interpreter {
         if self.modal.feed <= 0.0 {
             let message = format!("F (lead of the thread) is missing for {}", spelled(code));
             return Err(
-                Fault::new("gcode::thread", block.whole(), message).hint("write F1.5 for 1.5 mm per revolution")
+                LineFault::new("gcode::thread", block.whole(), message).hint("write F1.5 for 1.5 mm per revolution")
             );
         }
         Ok(())

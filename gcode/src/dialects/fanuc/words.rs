@@ -3,7 +3,7 @@
 use crate::state::Interpreter;
 use crate::text::block::Block;
 use crate::text::codes::bit;
-use crate::text::diagnostic::{Fault, Read, Short};
+use crate::text::diagnostic::{LineFault, Read, Short};
 
 /// X, Z, U and W.
 pub(super) const PLANE_WORDS: u32 = bit(b'x') | bit(b'z') | bit(b'u') | bit(b'w');
@@ -22,7 +22,7 @@ impl Interpreter {
         }
         let name = char::from(letter).to_ascii_uppercase();
         let message = format!("{name} = {} mm ({what}) must be above 0 mm", Short(value_mm));
-        Err(Fault::new("gcode::lathe", block.at(letter), message).hint("it is a depth, without a sign"))
+        Err(LineFault::new("gcode::lathe", block.at(letter), message).hint("it is a depth, without a sign"))
     }
 
     /// A length that is no coordinate, mm, within the limit of coordinates.
@@ -36,7 +36,7 @@ impl Interpreter {
         if let Some(mm) = value.filter(|&mm| mm < 0.0) {
             let name = char::from(letter).to_ascii_uppercase();
             let message = format!("{name} = {} mm is negative; the smallest is 0 mm", Short(mm));
-            return Err(Fault::new("gcode::lathe", block.at(letter), message));
+            return Err(LineFault::new("gcode::lathe", block.at(letter), message));
         }
         Ok(value)
     }
@@ -51,7 +51,7 @@ impl Interpreter {
         let name = char::from(letter).to_ascii_uppercase();
         let limit = self.settings.coordinate_limit_mm;
         let message = format!("{name} = {} mm is out of range: 0 to {limit} mm", Short(mm));
-        Err(Fault::new("gcode::lathe", block.at(letter), message).hint(if self.modal.unit_mm == 1.0 {
+        Err(LineFault::new("gcode::lathe", block.at(letter), message).hint(if self.modal.unit_mm == 1.0 {
             "without a decimal point it counts 0.001 mm"
         } else {
             "without a decimal point it counts 0.0001 inch"

@@ -2,7 +2,7 @@
 
 use crate::flow::reader::Reader;
 use crate::settings::Dialect;
-use crate::text::diagnostic::{Fault, Read, Severity, Short};
+use crate::text::diagnostic::{LineFault, Read, Severity, Short};
 
 impl Reader {
     /// A subroutine has perhaps returned to the lathe cycle whose profile it is; faults are the cycle's.
@@ -35,7 +35,7 @@ impl Reader {
             match word.number {
                 98 => {
                     let Some(number) = block.get(b'p') else {
-                        return Err(Fault::new(
+                        return Err(LineFault::new(
                             "gcode::m98",
                             at,
                             "M98 calls a subroutine, but P with its number is missing",
@@ -45,7 +45,7 @@ impl Reader {
                     let times =
                         if block.has(b'l') { interpreter.integer(block, b'l', 0, i64::from(u32::MAX))? } else { 1 };
                     if !(0.0..1e15).contains(&number) {
-                        return Err(Fault::new(
+                        return Err(LineFault::new(
                             "gcode::m98",
                             block.at(b'p'),
                             format!("P{} is no number of a subroutine", Short(number)),
@@ -69,7 +69,7 @@ impl Reader {
                     flow.go_to_block(number, "M99 P", &block.at(b'p'))?;
                 }
                 99 if block.has(b'p') && interpreter.dialect != Dialect::Printer => {
-                    return Err(Fault::new(
+                    return Err(LineFault::new(
                         "gcode::unsupported",
                         block.at(b'p'),
                         "M99 P goes on at another line than the one behind the call, which is not read",

@@ -4,17 +4,17 @@
 //! the same motion, to the last bit, with the same arithmetic in the same order; whatever is out of the ordinary in the line or in
 //! the modes leaves everything as it was, and the line goes the long way.
 
-use crate::canon::{Motion, Others, Shape};
+use crate::canon::{AuxiliaryAxes, Motion, Shape};
 use crate::flow::reader::{Percent, Reader};
 use crate::motion::feed::{MINUTE_S, PRINTER_FEED_MM_S, Speed};
 use crate::settings::Dialect;
 use crate::state::Interpreter;
 use crate::state::modal::FeedMode;
 use crate::text::lexer::{EXACT_POWERS, is_blank};
-use crate::text::source::LONGEST_LINE_BYTES;
+use crate::text::source::MAX_LINE_BYTES;
 
 /// Digits that a short decimal has at most: 10^15 is below 2^53, so that the mantissa is exact.
-const MOST_DIGITS: usize = 15;
+const MAX_DIGITS: usize = 15;
 
 /// Places of the words in [`PlainWords`].
 const X: usize = 0;
@@ -88,7 +88,7 @@ impl PlainWords {
             words.value[place] = short_decimal(bytes, &mut at)?;
         }
         words.length = at - 1;
-        (words.length <= LONGEST_LINE_BYTES).then_some(words)
+        (words.length <= MAX_LINE_BYTES).then_some(words)
     }
 
     #[inline]
@@ -119,7 +119,7 @@ fn straight_code(bytes: &[u8], at: &mut usize) -> Option<u16> {
 /// How many digits come first, at least one and few.
 pub(super) fn digits(bytes: &[u8]) -> Option<usize> {
     let count = bytes.iter().take_while(|byte| byte.is_ascii_digit()).count();
-    (1..=MOST_DIGITS).contains(&count).then_some(count)
+    (1..=MAX_DIGITS).contains(&count).then_some(count)
 }
 
 /// A decimal of few digits without blanks: an exact integer divided by an exact power of ten, as the lexer reads it.
@@ -139,7 +139,7 @@ fn short_decimal(bytes: &[u8], at: &mut usize) -> Option<f64> {
         decimals = *at - point;
         digits += decimals;
     }
-    if !(1..=MOST_DIGITS).contains(&digits) {
+    if !(1..=MAX_DIGITS).contains(&digits) {
         return None;
     }
     let value = mantissa as f64 / EXACT_POWERS[decimals];
@@ -160,9 +160,9 @@ impl Interpreter {
     fn is_plain(&self) -> bool {
         self.modal.feed_mode == FeedMode::PerMinute
             && self.output.motions < self.settings.max_motions
-            && self.waiting.held.is_empty()
-            && self.waiting.compensation.is_none()
-            && self.waiting.collected.is_none()
+            && self.carried.held.is_empty()
+            && self.carried.compensation.is_none()
+            && self.carried.collected.is_none()
             && self.lathe.is_none()
             && !self.behind_fault
             && !self.dialect.is_fanuc()
@@ -206,8 +206,8 @@ impl Interpreter {
         }
         self.modal.motion = code;
         self.end_cycles();
-        self.waiting.bezier_end = None;
-        self.waiting.left_compensation = false;
+        self.carried.bezier_end = None;
+        self.carried.left_compensation = false;
         (self.at, self.here) = (target, machine);
         self.output.motions += 1;
         self.line = line;
@@ -219,7 +219,7 @@ impl Interpreter {
             shape: Shape::Line,
             feed_mm_s,
             corner: self.modal.corner,
-            others: Others { extruder_mm: pushed_mm, axes: None },
+            others: AuxiliaryAxes { extruder_mm: pushed_mm, axes: None },
         })
     }
 

@@ -1,20 +1,20 @@
 //! Corners of a profile: an arc that touches both sides (A), or the chord between the points where it would (C).
 
-use crate::geometry::plane::{Curve, Point, SLACK_MM, add, cross, dot, length, minus, scaled, shifted, unit};
-use crate::state::lathe::{CornerCut, Lathe};
-use crate::text::diagnostic::{Fault, Read};
+use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM, add, cross, dot, length, minus, scaled, shifted, unit};
+use crate::state::lathe::{CornerCut, LatheCycle};
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Corners flatter than this need no arc and no new end, rad: their offset ends are less than a nanometre apart at 10 mm.
 pub(super) const SMOOTH_RAD: f64 = 1e-10;
 
-impl Lathe {
+impl LatheCycle {
     /// The profile's curves, one for each motion, with its corners cut.
-    pub(super) fn cut_corners(&self, curves: Vec<Curve>) -> Read<Vec<Curve>> {
+    pub(super) fn cut_corners(&self, curves: Vec<PlaneCurve>) -> Read<Vec<PlaneCurve>> {
         if self.corners.is_empty() {
             return Ok(curves);
         }
         let mut corners = self.corners.iter().peekable();
-        let mut cut: Vec<Curve> = Vec::with_capacity(curves.len() + self.corners.len());
+        let mut cut: Vec<PlaneCurve> = Vec::with_capacity(curves.len() + self.corners.len());
         for (number, mut curve) in curves.into_iter().enumerate() {
             let corner = corners.next_if(|corner| corner.0 + 1 == number);
             if let (Some((_, corner)), Some(before)) = (corner, cut.last_mut()) {
@@ -27,7 +27,7 @@ impl Lathe {
         Ok(cut)
     }
 
-    fn too_large(&self, line: u32, corner: &CornerCut) -> Box<Fault> {
+    fn too_large(&self, line: u32, corner: &CornerCut) -> Box<LineFault> {
         let letter = if corner.is_round { 'A' } else { 'C' };
         let message = format!("the corner {letter} of {:.4} mm is larger than the motions beside it", corner.radius_mm);
         self.refuse(line, &message).hint("a corner needs two sides that are longer than what it takes of them")
@@ -36,7 +36,7 @@ impl Lathe {
 
 impl CornerCut {
     /// Shortens both sides of the corner and returns what comes between them: nothing where the profile goes straight on.
-    pub(crate) fn cut(&self, before: &mut Curve, behind: &mut Curve) -> Option<Option<Curve>> {
+    pub(crate) fn cut(&self, before: &mut PlaneCurve, behind: &mut PlaneCurve) -> Option<Option<PlaneCurve>> {
         let corner = behind.start();
         let (from, to) = (before.direction(corner), behind.direction(corner));
         let bend = cross(from, to).atan2(dot(from, to));
@@ -44,7 +44,7 @@ impl CornerCut {
             return Some(None);
         }
         let turn = bend.signum();
-        let inside = |curve: &Curve| shifted(curve, turn * self.radius_mm);
+        let inside = |curve: &PlaneCurve| shifted(curve, turn * self.radius_mm);
         let center = inside(before)?.meet(&inside(behind)?, corner)?;
         let (start, end) = (foot(before, center), foot(behind, center));
         if !before.ends_at(start) || !behind.begins_at(end) {
@@ -55,18 +55,22 @@ impl CornerCut {
         if [&*before, &*behind].iter().any(|curve| curve.chord() <= SLACK_MM) {
             return None;
         }
-        Some(Some(if self.is_round { Curve::Arc { start, end, center, turn } } else { Curve::Line { start, end } }))
+        Some(Some(if self.is_round {
+            PlaneCurve::Arc { start, end, center, turn }
+        } else {
+            PlaneCurve::Line { start, end }
+        }))
     }
 }
 
 /// The point of the curve nearest to `point`.
-pub(super) fn foot(curve: &Curve, point: Point) -> Point {
+pub(super) fn foot(curve: &PlaneCurve, point: PlanePoint) -> PlanePoint {
     match *curve {
-        Curve::Line { start, end } => {
+        PlaneCurve::Line { start, end } => {
             let along = unit(minus(end, start));
             add(start, scaled(along, dot(minus(point, start), along)))
         }
-        Curve::Arc { start, center, .. } => {
+        PlaneCurve::Arc { start, center, .. } => {
             add(center, scaled(unit(minus(point, center)), length(minus(start, center))))
         }
     }

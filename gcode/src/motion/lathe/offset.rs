@@ -4,10 +4,12 @@
 //! these: its curves moved to their left, and circles about its outer corners. The pieces come one by one; one that begins below those before
 //! it is left out up to where it comes through them, and what it covers goes.
 
-use crate::geometry::plane::{Curve, Point, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, shifted, unit};
+use crate::geometry::plane::{
+    PlaneCurve, PlanePoint, SLACK_MM, add, cross, dot, left_of, length, minus, scaled, shifted, unit,
+};
 use crate::motion::lathe::corners::SMOOTH_RAD;
 use crate::motion::lathe::profile::{Profile, goes_back};
-use crate::state::lathe::Lathe;
+use crate::state::lathe::LatheCycle;
 use crate::text::diagnostic::Read;
 
 /// Curves that cross at less than this, rad, touch: where pieces are 1 mm off, lines that bend less end within [`SLACK_MM`].
@@ -21,15 +23,15 @@ const SHARP_RAD: f64 = 0.5;
 /// Where what is beside it covers the first or the last line, it is met within this many distances before or behind that line.
 const GO_ON: f64 = 4.0;
 /// Comparisons of pieces with those before them: a distance much larger than the details of a long profile makes their number grow with its square.
-const MOST_COMPARISONS: usize = 10_000_000;
+const MAX_COMPARISONS: usize = 10_000_000;
 
 impl Profile {
     /// The profile at `distance_mm` from itself.
-    pub(super) fn offset(&self, lathe: &Lathe, distance_mm: f64) -> Read<Self> {
+    pub(super) fn offset(&self, lathe: &LatheCycle, distance_mm: f64) -> Read<Self> {
         if distance_mm <= SLACK_MM {
             return Ok(self.clone());
         }
-        let mut above = Above {
+        let mut above = UpperEnvelope {
             curves: Vec::with_capacity(2 * self.curves.len()),
             is_below: false,
             is_lost: false,
@@ -37,7 +39,7 @@ impl Profile {
             distance_mm,
             first: self.entry(),
         };
-        let mut before: Option<&Curve> = None;
+        let mut before: Option<&PlaneCurve> = None;
         for curve in &self.curves {
             // An inner arc that would vanish lies below what is beside it.
             let mut moved = shifted(curve, distance_mm);
@@ -50,7 +52,7 @@ impl Profile {
                 let [start, end] = [from, to].map(|along| add(corner, scaled(left_of(along), distance_mm)));
                 let is_sharp = -bend < SHARP_RAD && end[0] - start[0] < SHARP_MM;
                 if bend < -SMOOTH_RAD && !(is_sharp && above.meet_sharply(moved.as_mut(), corner)) {
-                    above.push(Curve::Arc { start, end, center: corner, turn: -1.0 });
+                    above.push(PlaneCurve::Arc { start, end, center: corner, turn: -1.0 });
                 }
             }
             match moved {
@@ -64,20 +66,20 @@ impl Profile {
         }
         let is_found = !above.is_below
             && !above.is_lost
-            && above.comparisons <= MOST_COMPARISONS
+            && above.comparisons <= MAX_COMPARISONS
             && !above.curves.iter().any(goes_back);
         above.curves.retain(|curve| curve.chord() > SLACK_MM);
         if !is_found || above.curves.is_empty() {
             let message = format!("the distance of {distance_mm:.4} mm to it is too large for its details");
             return Err(lathe.refuse(lathe.line, &message).hint("make D (and E) smaller"));
         }
-        Ok(Self { side: self.side, start: self.start, curves: above.curves })
+        Ok(Self { plane: self.plane, start: self.start, curves: above.curves })
     }
 }
 
 /// The uppermost pieces so far.
-struct Above {
-    curves: Vec<Curve>,
+struct UpperEnvelope {
+    curves: Vec<PlaneCurve>,
     /// The last piece ended below them.
     is_below: bool,
     /// A piece that is not found above goes round their beginning: what is above is not known.
@@ -85,12 +87,12 @@ struct Above {
     comparisons: usize,
     distance_mm: f64,
     /// Where the profile begins.
-    first: Point,
+    first: PlanePoint,
 }
 
-impl Above {
-    pub(super) fn push(&mut self, mut piece: Curve) {
-        let end = self.curves.last().map(Curve::end);
+impl UpperEnvelope {
+    pub(super) fn push(&mut self, mut piece: PlaneCurve) {
+        let end = self.curves.last().map(PlaneCurve::end);
         let goes_on = !self.is_below && end.is_none_or(|end| length(minus(piece.start(), end)) <= SLACK_MM);
         if !goes_on {
             let through = self.comes_through(&piece).or_else(|| self.comes_before(&piece));
@@ -106,7 +108,7 @@ impl Above {
     }
 
     /// Keeps so many pieces, the last of them up to `point`.
-    fn shorten(&mut self, kept: usize, point: Point) {
+    fn shorten(&mut self, kept: usize, point: PlanePoint) {
         self.curves.truncate(kept);
         if let Some(last) = self.curves.last_mut() {
             last.set_end(point);
@@ -114,8 +116,10 @@ impl Above {
     }
 
     /// Lets two lines meet at an outer corner, if both are lines.
-    fn meet_sharply(&mut self, next: Option<&mut Curve>, corner: Point) -> bool {
-        let (Some(last @ Curve::Line { .. }), Some(next @ Curve::Line { .. })) = (self.curves.last_mut(), next) else {
+    fn meet_sharply(&mut self, next: Option<&mut PlaneCurve>, corner: PlanePoint) -> bool {
+        let (Some(last @ PlaneCurve::Line { .. }), Some(next @ PlaneCurve::Line { .. })) =
+            (self.curves.last_mut(), next)
+        else {
             return false;
         };
         let point = if self.is_below { None } else { last.meet(next, corner) };
@@ -127,12 +131,12 @@ impl Above {
     }
 
     /// Ends what is above where the last line, were it longer, would come through.
-    fn end_on(&mut self, last: &Curve) {
+    fn end_on(&mut self, last: &PlaneCurve) {
         if self.is_below
-            && let Some(Curve::Line { start, end }) = shifted(last, self.distance_mm)
+            && let Some(PlaneCurve::Line { start, end }) = shifted(last, self.distance_mm)
         {
             let longer =
-                Curve::Line { start, end: add(end, scaled(unit(minus(end, start)), GO_ON * self.distance_mm)) };
+                PlaneCurve::Line { start, end: add(end, scaled(unit(minus(end, start)), GO_ON * self.distance_mm)) };
             if let Some((kept, point)) = self.comes_through(&longer)
                 && length(minus(point, last.end())) >= self.distance_mm - SLACK_MM
             {
@@ -143,20 +147,22 @@ impl Above {
     }
 
     /// Where a piece meets the first line, were it to begin earlier; nothing of what is there is kept.
-    fn comes_before(&self, piece: &Curve) -> Option<(usize, Point)> {
-        let Some(&Curve::Line { start, end }) = self.curves.first() else { return None };
-        let earlier =
-            Curve::Line { start: add(start, scaled(unit(minus(start, end)), GO_ON * self.distance_mm)), end: start };
+    fn comes_before(&self, piece: &PlaneCurve) -> Option<(usize, PlanePoint)> {
+        let Some(&PlaneCurve::Line { start, end }) = self.curves.first() else { return None };
+        let earlier = PlaneCurve::Line {
+            start: add(start, scaled(unit(minus(start, end)), GO_ON * self.distance_mm)),
+            end: start,
+        };
         let point = earlier.first_crossing(piece)?;
         (length(minus(point, self.first)) >= self.distance_mm - SLACK_MM).then_some((0, point))
     }
 
     /// Where a piece that begins below the others comes through them first, and how many of them stay.
-    fn comes_through(&mut self, piece: &Curve) -> Option<(usize, Point)> {
-        let mut found: Option<(usize, Point, f64)> = None;
+    fn comes_through(&mut self, piece: &PlaneCurve) -> Option<(usize, PlanePoint)> {
+        let mut found: Option<(usize, PlanePoint, f64)> = None;
         for (number, curve) in self.curves.iter().enumerate().rev() {
             self.comparisons += 1;
-            if self.comparisons > MOST_COMPARISONS || curve.end()[0] < piece.start()[0] - SLACK_MM {
+            if self.comparisons > MAX_COMPARISONS || curve.end()[0] < piece.start()[0] - SLACK_MM {
                 break;
             }
             // What is left of a curve may be a point, which has no direction.

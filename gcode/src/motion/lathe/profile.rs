@@ -1,69 +1,27 @@
 //! The profile in the cycle's own plane.
 //!
-//! Coordinates: the first grows along the passes, the second grows from the finished part to the stock's surface. A profile runs towards a
-//! growing first coordinate, so the stock lies on its left.
+//! Coordinates as in `cycle_plane`. A profile runs towards a growing first coordinate, so the stock lies on its left.
 
-use crate::canon::{Motion, Shape};
-use crate::geometry::plane::{Curve, Point, Round, SLACK_MM, length, minus, sweep};
+use crate::canon::Motion;
+use crate::geometry::plane::{PlaneCurve, PlanePoint, SLACK_MM, sweep};
 use crate::motion::feed::Speed;
+use crate::motion::lathe::cycle_plane::{CyclePlane, clear};
 use crate::state::Interpreter;
-use crate::state::frame::Position;
-use crate::state::lathe::Lathe;
+use crate::state::lathe::LatheCycle;
 use crate::text::codes::spelled;
-use crate::text::diagnostic::{Fault, Read};
-
-/// An arc that ends closer to its start, mm, would be read as a full turn (8e-9) or nearly.
-const SHORT_ARC_MM: f64 = 1e-7;
-/// The cycle's plane: which axes, and which way.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Side {
-    /// Axis along the passes, and of their depth.
-    axes: [usize; 2],
-    signs: [f64; 2],
-}
+use crate::text::diagnostic::{LineFault, Read};
 
 /// Start of the cycle, end of the entry, and the curves behind it.
 #[derive(Debug, Clone)]
 pub(super) struct Profile {
-    pub(super) side: Side,
-    pub(super) start: Point,
-    pub(super) curves: Vec<Curve>,
-}
-
-impl Side {
-    pub(super) fn of(self, point: [f64; 3]) -> Point {
-        std::array::from_fn(|n| self.signs[n] * point[self.axes[n]])
-    }
-
-    /// The machine position of a point; the other axes stay.
-    pub(super) fn position(self, point: Point, like: &Position) -> Position {
-        let mut position = *like;
-        for n in 0..2 {
-            position[self.axes[n]] = self.signs[n] * point[n];
-        }
-        position
-    }
-
-    /// Whether an arc that turns left here turns counter-clockwise in G18 (Z, then X).
-    pub(super) fn turns(self, turn: f64) -> f64 {
-        let exchanged = if self.axes == [2, 0] { 1.0 } else { -1.0 };
-        turn * exchanged * self.signs[0] * self.signs[1]
-    }
-
-    fn curve(self, motion: &Motion) -> Curve {
-        let (start, end) = (self.of(motion.start_mm), self.of(motion.end_mm));
-        match &motion.shape {
-            Shape::Arc { center_mm, turns, .. } => {
-                Curve::Arc { start, end, center: self.of(*center_mm), turn: self.turns(f64::from(*turns)) }
-            }
-            _ => Curve::Line { start, end },
-        }
-    }
+    pub(super) plane: CyclePlane,
+    pub(super) start: PlanePoint,
+    pub(super) curves: Vec<PlaneCurve>,
 }
 
 impl Profile {
     /// The profile of a cycle; refuses one that goes back along the passes.
-    pub(super) fn new(lathe: &Lathe) -> Read<Self> {
+    pub(super) fn new(lathe: &LatheCycle) -> Read<Self> {
         match lathe.code {
             // Finishing has no passes: the profile is one of G71 or of G72.
             700 => Self::along(lathe, [2, 0]).or_else(|fault| Self::along(lathe, [0, 2]).map_err(|_| fault)),
@@ -72,58 +30,53 @@ impl Profile {
         }
     }
 
-    pub(super) fn along(lathe: &Lathe, axes: [usize; 2]) -> Read<Self> {
+    pub(super) fn along(lathe: &LatheCycle, axes: [usize; 2]) -> Read<Self> {
         let along = |motion: &Motion, axis: usize| motion.end_mm[axes[axis]] - motion.start_mm[axes[axis]];
         // As LinuxCNC: towards the chuck or the axis, where the profile itself does not say.
         let ahead = lathe.motions.iter().skip(1).find_map(|motion| clear(along(motion, 0)));
         let start_mm = axes.map(|axis| lathe.start[axis]);
         let entry_mm = lathe.motions.first().map_or(start_mm, |motion| axes.map(|axis| motion.end_mm[axis]));
         let last_mm = lathe.motions.last().map_or(entry_mm[1], |motion| motion.end_mm[axes[1]]);
-        let side = Side {
+        let plane = CyclePlane {
             axes,
             signs: [ahead.unwrap_or(-1.0), lathe.stock_side([start_mm[1], entry_mm[1], last_mm], axes[1])?],
         };
-        let curves: Vec<Curve> = lathe.motions.iter().map(|motion| side.curve(motion)).collect();
+        let curves: Vec<PlaneCurve> = lathe.motions.iter().map(|motion| plane.curve(motion)).collect();
         for (curve, motion) in curves.iter().zip(&lathe.motions).skip(1) {
             if goes_back(curve) {
-                return Err(lathe.turns_back(motion.line, side.axes[0]));
+                return Err(lathe.turns_back(motion.line, plane.axes[0]));
             }
         }
         let curves = lathe.cut_corners(curves)?;
         let [first, rest @ ..] = curves.as_slice() else {
-            return Ok(Self { side, start: [0.0; 2], curves });
+            return Ok(Self { plane, start: [0.0; 2], curves });
         };
-        if matches!(first, Curve::Arc { .. }) {
+        if matches!(first, PlaneCurve::Arc { .. }) {
             return Err(
                 lathe.refuse(lathe.motions[0].line, "the first motion leads to the profile and must be straight")
             );
         }
         // An entry that would lead back is begun above its end.
-        let start = side.of([lathe.start[0], lathe.start[1], lathe.start[2]]);
+        let start = plane.of([lathe.start[0], lathe.start[1], lathe.start[2]]);
         let start = [start[0].min(first.end()[0]), start[1]];
-        Ok(Self { side, start, curves: rest.to_vec() })
+        Ok(Self { plane, start, curves: rest.to_vec() })
     }
 
     /// Where the entry ends.
-    pub(super) fn entry(&self) -> Point {
-        self.curves.first().map_or(self.start, Curve::start)
+    pub(super) fn entry(&self) -> PlanePoint {
+        self.curves.first().map_or(self.start, PlaneCurve::start)
     }
 }
 
-/// Which way a distance goes, if it is one.
-pub(super) fn clear(way: f64) -> Option<f64> {
-    (way.abs() > SLACK_MM).then(|| way.signum())
-}
-
 /// Whether a curve goes against the passes anywhere.
-pub(super) fn goes_back(curve: &Curve) -> bool {
+pub(super) fn goes_back(curve: &PlaneCurve) -> bool {
     if curve.end()[0] < curve.start()[0] - SLACK_MM {
         return true;
     }
     match *curve {
-        Curve::Line { .. } => false,
+        PlaneCurve::Line { .. } => false,
         // An arc that does not lies on one half of its circle; the rounding of ends and centres turns the tangent by very little.
-        Curve::Arc { start, end, center, turn } => {
+        PlaneCurve::Arc { start, end, center, turn } => {
             let slack = 1e-6;
             [start, end].iter().any(|&at| curve.direction(at)[0] < -slack)
                 || sweep(start, end, center, turn) > std::f64::consts::PI + slack
@@ -131,11 +84,11 @@ pub(super) fn goes_back(curve: &Curve) -> bool {
     }
 }
 
-impl Lathe {
-    pub(super) fn refuse(&self, line: u32, message: &str) -> Box<Fault> {
+impl LatheCycle {
+    pub(super) fn refuse(&self, line: u32, message: &str) -> Box<LineFault> {
         let place = if line == self.line { String::new() } else { format!("line {line}: ") };
         let message = format!("the profile of {} cannot be cut: {place}{message}", spelled(self.code));
-        Fault::new("gcode::lathe", self.block.at(b'q'), message)
+        LineFault::new("gcode::lathe", self.block.at(b'q'), message)
     }
 
     /// Whether the stock is above (1) or below (-1) the profile's entry: where the cycle starts, or, if that is as deep as the entry, where the
@@ -156,7 +109,7 @@ impl Lathe {
         Ok(to_start.or(to_last).unwrap_or(1.0))
     }
 
-    fn turns_back(&self, line: u32, axis: usize) -> Box<Fault> {
+    fn turns_back(&self, line: u32, axis: usize) -> Box<LineFault> {
         let name = ["X", "Y", "Z"][axis];
         self.refuse(line, &format!("{name} turns back: an undercut cannot be reached by passes along {name}"))
             .hint(format!("behind the first motion of the profile, {name} goes one way; a pocket has walls that do"))
@@ -165,29 +118,24 @@ impl Lathe {
 
 impl Interpreter {
     /// Moves straight to a point of the cycle's plane.
-    pub(super) fn lathe_line(&mut self, lathe: &Lathe, side: Side, point: Point, speed: Speed) -> Read<()> {
-        let target = side.position(point, &lathe.start);
-        self.line_to(&lathe.block, target, speed, 0.0)
-    }
-
-    /// Cuts along curves.
-    pub(super) fn lathe_cut(&mut self, lathe: &Lathe, profile: &Profile) -> Read<()> {
-        profile.curves.iter().try_for_each(|curve| self.lathe_curve(lathe, profile.side, curve))
+    pub(super) fn lathe_line(
+        &mut self,
+        lathe: &LatheCycle,
+        plane: CyclePlane,
+        point: PlanePoint,
+        speed: Speed,
+    ) -> Read<()> {
+        self.pass_line(&lathe.block, &lathe.start, plane, point, speed)
     }
 
     /// Cuts along a curve.
-    pub(super) fn lathe_curve(&mut self, lathe: &Lathe, side: Side, curve: &Curve) -> Read<()> {
-        match *curve {
-            // A piece of an arc too short to be told from a full circle is as straight as it is short.
-            Curve::Arc { start, end, center, turn } if length(minus(end, start)) > SHORT_ARC_MM => {
-                let middle = self.frame.to_program(&side.position(center, &lathe.start));
-                let target = self.frame.to_program(&side.position(end, &lathe.start));
-                let turns = if side.turns(turn) > 0.0 { 1 } else { -1 };
-                let round = Round { center: [middle[2], middle[0]], turns };
-                self.arc_to(&lathe.block, &target, round, 0.0)
-            }
-            Curve::Line { end, .. } | Curve::Arc { end, .. } => self.lathe_line(lathe, side, end, Speed::Programmed),
-        }
+    pub(super) fn lathe_curve(&mut self, lathe: &LatheCycle, plane: CyclePlane, curve: &PlaneCurve) -> Read<()> {
+        self.pass_curve(&lathe.block, &lathe.start, plane, curve)
+    }
+
+    /// Cuts along curves.
+    pub(super) fn lathe_cut(&mut self, lathe: &LatheCycle, profile: &Profile) -> Read<()> {
+        profile.curves.iter().try_for_each(|curve| self.lathe_curve(lathe, profile.plane, curve))
     }
 
     /// Whether the entry of the profile is a rapid: into the cut it is, along the surface it is not.

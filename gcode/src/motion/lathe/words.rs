@@ -4,7 +4,7 @@ use crate::state::Interpreter;
 use crate::state::lathe::CornerCut;
 use crate::text::block::Block;
 use crate::text::codes::{Group, bit, spelled};
-use crate::text::diagnostic::{Fault, Read};
+use crate::text::diagnostic::{LineFault, Read};
 
 impl Interpreter {
     /// Refuses the cycles of Fanuc and Haas by name: the same codes, whose P and Q are the first and the last block of the profile.
@@ -19,7 +19,7 @@ impl Interpreter {
             "{} of Fanuc and Haas (P and Q are blocks, U and W allowances) is a cycle of their lathes",
             spelled(code)
         );
-        Err(Fault::new("gcode::unsupported", at, message).hint(
+        Err(LineFault::new("gcode::unsupported", at, message).hint(
             "--dialect fanuc-lathe or haas-lathe reads it; Q of LinuxCNC's cycle names a subroutine with the profile",
         ))
     }
@@ -35,7 +35,7 @@ impl Interpreter {
     }
 
     fn corner_of(&self, block: &Block) -> Read<Option<CornerCut>> {
-        let refuse = |at, message: String| Fault::new("gcode::lathe", at, message);
+        let refuse = |at, message: String| LineFault::new("gcode::lathe", at, message);
         if block.has(b'a') && block.has(b'c') {
             let message = "A and C in one block of a profile: a corner is rounded by A or cut straight by C".to_owned();
             return Err(refuse(block.at_any(bit(b'a') | bit(b'c')), message).hint("write one of the two"));

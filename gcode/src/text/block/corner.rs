@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use crate::text::block::{Block, strange};
-use crate::text::diagnostic::{Fault, Read};
-use crate::text::expression::{Evaluator, Values};
+use crate::text::diagnostic::{LineFault, Read};
+use crate::text::expression::{Evaluator, ParameterSource};
 
 /// A corner at the end of a motion.
 #[derive(Debug, Clone)]
@@ -19,7 +19,11 @@ pub(crate) struct CornerWord {
 impl Block {
     /// `,R2.` or `,C1.`.
     #[cold]
-    pub(super) fn read_corner<V: Values>(&mut self, evaluator: &mut Evaluator<'_, V>, start: usize) -> Read<()> {
+    pub(super) fn read_corner<V: ParameterSource>(
+        &mut self,
+        evaluator: &mut Evaluator<'_, V>,
+        start: usize,
+    ) -> Read<()> {
         evaluator.cursor.bump();
         let letter = evaluator.cursor.peek();
         if !matches!(letter, b'r' | b'c') {
@@ -29,7 +33,9 @@ impl Block {
         let value = evaluator.value()?;
         let at = start..evaluator.cursor.at;
         if self.corner.is_some() {
-            return Err(Fault::new("gcode::repeated", at, "the line already has a corner").hint("a corner is ,R or ,C"));
+            return Err(
+                LineFault::new("gcode::repeated", at, "the line already has a corner").hint("a corner is ,R or ,C")
+            );
         }
         let written = &evaluator.cursor.bytes[at.clone()];
         let has_point = [b'.', b'#', b'['].iter().any(|byte| written.contains(byte));

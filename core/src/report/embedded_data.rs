@@ -7,7 +7,7 @@ use std::io::{self, Write};
 
 use serde_json::json;
 
-use super::series::Point;
+use super::series::SeriesPoint;
 use super::{Report, ReportedRun};
 
 /// What one count of a column stands for.
@@ -95,8 +95,8 @@ fn write_outline(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
 }
 
 fn write_run(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
-    let points: Vec<Point> = run.series.points().collect();
-    let column = |value: fn(&Point) -> f64| points.iter().map(value);
+    let points: Vec<SeriesPoint> = run.series.points().collect();
+    let column = |value: fn(&SeriesPoint) -> f64| points.iter().map(value);
     let mut object = Object::begin(out)?;
     object.column("t", units::TIME_S, column(|p| p.t_s))?;
     object.column("s", units::LENGTH_MM, column(|p| p.s_mm))?;

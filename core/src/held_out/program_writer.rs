@@ -14,7 +14,7 @@ const FEED_MM_MIN: [f64; 2] = [100.0, 12_000.0];
 const FEED_EVERY: u32 = 8;
 
 /// A program that is being written.
-pub(super) struct Pen {
+pub(super) struct ProgramWriter {
     pub(super) random: Random,
     lines: Vec<String>,
     at_mm: [f64; 3],
@@ -23,7 +23,7 @@ pub(super) struct Pen {
     left_s: f64,
 }
 
-impl Pen {
+impl ProgramWriter {
     /// Begins a program: modes, how corners are taken, a place, a feedrate.
     pub(super) fn new(mut random: Random, comment: &str) -> Self {
         let mode = match random.whole(0, 5) {
@@ -34,9 +34,9 @@ impl Pen {
         };
         let lines = vec![format!("({comment})"), "G21 G17 G90 G94 G40".to_owned(), mode];
         let mixed = random.one_in(3);
-        let mut pen = Self { random, lines, at_mm: [0.0; 3], feed_mm_s: 0.0, mixed, left_s: 0.0 };
-        pen.feed();
-        pen
+        let mut writer = Self { random, lines, at_mm: [0.0; 3], feed_mm_s: 0.0, mixed, left_s: 0.0 };
+        writer.feed();
+        writer
     }
 
     /// The next part may take about so long, s.
@@ -122,8 +122,8 @@ impl Pen {
     /// A leg takes its time at the feedrate, and where it is short that of speeding up and slowing down.
     fn spend(&mut self, leg_mm: f64) {
         /// However short: a servo period or two.
-        const LEAST_S: f64 = 0.002;
-        self.left_s -= (leg_mm / self.feed_mm_s).max((leg_mm / ACCEL_MM_S2).sqrt()).max(LEAST_S);
+        const MIN_S: f64 = 0.002;
+        self.left_s -= (leg_mm / self.feed_mm_s).max((leg_mm / ACCEL_MM_S2).sqrt()).max(MIN_S);
     }
 }
 

@@ -1,12 +1,12 @@
 //! What motions leave to be known by the lines behind them.
 
 use crate::canon::Canon;
-use crate::geometry::plane::{Curve, Point};
+use crate::geometry::plane::{PlaneCurve, PlanePoint};
 use crate::state::frame::Position;
 
 /// What the lines before leave to those behind them.
 #[derive(Debug, Default)]
-pub(crate) struct Waiting {
+pub(crate) struct CarriedOver {
     /// Cutter compensation, if it is on.
     pub(crate) compensation: Option<Compensation>,
     /// Cutter compensation has ended and nothing has moved since.
@@ -28,7 +28,7 @@ pub(crate) struct Compensation {
     pub(crate) side: f64,
     pub(crate) radius_mm: f64,
     /// The offset curve of the last motion in the plane, and its direction at its end; none before the entry.
-    pub(crate) last: Option<(Curve, Point)>,
+    pub(crate) last: Option<(PlaneCurve, PlanePoint)>,
 }
 
 /// What a cycle keeps for the next line, mm and seconds.

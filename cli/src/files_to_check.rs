@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 /// Endings of programs in a folder. A file that is named itself may have any.
 const ENDINGS: [&str; 5] = ["ngc", "nc", "gcode", "tap", "cnc"];
 /// Folders inside each other. Real trees have a dozen.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// What there is to check.
 #[derive(Debug, Default)]
-pub(crate) struct Files {
+pub(crate) struct FilesToCheck {
     /// Files, in the order of the arguments, those of a folder by name.
     pub(crate) files: Vec<PathBuf>,
     /// What was left out, as remarks for people.
@@ -21,7 +21,7 @@ pub(crate) struct Files {
     seen: BTreeSet<PathBuf>,
 }
 
-impl Files {
+impl FilesToCheck {
     /// Looks up what `arguments` name.
     pub(crate) fn find(arguments: &[PathBuf]) -> Self {
         let mut found = Self::default();
@@ -49,28 +49,28 @@ impl Files {
     /// Adds the programs in a folder and below it.
     fn folder(&mut self, folder: &Path) {
         let before = self.files.len();
-        let mut others = Others::default();
-        if let Err((path, error)) = self.walk(folder, 0, &mut others) {
+        let mut left_out = LeftOut::default();
+        if let Err((path, error)) = self.walk(folder, 0, &mut left_out) {
             self.faults.push(format!("{}: the folder cannot be read: {error}", path.display()));
             return;
         }
         let programs = self.files.len() - before;
         let name = folder.display();
-        if programs == 0 && others.before == 0 {
+        if programs == 0 && left_out.before == 0 {
             let endings = ENDINGS.map(|ending| format!(".{ending}")).join(" ");
             self.faults.push(format!("{name}: the folder holds no program; the endings are {endings}"));
             return;
         }
-        let skipped = others.skipped();
+        let skipped = left_out.skipped();
         if !skipped.is_empty() {
             self.remarks.push(format!("{name}: {programs} programs; left out: {skipped}"));
         }
     }
 
-    fn walk(&mut self, folder: &Path, depth: usize, others: &mut Others) -> Result<(), (PathBuf, io::Error)> {
+    fn walk(&mut self, folder: &Path, depth: usize, left_out: &mut LeftOut) -> Result<(), (PathBuf, io::Error)> {
         let fault = |error| (folder.to_owned(), error);
-        if depth > DEEPEST {
-            return Err(fault(io::Error::other(format!("more than {DEEPEST} folders inside each other"))));
+        if depth > MAX_DEPTH {
+            return Err(fault(io::Error::other(format!("more than {MAX_DEPTH} folders inside each other"))));
         }
         let mut entries: Vec<_> = folder.read_dir().map_err(fault)?.collect::<Result<_, _>>().map_err(fault)?;
         entries.sort_by_key(std::fs::DirEntry::file_name);
@@ -78,13 +78,13 @@ impl Files {
             let path = entry.path();
             // A link to a folder may lead in a circle; a link to a file is that file.
             if entry.file_type().map_err(fault)?.is_dir() {
-                self.walk(&path, depth + 1, others)?;
+                self.walk(&path, depth + 1, left_out)?;
             } else if path.is_dir() {
-                others.links += 1;
+                left_out.links += 1;
             } else if !is_program(&path) {
-                others.endings += 1;
+                left_out.endings += 1;
             } else if !self.add(&path) {
-                others.before += 1;
+                left_out.before += 1;
             }
         }
         Ok(())
@@ -93,13 +93,13 @@ impl Files {
 
 /// What a folder holds besides programs to check.
 #[derive(Debug, Default)]
-struct Others {
+struct LeftOut {
     endings: usize,
     links: usize,
     before: usize,
 }
 
-impl Others {
+impl LeftOut {
     fn skipped(&self) -> String {
         let counts = [(self.endings, "other endings"), (self.links, "linked folders"), (self.before, "named before")];
         let told = counts.iter().filter(|(count, _)| *count > 0).map(|(count, what)| format!("{what} {count}"));

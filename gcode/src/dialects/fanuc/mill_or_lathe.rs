@@ -28,7 +28,7 @@ pub(crate) struct Evidence {
 
 /// The machine that a program is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
+pub(crate) enum MillOrLathe {
     Lathe(Sign),
     Mill(Sign),
     /// Signs of both: the first of the lathe and the first of the mill.
@@ -82,22 +82,22 @@ impl Evidence {
     }
 
     /// The machine.
-    pub(crate) fn kind(&self) -> Kind {
+    pub(crate) fn mill_or_lathe(&self) -> MillOrLathe {
         let certain = |signs: &[Sign]| signs.iter().copied().find(|sign| sign.is_certain);
         match (certain(&self.lathe), certain(&self.mill)) {
-            (Some(lathe), Some(mill)) => return Kind::Both(lathe, mill),
-            (Some(lathe), None) => return Kind::Lathe(lathe),
-            (None, Some(mill)) => return Kind::Mill(mill),
+            (Some(lathe), Some(mill)) => return MillOrLathe::Both(lathe, mill),
+            (Some(lathe), None) => return MillOrLathe::Lathe(lathe),
+            (None, Some(mill)) => return MillOrLathe::Mill(mill),
             (None, None) => {}
         }
         match (self.lathe.first(), self.mill.first()) {
-            (None, None) => Kind::Unknown,
-            (Some(&lathe), None) => Kind::Lathe(lathe),
-            (None, Some(&mill)) => Kind::Mill(mill),
+            (None, None) => MillOrLathe::Unknown,
+            (Some(&lathe), None) => MillOrLathe::Lathe(lathe),
+            (None, Some(&mill)) => MillOrLathe::Mill(mill),
             (Some(&lathe), Some(&mill)) => match self.lathe.len().cmp(&self.mill.len()) {
-                std::cmp::Ordering::Greater => Kind::Lathe(lathe),
-                std::cmp::Ordering::Less => Kind::Mill(mill),
-                std::cmp::Ordering::Equal => Kind::Both(lathe, mill),
+                std::cmp::Ordering::Greater => MillOrLathe::Lathe(lathe),
+                std::cmp::Ordering::Less => MillOrLathe::Mill(mill),
+                std::cmp::Ordering::Equal => MillOrLathe::Both(lathe, mill),
             },
         }
     }
@@ -195,7 +195,7 @@ impl Evidence {
     }
 }
 
-/// LineWords of a line as far as they are signs.
+/// Words of a line as far as they are signs of a machine.
 #[derive(Debug, Default)]
 struct LineWords {
     /// Ten times the codes.
@@ -277,11 +277,11 @@ mod tests {
     use super::*;
 
     fn kind(text: &str) -> &'static str {
-        match Evidence::find(text.as_bytes()).kind() {
-            Kind::Lathe(_) => "lathe",
-            Kind::Mill(_) => "mill",
-            Kind::Both(..) => "both",
-            Kind::Unknown => "unknown",
+        match Evidence::find(text.as_bytes()).mill_or_lathe() {
+            MillOrLathe::Lathe(_) => "lathe",
+            MillOrLathe::Mill(_) => "mill",
+            MillOrLathe::Both(..) => "both",
+            MillOrLathe::Unknown => "unknown",
         }
     }
 
