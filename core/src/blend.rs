@@ -71,5 +71,5 @@ pub struct BlendMember {
 pub const MEMBERS: &[BlendMember] = &[BlendMember {
     name: "exact",
     about: "the programmed path, corners included",
-    make: |steps, _| Box::new(exact::Exact::new(steps)),
+    make: |steps, _| Box::new(exact::ExactBlend::new(steps)),
 }];

@@ -5,11 +5,11 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `reference/window.rs` | pieces and phases that are kept, and looking them up by time and arc length |
+//! | `reference/kept.rs` | pieces and phases that are kept, and looking them up by time and arc length |
 //! | `reference/nearest.rs` | nearest point over several pieces |
 
 mod nearest;
-mod window;
+mod kept;
 
 use crate::blend;
 use crate::constraints::{Constraints, LimitsError};
@@ -21,7 +21,7 @@ use crate::path::{PathError, Piece, Step, Steps, signed_distance_mm};
 use crate::plc::Plc;
 use crate::vector::sub;
 use std::collections::VecDeque;
-use window::Window;
+use kept::KeptPath;
 
 /// Where the reference is at a plan time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,7 +71,7 @@ pub struct Foot {
 /// it has not been forgotten. Without [`Reference::forget_before`], what has been read stays in memory.
 pub struct Reference<'p> {
     plan: Plan<'p>,
-    window: Window,
+    kept: KeptPath,
     events: VecDeque<TimedEvent>,
     /// Plan time up to which all phases are in the window, s.
     planned_s: f64,
@@ -81,7 +81,7 @@ pub struct Reference<'p> {
 impl<'p> Reference<'p> {
     /// The reference of a plan.
     pub fn new(plan: Plan<'p>) -> Self {
-        Self { plan, window: Window::default(), events: VecDeque::new(), planned_s: 0.0, ended: false }
+        Self { plan, kept: KeptPath::default(), events: VecDeque::new(), planned_s: 0.0, ended: false }
     }
 
     /// The reference of a program, blended and planned by the first members of their families, without a PLC.
@@ -116,32 +116,32 @@ impl<'p> Reference<'p> {
     #[inline]
     pub fn at(&mut self, tau_s: f64) -> Sample {
         self.read_until(tau_s);
-        self.window.at(tau_s)
+        self.kept.at(tau_s)
     }
 
     /// The point of the path nearest to `point_mm` among those that the reference passes from `tau_lo_s` to `tau_hi_s`.
     #[inline]
     pub fn nearest(&mut self, point_mm: [f64; 3], tau_lo_s: f64, tau_hi_s: f64) -> Foot {
         self.read_until(tau_hi_s);
-        self.window.nearest(point_mm, tau_lo_s, tau_hi_s.max(tau_lo_s))
+        self.kept.nearest(point_mm, tau_lo_s, tau_hi_s.max(tau_lo_s))
     }
 
     /// The point of the path at arc length `s_mm`, seen from `point_mm`; of what has been read and not forgotten.
     #[inline]
     pub fn at_length(&self, point_mm: [f64; 3], s_mm: f64) -> Foot {
-        self.window.nearest_along(point_mm, s_mm, s_mm)
+        self.kept.nearest_along(point_mm, s_mm, s_mm)
     }
 
     /// The point of the path nearest to `point_mm` between two arc lengths; of what has been read and not forgotten.
     #[inline]
     pub fn nearest_along(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> Foot {
-        self.window.nearest_along(point_mm, lo_mm, hi_mm.max(lo_mm))
+        self.kept.nearest_along(point_mm, lo_mm, hi_mm.max(lo_mm))
     }
 
     /// Start and end of the rest, a dwell or what a PLC takes, at `tau_s`; none where there is none.
     pub fn rest(&mut self, tau_s: f64) -> Option<(f64, f64)> {
         self.read_until(tau_s);
-        self.window.rest(tau_s)
+        self.kept.rest(tau_s)
     }
 
     /// Total plan time, s, once the end of the program has been read.
@@ -168,7 +168,7 @@ impl<'p> Reference<'p> {
 
     /// Drops what ends before `tau_s`: pieces, phases, and events that nobody has taken.
     pub fn forget_before(&mut self, tau_s: f64) {
-        self.window.forget_before(tau_s);
+        self.kept.forget_before(tau_s);
         while self.events.front().is_some_and(|event| event.tau_s < tau_s) {
             self.events.pop_front();
         }
@@ -176,7 +176,7 @@ impl<'p> Reference<'p> {
 
     /// Number of planned pieces and phases in memory.
     pub fn kept(&self) -> (usize, usize) {
-        self.window.kept()
+        self.kept.kept()
     }
 
     /// Reads until all phases up to `tau_s` are known, and at least the first: what comes before the start, NaN too, looks at
@@ -193,8 +193,8 @@ impl<'p> Reference<'p> {
     fn read_on(&mut self, tau_s: f64) {
         while self.planned_s <= tau_s && !self.ended {
             match self.plan.next() {
-                Some(Planned::Programmed(piece)) => self.window.push_programmed(piece),
-                Some(Planned::Piece(piece)) => self.window.push_planned(piece),
+                Some(Planned::Programmed(piece)) => self.kept.push_programmed(piece),
+                Some(Planned::Piece(piece)) => self.kept.push_planned(piece),
                 Some(Planned::Phase(phase)) => self.push_phase(phase),
                 Some(Planned::Event(event)) => self.events.push_back(event),
                 None => self.ended = true,
@@ -204,7 +204,7 @@ impl<'p> Reference<'p> {
 
     fn push_phase(&mut self, phase: Phase) {
         self.planned_s = phase.tau_s + phase.duration_s;
-        self.window.push_phase(phase);
+        self.kept.push_phase(phase);
     }
 }
 

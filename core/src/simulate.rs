@@ -5,12 +5,12 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `simulate/progress.rs` | how far along the path the tool has come, and so the contour error |
+//! | `simulate/foot.rs` | how far along the path the tool has come, and so the contour error |
 //! | `simulate/rests.rs` | which part of a long rest is simulated |
 //! | `simulate/uncut.rs` | how far the tool stays away from what it should have cut |
 //! | `simulate/tick_times.rs` | how long the ticks took |
 
-mod progress;
+mod foot;
 mod rests;
 mod tick_times;
 mod uncut;
@@ -29,7 +29,7 @@ use crate::reference::{Foot, Reference, Sample};
 use crate::trace::{Commanded, FadedOut, Outcome, Row, Sink};
 use crate::vector::distance;
 use crate::watch::{Cancelled, Watch};
-use progress::{Progress, settled_periods, settled_s};
+use foot::{FootTracker, settled_periods, settled_s};
 pub use tick_times::TickTimes;
 use uncut::Uncut;
 
@@ -104,7 +104,7 @@ pub fn simulate<const N: usize>(
     sinks: &mut [&mut dyn Sink],
     watch: &dyn Watch,
 ) -> Result<RunResult, Stopped> {
-    let mut lap = Lap::new(machine, reference, controller);
+    let mut lap = ClosedLoop::new(machine, reference, controller);
     let (mut n, mut rows) = (0_u64, 0_u64);
     while let Some(periods) = lap.servo_period(n, reference, controller, sinks)? {
         n += periods;
@@ -117,7 +117,7 @@ pub fn simulate<const N: usize>(
 }
 
 /// A lap under way.
-struct Lap<'a, const N: usize> {
+struct ClosedLoop<'a, const N: usize> {
     machine: &'a Machine,
     servo_s: f64,
     kept_s: f64,
@@ -125,7 +125,7 @@ struct Lap<'a, const N: usize> {
     feed_periods: u32,
     tick: Tick<N>,
     plant: Plant<N>,
-    progress: Progress,
+    foot: FootTracker,
     uncut: Uncut,
     /// The measured position.
     seen_mm: [f64; N],
@@ -138,7 +138,7 @@ struct Lap<'a, const N: usize> {
     cut: [u64; 2],
 }
 
-impl<'a, const N: usize> Lap<'a, N> {
+impl<'a, const N: usize> ClosedLoop<'a, N> {
     /// At rest at the start of the path.
     fn new(machine: &'a Machine, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
         let servo_s = machine.period.servo_s;
@@ -154,7 +154,7 @@ impl<'a, const N: usize> Lap<'a, N> {
             feed_periods: controller.schedule().servo_periods.max(1),
             tick: Tick::new(servo_s, controller.schedule(), bounds),
             plant: Plant::new(machine, start_mm),
-            progress: Progress::new(machine, tool_of(start_mm)),
+            foot: FootTracker::new(machine, tool_of(start_mm)),
             uncut: Uncut::new(settled_periods(machine), tool_of(start_mm)),
             seen_mm: start_mm,
             run: RunResult::default(),
@@ -185,7 +185,7 @@ impl<'a, const N: usize> Lap<'a, N> {
         let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
         // A command that a correction holds beside the end of the path is not where the tool is to rest.
         let to_go_mm = distance(measurement.position_mm, joints_of(sample.position_mm));
-        let foot = self.progress.foot(reference, tau_s, sample.s_mm, tool_of(measurement.position_mm));
+        let foot = self.foot.foot(reference, tau_s, sample.s_mm, tool_of(measurement.position_mm));
         let row = row(t_s, &setpoint, &measurement, &sample, &foot, to_go_mm <= ARRIVED_MM);
         if row.cutting {
             self.cut[usize::from(self.tick.state() == State::Engaged)] += 1;

@@ -4,7 +4,7 @@ use super::{BlendedStep, Origin, PlannedPiece};
 use crate::path::{PathError, Piece, Step, Steps};
 
 /// See the module's page.
-pub struct Exact<'p> {
+pub struct ExactBlend<'p> {
     steps: Steps<'p>,
     /// Pieces so far.
     pieces: u64,
@@ -12,14 +12,14 @@ pub struct Exact<'p> {
     next: Option<Piece>,
 }
 
-impl<'p> Exact<'p> {
+impl<'p> ExactBlend<'p> {
     /// Of the steps of a program.
     pub const fn new(steps: Steps<'p>) -> Self {
         Self { steps, pieces: 0, next: None }
     }
 }
 
-impl Iterator for Exact<'_> {
+impl Iterator for ExactBlend<'_> {
     type Item = Result<BlendedStep, PathError>;
 
     fn next(&mut self) -> Option<Self::Item> {

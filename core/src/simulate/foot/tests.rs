@@ -31,7 +31,7 @@ fn feet(program: Vec<Canon>, mut tool: impl FnMut(&mut Reference<'_>, f64) -> Ve
     let mut reference = Reference::of_program(program, &machine).unwrap();
     let start_mm = reference.at(0.0).position_mm;
     let end_s = reference.read_to_end_s();
-    let mut progress = Progress::new(&machine, start_mm);
+    let mut progress = FootTracker::new(&machine, start_mm);
     let periods = ((end_s + 0.2) / SERVO_S) as u32;
     let at = |n: u32| {
         let tau_s = f64::from(n) * SERVO_S;

@@ -12,7 +12,7 @@ const HINTS: usize = 6;
 
 /// Pieces and phases in order, the oldest forgotten.
 #[derive(Debug, Default)]
-pub(super) struct Window {
+pub(super) struct KeptPath {
     programmed: VecDeque<Piece>,
     planned: VecDeque<PlannedPiece>,
     /// Numbers of the first pieces kept.
@@ -24,7 +24,7 @@ pub(super) struct Window {
     hints: [usize; HINTS],
 }
 
-impl Window {
+impl KeptPath {
     pub(super) fn push_programmed(&mut self, piece: Piece) {
         self.programmed.push_back(piece);
     }

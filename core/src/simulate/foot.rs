@@ -56,8 +56,8 @@ pub(super) fn settled_periods(machine: &Machine) -> usize {
     (settled_s(machine) / machine.period.servo_s).ceil() as usize
 }
 
-/// The progress of a run.
-pub(super) struct Progress {
+/// Follows the foot of the tool along the path, over a run.
+pub(super) struct FootTracker {
     /// Arc lengths of the reference over the last [`settled_s`], oldest first.
     passed_mm: VecDeque<f64>,
     periods: usize,
@@ -68,7 +68,7 @@ pub(super) struct Progress {
 }
 
 /// What the tool does in a servo period.
-struct Step<'a, 'p> {
+struct FootSearch<'a, 'p> {
     reference: &'a mut Reference<'p>,
     tool_mm: Vector,
     moved_mm: Vector,
@@ -77,7 +77,7 @@ struct Step<'a, 'p> {
     least_mm: f64,
 }
 
-impl Progress {
+impl FootTracker {
     /// At rest at the start of the path.
     pub(super) fn new(machine: &Machine, start_mm: Vector) -> Self {
         let slowest_1_s = machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
@@ -100,9 +100,9 @@ impl Progress {
         let moved_mm = sub(tool_mm, self.tool_mm);
         let way_mm = distance(tool_mm, self.tool_mm).max(LEAST_WAY_MM);
         let least_mm = (0.25 * way_mm).max((hi_mm - lo_mm) / MOST_STEPS);
-        let mut step = Step { reference, tool_mm, moved_mm, way_mm, least_mm };
-        let (mut foot, end_mm) = step.reach(lo_mm, hi_mm);
-        if let Some(beyond) = step.over_the_hill(&foot, end_mm, hill_mm) {
+        let mut search = FootSearch { reference, tool_mm, moved_mm, way_mm, least_mm };
+        let (mut foot, end_mm) = search.reach(lo_mm, hi_mm);
+        if let Some(beyond) = search.over_the_hill(&foot, end_mm, hill_mm) {
             foot = beyond;
         }
         self.furthest_mm = self.furthest_mm.max(foot.s_mm);
@@ -111,7 +111,7 @@ impl Progress {
     }
 }
 
-impl Step<'_, '_> {
+impl FootSearch<'_, '_> {
     /// The nearest point that the tool reaches from `from_mm` on, and where the path leaves the tool.
     fn reach(&mut self, from_mm: f64, hi_mm: f64) -> (Foot, f64) {
         let mut here = self.reference.at_length(self.tool_mm, from_mm);
