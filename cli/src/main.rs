@@ -4,14 +4,14 @@
 //! 130 interrupted. Those of `check`: 0 at most warnings, 1 mistakes in a file, 2 a file that cannot be read.
 
 mod args;
-mod commands;
-mod console;
-mod controllers;
-mod files_to_check;
-mod findings;
 mod message;
 mod progress;
+mod console;
+mod files_to_check;
+mod findings;
+mod controllers;
 mod sweep;
+mod commands;
 
 use std::process::ExitCode;
 

@@ -12,16 +12,16 @@
 //!
 //! To add a controller: one file here and one row in the table of the library.
 
-pub mod contour_compensation;
+pub mod open_loop;
 pub mod cross_coupled;
+pub mod contour_compensation;
 pub mod fuzzy_feedrate;
 pub mod feedforward;
+pub mod zero_phase;
 pub mod inverting;
 pub mod magnitude_only;
-pub mod open_loop;
-pub mod receding_horizon;
 pub mod two_dimensional;
-pub mod zero_phase;
+pub mod receding_horizon;
 
 use crate::contour_error::ContourError;
 use crate::vector::{add_scaled, scale, sub};

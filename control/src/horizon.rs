@@ -38,11 +38,11 @@
 //!
 //! Everything is of fixed size: at most [`MOST_KNOTS`] knots, N unknowns each.
 
-pub mod gauss_newton;
-pub mod interior_point;
 pub mod missed;
-pub mod problem;
 pub mod restraint;
+pub mod problem;
+pub mod interior_point;
+pub mod gauss_newton;
 
 use crate::vector::{add_scaled, bounded, fourth_power, scale, sub};
 use crate::window::Window;

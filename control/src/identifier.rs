@@ -4,10 +4,10 @@
 //! contour error to geometry. Both see the same inputs of each axis: F(k), F(k-1), F(k-2) and two delays of the error,
 //! where F(k) is the feedrate from knot k to knot k + 1.
 
-pub mod adaptation;
 pub mod contour;
-pub mod residual;
 pub mod servo;
+pub mod residual;
+pub mod adaptation;
 
 /// Hidden nodes.
 pub const HIDDEN: usize = 12;

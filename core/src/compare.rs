@@ -8,6 +8,7 @@
 //! | File | What |
 //! |---|---|
 //! | `compare/cut.rs` | one cut |
+//! | `compare/tuned.rs` | the values that a controller runs with |
 //! | `compare/tuning.rs` | the search that tunes every controller alike |
 //! | `compare/table.rs` | rows and their ratios |
 //! | `compare/overview.rs` | what tables over many rows are made of |
@@ -15,13 +16,14 @@
 //! | `compare/tolerance.rs` | the machining time at which a tolerance just holds |
 //! | `compare/page.rs` | the page |
 
+pub mod table;
+pub mod tuned;
 mod cut;
+pub mod tuning;
+pub mod tolerance;
+pub mod verdict;
 pub mod overview;
 pub mod page;
-pub mod table;
-pub mod tolerance;
-pub mod tuning;
-pub mod verdict;
 
 use std::path::{Path, PathBuf};
 
@@ -42,7 +44,7 @@ use crate::watch::Watch;
 use cut::Maker;
 use table::ComparisonRow;
 use tolerance::AtTolerance;
-use tuning::Tuned;
+use tuned::Tuned;
 use verdict::Verdict;
 
 /// Feedrate of the contours, mm/s.

@@ -8,10 +8,10 @@
 //! | `controllers/make.rs` | how each row is made for a machine |
 //! | `controllers/model_predictive.rs`, `controllers/iterative_learning.rs` | those that are not fit for a servo thread |
 
-pub mod iterative_learning;
-mod make;
-pub mod model_predictive;
 pub mod parameters;
+pub mod iterative_learning;
+pub mod model_predictive;
+mod make;
 
 use feedwright_control::Controller;
 use feedwright_control::controller::feedforward::Gains;

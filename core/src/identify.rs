@@ -4,11 +4,11 @@
 //! with random offsets of the command from the path, so that the data tell the effect of the feedrate from that of the
 //! path. [`contour`] trains the paper's network on it, [`servo`] the servo identifier; [`cache`] keeps what was trained.
 
+mod excitation;
 pub mod contour;
+mod spread;
 pub mod servo;
 pub mod cache;
-mod excitation;
-mod spread;
 
 use feedwright_control::controller::{inverting, receding_horizon};
 use rand_xoshiro::Xoshiro256PlusPlus;

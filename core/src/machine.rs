@@ -6,9 +6,9 @@
 //! [`keys`], one reader in `layout`.
 
 mod error;
+mod reader;
 pub mod keys;
 mod layout;
-mod reader;
 
 use std::f64::consts::TAU;
 use std::ffi::OsStr;

@@ -14,12 +14,12 @@
 //! | `never_worse/verdict.rs` | what counts as worse |
 //! | `never_worse/summary.rs` | totals, quantiles, failures by severity |
 
+pub mod program;
 pub mod cut;
+pub mod verdict;
 pub mod generated;
 pub mod machines;
-pub mod program;
 pub mod summary;
-pub mod verdict;
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -6,9 +6,9 @@
 
 mod error;
 
-pub mod gcode_writer;
-mod polyline;
 mod stab;
+mod polyline;
+pub mod gcode_writer;
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};

@@ -17,11 +17,11 @@
 pub mod arc;
 mod arcs;
 mod butterfly;
-pub mod contour;
-pub mod line;
-pub mod pieces;
 pub mod smooth;
 pub mod spline;
+pub mod line;
+pub mod pieces;
+pub mod contour;
 
 use crate::gcode::canon::{Corner, Event};
 use crate::vector::norm;

@@ -20,8 +20,8 @@ use crate::path::pieces::Pieces;
 use crate::path::{PathError, Piece, Step, Steps, signed_distance_mm};
 use crate::plc::Plc;
 use crate::vector::sub;
-use std::collections::VecDeque;
 use kept::KeptPath;
+use std::collections::VecDeque;
 
 /// Where the reference is at a plan time.
 #[derive(Debug, Clone, Copy, PartialEq)]

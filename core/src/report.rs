@@ -6,19 +6,21 @@
 //!
 //! Only rows that cut count for the contour error; rapids and dwells are recorded and drawn, but not judged.
 
+pub(crate) mod text;
 pub mod figure;
-mod html;
-mod embedded_data;
 mod outline;
 mod series;
-mod statistics;
-mod summary;
-pub(crate) mod text;
+mod embedded_data;
+mod html;
 mod worst;
+mod histogram;
+mod summary;
+mod statistics;
 
+pub use histogram::Histogram;
 pub use html::write_html;
 pub use series::{Series, SeriesPoint};
-pub use statistics::{Histogram, Statistics};
+pub use statistics::Statistics;
 pub use summary::{RunFacts, RunSummary};
 pub use worst::WorstPlace;
 

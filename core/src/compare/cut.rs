@@ -3,7 +3,7 @@
 use feedwright_control::Controller;
 
 use super::table::ComparisonRow;
-use super::tuning::Tuned;
+use super::tuned::Tuned;
 use super::{Competitor, Workpiece};
 use crate::controllers::{Choices, Make, Setup};
 use crate::machine::Machine;

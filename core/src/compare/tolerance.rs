@@ -4,7 +4,7 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::cut::{Maker, cut};
-use super::tuning::Tuned;
+use super::tuned::Tuned;
 use super::{CORNER, ComparisonOptions, Competitor, Workpiece};
 use crate::controllers::BASELINE;
 use crate::path::contour::{CONTOURS, Contour};

@@ -10,33 +10,10 @@
 
 use std::io;
 
-use serde::Serialize;
-
+use super::histogram::Counts;
 use super::summary::{RunFacts, RunSummary};
 use super::worst::WorstFinder;
 use crate::trace::{Row, Sink};
-
-/// Bins on either side of zero while counting.
-const BINS_PER_SIDE: usize = 512;
-
-/// Width of a bin to begin with, µm. It doubles until all errors fit, so that a full histogram has 256 to 512 bins on a
-/// side.
-const FIRST_BIN_UM: f64 = 1e-3;
-
-/// Most bins of a finished [`Histogram`]: what a plot can show.
-const SHOWN_BINS: usize = 96;
-
-/// How often each contour error occurs in the rows that cut. Bin `i` of `counts` holds errors from
-/// `(first_bin + i) * bin_um` up to the next multiple.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Histogram {
-    /// Width of a bin, µm: 0.001 times a power of two, so that histograms of several runs can be brought to one width.
-    pub bin_um: f64,
-    /// Number of the first bin; the bin from 0 upwards has number 0.
-    pub first_bin: i64,
-    /// Rows in each bin.
-    pub counts: Vec<u64>,
-}
 
 /// Streaming statistics of a run.
 #[derive(Debug, Clone)]
@@ -50,8 +27,7 @@ pub struct Statistics {
     cutting_length_mm: f64,
     cutting_time_s: f64,
     previous: Option<(f64, f64)>,
-    bin_um: f64,
-    counts: Vec<u64>,
+    counts: Counts,
     worst: WorstFinder,
 }
 
@@ -74,8 +50,7 @@ impl Statistics {
             cutting_length_mm: 0.0,
             cutting_time_s: 0.0,
             previous: None,
-            bin_um: FIRST_BIN_UM,
-            counts: vec![0; 2 * BINS_PER_SIDE],
+            counts: Counts::new(),
             worst: WorstFinder::default(),
         }
     }
@@ -105,7 +80,7 @@ impl Statistics {
             tick_p999_us: facts.run.ticks.quantile_us(0.999),
             most_register_entries: facts.run.most_entries,
             worst: self.worst.places(text),
-            histogram: self.histogram(),
+            histogram: self.counts.histogram(),
         }
     }
 
@@ -139,56 +114,7 @@ impl Statistics {
             self.cutting_time_s += row.t_s - t_s;
             self.cutting_length_mm += (row.s_mm - s_mm).max(0.0);
         }
-        self.count(error_mm * 1e3);
-    }
-
-    fn count(&mut self, error_um: f64) {
-        let side = BINS_PER_SIDE as f64;
-        while !(-side..side).contains(&(error_um / self.bin_um).floor()) {
-            self.widen();
-        }
-        let bin = (error_um / self.bin_um).floor() + side;
-        self.counts[bin as usize] += 1;
-    }
-
-    /// Doubles the width of the bins. With zero between two bins, pairs join without remainder on either side.
-    fn widen(&mut self) {
-        let narrow = std::mem::replace(&mut self.counts, vec![0; 2 * BINS_PER_SIDE]);
-        for (i, count) in narrow.into_iter().enumerate() {
-            self.counts[i / 2 + BINS_PER_SIDE / 2] += count;
-        }
-        self.bin_um *= 2.0;
-    }
-
-    fn histogram(&self) -> Histogram {
-        let first = self.counts.iter().position(|&n| n > 0);
-        let last = self.counts.iter().rposition(|&n| n > 0);
-        let (Some(first), Some(last)) = (first, last) else {
-            return Histogram { bin_um: self.bin_um, first_bin: 0, counts: Vec::new() };
-        };
-        let side = BINS_PER_SIDE as i64;
-        let counts = self.counts[first..=last].to_vec();
-        let mut histogram = Histogram { bin_um: self.bin_um, first_bin: first as i64 - side, counts };
-        while histogram.counts.len() > SHOWN_BINS {
-            histogram = histogram.widened();
-        }
-        histogram
-    }
-}
-
-impl Histogram {
-    /// The same counts in bins of twice the width.
-    pub fn widened(&self) -> Self {
-        let first_bin = self.first_bin.div_euclid(2);
-        let mut counts = Vec::with_capacity(self.counts.len() / 2 + 1);
-        for (bin, &count) in (self.first_bin..).zip(&self.counts) {
-            let wide = (bin.div_euclid(2) - first_bin) as usize;
-            if wide == counts.len() {
-                counts.push(0);
-            }
-            counts[wide] += count;
-        }
-        Self { bin_um: self.bin_um * 2.0, first_bin, counts }
+        self.counts.add(error_mm * 1e3);
     }
 }
 
@@ -245,19 +171,5 @@ mod tests {
         assert!((summary.rms_um - 1.0).abs() < 1e-12 && (summary.max_um - 1.0).abs() < 1e-12);
         assert_eq!(summary.peak_torque_nm, [0.0, 2.0, 0.0]);
         assert!((summary.cutting_time_s - 1e-3).abs() < 1e-15, "{}", summary.cutting_time_s);
-    }
-
-    #[test]
-    fn the_histogram_agrees_with_counting_by_hand() {
-        let errors: Vec<f64> = (0..4000).map(|k| 37.0 * (f64::from(k) * 0.7).sin() - 5.0).collect();
-        let statistics = statistics_of(&errors);
-        let histogram = statistics.histogram();
-        assert!(histogram.counts.len() <= SHOWN_BINS && histogram.counts.len() > SHOWN_BINS / 2 - 2);
-        for (bin, &count) in (histogram.first_bin..).zip(&histogram.counts) {
-            // The same arithmetic as the row's: the error in mm, back to µm.
-            let inside = |e: &&f64| ((**e * 1e-3) * 1e3 / histogram.bin_um).floor() as i64 == bin;
-            assert_eq!(count, errors.iter().filter(inside).count() as u64, "bin {bin}");
-        }
-        assert_eq!(histogram.counts.iter().sum::<u64>(), 4000);
     }
 }

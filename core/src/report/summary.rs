@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::statistics::Histogram;
+use super::histogram::Histogram;
 use super::worst::WorstPlace;
 use crate::simulate::RunResult;
 use crate::trace::{FadedOut, Outcome};
