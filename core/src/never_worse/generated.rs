@@ -61,7 +61,7 @@ impl<'a> Trials<'a> {
         Self { options, cutter: None }
     }
 
-    /// What a case comes to; nothing where it is no program, or no machine that anybody would hand over.
+    /// What a case comes to; nothing where it is no program, or no stable machine.
     pub fn row(&mut self, case: &Case) -> Option<Row> {
         let machine = case.machine.machine().ok().filter(machines::is_stable)?;
         let length = Length { machine: &machine, limit_s: LIMIT_S };
