@@ -180,7 +180,7 @@ pub(crate) struct HeldOutArgs {
     pub(crate) sweep: SweepArgs,
 }
 
-/// How a controller is held against open loop.
+/// How a controller is compared with open loop.
 #[derive(Debug, Args)]
 pub(crate) struct SweepArgs {
     /// Controller; `feedwright controllers` lists them.

@@ -1,4 +1,4 @@
-//! What commands share that hold a controller against open loop on many cuts: the journal, the bar, the table.
+//! What the commands share that compare a controller with open loop on many cuts: the journal, the bar, the table.
 
 use std::io::{self, Write};
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! The comparison: every controller on every contour and machine, in one table.
 //!
-//! Controllers are made from what is known of one machine, the nominal one, and meet all others unseen; those that
+//! Controllers are made from what is known of one machine, the nominal one, and cut on all others unseen; those that
 //! identify also appear once more, identified on the machine that they cut on. Every controller with parameters is tuned
 //! by the same search first ([`tuning`]). A table is the same bit by bit for the same options, whatever the number of
 //! threads.

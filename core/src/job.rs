@@ -66,7 +66,7 @@ pub struct JobOutcome {
     pub within_tolerance: bool,
 }
 
-/// Steps of a stage whose length is not known before it begins.
+/// StageSteps of a stage whose length is not known before it begins.
 const STEPS: u64 = 1000;
 
 impl Job {
@@ -94,7 +94,7 @@ impl Job {
         for entry in self.controllers() {
             watch.check()?;
             watch.begin(&format!("identifying for {}", entry.name), STEPS);
-            let mut steps = Steps::new(watch);
+            let mut steps = StageSteps::new(watch);
             let mut progress = |part: f64| steps.reach(part);
             let mut setup = Setup { machine: &self.machine, choices: &self.choices, progress: &mut progress };
             let mut controller = Make::<N>::make(entry, &mut setup);
@@ -120,7 +120,7 @@ impl Job {
     ) -> Result<ReportedRun, JobError> {
         let (mut statistics, mut series, mut timeline) =
             (Statistics::new(), Series::new(), Timeline::new(&self.machine.plc_events));
-        let mut cut = CutProgress { steps: Steps::new(watch), length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
+        let mut cut = CutProgress { steps: StageSteps::new(watch), length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
         let mut sinks: Vec<&mut dyn Sink> = vec![&mut statistics, &mut series, &mut timeline, &mut cut];
         sinks.extend(files.map(|files| files as &mut dyn Sink));
         let run = Run::on(&self.machine)
@@ -175,12 +175,12 @@ impl Job {
 }
 
 /// The steps of a stage by the part of it that is done.
-struct Steps<'a> {
+struct StageSteps<'a> {
     watch: &'a dyn Watch,
     done: u64,
 }
 
-impl<'a> Steps<'a> {
+impl<'a> StageSteps<'a> {
     const fn new(watch: &'a dyn Watch) -> Self {
         Self { watch, done: 0 }
     }
@@ -196,7 +196,7 @@ impl<'a> Steps<'a> {
 
 /// Tells the progress of a cut by its arc length.
 struct CutProgress<'a> {
-    steps: Steps<'a>,
+    steps: StageSteps<'a>,
     length_mm: f64,
     rows: u32,
 }

@@ -1,4 +1,4 @@
-//! Never worse: a controller beside open loop on every program and every machine, and where it did harm.
+//! Never worse: a controller compared with open loop on every program and every machine, and the cuts that it made worse.
 //!
 //! A cut is worse where its RMS or its largest contour error, or the uncut path, is larger than open loop's by more than
 //! [`verdict`] allows, or where the controller is not in the loop any more at the end. Each controller is made for the
@@ -49,7 +49,7 @@ pub struct SweepJob {
 /// What the jobs have in common.
 #[derive(Debug, Clone)]
 pub struct SweepOptions {
-    /// The controller that is held against open loop.
+    /// The controller that is compared with open loop.
     pub controller: &'static Entry,
     /// Its parameters that are set.
     pub set: Vec<Setting>,

@@ -28,7 +28,7 @@ pub struct Verdict {
 /// A ratio of machining times that is 1 to rounding.
 const SAME_TIME: f64 = 1.0 + 1e-9;
 
-/// The peer that has the exact model and all the time of the world: what can be reached, and so no peer to be beaten.
+/// The peer that has the exact model and unlimited computing time: a bound on what can be reached, not a competitor.
 const UPPER_BOUND: &str = "model-predictive";
 
 /// What is claimed, and the largest ratio at which it holds.

@@ -8,7 +8,7 @@
 //! phase margin = 90 deg - atan(w / a) - w T  at the w with |L| = 1
 //! ```
 //!
-//! A machine with an axis below [`PHASE_MARGIN_DEG`] is drawn anew, since nobody would hand it over so; what a controller
+//! A machine with an axis below [`PHASE_MARGIN_DEG`] is drawn anew, since none is delivered so; what a controller
 //! makes of a machine plays no part. Torque limits are those that the plan needs, with room.
 
 use std::f64::consts::{PI, TAU};

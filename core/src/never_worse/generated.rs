@@ -64,8 +64,7 @@ impl<'a> Trials<'a> {
         Self { options, watch, cutter: None }
     }
 
-    /// What a case comes to; nothing where it is no program, no machine that anybody would hand over, or ended from
-    /// outside.
+    /// What a case comes to; nothing where it is no program, no stable machine, or ended from outside.
     pub fn row(&mut self, case: &Case) -> Option<Row> {
         let machine = case.machine.machine().ok().filter(machines::is_stable)?;
         let length = Length { machine: &machine, limit_s: LIMIT_S };

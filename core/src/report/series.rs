@@ -10,7 +10,7 @@ use super::outline::{OutlineBuilder, Vertex};
 use crate::trace::{Row, Sink};
 use crate::vector::{distance, sub};
 
-/// One point of a [`Series`]: a few successive rows, told by the one with the largest contour error.
+/// One point of a [`Series`]: a few successive rows, represented by the one with the largest contour error.
 ///
 /// Where at least one of the rows cuts, only those that cut are considered for the error.
 #[derive(Debug, Clone, Copy, PartialEq)]

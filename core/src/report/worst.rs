@@ -1,4 +1,4 @@
-//! The worst places of a run: its largest contour errors, each told once.
+//! The worst places of a run: its largest contour errors, each listed once.
 //!
 //! A place is a peak of |contour error|: it is over when the error has fallen below [`PEAK_ENDS`] times the peak, and
 //! the next begins when it rises again by the same factor above the least since. Of peaks closer than
@@ -8,14 +8,14 @@ use serde::Serialize;
 
 use crate::trace::Row;
 
-/// Places told.
+/// Places listed.
 const PLACES: usize = 10;
 
 /// A peak is over when the error is this fraction of it. Nearer to 1, ripple on one bump makes many places of it;
 /// nearer to 0, neighbouring corners join.
 const PEAK_ENDS: f64 = 0.7;
 
-/// Peaks smaller than this fraction of the largest are not told: they are not what is wrong with the part.
+/// Peaks smaller than this fraction of the largest are not listed: they are not what is wrong with the part.
 const MIN_SHARE: f64 = 0.01;
 
 /// Peaks nearer to each other than this along the path are one place, mm.

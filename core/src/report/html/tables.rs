@@ -7,7 +7,7 @@ use crate::report::{FadedOut, Outcome, Report, ReportedRun, RunSummary, Timeline
 
 const AXES: [&str; 3] = ["X", "Y", "Z"];
 
-/// Events drawn on a strip; the rest is told by number. More would be a solid bar.
+/// Events drawn on a strip; the rest is given as a number. More would be a solid bar.
 const SHOWN_EVENTS: usize = 200;
 
 /// A row for each controller.
