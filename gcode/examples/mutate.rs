@@ -12,7 +12,7 @@ use feedwright_gcode::canon::Canon;
 use feedwright_gcode::{Reader, Settings};
 
 /// Longest text of one round: a round must stay short, for the number of rounds finds faults.
-const MOST_BYTES: usize = 4096;
+const MAX_BYTES: usize = 4096;
 /// A round that takes longer counts as hanging.
 const SLOW: Duration = Duration::from_secs(2);
 
@@ -176,7 +176,7 @@ fn collect(path: &Path, seeds: &mut Vec<Vec<u8>>) {
         Ok(entries) => entries.filter_map(|entry| Some(entry.ok()?.path())).collect(),
         Err(_) => {
             if let Ok(mut bytes) = std::fs::read(path) {
-                bytes.truncate(MOST_BYTES);
+                bytes.truncate(MAX_BYTES);
                 seeds.push(bytes);
             }
             return;
@@ -214,7 +214,7 @@ fn mutated(seeds: &[Vec<u8>], random: &mut Random) -> Vec<u8> {
             }
         }
     }
-    text.truncate(MOST_BYTES);
+    text.truncate(MAX_BYTES);
     text
 }
 
