@@ -153,6 +153,6 @@ pub(crate) fn decide<const N: usize>(
     window: &Window<'_, N>,
     measured: &Measured<N>,
 ) -> [f64; N] {
-    controller.observe(measured);
+    controller.observe(window, Some(measured));
     controller.command(window, measured).offset_mm
 }

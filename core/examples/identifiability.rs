@@ -51,8 +51,6 @@ impl Controller<2> for Observer {
 
     fn reset(&mut self) {}
 
-    fn observe(&mut self, _: &Measured<2>) {}
-
     fn command(&mut self, window: &Window<'_, 2>, measured: &Measured<2>) -> Command<2> {
         let [tx, ty] = window.now().tangent;
         let normal = [-ty, tx];

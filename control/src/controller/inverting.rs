@@ -121,7 +121,8 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
     }
 
     /// One step of back-propagation on the last command and its outcome, then both move into the delays.
-    fn observe(&mut self, measured: &Measured<N>) {
+    fn observe(&mut self, _: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        let Some(measured) = measured else { return };
         let error_mm = measured.contour.vector_mm;
         if !norm(error_mm).is_finite() {
             return;
@@ -201,7 +202,7 @@ mod tests {
                 position_mm: sub(window.now().position_mm, vector_mm),
                 contour: ContourError { vector_mm, ..ContourError::NONE },
             };
-            controller.observe(&measured);
+            controller.observe(&window, Some(&measured));
             let command = controller.command(&window, &measured);
             offset_mm = command.offset_mm;
             command

@@ -286,12 +286,12 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
         self.last = None;
     }
 
-    fn observe(&mut self, _: &Measured<N>) {}
-
-    fn bridge(&mut self, window: &Window<'_, N>) {
-        self.take_in(window, None);
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        self.take_in(window, measured.map(|measured| measured.position_mm));
         self.look_back(window);
-        self.plan.reset();
+        if measured.is_none() {
+            self.plan.reset();
+        }
     }
 
     fn moved_mm(&self) -> Option<[f64; N]> {
@@ -310,9 +310,7 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
         self.missed_mm
     }
 
-    fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        self.take_in(window, Some(measured.position_mm));
-        self.look_back(window);
+    fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         self.periods = self.periods(window.feed_period_s);
         let horizon = self.weighted();
         let model = Identified::new(&self.net, self.delays, self.response);

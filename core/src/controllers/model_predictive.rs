@@ -101,14 +101,17 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
         self.missed_mm = 0.0;
     }
 
-    fn observe(&mut self, _: &Measured<N>) {}
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        if let Some(measured) = measured {
+            self.take_in(window, measured.position_mm);
+        }
+    }
 
     fn missed_mm(&self) -> f64 {
         self.missed_mm
     }
 
-    fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        self.take_in(window, measured.position_mm);
+    fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let settings = &self.settings.horizon;
         let mut model = self.model.clone();
         model.residual = self.residuals.each_ref().map(Residual::foresight);

@@ -96,8 +96,6 @@ impl<const N: usize> Controller<N> for Excitation<'_, N> {
         self.lap.clear();
     }
 
-    fn observe(&mut self, _: &Measured<N>) {}
-
     fn corrects(&self) -> bool {
         false
     }
