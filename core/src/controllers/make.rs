@@ -133,7 +133,7 @@ pub(super) fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &Va
 }
 
 pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
+    let identified = servo::train(&Programme::servo().record(setup.machine, setup.choices.seed).0);
     let mut settings = receding_horizon::Settings::DEFAULT;
     settings.servo_periods = setup.machine.period.servo_periods(values.number("feed_period_s"));
     (settings.steps, settings.sure_mm, settings.foreseen_mm) =
