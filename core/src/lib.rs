@@ -6,8 +6,9 @@
 //! The modules stand in the order in which data flows; each uses only those above it.
 
 mod vector;
-pub mod machine;
 pub use feedwright_gcode as gcode;
+pub mod toml_file;
+pub mod machine;
 pub mod plc;
 pub mod path;
 pub mod feed;

@@ -10,7 +10,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
 use feedwright::gcode::{self, CheckError, Settings};
-use feedwright::machine::{Machine, MachineError, Problem};
+use feedwright::machine::{Machine, MachineError};
+use feedwright::toml_file::{FileError, Problem};
 use miette::{Report, Result, miette};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use serde_json::{Value, json};
@@ -186,13 +187,13 @@ fn machine(file: &Path) -> Verdict {
 
 /// The faults in the text of a machine file; none where it cannot be read.
 fn machine_findings(file: &Path, error: &MachineError) -> Vec<Finding> {
-    let MachineError::Invalid { problems, .. } = error else {
+    let MachineError::File(FileError::Invalid { problems, .. }) = error else {
         return Vec::new();
     };
     let finding = |problem: &Problem| Finding {
         file: file.display().to_string(),
         is_error: true,
-        code: "machine::file".to_owned(),
+        code: problem.code.to_owned(),
         line: u32::try_from(problem.line).unwrap_or(u32::MAX),
         column: u32::try_from(problem.column).unwrap_or(u32::MAX),
         span: 1,
