@@ -26,6 +26,7 @@ fn main() -> ExitCode {
     let quiet = cli.quiet;
     let result = match cli.command {
         Command::Run(args) => commands::run::run(*args, quiet),
+        Command::Identify(args) => commands::identify::run(&args, quiet),
         Command::Paper(args) => commands::paper::run(&args, quiet),
         Command::Compare(args) => commands::compare::run(&args, quiet),
         Command::NeverWorse(args) => commands::never_worse::run(&args, quiet),

@@ -59,7 +59,7 @@ fn row(steps: usize, machines: &[Machine], workpieces: &[&Workpiece]) -> Result<
         let known = Machine { period: machine.period, ..machines[0].clone() };
         let identified = servo::train::<2>(&Programme::servo().record(&known, SEED).0);
         let mut settings = receding_horizon::Settings { steps, ..receding_horizon::Settings::DEFAULT };
-        settings.horizon.limits = correction_limits(&known);
+        settings.horizon.limits = correction_limits(&known.known());
         settings.servo_periods = machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
         for workpiece in workpieces {
             let mut controller: RecedingHorizon<2> =

@@ -5,13 +5,15 @@
 //! | File | What |
 //! |---|---|
 //! | `controllers/parameters.rs` | what of them can be set, by name |
-//! | `controllers/make.rs` | how each row is made for a machine |
+//! | `controllers/setup.rs` | what they are made from: what is known of a machine, and a model |
+//! | `controllers/make.rs` | how each row is made from that |
 //! | `controllers/model_predictive.rs`, `controllers/iterative_learning.rs` | those that are not fit for a servo thread |
 
 pub mod iterative_learning;
 mod make;
 pub mod model_predictive;
 pub mod parameters;
+mod setup;
 
 use feedwright_control::Controller;
 use feedwright_control::controller::feedforward::Gains;
@@ -19,13 +21,15 @@ use feedwright_control::controller::inverting::Settings as Inverting;
 use feedwright_control::controller::receding_horizon::Settings as Horizon;
 use feedwright_control::controller::{contour_compensation, cross_coupled, fuzzy_feedrate, receding_horizon};
 use feedwright_control::horizon::MOST_KNOTS;
+use feedwright_control::identifier::Kind;
 pub use make::correction_limits;
 pub use parameters::{Parameter, Setting, SettingError};
 use parameters::{Values, number, switch, whole};
 use serde::Serialize;
+pub use setup::{ModelMisfit, Setup};
 
 use crate::gcode::suggestion::nearest;
-use crate::machine::Machine;
+use crate::model::Model;
 
 /// One row of the table.
 pub struct Entry {
@@ -37,6 +41,8 @@ pub struct Entry {
     pub source: &'static str,
     /// What it knows of the machine.
     pub knows: Knows,
+    /// Which kind of identifier it uses, where it does.
+    pub identifier: Option<Kind>,
     /// Laps of the same part that it cuts; all but the last are practice.
     pub laps: u32,
     /// What can be set; first what the comparison searches for the best of.
@@ -64,12 +70,13 @@ type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N
 
 /// A row from a function of `make` that is generic over the number of axes.
 macro_rules! entry {
-    ($name:literal, $summary:literal, $source:literal, $knows:ident, laps: $laps:literal, [$($parameter:expr),*], $make:ident) => {
+    ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, [$($parameter:expr),*], $make:ident) => {
         Entry {
             name: $name,
             summary: $summary,
             source: $source,
             knows: Knows::$knows,
+            identifier: [$(Kind::$kind)?].first().copied(),
             laps: $laps,
             parameters: &[$($parameter),*],
             plane: make::$make::<2>,
@@ -327,7 +334,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "magnitude-only",
         "inversion of the identifier, speed along the path only",
         "Yoon and Jeon (2000)",
-        Identified,
+        Identified(Contour),
         laps: 1,
         [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
         magnitude_only
@@ -336,7 +343,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "two-dimensional",
         "inversion of the identifier, speed and geometry",
         "Lee, Cho and Jeon (2005)",
-        Identified,
+        Identified(Contour),
         laps: 1,
         [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
         two_dimensional
@@ -345,7 +352,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "receding-horizon",
         "geometry planned over 20 knots ahead through an identified servo, speed as planned",
         "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
-        Identified,
+        Identified(Servo),
         laps: 1,
         [
             KNOTS,
@@ -377,16 +384,6 @@ pub struct Choices {
     pub set: Vec<Setting>,
 }
 
-/// What a controller is made from.
-pub struct Setup<'a> {
-    /// The machine it is for.
-    pub machine: &'a Machine,
-    /// The user's choices.
-    pub choices: &'a Choices,
-    /// Told of the progress of a training, 0 to 1.
-    pub progress: &'a mut dyn FnMut(f64),
-}
-
 impl Entry {
     /// Finds a row by its name.
     pub fn find(name: &str) -> Option<&'static Self> {
@@ -409,15 +406,31 @@ impl Entry {
 pub trait Make<const N: usize> {
     /// The controller of this row.
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>>;
+
+    /// The controller of this row, with a model in place of a training.
+    ///
+    /// # Errors
+    /// A model that does not suit it.
+    fn make_with<'a>(&self, setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<N>>, ModelMisfit>;
 }
 
 impl Make<2> for Entry {
+    fn make_with<'a>(&self, mut setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<2>>, ModelMisfit> {
+        setup.take(model, self, 2)?;
+        Ok(self.make(&mut setup))
+    }
+
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
         (self.plane)(setup, &Values::of(self, &setup.choices.set))
     }
 }
 
 impl Make<3> for Entry {
+    fn make_with<'a>(&self, mut setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<3>>, ModelMisfit> {
+        setup.take(model, self, 3)?;
+        Ok(self.make(&mut setup))
+    }
+
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
         (self.space)(setup, &Values::of(self, &setup.choices.set))
     }

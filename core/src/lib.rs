@@ -18,6 +18,7 @@ pub mod trace;
 pub mod output;
 pub mod simulate;
 pub mod identify;
+pub mod model;
 pub mod controllers;
 pub mod report;
 pub mod pipeline;

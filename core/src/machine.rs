@@ -6,6 +6,7 @@
 
 mod error;
 pub mod keys;
+mod known;
 mod layout;
 
 use std::f64::consts::TAU;
@@ -19,6 +20,7 @@ use crate::toml_file::key::write;
 use crate::toml_file::{self, FileError, quoted, read_text};
 use error::KIND;
 pub use error::MachineError;
+pub use known::{Known, KnownAxis};
 
 /// Machines that need no file: name and text.
 pub const BUILT_IN: &[(&str, &str)] = &[

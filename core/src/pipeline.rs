@@ -39,7 +39,11 @@ pub fn run(job: &Job, progress: &mut dyn Progress) -> Result<Outcome, Error> {
     progress.stage(Stage::Reading);
     job.check_values()?;
     let summary = gcode::check(&job.part, job.reader.clone())?;
-    let outcome = match job.axes(&summary)? {
+    let axes = job.axes(&summary)?;
+    if let Some(model) = &job.model {
+        job.controller.suits(model, &job.machine.known(), axes, &job.choices)?;
+    }
+    let outcome = match axes {
         2 => cut::<2>(job, &summary, progress),
         _ => cut::<3>(job, &summary, progress),
     }?;
@@ -55,10 +59,13 @@ where
     for entry in job.controllers() {
         progress.stage(Stage::Preparing { controller: entry.name });
         let mut told = |part: f64| progress.part(part);
-        let mut setup = Setup { machine: &job.machine, choices: &job.choices, progress: &mut told };
-        let mut controller = Make::<N>::make(entry, &mut setup);
-        progress.stage(Stage::Cutting { controller: entry.name });
+        let mut setup = Setup::new(&job.machine, &job.choices).telling(&mut told);
         let judged = entry.name == job.controller.name;
+        let mut controller = match job.model.as_ref().filter(|_| judged) {
+            Some(model) => Make::<N>::make_with(entry, setup, model)?,
+            None => Make::<N>::make(entry, &mut setup),
+        };
+        progress.stage(Stage::Cutting { controller: entry.name });
         runs.push(cut_once(job, summary, entry, &mut *controller, judged.then_some(&mut files), progress)?);
     }
     progress.stage(Stage::Writing);

@@ -33,7 +33,7 @@ where
     Entry: Make<N>,
 {
     let choices = Choices::default();
-    let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
+    let mut setup = Setup::new(machine, &choices);
     let mut controller = Make::<N>::make(Entry::find(BASELINE).unwrap(), &mut setup);
     let mut rows = Rows::default();
     simulate(machine, &mut reference, &mut *controller, &mut [&mut rows]).unwrap();

@@ -11,6 +11,7 @@ use std::sync::mpsc;
 
 use feedwright::gcode::{self, CheckError, Settings};
 use feedwright::machine::{Machine, MachineError};
+use feedwright::model::{Model, name};
 use feedwright::toml_file::{FileError, Problem};
 use miette::{Report, Result, miette};
 use rayon::iter::{ParallelBridge, ParallelIterator};
@@ -161,7 +162,13 @@ impl Told {
 
 fn verdict(file: &Path, settings: &Settings) -> Verdict {
     let is_machine = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-    if is_machine { machine(file) } else { program(file, settings.clone()) }
+    let is_model =
+        is_machine && file.file_stem().is_some_and(|stem| Path::new(stem).extension().is_some_and(|e| e == "model"));
+    match (is_model, is_machine) {
+        (true, _) => model(file),
+        (_, true) => machine(file),
+        _ => program(file, settings.clone()),
+    }
 }
 
 /// What is told where a file as a whole is wrong.
@@ -172,22 +179,37 @@ fn refused(file: &Path, outcome: Outcome, report: Report) -> Verdict {
 
 fn machine(file: &Path) -> Verdict {
     match Machine::read(file) {
-        Ok(machine) => {
-            let line = Some(format!("machine {}, {} axes", machine.name, machine.axis_count()));
-            Verdict { outcome: Outcome::Fine, line, reports: Vec::new(), findings: Vec::new() }
-        }
+        Ok(machine) => fine(format!("machine {}, {} axes", machine.name, machine.axis_count())),
         Err(error) => {
-            let findings = machine_findings(file, &error);
-            let outcome = if findings.is_empty() { Outcome::Unreadable } else { Outcome::Mistakes };
-            let refused = refused(file, outcome, error.into());
-            if findings.is_empty() { refused } else { Verdict { findings, ..refused } }
+            let findings = match &error {
+                MachineError::File(error) => findings(file, error),
+                MachineError::UnknownName { .. } => Vec::new(),
+            };
+            at_fault(file, findings, error.into())
         }
     }
 }
 
-/// The faults in the text of a machine file; none where it cannot be read.
-fn machine_findings(file: &Path, error: &MachineError) -> Vec<Finding> {
-    let MachineError::File(FileError::Invalid { problems, .. }) = error else {
+fn model(file: &Path) -> Verdict {
+    match Model::read(file) {
+        Ok(model) => fine(format!("{} model, {} axes, {}", name(model.kind()), model.axes(), model.about().source)),
+        Err(error) => at_fault(file, findings(file, &error), error.into()),
+    }
+}
+
+fn fine(line: String) -> Verdict {
+    Verdict { outcome: Outcome::Fine, line: Some(line), reports: Vec::new(), findings: Vec::new() }
+}
+
+fn at_fault(file: &Path, findings: Vec<Finding>, error: Report) -> Verdict {
+    let outcome = if findings.is_empty() { Outcome::Unreadable } else { Outcome::Mistakes };
+    let refused = refused(file, outcome, error);
+    if findings.is_empty() { refused } else { Verdict { findings, ..refused } }
+}
+
+/// The faults in the text of a machine file or model file; none where it cannot be read.
+fn findings(file: &Path, error: &FileError) -> Vec<Finding> {
+    let FileError::Invalid { problems, .. } = error else {
         return Vec::new();
     };
     let finding = |problem: &Problem| Finding {

@@ -156,7 +156,7 @@ impl Trial<'_> {
             value: *value,
         };
         let choices = Choices { seed: self.seed, set: self.entry.searched().zip(values).map(setting).collect() };
-        let mut setup = Setup { machine: self.machine, choices: &choices, progress: &mut |_| {} };
+        let mut setup = Setup::new(self.machine, &choices);
         let mut controller = Make::<2>::make(self.entry, &mut setup);
         cut(self.workpiece, self.machine, &mut *controller, self.entry.laps, &mut [])
     }

@@ -14,7 +14,7 @@ use feedwright_control::identifier::residual::{self, Foresight, Residual};
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
-use crate::machine::Machine;
+use crate::machine::Known;
 
 /// Steps of Gauss and Newton, at most.
 const MOST_STEPS: usize = 20;
@@ -45,9 +45,9 @@ pub struct ModelPredictive<const N: usize> {
 }
 
 impl<const N: usize> ModelPredictive<N> {
-    /// With the model of a machine.
-    pub fn new(machine: &Machine, settings: Settings) -> Self {
-        let rest = Exact::new(machine, settings.servo_periods);
+    /// With the nominal law of a machine.
+    pub fn new(known: &Known, settings: Settings) -> Self {
+        let rest = Exact::new(known, settings.servo_periods);
         Self {
             settings,
             model: rest.clone(),
@@ -147,8 +147,8 @@ struct Exact<const N: usize> {
 }
 
 impl<const N: usize> Exact<N> {
-    fn new(machine: &Machine, servo_periods: u32) -> Self {
-        let laws: [axis::Axis; N] = machine.law();
+    fn new(known: &Known, servo_periods: u32) -> Self {
+        let laws: [axis::Axis; N] = known.law();
         let axes = std::array::from_fn(|i| {
             let law = laws[i];
             ExactAxis { law, state: State::default(), slopes: [State::default(); MOST_KNOTS] }
@@ -157,7 +157,7 @@ impl<const N: usize> Exact<N> {
         Self {
             axes,
             servo_periods,
-            servo_s: machine.period.servo_s,
+            servo_s: known.period.servo_s,
             residual: [Residual::new(residual::Settings::DEFAULT).foresight(); N],
             missed_mm: [0.0; N],
             lag_s,

@@ -34,12 +34,22 @@ pub fn identified<const N: usize>(
     seed: u64,
     progress: &mut dyn FnMut(f64),
 ) -> Identified<N> {
-    let (recording, rng) = programme.record::<N>(machine, seed);
-    let file = folder().map(|folder| folder.join(format!("{}.json", key(&recording, training, &rng))));
+    let (recording, rng) = programme.record(machine, seed);
+    trained(&recording, training, rng, progress)
+}
+
+/// The identifier that a training makes of a recording, from the cache where it is there.
+pub fn trained<const N: usize>(
+    recording: &Recording<N>,
+    training: &Training,
+    rng: Rng,
+    progress: &mut dyn FnMut(f64),
+) -> Identified<N> {
+    let file = folder().map(|folder| folder.join(format!("{}.json", key(recording, training, &rng))));
     if let Some(found) = file.as_ref().and_then(load) {
         return found;
     }
-    let identified = train(&recording, training, rng, progress);
+    let identified = train(recording, training, rng, progress);
     if let Some(file) = file {
         // A cache that cannot be written costs time, nothing else.
         let _ = store(&file, &identified);

@@ -6,11 +6,12 @@ use std::path::PathBuf;
 use thiserror::Error;
 
 use super::Outputs;
-use crate::controllers::{Choices, Entry};
+use crate::controllers::{Choices, Entry, ModelMisfit};
 use crate::feed::LimitsError;
 use crate::gcode::canon::{Canon, MotionKind};
 use crate::gcode::{self, CheckError, ReadError, Reader, Summary};
 use crate::machine::Machine;
+use crate::model::Model;
 use crate::output::OutputError;
 use crate::path::PathError;
 use crate::report::{Report, Run, WorstPlace};
@@ -31,6 +32,8 @@ pub struct Job {
     pub feed_mm_s: Option<f64>,
     /// Settings of the controllers.
     pub choices: Choices,
+    /// A model for the controller that is asked for, in place of a training.
+    pub model: Option<Model>,
     /// Largest contour error that is allowed, um.
     pub tolerance_um: Option<f64>,
     /// Settings of the reader.
@@ -133,6 +136,10 @@ pub enum Error {
         /// The place.
         path: PathBuf,
     },
+    /// The model does not suit.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Model(#[from] ModelMisfit),
     /// A file cannot be written.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -219,6 +226,9 @@ impl Job {
             value("Program read as", format!("{}: {}", summary.dialect.0, summary.dialect.1)),
             value("Seed", self.choices.seed.to_string()),
         ];
+        if let Some(model) = self.model.as_ref().map(Model::about) {
+            settings.push(value("Model", format!("{}, {}", model.source, model.date)));
+        }
         for set in &self.choices.set {
             settings.push(value(&format!("{}, {}", set.controller, set.name), set.value.to_string()));
         }
