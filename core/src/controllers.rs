@@ -120,14 +120,14 @@ const LEARNING_STEP: Parameter = number(
 // Of those that plan over a horizon.
 const RATE_WEIGHT: Parameter = number(
     "rate_weight_s2",
-    Horizon::DEFAULT.horizon.rate_weight,
+    Horizon::<2>::DEFAULT.horizon.rate_weight,
     [0.0, 0.01],
     None,
     "weight of the speed of the offset: below 1e-10 the plan rings from knot to knot, above 1e-4 nothing is corrected",
 );
 const KNOTS: Parameter = whole(
     "knots",
-    Horizon::DEFAULT.horizon.knots,
+    Horizon::<2>::DEFAULT.horizon.knots,
     [1.0, MOST_KNOTS as f64],
     "knots of the horizon: fewer take less time in a tick, and see less of a corner ahead",
 );
@@ -140,47 +140,47 @@ const PLAN_PERIOD_S: Parameter = number(
 );
 const CHANGE_WEIGHT: Parameter = number(
     "change_weight_s2",
-    Horizon::DEFAULT.horizon.change_weight,
+    Horizon::<2>::DEFAULT.horizon.change_weight,
     [0.0, 0.01],
     None,
     "weight of the change of that speed from knot to knot: more is smoother, and blunter at corners",
 );
 const TANGENTIAL_WEIGHT: Parameter = number(
     "tangential_weight",
-    Horizon::DEFAULT.horizon.tangential_weight,
+    Horizon::<2>::DEFAULT.horizon.tangential_weight,
     [0.0, 1.0],
     None,
     "weight of an error along the path: small leaves room at a corner, large keeps the tool from staying behind",
 );
 const LAST_WEIGHT: Parameter = number(
     "last_weight",
-    Horizon::DEFAULT.horizon.last_weight,
+    Horizon::<2>::DEFAULT.horizon.last_weight,
     [0.0, 1.0],
     None,
     "the same at the end of the horizon, at the least: where it is small, the tool swings about turns that are not seen yet",
 );
 const SURE_MM: Parameter = number(
     "sure_mm",
-    Horizon::DEFAULT.sure_mm,
+    Horizon::<2>::DEFAULT.sure_mm,
     [1e-6, 1.0],
     None,
     "innovations of this size make the plan half as sharp: small is gentle, large builds on predictions that miss",
 );
 const FORESEEN_MM: Parameter = number(
     "foreseen_mm",
-    Horizon::DEFAULT.foreseen_mm,
+    Horizon::<2>::DEFAULT.foreseen_mm,
     [1e-4, 10.0],
     None,
     "a miss by this some knots ahead makes the offset count as much as an error: large trusts a model that is wrong",
 );
 const SOLVER_STEPS: Parameter = whole(
     "steps",
-    Horizon::DEFAULT.steps,
+    Horizon::<2>::DEFAULT.steps,
     [1.0, 20.0],
     "steps of the solver in a tick: further ones hardly change anything",
 );
 const ON_RAPIDS: Parameter =
-    switch("on_rapids", Horizon::DEFAULT.horizon.on_rapids, "whether rapids are corrected as cuts are");
+    switch("on_rapids", Horizon::<2>::DEFAULT.horizon.on_rapids, "whether rapids are corrected as cuts are");
 // Parts of what the exact model calls for, and scales of its parameters.
 const VELOCITY_GAIN: Parameter =
     number("velocity_gain", Gains::EXACT.velocity, [0.0, 10.0], Some([0.5, 1.5]), EXACT_REASON);

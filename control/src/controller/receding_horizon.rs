@@ -60,11 +60,11 @@ const LEAP_MM: f64 = 0.3;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct Settings<const N: usize> {
     /// Servo periods in a feed period; 1 to 20.
     pub servo_periods: u32,
     /// The inversion.
-    pub horizon: horizon::Settings,
+    pub horizon: horizon::Settings<N>,
     /// Steps of the solver in a tick; 1 is all that Gauss-Newton needs.
     pub steps: usize,
     /// Adaptation of the identifier.
@@ -75,7 +75,7 @@ pub struct Settings {
     pub foreseen_mm: f64,
 }
 
-impl Settings {
+impl<const N: usize> Settings<N> {
     /// Values that serve every shape and machine tried.
     pub const DEFAULT: Self = Self {
         servo_periods: 5,
@@ -101,7 +101,7 @@ impl Settings {
 #[derive(Debug, Clone)]
 pub struct RecedingHorizon<const N: usize, S = GaussNewton, D = ServoIdentifier<N>> {
     net: Adaptation<N, D>,
-    settings: Settings,
+    settings: Settings<N>,
     plan: Plan<N, S>,
     periods: usize,
     /// The following error as it is measured; as it would be without measurement, from the commands alone; and the part of it
@@ -133,7 +133,7 @@ struct Last<const N: usize> {
 
 impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
     /// With an identifier that is trained on a machine, and how others of its kind differ.
-    pub fn new(net: D, spread: &Spread<N>, settings: Settings) -> Self {
+    pub fn new(net: D, spread: &Spread<N>, settings: Settings<N>) -> Self {
         Self {
             net: Adaptation::new(net, spread, settings.adaptation),
             settings,
@@ -234,7 +234,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
     }
 
     /// The weights at the quality that the predictions have now.
-    fn weighted(&self) -> horizon::Settings {
+    fn weighted(&self) -> horizon::Settings<N> {
         let blunter = 1.0 + fourth_power(self.net.innovation_mm() / self.settings.sure_mm);
         let mut horizon = self.settings.horizon;
         horizon.rate_weight *= blunter;

@@ -94,7 +94,7 @@ fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
 }
 
 pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let receding_horizon::Settings { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
+    let receding_horizon::Settings::<N> { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
     (horizon.knots, horizon.rate_weight) = (values.whole("knots"), values.number("rate_weight_s2"));
     horizon.limits = correction_limits(&setup.known);
     let servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
@@ -124,7 +124,7 @@ pub(super) fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &Va
 
 pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let (net, spread) = setup.servo(values.number("feed_period_s"));
-    let mut settings = receding_horizon::Settings::DEFAULT;
+    let mut settings = receding_horizon::Settings::<N>::DEFAULT;
     settings.servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
     (settings.steps, settings.sure_mm, settings.foreseen_mm) =
         (values.whole("steps"), values.number("sure_mm"), values.number("foreseen_mm"));
@@ -146,7 +146,7 @@ pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &V
 const PLANNED_DEVIATION: f64 = 0.9;
 
 /// What a machine allows a correction.
-pub fn correction_limits(known: &Known) -> horizon::Limits {
+pub fn correction_limits<const N: usize>(known: &Known) -> horizon::Limits<N> {
     horizon::Limits {
         acceleration_mm_s2: std::array::from_fn(|i| known.axis(i).correction_accel_mm_s2),
         speed_mm_s: known.limits.rapid_mm_s,

@@ -23,17 +23,17 @@ const CONVERGED_MM_S2: f64 = 0.05;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct Settings<const N: usize> {
     /// Servo periods in a feed period.
     pub servo_periods: u32,
     /// The inversion.
-    pub horizon: horizon::Settings,
+    pub horizon: horizon::Settings<N>,
 }
 
 /// Model-predictive contouring.
 #[derive(Debug, Clone)]
 pub struct ModelPredictive<const N: usize> {
-    settings: Settings,
+    settings: Settings<N>,
     /// The model at rest at the origin.
     rest: Exact<N>,
     model: Exact<N>,
@@ -46,7 +46,7 @@ pub struct ModelPredictive<const N: usize> {
 
 impl<const N: usize> ModelPredictive<N> {
     /// With the nominal law of a machine.
-    pub fn new(known: &Known, settings: Settings) -> Self {
+    pub fn new(known: &Known, settings: Settings<N>) -> Self {
         let rest = Exact::new(known, settings.servo_periods);
         Self {
             settings,
