@@ -22,6 +22,9 @@ pub(crate) use reader::Table;
 /// Such a file is a page or a few of text; a larger one is some other file.
 pub(crate) const MAX_FILE_BYTES: u64 = 1 << 20;
 
+/// A file that is not TOML at all is wrong in every line: so many faults of syntax are told of.
+const MAX_SYNTAX_FAULTS: usize = 5;
+
 /// A text, taken apart; its values know their places in the text.
 pub(crate) type Document<'t> = toml::Spanned<DeTable<'t>>;
 
@@ -31,7 +34,13 @@ pub(crate) fn document(text: &str) -> Result<Document<'_>, Vec<Fault>> {
     if syntax_errors.is_empty() {
         Ok(document)
     } else {
-        Err(syntax_errors.iter().map(|error| syntax_fault(error, text)).collect())
+        let more = syntax_errors.len().saturating_sub(MAX_SYNTAX_FAULTS);
+        let mut faults: Vec<Fault> =
+            syntax_errors.iter().take(MAX_SYNTAX_FAULTS).map(|error| syntax_fault(error, text)).collect();
+        if let Some(last) = faults.last_mut().filter(|_| more > 0) {
+            last.hint = Some(format!("{more} more places are not TOML: was another file meant?"));
+        }
+        Err(faults)
     }
 }
 

@@ -214,7 +214,11 @@ fn other_files_are_told_apart() {
         ["1:1: format is missing: this is no model file / it looks like a machine file: give that to --machine"]
     );
     assert!(told("")[0].contains("'feedwright identify' writes model files"));
-    assert!(told("G0 X1")[0].contains("not TOML"));
+    let program = told(&"G0 X1 Y2\n".repeat(100));
+    assert!(
+        program.len() == 5 && program[4].ends_with("95 more places are not TOML: was another file meant?"),
+        "{program:?}"
+    );
     let text = servo::<2>().text();
     for length in (0..text.len()).step_by(97) {
         assert!(Model::parse("cut", &text[..length]).is_err(), "{length}");
