@@ -22,6 +22,8 @@ pub(crate) struct Cli {
 pub(crate) enum CommandArgs {
     /// Cut a part on a simulated machine, open loop and with a controller, and write the report.
     Run(Box<RunArgs>),
+    /// Identify a simulated machine: write the model that a controller of `run` uses, for `run --model`.
+    Identify(IdentifyArgs),
     /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
     Paper(PaperArgs),
     /// Compare all controllers on contours and machines, in one table.
@@ -30,7 +32,7 @@ pub(crate) enum CommandArgs {
     NeverWorse(NeverWorseArgs),
     /// The same with random programs on random machines, and the smallest case of what fails.
     HeldOut(HeldOutArgs),
-    /// Report all mistakes of G-code programs and machine files; of a folder, of all programs in it.
+    /// Report all mistakes of G-code programs, machine files and model files; of a folder, of all programs in it.
     Check(CheckArgs),
     /// Print the canonical motions of a program, one JSON object a line, in mm and s.
     Canon(CanonArgs),
@@ -81,8 +83,33 @@ pub(crate) struct RunArgs {
     /// Seed of the identifier's training.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
+    /// Model of the machine for the controller, in place of a training; `feedwright identify` writes one.
+    #[arg(long, value_name = "FILE.model.toml")]
+    pub(crate) model: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct IdentifyArgs {
+    /// Built-in machine, or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = "tnv40")]
+    pub(crate) machine: OsString,
+    /// Controller that the model is for; `feedwright controllers` lists them.
+    #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BEST)]
+    pub(crate) controller: String,
+    /// Axes of the model: 2 for programs that stay in the XY plane, 3 for others.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
+    pub(crate) axes: u8,
+    /// Set a parameter of the controller; feed_period_s is the one that the model depends on.
+    #[arg(long, value_name = "PARAMETER=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Seed of what is cut to identify the machine, and of the training.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Place of the model.
+    #[arg(long, value_name = "FILE.model.toml")]
+    pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -205,7 +232,7 @@ pub(crate) struct SweepArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct CheckArgs {
-    /// G-code programs, machine files (.toml), and folders of programs.
+    /// G-code programs, machine files (.toml), model files (.model.toml), and folders of programs.
     #[arg(required = true)]
     pub(crate) files: Vec<PathBuf>,
     /// How mistakes are told: text for people; json, sarif (2.1.0) and github (annotations of a workflow) on the standard output.

@@ -4,6 +4,7 @@ pub(crate) mod canon;
 pub(crate) mod check;
 pub(crate) mod compare;
 pub(crate) mod held_out;
+pub(crate) mod identify;
 pub(crate) mod list;
 pub(crate) mod never_worse;
 pub(crate) mod paper;

@@ -16,8 +16,8 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
-use feedwright_control::identifier::Inputs;
 use feedwright_control::identifier::contour::ContourIdentifier;
+use feedwright_control::identifier::{ContourModel, Inputs};
 
 /// These are the same in `fann_bench.c`.
 const SAMPLES: usize = 64;

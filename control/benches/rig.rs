@@ -3,10 +3,10 @@
 use feedwright_control::contour_error::{ContourError, Estimator};
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
-use feedwright_control::identifier::Inputs;
 use feedwright_control::identifier::adaptation::UNKNOWNS;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::servo::ServoIdentifier;
+use feedwright_control::identifier::{Identifier, Inputs};
 use feedwright_control::safety::Bounds;
 use feedwright_control::window::{Preview, Register};
 use feedwright_control::{Controller, Knot, Measured, Reference, Setpoint, Tick, Window};
@@ -45,7 +45,7 @@ pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
 /// The receding horizon of so many knots over a servo like that of tnv40: what least squares give for one axis, for all
 /// axes.
 pub(crate) fn horizon<const N: usize>(knots: usize) -> RecedingHorizon<N> {
-    let mut net = ServoIdentifier { hidden: network::<N>().0.hidden, ..ServoIdentifier::IDEAL };
+    let mut net = ServoIdentifier { hidden: network::<N>().0.hidden, ..ServoIdentifier::NULL };
     for axis in 0..N {
         net.linear[axis][axis] = [0.244, -0.101, -0.00186, 0.2785, -0.4166];
     }
@@ -153,6 +153,6 @@ pub(crate) fn decide<const N: usize>(
     window: &Window<'_, N>,
     measured: &Measured<N>,
 ) -> [f64; N] {
-    controller.observe(measured);
+    controller.observe(window, Some(measured));
     controller.command(window, measured).offset_mm
 }

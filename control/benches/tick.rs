@@ -6,6 +6,7 @@ mod rig;
 
 use divan::{Bencher, black_box};
 use feedwright_control::contour_error::Estimator;
+use feedwright_control::identifier::ContourModel;
 
 fn main() {
     divan::main();

@@ -9,6 +9,7 @@
 mod rig;
 
 use feedwright_control::Controller;
+use feedwright_control::identifier::ContourModel;
 
 fn main() {
     let mut arguments = std::env::args().skip(1);

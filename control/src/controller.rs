@@ -105,16 +105,16 @@ pub trait Controller<const N: usize> {
     fn next_lap(&mut self) {
         self.reset();
     }
-    /// Learns from what the last command led to. Called once a feed period, before [`Self::command`].
-    fn observe(&mut self, measured: &Measured<N>);
+    /// Learns from what the last feed period led to: what was really commanded on the way here is in the window, whatever was
+    /// asked for; what came of it is in `measured`, none where the position was lost. Called once a feed period, before
+    /// [`Self::command`], which is not called where nothing was measured.
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        let _ = (window, measured);
+    }
     /// By how much the last prediction missed what was measured, mm; 0 where there was none. [`crate::safety`] reads it
     /// after each decision.
     fn missed_mm(&self) -> f64 {
         0.0
-    }
-    /// A decision without a measurement: what was commanded on the way here is in the window, where the tool is nobody knows.
-    fn bridge(&mut self, window: &Window<'_, N>) {
-        let _ = window;
     }
     /// By how much its offset has moved the tool, mm, where it has a model that says so.
     fn moved_mm(&self) -> Option<[f64; N]> {

@@ -54,7 +54,8 @@ use restraint::Restraint;
 pub const MOST_KNOTS: usize = 20;
 /// Most feed periods of a knot.
 pub const MOST_PERIODS: usize = 4;
-/// Most axes.
+/// Most axes; fewer than two have no path to leave. [`Problem::new`] does not compile for others: the normals of the path are those
+/// of a plane or of space, and there is no room for more unknowns.
 pub const MOST_AXES: usize = 3;
 /// Most unknowns.
 pub const MOST_UNKNOWNS: usize = MOST_KNOTS * MOST_AXES;
@@ -68,7 +69,7 @@ const LAST_KNOTS: usize = 5;
 
 /// Settings of the inversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct Settings<const N: usize> {
     /// Knots of the horizon; 1 to [`MOST_KNOTS`].
     pub knots: usize,
     /// w: weight of the speed of the offset, s^2. Smaller is sharper; below 1e-10 the plan rings from knot to knot, above
@@ -88,29 +89,29 @@ pub struct Settings {
     /// Whether rapid motions are corrected as cuts are.
     pub on_rapids: bool,
     /// What the plan keeps to.
-    pub limits: Limits,
+    pub limits: Limits<N>,
 }
 
-/// Limits of the correction, that is of the offset of the command from the path. Axes beyond those of the machine do not count.
+/// Limits of the correction, that is of the offset of the command from the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
+pub struct Limits<const N: usize> {
     /// A: acceleration of the offset of each axis, mm/s^2. Never exceeded.
-    pub acceleration_mm_s2: [f64; MOST_AXES],
+    pub acceleration_mm_s2: [f64; N],
     /// Speed of the offset of an axis, mm/s.
     pub speed_mm_s: f64,
     /// Length of the offset, mm.
     pub deviation_mm: f64,
     /// Acceleration of the tool in each axis at the torque limit of its drive, mm/s^2.
-    pub drive_mm_s2: [f64; MOST_AXES],
+    pub drive_mm_s2: [f64; N],
 }
 
-impl Limits {
+impl<const N: usize> Limits<N> {
     /// None.
     pub const NONE: Self = Self {
-        acceleration_mm_s2: [f64::INFINITY; MOST_AXES],
+        acceleration_mm_s2: [f64::INFINITY; N],
         speed_mm_s: f64::INFINITY,
         deviation_mm: f64::INFINITY,
-        drive_mm_s2: [f64::INFINITY; MOST_AXES],
+        drive_mm_s2: [f64::INFINITY; N],
     };
 }
 
@@ -267,7 +268,7 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
 
     /// Goes over to the next tick: what was planned for it comes first. From here on a knot has `periods` feed periods, 1
     /// to [`MOST_PERIODS`].
-    pub fn shift(&mut self, periods: usize, settings: &Settings) {
+    pub fn shift(&mut self, periods: usize, settings: &Settings<N>) {
         let knots = settings.knots();
         let planned = self.accelerations_mm_s2;
         let last = self.periods.max(1);
@@ -287,8 +288,8 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
     }
 
     /// Improves the plan by one step of the solver and returns what comes first.
-    pub fn improve<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings) -> Step<N> {
-        let settings = self.restraint.on::<N>(settings, model.lag_s());
+    pub fn improve<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings<N>) -> Step<N> {
+        let settings = self.restraint.on(settings, model.lag_s());
         let problem = Problem::new(model, window, &self.accelerations_mm_s2, self.periods, &settings);
         let [need_mm, open_error_mm] = problem.open_errors_mm();
         let contour_mm2 = problem.contour_mm2();
@@ -315,7 +316,7 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
     }
 }
 
-impl Settings {
+impl<const N: usize> Settings<N> {
     /// For tests.
     #[cfg(test)]
     pub(crate) const EXAMPLE: Self = Self {

@@ -18,9 +18,7 @@
 //!
 //! All quantities are scaled as in [`crate::identifier`].
 
-use crate::activation::slope;
-use crate::identifier::contour::{ContourIdentifier, Forward};
-use crate::identifier::{HIDDEN, Inputs};
+use crate::identifier::{ContourModel, Inputs};
 use crate::vector::{add_scaled, dot, limit_norm, norm, scale};
 
 /// Most knots of an inversion.
@@ -69,8 +67,8 @@ pub fn time_gradient<const N: usize>(feed: [f64; N], rho: f64) -> [f64; N] {
 /// Inverts in all components: both the speed and the geometry change. `inputs` are those of the first knot, of which F(k)
 /// is not read; `feeds` hold F(0) of each knot on entry and the result on return. Knots beyond [`MOST_KNOTS`] stay as they are.
 #[inline]
-pub fn invert<const N: usize>(
-    net: &ContourIdentifier<N>,
+pub fn invert<const N: usize, D: ContourModel<N>>(
+    net: &D,
     inputs: &Inputs<N>,
     feeds: &mut [[f64; N]],
     settings: &Settings,
@@ -83,8 +81,8 @@ pub fn invert<const N: usize>(
 ///
 /// Source: Yoon and Jeon (2000).
 #[inline]
-pub fn invert_magnitude<const N: usize>(
-    net: &ContourIdentifier<N>,
+pub fn invert_magnitude<const N: usize, D: ContourModel<N>>(
+    net: &D,
     inputs: &Inputs<N>,
     feeds: &mut [[f64; N]],
     settings: &Settings,
@@ -94,8 +92,8 @@ pub fn invert_magnitude<const N: usize>(
 
 /// The paper's one knot has room for one knot, so that its tick has nothing to clear for others.
 #[inline]
-fn descend<const N: usize>(
-    net: &ContourIdentifier<N>,
+fn descend<const N: usize, D: ContourModel<N>>(
+    net: &D,
     inputs: &Inputs<N>,
     feeds: &mut [[f64; N]],
     settings: &Settings,
@@ -104,15 +102,15 @@ fn descend<const N: usize>(
     let knots = feeds.len().min(MOST_KNOTS);
     match &mut feeds[..knots] {
         [] => {}
-        [feed] => descend_in::<N, 1>(net, inputs, core::slice::from_mut(feed), settings, magnitude),
-        feeds => descend_in::<N, MOST_KNOTS>(net, inputs, feeds, settings, magnitude),
+        [feed] => descend_in::<N, 1, D>(net, inputs, core::slice::from_mut(feed), settings, magnitude),
+        feeds => descend_in::<N, MOST_KNOTS, D>(net, inputs, feeds, settings, magnitude),
     }
 }
 
 /// Eq. 8 on at most `H` knots.
 #[inline]
-fn descend_in<const N: usize, const H: usize>(
-    net: &ContourIdentifier<N>,
+fn descend_in<const N: usize, const H: usize, D: ContourModel<N>>(
+    net: &D,
     inputs: &Inputs<N>,
     feeds: &mut [[f64; N]],
     settings: &Settings,
@@ -126,7 +124,7 @@ fn descend_in<const N: usize, const H: usize>(
         }
     }
     for _ in 0..settings.steps {
-        let gradients = gradients::<N, H>(net, inputs, feeds, settings);
+        let gradients = gradients::<N, H, D>(net, inputs, feeds, settings);
         for ((feed, direction), gradient) in feeds.iter_mut().zip(directions).zip(gradients) {
             let gradient = if magnitude { scale(dot(gradient, direction), direction) } else { gradient };
             *feed = add_scaled(*feed, 1.0, limit_norm(scale(-settings.eta, gradient), settings.step_limit));
@@ -136,26 +134,26 @@ fn descend_in<const N: usize, const H: usize>(
 
 /// dE/dF of each knot; those beyond `feeds` are zero.
 #[inline]
-fn gradients<const N: usize, const H: usize>(
-    net: &ContourIdentifier<N>,
+fn gradients<const N: usize, const H: usize, D: ContourModel<N>>(
+    net: &D,
     inputs: &Inputs<N>,
     feeds: &[[f64; N]],
     settings: &Settings,
 ) -> [[f64; N]; H] {
     let mut gradients = [[0.0; N]; H];
-    let forwards = roll_out::<N, H>(net, inputs, feeds);
+    let forwards = roll_out::<N, H, D>(net, inputs, feeds);
     // What later knots feel of the error and of the feedrate of this one, and of the one before.
     let (mut error_felt, mut feed_felt) = ([[0.0; N]; 2], [[0.0; N]; 2]);
     for (knot, ((feed, forward), gradient)) in feeds.iter().zip(&forwards).zip(&mut gradients).enumerate().rev() {
-        let adjoint = |error: [f64; N], input: usize| through(&slopes(net, forward, input), error);
+        let adjoint = |error: [f64; N], input: usize| through(&net.slopes(forward, input), error);
         let of_error = match settings.gradient {
             Gradient::Printed => {
-                let slopes = slopes(net, forward, 0);
-                core::array::from_fn(|axis| -forward.error[axis] * slopes[axis][axis])
+                let (error, slopes) = (D::error(forward), net.slopes(forward, 0));
+                core::array::from_fn(|axis| -error[axis] * slopes[axis][axis])
             }
             Gradient::Absent => [0.0; N],
             Gradient::Exact => {
-                let error = add_scaled(forward.error, 1.0, error_felt[0]);
+                let error = add_scaled(D::error(forward), 1.0, error_felt[0]);
                 let own = add_scaled(adjoint(error, 0), 1.0, feed_felt[0]);
                 (error_felt, feed_felt) = ([error_felt[1], [0.0; N]], [feed_felt[1], [0.0; N]]);
                 // The first knot has none before it, the second one.
@@ -174,21 +172,22 @@ fn gradients<const N: usize, const H: usize>(
 
 /// What the identifier predicts along the feedrates.
 #[inline]
-fn roll_out<const N: usize, const H: usize>(
-    net: &ContourIdentifier<N>,
+fn roll_out<const N: usize, const H: usize, D: ContourModel<N>>(
+    net: &D,
     inputs: &Inputs<N>,
     feeds: &[[f64; N]],
-) -> [Forward<N>; H] {
-    let mut forwards = [Forward { hidden: [0.0; HIDDEN], error: [0.0; N] }; H];
+) -> [D::Forward; H] {
+    let mut forwards = [D::AT_REST; H];
     let mut inputs = *inputs;
     for (forward, feed) in forwards.iter_mut().zip(feeds) {
         for axis in 0..N {
             inputs[axis][0] = feed[axis];
         }
-        *forward = net.predict(&inputs);
+        *forward = net.forward(&inputs);
+        let error = D::error(forward);
         for axis in 0..N {
             let [f0, f1, _, e1, _] = inputs[axis];
-            inputs[axis] = [f0, f0, f1, forward.error[axis], e1];
+            inputs[axis] = [f0, f0, f1, error[axis], e1];
         }
     }
     forwards
@@ -200,27 +199,12 @@ fn through<const N: usize>(slopes: &[[f64; N]; N], error: [f64; N]) -> [f64; N] 
     core::array::from_fn(|axis| (0..N).map(|o| error[o] * slopes[o][axis]).sum())
 }
 
-/// d eps_hat_o / d input of an axis, indexed by o and axis: [`ContourIdentifier::jacobian`] for any of the inputs.
-#[inline]
-fn slopes<const N: usize>(net: &ContourIdentifier<N>, forward: &Forward<N>, input: usize) -> [[f64; N]; N] {
-    if input == 0 {
-        return net.jacobian(forward);
-    }
-    let hidden_slope = forward.hidden.map(slope);
-    core::array::from_fn(|o| {
-        let output_slope = slope(forward.error[o]);
-        core::array::from_fn(|axis| {
-            let Some(weights) = net.hidden[axis].get(input) else { return 0.0 };
-            output_slope * (0..HIDDEN).map(|j| net.output[o][j] * hidden_slope[j] * weights[j]).sum::<f64>()
-        })
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identifier::INPUTS;
+    use crate::identifier::contour::ContourIdentifier;
     use crate::identifier::contour::tests::{sample_of, sequence};
+    use crate::identifier::{HIDDEN, INPUTS};
 
     /// Weights, inputs and feedrates without symmetry.
     fn sample<const H: usize>() -> (ContourIdentifier<2>, Inputs<2>, [[f64; 2]; H]) {

@@ -14,6 +14,7 @@ pub mod axis;
 pub mod window;
 pub mod contour_error;
 pub mod identifier;
+pub mod model;
 pub mod inversion;
 pub mod horizon;
 pub mod controller;

@@ -111,10 +111,10 @@ impl<const N: usize> Guard<N> {
         C: Controller<N> + ?Sized,
     {
         let (wanted, bad) = if lost {
-            controller.bridge(window);
+            controller.observe(window, None);
             (Command::AS_PLANNED, Some(Cause::LostFeedback))
         } else {
-            controller.observe(measured);
+            controller.observe(window, Some(measured));
             let wanted = controller.command(window, measured);
             let bad = self.judge(controller, window, measured, &wanted);
             (wanted, bad)

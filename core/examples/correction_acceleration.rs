@@ -41,7 +41,7 @@ fn main() -> Result<(), Failure> {
 /// Errors of one controller on every contour.
 fn row(machine: &Machine, workpieces: &[&Workpiece], name: &str) -> Result<Vec<Errors>, Failure> {
     let choices = Choices::default();
-    let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
+    let mut setup = Setup::new(machine, &choices);
     let entry = Entry::find(name).ok_or("there is no such controller")?;
     let mut controller = Make::<2>::make(entry, &mut setup);
     let cut = |workpiece: &&Workpiece| -> Result<Errors, Failure> {

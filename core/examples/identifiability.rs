@@ -5,7 +5,7 @@
 
 use feedwright::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright::identify::Programme;
-use feedwright::identify::contour::{Recording, Training};
+use feedwright::identify::contour::{Training, train};
 use feedwright::machine::Machine;
 use feedwright::pipeline::{Run, pieces};
 use feedwright::report::Statistics;
@@ -13,7 +13,7 @@ use feedwright::trace::Sink;
 use feedwright_control::controller::{Command, Controller, Measured, Schedule};
 use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
 use feedwright_control::identifier::contour::ContourIdentifier;
-use feedwright_control::identifier::{ERROR_SCALE_MM, FEED_SCALE_MM_S, History, INPUTS, Inputs};
+use feedwright_control::identifier::{Delays, ERROR_SCALE_MM, FEED_SCALE_MM_S, INPUTS, Inputs, seen_feed};
 use feedwright_control::inversion::Gradient;
 use feedwright_control::vector::{add_scaled, dot, scale, sub};
 use feedwright_control::window::Window;
@@ -36,7 +36,7 @@ const STEP: f64 = 1e-5;
 struct Observer {
     kick_at: Option<usize>,
     offset_mm: [f64; 2],
-    history: History<2>,
+    delays: Delays<2>,
     last_mm: Option<[f64; 2]>,
     inputs: Vec<Inputs<2>>,
     /// Component of the contour error on the left normal, mm.
@@ -50,8 +50,6 @@ impl Controller<2> for Observer {
 
     fn reset(&mut self) {}
 
-    fn observe(&mut self, _: &Measured<2>) {}
-
     fn command(&mut self, window: &Window<'_, 2>, measured: &Measured<2>) -> Command<2> {
         let [tx, ty] = window.now().tangent;
         let normal = [-ty, tx];
@@ -62,8 +60,9 @@ impl Controller<2> for Observer {
         }
         let last_mm = self.last_mm.replace(knot_mm).unwrap_or(knot_mm);
         let feed_mm_s = scale(1.0 / window.feed_period_s, sub(knot_mm, last_mm));
-        self.inputs.push(self.history.inputs(feed_mm_s));
-        self.history.push(feed_mm_s, error_mm);
+        let feed = seen_feed(feed_mm_s);
+        self.inputs.push(self.delays.inputs(feed));
+        self.delays.push(feed, error_mm.map(|e| e / ERROR_SCALE_MM));
         self.error_mm.push(dot(error_mm, normal));
         Command::straight(1.0, self.offset_mm)
     }
@@ -139,7 +138,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|");
     for (name, programme) in programmes {
         for seed in 1..=3 {
-            let trained = Recording::<2>::new(&machine, &programme, seed).train(&Training::default(), &mut |_| {});
+            let (recording, rng) = programme.record::<2>(&machine, seed);
+            let trained = train(&recording, &Training::default(), rng, &mut |_| {});
             let [now, one, two, ..] = effect_as_learnt(&trained.net, &plain);
             println!(
                 "| {name} | {seed} | {:.1} | {now:.2} | {one:.2} | {two:.2} | {:.2} | {} | {} |",

@@ -57,9 +57,9 @@ fn row(steps: usize, machines: &[Machine], workpieces: &[&Workpiece]) -> Result<
     for machine in machines {
         // What is known of the machine is the first's; the periods of the control are never a secret.
         let known = Machine { period: machine.period, ..machines[0].clone() };
-        let identified = servo::identify::<2>(&known, &Programme::servo(), SEED);
+        let identified = servo::train::<2>(&Programme::servo().record(&known, SEED).0);
         let mut settings = receding_horizon::Settings { steps, ..receding_horizon::Settings::DEFAULT };
-        settings.horizon.limits = correction_limits(&known);
+        settings.horizon.limits = correction_limits(&known.known());
         settings.servo_periods = machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
         for workpiece in workpieces {
             let mut controller: RecedingHorizon<2> =

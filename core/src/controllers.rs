@@ -5,13 +5,15 @@
 //! | File | What |
 //! |---|---|
 //! | `controllers/parameters.rs` | what of them can be set, by name |
-//! | `controllers/make.rs` | how each row is made for a machine |
+//! | `controllers/setup.rs` | what they are made from: what is known of a machine, and a model |
+//! | `controllers/make.rs` | how each row is made from that |
 //! | `controllers/model_predictive.rs`, `controllers/iterative_learning.rs` | those that are not fit for a servo thread |
 
 pub mod parameters;
 pub mod iterative_learning;
 pub mod model_predictive;
 mod make;
+mod setup;
 
 use feedwright_control::Controller;
 use feedwright_control::controller::feedforward::Gains;
@@ -19,13 +21,15 @@ use feedwright_control::controller::inverting::{self, Settings as Inverting};
 use feedwright_control::controller::receding_horizon::Settings as Horizon;
 use feedwright_control::controller::{contour_compensation, cross_coupled, fuzzy_feedrate, receding_horizon};
 use feedwright_control::horizon::MOST_KNOTS;
+use feedwright_control::identifier::Kind;
 pub use make::correction_limits;
 pub use parameters::{Parameter, Setting, SettingError};
 use parameters::{Values, number, switch, whole};
 use serde::Serialize;
+pub use setup::{ModelMisfit, Setup};
 
 use crate::gcode::suggestion::nearest;
-use crate::machine::Machine;
+use crate::model::Model;
 
 /// One row of the table.
 pub struct Entry {
@@ -37,6 +41,8 @@ pub struct Entry {
     pub source: &'static str,
     /// What it knows of the machine.
     pub knows: Knows,
+    /// Which kind of identifier it uses, where it does.
+    pub identifier: Option<Kind>,
     /// Laps of the same part that it cuts; all but the last are practice.
     pub laps: u32,
     /// What can be set; first what the comparison searches for the best of.
@@ -64,12 +70,13 @@ type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N
 
 /// A row from a function of `make` that is generic over the number of axes.
 macro_rules! entry {
-    ($name:literal, $summary:literal, $source:literal, $knows:ident, laps: $laps:literal, [$($parameter:expr),*], $make:ident) => {
+    ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, [$($parameter:expr),*], $make:ident) => {
         Entry {
             name: $name,
             summary: $summary,
             source: $source,
             knows: Knows::$knows,
+            identifier: [$(Kind::$kind)?].first().copied(),
             laps: $laps,
             parameters: &[$($parameter),*],
             plane: make::$make::<2>,
@@ -113,14 +120,14 @@ const LEARNING_STEP: Parameter = number(
 // Of those that plan over a horizon.
 const RATE_WEIGHT: Parameter = number(
     "rate_weight_s2",
-    Horizon::DEFAULT.horizon.rate_weight,
+    Horizon::<2>::DEFAULT.horizon.rate_weight,
     [0.0, 0.01],
     None,
     "weight of the speed of the offset: below 1e-10 the plan rings from knot to knot, above 1e-4 nothing is corrected",
 );
 const KNOTS: Parameter = whole(
     "knots",
-    Horizon::DEFAULT.horizon.knots,
+    Horizon::<2>::DEFAULT.horizon.knots,
     [1.0, MOST_KNOTS as f64],
     "knots of the horizon: fewer take less time in a tick, and see less of a corner ahead",
 );
@@ -133,47 +140,47 @@ const PLAN_PERIOD_S: Parameter = number(
 );
 const CHANGE_WEIGHT: Parameter = number(
     "change_weight_s2",
-    Horizon::DEFAULT.horizon.change_weight,
+    Horizon::<2>::DEFAULT.horizon.change_weight,
     [0.0, 0.01],
     None,
     "weight of the change of that speed from knot to knot: more is smoother, and blunter at corners",
 );
 const TANGENTIAL_WEIGHT: Parameter = number(
     "tangential_weight",
-    Horizon::DEFAULT.horizon.tangential_weight,
+    Horizon::<2>::DEFAULT.horizon.tangential_weight,
     [0.0, 1.0],
     None,
     "weight of an error along the path: small leaves room at a corner, large keeps the tool from staying behind",
 );
 const LAST_WEIGHT: Parameter = number(
     "last_weight",
-    Horizon::DEFAULT.horizon.last_weight,
+    Horizon::<2>::DEFAULT.horizon.last_weight,
     [0.0, 1.0],
     None,
     "the same at the end of the horizon, at the least: where it is small, the tool swings about turns that are not seen yet",
 );
 const SURE_MM: Parameter = number(
     "sure_mm",
-    Horizon::DEFAULT.sure_mm,
+    Horizon::<2>::DEFAULT.sure_mm,
     [1e-6, 1.0],
     None,
     "innovations of this size make the plan half as sharp: small is gentle, large builds on predictions that miss",
 );
 const FORESEEN_MM: Parameter = number(
     "foreseen_mm",
-    Horizon::DEFAULT.foreseen_mm,
+    Horizon::<2>::DEFAULT.foreseen_mm,
     [1e-4, 10.0],
     None,
     "a miss by this some knots ahead makes the offset count as much as an error: large trusts a model that is wrong",
 );
 const SOLVER_STEPS: Parameter = whole(
     "steps",
-    Horizon::DEFAULT.steps,
+    Horizon::<2>::DEFAULT.steps,
     [1.0, 20.0],
     "steps of the solver in a tick: further ones hardly change anything",
 );
 const ON_RAPIDS: Parameter =
-    switch("on_rapids", Horizon::DEFAULT.horizon.on_rapids, "whether rapids are corrected as cuts are");
+    switch("on_rapids", Horizon::<2>::DEFAULT.horizon.on_rapids, "whether rapids are corrected as cuts are");
 // Parts of what the exact model calls for, and scales of its parameters.
 const VELOCITY_GAIN: Parameter =
     number("velocity_gain", Gains::EXACT.velocity, [0.0, 10.0], Some([0.5, 1.5]), EXACT_REASON);
@@ -341,7 +348,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "magnitude-only",
         "inversion of the identifier, speed along the path only",
         "Yoon and Jeon (2000)",
-        Identified,
+        Identified(Contour),
         laps: 1,
         [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
         magnitude_only
@@ -350,7 +357,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "two-dimensional",
         "inversion of the identifier, speed and geometry",
         "Lee, Cho and Jeon (2005)",
-        Identified,
+        Identified(Contour),
         laps: 1,
         [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
         two_dimensional
@@ -359,7 +366,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "receding-horizon",
         "geometry planned over 20 knots ahead through an identified servo, speed as planned",
         "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
-        Identified,
+        Identified(Servo),
         laps: 1,
         [
             KNOTS,
@@ -391,16 +398,6 @@ pub struct Choices {
     pub set: Vec<Setting>,
 }
 
-/// What a controller is made from.
-pub struct Setup<'a> {
-    /// The machine it is for.
-    pub machine: &'a Machine,
-    /// The user's choices.
-    pub choices: &'a Choices,
-    /// Told of the progress of a training, 0 to 1.
-    pub progress: &'a mut dyn FnMut(f64),
-}
-
 impl Entry {
     /// Finds a row by its name.
     pub fn find(name: &str) -> Option<&'static Self> {
@@ -428,15 +425,31 @@ impl Entry {
 pub trait Make<const N: usize> {
     /// The controller of this row.
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>>;
+
+    /// The controller of this row, with a model in place of a training.
+    ///
+    /// # Errors
+    /// A model that does not suit it.
+    fn make_with<'a>(&self, setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<N>>, ModelMisfit>;
 }
 
 impl Make<2> for Entry {
+    fn make_with<'a>(&self, mut setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<2>>, ModelMisfit> {
+        setup.take(model, self, 2)?;
+        Ok(self.make(&mut setup))
+    }
+
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
         (self.plane)(setup, &Values::of(self, &setup.choices.set))
     }
 }
 
 impl Make<3> for Entry {
+    fn make_with<'a>(&self, mut setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<3>>, ModelMisfit> {
+        setup.take(model, self, 3)?;
+        Ok(self.make(&mut setup))
+    }
+
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
         (self.space)(setup, &Values::of(self, &setup.choices.set))
     }

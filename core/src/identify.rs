@@ -1,9 +1,11 @@
-//! Identification: from the machine to the trained weights of an identifier.
+//! Identification: from what a machine showed to the trained weights of an identifier.
 //!
-//! The machine (simulated here) cuts an identification programme: laps of circles at random feeds, two thirds of them
-//! with random offsets of the command from the path, so that the data tell the effect of the feedrate from that of the
-//! path. [`contour`] trains the paper's network on it, [`servo`] the servo identifier; [`cache`] keeps what was trained.
+//! What a machine showed is a [`recording`]. A simulated machine cuts an identification programme for it: laps of circles at
+//! random feeds, two thirds of them with random offsets of the command from the path, so that the data tell the effect of the
+//! feedrate from that of the path. [`contour`] trains the paper's network on it, [`servo`] the servo identifier; [`cache`]
+//! keeps what was trained. Neither training sees the machine.
 
+pub mod recording;
 mod excitation;
 pub mod contour;
 mod spread;
@@ -11,13 +13,15 @@ pub mod servo;
 pub mod cache;
 
 use feedwright_control::controller::{inverting, receding_horizon};
+use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 use serde::Serialize;
 
 use crate::machine::Machine;
+use recording::Recording;
 
 /// The generator behind everything random here: the same seed gives the same bits on every platform.
-type Rng = Xoshiro256PlusPlus;
+pub type Rng = Xoshiro256PlusPlus;
 
 /// What the machine cuts to be identified.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -42,6 +46,12 @@ impl Programme {
     /// The feed period that the machine can have, s.
     fn period_s(&self, machine: &Machine) -> f64 {
         f64::from(machine.period.servo_periods(self.feed_period_s)) * machine.period.servo_s
+    }
+
+    /// What a machine shows that cuts it, and the generator as it is then: a training that draws goes on with it.
+    pub fn record<const N: usize>(&self, machine: &Machine, seed: u64) -> (Recording<N>, Rng) {
+        let mut rng = Rng::seed_from_u64(seed);
+        (excitation::record(machine, self, &mut rng), rng)
     }
 
     /// The circle of eq. 11.

@@ -21,10 +21,11 @@ use crate::controllers::{Choices, Entry, Make, Setup};
 use crate::gcode::canon::{Canon, MotionKind};
 use crate::gcode::{self, ReadError, Reader, Summary};
 use crate::machine::Machine;
+use crate::model::Model;
 use crate::pipeline::{Run, pieces};
 use crate::report::{Report, ReportedRun, RunFacts, Series, Statistics};
 use crate::trace::{Row, Sink};
-use crate::watch::Watch;
+use crate::watch::{StageSteps, Watch};
 pub use error::JobError;
 pub use files::Outputs;
 use files::{Files, Timeline};
@@ -44,6 +45,8 @@ pub struct Job {
     pub feed_mm_s: Option<f64>,
     /// Settings of the controllers.
     pub choices: Choices,
+    /// A model for the controller that is asked for, in place of a training.
+    pub model: Option<Model>,
     /// Largest contour error that is allowed, um.
     pub tolerance_um: Option<f64>,
     /// Settings of the reader.
@@ -66,9 +69,6 @@ pub struct JobOutcome {
     pub within_tolerance: bool,
 }
 
-/// StageSteps of a stage whose length is not known before it begins.
-const STEPS: u64 = 1000;
-
 impl Job {
     /// Runs it and writes its files.
     ///
@@ -76,10 +76,14 @@ impl Job {
     /// A program with mistakes, more axes than the machine has, a file that cannot be written, or an end from outside. No file
     /// appears then.
     pub fn run(&self, watch: &dyn Watch) -> Result<JobOutcome, JobError> {
-        watch.begin("reading the program", STEPS);
+        watch.begin("reading the program", 1);
         self.check_values()?;
         let summary = gcode::check(&self.part, self.reader.clone())?;
-        match self.axes(&summary)? {
+        let axes = self.axes(&summary)?;
+        if let Some(model) = &self.model {
+            self.controller.suits(model, &self.machine.known(), axes, &self.choices)?;
+        }
+        match axes {
             2 => self.cut::<2>(&summary, watch),
             _ => self.cut::<3>(&summary, watch),
         }
@@ -93,16 +97,17 @@ impl Job {
         let mut runs = Vec::new();
         for entry in self.controllers() {
             watch.check()?;
-            watch.begin(&format!("identifying for {}", entry.name), STEPS);
-            let mut steps = StageSteps::new(watch);
+            let mut steps = StageSteps::begin(watch, &format!("identifying for {}", entry.name));
             let mut progress = |part: f64| steps.reach(part);
-            let mut setup = Setup { machine: &self.machine, choices: &self.choices, progress: &mut progress };
-            let mut controller = Make::<N>::make(entry, &mut setup);
-            watch.begin(&format!("cutting, {}", entry.name), STEPS);
+            let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
             let judged = entry.name == self.controller.name;
+            let mut controller = match self.model.as_ref().filter(|_| judged) {
+                Some(model) => Make::<N>::make_with(entry, setup, model)?,
+                None => Make::<N>::make(entry, &mut setup),
+            };
             runs.push(self.cut_once(summary, entry, &mut *controller, judged.then_some(&mut files), watch)?);
         }
-        watch.begin("writing", STEPS);
+        watch.begin("writing", 1);
         let report = self.report(N, summary, runs);
         let within_tolerance = self.within_tolerance(&report);
         files.finish(self, &report, watch)?;
@@ -120,7 +125,8 @@ impl Job {
     ) -> Result<ReportedRun, JobError> {
         let (mut statistics, mut series, mut timeline) =
             (Statistics::new(), Series::new(), Timeline::new(&self.machine.plc_events));
-        let mut cut = CutProgress { steps: StageSteps::new(watch), length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
+        let steps = StageSteps::begin(watch, &format!("cutting, {}", entry.name));
+        let mut cut = CutProgress { steps, length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
         let mut sinks: Vec<&mut dyn Sink> = vec![&mut statistics, &mut series, &mut timeline, &mut cut];
         sinks.extend(files.map(|files| files as &mut dyn Sink));
         let run = Run::on(&self.machine)
@@ -171,26 +177,6 @@ impl Job {
             }
             step
         }))
-    }
-}
-
-/// The steps of a stage by the part of it that is done.
-struct StageSteps<'a> {
-    watch: &'a dyn Watch,
-    done: u64,
-}
-
-impl<'a> StageSteps<'a> {
-    const fn new(watch: &'a dyn Watch) -> Self {
-        Self { watch, done: 0 }
-    }
-
-    /// So large a part is done, 0 to 1.
-    fn reach(&mut self, part: f64) {
-        // A float that is not a number saturates to zero here.
-        let done = ((part * STEPS as f64) as u64).min(STEPS).max(self.done);
-        self.watch.advance(done - self.done);
-        self.done = done;
     }
 }
 

@@ -6,8 +6,8 @@
 //! [`keys`], one reader in `layout`.
 
 mod error;
-mod reader;
 pub mod keys;
+mod known;
 mod layout;
 
 use std::f64::consts::TAU;
@@ -17,7 +17,11 @@ use std::path::Path;
 use feedwright_control::axis;
 use serde::Serialize;
 
-pub use error::{MachineError, Problem};
+use crate::toml_file::key::write;
+use crate::toml_file::{self, FileError, quoted, read_text};
+use error::KIND;
+pub use error::MachineError;
+pub use known::{Known, KnownAxis};
 
 /// Machines that need no file: name and text.
 pub const BUILT_IN: &[(&str, &str)] = &[
@@ -31,9 +35,6 @@ pub const BUILT_IN: &[(&str, &str)] = &[
 
 /// Names of the axes, in the order of every `[f64; 3]` of this library.
 pub const AXIS_NAMES: [&str; 3] = ["x", "y", "z"];
-
-/// A machine file is a page of text; a larger file is some other file.
-const MAX_FILE_BYTES: u64 = 1 << 20;
 
 /// A machine, every value checked.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -245,7 +246,7 @@ impl Machine {
     /// # Errors
     /// A file that cannot be read or is not text, and every fault found in its text.
     pub fn read(path: &Path) -> Result<Self, MachineError> {
-        let text = read_text(path)?;
+        let text = read_text(&KIND, path)?;
         Self::parse(&path.display().to_string(), &text)
     }
 
@@ -254,15 +255,15 @@ impl Machine {
     /// # Errors
     /// Every fault found in the text, in one go.
     pub fn parse(file: &str, text: &str) -> Result<Self, MachineError> {
-        let invalid = |faults| MachineError::invalid(file, text, faults);
-        let document = layout::document(text).map_err(invalid)?;
+        let invalid = |faults| MachineError::File(FileError::invalid(&KIND, file, text, faults));
+        let document = toml_file::document(text).map_err(invalid)?;
         let Some(base) = layout::base(&document).map_err(invalid)? else {
             return layout::machine(&document, None).map_err(invalid);
         };
         // The base is a machine of its own: its faults are reported in its own text.
         let (base_file, base_text) = Self::base_text(file, &base)?;
-        let invalid_base = |faults| MachineError::invalid(&base_file, &base_text, faults);
-        let base_document = layout::document(&base_text).map_err(invalid_base)?;
+        let invalid_base = |faults| MachineError::File(FileError::invalid(&KIND, &base_file, &base_text, faults));
+        let base_document = toml_file::document(&base_text).map_err(invalid_base)?;
         if layout::base(&base_document).is_ok_and(|base| base.is_some()) {
             return Err(invalid(vec![layout::chained(&document, &base)]));
         }
@@ -275,15 +276,15 @@ impl Machine {
         let texts = [("name", &self.name), ("description", &self.description), ("source", &self.source)];
         let mut text: String = texts.iter().map(|(key, value)| format!("{key} = {}\n", quoted(value))).collect();
         let mut table = |name: &str, lines: String| text += &format!("\n[{name}]\n{lines}");
-        table("period", keys::write(keys::PERIOD, &self.period));
-        table("limits", keys::write(keys::LIMITS, &self.limits));
+        table("period", write(keys::PERIOD, &self.period));
+        table("limits", write(keys::LIMITS, &self.limits));
         for (axis, name) in self.axes.iter().zip(AXIS_NAMES) {
-            table(&format!("axis.{name}"), keys::write(keys::AXIS, axis));
+            table(&format!("axis.{name}"), write(keys::AXIS, axis));
             if let Some(transmission) = &axis.transmission {
-                table(&format!("axis.{name}.transmission"), keys::write(keys::TRANSMISSION, transmission));
+                table(&format!("axis.{name}.transmission"), write(keys::TRANSMISSION, transmission));
             }
         }
-        table("plc", keys::write(keys::PLC, &self.plc));
+        table("plc", write(keys::PLC, &self.plc));
         for event in &self.plc_events {
             let p = event.p.map_or(String::new(), |p| format!(" P{p}"));
             let [row, label] = [&event.row, &event.label].map(|value| quoted(value));
@@ -302,7 +303,7 @@ impl Machine {
             return Err(MachineError::unknown_name(base, false));
         }
         let path = Path::new(file).parent().unwrap_or(Path::new("")).join(base);
-        Ok((path.display().to_string(), read_text(&path)?))
+        Ok((path.display().to_string(), read_text(&KIND, &path)?))
     }
 
     /// The law of the first N axes.
@@ -336,32 +337,10 @@ impl Machine {
     }
 }
 
-/// A text as TOML quotes it.
-fn quoted(text: &str) -> String {
-    toml::Value::from(text).to_string()
-}
-
 /// Whether `--machine` means a file rather than the name of a built-in machine.
 pub fn is_path(name_or_path: &Path) -> bool {
     name_or_path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
         || name_or_path.components().count() != 1
-}
-
-/// Reads a file of text no larger than a machine file can be.
-fn read_text(path: &Path) -> Result<String, MachineError> {
-    use std::io::Read;
-
-    let unreadable = |source| MachineError::unreadable(path, source);
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
-    if bytes.len() as u64 > MAX_FILE_BYTES {
-        return Err(MachineError::TooLarge { path: path.to_owned(), limit_bytes: MAX_FILE_BYTES });
-    }
-    String::from_utf8(bytes).map_err(|error| {
-        let offset = error.utf8_error().valid_up_to();
-        MachineError::NotText { path: path.to_owned(), offset, byte: error.as_bytes()[offset] }
-    })
 }
 
 #[cfg(test)]

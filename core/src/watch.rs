@@ -33,6 +33,31 @@ pub trait Watch: Sync {
 /// Tells nobody, and goes on to the end.
 impl Watch for () {}
 
+/// Steps of a stage that is told by parts.
+const STEPS: u64 = 1000;
+
+/// The steps of a stage by the part of it that is done.
+pub struct StageSteps<'a> {
+    watch: &'a dyn Watch,
+    done: u64,
+}
+
+impl<'a> StageSteps<'a> {
+    /// A stage begins.
+    pub fn begin(watch: &'a dyn Watch, stage: &str) -> Self {
+        watch.begin(stage, STEPS);
+        Self { watch, done: 0 }
+    }
+
+    /// So large a part is done, 0 to 1.
+    pub fn reach(&mut self, part: f64) {
+        // A float that is not a number saturates to zero here.
+        let done = ((part * STEPS as f64) as u64).min(STEPS).max(self.done);
+        self.watch.advance(done - self.done);
+        self.done = done;
+    }
+}
+
 /// The work was ended from outside.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error, miette::Diagnostic)]
 #[error("interrupted; no file was written")]

@@ -60,7 +60,7 @@ fn line_and_circle(length_mm: f64) -> Vec<Canon> {
 fn circle_behind(length_mm: f64, machine: &Machine, seed: u64) -> f64 {
     let nominal = Machine::load("tnv40".as_ref()).unwrap();
     let choices = Choices { seed, ..Choices::default() };
-    let mut setup = Setup { machine: &nominal, choices: &choices, progress: &mut |_| {} };
+    let mut setup = Setup::new(&nominal, &choices);
     let mut controller = Make::<2>::make(Entry::find(BEST).unwrap(), &mut setup);
     let mut error = LineError { line: 2, square_um2: 0.0, rows: 0 };
     let program = || Ok(pieces(line_and_circle(length_mm)));

@@ -98,7 +98,7 @@ fn reference(machine: &Machine, steps: &[Step]) -> Reference<'static> {
 
 fn controller(machine: &Machine, name: &str) -> Box<dyn Controller<2>> {
     let choices = Choices::default();
-    let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
+    let mut setup = Setup::new(machine, &choices);
     Make::<2>::make(Entry::find(name).unwrap(), &mut setup)
 }
 

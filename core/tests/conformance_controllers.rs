@@ -69,7 +69,7 @@ macro_rules! for_every_controller {
     ($check:ident) => {
         for entry in CONTROLLERS {
             let choices = Choices::default();
-            let mut setup = Setup { machine: machine(), choices: &choices, progress: &mut |_| {} };
+            let mut setup = Setup::new(machine(), &choices);
             $check::<2>(entry.name, &mut *Make::<2>::make(entry, &mut setup));
             $check::<3>(entry.name, &mut *Make::<3>::make(entry, &mut setup));
         }
@@ -121,7 +121,7 @@ fn the_same_input_gives_the_same_bits_after_a_reset() {
 fn every_parameter_acts_and_at_both_ends_the_command_stays_within_the_limits() {
     let made = |entry: &'static Entry, set: Vec<Setting>| {
         let choices = Choices { set, ..Choices::default() };
-        let mut setup = Setup { machine: machine(), choices: &choices, progress: &mut |_| {} };
+        let mut setup = Setup::new(machine(), &choices);
         let swaying = |n: u32, lagging: [f64; 2]| [lagging[0] + 0.02 * (0.02 * f64::from(n)).sin(), lagging[1]];
         commands::<2>(&mut Circle, &mut *Make::<2>::make(entry, &mut setup), swaying)
     };

@@ -17,7 +17,7 @@ const NO_WORSE_UM: [f64; 2] = [0.05, 1.0];
 /// RMS and largest contour error, um.
 fn errors_um(machine: &Machine, workpiece: &Workpiece, name: &str) -> [f64; 2] {
     let choices = Choices::default();
-    let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
+    let mut setup = Setup::new(machine, &choices);
     let mut controller = Make::<2>::make(Entry::find(name).unwrap(), &mut setup);
     let mut statistics = Statistics::new();
     let run = Run::on(machine).cut_steps(&workpiece.steps, &mut *controller, &mut [&mut statistics]).unwrap();

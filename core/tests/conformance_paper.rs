@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 
 use feedwright::identify::Programme;
 use feedwright::identify::cache::identified;
-use feedwright::identify::contour::{Recording, Training};
+use feedwright::identify::contour::{Training, train};
 use feedwright::machine::Machine;
 use feedwright::paper::{Paper, experiment};
 
@@ -87,6 +87,7 @@ fn open_loop_errs_as_the_prototype_does() {
 fn the_cache_holds_what_training_gives() {
     let (machine, programme, training) = (machine(), Programme::paper(), Training::default());
     let cached = identified::<2>(&machine, &programme, &training, 1, &mut |_| {});
-    let trained = Recording::<2>::new(&machine, &programme, 1).train(&training, &mut |_| {});
+    let (recording, rng) = programme.record::<2>(&machine, 1);
+    let trained = train(&recording, &training, rng, &mut |_| {});
     assert!(cached == trained, "hint: raise FORMAT in core/src/identify/cache.rs");
 }

@@ -58,7 +58,7 @@ where
 {
     let circle = Workpiece::contours().into_iter().find(|workpiece| workpiece.name == "circle").unwrap();
     let choices = Choices { set: set.to_vec(), ..Choices::default() };
-    let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
+    let mut setup = Setup::new(machine, &choices);
     let mut controller = Make::<N>::make(entry, &mut setup);
     let mut statistics = Statistics::new();
     let run =

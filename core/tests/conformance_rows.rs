@@ -32,7 +32,7 @@ where
     Entry: Make<N>,
 {
     let choices = Choices::default();
-    let mut setup = Setup { machine, choices: &choices, progress: &mut |_| {} };
+    let mut setup = Setup::new(machine, &choices);
     let mut controller = Make::<N>::make(Entry::find(BASELINE).unwrap(), &mut setup);
     let mut rows = Rows::default();
     Run::on(machine).cut_steps(steps, &mut *controller, &mut [&mut rows]).unwrap();

@@ -67,8 +67,8 @@ impl Controller<3> for Recorder {
 
     fn reset(&mut self) {}
 
-    fn observe(&mut self, measured: &Measured<3>) {
-        self.measured = Some(*measured);
+    fn observe(&mut self, _: &Window<'_, 3>, measured: Option<&Measured<3>>) {
+        self.measured = measured.copied();
     }
 
     fn command(&mut self, _: &Window<'_, 3>, _: &Measured<3>) -> Command<3> {

@@ -53,8 +53,6 @@ impl<C: Fn(u32) -> Command<2>, M: Fn(u32) -> f64> Controller<2> for Script<C, M>
         self.decision = 0;
     }
 
-    fn observe(&mut self, _: &Measured<2>) {}
-
     fn missed_mm(&self) -> f64 {
         (self.missed_mm)(self.decision)
     }

@@ -67,7 +67,7 @@ fn unseen(seed: u64) -> Machine {
 
 fn controller(name: &str) -> Box<dyn Controller<2>> {
     let (machine, choices) = (tnv40(), Choices::default());
-    let mut setup = Setup { machine: &machine, choices: &choices, progress: &mut |_| {} };
+    let mut setup = Setup::new(&machine, &choices);
     Make::<2>::make(Entry::find(name).unwrap(), &mut setup)
 }
 

@@ -97,7 +97,7 @@ fn without_any_deviation_the_command_stays_where_the_path_is() {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();
     machine.limits.max_deviation_mm = 0.0;
     let choices = Choices::default();
-    let mut setup = Setup { machine: &machine, choices: &choices, progress: &mut |_| {} };
+    let mut setup = Setup::new(&machine, &choices);
     let mut controller = Make::<2>::make(Entry::find(BEST).unwrap(), &mut setup);
     let workpiece = Workpiece::contours().into_iter().find(|workpiece| workpiece.name == "square").unwrap();
     let mut statistics = Statistics::new();

@@ -10,7 +10,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
 use feedwright::gcode::{self, CheckError, Settings};
-use feedwright::machine::{Machine, MachineError, Problem};
+use feedwright::machine::{Machine, MachineError};
+use feedwright::model::{Model, name};
+use feedwright::toml_file::{FileError, Problem};
 use feedwright::watch::Watch;
 use miette::{Report, Result, miette};
 use rayon::iter::{ParallelBridge, ParallelIterator};
@@ -163,7 +165,13 @@ impl CheckOutput {
 
 fn check_file(file: &Path, settings: &Settings) -> CheckedFile {
     let is_machine = file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("toml"));
-    if is_machine { machine(file) } else { program(file, settings.clone()) }
+    let is_model =
+        is_machine && file.file_stem().is_some_and(|stem| Path::new(stem).extension().is_some_and(|e| e == "model"));
+    match (is_model, is_machine) {
+        (true, _) => model(file),
+        (_, true) => machine(file),
+        _ => program(file, settings.clone()),
+    }
 }
 
 /// What is told where a file as a whole is wrong.
@@ -174,28 +182,43 @@ fn refused(file: &Path, outcome: FileOutcome, report: Report) -> CheckedFile {
 
 fn machine(file: &Path) -> CheckedFile {
     match Machine::read(file) {
-        Ok(machine) => {
-            let line = Some(format!("machine {}, {} axes", machine.name, machine.axis_count()));
-            CheckedFile { outcome: FileOutcome::Fine, line, reports: Vec::new(), findings: Vec::new() }
-        }
+        Ok(machine) => fine(format!("machine {}, {} axes", machine.name, machine.axis_count())),
         Err(error) => {
-            let findings = machine_findings(file, &error);
-            let outcome = if findings.is_empty() { FileOutcome::Unreadable } else { FileOutcome::Mistakes };
-            let refused = refused(file, outcome, error.into());
-            if findings.is_empty() { refused } else { CheckedFile { findings, ..refused } }
+            let findings = match &error {
+                MachineError::File(error) => findings(file, error),
+                MachineError::UnknownName { .. } => Vec::new(),
+            };
+            at_fault(file, findings, error.into())
         }
     }
 }
 
-/// The faults in the text of a machine file; none where it cannot be read.
-fn machine_findings(file: &Path, error: &MachineError) -> Vec<Finding> {
-    let MachineError::Invalid { problems, .. } = error else {
+fn model(file: &Path) -> CheckedFile {
+    match Model::read(file) {
+        Ok(model) => fine(format!("{} model, {} axes, {}", name(model.kind()), model.axes(), model.about().source)),
+        Err(error) => at_fault(file, findings(file, &error), error.into()),
+    }
+}
+
+fn fine(line: String) -> CheckedFile {
+    CheckedFile { outcome: FileOutcome::Fine, line: Some(line), reports: Vec::new(), findings: Vec::new() }
+}
+
+fn at_fault(file: &Path, findings: Vec<Finding>, error: Report) -> CheckedFile {
+    let outcome = if findings.is_empty() { FileOutcome::Unreadable } else { FileOutcome::Mistakes };
+    let refused = refused(file, outcome, error);
+    if findings.is_empty() { refused } else { CheckedFile { findings, ..refused } }
+}
+
+/// The faults in the text of a machine file or model file; none where it cannot be read.
+fn findings(file: &Path, error: &FileError) -> Vec<Finding> {
+    let FileError::Invalid { problems, .. } = error else {
         return Vec::new();
     };
     let finding = |problem: &Problem| Finding {
         file: file.display().to_string(),
         is_error: true,
-        code: "machine::file".to_owned(),
+        code: problem.code.to_owned(),
         line: u32::try_from(problem.line).unwrap_or(u32::MAX),
         column: u32::try_from(problem.column).unwrap_or(u32::MAX),
         span: 1,

@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use feedwright::controllers::Choices;
 use feedwright::job::{Job, JobOutcome, Outputs};
 use feedwright::machine::{self, Machine};
+use feedwright::model::Model;
 use feedwright::report::{Outcome as Ending, RunSummary};
 use miette::Result;
 
@@ -38,12 +39,14 @@ fn job(args: RunArgs) -> Result<Job> {
         against,
         feed_mm_s: args.feed,
         choices: Choices { seed: args.seed, set },
+        model: args.model.as_deref().map(Model::read).transpose()?,
         tolerance_um: args.tolerance,
         reader: args.reader.settings()?,
         inputs: Some(PathBuf::from(args.machine))
             .filter(|path| machine::is_path(path))
             .into_iter()
             .chain(args.reader.tool_table)
+            .chain(args.model)
             .collect(),
         outputs: Outputs { report: Some(report), json: args.json, trace: args.trace, out: args.out },
         part: args.part,

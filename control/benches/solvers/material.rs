@@ -4,7 +4,7 @@ use std::cell::RefCell;
 
 use feedwright_control::controller::receding_horizon;
 use feedwright_control::horizon::problem::Problem;
-use feedwright_control::horizon::{Accelerations, Limits, MOST_AXES, MOST_KNOTS, Settings, Solver};
+use feedwright_control::horizon::{Accelerations, Limits, MOST_KNOTS, Settings, Solver};
 use feedwright_control::identifier::servo::ServoIdentifier;
 use feedwright_control::vector::add_scaled;
 use feedwright_control::window::{Knot, Preview, Reference, Register, Window};
@@ -42,7 +42,7 @@ pub(crate) struct Material<const N: usize> {
     slopes: RefCell<Slopes<N>>,
     register: Register<N>,
     preview: Preview<N>,
-    settings: Settings,
+    settings: Settings<N>,
     /// The plan of the tick before, mm/s^2.
     pub(crate) plan: Accelerations<N>,
 }
@@ -61,7 +61,7 @@ impl<const N: usize> Material<N> {
         }
         let mut preview = Preview::new(SERVO_S);
         preview.fill(&mut Helix, 0.299, 0.15);
-        let limits = Limits { acceleration_mm_s2: [most_mm_s2; MOST_AXES], ..Limits::NONE };
+        let limits = Limits { acceleration_mm_s2: [most_mm_s2; N], ..Limits::NONE };
         let settings = Settings { knots, limits, ..receding_horizon::Settings::DEFAULT.horizon };
         let planned_mm_s2 = PLANNED_MM_S2.min(most_mm_s2);
         let plan = std::array::from_fn(|knot| {

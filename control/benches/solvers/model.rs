@@ -5,8 +5,8 @@
 use std::cell::RefCell;
 
 use feedwright_control::horizon::{Felt, MOST_KNOTS, Model, Stretch};
-use feedwright_control::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
-use feedwright_control::identifier::{FEED_SCALE_MM_S, HIDDEN, INPUTS, Inputs};
+use feedwright_control::identifier::servo::{FOLLOWING_SCALE_MM, ServoIdentifier};
+use feedwright_control::identifier::{Delays, FEED_SCALE_MM_S, HIDDEN, INPUTS, Identifier, Inputs, ServoModel};
 use feedwright_control::vector::{add_scaled, scale, sub};
 use feedwright_control::window::Window;
 
@@ -20,7 +20,7 @@ const HIDDEN_MM: f64 = 0.03;
 
 /// A servo like that of tnv40 with hidden nodes that are far from saturated, other ones in every axis.
 pub(crate) fn servo<const N: usize>() -> ServoIdentifier<N> {
-    let mut net = ServoIdentifier::IDEAL;
+    let mut net = ServoIdentifier::NULL;
     for axis in 0..N {
         net.linear[axis][axis] = LINEAR;
         for node in 0..HIDDEN {

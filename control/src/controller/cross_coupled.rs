@@ -80,8 +80,6 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
         *self = Self::new(self.settings);
     }
 
-    fn observe(&mut self, _: &Measured<N>) {}
-
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         let period_s = window.feed_period_s;
         let tangent = measured.contour.tangent;

@@ -98,8 +98,6 @@ impl<const N: usize> Controller<N> for Feedforward<N> {
 
     fn reset(&mut self) {}
 
-    fn observe(&mut self, _: &Measured<N>) {}
-
     /// The offset of the next servo period; that of this one is already under way.
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let servo_s = window.servo_s();

@@ -91,8 +91,6 @@ impl<const N: usize> Controller<N> for FuzzyFeedrate {
         *self = Self::new(self.settings);
     }
 
-    fn observe(&mut self, _: &Measured<N>) {}
-
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
         let error_mm = norm(measured.contour.vector_mm);
         if error_mm.is_finite() {

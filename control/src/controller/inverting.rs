@@ -19,7 +19,7 @@ use core::marker::PhantomData;
 
 use super::{Command, Controller, Measured, Schedule};
 use crate::identifier::contour::ContourIdentifier;
-use crate::identifier::{ERROR_SCALE_MM, FEED_SCALE_MM_S, History, Inputs};
+use crate::identifier::{ContourModel, Delays, FEED_SCALE_MM_S, Inputs, seen_feed};
 use crate::inversion::{self, Gradient, MOST_KNOTS};
 use crate::vector::{add_scaled, bounded, dot, norm, scale, sub};
 use crate::window::{PREVIEW_KNOTS, Window};
@@ -66,34 +66,34 @@ const REST_LEAK: f64 = 0.3;
 /// How a controller inverts: the only thing in which the members differ.
 pub trait Invert {
     /// Improves the F(0) of one or more knots, scaled, in place. `inputs` are those of the first.
-    fn invert<const N: usize>(
-        net: &ContourIdentifier<N>,
+    fn invert<const N: usize, D: ContourModel<N>>(
+        net: &D,
         inputs: &Inputs<N>,
         feeds: &mut [[f64; N]],
         settings: &inversion::Settings,
     );
 }
 
-/// A controller that inverts the paper's identifier. Between ticks it keeps the identifier, the delays, and what was asked
+/// A controller that inverts an identifier of the contour error, usually the paper's. Between ticks it keeps the identifier, the delays, and what was asked
 /// for last.
 #[derive(Debug, Clone)]
-pub struct Inverting<const N: usize, I> {
-    trained: ContourIdentifier<N>,
-    net: ContourIdentifier<N>,
-    history: History<N>,
+pub struct Inverting<const N: usize, I, D = ContourIdentifier<N>> {
+    trained: D,
+    net: D,
+    delays: Delays<N>,
     last: Option<Inputs<N>>,
     missed_mm: f64,
     settings: Settings,
     how: PhantomData<I>,
 }
 
-impl<const N: usize, I> Inverting<N, I> {
+impl<const N: usize, I, D: ContourModel<N>> Inverting<N, I, D> {
     /// With an identifier that is trained on the machine.
-    pub fn new(trained: ContourIdentifier<N>, settings: Settings) -> Self {
+    pub fn new(trained: D, settings: Settings) -> Self {
         Self {
             net: trained.clone(),
             trained,
-            history: History::default(),
+            delays: Delays::REST,
             last: None,
             missed_mm: 0.0,
             settings,
@@ -108,29 +108,32 @@ impl<const N: usize, I> Inverting<N, I> {
     }
 }
 
-impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
+impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<N, I, D> {
     fn schedule(&self) -> Schedule {
         Schedule { servo_periods: self.settings.servo_periods, preview: self.knots() as u32 }
     }
 
     fn reset(&mut self) {
         self.net.clone_from(&self.trained);
-        self.history = History::default();
+        self.delays = Delays::REST;
         self.last = None;
         self.missed_mm = 0.0;
     }
 
     /// One step of back-propagation on the last command and its outcome, then both move into the delays.
-    fn observe(&mut self, measured: &Measured<N>) {
+    fn observe(&mut self, _: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        let Some(measured) = measured else { return };
         let error_mm = measured.contour.vector_mm;
         if !norm(error_mm).is_finite() {
             return;
         }
         if let Some(inputs) = self.last {
-            let target = error_mm.map(|e| e / ERROR_SCALE_MM);
-            let cost = self.net.learn(&inputs, target, self.settings.learning_step);
-            self.missed_mm = ERROR_SCALE_MM * libm::sqrt(2.0 * cost);
-            self.history.push(inputs.map(|axis| axis[0] * FEED_SCALE_MM_S), error_mm);
+            let error = error_mm.map(|e| e / D::ERROR_SCALE_MM);
+            let cost = self.net.learn(&inputs, error, self.settings.learning_step);
+            self.missed_mm = D::ERROR_SCALE_MM * libm::sqrt(2.0 * cost);
+            // As every feedrate, this one comes in mm/s: the delays then hold what a recording of it would give.
+            let feed_mm_s = inputs.map(|axis| axis[0] * FEED_SCALE_MM_S);
+            self.delays.push(seen_feed(feed_mm_s), error);
         }
     }
 
@@ -143,7 +146,7 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
         let period_s = window.feed_period_s;
         let planned = scale(1.0 / period_s, sub(window.ahead(1).position_mm, window.now().position_mm));
         let planned_feed = norm(planned);
-        let inputs = self.history.inputs(planned);
+        let inputs = self.delays.inputs(seen_feed(planned));
         if planned_feed < LEAST_FEED_MM_S {
             self.last = Some(inputs);
             return Command::straight(1.0, scale(1.0 - REST_LEAK, window.offset_mm));
@@ -162,7 +165,7 @@ impl<const N: usize, I: Invert> Controller<N> for Inverting<N, I> {
         let [slowest, fastest] = self.settings.rate_range;
         let rate = bounded(1.0 + along / planned_feed, slowest, fastest);
         let feed = add_scaled(across, rate, planned);
-        self.last = Some(self.history.inputs(feed));
+        self.last = Some(self.delays.inputs(seen_feed(feed)));
         let stale = TANGENTIAL_LEAK * dot(window.offset_mm, direction);
         Command::straight(rate, add_scaled(add_scaled(window.offset_mm, period_s, across), -stale, direction))
     }
@@ -201,7 +204,7 @@ mod tests {
                 position_mm: sub(window.now().position_mm, vector_mm),
                 contour: ContourError { vector_mm, ..ContourError::NONE },
             };
-            controller.observe(&measured);
+            controller.observe(&window, Some(&measured));
             let command = controller.command(&window, &measured);
             offset_mm = command.offset_mm;
             command

@@ -3,8 +3,7 @@
 //! Source: Yoon and Jeon (2000), as described in Lee, Cho and Jeon (2005), sections 1 and 4.
 
 use super::inverting::{Invert, Inverting};
-use crate::identifier::Inputs;
-use crate::identifier::contour::ContourIdentifier;
+use crate::identifier::{ContourModel, Inputs};
 use crate::inversion;
 
 /// Feedrate magnitude control (Yoon and Jeon 2000).
@@ -15,8 +14,8 @@ pub type MagnitudeOnly<const N: usize> = Inverting<N, Magnitude>;
 pub struct Magnitude;
 
 impl Invert for Magnitude {
-    fn invert<const N: usize>(
-        net: &ContourIdentifier<N>,
+    fn invert<const N: usize, D: ContourModel<N>>(
+        net: &D,
         inputs: &Inputs<N>,
         feeds: &mut [[f64; N]],
         settings: &inversion::Settings,

@@ -14,8 +14,6 @@ impl<const N: usize> Controller<N> for OpenLoop {
 
     fn reset(&mut self) {}
 
-    fn observe(&mut self, _: &Measured<N>) {}
-
     fn command(&mut self, _: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         Command::AS_PLANNED
     }

@@ -21,8 +21,8 @@ use crate::horizon::missed::Missed;
 use crate::horizon::{self, Felt, MOST_KNOTS, MOST_PERIODS, Model, Plan, Solver, Stretch};
 use crate::identifier::adaptation::{self, Adaptation, Spread};
 use crate::identifier::residual::Foresight;
-use crate::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
-use crate::identifier::{FEED_SCALE_MM_S, Inputs};
+use crate::identifier::servo::ServoIdentifier;
+use crate::identifier::{Delays, FEED_SCALE_MM_S, Inputs, ServoModel};
 use crate::vector::{add_scaled, fourth_power, norm, scale, sub};
 use crate::window::{PREVIEW_KNOTS, Window};
 
@@ -60,11 +60,11 @@ const LEAP_MM: f64 = 0.3;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct Settings<const N: usize> {
     /// Servo periods in a feed period; 1 to 20.
     pub servo_periods: u32,
     /// The inversion.
-    pub horizon: horizon::Settings,
+    pub horizon: horizon::Settings<N>,
     /// Steps of the solver in a tick; 1 is all that Gauss-Newton needs.
     pub steps: usize,
     /// Adaptation of the identifier.
@@ -75,7 +75,7 @@ pub struct Settings {
     pub foreseen_mm: f64,
 }
 
-impl Settings {
+impl<const N: usize> Settings<N> {
     /// Values that serve every shape and machine tried.
     pub const DEFAULT: Self = Self {
         servo_periods: 5,
@@ -99,9 +99,9 @@ impl Settings {
 
 /// Receding-horizon inversion.
 #[derive(Debug, Clone)]
-pub struct RecedingHorizon<const N: usize, S = GaussNewton> {
-    net: Adaptation<N>,
-    settings: Settings,
+pub struct RecedingHorizon<const N: usize, S = GaussNewton, D = ServoIdentifier<N>> {
+    net: Adaptation<N, D>,
+    settings: Settings<N>,
     plan: Plan<N, S>,
     periods: usize,
     /// The following error as it is measured; as it would be without measurement, from the commands alone; and the part of it
@@ -131,9 +131,9 @@ struct Last<const N: usize> {
     seen_mm: [f64; N],
 }
 
-impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
+impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
     /// With an identifier that is trained on a machine, and how others of its kind differ.
-    pub fn new(net: ServoIdentifier<N>, spread: &Spread<N>, settings: Settings) -> Self {
+    pub fn new(net: D, spread: &Spread<N>, settings: Settings<N>) -> Self {
         Self {
             net: Adaptation::new(net, spread, settings.adaptation),
             settings,
@@ -163,7 +163,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
         let now = Last { command_mm, offset_mm: window.offset_mm, seen_mm };
         let Some(last) = self.last else {
             if let Some(following_mm) = following_mm {
-                self.delays.error = [scale(1.0 / FOLLOWING_SCALE_MM, following_mm); 2];
+                self.delays.error = [scale(1.0 / D::ERROR_SCALE_MM, following_mm); 2];
                 self.free = self.delays;
                 self.last = Some(now);
             }
@@ -173,7 +173,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
         let period_s = window.feed_period_s;
         let feed_now = feed(last.command_mm, command_mm, period_s);
         let inputs = self.delays.inputs(feed_now);
-        let before_mm = scale(FOLLOWING_SCALE_MM, self.delays.error[0]);
+        let before_mm = scale(D::ERROR_SCALE_MM, self.delays.error[0]);
         let mut foreseen_mm = add_scaled(before_mm, 1.0, self.net.net().predict(&inputs));
         for (foreseen_mm, mut residual) in foreseen_mm.iter_mut().zip(self.net.residual()) {
             *foreseen_mm += residual.next_mm();
@@ -186,7 +186,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
             }
             _ => foreseen_mm,
         };
-        self.delays.push(feed_now, scale(1.0 / FOLLOWING_SCALE_MM, now_mm));
+        self.delays.push(feed_now, scale(1.0 / D::ERROR_SCALE_MM, now_mm));
     }
 
     /// Whether a position stands still while the command goes on. It is nothing to learn from before the safety layer, which has
@@ -198,7 +198,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
 
     /// The following error from the commands alone, and what the offset makes of it.
     fn roll_free(&mut self, feed: [f64; N], offset_feed: [f64; N]) {
-        let grown = |delays: &Delays<N>, grown_mm| add_scaled(delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown_mm);
+        let grown = |delays: &Delays<N>, grown_mm| add_scaled(delays.error[0], 1.0 / D::ERROR_SCALE_MM, grown_mm);
         let error = grown(&self.free, self.net.net().predict(&self.free.inputs(feed)));
         self.free.push(feed, error);
         let error = grown(&self.response, self.net.net().predict_linear(&self.response.inputs(offset_feed)));
@@ -209,7 +209,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
     /// that is far from what the commands alone lead to counts as missed, however steady it is.
     fn is_outlier(&mut self, following_mm: [f64; N], foreseen_mm: [f64; N]) -> bool {
         let surprise_mm = norm(sub(following_mm, foreseen_mm));
-        let free_mm = scale(FOLLOWING_SCALE_MM, self.free.error[0]);
+        let free_mm = scale(D::ERROR_SCALE_MM, self.free.error[0]);
         let strange_mm = norm(sub(following_mm, free_mm)) - STRANGE_SHARE * norm(free_mm) - STRANGE_MM;
         // Strange for good is also a machine that is not known yet: only what came with a leap is held against the position.
         self.leapt = (self.leapt || surprise_mm > LEAP_MM) && strange_mm > 0.0;
@@ -222,7 +222,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
     /// Compares where the tool is with where it was foreseen some knots ago.
     fn look_back(&mut self, window: &Window<'_, N>) {
         let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
-        let tool_mm = add_scaled(command_mm, -FOLLOWING_SCALE_MM, self.delays.error[0]);
+        let tool_mm = add_scaled(command_mm, -D::ERROR_SCALE_MM, self.delays.error[0]);
         let open_mm = add_scaled(tool_mm, -1.0, self.response_mm());
         self.missed.look_back(open_mm, window.at(-self.net.net().lag_s()).tangent);
     }
@@ -230,11 +230,11 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
     /// By how much the offset has moved the tool, mm.
     fn response_mm(&self) -> [f64; N] {
         let offset_mm = self.last.map_or([0.0; N], |last| last.offset_mm);
-        add_scaled(offset_mm, -FOLLOWING_SCALE_MM, self.response.error[0])
+        add_scaled(offset_mm, -D::ERROR_SCALE_MM, self.response.error[0])
     }
 
     /// The weights at the quality that the predictions have now.
-    fn weighted(&self) -> horizon::Settings {
+    fn weighted(&self) -> horizon::Settings<N> {
         let blunter = 1.0 + fourth_power(self.net.innovation_mm() / self.settings.sure_mm);
         let mut horizon = self.settings.horizon;
         horizon.rate_weight *= blunter;
@@ -262,7 +262,7 @@ impl<const N: usize, S: Solver<N>> RecedingHorizon<N, S> {
     }
 }
 
-impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
+impl<const N: usize, S: Solver<N>, D: ServoModel<N>> Controller<N> for RecedingHorizon<N, S, D> {
     fn schedule(&self) -> Schedule {
         let servo_periods = self.settings.servo_periods.max(1);
         let preview = (self.settings.horizon.knots * MOST_PERIODS).min(PREVIEW_KNOTS / servo_periods as usize);
@@ -286,12 +286,12 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
         self.last = None;
     }
 
-    fn observe(&mut self, _: &Measured<N>) {}
-
-    fn bridge(&mut self, window: &Window<'_, N>) {
-        self.take_in(window, None);
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        self.take_in(window, measured.map(|measured| measured.position_mm));
         self.look_back(window);
-        self.plan.reset();
+        if measured.is_none() {
+            self.plan.reset();
+        }
     }
 
     fn moved_mm(&self) -> Option<[f64; N]> {
@@ -310,9 +310,7 @@ impl<const N: usize, S: Solver<N>> Controller<N> for RecedingHorizon<N, S> {
         self.missed_mm
     }
 
-    fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        self.take_in(window, Some(measured.position_mm));
-        self.look_back(window);
+    fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         self.periods = self.periods(window.feed_period_s);
         let horizon = self.weighted();
         let model = Identified::new(&self.net, self.delays, self.response);
@@ -336,8 +334,8 @@ fn feed<const N: usize>(from_mm: [f64; N], to_mm: [f64; N], period_s: f64) -> [f
 
 /// The identified servo as a model of the machine.
 #[derive(Debug, Clone)]
-struct Identified<'a, const N: usize> {
-    net: &'a ServoIdentifier<N>,
+struct Identified<'a, const N: usize, D> {
+    net: &'a D,
     delays: Delays<N>,
     /// What the offset makes of the following error, and the offset, mm.
     response: Delays<N>,
@@ -347,8 +345,8 @@ struct Identified<'a, const N: usize> {
     slopes: [[[f64; N]; MOST_KNOTS]; 2],
 }
 
-impl<'a, const N: usize> Identified<'a, N> {
-    fn new(net: &'a Adaptation<N>, delays: Delays<N>, response: Delays<N>) -> Self {
+impl<'a, const N: usize, D: ServoModel<N>> Identified<'a, N, D> {
+    fn new(net: &'a Adaptation<N, D>, delays: Delays<N>, response: Delays<N>) -> Self {
         let slopes = [[[0.0; N]; MOST_KNOTS]; 2];
         Self { net: net.net(), delays, response, offset_mm: [0.0; N], residual: net.residual(), slopes }
     }
@@ -366,14 +364,14 @@ impl<'a, const N: usize> Identified<'a, N> {
                 let [f0, f1, f2, e0, e1] = slopes[axis];
                 let grown_mm = f0 * gained[0] + f1 * gained[1] + f2 * gained[2] + e0 * now[axis] + e1 * before[axis];
                 before[axis] = now[axis];
-                now[axis] += grown_mm / FOLLOWING_SCALE_MM;
-                felt[axis] = moved_s2 - FOLLOWING_SCALE_MM * now[axis];
+                now[axis] += grown_mm / D::ERROR_SCALE_MM;
+                felt[axis] = moved_s2 - D::ERROR_SCALE_MM * now[axis];
             }
         }
     }
 }
 
-impl<const N: usize> Identified<'_, N> {
+impl<const N: usize, D: ServoModel<N>> Identified<'_, N, D> {
     /// What the offset makes of the following error moves on as all of it does, but for what is not linear.
     #[inline]
     fn respond(&mut self, stretch: &Stretch<N>) {
@@ -381,15 +379,15 @@ impl<const N: usize> Identified<'_, N> {
         let feed = feed(from_mm, to_mm, stretch.period_s);
         let inputs = self.response.inputs(feed);
         let error = core::array::from_fn(|axis| {
-            let grown_mm: f64 = self.net.linear[axis][axis].iter().zip(&inputs[axis]).map(|(l, i)| l * i).sum();
-            self.response.error[0][axis] + grown_mm / FOLLOWING_SCALE_MM
+            let grown_mm: f64 = self.net.own_linear(axis).iter().zip(&inputs[axis]).map(|(l, i)| l * i).sum();
+            self.response.error[0][axis] + grown_mm / D::ERROR_SCALE_MM
         });
         self.response.push(feed, error);
         self.offset_mm = to_mm;
     }
 }
 
-impl<const N: usize> Model<N> for Identified<'_, N> {
+impl<const N: usize, D: ServoModel<N>> Model<N> for Identified<'_, N, D> {
     fn lag_s(&self) -> f64 {
         self.net.lag_s()
     }
@@ -403,20 +401,21 @@ impl<const N: usize> Model<N> for Identified<'_, N> {
             grown_mm[axis] += self.residual[axis].next_mm();
         }
         self.advance_slopes(&slopes, stretch, felt);
-        let error = add_scaled(self.delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown_mm);
+        let error = add_scaled(self.delays.error[0], 1.0 / D::ERROR_SCALE_MM, grown_mm);
         self.delays.push(feed, error);
         self.respond(stretch);
-        add_scaled(to_mm, -FOLLOWING_SCALE_MM, error)
+        add_scaled(to_mm, -D::ERROR_SCALE_MM, error)
     }
 
     fn moved_mm(&self) -> [f64; N] {
-        add_scaled(self.offset_mm, -FOLLOWING_SCALE_MM, self.response.error[0])
+        add_scaled(self.offset_mm, -D::ERROR_SCALE_MM, self.response.error[0])
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::identifier::Identifier;
     use crate::identifier::adaptation::UNKNOWNS;
     use crate::window::{Knot, Preview, Reference, Register};
 
@@ -430,7 +429,7 @@ mod tests {
 
     /// A servo like tnv40's, and hidden nodes that are far from saturated, half of them for each axis.
     fn net() -> ServoIdentifier<2> {
-        let mut net = ServoIdentifier::IDEAL;
+        let mut net = ServoIdentifier::NULL;
         for axis in 0..2 {
             net.linear[axis][axis] = [0.149, -0.082, 0.001, 0.49, -0.56];
             for node in (axis..crate::identifier::HIDDEN).step_by(2) {

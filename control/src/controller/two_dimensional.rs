@@ -3,8 +3,7 @@
 //! Source: Lee, Cho and Jeon (2005), section 3.
 
 use super::inverting::{Invert, Inverting};
-use crate::identifier::Inputs;
-use crate::identifier::contour::ContourIdentifier;
+use crate::identifier::{ContourModel, Inputs};
 use crate::inversion;
 
 /// Two-dimensional feedrate control (Lee, Cho and Jeon 2005).
@@ -15,8 +14,8 @@ pub type TwoDimensional<const N: usize> = Inverting<N, BothComponents>;
 pub struct BothComponents;
 
 impl Invert for BothComponents {
-    fn invert<const N: usize>(
-        net: &ContourIdentifier<N>,
+    fn invert<const N: usize, D: ContourModel<N>>(
+        net: &D,
         inputs: &Inputs<N>,
         feeds: &mut [[f64; N]],
         settings: &inversion::Settings,

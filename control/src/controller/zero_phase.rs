@@ -93,8 +93,6 @@ impl<const N: usize> Controller<N> for ZeroPhase<N> {
 
     fn reset(&mut self) {}
 
-    fn observe(&mut self, _: &Measured<N>) {}
-
     /// The command of the next servo period, k; offsets from its reference keep rest at rest to the bit.
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let next_s = window.tau_s + window.feed_period_s;

@@ -146,13 +146,13 @@ mod tests {
         }
     }
 
-    const SETTINGS: Settings = Settings {
+    const SETTINGS: Settings<2> = Settings {
         knots: KNOTS,
         rate_weight: 0.0,
         change_weight: 1e-12,
         offset_weight: 0.7,
         last_weight: 0.1,
-        limits: Limits { acceleration_mm_s2: [1e6; 3], ..Limits::NONE },
+        limits: Limits { acceleration_mm_s2: [1e6; 2], ..Limits::NONE },
         ..Settings::EXAMPLE
     };
 

@@ -50,7 +50,7 @@ pub struct Problem<const N: usize> {
     /// same, shifted.
     pub moved_s2: [f64; MOST_KNOTS],
     /// The settings.
-    pub settings: Settings,
+    pub settings: Settings<N>,
 }
 
 /// What is foreseen at the end of a knot.
@@ -111,8 +111,9 @@ impl<const N: usize> Problem<N> {
         window: &Window<'_, N>,
         accelerations_mm_s2: &Accelerations<N>,
         periods: usize,
-        settings: &Settings,
+        settings: &Settings<N>,
     ) -> Self {
+        const { assert!(N >= 2 && N <= MOST_AXES, "a plan is made in the plane or in space") };
         let knots = settings.knots();
         let lag_s = bounded(model.lag_s(), 0.0, PREVIEW_KNOTS as f64 * window.servo_s());
         let mut problem = Self {
@@ -210,7 +211,7 @@ impl<const N: usize> Problem<N> {
             for axis in 0..N {
                 let acceleration =
                     self.acceleration_mm_s2(knot, axis, |end| sub(end.tool_mm, end.moved_mm)).unwrap_or(0.0);
-                most = most.max(acceleration.abs() / self.settings.limits.drive_mm_s2[axis.min(MOST_AXES - 1)]);
+                most = most.max(acceleration.abs() / self.settings.limits.drive_mm_s2[axis]);
             }
         }
         most
@@ -313,7 +314,7 @@ impl<const N: usize> Problem<N> {
             if beyond != 0.0 {
                 take(knot, SPEED_WEIGHT_S * beyond, &|row| self.speed_row(knot, axis, row));
             }
-            let most = limits.drive_mm_s2[axis.min(MOST_AXES - 1)];
+            let most = limits.drive_mm_s2[axis];
             let Some(acceleration) = self.acceleration_mm_s2(knot, axis, |end| end.tool_mm) else { continue };
             let beyond = acceleration - bounded(acceleration, -most, most);
             if beyond != 0.0 {

@@ -65,10 +65,10 @@ impl Restraint {
     }
 
     /// The settings with q and l of a machine with this lag, s.
-    pub(super) fn on<const N: usize>(&self, settings: &Settings, lag_s: f64) -> Settings {
+    pub(super) fn on<const N: usize>(&self, settings: &Settings<N>, lag_s: f64) -> Settings<N> {
         let weight = settings.offset_weight
             + self.start_weight
-            + fourth_power(self.need_mm / within_mm::<N>(&settings.limits, lag_s));
+            + fourth_power(self.need_mm / within_mm(&settings.limits, lag_s));
         let at_limit = fourth_power(self.drive_share / DRIVE_SHARE);
         let at_limit = at_limit * at_limit;
         let share = (self.undone / UNDONE_SHARE).min(1.0);
@@ -81,8 +81,8 @@ impl Restraint {
 }
 
 /// D, mm.
-fn within_mm<const N: usize>(limits: &Limits, lag_s: f64) -> f64 {
-    let least_mm_s2 = limits.acceleration_mm_s2.iter().take(N).copied().fold(f64::INFINITY, f64::min);
+fn within_mm<const N: usize>(limits: &Limits<N>, lag_s: f64) -> f64 {
+    let least_mm_s2 = limits.acceleration_mm_s2.iter().copied().fold(f64::INFINITY, f64::min);
     limits.deviation_mm.min(REACH * least_mm_s2 * lag_s * lag_s)
 }
 
@@ -90,17 +90,17 @@ fn within_mm<const N: usize>(limits: &Limits, lag_s: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const SETTINGS: Settings = Settings {
-        limits: Limits { acceleration_mm_s2: [400.0, 100.0, 1.0], deviation_mm: 0.5, ..Limits::NONE },
+    const SETTINGS: Settings<2> = Settings {
+        limits: Limits { acceleration_mm_s2: [400.0, 100.0], deviation_mm: 0.5, ..Limits::NONE },
         ..Settings::EXAMPLE
     };
 
     /// After as many decisions as the start takes, with nothing to do; then one with this.
-    fn restrained(need_mm: f64, mean_squares_mm2: [f64; 2], lag_s: f64) -> Settings {
+    fn restrained(need_mm: f64, mean_squares_mm2: [f64; 2], lag_s: f64) -> Settings<2> {
         let mut restraint = Restraint::START;
         (0..100).for_each(|_| restraint.take_in(0.0, [0.0; 2], 0.0));
         restraint.take_in(need_mm, mean_squares_mm2, 0.0);
-        restraint.on::<2>(&SETTINGS, lag_s)
+        restraint.on(&SETTINGS, lag_s)
     }
 
     #[test]
@@ -116,11 +116,11 @@ mod tests {
     fn where_drives_are_at_their_limit_hardly_anything_is_corrected_for_a_while() {
         let mut restraint = Restraint::START;
         (0..100).for_each(|_| restraint.take_in(0.0, [0.0; 2], 0.5));
-        assert!(restraint.on::<2>(&SETTINGS, 0.1).offset_weight < 0.03);
+        assert!(restraint.on(&SETTINGS, 0.1).offset_weight < 0.03);
         restraint.take_in(0.0, [0.0; 2], 1.0);
-        assert!((restraint.on::<2>(&SETTINGS, 0.1).offset_weight - 0.8_f64.powi(-8)).abs() < 1e-3);
+        assert!((restraint.on(&SETTINGS, 0.1).offset_weight - 0.8_f64.powi(-8)).abs() < 1e-3);
         restraint.take_in(0.0, [0.0; 2], 1e9);
-        assert!(restraint.on::<2>(&SETTINGS, 0.1).offset_weight >= MOST_LIMIT_WEIGHT);
+        assert!(restraint.on(&SETTINGS, 0.1).offset_weight >= MOST_LIMIT_WEIGHT);
     }
 
     #[test]
@@ -133,9 +133,9 @@ mod tests {
     #[test]
     fn a_start_is_gentle_and_what_was_needed_is_forgotten() {
         let mut restraint = Restraint::START;
-        assert!(restraint.on::<2>(&SETTINGS, 0.1).offset_weight > 0.2);
+        assert!(restraint.on(&SETTINGS, 0.1).offset_weight > 0.2);
         restraint.take_in(0.5, [0.0; 2], 0.0);
         (0..200).for_each(|_| restraint.take_in(0.0, [0.0; 2], 0.0));
-        assert!(restraint.on::<2>(&SETTINGS, 0.1).offset_weight < 1e-9);
+        assert!(restraint.on(&SETTINGS, 0.1).offset_weight < 1e-9);
     }
 }

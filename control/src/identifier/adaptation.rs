@@ -17,7 +17,7 @@
 
 use super::residual::{self, Foresight, LAGS, Residual};
 use super::servo::ServoIdentifier;
-use super::{INPUTS, Inputs};
+use super::{INPUTS, Inputs, ServoModel};
 use crate::least_squares::{LeastSquares, inverse};
 
 /// The other model is believed where its mean square innovation is below this part of the present one's: no change of mind
@@ -67,11 +67,11 @@ impl Settings {
 
 /// The identifier as it is now, and what it follows.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Adaptation<const N: usize> {
-    trained: ServoIdentifier<N>,
+pub struct Adaptation<const N: usize, D = ServoIdentifier<N>> {
+    trained: D,
     /// Information of the prior of each axis, relative to that of one sample.
     prior: Spread<N>,
-    now: ServoIdentifier<N>,
+    now: D,
     axes: [Axis; N],
     /// Mean squares of the innovations of both models lately, over all axes, mm2.
     square_mm2: [f64; 2],
@@ -99,13 +99,13 @@ struct Sample {
     missed_mm: f64,
 }
 
-impl<const N: usize> Adaptation<N> {
+impl<const N: usize, D: ServoModel<N>> Adaptation<N, D> {
     /// From an identifier that is trained on a machine, and how others of its kind differ.
-    pub fn new(trained: ServoIdentifier<N>, spread: &Spread<N>, settings: Settings) -> Self {
+    pub fn new(trained: D, spread: &Spread<N>, settings: Settings) -> Self {
         Self::fresh(trained, spread.map(|spread| information(&spread, &settings)), settings)
     }
 
-    fn fresh(trained: ServoIdentifier<N>, prior: Spread<N>, settings: Settings) -> Self {
+    fn fresh(trained: D, prior: Spread<N>, settings: Settings) -> Self {
         Self {
             now: trained.clone(),
             trained,
@@ -120,7 +120,7 @@ impl<const N: usize> Adaptation<N> {
 
     /// As it is now.
     #[inline]
-    pub fn net(&self) -> &ServoIdentifier<N> {
+    pub fn net(&self) -> &D {
         &self.now
     }
 
@@ -151,7 +151,7 @@ impl<const N: usize> Adaptation<N> {
     #[inline]
     pub fn learn(&mut self, inputs: &Inputs<N>, grown_mm: [f64; N]) {
         let linear_mm = self.trained.predict_linear(inputs);
-        let hidden_mm = self.trained.predict_hidden(inputs);
+        let hidden_mm = self.trained.predict_rest(inputs);
         let mut missed_mm = [0.0; N];
         for axis in 0..N {
             missed_mm[axis] = grown_mm[axis] - linear_mm[axis] - hidden_mm[axis];
@@ -203,10 +203,7 @@ impl<const N: usize> Adaptation<N> {
     fn take_over(&mut self) {
         for axis in 0..N {
             let change = if self.adapted { self.axes[axis].change } else { [0.0; UNKNOWNS] };
-            for input in 0..INPUTS {
-                self.now.linear[axis][axis][input] = self.trained.linear[axis][axis][input] + change[input];
-            }
-            self.now.output[axis] = self.trained.output[axis].map(|weight| weight * (1.0 + change[INPUTS]));
+            self.now.change(&self.trained, axis, &change);
         }
     }
 }

@@ -19,7 +19,7 @@
 //! | W_ji    | `hidden`     | 1                       |
 //! | W_oj    | `output`     | 1                       |
 
-use super::{HIDDEN, INPUTS, Inputs};
+use super::{ContourModel, ERROR_SCALE_MM, HIDDEN, INPUTS, Identifier, Inputs, Kind};
 use crate::activation::{bipolar_sigmoid, slope};
 
 /// The weights.
@@ -40,59 +40,51 @@ pub struct Forward<const N: usize> {
     pub error: [f64; N],
 }
 
-impl<const N: usize> ContourIdentifier<N> {
-    /// Eqs 3 to 5.
+impl<const N: usize> Identifier<N> for ContourIdentifier<N> {
+    const KIND: Kind = Kind::Contour;
+    const ERROR_SCALE_MM: f64 = ERROR_SCALE_MM;
+    const NULL: Self = Self { hidden: [[[0.0; HIDDEN]; INPUTS]; N], output: [[0.0; HIDDEN]; N] };
+
+    fn weights(&mut self, each: &mut impl FnMut(&'static str, &mut [f64])) {
+        each("hidden", self.hidden.as_flattened_mut().as_flattened_mut());
+        each("output", self.output.as_flattened_mut());
+    }
+}
+
+impl<const N: usize> ContourModel<N> for ContourIdentifier<N> {
+    type Forward = Forward<N>;
+    const AT_REST: Forward<N> = Forward { hidden: [0.0; HIDDEN], error: [0.0; N] };
+
     #[inline]
-    pub fn predict(&self, inputs: &Inputs<N>) -> Forward<N> {
-        let mut net = [0.0; HIDDEN];
-        for axis in 0..N {
-            for input in 0..INPUTS {
-                let x = inputs[axis][input];
-                let w = &self.hidden[axis][input];
-                for j in 0..HIDDEN {
-                    net[j] += w[j] * x;
-                }
-            }
-        }
-        self.forward(net)
+    fn forward(&self, inputs: &Inputs<N>) -> Forward<N> {
+        self.predict(inputs)
     }
 
-    /// Eqs 3 and 4, given the inputs of the hidden nodes.
     #[inline]
-    fn forward(&self, net: [f64; HIDDEN]) -> Forward<N> {
-        let hidden = bipolar_sigmoid(net);
-        let mut net_o = [0.0; N];
-        for o in 0..N {
-            for j in 0..HIDDEN {
-                net_o[o] += self.output[o][j] * hidden[j];
-            }
-        }
-        Forward { hidden, error: bipolar_sigmoid(net_o) }
+    fn error(forward: &Forward<N>) -> [f64; N] {
+        forward.error
     }
 
-    /// d eps_hat_o / d F_axis(k), indexed by o and axis: the chain rule through eqs 3 to 5.
     #[inline]
-    pub fn jacobian(&self, forward: &Forward<N>) -> [[f64; N]; N] {
+    fn slopes(&self, forward: &Forward<N>, input: usize) -> [[f64; N]; N] {
+        if input == 0 {
+            return self.jacobian(forward);
+        }
         let hidden_slope = forward.hidden.map(slope);
-        let mut jacobian = [[0.0; N]; N];
-        for o in 0..N {
+        core::array::from_fn(|o| {
             let output_slope = slope(forward.error[o]);
-            for axis in 0..N {
-                let mut sum = 0.0;
-                for j in 0..HIDDEN {
-                    sum += self.output[o][j] * hidden_slope[j] * self.hidden[axis][0][j];
-                }
-                jacobian[o][axis] = output_slope * sum;
-            }
-        }
-        jacobian
+            core::array::from_fn(|axis| {
+                let Some(weights) = self.hidden[axis].get(input) else { return 0.0 };
+                output_slope * (0..HIDDEN).map(|j| self.output[o][j] * hidden_slope[j] * weights[j]).sum::<f64>()
+            })
+        })
     }
 
     /// One step of back-propagation: down the gradient of eq. 6. Returns E_n before the step.
     ///
     /// A step that is not finite is left out, so that a lost measurement cannot destroy the weights.
     #[inline]
-    pub fn learn(&mut self, inputs: &Inputs<N>, error: [f64; N], step: f64) -> f64 {
+    fn learn(&mut self, inputs: &Inputs<N>, error: [f64; N], step: f64) -> f64 {
         let forward = self.predict(inputs);
         let mut cost = 0.0;
         let mut output_delta = [0.0; N];
@@ -123,6 +115,55 @@ impl<const N: usize> ContourIdentifier<N> {
             }
         }
         cost
+    }
+}
+
+impl<const N: usize> ContourIdentifier<N> {
+    /// Eqs 3 to 5.
+    #[inline]
+    pub fn predict(&self, inputs: &Inputs<N>) -> Forward<N> {
+        let mut net = [0.0; HIDDEN];
+        for axis in 0..N {
+            for input in 0..INPUTS {
+                let x = inputs[axis][input];
+                let w = &self.hidden[axis][input];
+                for j in 0..HIDDEN {
+                    net[j] += w[j] * x;
+                }
+            }
+        }
+        self.outputs(net)
+    }
+
+    /// Eqs 3 and 4, given the inputs of the hidden nodes.
+    #[inline]
+    fn outputs(&self, net: [f64; HIDDEN]) -> Forward<N> {
+        let hidden = bipolar_sigmoid(net);
+        let mut net_o = [0.0; N];
+        for o in 0..N {
+            for j in 0..HIDDEN {
+                net_o[o] += self.output[o][j] * hidden[j];
+            }
+        }
+        Forward { hidden, error: bipolar_sigmoid(net_o) }
+    }
+
+    /// d eps_hat_o / d F_axis(k), indexed by o and axis: the chain rule through eqs 3 to 5.
+    #[inline]
+    pub fn jacobian(&self, forward: &Forward<N>) -> [[f64; N]; N] {
+        let hidden_slope = forward.hidden.map(slope);
+        let mut jacobian = [[0.0; N]; N];
+        for o in 0..N {
+            let output_slope = slope(forward.error[o]);
+            for axis in 0..N {
+                let mut sum = 0.0;
+                for j in 0..HIDDEN {
+                    sum += self.output[o][j] * hidden_slope[j] * self.hidden[axis][0][j];
+                }
+                jacobian[o][axis] = output_slope * sum;
+            }
+        }
+        jacobian
     }
 }
 

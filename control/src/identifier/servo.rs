@@ -12,7 +12,8 @@
 //! Source: the input structure of Lee, Cho and Jeon (2005), section 3.2, on another output; skip connections from
 //! inputs to outputs are classical (Rumelhart, Hinton and Williams 1986).
 
-use super::{HIDDEN, INPUTS, Inputs};
+use super::adaptation::UNKNOWNS;
+use super::{HIDDEN, INPUTS, Identifier, Inputs, Kind, ServoModel};
 use crate::activation::{bipolar_sigmoid, slope};
 use crate::vector::add_scaled;
 
@@ -32,21 +33,6 @@ pub struct ServoIdentifier<const N: usize> {
 }
 
 impl<const N: usize> ServoIdentifier<N> {
-    /// The following error of an ideal servo grows with nothing: the null member.
-    pub const IDEAL: Self =
-        Self { linear: [[[0.0; INPUTS]; N]; N], hidden: [[[0.0; HIDDEN]; INPUTS]; N], output: [[0.0; HIDDEN]; N] };
-
-    /// How far the tool is behind the command at constant feedrate, s: the mean over the axes of e / F where L I = 0.
-    pub fn lag_s(&self) -> f64 {
-        let mut sum = 0.0;
-        for axis in 0..N {
-            let [f0, f1, f2, e0, e1] = self.linear[axis][axis];
-            let lag = -(f0 + f1 + f2) / (e0 + e1) * FOLLOWING_SCALE_MM / super::FEED_SCALE_MM_S;
-            sum += if lag.is_finite() { lag } else { 0.0 };
-        }
-        sum / N as f64
-    }
-
     /// f(W_h I).
     #[inline]
     pub fn hidden_nodes(&self, inputs: &Inputs<N>) -> [f64; HIDDEN] {
@@ -60,16 +46,41 @@ impl<const N: usize> ServoIdentifier<N> {
         }
         bipolar_sigmoid(net)
     }
+}
 
-    /// e(k+1) - e(k), mm.
-    #[inline]
-    pub fn predict(&self, inputs: &Inputs<N>) -> [f64; N] {
-        add_scaled(self.predict_linear(inputs), 1.0, self.predict_hidden(inputs))
+impl<const N: usize> Identifier<N> for ServoIdentifier<N> {
+    const KIND: Kind = Kind::Servo;
+    const ERROR_SCALE_MM: f64 = FOLLOWING_SCALE_MM;
+    /// The following error of an ideal servo grows with nothing.
+    const NULL: Self =
+        Self { linear: [[[0.0; INPUTS]; N]; N], hidden: [[[0.0; HIDDEN]; INPUTS]; N], output: [[0.0; HIDDEN]; N] };
+
+    fn weights(&mut self, each: &mut impl FnMut(&'static str, &mut [f64])) {
+        each("linear", self.linear.as_flattened_mut().as_flattened_mut());
+        each("hidden", self.hidden.as_flattened_mut().as_flattened_mut());
+        each("output", self.output.as_flattened_mut());
+    }
+}
+
+impl<const N: usize> ServoModel<N> for ServoIdentifier<N> {
+    /// The mean over the axes of e / F where L I = 0.
+    fn lag_s(&self) -> f64 {
+        let mut sum = 0.0;
+        for axis in 0..N {
+            let [f0, f1, f2, e0, e1] = self.linear[axis][axis];
+            let lag = -(f0 + f1 + f2) / (e0 + e1) * FOLLOWING_SCALE_MM / super::FEED_SCALE_MM_S;
+            sum += if lag.is_finite() { lag } else { 0.0 };
+        }
+        sum / N as f64
     }
 
-    /// As [`Self::predict`], and its derivative in each axis to the inputs of that axis, mm for an input of 1.
     #[inline]
-    pub fn predict_with_slopes(&self, inputs: &Inputs<N>) -> ([f64; N], Inputs<N>) {
+    fn predict(&self, inputs: &Inputs<N>) -> [f64; N] {
+        add_scaled(self.predict_linear(inputs), 1.0, self.predict_rest(inputs))
+    }
+
+    #[inline]
+    fn predict_with_slopes(&self, inputs: &Inputs<N>) -> ([f64; N], Inputs<N>) {
         let hidden = self.hidden_nodes(inputs);
         let mut grown_mm = self.predict_linear(inputs);
         let mut slopes = [[0.0; INPUTS]; N];
@@ -89,9 +100,9 @@ impl<const N: usize> ServoIdentifier<N> {
         (grown_mm, slopes)
     }
 
-    /// The part of [`Self::predict`] that the hidden nodes make, mm.
+    /// c W_o f(W_h I).
     #[inline]
-    pub fn predict_hidden(&self, inputs: &Inputs<N>) -> [f64; N] {
+    fn predict_rest(&self, inputs: &Inputs<N>) -> [f64; N] {
         let hidden = self.hidden_nodes(inputs);
         core::array::from_fn(|o| {
             let mut sum = 0.0;
@@ -102,9 +113,9 @@ impl<const N: usize> ServoIdentifier<N> {
         })
     }
 
-    /// The part of [`Self::predict`] that the linear connection makes, mm.
+    /// L I.
     #[inline]
-    pub fn predict_linear(&self, inputs: &Inputs<N>) -> [f64; N] {
+    fn predict_linear(&self, inputs: &Inputs<N>) -> [f64; N] {
         let mut increment = [0.0; N];
         for o in 0..N {
             for axis in 0..N {
@@ -115,31 +126,17 @@ impl<const N: usize> ServoIdentifier<N> {
         }
         increment
     }
-}
 
-/// The delays between ticks: feedrates and following errors, scaled.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Delays<const N: usize> {
-    /// F(k-1), F(k-2).
-    pub feed: [[f64; N]; 2],
-    /// e(k), e(k-1).
-    pub error: [[f64; N]; 2],
-}
-
-impl<const N: usize> Delays<N> {
-    /// At rest.
-    pub const REST: Self = Self { feed: [[0.0; N]; 2], error: [[0.0; N]; 2] };
-
-    /// The inputs for F(k), scaled.
     #[inline]
-    pub fn inputs(&self, feed: [f64; N]) -> Inputs<N> {
-        core::array::from_fn(|a| [feed[a], self.feed[0][a], self.feed[1][a], self.error[0][a], self.error[1][a]])
+    fn own_linear(&self, axis: usize) -> &[f64; INPUTS] {
+        &self.linear[axis][axis]
     }
 
-    /// Moves on by one knot: F(k) was commanded and e(k+1) is, or is predicted to be, the following error.
     #[inline]
-    pub fn push(&mut self, feed: [f64; N], error: [f64; N]) {
-        self.feed = [feed, self.feed[0]];
-        self.error = [error, self.error[0]];
+    fn change(&mut self, trained: &Self, axis: usize, change: &[f64; UNKNOWNS]) {
+        for input in 0..INPUTS {
+            self.linear[axis][axis][input] = trained.linear[axis][axis][input] + change[input];
+        }
+        self.output[axis] = trained.output[axis].map(|weight| weight * (1.0 + change[INPUTS]));
     }
 }

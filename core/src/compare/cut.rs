@@ -30,7 +30,7 @@ impl Maker<'_> {
         // What a controller believes of the machine: the periods of the control are never a secret.
         let known = if self.competitor.identified_here { machine } else { self.nominal };
         let known = Machine { period: machine.period, ..known.clone() };
-        Make::<2>::make(entry, &mut Setup { machine: &known, choices: &choices, progress: &mut |_| {} })
+        Make::<2>::make(entry, &mut Setup::new(&known, &choices))
     }
 }
 

@@ -98,7 +98,7 @@ impl Trial<'_> {
 
     fn cut(&self, settings: &[Setting]) -> Result<Cut, RunError> {
         let choices = Choices { seed: self.seed, set: settings.to_vec() };
-        let mut setup = Setup { machine: self.machine, choices: &choices, progress: &mut |_| {} };
+        let mut setup = Setup::new(self.machine, &choices);
         let mut controller = Make::<2>::make(self.entry, &mut setup);
         let run = Run::on(self.machine).laps(self.entry.laps).watched(self.watch);
         cut(self.workpiece, &mut *controller, run, &mut [])

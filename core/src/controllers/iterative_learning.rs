@@ -131,16 +131,17 @@ impl<const N: usize> Controller<N> for IterativeLearning<N> {
         self.errors_mm.fill([0.0; N]);
     }
 
-    fn observe(&mut self, _: &Measured<N>) {}
-
-    fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let now = self.decision(window.tau_s);
-        let error_mm = measured.contour.vector_mm;
-        if let Some(slot) = self.errors_mm.get_mut(now)
-            && norm(error_mm).is_finite()
+        if let (Some(slot), Some(measured)) = (self.errors_mm.get_mut(now), measured)
+            && norm(measured.contour.vector_mm).is_finite()
         {
-            *slot = error_mm;
+            *slot = measured.contour.vector_mm;
         }
+    }
+
+    fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
+        let now = self.decision(window.tau_s);
         let offset_mm = self.offsets_mm.get(now + 1).or(self.offsets_mm.last()).copied().unwrap_or([0.0; N]);
         Command::straight(1.0, offset_mm)
     }

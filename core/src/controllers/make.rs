@@ -1,7 +1,5 @@
-//! How each controller of the table is made for a machine: one function for each row, or for several that differ in their
-//! laps alone.
-
-use std::f64::consts::TAU;
+//! How each controller of the table is made from what is known of a machine, and from a model: one function for each row, or for
+//! several that differ in their laps alone.
 
 use feedwright_control::axis::{self, Parameters, State};
 use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
@@ -20,10 +18,7 @@ use super::Setup;
 use super::iterative_learning::{self, IterativeLearning};
 use super::model_predictive::{self, ModelPredictive};
 use super::parameters::Values;
-use crate::identify::cache::identified;
-use crate::identify::contour::{Identified, Training};
-use crate::identify::{Programme, servo};
-use crate::machine::{Axis, Machine, Period};
+use crate::machine::{Known, KnownAxis, Period};
 
 pub(super) fn open_loop<const N: usize>(_: &mut Setup<'_>, _: &Values) -> Box<dyn Controller<N>> {
     Box::new(OpenLoop)
@@ -45,18 +40,18 @@ pub(super) fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &V
 
 pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     Box::new(FuzzyFeedrate::new(fuzzy_feedrate::Settings {
-        servo_periods: setup.machine.period.servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
+        servo_periods: setup.known.period.servo_periods(fuzzy_feedrate::FEED_PERIOD_S),
         error_mm: values.number("error_mm"),
         change_mm_s: values.number("change_mm_s"),
         slowest: values.number("slowest"),
-        acceleration_mm_s2: setup.machine.limits.tangential_accel_mm_s2,
+        acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
     }))
 }
 
 pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let Period { servo_s, mechanics_s, .. } = setup.machine.period;
-    let axes = axes(setup.machine).map(|axis| {
-        let parameters = axis.parameters();
+    let Period { servo_s, mechanics_s, .. } = setup.known.period;
+    let axes = setup.known.axes().map(|axis| {
+        let parameters = axis.nominal;
         // The speed loop answers to the speed at the start of a mechanics period, and so damps less than one without
         // delay by so much inertia.
         let early_nm_s = parameters.kv_nm_s_per_rad + parameters.viscous_friction_nm_s;
@@ -72,16 +67,16 @@ pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &Values
 
 pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let [lag_scale, inertia_scale] = ["lag_scale", "inertia_scale"].map(|name| values.number(name));
-    let sampled = axes(setup.machine).map(|axis| {
-        let inertia_kg_m2 = inertia_scale * axis.inertia_kg_m2;
-        sampled(&Axis { kp_1_s: axis.kp_1_s / lag_scale, inertia_kg_m2, ..axis }, &setup.machine.period)
+    let sampled = setup.known.axes().map(|KnownAxis { nominal, .. }| {
+        let inertia_kg_m2 = inertia_scale * nominal.inertia_kg_m2;
+        sampled(&Parameters { kp_1_s: nominal.kp_1_s / lag_scale, inertia_kg_m2, ..nominal }, &setup.known.period)
     });
-    Box::new(ZeroPhase::new(&sampled, setup.machine.period.servo_s))
+    Box::new(ZeroPhase::new(&sampled, setup.known.period.servo_s))
 }
 
 /// The linear part of an axis over one servo period, as the plant integrates it.
-fn sampled(axis: &Axis, period: &Period) -> SampledAxis {
-    let linear = Parameters { torque_limit_nm: f64::INFINITY, coulomb_friction_nm: 0.0, ..axis.parameters() };
+fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
+    let linear = Parameters { torque_limit_nm: f64::INFINITY, coulomb_friction_nm: 0.0, ..*axis };
     let law = axis::Axis::new(linear, period.periods());
     let over = |speed_rad_s: f64, reference_rad_s: f64| {
         let mut state = State { speed_rad_s, ..State::default() };
@@ -95,17 +90,12 @@ fn sampled(axis: &Axis, period: &Period) -> SampledAxis {
     SampledAxis { alpha, beta, gamma_s, delta_s, kp_1_s: axis.kp_1_s, kd: axis.kd }
 }
 
-/// The first N axes of a machine.
-fn axes<const N: usize>(machine: &Machine) -> [Axis; N] {
-    std::array::from_fn(|i| *machine.axis(i))
-}
-
 pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let receding_horizon::Settings { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
+    let receding_horizon::Settings::<N> { mut horizon, .. } = receding_horizon::Settings::DEFAULT;
     (horizon.knots, horizon.rate_weight) = (values.whole("knots"), values.number("rate_weight_s2"));
-    horizon.limits = correction_limits(setup.machine);
-    let servo_periods = setup.machine.period.servo_periods(values.number("feed_period_s"));
-    Box::new(ModelPredictive::new(setup.machine, model_predictive::Settings { servo_periods, horizon }))
+    horizon.limits = correction_limits(&setup.known);
+    let servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
+    Box::new(ModelPredictive::new(&setup.known, model_predictive::Settings { servo_periods, horizon }))
 }
 
 pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
@@ -115,24 +105,24 @@ pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: 
         cut_off_hz: values.number("cut-off_hz"),
         ..iterative_learning::Settings::DEFAULT
     };
-    Box::new(IterativeLearning::new(settings, setup.machine.period.servo_s))
+    Box::new(IterativeLearning::new(settings, setup.known.period.servo_s))
 }
 
 pub(super) fn magnitude_only<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let mut settings = inverting(setup, values);
     settings.inversion.gradient = inversion::Gradient::Exact;
-    Box::new(MagnitudeOnly::new(trained(setup).net, settings))
+    Box::new(MagnitudeOnly::new(setup.contour(values.number("feed_period_s")), settings))
 }
 
 pub(super) fn two_dimensional<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let settings = inverting(setup, values);
-    Box::new(TwoDimensional::new(trained(setup).net, settings))
+    Box::new(TwoDimensional::new(setup.contour(values.number("feed_period_s")), settings))
 }
 
 pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let identified = servo::identify(setup.machine, &Programme::servo(), setup.choices.seed);
-    let mut settings = receding_horizon::Settings::DEFAULT;
-    settings.servo_periods = setup.machine.period.servo_periods(values.number("feed_period_s"));
+    let (net, spread) = setup.servo(values.number("feed_period_s"));
+    let mut settings = receding_horizon::Settings::<N>::DEFAULT;
+    settings.servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
     (settings.steps, settings.sure_mm, settings.foreseen_mm) =
         (values.whole("steps"), values.number("sure_mm"), values.number("foreseen_mm"));
     settings.horizon = horizon::Settings {
@@ -142,10 +132,10 @@ pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &V
         tangential_weight: values.number("tangential_weight"),
         last_weight: values.number("last_weight"),
         on_rapids: values.is_on("on_rapids"),
-        limits: correction_limits(setup.machine),
+        limits: correction_limits(&setup.known),
         ..settings.horizon
     };
-    let controller: RecedingHorizon<N> = RecedingHorizon::new(identified.net, &identified.spread, settings);
+    let controller: RecedingHorizon<N> = RecedingHorizon::new(net, &spread, settings);
     Box::new(controller)
 }
 
@@ -153,29 +143,21 @@ pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &V
 const PLANNED_DEVIATION: f64 = 0.9;
 
 /// What a machine allows a correction.
-pub fn correction_limits(machine: &Machine) -> horizon::Limits {
+pub fn correction_limits<const N: usize>(known: &Known) -> horizon::Limits<N> {
     horizon::Limits {
-        acceleration_mm_s2: std::array::from_fn(|i| machine.correction_accel_mm_s2(i)),
-        speed_mm_s: machine.limits.rapid_mm_s,
-        deviation_mm: PLANNED_DEVIATION * machine.limits.max_deviation_mm,
-        drive_mm_s2: std::array::from_fn(|i| {
-            let axis = machine.axis(i);
-            let spare_nm = (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0);
-            spare_nm / axis.inertia_kg_m2 * axis.lead_mm_per_rev / TAU
-        }),
+        acceleration_mm_s2: std::array::from_fn(|i| known.axis(i).correction_accel_mm_s2),
+        speed_mm_s: known.limits.rapid_mm_s,
+        deviation_mm: PLANNED_DEVIATION * known.limits.max_deviation_mm,
+        drive_mm_s2: std::array::from_fn(|i| known.axis(i).drive_mm_s2()),
     }
 }
 
 /// Settings of the controllers that invert the paper's identifier.
 fn inverting(setup: &Setup<'_>, values: &Values) -> inverting::Settings {
     let mut settings = inverting::Settings::DEFAULT;
-    settings.servo_periods = setup.machine.period.servo_periods(values.number("feed_period_s"));
+    settings.servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
     (settings.knots, settings.learning_step) = (values.whole("knots"), values.number("learning_step"));
     (settings.inversion.rho, settings.inversion.eta) = (values.number("rho"), values.number("eta"));
     settings.inversion.steps = values.whole("steps");
     settings
-}
-
-fn trained<const N: usize>(setup: &mut Setup<'_>) -> Identified<N> {
-    identified(setup.machine, &Programme::general(), &Training::default(), setup.choices.seed, setup.progress)
 }

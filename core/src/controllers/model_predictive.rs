@@ -14,7 +14,7 @@ use feedwright_control::identifier::residual::{self, Foresight, Residual};
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
-use crate::machine::Machine;
+use crate::machine::Known;
 
 /// Steps of Gauss and Newton, at most.
 const MOST_STEPS: usize = 20;
@@ -23,17 +23,17 @@ const CONVERGED_MM_S2: f64 = 0.05;
 
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Settings {
+pub struct Settings<const N: usize> {
     /// Servo periods in a feed period.
     pub servo_periods: u32,
     /// The inversion.
-    pub horizon: horizon::Settings,
+    pub horizon: horizon::Settings<N>,
 }
 
 /// Model-predictive contouring.
 #[derive(Debug, Clone)]
 pub struct ModelPredictive<const N: usize> {
-    settings: Settings,
+    settings: Settings<N>,
     /// The model at rest at the origin.
     rest: Exact<N>,
     model: Exact<N>,
@@ -45,9 +45,9 @@ pub struct ModelPredictive<const N: usize> {
 }
 
 impl<const N: usize> ModelPredictive<N> {
-    /// With the model of a machine.
-    pub fn new(machine: &Machine, settings: Settings) -> Self {
-        let rest = Exact::new(machine, settings.servo_periods);
+    /// With the nominal law of a machine.
+    pub fn new(known: &Known, settings: Settings<N>) -> Self {
+        let rest = Exact::new(known, settings.servo_periods);
         Self {
             settings,
             model: rest.clone(),
@@ -101,14 +101,17 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
         self.missed_mm = 0.0;
     }
 
-    fn observe(&mut self, _: &Measured<N>) {}
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        if let Some(measured) = measured {
+            self.take_in(window, measured.position_mm);
+        }
+    }
 
     fn missed_mm(&self) -> f64 {
         self.missed_mm
     }
 
-    fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        self.take_in(window, measured.position_mm);
+    fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let settings = &self.settings.horizon;
         let mut model = self.model.clone();
         model.residual = self.residuals.each_ref().map(Residual::foresight);
@@ -144,17 +147,17 @@ struct Exact<const N: usize> {
 }
 
 impl<const N: usize> Exact<N> {
-    fn new(machine: &Machine, servo_periods: u32) -> Self {
-        let axes = machine.law::<N>().map(|law| ExactAxis {
-            law,
-            state: State::default(),
-            slopes: [State::default(); MOST_KNOTS],
+    fn new(known: &Known, servo_periods: u32) -> Self {
+        let laws: [axis::Axis; N] = known.law();
+        let axes = std::array::from_fn(|i| {
+            let law = laws[i];
+            ExactAxis { law, state: State::default(), slopes: [State::default(); MOST_KNOTS] }
         });
         let lag_s = axes.iter().map(|axis| 1.0 / axis.law.parameters.kp_1_s).sum::<f64>() / N as f64;
         Self {
             axes,
             servo_periods,
-            servo_s: machine.period.servo_s,
+            servo_s: known.period.servo_s,
             residual: [Residual::new(residual::Settings::DEFAULT).foresight(); N],
             missed_mm: [0.0; N],
             lag_s,

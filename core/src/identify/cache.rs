@@ -10,8 +10,9 @@ use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::{HIDDEN, INPUTS};
 use serde::{Deserialize, Serialize};
 
-use super::Programme;
-use super::contour::{Identified, Recording, Training};
+use super::contour::{Identified, Training, train};
+use super::recording::Recording;
+use super::{Programme, Rng};
 use crate::machine::Machine;
 
 /// Raised whenever the same recording gives other weights: a change of the network or of its training.
@@ -33,12 +34,22 @@ pub fn identified<const N: usize>(
     seed: u64,
     progress: &mut dyn FnMut(f64),
 ) -> Identified<N> {
-    let recording = Recording::<N>::new(machine, programme, seed);
-    let file = folder().map(|folder| folder.join(format!("{}.json", key(&recording, training))));
+    let (recording, rng) = programme.record(machine, seed);
+    trained(&recording, training, rng, progress)
+}
+
+/// The identifier that a training makes of a recording, from the cache where it is there.
+pub fn trained<const N: usize>(
+    recording: &Recording<N>,
+    training: &Training,
+    rng: Rng,
+    progress: &mut dyn FnMut(f64),
+) -> Identified<N> {
+    let file = folder().map(|folder| folder.join(format!("{}.json", key(recording, training, &rng))));
     if let Some(found) = file.as_ref().and_then(load) {
         return found;
     }
-    let identified = recording.train(training, progress);
+    let identified = train(recording, training, rng, progress);
     if let Some(file) = file {
         // A cache that cannot be written costs time, nothing else.
         let _ = store(&file, &identified);
@@ -64,8 +75,8 @@ pub fn key_of(parts: &[&[u8]]) -> String {
     hasher.finalize().to_hex().to_string()
 }
 
-fn key<const N: usize>(recording: &Recording<N>, training: &Training) -> String {
-    let content = serde_json::json!([FORMAT, N, recording.fingerprint(), training]);
+fn key<const N: usize>(recording: &Recording<N>, training: &Training, rng: &Rng) -> String {
+    let content = serde_json::json!([FORMAT, N, recording.hash(), format!("{rng:?}"), training]);
     blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
 }
 

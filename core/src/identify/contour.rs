@@ -3,13 +3,12 @@
 //! Source: Lee, Cho and Jeon (2005), section 3.2, eq. 6. The paper does not say on what the network was trained.
 
 use feedwright_control::identifier::contour::ContourIdentifier;
-use feedwright_control::identifier::{ERROR_SCALE_MM, HIDDEN, History, INPUTS, Inputs};
-use rand::{RngExt, SeedableRng, seq::SliceRandom};
+use feedwright_control::identifier::{ContourModel, Delays, ERROR_SCALE_MM, HIDDEN, INPUTS, Inputs, seen_feed};
+use rand::{RngExt, seq::SliceRandom};
 use serde::Serialize;
 
-use super::excitation::{Lap, record};
-use super::{Programme, Rng};
-use crate::machine::Machine;
+use super::Rng;
+use super::recording::{Knot, Recording};
 use crate::vector::{scale, sub};
 
 /// How the network is trained.
@@ -51,58 +50,37 @@ pub struct Identified<const N: usize> {
     pub samples: usize,
 }
 
-/// What a machine showed while it cut the programme: all that a training needs, so that equal recordings give equal
-/// weights.
-#[derive(Debug, Clone)]
-pub struct Recording<const N: usize> {
-    samples: Vec<Sample<N>>,
-    rng: Rng,
+/// Trains a network on what a machine showed; `rng` shuffles and draws the weights to start from. `progress` gets the part
+/// done, 0 to 1.
+pub fn train<const N: usize>(
+    recording: &Recording<N>,
+    training: &Training,
+    mut rng: Rng,
+    progress: &mut dyn FnMut(f64),
+) -> Identified<N> {
+    let period_s = recording.feed_period_s;
+    let samples = recording.stretches.iter().flat_map(|stretch| samples(stretch, period_s)).collect();
+    descend(samples, training, &mut rng, progress)
 }
 
-impl<const N: usize> Recording<N> {
-    /// Cuts the programme on the machine.
-    pub fn new(machine: &Machine, programme: &Programme, seed: u64) -> Self {
-        let mut rng = Rng::seed_from_u64(seed);
-        let period_s = programme.period_s(machine);
-        let laps = record::<N>(machine, programme, &mut rng);
-        Self { samples: laps.iter().flat_map(|lap| samples(lap, period_s)).collect(), rng }
-    }
-
-    /// A hash of its content.
-    pub fn fingerprint(&self) -> String {
-        let mut hasher = blake3::Hasher::new();
-        for sample in &self.samples {
-            for number in sample.inputs.as_flattened().iter().chain(&sample.error) {
-                hasher.update(&number.to_le_bytes());
-            }
-        }
-        hasher.update(format!("{:?}", self.rng).as_bytes());
-        hasher.finalize().to_hex().to_string()
-    }
-
-    /// Trains a network on it by plain back-propagation. `progress` gets the part done, 0 to 1.
-    pub fn train(self, training: &Training, progress: &mut dyn FnMut(f64)) -> Identified<N> {
-        let Self { samples, mut rng } = self;
-        train(samples, training, &mut rng, progress)
-    }
-}
-
-/// What the network would have seen from knot to knot of a lap.
-fn samples<const N: usize>(lap: &Lap<N>, period_s: f64) -> Vec<Sample<N>> {
-    let mut history = History::default();
-    lap.windows(2)
+/// What the network would have seen from knot to knot of a stretch.
+fn samples<const N: usize>(stretch: &[Knot<N>], period_s: f64) -> Vec<Sample<N>> {
+    let mut delays = Delays::REST;
+    stretch
+        .windows(2)
         .map(|pair| {
             let feed_mm_s = scale(1.0 / period_s, sub(pair[1].command_mm, pair[0].command_mm));
-            let error_mm = pair[1].contour_mm;
-            let inputs = history.inputs(feed_mm_s);
-            history.push(feed_mm_s, error_mm);
-            Sample { inputs, error: error_mm.map(|e| e / ERROR_SCALE_MM) }
+            let feed = seen_feed(feed_mm_s);
+            let error = pair[1].contour_mm.map(|e| e / ERROR_SCALE_MM);
+            let inputs = delays.inputs(feed);
+            delays.push(feed, error);
+            Sample { inputs, error }
         })
         .collect()
 }
 
 /// Plain back-propagation over the shuffled samples.
-fn train<const N: usize>(
+fn descend<const N: usize>(
     mut samples: Vec<Sample<N>>,
     training: &Training,
     rng: &mut Rng,

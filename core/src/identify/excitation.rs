@@ -1,9 +1,11 @@
-//! The identification programme, cut: laps of circles under a controller that disturbs the command and records.
+//! The identification programme, cut by a simulated machine: laps of circles under a controller that disturbs the command and
+//! records.
 
 use feedwright_control::controller::{Command, Controller, Measured, Schedule};
 use feedwright_control::window::Window;
 use rand::RngExt;
 
+use super::recording::{Knot, Recording};
 use super::{Programme, Rng};
 use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use crate::machine::Machine;
@@ -13,23 +15,9 @@ use crate::vector::add_scaled;
 /// Every third lap runs undisturbed: the network sees the plain circle as well.
 const UNDISTURBED_EVERY: u32 = 3;
 
-/// One lap, knot by knot.
-pub(super) type Lap<const N: usize> = Vec<Knot<N>>;
-
-/// What was commanded and measured at the start of a feed period.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Knot<const N: usize> {
-    /// Command, mm.
-    pub(super) command_mm: [f64; N],
-    /// Tool, mm.
-    pub(super) tool_mm: [f64; N],
-    /// Contour error, desired minus actual, mm.
-    pub(super) contour_mm: [f64; N],
-}
-
 /// Cuts all laps.
-pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, rng: &mut Rng) -> Vec<Lap<N>> {
-    (0..programme.laps)
+pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, rng: &mut Rng) -> Recording<N> {
+    let stretches = (0..programme.laps)
         .map(|lap| {
             let motion = circle::<N>(programme, lap, rng);
             let undisturbed = lap.is_multiple_of(UNDISTURBED_EVERY);
@@ -47,7 +35,9 @@ pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, r
                 .expect("a circle on a machine that was checked, no sinks");
             excitation.lap
         })
-        .collect()
+        .collect();
+    let (servo_s, feed_period_s) = (machine.period.servo_s, programme.period_s(machine));
+    Recording { servo_s, feed_period_s, stretches }
 }
 
 /// One lap: radii, senses and planes in turn, feed and starting point at random.
@@ -83,7 +73,7 @@ struct Excitation<'a, const N: usize> {
     reach_mm: f64,
     rng: &'a mut Rng,
     offset_mm: [f64; N],
-    lap: Lap<N>,
+    lap: Vec<Knot<N>>,
 }
 
 impl<const N: usize> Controller<N> for Excitation<'_, N> {
@@ -94,8 +84,6 @@ impl<const N: usize> Controller<N> for Excitation<'_, N> {
     fn reset(&mut self) {
         self.lap.clear();
     }
-
-    fn observe(&mut self, _: &Measured<N>) {}
 
     fn corrects(&self) -> bool {
         false

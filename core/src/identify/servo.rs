@@ -4,7 +4,7 @@
 //! minimise sum |e(k+1) - e(k) - L I(k) - Wo f(Wh I(k))|^2 + r sum_i s_i^2 w_i^2
 //! ```
 //!
-//! over the samples of all laps, where s_i^2 is the sum of squares of what the weight w_i sees: inputs count in the scale that
+//! over the samples of all stretches, where s_i^2 is the sum of squares of what the weight w_i sees: inputs count in the scale that
 //! they have in the data. It is solved by the normal equations and Cholesky's factorisation. L alone first; Wh then follows from
 //! L: its nodes see the sign of the tool's speed, which is where a servo is not linear. With Wh laid, the rest is one linear
 //! solution, in place of a descent that needs starting weights. Last, the same once more, with everything filtered by the
@@ -15,15 +15,12 @@
 
 use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::residual::LAGS;
-use feedwright_control::identifier::servo::{Delays, FOLLOWING_SCALE_MM, ServoIdentifier};
-use feedwright_control::identifier::{FEED_SCALE_MM_S, HIDDEN, INPUTS, Inputs};
+use feedwright_control::identifier::servo::{FOLLOWING_SCALE_MM, ServoIdentifier};
+use feedwright_control::identifier::{Delays, FEED_SCALE_MM_S, HIDDEN, INPUTS, Identifier, Inputs, ServoModel};
 use nalgebra::{DMatrix, DVector};
-use rand::SeedableRng;
 
-use super::excitation::{Lap, record};
+use super::recording::{Knot, Recording};
 use super::spread::spread;
-use super::{Programme, Rng};
-use crate::machine::Machine;
 use crate::vector::{scale, sub};
 
 /// r: keeps the equations regular where two inputs always move together, and is far below what tells any others apart.
@@ -48,12 +45,10 @@ struct Sample<const N: usize> {
     grown_mm: [f64; N],
 }
 
-/// Cuts the programme on the machine and fits the identifier to what it sees.
-pub fn identify<const N: usize>(machine: &Machine, programme: &Programme, seed: u64) -> Identified<N> {
-    let mut rng = Rng::seed_from_u64(seed);
-    let period_s = programme.period_s(machine);
-    let laps: Vec<Vec<Sample<N>>> =
-        record::<N>(machine, programme, &mut rng).iter().map(|lap| samples(lap, period_s)).collect();
+/// Fits the identifier to what a machine showed.
+pub fn train<const N: usize>(recording: &Recording<N>) -> Identified<N> {
+    let period_s = recording.feed_period_s;
+    let laps: Vec<Vec<Sample<N>>> = recording.stretches.iter().map(|stretch| samples(stretch, period_s)).collect();
     let net = fit(&laps, period_s);
     let missed = laps.iter().flatten().map(|sample| sub(sample.grown_mm, net.predict(&sample.inputs)));
     let squares: f64 = missed.map(|missed| missed.iter().map(|m| m * m).sum::<f64>()).sum();
@@ -62,8 +57,8 @@ pub fn identify<const N: usize>(machine: &Machine, programme: &Programme, seed: 
     Identified { spread: spread(&net, period_s), net, fit_um, samples }
 }
 
-/// What the identifier would have seen from knot to knot of a lap, once its delays are filled.
-fn samples<const N: usize>(lap: &Lap<N>, period_s: f64) -> Vec<Sample<N>> {
+/// What the identifier would have seen from knot to knot of a stretch, once its delays are filled.
+fn samples<const N: usize>(lap: &[Knot<N>], period_s: f64) -> Vec<Sample<N>> {
     let following = |i: usize| sub(lap[i].command_mm, lap[i].tool_mm);
     let mut delays = Delays::<N>::REST;
     let mut samples = Vec::new();
@@ -80,7 +75,7 @@ fn samples<const N: usize>(lap: &Lap<N>, period_s: f64) -> Vec<Sample<N>> {
 /// filtered by what they miss.
 fn fit<const N: usize>(laps: &[Vec<Sample<N>>], period_s: f64) -> ServoIdentifier<N> {
     let plain = [[0.0; LAGS]; N];
-    let linear = fit_outputs(laps, ServoIdentifier::IDEAL, &plain);
+    let linear = fit_outputs(laps, ServoIdentifier::NULL, &plain);
     let hidden = hidden(&linear, period_s);
     let net = fit_outputs(laps, ServoIdentifier { hidden, ..linear }, &plain);
     let filter = autoregression(laps, &net);
@@ -165,7 +160,7 @@ fn fit_outputs<const N: usize>(
     let mut solutions = Vec::new();
     for equations in &equations {
         // With the ridge the matrix is positive definite unless a sample is not finite: then nothing was identified.
-        let Some(solution) = equations.solve() else { return ServoIdentifier::IDEAL };
+        let Some(solution) = equations.solve() else { return ServoIdentifier::NULL };
         solutions.push(solution);
     }
     let linear = std::array::from_fn(|o| {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::constraints::LimitsError;
+use crate::controllers::ModelMisfit;
 use crate::gcode::{self, CheckError, ReadError};
 use crate::number::shown;
 use crate::output::OutputError;
@@ -45,6 +46,10 @@ pub enum JobError {
         /// The machine.
         machine: String,
     },
+    /// The model does not suit.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Model(#[from] ModelMisfit),
     /// A value on the command line is out of its range.
     #[error("{name} is {}{unit}; it must lie {bounds}", shown(*value))]
     Value {

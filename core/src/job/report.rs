@@ -5,6 +5,7 @@ use std::io::BufRead;
 use super::{Job, JobError};
 use crate::gcode::Summary;
 use crate::machine::Machine;
+use crate::model::Model;
 use crate::report::{Outcome, Report, ReportedRun, WorstPlace};
 
 impl Job {
@@ -42,6 +43,9 @@ impl Job {
         ];
         for set in &self.choices.set {
             settings.push(value(&format!("{}, {}", set.controller, set.name), set.value.to_string()));
+        }
+        if let Some(model) = self.model.as_ref().map(Model::about) {
+            settings.push(value("Model", format!("{}, {}", model.source, model.date)));
         }
         if let Some(feed_mm_s) = self.feed_mm_s {
             settings.push(value("Feedrate, in place of the programmed", format!("{feed_mm_s} mm/s")));

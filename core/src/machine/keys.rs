@@ -1,62 +1,14 @@
 //! The keys of a machine file that are numbers: name, unit, range, and the field that each fills.
 //!
-//! Reading, writing, the bounds in messages and the tables of docs/machine-file.md all go by these tables. To add a key is one field
-//! and one row.
+//! Reading, writing, the bounds in messages and the tables of docs/machine-file.md all go by these tables, see
+//! [`crate::toml_file::key`]. To add a key is one field and one row.
+//!
+//! Ranges keep out what no machine has (a negative inertia, a unit mistaken by a factor of a million), not what is unusual: a
+//! machine that is tuned badly is a result of the simulation, not a fault of its file.
 
-use super::error::Fault;
-use super::reader::Table;
 use super::{Axis, Durations, Limits, Period, Transmission};
-
-/// A key whose value is a number.
-pub struct Key<T> {
-    /// Name; its end is the unit.
-    pub name: &'static str,
-    /// Unit, as messages tell it.
-    pub unit: &'static str,
-    /// Least and most. They keep out what no machine has (a negative inertia, a unit mistaken by a factor of a million), not what is
-    /// unusual: a machine that is tuned badly is a result of the simulation, not a fault of its file.
-    pub range: [f64; 2],
-    /// Whether it may be left out.
-    pub optional: bool,
-    /// The value of a part of a machine; none where it was left out.
-    pub get: fn(&T) -> Option<f64>,
-    /// Fills it in.
-    pub set: fn(&mut T, f64),
-}
-
-/// `field, unit, least, most`; `optional field` is an `Option`, `field or zero` is 0 where it is left out.
-macro_rules! key {
-    (optional $field:ident, $unit:literal, $least:literal, $most:literal) => {
-        Key {
-            name: stringify!($field),
-            unit: $unit,
-            range: [$least, $most],
-            optional: true,
-            get: |part| part.$field,
-            set: |part, value| part.$field = Some(value),
-        }
-    };
-    ($field:ident or zero, $unit:literal, $least:literal, $most:literal) => {
-        Key {
-            name: stringify!($field),
-            unit: $unit,
-            range: [$least, $most],
-            optional: true,
-            get: |part| Some(part.$field).filter(|value| *value != 0.0),
-            set: |part, value| part.$field = value,
-        }
-    };
-    ($field:ident, $unit:literal, $least:literal, $most:literal) => {
-        Key {
-            name: stringify!($field),
-            unit: $unit,
-            range: [$least, $most],
-            optional: false,
-            get: |part| Some(part.$field),
-            set: |part, value| part.$field = value,
-        }
-    };
-}
+use crate::toml_file::Key;
+use crate::toml_file::key::{Value, key};
 
 /// Of `[period]`.
 pub const PERIOD: &[Key<Period>] = &[key!(servo_s, "s", 1e-5, 0.1), key!(mechanics_s, "s", 1e-7, 0.1)];
@@ -90,8 +42,10 @@ pub const AXIS: &[Key<Axis>] = &[
         unit: "bits",
         range: [4.0, 32.0],
         optional: true,
-        get: |axis| axis.torque_bits.map(f64::from),
-        set: |axis, bits| axis.torque_bits = Some(bits.round() as u32),
+        value: Value::Number {
+            get: |axis| axis.torque_bits.map(f64::from),
+            set: |axis, bits| axis.torque_bits = Some(bits.round() as u32),
+        },
     },
     key!(optional correction_accel_mm_s2, "mm/s2", 0.1, 1e6),
     key!(encoder_step_um or zero, "um", 0.0, 1e3),
@@ -111,8 +65,10 @@ pub const TRANSMISSION: &[Key<Transmission>] = &[
         unit: "(0 or 1)",
         range: [0.0, 1.0],
         optional: true,
-        get: |transmission| transmission.scale_on_table.then_some(1.0),
-        set: |transmission, on| transmission.scale_on_table = on > 0.5,
+        value: Value::Number {
+            get: |transmission| transmission.scale_on_table.then_some(1.0),
+            set: |transmission, on| transmission.scale_on_table = on > 0.5,
+        },
     },
 ];
 
@@ -124,25 +80,3 @@ pub const PLC: &[Key<Durations>] = &[
     key!(spindle_rev_min_s, "rev/min/s", 0.0, 1e7),
     key!(rotary_deg_s or zero, "degrees/s", 0.0, 1e5),
 ];
-
-/// Reads all keys of a table; what has a fault is not a number.
-pub(super) fn read<T: Default>(keys: &[Key<T>], table: &mut Table<'_, '_>, faults: &mut Vec<Fault>) -> T {
-    let mut part = T::default();
-    for key in keys {
-        let [least, most] = key.range;
-        if key.optional {
-            if let Some(value) = table.optional_number(key.name, key.unit, least..=most, faults) {
-                (key.set)(&mut part, value);
-            }
-        } else {
-            (key.set)(&mut part, table.number(key.name, key.unit, least..=most, faults));
-        }
-    }
-    part
-}
-
-/// The lines of a table; what was left out stays out.
-pub(super) fn write<T>(keys: &[Key<T>], part: &T) -> String {
-    let line = |key: &Key<T>| Some(format!("{} = {:?}\n", key.name, (key.get)(part)?));
-    keys.iter().filter_map(line).collect()
-}

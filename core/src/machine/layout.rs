@@ -2,11 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use toml::de::DeTable;
-
-use super::error::Fault;
-use super::reader::Table;
 use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Period, PlcEvent, Transmission, keys};
+use crate::toml_file::key::read;
+use crate::toml_file::{Document, Fault, Table};
 
 /// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
 /// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.
@@ -14,19 +12,6 @@ const WHOLE_RATIO_TOLERANCE: f64 = 1e-12;
 
 /// More mechanics steps than this within a servo period are a mistaken unit, and nobody could wait for them.
 const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
-
-/// The text of a machine file, taken apart; its values know their places in the text.
-type Document<'t> = toml::Spanned<DeTable<'t>>;
-
-/// Takes a text apart; the faults of its syntax where it has any.
-pub(super) fn document(text: &str) -> Result<Document<'_>, Vec<Fault>> {
-    let (document, syntax_errors) = DeTable::parse_recoverable(text);
-    if syntax_errors.is_empty() {
-        Ok(document)
-    } else {
-        Err(syntax_errors.iter().map(|error| syntax_fault(error, text)).collect())
-    }
-}
 
 /// The name of the machine that a file builds upon, where it does.
 pub(super) fn base(document: &Document<'_>) -> Result<Option<String>, Vec<Fault>> {
@@ -73,7 +58,7 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
 }
 
 fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
-    let Period { servo_s, mechanics_s, .. } = keys::read(keys::PERIOD, &mut table, faults);
+    let Period { servo_s, mechanics_s, .. } = read(keys::PERIOD, &mut table, faults);
     let ratio = servo_s / mechanics_s;
     // A value that has a fault of its own is NaN here and gets no second one.
     let is_whole = (ratio - ratio.round()).abs() <= WHOLE_RATIO_TOLERANCE * ratio;
@@ -93,13 +78,13 @@ fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
 }
 
 fn limits(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Limits {
-    let limits = keys::read(keys::LIMITS, &mut table, faults);
+    let limits = read(keys::LIMITS, &mut table, faults);
     table.finish(faults);
     limits
 }
 
 fn plc(mut table: Table<'_, '_>, events: &mut Vec<PlcEvent>, faults: &mut Vec<Fault>) -> Durations {
-    let durations = keys::read(keys::PLC, &mut table, faults);
+    let durations = read(keys::PLC, &mut table, faults);
     if let Some(named) = table.optional_table("event", faults) {
         for (key, table) in named.tables(faults) {
             events.extend(plc_event(&key, table, events, faults));
@@ -177,7 +162,7 @@ fn axes(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> 
 
 fn axis(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Axis {
     let transmission = table.optional_table("transmission", faults);
-    let mut axis: Axis = keys::read(keys::AXIS, &mut table, faults);
+    let mut axis: Axis = read(keys::AXIS, &mut table, faults);
     axis.transmission = transmission.map(|table| self::transmission(table, mechanics_s, faults));
     table.finish(faults);
     axis
@@ -188,7 +173,7 @@ fn axis(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> 
 const MOST_PHASE_RAD: f64 = 0.5;
 
 fn transmission(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Transmission {
-    let transmission: Transmission = keys::read(keys::TRANSMISSION, &mut table, faults);
+    let transmission: Transmission = read(keys::TRANSMISSION, &mut table, faults);
     let free_rad_s = TAU * transmission.resonance_hz / (1.0 - transmission.table_share).sqrt();
     if free_rad_s * mechanics_s > MOST_PHASE_RAD {
         let finest = MOST_PHASE_RAD / free_rad_s;
@@ -205,10 +190,4 @@ fn transmission(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fau
     }
     table.finish(faults);
     transmission
-}
-
-fn syntax_fault(error: &toml::de::Error, text: &str) -> Fault {
-    let at = error.span().unwrap_or(0..0);
-    let at = at.start.min(text.len())..at.end.min(text.len());
-    Fault { at, label: "here", message: format!("not TOML: {}", error.message()), hint: None }
 }

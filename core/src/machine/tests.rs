@@ -3,6 +3,7 @@
 use miette::Diagnostic;
 
 use super::*;
+use crate::toml_file::{Key, MAX_FILE_BYTES, Problem};
 
 const TNV40: &str = BUILT_IN[0].1;
 
@@ -14,7 +15,7 @@ fn tnv40() -> Machine {
 fn faults_after(from: &str, to: &str) -> Vec<Problem> {
     assert!(TNV40.contains(from), "the file has no '{from}'");
     match Machine::parse("broken.toml", &TNV40.replacen(from, to, 1)) {
-        Err(MachineError::Invalid { problems, .. }) => problems,
+        Err(MachineError::File(FileError::Invalid { problems, .. })) => problems,
         other => panic!("expected faults, got {other:?}"),
     }
 }
@@ -129,7 +130,9 @@ fn all_faults_come_in_one_go_in_the_order_of_the_text() {
         .replacen("servo_s = 0.001", "servo_s = true", 1)
         .replacen("rapid_mm_s = 400", "rapid_mm_s = -1", 1)
         .replacen("kd = 0", "kdd = 0", 1);
-    let Err(MachineError::Invalid { problems, .. }) = Machine::parse("broken.toml", &text) else { panic!() };
+    let Err(MachineError::File(FileError::Invalid { problems, .. })) = Machine::parse("broken.toml", &text) else {
+        panic!()
+    };
     assert_eq!(problems.iter().map(|problem| problem.line).collect::<Vec<_>>(), [12, 16, 23, 32]);
 }
 
@@ -160,7 +163,9 @@ fn a_fault_between_a_value_here_and_one_of_the_base_has_its_place_here() {
     std::fs::write(folder.path().join("screw.toml"), format!("{TNV40}\n[axis.x.transmission]{transmission}")).unwrap();
     let text = "base = 'screw.toml'\nname = 'slow'\ndescription = 'd'\nsource = 's'\n[period]\nmechanics_s = 0.001\n[axis.y]\n";
     let file = folder.path().join("slow.toml");
-    let Err(MachineError::Invalid { problems, .. }) = Machine::parse(&file.display().to_string(), text) else {
+    let Err(MachineError::File(FileError::Invalid { problems, .. })) =
+        Machine::parse(&file.display().to_string(), text)
+    else {
         panic!()
     };
     let lines: Vec<usize> = problems.iter().map(|problem| problem.line).collect();
@@ -173,12 +178,17 @@ fn a_fault_between_a_value_here_and_one_of_the_base_has_its_place_here() {
 fn broken_toml_shows_where() {
     let fault = fault_after("[limits]", "[limits");
     assert!(fault.starts_with("15:") && fault.contains("not TOML"), "{fault}");
-    assert!(matches!(Machine::parse("x.toml", "kp = = 1\nname = \"a\nb = \"c"), Err(MachineError::Invalid { .. })));
+    assert!(matches!(
+        Machine::parse("x.toml", "kp = = 1\nname = \"a\nb = \"c"),
+        Err(MachineError::File(FileError::Invalid { .. }))
+    ));
 }
 
 #[test]
 fn empty_text_names_everything_that_is_missing() {
-    let Err(MachineError::Invalid { problems, .. }) = Machine::parse("empty.toml", "") else { panic!() };
+    let Err(MachineError::File(FileError::Invalid { problems, .. })) = Machine::parse("empty.toml", "") else {
+        panic!()
+    };
     let text: Vec<String> = problems.iter().map(|problem| problem.message.clone()).collect();
     assert_eq!(
         text,
@@ -210,15 +220,18 @@ fn files_that_are_no_machine_files_say_so() {
         path
     };
     let load = |path: &Path| Machine::load(path.as_os_str());
-    assert!(matches!(load(&folder.path().join("none.toml")), Err(MachineError::Unreadable { hint: Some(_), .. })));
-    assert!(matches!(load(folder.path()), Err(MachineError::Unreadable { .. })));
+    assert!(matches!(
+        load(&folder.path().join("none.toml")),
+        Err(MachineError::File(FileError::Unreadable { hint: Some(_), .. }))
+    ));
+    assert!(matches!(load(folder.path()), Err(MachineError::File(FileError::Unreadable { .. }))));
     assert!(matches!(
         load(&write("binary.toml", b"name = \"\xff\"")),
-        Err(MachineError::NotText { offset: 8, byte: 0xff, .. })
+        Err(MachineError::File(FileError::NotText { offset: 8, byte: 0xff, .. }))
     ));
     assert!(matches!(
         load(&write("large.toml", &vec![b'#'; (MAX_FILE_BYTES + 1) as usize])),
-        Err(MachineError::TooLarge { .. })
+        Err(MachineError::File(FileError::TooLarge { .. }))
     ));
     let mine = write("mine.toml", TNV40.replace("name = \"tnv40\"", "name = \"mine\"").as_bytes());
     assert_eq!(load(&mine).unwrap().name, "mine");
@@ -269,7 +282,9 @@ fn the_rate_of_rotary_axes_may_be_left_out() {
 #[test]
 fn faults_of_named_m_codes_have_their_places() {
     let faults = |text: &str| match with_events(text) {
-        Err(MachineError::Invalid { problems, .. }) => problems.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        Err(MachineError::File(FileError::Invalid { problems, .. })) => {
+            problems.iter().map(ToString::to_string).collect::<Vec<_>>()
+        }
         other => panic!("expected faults, got {other:?}"),
     };
     let rest = "row = 'lamp'\nlabel = 'on'\ntakes_s = 0\n";
@@ -321,7 +336,7 @@ fn the_document_has_the_units_and_ranges_of_all_keys() {
         "(0 or 1)" => format!("| `{name}` | | 0 or 1 |"),
         unit => format!("| `{name}` | {unit} | {} to {} |", number(least), number(most)),
     };
-    fn rows<T>(keys: &[keys::Key<T>], row: impl Fn(&str, &str, [f64; 2]) -> String) -> Vec<String> {
+    fn rows<T>(keys: &[Key<T>], row: impl Fn(&str, &str, [f64; 2]) -> String) -> Vec<String> {
         keys.iter().map(|key| row(key.name, key.unit, key.range)).collect()
     }
     let all = [

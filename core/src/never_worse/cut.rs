@@ -134,7 +134,7 @@ where
     let done = catch_unwind(AssertUnwindSafe(|| {
         let controllers = pair.get_or_insert_with(|| {
             let choices = Choices { seed: options.seed, set: options.set.clone() };
-            entries.map(|entry| Make::make(entry, &mut Setup { machine, choices: &choices, progress: &mut |_| {} }))
+            entries.map(|entry| Make::make(entry, &mut Setup::new(machine, &choices)))
         });
         let [first, second] = controllers;
         let one = |controller: &mut dyn Controller<N>, entry: &Entry| {

@@ -16,6 +16,7 @@ pub(crate) fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Pa
         against: entry,
         feed_mm_s: None,
         choices: Choices::default(),
+        model: None,
         tolerance_um: None,
         reader: feedwright::gcode::Settings::default(),
         inputs: Vec::new(),

@@ -1,4 +1,4 @@
-//! The servo period of every controller in two and three axes, linked without the standard library.
+//! The servo period of every controller in two and three axes, and the reading of a model, linked without the standard library.
 //!
 //! The panic handler calls a function that does not exist. Where no panic is left in what is exported, the linker drops the
 //! handler with all that it needs; otherwise it has to name that function.
@@ -16,6 +16,7 @@ use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::RecedingHorizon;
 use feedwright_control::controller::two_dimensional::TwoDimensional;
 use feedwright_control::controller::zero_phase::ZeroPhase;
+use feedwright_control::model::Model;
 use feedwright_control::window::{Knot, Reference};
 
 unsafe extern "C" {
@@ -76,6 +77,32 @@ servo_periods! {
     fuzzy_feedrate_3: FuzzyFeedrate, 3;
     zero_phase_2: ZeroPhase<2>, 2;
     zero_phase_3: ZeroPhase<3>, 3;
+}
+
+macro_rules! models {
+    ($($name:ident: $axes:literal;)*) => {
+        $(
+            /// Reads a model from as many bytes as there are.
+            ///
+            /// # Safety
+            /// There are so many bytes.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn $name(bytes: *const u8, length: usize, model: &mut Model<$axes>) -> bool {
+                // SAFETY: as the caller promises.
+                let bytes = unsafe { core::slice::from_raw_parts(bytes, length) };
+                match Model::from_bytes(bytes) {
+                    Ok(read) => *model = read,
+                    Err(_) => return false,
+                }
+                true
+            }
+        )*
+    };
+}
+
+models! {
+    model_2: 2;
+    model_3: 3;
 }
 
 /// What does panic.

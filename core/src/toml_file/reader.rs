@@ -7,79 +7,109 @@ use std::ops::{Range, RangeInclusive};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::error::Fault;
+use super::Fault;
 use crate::gcode::suggestion::nearest;
 use crate::number::shown;
 
+/// Of an array whose numbers are all wrong, so many are told of.
+const FAULTS_OF_AN_ARRAY: usize = 3;
+
 /// A table under reading.
-pub(super) struct Table<'t, 'i> {
+pub(crate) struct Table<'t, 'i> {
     /// Dotted name, empty for the file itself.
     name: String,
     /// Place of the table's header, where a missing key is reported.
     at: Range<usize>,
     /// What it holds; none where it stands in the base alone, or nowhere: then it reports nothing.
     entries: Option<&'t DeTable<'i>>,
-    /// What the machine that this one builds upon has in its place: without faults, and its places are in another text.
+    /// What the file that this one builds upon has in its place: without faults, and its places are in another text.
     base: Option<&'t DeTable<'i>>,
     asked: Vec<&'static str>,
 }
 
 impl<'t, 'i> Table<'t, 'i> {
     /// The file itself.
-    pub(super) fn root(entries: &'t Spanned<DeTable<'i>>, base: Option<&'t Spanned<DeTable<'i>>>) -> Self {
+    pub(crate) fn root(entries: &'t Spanned<DeTable<'i>>, base: Option<&'t Spanned<DeTable<'i>>>) -> Self {
         let (entries, base) = (Some(entries.get_ref()), base.map(Spanned::get_ref));
         Self { name: String::new(), at: 0..0, entries, base, asked: Vec::new() }
     }
 
-    /// As [`Self::number`], where it may be left out.
-    pub(super) fn optional_number(
-        &mut self,
-        key: &'static str,
-        unit: &str,
-        range: RangeInclusive<f64>,
-        faults: &mut Vec<Fault>,
-    ) -> Option<f64> {
+    /// Whether a key that may be left out is there.
+    pub(crate) fn has(&mut self, key: &'static str) -> bool {
         self.asked.push(key);
-        self.value(key)?;
-        Some(self.number(key, unit, range, faults))
+        self.value(key).is_some()
     }
 
     /// A number in `unit` within `range`; NaN and a fault where it is not.
-    pub(super) fn number(
+    pub(crate) fn number(
         &mut self,
         key: &'static str,
         unit: &str,
         range: RangeInclusive<f64>,
         faults: &mut Vec<Fault>,
     ) -> f64 {
-        let Some(value) = self.required(key, faults) else {
-            return f64::NAN;
-        };
-        let number = match value.get_ref() {
-            DeValue::Float(float) => float.as_str().parse().ok(),
-            DeValue::Integer(integer) => {
-                i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|whole| whole as f64)
-            }
-            other => {
-                faults.push(wrong_type(value.span(), key, "a number", other));
-                return f64::NAN;
-            }
-        };
-        match number {
-            Some(number) if range.contains(&number) => return number,
-            Some(number) => faults.push(out_of_range(value.span(), key, number, unit, &range)),
-            None => faults.push(Fault {
-                at: value.span(),
-                label: "too large",
-                message: format!("{key} is no number that can be represented"),
-                hint: Some(format!("it must lie between {} and {} {unit}", shown(*range.start()), shown(*range.end()))),
-            }),
+        let found = self.required(key, faults).map(|value| number(value, key, key, unit, &range));
+        match found {
+            Some(Ok(number)) => return number,
+            Some(Err(fault)) => faults.push(fault),
+            None => {}
         }
         f64::NAN
     }
 
+    /// A whole number within `range`; none and a fault where it is not.
+    pub(crate) fn whole(
+        &mut self,
+        key: &'static str,
+        unit: &str,
+        range: RangeInclusive<f64>,
+        faults: &mut Vec<Fault>,
+    ) -> Option<u64> {
+        let value = self.number(key, unit, range, faults);
+        if value.is_finite() && value.fract() != 0.0 {
+            faults.push(Fault {
+                at: self.place(key),
+                label: "not whole",
+                message: format!("{key} is {}; it must be a whole number", shown(value)),
+                hint: None,
+            });
+        }
+        (value.is_finite() && value.fract() == 0.0).then_some(value as u64)
+    }
+
+    /// Numbers within `range`; empty and faults, the first few of them, where there is one that is not.
+    pub(crate) fn numbers(
+        &mut self,
+        key: &'static str,
+        unit: &str,
+        range: RangeInclusive<f64>,
+        faults: &mut Vec<Fault>,
+    ) -> Vec<f64> {
+        let Some(value) = self.required(key, faults) else {
+            return Vec::new();
+        };
+        let DeValue::Array(array) = value.get_ref() else {
+            faults.push(wrong_type(value.span(), key, "numbers in brackets", value.get_ref()));
+            return Vec::new();
+        };
+        let named = |at: usize| format!("{key}, number {}", at + 1);
+        let found = array.iter().enumerate().map(|(at, value)| number(value, key, &named(at), unit, &range));
+        let (numbers, wrong): (Vec<_>, Vec<_>) = found.partition(Result::is_ok);
+        let wrong: Vec<Fault> = wrong.into_iter().filter_map(Result::err).collect();
+        if wrong.is_empty() {
+            return numbers.into_iter().filter_map(Result::ok).collect();
+        }
+        let more = wrong.len().saturating_sub(FAULTS_OF_AN_ARRAY);
+        let mut wrong: Vec<Fault> = wrong.into_iter().take(FAULTS_OF_AN_ARRAY).collect();
+        if let Some(last) = wrong.last_mut().filter(|_| more > 0) {
+            last.message += &format!("; {more} more of {key} are as wrong");
+        }
+        faults.extend(wrong);
+        Vec::new()
+    }
+
     /// A text that is not blank; empty and a fault where it is.
-    pub(super) fn text(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> String {
+    pub(crate) fn text(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> String {
         let Some(value) = self.required(key, faults) else {
             return String::new();
         };
@@ -97,7 +127,7 @@ impl<'t, 'i> Table<'t, 'i> {
     }
 
     /// A table that has to be there; a fault where it is not.
-    pub(super) fn table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Self {
+    pub(crate) fn table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Self {
         let present = self.optional_table(key, faults);
         present.unwrap_or_else(|| {
             let name = self.dotted(key);
@@ -114,7 +144,7 @@ impl<'t, 'i> Table<'t, 'i> {
     }
 
     /// A table that may be left out.
-    pub(super) fn optional_table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<Self> {
+    pub(crate) fn optional_table(&mut self, key: &'static str, faults: &mut Vec<Fault>) -> Option<Self> {
         self.asked.push(key);
         let name = self.dotted(key);
         let base = self.base.and_then(|base| base.get(key)).and_then(|value| value.get_ref().as_table());
@@ -132,7 +162,7 @@ impl<'t, 'i> Table<'t, 'i> {
     }
 
     /// Every entry as a table with its key, in the order of the file; a fault for each that is none.
-    pub(super) fn tables(self, faults: &mut Vec<Fault>) -> Vec<(String, Self)> {
+    pub(crate) fn tables(self, faults: &mut Vec<Fault>) -> Vec<(String, Self)> {
         let mut found = Vec::new();
         for (key, value) in self.entries.or(self.base).into_iter().flatten() {
             let name = if self.name.is_empty() {
@@ -153,17 +183,17 @@ impl<'t, 'i> Table<'t, 'i> {
     }
 
     /// Place of the table itself.
-    pub(super) fn header(&self) -> Range<usize> {
+    pub(crate) fn header(&self) -> Range<usize> {
         self.at.clone()
     }
 
     /// Place of a key's value, for faults between values; the table's where the key is missing.
-    pub(super) fn place(&self, key: &str) -> Range<usize> {
+    pub(crate) fn place(&self, key: &str) -> Range<usize> {
         self.entries.and_then(|entries| entries.get(key)).map_or_else(|| self.at.clone(), Spanned::span)
     }
 
     /// Reports the keys that nobody asked for.
-    pub(super) fn finish(self, faults: &mut Vec<Fault>) {
+    pub(crate) fn finish(self, faults: &mut Vec<Fault>) {
         for (key, value) in self.entries.into_iter().flatten() {
             let word: &str = key.get_ref();
             if self.asked.contains(&word) {
@@ -220,6 +250,43 @@ impl<'t, 'i> Table<'t, 'i> {
     }
 }
 
+/// The number that a value is: of a key, or `named` within it.
+fn number(
+    value: &Spanned<DeValue<'_>>,
+    key: &str,
+    named: &str,
+    unit: &str,
+    range: &RangeInclusive<f64>,
+) -> Result<f64, Fault> {
+    let number: Option<f64> = match value.get_ref() {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        DeValue::Integer(integer) => {
+            i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|whole| whole as f64)
+        }
+        other if key == named => return Err(wrong_type(value.span(), key, "a number", other)),
+        other => {
+            let message = format!("{named} is {}, not a number", article(other.type_str()));
+            return Err(Fault { at: value.span(), label: "wrong type", message, hint: None });
+        }
+    };
+    match number {
+        Some(number) if range.contains(&number) => Ok(number),
+        Some(number) => Err(out_of_range(value.span(), named, number, unit, range)),
+        None => Err(Fault {
+            at: value.span(),
+            label: "too large",
+            message: format!("{named} is no number that can be represented"),
+            hint: Some(format!("it must lie between {}", with_unit(range, unit))),
+        }),
+    }
+}
+
+/// Both ends of a range, with their unit where there is one.
+fn with_unit(range: &RangeInclusive<f64>, unit: &str) -> String {
+    let ends = format!("{} and {}", shown(*range.start()), shown(*range.end()));
+    if unit.is_empty() { ends } else { format!("{ends} {unit}") }
+}
+
 fn wrong_type(at: Range<usize>, key: &str, wanted: &str, got: &DeValue<'_>) -> Fault {
     let hint = match got {
         DeValue::String(text) if text.trim().parse::<f64>().is_ok() => {
@@ -241,12 +308,12 @@ fn article(kind: &str) -> String {
 }
 
 fn out_of_range(at: Range<usize>, key: &str, number: f64, unit: &str, range: &RangeInclusive<f64>) -> Fault {
-    let (low, high) = (range.start(), range.end());
+    let blank_and_unit = if unit.is_empty() { String::new() } else { format!(" {unit}") };
     let hint = if !number.is_finite() {
         Some("write a finite number".to_owned())
     } else if range.contains(&-number) {
-        Some(format!("is the sign wrong? {} {unit} is allowed", -number))
-    } else if number == 0.0 {
+        Some(format!("is the sign wrong? {}{blank_and_unit} is allowed", -number))
+    } else if number == 0.0 || unit.is_empty() {
         None
     } else {
         Some(format!("is the unit right? this key is in {unit}"))
@@ -254,12 +321,7 @@ fn out_of_range(at: Range<usize>, key: &str, number: f64, unit: &str, range: &Ra
     Fault {
         at,
         label: if number.is_finite() { "out of range" } else { "not finite" },
-        message: format!(
-            "{key} is {} {unit}; it must lie between {} and {} {unit}",
-            shown(number),
-            shown(*low),
-            shown(*high)
-        ),
+        message: format!("{key} is {}{blank_and_unit}; it must lie between {}", shown(number), with_unit(range, unit)),
         hint,
     }
 }

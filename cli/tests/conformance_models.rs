@@ -1,0 +1,117 @@
+//! `identify` and `run --model`: what a training gives is the same from a file, and a file that does not suit is refused.
+
+#[path = "common/command.rs"]
+#[expect(dead_code, reason = "every test file uses a part of this")]
+mod common;
+
+use common::Folder;
+
+/// Trace and table of a run.
+fn cut(folder: &Folder, more: &[&str]) -> (String, String) {
+    let ran = folder.run(&[&["run", "circle.ngc", "--trace", "t.csv"], more].concat()).succeeded();
+    (folder.text("t.csv"), ran.stdout)
+}
+
+#[test]
+fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit() {
+    for (controller, seed) in [("receding-horizon", "1"), ("receding-horizon", "7"), ("two-dimensional", "3")] {
+        let folder = Folder::new();
+        let same = ["--controller", controller, "--seed", seed];
+        folder.run(&[&["identify", "--out", "m.model.toml"], &same[..]].concat()).succeeded();
+        let trained = cut(&folder, &same);
+        // Another seed: nothing may be trained.
+        let read = cut(&folder, &["--controller", controller, "--seed", "99", "--model", "m.model.toml"]);
+        assert!(trained == read, "{controller}");
+        assert!(trained != cut(&folder, &["--controller", controller, "--seed", "99"]), "{controller}");
+    }
+}
+
+#[test]
+fn the_same_identification_writes_the_same_bytes() {
+    let folder = Folder::new();
+    for name in ["1", "2"] {
+        let mut command = folder.command();
+        command.env("SOURCE_DATE_EPOCH", "1700000000").env("LC_ALL", "de_DE.UTF-8");
+        command.args(["identify", "--axes", "3", "--machine", "heavy", "--out", &format!("{name}.model.toml")]);
+        assert!(command.output().unwrap().status.success());
+    }
+    let text = folder.text("1.model.toml");
+    assert_eq!(text, folder.text("2.model.toml"));
+    assert!(text.contains("date = \"2023-11-14\"") && text.contains("axes = 3"), "{text}");
+    assert!(text.contains("source = \"simulated excitation of heavy, seed 1\""), "{text}");
+    let told = folder.run(&["check", "1.model.toml"]).succeeded().stdout;
+    assert!(told.contains("servo model, 3 axes, simulated excitation of heavy, seed 1"), "{told}");
+}
+
+#[test]
+fn a_model_that_does_not_suit_is_refused_with_what_does() {
+    let folder = Folder::new();
+    folder.file("helix.ngc", "G21 G17 G90\nG0 X0 Y0\nG2 X0 Y0 Z-1 I2 J0 F1200\nM2\n");
+    folder.file("half.toml", include_str!("../../machines/tnv40.toml").replace("servo_s = 0.001", "servo_s = 0.0005"));
+    folder.run(&["identify", "--out", "m.model.toml"]).succeeded();
+    let before = folder.content();
+    let refused = |arguments: &[&str], texts: &[&str]| {
+        folder.run(&[&["run"], arguments, &["--model", "m.model.toml"]].concat()).refused(texts);
+        assert_eq!(folder.content(), before, "{arguments:?}");
+    };
+    refused(
+        &["circle.ngc", "--controller", "open-loop"],
+        &["open-loop uses no trained identifier", "leave --model out"],
+    );
+    refused(
+        &["circle.ngc", "--controller", "two-dimensional"],
+        &["the model holds a servo identifier, and two-dimensional needs a contour identifier"],
+    );
+    refused(&["helix.ngc"], &["the model is for 2 axes, and 3 are controlled", "--axes 3"]);
+    refused(
+        &["circle.ngc", "--machine", "half.toml"],
+        &["a servo period of 0.001 s, and that of the machine is 0.0005 s"],
+    );
+    refused(
+        &["circle.ngc", "--set", "feed_period_s=0.005"],
+        &["a feed period of 0.003 s", "--set feed_period_s=0.003"],
+    );
+}
+
+#[test]
+fn a_model_file_with_faults_cuts_nothing() {
+    let folder = Folder::new();
+    folder.run(&["identify", "--out", "m.model.toml"]).succeeded();
+    let text = folder.text("m.model.toml");
+    folder.file("changed.model.toml", text.replacen("seed 1", "seed 2", 1));
+    folder.file("cut.model.toml", &text[..text.len() / 2]);
+    folder.file("later.model.toml", text.replacen("format = 1", "format = 2", 1));
+    let before = folder.content();
+    for (file, said) in [
+        ("changed.model.toml", "the checksum does not fit"),
+        ("cut.model.toml", "not TOML"),
+        ("later.model.toml", "the model is of format 2"),
+        ("none.model.toml", "cannot read model file"),
+    ] {
+        folder.run(&["run", "circle.ngc", "--model", file]).refused(&[said, "model file"]);
+        assert_eq!(folder.content(), before, "{file}");
+    }
+}
+
+#[test]
+fn identify_writes_nothing_where_it_cannot_or_must_not() {
+    let folder = Folder::new();
+    folder.file("mine.toml", include_str!("../../machines/tnv40.toml"));
+    let flat = include_str!("../../machines/tnv40.toml").split("[axis.z]").next().unwrap();
+    folder.file("flat.toml", flat);
+    let before = folder.content();
+    let refused = |arguments: &[&str], texts: &[&str]| {
+        folder.run(&[&["identify"], arguments].concat()).refused(texts);
+        assert_eq!(folder.content(), before, "{arguments:?}");
+    };
+    refused(&["--controller", "open-loop", "--out", "m.model.toml"], &["open-loop uses no trained identifier"]);
+    refused(&["--machine", "mine.toml", "--out", "mine.toml"], &["mine.toml"]);
+    refused(&["--machine", "flat.toml", "--axes", "3", "--out", "m.model.toml"], &["has 2 axes, and a model for 3"]);
+    refused(&["--out", "none/m.model.toml"], &["none"]);
+    let mut command = folder.command();
+    command.env("SOURCE_DATE_EPOCH", "today").args(["identify", "--out", "m.model.toml"]);
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("SOURCE_DATE_EPOCH is 'today'"));
+    assert_eq!(folder.content(), before);
+}

@@ -1,0 +1,376 @@
+//! A trained model as a block of bytes: what a component in a servo thread is given, and checks before it believes it.
+//!
+//! | Offset | Bytes | What |
+//! |---|---|---|
+//! | 0 | 8 | `FWMODEL` and a zero byte |
+//! | 8 | 4 | format: [`FORMAT`] |
+//! | 12 | 4 | kind of the identifier: 1 contour, 2 servo |
+//! | 16 | 4 | N, number of axes |
+//! | 20 | 4 | n, number of numbers that follow the periods |
+//! | 24 | 8 | servo period, s |
+//! | 32 | 8 | feed period, s: time between knots |
+//! | 40 | 8 n | weights, group by group as [`Identifier::weights`] hands them over; of a servo the spread behind them, axis by axis, row by row |
+//! | 40 + 8 n | 4 | CRC-32 of all before: that of IEEE 802.3, reflected, of polynomial 0x04C11DB7 |
+//!
+//! Whole numbers are unsigned, numbers are IEEE 754 of double precision; all little-endian. [`Model::from_bytes`] needs no memory but
+//! its result, does not panic, whatever the bytes are, and refuses what is not exactly this.
+
+use core::fmt;
+
+use crate::identifier::adaptation::{Spread, UNKNOWNS};
+use crate::identifier::contour::ContourIdentifier;
+use crate::identifier::servo::ServoIdentifier;
+use crate::identifier::{FEED_PERIODS_S, Identifier, Kind};
+
+/// What a block begins with.
+pub const MAGIC: [u8; 8] = *b"FWMODEL\0";
+/// The format that is read and written. It is raised whenever the layout or the meaning of a number changes.
+pub const FORMAT: u32 = 1;
+/// Servo periods that a machine can have, s: as a machine file bounds them.
+pub const SERVO_PERIODS_S: [f64; 2] = [1e-5, 0.1];
+/// Largest size of a weight. A hidden node that turns its sign within 0.25 mm/s has weights of 400.
+pub const MAX_WEIGHT: f64 = 1e6;
+/// Largest size of an entry of the spread: the square of what a linear weight may differ by.
+pub const MAX_SPREAD: f64 = 1e6;
+/// An entry of the spread may be beyond what its diagonal allows by this part: rounding.
+const SPREAD_ROUNDING: f64 = 1e-9;
+
+/// A trained identifier and the periods that it was trained for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Model<const N: usize> {
+    /// Servo period of the machine, s.
+    pub servo_s: f64,
+    /// Time between knots, s.
+    pub feed_period_s: f64,
+    /// What was trained.
+    pub trained: Trained<N>,
+}
+
+/// What was trained.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Trained<const N: usize> {
+    /// An identifier of the contour error.
+    Contour(ContourIdentifier<N>),
+    /// An identifier of the servo, and how others of its kind differ.
+    Servo(ServoIdentifier<N>, Spread<N>),
+}
+
+/// Why a block is no model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BlockError {
+    /// It does not begin as a block does.
+    NoModel,
+    /// It is of this format.
+    Format(u32),
+    /// Its identifier is of a kind that is not known.
+    Kind(u32),
+    /// It is for so many axes, and others were asked for.
+    Axes(u32),
+    /// It is longer or shorter than its kind and axes make it.
+    Length,
+    /// The checksum is that of other bytes.
+    Checksum,
+    /// This number, counted from the servo period as 0, is none or out of its bounds.
+    Number(usize),
+}
+
+impl fmt::Display for BlockError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoModel => f.write_str("these bytes are no model"),
+            Self::Format(format) => write!(f, "the model is of format {format}, and format {FORMAT} is read"),
+            Self::Kind(kind) => write!(f, "no identifier is of kind {kind}"),
+            Self::Axes(axes) => write!(f, "the model is for {axes} axes"),
+            Self::Length => f.write_str("the model is cut off, or has something behind it"),
+            Self::Checksum => f.write_str("the model is damaged: its checksum does not fit"),
+            Self::Number(index) => write!(f, "number {index} of the model is out of its bounds"),
+        }
+    }
+}
+
+impl core::error::Error for BlockError {}
+
+impl<const N: usize> Model<N> {
+    /// Reads a block.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, BlockError> {
+        let mut rest = Bytes { rest: bytes, number: 0 };
+        if rest.take::<8>() != Some(MAGIC) {
+            return Err(BlockError::NoModel);
+        }
+        let mut whole = || rest.take().map(u32::from_le_bytes).ok_or(BlockError::Length);
+        let (format, kind, axes, numbers) = (whole()?, whole()?, whole()?, whole()?);
+        if format != FORMAT {
+            return Err(BlockError::Format(format));
+        }
+        let mut trained = match kind {
+            CONTOUR => Trained::Contour(ContourIdentifier::NULL),
+            SERVO => Trained::Servo(ServoIdentifier::NULL, [[[0.0; UNKNOWNS]; UNKNOWNS]; N]),
+            kind => return Err(BlockError::Kind(kind)),
+        };
+        if axes as usize != N {
+            return Err(BlockError::Axes(axes));
+        }
+        let mut expected = 0_usize;
+        trained.numbers(&mut |_, group| expected += group.len());
+        let (content, checksum) = bytes.split_last_chunk().ok_or(BlockError::Length)?;
+        // The periods are two numbers more.
+        if numbers as usize != expected || rest.rest.len() != 8 * (expected + 2) + 4 {
+            return Err(BlockError::Length);
+        }
+        if crc_32(content) != u32::from_le_bytes(*checksum) {
+            return Err(BlockError::Checksum);
+        }
+        let servo_s = rest.number(SERVO_PERIODS_S)?;
+        let feed_period_s = rest.number(FEED_PERIODS_S)?;
+        let mut fault = None;
+        trained.numbers(&mut |most, group| {
+            for value in group {
+                match rest.number([-most, most]) {
+                    Ok(number) => *value = number,
+                    Err(error) => fault = fault.or(Some(error)),
+                }
+            }
+        });
+        fault.map_or(Ok(()), Err)?;
+        if !trained.has_a_spread() {
+            return Err(BlockError::Number(rest.number));
+        }
+        Ok(Self { servo_s, feed_period_s, trained })
+    }
+
+    /// Hands over the block that reads as this model, piece by piece.
+    pub fn to_bytes(&self, mut put: impl FnMut(&[u8])) {
+        let mut trained = self.trained.clone();
+        let mut numbers = 0_u32;
+        trained.numbers(&mut |_, group| numbers += group.len() as u32);
+        let kind = match self.trained.kind() {
+            Kind::Contour => CONTOUR,
+            Kind::Servo => SERVO,
+        };
+        let mut crc = CRC_START;
+        let mut put_counted = |bytes: &[u8]| {
+            crc = crc_on(crc, bytes);
+            put(bytes);
+        };
+        put_counted(&MAGIC);
+        for whole in [FORMAT, kind, N as u32, numbers] {
+            put_counted(&whole.to_le_bytes());
+        }
+        for period_s in [self.servo_s, self.feed_period_s] {
+            put_counted(&period_s.to_le_bytes());
+        }
+        trained.numbers(&mut |_, group| group.iter().for_each(|number| put_counted(&number.to_le_bytes())));
+        put(&(!crc).to_le_bytes());
+    }
+}
+
+/// The kinds in a block.
+const CONTOUR: u32 = 1;
+const SERVO: u32 = 2;
+
+impl<const N: usize> Trained<N> {
+    /// What it predicts.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Self::Contour(_) => Kind::Contour,
+            Self::Servo(..) => Kind::Servo,
+        }
+    }
+
+    /// All numbers in the order of the block, group by group, with the largest size that they may have.
+    fn numbers(&mut self, each: &mut impl FnMut(f64, &mut [f64])) {
+        match self {
+            Self::Contour(net) => net.weights(&mut |_, group| each(MAX_WEIGHT, group)),
+            Self::Servo(net, spread) => {
+                net.weights(&mut |_, group| each(MAX_WEIGHT, group));
+                each(MAX_SPREAD, spread.as_flattened_mut().as_flattened_mut());
+            }
+        }
+    }
+
+    /// Whether its spread, where it has one, can be mean squares and products: no product is beyond what its squares allow.
+    fn has_a_spread(&self) -> bool {
+        let Self::Servo(_, spread) = self else { return true };
+        spread.iter().all(|products| {
+            let square = |i: usize| products.get(i).and_then(|row| row.get(i)).copied().unwrap_or(0.0);
+            let entries = products.iter().enumerate().flat_map(|(i, row)| row.iter().enumerate().map(move |e| (i, e)));
+            (0..UNKNOWNS).all(|i| square(i) >= 0.0)
+                && entries.into_iter().all(|(i, (j, p))| p * p <= (1.0 + SPREAD_ROUNDING) * square(i) * square(j))
+        })
+    }
+}
+
+/// Bytes under reading.
+struct Bytes<'a> {
+    rest: &'a [u8],
+    /// Numbers read so far.
+    number: usize,
+}
+
+impl Bytes<'_> {
+    fn take<const M: usize>(&mut self) -> Option<[u8; M]> {
+        let (first, rest) = self.rest.split_first_chunk()?;
+        self.rest = rest;
+        Some(*first)
+    }
+
+    /// The next number, which is to lie between these.
+    fn number(&mut self, [least, most]: [f64; 2]) -> Result<f64, BlockError> {
+        let index = self.number;
+        self.number += 1;
+        let number = f64::from_le_bytes(self.take().ok_or(BlockError::Length)?);
+        // Not a number is not within.
+        if number >= least && number <= most { Ok(number) } else { Err(BlockError::Number(index)) }
+    }
+}
+
+const CRC_START: u32 = !0;
+
+/// The CRC-32 goes on over more bytes: bit by bit, as in the standard; a model is read once.
+fn crc_on(mut crc: u32, bytes: &[u8]) -> u32 {
+    for byte in bytes {
+        crc ^= u32::from(*byte);
+        for _ in 0..8 {
+            crc = if crc & 1 == 1 { (crc >> 1) ^ 0xEDB8_8320 } else { crc >> 1 };
+        }
+    }
+    crc
+}
+
+fn crc_32(bytes: &[u8]) -> u32 {
+    !crc_on(CRC_START, bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::identifier::contour::tests::sequence;
+
+    fn servo<const N: usize>() -> Model<N> {
+        let mut next = sequence();
+        let mut net = ServoIdentifier::NULL;
+        net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = next()));
+        let factors: [f64; UNKNOWNS] = core::array::from_fn(|_| next());
+        let spread = [core::array::from_fn(|i| core::array::from_fn(|j| 0.1 * factors[i] * factors[j])); N];
+        Model { servo_s: 0.001, feed_period_s: 0.003, trained: Trained::Servo(net, spread) }
+    }
+
+    fn contour<const N: usize>() -> Model<N> {
+        let mut next = sequence();
+        let mut net = ContourIdentifier::NULL;
+        net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = 3.0 * next()));
+        Model { servo_s: 0.001, feed_period_s: 0.01, trained: Trained::Contour(net) }
+    }
+
+    fn block<const N: usize>(model: &Model<N>) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        model.to_bytes(|more| bytes.extend_from_slice(more));
+        bytes
+    }
+
+    /// A block with the checksum that belongs to it.
+    fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+        let end = bytes.len() - 4;
+        let crc = crc_32(&bytes[..end]);
+        bytes[end..].copy_from_slice(&crc.to_le_bytes());
+        bytes
+    }
+
+    fn with_number(mut bytes: Vec<u8>, index: usize, number: f64) -> Vec<u8> {
+        bytes[24 + 8 * index..][..8].copy_from_slice(&number.to_le_bytes());
+        sealed(bytes)
+    }
+
+    #[test]
+    fn the_checksum_is_that_of_the_standard() {
+        // The check value of CRC-32/ISO-HDLC in every catalogue.
+        assert_eq!(crc_32(b"123456789"), 0xCBF4_3926);
+    }
+
+    #[test]
+    fn a_model_comes_back_to_the_bit() {
+        assert_eq!(Model::from_bytes(&block(&servo::<2>())), Ok(servo::<2>()));
+        assert_eq!(Model::from_bytes(&block(&servo::<3>())), Ok(servo::<3>()));
+        assert_eq!(Model::from_bytes(&block(&contour::<2>())), Ok(contour::<2>()));
+        assert_eq!(Model::from_bytes(&block(&contour::<3>())), Ok(contour::<3>()));
+    }
+
+    #[test]
+    fn the_layout_is_what_the_table_says() {
+        let bytes = block(&servo::<2>());
+        assert_eq!(bytes[..24], *b"FWMODEL\0\x01\0\0\0\x02\0\0\0\x02\0\0\0\xec\0\0\0");
+        assert_eq!(bytes[24..32], 0.001_f64.to_le_bytes());
+        assert_eq!(bytes[32..40], 0.003_f64.to_le_bytes());
+        let Trained::Servo(net, spread) = servo::<2>().trained else { panic!("a servo") };
+        assert_eq!(bytes[40..48], net.linear[0][0][0].to_le_bytes());
+        let n = 2 * (2 * 5 + 5 * 12 + 12) + 2 * 6 * 6;
+        assert_eq!(bytes[40 + 8 * (n - 1)..][..8], spread[1][5][5].to_le_bytes());
+        assert_eq!((n, bytes.len()), (0xec, 40 + 8 * n + 4));
+    }
+
+    #[test]
+    fn any_changed_byte_is_refused() {
+        let bytes = block(&servo::<2>());
+        for at in 0..bytes.len() {
+            for change in [0x01, 0x80, 0xff] {
+                let mut changed = bytes.clone();
+                changed[at] ^= change;
+                assert!(Model::<2>::from_bytes(&changed).is_err(), "byte {at} by {change:#x}");
+            }
+        }
+    }
+
+    #[test]
+    fn any_other_length_is_refused() {
+        let bytes = block(&contour::<2>());
+        for length in 0..bytes.len() {
+            assert!(Model::<2>::from_bytes(&bytes[..length]).is_err(), "{length}");
+            let mut cut = bytes[..length].to_vec();
+            if length >= 28 {
+                cut = sealed(cut);
+                assert_eq!(Model::<2>::from_bytes(&cut), Err(BlockError::Length), "{length}");
+            }
+        }
+        let mut longer = bytes;
+        longer.extend_from_slice(&[0; 8]);
+        assert_eq!(Model::<2>::from_bytes(&sealed(longer)), Err(BlockError::Length));
+    }
+
+    #[test]
+    fn what_is_no_model_is_told_by_what_is_wrong() {
+        let with_whole = |at: usize, whole: u32| {
+            let mut bytes = block(&servo::<2>());
+            bytes[at..at + 4].copy_from_slice(&whole.to_le_bytes());
+            Model::<2>::from_bytes(&sealed(bytes))
+        };
+        assert_eq!(with_whole(8, 2), Err(BlockError::Format(2)));
+        assert_eq!(with_whole(12, 3), Err(BlockError::Kind(3)));
+        assert_eq!(with_whole(16, 3), Err(BlockError::Axes(3)));
+        assert_eq!(with_whole(20, u32::MAX), Err(BlockError::Length));
+        assert_eq!(Model::<3>::from_bytes(&block(&servo::<2>())), Err(BlockError::Axes(2)));
+        assert_eq!(Model::<2>::from_bytes(&[0; 4096]), Err(BlockError::NoModel));
+    }
+
+    #[test]
+    fn every_number_has_bounds() {
+        let bytes = block(&servo::<2>());
+        let numbers = (bytes.len() - 28) / 8;
+        for index in 0..numbers {
+            for number in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e7, -1e7] {
+                let refused = Model::<2>::from_bytes(&with_number(bytes.clone(), index, number));
+                assert_eq!(refused, Err(BlockError::Number(index)), "{number}");
+            }
+        }
+        let refused = |index, number| Model::<2>::from_bytes(&with_number(bytes.clone(), index, number)).is_err();
+        assert!(refused(0, 0.0) && refused(1, 0.0) && refused(1, 2.0));
+        // A mean square below zero, and a product beyond what the squares allow.
+        assert!(refused(numbers - 1, -1e-3) && refused(numbers - 2, 0.9));
+    }
+}

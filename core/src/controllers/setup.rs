@@ -1,0 +1,224 @@
+//! What a controller is made from: what is known of its machine, and a trained model.
+//!
+//! The machine itself stays in here: what makes a controller gets no hold of it, and cannot tell it what only the simulation
+//! knows. A training sees a recording of it.
+
+use feedwright_control::identifier::Kind;
+use feedwright_control::identifier::adaptation::Spread;
+use feedwright_control::identifier::contour::ContourIdentifier;
+use feedwright_control::identifier::servo::ServoIdentifier;
+use miette::Diagnostic;
+use thiserror::Error;
+
+use super::parameters::Values;
+use super::{CONTROLLERS, Choices, Entry};
+use crate::identify::contour::Training;
+use crate::identify::{Programme, cache, servo};
+use crate::machine::{Known, Machine};
+use crate::model::{Model, Origin, name};
+
+/// What a controller is made from.
+pub struct Setup<'a> {
+    /// What is known of the machine it is for.
+    pub known: Known,
+    /// The user's choices.
+    pub choices: &'a Choices,
+    /// Is recorded where a model has to be trained.
+    machine: &'a Machine,
+    /// Was trained before, and suits.
+    model: Option<&'a Model>,
+    /// Told of the progress of a training, 0 to 1.
+    progress: Option<&'a mut dyn FnMut(f64)>,
+}
+
+/// Why a controller cannot be made with a model.
+#[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
+pub enum ModelMisfit {
+    /// It has no use for one.
+    #[error("{controller} uses no trained identifier")]
+    NoIdentifier {
+        /// Its name.
+        controller: &'static str,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+    /// The model is of another kind.
+    #[error("the model holds a {found} identifier, and {controller} needs a {needed} identifier")]
+    Kind {
+        /// Name of the controller.
+        controller: &'static str,
+        /// What the model holds.
+        found: &'static str,
+        /// What is needed.
+        needed: &'static str,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+    /// The model is for another number of axes.
+    #[error("the model is for {found} axes, and {needed} are controlled")]
+    Axes {
+        /// Axes of the model.
+        found: usize,
+        /// Axes that are controlled.
+        needed: usize,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+    /// There are no such axes to train on.
+    #[error("the machine `{machine}` has {has} axes, and a model for {asked} was asked for")]
+    #[diagnostic(help(
+        "a program that stays in the XY plane is cut with a model for 2 axes, any other with one for 3"
+    ))]
+    NoSuchAxes {
+        /// Name of the machine.
+        machine: String,
+        /// Its axes.
+        has: usize,
+        /// Axes that were asked for.
+        asked: usize,
+    },
+    /// The model was trained for another period.
+    #[error("the model was trained for a {period} of {found_s} s, and that of {of} is {needed_s} s")]
+    Period {
+        /// Servo period or feed period.
+        period: &'static str,
+        /// Whose it is.
+        of: &'static str,
+        /// Of the model, s.
+        found_s: f64,
+        /// What is needed, s.
+        needed_s: f64,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+}
+
+/// Periods that differ by less are the same: they come from decimal numbers.
+const SAME_PERIOD: f64 = 1e-9;
+
+impl Entry {
+    /// Whether a model suits this controller, as it is set, for a machine and a number of axes.
+    ///
+    /// # Errors
+    /// The first thing that does not suit.
+    pub fn suits(&self, model: &Model, known: &Known, axes: usize, choices: &Choices) -> Result<(), ModelMisfit> {
+        let controller = self.name;
+        let needed = self.identifier.ok_or_else(|| self.no_identifier())?;
+        let anew = format!(
+            "'feedwright identify --controller {controller} --axes {axes}' with this machine writes one that suits"
+        );
+        if model.kind() != needed {
+            let (found, needed) = (name(model.kind()), name(needed));
+            return Err(ModelMisfit::Kind { controller, found, needed, hint: anew });
+        }
+        if model.axes() != axes {
+            return Err(ModelMisfit::Axes { found: model.axes(), needed: axes, hint: anew });
+        }
+        let period = |period, of, found_s: f64, needed_s: f64, hint: String| {
+            let same = (found_s - needed_s).abs() <= SAME_PERIOD * needed_s;
+            if same { Ok(()) } else { Err(ModelMisfit::Period { period, of, found_s, needed_s, hint }) }
+        };
+        let (servo_s, feed_period_s) = (known.period.servo_s, self.feed_period_s(known, choices));
+        period("servo period", "the machine", model.period().servo_s, servo_s, anew.clone())?;
+        let found_s = model.period().feed_period_s;
+        let hint = format!("--set feed_period_s={found_s} takes that of the model; {anew}");
+        period("feed period", controller, found_s, feed_period_s, hint)
+    }
+
+    fn no_identifier(&self) -> ModelMisfit {
+        let others = CONTROLLERS.iter().filter(|entry| entry.identifier.is_some()).map(|entry| entry.name);
+        let hint =
+            format!("leave --model out, or choose a controller that does: {}", others.collect::<Vec<_>>().join(", "));
+        ModelMisfit::NoIdentifier { controller: self.name, hint }
+    }
+
+    /// Time between decisions of one that uses an identifier, s.
+    fn feed_period_s(&self, known: &Known, choices: &Choices) -> f64 {
+        let wished_s = Values::of(self, &choices.set).number("feed_period_s");
+        f64::from(known.period.servo_periods(wished_s)) * known.period.servo_s
+    }
+}
+
+impl<'a> Setup<'a> {
+    /// For a machine, which is recorded where a model has to be trained.
+    pub fn new(machine: &'a Machine, choices: &'a Choices) -> Self {
+        Self { known: machine.known(), choices, machine, model: None, progress: None }
+    }
+
+    /// Tells of the progress of a training, 0 to 1.
+    pub fn telling(self, progress: &'a mut dyn FnMut(f64)) -> Self {
+        Self { progress: Some(progress), ..self }
+    }
+
+    fn tell(&mut self, part: f64) {
+        if let Some(progress) = &mut self.progress {
+            progress(part);
+        }
+    }
+
+    /// Takes a model in place of a training, of the controller that is made next.
+    ///
+    /// # Errors
+    /// A model that does not suit it.
+    pub(super) fn take(&mut self, model: &'a Model, entry: &Entry, axes: usize) -> Result<(), ModelMisfit> {
+        entry.suits(model, &self.known, axes, self.choices)?;
+        self.model = Some(model);
+        Ok(())
+    }
+
+    /// A servo identifier for decisions each `feed_period_s`, and how others of its kind differ.
+    pub(super) fn servo<const N: usize>(&mut self, feed_period_s: f64) -> (ServoIdentifier<N>, Spread<N>) {
+        self.model.and_then(Model::servo).unwrap_or_else(|| {
+            let programme = Programme { feed_period_s, ..Programme::servo() };
+            let trained = servo::train(&programme.record(self.machine, self.choices.seed).0);
+            (trained.net, trained.spread)
+        })
+    }
+
+    /// An identifier of the contour error for decisions each `feed_period_s`.
+    pub(super) fn contour<const N: usize>(&mut self, feed_period_s: f64) -> ContourIdentifier<N> {
+        self.model.and_then(Model::contour).unwrap_or_else(|| {
+            let programme = Programme { feed_period_s, ..Programme::general() };
+            let (machine, seed) = (self.machine, self.choices.seed);
+            cache::identified(machine, &programme, &Training::default(), seed, &mut |part| self.tell(part)).net
+        })
+    }
+
+    /// Trains the model that a controller uses, on a recording of the simulated machine; `date` is that of the file.
+    ///
+    /// # Errors
+    /// A controller that uses none, and more axes than the machine has.
+    pub fn train(&mut self, entry: &Entry, axes: usize, date: String) -> Result<Model, ModelMisfit> {
+        let has = self.machine.axis_count();
+        match axes {
+            2 => self.train_for::<2>(entry, date),
+            3 if has >= 3 => self.train_for::<3>(entry, date),
+            _ => Err(ModelMisfit::NoSuchAxes { machine: self.machine.name.clone(), has, asked: axes }),
+        }
+    }
+
+    fn train_for<const N: usize>(&mut self, entry: &Entry, date: String) -> Result<Model, ModelMisfit> {
+        let kind = entry.identifier.ok_or_else(|| entry.no_identifier())?;
+        let feed_period_s = entry.feed_period_s(&self.known, self.choices);
+        let seed = self.choices.seed;
+        let source = format!("simulated excitation of {}, seed {seed}", self.machine.name);
+        let origin = Origin { source, date };
+        Ok(match kind {
+            Kind::Servo => {
+                let programme = Programme { feed_period_s, ..Programme::servo() };
+                let (recording, _) = programme.record::<N>(self.machine, seed);
+                Model::of_servo(&recording, &servo::train(&recording), origin)
+            }
+            Kind::Contour => {
+                let programme = Programme { feed_period_s, ..Programme::general() };
+                let (recording, rng) = programme.record::<N>(self.machine, seed);
+                let trained = cache::trained(&recording, &Training::default(), rng, &mut |part| self.tell(part));
+                Model::of_contour(&recording, &trained, origin)
+            }
+        })
+    }
+}

@@ -1,0 +1,127 @@
+//! A recording: what a machine showed while it moved, knot by knot. All that an identification gets to see of a machine.
+//!
+//! It comes from a simulated machine ([`super::Programme::record`]) or from the log of a real one. It is made of stretches: laps of
+//! a programme, or the parts of a log between gaps; nothing is carried over from one to the next.
+
+use serde::{Deserialize, Serialize};
+
+/// What was commanded and measured at the start of a feed period.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Knot<const N: usize> {
+    /// Command, mm.
+    pub command_mm: [f64; N],
+    /// Tool, mm.
+    pub tool_mm: [f64; N],
+    /// Contour error, desired minus actual, mm.
+    pub contour_mm: [f64; N],
+}
+
+/// What a machine showed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "Stored", try_from = "Stored")]
+pub struct Recording<const N: usize> {
+    /// Servo period of the machine, s.
+    pub servo_s: f64,
+    /// Time between knots, s.
+    pub feed_period_s: f64,
+    /// Knots that follow each other, stretch by stretch.
+    pub stretches: Vec<Vec<Knot<N>>>,
+}
+
+impl<const N: usize> Recording<N> {
+    /// A hash of its content: equal recordings give equal identifiers.
+    pub fn hash(&self) -> String {
+        let mut hasher = blake3::Hasher::new();
+        let mut number = |number: f64| {
+            hasher.update(&number.to_le_bytes());
+        };
+        [N as f64, self.servo_s, self.feed_period_s].into_iter().for_each(&mut number);
+        for stretch in &self.stretches {
+            number(stretch.len() as f64);
+            for Knot { command_mm, tool_mm, contour_mm } in stretch {
+                command_mm.iter().chain(tool_mm).chain(contour_mm).copied().for_each(&mut number);
+            }
+        }
+        hasher.finalize().to_hex().to_string()
+    }
+}
+
+/// As it is serialised: a knot is a row of 3N numbers, in the order of [`Knot`].
+#[derive(Clone, Serialize, Deserialize)]
+struct Stored {
+    axes: usize,
+    servo_s: f64,
+    feed_period_s: f64,
+    stretches: Vec<Vec<Vec<f64>>>,
+}
+
+impl<const N: usize> From<Recording<N>> for Stored {
+    fn from(recording: Recording<N>) -> Self {
+        let Recording { servo_s, feed_period_s, stretches } = recording;
+        let row = |knot: &Knot<N>| [knot.command_mm, knot.tool_mm, knot.contour_mm].concat();
+        let stretches = stretches.iter().map(|stretch| stretch.iter().map(row).collect()).collect();
+        Self { axes: N, servo_s, feed_period_s, stretches }
+    }
+}
+
+impl<const N: usize> TryFrom<Stored> for Recording<N> {
+    type Error = String;
+
+    fn try_from(stored: Stored) -> Result<Self, String> {
+        let Stored { axes, servo_s, feed_period_s, stretches } = stored;
+        if axes != N {
+            return Err(format!("a recording of {axes} axes, not of {N}"));
+        }
+        let knot = |row: Vec<f64>| match row.as_chunks::<N>() {
+            (&[command_mm, tool_mm, contour_mm], []) => Ok(Knot { command_mm, tool_mm, contour_mm }),
+            _ => Err(format!("a knot of {} numbers, not of {}", row.len(), 3 * N)),
+        };
+        let stretch = |rows: Vec<Vec<f64>>| rows.into_iter().map(knot).collect::<Result<Vec<_>, _>>();
+        Ok(Self { servo_s, feed_period_s, stretches: stretches.into_iter().map(stretch).collect::<Result<_, _>>()? })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn recording() -> Recording<2> {
+        let knot = |x: f64| Knot { command_mm: [x, 0.1 * x], tool_mm: [x - 1.0, -0.0], contour_mm: [1e-3, x / 3.0] };
+        Recording {
+            servo_s: 1e-3,
+            feed_period_s: 3e-3,
+            stretches: vec![vec![knot(1.0), knot(2.0)], vec![], vec![knot(3.0)]],
+        }
+    }
+
+    #[test]
+    fn it_comes_back_from_json_to_the_bit_and_not_with_another_number_of_axes() {
+        let text = serde_json::to_string(&recording()).unwrap();
+        let back: Recording<2> = serde_json::from_str(&text).unwrap();
+        assert_eq!((&back, back.hash()), (&recording(), recording().hash()));
+        let error = serde_json::from_str::<Recording<3>>(&text).unwrap_err();
+        assert!(error.to_string().starts_with("a recording of 2 axes, not of 3"), "{error}");
+        let error = serde_json::from_str::<Recording<2>>(&text.replacen("[1.0,", "[1.0,1.0,", 1)).unwrap_err();
+        assert!(error.to_string().starts_with("a knot of 7 numbers, not of 6"), "{error}");
+    }
+
+    #[test]
+    fn every_number_and_every_gap_counts_in_its_hash() {
+        let mut hashes = vec![recording().hash()];
+        let mut add = |change: &dyn Fn(&mut Recording<2>)| {
+            let mut other = recording();
+            change(&mut other);
+            hashes.push(other.hash());
+        };
+        add(&|r| r.servo_s = 2e-3);
+        add(&|r| r.feed_period_s = 4e-3);
+        add(&|r| r.stretches[2][0].tool_mm[1] = 0.0);
+        add(&|r| r.stretches[0][1].contour_mm[0] += 1e-12);
+        add(&|r| {
+            let knot = r.stretches[0].pop().unwrap();
+            r.stretches[1].push(knot);
+        });
+        let distinct: std::collections::HashSet<_> = hashes.iter().collect();
+        assert_eq!(distinct.len(), hashes.len());
+    }
+}

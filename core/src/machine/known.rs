@@ -1,0 +1,71 @@
+//! What may be known of a machine before it is identified: what its control is set to, and what its maker says of its axes.
+//!
+//! Controllers are made from this and from a trained model, never from a [`Machine`]. What is true of a simulated machine alone is
+//! not here: encoder steps, delay and steps of the drive, ball screw, phase and frequency of the disturbance.
+
+use std::f64::consts::TAU;
+
+use feedwright_control::axis::{self, Parameters};
+
+use super::{Limits, Machine, Period};
+
+/// What is known of a machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Known {
+    /// Periods of the control. That of the speed loop is among them: a drive's manual has it.
+    pub period: Period,
+    /// What the machine may be asked for.
+    pub limits: Limits,
+    axes: Vec<KnownAxis>,
+}
+
+/// What is known of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KnownAxis {
+    /// Travel for one motor turn, mm.
+    pub lead_mm_per_rev: f64,
+    /// Its law by the data sheets: loops, inertia, friction, and the torque at which the drive saturates.
+    pub nominal: Parameters,
+    /// Acceleration that a correction may add to the plan's, mm/s2.
+    pub correction_accel_mm_s2: f64,
+    /// Torque that is left for acceleration, N m: less friction, and less what the load takes at the most. The amplitude of a load
+    /// is known, since drives are chosen by it; its course is not.
+    pub spare_torque_nm: f64,
+}
+
+impl Known {
+    /// The i-th axis; one that the machine does not have is like its last.
+    pub fn axis(&self, i: usize) -> &KnownAxis {
+        &self.axes[i.min(self.axes.len() - 1)]
+    }
+
+    /// The first N axes.
+    pub fn axes<const N: usize>(&self) -> [KnownAxis; N] {
+        std::array::from_fn(|i| *self.axis(i))
+    }
+
+    /// The nominal law of the first N axes.
+    pub fn law<const N: usize>(&self) -> [axis::Axis; N] {
+        std::array::from_fn(|i| axis::Axis::new(self.axis(i).nominal, self.period.periods()))
+    }
+}
+
+impl KnownAxis {
+    /// Acceleration of the tool with the torque that is left for it, mm/s2.
+    pub fn drive_mm_s2(&self) -> f64 {
+        self.spare_torque_nm / self.nominal.inertia_kg_m2 * self.lead_mm_per_rev / TAU
+    }
+}
+
+impl Machine {
+    /// What is known of it.
+    pub fn known(&self) -> Known {
+        let axis = |(i, axis): (usize, &super::Axis)| KnownAxis {
+            lead_mm_per_rev: axis.lead_mm_per_rev,
+            nominal: axis.parameters(),
+            correction_accel_mm_s2: self.correction_accel_mm_s2(i),
+            spare_torque_nm: (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0),
+        };
+        Known { period: self.period, limits: self.limits, axes: self.axes.iter().enumerate().map(axis).collect() }
+    }
+}
