@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use feedwright::identify::cache;
 use feedwright::journal::Journal;
-use feedwright::never_worse::cut::{Figures, Row};
+use feedwright::never_worse::cut::{Figures, SweepRow};
 use feedwright::never_worse::summary::{Judged, OPEN_LOOP_UM, Quantiles, SweepSummary};
 use feedwright::never_worse::{SweepJob, SweepOptions, Swept, journal_path, sweep};
 use feedwright::output::{OutputFile, OutputFiles};
@@ -21,7 +21,7 @@ use crate::message::OUT_OF_TOLERANCE;
 /// A sweep that is about to begin: everything that can be refused has been.
 pub(crate) struct Sweep {
     pub(crate) options: SweepOptions,
-    journal: Journal<Row>,
+    journal: Journal<SweepRow>,
     json: Option<OutputFile>,
 }
 
@@ -57,7 +57,7 @@ impl Sweep {
 }
 
 /// The journal: where it is asked for, or in the cache; none where there is no place for it.
-fn journal(file: Option<&Path>) -> Result<Journal<Row>> {
+fn journal(file: Option<&Path>) -> Result<Journal<SweepRow>> {
     if let Some(file) = file {
         return Journal::open(file)
             .into_diagnostic()

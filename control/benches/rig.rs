@@ -3,18 +3,18 @@
 use feedwright_control::contour_error::{ContourError, Estimator};
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
-use feedwright_control::identifier::adaptation::UNKNOWNS;
+use feedwright_control::identifier::UNKNOWNS;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::servo::ServoIdentifier;
 use feedwright_control::identifier::{Identifier, Inputs};
 use feedwright_control::safety::Bounds;
 use feedwright_control::window::{Preview, Register};
-use feedwright_control::{Controller, Knot, Measured, Reference, Setpoint, Tick, Window};
+use feedwright_control::{Controller, Knot, KnotSource, Measured, Setpoint, Tick, Window};
 
 /// The circle of eq. 11 at 50 mm/s.
 pub(crate) struct Circle;
 
-impl<const N: usize> Reference<N> for Circle {
+impl<const N: usize> KnotSource<N> for Circle {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
         let (sin, cos) = (5.0 * tau_s).sin_cos();
         let mut knot = Knot { feed_mm_s: 50.0, ..Knot::REST };

@@ -13,7 +13,7 @@ mod solvers {
 use divan::{Bencher, black_box};
 use feedwright_control::horizon::Solver;
 use feedwright_control::horizon::gauss_newton::GaussNewton;
-use feedwright_control::horizon::problem::Problem;
+use feedwright_control::horizon::problem::HorizonProblem;
 use solvers::material::Material;
 use solvers::riccati::{AGREEMENT, Riccati, apart_from_gauss_newton};
 
@@ -69,7 +69,7 @@ fn solve_riccati<const N: usize>(bencher: Bencher<'_, '_>) {
 }
 
 fn improve<const N: usize>(bencher: Bencher<'_, '_>, solver: &mut impl Solver<N>, material: &Material<N>) {
-    let (problem, _): (Problem<N>, _) = material.roll_out(true);
+    let (problem, _): (HorizonProblem<N>, _) = material.roll_out(true);
     bencher.bench_local(|| {
         let mut plan = *black_box(&material.plan);
         solver.improve(black_box(&problem), &mut plan);

@@ -54,7 +54,7 @@ pub struct Periods {
 
 /// Where the motor of an axis is and how fast, and the error that its position loop saw last.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct State {
+pub struct AxisState {
     /// Angle of the motor, rad.
     pub angle_rad: f64,
     /// Its speed, rad/s.
@@ -65,7 +65,7 @@ pub struct State {
 
 /// An axis, ready to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Axis {
+pub struct AxisLaw {
     /// Its parameters.
     pub parameters: Parameters,
     /// Periods of its loops.
@@ -74,7 +74,7 @@ pub struct Axis {
     inverse_smoothing_s: f64,
 }
 
-impl Axis {
+impl AxisLaw {
     /// With these parameters and periods.
     pub fn new(parameters: Parameters, periods: Periods) -> Self {
         Self {
@@ -88,7 +88,7 @@ impl Axis {
     /// The PD position loop takes in an error of the position, rad; the speed that it asks for, rad/s. It is linear: what it makes
     /// of a derivative of the error is the derivative of that speed.
     #[inline]
-    pub fn position_loop(&self, error_rad: f64, state: &mut State) -> f64 {
+    pub fn position_loop(&self, error_rad: f64, state: &mut AxisState) -> f64 {
         let rate_rad_s = (error_rad - state.error_rad) / self.periods.servo_s;
         state.error_rad = error_rad;
         self.parameters.kp_1_s * error_rad + self.parameters.kd * rate_rad_s
@@ -116,7 +116,7 @@ impl Axis {
 
     /// One mechanics period under a torque, N m.
     #[inline]
-    pub fn accelerate(&self, torque_nm: f64, state: &mut State) {
+    pub fn accelerate(&self, torque_nm: f64, state: &mut AxisState) {
         state.speed_rad_s += self.periods.mechanics_s * self.inverse_inertia * torque_nm;
         state.angle_rad += self.periods.mechanics_s * state.speed_rad_s;
     }
@@ -135,7 +135,7 @@ impl Axis {
 
 /// tanh(w / w_s) of each axis: all at once, which is faster.
 #[inline]
-pub fn signs<const N: usize>(axes: &[Axis; N], speeds_rad_s: [f64; N]) -> [f64; N] {
+pub fn signs<const N: usize>(axes: &[AxisLaw; N], speeds_rad_s: [f64; N]) -> [f64; N] {
     tanh(core::array::from_fn::<_, N, _>(|i| speeds_rad_s[i] * axes[i].inverse_smoothing_s))
 }
 
@@ -143,7 +143,7 @@ pub fn signs<const N: usize>(axes: &[Axis; N], speeds_rad_s: [f64; N]) -> [f64; 
 mod tests {
     use super::*;
 
-    fn axis() -> Axis {
+    fn axis() -> AxisLaw {
         let parameters = Parameters {
             rad_per_mm: 0.6,
             kp_1_s: 50.0,
@@ -155,11 +155,11 @@ mod tests {
             coulomb_friction_nm: 0.2,
             coulomb_smoothing_rad_s: 0.5,
         };
-        Axis::new(parameters, Periods { servo_s: 0.001, mechanics_s: 0.0001, mechanics_per_servo: 10 })
+        AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 0.0001, mechanics_per_servo: 10 })
     }
 
     /// Torque left for the inertia.
-    fn left_nm(axis: &Axis, reference_rad_s: f64, speed_rad_s: f64) -> f64 {
+    fn left_nm(axis: &AxisLaw, reference_rad_s: f64, speed_rad_s: f64) -> f64 {
         let [sign] = signs(&[*axis], [speed_rad_s]);
         axis.torque_nm(reference_rad_s, speed_rad_s) - axis.friction_nm(speed_rad_s, sign)
     }
@@ -188,8 +188,8 @@ mod tests {
     fn a_step_of_the_speed_is_taken_within_the_time_constant_of_the_loop() {
         // J dw/dt = Kv (1 - w) without friction: w = 1 - exp(-t Kv / J), 5 ms.
         let parameters = Parameters { viscous_friction_nm_s: 0.0, coulomb_friction_nm: 0.0, ..axis().parameters };
-        let axis = Axis::new(parameters, Periods { mechanics_s: 1e-6, ..axis().periods });
-        let mut state = State::default();
+        let axis = AxisLaw::new(parameters, Periods { mechanics_s: 1e-6, ..axis().periods });
+        let mut state = AxisState::default();
         (0..5000).for_each(|_| axis.accelerate(axis.torque_nm(1.0, state.speed_rad_s), &mut state));
         assert!((state.speed_rad_s - (1.0 - libm::exp(-1.0))).abs() < 1e-4, "{}", state.speed_rad_s);
         assert!((state.angle_rad - 0.005 * libm::exp(-1.0)).abs() < 1e-6, "{}", state.angle_rad);

@@ -20,17 +20,17 @@ use crate::vector::{add_scaled, bounded, dot, norm, reject, scale, sub};
 use crate::window::{CORNER_COSINE, Knot, Window, corner};
 
 /// Entries looked at on either side of the start, at the least: covers a feed period in which the lag changes.
-const LEAST_REACH: i32 = 12;
+const MIN_REACH: i32 = 12;
 /// Entries looked at on either side, at the most.
-const MOST_REACH: i32 = 48;
+const MAX_REACH: i32 = 48;
 /// The most register entries that one estimate looks at.
-pub const MAX_ENTRIES: usize = 2 * MOST_REACH as usize + 1;
+pub const MAX_ENTRIES: usize = 2 * MAX_REACH as usize + 1;
 /// The window reaches this many times the last distance to both sides: the nearest point beyond a right-angled corner
 /// is no further along the path than 2.4 times the distance.
 const REACH_OF_ERROR: f64 = 3.0;
 /// Entries that [`locate`] looks at on either side, at the least: between standstill and full acceleration the lag of a servo
 /// of 20 ms changes by a third.
-const LEAST_LOCATE_REACH: i32 = 8;
+const MIN_LOCATE_REACH: i32 = 8;
 /// A tool that stands becomes older by the knots of a feed period, rounded, and by as much as it trembles; entries.
 const STANDING: i32 = 2;
 /// Where the path runs back along itself, an old stretch is as near as the one that the tool is on, and following it leads
@@ -80,7 +80,7 @@ impl Estimator {
         let reach = self.reach();
         // On towards the current knot in any case: a tool that lags turns short of a point where the path turns back, and
         // goes on from there on a newer stretch, which need not begin near the old one.
-        let to = (start + reach).max((start + MOST_REACH).min(0)).min(last);
+        let to = (start + reach).max((start + MAX_REACH).min(0)).min(last);
         let error = nearest(window, tool_mm, (start - reach).max(first), to);
         // No tool moves back along its path: where it seems to, an older stretch beside the one that is cut was found, and
         // following that would lead out of the register. The next search begins at the current knot again.
@@ -101,10 +101,10 @@ impl Estimator {
     /// Entries to look at on either side of the last.
     fn reach(&self) -> i32 {
         if self.spacing_mm <= 0.0 {
-            return MOST_REACH;
+            return MAX_REACH;
         }
         // A float that is too large, or not a number, saturates here.
-        LEAST_REACH + ((REACH_OF_ERROR * self.distance_mm / self.spacing_mm) as i32).min(MOST_REACH - LEAST_REACH)
+        MIN_REACH + ((REACH_OF_ERROR * self.distance_mm / self.spacing_mm) as i32).min(MAX_REACH - MIN_REACH)
     }
 }
 
@@ -113,7 +113,7 @@ impl Estimator {
 /// not to the one that happens to be nearer.
 #[inline]
 pub fn locate<const N: usize>(window: &Window<'_, N>, tool_mm: [f64; N], near: i32, reach: i32) -> ContourError<N> {
-    let reach = reach.clamp(LEAST_LOCATE_REACH, MOST_REACH);
+    let reach = reach.clamp(MIN_LOCATE_REACH, MAX_REACH);
     let [first, last] = window.range();
     let near = near.min(last).max(first);
     let (mut index, mut least) = (near, f64::INFINITY);

@@ -113,7 +113,7 @@ pub trait Controller<const N: usize> {
     }
     /// By how much the last prediction missed what was measured, mm; 0 where there was none. [`crate::safety`] reads it
     /// after each decision.
-    fn missed_mm(&self) -> f64 {
+    fn prediction_error_mm(&self) -> f64 {
         0.0
     }
     /// By how much its offset has moved the tool, mm, where it has a model that says so.

@@ -36,7 +36,7 @@
 //! et al. (1978), contour and lag error with weights of their own as in Lam, Manzie and Good (2010), knots of several periods
 //! as in move blocking (Cagienard et al. 2007).
 //!
-//! Everything is of fixed size: at most [`MOST_KNOTS`] knots, N unknowns each.
+//! Everything is of fixed size: at most [`MAX_KNOTS`] knots, N unknowns each.
 
 pub mod missed;
 pub mod restraint;
@@ -47,18 +47,18 @@ pub mod gauss_newton;
 use crate::vector::{add_scaled, bounded, fourth_power, scale, sub};
 use crate::window::Window;
 use gauss_newton::GaussNewton;
-use problem::Problem;
+use problem::HorizonProblem;
 use restraint::Restraint;
 
 /// Most knots of a horizon.
-pub const MOST_KNOTS: usize = 20;
+pub const MAX_KNOTS: usize = 20;
 /// Most feed periods of a knot.
-pub const MOST_PERIODS: usize = 4;
-/// Most axes; fewer than two have no path to leave. [`Problem::new`] does not compile for others: the normals of the path are those
+pub const MAX_PERIODS: usize = 4;
+/// Most axes; fewer than two have no path to leave. [`HorizonProblem::new`] does not compile for others: the normals of the path are those
 /// of a plane or of space, and there is no room for more unknowns.
-pub const MOST_AXES: usize = 3;
+pub const MAX_AXES: usize = 3;
 /// Most unknowns.
-pub const MOST_UNKNOWNS: usize = MOST_KNOTS * MOST_AXES;
+pub const MAX_UNKNOWNS: usize = MAX_KNOTS * MAX_AXES;
 
 /// Where the path runs this slowly, mm/s, an error along it is on its way to be one across it: at rest it leads beyond the end.
 const RESTING_MM_S: f64 = 0.5;
@@ -70,7 +70,7 @@ const LAST_KNOTS: usize = 5;
 /// Settings of the inversion.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings<const N: usize> {
-    /// Knots of the horizon; 1 to [`MOST_KNOTS`].
+    /// Knots of the horizon; 1 to [`MAX_KNOTS`].
     pub knots: usize,
     /// w: weight of the speed of the offset, s^2. Smaller is sharper; below 1e-10 the plan rings from knot to knot, above
     /// 1e-4 nothing is corrected.
@@ -89,12 +89,12 @@ pub struct Settings<const N: usize> {
     /// Whether rapid motions are corrected as cuts are.
     pub on_rapids: bool,
     /// What the plan keeps to.
-    pub limits: Limits<N>,
+    pub limits: CorrectionLimits<N>,
 }
 
 /// Limits of the correction, that is of the offset of the command from the path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits<const N: usize> {
+pub struct CorrectionLimits<const N: usize> {
     /// A: acceleration of the offset of each axis, mm/s^2. Never exceeded.
     pub acceleration_mm_s2: [f64; N],
     /// Speed of the offset of an axis, mm/s.
@@ -105,7 +105,7 @@ pub struct Limits<const N: usize> {
     pub drive_mm_s2: [f64; N],
 }
 
-impl<const N: usize> Limits<N> {
+impl<const N: usize> CorrectionLimits<N> {
     /// None.
     pub const NONE: Self = Self {
         acceleration_mm_s2: [f64::INFINITY; N],
@@ -116,19 +116,24 @@ impl<const N: usize> Limits<N> {
 }
 
 /// The accelerations of a plan, knot by knot, mm/s^2.
-pub type Accelerations<const N: usize> = [[f64; N]; MOST_KNOTS];
+pub type Accelerations<const N: usize> = [[f64; N]; MAX_KNOTS];
 
 /// What the tool feels at the end of a knot: its displacement in each axis, mm, for an acceleration of the offset of 1 mm/s^2 in
 /// that axis in each of the knots so far, s^2.
-pub type Felt<const N: usize> = [[f64; N]; MOST_KNOTS];
+pub type Sensitivity<const N: usize> = [[f64; N]; MAX_KNOTS];
 
 /// What predicts the tool: a model of the machine, with its state at the current knot.
-pub trait Model<const N: usize>: Clone {
+pub trait Predictor<const N: usize>: Clone {
     /// How far the tool is behind the command in the long run, s.
     fn lag_s(&self) -> f64;
     /// Moves on by one feed period; the tool at its end, mm. `felt` takes the derivative to the accelerations of the knots so
     /// far, axis by axis: what one axis feels of another is left out.
-    fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>, felt: &mut Felt<N>) -> [f64; N];
+    fn advance(
+        &mut self,
+        window: &Window<'_, N>,
+        stretch: &CommandedPeriod<N>,
+        sensitivity: &mut Sensitivity<N>,
+    ) -> [f64; N];
     /// By how much the offset, past and planned, has moved that tool, mm.
     fn moved_mm(&self) -> [f64; N] {
         [0.0; N]
@@ -137,7 +142,7 @@ pub trait Model<const N: usize>: Clone {
 
 /// What is commanded in a feed period of the horizon.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stretch<const N: usize> {
+pub struct CommandedPeriod<const N: usize> {
     /// Its number, from 0.
     pub period: usize,
     /// Feed periods of a knot.
@@ -152,7 +157,7 @@ pub struct Stretch<const N: usize> {
     pub offset_mm_s: [[f64; N]; 2],
 }
 
-impl<const N: usize> Stretch<N> {
+impl<const N: usize> CommandedPeriod<N> {
     /// Before the first feed period: where the command is now.
     pub fn now(window: &Window<'_, N>, periods_per_knot: usize) -> Self {
         Self {
@@ -220,12 +225,12 @@ impl<const N: usize> Stretch<N> {
 /// What makes J smaller. It keeps nothing from tick to tick that the next depends on.
 pub trait Solver<const N: usize>: Default {
     /// Changes the accelerations of a plan whose problem is this, within the limits. They are within them before.
-    fn improve(&mut self, problem: &Problem<N>, accelerations_mm_s2: &mut Accelerations<N>);
+    fn improve(&mut self, problem: &HorizonProblem<N>, accelerations_mm_s2: &mut Accelerations<N>);
 }
 
 /// A plan: the acceleration of the offset in each knot of the horizon, mm/s^2.
 #[derive(Debug, Clone)]
-pub struct Plan<const N: usize, S = GaussNewton> {
+pub struct OffsetPlan<const N: usize, S = GaussNewton> {
     accelerations_mm_s2: Accelerations<N>,
     periods: usize,
     restraint: Restraint,
@@ -234,7 +239,7 @@ pub struct Plan<const N: usize, S = GaussNewton> {
 
 /// The first step of a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Step<const N: usize> {
+pub struct PlanStep<const N: usize> {
     /// Acceleration of the offset in the next feed period, mm/s^2.
     pub acceleration_mm_s2: [f64; N],
     /// Largest change of an acceleration by the solver, mm/s^2.
@@ -247,10 +252,10 @@ pub struct Step<const N: usize> {
     pub open_mm: [f64; N],
 }
 
-impl<const N: usize, S: Solver<N>> Default for Plan<N, S> {
+impl<const N: usize, S: Solver<N>> Default for OffsetPlan<N, S> {
     fn default() -> Self {
         Self {
-            accelerations_mm_s2: [[0.0; N]; MOST_KNOTS],
+            accelerations_mm_s2: [[0.0; N]; MAX_KNOTS],
             periods: 1,
             restraint: Restraint::START,
             solver: S::default(),
@@ -258,21 +263,21 @@ impl<const N: usize, S: Solver<N>> Default for Plan<N, S> {
     }
 }
 
-impl<const N: usize, S: Solver<N>> Plan<N, S> {
+impl<const N: usize, S: Solver<N>> OffsetPlan<N, S> {
     /// Forgets the plan.
     pub fn reset(&mut self) {
-        self.accelerations_mm_s2 = [[0.0; N]; MOST_KNOTS];
+        self.accelerations_mm_s2 = [[0.0; N]; MAX_KNOTS];
         self.periods = 1;
         self.restraint = Restraint::START;
     }
 
     /// Goes over to the next tick: what was planned for it comes first. From here on a knot has `periods` feed periods, 1
-    /// to [`MOST_PERIODS`].
+    /// to [`MAX_PERIODS`].
     pub fn shift(&mut self, periods: usize, settings: &Settings<N>) {
         let knots = settings.knots();
         let planned = self.accelerations_mm_s2;
         let last = self.periods.max(1);
-        self.periods = periods.clamp(1, MOST_PERIODS);
+        self.periods = periods.clamp(1, MAX_PERIODS);
         for (knot, acceleration) in self.accelerations_mm_s2.iter_mut().enumerate() {
             // The mean of what was planned for its feed periods; beyond the horizon nothing was.
             let mut sum = [0.0; N];
@@ -288,9 +293,14 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
     }
 
     /// Improves the plan by one step of the solver and returns what comes first.
-    pub fn improve<M: Model<N>>(&mut self, model: &M, window: &Window<'_, N>, settings: &Settings<N>) -> Step<N> {
+    pub fn improve<M: Predictor<N>>(
+        &mut self,
+        model: &M,
+        window: &Window<'_, N>,
+        settings: &Settings<N>,
+    ) -> PlanStep<N> {
         let settings = self.restraint.on(settings, model.lag_s());
-        let problem = Problem::new(model, window, &self.accelerations_mm_s2, self.periods, &settings);
+        let problem = HorizonProblem::new(model, window, &self.accelerations_mm_s2, self.periods, &settings);
         let [need_mm, open_error_mm] = problem.open_errors_mm();
         let contour_mm2 = problem.contour_mm2();
         self.restraint.take_in(need_mm, contour_mm2, problem.open_drive_share());
@@ -299,14 +309,14 @@ impl<const N: usize, S: Solver<N>> Plan<N, S> {
         let mut change_mm_s2 = 0.0_f64;
         let finite = self.accelerations_mm_s2.as_flattened().iter().all(|a| a.is_finite());
         if !finite {
-            self.accelerations_mm_s2 = [[0.0; N]; MOST_KNOTS];
+            self.accelerations_mm_s2 = [[0.0; N]; MAX_KNOTS];
         }
         for (now, before) in self.accelerations_mm_s2.iter().zip(&before) {
             for change in sub(*now, *before) {
                 change_mm_s2 = change_mm_s2.max(change.abs());
             }
         }
-        Step {
+        PlanStep {
             acceleration_mm_s2: self.accelerations_mm_s2[0],
             change_mm_s2,
             contour_mm2,
@@ -328,7 +338,7 @@ impl<const N: usize> Settings<N> {
         last_weight: 0.3,
         late_weight: 0.0,
         on_rapids: false,
-        limits: Limits::NONE,
+        limits: CorrectionLimits::NONE,
     };
 
     /// h at the end of a knot, where the path runs at `feed_mm_s`.
@@ -342,7 +352,7 @@ impl<const N: usize> Settings<N> {
     /// Knots of the horizon, within what there is room for.
     #[inline]
     pub fn knots(&self) -> usize {
-        self.knots.clamp(1, MOST_KNOTS)
+        self.knots.clamp(1, MAX_KNOTS)
     }
 }
 
@@ -350,15 +360,15 @@ impl<const N: usize> Settings<N> {
 mod tests {
     use super::*;
 
-    fn plan(accelerations: [f64; 4]) -> Plan<1> {
-        let mut plan = Plan::default();
+    fn plan(accelerations: [f64; 4]) -> OffsetPlan<1> {
+        let mut plan = OffsetPlan::default();
         for (knot, acceleration) in accelerations.into_iter().enumerate() {
             plan.accelerations_mm_s2[knot] = [acceleration];
         }
         plan
     }
 
-    fn accelerations(plan: &Plan<1>) -> [f64; 4] {
+    fn accelerations(plan: &OffsetPlan<1>) -> [f64; 4] {
         core::array::from_fn(|knot| plan.accelerations_mm_s2[knot][0])
     }
 
@@ -382,7 +392,7 @@ mod tests {
 
     #[test]
     fn an_acceleration_moves_the_offset_by_its_closed_form() {
-        let stretch = Stretch::<1> {
+        let stretch = CommandedPeriod::<1> {
             period: 5,
             periods_per_knot: 2,
             period_s: 0.003,

@@ -10,19 +10,19 @@
 //! hold the members there are. The null member of each, [`Identifier::NULL`], predicts nothing.
 //!
 //! What repeats with the place on the machine is no matter of an identifier, which does not see the place: it adds to the
-//! prediction where the window is at hand, in [`crate::horizon::Model::advance`].
+//! prediction where the window is at hand, in [`crate::horizon::Predictor::advance`].
 
 pub mod contour;
 pub mod servo;
 pub mod residual;
 pub mod adaptation;
 
-use adaptation::UNKNOWNS;
-
 /// Hidden nodes.
 pub const HIDDEN: usize = 12;
 /// Inputs of each axis.
 pub const INPUTS: usize = 5;
+/// What adaptation changes of an axis: its part of the linear connection, and the factor on its hidden nodes less 1.
+pub const UNKNOWNS: usize = INPUTS + 1;
 /// The feedrate that the network sees as 1: the paper's reference feedrate.
 pub const FEED_SCALE_MM_S: f64 = 50.0;
 /// The contour error that the network sees as 1. Much larger, and the error drowns in the rounding of the weights; much
@@ -36,7 +36,7 @@ pub type Inputs<const N: usize> = [[f64; INPUTS]; N];
 
 /// What an identifier predicts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum IdentifierKind {
     /// The contour error.
     Contour,
     /// The growth of the following error.
@@ -46,7 +46,7 @@ pub enum Kind {
 /// What all identifiers have in common.
 pub trait Identifier<const N: usize>: Clone {
     /// What it predicts.
-    const KIND: Kind;
+    const KIND: IdentifierKind;
     /// The error that it sees as 1, mm.
     const ERROR_SCALE_MM: f64;
     /// Predicts no error, whatever the inputs.

@@ -22,7 +22,7 @@ use crate::identifier::{ContourModel, Inputs};
 use crate::vector::{add_scaled, dot, limit_norm, norm, scale};
 
 /// Most knots of an inversion.
-pub const MOST_KNOTS: usize = 20;
+pub const MAX_KNOTS: usize = 20;
 
 /// Which gradient of the error term the inversion follows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,17 +55,17 @@ pub struct Settings {
 }
 
 /// Below this feedrate (scaled; 1 mm/s) the term of rho is left out: near rest the feed plan decides, not the inversion.
-const LEAST_FEED: f64 = 0.02;
+const MIN_FEED: f64 = 0.02;
 
 /// dE/dF of the term of rho in eq. 7: -2 rho F / |F|^4.
 #[inline]
 pub fn time_gradient<const N: usize>(feed: [f64; N], rho: f64) -> [f64; N] {
     let square = dot(feed, feed);
-    if square < LEAST_FEED * LEAST_FEED { [0.0; N] } else { scale(-2.0 * rho / (square * square), feed) }
+    if square < MIN_FEED * MIN_FEED { [0.0; N] } else { scale(-2.0 * rho / (square * square), feed) }
 }
 
 /// Inverts in all components: both the speed and the geometry change. `inputs` are those of the first knot, of which F(k)
-/// is not read; `feeds` hold F(0) of each knot on entry and the result on return. Knots beyond [`MOST_KNOTS`] stay as they are.
+/// is not read; `feeds` hold F(0) of each knot on entry and the result on return. Knots beyond [`MAX_KNOTS`] stay as they are.
 #[inline]
 pub fn invert<const N: usize, D: ContourModel<N>>(
     net: &D,
@@ -99,11 +99,11 @@ fn descend<const N: usize, D: ContourModel<N>>(
     settings: &Settings,
     magnitude: bool,
 ) {
-    let knots = feeds.len().min(MOST_KNOTS);
+    let knots = feeds.len().min(MAX_KNOTS);
     match &mut feeds[..knots] {
         [] => {}
         [feed] => descend_in::<N, 1, D>(net, inputs, core::slice::from_mut(feed), settings, magnitude),
-        feeds => descend_in::<N, MOST_KNOTS, D>(net, inputs, feeds, settings, magnitude),
+        feeds => descend_in::<N, MAX_KNOTS, D>(net, inputs, feeds, settings, magnitude),
     }
 }
 
@@ -119,7 +119,7 @@ fn descend_in<const N: usize, const H: usize, D: ContourModel<N>>(
     let mut directions = [[0.0; N]; H];
     for (direction, feed) in directions.iter_mut().zip(&*feeds) {
         let length = norm(*feed);
-        if length >= LEAST_FEED {
+        if length >= MIN_FEED {
             *direction = scale(1.0 / length, *feed);
         }
     }
@@ -354,8 +354,8 @@ mod tests {
         let (net, inputs, feeds) = sample::<25>();
         let mut found = feeds;
         invert(&net, &inputs, &mut found, &settings(Gradient::Exact));
-        assert_eq!(found[MOST_KNOTS..], feeds[MOST_KNOTS..]);
-        assert!((0..MOST_KNOTS).all(|knot| found[knot] != feeds[knot]));
+        assert_eq!(found[MAX_KNOTS..], feeds[MAX_KNOTS..]);
+        assert!((0..MAX_KNOTS).all(|knot| found[knot] != feeds[knot]));
         invert(&net, &inputs, &mut [], &settings(Gradient::Exact));
     }
 }

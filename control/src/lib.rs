@@ -23,4 +23,4 @@ pub mod tick;
 
 pub use controller::{Command, Controller, Measured, Schedule};
 pub use tick::{Setpoint, Tick};
-pub use window::{Knot, Reference, Window};
+pub use window::{Knot, KnotSource, Window};

@@ -12,15 +12,16 @@
 //! | 40 | 8 n | weights, group by group as [`Identifier::weights`] hands them over; of a servo the spread behind them, axis by axis, row by row |
 //! | 40 + 8 n | 4 | CRC-32 of all before: that of IEEE 802.3, reflected, of polynomial 0x04C11DB7 |
 //!
-//! Whole numbers are unsigned, numbers are IEEE 754 of double precision; all little-endian. [`Model::from_bytes`] needs no memory but
+//! Whole numbers are unsigned, numbers are IEEE 754 of double precision; all little-endian. [`ModelBlock::from_bytes`] needs no memory but
 //! its result, does not panic, whatever the bytes are, and refuses what is not exactly this.
 
 use core::fmt;
 
-use crate::identifier::adaptation::{Spread, UNKNOWNS};
+use crate::identifier::UNKNOWNS;
+use crate::identifier::adaptation::Spread;
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::servo::ServoIdentifier;
-use crate::identifier::{FEED_PERIODS_S, Identifier, Kind};
+use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
 
 /// What a block begins with.
 pub const MAGIC: [u8; 8] = *b"FWMODEL\0";
@@ -37,7 +38,7 @@ const SPREAD_ROUNDING: f64 = 1e-9;
 
 /// A trained identifier and the periods that it was trained for.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Model<const N: usize> {
+pub struct ModelBlock<const N: usize> {
     /// Servo period of the machine, s.
     pub servo_s: f64,
     /// Time between knots, s.
@@ -90,7 +91,7 @@ impl fmt::Display for BlockError {
 
 impl core::error::Error for BlockError {}
 
-impl<const N: usize> Model<N> {
+impl<const N: usize> ModelBlock<N> {
     /// Reads a block.
     ///
     /// # Errors
@@ -147,8 +148,8 @@ impl<const N: usize> Model<N> {
         let mut numbers = 0_u32;
         trained.numbers(&mut |_, group| numbers += group.len() as u32);
         let kind = match self.trained.kind() {
-            Kind::Contour => CONTOUR,
-            Kind::Servo => SERVO,
+            IdentifierKind::Contour => CONTOUR,
+            IdentifierKind::Servo => SERVO,
         };
         let mut crc = CRC_START;
         let mut put_counted = |bytes: &[u8]| {
@@ -173,10 +174,10 @@ const SERVO: u32 = 2;
 
 impl<const N: usize> Trained<N> {
     /// What it predicts.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> IdentifierKind {
         match self {
-            Self::Contour(_) => Kind::Contour,
-            Self::Servo(..) => Kind::Servo,
+            Self::Contour(_) => IdentifierKind::Contour,
+            Self::Servo(..) => IdentifierKind::Servo,
         }
     }
 
@@ -253,23 +254,23 @@ mod tests {
     use super::*;
     use crate::identifier::contour::tests::sequence;
 
-    fn servo<const N: usize>() -> Model<N> {
+    fn servo<const N: usize>() -> ModelBlock<N> {
         let mut next = sequence();
         let mut net = ServoIdentifier::NULL;
         net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = next()));
         let factors: [f64; UNKNOWNS] = core::array::from_fn(|_| next());
         let spread = [core::array::from_fn(|i| core::array::from_fn(|j| 0.1 * factors[i] * factors[j])); N];
-        Model { servo_s: 0.001, feed_period_s: 0.003, trained: Trained::Servo(net, spread) }
+        ModelBlock { servo_s: 0.001, feed_period_s: 0.003, trained: Trained::Servo(net, spread) }
     }
 
-    fn contour<const N: usize>() -> Model<N> {
+    fn contour<const N: usize>() -> ModelBlock<N> {
         let mut next = sequence();
         let mut net = ContourIdentifier::NULL;
         net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = 3.0 * next()));
-        Model { servo_s: 0.001, feed_period_s: 0.01, trained: Trained::Contour(net) }
+        ModelBlock { servo_s: 0.001, feed_period_s: 0.01, trained: Trained::Contour(net) }
     }
 
-    fn block<const N: usize>(model: &Model<N>) -> Vec<u8> {
+    fn block<const N: usize>(model: &ModelBlock<N>) -> Vec<u8> {
         let mut bytes = Vec::new();
         model.to_bytes(|more| bytes.extend_from_slice(more));
         bytes
@@ -296,10 +297,10 @@ mod tests {
 
     #[test]
     fn a_model_comes_back_to_the_bit() {
-        assert_eq!(Model::from_bytes(&block(&servo::<2>())), Ok(servo::<2>()));
-        assert_eq!(Model::from_bytes(&block(&servo::<3>())), Ok(servo::<3>()));
-        assert_eq!(Model::from_bytes(&block(&contour::<2>())), Ok(contour::<2>()));
-        assert_eq!(Model::from_bytes(&block(&contour::<3>())), Ok(contour::<3>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&servo::<2>())), Ok(servo::<2>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&servo::<3>())), Ok(servo::<3>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&contour::<2>())), Ok(contour::<2>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&contour::<3>())), Ok(contour::<3>()));
     }
 
     #[test]
@@ -322,7 +323,7 @@ mod tests {
             for change in [0x01, 0x80, 0xff] {
                 let mut changed = bytes.clone();
                 changed[at] ^= change;
-                assert!(Model::<2>::from_bytes(&changed).is_err(), "byte {at} by {change:#x}");
+                assert!(ModelBlock::<2>::from_bytes(&changed).is_err(), "byte {at} by {change:#x}");
             }
         }
     }
@@ -331,16 +332,16 @@ mod tests {
     fn any_other_length_is_refused() {
         let bytes = block(&contour::<2>());
         for length in 0..bytes.len() {
-            assert!(Model::<2>::from_bytes(&bytes[..length]).is_err(), "{length}");
+            assert!(ModelBlock::<2>::from_bytes(&bytes[..length]).is_err(), "{length}");
             let mut cut = bytes[..length].to_vec();
             if length >= 28 {
                 cut = sealed(cut);
-                assert_eq!(Model::<2>::from_bytes(&cut), Err(BlockError::Length), "{length}");
+                assert_eq!(ModelBlock::<2>::from_bytes(&cut), Err(BlockError::Length), "{length}");
             }
         }
         let mut longer = bytes;
         longer.extend_from_slice(&[0; 8]);
-        assert_eq!(Model::<2>::from_bytes(&sealed(longer)), Err(BlockError::Length));
+        assert_eq!(ModelBlock::<2>::from_bytes(&sealed(longer)), Err(BlockError::Length));
     }
 
     #[test]
@@ -348,14 +349,14 @@ mod tests {
         let with_whole = |at: usize, whole: u32| {
             let mut bytes = block(&servo::<2>());
             bytes[at..at + 4].copy_from_slice(&whole.to_le_bytes());
-            Model::<2>::from_bytes(&sealed(bytes))
+            ModelBlock::<2>::from_bytes(&sealed(bytes))
         };
         assert_eq!(with_whole(8, 2), Err(BlockError::Format(2)));
         assert_eq!(with_whole(12, 3), Err(BlockError::Kind(3)));
         assert_eq!(with_whole(16, 3), Err(BlockError::Axes(3)));
         assert_eq!(with_whole(20, u32::MAX), Err(BlockError::Length));
-        assert_eq!(Model::<3>::from_bytes(&block(&servo::<2>())), Err(BlockError::Axes(2)));
-        assert_eq!(Model::<2>::from_bytes(&[0; 4096]), Err(BlockError::NoModel));
+        assert_eq!(ModelBlock::<3>::from_bytes(&block(&servo::<2>())), Err(BlockError::Axes(2)));
+        assert_eq!(ModelBlock::<2>::from_bytes(&[0; 4096]), Err(BlockError::NoModel));
     }
 
     #[test]
@@ -364,11 +365,11 @@ mod tests {
         let numbers = (bytes.len() - 28) / 8;
         for index in 0..numbers {
             for number in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e7, -1e7] {
-                let refused = Model::<2>::from_bytes(&with_number(bytes.clone(), index, number));
+                let refused = ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number));
                 assert_eq!(refused, Err(BlockError::Number(index)), "{number}");
             }
         }
-        let refused = |index, number| Model::<2>::from_bytes(&with_number(bytes.clone(), index, number)).is_err();
+        let refused = |index, number| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number)).is_err();
         assert!(refused(0, 0.0) && refused(1, 0.0) && refused(1, 2.0));
         // A mean square below zero, and a product beyond what the squares allow.
         assert!(refused(numbers - 1, -1e-3) && refused(numbers - 2, 0.9));

@@ -33,7 +33,7 @@ const WRONG_DECISIONS: u32 = 4;
 /// A prediction is wrong where it misses by this part of the largest deviation.
 const WRONG_SHARE: f64 = 0.2;
 /// A prediction that misses by less than this is not worth a word, mm, however small the largest deviation is.
-const LEAST_WRONG_MM: f64 = 0.02;
+const MIN_WRONG_MM: f64 = 0.02;
 /// A prediction is good where it misses by less than this part of a wrong one.
 const GOOD_SHARE: f64 = 0.5;
 /// Decisions in a row in which harm is foreseen.
@@ -119,7 +119,7 @@ impl<const N: usize> Guard<N> {
             let bad = self.judge(controller, window, measured, &wanted);
             (wanted, bad)
         };
-        let good = controller.missed_mm() < GOOD_SHARE * self.wrong_mm();
+        let good = controller.prediction_error_mm() < GOOD_SHARE * self.wrong_mm();
         let over = fade::is_over(window.offset_mm, window.offset_mm_s);
         let command = match self.engagement.go_on(bad, good, over, window.feed_period_s) {
             State::Engaged => self.hold(window, wanted),
@@ -142,8 +142,8 @@ impl<const N: usize> Guard<N> {
         C: Controller<N> + ?Sized,
     {
         let sum = wanted.rate + wanted.offset_mm.iter().chain(&wanted.bend_mm).sum::<f64>();
-        let missed_mm = controller.missed_mm();
-        self.wrong = if missed_mm > self.wrong_mm() { self.wrong + 1 } else { 0 };
+        let prediction_error_mm = controller.prediction_error_mm();
+        self.wrong = if prediction_error_mm > self.wrong_mm() { self.wrong + 1 } else { 0 };
         let [with_mm2, without_mm2] = controller.foreseen_mm2();
         let foreseen = with_mm2 > FORESEEN_MM2 + FORESEEN * without_mm2;
         self.foreseen = if foreseen { self.foreseen + 1 } else { 0 };
@@ -162,7 +162,7 @@ impl<const N: usize> Guard<N> {
 
     /// A prediction that misses by more is wrong, mm.
     fn wrong_mm(&self) -> f64 {
-        (WRONG_SHARE * self.bounds.deviation_mm).max(LEAST_WRONG_MM)
+        (WRONG_SHARE * self.bounds.deviation_mm).max(MIN_WRONG_MM)
     }
 
     /// The next step of the way back to the path, at the feed of the plan.
@@ -193,7 +193,7 @@ impl<const N: usize> Guard<N> {
             return Command { rate, ..wanted };
         }
         // What the path takes back comes on top, but not without bound.
-        let step_mm = limit_norm(sub(near_mm, window.offset_mm), MOST_TAKEN_BACK * speed_mm_s * period_s);
+        let step_mm = limit_norm(sub(near_mm, window.offset_mm), MAX_TAKEN_BACK * speed_mm_s * period_s);
         Command::straight(rate, add_scaled(window.offset_mm, 1.0, step_mm))
     }
 
@@ -220,12 +220,12 @@ impl<const N: usize> Guard<N> {
 /// Parts of the way of the offset in a feed period at which its deviation is looked at.
 const ON_THE_WAY: [f64; 3] = [0.75, 0.5, 0.25];
 /// The bound of the deviation may move the command by this many times the highest speed of the offset.
-const MOST_TAKEN_BACK: f64 = 2.0;
+const MAX_TAKEN_BACK: f64 = 2.0;
 /// Offsets closer than this differ by rounding only, mm.
 const SAME_MM: f64 = 1e-12;
 
 /// Looks at the path, of eight knots to either side each, before the nearest point counts as found.
-const MOST_LOOKS: usize = 8;
+const MAX_LOOKS: usize = 8;
 
 /// The offset `ahead_s` from now in plan time, taken back towards the path where the command would be further from it than
 /// `limit_mm`. An offset along the path is none from the path.
@@ -258,7 +258,7 @@ fn way_to_the_path<const N: usize>(window: &Window<'_, N>, command_mm: [f64; N],
     let near = libm::round(guess_s / window.servo_s()) as i32;
     let mut nearest = locate(window, command_mm, near, 0);
     // Behind, the knots are as far apart as the rate made them, and the guess may be off.
-    for _ in 0..MOST_LOOKS {
+    for _ in 0..MAX_LOOKS {
         let again = locate(window, command_mm, nearest.index, 0);
         if again.index == nearest.index {
             break;

@@ -8,7 +8,7 @@ use crate::controller::{Command, Controller, Measured, Schedule};
 use crate::safety::feedback::Feedback;
 use crate::safety::{Bounds, Fade, Guard, State};
 use crate::vector::add_scaled;
-use crate::window::{Knot, Preview, Reference, Register, Window};
+use crate::window::{Knot, KnotSource, Preview, Register, Window};
 
 /// The command of one servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -91,7 +91,7 @@ impl<const N: usize> Tick<N> {
     #[inline]
     pub fn step<R, C>(&mut self, reference: &mut R, controller: &mut C, tool_mm: [f64; N]) -> Setpoint<N>
     where
-        R: Reference<N> + ?Sized,
+        R: KnotSource<N> + ?Sized,
         C: Controller<N> + ?Sized,
     {
         if self.phase == self.schedule.servo_periods {

@@ -98,7 +98,7 @@ pub(crate) fn corner<const N: usize>(from: &Knot<N>, to: &Knot<N>) -> Option<f64
 }
 
 /// The programmed path over plan time: where the tool is to be `tau_s` seconds into the feed plan.
-pub trait Reference<const N: usize> {
+pub trait KnotSource<const N: usize> {
     /// The knot at plan time `tau_s`. Before the start and beyond the end it rests there.
     fn knot(&mut self, tau_s: f64) -> Knot<N>;
 }
@@ -167,7 +167,7 @@ impl<const N: usize> Preview<N> {
 
     /// Looks knots up until the grid reaches `ahead_s` beyond `tau_s`; at most [`PREVIEW_KNOTS`] of them ahead.
     #[inline]
-    pub fn fill<R: Reference<N> + ?Sized>(&mut self, reference: &mut R, tau_s: f64, ahead_s: f64) {
+    pub fn fill<R: KnotSource<N> + ?Sized>(&mut self, reference: &mut R, tau_s: f64, ahead_s: f64) {
         let (now, _) = self.place(tau_s);
         let (farthest, _) = self.place(tau_s + ahead_s);
         // One more than the last grid point that a look between two points needs.

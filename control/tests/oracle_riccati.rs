@@ -10,7 +10,7 @@ mod solvers {
 }
 
 use feedwright_control::horizon::gauss_newton::GaussNewton;
-use feedwright_control::horizon::problem::{END_WEIGHT, Problem};
+use feedwright_control::horizon::problem::{END_WEIGHT, HorizonProblem};
 use feedwright_control::horizon::{Accelerations, Settings};
 use feedwright_control::vector::{add_scaled, dot, sub};
 use solvers::material::{Material, difference};
@@ -21,7 +21,7 @@ use solvers::riccati::{AGREEMENT, apart_from_gauss_newton};
 const NEAR_ENOUGH_MM2: f64 = 6e-9;
 
 /// J of the problem linearised about the plan of the tick before, term by term as it is written, mm^2.
-fn cost<const N: usize>(material: &Material<N>, problem: &Problem<N>, plan: &Accelerations<N>) -> f64 {
+fn cost<const N: usize>(material: &Material<N>, problem: &HorizonProblem<N>, plan: &Accelerations<N>) -> f64 {
     let Settings { rate_weight, change_weight, .. } = problem.settings;
     let square = |v: [f64; N]| dot(v, v);
     let changed: Accelerations<N> = std::array::from_fn(|knot| sub(plan[knot], material.plan[knot]));
@@ -30,8 +30,8 @@ fn cost<const N: usize>(material: &Material<N>, problem: &Problem<N>, plan: &Acc
     for knot in 0..problem.knots {
         let end = &problem.ends[knot];
         let mut tool_mm = [0.0; N];
-        for (felt, changed) in problem.felt[knot].iter().zip(&changed).take(knot + 1) {
-            tool_mm = std::array::from_fn(|axis| tool_mm[axis] + felt[axis] * changed[axis]);
+        for (sensitivity, changed) in problem.sensitivity[knot].iter().zip(&changed).take(knot + 1) {
+            tool_mm = std::array::from_fn(|axis| tool_mm[axis] + sensitivity[axis] * changed[axis]);
         }
         for (d, direction) in end.directions.iter().enumerate() {
             let weight = problem.error_weight(knot, d);
@@ -84,7 +84,7 @@ fn nothing_beside_the_solution_costs_less() {
 }
 
 /// The problem in accelerations alone, from nothing but its cost: that is a quadratic, of which differences are exact.
-struct Reference {
+struct KnotSource {
     curvature: Vec<Vec<f64>>,
     /// At the plan.
     slopes: Vec<f64>,
@@ -93,8 +93,8 @@ struct Reference {
 /// A step of the differences, mm/s^2.
 const STEP_MM_S2: f64 = 1000.0;
 
-impl Reference {
-    fn new<const N: usize>(material: &Material<N>, problem: &Problem<N>) -> Self {
+impl KnotSource {
+    fn new<const N: usize>(material: &Material<N>, problem: &HorizonProblem<N>) -> Self {
         let moved_cost = |moved: &[(usize, f64)]| {
             let mut plan = material.plan;
             moved.iter().for_each(|(i, step)| plan.as_flattened_mut()[*i] += step);
@@ -135,7 +135,7 @@ fn the_plan_within_limits_is_the_best<const N: usize>(most_mm_s2: f64) {
     let material = Material::<N>::within(20, most_mm_s2);
     let (problem, _) = material.roll_out(true);
     let plan = material.improved(&mut GaussNewton::default(), &problem);
-    let reference = Reference::new(&material, &problem);
+    let reference = KnotSource::new(&material, &problem);
     let case = format!("{N} axes, {most_mm_s2} mm/s^2");
 
     // By duality J is above its minimum by no more than what the slopes could still gain within the limits.

@@ -4,7 +4,7 @@
 //! several training programmes, and what the two-dimensional controller makes of each on the circle of eq. 11.
 
 use feedwright::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
-use feedwright::identify::Programme;
+use feedwright::identify::Excitation;
 use feedwright::identify::contour::{Training, train};
 use feedwright::machine::Machine;
 use feedwright::pipeline::{Run, pieces};
@@ -128,17 +128,17 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     cut(&machine, &mut plain, &mut []);
     let effect = effect_on_the_machine(&machine, &plain);
     println!("machine, d eps / d F after 1 to {SHOWN} feed periods: {effect:.2?}\n");
-    let paper = Programme::paper();
+    let paper = Excitation::paper();
     let programmes = [
         ("one sense, with offsets", paper.clone()),
-        ("both senses, with offsets", Programme { turns: vec![-1, 1], ..paper.clone() }),
-        ("one sense, no offsets", Programme { offset_mm: 0.0, ..paper }),
+        ("both senses, with offsets", Excitation { turns: vec![-1, 1], ..paper.clone() }),
+        ("one sense, no offsets", Excitation { offset_mm: 0.0, ..paper }),
     ];
     println!("| training | seed | fit | F(k) | F(k-1) | F(k-2) | sum | `printed` | `exact` |");
     println!("|---|--:|--:|--:|--:|--:|--:|--:|--:|");
-    for (name, programme) in programmes {
+    for (name, excitation) in programmes {
         for seed in 1..=3 {
-            let (recording, rng) = programme.record::<2>(&machine, seed);
+            let (recording, rng) = excitation.record::<2>(&machine, seed);
             let trained = train(&recording, &Training::default(), rng, &mut |_| {});
             let [now, one, two, ..] = effect_as_learnt(&trained.net, &plain);
             println!(

@@ -7,7 +7,7 @@ use feedwright::compare::Workpiece;
 use feedwright::controllers::correction_limits;
 use feedwright::identify::cache::identified;
 use feedwright::identify::contour::Training;
-use feedwright::identify::{Programme, servo};
+use feedwright::identify::{Excitation, servo};
 use feedwright::machine::Machine;
 use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
@@ -57,7 +57,7 @@ fn row(steps: usize, machines: &[Machine], workpieces: &[&Workpiece]) -> Result<
     for machine in machines {
         // What is known of the machine is the first's; the periods of the control are never a secret.
         let known = Machine { period: machine.period, ..machines[0].clone() };
-        let identified = servo::train::<2>(&Programme::servo().record(&known, SEED).0);
+        let identified = servo::train::<2>(&Excitation::servo().record(&known, SEED).0);
         let mut settings = receding_horizon::Settings { steps, ..receding_horizon::Settings::DEFAULT };
         settings.horizon.limits = correction_limits(&known.known());
         settings.servo_periods = machine.period.servo_periods(receding_horizon::FEED_PERIOD_S);
@@ -75,7 +75,7 @@ fn row(steps: usize, machines: &[Machine], workpieces: &[&Workpiece]) -> Result<
 
 /// The paper's inversion over several knots.
 fn inversions(machine: &Machine, workpiece: &Workpiece) -> Result<(), Failure> {
-    let trained = identified::<2>(machine, &Programme::paper(), &Training::default(), SEED, &mut |_| {});
+    let trained = identified::<2>(machine, &Excitation::paper(), &Training::default(), SEED, &mut |_| {});
     println!("| {}, {}: knots | gradient | RMS / max, um | time, s | decision, us |", machine.name, workpiece.name);
     println!("|--:|---|--:|--:|--:|");
     for (name, gradient) in [("printed", inversion::Gradient::Printed), ("exact", inversion::Gradient::Exact)] {

@@ -2,7 +2,7 @@
 //!
 //! What is planned need not be what is programmed: within a tolerance a corner may be rounded, short lines may be joined. Both
 //! paths go on from here. The command runs along the planned one; contour errors are measured to the programmed one. Each planned
-//! piece says for which part of the programmed path it stands ([`Origin`]), so that line, arc length and contour error of a
+//! piece says for which part of the programmed path it stands ([`ProgrammedPart`]), so that line, arc length and contour error of a
 //! plan time are those of the program.
 //!
 //! Blends are a family: this file has the contract and the table [`MEMBERS`], each member one file.
@@ -23,12 +23,12 @@ pub struct PlannedPiece {
     /// Curve, feedrate and what else the program says; its `s_mm` is the arc length of the planned path.
     pub piece: Piece,
     /// For which part of the programmed path it stands.
-    pub origin: Origin,
+    pub origin: ProgrammedPart,
 }
 
 /// Part of the programmed path.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Origin {
+pub enum ProgrammedPart {
     /// The programmed piece of this number, from 0, unchanged.
     Unchanged(u64),
     /// From one arc length of the programmed path to another, mm, evenly along the planned piece.

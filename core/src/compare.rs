@@ -41,7 +41,7 @@ use crate::path::pieces::Pieces;
 use crate::path::{PathError, Step};
 use crate::pipeline::RunError;
 use crate::watch::Watch;
-use cut::Maker;
+use cut::CompetitorMaker;
 use table::ComparisonRow;
 use tolerance::AtTolerance;
 use tuned::Tuned;
@@ -294,7 +294,7 @@ fn cuts(
     let rows: Result<Vec<Vec<ComparisonRow>>, RunError> = pairs
         .par_iter()
         .map(|(machine, competitor)| {
-            let maker = Maker { competitor, nominal, seed: options.seed, tuned };
+            let maker = CompetitorMaker { competitor, nominal, seed: options.seed, tuned };
             // Made once and where it is needed: what it has identified serves all workpieces.
             let mut controller = None;
             let mut row = |workpiece: &Workpiece| {

@@ -20,8 +20,8 @@ use feedwright_control::controller::feedforward::Gains;
 use feedwright_control::controller::inverting::{self, Settings as Inverting};
 use feedwright_control::controller::receding_horizon::Settings as Horizon;
 use feedwright_control::controller::{contour_compensation, cross_coupled, fuzzy_feedrate, receding_horizon};
-use feedwright_control::horizon::MOST_KNOTS;
-use feedwright_control::identifier::Kind;
+use feedwright_control::horizon::MAX_KNOTS;
+use feedwright_control::identifier::IdentifierKind;
 pub use make::correction_limits;
 pub use parameters::{Parameter, Setting, SettingError};
 use parameters::{Values, number, switch, whole};
@@ -42,7 +42,7 @@ pub struct Entry {
     /// What it knows of the machine.
     pub knows: Knows,
     /// Which kind of identifier it uses, where it does.
-    pub identifier: Option<Kind>,
+    pub identifier: Option<IdentifierKind>,
     /// Laps of the same part that it cuts; all but the last are practice.
     pub laps: u32,
     /// What can be set; first what the comparison searches for the best of.
@@ -76,7 +76,7 @@ macro_rules! entry {
             summary: $summary,
             source: $source,
             knows: Knows::$knows,
-            identifier: [$(Kind::$kind)?].first().copied(),
+            identifier: [$(IdentifierKind::$kind)?].first().copied(),
             laps: $laps,
             parameters: &[$($parameter),*],
             plane: make::$make::<2>,
@@ -128,7 +128,7 @@ const RATE_WEIGHT: Parameter = number(
 const KNOTS: Parameter = whole(
     "knots",
     Horizon::<2>::DEFAULT.horizon.knots,
-    [1.0, MOST_KNOTS as f64],
+    [1.0, MAX_KNOTS as f64],
     "knots of the horizon: fewer take less time in a tick, and see less of a corner ahead",
 );
 const PLAN_PERIOD_S: Parameter = number(
@@ -159,9 +159,9 @@ const LAST_WEIGHT: Parameter = number(
     None,
     "the same at the end of the horizon, at the least: where it is small, the tool swings about turns that are not seen yet",
 );
-const SURE_MM: Parameter = number(
-    "sure_mm",
-    Horizon::<2>::DEFAULT.sure_mm,
+const INNOVATION_SCALE_MM: Parameter = number(
+    "innovation_scale_mm",
+    Horizon::<2>::DEFAULT.innovation_scale_mm,
     [1e-6, 1.0],
     None,
     "innovations of this size make the plan half as sharp: small is gentle, large builds on predictions that miss",
@@ -375,7 +375,7 @@ pub const CONTROLLERS: &[Entry] = &[
             CHANGE_WEIGHT,
             TANGENTIAL_WEIGHT,
             LAST_WEIGHT,
-            SURE_MM,
+            INNOVATION_SCALE_MM,
             FORESEEN_MM,
             SOLVER_STEPS,
             ON_RAPIDS

@@ -1,6 +1,6 @@
 //! Identification: from what a machine showed to the trained weights of an identifier.
 //!
-//! What a machine showed is a [`recording`]. A simulated machine cuts an identification programme for it: laps of circles at
+//! What a machine showed is a [`recording`]. A simulated machine cuts an identification excitation for it: laps of circles at
 //! random feeds, two thirds of them with random offsets of the command from the path, so that the data tell the effect of the
 //! feedrate from that of the path. [`contour`] trains the paper's network on it, [`servo`] the servo identifier; [`cache`]
 //! keeps what was trained. Neither training sees the machine.
@@ -25,7 +25,7 @@ pub type Rng = Xoshiro256PlusPlus;
 
 /// What the machine cuts to be identified.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Programme {
+pub struct Excitation {
     /// Radii of the circles, in turn, mm.
     pub radii_mm: Vec<f64>,
     /// Sense of the circles, in turn: -1 is clockwise.
@@ -42,7 +42,7 @@ pub struct Programme {
     pub feed_period_s: f64,
 }
 
-impl Programme {
+impl Excitation {
     /// The feed period that the machine can have, s.
     fn period_s(&self, machine: &Machine) -> f64 {
         f64::from(machine.period.servo_periods(self.feed_period_s)) * machine.period.servo_s

@@ -69,7 +69,7 @@ pub struct Period {
 }
 
 /// Most servo periods in a feed period: twenty feed periods of preview must fit into the window.
-const MOST_SERVO_PERIODS: f64 = 12.0;
+const MAX_SERVO_PERIODS: f64 = 12.0;
 
 impl Period {
     /// As the law of an axis takes them.
@@ -80,7 +80,7 @@ impl Period {
 
     /// Servo periods in a feed period of about `feed_period_s`: at least one, and no more than a preview has room for.
     pub fn servo_periods(&self, feed_period_s: f64) -> u32 {
-        (feed_period_s / self.servo_s).round().clamp(1.0, MOST_SERVO_PERIODS) as u32
+        (feed_period_s / self.servo_s).round().clamp(1.0, MAX_SERVO_PERIODS) as u32
     }
 }
 
@@ -307,8 +307,8 @@ impl Machine {
     }
 
     /// The law of the first N axes.
-    pub fn law<const N: usize>(&self) -> [axis::Axis; N] {
-        std::array::from_fn(|i| axis::Axis::new(self.axis(i).parameters(), self.period.periods()))
+    pub fn law<const N: usize>(&self) -> [axis::AxisLaw; N] {
+        std::array::from_fn(|i| axis::AxisLaw::new(self.axis(i).parameters(), self.period.periods()))
     }
 
     /// Two or three.

@@ -12,10 +12,11 @@ mod layout;
 
 use std::path::Path;
 
-use feedwright_control::identifier::adaptation::{Spread, UNKNOWNS};
+use feedwright_control::identifier::UNKNOWNS;
+use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::servo::ServoIdentifier;
-use feedwright_control::identifier::{Identifier, Kind};
+use feedwright_control::identifier::{Identifier, IdentifierKind};
 use feedwright_control::model::{self as block, Trained};
 use serde::Serialize;
 
@@ -39,7 +40,7 @@ pub(crate) const FILE: toml_file::Kind = toml_file::Kind {
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Model {
     pub(crate) about: About,
-    pub(crate) period: Periods,
+    pub(crate) period: ModelPeriods,
     pub(crate) fit: Fit,
     pub(crate) weights: Weights,
 }
@@ -67,7 +68,7 @@ pub struct About {
 
 /// Periods that it was trained for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Periods {
+pub struct ModelPeriods {
     /// Servo period of the machine, s.
     pub servo_s: f64,
     /// Time between decisions of the controller, s.
@@ -121,16 +122,16 @@ impl Weights {
 }
 
 /// What a kind is called in files and messages.
-pub fn name(kind: Kind) -> &'static str {
+pub fn name(kind: IdentifierKind) -> &'static str {
     match kind {
-        Kind::Contour => "contour",
-        Kind::Servo => "servo",
+        IdentifierKind::Contour => "contour",
+        IdentifierKind::Servo => "servo",
     }
 }
 
 /// The kind of a name.
-pub(crate) fn kind_named(name_of_kind: &str) -> Option<Kind> {
-    [Kind::Contour, Kind::Servo].into_iter().find(|kind| name(*kind) == name_of_kind)
+pub(crate) fn kind_named(name_of_kind: &str) -> Option<IdentifierKind> {
+    [IdentifierKind::Contour, IdentifierKind::Servo].into_iter().find(|kind| name(*kind) == name_of_kind)
 }
 
 /// Where a training comes from.
@@ -144,24 +145,28 @@ pub struct Origin {
 
 impl Model {
     /// Of a servo identifier that was trained on a recording.
-    pub fn of_servo<const N: usize>(recording: &Recording<N>, trained: &servo::Identified<N>, origin: Origin) -> Self {
+    pub fn of_servo<const N: usize>(
+        recording: &Recording<N>,
+        trained: &servo::TrainedServo<N>,
+        origin: Origin,
+    ) -> Self {
         let fit = Fit { fit_um: trained.fit_um, samples: trained.samples as u64 };
         let spread = trained.spread.as_flattened().as_flattened();
-        Self::sealed(Kind::Servo, recording, fit, Weights::of(trained.net.clone(), spread), origin)
+        Self::sealed(IdentifierKind::Servo, recording, fit, Weights::of(trained.net.clone(), spread), origin)
     }
 
     /// Of an identifier of the contour error that was trained on a recording.
     pub fn of_contour<const N: usize>(
         recording: &Recording<N>,
-        trained: &contour::Identified<N>,
+        trained: &contour::TrainedContour<N>,
         origin: Origin,
     ) -> Self {
         let fit = Fit { fit_um: trained.fit_um, samples: trained.samples as u64 };
-        Self::sealed(Kind::Contour, recording, fit, Weights::of(trained.net.clone(), &[]), origin)
+        Self::sealed(IdentifierKind::Contour, recording, fit, Weights::of(trained.net.clone(), &[]), origin)
     }
 
     fn sealed<const N: usize>(
-        kind: Kind,
+        kind: IdentifierKind,
         recording: &Recording<N>,
         fit: Fit,
         weights: Weights,
@@ -177,7 +182,7 @@ impl Model {
             training_data: recording.hash(),
             checksum: String::new(),
         };
-        let period = Periods { servo_s: recording.servo_s, feed_period_s: recording.feed_period_s };
+        let period = ModelPeriods { servo_s: recording.servo_s, feed_period_s: recording.feed_period_s };
         let mut model = Self { about, period, fit, weights };
         model.about.checksum = model.checksum();
         model
@@ -222,9 +227,9 @@ impl Model {
     }
 
     /// Kind of the identifier.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> IdentifierKind {
         // What is read is one of the names; a default is a contour identifier without weights.
-        kind_named(&self.about.kind).unwrap_or(Kind::Contour)
+        kind_named(&self.about.kind).unwrap_or(IdentifierKind::Contour)
     }
 
     /// Number of axes.
@@ -233,7 +238,7 @@ impl Model {
     }
 
     /// Periods that it was trained for.
-    pub fn period(&self) -> Periods {
+    pub fn period(&self) -> ModelPeriods {
         self.period
     }
 
@@ -248,26 +253,26 @@ impl Model {
         let (rows, []) = self.weights.spread.as_chunks::<UNKNOWNS>() else { return None };
         let (axes, []) = rows.as_chunks::<UNKNOWNS>() else { return None };
         let spread = Spread::<N>::try_from(axes).ok()?;
-        Some((self.weights.fill().filter(|_| self.is(Kind::Servo, N))?, spread))
+        Some((self.weights.fill().filter(|_| self.is(IdentifierKind::Servo, N))?, spread))
     }
 
     /// The identifier of the contour error that it holds; none where it holds another, or for another number of axes.
     pub fn contour<const N: usize>(&self) -> Option<ContourIdentifier<N>> {
-        self.weights.fill().filter(|_| self.is(Kind::Contour, N))
+        self.weights.fill().filter(|_| self.is(IdentifierKind::Contour, N))
     }
 
-    fn is(&self, kind: Kind, axes: usize) -> bool {
+    fn is(&self, kind: IdentifierKind, axes: usize) -> bool {
         (self.kind(), self.axes()) == (kind, axes)
     }
 
     /// As `control` takes it; none where it is for another number of axes.
-    pub fn control<const N: usize>(&self) -> Option<block::Model<N>> {
+    pub fn control<const N: usize>(&self) -> Option<block::ModelBlock<N>> {
         let trained = match self.kind() {
-            Kind::Contour => Trained::Contour(self.contour()?),
-            Kind::Servo => self.servo().map(|(net, spread)| Trained::Servo(net, spread))?,
+            IdentifierKind::Contour => Trained::Contour(self.contour()?),
+            IdentifierKind::Servo => self.servo().map(|(net, spread)| Trained::Servo(net, spread))?,
         };
-        let Periods { servo_s, feed_period_s } = self.period;
-        Some(block::Model { servo_s, feed_period_s, trained })
+        let ModelPeriods { servo_s, feed_period_s } = self.period;
+        Some(block::ModelBlock { servo_s, feed_period_s, trained })
     }
 
     /// The block of bytes that a component in a servo thread is given.

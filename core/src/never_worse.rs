@@ -34,7 +34,7 @@ use crate::identify::cache::key_of;
 use crate::journal::Journal;
 use crate::machine::Machine;
 use crate::watch::{Cancelled, Watch};
-use cut::{Cutter, Row};
+use cut::{Cutter, SweepRow};
 use program::Program;
 
 /// One program on one machine.
@@ -93,8 +93,8 @@ fn key(job: &SweepJob, options: &SweepOptions) -> String {
 }
 
 /// A row under the names that program and machine have now.
-fn named(row: &Row, job: &SweepJob) -> Row {
-    Row { program: job.program.name.clone(), machine: job.machine.name.clone(), ..row.clone() }
+fn named(row: &SweepRow, job: &SweepJob) -> SweepRow {
+    SweepRow { program: job.program.name.clone(), machine: job.machine.name.clone(), ..row.clone() }
 }
 
 /// The journal of a version in a folder.
@@ -106,7 +106,7 @@ pub fn journal_path(folder: &Path, version: &str) -> PathBuf {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Swept {
     /// In the order of the jobs.
-    pub rows: Vec<Row>,
+    pub rows: Vec<SweepRow>,
     /// How many of them the journal had.
     pub known: usize,
 }
@@ -125,7 +125,7 @@ impl SweepJob {
 pub fn sweep(
     jobs: &[SweepJob],
     options: &SweepOptions,
-    journal: &Journal<Row>,
+    journal: &Journal<SweepRow>,
     watch: &dyn Watch,
 ) -> Result<Swept, Cancelled> {
     watch.begin(&format!("{} cuts", jobs.len()), jobs.iter().map(SweepJob::steps).sum());

@@ -16,9 +16,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
-use crate::identify::Programme;
+use crate::identify::Excitation;
 use crate::identify::cache::identified;
-use crate::identify::contour::{Identified, Training};
+use crate::identify::contour::{TrainedContour, Training};
 use crate::machine::Machine;
 use crate::pipeline::{Run, RunError, pieces};
 use crate::report::Statistics;
@@ -142,8 +142,8 @@ impl Bench<'_> {
     }
 
     /// The identifier as the paper trains it: on the circle.
-    fn train(&self, seed: u64) -> Identified<2> {
-        identified(self.machine, &Programme::paper(), &Training::default(), seed, &mut |_| {})
+    fn train(&self, seed: u64) -> TrainedContour<2> {
+        identified(self.machine, &Excitation::paper(), &Training::default(), seed, &mut |_| {})
     }
 
     fn cut_two_dimensional(&self, net: &ContourIdentifier<2>, settings: Settings) -> Result<Numbers, RunError> {

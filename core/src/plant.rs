@@ -21,7 +21,7 @@ mod transmission;
 
 use std::f64::consts::TAU;
 
-use feedwright_control::axis::{self, Periods, State};
+use feedwright_control::axis::{self, AxisState, Periods};
 
 use crate::machine::{Axis, Machine};
 use drive::{Delay, in_steps, torque_step_nm};
@@ -41,7 +41,7 @@ pub struct Measurement<const N: usize> {
 /// N axes and their state.
 #[derive(Debug, Clone)]
 pub struct Plant<const N: usize> {
-    laws: [axis::Axis; N],
+    laws: [axis::AxisLaw; N],
     periods: Periods,
     /// Servo periods since the start.
     period: u64,
@@ -50,7 +50,7 @@ pub struct Plant<const N: usize> {
     /// cos and sin of the angle by which the disturbance turns in one mechanics period.
     disturbance_turn: [[f64; 2]; N],
     /// The motors.
-    states: [State; N],
+    states: [AxisState; N],
     /// What a rigid axis with an ideal drive and encoder does not have; none where no axis has any of it.
     nonideal: Option<Box<[NonidealAxis; N]>>,
 }
@@ -93,12 +93,12 @@ impl<const N: usize> Plant<N> {
     /// The first N axes of a machine, at rest at `start_mm`.
     pub fn new(machine: &Machine, start_mm: [f64; N]) -> Self {
         let each = |value: fn(&Axis) -> f64| -> [f64; N] { std::array::from_fn(|i| value(machine.axis(i))) };
-        let laws: [axis::Axis; N] = machine.law();
+        let laws: [axis::AxisLaw; N] = machine.law();
         let disturbance_rad_s = each(|a| TAU * a.disturbance_hz);
         let periods = machine.period.periods();
-        let states: [State; N] = std::array::from_fn(|i| State {
+        let states: [AxisState; N] = std::array::from_fn(|i| AxisState {
             angle_rad: start_mm[i] * laws[i].parameters.rad_per_mm,
-            ..State::default()
+            ..AxisState::default()
         });
         let nonideal = (0..N).any(|i| !NonidealAxis::is_ideal(machine.axis(i)));
         Self {

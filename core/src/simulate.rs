@@ -301,7 +301,7 @@ fn crossing(t_s: f64, servo_s: f64, last_tau_s: f64, tau_s: f64, end_s: f64) -> 
 /// The planned path as the tick sees it: the joints.
 struct Axes<'a, 'p>(&'a mut Reference<'p>);
 
-impl<const N: usize> feedwright_control::Reference<N> for Axes<'_, '_> {
+impl<const N: usize> feedwright_control::KnotSource<N> for Axes<'_, '_> {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
         let Sample { position_mm, tangent, feed_mm_s, rapid, .. } = self.0.at(tau_s);
         Knot { position_mm: joints_of(position_mm), tangent: joints_of(tangent), feed_mm_s, cutting: !rapid }

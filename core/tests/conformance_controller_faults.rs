@@ -79,7 +79,7 @@ struct Row {
 /// The first two axes of the path.
 struct Plane<'a, 'p>(&'a mut Reference<'p>);
 
-impl feedwright_control::Reference<2> for Plane<'_, '_> {
+impl feedwright_control::KnotSource<2> for Plane<'_, '_> {
     fn knot(&mut self, tau_s: f64) -> Knot<2> {
         let Sample { position_mm: [x, y, _], tangent: [tx, ty, _], feed_mm_s, rapid, .. } = self.0.at(tau_s);
         Knot { position_mm: [x, y], tangent: [tx, ty], feed_mm_s, cutting: !rapid }

@@ -7,7 +7,7 @@ use std::sync::OnceLock;
 use feedwright::controllers::{CONTROLLERS, Choices, Entry, Make, Setting, Setup};
 use feedwright::machine::Machine;
 use feedwright_control::safety::Bounds;
-use feedwright_control::{Controller, Knot, Reference, Tick};
+use feedwright_control::{Controller, Knot, KnotSource, Tick};
 
 /// Deviation that the tick admits here, mm.
 const MAX_DEVIATION_MM: f64 = 0.2;
@@ -38,7 +38,7 @@ const SILENT_HERE: &[(&str, &str)] = &[
 /// The circle of eq. 11 at 50 mm/s, in the first two axes.
 struct Circle;
 
-impl<const N: usize> Reference<N> for Circle {
+impl<const N: usize> KnotSource<N> for Circle {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
         let (sin, cos) = (5.0 * tau_s).sin_cos();
         let mut knot = Knot { feed_mm_s: 50.0, cutting: true, ..Knot::REST };
@@ -51,7 +51,7 @@ impl<const N: usize> Reference<N> for Circle {
 /// A path that stands still.
 struct Rest;
 
-impl<const N: usize> Reference<N> for Rest {
+impl<const N: usize> KnotSource<N> for Rest {
     fn knot(&mut self, _: f64) -> Knot<N> {
         let mut knot = Knot { position_mm: [3.0; N], ..Knot::REST };
         knot.tangent[0] = 1.0;
@@ -78,7 +78,7 @@ macro_rules! for_every_controller {
 
 /// Commands of a run along a path; the tool lags by 20 ms and is 20 um off, or wherever `tool` puts it.
 fn commands<const N: usize>(
-    reference: &mut dyn Reference<N>,
+    reference: &mut dyn KnotSource<N>,
     controller: &mut dyn Controller<N>,
     tool: impl Fn(u32, [f64; N]) -> [f64; N],
 ) -> Vec<[f64; N]> {

@@ -14,21 +14,6 @@ use source::code;
 const SHARED: &[(&str, &str)] = &[
     ("Settings", "every member of a family has its own; they are written with its module, `cross_coupled::Settings`"),
     // Each of these is to get a name of its own; where they stand.
-    ("Axis", "control/axis, control/identifier/adaptation, core/machine"),
-    ("Identified", "control/controller/receding_horizon, core/identify"),
-    ("Knot", "control/window, core/identify/excitation"),
-    ("Last", "control/controller/receding_horizon, control/controller/cross_coupled"),
-    ("Limits", "control/horizon, core/feed, core/machine"),
-    ("Maker", "core/controllers, core/compare/cut"),
-    ("Plan", "control/horizon, core/feed/plan"),
-    ("Point", "control/horizon/interior_point, core/path"),
-    ("Problem", "control/horizon/problem, core/machine/error"),
-    ("Reference", "control/window, core/reference"),
-    ("Row", "control/horizon/problem, core/trace, core/never_worse/cut"),
-    ("Sample", "control/identifier/adaptation, core/reference, core/identify"),
-    ("State", "control/axis, control/safety/engagement"),
-    ("Step", "control/horizon, core/path, core/simulate/progress"),
-    ("Vector", "control/horizon/interior_point, core/vector"),
 ];
 
 /// Names of the types that a source text declares outside of its tests. Associated types are none: a trait names them.

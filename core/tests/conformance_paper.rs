@@ -8,7 +8,7 @@
 
 use std::sync::OnceLock;
 
-use feedwright::identify::Programme;
+use feedwright::identify::Excitation;
 use feedwright::identify::cache::identified;
 use feedwright::identify::contour::{Training, train};
 use feedwright::machine::Machine;
@@ -85,9 +85,9 @@ fn open_loop_errs_as_the_prototype_does() {
 /// Everything above may have come from a cache that a change of the program should have emptied.
 #[test]
 fn the_cache_holds_what_training_gives() {
-    let (machine, programme, training) = (machine(), Programme::paper(), Training::default());
-    let cached = identified::<2>(&machine, &programme, &training, 1, &mut |_| {});
-    let (recording, rng) = programme.record::<2>(&machine, 1);
+    let (machine, excitation, training) = (machine(), Excitation::paper(), Training::default());
+    let cached = identified::<2>(&machine, &excitation, &training, 1, &mut |_| {});
+    let (recording, rng) = excitation.record::<2>(&machine, 1);
     let trained = train(&recording, &training, rng, &mut |_| {});
     assert!(cached == trained, "hint: raise FORMAT in core/src/identify/cache.rs");
 }

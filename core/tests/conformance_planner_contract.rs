@@ -12,7 +12,7 @@ use std::f64::consts::{PI, SQRT_2};
 use std::io;
 
 use common::{BLEND, polyline};
-use feedwright::blend::{BlendMember, BlendedStep, BlendedSteps, Origin, PlannedPiece};
+use feedwright::blend::{BlendMember, BlendedStep, BlendedSteps, PlannedPiece, ProgrammedPart};
 use feedwright::constraints::Constraints;
 use feedwright::feed::{FeedPlanner, MEMBERS, Member, Span};
 use feedwright::gcode::canon::{Canon, Motion, Plane, Shape};
@@ -84,7 +84,7 @@ fn rounded<'p>(steps: Steps<'p>, _: &Constraints) -> BlendedSteps<'p> {
         let mut plan = |motion: &Motion, from_mm: f64, to_mm: f64| {
             for step in pieces([Canon::Motion(motion.clone())]) {
                 let Ok(Step::Piece(planned)) = step else { panic!("a line or an arc") };
-                let origin = Origin::Part { from_mm, to_mm };
+                let origin = ProgrammedPart::Part { from_mm, to_mm };
                 blended.push(BlendedStep::Planned(PlannedPiece { piece: planned, origin }));
             }
         };

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use source::code;
 
 /// Lines that a function may have, from `fn` to its closing brace.
-const MOST_LINES: usize = 60;
+const MAX_LINES: usize = 60;
 
 /// A function of a file.
 #[derive(Debug, PartialEq)]
@@ -86,8 +86,8 @@ fn no_function_is_longer_than_a_screen() {
             let name = file.strip_prefix(root).unwrap().to_str().unwrap().to_owned();
             for Function { name: function, line, lines } in functions(&text) {
                 seen += 1;
-                if lines > MOST_LINES {
-                    longer.push(format!("{name}:{line}: {function} has {lines} lines; {MOST_LINES} are the most"));
+                if lines > MAX_LINES {
+                    longer.push(format!("{name}:{line}: {function} has {lines} lines; {MAX_LINES} are the most"));
                 }
             }
         }

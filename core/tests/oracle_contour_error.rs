@@ -47,7 +47,7 @@ fn parts() -> Vec<PathBuf> {
 /// The path in all three axes.
 struct Axes<'a, 'p>(&'a mut Reference<'p>);
 
-impl feedwright_control::Reference<3> for Axes<'_, '_> {
+impl feedwright_control::KnotSource<3> for Axes<'_, '_> {
     fn knot(&mut self, tau_s: f64) -> Knot<3> {
         let sample = self.0.at(tau_s);
         Knot { position_mm: sample.position_mm, tangent: sample.tangent, feed_mm_s: sample.feed_mm_s, cutting: true }

@@ -12,7 +12,7 @@ use feedwright::controllers::{BEST, Entry};
 use feedwright::held_out::Variant;
 use feedwright::held_out::machines::Class;
 use feedwright::never_worse::SweepOptions;
-use feedwright::never_worse::cut::{Cutter, Row};
+use feedwright::never_worse::cut::{Cutter, SweepRow};
 use feedwright::never_worse::generated::{Generated, draw, smallest};
 use feedwright::never_worse::program::{Length, Program};
 
@@ -32,7 +32,7 @@ fn options() -> SweepOptions {
     SweepOptions { controller: Entry::find(BEST).unwrap(), set: Vec::new(), seed: 1, threads: 1 }
 }
 
-fn told(row: &Row) -> String {
+fn told(row: &SweepRow) -> String {
     let (before, after) = (&row.open_loop, &row.corrected);
     format!(
         "{} on {}: {:.2} / {:.1} -> {:.2} / {:.1} um, worse in {:?}, {:?}",
@@ -51,7 +51,7 @@ fn told(row: &Row) -> String {
 fn random_programs_on_random_machines_are_cut_no_worse_than_open_loop() {
     let options = options();
     let generated = draw(SEED, CUTS, FOR_EACH, Class::Any).unwrap();
-    let mut failures: Vec<(Row, Generated)> = Vec::new();
+    let mut failures: Vec<(SweepRow, Generated)> = Vec::new();
     for of_machine in generated.chunks(FOR_EACH) {
         let mut cutter = Cutter::new(&of_machine[0].job.machine, &options);
         for made in of_machine {
@@ -128,7 +128,7 @@ fn holes() -> &'static str {
 }
 
 /// What a program comes to on a machine.
-fn judged(name: &str, text: &str, variant: &Variant) -> Row {
+fn judged(name: &str, text: &str, variant: &Variant) -> SweepRow {
     let machine = Arc::new(variant.machine().unwrap());
     let length = Length { machine: &machine, limit_s: 60.0 };
     let row = Cutter::new(&machine, &options()).row(&Program::from_text(name, text, length).unwrap(), &()).unwrap();

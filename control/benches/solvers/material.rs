@@ -3,11 +3,11 @@
 use std::cell::RefCell;
 
 use feedwright_control::controller::receding_horizon;
-use feedwright_control::horizon::problem::Problem;
-use feedwright_control::horizon::{Accelerations, Limits, MOST_KNOTS, Settings, Solver};
+use feedwright_control::horizon::problem::HorizonProblem;
+use feedwright_control::horizon::{Accelerations, CorrectionLimits, MAX_KNOTS, Settings, Solver};
 use feedwright_control::identifier::servo::ServoIdentifier;
 use feedwright_control::vector::add_scaled;
-use feedwright_control::window::{Knot, Preview, Reference, Register, Window};
+use feedwright_control::window::{Knot, KnotSource, Preview, Register, Window};
 
 use super::model::{Servo, Slopes, servo};
 
@@ -20,7 +20,7 @@ const PLANNED_MM_S2: f64 = 100.0;
 /// A helix of radius 10 mm at 50 mm/s in the first two axes; the third, where there is one, falls.
 struct Helix;
 
-impl<const N: usize> Reference<N> for Helix {
+impl<const N: usize> KnotSource<N> for Helix {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
         let (sin, cos) = (5.0 * tau_s).sin_cos();
         // 50 mm/s in all: 48 around and 14 down.
@@ -61,18 +61,18 @@ impl<const N: usize> Material<N> {
         }
         let mut preview = Preview::new(SERVO_S);
         preview.fill(&mut Helix, 0.299, 0.15);
-        let limits = Limits { acceleration_mm_s2: [most_mm_s2; N], ..Limits::NONE };
+        let limits = CorrectionLimits { acceleration_mm_s2: [most_mm_s2; N], ..CorrectionLimits::NONE };
         let settings = Settings { knots, limits, ..receding_horizon::Settings::DEFAULT.horizon };
         let planned_mm_s2 = PLANNED_MM_S2.min(most_mm_s2);
         let plan = std::array::from_fn(|knot| {
             let planned = |axis| if knot < knots { planned_mm_s2 * ((3 * knot + 5 * axis) as f64).sin() } else { 0.0 };
             std::array::from_fn(planned)
         });
-        Self { net: servo(), slopes: RefCell::new([[[0.0; 5]; N]; MOST_KNOTS]), register, preview, settings, plan }
+        Self { net: servo(), slopes: RefCell::new([[[0.0; 5]; N]; MAX_KNOTS]), register, preview, settings, plan }
     }
 
     /// Rolls the plan out: the problem, and the slopes of each knot. `felt`: whether the derivative to all accelerations is wanted.
-    pub(crate) fn roll_out(&self, felt: bool) -> (Problem<N>, Slopes<N>) {
+    pub(crate) fn roll_out(&self, sensitivity: bool) -> (HorizonProblem<N>, Slopes<N>) {
         let window = Window {
             register: &self.register,
             preview: &self.preview,
@@ -81,8 +81,8 @@ impl<const N: usize> Material<N> {
             offset_mm: [0.01; N],
             offset_mm_s: [0.0; N],
         };
-        let model = Servo::new(&self.net, &self.slopes, felt);
-        let problem = Problem::new(&model, &window, &self.plan, 1, &self.settings);
+        let model = Servo::new(&self.net, &self.slopes, sensitivity);
+        let problem = HorizonProblem::new(&model, &window, &self.plan, 1, &self.settings);
         (problem, *self.slopes.borrow())
     }
 
@@ -92,7 +92,7 @@ impl<const N: usize> Material<N> {
     }
 
     /// The plan after one call of a solver.
-    pub(crate) fn improved(&self, solver: &mut impl Solver<N>, problem: &Problem<N>) -> Accelerations<N> {
+    pub(crate) fn improved(&self, solver: &mut impl Solver<N>, problem: &HorizonProblem<N>) -> Accelerations<N> {
         let mut plan = self.plan;
         solver.improve(problem, &mut plan);
         plan

@@ -4,14 +4,14 @@
 
 use std::cell::RefCell;
 
-use feedwright_control::horizon::{Felt, MOST_KNOTS, Model, Stretch};
+use feedwright_control::horizon::{CommandedPeriod, MAX_KNOTS, Predictor, Sensitivity};
 use feedwright_control::identifier::servo::{FOLLOWING_SCALE_MM, ServoIdentifier};
 use feedwright_control::identifier::{Delays, FEED_SCALE_MM_S, HIDDEN, INPUTS, Identifier, Inputs, ServoModel};
 use feedwright_control::vector::{add_scaled, scale, sub};
 use feedwright_control::window::Window;
 
 /// Derivative of the growth of the following error to the inputs, knot by knot, mm for an input of 1.
-pub(crate) type Slopes<const N: usize> = [Inputs<N>; MOST_KNOTS];
+pub(crate) type Slopes<const N: usize> = [Inputs<N>; MAX_KNOTS];
 
 /// Of tnv40: what least squares give for one axis.
 const LINEAR: [f64; INPUTS] = [0.244, -0.101, -0.001_86, 0.2785, -0.4166];
@@ -41,21 +41,21 @@ pub(crate) struct Servo<'a, const N: usize> {
     delays: Delays<N>,
     slopes: &'a RefCell<Slopes<N>>,
     /// Whether what the tool feels is wanted: it is the work of all knots before, at every knot.
-    felt: bool,
+    sensitivity: bool,
     /// Derivative of the following error to the acceleration of each knot, s^2: now and one knot ago.
-    following_s2: [[[f64; N]; MOST_KNOTS]; 2],
+    following_s2: [[[f64; N]; MAX_KNOTS]; 2],
 }
 
 impl<'a, const N: usize> Servo<'a, N> {
     /// At full feed along the first axis.
-    pub(crate) fn new(net: &'a ServoIdentifier<N>, slopes: &'a RefCell<Slopes<N>>, felt: bool) -> Self {
+    pub(crate) fn new(net: &'a ServoIdentifier<N>, slopes: &'a RefCell<Slopes<N>>, sensitivity: bool) -> Self {
         let mut one = [0.0; N];
         one[0] = 1.0;
         let delays = Delays { feed: [one; 2], error: [one; 2] };
-        Self { net, delays, slopes, felt, following_s2: [[[0.0; N]; MOST_KNOTS]; 2] }
+        Self { net, delays, slopes, sensitivity, following_s2: [[[0.0; N]; MAX_KNOTS]; 2] }
     }
 
-    fn feel(&mut self, slopes: &Inputs<N>, stretch: &Stretch<N>, felt: &mut Felt<N>) {
+    fn feel(&mut self, slopes: &Inputs<N>, stretch: &CommandedPeriod<N>, sensitivity: &mut Sensitivity<N>) {
         let [following_s2, before_s2] = &mut self.following_s2;
         for knot in 0..=stretch.knot() {
             let gained = [0, 1, 2].map(|back| stretch.gained_s(knot, back) / FEED_SCALE_MM_S);
@@ -65,24 +65,29 @@ impl<'a, const N: usize> Servo<'a, N> {
                 let of_error = e0 * following_s2[knot][axis] + e1 * before_s2[knot][axis];
                 before_s2[knot][axis] = following_s2[knot][axis];
                 following_s2[knot][axis] += of_feed + of_error / FOLLOWING_SCALE_MM;
-                felt[knot][axis] = stretch.moved_s2(knot, 1.0) - following_s2[knot][axis];
+                sensitivity[knot][axis] = stretch.moved_s2(knot, 1.0) - following_s2[knot][axis];
             }
         }
     }
 }
 
-impl<const N: usize> Model<N> for Servo<'_, N> {
+impl<const N: usize> Predictor<N> for Servo<'_, N> {
     fn lag_s(&self) -> f64 {
         self.net.lag_s()
     }
 
-    fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>, felt: &mut Felt<N>) -> [f64; N] {
+    fn advance(
+        &mut self,
+        window: &Window<'_, N>,
+        stretch: &CommandedPeriod<N>,
+        sensitivity: &mut Sensitivity<N>,
+    ) -> [f64; N] {
         let [from_mm, to_mm] = stretch.command_mm;
         let feed = scale(1.0 / (window.feed_period_s * FEED_SCALE_MM_S), sub(to_mm, from_mm));
         let (grown_mm, slopes) = self.net.predict_with_slopes(&self.delays.inputs(feed));
         self.slopes.borrow_mut()[stretch.knot()] = slopes;
-        if self.felt {
-            self.feel(&slopes, stretch, felt);
+        if self.sensitivity {
+            self.feel(&slopes, stretch, sensitivity);
         }
         let error = add_scaled(self.delays.error[0], 1.0 / FOLLOWING_SCALE_MM, grown_mm);
         self.delays.push(feed, error);

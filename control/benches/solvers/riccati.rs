@@ -15,8 +15,8 @@
 //! Source: Rao, Wright and Rawlings (1998), "Application of interior-point methods to model predictive control", section 3.
 
 use feedwright_control::horizon::gauss_newton::GaussNewton;
-use feedwright_control::horizon::problem::{END_WEIGHT, Problem};
-use feedwright_control::horizon::{Accelerations, MOST_KNOTS};
+use feedwright_control::horizon::problem::{END_WEIGHT, HorizonProblem};
+use feedwright_control::horizon::{Accelerations, MAX_KNOTS};
 use feedwright_control::identifier::servo::FOLLOWING_SCALE_MM;
 use feedwright_control::identifier::{FEED_SCALE_MM_S, INPUTS};
 
@@ -33,9 +33,9 @@ const OFFSET: usize = 4;
 const SPEED: usize = 5;
 const INPUT: usize = 6;
 /// Places of three axes.
-const MOST_PLACES: usize = 3 * PLACES;
+const MAX_PLACES: usize = 3 * PLACES;
 
-type Vector = [f64; MOST_PLACES];
+type Vector = [f64; MAX_PLACES];
 
 /// Both solutions are exact but for rounding, which the condition of the equations makes larger: it comes to 1.4e-9.
 pub(crate) const AGREEMENT: f64 = 3e-9;
@@ -49,13 +49,13 @@ pub(crate) fn apart_from_gauss_newton<const N: usize>(material: &Material<N>) ->
 
 /// What the recursion keeps from the way back for the way forth: da = K x + k.
 pub(crate) struct Riccati<const N: usize> {
-    gains: [[Vector; N]; MOST_KNOTS],
-    offsets: [[f64; N]; MOST_KNOTS],
+    gains: [[Vector; N]; MAX_KNOTS],
+    offsets: [[f64; N]; MAX_KNOTS],
 }
 
 impl<const N: usize> Default for Riccati<N> {
     fn default() -> Self {
-        Self { gains: [[[0.0; MOST_PLACES]; N]; MOST_KNOTS], offsets: [[0.0; N]; MOST_KNOTS] }
+        Self { gains: [[[0.0; MAX_PLACES]; N]; MAX_KNOTS], offsets: [[0.0; N]; MAX_KNOTS] }
     }
 }
 
@@ -63,7 +63,7 @@ impl<const N: usize> Riccati<N> {
     /// The change of the plan that solves the problem linearised about it, mm/s^2.
     pub(crate) fn solve(
         &mut self,
-        problem: &Problem<N>,
+        problem: &HorizonProblem<N>,
         slopes: &Slopes<N>,
         plan: &Accelerations<N>,
     ) -> Accelerations<N> {
@@ -71,15 +71,15 @@ impl<const N: usize> Riccati<N> {
         self.forth(problem, slopes)
     }
 
-    fn back(&mut self, problem: &Problem<N>, slopes: &Slopes<N>, plan: &Accelerations<N>) {
+    fn back(&mut self, problem: &HorizonProblem<N>, slopes: &Slopes<N>, plan: &Accelerations<N>) {
         let places = N * PLACES;
-        let (mut square, mut line) = ([[0.0; MOST_PLACES]; MOST_PLACES], [0.0; MOST_PLACES]);
+        let (mut square, mut line) = ([[0.0; MAX_PLACES]; MAX_PLACES], [0.0; MAX_PLACES]);
         for knot in (0..problem.knots).rev() {
             pay_errors(problem, knot, &mut square, &mut line);
-            let step = Step::new(&slopes[knot], problem.knot_s);
+            let step = PlanStep::new(&slopes[knot], problem.knot_s);
             // [A B]'P [A B], from one side, then from the other: P is symmetric.
             square[..places].iter_mut().for_each(|row| *row = step.pull(row));
-            let mut turned = [[0.0; MOST_PLACES]; MOST_PLACES];
+            let mut turned = [[0.0; MAX_PLACES]; MAX_PLACES];
             for (place, row) in turned[..places].iter_mut().enumerate() {
                 let column = core::array::from_fn(|r| if r < places { square[r][place] } else { 0.0 });
                 *row = step.pull(&column);
@@ -92,7 +92,7 @@ impl<const N: usize> Riccati<N> {
     }
 
     /// Takes the input out: what is left belongs to the state, and the input follows from it.
-    fn take_out(&mut self, knot: usize, square: &mut [Vector; MOST_PLACES], line: &mut Vector) {
+    fn take_out(&mut self, knot: usize, square: &mut [Vector; MAX_PLACES], line: &mut Vector) {
         for axis in (0..N).rev() {
             let input = axis * PLACES + INPUT;
             let row = square[input];
@@ -114,9 +114,9 @@ impl<const N: usize> Riccati<N> {
         }
     }
 
-    fn forth(&self, problem: &Problem<N>, slopes: &Slopes<N>) -> Accelerations<N> {
-        let mut changes = [[0.0; N]; MOST_KNOTS];
-        let mut state = [0.0; MOST_PLACES];
+    fn forth(&self, problem: &HorizonProblem<N>, slopes: &Slopes<N>) -> Accelerations<N> {
+        let mut changes = [[0.0; N]; MAX_KNOTS];
+        let mut state = [0.0; MAX_PLACES];
         for knot in 0..problem.knots {
             for axis in 0..N {
                 let input = axis * PLACES + INPUT;
@@ -126,7 +126,7 @@ impl<const N: usize> Riccati<N> {
                 state[input] = moved + self.offsets[knot][axis];
                 changes[knot][axis] = state[input];
             }
-            state = Step::new(&slopes[knot], problem.knot_s).push(&state);
+            state = PlanStep::new(&slopes[knot], problem.knot_s).push(&state);
         }
         changes
     }
@@ -134,9 +134,9 @@ impl<const N: usize> Riccati<N> {
 
 /// What the errors and the speed of the offset at the end of a knot cost there.
 fn pay_errors<const N: usize>(
-    problem: &Problem<N>,
+    problem: &HorizonProblem<N>,
     knot: usize,
-    square: &mut [Vector; MOST_PLACES],
+    square: &mut [Vector; MAX_PLACES],
     line: &mut Vector,
 ) {
     let end = &problem.ends[knot];
@@ -163,7 +163,7 @@ fn pay_errors<const N: usize>(
 }
 
 /// What the offset behind the last knot costs: o + lag v.
-fn pay_end<const N: usize>(problem: &Problem<N>, square: &mut [Vector; MOST_PLACES], line: &mut Vector) {
+fn pay_end<const N: usize>(problem: &HorizonProblem<N>, square: &mut [Vector; MAX_PLACES], line: &mut Vector) {
     let end = &problem.ends[problem.knots - 1];
     let weight = END_WEIGHT * END_WEIGHT;
     for axis in 0..N {
@@ -180,10 +180,10 @@ fn pay_end<const N: usize>(problem: &Problem<N>, square: &mut [Vector; MOST_PLAC
 
 /// What the change of the speed over a knot costs.
 fn pay_accelerations<const N: usize>(
-    problem: &Problem<N>,
+    problem: &HorizonProblem<N>,
     knot: usize,
     plan: &Accelerations<N>,
-    square: &mut [Vector; MOST_PLACES],
+    square: &mut [Vector; MAX_PLACES],
     line: &mut Vector,
 ) {
     let weight = problem.settings.change_weight * problem.knot_s.powi(2);
@@ -195,13 +195,13 @@ fn pay_accelerations<const N: usize>(
 }
 
 /// A(k) and B(k): one feed period of every axis, lengths in mm, speeds in mm/s, accelerations in mm/s^2.
-struct Step<const N: usize> {
+struct PlanStep<const N: usize> {
     /// What e(k+1) takes of F(k), F(k-1), F(k-2), e(k), e(k-1).
     of: [[f64; INPUTS]; N],
     period_s: f64,
 }
 
-impl<const N: usize> Step<N> {
+impl<const N: usize> PlanStep<N> {
     fn new(slopes: &[[f64; INPUTS]; N], period_s: f64) -> Self {
         let of = slopes.map(|[f0, f1, f2, e0, e1]| {
             let [f0, f1, f2] = [f0, f1, f2].map(|slope| slope / FEED_SCALE_MM_S);
@@ -213,7 +213,7 @@ impl<const N: usize> Step<N> {
     /// `[A B]' v`.
     #[inline]
     fn pull(&self, v: &Vector) -> Vector {
-        let mut pulled = [0.0; MOST_PLACES];
+        let mut pulled = [0.0; MAX_PLACES];
         for axis in 0..N {
             let [f0, f1, f2, e0, e1] = self.of[axis];
             let at = axis * PLACES;
@@ -232,7 +232,7 @@ impl<const N: usize> Step<N> {
     /// `A x + B da`.
     #[inline]
     fn push(&self, x: &Vector) -> Vector {
-        let mut pushed = [0.0; MOST_PLACES];
+        let mut pushed = [0.0; MAX_PLACES];
         for axis in 0..N {
             let [f0, f1, f2, e0, e1] = self.of[axis];
             let at = axis * PLACES;

@@ -83,12 +83,12 @@ pub(super) mod tests {
     use super::*;
     use crate::controller::cross_coupled::tests::cut;
     use crate::controller::open_loop::OpenLoop;
-    use crate::window::{Knot, Reference};
+    use crate::window::{Knot, KnotSource};
 
     /// The circle of eq. 11 at 50 mm/s.
     pub(crate) struct Circle;
 
-    impl Reference<2> for Circle {
+    impl KnotSource<2> for Circle {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let (sin, cos) = (libm::sin(5.0 * tau_s), libm::cos(5.0 * tau_s));
             Knot { position_mm: [10.0 - 10.0 * cos, 10.0 * sin], tangent: [sin, cos], feed_mm_s: 50.0, cutting: true }

@@ -54,11 +54,11 @@ pub struct CrossCoupled<const N: usize> {
     settings: Settings,
     integral_mm_s: [f64; N],
     derivative_mm_s: [f64; N],
-    last: Option<Last<N>>,
+    last: Option<LastError<N>>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Last<const N: usize> {
+struct LastError<const N: usize> {
     error_mm: [f64; N],
     tangent: [f64; N],
     asked_mm: [f64; N],
@@ -103,7 +103,7 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
         let Settings { kp, ki_1_s, kd_s } = self.settings;
         let slow_mm = add_scaled([0.0; N], ki_1_s, self.integral_mm_s);
         let offset_mm = add_scaled(add_scaled(slow_mm, kp, error_mm), kd_s, self.derivative_mm_s);
-        self.last = Some(Last { error_mm, tangent, asked_mm: offset_mm });
+        self.last = Some(LastError { error_mm, tangent, asked_mm: offset_mm });
         Command::straight(1.0, offset_mm)
     }
 }
@@ -112,12 +112,12 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
 pub(super) mod tests {
     use super::*;
     use crate::contour_error::Estimator;
-    use crate::window::{Knot, Preview, Reference, Register};
+    use crate::window::{Knot, KnotSource, Preview, Register};
 
     /// Where a tool is after so many servo periods of 1 ms that a constant load pushes `load_mm` off its command, in loops
     /// of 50 1/s and without the safety layer.
     pub(in crate::controller) fn cut<C: Controller<2>>(
-        reference: &mut impl Reference<2>,
+        reference: &mut impl KnotSource<2>,
         controller: &mut C,
         load_mm: [f64; 2],
         periods: u32,
@@ -149,7 +149,7 @@ pub(super) mod tests {
     /// Along x at 50 mm/s.
     struct Line;
 
-    impl Reference<2> for Line {
+    impl KnotSource<2> for Line {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
         }

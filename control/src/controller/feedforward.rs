@@ -39,12 +39,12 @@ const DIFFERENCES: f64 = 3.0;
 /// lags leave room for a command that leads a slowing motion.
 const PREVIEW_LAGS: f64 = 3.0;
 /// Of the [`crate::window::PREVIEW_KNOTS`]; the others reach behind.
-const MOST_PREVIEW: f64 = 240.0;
+const MAX_PREVIEW: f64 = 240.0;
 
 /// Preview for a command that leads the path by the lag of a loop, servo periods.
 pub fn preview(lag_s: f64, servo_s: f64) -> u32 {
     // A float that is too large, or not a number, saturates here.
-    libm::ceil(PREVIEW_LAGS * lag_s / servo_s + DIFFERENCES).min(MOST_PREVIEW) as u32
+    libm::ceil(PREVIEW_LAGS * lag_s / servo_s + DIFFERENCES).min(MAX_PREVIEW) as u32
 }
 
 /// How much of each part is fed forward; 1 is the exact model.
@@ -122,14 +122,14 @@ pub(super) mod tests {
     use super::*;
     use crate::contour_error::ContourError;
     use crate::vector::add_scaled;
-    use crate::window::{Knot, Preview, Reference, Register};
+    use crate::window::{Knot, KnotSource, Preview, Register};
 
     const SERVO_S: f64 = 0.001;
 
     /// 30 mm/s2 from rest along the first axis.
     struct Parabola;
 
-    impl Reference<2> for Parabola {
+    impl KnotSource<2> for Parabola {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let t_s = tau_s.max(0.0);
             Knot { position_mm: [15.0 * t_s * t_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 30.0 * t_s, cutting: true }
@@ -138,7 +138,7 @@ pub(super) mod tests {
 
     /// The commands of a controller that decides in each servo period, does not measure, and is not held to any bound.
     pub(in super::super) fn commands(
-        reference: &mut dyn Reference<2>,
+        reference: &mut dyn KnotSource<2>,
         controller: &mut dyn Controller<2>,
         servo_s: f64,
         mut each: impl FnMut(usize, [f64; 2]),

@@ -20,7 +20,7 @@ use core::marker::PhantomData;
 use super::{Command, Controller, Measured, Schedule};
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::{ContourModel, Delays, FEED_SCALE_MM_S, Inputs, seen_feed};
-use crate::inversion::{self, Gradient, MOST_KNOTS};
+use crate::inversion::{self, Gradient, MAX_KNOTS};
 use crate::vector::{add_scaled, bounded, dot, norm, scale, sub};
 use crate::window::{PREVIEW_KNOTS, Window};
 
@@ -32,7 +32,7 @@ pub const FEED_PERIOD_S: f64 = 0.01;
 pub struct Settings {
     /// Servo periods in a feed period; 1 to 100.
     pub servo_periods: u32,
-    /// Knots that are inverted together; 1 to [`MOST_KNOTS`], 1 is the paper's.
+    /// Knots that are inverted together; 1 to [`MAX_KNOTS`], 1 is the paper's.
     pub knots: usize,
     /// The inversion.
     pub inversion: inversion::Settings,
@@ -54,7 +54,7 @@ impl Settings {
 }
 
 /// Below this planned feedrate, mm/s, the machine is held to the plan: at rest there is no direction to correct in.
-const LEAST_FEED_MM_S: f64 = 0.05;
+const MIN_FEED_MM_S: f64 = 0.05;
 
 /// Part of the offset along the path that is taken back in each feed period. Offsets are made across the path; where the
 /// path has turned since, what is left of them along it corrects nothing, and without this the tool would end a circle
@@ -82,7 +82,7 @@ pub struct Inverting<const N: usize, I, D = ContourIdentifier<N>> {
     net: D,
     delays: Delays<N>,
     last: Option<Inputs<N>>,
-    missed_mm: f64,
+    prediction_error_mm: f64,
     settings: Settings,
     how: PhantomData<I>,
 }
@@ -95,7 +95,7 @@ impl<const N: usize, I, D: ContourModel<N>> Inverting<N, I, D> {
             trained,
             delays: Delays::REST,
             last: None,
-            missed_mm: 0.0,
+            prediction_error_mm: 0.0,
             settings,
             how: PhantomData,
         }
@@ -104,7 +104,7 @@ impl<const N: usize, I, D: ContourModel<N>> Inverting<N, I, D> {
     /// Knots that are inverted together; all of them within the preview.
     fn knots(&self) -> usize {
         let seen = PREVIEW_KNOTS / self.settings.servo_periods.max(1) as usize;
-        self.settings.knots.min(seen).clamp(1, MOST_KNOTS)
+        self.settings.knots.min(seen).clamp(1, MAX_KNOTS)
     }
 }
 
@@ -117,7 +117,7 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         self.net.clone_from(&self.trained);
         self.delays = Delays::REST;
         self.last = None;
-        self.missed_mm = 0.0;
+        self.prediction_error_mm = 0.0;
     }
 
     /// One step of back-propagation on the last command and its outcome, then both move into the delays.
@@ -130,15 +130,15 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         if let Some(inputs) = self.last {
             let error = error_mm.map(|e| e / D::ERROR_SCALE_MM);
             let cost = self.net.learn(&inputs, error, self.settings.learning_step);
-            self.missed_mm = D::ERROR_SCALE_MM * libm::sqrt(2.0 * cost);
+            self.prediction_error_mm = D::ERROR_SCALE_MM * libm::sqrt(2.0 * cost);
             // As every feedrate, this one comes in mm/s: the delays then hold what a recording of it would give.
             let feed_mm_s = inputs.map(|axis| axis[0] * FEED_SCALE_MM_S);
             self.delays.push(seen_feed(feed_mm_s), error);
         }
     }
 
-    fn missed_mm(&self) -> f64 {
-        self.missed_mm
+    fn prediction_error_mm(&self) -> f64 {
+        self.prediction_error_mm
     }
 
     /// Inverts from the planned feedrate and turns the result into a rate and a new offset.
@@ -147,11 +147,11 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         let planned = scale(1.0 / period_s, sub(window.ahead(1).position_mm, window.now().position_mm));
         let planned_feed = norm(planned);
         let inputs = self.delays.inputs(seen_feed(planned));
-        if planned_feed < LEAST_FEED_MM_S {
+        if planned_feed < MIN_FEED_MM_S {
             self.last = Some(inputs);
             return Command::straight(1.0, scale(1.0 - REST_LEAK, window.offset_mm));
         }
-        let mut feeds = [inputs.map(|axis| axis[0]); MOST_KNOTS];
+        let mut feeds = [inputs.map(|axis| axis[0]); MAX_KNOTS];
         let feeds = &mut feeds[..self.knots()];
         for (knot, feed) in feeds.iter_mut().enumerate().skip(1) {
             let stretch_mm = sub(window.ahead(knot + 1).position_mm, window.ahead(knot).position_mm);
@@ -178,7 +178,7 @@ mod tests {
     use crate::controller::contour_compensation::tests::Circle;
     use crate::controller::two_dimensional::TwoDimensional;
     use crate::identifier::contour::tests::sample;
-    use crate::window::{Preview, Reference, Register};
+    use crate::window::{KnotSource, Preview, Register};
 
     /// Twenty commands on a circle, each with an error after it.
     fn commands(knots: usize, gradient: Gradient) -> [Command<2>; 20] {

@@ -4,7 +4,7 @@
 //! [`crate::horizon`], command its first step. The weights of the plan follow the quality of the predictions,
 //!
 //! ```text
-//! w = w0 b     d = d0 b     h = h0 b^(1/2)     b = 1 + (sigma / s)^4     sigma: RMS innovation, s: Settings::sure_mm
+//! w = w0 b     d = d0 b     h = h0 b^(1/2)     b = 1 + (sigma / s)^4     sigma: RMS innovation, s: Settings::innovation_scale_mm
 //! q = (mu / m)^4 + (0.7 sigma / c)^4 + (z / 0.6)^4     mu: largest miss ahead, m: Settings::foreseen_mm
 //!                                                      c: largest contour error over the horizon without any offset
 //!                                                      z: by how much the correction was overdone lately
@@ -18,9 +18,9 @@
 use super::{Command, Controller, Measured, Schedule};
 use crate::horizon::gauss_newton::GaussNewton;
 use crate::horizon::missed::Missed;
-use crate::horizon::{self, Felt, MOST_KNOTS, MOST_PERIODS, Model, Plan, Solver, Stretch};
+use crate::horizon::{self, CommandedPeriod, MAX_KNOTS, MAX_PERIODS, OffsetPlan, Predictor, Sensitivity, Solver};
 use crate::identifier::adaptation::{self, Adaptation, Spread};
-use crate::identifier::residual::Foresight;
+use crate::identifier::residual::DisturbanceForecast;
 use crate::identifier::servo::ServoIdentifier;
 use crate::identifier::{Delays, FEED_SCALE_MM_S, Inputs, ServoModel};
 use crate::vector::{add_scaled, fourth_power, norm, scale, sub};
@@ -41,7 +41,7 @@ const CLEARLY_OTHER: f64 = 0.7;
 /// in a row it is the machine that has changed.
 const OUTLIER_MM: f64 = 0.03;
 const OUTLIER: f64 = 10.0;
-const MOST_OUTLIERS: u32 = 3;
+const MAX_OUTLIERS: u32 = 3;
 /// A position that is the same to the bit although the command has moved by this since the last decision, mm, is none: from an
 /// encoder of some micrometres a tool that follows has others by then.
 const STILL_MM: f64 = 0.02;
@@ -50,7 +50,7 @@ const STILL_MM: f64 = 0.02;
 const STRANGE_MM: f64 = 0.2;
 const STRANGE_SHARE: f64 = 0.3;
 /// h at the most, however poor the predictions are.
-const MOST_TANGENTIAL_WEIGHT: f64 = 0.1;
+const MAX_TANGENTIAL_WEIGHT: f64 = 0.1;
 /// A correction is worth its offset where the contour error without it is beyond this part of the innovations.
 const WORTHWHILE: f64 = 0.7;
 /// A correction that was overdone by this much lately counts as much as a contour error.
@@ -70,7 +70,7 @@ pub struct Settings<const N: usize> {
     /// Adaptation of the identifier.
     pub adaptation: adaptation::Settings,
     /// Innovations of this size make the inversion half as sharp, mm; larger ones blunter still.
-    pub sure_mm: f64,
+    pub innovation_scale_mm: f64,
     /// Predictions some knots ahead that miss by this make the offset count as much as a contour error, mm.
     pub foreseen_mm: f64,
 }
@@ -88,11 +88,11 @@ impl<const N: usize> Settings<N> {
             last_weight: 0.05,
             late_weight: 0.0,
             on_rapids: false,
-            limits: horizon::Limits::NONE,
+            limits: horizon::CorrectionLimits::NONE,
         },
         steps: 1,
         adaptation: adaptation::Settings::DEFAULT,
-        sure_mm: 2e-4,
+        innovation_scale_mm: 2e-4,
         foreseen_mm: 0.03,
     };
 }
@@ -102,14 +102,14 @@ impl<const N: usize> Settings<N> {
 pub struct RecedingHorizon<const N: usize, S = GaussNewton, D = ServoIdentifier<N>> {
     net: Adaptation<N, D>,
     settings: Settings<N>,
-    plan: Plan<N, S>,
+    plan: OffsetPlan<N, S>,
     periods: usize,
     /// The following error as it is measured; as it would be without measurement, from the commands alone; and the part of it
     /// that the offset makes.
     delays: Delays<N>,
     free: Delays<N>,
     response: Delays<N>,
-    missed_mm: f64,
+    prediction_error_mm: f64,
     missed: Missed<N>,
     outliers: u32,
     /// Whether the position has leapt, and stayed there.
@@ -120,11 +120,11 @@ pub struct RecedingHorizon<const N: usize, S = GaussNewton, D = ServoIdentifier<
     /// By how much the correction was overdone lately.
     overdone: f64,
     /// What was commanded and seen at the last decision, mm.
-    last: Option<Last<N>>,
+    last: Option<LastDecision<N>>,
 }
 
 #[derive(Debug, Clone, Copy)]
-struct Last<const N: usize> {
+struct LastDecision<const N: usize> {
     command_mm: [f64; N],
     offset_mm: [f64; N],
     /// The last position that was news, mm.
@@ -137,12 +137,12 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
         Self {
             net: Adaptation::new(net, spread, settings.adaptation),
             settings,
-            plan: Plan::default(),
+            plan: OffsetPlan::default(),
             periods: 1,
             delays: Delays::REST,
             free: Delays::REST,
             response: Delays::REST,
-            missed_mm: 0.0,
+            prediction_error_mm: 0.0,
             missed: Missed::NONE,
             outliers: 0,
             leapt: false,
@@ -160,7 +160,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
         let following_mm = position_mm.map(|position_mm| sub(command_mm, position_mm));
         let following_mm = following_mm.filter(|following_mm| norm(*following_mm).is_finite());
         let seen_mm = position_mm.or(self.last.map(|last| last.seen_mm)).unwrap_or(command_mm);
-        let now = Last { command_mm, offset_mm: window.offset_mm, seen_mm };
+        let now = LastDecision { command_mm, offset_mm: window.offset_mm, seen_mm };
         let Some(last) = self.last else {
             if let Some(following_mm) = following_mm {
                 self.delays.error = [scale(1.0 / D::ERROR_SCALE_MM, following_mm); 2];
@@ -192,7 +192,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
     /// Whether a position stands still while the command goes on. It is nothing to learn from before the safety layer, which has
     /// to wait for certainty, calls it lost.
     fn is_frozen(&self, command_mm: [f64; N], position_mm: [f64; N]) -> bool {
-        let moved_mm = |last: Last<N>| norm(sub(command_mm, last.command_mm));
+        let moved_mm = |last: LastDecision<N>| norm(sub(command_mm, last.command_mm));
         self.last.is_some_and(|last| position_mm == last.seen_mm && moved_mm(last) > STILL_MM)
     }
 
@@ -213,10 +213,10 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
         let strange_mm = norm(sub(following_mm, free_mm)) - STRANGE_SHARE * norm(free_mm) - STRANGE_MM;
         // Strange for good is also a machine that is not known yet: only what came with a leap is held against the position.
         self.leapt = (self.leapt || surprise_mm > LEAP_MM) && strange_mm > 0.0;
-        self.missed_mm = if self.leapt { surprise_mm.max(strange_mm) } else { surprise_mm };
-        let outlier = self.missed_mm > OUTLIER_MM + OUTLIER * self.net.innovation_mm();
+        self.prediction_error_mm = if self.leapt { surprise_mm.max(strange_mm) } else { surprise_mm };
+        let outlier = self.prediction_error_mm > OUTLIER_MM + OUTLIER * self.net.innovation_mm();
         self.outliers = if outlier { self.outliers + 1 } else { 0 };
-        outlier && self.outliers <= MOST_OUTLIERS
+        outlier && self.outliers <= MAX_OUTLIERS
     }
 
     /// Compares where the tool is with where it was foreseen some knots ago.
@@ -235,13 +235,13 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
 
     /// The weights at the quality that the predictions have now.
     fn weighted(&self) -> horizon::Settings<N> {
-        let blunter = 1.0 + fourth_power(self.net.innovation_mm() / self.settings.sure_mm);
+        let blunter = 1.0 + fourth_power(self.net.innovation_mm() / self.settings.innovation_scale_mm);
         let mut horizon = self.settings.horizon;
         horizon.rate_weight *= blunter;
         horizon.change_weight *= blunter;
         // A tool that is not foreseen well is held to its time: what is free along the path is as wrong as the prediction.
         let held = horizon.tangential_weight * libm::sqrt(blunter);
-        horizon.tangential_weight = held.min(MOST_TANGENTIAL_WEIGHT);
+        horizon.tangential_weight = held.min(MAX_TANGENTIAL_WEIGHT);
         horizon.offset_weight += fourth_power(self.missed.largest_mm() / self.settings.foreseen_mm);
         // Where there is hardly more to gain than the predictions miss by, nothing is.
         let lost = WORTHWHILE * self.net.innovation_mm() / self.open_error_mm.max(f64::MIN_POSITIVE);
@@ -252,7 +252,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
     /// Feed periods of a knot, so that the plan reaches beyond the lag and stays within the preview.
     fn periods(&self, period_s: f64) -> usize {
         let knots = self.settings.horizon.knots();
-        let most = (PREVIEW_KNOTS / (knots * self.settings.servo_periods.max(1) as usize)).clamp(1, MOST_PERIODS);
+        let most = (PREVIEW_KNOTS / (knots * self.settings.servo_periods.max(1) as usize)).clamp(1, MAX_PERIODS);
         let wanted = REACH * self.net.net().lag_s() / (knots as f64 * period_s);
         if (wanted - self.periods as f64).abs() < CLEARLY_OTHER {
             return self.periods.min(most);
@@ -265,7 +265,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
 impl<const N: usize, S: Solver<N>, D: ServoModel<N>> Controller<N> for RecedingHorizon<N, S, D> {
     fn schedule(&self) -> Schedule {
         let servo_periods = self.settings.servo_periods.max(1);
-        let preview = (self.settings.horizon.knots * MOST_PERIODS).min(PREVIEW_KNOTS / servo_periods as usize);
+        let preview = (self.settings.horizon.knots * MAX_PERIODS).min(PREVIEW_KNOTS / servo_periods as usize);
         Schedule { servo_periods, preview: preview as u32 }
     }
 
@@ -276,7 +276,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> Controller<N> for RecedingH
         self.delays = Delays::REST;
         self.free = Delays::REST;
         self.response = Delays::REST;
-        self.missed_mm = 0.0;
+        self.prediction_error_mm = 0.0;
         self.missed = Missed::NONE;
         self.outliers = 0;
         self.leapt = false;
@@ -306,14 +306,14 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> Controller<N> for RecedingH
         self.foreseen_mm2
     }
 
-    fn missed_mm(&self) -> f64 {
-        self.missed_mm
+    fn prediction_error_mm(&self) -> f64 {
+        self.prediction_error_mm
     }
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         self.periods = self.periods(window.feed_period_s);
         let horizon = self.weighted();
-        let model = Identified::new(&self.net, self.delays, self.response);
+        let model = IdentifiedPredictor::new(&self.net, self.delays, self.response);
         self.plan.shift(self.periods, &horizon);
         let mut step = self.plan.improve(&model, window, &horizon);
         for _ in 1..self.settings.steps {
@@ -334,29 +334,29 @@ fn feed<const N: usize>(from_mm: [f64; N], to_mm: [f64; N], period_s: f64) -> [f
 
 /// The identified servo as a model of the machine.
 #[derive(Debug, Clone)]
-struct Identified<'a, const N: usize, D> {
+struct IdentifiedPredictor<'a, const N: usize, D> {
     net: &'a D,
     delays: Delays<N>,
     /// What the offset makes of the following error, and the offset, mm.
     response: Delays<N>,
     offset_mm: [f64; N],
-    residual: [Foresight; N],
+    residual: [DisturbanceForecast; N],
     /// Derivative of the following error, scaled, to the acceleration of each knot, s^2: now and one feed period ago.
-    slopes: [[[f64; N]; MOST_KNOTS]; 2],
+    slopes: [[[f64; N]; MAX_KNOTS]; 2],
 }
 
-impl<'a, const N: usize, D: ServoModel<N>> Identified<'a, N, D> {
+impl<'a, const N: usize, D: ServoModel<N>> IdentifiedPredictor<'a, N, D> {
     fn new(net: &'a Adaptation<N, D>, delays: Delays<N>, response: Delays<N>) -> Self {
-        let slopes = [[[0.0; N]; MOST_KNOTS]; 2];
+        let slopes = [[[0.0; N]; MAX_KNOTS]; 2];
         Self { net: net.net(), delays, response, offset_mm: [0.0; N], residual: net.residual(), slopes }
     }
 
     /// The derivative moves on as the following error does, along the slopes of the identifier.
     #[inline]
-    fn advance_slopes(&mut self, slopes: &Inputs<N>, stretch: &Stretch<N>, felt: &mut Felt<N>) {
+    fn advance_slopes(&mut self, slopes: &Inputs<N>, stretch: &CommandedPeriod<N>, sensitivity: &mut Sensitivity<N>) {
         let [now, before] = &mut self.slopes;
-        let knots = now.iter_mut().zip(before).zip(felt).enumerate();
-        for (knot, ((now, before), felt)) in knots.take(stretch.knot() + 1) {
+        let knots = now.iter_mut().zip(before).zip(sensitivity).enumerate();
+        for (knot, ((now, before), sensitivity)) in knots.take(stretch.knot() + 1) {
             let moved_s2 = stretch.moved_s2(knot, 1.0);
             // Of F(k), F(k-1) and F(k-2).
             let gained = [0, 1, 2].map(|back| stretch.gained_s(knot, back) / FEED_SCALE_MM_S);
@@ -365,16 +365,16 @@ impl<'a, const N: usize, D: ServoModel<N>> Identified<'a, N, D> {
                 let grown_mm = f0 * gained[0] + f1 * gained[1] + f2 * gained[2] + e0 * now[axis] + e1 * before[axis];
                 before[axis] = now[axis];
                 now[axis] += grown_mm / D::ERROR_SCALE_MM;
-                felt[axis] = moved_s2 - D::ERROR_SCALE_MM * now[axis];
+                sensitivity[axis] = moved_s2 - D::ERROR_SCALE_MM * now[axis];
             }
         }
     }
 }
 
-impl<const N: usize, D: ServoModel<N>> Identified<'_, N, D> {
+impl<const N: usize, D: ServoModel<N>> IdentifiedPredictor<'_, N, D> {
     /// What the offset makes of the following error moves on as all of it does, but for what is not linear.
     #[inline]
-    fn respond(&mut self, stretch: &Stretch<N>) {
+    fn respond(&mut self, stretch: &CommandedPeriod<N>) {
         let [from_mm, to_mm] = stretch.offset_mm;
         let feed = feed(from_mm, to_mm, stretch.period_s);
         let inputs = self.response.inputs(feed);
@@ -387,20 +387,25 @@ impl<const N: usize, D: ServoModel<N>> Identified<'_, N, D> {
     }
 }
 
-impl<const N: usize, D: ServoModel<N>> Model<N> for Identified<'_, N, D> {
+impl<const N: usize, D: ServoModel<N>> Predictor<N> for IdentifiedPredictor<'_, N, D> {
     fn lag_s(&self) -> f64 {
         self.net.lag_s()
     }
 
     #[inline]
-    fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>, felt: &mut Felt<N>) -> [f64; N] {
+    fn advance(
+        &mut self,
+        window: &Window<'_, N>,
+        stretch: &CommandedPeriod<N>,
+        sensitivity: &mut Sensitivity<N>,
+    ) -> [f64; N] {
         let [from_mm, to_mm] = stretch.command_mm;
         let feed = feed(from_mm, to_mm, window.feed_period_s);
         let (mut grown_mm, slopes) = self.net.predict_with_slopes(&self.delays.inputs(feed));
         for axis in 0..N {
             grown_mm[axis] += self.residual[axis].next_mm();
         }
-        self.advance_slopes(&slopes, stretch, felt);
+        self.advance_slopes(&slopes, stretch, sensitivity);
         let error = add_scaled(self.delays.error[0], 1.0 / D::ERROR_SCALE_MM, grown_mm);
         self.delays.push(feed, error);
         self.respond(stretch);
@@ -416,12 +421,12 @@ impl<const N: usize, D: ServoModel<N>> Model<N> for Identified<'_, N, D> {
 mod tests {
     use super::*;
     use crate::identifier::Identifier;
-    use crate::identifier::adaptation::UNKNOWNS;
-    use crate::window::{Knot, Preview, Reference, Register};
+    use crate::identifier::UNKNOWNS;
+    use crate::window::{Knot, KnotSource, Preview, Register};
 
     struct Line;
 
-    impl Reference<2> for Line {
+    impl KnotSource<2> for Line {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             Knot { position_mm: [40.0 * tau_s, 30.0 * tau_s], tangent: [0.8, 0.6], feed_mm_s: 50.0, cutting: true }
         }
@@ -443,19 +448,22 @@ mod tests {
     }
 
     /// The tool at the end of each knot and its derivative.
-    fn roll_out(window: &Window<'_, 2>, accelerations: &[f64; 4], periods: usize) -> [([f64; 2], Felt<2>); 4] {
+    fn roll_out(window: &Window<'_, 2>, accelerations: &[f64; 4], periods: usize) -> [([f64; 2], Sensitivity<2>); 4] {
         let spread = [[[0.0; UNKNOWNS]; UNKNOWNS]; 2];
         let adaptation = Adaptation::new(net(), &spread, adaptation::Settings::DEFAULT);
-        let mut model =
-            Identified::new(&adaptation, Delays { feed: [[0.8, 0.6]; 2], error: [[0.8, 0.6]; 2] }, Delays::REST);
-        let mut stretch = Stretch::now(window, periods);
+        let mut model = IdentifiedPredictor::new(
+            &adaptation,
+            Delays { feed: [[0.8, 0.6]; 2], error: [[0.8, 0.6]; 2] },
+            Delays::REST,
+        );
+        let mut stretch = CommandedPeriod::now(window, periods);
         core::array::from_fn(|knot| {
-            let (mut tool_mm, mut felt) = ([0.0; 2], [[0.0; 2]; MOST_KNOTS]);
+            let (mut tool_mm, mut sensitivity) = ([0.0; 2], [[0.0; 2]; MAX_KNOTS]);
             for _ in 0..periods {
                 stretch.go_on(window, [accelerations[knot]; 2]);
-                tool_mm = model.advance(window, &stretch, &mut felt);
+                tool_mm = model.advance(window, &stretch, &mut sensitivity);
             }
-            (tool_mm, felt)
+            (tool_mm, sensitivity)
         })
     }
 
@@ -482,11 +490,11 @@ mod tests {
                 let (more, less) = (roll_out(&window, &more, periods), roll_out(&window, &less, periods));
                 for i in 0..4 {
                     for axis in 0..2 {
-                        let felt = if j <= i { found[i].1[j][axis] } else { 0.0 };
+                        let sensitivity = if j <= i { found[i].1[j][axis] } else { 0.0 };
                         let slope = (more[i].0[axis] - less[i].0[axis]) / (2.0 * step);
                         assert!(
-                            (felt - slope).abs() < 1e-6 * window.feed_period_s * window.feed_period_s,
-                            "{periods} {i} {j} {axis}: {felt} {slope}"
+                            (sensitivity - slope).abs() < 1e-6 * window.feed_period_s * window.feed_period_s,
+                            "{periods} {i} {j} {axis}: {sensitivity} {slope}"
                         );
                     }
                 }

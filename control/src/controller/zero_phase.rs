@@ -113,7 +113,7 @@ impl<const N: usize> Controller<N> for ZeroPhase<N> {
 mod tests {
     use super::*;
     use crate::controller::feedforward::tests::commands;
-    use crate::window::{Knot, Reference};
+    use crate::window::{Knot, KnotSource};
 
     const SERVO_S: f64 = 0.001;
     const AMPLITUDE_MM: f64 = 0.1;
@@ -130,7 +130,7 @@ mod tests {
         rad_s: f64,
     }
 
-    impl Reference<2> for Wave {
+    impl KnotSource<2> for Wave {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let t_s = tau_s.max(0.0);
             let y = AMPLITUDE_MM * libm::sin(self.rad_s * t_s);

@@ -7,8 +7,8 @@
 //! Source: Gauss-Newton with a fixed number of steps a tick as in Diehl, Bock and Schloeder (2005).
 
 use super::interior_point::Quadratic;
-use super::problem::{Problem, Row};
-use super::{Accelerations, MOST_KNOTS, MOST_UNKNOWNS, Solver};
+use super::problem::{GradientRow, HorizonProblem};
+use super::{Accelerations, MAX_KNOTS, MAX_UNKNOWNS, Solver};
 use crate::least_squares::BLOCK;
 use crate::vector::add_scaled;
 
@@ -19,14 +19,14 @@ pub struct GaussNewton {
 }
 
 impl<const N: usize> Solver<N> for GaussNewton {
-    fn improve(&mut self, problem: &Problem<N>, accelerations_mm_s2: &mut Accelerations<N>) {
+    fn improve(&mut self, problem: &HorizonProblem<N>, accelerations_mm_s2: &mut Accelerations<N>) {
         let unknowns = problem.unknowns();
         self.quadratic.clear(unknowns);
         self.add_errors(problem);
         self.add_speeds(problem, accelerations_mm_s2);
         self.add_offsets(problem);
         let limits = &problem.settings.limits.acceleration_mm_s2;
-        let (mut least, mut most) = ([0.0; MOST_UNKNOWNS], [0.0; MOST_UNKNOWNS]);
+        let (mut least, mut most) = ([0.0; MAX_UNKNOWNS], [0.0; MAX_UNKNOWNS]);
         let bounds = least.iter_mut().zip(&mut most).enumerate().take(unknowns);
         for ((i, (least, most)), now) in bounds.zip(accelerations_mm_s2.as_flattened()) {
             (*least, *most) = (-limits[i % N] - now, limits[i % N] - now);
@@ -40,8 +40,8 @@ impl<const N: usize> Solver<N> for GaussNewton {
 
 impl GaussNewton {
     /// G'G and G'r, a block of rows of G at a time.
-    fn add_errors<const N: usize>(&mut self, problem: &Problem<N>) {
-        let mut rows: [Row; BLOCK] = [[0.0; MOST_UNKNOWNS]; BLOCK];
+    fn add_errors<const N: usize>(&mut self, problem: &HorizonProblem<N>) {
+        let mut rows: [GradientRow; BLOCK] = [[0.0; MAX_UNKNOWNS]; BLOCK];
         let mut errors = [0.0; BLOCK];
         let (mut held, mut entries) = (0, 0);
         problem.rows(|knot, error, fill| {
@@ -68,8 +68,8 @@ impl GaussNewton {
 
     /// q: an acceleration in knot r moves the offset at the end of knot i by m_(i-r), so that the products of two knots differ
     /// from those of the next two by one term.
-    fn add_offsets<const N: usize>(&mut self, problem: &Problem<N>) {
-        let (knots, weight) = (problem.knots.min(MOST_KNOTS), problem.settings.offset_weight);
+    fn add_offsets<const N: usize>(&mut self, problem: &HorizonProblem<N>) {
+        let (knots, weight) = (problem.knots.min(MAX_KNOTS), problem.settings.offset_weight);
         if weight <= 0.0 {
             return;
         }
@@ -93,11 +93,11 @@ impl GaussNewton {
     }
 
     /// W: the speed v_j of the offset after knot j is the same sum of accelerations for all m <= j.
-    fn add_speeds<const N: usize>(&mut self, problem: &Problem<N>, accelerations_mm_s2: &Accelerations<N>) {
-        let (knots, knot_s) = (problem.knots.min(MOST_KNOTS), problem.knot_s);
+    fn add_speeds<const N: usize>(&mut self, problem: &HorizonProblem<N>, accelerations_mm_s2: &Accelerations<N>) {
+        let (knots, knot_s) = (problem.knots.min(MAX_KNOTS), problem.knot_s);
         let change = problem.settings.change_weight * knot_s * knot_s;
         let rate = problem.settings.rate_weight * knot_s;
-        let mut sum_mm_s = [[0.0; N]; MOST_KNOTS];
+        let mut sum_mm_s = [[0.0; N]; MAX_KNOTS];
         for knot in (0..knots).rev() {
             let later = if knot + 1 < knots { sum_mm_s[knot + 1] } else { [0.0; N] };
             sum_mm_s[knot] = add_scaled(later, 1.0, problem.ends[knot].offset_mm_s);
@@ -119,14 +119,14 @@ impl GaussNewton {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::horizon::{Felt, Limits, Model, Settings, Stretch};
-    use crate::window::{Knot, Preview, Reference, Register, Window};
+    use crate::horizon::{CommandedPeriod, CorrectionLimits, Predictor, Sensitivity, Settings};
+    use crate::window::{Knot, KnotSource, Preview, Register, Window};
 
     const KNOTS: usize = 6;
 
     struct Line;
 
-    impl Reference<2> for Line {
+    impl KnotSource<2> for Line {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             Knot { position_mm: [10.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 10.0, cutting: true }
         }
@@ -136,12 +136,17 @@ mod tests {
     #[derive(Clone)]
     struct Deaf;
 
-    impl Model<2> for Deaf {
+    impl Predictor<2> for Deaf {
         fn lag_s(&self) -> f64 {
             0.0
         }
 
-        fn advance(&mut self, window: &Window<'_, 2>, stretch: &Stretch<2>, _: &mut Felt<2>) -> [f64; 2] {
+        fn advance(
+            &mut self,
+            window: &Window<'_, 2>,
+            stretch: &CommandedPeriod<2>,
+            _: &mut Sensitivity<2>,
+        ) -> [f64; 2] {
             window.ahead(stretch.period + 1).position_mm
         }
     }
@@ -152,7 +157,7 @@ mod tests {
         change_weight: 1e-12,
         offset_weight: 0.7,
         last_weight: 0.1,
-        limits: Limits { acceleration_mm_s2: [1e6; 2], ..Limits::NONE },
+        limits: CorrectionLimits { acceleration_mm_s2: [1e6; 2], ..CorrectionLimits::NONE },
         ..Settings::EXAMPLE
     };
 
@@ -163,7 +168,7 @@ mod tests {
 
     /// q/2 sum |o|^2 + d/2 sum |T a|^2 of a plan, rolled out.
     fn price(window: &Window<'_, 2>, accelerations: &Accelerations<2>, periods: usize) -> f64 {
-        let problem = Problem::new(&Deaf, window, accelerations, periods, &SETTINGS);
+        let problem = HorizonProblem::new(&Deaf, window, accelerations, periods, &SETTINGS);
         let squares = |all: &mut dyn Iterator<Item = f64>| all.map(|x| x * x).sum::<f64>();
         let offsets = squares(&mut problem.ends[..KNOTS].iter().flat_map(|end| end.offset_mm));
         let changes = squares(&mut accelerations[..KNOTS].as_flattened().iter().map(|a| a * problem.knot_s));
@@ -177,8 +182,8 @@ mod tests {
         preview.fill(&mut Line, 0.0, 0.1);
         let window = window(&register, &preview);
         for periods in 1..=3 {
-            let mut accelerations = [[0.0; 2]; MOST_KNOTS];
-            let problem = Problem::new(&Deaf, &window, &accelerations, periods, &SETTINGS);
+            let mut accelerations = [[0.0; 2]; MAX_KNOTS];
+            let problem = HorizonProblem::new(&Deaf, &window, &accelerations, periods, &SETTINGS);
             GaussNewton::default().improve(&problem, &mut accelerations);
             let least = price(&window, &accelerations, periods);
             for knot in 0..KNOTS {

@@ -14,12 +14,12 @@
 //! Source: Mehrotra (1992), "On the implementation of a primal-dual interior point method"; for horizons, Rao, Wright and
 //! Rawlings (1998).
 
-use super::MOST_UNKNOWNS;
+use super::MAX_UNKNOWNS;
 use crate::least_squares::{BLOCK, add_products, cholesky, substitute};
 use crate::vector::bounded;
 
 /// Iterations at the most.
-const MOST_ITERATIONS: usize = 12;
+const MAX_ITERATIONS: usize = 12;
 /// What J may be above its minimum, mm^2: three nanometres of contour error in one knot.
 const NEAR_ENOUGH_MM2: f64 = 1e-11;
 /// Part of the way to the nearest bound that a step goes.
@@ -27,35 +27,35 @@ const PART_OF_THE_WAY: f64 = 0.995;
 /// The first point is this far within the bounds, in parts of their distance.
 const WELL_WITHIN: f64 = 0.05;
 
-type Vector = [f64; MOST_UNKNOWNS];
+type Unknowns = [f64; MAX_UNKNOWNS];
 
 /// H, of which the lower half is used, and g.
 #[derive(Debug, Clone)]
 pub struct Quadratic {
     number: usize,
-    curvature: [Vector; MOST_UNKNOWNS],
-    gradient: Vector,
-    factors: [Vector; MOST_UNKNOWNS],
+    curvature: [Unknowns; MAX_UNKNOWNS],
+    gradient: Unknowns,
+    factors: [Unknowns; MAX_UNKNOWNS],
 }
 
 impl Default for Quadratic {
     fn default() -> Self {
         Self {
             number: 0,
-            curvature: [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS],
-            gradient: [0.0; MOST_UNKNOWNS],
-            factors: [[0.0; MOST_UNKNOWNS]; MOST_UNKNOWNS],
+            curvature: [[0.0; MAX_UNKNOWNS]; MAX_UNKNOWNS],
+            gradient: [0.0; MAX_UNKNOWNS],
+            factors: [[0.0; MAX_UNKNOWNS]; MAX_UNKNOWNS],
         }
     }
 }
 
 /// A point between the bounds, what it is away from them, and the multipliers.
 #[derive(Debug, Clone)]
-struct Point {
-    x: Vector,
+struct Iterate {
+    x: Unknowns,
     /// x - least, most - x.
-    room: [Vector; 2],
-    multipliers: [Vector; 2],
+    room: [Unknowns; 2],
+    multipliers: [Unknowns; 2],
 }
 
 impl Quadratic {
@@ -71,7 +71,7 @@ impl Quadratic {
 
     /// Adds `1/2 (error + row x)^2` for a block of rows, whose first entries count.
     #[inline]
-    pub fn add_rows(&mut self, rows: &[Vector; BLOCK], errors: &[f64; BLOCK], entries: usize) {
+    pub fn add_rows(&mut self, rows: &[Unknowns; BLOCK], errors: &[f64; BLOCK], entries: usize) {
         let entries = entries.min(self.number());
         for (r, sums) in self.curvature.iter_mut().enumerate().take(entries) {
             let factors = rows.each_ref().map(|row| row[r]);
@@ -99,11 +99,11 @@ impl Quadratic {
     /// Unknowns: no more than there is room for.
     #[inline]
     fn number(&self) -> usize {
-        self.number.min(MOST_UNKNOWNS)
+        self.number.min(MAX_UNKNOWNS)
     }
 
     /// The minimum within the bounds, between which zero is.
-    pub fn minimum(&mut self, least: &Vector, most: &Vector) -> Vector {
+    pub fn minimum(&mut self, least: &Unknowns, most: &Unknowns) -> Unknowns {
         let number = self.number();
         let mut x = self.gradient.map(|slope| -slope);
         for (factors, row) in self.factors.iter_mut().zip(&self.curvature).take(number) {
@@ -114,7 +114,7 @@ impl Quadratic {
             return x;
         }
         let mut point = self.first_point(least, most);
-        for _ in 0..MOST_ITERATIONS {
+        for _ in 0..MAX_ITERATIONS {
             let gap = point.gap(number);
             if gap.is_nan() || gap < NEAR_ENOUGH_MM2 {
                 break;
@@ -125,9 +125,9 @@ impl Quadratic {
     }
 
     /// Near zero, with multipliers that satisfy H x + g = z - y.
-    fn first_point(&self, least: &Vector, most: &Vector) -> Point {
+    fn first_point(&self, least: &Unknowns, most: &Unknowns) -> Iterate {
         let mut point =
-            Point { x: [0.0; MOST_UNKNOWNS], room: [[1.0; MOST_UNKNOWNS]; 2], multipliers: [[1.0; MOST_UNKNOWNS]; 2] };
+            Iterate { x: [0.0; MAX_UNKNOWNS], room: [[1.0; MAX_UNKNOWNS]; 2], multipliers: [[1.0; MAX_UNKNOWNS]; 2] };
         for i in 0..self.number() {
             let within = WELL_WITHIN * (most[i] - least[i]);
             point.x[i] = bounded(0.0, least[i] + within, most[i] - within);
@@ -143,7 +143,7 @@ impl Quadratic {
         point
     }
 
-    fn iterate(&mut self, point: &mut Point, gap: f64) {
+    fn iterate(&mut self, point: &mut Iterate, gap: f64) {
         let number = self.number();
         let [z, y] = point.multipliers;
         let [s, t] = point.room;
@@ -151,20 +151,20 @@ impl Quadratic {
             factors.copy_from_slice(row);
             factors[r] += z[r] / s[r] + y[r] / t[r];
         }
-        let mut predicted: Vector = core::array::from_fn(|i| y[i] - z[i]);
+        let mut predicted: Unknowns = core::array::from_fn(|i| y[i] - z[i]);
         cholesky(&mut self.factors, &mut predicted, number);
-        let rates: [Vector; 2] = [
+        let rates: [Unknowns; 2] = [
             core::array::from_fn(|i| -z[i] - z[i] / s[i] * predicted[i]),
             core::array::from_fn(|i| -y[i] + y[i] / t[i] * predicted[i]),
         ];
         let ahead = point.after(&predicted, &rates, point.longest(&predicted, &rates, number)).gap(number) / gap;
         let centre = ahead * ahead * ahead * gap / (2 * number.max(1)) as f64;
         // What the products of room and multiplier are to become, less what they are, and what the predictor makes of them.
-        let c: Vector = core::array::from_fn(|i| centre - s[i] * z[i] - predicted[i] * rates[0][i]);
-        let d: Vector = core::array::from_fn(|i| centre - t[i] * y[i] + predicted[i] * rates[1][i]);
-        let mut step: Vector = core::array::from_fn(|i| c[i] / s[i] - d[i] / t[i]);
+        let c: Unknowns = core::array::from_fn(|i| centre - s[i] * z[i] - predicted[i] * rates[0][i]);
+        let d: Unknowns = core::array::from_fn(|i| centre - t[i] * y[i] + predicted[i] * rates[1][i]);
+        let mut step: Unknowns = core::array::from_fn(|i| c[i] / s[i] - d[i] / t[i]);
         substitute(&self.factors, &mut step, number);
-        let rates: [Vector; 2] = [
+        let rates: [Unknowns; 2] = [
             core::array::from_fn(|i| (c[i] - z[i] * step[i]) / s[i]),
             core::array::from_fn(|i| (d[i] + y[i] * step[i]) / t[i]),
         ];
@@ -173,7 +173,7 @@ impl Quadratic {
     }
 
     /// H x + g.
-    fn slopes(&self, x: &Vector) -> Vector {
+    fn slopes(&self, x: &Unknowns) -> Unknowns {
         let mut slopes = self.gradient;
         for r in 0..self.number() {
             let row = &self.curvature[r];
@@ -188,12 +188,12 @@ impl Quadratic {
     }
 }
 
-impl Point {
+impl Iterate {
     /// Sum of the products of room and multiplier: J is above its minimum by no more.
     fn gap(&self, number: usize) -> f64 {
         let mut sum = 0.0;
         for side in 0..2 {
-            for i in 0..number.min(MOST_UNKNOWNS) {
+            for i in 0..number.min(MAX_UNKNOWNS) {
                 sum += self.room[side][i] * self.multipliers[side][i];
             }
         }
@@ -201,11 +201,11 @@ impl Point {
     }
 
     /// The longest part of a step, up to all of it, that leaves room and multipliers above zero.
-    fn longest(&self, step: &Vector, rates: &[Vector; 2], number: usize) -> f64 {
+    fn longest(&self, step: &Unknowns, rates: &[Unknowns; 2], number: usize) -> f64 {
         let mut shrinks = 1.0_f64;
         for side in 0..2 {
             let sign = if side == 0 { -1.0 } else { 1.0 };
-            for i in 0..number.min(MOST_UNKNOWNS) {
+            for i in 0..number.min(MAX_UNKNOWNS) {
                 shrinks = shrinks.max(sign * step[i] / self.room[side][i]);
                 shrinks = shrinks.max(-rates[side][i] / self.multipliers[side][i]);
             }
@@ -213,8 +213,8 @@ impl Point {
         1.0 / shrinks
     }
 
-    fn after(&self, step: &Vector, rates: &[Vector; 2], length: f64) -> Self {
-        let add = |a: &Vector, part: f64, b: &Vector| core::array::from_fn(|i| a[i] + part * b[i]);
+    fn after(&self, step: &Unknowns, rates: &[Unknowns; 2], length: f64) -> Self {
+        let add = |a: &Unknowns, part: f64, b: &Unknowns| core::array::from_fn(|i| a[i] + part * b[i]);
         Self {
             x: add(&self.x, length, step),
             room: [add(&self.room[0], length, step), add(&self.room[1], -length, step)],
@@ -249,7 +249,7 @@ mod tests {
         for case in 0..200 {
             let mut quadratic = quadratic(0.37 * f64::from(case));
             let width = 0.002 + 0.02 * f64::from(case % 17);
-            let (least, most) = ([-width; MOST_UNKNOWNS], [0.7 * width; MOST_UNKNOWNS]);
+            let (least, most) = ([-width; MAX_UNKNOWNS], [0.7 * width; MAX_UNKNOWNS]);
             let x = quadratic.minimum(&least, &most);
             let slopes = quadratic.slopes(&x);
             let mut gain = 0.0;

@@ -17,9 +17,9 @@ pub const AHEAD_KNOTS: usize = 6;
 /// Part of the largest miss lately that is forgotten in a feed period: it lasts a second and a half.
 const FORGOTTEN: f64 = 0.002;
 /// A miss beyond this says no more, mm: no position that has leapt is to be remembered for longer than others.
-const MOST_MM: f64 = 0.05;
+const MAX_MM: f64 = 0.05;
 /// Predictions under way.
-const UNDER_WAY: usize = AHEAD_KNOTS * super::MOST_PERIODS + 1;
+const UNDER_WAY: usize = AHEAD_KNOTS * super::MAX_PERIODS + 1;
 
 /// Predictions under way, and the largest miss lately.
 #[derive(Debug, Clone)]
@@ -47,13 +47,13 @@ impl<const N: usize> Missed<N> {
         self.largest_mm *= 1.0 - FORGOTTEN;
         // Not a number is not larger.
         if period == self.period && missed_mm > self.largest_mm {
-            self.largest_mm = missed_mm.min(MOST_MM);
+            self.largest_mm = missed_mm.min(MAX_MM);
         }
     }
 
     /// In [`AHEAD_KNOTS`] knots of so many feed periods the tool without the offset is to be here, mm.
     pub fn foresee(&mut self, periods: usize, open_mm: [f64; N]) {
-        let period = self.period.wrapping_add(AHEAD_KNOTS * periods.min(super::MOST_PERIODS));
+        let period = self.period.wrapping_add(AHEAD_KNOTS * periods.min(super::MAX_PERIODS));
         self.foreseen[period % UNDER_WAY] = (open_mm, period);
     }
 }
@@ -84,7 +84,7 @@ mod tests {
         for position_mm in [[0.0, 7.0], [0.0, f64::NAN]] {
             missed.foresee(1, [0.0; 2]);
             (0..AHEAD_KNOTS).for_each(|_| missed.look_back(position_mm, [1.0, 0.0]));
-            assert!(missed.largest_mm() <= MOST_MM);
+            assert!(missed.largest_mm() <= MAX_MM);
         }
     }
 }

@@ -12,7 +12,7 @@
 //! further from its time than without the offset, about a point where the path turns back, and wherever the plan leaves much of
 //! the contour error. N rows more bring the offset back behind the last knot.
 
-use super::{Accelerations, Felt, MOST_AXES, MOST_KNOTS, MOST_UNKNOWNS, Model, Settings, Stretch};
+use super::{Accelerations, CommandedPeriod, MAX_AXES, MAX_KNOTS, MAX_UNKNOWNS, Predictor, Sensitivity, Settings};
 use crate::vector::{bounded, dot, norm, reject, scale, sub};
 use crate::window::{PREVIEW_KNOTS, Window};
 
@@ -35,7 +35,7 @@ const DRIVE_WEIGHT_S2: f64 = 1e-3;
 
 /// The problem of a tick.
 #[derive(Debug, Clone)]
-pub struct Problem<const N: usize> {
+pub struct HorizonProblem<const N: usize> {
     /// Knots of the horizon.
     pub knots: usize,
     /// Time of a knot, s.
@@ -43,12 +43,12 @@ pub struct Problem<const N: usize> {
     /// Lag of the machine, s.
     pub lag_s: f64,
     /// What counts at the end of each knot.
-    pub ends: [End<N>; MOST_KNOTS],
+    pub ends: [End<N>; MAX_KNOTS],
     /// Derivative of the tool to the accelerations, s^2.
-    pub felt: [Felt<N>; MOST_KNOTS],
+    pub sensitivity: [Sensitivity<N>; MAX_KNOTS],
     /// Derivative of the offset at the end of the last knot to the acceleration of each knot, s^2: that of any other is the
     /// same, shifted.
-    pub moved_s2: [f64; MOST_KNOTS],
+    pub moved_s2: [f64; MAX_KNOTS],
     /// The settings.
     pub settings: Settings<N>,
 }
@@ -102,36 +102,36 @@ impl<const N: usize> End<N> {
 }
 
 /// The derivative of an error to all accelerations.
-pub type Row = [f64; MOST_UNKNOWNS];
+pub type GradientRow = [f64; MAX_UNKNOWNS];
 
-impl<const N: usize> Problem<N> {
+impl<const N: usize> HorizonProblem<N> {
     /// Rolls a plan out through a model. The tool is to be behind the plan by the lag of the model.
-    pub fn new<M: Model<N>>(
+    pub fn new<M: Predictor<N>>(
         model: &M,
         window: &Window<'_, N>,
         accelerations_mm_s2: &Accelerations<N>,
         periods: usize,
         settings: &Settings<N>,
     ) -> Self {
-        const { assert!(N >= 2 && N <= MOST_AXES, "a plan is made in the plane or in space") };
+        const { assert!(N >= 2 && N <= MAX_AXES, "a plan is made in the plane or in space") };
         let knots = settings.knots();
         let lag_s = bounded(model.lag_s(), 0.0, PREVIEW_KNOTS as f64 * window.servo_s());
         let mut problem = Self {
             knots,
             knot_s: periods as f64 * window.feed_period_s,
             lag_s,
-            ends: [End::NONE; MOST_KNOTS],
-            felt: [[[0.0; N]; MOST_KNOTS]; MOST_KNOTS],
-            moved_s2: [0.0; MOST_KNOTS],
+            ends: [End::NONE; MAX_KNOTS],
+            sensitivity: [[[0.0; N]; MAX_KNOTS]; MAX_KNOTS],
+            moved_s2: [0.0; MAX_KNOTS],
             settings: *settings,
         };
         let mut model = model.clone();
-        let mut stretch = Stretch::now(window, periods);
+        let mut stretch = CommandedPeriod::now(window, periods);
         for knot in 0..knots {
             let mut tool_mm = [0.0; N];
             for _ in 0..periods {
                 stretch.go_on(window, accelerations_mm_s2[knot]);
-                tool_mm = model.advance(window, &stretch, &mut problem.felt[knot]);
+                tool_mm = model.advance(window, &stretch, &mut problem.sensitivity[knot]);
             }
             let end_s = (stretch.period + 1) as f64 * window.feed_period_s;
             let own = window.at(end_s - lag_s);
@@ -234,7 +234,7 @@ impl<const N: usize> Problem<N> {
     /// The last knot of the horizon.
     #[inline]
     fn last_knot(&self) -> usize {
-        self.knots.clamp(1, MOST_KNOTS) - 1
+        self.knots.clamp(1, MAX_KNOTS) - 1
     }
 
     /// Unknowns.
@@ -248,7 +248,7 @@ impl<const N: usize> Problem<N> {
         if direction + 1 < N {
             return 1.0;
         }
-        let end = &self.ends[knot.min(MOST_KNOTS - 1)];
+        let end = &self.ends[knot.min(MAX_KNOTS - 1)];
         let held = (TURN_WEIGHT * end.turn).max(self.settings.late_weight * end.corner);
         self.settings.weight_along(knot, end.feed_mm_s).max(held)
     }
@@ -256,7 +256,7 @@ impl<const N: usize> Problem<N> {
     /// Hands every row and its error to `take`, with the knot that it belongs to: the number of its entries is
     /// `(knot + 1) * N`.
     #[inline]
-    pub fn rows(&self, mut take: impl FnMut(usize, f64, &dyn Fn(&mut Row))) {
+    pub fn rows(&self, mut take: impl FnMut(usize, f64, &dyn Fn(&mut GradientRow))) {
         for (knot, end) in self.ends.iter().enumerate().take(self.knots) {
             for d in 0..N {
                 if end.counts {
@@ -285,7 +285,7 @@ impl<const N: usize> Problem<N> {
 
     /// The rows of where the offset would come to behind the last knot.
     #[inline]
-    fn end_rows(&self, take: &mut impl FnMut(usize, f64, &dyn Fn(&mut Row))) {
+    fn end_rows(&self, take: &mut impl FnMut(usize, f64, &dyn Fn(&mut GradientRow))) {
         let knot = self.last_knot();
         let end = &self.ends[knot];
         for axis in 0..N {
@@ -300,7 +300,7 @@ impl<const N: usize> Problem<N> {
 
     /// The rows of the limits that the plan is beyond.
     #[inline]
-    fn limit_rows(&self, knot: usize, end: &End<N>, take: &mut impl FnMut(usize, f64, &dyn Fn(&mut Row))) {
+    fn limit_rows(&self, knot: usize, end: &End<N>, take: &mut impl FnMut(usize, f64, &dyn Fn(&mut GradientRow))) {
         let limits = &self.settings.limits;
         let length_mm = norm(end.offset_mm);
         if length_mm > limits.deviation_mm {
@@ -331,15 +331,15 @@ impl<const N: usize> Problem<N> {
         Some((at(now)? - 2.0 * at(before)? + at(first)?) / (self.knot_s * self.knot_s))
     }
 
-    fn tool_row(&self, knot: usize, direction: [f64; N], row: &mut Row) {
-        for (entries, felt) in by_knot::<N>(row, knot).zip(&self.felt[knot.min(MOST_KNOTS - 1)]) {
+    fn tool_row(&self, knot: usize, direction: [f64; N], row: &mut GradientRow) {
+        for (entries, sensitivity) in by_knot::<N>(row, knot).zip(&self.sensitivity[knot.min(MAX_KNOTS - 1)]) {
             for axis in 0..N {
-                entries[axis] = direction[axis] * felt[axis];
+                entries[axis] = direction[axis] * sensitivity[axis];
             }
         }
     }
 
-    fn offset_row(&self, knot: usize, direction: [f64; N], row: &mut Row) {
+    fn offset_row(&self, knot: usize, direction: [f64; N], row: &mut GradientRow) {
         let shift = self.last_knot().saturating_sub(knot);
         for (entries, moved_s2) in by_knot::<N>(row, knot).zip(&self.moved_s2[shift..]) {
             for axis in 0..N {
@@ -348,17 +348,19 @@ impl<const N: usize> Problem<N> {
         }
     }
 
-    fn speed_row(&self, knot: usize, axis: usize, row: &mut Row) {
+    fn speed_row(&self, knot: usize, axis: usize, row: &mut GradientRow) {
         for entries in by_knot::<N>(row, knot) {
             *entries = only(axis, SPEED_WEIGHT_S * self.knot_s);
         }
     }
 
-    fn drive_row(&self, knot: usize, axis: usize, row: &mut Row) {
+    fn drive_row(&self, knot: usize, axis: usize, row: &mut GradientRow) {
         let gain = DRIVE_WEIGHT_S2 / (self.knot_s * self.knot_s);
         for (j, entries) in by_knot::<N>(row, knot).enumerate() {
-            let felt = |back: usize| self.felt.get(knot.saturating_sub(back)).and_then(|felt| felt.get(j)?.get(axis));
-            let [now, before, first] = [0, 1, 2].map(|back| felt(back).copied().unwrap_or(0.0));
+            let sensitivity = |back: usize| {
+                self.sensitivity.get(knot.saturating_sub(back)).and_then(|sensitivity| sensitivity.get(j)?.get(axis))
+            };
+            let [now, before, first] = [0, 1, 2].map(|back| sensitivity(back).copied().unwrap_or(0.0));
             *entries = only(axis, gain * (now - 2.0 * before + first));
         }
     }
@@ -366,7 +368,7 @@ impl<const N: usize> Problem<N> {
 
 /// The entries of a row, axis by axis, of each knot up to this one.
 #[inline]
-fn by_knot<const N: usize>(row: &mut Row, knot: usize) -> impl Iterator<Item = &mut [f64; N]> {
+fn by_knot<const N: usize>(row: &mut GradientRow, knot: usize) -> impl Iterator<Item = &mut [f64; N]> {
     row.as_chunks_mut().0.iter_mut().take(knot + 1)
 }
 

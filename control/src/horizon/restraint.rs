@@ -18,11 +18,11 @@
 //! model does not know; after a rapid that asks for it, a tool is late for the cut, and the correction of where it is not goes
 //! wrong.
 
-use super::{Limits, Settings};
+use super::{CorrectionLimits, Settings};
 use crate::vector::fourth_power;
 
 /// q at the most.
-const MOST_OFFSET_WEIGHT: f64 = 10.0;
+const MAX_OFFSET_WEIGHT: f64 = 10.0;
 /// How far an offset that accelerates by A comes within the lag, in A lag^2: it has some of the lag before, and some behind.
 const REACH: f64 = 2.0;
 /// What is left of n and u from one tick to the next, where they become smaller: the correction that was held back comes in
@@ -33,14 +33,14 @@ const START_WEIGHT: f64 = 0.3;
 const START_LEFT: f64 = 0.5;
 /// S, and the most of that term: at 10, drilling behind rapids at the torque limit was still worse by 2 um.
 const DRIVE_SHARE: f64 = 0.8;
-const MOST_LIMIT_WEIGHT: f64 = 100.0;
+const MAX_LIMIT_WEIGHT: f64 = 100.0;
 /// L, and U: the part of the contour error at which it is reached.
 const LATE_WEIGHT: f64 = 0.6;
 const UNDONE_SHARE: f64 = 0.3;
 /// e_0: an RMS contour error that says nothing, mm; and its square.
 const NOTHING_MM2: f64 = 1e-6;
 /// The least mean square without an offset that a share is taken of, mm^2.
-const LEAST_OPEN_MM2: f64 = 1e-12;
+const MIN_OPEN_MM2: f64 = 1e-12;
 
 /// n, u and a lately.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,7 +57,7 @@ impl Restraint {
 
     /// Takes in n, mm; the mean squares of the contour error over the horizon, of the plan and without any offset, mm^2; and a.
     pub(super) fn take_in(&mut self, need_mm: f64, [plan_mm2, open_mm2]: [f64; 2], drive_share: f64) {
-        let undone = libm::sqrt((plan_mm2 - NOTHING_MM2).max(0.0) / open_mm2.max(LEAST_OPEN_MM2)).min(1.0);
+        let undone = libm::sqrt((plan_mm2 - NOTHING_MM2).max(0.0) / open_mm2.max(MIN_OPEN_MM2)).min(1.0);
         self.need_mm = need_mm.max(LEFT * self.need_mm);
         self.undone = undone.max(LEFT * self.undone);
         self.start_weight *= START_LEFT;
@@ -73,7 +73,7 @@ impl Restraint {
         let at_limit = at_limit * at_limit;
         let share = (self.undone / UNDONE_SHARE).min(1.0);
         Settings {
-            offset_weight: weight.min(MOST_OFFSET_WEIGHT) + at_limit.min(MOST_LIMIT_WEIGHT),
+            offset_weight: weight.min(MAX_OFFSET_WEIGHT) + at_limit.min(MAX_LIMIT_WEIGHT),
             late_weight: settings.late_weight.max(LATE_WEIGHT * share * share),
             ..*settings
         }
@@ -81,7 +81,7 @@ impl Restraint {
 }
 
 /// D, mm.
-fn within_mm<const N: usize>(limits: &Limits<N>, lag_s: f64) -> f64 {
+fn within_mm<const N: usize>(limits: &CorrectionLimits<N>, lag_s: f64) -> f64 {
     let least_mm_s2 = limits.acceleration_mm_s2.iter().copied().fold(f64::INFINITY, f64::min);
     limits.deviation_mm.min(REACH * least_mm_s2 * lag_s * lag_s)
 }
@@ -91,7 +91,7 @@ mod tests {
     use super::*;
 
     const SETTINGS: Settings<2> = Settings {
-        limits: Limits { acceleration_mm_s2: [400.0, 100.0], deviation_mm: 0.5, ..Limits::NONE },
+        limits: CorrectionLimits { acceleration_mm_s2: [400.0, 100.0], deviation_mm: 0.5, ..CorrectionLimits::NONE },
         ..Settings::EXAMPLE
     };
 
@@ -109,7 +109,7 @@ mod tests {
         assert!((restrained(0.25, [0.0; 2], 0.1).offset_weight - 0.0625).abs() < 1e-12);
         // 2 * 100 mm/s^2 * (20 ms)^2 = 0.08 mm: the slowest of the axes there are.
         assert!((restrained(0.04, [0.0; 2], 0.02).offset_weight - 0.0625).abs() < 1e-12);
-        assert!((restrained(1e9, [0.0; 2], 0.1).offset_weight - MOST_OFFSET_WEIGHT).abs() < 1e-12);
+        assert!((restrained(1e9, [0.0; 2], 0.1).offset_weight - MAX_OFFSET_WEIGHT).abs() < 1e-12);
     }
 
     #[test]
@@ -120,7 +120,7 @@ mod tests {
         restraint.take_in(0.0, [0.0; 2], 1.0);
         assert!((restraint.on(&SETTINGS, 0.1).offset_weight - 0.8_f64.powi(-8)).abs() < 1e-3);
         restraint.take_in(0.0, [0.0; 2], 1e9);
-        assert!(restraint.on(&SETTINGS, 0.1).offset_weight >= MOST_LIMIT_WEIGHT);
+        assert!(restraint.on(&SETTINGS, 0.1).offset_weight >= MAX_LIMIT_WEIGHT);
     }
 
     #[test]

@@ -15,17 +15,14 @@
 //! Source: generalised least squares, Clarke (1967); a prior that is the covariance of a population, Lindley and Smith
 //! (1972); switching between models by their recent predictions, Narendra and Balakrishnan (1997).
 
-use super::residual::{self, Foresight, LAGS, Residual};
+use super::residual::{self, DisturbanceForecast, LAGS, Residual};
 use super::servo::ServoIdentifier;
-use super::{INPUTS, Inputs, ServoModel};
+use super::{INPUTS, Inputs, ServoModel, UNKNOWNS};
 use crate::least_squares::{LeastSquares, inverse};
 
 /// The other model is believed where its mean square innovation is below this part of the present one's: no change of mind
 /// over noise.
 const CLEARLY_BETTER: f64 = 0.5;
-
-/// Unknowns of an axis: its part of the linear connection, and the factor on its hidden nodes less 1.
-pub const UNKNOWNS: usize = INPUTS + 1;
 
 /// How machines of a kind differ from the identified: mean squares and products of delta, axis by axis.
 pub type Spread<const N: usize> = [[[f64; UNKNOWNS]; UNKNOWNS]; N];
@@ -40,13 +37,13 @@ pub struct Settings {
     /// By how much a machine may well differ in any direction, whatever its kind, mm for an input of 1.
     pub beyond_mm: f64,
     /// Part by which the mean squares that the models are judged by follow each innovation; 0.001 to 0.1.
-    pub judging: f64,
-    /// As [`Self::judging`], for how much the predictions are trusted; smaller remembers a surprise for longer.
-    pub caution: f64,
+    pub variance_gain: f64,
+    /// As [`Self::variance_gain`], for how much the predictions are trusted; smaller remembers a surprise for longer.
+    pub long_variance_gain: f64,
     /// Part of the square of a surprise that is feared at once; 0 to 1.
-    pub fright: f64,
+    pub peak_gain: f64,
     /// How much an axis that has not moved yet is taken to be like the others; 0 (not at all) to 0.99.
-    pub alike: f64,
+    pub axis_coupling: f64,
     /// Prediction of what the models miss.
     pub residual: residual::Settings,
 }
@@ -57,10 +54,10 @@ impl Settings {
         forgetting: 0.998,
         noise_mm: 3e-4,
         beyond_mm: 3e-3,
-        judging: 0.01,
-        caution: 0.002,
-        fright: 0.3,
-        alike: 0.9,
+        variance_gain: 0.01,
+        long_variance_gain: 0.002,
+        peak_gain: 0.3,
+        axis_coupling: 0.9,
         residual: residual::Settings::DEFAULT,
     };
 }
@@ -72,7 +69,7 @@ pub struct Adaptation<const N: usize, D = ServoIdentifier<N>> {
     /// Information of the prior of each axis, relative to that of one sample.
     prior: Spread<N>,
     now: D,
-    axes: [Axis; N],
+    axes: [AxisAdaptation; N],
     /// Mean squares of the innovations of both models lately, over all axes, mm2.
     square_mm2: [f64; 2],
     /// As these, of the model that was believed, over a longer time.
@@ -84,7 +81,7 @@ pub struct Adaptation<const N: usize, D = ServoIdentifier<N>> {
 
 /// Both models of an axis: trained and adapted.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Axis {
+struct AxisAdaptation {
     sums: LeastSquares<UNKNOWNS>,
     change: [f64; UNKNOWNS],
     /// The last phi and y, newest first, for the filter.
@@ -94,7 +91,7 @@ struct Axis {
 }
 
 /// One sample of an axis.
-struct Sample {
+struct AxisSample {
     inputs: [f64; UNKNOWNS],
     missed_mm: f64,
 }
@@ -110,7 +107,7 @@ impl<const N: usize, D: ServoModel<N>> Adaptation<N, D> {
             now: trained.clone(),
             trained,
             prior,
-            axes: [Axis::new(&settings); N],
+            axes: [AxisAdaptation::new(&settings); N],
             square_mm2: [0.0; 2],
             long_square_mm2: 0.0,
             adapted: false,
@@ -126,20 +123,20 @@ impl<const N: usize, D: ServoModel<N>> Adaptation<N, D> {
 
     /// What it is expected to miss.
     #[inline]
-    pub fn residual(&self) -> [Foresight; N] {
-        core::array::from_fn(|axis| self.axes[axis].residuals[self.believed()].foresight())
+    pub fn residual(&self) -> [DisturbanceForecast; N] {
+        core::array::from_fn(|axis| self.axes[axis].residuals[self.active()].forecast())
     }
 
     /// Of the two models, trained and adapted, the one that is believed.
     #[inline]
-    fn believed(&self) -> usize {
+    fn active(&self) -> usize {
         usize::from(self.adapted)
     }
 
     /// RMS of the innovations lately, mm: how good the predictions are.
     #[inline]
     pub fn innovation_mm(&self) -> f64 {
-        libm::sqrt(self.square_mm2[self.believed()].max(self.long_square_mm2))
+        libm::sqrt(self.square_mm2[self.active()].max(self.long_square_mm2))
     }
 
     /// Back to what was trained.
@@ -162,7 +159,7 @@ impl<const N: usize, D: ServoModel<N>> Adaptation<N, D> {
         let mut squares = [0.0; 2];
         for axis in 0..N {
             let mean = self.others(axis);
-            let mut sample = Sample { inputs: [hidden_mm[axis]; UNKNOWNS], missed_mm: missed_mm[axis] };
+            let mut sample = AxisSample { inputs: [hidden_mm[axis]; UNKNOWNS], missed_mm: missed_mm[axis] };
             sample.inputs[..INPUTS].copy_from_slice(&inputs[axis]);
             let innovations_mm = self.axes[axis].learn(&sample, &self.prior[axis], &mean, &self.settings);
             for model in 0..2 {
@@ -182,19 +179,19 @@ impl<const N: usize, D: ServoModel<N>> Adaptation<N, D> {
                 *sum += if other == axis { 0.0 } else { change };
             }
         }
-        sum.map(|change| change * self.settings.alike / (N.max(2) - 1) as f64)
+        sum.map(|change| change * self.settings.axis_coupling / (N.max(2) - 1) as f64)
     }
 
     fn judge(&mut self, squares: [f64; 2]) {
-        let Settings { judging, caution, fright, .. } = self.settings;
+        let Settings { variance_gain, long_variance_gain, peak_gain, .. } = self.settings;
         for model in 0..2 {
-            self.square_mm2[model] += judging * (squares[model] - self.square_mm2[model]);
+            self.square_mm2[model] += variance_gain * (squares[model] - self.square_mm2[model]);
         }
-        let surprise = squares[self.believed()];
-        self.long_square_mm2 += caution * (surprise - self.long_square_mm2);
-        self.long_square_mm2 = self.long_square_mm2.max(fright * surprise);
-        let (believed_mm2, other_mm2) = (self.square_mm2[self.believed()], self.square_mm2[1 - self.believed()]);
-        if other_mm2 < CLEARLY_BETTER * believed_mm2 {
+        let surprise = squares[self.active()];
+        self.long_square_mm2 += long_variance_gain * (surprise - self.long_square_mm2);
+        self.long_square_mm2 = self.long_square_mm2.max(peak_gain * surprise);
+        let (active_mm2, other_mm2) = (self.square_mm2[self.active()], self.square_mm2[1 - self.active()]);
+        if other_mm2 < CLEARLY_BETTER * active_mm2 {
             self.adapted = !self.adapted;
         }
     }
@@ -208,7 +205,7 @@ impl<const N: usize, D: ServoModel<N>> Adaptation<N, D> {
     }
 }
 
-impl Axis {
+impl AxisAdaptation {
     fn new(settings: &Settings) -> Self {
         Self {
             sums: LeastSquares::EMPTY,
@@ -222,7 +219,7 @@ impl Axis {
     /// One more sample; returns the innovations of both models, mm.
     fn learn(
         &mut self,
-        sample: &Sample,
+        sample: &AxisSample,
         prior: &[[f64; UNKNOWNS]; UNKNOWNS],
         mean: &[f64; UNKNOWNS],
         settings: &Settings,
@@ -243,9 +240,9 @@ impl Axis {
     }
 
     /// The sample less what the autoregression of the trained model's residual makes of those before it.
-    fn filtered(&mut self, sample: &Sample) -> Sample {
+    fn filtered(&mut self, sample: &AxisSample) -> AxisSample {
         let filter = self.residuals[0].coefficients();
-        let mut filtered = Sample { ..*sample };
+        let mut filtered = AxisSample { ..*sample };
         for lag in 0..LAGS {
             filtered.missed_mm -= filter[lag] * self.past_missed_mm[lag];
             for input in 0..UNKNOWNS {

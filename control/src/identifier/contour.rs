@@ -19,7 +19,7 @@
 //! | W_ji    | `hidden`     | 1                       |
 //! | W_oj    | `output`     | 1                       |
 
-use super::{ContourModel, ERROR_SCALE_MM, HIDDEN, INPUTS, Identifier, Inputs, Kind};
+use super::{ContourModel, ERROR_SCALE_MM, HIDDEN, INPUTS, Identifier, IdentifierKind, Inputs};
 use crate::activation::{bipolar_sigmoid, slope};
 
 /// The weights.
@@ -41,7 +41,7 @@ pub struct Forward<const N: usize> {
 }
 
 impl<const N: usize> Identifier<N> for ContourIdentifier<N> {
-    const KIND: Kind = Kind::Contour;
+    const KIND: IdentifierKind = IdentifierKind::Contour;
     const ERROR_SCALE_MM: f64 = ERROR_SCALE_MM;
     const NULL: Self = Self { hidden: [[[0.0; HIDDEN]; INPUTS]; N], output: [[0.0; HIDDEN]; N] };
 

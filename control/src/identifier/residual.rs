@@ -39,7 +39,7 @@ impl Settings {
 
 /// The residuals to come of one axis, as far as the past foretells them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Foresight {
+pub struct DisturbanceForecast {
     /// The last residuals, newest first, mm.
     past_mm: [f64; LAGS],
     coefficients: [f64; LAGS],
@@ -47,7 +47,7 @@ pub struct Foresight {
     largest_mm: f64,
 }
 
-impl Foresight {
+impl DisturbanceForecast {
     #[inline]
     fn expected_mm(&self) -> f64 {
         bounded(weighted(&self.coefficients, &self.past_mm), -self.largest_mm, self.largest_mm)
@@ -70,7 +70,7 @@ impl Foresight {
 /// Residuals of one axis and the model of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Residual {
-    foresight: Foresight,
+    forecast: DisturbanceForecast,
     sums: LeastSquares<LAGS>,
     prior: [f64; LAGS],
     usual_mm: f64,
@@ -82,7 +82,7 @@ impl Residual {
     pub fn new(settings: Settings) -> Self {
         let prior = smoothing(settings.gain);
         Self {
-            foresight: Foresight { past_mm: [0.0; LAGS], coefficients: prior, largest_mm: 0.0 },
+            forecast: DisturbanceForecast { past_mm: [0.0; LAGS], coefficients: prior, largest_mm: 0.0 },
             sums: LeastSquares::EMPTY,
             prior,
             usual_mm: 0.0,
@@ -93,26 +93,26 @@ impl Residual {
     /// The coefficients a.
     #[inline]
     pub fn coefficients(&self) -> &[f64; LAGS] {
-        &self.foresight.coefficients
+        &self.forecast.coefficients
     }
 
     /// What is expected next, mm.
     #[inline]
     pub fn expected_mm(&self) -> f64 {
-        self.foresight.expected_mm()
+        self.forecast.expected_mm()
     }
 
     /// What is expected from here on.
     #[inline]
-    pub fn foresight(&self) -> Foresight {
-        self.foresight
+    pub fn forecast(&self) -> DisturbanceForecast {
+        self.forecast
     }
 
     /// Takes in the residual of a knot, mm; returns the weight from 0 to 1 that it deserves.
     #[inline]
     pub fn push(&mut self, residual_mm: f64) -> f64 {
         let Settings { forgetting, noise_mm, .. } = self.settings;
-        let past_mm = self.foresight.past_mm;
+        let past_mm = self.forecast.past_mm;
         let innovation_mm = (residual_mm - self.expected_mm()).abs();
         let limit_mm = USUAL * self.usual_mm + noise_mm;
         let weight = if innovation_mm > limit_mm { limit_mm / innovation_mm } else { 1.0 };
@@ -121,9 +121,9 @@ impl Residual {
         let root = libm::sqrt(weight);
         self.sums.add(forgetting, &past_mm.map(|r| root * r), root * surprise_mm);
         let change = self.sums.estimate(noise_mm * noise_mm / (1.0 - forgetting).max(1e-6), &[0.0; LAGS]);
-        self.foresight.coefficients = core::array::from_fn(|j| self.prior[j] + change[j]);
-        self.foresight.shift(residual_mm);
-        self.foresight.largest_mm = (forgetting * self.foresight.largest_mm).max(residual_mm.abs());
+        self.forecast.coefficients = core::array::from_fn(|j| self.prior[j] + change[j]);
+        self.forecast.shift(residual_mm);
+        self.forecast.largest_mm = (forgetting * self.forecast.largest_mm).max(residual_mm.abs());
         weight
     }
 }
@@ -164,9 +164,9 @@ mod tests {
         for k in 0..400 {
             residual.push(vibration(k));
         }
-        let mut foresight = residual.foresight();
+        let mut forecast = residual.forecast();
         for k in 400..410 {
-            let next = foresight.next_mm();
+            let next = forecast.next_mm();
             assert!((next - vibration(k)).abs() < 1e-4, "{k}: {next} {}", vibration(k));
         }
     }
@@ -188,9 +188,9 @@ mod tests {
             residual.push(1e-6 * libm::exp(0.2 * f64::from(k)));
         }
         let largest = 1e-6 * libm::exp(0.2 * 59.0);
-        let mut foresight = residual.foresight();
+        let mut forecast = residual.forecast();
         for _ in 0..100 {
-            assert!(foresight.next_mm().abs() <= largest * (1.0 + 1e-12));
+            assert!(forecast.next_mm().abs() <= largest * (1.0 + 1e-12));
         }
     }
 }

@@ -12,8 +12,7 @@
 //! Source: the input structure of Lee, Cho and Jeon (2005), section 3.2, on another output; skip connections from
 //! inputs to outputs are classical (Rumelhart, Hinton and Williams 1986).
 
-use super::adaptation::UNKNOWNS;
-use super::{HIDDEN, INPUTS, Identifier, Inputs, Kind, ServoModel};
+use super::{HIDDEN, INPUTS, Identifier, IdentifierKind, Inputs, ServoModel, UNKNOWNS};
 use crate::activation::{bipolar_sigmoid, slope};
 use crate::vector::add_scaled;
 
@@ -49,7 +48,7 @@ impl<const N: usize> ServoIdentifier<N> {
 }
 
 impl<const N: usize> Identifier<N> for ServoIdentifier<N> {
-    const KIND: Kind = Kind::Servo;
+    const KIND: IdentifierKind = IdentifierKind::Servo;
     const ERROR_SCALE_MM: f64 = FOLLOWING_SCALE_MM;
     /// The following error of an ideal servo grows with nothing.
     const NULL: Self =

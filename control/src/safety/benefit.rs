@@ -26,10 +26,10 @@ use crate::window::Window;
 const MEMORY_S: f64 = 0.25;
 /// Harm in the mean square: beyond this many times that without, and this much, mm^2 (5 um).
 const CERTAIN: f64 = 1.5;
-const LEAST_MM2: f64 = 2.5e-5;
+const MIN_MM2: f64 = 2.5e-5;
 /// Harm in a single error: beyond this many times the largest without, and this much, mm.
 const CERTAIN_PEAK: f64 = 1.5;
-const LEAST_PEAK_MM: f64 = 0.03;
+const MIN_PEAK_MM: f64 = 0.03;
 /// Time over which it is found that a correction is overdone, s.
 const OVERDONE_S: f64 = 0.1;
 /// Mean square of what a correction changes from which on that says something, mm^2 (3 um): below, what the model misses looks
@@ -97,8 +97,8 @@ impl<const N: usize> Benefit<N> {
         if moved_mm.is_none() {
             return self.square_mm2 > GUESSED_MM2 + GUESSED * self.open_square_mm2;
         }
-        self.square_mm2 > LEAST_MM2 + CERTAIN * self.open_square_mm2
-            || norm(vector_mm) > LEAST_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm
+        self.square_mm2 > MIN_MM2 + CERTAIN * self.open_square_mm2
+            || norm(vector_mm) > MIN_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm
     }
 
     fn guessed_mm(&mut self, window: &Window<'_, N>, contour: &ContourError<N>) -> [f64; N] {

@@ -24,7 +24,7 @@ use listed::{Verdict, codes_of};
 /// Programs that LinuxCNC is asked about at a time.
 const BATCH: u64 = 500;
 /// Tenths of the largest G-code, and the largest M-code that the interpreter itself has.
-const MOST_CODES: [u32; 2] = [1000, 100];
+const MAX_CODES: [u32; 2] = [1000, 100];
 
 /// What came of all programs.
 #[derive(Default)]
@@ -142,7 +142,7 @@ fn known_codes() -> Vec<String> {
         let unknown = ["gcode::unknown_g", "gcode::unknown_m", "gcode::unsupported"];
         reader.filter_map(Result::err).all(|fault| !unknown.contains(&fault.code))
     };
-    let g = (0..MOST_CODES[0]).map(|tenths| format!("G{}", f64::from(tenths) / 10.0));
-    let m = (0..MOST_CODES[1]).map(|number| format!("M{number}"));
+    let g = (0..MAX_CODES[0]).map(|tenths| format!("G{}", f64::from(tenths) / 10.0));
+    let m = (0..MAX_CODES[1]).map(|number| format!("M{number}"));
     g.chain(m).filter(|code| is_known(code)).collect()
 }

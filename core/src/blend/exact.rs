@@ -1,6 +1,6 @@
 //! The null member: the planned path is the programmed one, corners included.
 
-use super::{BlendedStep, Origin, PlannedPiece};
+use super::{BlendedStep, PlannedPiece, ProgrammedPart};
 use crate::path::{PathError, Piece, Step, Steps};
 
 /// See the module's page.
@@ -24,7 +24,7 @@ impl Iterator for ExactBlend<'_> {
 
     fn next(&mut self) -> Option<Self::Item> {
         if let Some(piece) = self.next.take() {
-            let origin = Origin::Unchanged(self.pieces);
+            let origin = ProgrammedPart::Unchanged(self.pieces);
             self.pieces += 1;
             return Some(Ok(BlendedStep::Planned(PlannedPiece { piece, origin })));
         }

@@ -14,14 +14,14 @@ use crate::trace::{Outcome, Row, Sink};
 use crate::watch::Watch;
 
 /// Makes a competitor for a machine.
-pub(super) struct Maker<'a> {
+pub(super) struct CompetitorMaker<'a> {
     pub(super) competitor: &'a Competitor,
     pub(super) nominal: &'a Machine,
     pub(super) seed: u64,
     pub(super) tuned: &'a [Tuned],
 }
 
-impl Maker<'_> {
+impl CompetitorMaker<'_> {
     pub(super) fn make(&self, machine: &Machine) -> Box<dyn Controller<2>> {
         let entry = self.competitor.entry;
         let values = self.tuned.iter().find(|tuned| tuned.controller == entry.name);

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::cut::{Maker, cut};
+use super::cut::{CompetitorMaker, cut};
 use super::tuned::Tuned;
 use super::{CORNER, ComparisonOptions, Competitor, Workpiece};
 use crate::controllers::BASELINE;
@@ -87,7 +87,7 @@ fn fastest(
     watch: &dyn Watch,
 ) -> Result<Option<Holding>, RunError> {
     let machine = options.nominal();
-    let mut controller = Maker { competitor, nominal: machine, seed: options.seed, tuned }.make(machine);
+    let mut controller = CompetitorMaker { competitor, nominal: machine, seed: options.seed, tuned }.make(machine);
     let run = Run::on(machine).laps(competitor.entry.laps).watched(watch);
     let mut holding = |feed_mm_s: f64| -> Result<Option<Holding>, RunError> {
         let steps = contour.steps(feed_mm_s, CORNER).expect("the feedrate is one");

@@ -185,7 +185,7 @@ mod tests {
     /// The circle of 10 mm at 5 rad/s, begun slowly, in two seconds and rest.
     struct Circle;
 
-    impl feedwright_control::Reference<2> for Circle {
+    impl feedwright_control::KnotSource<2> for Circle {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let s = (tau_s / PROGRAM_S).clamp(0.0, 1.0);
             let angle = 10.0 * s * s * (3.0 - 2.0 * s);

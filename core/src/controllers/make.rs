@@ -1,7 +1,7 @@
 //! How each controller of the table is made from what is known of a machine, and from a model: one function for each row, or for
 //! several that differ in their laps alone.
 
-use feedwright_control::axis::{self, Parameters, State};
+use feedwright_control::axis::{self, AxisState, Parameters};
 use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
 use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
 use feedwright_control::controller::feedforward::{Feedforward, Gains};
@@ -77,9 +77,9 @@ pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &Values)
 /// The linear part of an axis over one servo period, as the plant integrates it.
 fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
     let linear = Parameters { torque_limit_nm: f64::INFINITY, coulomb_friction_nm: 0.0, ..*axis };
-    let law = axis::Axis::new(linear, period.periods());
+    let law = axis::AxisLaw::new(linear, period.periods());
     let over = |speed_rad_s: f64, reference_rad_s: f64| {
-        let mut state = State { speed_rad_s, ..State::default() };
+        let mut state = AxisState { speed_rad_s, ..AxisState::default() };
         for _ in 0..period.mechanics_per_servo {
             let w = state.speed_rad_s;
             law.accelerate(law.torque_nm(reference_rad_s, w) - law.friction_nm(w, 0.0), &mut state);
@@ -123,8 +123,8 @@ pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &V
     let (net, spread) = setup.servo(values.number("feed_period_s"));
     let mut settings = receding_horizon::Settings::<N>::DEFAULT;
     settings.servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
-    (settings.steps, settings.sure_mm, settings.foreseen_mm) =
-        (values.whole("steps"), values.number("sure_mm"), values.number("foreseen_mm"));
+    (settings.steps, settings.innovation_scale_mm, settings.foreseen_mm) =
+        (values.whole("steps"), values.number("innovation_scale_mm"), values.number("foreseen_mm"));
     settings.horizon = horizon::Settings {
         knots: values.whole("knots"),
         rate_weight: values.number("rate_weight_s2"),
@@ -143,8 +143,8 @@ pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &V
 const PLANNED_DEVIATION: f64 = 0.9;
 
 /// What a machine allows a correction.
-pub fn correction_limits<const N: usize>(known: &Known) -> horizon::Limits<N> {
-    horizon::Limits {
+pub fn correction_limits<const N: usize>(known: &Known) -> horizon::CorrectionLimits<N> {
+    horizon::CorrectionLimits {
         acceleration_mm_s2: std::array::from_fn(|i| known.axis(i).correction_accel_mm_s2),
         speed_mm_s: known.limits.rapid_mm_s,
         deviation_mm: PLANNED_DEVIATION * known.limits.max_deviation_mm,

@@ -8,16 +8,16 @@
 //! Source: Lam, Manzie and Good (2010), "Model predictive contouring control", for the contour error over a horizon; the
 //! progress along the path stays as planned here, since a time bought with error is not compared.
 
-use feedwright_control::axis::{self, State};
-use feedwright_control::horizon::{self, Felt, MOST_KNOTS, Model, Plan, Stretch};
-use feedwright_control::identifier::residual::{self, Foresight, Residual};
+use feedwright_control::axis::{self, AxisState};
+use feedwright_control::horizon::{self, CommandedPeriod, MAX_KNOTS, OffsetPlan, Predictor, Sensitivity};
+use feedwright_control::identifier::residual::{self, DisturbanceForecast, Residual};
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
 use crate::machine::Known;
 
 /// Steps of Gauss and Newton, at most.
-const MOST_STEPS: usize = 20;
+const MAX_STEPS: usize = 20;
 /// Converged: no acceleration of the offset changes by more, mm/s^2; a tenth of a micrometre per second in a feed period.
 const CONVERGED_MM_S2: f64 = 0.05;
 
@@ -38,10 +38,10 @@ pub struct ModelPredictive<const N: usize> {
     rest: Exact<N>,
     model: Exact<N>,
     residuals: [Residual; N],
-    plan: Plan<N>,
+    plan: OffsetPlan<N>,
     /// Where the tool was expected, mm, without and with what the model was expected to miss.
     expected_mm: Option<[[f64; N]; 2]>,
-    missed_mm: f64,
+    prediction_error_mm: f64,
 }
 
 impl<const N: usize> ModelPredictive<N> {
@@ -53,9 +53,9 @@ impl<const N: usize> ModelPredictive<N> {
             model: rest.clone(),
             rest,
             residuals: [Residual::new(residual::Settings::DEFAULT); N],
-            plan: Plan::default(),
+            plan: OffsetPlan::default(),
             expected_mm: None,
-            missed_mm: 0.0,
+            prediction_error_mm: 0.0,
         }
     }
 
@@ -67,10 +67,10 @@ impl<const N: usize> ModelPredictive<N> {
         }
         match self.expected_mm {
             Some([modelled_mm, expected_mm]) => {
-                let missed_mm = sub(position_mm, modelled_mm);
-                self.missed_mm = norm(sub(position_mm, expected_mm));
+                let prediction_error_mm = sub(position_mm, modelled_mm);
+                self.prediction_error_mm = norm(sub(position_mm, expected_mm));
                 for axis in 0..N {
-                    self.residuals[axis].push(missed_mm[axis]);
+                    self.residuals[axis].push(prediction_error_mm[axis]);
                 }
             }
             None => {
@@ -98,7 +98,7 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
         self.residuals = [Residual::new(residual::Settings::DEFAULT); N];
         self.plan.reset();
         self.expected_mm = None;
-        self.missed_mm = 0.0;
+        self.prediction_error_mm = 0.0;
     }
 
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
@@ -107,25 +107,25 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
         }
     }
 
-    fn missed_mm(&self) -> f64 {
-        self.missed_mm
+    fn prediction_error_mm(&self) -> f64 {
+        self.prediction_error_mm
     }
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let settings = &self.settings.horizon;
         let mut model = self.model.clone();
-        model.residual = self.residuals.each_ref().map(Residual::foresight);
+        model.residual = self.residuals.each_ref().map(Residual::forecast);
         self.plan.shift(1, settings);
         let mut step = self.plan.improve(&model, window, settings);
-        for _ in 1..MOST_STEPS {
+        for _ in 1..MAX_STEPS {
             if step.change_mm_s2 <= CONVERGED_MM_S2 {
                 break;
             }
             step = self.plan.improve(&model, window, settings);
         }
-        let mut stretch = Stretch::now(window, 1);
+        let mut stretch = CommandedPeriod::now(window, 1);
         stretch.go_on(window, step.acceleration_mm_s2);
-        let expected_mm = model.advance(window, &stretch, &mut [[0.0; N]; MOST_KNOTS]);
+        let expected_mm = model.advance(window, &stretch, &mut [[0.0; N]; MAX_KNOTS]);
         for (own, foreseen) in self.model.axes.iter_mut().zip(&model.axes) {
             own.state = foreseen.state;
         }
@@ -140,43 +140,48 @@ struct Exact<const N: usize> {
     axes: [ExactAxis; N],
     servo_periods: u32,
     servo_s: f64,
-    residual: [Foresight; N],
+    residual: [DisturbanceForecast; N],
     /// Sum of what it is expected to miss on the way, mm.
-    missed_mm: [f64; N],
+    prediction_error_mm: [f64; N],
     lag_s: f64,
 }
 
 impl<const N: usize> Exact<N> {
     fn new(known: &Known, servo_periods: u32) -> Self {
-        let laws: [axis::Axis; N] = known.law();
+        let laws: [axis::AxisLaw; N] = known.law();
         let axes = std::array::from_fn(|i| {
             let law = laws[i];
-            ExactAxis { law, state: State::default(), slopes: [State::default(); MOST_KNOTS] }
+            ExactAxis { law, state: AxisState::default(), slopes: [AxisState::default(); MAX_KNOTS] }
         });
         let lag_s = axes.iter().map(|axis| 1.0 / axis.law.parameters.kp_1_s).sum::<f64>() / N as f64;
         Self {
             axes,
             servo_periods,
             servo_s: known.period.servo_s,
-            residual: [Residual::new(residual::Settings::DEFAULT).foresight(); N],
-            missed_mm: [0.0; N],
+            residual: [Residual::new(residual::Settings::DEFAULT).forecast(); N],
+            prediction_error_mm: [0.0; N],
             lag_s,
         }
     }
 
     fn tool_mm(&self) -> [f64; N] {
         std::array::from_fn(|i| {
-            self.axes[i].state.angle_rad / self.axes[i].law.parameters.rad_per_mm + self.missed_mm[i]
+            self.axes[i].state.angle_rad / self.axes[i].law.parameters.rad_per_mm + self.prediction_error_mm[i]
         })
     }
 }
 
-impl<const N: usize> Model<N> for Exact<N> {
+impl<const N: usize> Predictor<N> for Exact<N> {
     fn lag_s(&self) -> f64 {
         self.lag_s
     }
 
-    fn advance(&mut self, window: &Window<'_, N>, stretch: &Stretch<N>, felt: &mut Felt<N>) -> [f64; N] {
+    fn advance(
+        &mut self,
+        window: &Window<'_, N>,
+        stretch: &CommandedPeriod<N>,
+        sensitivity: &mut Sensitivity<N>,
+    ) -> [f64; N] {
         let offset = Command { bend_mm: stretch.bend_mm(), ..Command::straight(1.0, stretch.offset_mm[1]) };
         for phase in 0..self.servo_periods {
             let ahead = stretch.period as u32 * self.servo_periods + phase;
@@ -189,9 +194,9 @@ impl<const N: usize> Model<N> for Exact<N> {
             }
         }
         for i in 0..N {
-            self.missed_mm[i] += self.residual[i].next_mm();
+            self.prediction_error_mm[i] += self.residual[i].next_mm();
             for knot in 0..=stretch.knot() {
-                felt[knot][i] = self.axes[i].slopes[knot].angle_rad / self.axes[i].law.parameters.rad_per_mm;
+                sensitivity[knot][i] = self.axes[i].slopes[knot].angle_rad / self.axes[i].law.parameters.rad_per_mm;
             }
         }
         self.tool_mm()
@@ -201,20 +206,20 @@ impl<const N: usize> Model<N> for Exact<N> {
 /// An axis: its state, and the derivative of that to the acceleration of each knot, per mm/s^2.
 #[derive(Debug, Clone, Copy)]
 struct ExactAxis {
-    law: axis::Axis,
-    state: State,
-    slopes: [State; MOST_KNOTS],
+    law: axis::AxisLaw,
+    state: AxisState,
+    slopes: [AxisState; MAX_KNOTS],
 }
 
 impl ExactAxis {
     /// One servo period at a command that moves by `moved_s2` mm for an acceleration of 1 mm/s^2 in each of the knots up to `knot`.
-    fn advance(&mut self, command_mm: f64, moved_s2: &[f64; MOST_KNOTS], knot: usize) {
+    fn advance(&mut self, command_mm: f64, moved_s2: &[f64; MAX_KNOTS], knot: usize) {
         let law = self.law;
-        let asked = |moved_mm: f64, state: &mut State| {
+        let asked = |moved_mm: f64, state: &mut AxisState| {
             law.position_loop(moved_mm * law.parameters.rad_per_mm - state.angle_rad, state)
         };
         let asked_rad_s = asked(command_mm, &mut self.state);
-        let mut slopes_asked = [0.0; MOST_KNOTS];
+        let mut slopes_asked = [0.0; MAX_KNOTS];
         for (slope_asked, (slope, moved_s2)) in
             slopes_asked.iter_mut().zip(self.slopes.iter_mut().zip(moved_s2)).take(knot + 1)
         {

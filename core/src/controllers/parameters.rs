@@ -19,14 +19,14 @@ pub struct Parameter {
     /// Where the comparison searches for its best; by ratios where that begins above zero.
     pub searched: Option<[f64; 2]>,
     /// Which of the values between are allowed.
-    pub kind: Kind,
+    pub kind: ParameterKind,
     /// What it is, and what goes wrong on either side.
     pub reason: &'static str,
 }
 
 /// Which values a parameter can have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ParameterKind {
     /// All.
     Number,
     /// Whole numbers.
@@ -43,18 +43,18 @@ pub(super) const fn number(
     searched: Option<[f64; 2]>,
     reason: &'static str,
 ) -> Parameter {
-    Parameter { name, default, allowed, searched, kind: Kind::Number, reason }
+    Parameter { name, default, allowed, searched, kind: ParameterKind::Number, reason }
 }
 
 /// A parameter that is a whole number.
 pub(super) const fn whole(name: &'static str, default: usize, allowed: [f64; 2], reason: &'static str) -> Parameter {
-    Parameter { name, default: default as f64, allowed, searched: None, kind: Kind::Whole, reason }
+    Parameter { name, default: default as f64, allowed, searched: None, kind: ParameterKind::Whole, reason }
 }
 
 /// A parameter that is on or off.
 pub(super) const fn switch(name: &'static str, default: bool, reason: &'static str) -> Parameter {
     let default = if default { 1.0 } else { 0.0 };
-    Parameter { name, default, allowed: [0.0, 1.0], searched: None, kind: Kind::Switch, reason }
+    Parameter { name, default, allowed: [0.0, 1.0], searched: None, kind: ParameterKind::Switch, reason }
 }
 
 impl Parameter {
@@ -62,15 +62,15 @@ impl Parameter {
     pub fn range(&self) -> String {
         let [least, most] = self.allowed;
         match self.kind {
-            Kind::Number => format!("{least} to {most}"),
-            Kind::Whole => format!("{least} to {most}, whole"),
-            Kind::Switch => "0 (off) or 1 (on)".to_owned(),
+            ParameterKind::Number => format!("{least} to {most}"),
+            ParameterKind::Whole => format!("{least} to {most}, whole"),
+            ParameterKind::Switch => "0 (off) or 1 (on)".to_owned(),
         }
     }
 
     fn allows(&self, value: f64) -> bool {
         let [least, most] = self.allowed;
-        (least..=most).contains(&value) && (self.kind == Kind::Number || value.fract() == 0.0)
+        (least..=most).contains(&value) && (self.kind == ParameterKind::Number || value.fract() == 0.0)
     }
 }
 

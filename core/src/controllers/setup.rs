@@ -3,7 +3,7 @@
 //! The machine itself stays in here: what makes a controller gets no hold of it, and cannot tell it what only the simulation
 //! knows. A training sees a recording of it.
 
-use feedwright_control::identifier::Kind;
+use feedwright_control::identifier::IdentifierKind;
 use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::servo::ServoIdentifier;
@@ -13,7 +13,7 @@ use thiserror::Error;
 use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
 use crate::identify::contour::Training;
-use crate::identify::{Programme, cache, servo};
+use crate::identify::{Excitation, cache, servo};
 use crate::machine::{Known, Machine};
 use crate::model::{Model, Origin, name};
 
@@ -173,8 +173,8 @@ impl<'a> Setup<'a> {
     /// A servo identifier for decisions each `feed_period_s`, and how others of its kind differ.
     pub(super) fn servo<const N: usize>(&mut self, feed_period_s: f64) -> (ServoIdentifier<N>, Spread<N>) {
         self.model.and_then(Model::servo).unwrap_or_else(|| {
-            let programme = Programme { feed_period_s, ..Programme::servo() };
-            let trained = servo::train(&programme.record(self.machine, self.choices.seed).0);
+            let excitation = Excitation { feed_period_s, ..Excitation::servo() };
+            let trained = servo::train(&excitation.record(self.machine, self.choices.seed).0);
             (trained.net, trained.spread)
         })
     }
@@ -182,9 +182,9 @@ impl<'a> Setup<'a> {
     /// An identifier of the contour error for decisions each `feed_period_s`.
     pub(super) fn contour<const N: usize>(&mut self, feed_period_s: f64) -> ContourIdentifier<N> {
         self.model.and_then(Model::contour).unwrap_or_else(|| {
-            let programme = Programme { feed_period_s, ..Programme::general() };
+            let excitation = Excitation { feed_period_s, ..Excitation::general() };
             let (machine, seed) = (self.machine, self.choices.seed);
-            cache::identified(machine, &programme, &Training::default(), seed, &mut |part| self.tell(part)).net
+            cache::identified(machine, &excitation, &Training::default(), seed, &mut |part| self.tell(part)).net
         })
     }
 
@@ -208,14 +208,14 @@ impl<'a> Setup<'a> {
         let source = format!("simulated excitation of {}, seed {seed}", self.machine.name);
         let origin = Origin { source, date };
         Ok(match kind {
-            Kind::Servo => {
-                let programme = Programme { feed_period_s, ..Programme::servo() };
-                let (recording, _) = programme.record::<N>(self.machine, seed);
+            IdentifierKind::Servo => {
+                let excitation = Excitation { feed_period_s, ..Excitation::servo() };
+                let (recording, _) = excitation.record::<N>(self.machine, seed);
                 Model::of_servo(&recording, &servo::train(&recording), origin)
             }
-            Kind::Contour => {
-                let programme = Programme { feed_period_s, ..Programme::general() };
-                let (recording, rng) = programme.record::<N>(self.machine, seed);
+            IdentifierKind::Contour => {
+                let excitation = Excitation { feed_period_s, ..Excitation::general() };
+                let (recording, rng) = excitation.record::<N>(self.machine, seed);
                 let trained = cache::trained(&recording, &Training::default(), rng, &mut |part| self.tell(part));
                 Model::of_contour(&recording, &trained, origin)
             }

@@ -10,16 +10,16 @@ use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::{HIDDEN, INPUTS};
 use serde::{Deserialize, Serialize};
 
-use super::contour::{Identified, Training, train};
+use super::contour::{TrainedContour, Training, train};
 use super::recording::Recording;
-use super::{Programme, Rng};
+use super::{Excitation, Rng};
 use crate::machine::Machine;
 
 /// Raised whenever the same recording gives other weights: a change of the network or of its training.
 const FORMAT: u32 = 4;
 
 #[derive(Serialize, Deserialize)]
-struct Stored {
+struct StoredWeights {
     hidden: Vec<f64>,
     output: Vec<f64>,
     fit_um: f64,
@@ -29,12 +29,12 @@ struct Stored {
 /// The identifier of a machine, from the cache where it is there.
 pub fn identified<const N: usize>(
     machine: &Machine,
-    programme: &Programme,
+    excitation: &Excitation,
     training: &Training,
     seed: u64,
     progress: &mut dyn FnMut(f64),
-) -> Identified<N> {
-    let (recording, rng) = programme.record(machine, seed);
+) -> TrainedContour<N> {
+    let (recording, rng) = excitation.record(machine, seed);
     trained(&recording, training, rng, progress)
 }
 
@@ -44,7 +44,7 @@ pub fn trained<const N: usize>(
     training: &Training,
     rng: Rng,
     progress: &mut dyn FnMut(f64),
-) -> Identified<N> {
+) -> TrainedContour<N> {
     let file = folder().map(|folder| folder.join(format!("{}.json", key(recording, training, &rng))));
     if let Some(found) = file.as_ref().and_then(load) {
         return found;
@@ -80,8 +80,8 @@ fn key<const N: usize>(recording: &Recording<N>, training: &Training, rng: &Rng)
     blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
 }
 
-fn load<const N: usize>(file: &PathBuf) -> Option<Identified<N>> {
-    let stored: Stored = serde_json::from_slice(&std::fs::read(file).ok()?).ok()?;
+fn load<const N: usize>(file: &PathBuf) -> Option<TrainedContour<N>> {
+    let stored: StoredWeights = serde_json::from_slice(&std::fs::read(file).ok()?).ok()?;
     let complete = stored.hidden.len() == N * INPUTS * HIDDEN && stored.output.len() == N * HIDDEN;
     if !complete || stored.hidden.iter().chain(&stored.output).any(|w| !w.is_finite()) {
         return None;
@@ -92,13 +92,13 @@ fn load<const N: usize>(file: &PathBuf) -> Option<Identified<N>> {
         }),
         output: std::array::from_fn(|o| std::array::from_fn(|j| stored.output[o * HIDDEN + j])),
     };
-    Some(Identified { net, fit_um: stored.fit_um, samples: stored.samples })
+    Some(TrainedContour { net, fit_um: stored.fit_um, samples: stored.samples })
 }
 
-fn store<const N: usize>(file: &std::path::Path, identified: &Identified<N>) -> std::io::Result<()> {
+fn store<const N: usize>(file: &std::path::Path, identified: &TrainedContour<N>) -> std::io::Result<()> {
     let Some(folder) = file.parent() else { return Ok(()) };
     std::fs::create_dir_all(folder)?;
-    let stored = Stored {
+    let stored = StoredWeights {
         hidden: identified.net.hidden.as_flattened().as_flattened().to_vec(),
         output: identified.net.output.as_flattened().to_vec(),
         fit_um: identified.fit_um,

@@ -8,7 +8,7 @@ use rand::{RngExt, seq::SliceRandom};
 use serde::Serialize;
 
 use super::Rng;
-use super::recording::{Knot, Recording};
+use super::recording::{RecordedKnot, Recording};
 use crate::vector::{scale, sub};
 
 /// How the network is trained.
@@ -34,14 +34,14 @@ impl Default for Training {
 
 /// One sample: what the network sees, and the error that followed, both scaled.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Sample<const N: usize> {
+struct ContourSample<const N: usize> {
     inputs: Inputs<N>,
     error: [f64; N],
 }
 
 /// A trained identifier and how well it fits.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Identified<const N: usize> {
+pub struct TrainedContour<const N: usize> {
     /// The network.
     pub net: ContourIdentifier<N>,
     /// RMS of the prediction error over the last epoch, um per axis.
@@ -57,14 +57,14 @@ pub fn train<const N: usize>(
     training: &Training,
     mut rng: Rng,
     progress: &mut dyn FnMut(f64),
-) -> Identified<N> {
+) -> TrainedContour<N> {
     let period_s = recording.feed_period_s;
     let samples = recording.stretches.iter().flat_map(|stretch| samples(stretch, period_s)).collect();
     descend(samples, training, &mut rng, progress)
 }
 
 /// What the network would have seen from knot to knot of a stretch.
-fn samples<const N: usize>(stretch: &[Knot<N>], period_s: f64) -> Vec<Sample<N>> {
+fn samples<const N: usize>(stretch: &[RecordedKnot<N>], period_s: f64) -> Vec<ContourSample<N>> {
     let mut delays = Delays::REST;
     stretch
         .windows(2)
@@ -74,18 +74,18 @@ fn samples<const N: usize>(stretch: &[Knot<N>], period_s: f64) -> Vec<Sample<N>>
             let error = pair[1].contour_mm.map(|e| e / ERROR_SCALE_MM);
             let inputs = delays.inputs(feed);
             delays.push(feed, error);
-            Sample { inputs, error }
+            ContourSample { inputs, error }
         })
         .collect()
 }
 
 /// Plain back-propagation over the shuffled samples.
 fn descend<const N: usize>(
-    mut samples: Vec<Sample<N>>,
+    mut samples: Vec<ContourSample<N>>,
     training: &Training,
     rng: &mut Rng,
     progress: &mut dyn FnMut(f64),
-) -> Identified<N> {
+) -> TrainedContour<N> {
     let mut net = initial(training.initial_weight, rng);
     let mut step = training.step;
     let mut cost = 0.0;
@@ -97,7 +97,7 @@ fn descend<const N: usize>(
     }
     let mean_square = 2.0 * cost / (samples.len() * N).max(1) as f64;
     let fit_um = mean_square.sqrt() * ERROR_SCALE_MM * 1e3;
-    Identified { net, fit_um, samples: samples.len() }
+    TrainedContour { net, fit_um, samples: samples.len() }
 }
 
 fn initial<const N: usize>(width: f64, rng: &mut Rng) -> ContourIdentifier<N> {

@@ -5,8 +5,8 @@ use feedwright_control::controller::{Command, Controller, Measured, Schedule};
 use feedwright_control::window::Window;
 use rand::RngExt;
 
-use super::recording::{Knot, Recording};
-use super::{Programme, Rng};
+use super::recording::{RecordedKnot, Recording};
+use super::{Excitation, Rng};
 use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use crate::machine::Machine;
 use crate::pipeline::{Run, pieces};
@@ -16,15 +16,15 @@ use crate::vector::add_scaled;
 const UNDISTURBED_EVERY: u32 = 3;
 
 /// Cuts all laps.
-pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, rng: &mut Rng) -> Recording<N> {
-    let stretches = (0..programme.laps)
+pub(super) fn record<const N: usize>(machine: &Machine, excitation: &Excitation, rng: &mut Rng) -> Recording<N> {
+    let stretches = (0..excitation.laps)
         .map(|lap| {
-            let motion = circle::<N>(programme, lap, rng);
+            let motion = circle::<N>(excitation, lap, rng);
             let undisturbed = lap.is_multiple_of(UNDISTURBED_EVERY);
-            let mut excitation = Excitation {
-                programme,
-                servo_periods: machine.period.servo_periods(programme.feed_period_s),
-                reach_mm: if undisturbed { 0.0 } else { programme.offset_mm },
+            let mut excitation = ExcitationController {
+                excitation,
+                servo_periods: machine.period.servo_periods(excitation.feed_period_s),
+                reach_mm: if undisturbed { 0.0 } else { excitation.offset_mm },
                 rng,
                 offset_mm: [0.0; N],
                 lap: Vec::new(),
@@ -36,21 +36,21 @@ pub(super) fn record<const N: usize>(machine: &Machine, programme: &Programme, r
             excitation.lap
         })
         .collect();
-    let (servo_s, feed_period_s) = (machine.period.servo_s, programme.period_s(machine));
+    let (servo_s, feed_period_s) = (machine.period.servo_s, excitation.period_s(machine));
     Recording { servo_s, feed_period_s, stretches }
 }
 
 /// One lap: radii, senses and planes in turn, feed and starting point at random.
-fn circle<const N: usize>(programme: &Programme, lap: u32, rng: &mut Rng) -> Motion {
+fn circle<const N: usize>(excitation: &Excitation, lap: u32, rng: &mut Rng) -> Motion {
     let lap_index = lap as usize;
-    let radius = programme.radii_mm[lap_index % programme.radii_mm.len()];
+    let radius = excitation.radii_mm[lap_index % excitation.radii_mm.len()];
     let plane = match (N, lap % 3) {
         (3, 1) => Plane::Zx,
         (3, 2) => Plane::Yz,
         _ => Plane::Xy,
     };
     let [first, second, _] = plane.axes();
-    let [slow, fast] = programme.feed_mm_s;
+    let [slow, fast] = excitation.feed_mm_s;
     let angle: f64 = rng.random_range(0.0..std::f64::consts::TAU);
     let mut center_mm = [0.0; 3];
     (center_mm[first], center_mm[second]) = (radius * angle.cos(), radius * angle.sin());
@@ -59,7 +59,7 @@ fn circle<const N: usize>(programme: &Programme, lap: u32, rng: &mut Rng) -> Mot
         kind: MotionKind::Feed,
         start_mm: [0.0; 3],
         end_mm: [0.0; 3],
-        shape: Shape::Arc { plane, center_mm, turns: programme.turns[lap_index % programme.turns.len()] },
+        shape: Shape::Arc { plane, center_mm, turns: excitation.turns[lap_index % excitation.turns.len()] },
         feed_mm_s: rng.random_range(slow..=fast),
         corner: Corner::ExactStop,
         others: AuxiliaryAxes::default(),
@@ -67,16 +67,16 @@ fn circle<const N: usize>(programme: &Programme, lap: u32, rng: &mut Rng) -> Mot
 }
 
 /// Open loop with random offsets; records.
-struct Excitation<'a, const N: usize> {
-    programme: &'a Programme,
+struct ExcitationController<'a, const N: usize> {
+    excitation: &'a Excitation,
     servo_periods: u32,
     reach_mm: f64,
     rng: &'a mut Rng,
     offset_mm: [f64; N],
-    lap: Vec<Knot<N>>,
+    lap: Vec<RecordedKnot<N>>,
 }
 
-impl<const N: usize> Controller<N> for Excitation<'_, N> {
+impl<const N: usize> Controller<N> for ExcitationController<'_, N> {
     fn schedule(&self) -> Schedule {
         Schedule { servo_periods: self.servo_periods, preview: 0 }
     }
@@ -90,11 +90,11 @@ impl<const N: usize> Controller<N> for Excitation<'_, N> {
     }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        if self.lap.len().is_multiple_of(self.programme.renewal_periods as usize) {
+        if self.lap.len().is_multiple_of(self.excitation.renewal_periods as usize) {
             let reach = self.reach_mm;
             self.offset_mm = std::array::from_fn(|_| self.rng.random_range(-reach..=reach));
         }
-        self.lap.push(Knot {
+        self.lap.push(RecordedKnot {
             command_mm: add_scaled(window.now().position_mm, 1.0, window.offset_mm),
             tool_mm: measured.position_mm,
             contour_mm: measured.contour.vector_mm,

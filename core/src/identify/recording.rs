@@ -1,13 +1,13 @@
 //! A recording: what a machine showed while it moved, knot by knot. All that an identification gets to see of a machine.
 //!
-//! It comes from a simulated machine ([`super::Programme::record`]) or from the log of a real one. It is made of stretches: laps of
+//! It comes from a simulated machine ([`super::Excitation::record`]) or from the log of a real one. It is made of stretches: laps of
 //! a programme, or the parts of a log between gaps; nothing is carried over from one to the next.
 
 use serde::{Deserialize, Serialize};
 
 /// What was commanded and measured at the start of a feed period.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Knot<const N: usize> {
+pub struct RecordedKnot<const N: usize> {
     /// Command, mm.
     pub command_mm: [f64; N],
     /// Tool, mm.
@@ -18,14 +18,14 @@ pub struct Knot<const N: usize> {
 
 /// What a machine showed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(into = "Stored", try_from = "Stored")]
+#[serde(into = "StoredRecording", try_from = "StoredRecording")]
 pub struct Recording<const N: usize> {
     /// Servo period of the machine, s.
     pub servo_s: f64,
     /// Time between knots, s.
     pub feed_period_s: f64,
     /// Knots that follow each other, stretch by stretch.
-    pub stretches: Vec<Vec<Knot<N>>>,
+    pub stretches: Vec<Vec<RecordedKnot<N>>>,
 }
 
 impl<const N: usize> Recording<N> {
@@ -38,7 +38,7 @@ impl<const N: usize> Recording<N> {
         [N as f64, self.servo_s, self.feed_period_s].into_iter().for_each(&mut number);
         for stretch in &self.stretches {
             number(stretch.len() as f64);
-            for Knot { command_mm, tool_mm, contour_mm } in stretch {
+            for RecordedKnot { command_mm, tool_mm, contour_mm } in stretch {
                 command_mm.iter().chain(tool_mm).chain(contour_mm).copied().for_each(&mut number);
             }
         }
@@ -46,34 +46,34 @@ impl<const N: usize> Recording<N> {
     }
 }
 
-/// As it is serialised: a knot is a row of 3N numbers, in the order of [`Knot`].
+/// As it is serialised: a knot is a row of 3N numbers, in the order of [`RecordedKnot`].
 #[derive(Clone, Serialize, Deserialize)]
-struct Stored {
+struct StoredRecording {
     axes: usize,
     servo_s: f64,
     feed_period_s: f64,
     stretches: Vec<Vec<Vec<f64>>>,
 }
 
-impl<const N: usize> From<Recording<N>> for Stored {
+impl<const N: usize> From<Recording<N>> for StoredRecording {
     fn from(recording: Recording<N>) -> Self {
         let Recording { servo_s, feed_period_s, stretches } = recording;
-        let row = |knot: &Knot<N>| [knot.command_mm, knot.tool_mm, knot.contour_mm].concat();
+        let row = |knot: &RecordedKnot<N>| [knot.command_mm, knot.tool_mm, knot.contour_mm].concat();
         let stretches = stretches.iter().map(|stretch| stretch.iter().map(row).collect()).collect();
         Self { axes: N, servo_s, feed_period_s, stretches }
     }
 }
 
-impl<const N: usize> TryFrom<Stored> for Recording<N> {
+impl<const N: usize> TryFrom<StoredRecording> for Recording<N> {
     type Error = String;
 
-    fn try_from(stored: Stored) -> Result<Self, String> {
-        let Stored { axes, servo_s, feed_period_s, stretches } = stored;
+    fn try_from(stored: StoredRecording) -> Result<Self, String> {
+        let StoredRecording { axes, servo_s, feed_period_s, stretches } = stored;
         if axes != N {
             return Err(format!("a recording of {axes} axes, not of {N}"));
         }
         let knot = |row: Vec<f64>| match row.as_chunks::<N>() {
-            (&[command_mm, tool_mm, contour_mm], []) => Ok(Knot { command_mm, tool_mm, contour_mm }),
+            (&[command_mm, tool_mm, contour_mm], []) => Ok(RecordedKnot { command_mm, tool_mm, contour_mm }),
             _ => Err(format!("a knot of {} numbers, not of {}", row.len(), 3 * N)),
         };
         let stretch = |rows: Vec<Vec<f64>>| rows.into_iter().map(knot).collect::<Result<Vec<_>, _>>();
@@ -86,7 +86,8 @@ mod tests {
     use super::*;
 
     fn recording() -> Recording<2> {
-        let knot = |x: f64| Knot { command_mm: [x, 0.1 * x], tool_mm: [x - 1.0, -0.0], contour_mm: [1e-3, x / 3.0] };
+        let knot =
+            |x: f64| RecordedKnot { command_mm: [x, 0.1 * x], tool_mm: [x - 1.0, -0.0], contour_mm: [1e-3, x / 3.0] };
         Recording {
             servo_s: 1e-3,
             feed_period_s: 3e-3,

@@ -19,7 +19,7 @@ use feedwright_control::identifier::servo::{FOLLOWING_SCALE_MM, ServoIdentifier}
 use feedwright_control::identifier::{Delays, FEED_SCALE_MM_S, HIDDEN, INPUTS, Identifier, Inputs, ServoModel};
 use nalgebra::{DMatrix, DVector};
 
-use super::recording::{Knot, Recording};
+use super::recording::{RecordedKnot, Recording};
 use super::spread::spread;
 use crate::vector::{scale, sub};
 
@@ -28,7 +28,7 @@ const RIDGE: f64 = 1e-9;
 
 /// A trained servo identifier and how well it fits.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Identified<const N: usize> {
+pub struct TrainedServo<const N: usize> {
     /// The network.
     pub net: ServoIdentifier<N>,
     /// RMS of the prediction error of one knot, um per axis.
@@ -40,32 +40,32 @@ pub struct Identified<const N: usize> {
 }
 
 /// One sample: the inputs, and the growth of the following error that followed, mm.
-struct Sample<const N: usize> {
+struct ServoSample<const N: usize> {
     inputs: Inputs<N>,
     grown_mm: [f64; N],
 }
 
 /// Fits the identifier to what a machine showed.
-pub fn train<const N: usize>(recording: &Recording<N>) -> Identified<N> {
+pub fn train<const N: usize>(recording: &Recording<N>) -> TrainedServo<N> {
     let period_s = recording.feed_period_s;
-    let laps: Vec<Vec<Sample<N>>> = recording.stretches.iter().map(|stretch| samples(stretch, period_s)).collect();
+    let laps: Vec<Vec<ServoSample<N>>> = recording.stretches.iter().map(|stretch| samples(stretch, period_s)).collect();
     let net = fit(&laps, period_s);
     let missed = laps.iter().flatten().map(|sample| sub(sample.grown_mm, net.predict(&sample.inputs)));
     let squares: f64 = missed.map(|missed| missed.iter().map(|m| m * m).sum::<f64>()).sum();
     let samples: usize = laps.iter().map(Vec::len).sum();
     let fit_um = (squares / (N * samples.max(1)) as f64).sqrt() * 1e3;
-    Identified { spread: spread(&net, period_s), net, fit_um, samples }
+    TrainedServo { spread: spread(&net, period_s), net, fit_um, samples }
 }
 
 /// What the identifier would have seen from knot to knot of a stretch, once its delays are filled.
-fn samples<const N: usize>(lap: &[Knot<N>], period_s: f64) -> Vec<Sample<N>> {
+fn samples<const N: usize>(lap: &[RecordedKnot<N>], period_s: f64) -> Vec<ServoSample<N>> {
     let following = |i: usize| sub(lap[i].command_mm, lap[i].tool_mm);
     let mut delays = Delays::<N>::REST;
     let mut samples = Vec::new();
     for i in 0..lap.len().saturating_sub(1) {
         let feed = scale(1.0 / (period_s * FEED_SCALE_MM_S), sub(lap[i + 1].command_mm, lap[i].command_mm));
         let next = following(i + 1);
-        samples.push(Sample { inputs: delays.inputs(feed), grown_mm: sub(next, following(i)) });
+        samples.push(ServoSample { inputs: delays.inputs(feed), grown_mm: sub(next, following(i)) });
         delays.push(feed, scale(1.0 / FOLLOWING_SCALE_MM, next));
     }
     samples
@@ -73,7 +73,7 @@ fn samples<const N: usize>(lap: &[Knot<N>], period_s: f64) -> Vec<Sample<N>> {
 
 /// The linear part alone first, since the hidden nodes are laid along it; then both parts together; then both again,
 /// filtered by what they miss.
-fn fit<const N: usize>(laps: &[Vec<Sample<N>>], period_s: f64) -> ServoIdentifier<N> {
+fn fit<const N: usize>(laps: &[Vec<ServoSample<N>>], period_s: f64) -> ServoIdentifier<N> {
     let plain = [[0.0; LAGS]; N];
     let linear = fit_outputs(laps, ServoIdentifier::NULL, &plain);
     let hidden = hidden(&linear, period_s);
@@ -84,7 +84,7 @@ fn fit<const N: usize>(laps: &[Vec<Sample<N>>], period_s: f64) -> ServoIdentifie
 
 /// The autoregression of what the network misses, axis by axis: what filters a vibration out of the samples, which would pass
 /// for a part of the machine otherwise.
-fn autoregression<const N: usize>(laps: &[Vec<Sample<N>>], net: &ServoIdentifier<N>) -> [[f64; LAGS]; N] {
+fn autoregression<const N: usize>(laps: &[Vec<ServoSample<N>>], net: &ServoIdentifier<N>) -> [[f64; LAGS]; N] {
     let mut equations = vec![NormalEquations::new(LAGS); N];
     for lap in laps {
         let missed_mm: Vec<[f64; N]> =
@@ -137,7 +137,7 @@ fn hidden<const N: usize>(linear: &ServoIdentifier<N>, period_s: f64) -> [[[f64;
 /// The least squares over the linear connection and the outputs of the hidden nodes, which stay as they are, of the samples
 /// behind a filter.
 fn fit_outputs<const N: usize>(
-    laps: &[Vec<Sample<N>>],
+    laps: &[Vec<ServoSample<N>>],
     net: ServoIdentifier<N>,
     filter: &[[f64; LAGS]; N],
 ) -> ServoIdentifier<N> {
@@ -173,7 +173,7 @@ fn fit_outputs<const N: usize>(
 }
 
 /// The inputs of a sample, and the first hidden nodes at them.
-fn seen<const N: usize>(net: &ServoIdentifier<N>, sample: &Sample<N>, nodes: usize) -> DVector<f64> {
+fn seen<const N: usize>(net: &ServoIdentifier<N>, sample: &ServoSample<N>, nodes: usize) -> DVector<f64> {
     let hidden = net.hidden_nodes(&sample.inputs);
     let all = sample.inputs.as_flattened().iter().chain(&hidden[..nodes]);
     DVector::from_iterator(N * INPUTS + nodes, all.copied())

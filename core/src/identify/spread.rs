@@ -13,7 +13,8 @@
 //!
 //! Source: cascaded servo loops and their sampling as in Åström and Wittenmark (1997), chapter 2; no machine file is asked.
 
-use feedwright_control::identifier::adaptation::{Spread, UNKNOWNS};
+use feedwright_control::identifier::UNKNOWNS;
+use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::servo::{FOLLOWING_SCALE_MM, ServoIdentifier};
 use feedwright_control::identifier::{FEED_SCALE_MM_S, INPUTS};
 use nalgebra::Matrix3;

@@ -30,7 +30,7 @@ pub struct Outputs {
 }
 
 /// A tolerance of a metre is a mistaken unit.
-const MOST_TOLERANCE_UM: f64 = 1e6;
+const MAX_TOLERANCE_UM: f64 = 1e6;
 
 /// What `--out` writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,8 +61,8 @@ impl Job {
             let hint = Some("the unit is mm/s: F3000 in a program, which is mm/min, is --feed 50");
             return Err(JobError::Value { name: "--feed", value, unit: " mm/s", bounds, hint });
         }
-        if let Some(value) = self.tolerance_um.filter(|tolerance| !positive(tolerance, MOST_TOLERANCE_UM)) {
-            let bounds = format!("above 0 and up to {MOST_TOLERANCE_UM} um");
+        if let Some(value) = self.tolerance_um.filter(|tolerance| !positive(tolerance, MAX_TOLERANCE_UM)) {
+            let bounds = format!("above 0 and up to {MAX_TOLERANCE_UM} um");
             let hint = Some("the unit is um: 0.01 mm is --tolerance 10");
             return Err(JobError::Value { name: "--tolerance", value, unit: " um", bounds, hint });
         }
@@ -163,7 +163,7 @@ fn write_json(out: &mut impl io::Write, job: &Job, report: &Report) -> io::Resul
 }
 
 /// Most events that the page shows: more than that nobody reads, and a program may have millions.
-const MOST_EVENTS: usize = 500;
+const MAX_EVENTS: usize = 500;
 
 /// The events of a run, for the page.
 #[derive(Debug)]
@@ -185,7 +185,7 @@ impl Sink for Timeline<'_> {
     }
 
     fn event(&mut self, t_s: f64, event: &TimedEvent) -> io::Result<()> {
-        if self.events.len() < MOST_EVENTS {
+        if self.events.len() < MAX_EVENTS {
             let TimedEvent { duration_s, event, .. } = event;
             let plc::EventName { row, label } = plc::named(&event.kind, self.named);
             self.events.push(TimelineEvent { t_s, duration_s: *duration_s, line: event.line, row, label });

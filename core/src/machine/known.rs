@@ -45,8 +45,8 @@ impl Known {
     }
 
     /// The nominal law of the first N axes.
-    pub fn law<const N: usize>(&self) -> [axis::Axis; N] {
-        std::array::from_fn(|i| axis::Axis::new(self.axis(i).nominal, self.period.periods()))
+    pub fn law<const N: usize>(&self) -> [axis::AxisLaw; N] {
+        std::array::from_fn(|i| axis::AxisLaw::new(self.axis(i).nominal, self.period.periods()))
     }
 }
 

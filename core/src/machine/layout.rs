@@ -170,13 +170,13 @@ fn axis(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> 
 
 /// The two masses may turn by this angle against each other within a mechanics period, rad: beyond, the integration loses
 /// the frequency by more than a percent.
-const MOST_PHASE_RAD: f64 = 0.5;
+const MAX_PHASE_RAD: f64 = 0.5;
 
 fn transmission(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Transmission {
     let transmission: Transmission = read(keys::TRANSMISSION, &mut table, faults);
     let free_rad_s = TAU * transmission.resonance_hz / (1.0 - transmission.table_share).sqrt();
-    if free_rad_s * mechanics_s > MOST_PHASE_RAD {
-        let finest = MOST_PHASE_RAD / free_rad_s;
+    if free_rad_s * mechanics_s > MAX_PHASE_RAD {
+        let finest = MAX_PHASE_RAD / free_rad_s;
         faults.push(Fault {
             at: table.place("resonance_hz"),
             label: "too fast for mechanics_s",

@@ -1,9 +1,9 @@
 //! The keys of a model file: name, unit, range, and the field that each fills; see [`crate::toml_file::key`].
 
-use feedwright_control::identifier::{FEED_PERIODS_S, Kind};
+use feedwright_control::identifier::{FEED_PERIODS_S, IdentifierKind};
 use feedwright_control::model::{MAX_SPREAD, MAX_WEIGHT, SERVO_PERIODS_S};
 
-use super::{About, Fit, Periods, Weights};
+use super::{About, Fit, ModelPeriods, Weights};
 use crate::toml_file::Key;
 use crate::toml_file::key::key;
 
@@ -25,7 +25,7 @@ pub const ABOUT: &[Key<About>] = &[
 ];
 
 /// Of `[period]`.
-pub const PERIOD: &[Key<Periods>] = &[
+pub const PERIOD: &[Key<ModelPeriods>] = &[
     key!(servo_s, "s", SERVO_PERIODS_S[0], SERVO_PERIODS_S[1]),
     key!(feed_period_s, "s", FEED_PERIODS_S[0], FEED_PERIODS_S[1]),
 ];
@@ -34,10 +34,10 @@ pub const PERIOD: &[Key<Periods>] = &[
 pub const FIT: &[Key<Fit>] = &[key!(fit_um, "um", 0.0, MAX_FIT_UM), key!(whole samples, "", 0.0, MAX_SAMPLES)];
 
 /// Of `[weights]`.
-pub(crate) const fn weights(kind: Kind) -> &'static [Key<Weights>] {
+pub(crate) const fn weights(kind: IdentifierKind) -> &'static [Key<Weights>] {
     match kind {
-        Kind::Contour => CONTOUR,
-        Kind::Servo => SERVO,
+        IdentifierKind::Contour => CONTOUR,
+        IdentifierKind::Servo => SERVO,
     }
 }
 

@@ -1,7 +1,7 @@
 //! The layout of a model file: its tables, and what holds between their values.
 
-use feedwright_control::identifier::adaptation::UNKNOWNS;
-use feedwright_control::identifier::{HIDDEN, INPUTS, Kind};
+use feedwright_control::identifier::UNKNOWNS;
+use feedwright_control::identifier::{HIDDEN, INPUTS, IdentifierKind};
 use feedwright_control::model as block;
 
 use super::{About, FORMAT, Model, Weights, keys, kind_named, name, version};
@@ -86,10 +86,10 @@ fn of_this_format(document: &Document<'_>) -> Result<(), Fault> {
     })
 }
 
-fn kind(about: &About, root: &Table<'_, '_>, faults: &mut Vec<Fault>) -> Option<Kind> {
+fn kind(about: &About, root: &Table<'_, '_>, faults: &mut Vec<Fault>) -> Option<IdentifierKind> {
     let found = kind_named(&about.kind);
     if found.is_none() && !about.kind.is_empty() {
-        let names = [name(Kind::Contour), name(Kind::Servo)];
+        let names = [name(IdentifierKind::Contour), name(IdentifierKind::Servo)];
         faults.push(Fault {
             at: root.place("kind"),
             label: "unknown",
@@ -100,7 +100,7 @@ fn kind(about: &About, root: &Table<'_, '_>, faults: &mut Vec<Fault>) -> Option<
     found
 }
 
-fn weights(kind: Kind, axes: u64, table: &mut Table<'_, '_>, faults: &mut Vec<Fault>) -> Weights {
+fn weights(kind: IdentifierKind, axes: u64, table: &mut Table<'_, '_>, faults: &mut Vec<Fault>) -> Weights {
     let before = faults.len();
     let weights: Weights = read(keys::weights(kind), table, faults);
     // A number of axes that has a fault is 0 here; arrays with faults of their own get no second one.
@@ -108,7 +108,7 @@ fn weights(kind: Kind, axes: u64, table: &mut Table<'_, '_>, faults: &mut Vec<Fa
         return weights;
     }
     let n = axes as usize;
-    let of_servo = |number: usize| if kind == Kind::Servo { number } else { 0 };
+    let of_servo = |number: usize| if kind == IdentifierKind::Servo { number } else { 0 };
     let expected = [
         ("linear", &weights.linear, of_servo(n * n * INPUTS)),
         ("hidden", &weights.hidden, n * INPUTS * HIDDEN),
@@ -136,8 +136,8 @@ fn weights(kind: Kind, axes: u64, table: &mut Table<'_, '_>, faults: &mut Vec<Fa
 fn refused(model: &Model) -> Option<String> {
     let bytes = model.block();
     let error = match model.axes() {
-        2 => block::Model::<2>::from_bytes(&bytes).err(),
-        _ => block::Model::<3>::from_bytes(&bytes).err(),
+        2 => block::ModelBlock::<2>::from_bytes(&bytes).err(),
+        _ => block::ModelBlock::<3>::from_bytes(&bytes).err(),
     };
     error.map(|error| format!("no training gives these weights: {error}"))
 }

@@ -4,11 +4,11 @@ use feedwright_control::identifier::Identifier;
 use miette::Diagnostic;
 
 use super::*;
-use crate::identify::recording::Knot;
+use crate::identify::recording::RecordedKnot;
 use crate::toml_file::{Key, Problem};
 
 fn recording<const N: usize>() -> Recording<N> {
-    let knot = Knot { command_mm: [0.3; N], tool_mm: [0.2; N], contour_mm: [0.1; N] };
+    let knot = RecordedKnot { command_mm: [0.3; N], tool_mm: [0.2; N], contour_mm: [0.1; N] };
     Recording { servo_s: 0.001, feed_period_s: 0.003, stretches: vec![vec![knot; 3]] }
 }
 
@@ -30,12 +30,12 @@ fn origin() -> Origin {
 
 fn servo<const N: usize>() -> Model {
     let products = std::array::from_fn(|i| std::array::from_fn(|j| 1e-4 / 3.0 / ((1 + i) * (1 + j)) as f64));
-    let trained = servo::Identified { net: filled(), fit_um: 0.1 + 0.2, samples: 12_345, spread: [products; N] };
+    let trained = servo::TrainedServo { net: filled(), fit_um: 0.1 + 0.2, samples: 12_345, spread: [products; N] };
     Model::of_servo::<N>(&recording(), &trained, origin())
 }
 
 fn contour<const N: usize>() -> Model {
-    let trained = contour::Identified { net: filled(), fit_um: 4.0, samples: 99 };
+    let trained = contour::TrainedContour { net: filled(), fit_um: 4.0, samples: 99 };
     Model::of_contour::<N>(&recording(), &trained, origin())
 }
 
@@ -76,9 +76,9 @@ fn what_is_written_reads_back_to_the_bit() {
 
 #[test]
 fn the_block_is_what_control_takes() {
-    let taken = block::Model::<2>::from_bytes(&servo::<2>().block()).unwrap();
+    let taken = block::ModelBlock::<2>::from_bytes(&servo::<2>().block()).unwrap();
     assert_eq!(Some(taken), servo::<2>().control::<2>());
-    let taken = block::Model::<3>::from_bytes(&contour::<3>().block()).unwrap();
+    let taken = block::ModelBlock::<3>::from_bytes(&contour::<3>().block()).unwrap();
     assert_eq!(Some(taken), contour::<3>().control::<3>());
 }
 
@@ -260,7 +260,7 @@ fn the_document_has_the_units_and_ranges_of_all_keys() {
         keys.iter().map(row).collect()
     }
     let document = include_str!("../../../docs/model-file.md");
-    let weights = [Kind::Contour, Kind::Servo].map(|kind| rows(keys::weights(kind))).concat();
+    let weights = [IdentifierKind::Contour, IdentifierKind::Servo].map(|kind| rows(keys::weights(kind))).concat();
     for row in [rows(keys::ABOUT), rows(keys::PERIOD), rows(keys::FIT), weights].concat() {
         assert!(document.contains(&row), "docs/model-file.md has no row that begins {row}");
     }

@@ -59,7 +59,7 @@ impl Figures {
 
 /// A program on a machine, open loop and corrected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Row {
+pub struct SweepRow {
     /// Program.
     pub program: String,
     /// Machine.
@@ -106,7 +106,7 @@ impl Cutter {
     ///
     /// # Errors
     /// An end from outside.
-    pub fn row(&mut self, program: &Program, watch: &dyn Watch) -> Result<Row, Cancelled> {
+    pub fn row(&mut self, program: &Program, watch: &dyn Watch) -> Result<SweepRow, Cancelled> {
         let (machine, options) = (&self.machine, &self.options);
         let [open_loop, corrected] = match program.axes {
             2 => both(machine, options, &mut self.plane, program, watch)?,
@@ -114,7 +114,7 @@ impl Cutter {
             _ => both(machine, options, &mut self.space, program, watch)?,
         };
         let (program, machine_name) = (program.name.clone(), machine.name.clone());
-        Ok(Row { program, machine: machine_name, rigid: is_rigid(machine), open_loop, corrected })
+        Ok(SweepRow { program, machine: machine_name, rigid: is_rigid(machine), open_loop, corrected })
     }
 }
 

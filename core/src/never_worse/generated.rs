@@ -5,7 +5,7 @@ use std::sync::Arc;
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-use super::cut::{Cutter, Row};
+use super::cut::{Cutter, SweepRow};
 use super::program::{Length, Program};
 use super::verdict::Failure;
 use super::{SweepJob, SweepOptions};
@@ -65,7 +65,7 @@ impl<'a> Trials<'a> {
     }
 
     /// What a case comes to; nothing where it is no program, no stable machine, or ended from outside.
-    pub fn row(&mut self, case: &Case) -> Option<Row> {
+    pub fn row(&mut self, case: &Case) -> Option<SweepRow> {
         let machine = case.machine.machine().ok().filter(machines::is_stable)?;
         let length = Length { machine: &machine, limit_s: LIMIT_S };
         let program = Program::from_text("smallest", &case.text(), length).ok()?;
@@ -87,7 +87,7 @@ pub fn smallest(
     options: &SweepOptions,
     trials: u32,
     watch: &dyn Watch,
-) -> Result<(Case, Option<Row>), Cancelled> {
+) -> Result<(Case, Option<SweepRow>), Cancelled> {
     let mut made = Trials::new(options, watch);
     let mut fails = |case: &Case| {
         let found = made.row(case).map(|row| row.faults()).unwrap_or_default();

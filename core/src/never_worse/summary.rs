@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::cut::Row;
+use super::cut::SweepRow;
 use super::verdict::Failure;
 
 /// Ratios to open loop mean something above this RMS of open loop, um.
@@ -44,7 +44,7 @@ impl Quantiles {
 pub struct Judged {
     /// The row.
     #[serde(flatten)]
-    pub row: Row,
+    pub row: SweepRow,
     /// In what it is worse.
     pub faults: Vec<Failure>,
     /// Largest excess over open loop, in what is allowed.
@@ -76,8 +76,8 @@ pub struct SweepSummary {
 
 impl SweepSummary {
     /// Of these rows.
-    pub fn of(rows: Vec<Row>) -> Self {
-        let judge = |row: Row| Judged { faults: row.faults(), severity: row.severity(), row };
+    pub fn of(rows: Vec<SweepRow>) -> Self {
+        let judge = |row: SweepRow| Judged { faults: row.faults(), severity: row.severity(), row };
         let mut rows: Vec<Judged> = rows.into_iter().map(judge).collect();
         let machining_s = rows.iter().map(|judged| judged.row.open_loop.time_s).sum();
         // Stable: equals stay in order.
@@ -88,7 +88,7 @@ impl SweepSummary {
         });
         let judged: Vec<&Judged> = rows.iter().filter(|judged| judged.row.is_judged()).collect();
         let having = |fault: Failure| judged.iter().filter(|judged| judged.faults.contains(&fault)).count();
-        let ratios = |wanted: &dyn Fn(&Row) -> bool| {
+        let ratios = |wanted: &dyn Fn(&SweepRow) -> bool| {
             let ratios = judged.iter().filter(|judged| wanted(&judged.row)).map(|judged| judged.row.rms_ratio());
             Quantiles::of(ratios.collect())
         };

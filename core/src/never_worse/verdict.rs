@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::cut::Row;
+use super::cut::SweepRow;
 
 /// The RMS may be larger by so much, um: below what any encoder resolves.
 pub const RMS_UM: f64 = 0.05;
@@ -40,7 +40,7 @@ impl Failure {
     }
 }
 
-impl Row {
+impl SweepRow {
     /// Whether there is an open loop to compare with: one that came to its end.
     pub fn is_judged(&self) -> bool {
         self.open_loop.lost.is_none()
@@ -86,9 +86,9 @@ pub(super) mod tests {
     use crate::never_worse::cut::Figures;
 
     /// A row of these figures: RMS and largest error, um.
-    pub(crate) fn row(open: [f64; 2], corrected: [f64; 2]) -> Row {
+    pub(crate) fn row(open: [f64; 2], corrected: [f64; 2]) -> SweepRow {
         let figures = |[rms_um, max_um]: [f64; 2]| Figures { rms_um, max_um, time_s: 1.0, ..Figures::default() };
-        Row {
+        SweepRow {
             program: "p".to_owned(),
             machine: "m".to_owned(),
             rigid: true,

@@ -33,10 +33,10 @@ const SPIRAL_WITHIN_MM: f64 = 1e-7;
 const SPIRAL_KINK_RAD: f64 = 5e-4;
 
 /// A spiral has no more arcs than this, so that memory stays bounded whatever a motion says.
-const MOST_ARCS: f64 = 4096.0;
+const MAX_ARCS: f64 = 4096.0;
 
 /// With more turns than this the spiral is in the last turn only: its arcs would be too many.
-const MOST_SPIRAL_TURNS: f64 = 1000.0;
+const MAX_SPIRAL_TURNS: f64 = 1000.0;
 
 /// What an arc motion says.
 pub(super) struct Request {
@@ -81,7 +81,7 @@ pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
     let mut arcs = Vec::new();
     let mut here = start_mm;
     let mut left = sweep;
-    if whole_turns > MOST_SPIRAL_TURNS {
+    if whole_turns > MAX_SPIRAL_TURNS {
         arcs.push(turning(TAU * whole_turns));
         here[normal] += rise_per_rad * TAU * whole_turns;
         left = last_turn;
@@ -120,7 +120,7 @@ fn arcs_of_spiral(change_mm: f64, sweep_rad: f64, radius_mm: f64, rise_per_rad: 
     let by_kink = (change_mm * sweep_rad / (6.0 * radius_mm * SPIRAL_KINK_RAD)).sqrt();
     // An arc that is re-centred turns by half a turn at most.
     let by_turn = sweep_rad / PI;
-    by_sine.max(by_center).max(by_pitch).max(by_kink).max(by_turn).clamp(1.0, MOST_ARCS).ceil() as u32
+    by_sine.max(by_center).max(by_pitch).max(by_kink).max(by_turn).clamp(1.0, MAX_ARCS).ceil() as u32
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::nearest::{Range, nearest};
 use super::{Foot, Sample};
-use crate::blend::{Origin, PlannedPiece};
+use crate::blend::{PlannedPiece, ProgrammedPart};
 use crate::feed::Phase;
 use crate::path::{Piece, signed_distance_mm};
 use std::collections::VecDeque;
@@ -57,8 +57,8 @@ impl KeptPath {
             self.first_planned += 1;
         }
         let keeps = |piece: &Piece, number: u64| match self.planned.front().map(|planned| planned.origin) {
-            Some(Origin::Unchanged(first)) => number >= first,
-            Some(Origin::Part { from_mm, .. }) => piece.s_mm + piece.length_mm > from_mm,
+            Some(ProgrammedPart::Unchanged(first)) => number >= first,
+            Some(ProgrammedPart::Part { from_mm, .. }) => piece.s_mm + piece.length_mm > from_mm,
             None => true,
         };
         while self.programmed.len() > 1 && !keeps(&self.programmed[0], self.first_programmed) {
@@ -80,8 +80,8 @@ impl KeptPath {
         let local_mm = local_mm(&phase, piece, along_s);
         let at = piece.curve.at(local_mm);
         let (s_mm, programmed_mm) = match *origin {
-            Origin::Unchanged(_) => (piece.s_mm + local_mm, at.position_mm),
-            Origin::Part { from_mm, to_mm } => {
+            ProgrammedPart::Unchanged(_) => (piece.s_mm + local_mm, at.position_mm),
+            ProgrammedPart::Part { from_mm, to_mm } => {
                 let s_mm = from_mm + local_mm / piece.length_mm * (to_mm - from_mm);
                 (s_mm, self.nearest_along(at.position_mm, s_mm, s_mm).position_mm)
             }
@@ -114,8 +114,10 @@ impl KeptPath {
         let PlannedPiece { piece, origin } = self.planned(phase.piece)?;
         let local_mm = local_mm(&phase, piece, along(&phase, tau_s));
         Some(match *origin {
-            Origin::Unchanged(number) => ((number - self.first_programmed) as usize, local_mm),
-            Origin::Part { from_mm, to_mm } => self.place_of(from_mm + local_mm / piece.length_mm * (to_mm - from_mm)),
+            ProgrammedPart::Unchanged(number) => ((number - self.first_programmed) as usize, local_mm),
+            ProgrammedPart::Part { from_mm, to_mm } => {
+                self.place_of(from_mm + local_mm / piece.length_mm * (to_mm - from_mm))
+            }
         })
     }
 

@@ -38,11 +38,11 @@ const HILL: f64 = 1.5;
 /// Cosine of the angle within which the tool moves along its own stretch: there is nothing to look for beyond.
 const ALONG: f64 = 0.99;
 /// The least way of a servo period, mm: a tool at rest still looks past what an encoder cannot resolve.
-const LEAST_WAY_MM: f64 = 1e-4;
+const MIN_WAY_MM: f64 = 1e-4;
 /// Distances that differ by less are equal, mm: of two laps over each other the first counts.
 const TIE_MM: f64 = 1e-9;
 /// Steps over the whole stretch, at most.
-const MOST_STEPS: f64 = 512.0;
+const MAX_STEPS: f64 = 512.0;
 
 /// How long after the reference a following tool has reached a point of the path, s.
 pub(super) fn settled_s(machine: &Machine) -> f64 {
@@ -98,8 +98,8 @@ impl FootTracker {
         let hi_mm = reference.at(tau_s + LEAD_S).s_mm.max(lo_mm);
         let hill_mm = reference.at(tau_s + HILL_LEAD_S).s_mm.max(lo_mm);
         let moved_mm = sub(tool_mm, self.tool_mm);
-        let way_mm = distance(tool_mm, self.tool_mm).max(LEAST_WAY_MM);
-        let least_mm = (0.25 * way_mm).max((hi_mm - lo_mm) / MOST_STEPS);
+        let way_mm = distance(tool_mm, self.tool_mm).max(MIN_WAY_MM);
+        let least_mm = (0.25 * way_mm).max((hi_mm - lo_mm) / MAX_STEPS);
         let mut search = FootSearch { reference, tool_mm, moved_mm, way_mm, least_mm };
         let (mut foot, end_mm) = search.reach(lo_mm, hi_mm);
         if let Some(beyond) = search.over_the_hill(&foot, end_mm, hill_mm) {

@@ -16,8 +16,8 @@ use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::RecedingHorizon;
 use feedwright_control::controller::two_dimensional::TwoDimensional;
 use feedwright_control::controller::zero_phase::ZeroPhase;
-use feedwright_control::model::Model;
-use feedwright_control::window::{Knot, Reference};
+use feedwright_control::model::ModelBlock;
+use feedwright_control::window::{Knot, KnotSource};
 
 unsafe extern "C" {
     fn a_panic_is_left_in_the_tick() -> !;
@@ -32,7 +32,7 @@ fn panic(_: &PanicInfo<'_>) -> ! {
 /// The planned path comes from outside, of which the compiler knows nothing.
 struct Foreign<const N: usize>(extern "C" fn(f64, &mut Knot<N>));
 
-impl<const N: usize> Reference<N> for Foreign<N> {
+impl<const N: usize> KnotSource<N> for Foreign<N> {
     fn knot(&mut self, tau_s: f64) -> Knot<N> {
         let mut knot = Knot { position_mm: [0.0; N], tangent: [0.0; N], feed_mm_s: 0.0, cutting: true };
         (self.0)(tau_s, &mut knot);
@@ -87,10 +87,10 @@ macro_rules! models {
             /// # Safety
             /// There are so many bytes.
             #[unsafe(no_mangle)]
-            pub unsafe extern "C" fn $name(bytes: *const u8, length: usize, model: &mut Model<$axes>) -> bool {
+            pub unsafe extern "C" fn $name(bytes: *const u8, length: usize, model: &mut ModelBlock<$axes>) -> bool {
                 // SAFETY: as the caller promises.
                 let bytes = unsafe { core::slice::from_raw_parts(bytes, length) };
-                match Model::from_bytes(bytes) {
+                match ModelBlock::from_bytes(bytes) {
                     Ok(read) => *model = read,
                     Err(_) => return false,
                 }

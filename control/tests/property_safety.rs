@@ -4,7 +4,7 @@ use feedwright_control::controller::{Command, Controller, Measured, Schedule};
 use feedwright_control::safety::{Bounds, Cause, State};
 use feedwright_control::vector::{norm, sub};
 use feedwright_control::window::Window;
-use feedwright_control::{Knot, Reference, Tick};
+use feedwright_control::{Knot, KnotSource, Tick};
 use proptest::prelude::*;
 
 const SERVO_S: f64 = 0.001;
@@ -25,7 +25,7 @@ const LAG_S: f64 = 0.02;
 /// The circle of eq. 11.
 struct Circle;
 
-impl Reference<2> for Circle {
+impl KnotSource<2> for Circle {
     fn knot(&mut self, tau_s: f64) -> Knot<2> {
         let (sin, cos) = (FEED_MM_S / RADIUS_MM * tau_s).sin_cos();
         Knot {
@@ -40,7 +40,7 @@ impl Reference<2> for Circle {
 /// Asks for what it is told to, decision by decision, and misses by as much as it is told to.
 struct Script<C, M> {
     command: C,
-    missed_mm: M,
+    prediction_error_mm: M,
     decision: u32,
 }
 
@@ -53,8 +53,8 @@ impl<C: Fn(u32) -> Command<2>, M: Fn(u32) -> f64> Controller<2> for Script<C, M>
         self.decision = 0;
     }
 
-    fn missed_mm(&self) -> f64 {
-        (self.missed_mm)(self.decision)
+    fn prediction_error_mm(&self) -> f64 {
+        (self.prediction_error_mm)(self.decision)
     }
 
     fn command(&mut self, _: &Window<'_, 2>, _: &Measured<2>) -> Command<2> {
@@ -81,9 +81,9 @@ fn run(
     periods: u32,
     seen: impl Fn(u32, [f64; 2]) -> [f64; 2],
     command: impl Fn(u32) -> Command<2>,
-    missed_mm: impl Fn(u32) -> f64,
+    prediction_error_mm: impl Fn(u32) -> f64,
 ) -> Ran {
-    let mut controller = Script { command, missed_mm, decision: 0 };
+    let mut controller = Script { command, prediction_error_mm, decision: 0 };
     let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS);
     let mut tool = [0.0; 2];
     let (mut knots, mut states) = (Vec::new(), Vec::new());
