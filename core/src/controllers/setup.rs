@@ -222,3 +222,37 @@ impl<'a> Setup<'a> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::Knows;
+    use super::*;
+
+    #[test]
+    fn every_controller_that_was_identified_names_its_kind_and_trains_a_model_that_suits_it_and_no_other_kind() {
+        let machine = Machine::load("tnv40".as_ref()).unwrap();
+        let choices = Choices::default();
+        let servo =
+            Setup::new(&machine, &choices).train(Entry::find("receding-horizon").unwrap(), 2, "today".to_owned());
+        let servo = servo.unwrap();
+        for entry in CONTROLLERS {
+            assert_eq!(entry.identifier.is_some(), entry.knows == Knows::Identified, "{}", entry.name);
+            let suits = entry.suits(&servo, &machine.known(), 2, &choices);
+            assert_eq!(suits.is_ok(), entry.identifier == Some(Kind::Servo), "{}: {suits:?}", entry.name);
+            assert!(entry.suits(&servo, &machine.known(), 3, &choices).is_err(), "{}", entry.name);
+        }
+    }
+
+    #[test]
+    fn what_differs_in_the_simulation_alone_is_not_known() {
+        let machine = Machine::load("tnv40".as_ref()).unwrap();
+        let mut other = machine.clone();
+        for axis in &mut other.axes {
+            (axis.disturbance_hz, axis.encoder_step_um, axis.drive_delay_s) = (3.0, 5.0, 0.004);
+            (axis.torque_bits, axis.transmission) = (Some(9), Some(Default::default()));
+        }
+        assert!(other != machine && other.known() == machine.known());
+        other.axes[1].inertia_kg_m2 *= 2.0;
+        assert!(other.known() != machine.known());
+    }
+}
