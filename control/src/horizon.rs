@@ -1,7 +1,7 @@
 //! The receding-horizon inversion: one Gauss-Newton step on the accelerations of the offset in all knots of the horizon.
 //!
 //! The command is the path and an offset o from it. With the accelerations a_j of the offset in each knot as the unknowns, in
-//! all axes, the plan is rolled out through a [`Model`] of the machine (the servo identifier). Each predicted tool position p_i
+//! all axes, the plan is rolled out through a [`Predictor`] of the machine (the servo identifier). Each predicted tool position p_i
 //! is referred to the point of the path of *its own plan time less the lag of the machine*,
 //!
 //! ```text
