@@ -18,6 +18,7 @@ mod setup;
 use feedwright_control::Controller;
 use feedwright_control::controller::feedforward::Gains;
 use feedwright_control::controller::inverting::{self, Settings as Inverting};
+use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::Settings as Horizon;
 use feedwright_control::controller::{contour_compensation, cross_coupled, fuzzy_feedrate, receding_horizon};
 use feedwright_control::horizon::MAX_KNOTS;
@@ -68,9 +69,12 @@ pub enum Knows {
 /// Makes a controller from a setup and the values of its parameters.
 type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N>>;
 
-/// A row from a function of `make` that is generic over the number of axes.
+/// A row. Its last part makes the controller for N axes, of what is known of the machine and the values of its parameters.
 macro_rules! entry {
-    ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, [$($parameter:expr),*], $make:ident) => {
+    ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, [$($parameter:expr),*], |$setup:ident, $values:ident| $make:expr) => {{
+        fn make<const N: usize>($setup: &mut Setup<'_>, $values: &Values) -> Box<dyn Controller<N>> {
+            $make
+        }
         Entry {
             name: $name,
             summary: $summary,
@@ -79,10 +83,10 @@ macro_rules! entry {
             identifier: [$(IdentifierKind::$kind)?].first().copied(),
             laps: $laps,
             parameters: &[$($parameter),*],
-            plane: make::$make::<2>,
-            space: make::$make::<3>,
+            plane: make::<2>,
+            space: make::<3>,
         }
-    };
+    }};
 }
 
 // Of those that invert the paper's identifier.
@@ -201,7 +205,7 @@ pub const CONTROLLERS: &[Entry] = &[
         Nothing,
         laps: 1,
         [],
-        open_loop
+        |_setup, _values| Box::new(OpenLoop)
     ),
     entry!(
         "cross-coupled",
@@ -233,7 +237,7 @@ pub const CONTROLLERS: &[Entry] = &[
                 "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners"
             )
         ],
-        cross_coupled
+        |setup, values| make::cross_coupled(setup, values)
     ),
     entry!(
         "contour-compensation",
@@ -257,7 +261,7 @@ pub const CONTROLLERS: &[Entry] = &[
                 "time constant of the filter on the error: long takes out noise, and is late"
             )
         ],
-        contour_compensation
+        |setup, values| make::contour_compensation(setup, values)
     ),
     entry!(
         "fuzzy-feedrate",
@@ -288,7 +292,7 @@ pub const CONTROLLERS: &[Entry] = &[
                 "slowest it may run, as a part of the planned feedrate"
             )
         ],
-        fuzzy_feedrate
+        |setup, values| make::fuzzy_feedrate(setup, values)
     ),
     entry!(
         "feedforward",
@@ -297,7 +301,7 @@ pub const CONTROLLERS: &[Entry] = &[
         ExactModel,
         laps: 1,
         [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN],
-        feedforward
+        |setup, values| make::feedforward(setup, values)
     ),
     entry!(
         "zero-phase",
@@ -306,7 +310,7 @@ pub const CONTROLLERS: &[Entry] = &[
         ExactModel,
         laps: 1,
         [LAG_SCALE, INERTIA_SCALE],
-        zero_phase
+        |setup, values| make::zero_phase(setup, values)
     ),
     entry!(
         "model-predictive",
@@ -315,7 +319,7 @@ pub const CONTROLLERS: &[Entry] = &[
         ExactModel,
         laps: 1,
         [Parameter { searched: Some([1e-11, 1e-4]), ..RATE_WEIGHT }, KNOTS, PLAN_PERIOD_S],
-        model_predictive
+        |setup, values| make::model_predictive(setup, values)
     ),
     entry!(
         "iterative-learning-1",
@@ -324,7 +328,7 @@ pub const CONTROLLERS: &[Entry] = &[
         EarlierLaps,
         laps: 2,
         [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
-        iterative_learning
+        |setup, values| make::iterative_learning(setup, values)
     ),
     entry!(
         "iterative-learning-3",
@@ -333,7 +337,7 @@ pub const CONTROLLERS: &[Entry] = &[
         EarlierLaps,
         laps: 4,
         [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
-        iterative_learning
+        |setup, values| make::iterative_learning(setup, values)
     ),
     entry!(
         "iterative-learning-10",
@@ -342,7 +346,7 @@ pub const CONTROLLERS: &[Entry] = &[
         EarlierLaps,
         laps: 11,
         [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
-        iterative_learning
+        |setup, values| make::iterative_learning(setup, values)
     ),
     entry!(
         "magnitude-only",
@@ -351,7 +355,7 @@ pub const CONTROLLERS: &[Entry] = &[
         Identified(Contour),
         laps: 1,
         [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
-        magnitude_only
+        |setup, values| make::magnitude_only(setup, values)
     ),
     entry!(
         "two-dimensional",
@@ -360,7 +364,7 @@ pub const CONTROLLERS: &[Entry] = &[
         Identified(Contour),
         laps: 1,
         [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
-        two_dimensional
+        |setup, values| make::two_dimensional(setup, values)
     ),
     entry!(
         "receding-horizon",
@@ -380,7 +384,7 @@ pub const CONTROLLERS: &[Entry] = &[
             SOLVER_STEPS,
             ON_RAPIDS
         ],
-        receding_horizon
+        |setup, values| make::receding_horizon(setup, values)
     ),
 ];
 

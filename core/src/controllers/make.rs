@@ -8,7 +8,6 @@ use feedwright_control::controller::feedforward::{Feedforward, Gains};
 use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
 use feedwright_control::controller::inverting;
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
-use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::two_dimensional::TwoDimensional;
 use feedwright_control::controller::zero_phase::{SampledAxis, ZeroPhase};
@@ -19,10 +18,6 @@ use super::iterative_learning::{self, IterativeLearning};
 use super::model_predictive::{self, ModelPredictive};
 use super::parameters::Values;
 use crate::machine::{Known, KnownAxis, Period};
-
-pub(super) fn open_loop<const N: usize>(_: &mut Setup<'_>, _: &Values) -> Box<dyn Controller<N>> {
-    Box::new(OpenLoop)
-}
 
 pub(super) fn cross_coupled<const N: usize>(_: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     Box::new(CrossCoupled::new(cross_coupled::Settings {
@@ -49,6 +44,16 @@ pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Val
 }
 
 pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let gains = Gains {
+        velocity: values.number("velocity_gain"),
+        acceleration: values.number("acceleration_gain"),
+        friction: values.number("friction_gain"),
+    };
+    Box::new(feedforward_with::<N>(setup, gains))
+}
+
+/// Feedforward of so much of each part.
+pub(super) fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforward<N> {
     let Period { servo_s, mechanics_s, .. } = setup.known.period;
     let axes = setup.known.axes().map(|axis| {
         let parameters = axis.nominal;
@@ -57,21 +62,21 @@ pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &Values
         let early_nm_s = parameters.kv_nm_s_per_rad + parameters.viscous_friction_nm_s;
         Parameters { inertia_kg_m2: parameters.inertia_kg_m2 - early_nm_s * mechanics_s, ..parameters }
     });
-    let gains = Gains {
-        velocity: values.number("velocity_gain"),
-        acceleration: values.number("acceleration_gain"),
-        friction: values.number("friction_gain"),
-    };
-    Box::new(Feedforward::new(axes, gains, servo_s))
+    Feedforward::new(axes, gains, servo_s)
 }
 
 pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let [lag_scale, inertia_scale] = ["lag_scale", "inertia_scale"].map(|name| values.number(name));
-    let sampled = setup.known.axes().map(|KnownAxis { nominal, .. }| {
+    let scales = ["lag_scale", "inertia_scale"].map(|name| values.number(name));
+    Box::new(ZeroPhase::<N>::new(&sampled_axes(&setup.known, scales), setup.known.period.servo_s))
+}
+
+/// The linear part of every axis, with scales on its lag and its inertia.
+pub(super) fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [SampledAxis; N] {
+    let [lag_scale, inertia_scale] = scales;
+    known.axes().map(|KnownAxis { nominal, .. }| {
         let inertia_kg_m2 = inertia_scale * nominal.inertia_kg_m2;
-        sampled(&Parameters { kp_1_s: nominal.kp_1_s / lag_scale, inertia_kg_m2, ..nominal }, &setup.known.period)
-    });
-    Box::new(ZeroPhase::new(&sampled, setup.known.period.servo_s))
+        sampled(&Parameters { kp_1_s: nominal.kp_1_s / lag_scale, inertia_kg_m2, ..nominal }, &known.period)
+    })
 }
 
 /// The linear part of an axis over one servo period, as the plant integrates it.
