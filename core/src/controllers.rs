@@ -26,7 +26,7 @@ use feedwright_control::identifier::IdentifierKind;
 pub use make::correction_limits;
 pub use parameters::{Parameter, Setting, SettingError};
 use parameters::{Values, number, switch, whole};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 pub use setup::{ModelMisfit, Setup};
 
 use crate::gcode::suggestion::nearest;
@@ -394,7 +394,7 @@ pub const BEST: &str = "receding-horizon";
 pub const BASELINE: &str = "open-loop";
 
 /// What a user can choose.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Choices {
     /// Seed of the training.
     pub seed: u64,
@@ -456,6 +456,13 @@ impl Make<3> for Entry {
 
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
         (self.space)(setup, &Values::of(self, &setup.choices.set))
+    }
+}
+
+/// By their names: there is one row of each.
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
     }
 }
 

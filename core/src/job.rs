@@ -8,14 +8,17 @@
 //! | `job/error.rs` | what can go wrong |
 //! | `job/files.rs` | the files that it writes, all of them or none |
 //! | `job/report.rs` | what the page shows |
+//! | `job/stored.rs` | how it is serialised |
 
 mod error;
 mod files;
 mod report;
+mod stored;
 
 use std::path::PathBuf;
 
 use feedwright_control::Controller;
+use serde::{Deserialize, Serialize};
 
 use crate::controllers::{Choices, Entry, Make, Setup};
 use crate::gcode::canon::{Canon, MotionKind};
@@ -30,22 +33,27 @@ pub use error::JobError;
 pub use files::Outputs;
 use files::{Files, Timeline};
 
-/// A part, a machine, two controllers, and what to write.
-#[derive(Debug, Clone)]
+/// A part, a machine, two controllers, and what to write. Serialised, the machine and the model are the texts of their files, and
+/// the controllers their names.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Job {
     /// The G-code program.
     pub part: PathBuf,
     /// The machine that cuts it.
+    #[serde(with = "stored::machine")]
     pub machine: Machine,
     /// The controller that is asked for.
+    #[serde(with = "stored::entry")]
     pub controller: &'static Entry,
     /// What it is compared against.
+    #[serde(with = "stored::entry")]
     pub against: &'static Entry,
     /// Replaces every programmed feedrate, mm/s.
     pub feed_mm_s: Option<f64>,
     /// Settings of the controllers.
     pub choices: Choices,
     /// A model for the controller that is asked for, in place of a training.
+    #[serde(with = "stored::model")]
     pub model: Option<Model>,
     /// Largest contour error that is allowed, um.
     pub tolerance_um: Option<f64>,

@@ -2,12 +2,13 @@
 
 pub mod csv;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::feed::TimedEvent;
 
 /// What the command of a servo period does. The tool follows it by some ten milliseconds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Commanded {
     /// It moves at a programmed feedrate.
     Cut,
@@ -18,7 +19,7 @@ pub enum Commanded {
 }
 
 /// One servo period of a run. Two-axis runs leave the third component at zero.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Row {
     /// Start of the servo period, s.
     pub t_s: f64,

@@ -5,6 +5,7 @@ pub(crate) mod tools;
 use std::fmt;
 use std::path::PathBuf;
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::settings::tools::ToolTable;
@@ -27,7 +28,8 @@ pub const DIALECTS: [(&str, Dialect); 10] = [
 ];
 
 /// Whose G-code it is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Dialect {
     /// RS-274/NGC as LinuxCNC 2.9 reads it.
     LinuxCnc,
@@ -109,8 +111,9 @@ impl fmt::Display for Dialect {
     }
 }
 
-/// Least input increment of a control: IS-A, IS-B or IS-C.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Least input increment of a control: IS-A, IS-B or IS-C. Serialised by its metric name.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub struct Increment {
     /// Millimetres, or degrees.
     mm: f64,
@@ -137,6 +140,20 @@ impl Increment {
     }
 }
 
+impl TryFrom<String> for Increment {
+    type Error = UnknownIncrement;
+
+    fn try_from(name: String) -> Result<Self, UnknownIncrement> {
+        Self::named(&name)
+    }
+}
+
+impl From<Increment> for String {
+    fn from(increment: Increment) -> Self {
+        format!("{}mm", increment.mm)
+    }
+}
+
 /// A name that no increment has.
 #[derive(Debug, Clone, PartialEq, Eq, Error, miette::Diagnostic)]
 #[error(
@@ -149,7 +166,7 @@ pub struct UnknownIncrement {
 }
 
 /// Settings of a [`Reader`](crate::Reader).
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Dialect; `None` chooses by the beginning of the file.
     pub dialect: Option<Dialect>,

@@ -1,7 +1,7 @@
 //! What of a controller can be set, by name: `--set knots=10`.
 
 use miette::Diagnostic;
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 use thiserror::Error;
 
 use super::Entry;
@@ -83,6 +83,21 @@ pub struct Setting {
     pub name: &'static str,
     /// The value, which is allowed.
     pub value: f64,
+}
+
+/// As it is read back, before names and value are checked.
+#[derive(Deserialize)]
+struct StoredSetting {
+    controller: String,
+    name: String,
+    value: f64,
+}
+
+impl<'d> Deserialize<'d> for Setting {
+    fn deserialize<D: Deserializer<'d>>(deserializer: D) -> Result<Self, D::Error> {
+        let StoredSetting { controller, name, value } = StoredSetting::deserialize(deserializer)?;
+        Self::parse(&format!("{controller}.{name}={value}"), None).map_err(serde::de::Error::custom)
+    }
 }
 
 /// Why `--set` cannot be done.

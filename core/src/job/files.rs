@@ -3,7 +3,7 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::{Job, JobError};
 use crate::feed::TimedEvent;
@@ -17,7 +17,7 @@ use crate::trace::{Row, Sink};
 use crate::watch::Watch;
 
 /// Where to write what; `None` is not written.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Outputs {
     /// The page.
     pub report: Option<PathBuf>,

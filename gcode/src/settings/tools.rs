@@ -8,13 +8,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::{fs, io};
 
+use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::text::codes::AXIS_LETTERS;
 use crate::text::diagnostic::{Diagnostic, LineFault, Read, Severity};
 
 /// One tool.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Tool {
     /// Offsets of X Y Z A B C U V W, mm and degrees.
     pub offset: [f64; 9],
@@ -33,7 +34,7 @@ pub struct Tool {
 }
 
 /// All tools by number.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ToolTable {
     /// Tools by number.
     pub tools: BTreeMap<u32, Tool>,
