@@ -16,6 +16,7 @@ mod make;
 mod setup;
 
 use feedwright_control::Controller;
+use feedwright_control::controller::disturbance_observer::{self, DisturbanceObserver};
 use feedwright_control::controller::feedforward::Gains;
 use feedwright_control::controller::inverting::{self, Settings as Inverting};
 use feedwright_control::controller::open_loop::OpenLoop;
@@ -311,6 +312,26 @@ pub const CONTROLLERS: &[Entry] = &[
         laps: 1,
         [LAG_SCALE, INERTIA_SCALE],
         |setup, values| make::zero_phase(setup, values)
+    ),
+    entry!(
+        "disturbance-observer",
+        "velocity and acceleration feedforward, and an observer of friction and cutting force",
+        "Ohnishi (1987)",
+        ExactModel,
+        laps: 1,
+        [number(
+            "bandwidth_hz",
+            disturbance_observer::BANDWIDTH_HZ,
+            [0.0, 200.0],
+            Some([1.0, 150.0]),
+            "of the observer: low is late at every reversal, high swings with the delay of the loop"
+        )],
+        |setup, values| {
+            let (axes, limits_mm_s) = (make::sampled_axes(&setup.known, [1.0; 2]), make::drive_limits_mm_s(&setup.known));
+            let feedforward = make::feedforward_with(setup, Gains { friction: 0.0, ..Gains::EXACT });
+            let (bandwidth_hz, servo_s) = (values.number("bandwidth_hz"), setup.known.period.servo_s);
+            Box::new(DisturbanceObserver::<N>::new(feedforward, axes, limits_mm_s, bandwidth_hz, servo_s))
+        }
     ),
     entry!(
         "model-predictive",

@@ -41,6 +41,7 @@ const HELD: &[Held] = &[
     held("fuzzy-feedrate", 0.7, [1.1, 1.5]),
     held("feedforward", 0.04, PLANNED),
     held("zero-phase", 0.22, PLANNED),
+    held("disturbance-observer", 0.08, PLANNED),
     held("model-predictive", 0.005, PLANNED),
     held("iterative-learning-1", 0.05, PLANNED),
     held("iterative-learning-3", 0.04, PLANNED),

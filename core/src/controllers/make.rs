@@ -79,6 +79,13 @@ pub(super) fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [
     })
 }
 
+/// The reference speed, mm/s, that asks the drive of every axis for all that it has.
+pub(super) fn drive_limits_mm_s<const N: usize>(known: &Known) -> [f64; N] {
+    known
+        .axes()
+        .map(|KnownAxis { nominal, .. }| nominal.torque_limit_nm / (nominal.kv_nm_s_per_rad * nominal.rad_per_mm))
+}
+
 /// The linear part of an axis over one servo period, as the plant integrates it.
 fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
     let linear = Parameters { torque_limit_nm: f64::INFINITY, coulomb_friction_nm: 0.0, ..*axis };
