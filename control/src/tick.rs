@@ -154,3 +154,66 @@ impl<const N: usize> Tick<N> {
         f64::from(self.schedule.servo_periods) * self.servo_s
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn plan_time_is_a_whole_number_of_servo_periods_whatever_its_size() {
+        let mut time = PlanTime::default();
+        for _ in 0..1_000_000 {
+            time = time.after(3.0);
+        }
+        assert_eq!((time.periods, time.part), (3_000_000, 0.0));
+        assert_eq!(time.seconds(0.001).to_bits(), (3_000_000.0 * 0.001_f64).to_bits());
+    }
+
+    #[test]
+    fn parts_of_a_period_add_up_and_what_is_no_number_stands_still() {
+        let mut time = PlanTime::default();
+        (0..8).for_each(|_| time = time.after(0.375));
+        assert_eq!((time.periods, time.part), (3, 0.0));
+        assert_eq!(time.after(f64::NAN).periods, 3);
+    }
+
+    /// 50 mm/s along the first axis.
+    struct Line;
+
+    impl KnotSource<2> for Line {
+        fn knot(&mut self, tau_s: f64) -> Knot<2> {
+            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
+        }
+    }
+
+    /// Every fifth servo period, an offset that grows by a micrometre.
+    struct Growing(f64);
+
+    impl Controller<2> for Growing {
+        fn schedule(&self) -> Schedule {
+            Schedule { servo_periods: 5, preview: 0 }
+        }
+
+        fn reset(&mut self) {
+            self.0 = 0.0;
+        }
+
+        fn command(&mut self, _: &Window<'_, 2>, _: &Measured<2>) -> Command<2> {
+            self.0 += 1e-3;
+            Command::straight(1.0, [0.0, self.0])
+        }
+    }
+
+    #[test]
+    fn an_offset_is_reached_at_the_end_of_the_feed_period_in_which_it_was_decided() {
+        let mut tick = Tick::new(0.001, Growing(0.0).schedule(), Bounds::new(1.0, 400.0, 1000.0));
+        let (mut controller, mut tool_mm) = (Growing(0.0), [0.0; 2]);
+        for n in 0..50_u32 {
+            let setpoint = tick.step(&mut Line, &mut controller, tool_mm);
+            assert_eq!(setpoint.decided, n.is_multiple_of(5), "{n}");
+            assert!((setpoint.command_mm[0] - 0.05 * f64::from(n)).abs() < 1e-12, "{n}");
+            assert!((setpoint.command_mm[1] - 2e-4 * f64::from(n)).abs() < 1e-12, "{n}: {:?}", setpoint.command_mm);
+            tool_mm = setpoint.command_mm;
+        }
+    }
+}

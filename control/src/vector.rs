@@ -65,3 +65,29 @@ pub fn fourth_power(x: f64) -> f64 {
 pub fn bounded(x: f64, least: f64, most: f64) -> f64 {
     x.max(least).min(most)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_vector_is_shortened_to_the_limit_and_what_is_no_number_becomes_none() {
+        assert_eq!(limit_norm([3.0, 4.0], 5.0), [3.0, 4.0]);
+        assert_eq!(limit_norm([3.0, 4.0], 2.5), [1.5, 2.0]);
+        for bad in [[f64::NAN, 1.0], [f64::INFINITY, 1.0]] {
+            assert_eq!(limit_norm(bad, 5.0), [0.0; 2]);
+        }
+    }
+
+    #[test]
+    fn what_is_rejected_has_nothing_left_along_the_direction() {
+        let left = reject([3.0, -2.0, 7.0], [0.6, 0.8, 0.0]);
+        assert!(dot(left, [0.6, 0.8, 0.0]).abs() < 1e-15 && (left[2] - 7.0).abs() < 1e-15, "{left:?}");
+    }
+
+    #[test]
+    fn a_bounded_number_is_within_its_bounds_whatever_it_was() {
+        assert_eq!([-3.0, 0.5, 3.0, f64::NAN].map(|x| bounded(x, -1.0, 2.0)), [-1.0, 0.5, 2.0, -1.0]);
+        assert!(bounded(0.5, f64::NAN, f64::NAN) == 0.5);
+    }
+}

@@ -264,3 +264,90 @@ fn information(spread: &[[f64; UNKNOWNS]; UNKNOWNS], settings: &Settings) -> [[f
     }
     inverse(&covariance, settings.noise_mm * settings.noise_mm)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identifier::Identifier;
+    use crate::identifier::servo::ServoIdentifier;
+
+    /// A linear servo of two axes.
+    fn servo(gain: f64) -> ServoIdentifier<2> {
+        let mut net = ServoIdentifier::NULL;
+        for axis in 0..2 {
+            net.linear[axis][axis] = [0.1, 0.03, 0.0, -0.12 * gain, 0.02 * gain];
+        }
+        net
+    }
+
+    /// Others differ by the gain, which moves the two inputs of the error together.
+    fn spread() -> Spread<2> {
+        let mut products = [[0.0; UNKNOWNS]; UNKNOWNS];
+        let along = [0.0, 0.0, 0.0, -0.12, 0.02, 0.0];
+        for (row, a) in products.iter_mut().zip(along) {
+            row.iter_mut().zip(along).for_each(|(product, b)| *product = 0.25 * a * b);
+        }
+        [products; 2]
+    }
+
+    /// Inputs that excite everything in an axis, or stand still.
+    fn inputs(k: u32, moving: [bool; 2]) -> Inputs<2> {
+        let wave = |i: usize, axis: usize| libm::sin(f64::from(k) * (0.3 + 0.17 * i as f64) + axis as f64);
+        core::array::from_fn(|axis| core::array::from_fn(|i| if moving[axis] { wave(i, axis) } else { 0.0 }))
+    }
+
+    /// Knots of a machine of this gain.
+    fn cut(adaptation: &mut Adaptation<2>, gain: f64, knots: u32, moving: [bool; 2]) {
+        let machine = servo(gain);
+        for k in 0..knots {
+            let inputs = inputs(k, moving);
+            adaptation.learn(&inputs, machine.predict(&inputs));
+        }
+    }
+
+    fn missed_mm(adaptation: &Adaptation<2>, gain: f64) -> f64 {
+        let inputs = inputs(1000, [true; 2]);
+        let [is, should] = [adaptation.net().predict(&inputs), servo(gain).predict(&inputs)];
+        (is[0] - should[0]).abs().max((is[1] - should[1]).abs())
+    }
+
+    #[test]
+    fn on_the_machine_that_was_trained_nothing_changes() {
+        let mut adaptation = Adaptation::new(servo(1.0), &spread(), Settings::DEFAULT);
+        cut(&mut adaptation, 1.0, 500, [true; 2]);
+        assert_eq!(adaptation.net(), &servo(1.0));
+        assert_eq!(adaptation.innovation_mm(), 0.0);
+    }
+
+    #[test]
+    fn another_machine_of_its_kind_is_known_within_a_second_and_forgotten_by_a_reset() {
+        let mut adaptation = Adaptation::new(servo(1.0), &spread(), Settings::DEFAULT);
+        let before_mm = missed_mm(&adaptation, 1.7);
+        cut(&mut adaptation, 1.7, 300, [true; 2]);
+        assert!(missed_mm(&adaptation, 1.7) < 0.02 * before_mm, "{} {before_mm}", missed_mm(&adaptation, 1.7));
+        assert!(adaptation.innovation_mm() < before_mm);
+        adaptation.reset();
+        assert_eq!(adaptation.net(), &servo(1.0));
+    }
+
+    #[test]
+    fn an_axis_that_has_not_moved_is_taken_to_differ_as_the_other_does() {
+        let mut adaptation = Adaptation::new(servo(1.0), &spread(), Settings::DEFAULT);
+        cut(&mut adaptation, 1.7, 300, [true, false]);
+        let change = |axis: usize| adaptation.net().linear[axis][axis][3] - servo(1.0).linear[axis][axis][3];
+        assert!((change(0) + 0.12 * 0.7).abs() < 0.01, "{}", change(0));
+        let part = change(1) / change(0);
+        assert!((part - Settings::DEFAULT.axis_coupling).abs() < 0.05, "{part}");
+    }
+
+    #[test]
+    fn what_is_no_number_teaches_nothing() {
+        let mut adaptation = Adaptation::new(servo(1.0), &spread(), Settings::DEFAULT);
+        cut(&mut adaptation, 1.7, 300, [true; 2]);
+        let before = adaptation.clone();
+        for bad in [f64::NAN, f64::INFINITY] {
+            adaptation.learn(&inputs(7, [true; 2]), [bad, 0.0]);
+        }
+        assert_eq!(adaptation, before);
+    }
+}

@@ -139,3 +139,65 @@ impl<const N: usize> ServoModel<N> for ServoIdentifier<N> {
         self.output[axis] = trained.output[axis].map(|weight| weight * (1.0 + change[INPUTS]));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::identifier::FEED_SCALE_MM_S;
+
+    /// Two axes that see each other, with hidden nodes of any kind.
+    fn net() -> ServoIdentifier<2> {
+        let weight = |i: usize, j: usize, k: usize| libm::sin((7 * i + 3 * j + k) as f64);
+        ServoIdentifier {
+            linear: core::array::from_fn(|o| core::array::from_fn(|a| core::array::from_fn(|i| weight(o, a, i)))),
+            hidden: core::array::from_fn(|a| core::array::from_fn(|i| core::array::from_fn(|j| weight(a, i, j)))),
+            output: core::array::from_fn(|o| core::array::from_fn(|j| 0.3 * weight(o, j, 5))),
+        }
+    }
+
+    const INPUTS_SEEN: Inputs<2> = [[0.3, -0.2, 0.5, 0.1, -0.4], [0.7, 0.2, -0.6, 0.05, 0.2]];
+
+    #[test]
+    fn the_slopes_are_the_difference_quotients_of_an_axis_to_its_own_inputs() {
+        let net = net();
+        let (grown_mm, slopes) = net.predict_with_slopes(&INPUTS_SEEN);
+        assert_eq!(grown_mm.map(f64::to_bits), net.predict_with_slopes(&INPUTS_SEEN).0.map(f64::to_bits));
+        for axis in 0..2 {
+            assert!((grown_mm[axis] - net.predict(&INPUTS_SEEN)[axis]).abs() < 1e-14);
+            for input in 0..INPUTS {
+                let h = 1e-6;
+                let at = |change: f64| {
+                    let mut inputs = INPUTS_SEEN;
+                    inputs[axis][input] += change;
+                    net.predict(&inputs)[axis]
+                };
+                let quotient = (at(h) - at(-h)) / (2.0 * h);
+                assert!((quotient - slopes[axis][input]).abs() < 1e-8, "axis {axis}, input {input}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_lag_is_the_following_error_at_constant_feedrate_in_seconds() {
+        // e grows by T F - T e / lag: at rest where e = lag F.
+        let (period_s, lag_s) = (0.003, 0.02);
+        let mut net = ServoIdentifier::<2>::NULL;
+        for axis in 0..2 {
+            net.linear[axis][axis][0] = period_s * FEED_SCALE_MM_S;
+            net.linear[axis][axis][3] = -period_s / lag_s * FOLLOWING_SCALE_MM;
+        }
+        assert!((net.lag_s() - lag_s).abs() < 1e-12, "{}", net.lag_s());
+        assert_eq!(ServoIdentifier::<2>::NULL.lag_s(), 0.0);
+    }
+
+    #[test]
+    fn a_change_is_added_to_the_linear_part_and_multiplies_the_hidden_one() {
+        let (trained, mut now) = (net(), net());
+        now.change(&trained, 1, &[0.1, 0.0, 0.0, 0.0, -0.2, 0.5]);
+        assert_eq!(now.linear[0], trained.linear[0]);
+        assert_eq!(now.linear[1][1][0], trained.linear[1][1][0] + 0.1);
+        assert_eq!(now.linear[1][1][4], trained.linear[1][1][4] - 0.2);
+        assert_eq!(now.output[0], trained.output[0]);
+        assert_eq!(now.output[1], trained.output[1].map(|weight| 1.5 * weight));
+    }
+}

@@ -112,3 +112,63 @@ impl<const N: usize> Benefit<N> {
         self.filtered_mm
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::window::{Knot, KnotSource, Preview, Register};
+
+    const SERVO_S: f64 = 0.001;
+    const PERIOD_S: f64 = 0.003;
+
+    /// 50 mm/s along the first axis.
+    struct Line;
+
+    impl KnotSource<2> for Line {
+        fn knot(&mut self, tau_s: f64) -> Knot<2> {
+            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
+        }
+    }
+
+    /// A second in which the tool is at `error_mm` beside the path, and the offset has moved it by `moved_mm`.
+    fn after_a_second(error_mm: f64, moved_mm: f64) -> (Benefit<2>, bool) {
+        let (mut register, mut preview) = (Register::default(), Preview::new(SERVO_S));
+        let mut benefit = Benefit::NONE;
+        let mut harm = false;
+        for n in 0..1000_u32 {
+            let tau_s = f64::from(n) * SERVO_S;
+            register.push(Line.knot(tau_s));
+            preview.fill(&mut Line, tau_s, 0.01);
+            if n.is_multiple_of(3) && n > 30 {
+                let (offset_mm, offset_mm_s) = ([0.0; 2], [0.0; 2]);
+                let (register, preview) = (&register, &preview);
+                let window = Window { register, preview, tau_s, feed_period_s: PERIOD_S, offset_mm, offset_mm_s };
+                let tool_mm = [50.0 * tau_s, error_mm];
+                let contour = ContourError { vector_mm: [0.0, -error_mm], index: 0, ..ContourError::NONE };
+                harm = benefit.is_harm(&window, tool_mm, &contour, Some([0.0, moved_mm]));
+            }
+        }
+        (benefit, harm)
+    }
+
+    #[test]
+    fn overdone_is_zero_where_all_is_undone_and_one_where_nothing_would_be_as_good() {
+        // The part that is lost where little changes.
+        let known = |changed_mm: f64| changed_mm * changed_mm / (changed_mm * changed_mm + CHANGED_MM2);
+        for (error_mm, moved_mm, overdone) in
+            [(0.0, 0.02, 0.0), (0.01, 0.02, 1.0), (-0.01, 0.01, -2.0), (0.02, 0.02, 2.0)]
+        {
+            let (benefit, _) = after_a_second(error_mm, moved_mm);
+            let expected = overdone * known(moved_mm);
+            assert!((benefit.overdone() - expected).abs() < 0.01, "{error_mm} {moved_mm}: {}", benefit.overdone());
+        }
+    }
+
+    #[test]
+    fn harm_is_an_error_that_is_clearly_larger_than_without_the_correction() {
+        // 0.05 mm with it, nothing without; then the other way round; then hardly different.
+        assert!(after_a_second(0.05, 0.05).1);
+        assert!(!after_a_second(0.0, -0.05).1);
+        assert!(!after_a_second(0.01, 0.001).1);
+    }
+}
