@@ -2,9 +2,13 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 use crate::message::INTERRUPTED;
 use crate::progress::Bar;
+
+/// Signals that follow each other faster are one: some shells send it to the process and to its group.
+const PATIENCE: Duration = Duration::from_millis(500);
 
 /// The terminal of a command.
 pub(crate) struct Console {
@@ -19,11 +23,13 @@ impl Console {
     }
 
     /// From here on Ctrl-C, or a request to terminate, ends the work at the next chance, so that no file is left half-written;
-    /// the second one ends the process.
+    /// another one, [`PATIENCE`] later or more, ends the process.
     pub(crate) fn listen(&self) {
         let interrupted = self.interrupted.clone();
+        let mut first: Option<Instant> = None;
         let listening = ctrlc::set_handler(move || {
-            if interrupted.swap(true, Ordering::Relaxed) {
+            interrupted.store(true, Ordering::Relaxed);
+            if first.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
                 std::process::exit(INTERRUPTED.into());
             }
         });

@@ -180,13 +180,11 @@ fn print_rows(out: &mut impl Write, rows: &[ComparisonRow]) -> std::io::Result<(
         if here != heading {
             writeln!(
                 out,
-                "\n{here:<34} {:>8} {:>9} {:>9} {:>9} {:>6} {:>6} {:>6} {:>8} {:>7} {:>8} {:>8}",
-                "time s", "RMS um", "max um", "uncut um", "time", "RMS", "max", "off um", "N m", "tick us", "99.9 %"
+                "\n{here:<34} {:>8} {:>9} {:>9} {:>9} {:>6} {:>6} {:>6} {:>8} {:>7}",
+                "time s", "RMS um", "max um", "uncut um", "time", "RMS", "max", "off um", "N m"
             )?;
             heading = here;
         }
-        let [median_us, most_us] =
-            row.tick_us.map_or(["-".to_owned(), "-".to_owned()], |us| us.map(|t| format!("{t:.1}")));
         let note = match (&row.faded_out, row.completed) {
             (_, false) => "  diverged".to_owned(),
             (Some(cause), true) => format!("  left the loop: {cause}"),
@@ -194,7 +192,7 @@ fn print_rows(out: &mut impl Write, rows: &[ComparisonRow]) -> std::io::Result<(
         };
         writeln!(
             out,
-            "{:<34} {:>8.3} {:>9.2} {:>9.2} {:>9.2} {:>6.3} {:>6.3} {:>6.3} {:>8.0} {:>7.2} {median_us:>8} {most_us:>8}{note}",
+            "{:<34} {:>8.3} {:>9.2} {:>9.2} {:>9.2} {:>6.3} {:>6.3} {:>6.3} {:>8.0} {:>7.2}{note}",
             row.controller,
             row.time_s,
             row.rms_um,

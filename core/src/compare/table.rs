@@ -45,10 +45,6 @@ pub struct ComparisonRow {
     /// Contour error along the cut, um, for plots.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub error_um: Vec<f32>,
-    /// Median and 99.9 % of the time of the ticks that decide, us: of the computer, not of the comparison, and not equal
-    /// from run to run.
-    #[serde(skip)]
-    pub tick_us: Option<[f64; 2]>,
 }
 
 impl ComparisonRow {
@@ -76,7 +72,6 @@ impl ComparisonRow {
             completed: run.outcome == Outcome::Completed,
             faded_out: run.faded_out.map(|faded| faded.cause.to_owned()),
             error_um,
-            tick_us: Some([run.ticks.quantile_us(0.5), run.ticks.quantile_us(0.999)]),
         }
     }
 }

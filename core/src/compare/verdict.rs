@@ -158,7 +158,6 @@ mod tests {
             completed: true,
             faded_out: None,
             error_um: Vec::new(),
-            tick_us: None,
         }
     }
 
