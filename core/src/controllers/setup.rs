@@ -238,7 +238,7 @@ mod tests {
         for entry in CONTROLLERS {
             assert_eq!(entry.identifier.is_some(), entry.knows == Knows::Identified, "{}", entry.name);
             let suits = entry.suits(&servo, &machine.known(), 2, &choices);
-            assert_eq!(suits.is_ok(), entry.identifier == Some(Kind::Servo), "{}: {suits:?}", entry.name);
+            assert_eq!(suits.is_ok(), entry.identifier == Some(IdentifierKind::Servo), "{}: {suits:?}", entry.name);
             assert!(entry.suits(&servo, &machine.known(), 3, &choices).is_err(), "{}", entry.name);
         }
     }
