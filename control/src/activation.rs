@@ -53,8 +53,9 @@ pub fn tanh<const M: usize>(x: [f64; M]) -> [f64; M] {
     bipolar_sigmoid(x.map(|x| 2.0 * x))
 }
 
+/// e^x of -40 to 40, to the last bits; what is far beyond is wrong.
 #[inline]
-fn exp(x: f64) -> f64 {
+pub(crate) fn exp(x: f64) -> f64 {
     let shifted = x * core::f64::consts::LOG2_E + ROUND_TO_EXPONENT;
     let n = shifted - ROUND_TO_EXPONENT;
     let r = (x - n * LN2_HIGH) - n * LN2_LOW;

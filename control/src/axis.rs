@@ -9,12 +9,20 @@
 //! at the motor shaft, integrated by semi-implicit Euler: w first, then the angle with the new w. What simulates a machine, what
 //! predicts one and what inverts one use these lines and no others.
 //!
+//! | File | What a machine may have beside it |
+//! |---|---|
+//! | `axis/drive.rs` | integral of the speed loop, feedforward, speed limit, torque filter |
+//! | `axis/friction.rs` | asymmetry, Stribeck's curve, presliding |
+//!
 //! Symbols: e error of the position at the motor, rad; w speed of the motor, rad/s; u torque, N m; Kp, Kd gains of the position
 //! loop, 1/s and none; Kv gain of the speed loop, N m s/rad; J inertia, kg m^2; B viscous friction, N m s/rad; Fc Coulomb friction,
 //! N m, which turns its sign over w_s, rad/s.
 //!
 //! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6, which name the parts; the laws are written out as usual for
 //! such a loop.
+
+pub mod drive;
+pub mod friction;
 
 use crate::activation::tanh;
 

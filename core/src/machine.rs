@@ -5,20 +5,21 @@
 //! is an optional table of the file: one struct here, one `Option` field in [`Machine`] or [`Axis`], one table in
 //! [`keys`], one reader in `layout`.
 
+mod axis;
 mod error;
 pub mod keys;
 mod known;
 mod layout;
 
-use std::f64::consts::TAU;
 use std::ffi::OsStr;
 use std::path::Path;
 
-use feedwright_control::axis;
+use feedwright_control::axis::{AxisLaw, Periods};
 use serde::Serialize;
 
 use crate::toml_file::key::write;
 use crate::toml_file::{self, FileError, quoted, read_text};
+pub use axis::{Axis, Transmission};
 use error::KIND;
 pub use error::MachineError;
 pub use known::{Known, KnownAxis};
@@ -55,6 +56,29 @@ pub struct Machine {
     pub plc_events: Vec<PlcEvent>,
     /// Two or three axes: x, y and perhaps z.
     pub axes: Vec<Axis>,
+    /// How the axes lie to each other.
+    pub geometry: Squareness,
+    /// What random numbers begin with.
+    pub noise: Noise,
+}
+
+/// How far from square the axes are: table `[geometry]`, all zero without it. Positive where the angle between the positive
+/// directions is less than 90 degrees.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Squareness {
+    /// Of y to x, urad.
+    pub squareness_xy_urad: f64,
+    /// Of z to x, urad.
+    pub squareness_xz_urad: f64,
+    /// Of z to y, urad.
+    pub squareness_yz_urad: f64,
+}
+
+/// Random numbers of a machine: table `[noise]`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Noise {
+    /// Seed; another one gives other numbers of the same statistics.
+    pub seed: u64,
 }
 
 /// Periods of the control and of its simulation.
@@ -73,9 +97,9 @@ const MAX_SERVO_PERIODS: f64 = 12.0;
 
 impl Period {
     /// As the law of an axis takes them.
-    pub fn periods(&self) -> axis::Periods {
+    pub fn periods(&self) -> Periods {
         let Self { servo_s, mechanics_s, mechanics_per_servo } = *self;
-        axis::Periods { servo_s, mechanics_s, mechanics_per_servo }
+        Periods { servo_s, mechanics_s, mechanics_per_servo }
     }
 
     /// Servo periods in a feed period of about `feed_period_s`: at least one, and no more than a preview has room for.
@@ -129,96 +153,6 @@ pub struct PlcEvent {
     pub label: String,
     /// How long it holds the motion up, s.
     pub takes_s: f64,
-}
-
-/// A servo axis: mechanics at the motor shaft and the two control loops.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Axis {
-    /// Travel for one motor turn, mm.
-    pub lead_mm_per_rev: f64,
-    /// Inertia at the motor shaft, kg m2.
-    pub inertia_kg_m2: f64,
-    /// Viscous friction, N m s/rad.
-    pub viscous_friction_nm_s: f64,
-    /// Coulomb friction torque, N m.
-    pub coulomb_friction_nm: f64,
-    /// Speed over which the Coulomb torque turns its sign, rad/s.
-    pub coulomb_smoothing_rad_s: f64,
-    /// Amplitude of the disturbance torque, N m.
-    pub disturbance_nm: f64,
-    /// Frequency of the disturbance torque, Hz.
-    pub disturbance_hz: f64,
-    /// Proportional gain of the position loop, 1/s.
-    pub kp_1_s: f64,
-    /// Derivative gain of the position loop, dimensionless: rad/s of command for a rad/s of error rate.
-    pub kd: f64,
-    /// Gain of the speed loop, N m s/rad.
-    pub kv_nm_s_per_rad: f64,
-    /// Torque at which the drive saturates, N m.
-    pub torque_limit_nm: f64,
-    /// Acceleration that a correction of the command may add to the plan's, mm/s2; none is the machine's
-    /// [`Limits::normal_accel_mm_s2`].
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub correction_accel_mm_s2: Option<f64>,
-    /// Delay between the position loop and the drive, s.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub drive_delay_s: f64,
-    /// Bits of the torque command over the range from minus to plus [`Self::torque_limit_nm`]; none is without steps.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub torque_bits: Option<u32>,
-    /// Step of the position encoder, um of travel; 0 is without steps.
-    #[serde(skip_serializing_if = "is_zero")]
-    pub encoder_step_um: f64,
-    /// Most that the axis can, for planners that plan axis by axis; none is what [`Limits`] and the drive allow. Speed,
-    /// mm/s.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_velocity_mm_s: Option<f64>,
-    /// Acceleration, mm/s2.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_accel_mm_s2: Option<f64>,
-    /// Jerk, mm/s3.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub max_jerk_mm_s3: Option<f64>,
-    /// Ball screw; none is rigid.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub transmission: Option<Transmission>,
-}
-
-impl Axis {
-    /// As the law of an axis takes them.
-    pub fn parameters(&self) -> axis::Parameters {
-        axis::Parameters {
-            rad_per_mm: TAU / self.lead_mm_per_rev,
-            kp_1_s: self.kp_1_s,
-            kd: self.kd,
-            kv_nm_s_per_rad: self.kv_nm_s_per_rad,
-            torque_limit_nm: self.torque_limit_nm,
-            inertia_kg_m2: self.inertia_kg_m2,
-            viscous_friction_nm_s: self.viscous_friction_nm_s,
-            coulomb_friction_nm: self.coulomb_friction_nm,
-            coulomb_smoothing_rad_s: self.coulomb_smoothing_rad_s,
-        }
-    }
-}
-
-/// The ball screw between motor and table: `[axis.x.transmission]`.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Transmission {
-    /// Part of the axis's inertia that is on the table's side.
-    pub table_share: f64,
-    /// Resonance of the table on the screw while the motor is held, Hz.
-    pub resonance_hz: f64,
-    /// Its damping ratio.
-    pub damping_ratio: f64,
-    /// Backlash, um of travel.
-    pub backlash_um: f64,
-    /// Whether the position is measured at the table (a linear scale) instead of the motor.
-    pub scale_on_table: bool,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
-fn is_zero(value: &f64) -> bool {
-    *value == 0.0
 }
 
 impl Machine {
@@ -284,6 +218,13 @@ impl Machine {
                 table(&format!("axis.{name}.transmission"), write(keys::TRANSMISSION, transmission));
             }
         }
+        for (name, lines) in
+            [("geometry", write(keys::GEOMETRY, &self.geometry)), ("noise", write(keys::NOISE, &self.noise))]
+        {
+            if !lines.is_empty() {
+                table(name, lines);
+            }
+        }
         table("plc", write(keys::PLC, &self.plc));
         for event in &self.plc_events {
             let p = event.p.map_or(String::new(), |p| format!(" P{p}"));
@@ -307,8 +248,8 @@ impl Machine {
     }
 
     /// The law of the first N axes.
-    pub fn law<const N: usize>(&self) -> [axis::AxisLaw; N] {
-        std::array::from_fn(|i| axis::AxisLaw::new(self.axis(i).parameters(), self.period.periods()))
+    pub fn law<const N: usize>(&self) -> [AxisLaw; N] {
+        std::array::from_fn(|i| AxisLaw::new(self.axis(i).parameters(), self.period.periods()))
     }
 
     /// Two or three.
@@ -329,10 +270,14 @@ impl Machine {
     /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move equally, whatever
     /// their names and however long their PLC takes.
     ///
-    /// Hashed is the JSON of periods, limits and axes; field order and the shortest round-trip form of numbers make it
-    /// canonical.
+    /// Hashed is the JSON of periods, limits and axes, and of geometry and noise where there is any; field order and the
+    /// shortest round-trip form of numbers make it canonical.
     pub fn fingerprint(&self) -> String {
-        let content = serde_json::json!([self.period, self.limits, self.axes]);
+        let content = if (self.geometry, self.noise) == Default::default() {
+            serde_json::json!([self.period, self.limits, self.axes])
+        } else {
+            serde_json::json!([self.period, self.limits, self.axes, self.geometry, self.noise])
+        };
         blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
     }
 }

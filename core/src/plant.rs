@@ -9,29 +9,40 @@
 //! | File | What |
 //! |---|---|
 //! | `plant/transmission.rs` | motor and table as two masses: stiffness, damping, backlash of the ball screw |
-//! | `plant/drive.rs` | delay of the reference speed, steps of the torque command |
+//! | `plant/drive.rs` | delay and jitter of what goes to the drive, steps of the torque command |
+//! | `plant/encoder.rs` | what is measured: interpolation error, noise, steps, latency, speed by differences |
+//! | `plant/torque.rs` | ripple and cogging of the motor, broadband torque, a disturbance whose frequency wanders |
+//! | `plant/noise.rs` | the random numbers of all of these |
+//! | `plant/nonideal.rs` | an axis with all of it |
 //!
-//! and encoder steps: what is measured, by the position loop and by the controller, is a whole number of them.
+//! What a controller may have to predict of a drive and of friction stands in [`feedwright_control::axis`], the geometry that no encoder
+//! sees in [`crate::kinematics`].
 //!
 //! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6; the values that the paper leaves open stand, with their reasons, in
 //! the machine file.
 
-mod drive;
+mod noise;
 mod transmission;
+mod drive;
+mod encoder;
+mod torque;
+mod nonideal;
 
 use std::f64::consts::TAU;
 
 use feedwright_control::axis::{self, AxisState, Periods};
 
+use crate::kinematics::{AxisErrors, GeometricErrors};
 use crate::machine::{Axis, Machine};
-use drive::{Delay, in_steps, torque_step_nm};
-use transmission::Coupling;
+use nonideal::{Moment, NonidealAxis};
 
 /// What the machine did in one servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurement<const N: usize> {
     /// True position of the tool at the end of the servo period, mm.
     pub position_mm: [f64; N],
+    /// That of the joints, mm: the tool's, but for the geometry that no encoder sees.
+    pub joint_mm: [f64; N],
     /// The position as it is measured, mm.
     pub measured_mm: [f64; N],
     /// Motor torque at the end of the servo period, N m.
@@ -45,6 +56,7 @@ pub struct Plant<const N: usize> {
     periods: Periods,
     /// Servo periods since the start.
     period: u64,
+    seed: u64,
     disturbance_nm: [f64; N],
     disturbance_rad_s: [f64; N],
     /// cos and sin of the angle by which the disturbance turns in one mechanics period.
@@ -53,45 +65,18 @@ pub struct Plant<const N: usize> {
     states: [AxisState; N],
     /// What a rigid axis with an ideal drive and encoder does not have; none where no axis has any of it.
     nonideal: Option<Box<[NonidealAxis; N]>>,
-}
-
-/// What an axis has on top of the ideal one, and its state.
-#[derive(Debug, Clone)]
-struct NonidealAxis {
-    encoder_step_rad: f64,
-    delay: Delay,
-    torque_step_nm: f64,
-    coupling: Option<Coupling>,
-    scale_on_table: bool,
-    /// Angle of the table at the motor shaft, rad, and its speed, rad/s; those of the motor where there is no coupling.
-    table_rad: f64,
-    table_rad_s: f64,
-}
-
-impl NonidealAxis {
-    fn new(axis: &Axis, machine: &Machine, angle_rad: f64) -> Self {
-        Self {
-            encoder_step_rad: axis.encoder_step_um * 1e-3 * TAU / axis.lead_mm_per_rev,
-            delay: Delay::new(axis, &machine.period),
-            torque_step_nm: torque_step_nm(axis),
-            coupling: axis.transmission.as_ref().map(|transmission| Coupling::new(axis, transmission)),
-            scale_on_table: axis.transmission.is_some_and(|transmission| transmission.scale_on_table),
-            table_rad: angle_rad,
-            table_rad_s: 0.0,
-        }
-    }
-
-    fn is_ideal(axis: &Axis) -> bool {
-        axis.encoder_step_um == 0.0
-            && axis.drive_delay_s == 0.0
-            && axis.torque_bits.is_none()
-            && axis.transmission.is_none()
-    }
+    /// Geometry that no encoder sees; none where there is no error in it.
+    geometry: Option<GeometricErrors<N>>,
 }
 
 impl<const N: usize> Plant<N> {
-    /// The first N axes of a machine, at rest at `start_mm`.
+    /// The first N axes of a machine, at rest with the joints at `start_mm`; its random numbers are by the seed of its file.
     pub fn new(machine: &Machine, start_mm: [f64; N]) -> Self {
+        Self::with_seed(machine, start_mm, machine.noise.seed)
+    }
+
+    /// As [`Self::new`], with random numbers by another seed.
+    pub fn with_seed(machine: &Machine, start_mm: [f64; N], seed: u64) -> Self {
         let each = |value: fn(&Axis) -> f64| -> [f64; N] { std::array::from_fn(|i| value(machine.axis(i))) };
         let laws: [axis::AxisLaw; N] = machine.law();
         let disturbance_rad_s = each(|a| TAU * a.disturbance_hz);
@@ -113,32 +98,40 @@ impl<const N: usize> Plant<N> {
             }),
             states,
             nonideal: nonideal.then(|| {
-                Box::new(std::array::from_fn(|i| NonidealAxis::new(machine.axis(i), machine, states[i].angle_rad)))
+                Box::new(std::array::from_fn(|i| NonidealAxis::new(machine, i, &laws[i], states[i].angle_rad, seed)))
             }),
+            geometry: geometry(machine),
+            seed,
         }
     }
 
     /// The machine becomes another one in mid-cut, as where a workpiece is loaded: angles, speeds, errors and time go on, but what
     /// was on its way through a drive's delay is lost. Leads and periods are to be the same.
     pub fn change_to(&mut self, machine: &Machine) {
-        let before = std::mem::replace(self, Self::new(machine, self.position_mm()));
+        let before = std::mem::replace(self, Self::with_seed(machine, self.joint_mm(), self.seed));
         self.period = before.period;
         self.states = before.states;
         let Some(nonideal) = &mut self.nonideal else { return };
         for (i, axis) in nonideal.iter_mut().enumerate() {
-            (axis.table_rad, axis.table_rad_s) = match &before.nonideal {
-                Some(nonideal) => (nonideal[i].table_rad, nonideal[i].table_rad_s),
-                None => (before.states[i].angle_rad, before.states[i].speed_rad_s),
-            };
+            axis.take_over(before.nonideal.as_ref().map(|nonideal| &nonideal[i]), &before.states[i]);
         }
     }
 
     /// Where the tool is, mm.
     pub fn position_mm(&self) -> [f64; N] {
+        self.tool_mm(self.joint_mm())
+    }
+
+    /// Where the joints are, mm.
+    fn joint_mm(&self) -> [f64; N] {
         match &self.nonideal {
             Some(nonideal) => self.in_mm(std::array::from_fn(|i| nonideal[i].table_rad)),
             None => self.in_mm(self.states.map(|state| state.angle_rad)),
         }
+    }
+
+    fn tool_mm(&self, joint_mm: [f64; N]) -> [f64; N] {
+        self.geometry.map_or(joint_mm, |geometry| geometry.tool_mm(joint_mm))
     }
 
     /// Travel of the table for angles at the motor shafts, mm.
@@ -149,19 +142,27 @@ impl<const N: usize> Plant<N> {
     /// The position as it is measured, rad at the motor shaft.
     fn measured_rad(&self) -> [f64; N] {
         let Some(nonideal) = &self.nonideal else { return self.states.map(|state| state.angle_rad) };
-        std::array::from_fn(|i| {
-            let at = if nonideal[i].scale_on_table { nonideal[i].table_rad } else { self.states[i].angle_rad };
-            in_steps(at, nonideal[i].encoder_step_rad)
-        })
+        let counter = self.counter();
+        std::array::from_fn(|i| nonideal[i].measured_rad(&self.states[i], counter))
+    }
+
+    /// Mechanics periods since the start, at the start of a servo period.
+    fn counter(&self) -> u64 {
+        self.period * u64::from(self.periods.mechanics_per_servo)
     }
 
     /// One servo period at the position command `command_mm`.
     pub fn step(&mut self, command_mm: [f64; N]) -> Measurement<N> {
-        let reference_rad_s = self.position_loop(command_mm);
-        let torque_nm =
-            if self.nonideal.is_some() { self.turn_nonideal(reference_rad_s) } else { self.turn(reference_rad_s) };
+        let torque_nm = if self.nonideal.is_some() {
+            self.turn_nonideal(command_mm)
+        } else {
+            let reference_rad_s = self.position_loop(command_mm);
+            self.turn(reference_rad_s)
+        };
         self.period += 1;
-        Measurement { position_mm: self.position_mm(), measured_mm: self.in_mm(self.measured_rad()), torque_nm }
+        let joint_mm = self.joint_mm();
+        let measured_mm = self.in_mm(self.measured_rad());
+        Measurement { position_mm: self.tool_mm(joint_mm), joint_mm, measured_mm, torque_nm }
     }
 
     /// Time goes on by servo periods in which nothing moves: speeds and angles stay, the disturbance is that of the time.
@@ -186,50 +187,38 @@ impl<const N: usize> Plant<N> {
         torque_nm
     }
 
-    /// As [`Self::turn`], of axes that are not ideal.
-    fn turn_nonideal(&mut self, reference_rad_s: [f64; N]) -> [f64; N] {
+    /// Position loop and mechanics of one servo period, of axes that are not ideal.
+    fn turn_nonideal(&mut self, command_mm: [f64; N]) -> [f64; N] {
         let mut disturbance = self.disturbance_at_start();
-        let mut torque_nm = [0.0; N];
+        let mut disturbance_turn = self.disturbance_turn;
+        let (mut torque_nm, counter) = ([0.0; N], self.counter());
+        let t_s = self.period as f64 * self.periods.servo_s;
         let Some(nonideal) = &mut self.nonideal else { return torque_nm };
-        for (axis, reference_rad_s) in nonideal.iter_mut().zip(reference_rad_s) {
-            axis.delay.send(reference_rad_s);
+        for (i, axis) in nonideal.iter_mut().enumerate() {
+            let law = &self.laws[i];
+            let command_rad = command_mm[i] * law.parameters.rad_per_mm;
+            axis.position_loop(law, command_rad, &mut self.states[i], self.period, counter);
+            if let Some(wander) = &mut axis.wander {
+                [disturbance[i], disturbance_turn[i]] = wander.servo_period(self.period, t_s);
+            }
         }
-        let dt_s = self.periods.mechanics_s;
         for substep in 0..self.periods.mechanics_per_servo {
+            let moment = Moment { substep, counter: counter + u64::from(substep) };
             for (i, axis) in nonideal.iter_mut().enumerate() {
-                let (law, state) = (&self.laws[i], &mut self.states[i]);
-                let wanted = law.torque_nm(axis.delay.arrived(substep), state.speed_rad_s);
-                torque_nm[i] = in_steps(wanted, axis.torque_step_nm);
-                let sliding = if axis.coupling.is_some() { axis.table_rad_s } else { state.speed_rad_s };
-                let [sign] = axis::signs(&[*law], [sliding]);
-                let load = law.friction_nm(sliding, sign) + self.disturbance_nm[i] * disturbance[i][1];
-                match &axis.coupling {
-                    Some(coupling) => {
-                        let twist_rad = state.angle_rad - axis.table_rad;
-                        let through = coupling.torque_nm(twist_rad, state.speed_rad_s - axis.table_rad_s);
-                        state.speed_rad_s += dt_s * coupling.inverse_motor_inertia * (torque_nm[i] - through);
-                        axis.table_rad_s += dt_s * coupling.inverse_table_inertia * (through - load);
-                        state.angle_rad += dt_s * state.speed_rad_s;
-                        axis.table_rad += dt_s * axis.table_rad_s;
-                    }
-                    None => {
-                        law.accelerate(torque_nm[i] - load, state);
-                        (axis.table_rad, axis.table_rad_s) = (state.angle_rad, state.speed_rad_s);
-                    }
-                }
-                let ([c, s], [dc, ds]) = (disturbance[i], self.disturbance_turn[i]);
+                let load_nm = self.disturbance_nm[i] * disturbance[i][1];
+                torque_nm[i] = axis.advance(&self.laws[i], &mut self.states[i], moment, load_nm);
+                let ([c, s], [dc, ds]) = (disturbance[i], disturbance_turn[i]);
                 disturbance[i] = [c * dc - s * ds, s * dc + c * ds];
             }
         }
         torque_nm
     }
 
-    /// The PD position loop: reference speed of the motor, rad/s, held for the servo period.
+    /// The PD position loop of ideal axes: reference speed of the motor, rad/s, held for the servo period.
     fn position_loop(&mut self, command_mm: [f64; N]) -> [f64; N] {
-        let measured_rad = self.measured_rad();
         std::array::from_fn(|i| {
             let law = &self.laws[i];
-            let error_rad = command_mm[i] * law.parameters.rad_per_mm - measured_rad[i];
+            let error_rad = command_mm[i] * law.parameters.rad_per_mm - self.states[i].angle_rad;
             law.position_loop(error_rad, &mut self.states[i])
         })
     }
@@ -243,4 +232,20 @@ impl<const N: usize> Plant<N> {
             [cos, sin]
         })
     }
+}
+
+/// Geometry that no encoder sees, of the first N axes.
+fn geometry<const N: usize>(machine: &Machine) -> Option<GeometricErrors<N>> {
+    let squareness = machine.geometry;
+    let urad = [squareness.squareness_xy_urad, squareness.squareness_xz_urad, squareness.squareness_yz_urad];
+    let of_axes: [&Axis; N] = std::array::from_fn(|i| machine.axis(i));
+    let is_exact = of_axes.iter().all(|axis| axis.scale_um_m == 0.0 && axis.pitch_error_um == 0.0);
+    (!is_exact || urad != [0.0; 3]).then(|| GeometricErrors {
+        axes: of_axes.map(|axis| AxisErrors {
+            scale: axis.scale_um_m * 1e-6,
+            pitch_mm: axis.pitch_error_um * 1e-3,
+            pitch_rad_per_mm: axis.rad_per_mm(),
+        }),
+        squareness_rad: urad.map(|urad| urad * 1e-6),
+    })
 }

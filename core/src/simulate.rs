@@ -184,7 +184,8 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let sample = reference.at(setpoint.tau_s);
         let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
         // A command that a correction holds beside the end of the path is not where the tool is to rest.
-        let to_go_mm = distance(measurement.position_mm, joints_of(sample.position_mm));
+        // And where the encoders say so: what they do not see is not waited for.
+        let to_go_mm = distance(measurement.joint_mm, joints_of(sample.position_mm));
         let foot = self.foot.foot(reference, tau_s, sample.s_mm, tool_of(measurement.position_mm));
         let row = row(t_s, &setpoint, &measurement, &sample, &foot, to_go_mm <= ARRIVED_MM);
         if row.cutting {

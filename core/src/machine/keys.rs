@@ -6,7 +6,7 @@
 //! Ranges keep out what no machine has (a negative inertia, a unit mistaken by a factor of a million), not what is unusual: a
 //! machine that is tuned badly is a result of the simulation, not a fault of its file.
 
-use super::{Axis, Durations, Limits, Period, Transmission};
+use super::{Axis, Durations, Limits, Noise, Period, Squareness, Transmission};
 use crate::toml_file::Key;
 use crate::toml_file::key::{Value, key};
 
@@ -49,6 +49,39 @@ pub const AXIS: &[Key<Axis>] = &[
     },
     key!(optional correction_accel_mm_s2, "mm/s2", 0.1, 1e6),
     key!(encoder_step_um or zero, "um", 0.0, 1e3),
+    key!(speed_integral_s or zero, "s", 0.0, 10.0),
+    key!(velocity_feedforward or zero, "(no unit)", 0.0, 2.0),
+    key!(acceleration_feedforward or zero, "(no unit)", 0.0, 2.0),
+    key!(torque_filter_hz or zero, "Hz", 0.0, 1e5),
+    key!(speed_limit_mm_s or zero, "mm/s", 0.0, 1e4),
+    Key {
+        name: "speed_from_encoder",
+        unit: "(0 or 1)",
+        range: [0.0, 1.0],
+        optional: true,
+        value: Value::Number {
+            get: |axis| axis.speed_from_encoder.then_some(1.0),
+            set: |axis, on| axis.speed_from_encoder = on > 0.5,
+        },
+    },
+    key!(encoder_noise_um or zero, "um", 0.0, 1e3),
+    key!(interpolation_error_um or zero, "um", 0.0, 1e3),
+    key!(signal_period_um or zero, "um", 0.0, 1e5),
+    key!(measurement_delay_s or zero, "s", 0.0, 0.02),
+    key!(jitter_s or zero, "s", 0.0, 0.02),
+    key!(coulomb_asymmetry_nm or zero, "N m", -1e5, 1e5),
+    key!(stribeck_nm or zero, "N m", 0.0, 1e5),
+    key!(stribeck_mm_s or zero, "mm/s", 0.0, 1e4),
+    key!(presliding_um or zero, "um", 0.0, 1e4),
+    key!(cogging_nm or zero, "N m", 0.0, 1e5),
+    key!(cogging_per_rev or zero, "1/rev", 0.0, 1e4),
+    key!(ripple or zero, "(no unit)", 0.0, 1.0),
+    key!(ripple_per_rev or zero, "1/rev", 0.0, 1e4),
+    key!(torque_noise_nm or zero, "N m", 0.0, 1e5),
+    key!(torque_noise_s or zero, "s", 0.0, 10.0),
+    key!(disturbance_wander or zero, "(no unit)", 0.0, 0.5),
+    key!(scale_um_m or zero, "um/m", -1e4, 1e4),
+    key!(pitch_error_um or zero, "um", 0.0, 1e3),
     key!(optional max_velocity_mm_s, "mm/s", 0.01, 1e4),
     key!(optional max_accel_mm_s2, "mm/s2", 0.1, 1e6),
     key!(optional max_jerk_mm_s3, "mm/s3", 1.0, 1e9),
@@ -71,6 +104,26 @@ pub const TRANSMISSION: &[Key<Transmission>] = &[
         },
     },
 ];
+
+/// Of `[geometry]`.
+pub const GEOMETRY: &[Key<Squareness>] = &[
+    key!(squareness_xy_urad or zero, "urad", -1e4, 1e4),
+    key!(squareness_xz_urad or zero, "urad", -1e4, 1e4),
+    key!(squareness_yz_urad or zero, "urad", -1e4, 1e4),
+];
+
+/// Of `[noise]`.
+pub const NOISE: &[Key<Noise>] = &[Key {
+    name: "seed",
+    unit: "",
+    // Whole numbers that a number of a file holds exactly.
+    range: [0.0, 9_007_199_254_740_992.0],
+    optional: true,
+    value: Value::Whole {
+        get: |noise| Some(noise.seed).filter(|seed| *seed != 0),
+        set: |noise, seed| noise.seed = seed,
+    },
+}];
 
 /// Of `[plc]`.
 pub const PLC: &[Key<Durations>] = &[

@@ -1,10 +1,13 @@
 //! What may be known of a machine before it is identified: what its control is set to, and what its maker says of its axes.
 //!
 //! Controllers are made from this and from a trained model, never from a [`Machine`]. What is true of a simulated machine alone is
-//! not here: encoder steps, delay and steps of the drive, ball screw, phase and frequency of the disturbance.
+//! not here: encoder, latencies, steps of the drive, ball screw, cogging and ripple, geometry, noise, phase and frequency of the
+//! disturbance.
 
 use std::f64::consts::TAU;
 
+use feedwright_control::axis::drive::DriveParameters;
+use feedwright_control::axis::friction::FrictionParameters;
 use feedwright_control::axis::{self, Parameters};
 
 use super::{Limits, Machine, Period};
@@ -26,6 +29,10 @@ pub struct KnownAxis {
     pub lead_mm_per_rev: f64,
     /// Its law by the data sheets: loops, inertia, friction, and the torque at which the drive saturates.
     pub nominal: Parameters,
+    /// What its drive is set to beside.
+    pub drive: DriveParameters,
+    /// What the data sheets say of friction beside.
+    pub friction: FrictionParameters,
     /// Acceleration that a correction may add to the plan's, mm/s2.
     pub correction_accel_mm_s2: f64,
     /// Torque that is left for acceleration, N m: less friction, and less what the load takes at the most. The amplitude of a load
@@ -63,6 +70,8 @@ impl Machine {
         let axis = |(i, axis): (usize, &super::Axis)| KnownAxis {
             lead_mm_per_rev: axis.lead_mm_per_rev,
             nominal: axis.parameters(),
+            drive: axis.drive(),
+            friction: axis.friction(),
             correction_accel_mm_s2: self.correction_accel_mm_s2(i),
             spare_torque_nm: (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0),
         };

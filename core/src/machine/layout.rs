@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Period, PlcEvent, Transmission, keys};
+use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Noise, Period, PlcEvent, Squareness, Transmission, keys};
 use crate::toml_file::key::read;
 use crate::toml_file::{Document, Fault, Table};
 
@@ -38,7 +38,6 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
         root.text("base", &mut faults);
     }
     let period = period(root.table("period", &mut faults), &mut faults);
-    let mechanics_s = period.mechanics_s;
     let mut plc_events = Vec::new();
     let machine = Machine {
         name: root.text("name", &mut faults),
@@ -51,7 +50,17 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
             .map(|table| plc(table, &mut plc_events, &mut faults))
             .unwrap_or_default(),
         plc_events,
-        axes: axes(root.table("axis", &mut faults), mechanics_s, &mut faults),
+        axes: axes(root.table("axis", &mut faults), period, &mut faults),
+        geometry: root.optional_table("geometry", &mut faults).map_or(Squareness::default(), |mut table| {
+            let squareness = read(keys::GEOMETRY, &mut table, &mut faults);
+            table.finish(&mut faults);
+            squareness
+        }),
+        noise: root.optional_table("noise", &mut faults).map_or(Noise::default(), |mut table| {
+            let noise = read(keys::NOISE, &mut table, &mut faults);
+            table.finish(&mut faults);
+            noise
+        }),
     };
     root.finish(&mut faults);
     if faults.is_empty() { Ok(machine) } else { Err(faults) }
@@ -149,23 +158,82 @@ fn m_code(key: &str) -> Option<(u16, Option<u32>)> {
 /// As the reader has it.
 const LAST_M_CODE: u16 = 9999;
 
-fn axes(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Vec<Axis> {
+fn axes(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Vec<Axis> {
     let [x, y, z] = AXIS_NAMES;
-    let mut axes: Vec<Axis> =
-        [x, y].into_iter().map(|name| axis(table.table(name, faults), mechanics_s, faults)).collect();
+    let mut axes: Vec<Axis> = [x, y].into_iter().map(|name| axis(table.table(name, faults), period, faults)).collect();
     if let Some(present) = table.optional_table(z, faults) {
-        axes.push(axis(present, mechanics_s, faults));
+        axes.push(axis(present, period, faults));
     }
     table.finish(faults);
     axes
 }
 
-fn axis(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Axis {
+fn axis(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Axis {
     let transmission = table.optional_table("transmission", faults);
     let mut axis: Axis = read(keys::AXIS, &mut table, faults);
-    axis.transmission = transmission.map(|table| self::transmission(table, mechanics_s, faults));
+    axis.transmission = transmission.map(|table| self::transmission(table, period.mechanics_s, faults));
+    between_keys(&axis, &period, &table, faults);
     table.finish(faults);
     axis
+}
+
+/// Longest delay, in servo periods: what is under way is kept.
+const MAX_DELAY_PERIODS: f64 = 60.0;
+
+/// What holds between the values of an axis.
+fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
+    let pairs = [
+        (axis.interpolation_error_um, "interpolation_error_um", axis.signal_period_um, "signal_period_um"),
+        (axis.stribeck_nm, "stribeck_nm", axis.stribeck_mm_s, "stribeck_mm_s"),
+        (axis.cogging_nm, "cogging_nm", axis.cogging_per_rev, "cogging_per_rev"),
+        (axis.ripple, "ripple", axis.ripple_per_rev, "ripple_per_rev"),
+    ];
+    for (amount, key, over, needed) in pairs {
+        if amount > 0.0 && over == 0.0 {
+            faults.push(Fault {
+                at: table.place(key),
+                label: "says how much, but not over what",
+                message: format!("{key} is {amount}, and {needed} is 0 or not there"),
+                hint: Some(format!("give {needed} above 0, or leave {key} out")),
+            });
+        }
+    }
+    let (asymmetry_nm, coulomb_nm) = (axis.coulomb_asymmetry_nm, axis.coulomb_friction_nm);
+    if asymmetry_nm.abs() > coulomb_nm {
+        faults.push(Fault {
+            at: table.place("coulomb_asymmetry_nm"),
+            label: "friction would drive",
+            message: format!(
+                "coulomb_asymmetry_nm is {asymmetry_nm} N m; it must lie within the Coulomb friction, {coulomb_nm} N m each way"
+            ),
+            hint: Some("it is half the difference of the friction torques of both directions".to_owned()),
+        });
+    }
+    for (delay_s, key) in [(axis.drive_delay_s, "drive_delay_s"), (axis.measurement_delay_s, "measurement_delay_s")] {
+        if delay_s > MAX_DELAY_PERIODS * period.servo_s {
+            let most_s = MAX_DELAY_PERIODS * period.servo_s;
+            faults.push(Fault {
+                at: table.place(key),
+                label: "too many servo periods",
+                message: format!(
+                    "{key} is {delay_s} s; with servo_s of {} s it must be {most_s} s or less",
+                    period.servo_s
+                ),
+                hint: None,
+            });
+        }
+    }
+    if axis.jitter_s > period.servo_s {
+        faults.push(Fault {
+            at: table.place("jitter_s"),
+            label: "longer than servo_s",
+            message: format!(
+                "jitter_s is {} s; it must lie within a servo period, {} s",
+                axis.jitter_s, period.servo_s
+            ),
+            hint: Some("what all references are late by is drive_delay_s".to_owned()),
+        });
+    }
 }
 
 /// The two masses may turn by this angle against each other within a mechanics period, rad: beyond, the integration loses

@@ -249,6 +249,40 @@ fn fingerprint_follows_the_content_and_nothing_else() {
     assert_ne!(Machine::parse("x", two_axes).unwrap().fingerprint(), original);
 }
 
+#[test]
+fn geometry_and_seed_are_read_upon_a_base_and_belong_to_the_fingerprint() {
+    let words = "base = 'tnv40'\nname = 'n'\ndescription = 'd'\nsource = 's'\n";
+    let machine = |tables: &str| Machine::parse("n.toml", &format!("{words}{tables}")).unwrap();
+    let skewed = machine("[geometry]\nsquareness_yz_urad = -20\n[noise]\nseed = 9007199254740991\n");
+    assert_eq!((skewed.geometry.squareness_yz_urad, skewed.noise.seed), (-20.0, 9_007_199_254_740_991));
+    assert_eq!(machine("[noise]\nseed = 0\n[geometry]\nsquareness_xy_urad = 0\n").fingerprint(), tnv40().fingerprint());
+    for tables in ["[noise]\nseed = 1\n", "[geometry]\nsquareness_xy_urad = 1\n", "[axis.x]\nripple_per_rev = 6\n"] {
+        assert_ne!(machine(tables).fingerprint(), tnv40().fingerprint(), "{tables}");
+    }
+    let fault = Machine::parse("n.toml", &format!("{words}[noise]\nseed = 1.5\n")).unwrap_err();
+    assert!(format!("{fault:?}").contains("seed is 1.5; it must be a whole number"), "{fault:?}");
+}
+
+#[test]
+fn values_of_an_axis_that_do_not_go_together_are_told() {
+    for (line, says) in [
+        ("interpolation_error_um = 0.5", "interpolation_error_um is 0.5, and signal_period_um is 0 or not there"),
+        ("stribeck_nm = 0.1", "stribeck_nm is 0.1, and stribeck_mm_s is 0 or not there"),
+        ("cogging_nm = 0.1", "cogging_nm is 0.1, and cogging_per_rev is 0 or not there"),
+        ("ripple = 0.1", "ripple is 0.1, and ripple_per_rev is 0 or not there"),
+        ("coulomb_asymmetry_nm = -0.21", "must lie within the Coulomb friction, 0.2 N m each way"),
+        ("jitter_s = 0.0011", "must lie within a servo period, 0.001 s"),
+    ] {
+        let fault = fault_after("kd = 0 ", &format!("{line}\nkd = 0 "));
+        assert!(fault.starts_with("32:") && fault.contains(says), "{fault}");
+    }
+    let text = TNV40.replacen("servo_s = 0.001", "servo_s = 0.0002", 1);
+    for key in ["drive_delay_s", "measurement_delay_s"] {
+        let fault = Machine::parse("fast.toml", &text.replacen("kd = 0 ", &format!("{key} = 0.0121\nkd = 0 "), 1));
+        assert!(format!("{:?}", fault.unwrap_err()).contains("it must be 0.012 s or less"), "{key}");
+    }
+}
+
 /// The tnv40 file with more at its end, which is in [plc].
 fn with_events(text: &str) -> Result<Machine, MachineError> {
     Machine::parse("events.toml", &format!("{TNV40}\n{text}"))
@@ -319,6 +353,10 @@ fn what_is_written_reads_as_the_same_machine() {
     odd.axes[0].max_jerk_mm_s3 = Some(2.5e5);
     odd.axes[1].torque_bits = Some(12);
     odd.axes[1].encoder_step_um = 0.1 + 0.2;
+    odd.axes[1].speed_from_encoder = true;
+    odd.axes[2].coulomb_asymmetry_nm = -0.1;
+    odd.geometry.squareness_xz_urad = -12.5;
+    odd.noise.seed = 1 << 53;
     odd.plc_events = vec![PlcEvent { code: 64, p: Some(3), row: "lamp".into(), label: "lamp on".into(), takes_s: 0.1 }];
     assert_eq!(Machine::parse("written.toml", &odd.text()).unwrap(), odd);
 }
@@ -328,7 +366,7 @@ fn what_is_written_reads_as_the_same_machine() {
 fn the_document_has_the_units_and_ranges_of_all_keys() {
     let document = include_str!("../../../docs/machine-file.md");
     let number = |value: f64| {
-        let plain = value == 0.0 || (0.01..1000.0).contains(&value);
+        let plain = value == 0.0 || (0.01..1000.0).contains(&value.abs());
         if plain { format!("{value}") } else { format!("{value:e}") }
     };
     let row = |name: &str, unit: &str, [least, most]: [f64; 2]| match unit {
@@ -344,6 +382,7 @@ fn the_document_has_the_units_and_ranges_of_all_keys() {
         rows(keys::LIMITS, row),
         rows(keys::AXIS, row),
         rows(keys::TRANSMISSION, row),
+        rows(keys::GEOMETRY, row),
         rows(keys::PLC, row),
     ];
     for row in all.concat() {

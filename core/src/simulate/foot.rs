@@ -47,7 +47,11 @@ const MAX_STEPS: f64 = 512.0;
 /// How long after the reference a following tool has reached a point of the path, s.
 pub(super) fn settled_s(machine: &Machine) -> f64 {
     let slowest_1_s = machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
-    let delay_s = machine.axes.iter().map(|axis| axis.drive_delay_s).fold(0.0, f64::max);
+    let delay_s = machine
+        .axes
+        .iter()
+        .map(|axis| axis.drive_delay_s + axis.measurement_delay_s + axis.jitter_s)
+        .fold(0.0, f64::max);
     SETTLED_TIME_CONSTANTS / slowest_1_s + delay_s
 }
 

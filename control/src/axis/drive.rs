@@ -1,0 +1,264 @@
+//! What a servo drive has beside the P speed loop: an integral part, feedforward, a speed limit, a torque filter.
+//!
+//! ```text
+//! w_ref = Kp e + Kd (e - e_prev) / Ts + fv v                    position loop, once a servo period Ts
+//! u_ff  = fa J (v - v_prev) / Ts,   v = (c - c_prev) / Ts       beside it, from the command's differences
+//! s     = w_ref within -W, W;   d = s - w
+//! I    += Kv d dt / Ti                                          once a mechanics period dt
+//! u     = Kv d + I + u_ff within -Tmax, Tmax                    PI speed loop
+//! y    += (1 - exp(-2 pi f dt)) (u - y)                         torque filter: y reaches the motor
+//! ```
+//!
+//! Anti-windup by clamping: where u is at its limit and d pushes it further, I stays as it is. Both w_ref and u_ff go from the
+//! control to the drive, as velocity offset and torque offset do. What is zero is not there.
+//!
+//! Symbols: c command at the motor, rad; fv, fa parts of the nominal feedforward, 1 being all of it; W speed limit, rad/s; Ti
+//! integral time, s; f corner of the filter, Hz; the others as in [`super`].
+//!
+//! Source: PI loop and clamping as in Åström and Hägglund (2006), Advanced PID Control, sections 3.2 and 3.5; feedforward as in
+//! Altintas (2012), Manufacturing Automation, section 5; offsets as in IEC 61800-7-201 (CiA 402), objects 60B1h and 60B2h; the
+//! filter is the exact step of a first-order lag under a held input, Franklin, Powell and Workman (1998), section 4.3.
+
+use core::f64::consts::TAU;
+
+use super::{AxisLaw, AxisState};
+
+/// What a drive is set to beside the gains of its loops; zero is without.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DriveParameters {
+    /// Integral time of the speed loop, s.
+    pub speed_integral_s: f64,
+    /// Part of the command's speed that goes to the speed loop.
+    pub velocity_feedforward: f64,
+    /// Part of the torque for the command's acceleration that goes to the torque.
+    pub acceleration_feedforward: f64,
+    /// Corner of the torque filter, Hz.
+    pub torque_filter_hz: f64,
+    /// Highest reference speed, rad/s.
+    pub speed_limit_rad_s: f64,
+}
+
+/// What goes from the position loop to the drive.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DriveReference {
+    /// Reference speed, rad/s.
+    pub speed_rad_s: f64,
+    /// Torque beside that of the speed loop, N m.
+    pub torque_nm: f64,
+}
+
+/// What a drive remembers, and what the control does for it.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct DriveState {
+    /// The last command, rad; none before the first.
+    commanded_rad: Option<f64>,
+    /// Its speed, rad/s.
+    commanded_rad_s: f64,
+    /// Integral part of the speed loop, N m.
+    integral_nm: f64,
+    /// Behind the filter, N m.
+    filtered_nm: f64,
+}
+
+/// A drive, ready to be integrated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DriveLaw {
+    parameters: DriveParameters,
+    /// Whether it is a P speed loop and nothing else.
+    plain: bool,
+    /// Torque of the acceleration feedforward for a difference of speeds, N m s/rad.
+    torque_for_change: f64,
+    /// Integral for an error of the speed over one mechanics period, N m s/rad.
+    integral_gain: f64,
+    /// Part of the way that the filter goes in one mechanics period.
+    filter: f64,
+}
+
+impl DriveLaw {
+    /// Of an axis; a filter is the exact step over a mechanics period.
+    pub fn new(law: &AxisLaw, parameters: DriveParameters) -> Self {
+        let dt_s = law.periods.mechanics_s;
+        let DriveParameters { speed_integral_s: time_s, torque_filter_hz, .. } = parameters;
+        let gain = law.parameters.kv_nm_s_per_rad;
+        Self {
+            parameters,
+            plain: parameters == DriveParameters::default(),
+            torque_for_change: parameters.acceleration_feedforward * law.parameters.inertia_kg_m2 / law.periods.servo_s,
+            integral_gain: if time_s > 0.0 { gain * dt_s / time_s } else { 0.0 },
+            filter: if torque_filter_hz > 0.0 { 1.0 - libm::exp(-TAU * torque_filter_hz * dt_s) } else { 1.0 },
+        }
+    }
+
+    /// The position loop with its feedforward takes in a command and the position, rad.
+    #[inline]
+    pub fn position_loop(
+        &self,
+        law: &AxisLaw,
+        command_rad: f64,
+        position_rad: f64,
+        axis: &mut AxisState,
+        state: &mut DriveState,
+    ) -> DriveReference {
+        let speed_rad_s = law.position_loop(command_rad - position_rad, axis);
+        if self.plain {
+            return DriveReference { speed_rad_s, torque_nm: 0.0 };
+        }
+        let moved_rad = state.commanded_rad.map_or(0.0, |before_rad| command_rad - before_rad);
+        let commanded_rad_s = moved_rad / law.periods.servo_s;
+        let change_rad_s = commanded_rad_s - state.commanded_rad_s;
+        (state.commanded_rad, state.commanded_rad_s) = (Some(command_rad), commanded_rad_s);
+        DriveReference {
+            speed_rad_s: speed_rad_s + self.parameters.velocity_feedforward * commanded_rad_s,
+            torque_nm: self.torque_for_change * change_rad_s,
+        }
+    }
+
+    /// One mechanics period of the speed loop at a measured speed: the torque that reaches the motor, N m. Not a number stays none.
+    #[inline]
+    pub fn torque_nm(&self, law: &AxisLaw, reference: DriveReference, speed_rad_s: f64, state: &mut DriveState) -> f64 {
+        if self.plain {
+            return law.torque_nm(reference.speed_rad_s, speed_rad_s);
+        }
+        let most_rad_s = self.parameters.speed_limit_rad_s;
+        let wanted_rad_s =
+            if most_rad_s > 0.0 { within(reference.speed_rad_s, most_rad_s) } else { reference.speed_rad_s };
+        let error_rad_s = wanted_rad_s - speed_rad_s;
+        let proportional_nm = law.parameters.kv_nm_s_per_rad * error_rad_s + reference.torque_nm;
+        let limit_nm = law.parameters.torque_limit_nm;
+        let integral_nm = state.integral_nm + self.integral_gain * error_rad_s;
+        let sum_nm = proportional_nm + integral_nm;
+        if !(sum_nm.abs() > limit_nm && sum_nm * error_rad_s > 0.0) {
+            state.integral_nm = integral_nm;
+        }
+        let limited_nm = within(proportional_nm + state.integral_nm, limit_nm);
+        state.filtered_nm += self.filter * (limited_nm - state.filtered_nm);
+        state.filtered_nm
+    }
+}
+
+/// The value, or the end of -most to most that it is beyond.
+#[inline]
+fn within(value: f64, most: f64) -> f64 {
+    if value > most {
+        most
+    } else if value < -most {
+        -most
+    } else {
+        value
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Parameters, Periods};
+    use super::*;
+
+    fn law() -> AxisLaw {
+        let parameters = Parameters {
+            rad_per_mm: 0.6,
+            kp_1_s: 50.0,
+            kd: 0.0,
+            kv_nm_s_per_rad: 2.0,
+            torque_limit_nm: 30.0,
+            inertia_kg_m2: 0.01,
+            viscous_friction_nm_s: 0.0,
+            coulomb_friction_nm: 0.0,
+            coulomb_smoothing_rad_s: 0.5,
+        };
+        AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 1e-6, mechanics_per_servo: 1000 })
+    }
+
+    /// Speed after a step of the reference by 1 rad/s, under a constant load.
+    fn speed_rad_s(parameters: DriveParameters, load_nm: f64, time_s: f64) -> f64 {
+        let law = law();
+        let drive = DriveLaw::new(&law, parameters);
+        let (mut axis, mut state) = (AxisState::default(), DriveState::default());
+        for _ in 0..libm::round(time_s / law.periods.mechanics_s) as u64 {
+            let reference = DriveReference { speed_rad_s: 1.0, torque_nm: 0.0 };
+            let torque_nm = drive.torque_nm(&law, reference, axis.speed_rad_s, &mut state);
+            law.accelerate(torque_nm - load_nm, &mut axis);
+        }
+        axis.speed_rad_s
+    }
+
+    #[test]
+    fn a_pi_loop_answers_a_step_as_its_differential_equation_does() {
+        // J w'' + Kv w' + Kv / Ti w = Kv / Ti + Kv step': with J 0.01, Kv 2, Ti 20 ms: poles (s + 100)^2, numerator 200 s + 1e4,
+        // so w = 1 - e^(-100 t) (1 - 100 t); a constant load L adds -L / J t e^(-100 t).
+        let pi = DriveParameters { speed_integral_s: 0.02, ..DriveParameters::default() };
+        for time_s in [0.003, 0.01, 0.02, 0.05] {
+            let decay = libm::exp(-100.0 * time_s);
+            let free = 1.0 - decay * (1.0 - 100.0 * time_s);
+            assert!((speed_rad_s(pi, 0.0, time_s) - free).abs() < 1e-4, "{time_s}");
+            let loaded = free - 0.5 / 0.01 * time_s * decay;
+            assert!((speed_rad_s(pi, 0.5, time_s) - loaded).abs() < 2e-4, "{time_s}");
+        }
+        // Without the integral the load is left: L / Kv.
+        assert!((speed_rad_s(DriveParameters::default(), 0.5, 0.2) - 0.75).abs() < 1e-6);
+    }
+
+    #[test]
+    fn the_integral_does_not_wind_up_at_the_torque_limit() {
+        let law = law();
+        let drive = DriveLaw::new(&law, DriveParameters { speed_integral_s: 0.02, ..DriveParameters::default() });
+        let mut state = DriveState::default();
+        let asked = |speed_rad_s| DriveReference { speed_rad_s, torque_nm: 0.0 };
+        // 1 s against a stop: unlimited, the integral would come to 2 * 100 / 0.02 = 10,000 N m.
+        (0..1_000_000).for_each(|_| {
+            assert_eq!(drive.torque_nm(&law, asked(100.0), 0.0, &mut state), 30.0);
+        });
+        assert!(state.integral_nm.abs() <= 30.0, "{}", state.integral_nm);
+        assert!(drive.torque_nm(&law, asked(-20.0), 0.0, &mut state) < 0.0, "the torque turns with the error");
+        assert!(drive.torque_nm(&law, asked(f64::NAN), 0.0, &mut state).is_nan());
+    }
+
+    #[test]
+    fn the_filter_is_a_lag_of_first_order() {
+        let law = law();
+        let drive = DriveLaw::new(&law, DriveParameters { torque_filter_hz: 200.0, ..DriveParameters::default() });
+        let mut state = DriveState::default();
+        let reference = DriveReference { speed_rad_s: 1.0, torque_nm: 0.0 };
+        for step in 1..=5000_u32 {
+            let torque_nm = drive.torque_nm(&law, reference, 0.0, &mut state);
+            let wanted_nm = 2.0 * (1.0 - libm::exp(-TAU * 200.0 * f64::from(step) * 1e-6));
+            assert!((torque_nm - wanted_nm).abs() < 1e-9, "{step}");
+        }
+    }
+
+    #[test]
+    fn feedforward_is_the_commands_speed_and_the_torque_for_its_acceleration() {
+        let law = law();
+        let parameters =
+            DriveParameters { velocity_feedforward: 0.9, acceleration_feedforward: 0.5, ..DriveParameters::default() };
+        let drive = DriveLaw::new(&law, parameters);
+        let (mut axis, mut state) = (AxisState::default(), DriveState::default());
+        // c = a t^2 / 2 with a = 40 rad/s^2: at t = n Ts the backward difference is a (n - 1/2) Ts.
+        for n in 0..100_u32 {
+            let t_s = f64::from(n) * 1e-3;
+            let command_rad = 20.0 * t_s * t_s;
+            let reference = drive.position_loop(&law, command_rad, command_rad, &mut axis, &mut state);
+            if n > 1 {
+                assert!((reference.speed_rad_s - 0.9 * 40.0 * (t_s - 0.5e-3)).abs() < 1e-9, "{n}");
+                assert!((reference.torque_nm - 0.5 * 0.01 * 40.0).abs() < 1e-9, "{n}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_reference_keeps_to_the_speed_limit() {
+        let limited = DriveParameters { speed_limit_rad_s: 0.6, ..DriveParameters::default() };
+        assert!((speed_rad_s(limited, 0.0, 0.2) - 0.6).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_all_zero_is_the_plain_loop_to_the_bit() {
+        let law = law();
+        let drive = DriveLaw::new(&law, DriveParameters::default());
+        let mut state = DriveState::default();
+        for speed_rad_s in [0.1, -3.0, 100.0] {
+            let reference = DriveReference { speed_rad_s, torque_nm: 0.0 };
+            let torque_nm = drive.torque_nm(&law, reference, 0.3, &mut state);
+            assert_eq!(torque_nm.to_bits(), law.torque_nm(speed_rad_s, 0.3).to_bits());
+        }
+    }
+}

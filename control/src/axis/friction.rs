@@ -1,0 +1,248 @@
+//! Friction as machines have it: another level each way, more of it at low speed, and a way before it slides.
+//!
+//! ```text
+//! g(w, d) = Fc + Fa d + Fs exp(-(w / ws)^2)             level, N m, of a motion in the direction d = -1, 1
+//! F = B w + tanh(w / w_s) g                             without presliding; Fa d is Fa tanh there
+//! F = B w + f,  df/dt = S (w - |w| f / g),  S = (Fc + Fs) / z         with it
+//! ```
+//!
+//! The second is LuGre's model without its bristles' damping, which is Dahl's where there is no Stribeck part: a spring S that
+//! gives way as it comes to the level, over the deflection z.
+//!
+//! Over a mechanics period dt of constant w, f has a closed form, which is what is integrated; the speed takes it implicitly,
+//! linearised about w = 0, so that a spring stiffer than dt could follow is stable:
+//!
+//! ```text
+//! a  = w + dt / J (forces - B w - f),   d = sgn a
+//! w' = a / (1 + dt^2 S max(0, 1 - f d / g) / J)
+//! f' = d g + (f - d g) exp(-S |w'| dt / g)
+//! ```
+//!
+//! Symbols: Fc Coulomb friction; Fa its asymmetry; Fs what the breakaway torque has above it; ws Stribeck speed, rad/s; z
+//! presliding deflection, rad at the motor shaft; B viscous friction; w_s speed over which friction turns its sign.
+//!
+//! Source: Dahl (1968), A solid friction model; Canudas de Wit, Olsson, Åström and Lischinsky (1995), A new model for control of
+//! systems with friction, eqs 1 to 4; Armstrong-Hélouvry, Dupont and Canudas de Wit (1994), a survey, for asymmetry and the
+//! Stribeck curve; the linearly implicit step is Rosenbrock's, Hairer and Wanner (1996), section IV.7.
+
+use super::AxisLaw;
+use crate::activation::{exp, tanh};
+
+/// Least level as a part of Fc + Fs: an asymmetry as large as the Coulomb friction leaves none, by which nothing can be divided.
+const LEAST_LEVEL: f64 = 1e-9;
+
+/// Friction beside the Coulomb and viscous friction of [`super::Parameters`]; zero is without.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct FrictionParameters {
+    /// What the Coulomb friction is higher in the positive direction, and lower in the negative, N m.
+    pub coulomb_asymmetry_nm: f64,
+    /// What friction has at rest above the Coulomb friction, N m.
+    pub stribeck_nm: f64,
+    /// Speed over which that goes, rad/s.
+    pub stribeck_rad_s: f64,
+    /// Deflection before it slides, rad.
+    pub presliding_rad: f64,
+}
+
+/// Friction of an axis, ready to be integrated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FrictionLaw {
+    parameters: FrictionParameters,
+    dt_s: f64,
+    viscous_nm_s: f64,
+    coulomb_nm: f64,
+    inverse_smoothing_s: f64,
+    inverse_stribeck_s: f64,
+    stiffness_nm_rad: f64,
+    least_nm: f64,
+}
+
+impl FrictionLaw {
+    /// Of an axis, beside what its own parameters have of friction.
+    pub fn new(law: &AxisLaw, parameters: FrictionParameters) -> Self {
+        let FrictionParameters { stribeck_nm, stribeck_rad_s, presliding_rad, .. } = parameters;
+        let breakaway_nm = law.parameters.coulomb_friction_nm + stribeck_nm;
+        Self {
+            parameters,
+            dt_s: law.periods.mechanics_s,
+            viscous_nm_s: law.parameters.viscous_friction_nm_s,
+            coulomb_nm: law.parameters.coulomb_friction_nm,
+            inverse_smoothing_s: law.inverse_smoothing_s,
+            inverse_stribeck_s: if stribeck_rad_s > 0.0 { 1.0 / stribeck_rad_s } else { 0.0 },
+            stiffness_nm_rad: if presliding_rad > 0.0 { (breakaway_nm / presliding_rad).min(f64::MAX) } else { 0.0 },
+            least_nm: LEAST_LEVEL * breakaway_nm,
+        }
+    }
+
+    /// Speed behind a mechanics period under forces without friction, N m at the shaft; `presliding_nm` is f.
+    #[inline]
+    pub fn speed_after_rad_s(
+        &self,
+        forces_nm: f64,
+        inverse_inertia: f64,
+        speed_rad_s: f64,
+        presliding_nm: &mut f64,
+    ) -> f64 {
+        let step = self.dt_s * inverse_inertia;
+        let left_nm = forces_nm - self.viscous_nm_s * speed_rad_s;
+        if self.stiffness_nm_rad == 0.0 {
+            let [sign] = tanh([speed_rad_s * self.inverse_smoothing_s]);
+            return speed_rad_s + step * (left_nm - sign * self.level_nm(speed_rad_s, sign));
+        }
+        let free_rad_s = speed_rad_s + step * (left_nm - *presliding_nm);
+        let direction = f64::copysign(1.0, free_rad_s);
+        let level_nm = self.level_nm(speed_rad_s, direction).max(self.least_nm);
+        let to_go = (1.0 - *presliding_nm * direction / level_nm).max(0.0);
+        let after_rad_s = free_rad_s / (1.0 + step * self.dt_s * self.stiffness_nm_rad * to_go);
+        let slid = self.stiffness_nm_rad * after_rad_s.abs() * self.dt_s / level_nm;
+        let sliding_nm = direction * level_nm;
+        *presliding_nm = sliding_nm + (*presliding_nm - sliding_nm) * decay(slid);
+        after_rad_s
+    }
+
+    /// Level at a speed, in a direction from -1 to 1, N m.
+    #[inline]
+    fn level_nm(&self, speed_rad_s: f64, direction: f64) -> f64 {
+        let ratio = speed_rad_s * self.inverse_stribeck_s;
+        let stribeck_nm = self.parameters.stribeck_nm;
+        let low_nm = if stribeck_nm > 0.0 { stribeck_nm * decay(ratio * ratio) } else { 0.0 };
+        self.coulomb_nm + self.parameters.coulomb_asymmetry_nm * direction + low_nm
+    }
+}
+
+/// e^-x of what is not negative.
+#[inline]
+fn decay(x: f64) -> f64 {
+    // Beyond, it is nothing beside 1.
+    exp(-x.min(40.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Parameters, Periods};
+    use super::*;
+
+    const J: f64 = 0.01;
+
+    fn friction(coulomb_nm: f64, mechanics_s: f64, parameters: FrictionParameters) -> FrictionLaw {
+        let law = Parameters {
+            rad_per_mm: 0.6,
+            kp_1_s: 50.0,
+            kd: 0.0,
+            kv_nm_s_per_rad: 2.0,
+            torque_limit_nm: 30.0,
+            inertia_kg_m2: J,
+            viscous_friction_nm_s: 0.0,
+            coulomb_friction_nm: coulomb_nm,
+            coulomb_smoothing_rad_s: 1e-4,
+        };
+        let periods = Periods { servo_s: 0.001, mechanics_s, mechanics_per_servo: 10 };
+        FrictionLaw::new(&AxisLaw::new(law, periods), parameters)
+    }
+
+    const DAHL: FrictionParameters =
+        FrictionParameters { coulomb_asymmetry_nm: 0.0, stribeck_nm: 0.0, stribeck_rad_s: 0.0, presliding_rad: 0.01 };
+
+    /// Friction, N m, of a motion that a speed of `rad_s` is forced upon for a time; by what it takes to keep the speed.
+    fn friction_at(law: &FrictionLaw, rad_s: f64, steps: u32, mut presliding_nm: f64) -> f64 {
+        let mut found_nm = 0.0;
+        for _ in 0..steps {
+            let before_nm = presliding_nm;
+            let after = law.speed_after_rad_s(before_nm, 1.0 / J, rad_s, &mut presliding_nm);
+            found_nm =
+                if law.stiffness_nm_rad > 0.0 { presliding_nm } else { (rad_s - after) * J / law.dt_s + before_nm };
+        }
+        found_nm
+    }
+
+    #[test]
+    fn dahls_friction_comes_to_its_level_over_the_presliding_deflection() {
+        let law = friction(0.2, 1e-6, DAHL);
+        // f = Fc (1 - exp(-x / z)) from rest; turned round at +Fc: f = -Fc + 2 Fc exp(-x / z).
+        for way_rad in [0.001, 0.005, 0.02_f64] {
+            let steps = libm::round(way_rad / (0.5 * 1e-6)) as u32;
+            let decayed = libm::exp(-way_rad / 0.01);
+            let rising = friction_at(&law, 0.5, steps, 0.0);
+            assert!((rising - 0.2 * (1.0 - decayed)).abs() < 1e-6, "{way_rad}: {rising}");
+            let turned = friction_at(&law, -0.5, steps, 0.2);
+            assert!((turned - (-0.2 + 0.4 * decayed)).abs() < 1e-6, "{way_rad}: {turned}");
+        }
+    }
+
+    #[test]
+    fn the_level_is_stribecks_curve_and_another_one_each_way() {
+        let parameters = FrictionParameters {
+            coulomb_asymmetry_nm: 0.03,
+            stribeck_nm: 0.1,
+            stribeck_rad_s: 2.0,
+            presliding_rad: 0.0,
+        };
+        for presliding_rad in [0.0, 0.001] {
+            let law = friction(0.2, 1e-4, FrictionParameters { presliding_rad, ..parameters });
+            for speed in [0.5, -0.5, 2.0, -2.0, 20.0, -20.0_f64] {
+                let ratio = speed / 2.0;
+                let wanted = f64::copysign(0.2 + 0.1 * libm::exp(-ratio * ratio), speed) + 0.03;
+                let found = friction_at(&law, speed, 2000, 0.0);
+                assert!((found - wanted).abs() < 1e-6, "{speed}: {found} {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn within_the_presliding_it_is_a_spring() {
+        // f = S x for small x: J x'' = -S x swings at sqrt(S / J) from a push of 1e-4 rad/s, which deflects by z / 4000.
+        let law = friction(0.2, 1e-6, DAHL);
+        let (mut speed, mut presliding, mut crossings) = (1e-4, 0.0, 0);
+        let mut first_s = 0.0;
+        let mut last_s = 0.0;
+        for step in 0..1_000_000_u32 {
+            let after = law.speed_after_rad_s(0.0, 1.0 / J, speed, &mut presliding);
+            if speed > 0.0 && after <= 0.0 {
+                last_s = f64::from(step) * 1e-6;
+                crossings += 1;
+                if crossings == 1 {
+                    first_s = last_s;
+                }
+            }
+            speed = after;
+        }
+        let found_rad_s = core::f64::consts::TAU * f64::from(crossings - 1) / (last_s - first_s);
+        assert!((found_rad_s - libm::sqrt(0.2 / 0.01 / J)).abs() < 0.01 * found_rad_s, "{found_rad_s}");
+    }
+
+    #[test]
+    fn a_spring_that_no_period_follows_holds_and_lets_go_at_the_breakaway_torque() {
+        // S dt^2 / J = 2e5: an explicit step would be unstable from 4 on.
+        let stiff = FrictionParameters { presliding_rad: 1e-9, stribeck_nm: 0.1, stribeck_rad_s: 1.0, ..DAHL };
+        let law = friction(0.1, 1e-4, stiff);
+        let (mut speed, mut presliding, mut way) = (0.0, 0.0, 0.0);
+        for step in 0..20_000_u32 {
+            let force = 0.19 * libm::sin(0.01 * f64::from(step));
+            speed = law.speed_after_rad_s(force, 1.0 / J, speed, &mut presliding);
+            way += 1e-4 * speed;
+            assert!((presliding - force).abs() < 0.01 && f64::abs(way) < 1e-6, "{step}: {presliding} {way}");
+        }
+        (0..1000).for_each(|_| speed = law.speed_after_rad_s(0.22, 1.0 / J, speed, &mut presliding));
+        assert!(speed > 0.1, "{speed}");
+    }
+
+    #[test]
+    fn no_value_makes_it_infinite() {
+        let ends = [0.0, 1e-300, 1e5];
+        for case in 0..27_usize {
+            let [coulomb, stribeck, zone] = [ends[case % 3], ends[case / 3 % 3], ends[case / 9]];
+            let parameters = FrictionParameters {
+                coulomb_asymmetry_nm: coulomb,
+                stribeck_nm: stribeck,
+                stribeck_rad_s: zone,
+                presliding_rad: zone,
+            };
+            let law = friction(coulomb, 1e-4, parameters);
+            let (mut speed, mut presliding) = (0.0, 0.0);
+            for force in [0.0, 1.0, -1e3, 0.0, 1e-9] {
+                speed = law.speed_after_rad_s(force, 1.0 / J, speed, &mut presliding);
+                assert!(speed.is_finite() && presliding.is_finite(), "{coulomb} {stribeck} {zone}");
+            }
+        }
+    }
+}

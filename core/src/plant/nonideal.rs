@@ -1,0 +1,204 @@
+//! An axis with what real ones have, and one mechanics period of it.
+//!
+//! ```text
+//! reference that has arrived -> drive -> steps of the torque -> ripple, cogging -> motor [-> screw -> table] <- load, friction
+//! ```
+//!
+//! What the machine file does not name is passed over, to the bit.
+
+use feedwright_control::axis::drive::{DriveLaw, DriveParameters, DriveState};
+use feedwright_control::axis::friction::{FrictionLaw, FrictionParameters};
+use feedwright_control::axis::{self, AxisLaw, AxisState};
+
+use super::drive::{Delay, in_steps, torque_step_nm};
+use super::encoder::{Encoder, Latency, SpeedByDifference};
+use super::noise::{CorrelatedNoise, RandomStream, RandomUse};
+use super::torque::{MotorTorque, Wander, broadband};
+use super::transmission::Coupling;
+use crate::machine::{Axis, Machine};
+
+/// What an axis has on top of the ideal one, and its state.
+#[derive(Debug, Clone)]
+pub(super) struct NonidealAxis {
+    drive: DriveLaw,
+    drive_state: DriveState,
+    delay: Delay,
+    torque_step_nm: f64,
+    encoder: Encoder,
+    latency: Option<Latency>,
+    speed: Option<SpeedByDifference>,
+    motor: MotorTorque,
+    friction: Option<FrictionLaw>,
+    /// Friction of the presliding spring, N m.
+    presliding_nm: f64,
+    inverse_inertia: f64,
+    broadband: Option<CorrelatedNoise>,
+    pub(super) wander: Option<Wander>,
+    coupling: Option<Coupling>,
+    scale_on_table: bool,
+    /// Angle of the table at the motor shaft, rad, and its speed, rad/s; those of the motor where there is no coupling.
+    pub(super) table_rad: f64,
+    table_rad_s: f64,
+}
+
+/// A mechanics period: its number within the servo period, and since the start of the machine.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment {
+    pub(super) substep: u32,
+    pub(super) counter: u64,
+}
+
+impl NonidealAxis {
+    pub(super) fn new(machine: &Machine, index: usize, law: &AxisLaw, angle_rad: f64, seed: u64) -> Self {
+        let (axis, period) = (machine.axis(index), &machine.period);
+        let encoder = Encoder::new(axis, RandomStream::new(seed, index, RandomUse::Encoder));
+        let friction = axis.friction();
+        Self {
+            drive: DriveLaw::new(law, axis.drive()),
+            drive_state: DriveState::default(),
+            delay: Delay::new(axis, period, seed),
+            torque_step_nm: torque_step_nm(axis),
+            encoder,
+            latency: Latency::new(axis, period, angle_rad),
+            speed: SpeedByDifference::new(axis, encoder, seed, index),
+            motor: MotorTorque::new(axis),
+            friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(law, friction)),
+            presliding_nm: 0.0,
+            inverse_inertia: 1.0 / axis.inertia_kg_m2,
+            broadband: broadband(axis, period.mechanics_s, seed, index),
+            wander: Wander::new(axis, period.servo_s, period.mechanics_s, seed, index),
+            coupling: axis.transmission.as_ref().map(|transmission| Coupling::new(axis, transmission)),
+            scale_on_table: axis.transmission.is_some_and(|transmission| transmission.scale_on_table),
+            table_rad: angle_rad,
+            table_rad_s: 0.0,
+        }
+    }
+
+    /// Whether an axis has nothing of this.
+    pub(super) fn is_ideal(axis: &Axis) -> bool {
+        let absent = [
+            axis.encoder_step_um,
+            axis.encoder_noise_um,
+            axis.interpolation_error_um,
+            axis.measurement_delay_s,
+            axis.drive_delay_s,
+            axis.jitter_s,
+            axis.cogging_nm,
+            axis.ripple,
+            axis.torque_noise_nm,
+            axis.disturbance_wander,
+        ];
+        absent.iter().all(|value| *value == 0.0)
+            && !axis.speed_from_encoder
+            && axis.torque_bits.is_none()
+            && axis.transmission.is_none()
+            && axis.drive() == DriveParameters::default()
+            && axis.friction() == FrictionParameters::default()
+    }
+
+    /// The axis goes on as another one: where its parts are and how fast, and what its drive has summed up.
+    pub(super) fn take_over(&mut self, before: Option<&Self>, motor: &AxisState) {
+        let Some(before) = before else {
+            (self.table_rad, self.table_rad_s) = (motor.angle_rad, motor.speed_rad_s);
+            return;
+        };
+        (self.table_rad, self.table_rad_s) = (before.table_rad, before.table_rad_s);
+        (self.drive_state, self.presliding_nm) = (before.drive_state, before.presliding_nm);
+    }
+
+    /// The position at the start of a servo period, as the control has it, rad at the motor shaft.
+    pub(super) fn measured_rad(&self, motor: &AxisState, counter: u64) -> f64 {
+        match &self.latency {
+            Some(latency) => latency.arrived_rad(),
+            None => self.shown_rad(motor, counter),
+        }
+    }
+
+    /// What the encoder shows.
+    #[inline]
+    fn shown_rad(&self, motor: &AxisState, counter: u64) -> f64 {
+        self.encoder.read(if self.scale_on_table { self.table_rad } else { motor.angle_rad }, counter)
+    }
+
+    /// The position loop: what it asks for leaves for the drive.
+    pub(super) fn position_loop(
+        &mut self,
+        law: &AxisLaw,
+        command_rad: f64,
+        motor: &mut AxisState,
+        period: u64,
+        counter: u64,
+    ) {
+        let measured_rad = self.measured_rad(motor, counter);
+        let reference = self.drive.position_loop(law, command_rad, measured_rad, motor, &mut self.drive_state);
+        self.delay.send(reference, period);
+    }
+
+    /// One mechanics period under a disturbance; the torque of the drive, N m.
+    #[inline]
+    pub(super) fn advance(&mut self, law: &AxisLaw, motor: &mut AxisState, moment: Moment, disturbance_nm: f64) -> f64 {
+        if self.latency.as_ref().is_some_and(|latency| latency.takes(moment.substep)) {
+            let shown_rad = self.shown_rad(motor, moment.counter);
+            if let Some(latency) = &mut self.latency {
+                latency.take(shown_rad);
+            }
+        }
+        let speed_rad_s = match &mut self.speed {
+            Some(speed) => speed.speed_rad_s(motor.angle_rad, moment.counter, law.periods.mechanics_s),
+            None => motor.speed_rad_s,
+        };
+        let reference = self.delay.arrived(moment.substep);
+        let wanted_nm = self.drive.torque_nm(law, reference, speed_rad_s, &mut self.drive_state);
+        let torque_nm = in_steps(wanted_nm, self.torque_step_nm);
+        let load_nm = match &mut self.broadband {
+            Some(noise) => disturbance_nm + noise.next(moment.counter),
+            None => disturbance_nm,
+        };
+        self.mechanics(law, motor, self.motor.at_nm(torque_nm, motor.angle_rad), load_nm);
+        torque_nm
+    }
+
+    #[inline]
+    fn mechanics(&mut self, law: &AxisLaw, motor: &mut AxisState, motor_nm: f64, load_nm: f64) {
+        let dt_s = law.periods.mechanics_s;
+        match self.coupling {
+            Some(coupling) => {
+                let twist_rad = motor.angle_rad - self.table_rad;
+                let through = coupling.torque_nm(twist_rad, motor.speed_rad_s - self.table_rad_s);
+                motor.speed_rad_s += dt_s * coupling.inverse_motor_inertia * (motor_nm - through);
+                match &self.friction {
+                    Some(friction) => {
+                        let (forces_nm, inverse) = (through - load_nm, coupling.inverse_table_inertia);
+                        let slide = &mut self.presliding_nm;
+                        self.table_rad_s = friction.speed_after_rad_s(forces_nm, inverse, self.table_rad_s, slide);
+                    }
+                    None => {
+                        let load_nm = friction_nm(law, self.table_rad_s) + load_nm;
+                        self.table_rad_s += dt_s * coupling.inverse_table_inertia * (through - load_nm);
+                    }
+                }
+                motor.angle_rad += dt_s * motor.speed_rad_s;
+                self.table_rad += dt_s * self.table_rad_s;
+            }
+            None => {
+                match &self.friction {
+                    Some(friction) => {
+                        let (forces_nm, inverse) = (motor_nm - load_nm, self.inverse_inertia);
+                        let slide = &mut self.presliding_nm;
+                        motor.speed_rad_s = friction.speed_after_rad_s(forces_nm, inverse, motor.speed_rad_s, slide);
+                        motor.angle_rad += dt_s * motor.speed_rad_s;
+                    }
+                    None => law.accelerate(motor_nm - (friction_nm(law, motor.speed_rad_s) + load_nm), motor),
+                }
+                (self.table_rad, self.table_rad_s) = (motor.angle_rad, motor.speed_rad_s);
+            }
+        }
+    }
+}
+
+/// Viscous and Coulomb friction alone, N m.
+#[inline]
+fn friction_nm(law: &AxisLaw, speed_rad_s: f64) -> f64 {
+    let [sign] = axis::signs(&[*law], [speed_rad_s]);
+    law.friction_nm(speed_rad_s, sign)
+}
