@@ -57,8 +57,10 @@ pub struct Machine {
     /// Two or three axes: x, y and perhaps z.
     pub axes: Vec<Axis>,
     /// How the axes lie to each other.
+    #[serde(skip_serializing_if = "is_default")]
     pub geometry: Squareness,
     /// What random numbers begin with.
+    #[serde(skip_serializing_if = "is_default")]
     pub noise: Noise,
 }
 
@@ -153,6 +155,10 @@ pub struct PlcEvent {
     pub label: String,
     /// How long it holds the motion up, s.
     pub takes_s: f64,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }
 
 impl Machine {
@@ -273,7 +279,7 @@ impl Machine {
     /// Hashed is the JSON of periods, limits and axes, and of geometry and noise where there is any; field order and the
     /// shortest round-trip form of numbers make it canonical.
     pub fn fingerprint(&self) -> String {
-        let content = if (self.geometry, self.noise) == Default::default() {
+        let content = if is_default(&self.geometry) && is_default(&self.noise) {
             serde_json::json!([self.period, self.limits, self.axes])
         } else {
             serde_json::json!([self.period, self.limits, self.axes, self.geometry, self.noise])

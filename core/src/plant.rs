@@ -106,7 +106,7 @@ impl<const N: usize> Plant<N> {
     }
 
     /// The machine becomes another one in mid-cut, as where a workpiece is loaded: angles, speeds, errors and time go on, but what
-    /// was on its way through a drive's delay is lost. Leads and periods are to be the same.
+    /// was on its way to the drive or from the encoder is lost. Leads and periods are to be the same.
     pub fn change_to(&mut self, machine: &Machine) {
         let before = std::mem::replace(self, Self::with_seed(machine, self.joint_mm(), self.seed));
         self.period = before.period;

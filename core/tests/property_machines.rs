@@ -53,6 +53,43 @@ fn a_machine_without_these_parts_measures_where_it_is() {
     }
 }
 
+/// Machines of the folder that are not built in.
+const REAL: [&str; 3] = ["workshop", "stiff", "router"];
+
+#[test]
+fn real_machines_follow_a_slow_line_whatever_the_seed() {
+    for name in REAL {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../machines/{name}.toml"));
+        let machine = Machine::read(&file).unwrap();
+        assert_eq!((machine.name.as_str(), machine.axis_count()), (name, 3));
+        for seed in 0..5 {
+            let mut plant = Plant::<3>::with_seed(&machine, [0.0; 3], seed);
+            let lag_mm = FEED_MM_S / machine.axes[0].kp_1_s;
+            let periods = (2.0 / machine.period.servo_s) as u32;
+            for n in 0..periods {
+                let command_mm = FEED_MM_S * machine.period.servo_s * f64::from(n);
+                let measured = plant.step([command_mm, -command_mm, 0.5 * command_mm]);
+                for (axis, part) in [1.0, -1.0, 0.5].into_iter().enumerate() {
+                    let off_mm = part * command_mm - measured.joint_mm[axis];
+                    assert!(off_mm.abs() <= lag_mm + 0.05, "{name}, seed {seed}, {n}: {off_mm} mm");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_value_of_a_real_machine_has_a_reason() {
+    for name in REAL {
+        let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../machines/{name}.toml"));
+        for (number, line) in std::fs::read_to_string(file).unwrap().lines().enumerate() {
+            if line.contains(" = ") && !line.contains('"') && !line.starts_with('#') {
+                assert!(line.contains(" # "), "{name}, line {} has no reason: {line}", number + 1);
+            }
+        }
+    }
+}
+
 #[test]
 fn a_file_upon_a_base_has_what_it_does_not_say() {
     let heavy = Machine::load("heavy".as_ref()).unwrap();

@@ -96,7 +96,7 @@ impl NonidealAxis {
             && axis.friction() == FrictionParameters::default()
     }
 
-    /// The axis goes on as another one: where its parts are and how fast, and what its drive has summed up.
+    /// The axis goes on as another one: where its parts are and how fast, what its drive has summed up, and the disturbance's phase.
     pub(super) fn take_over(&mut self, before: Option<&Self>, motor: &AxisState) {
         let Some(before) = before else {
             (self.table_rad, self.table_rad_s) = (motor.angle_rad, motor.speed_rad_s);
@@ -104,6 +104,9 @@ impl NonidealAxis {
         };
         (self.table_rad, self.table_rad_s) = (before.table_rad, before.table_rad_s);
         (self.drive_state, self.presliding_nm) = (before.drive_state, before.presliding_nm);
+        if let (Some(wander), Some(before)) = (&mut self.wander, &before.wander) {
+            wander.take_over(before);
+        }
     }
 
     /// The position at the start of a servo period, as the control has it, rad at the motor shaft.

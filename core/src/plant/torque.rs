@@ -79,6 +79,11 @@ impl Wander {
         })
     }
 
+    /// The phase goes on from that of another one.
+    pub(super) fn take_over(&mut self, before: &Self) {
+        self.ahead_rad = before.ahead_rad;
+    }
+
     /// A servo period begins at t: cos and sin of the phase there, and of the angle by which it turns in a mechanics period.
     pub(super) fn servo_period(&mut self, period: u64, t_s: f64) -> [[f64; 2]; 2] {
         let faster_rad_s = self.nominal_rad_s * self.noise.next(period);
