@@ -4,6 +4,8 @@
 use feedwright_control::axis::{self, AxisState, Parameters};
 use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
 use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
+use feedwright_control::controller::disturbance_observer;
+use feedwright_control::controller::disturbance_rejection::{DisturbanceRejection, ObservedAxis};
 use feedwright_control::controller::feedforward::{Feedforward, Gains};
 use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
 use feedwright_control::controller::inverting;
@@ -20,11 +22,16 @@ use super::parameters::Values;
 use crate::machine::{Known, KnownAxis, Period};
 
 pub(super) fn cross_coupled<const N: usize>(_: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    Box::new(CrossCoupled::new(cross_coupled::Settings {
+    Box::new(pid::<N>(values))
+}
+
+/// Cross-coupled control of these gains.
+fn pid<const N: usize>(values: &Values) -> CrossCoupled<N> {
+    CrossCoupled::new(cross_coupled::Settings {
         kp: values.number("kp"),
         ki_1_s: values.number("ki_1_s"),
         kd_s: values.number("kd_s"),
-    }))
+    })
 }
 
 pub(super) fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
@@ -44,16 +51,18 @@ pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Val
 }
 
 pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let gains = Gains {
-        velocity: values.number("velocity_gain"),
-        acceleration: values.number("acceleration_gain"),
-        friction: values.number("friction_gain"),
-    };
-    Box::new(feedforward_with::<N>(setup, gains))
+    Box::new(full_feedforward::<N>(setup, values))
+}
+
+/// Feedforward of all three parts, by their gains.
+fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedforward<N> {
+    let [velocity, acceleration, friction] =
+        ["velocity_gain", "acceleration_gain", "friction_gain"].map(|name| values.number(name));
+    feedforward_with(setup, Gains { velocity, acceleration, friction })
 }
 
 /// Feedforward of so much of each part.
-pub(super) fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforward<N> {
+fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforward<N> {
     let Period { servo_s, mechanics_s, .. } = setup.known.period;
     let axes = setup.known.axes().map(|axis| {
         let parameters = axis.nominal;
@@ -66,12 +75,17 @@ pub(super) fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) 
 }
 
 pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    Box::new(inverse::<N>(setup, values))
+}
+
+/// The inverse of the closed loop, with scales on its lag and its inertia.
+fn inverse<const N: usize>(setup: &Setup<'_>, values: &Values) -> ZeroPhase<N> {
     let scales = ["lag_scale", "inertia_scale"].map(|name| values.number(name));
-    Box::new(ZeroPhase::<N>::new(&sampled_axes(&setup.known, scales), setup.known.period.servo_s))
+    ZeroPhase::new(&sampled_axes(&setup.known, scales), setup.known.period.servo_s)
 }
 
 /// The linear part of every axis, with scales on its lag and its inertia.
-pub(super) fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [SampledAxis; N] {
+fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [SampledAxis; N] {
     let [lag_scale, inertia_scale] = scales;
     known.axes().map(|KnownAxis { nominal, .. }| {
         let inertia_kg_m2 = inertia_scale * nominal.inertia_kg_m2;
@@ -79,11 +93,21 @@ pub(super) fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [
     })
 }
 
-/// The reference speed, mm/s, that asks the drive of every axis for all that it has.
-pub(super) fn drive_limits_mm_s<const N: usize>(known: &Known) -> [f64; N] {
-    known
-        .axes()
-        .map(|KnownAxis { nominal, .. }| nominal.torque_limit_nm / (nominal.kv_nm_s_per_rad * nominal.rad_per_mm))
+pub(super) fn disturbance_observer<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let (bandwidth_hz, servo_s) = (values.number("bandwidth_hz"), setup.known.period.servo_s);
+    let feedforward = feedforward_with::<N>(setup, Gains { friction: 0.0, ..Gains::EXACT });
+    let gains = |axis: &SampledAxis| disturbance_observer::gains(axis, bandwidth_hz, servo_s);
+    Box::new(DisturbanceRejection::new(feedforward, observed_axes(&setup.known, gains), servo_s))
+}
+
+/// Observers of every axis, with these gains. No more is believed than the reference speed that asks the drive for all that it has.
+fn observed_axes<const N: usize>(known: &Known, gains: impl Fn(&SampledAxis) -> [f64; 3]) -> [ObservedAxis; N] {
+    let axes: [SampledAxis; N] = sampled_axes(known, [1.0; 2]);
+    std::array::from_fn(|i| {
+        let nominal = known.axis(i).nominal;
+        let limit_mm_s = nominal.torque_limit_nm / (nominal.kv_nm_s_per_rad * nominal.rad_per_mm);
+        ObservedAxis { axis: axes[i], limit_mm_s, gains: gains(&axes[i]) }
+    })
 }
 
 /// The linear part of an axis over one servo period, as the plant integrates it.

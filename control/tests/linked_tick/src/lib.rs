@@ -9,7 +9,7 @@ use core::panic::PanicInfo;
 use feedwright_control::Tick;
 use feedwright_control::controller::contour_compensation::ContourCompensation;
 use feedwright_control::controller::cross_coupled::CrossCoupled;
-use feedwright_control::controller::disturbance_observer::DisturbanceObserver;
+use feedwright_control::controller::disturbance_rejection::DisturbanceRejection;
 use feedwright_control::controller::feedforward::Feedforward;
 use feedwright_control::controller::fuzzy_feedrate::FuzzyFeedrate;
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
@@ -78,8 +78,8 @@ servo_periods! {
     fuzzy_feedrate_3: FuzzyFeedrate, 3;
     zero_phase_2: ZeroPhase<2>, 2;
     zero_phase_3: ZeroPhase<3>, 3;
-    disturbance_observer_2: DisturbanceObserver<2>, 2;
-    disturbance_observer_3: DisturbanceObserver<3>, 3;
+    disturbance_rejection_2: DisturbanceRejection<2>, 2;
+    disturbance_rejection_3: DisturbanceRejection<3>, 3;
 }
 
 macro_rules! models {
