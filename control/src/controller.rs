@@ -18,6 +18,7 @@ pub mod contour_compensation;
 pub mod fuzzy_feedrate;
 pub mod feedforward;
 pub mod zero_phase;
+pub mod sum;
 pub mod disturbance_rejection;
 pub mod disturbance_observer;
 pub mod inverting;

@@ -26,10 +26,10 @@ pub use make::correction_limits;
 pub use parameters::{Parameter, Setting, SettingError};
 use parameters::{Values, number};
 use rows::{
-    ACCELERATION_GAIN, CHANGE_WEIGHT, CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, ETA, FORESEEN_MM,
-    FRICTION_GAIN, INERTIA_SCALE, INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS,
-    LAG_SCALE, LAST_WEIGHT, LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, RHO, SOLVER_STEPS, TANGENTIAL_WEIGHT,
-    VELOCITY_GAIN,
+    ACCELERATION_GAIN, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT, CROSS_COUPLED_KD, CROSS_COUPLED_KI,
+    CROSS_COUPLED_KP, ETA, FORESEEN_MM, FRICTION_GAIN, INERTIA_SCALE, INNOVATION_SCALE_MM, INVERSION_KNOTS,
+    INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS, LAG_SCALE, LAST_WEIGHT, LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S,
+    RATE_WEIGHT, RHO, SOLVER_STEPS, TANGENTIAL_WEIGHT, VELOCITY_GAIN,
 };
 use serde::{Deserialize, Serialize};
 pub use setup::{ModelMisfit, Setup};
@@ -179,6 +179,24 @@ pub const CONTROLLERS: &[Entry] = &[
         |setup, values| make::feedforward(setup, values)
     ),
     entry!(
+        "feedforward-as-delivered",
+        "velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction",
+        "Masory (1986); FF1 and FF2 of LinuxCNC",
+        ExactModel,
+        laps: 1,
+        [VELOCITY_GAIN, ACCELERATION_GAIN],
+        |setup, values| Box::new(make::feedforward_as_delivered::<N>(setup, values))
+    ),
+    entry!(
+        "feedforward-cross-coupled",
+        "velocity, acceleration and friction feedforward, and PID control of the contour error behind it",
+        "Masory (1986); Koren (1980); Koren and Lo (1992)",
+        ExactModel,
+        laps: 1,
+        [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN, BEHIND_KP, BEHIND_KI, BEHIND_KD],
+        |setup, values| make::feedforward_cross_coupled(setup, values)
+    ),
+    entry!(
         "zero-phase",
         "zero phase error tracking control with the linear model of the machine",
         "Tomizuka (1987)",
@@ -186,6 +204,15 @@ pub const CONTROLLERS: &[Entry] = &[
         laps: 1,
         [LAG_SCALE, INERTIA_SCALE],
         |setup, values| make::zero_phase(setup, values)
+    ),
+    entry!(
+        "zero-phase-friction",
+        "zero phase error tracking control, and feedforward of the Coulomb friction",
+        "Tomizuka (1987); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
+        ExactModel,
+        laps: 1,
+        [LAG_SCALE, INERTIA_SCALE, FRICTION_GAIN],
+        |setup, values| make::zero_phase_friction(setup, values)
     ),
     entry!(
         "disturbance-observer",

@@ -11,6 +11,7 @@ use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
 use feedwright_control::controller::inverting;
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
+use feedwright_control::controller::sum::Sum;
 use feedwright_control::controller::two_dimensional::TwoDimensional;
 use feedwright_control::controller::zero_phase::{SampledAxis, ZeroPhase};
 use feedwright_control::{Controller, horizon, inversion};
@@ -61,6 +62,19 @@ fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedf
     feedforward_with(setup, Gains { velocity, acceleration, friction })
 }
 
+/// The part of it that controls have as they are delivered.
+pub(super) fn feedforward_as_delivered<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedforward<N> {
+    let [velocity, acceleration] = ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
+    feedforward_with(setup, Gains { velocity, acceleration, friction: 0.0 })
+}
+
+pub(super) fn feedforward_cross_coupled<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
+    Box::new(Sum::<_, _, N>::new(full_feedforward::<N>(setup, values), pid::<N>(values)))
+}
+
 /// Feedforward of so much of each part.
 fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforward<N> {
     let Period { servo_s, mechanics_s, .. } = setup.known.period;
@@ -76,6 +90,11 @@ fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforw
 
 pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     Box::new(inverse::<N>(setup, values))
+}
+
+pub(super) fn zero_phase_friction<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let friction = Gains { velocity: 0.0, acceleration: 0.0, friction: values.number("friction_gain") };
+    Box::new(Sum::<_, _, N>::new(inverse::<N>(setup, values), feedforward_with::<N>(setup, friction)))
 }
 
 /// The inverse of the closed loop, with scales on its lag and its inertia.

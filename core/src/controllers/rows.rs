@@ -126,6 +126,10 @@ pub(super) const CROSS_COUPLED_KD: Parameter = number(
     Some([1e-4, 0.03]),
     "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners",
 );
+// The same behind a feedforward, which leaves it a tenth of the error: on a noisy encoder next to no gain may be best.
+pub(super) const BEHIND_KP: Parameter = Parameter { searched: Some([0.01, 20.0]), ..CROSS_COUPLED_KP };
+pub(super) const BEHIND_KI: Parameter = Parameter { searched: Some([0.1, 2000.0]), ..CROSS_COUPLED_KI };
+pub(super) const BEHIND_KD: Parameter = Parameter { searched: Some([1e-5, 0.1]), ..CROSS_COUPLED_KD };
 // Parts of what the exact model calls for, and scales of its parameters.
 pub(super) const VELOCITY_GAIN: Parameter =
     number("velocity_gain", Gains::EXACT.velocity, [0.0, 10.0], Some([0.5, 1.5]), EXACT_REASON);
