@@ -16,6 +16,7 @@ pub mod open_loop;
 pub mod cross_coupled;
 pub mod contour_compensation;
 pub mod fuzzy_feedrate;
+pub mod cross_coupled_feedrate;
 pub mod feedforward;
 pub mod zero_phase;
 pub mod sum;

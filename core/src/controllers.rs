@@ -26,10 +26,10 @@ pub use make::correction_limits;
 pub use parameters::{Parameter, Setting, SettingError};
 use parameters::{Values, number};
 use rows::{
-    ACCELERATION_GAIN, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT, CROSS_COUPLED_KD, CROSS_COUPLED_KI,
-    CROSS_COUPLED_KP, ETA, FORESEEN_MM, FRICTION_GAIN, INERTIA_SCALE, INNOVATION_SCALE_MM, INVERSION_KNOTS,
-    INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS, LAG_SCALE, LAST_WEIGHT, LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S,
-    RATE_WEIGHT, RHO, SOLVER_STEPS, TANGENTIAL_WEIGHT, VELOCITY_GAIN,
+    ACCELERATION_GAIN, ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT,
+    CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, ETA, FORESEEN_MM, FRICTION_GAIN, INERTIA_SCALE,
+    INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS, LAG_SCALE, LAST_WEIGHT,
+    LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, RHO, SOLVER_STEPS, TANGENTIAL_WEIGHT, VELOCITY_GAIN,
 };
 use serde::{Deserialize, Serialize};
 pub use setup::{ModelMisfit, Setup};
@@ -168,6 +168,15 @@ pub const CONTROLLERS: &[Entry] = &[
             )
         ],
         |setup, values| make::fuzzy_feedrate(setup, values)
+    ),
+    entry!(
+        "cross-coupled-feedrate",
+        "PID control of the contour error, and a feedrate that keeps it within what is allowed",
+        "after Chuang and Liu (1991)",
+        Nothing,
+        laps: 1,
+        [ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
+        |setup, values| make::cross_coupled_feedrate(setup, values)
     ),
     entry!(
         "feedforward",

@@ -4,6 +4,7 @@
 use feedwright_control::axis::{self, AxisState, Parameters};
 use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
 use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
+use feedwright_control::controller::cross_coupled_feedrate::{self, CrossCoupledFeedrate};
 use feedwright_control::controller::disturbance_observer;
 use feedwright_control::controller::disturbance_rejection::{DisturbanceRejection, ObservedAxis};
 use feedwright_control::controller::feedforward::{Feedforward, Gains};
@@ -33,6 +34,16 @@ fn pid<const N: usize>(values: &Values) -> CrossCoupled<N> {
         ki_1_s: values.number("ki_1_s"),
         kd_s: values.number("kd_s"),
     })
+}
+
+pub(super) fn cross_coupled_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let settings = cross_coupled_feedrate::Settings {
+        allowed_mm: values.number("allowed_mm"),
+        filter_s: values.number("filter_s"),
+        slowest: values.number("slowest"),
+        acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
+    };
+    Box::new(CrossCoupledFeedrate::new(settings, pid::<N>(values)))
 }
 
 pub(super) fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {

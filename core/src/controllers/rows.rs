@@ -3,7 +3,7 @@
 use feedwright_control::controller::feedforward::Gains;
 use feedwright_control::controller::inverting::{self, Settings as Inverting};
 use feedwright_control::controller::receding_horizon::Settings as Horizon;
-use feedwright_control::controller::{cross_coupled, receding_horizon};
+use feedwright_control::controller::{cross_coupled, cross_coupled_feedrate, receding_horizon};
 use feedwright_control::horizon::MAX_KNOTS;
 
 use super::parameters::{Parameter, number, switch, whole};
@@ -141,3 +141,26 @@ pub(super) const LAG_SCALE: Parameter = number("lag_scale", 1.0, [0.1, 10.0], So
 pub(super) const INERTIA_SCALE: Parameter = number("inertia_scale", 1.0, [0.01, 10.0], Some([0.5, 2.0]), EXACT_REASON);
 pub(super) const EXACT_REASON: &str =
     "1 is what the exact model calls for; another makes up for a model that is not exact";
+
+// Of the feedrate that adapts to the contour error.
+pub(super) const ALLOWED: Parameter = number(
+    "allowed_mm",
+    cross_coupled_feedrate::Settings::DEFAULT.allowed_mm,
+    [1e-5, 10.0],
+    Some([1e-4, 0.1]),
+    "contour error that is allowed: a small one slows down for every error, a large one for none",
+);
+pub(super) const ALLOWED_FILTER: Parameter = number(
+    "filter_s",
+    cross_coupled_feedrate::Settings::DEFAULT.filter_s,
+    [1e-4, 10.0],
+    Some([2e-3, 1.0]),
+    "time constant of the estimate of the error: short follows its noise, long is late at curves",
+);
+pub(super) const ALLOWED_SLOWEST: Parameter = number(
+    "slowest",
+    cross_coupled_feedrate::Settings::DEFAULT.slowest,
+    [0.1, 1.0],
+    Some([0.2, 1.0]),
+    "slowest it may run, as a part of the planned feedrate",
+);

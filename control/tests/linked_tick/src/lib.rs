@@ -9,6 +9,7 @@ use core::panic::PanicInfo;
 use feedwright_control::Tick;
 use feedwright_control::controller::contour_compensation::ContourCompensation;
 use feedwright_control::controller::cross_coupled::CrossCoupled;
+use feedwright_control::controller::cross_coupled_feedrate::CrossCoupledFeedrate;
 use feedwright_control::controller::disturbance_rejection::DisturbanceRejection;
 use feedwright_control::controller::feedforward::Feedforward;
 use feedwright_control::controller::fuzzy_feedrate::FuzzyFeedrate;
@@ -83,6 +84,8 @@ servo_periods! {
     feedforward_cross_coupled_3: Sum<Feedforward<3>, CrossCoupled<3>, 3>, 3;
     zero_phase_friction_2: Sum<ZeroPhase<2>, Feedforward<2>, 2>, 2;
     zero_phase_friction_3: Sum<ZeroPhase<3>, Feedforward<3>, 3>, 3;
+    cross_coupled_feedrate_2: CrossCoupledFeedrate<2>, 2;
+    cross_coupled_feedrate_3: CrossCoupledFeedrate<3>, 3;
     disturbance_rejection_2: DisturbanceRejection<2>, 2;
     disturbance_rejection_3: DisturbanceRejection<3>, 3;
 }
