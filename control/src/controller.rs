@@ -18,6 +18,7 @@ pub mod contour_compensation;
 pub mod fuzzy_feedrate;
 pub mod cross_coupled_feedrate;
 pub mod feedforward;
+pub mod input_shaping;
 pub mod zero_phase;
 pub mod sum;
 pub mod disturbance_rejection;

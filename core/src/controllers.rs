@@ -29,7 +29,8 @@ use rows::{
     ACCELERATION_GAIN, ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT,
     CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, ETA, FORESEEN_MM, FRICTION_GAIN, INERTIA_SCALE,
     INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS, LAG_SCALE, LAST_WEIGHT,
-    LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, RHO, SOLVER_STEPS, TANGENTIAL_WEIGHT, VELOCITY_GAIN,
+    LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, RHO, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES,
+    SOLVER_STEPS, TANGENTIAL_WEIGHT, VELOCITY_GAIN,
 };
 use serde::{Deserialize, Serialize};
 pub use setup::{ModelMisfit, Setup};
@@ -204,6 +205,15 @@ pub const CONTROLLERS: &[Entry] = &[
         laps: 1,
         [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN, BEHIND_KP, BEHIND_KI, BEHIND_KD],
         |setup, values| make::feedforward_cross_coupled(setup, values)
+    ),
+    entry!(
+        "input-shaping",
+        "the path shaped so that a resonance is not excited, and feedforward of it with the exact model",
+        "Singer and Seering (1990)",
+        ExactModel,
+        laps: 1,
+        [SHAPED_FREQUENCY, SHAPED_DAMPING, SHAPER_IMPULSES],
+        |setup, values| make::input_shaping(setup, values)
     ),
     entry!(
         "zero-phase",

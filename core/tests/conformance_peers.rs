@@ -46,6 +46,7 @@ const HELD: &[Held] = &[
     held("feedforward", 0.04, PLANNED),
     held("feedforward-as-delivered", 0.22, PLANNED),
     held("feedforward-cross-coupled", 0.018, PLANNED),
+    held("input-shaping", 0.12, PLANNED),
     held("zero-phase", 0.22, PLANNED),
     held("zero-phase-friction", 0.04, PLANNED),
     held("disturbance-observer", 0.08, PLANNED),

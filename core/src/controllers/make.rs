@@ -9,6 +9,7 @@ use feedwright_control::controller::disturbance_observer;
 use feedwright_control::controller::disturbance_rejection::{DisturbanceRejection, ObservedAxis};
 use feedwright_control::controller::feedforward::{Feedforward, Gains};
 use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
+use feedwright_control::controller::input_shaping::{self, InputShaping};
 use feedwright_control::controller::inverting;
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
@@ -97,6 +98,16 @@ fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforw
         Parameters { inertia_kg_m2: parameters.inertia_kg_m2 - early_nm_s * mechanics_s, ..parameters }
     });
     Feedforward::new(axes, gains, servo_s)
+}
+
+pub(super) fn input_shaping<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let settings = input_shaping::Settings {
+        frequency_hz: values.number("frequency_hz"),
+        damping_ratio: values.number("damping_ratio"),
+        impulses: values.whole("impulses") as u32,
+    };
+    let feedforward = feedforward_with::<N>(setup, Gains::EXACT);
+    Box::new(InputShaping::new(feedforward, &settings, setup.known.period.servo_s))
 }
 
 pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {

@@ -3,7 +3,7 @@
 use feedwright_control::controller::feedforward::Gains;
 use feedwright_control::controller::inverting::{self, Settings as Inverting};
 use feedwright_control::controller::receding_horizon::Settings as Horizon;
-use feedwright_control::controller::{cross_coupled, cross_coupled_feedrate, receding_horizon};
+use feedwright_control::controller::{cross_coupled, cross_coupled_feedrate, input_shaping, receding_horizon};
 use feedwright_control::horizon::MAX_KNOTS;
 
 use super::parameters::{Parameter, number, switch, whole};
@@ -163,4 +163,25 @@ pub(super) const ALLOWED_SLOWEST: Parameter = number(
     [0.1, 1.0],
     Some([0.2, 1.0]),
     "slowest it may run, as a part of the planned feedrate",
+);
+// Of the shaper.
+pub(super) const SHAPED_FREQUENCY: Parameter = number(
+    "frequency_hz",
+    input_shaping::Settings::DEFAULT.frequency_hz,
+    [5.0, 1000.0],
+    Some([10.0, 500.0]),
+    "of the resonance that is not excited: at 500 its impulses are a servo period apart, and shape nothing",
+);
+pub(super) const SHAPED_DAMPING: Parameter = number(
+    "damping_ratio",
+    input_shaping::Settings::DEFAULT.damping_ratio,
+    [0.0, 0.9],
+    Some([1e-3, 0.5]),
+    "of that resonance: more makes the later impulses smaller",
+);
+pub(super) const SHAPER_IMPULSES: Parameter = whole(
+    "impulses",
+    input_shaping::Settings::DEFAULT.impulses as usize,
+    [2.0, 3.0],
+    "2 hit the frequency (ZV), 3 also what is near it (ZVD) and round the path by more",
 );

@@ -13,6 +13,7 @@ use feedwright_control::controller::cross_coupled_feedrate::CrossCoupledFeedrate
 use feedwright_control::controller::disturbance_rejection::DisturbanceRejection;
 use feedwright_control::controller::feedforward::Feedforward;
 use feedwright_control::controller::fuzzy_feedrate::FuzzyFeedrate;
+use feedwright_control::controller::input_shaping::InputShaping;
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::RecedingHorizon;
@@ -86,6 +87,8 @@ servo_periods! {
     zero_phase_friction_3: Sum<ZeroPhase<3>, Feedforward<3>, 3>, 3;
     cross_coupled_feedrate_2: CrossCoupledFeedrate<2>, 2;
     cross_coupled_feedrate_3: CrossCoupledFeedrate<3>, 3;
+    input_shaping_2: InputShaping<2>, 2;
+    input_shaping_3: InputShaping<3>, 3;
     disturbance_rejection_2: DisturbanceRejection<2>, 2;
     disturbance_rejection_3: DisturbanceRejection<3>, 3;
 }
