@@ -23,6 +23,7 @@ pub mod zero_phase;
 pub mod sum;
 pub mod disturbance_rejection;
 pub mod disturbance_observer;
+pub mod kalman_disturbance;
 pub mod inverting;
 pub mod magnitude_only;
 pub mod two_dimensional;

@@ -27,10 +27,10 @@ pub use parameters::{Parameter, Setting, SettingError};
 use parameters::{Values, number};
 use rows::{
     ACCELERATION_GAIN, ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT,
-    CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, ETA, FORESEEN_MM, FRICTION_GAIN, INERTIA_SCALE,
+    CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, ETA, FORESEEN_MM, FRICTION_GAIN, INERTIA_SCALE,
     INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS, LAG_SCALE, LAST_WEIGHT,
     LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, RHO, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES,
-    SOLVER_STEPS, TANGENTIAL_WEIGHT, VELOCITY_GAIN,
+    SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE, VELOCITY_GAIN,
 };
 use serde::{Deserialize, Serialize};
 pub use setup::{ModelMisfit, Setup};
@@ -247,6 +247,15 @@ pub const CONTROLLERS: &[Entry] = &[
             "of the observer: low is late at every reversal, high swings with the delay of the loop"
         )],
         |setup, values| make::disturbance_observer(setup, values)
+    ),
+    entry!(
+        "kalman-disturbance",
+        "velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out",
+        "Erkorkmaz and Altintas (2001)",
+        ExactModel,
+        laps: 1,
+        [DRIFT, TORQUE_NOISE, FRICTION_GAIN],
+        |setup, values| make::kalman_disturbance(setup, values)
     ),
     entry!(
         "model-predictive",

@@ -11,6 +11,7 @@ use feedwright_control::controller::feedforward::{Feedforward, Gains};
 use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
 use feedwright_control::controller::input_shaping::{self, InputShaping};
 use feedwright_control::controller::inverting;
+use feedwright_control::controller::kalman_disturbance::{self, AxisNoise};
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::sum::Sum;
@@ -139,6 +140,17 @@ pub(super) fn disturbance_observer<const N: usize>(setup: &mut Setup<'_>, values
     let feedforward = feedforward_with::<N>(setup, Gains { friction: 0.0, ..Gains::EXACT });
     let gains = |axis: &SampledAxis| disturbance_observer::gains(axis, bandwidth_hz, servo_s);
     Box::new(DisturbanceRejection::new(feedforward, observed_axes(&setup.known, gains), servo_s))
+}
+
+pub(super) fn kalman_disturbance<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let noise = AxisNoise {
+        drift_mm_s: values.number("drift_mm_s"),
+        torque_mm_s: values.number("torque_noise_mm_s"),
+        ..AxisNoise::DEFAULT
+    };
+    let feedforward = feedforward_with::<N>(setup, Gains { friction: values.number("friction_gain"), ..Gains::EXACT });
+    let axes = observed_axes(&setup.known, |axis| kalman_disturbance::gains(axis, &noise));
+    Box::new(DisturbanceRejection::new(feedforward, axes, setup.known.period.servo_s))
 }
 
 /// Observers of every axis, with these gains. No more is believed than the reference speed that asks the drive for all that it has.

@@ -2,6 +2,7 @@
 
 use feedwright_control::controller::feedforward::Gains;
 use feedwright_control::controller::inverting::{self, Settings as Inverting};
+use feedwright_control::controller::kalman_disturbance::AxisNoise;
 use feedwright_control::controller::receding_horizon::Settings as Horizon;
 use feedwright_control::controller::{cross_coupled, cross_coupled_feedrate, input_shaping, receding_horizon};
 use feedwright_control::horizon::MAX_KNOTS;
@@ -163,6 +164,22 @@ pub(super) const ALLOWED_SLOWEST: Parameter = number(
     [0.1, 1.0],
     Some([0.2, 1.0]),
     "slowest it may run, as a part of the planned feedrate",
+);
+// Of the Kalman filter, in servo periods and against an encoder of 1 um: of all three noises the ratios alone count.
+pub(super) const DRIFT: Parameter = number(
+    "drift_mm_s",
+    AxisNoise::DEFAULT.drift_mm_s,
+    [1e-6, 1e4],
+    Some([1e-3, 1e4]),
+    "change of the disturbance: a small one is late at every reversal, a large one hands on the noise of the encoder; from 100 on \
+     the filter believes what it measures, and hardly changes",
+);
+pub(super) const TORQUE_NOISE: Parameter = number(
+    "torque_noise_mm_s",
+    AxisNoise::DEFAULT.torque_mm_s,
+    [0.0, 100.0],
+    Some([1e-4, 10.0]),
+    "white part of the torque: what is put down to it is no disturbance",
 );
 // Of the shaper.
 pub(super) const SHAPED_FREQUENCY: Parameter = number(
