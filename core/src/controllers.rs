@@ -242,9 +242,10 @@ pub const CONTROLLERS: &[Entry] = &[
         [number(
             "bandwidth_hz",
             disturbance_observer::BANDWIDTH_HZ,
-            [0.0, 200.0],
-            Some([1.0, 150.0]),
-            "of the observer: low is late at every reversal, high swings with the delay of the loop"
+            [0.0, 1000.0],
+            Some([1.0, 1000.0]),
+            "of the observer: low is late at every reversal, high hands on the noise of the encoder; from 500 on the observer \
+             believes what it measures, and hardly changes"
         )],
         |setup, values| make::disturbance_observer(setup, values)
     ),
