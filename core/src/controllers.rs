@@ -5,6 +5,7 @@
 //! | File | What |
 //! |---|---|
 //! | `controllers/parameters.rs` | what of them can be set, by name |
+//! | `controllers/rows.rs` | the parameters of the rows |
 //! | `controllers/setup.rs` | what they are made from: what is known of a machine, and a model |
 //! | `controllers/make.rs` | how each row is made from that |
 //! | `controllers/model_predictive.rs`, `controllers/iterative_learning.rs` | those that are not fit for a servo thread |
@@ -13,20 +14,24 @@ pub mod parameters;
 pub mod iterative_learning;
 pub mod model_predictive;
 mod make;
+mod rows;
 mod setup;
 
 use feedwright_control::Controller;
-use feedwright_control::controller::disturbance_observer::{self, DisturbanceObserver};
-use feedwright_control::controller::feedforward::Gains;
-use feedwright_control::controller::inverting::{self, Settings as Inverting};
+use feedwright_control::controller::disturbance_observer;
 use feedwright_control::controller::open_loop::OpenLoop;
-use feedwright_control::controller::receding_horizon::Settings as Horizon;
-use feedwright_control::controller::{contour_compensation, cross_coupled, fuzzy_feedrate, receding_horizon};
-use feedwright_control::horizon::MAX_KNOTS;
+use feedwright_control::controller::{contour_compensation, fuzzy_feedrate};
 use feedwright_control::identifier::IdentifierKind;
 pub use make::correction_limits;
 pub use parameters::{Parameter, Setting, SettingError};
-use parameters::{Values, number, switch, whole};
+use parameters::{Values, number};
+use rows::{
+    ACCELERATION_GAIN, ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT,
+    CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, ETA, FORESEEN_MM, FRICTION_GAIN, INERTIA_SCALE,
+    INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS, LAG_SCALE, LAST_WEIGHT,
+    LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, RHO, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES,
+    SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE, VELOCITY_GAIN,
+};
 use serde::{Deserialize, Serialize};
 pub use setup::{ModelMisfit, Setup};
 
@@ -90,113 +95,6 @@ macro_rules! entry {
     }};
 }
 
-// Of those that invert the paper's identifier.
-const RHO: Parameter = number(
-    "rho",
-    Inverting::DEFAULT.inversion.rho,
-    [0.0, 0.1],
-    Some([1e-5, 0.1]),
-    "weight of the machining time against the error: 0 looks at the error alone, more is faster and less accurate",
-);
-const ETA: Parameter = number(
-    "eta",
-    Inverting::DEFAULT.inversion.eta,
-    [0.0, 10.0],
-    Some([1e-3, 10.0]),
-    "length of a gradient step: 0 inverts nothing; the paper takes 0.3",
-);
-const INVERSION_STEPS: Parameter =
-    whole("steps", Inverting::DEFAULT.inversion.steps, [1.0, 20.0], "gradient steps in a tick: the paper allows 5");
-const INVERSION_KNOTS: Parameter = whole(
-    "knots",
-    Inverting::DEFAULT.knots,
-    [1.0, 20.0],
-    "knots that are inverted together: 1 is the paper's; with the printed gradient more change nothing",
-);
-const INVERSION_PERIOD_S: Parameter =
-    number("feed_period_s", inverting::FEED_PERIOD_S, [1e-3, 0.012], None, "time between decisions: the paper's 10 ms");
-const LEARNING_STEP: Parameter = number(
-    "learning_step",
-    Inverting::DEFAULT.learning_step,
-    [0.0, 0.5],
-    None,
-    "step of back-propagation while cutting: 0 keeps what was trained, large ones forget it",
-);
-// Of those that plan over a horizon.
-const RATE_WEIGHT: Parameter = number(
-    "rate_weight_s2",
-    Horizon::<2>::DEFAULT.horizon.rate_weight,
-    [0.0, 0.01],
-    None,
-    "weight of the speed of the offset: below 1e-10 the plan rings from knot to knot, above 1e-4 nothing is corrected",
-);
-const KNOTS: Parameter = whole(
-    "knots",
-    Horizon::<2>::DEFAULT.horizon.knots,
-    [1.0, MAX_KNOTS as f64],
-    "knots of the horizon: fewer take less time in a tick, and see less of a corner ahead",
-);
-const PLAN_PERIOD_S: Parameter = number(
-    "feed_period_s",
-    receding_horizon::FEED_PERIOD_S,
-    [1e-3, 0.012],
-    None,
-    "time between decisions: 2 ms is worse on a soft ball screw, 5 ms at every reversal",
-);
-const CHANGE_WEIGHT: Parameter = number(
-    "change_weight_s2",
-    Horizon::<2>::DEFAULT.horizon.change_weight,
-    [0.0, 0.01],
-    None,
-    "weight of the change of that speed from knot to knot: more is smoother, and blunter at corners",
-);
-const TANGENTIAL_WEIGHT: Parameter = number(
-    "tangential_weight",
-    Horizon::<2>::DEFAULT.horizon.tangential_weight,
-    [0.0, 1.0],
-    None,
-    "weight of an error along the path: small leaves room at a corner, large keeps the tool from staying behind",
-);
-const LAST_WEIGHT: Parameter = number(
-    "last_weight",
-    Horizon::<2>::DEFAULT.horizon.last_weight,
-    [0.0, 1.0],
-    None,
-    "the same at the end of the horizon, at the least: where it is small, the tool swings about turns that are not seen yet",
-);
-const INNOVATION_SCALE_MM: Parameter = number(
-    "innovation_scale_mm",
-    Horizon::<2>::DEFAULT.innovation_scale_mm,
-    [1e-6, 1.0],
-    None,
-    "innovations of this size make the plan half as sharp: small is gentle, large builds on predictions that miss",
-);
-const FORESEEN_MM: Parameter = number(
-    "foreseen_mm",
-    Horizon::<2>::DEFAULT.foreseen_mm,
-    [1e-4, 10.0],
-    None,
-    "a miss by this some knots ahead makes the offset count as much as an error: large trusts a model that is wrong",
-);
-const SOLVER_STEPS: Parameter = whole(
-    "steps",
-    Horizon::<2>::DEFAULT.steps,
-    [1.0, 20.0],
-    "steps of the solver in a tick: further ones hardly change anything",
-);
-const ON_RAPIDS: Parameter =
-    switch("on_rapids", Horizon::<2>::DEFAULT.horizon.on_rapids, "whether rapids are corrected as cuts are");
-// Parts of what the exact model calls for, and scales of its parameters.
-const VELOCITY_GAIN: Parameter =
-    number("velocity_gain", Gains::EXACT.velocity, [0.0, 10.0], Some([0.5, 1.5]), EXACT_REASON);
-const ACCELERATION_GAIN: Parameter =
-    number("acceleration_gain", Gains::EXACT.acceleration, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
-const FRICTION_GAIN: Parameter =
-    number("friction_gain", Gains::EXACT.friction, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
-const LAG_SCALE: Parameter = number("lag_scale", 1.0, [0.1, 10.0], Some([0.5, 1.5]), EXACT_REASON);
-const INERTIA_SCALE: Parameter = number("inertia_scale", 1.0, [0.01, 10.0], Some([0.5, 2.0]), EXACT_REASON);
-const EXACT_REASON: &str = "1 is what the exact model calls for; another makes up for a model that is not exact";
-
 /// All controllers.
 pub const CONTROLLERS: &[Entry] = &[
     entry!(
@@ -214,30 +112,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Koren (1980); Srinivasan and Kulkarni (1990)",
         Nothing,
         laps: 1,
-        // Beyond these gains the loop is still stable on smooth paths, but catches the tool in acute corners.
-        [
-            number(
-                "kp",
-                cross_coupled::Settings::DEFAULT.kp,
-                [0.0, 100.0],
-                Some([0.1, 8.0]),
-                "gain of the contour error: more corrects more; beyond 8 the tool is caught in acute corners"
-            ),
-            number(
-                "ki_1_s",
-                cross_coupled::Settings::DEFAULT.ki_1_s,
-                [0.0, 1e5],
-                Some([1.0, 400.0]),
-                "gain of its integral: 0 leaves a part of a steady error; beyond 400 the tool is caught in acute corners"
-            ),
-            number(
-                "kd_s",
-                cross_coupled::Settings::DEFAULT.kd_s,
-                [0.0, 1.0],
-                Some([1e-4, 0.03]),
-                "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners"
-            )
-        ],
+        [CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
         |setup, values| make::cross_coupled(setup, values)
     ),
     entry!(
@@ -296,6 +171,15 @@ pub const CONTROLLERS: &[Entry] = &[
         |setup, values| make::fuzzy_feedrate(setup, values)
     ),
     entry!(
+        "cross-coupled-feedrate",
+        "PID control of the contour error, and a feedrate that keeps it within what is allowed",
+        "after Chuang and Liu (1991)",
+        Nothing,
+        laps: 1,
+        [ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
+        |setup, values| make::cross_coupled_feedrate(setup, values)
+    ),
+    entry!(
         "feedforward",
         "velocity, acceleration and friction feedforward with the exact model of the machine",
         "Masory (1986); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
@@ -303,6 +187,33 @@ pub const CONTROLLERS: &[Entry] = &[
         laps: 1,
         [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN],
         |setup, values| make::feedforward(setup, values)
+    ),
+    entry!(
+        "feedforward-as-delivered",
+        "velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction",
+        "Masory (1986); FF1 and FF2 of LinuxCNC",
+        ExactModel,
+        laps: 1,
+        [VELOCITY_GAIN, ACCELERATION_GAIN],
+        |setup, values| Box::new(make::feedforward_as_delivered::<N>(setup, values))
+    ),
+    entry!(
+        "feedforward-cross-coupled",
+        "velocity, acceleration and friction feedforward, and PID control of the contour error behind it",
+        "Masory (1986); Koren (1980); Koren and Lo (1992)",
+        ExactModel,
+        laps: 1,
+        [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN, BEHIND_KP, BEHIND_KI, BEHIND_KD],
+        |setup, values| make::feedforward_cross_coupled(setup, values)
+    ),
+    entry!(
+        "input-shaping",
+        "the path shaped so that a resonance is not excited, and feedforward of it with the exact model",
+        "Singer and Seering (1990)",
+        ExactModel,
+        laps: 1,
+        [SHAPED_FREQUENCY, SHAPED_DAMPING, SHAPER_IMPULSES],
+        |setup, values| make::input_shaping(setup, values)
     ),
     entry!(
         "zero-phase",
@@ -314,6 +225,15 @@ pub const CONTROLLERS: &[Entry] = &[
         |setup, values| make::zero_phase(setup, values)
     ),
     entry!(
+        "zero-phase-friction",
+        "zero phase error tracking control, and feedforward of the Coulomb friction",
+        "Tomizuka (1987); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
+        ExactModel,
+        laps: 1,
+        [LAG_SCALE, INERTIA_SCALE, FRICTION_GAIN],
+        |setup, values| make::zero_phase_friction(setup, values)
+    ),
+    entry!(
         "disturbance-observer",
         "velocity and acceleration feedforward, and an observer of friction and cutting force",
         "Ohnishi (1987)",
@@ -322,16 +242,21 @@ pub const CONTROLLERS: &[Entry] = &[
         [number(
             "bandwidth_hz",
             disturbance_observer::BANDWIDTH_HZ,
-            [0.0, 200.0],
-            Some([1.0, 150.0]),
-            "of the observer: low is late at every reversal, high swings with the delay of the loop"
+            [0.0, 1000.0],
+            Some([1.0, 1000.0]),
+            "of the observer: low is late at every reversal, high hands on the noise of the encoder; from 500 on the observer \
+             believes what it measures, and hardly changes"
         )],
-        |setup, values| {
-            let (axes, limits_mm_s) = (make::sampled_axes(&setup.known, [1.0; 2]), make::drive_limits_mm_s(&setup.known));
-            let feedforward = make::feedforward_with(setup, Gains { friction: 0.0, ..Gains::EXACT });
-            let (bandwidth_hz, servo_s) = (values.number("bandwidth_hz"), setup.known.period.servo_s);
-            Box::new(DisturbanceObserver::<N>::new(feedforward, axes, limits_mm_s, bandwidth_hz, servo_s))
-        }
+        |setup, values| make::disturbance_observer(setup, values)
+    ),
+    entry!(
+        "kalman-disturbance",
+        "velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out",
+        "Erkorkmaz and Altintas (2001)",
+        ExactModel,
+        laps: 1,
+        [DRIFT, TORQUE_NOISE, FRICTION_GAIN],
+        |setup, values| make::kalman_disturbance(setup, values)
     ),
     entry!(
         "model-predictive",

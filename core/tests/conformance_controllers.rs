@@ -4,10 +4,14 @@
 
 use std::sync::OnceLock;
 
+use feedwright::compare::Workpiece;
 use feedwright::controllers::{CONTROLLERS, Choices, Entry, Make, Setting, Setup};
 use feedwright::machine::Machine;
+use feedwright::pipeline::Run;
+use feedwright::trace::{Row, Sink};
+use feedwright_control::controller::{Command, Measured, Schedule};
 use feedwright_control::safety::Bounds;
-use feedwright_control::{Controller, Knot, KnotSource, Tick};
+use feedwright_control::{Controller, Knot, KnotSource, Tick, Window};
 
 /// Deviation that the tick admits here, mm.
 const MAX_DEVIATION_MM: f64 = 0.2;
@@ -171,6 +175,73 @@ fn a_lost_or_absurd_measurement_gives_a_command_within_the_limits() {
         }
     }
     for_every_controller!(check);
+}
+
+/// A controller, and the positions that it is shown.
+struct Shown<'a, const N: usize> {
+    controller: &'a mut dyn Controller<N>,
+    positions_mm: Vec<[f64; N]>,
+}
+
+impl<const N: usize> Controller<N> for Shown<'_, N> {
+    fn schedule(&self) -> Schedule {
+        self.controller.schedule()
+    }
+
+    fn reset(&mut self) {
+        self.controller.reset();
+    }
+
+    fn next_lap(&mut self) {
+        self.controller.next_lap();
+    }
+
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        self.positions_mm.extend(measured.map(|measured| measured.position_mm));
+        self.controller.observe(window, measured);
+    }
+
+    fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
+        self.positions_mm.push(measured.position_mm);
+        self.controller.command(window, measured)
+    }
+}
+
+/// The true positions of a run.
+struct TruePositions(Vec<[f64; 3]>);
+
+impl Sink for TruePositions {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        self.0.push(row.act_mm);
+        Ok(())
+    }
+}
+
+/// Part of the coordinates that are no whole number of encoder steps.
+fn between_steps<const N: usize>(positions_mm: &[[f64; N]], step_mm: f64) -> f64 {
+    // Between rad at the motor shaft and mm a position is rounded, by a billionth of a step at 100 mm.
+    let between = |mm: &f64| ((mm / step_mm).round() - mm / step_mm).abs() > 1e-6;
+    let coordinates: Vec<f64> = positions_mm.iter().flat_map(|position| [position[0], position[1]]).collect();
+    coordinates.iter().filter(|mm| between(mm)).count() as f64 / coordinates.len() as f64
+}
+
+#[test]
+fn a_controller_is_shown_what_the_encoder_measures_and_not_where_the_tool_is() {
+    let coarse = Machine::load("coarse".as_ref()).unwrap();
+    let step_mm = 1e-3 * coarse.axes[0].encoder_step_um;
+    let circle = Workpiece::contours().into_iter().find(|workpiece| workpiece.name == "circle").unwrap();
+    for entry in CONTROLLERS {
+        let choices = Choices::default();
+        let mut setup = Setup::new(machine(), &choices);
+        let mut controller = Make::<2>::make(entry, &mut setup);
+        let mut shown = Shown { controller: &mut *controller, positions_mm: Vec::new() };
+        let mut truth = TruePositions(Vec::new());
+        Run::on(&coarse).cut_steps(&circle.steps, &mut shown, &mut [&mut truth]).unwrap();
+        assert!(shown.positions_mm.len() > 100, "{}", entry.name);
+        assert_eq!(between_steps(&shown.positions_mm, step_mm), 0.0, "{}", entry.name);
+        // The true position would have been found out.
+        assert!(between_steps(&truth.0, step_mm) > 0.5, "{}: {}", entry.name, between_steps(&truth.0, step_mm));
+    }
 }
 
 #[test]

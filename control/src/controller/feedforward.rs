@@ -39,7 +39,7 @@ const DIFFERENCES: f64 = 3.0;
 /// lags leave room for a command that leads a slowing motion.
 const PREVIEW_LAGS: f64 = 3.0;
 /// Of the [`crate::window::PREVIEW_KNOTS`]; the others reach behind.
-const MAX_PREVIEW: f64 = 240.0;
+pub(super) const MAX_PREVIEW: f64 = 240.0;
 
 /// Preview for a command that leads the path by the lag of a loop, servo periods.
 pub fn preview(lag_s: f64, servo_s: f64) -> u32 {
@@ -89,6 +89,37 @@ impl<const N: usize> Feedforward<N> {
             + friction * axis.coulomb_friction_nm * sign;
         velocity * speed_rad_s + torque_nm / axis.kv_nm_s_per_rad
     }
+
+    /// How far the command has to lead a reference over the servo period from its second point to its third, mm; the points are a
+    /// period apart, and `last_mm` is by how much it led in the last period.
+    pub(super) fn lead_mm(
+        &self,
+        [before, here, after, beyond]: [[f64; N]; 4],
+        last_mm: [f64; N],
+        servo_s: f64,
+    ) -> [f64; N] {
+        core::array::from_fn(|i| {
+            let axis = &self.axes[i];
+            let speed_mm_s = (after[i] - here[i]) / servo_s;
+            let acceleration_mm_s2 = ((beyond[i] - here[i]) - (after[i] - before[i])) / (2.0 * servo_s * servo_s);
+            let reference_rad_s =
+                self.reference_rad_s(axis, axis.rad_per_mm * speed_mm_s, axis.rad_per_mm * acceleration_mm_s2);
+            let derivative_1_s = axis.kd / servo_s;
+            (reference_rad_s / axis.rad_per_mm + derivative_1_s * last_mm[i]) / (axis.kp_1_s + derivative_1_s)
+        })
+    }
+
+    /// The part of the reference speed that makes up for Coulomb friction in the servo period that begins, mm/s.
+    pub(super) fn friction_mm_s(&self, window: &Window<'_, N>) -> [f64; N] {
+        let servo_s = window.servo_s();
+        let [here, after] = [0.0, servo_s].map(|ahead_s| window.at(ahead_s).position_mm);
+        core::array::from_fn(|i| {
+            let axis = &self.axes[i];
+            let speed_rad_s = axis.rad_per_mm * (after[i] - here[i]) / servo_s;
+            let [sign] = tanh([speed_rad_s / axis.coulomb_smoothing_rad_s]);
+            self.gains.friction * axis.coulomb_friction_nm * sign / (axis.kv_nm_s_per_rad * axis.rad_per_mm)
+        })
+    }
 }
 
 impl<const N: usize> Controller<N> for Feedforward<N> {
@@ -102,18 +133,9 @@ impl<const N: usize> Controller<N> for Feedforward<N> {
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let servo_s = window.servo_s();
         let next_s = window.tau_s + window.feed_period_s;
-        let [before, here, after, beyond] =
+        let reference =
             [-1.0, 0.0, 1.0, 2.0].map(|periods: f64| window.preview.at(next_s + periods * servo_s).position_mm);
-        let offset_mm = core::array::from_fn(|i| {
-            let axis = &self.axes[i];
-            let speed_mm_s = (after[i] - here[i]) / servo_s;
-            let acceleration_mm_s2 = ((beyond[i] - here[i]) - (after[i] - before[i])) / (2.0 * servo_s * servo_s);
-            let reference_rad_s =
-                self.reference_rad_s(axis, axis.rad_per_mm * speed_mm_s, axis.rad_per_mm * acceleration_mm_s2);
-            let derivative_1_s = axis.kd / servo_s;
-            (reference_rad_s / axis.rad_per_mm + derivative_1_s * window.offset_mm[i]) / (axis.kp_1_s + derivative_1_s)
-        });
-        Command::straight(1.0, offset_mm)
+        Command::straight(1.0, self.lead_mm(reference, window.offset_mm, servo_s))
     }
 }
 

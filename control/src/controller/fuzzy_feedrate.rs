@@ -67,6 +67,13 @@ fn memberships(x: f64) -> [f64; 3] {
     [(-x).max(0.0), 1.0 - x.abs(), x.max(0.0)]
 }
 
+/// The wanted rate, or as near to it as this acceleration along the path allows in a feed period.
+pub(super) fn eased<const N: usize>(rate: f64, wanted: f64, acceleration_mm_s2: f64, window: &Window<'_, N>) -> f64 {
+    let feed_mm_s = window.now().feed_mm_s.max(f64::MIN_POSITIVE);
+    let step = acceleration_mm_s2 * window.feed_period_s / feed_mm_s;
+    bounded(wanted, rate - step, rate + step)
+}
+
 /// Fuzzy adaptive feedrate.
 #[derive(Debug, Clone)]
 pub struct FuzzyFeedrate {
@@ -96,9 +103,7 @@ impl<const N: usize> Controller<N> for FuzzyFeedrate {
         if error_mm.is_finite() {
             let change_mm_s = self.error_mm.map_or(0.0, |last_mm| (error_mm - last_mm) / window.feed_period_s);
             let wanted = self.settings.rate(error_mm, change_mm_s);
-            let feed_mm_s = window.now().feed_mm_s.max(f64::MIN_POSITIVE);
-            let step = self.settings.acceleration_mm_s2 * window.feed_period_s / feed_mm_s;
-            self.rate = bounded(wanted, self.rate - step, self.rate + step);
+            self.rate = eased(self.rate, wanted, self.settings.acceleration_mm_s2, window);
             self.error_mm = Some(error_mm);
         }
         Command::straight(self.rate, [0.0; N])

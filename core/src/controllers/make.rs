@@ -4,11 +4,17 @@
 use feedwright_control::axis::{self, AxisState, Parameters};
 use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
 use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
+use feedwright_control::controller::cross_coupled_feedrate::{self, CrossCoupledFeedrate};
+use feedwright_control::controller::disturbance_observer;
+use feedwright_control::controller::disturbance_rejection::{DisturbanceRejection, ObservedAxis};
 use feedwright_control::controller::feedforward::{Feedforward, Gains};
 use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
+use feedwright_control::controller::input_shaping::{self, InputShaping};
 use feedwright_control::controller::inverting;
+use feedwright_control::controller::kalman_disturbance::{self, AxisNoise};
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
+use feedwright_control::controller::sum::Sum;
 use feedwright_control::controller::two_dimensional::TwoDimensional;
 use feedwright_control::controller::zero_phase::{SampledAxis, ZeroPhase};
 use feedwright_control::{Controller, horizon, inversion};
@@ -20,11 +26,26 @@ use super::parameters::Values;
 use crate::machine::{Known, KnownAxis, Period};
 
 pub(super) fn cross_coupled<const N: usize>(_: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    Box::new(CrossCoupled::new(cross_coupled::Settings {
+    Box::new(pid::<N>(values))
+}
+
+/// Cross-coupled control of these gains.
+fn pid<const N: usize>(values: &Values) -> CrossCoupled<N> {
+    CrossCoupled::new(cross_coupled::Settings {
         kp: values.number("kp"),
         ki_1_s: values.number("ki_1_s"),
         kd_s: values.number("kd_s"),
-    }))
+    })
+}
+
+pub(super) fn cross_coupled_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let settings = cross_coupled_feedrate::Settings {
+        allowed_mm: values.number("allowed_mm"),
+        filter_s: values.number("filter_s"),
+        slowest: values.number("slowest"),
+        acceleration_mm_s2: setup.known.limits.tangential_accel_mm_s2,
+    };
+    Box::new(CrossCoupledFeedrate::new(settings, pid::<N>(values)))
 }
 
 pub(super) fn contour_compensation<const N: usize>(_: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
@@ -44,16 +65,31 @@ pub(super) fn fuzzy_feedrate<const N: usize>(setup: &mut Setup<'_>, values: &Val
 }
 
 pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let gains = Gains {
-        velocity: values.number("velocity_gain"),
-        acceleration: values.number("acceleration_gain"),
-        friction: values.number("friction_gain"),
-    };
-    Box::new(feedforward_with::<N>(setup, gains))
+    Box::new(full_feedforward::<N>(setup, values))
+}
+
+/// Feedforward of all three parts, by their gains.
+fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedforward<N> {
+    let [velocity, acceleration, friction] =
+        ["velocity_gain", "acceleration_gain", "friction_gain"].map(|name| values.number(name));
+    feedforward_with(setup, Gains { velocity, acceleration, friction })
+}
+
+/// The part of it that controls have as they are delivered.
+pub(super) fn feedforward_as_delivered<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedforward<N> {
+    let [velocity, acceleration] = ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
+    feedforward_with(setup, Gains { velocity, acceleration, friction: 0.0 })
+}
+
+pub(super) fn feedforward_cross_coupled<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
+    Box::new(Sum::<_, _, N>::new(full_feedforward::<N>(setup, values), pid::<N>(values)))
 }
 
 /// Feedforward of so much of each part.
-pub(super) fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforward<N> {
+fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforward<N> {
     let Period { servo_s, mechanics_s, .. } = setup.known.period;
     let axes = setup.known.axes().map(|axis| {
         let parameters = axis.nominal;
@@ -65,13 +101,33 @@ pub(super) fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) 
     Feedforward::new(axes, gains, servo_s)
 }
 
+pub(super) fn input_shaping<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let settings = input_shaping::Settings {
+        frequency_hz: values.number("frequency_hz"),
+        damping_ratio: values.number("damping_ratio"),
+        impulses: values.whole("impulses") as u32,
+    };
+    let feedforward = feedforward_with::<N>(setup, Gains::EXACT);
+    Box::new(InputShaping::new(feedforward, &settings, setup.known.period.servo_s))
+}
+
 pub(super) fn zero_phase<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    Box::new(inverse::<N>(setup, values))
+}
+
+pub(super) fn zero_phase_friction<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let friction = Gains { velocity: 0.0, acceleration: 0.0, friction: values.number("friction_gain") };
+    Box::new(Sum::<_, _, N>::new(inverse::<N>(setup, values), feedforward_with::<N>(setup, friction)))
+}
+
+/// The inverse of the closed loop, with scales on its lag and its inertia.
+fn inverse<const N: usize>(setup: &Setup<'_>, values: &Values) -> ZeroPhase<N> {
     let scales = ["lag_scale", "inertia_scale"].map(|name| values.number(name));
-    Box::new(ZeroPhase::<N>::new(&sampled_axes(&setup.known, scales), setup.known.period.servo_s))
+    ZeroPhase::new(&sampled_axes(&setup.known, scales), setup.known.period.servo_s)
 }
 
 /// The linear part of every axis, with scales on its lag and its inertia.
-pub(super) fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [SampledAxis; N] {
+fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [SampledAxis; N] {
     let [lag_scale, inertia_scale] = scales;
     known.axes().map(|KnownAxis { nominal, .. }| {
         let inertia_kg_m2 = inertia_scale * nominal.inertia_kg_m2;
@@ -79,11 +135,32 @@ pub(super) fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [
     })
 }
 
-/// The reference speed, mm/s, that asks the drive of every axis for all that it has.
-pub(super) fn drive_limits_mm_s<const N: usize>(known: &Known) -> [f64; N] {
-    known
-        .axes()
-        .map(|KnownAxis { nominal, .. }| nominal.torque_limit_nm / (nominal.kv_nm_s_per_rad * nominal.rad_per_mm))
+pub(super) fn disturbance_observer<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let (bandwidth_hz, servo_s) = (values.number("bandwidth_hz"), setup.known.period.servo_s);
+    let feedforward = feedforward_with::<N>(setup, Gains { friction: 0.0, ..Gains::EXACT });
+    let gains = |axis: &SampledAxis| disturbance_observer::gains(axis, bandwidth_hz, servo_s);
+    Box::new(DisturbanceRejection::new(feedforward, observed_axes(&setup.known, gains), servo_s))
+}
+
+pub(super) fn kalman_disturbance<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let noise = AxisNoise {
+        drift_mm_s: values.number("drift_mm_s"),
+        torque_mm_s: values.number("torque_noise_mm_s"),
+        ..AxisNoise::DEFAULT
+    };
+    let feedforward = feedforward_with::<N>(setup, Gains { friction: values.number("friction_gain"), ..Gains::EXACT });
+    let axes = observed_axes(&setup.known, |axis| kalman_disturbance::gains(axis, &noise));
+    Box::new(DisturbanceRejection::new(feedforward, axes, setup.known.period.servo_s))
+}
+
+/// Observers of every axis, with these gains. No more is believed than the reference speed that asks the drive for all that it has.
+fn observed_axes<const N: usize>(known: &Known, gains: impl Fn(&SampledAxis) -> [f64; 3]) -> [ObservedAxis; N] {
+    let axes: [SampledAxis; N] = sampled_axes(known, [1.0; 2]);
+    std::array::from_fn(|i| {
+        let nominal = known.axis(i).nominal;
+        let limit_mm_s = nominal.torque_limit_nm / (nominal.kv_nm_s_per_rad * nominal.rad_per_mm);
+        ObservedAxis { axis: axes[i], limit_mm_s, gains: gains(&axes[i]) }
+    })
 }
 
 /// The linear part of an axis over one servo period, as the plant integrates it.

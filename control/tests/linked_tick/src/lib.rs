@@ -9,12 +9,15 @@ use core::panic::PanicInfo;
 use feedwright_control::Tick;
 use feedwright_control::controller::contour_compensation::ContourCompensation;
 use feedwright_control::controller::cross_coupled::CrossCoupled;
-use feedwright_control::controller::disturbance_observer::DisturbanceObserver;
+use feedwright_control::controller::cross_coupled_feedrate::CrossCoupledFeedrate;
+use feedwright_control::controller::disturbance_rejection::DisturbanceRejection;
 use feedwright_control::controller::feedforward::Feedforward;
 use feedwright_control::controller::fuzzy_feedrate::FuzzyFeedrate;
+use feedwright_control::controller::input_shaping::InputShaping;
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::RecedingHorizon;
+use feedwright_control::controller::sum::Sum;
 use feedwright_control::controller::two_dimensional::TwoDimensional;
 use feedwright_control::controller::zero_phase::ZeroPhase;
 use feedwright_control::model::ModelBlock;
@@ -78,8 +81,16 @@ servo_periods! {
     fuzzy_feedrate_3: FuzzyFeedrate, 3;
     zero_phase_2: ZeroPhase<2>, 2;
     zero_phase_3: ZeroPhase<3>, 3;
-    disturbance_observer_2: DisturbanceObserver<2>, 2;
-    disturbance_observer_3: DisturbanceObserver<3>, 3;
+    feedforward_cross_coupled_2: Sum<Feedforward<2>, CrossCoupled<2>, 2>, 2;
+    feedforward_cross_coupled_3: Sum<Feedforward<3>, CrossCoupled<3>, 3>, 3;
+    zero_phase_friction_2: Sum<ZeroPhase<2>, Feedforward<2>, 2>, 2;
+    zero_phase_friction_3: Sum<ZeroPhase<3>, Feedforward<3>, 3>, 3;
+    cross_coupled_feedrate_2: CrossCoupledFeedrate<2>, 2;
+    cross_coupled_feedrate_3: CrossCoupledFeedrate<3>, 3;
+    input_shaping_2: InputShaping<2>, 2;
+    input_shaping_3: InputShaping<3>, 3;
+    disturbance_rejection_2: DisturbanceRejection<2>, 2;
+    disturbance_rejection_3: DisturbanceRejection<3>, 3;
 }
 
 macro_rules! models {

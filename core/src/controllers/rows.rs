@@ -1,0 +1,204 @@
+//! Parameters that rows of the table have in common, and long ones: ranges, defaults, reasons.
+
+use feedwright_control::controller::feedforward::Gains;
+use feedwright_control::controller::inverting::{self, Settings as Inverting};
+use feedwright_control::controller::kalman_disturbance::AxisNoise;
+use feedwright_control::controller::receding_horizon::Settings as Horizon;
+use feedwright_control::controller::{cross_coupled, cross_coupled_feedrate, input_shaping, receding_horizon};
+use feedwright_control::horizon::MAX_KNOTS;
+
+use super::parameters::{Parameter, number, switch, whole};
+
+// Of those that invert the paper's identifier.
+pub(super) const RHO: Parameter = number(
+    "rho",
+    Inverting::DEFAULT.inversion.rho,
+    [0.0, 0.1],
+    Some([1e-5, 0.1]),
+    "weight of the machining time against the error: 0 looks at the error alone, more is faster and less accurate",
+);
+pub(super) const ETA: Parameter = number(
+    "eta",
+    Inverting::DEFAULT.inversion.eta,
+    [0.0, 10.0],
+    Some([1e-3, 10.0]),
+    "length of a gradient step: 0 inverts nothing; the paper takes 0.3",
+);
+pub(super) const INVERSION_STEPS: Parameter =
+    whole("steps", Inverting::DEFAULT.inversion.steps, [1.0, 20.0], "gradient steps in a tick: the paper allows 5");
+pub(super) const INVERSION_KNOTS: Parameter = whole(
+    "knots",
+    Inverting::DEFAULT.knots,
+    [1.0, 20.0],
+    "knots that are inverted together: 1 is the paper's; with the printed gradient more change nothing",
+);
+pub(super) const INVERSION_PERIOD_S: Parameter =
+    number("feed_period_s", inverting::FEED_PERIOD_S, [1e-3, 0.012], None, "time between decisions: the paper's 10 ms");
+pub(super) const LEARNING_STEP: Parameter = number(
+    "learning_step",
+    Inverting::DEFAULT.learning_step,
+    [0.0, 0.5],
+    None,
+    "step of back-propagation while cutting: 0 keeps what was trained, large ones forget it",
+);
+// Of those that plan over a horizon.
+pub(super) const RATE_WEIGHT: Parameter = number(
+    "rate_weight_s2",
+    Horizon::<2>::DEFAULT.horizon.rate_weight,
+    [0.0, 0.01],
+    None,
+    "weight of the speed of the offset: below 1e-10 the plan rings from knot to knot, above 1e-4 nothing is corrected",
+);
+pub(super) const KNOTS: Parameter = whole(
+    "knots",
+    Horizon::<2>::DEFAULT.horizon.knots,
+    [1.0, MAX_KNOTS as f64],
+    "knots of the horizon: fewer take less time in a tick, and see less of a corner ahead",
+);
+pub(super) const PLAN_PERIOD_S: Parameter = number(
+    "feed_period_s",
+    receding_horizon::FEED_PERIOD_S,
+    [1e-3, 0.012],
+    None,
+    "time between decisions: 2 ms is worse on a soft ball screw, 5 ms at every reversal",
+);
+pub(super) const CHANGE_WEIGHT: Parameter = number(
+    "change_weight_s2",
+    Horizon::<2>::DEFAULT.horizon.change_weight,
+    [0.0, 0.01],
+    None,
+    "weight of the change of that speed from knot to knot: more is smoother, and blunter at corners",
+);
+pub(super) const TANGENTIAL_WEIGHT: Parameter = number(
+    "tangential_weight",
+    Horizon::<2>::DEFAULT.horizon.tangential_weight,
+    [0.0, 1.0],
+    None,
+    "weight of an error along the path: small leaves room at a corner, large keeps the tool from staying behind",
+);
+pub(super) const LAST_WEIGHT: Parameter = number(
+    "last_weight",
+    Horizon::<2>::DEFAULT.horizon.last_weight,
+    [0.0, 1.0],
+    None,
+    "the same at the end of the horizon, at the least: where it is small, the tool swings about turns that are not seen yet",
+);
+pub(super) const INNOVATION_SCALE_MM: Parameter = number(
+    "innovation_scale_mm",
+    Horizon::<2>::DEFAULT.innovation_scale_mm,
+    [1e-6, 1.0],
+    None,
+    "innovations of this size make the plan half as sharp: small is gentle, large builds on predictions that miss",
+);
+pub(super) const FORESEEN_MM: Parameter = number(
+    "foreseen_mm",
+    Horizon::<2>::DEFAULT.foreseen_mm,
+    [1e-4, 10.0],
+    None,
+    "a miss by this some knots ahead makes the offset count as much as an error: large trusts a model that is wrong",
+);
+pub(super) const SOLVER_STEPS: Parameter = whole(
+    "steps",
+    Horizon::<2>::DEFAULT.steps,
+    [1.0, 20.0],
+    "steps of the solver in a tick: further ones hardly change anything",
+);
+pub(super) const ON_RAPIDS: Parameter =
+    switch("on_rapids", Horizon::<2>::DEFAULT.horizon.on_rapids, "whether rapids are corrected as cuts are");
+// Of cross-coupled control. Beyond these gains the loop is still stable on smooth paths, but catches the tool in acute corners.
+pub(super) const CROSS_COUPLED_KP: Parameter = number(
+    "kp",
+    cross_coupled::Settings::DEFAULT.kp,
+    [0.0, 100.0],
+    Some([0.1, 8.0]),
+    "gain of the contour error: more corrects more; beyond 8 the tool is caught in acute corners",
+);
+pub(super) const CROSS_COUPLED_KI: Parameter = number(
+    "ki_1_s",
+    cross_coupled::Settings::DEFAULT.ki_1_s,
+    [0.0, 1e5],
+    Some([1.0, 400.0]),
+    "gain of its integral: 0 leaves a part of a steady error; beyond 400 the tool is caught in acute corners",
+);
+pub(super) const CROSS_COUPLED_KD: Parameter = number(
+    "kd_s",
+    cross_coupled::Settings::DEFAULT.kd_s,
+    [0.0, 1.0],
+    Some([1e-4, 0.03]),
+    "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners",
+);
+// The same behind a feedforward, which leaves it a tenth of the error: on a noisy encoder next to no gain may be best.
+pub(super) const BEHIND_KP: Parameter = Parameter { searched: Some([0.01, 20.0]), ..CROSS_COUPLED_KP };
+pub(super) const BEHIND_KI: Parameter = Parameter { searched: Some([0.1, 2000.0]), ..CROSS_COUPLED_KI };
+pub(super) const BEHIND_KD: Parameter = Parameter { searched: Some([1e-5, 0.1]), ..CROSS_COUPLED_KD };
+// Parts of what the exact model calls for, and scales of its parameters.
+pub(super) const VELOCITY_GAIN: Parameter =
+    number("velocity_gain", Gains::EXACT.velocity, [0.0, 10.0], Some([0.5, 1.5]), EXACT_REASON);
+pub(super) const ACCELERATION_GAIN: Parameter =
+    number("acceleration_gain", Gains::EXACT.acceleration, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
+pub(super) const FRICTION_GAIN: Parameter =
+    number("friction_gain", Gains::EXACT.friction, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
+pub(super) const LAG_SCALE: Parameter = number("lag_scale", 1.0, [0.1, 10.0], Some([0.5, 1.5]), EXACT_REASON);
+pub(super) const INERTIA_SCALE: Parameter = number("inertia_scale", 1.0, [0.01, 10.0], Some([0.5, 2.0]), EXACT_REASON);
+pub(super) const EXACT_REASON: &str =
+    "1 is what the exact model calls for; another makes up for a model that is not exact";
+
+// Of the feedrate that adapts to the contour error.
+pub(super) const ALLOWED: Parameter = number(
+    "allowed_mm",
+    cross_coupled_feedrate::Settings::DEFAULT.allowed_mm,
+    [1e-5, 10.0],
+    Some([1e-4, 0.1]),
+    "contour error that is allowed: a small one slows down for every error, a large one for none",
+);
+pub(super) const ALLOWED_FILTER: Parameter = number(
+    "filter_s",
+    cross_coupled_feedrate::Settings::DEFAULT.filter_s,
+    [1e-4, 10.0],
+    Some([2e-3, 1.0]),
+    "time constant of the estimate of the error: short follows its noise, long is late at curves",
+);
+pub(super) const ALLOWED_SLOWEST: Parameter = number(
+    "slowest",
+    cross_coupled_feedrate::Settings::DEFAULT.slowest,
+    [0.1, 1.0],
+    Some([0.2, 1.0]),
+    "slowest it may run, as a part of the planned feedrate",
+);
+// Of the Kalman filter, in servo periods and against an encoder of 1 um: of all three noises the ratios alone count.
+pub(super) const DRIFT: Parameter = number(
+    "drift_mm_s",
+    AxisNoise::DEFAULT.drift_mm_s,
+    [1e-6, 1e4],
+    Some([1e-3, 1e4]),
+    "change of the disturbance: a small one is late at every reversal, a large one hands on the noise of the encoder; from 100 on \
+     the filter believes what it measures, and hardly changes",
+);
+pub(super) const TORQUE_NOISE: Parameter = number(
+    "torque_noise_mm_s",
+    AxisNoise::DEFAULT.torque_mm_s,
+    [0.0, 100.0],
+    Some([1e-4, 10.0]),
+    "white part of the torque: what is put down to it is no disturbance",
+);
+// Of the shaper.
+pub(super) const SHAPED_FREQUENCY: Parameter = number(
+    "frequency_hz",
+    input_shaping::Settings::DEFAULT.frequency_hz,
+    [5.0, 1000.0],
+    Some([10.0, 500.0]),
+    "of the resonance that is not excited: at 500 its impulses are a servo period apart, and shape nothing",
+);
+pub(super) const SHAPED_DAMPING: Parameter = number(
+    "damping_ratio",
+    input_shaping::Settings::DEFAULT.damping_ratio,
+    [0.0, 0.9],
+    Some([1e-3, 0.5]),
+    "of that resonance: more makes the later impulses smaller",
+);
+pub(super) const SHAPER_IMPULSES: Parameter = whole(
+    "impulses",
+    input_shaping::Settings::DEFAULT.impulses as usize,
+    [2.0, 3.0],
+    "2 hit the frequency (ZV), 3 also what is near it (ZVD) and round the path by more",
+);
