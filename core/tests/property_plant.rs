@@ -21,7 +21,7 @@ fn value([least, most]: [f64; 2], choice: u8, part: f64) -> f64 {
         _ => {
             let small = if least > 0.0 { least } else { most * 1e-9 };
             let size = small * (most / small).powf(part);
-            if least < 0.0 && choice % 2 == 0 { -size } else { size }
+            if least < 0.0 && choice.is_multiple_of(2) { -size } else { size }
         }
     }
 }
