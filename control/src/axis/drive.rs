@@ -117,8 +117,14 @@ impl DriveLaw {
     #[inline]
     pub fn torque_nm(&self, law: &AxisLaw, reference: DriveReference, speed_rad_s: f64, state: &mut DriveState) -> f64 {
         if self.plain {
-            return law.torque_nm(reference.speed_rad_s, speed_rad_s);
+            law.torque_nm(reference.speed_rad_s, speed_rad_s)
+        } else {
+            self.regulated_nm(law, reference, speed_rad_s, state)
         }
+    }
+
+    /// As [`Self::torque_nm`], of a drive that is more than a P speed loop.
+    fn regulated_nm(&self, law: &AxisLaw, reference: DriveReference, speed_rad_s: f64, state: &mut DriveState) -> f64 {
         let most_rad_s = self.parameters.speed_limit_rad_s;
         let wanted_rad_s =
             if most_rad_s > 0.0 { within(reference.speed_rad_s, most_rad_s) } else { reference.speed_rad_s };

@@ -69,7 +69,12 @@ impl Delay {
     /// The reference at the drive in a mechanics period of this servo period: the newest that has arrived.
     #[inline]
     pub(super) fn arrived(&self, substep: u32) -> DriveReference {
-        let mut age = self.periods + usize::from(substep < self.substeps);
+        let age = self.periods + usize::from(substep < self.substeps);
+        if self.latenesses > 1 { self.arrived_late(substep, age) } else { self.sent[self.at(age)] }
+    }
+
+    /// As [`Self::arrived`], the newest that is no later than that; without jitter it would be the one of this age.
+    fn arrived_late(&self, substep: u32, mut age: usize) -> DriveReference {
         let mut since = if substep < self.substeps { substep + self.per_servo } else { substep } - self.substeps;
         // No reference is later than a servo period, so that this ends with the next but one.
         while self.late[self.at(age)] > since {

@@ -27,7 +27,9 @@ pub(super) struct NonidealAxis {
     encoder: Encoder,
     latency: Option<Latency>,
     speed: Option<SpeedByDifference>,
-    motor: MotorTorque,
+    /// Whether there is any of the two.
+    is_sensed: bool,
+    motor: Option<MotorTorque>,
     friction: Option<FrictionLaw>,
     /// Friction of the presliding spring, N m.
     presliding_nm: f64,
@@ -53,14 +55,17 @@ impl NonidealAxis {
         let (axis, period) = (machine.axis(index), &machine.period);
         let encoder = Encoder::new(axis, RandomStream::new(seed, index, RandomUse::Encoder));
         let friction = axis.friction();
+        let latency = Latency::new(axis, period, angle_rad);
+        let speed = SpeedByDifference::new(axis, encoder, seed, index);
         Self {
             drive: DriveLaw::new(law, axis.drive()),
             drive_state: DriveState::default(),
             delay: Delay::new(axis, period, seed),
             torque_step_nm: torque_step_nm(axis),
             encoder,
-            latency: Latency::new(axis, period, angle_rad),
-            speed: SpeedByDifference::new(axis, encoder, seed, index),
+            is_sensed: latency.is_some() || speed.is_some(),
+            latency,
+            speed,
             motor: MotorTorque::new(axis),
             friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(law, friction)),
             presliding_nm: 0.0,
@@ -140,16 +145,7 @@ impl NonidealAxis {
     /// One mechanics period under a disturbance; the torque of the drive, N m.
     #[inline]
     pub(super) fn advance(&mut self, law: &AxisLaw, motor: &mut AxisState, moment: Moment, disturbance_nm: f64) -> f64 {
-        if self.latency.as_ref().is_some_and(|latency| latency.takes(moment.substep)) {
-            let shown_rad = self.shown_rad(motor, moment.counter);
-            if let Some(latency) = &mut self.latency {
-                latency.take(shown_rad);
-            }
-        }
-        let speed_rad_s = match &mut self.speed {
-            Some(speed) => speed.speed_rad_s(motor.angle_rad, moment.counter, law.periods.mechanics_s),
-            None => motor.speed_rad_s,
-        };
+        let speed_rad_s = if self.is_sensed { self.sensed_rad_s(law, motor, moment) } else { motor.speed_rad_s };
         let reference = self.delay.arrived(moment.substep);
         let wanted_nm = self.drive.torque_nm(law, reference, speed_rad_s, &mut self.drive_state);
         let torque_nm = in_steps(wanted_nm, self.torque_step_nm);
@@ -157,14 +153,32 @@ impl NonidealAxis {
             Some(noise) => disturbance_nm + noise.next(moment.counter),
             None => disturbance_nm,
         };
-        self.mechanics(law, motor, self.motor.at_nm(torque_nm, motor.angle_rad), load_nm);
+        let motor_nm = match &self.motor {
+            Some(unevenness) => unevenness.at_nm(torque_nm, motor.angle_rad),
+            None => torque_nm,
+        };
+        self.mechanics(law, motor, motor_nm, load_nm);
         torque_nm
+    }
+
+    /// The position on its way to the control is taken; the speed as the drive has it.
+    fn sensed_rad_s(&mut self, law: &AxisLaw, motor: &AxisState, moment: Moment) -> f64 {
+        if self.latency.as_ref().is_some_and(|latency| latency.takes(moment.substep)) {
+            let shown_rad = self.shown_rad(motor, moment.counter);
+            if let Some(latency) = &mut self.latency {
+                latency.take(shown_rad);
+            }
+        }
+        match &mut self.speed {
+            Some(speed) => speed.speed_rad_s(motor.angle_rad, moment.counter, law.periods.mechanics_s),
+            None => motor.speed_rad_s,
+        }
     }
 
     #[inline]
     fn mechanics(&mut self, law: &AxisLaw, motor: &mut AxisState, motor_nm: f64, load_nm: f64) {
         let dt_s = law.periods.mechanics_s;
-        match self.coupling {
+        match &self.coupling {
             Some(coupling) => {
                 let twist_rad = motor.angle_rad - self.table_rad;
                 let through = coupling.torque_nm(twist_rad, motor.speed_rad_s - self.table_rad_s);

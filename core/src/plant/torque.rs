@@ -30,13 +30,13 @@ pub(super) struct MotorTorque {
 }
 
 impl MotorTorque {
-    pub(super) fn new(axis: &Axis) -> Self {
+    /// None where it has neither.
+    pub(super) fn new(axis: &Axis) -> Option<Self> {
         let Axis { ripple, ripple_per_rev, cogging_nm, cogging_per_rev, .. } = *axis;
-        Self { ripple, ripple_per_rev, cogging_nm, cogging_per_rev }
+        (ripple > 0.0 || cogging_nm > 0.0).then_some(Self { ripple, ripple_per_rev, cogging_nm, cogging_per_rev })
     }
 
     /// What the motor makes of the drive's torque at an angle, N m.
-    #[inline]
     pub(super) fn at_nm(&self, drive_nm: f64, angle_rad: f64) -> f64 {
         let mut torque_nm = drive_nm;
         if self.ripple > 0.0 {
@@ -111,7 +111,8 @@ mod tests {
             cogging_nm: 0.04,
             cogging_per_rev: 24.0,
             ..axis()
-        });
+        })
+        .unwrap();
         for (turn, ripple, cogging) in
             [(0.0, 0.0, 0.0), (1.0 / 24.0, 0.05, 0.0), (1.0 / 96.0, 0.05 * 0.382_683_432, 0.04)]
         {
@@ -121,7 +122,7 @@ mod tests {
                 assert!((motor.at_nm(drive_nm, TAU * (turn + 1.0)) - wanted).abs() < 1e-9, "a turn on");
             }
         }
-        assert_eq!(MotorTorque::new(&axis()).at_nm(1.25, 0.3), 1.25);
+        assert!(MotorTorque::new(&axis()).is_none());
     }
 
     #[test]
