@@ -80,7 +80,9 @@ const SHOWN: &[&str] = &[
     "two-dimensional",
     "contour-compensation",
     "cross-coupled",
+    "feedforward-as-delivered",
     "feedforward",
+    "feedforward-cross-coupled",
     "model-predictive",
     "receding-horizon",
 ];
