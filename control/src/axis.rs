@@ -106,14 +106,7 @@ impl AxisLaw {
     #[inline]
     pub fn torque_nm(&self, reference_rad_s: f64, speed_rad_s: f64) -> f64 {
         let wanted = self.parameters.kv_nm_s_per_rad * (reference_rad_s - speed_rad_s);
-        let limit = self.parameters.torque_limit_nm;
-        if wanted > limit {
-            limit
-        } else if wanted < -limit {
-            -limit
-        } else {
-            wanted
-        }
+        within(wanted, self.parameters.torque_limit_nm)
     }
 
     /// Friction torque at a speed at which the Coulomb part has so much of its full size and this sign ([`signs`]), N m.
@@ -138,6 +131,18 @@ impl AxisLaw {
         let gain = if torque_nm.abs() < torque_limit_nm { kv_nm_s_per_rad } else { 0.0 };
         let coulomb = coulomb_friction_nm * (1.0 - sign * sign) * self.inverse_smoothing_s;
         [gain, gain + (viscous_friction_nm_s + coulomb)]
+    }
+}
+
+/// The value, or the end of -most to most that it is beyond. Not a number stays none.
+#[inline]
+fn within(value: f64, most: f64) -> f64 {
+    if value > most {
+        most
+    } else if value < -most {
+        -most
+    } else {
+        value
     }
 }
 

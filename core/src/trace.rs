@@ -90,3 +90,11 @@ pub trait Sink {
         Ok(())
     }
 }
+
+/// Keeps every row.
+impl Sink for Vec<Row> {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        self.push(*row);
+        Ok(())
+    }
+}

@@ -3,7 +3,6 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -13,7 +12,7 @@ use feedwright::gcode::{Dialect, Increment, Settings};
 use feedwright::job::{Job, JobError, Outputs};
 use feedwright::machine::{BUILT_IN, Machine};
 use feedwright::pipeline::{Run, pieces};
-use feedwright::trace::{Row, Sink};
+use feedwright::trace::Row;
 use feedwright::watch::Watch;
 
 fn part() -> PathBuf {
@@ -78,16 +77,6 @@ fn what_is_no_job_is_refused_with_the_reason() {
     assert!(refused(&text).contains("machine"), "{}", refused(&text));
 }
 
-#[derive(Default)]
-struct Rows(Vec<Row>);
-
-impl Sink for Rows {
-    fn row(&mut self, row: &Row) -> io::Result<()> {
-        self.0.push(*row);
-        Ok(())
-    }
-}
-
 #[test]
 fn rows_are_read_back_to_the_bit() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
@@ -98,11 +87,11 @@ fn rows_are_read_back_to_the_bit() {
     };
     let choices = Choices::default();
     let mut controller = Make::<2>::make(Entry::find(BEST).unwrap(), &mut Setup::new(&machine, &choices));
-    let mut rows = Rows::default();
+    let mut rows = Vec::<Row>::new();
     Run::on(&machine).cut(program, &mut *controller, &mut [&mut rows]).unwrap();
-    assert!(rows.0.len() > 1000);
-    let read: Vec<Row> = serde_json::from_str(&serde_json::to_string(&rows.0).unwrap()).unwrap();
-    assert_eq!(read, rows.0);
+    assert!(rows.len() > 1000);
+    let read: Vec<Row> = serde_json::from_str(&serde_json::to_string(&rows).unwrap()).unwrap();
+    assert_eq!(read, rows);
 }
 
 /// Ends the work after so many steps of its progress, and keeps what it is told.

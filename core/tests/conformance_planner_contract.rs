@@ -7,10 +7,6 @@
 #[path = "common/programs.rs"]
 mod common;
 
-use std::collections::VecDeque;
-use std::f64::consts::{PI, SQRT_2};
-use std::io;
-
 use common::{BLEND, polyline};
 use feedwright::blend::{BlendMember, BlendedStep, BlendedSteps, PlannedPiece, ProgrammedPart};
 use feedwright::constraints::Constraints;
@@ -19,9 +15,11 @@ use feedwright::gcode::canon::{Canon, Motion, Plane, Shape};
 use feedwright::machine::Machine;
 use feedwright::path::{Piece, Rest, Step, Steps};
 use feedwright::pipeline::{Run, Stages, pieces};
-use feedwright::trace::{Row, Sink};
+use feedwright::trace::Row;
 use feedwright_control::Controller;
 use feedwright_control::controller::open_loop::OpenLoop;
+use std::collections::VecDeque;
+use std::f64::consts::{PI, SQRT_2};
 
 /// Radius that corners are rounded with, mm.
 const RADIUS_MM: f64 = 1.0;
@@ -177,26 +175,16 @@ fn arc_length_line_and_foot_of_a_rounded_corner_are_those_of_the_program() {
     assert!((reference.at(end_s).s_mm - 2.0 * SIDE_MM).abs() < 1e-9);
 }
 
-#[derive(Default)]
-struct Rows(Vec<Row>);
-
-impl Sink for Rows {
-    fn row(&mut self, row: &Row) -> io::Result<()> {
-        self.0.push(*row);
-        Ok(())
-    }
-}
-
 #[test]
 fn the_tool_follows_the_planned_path_and_is_measured_to_the_programmed_one() {
     let steps = corner();
     let stages = Stages { blend: &ROUNDED, ..Stages::default() };
-    let mut rows = Rows::default();
+    let mut rows = Vec::<Row>::new();
     let machine = machine();
     let controller: &mut dyn Controller<2> = &mut OpenLoop;
     Run::on(&machine).stages(stages).cut_steps(&steps, controller, &mut [&mut rows]).unwrap();
     let mut largest_mm: f64 = 0.0;
-    for row in &rows.0 {
+    for row in &rows {
         assert!(from_path_mm(row.path_mm) < 1e-9, "{row:?}");
         let exact_mm = from_path_mm(row.act_mm);
         assert!(row.contour_error_mm.abs() >= exact_mm - 1e-9, "{exact_mm} {row:?}");
@@ -205,9 +193,9 @@ fn the_tool_follows_the_planned_path_and_is_measured_to_the_programmed_one() {
     // What the arc leaves out, less the lag of the machine on it: the tool turns further in.
     let left_out_mm = RADIUS_MM * (1.0 - 0.5 * SQRT_2);
     assert!(largest_mm > left_out_mm && largest_mm < 2.0 * left_out_mm, "{largest_mm} {left_out_mm}");
-    let corner = rows.0.iter().max_by(|a, b| a.contour_error_mm.abs().total_cmp(&b.contour_error_mm.abs())).unwrap();
+    let corner = rows.iter().max_by(|a, b| a.contour_error_mm.abs().total_cmp(&b.contour_error_mm.abs())).unwrap();
     assert!((corner.s_mm - SIDE_MM).abs() < 2.0, "{corner:?}");
     let length_mm = 2.0 * (SIDE_MM - RADIUS_MM) + 0.5 * PI * RADIUS_MM;
-    let cmd_mm: f64 = rows.0.windows(2).map(|pair| common::distance(pair[0].cmd_mm, pair[1].cmd_mm)).sum();
+    let cmd_mm: f64 = rows.windows(2).map(|pair| common::distance(pair[0].cmd_mm, pair[1].cmd_mm)).sum();
     assert!((cmd_mm - length_mm).abs() < 1e-3, "{cmd_mm} {length_mm}");
 }

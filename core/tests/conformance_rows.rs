@@ -2,30 +2,18 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use std::io;
-
 use feedwright::compare::Workpiece;
 use feedwright::controllers::{BASELINE, Choices, Entry, Make, Setup};
 use feedwright::gcode::{Reader, Settings};
 use feedwright::machine::Machine;
 use feedwright::path::{Step, signed_distance_mm};
 use feedwright::pipeline::{Run, pieces};
-use feedwright::trace::{Row, Sink};
+use feedwright::trace::Row;
 
 /// Rounding of coordinates of some ten millimetres, mm.
 const ROUNDING_MM: f64 = 1e-12;
 /// How well a nearest point is found, times what the path turns on the way: the tangent's share in the deviation, mm.
 const ALONG_MM: f64 = 1e-7;
-
-#[derive(Default)]
-struct Rows(Vec<Row>);
-
-impl Sink for Rows {
-    fn row(&mut self, row: &Row) -> io::Result<()> {
-        self.0.push(*row);
-        Ok(())
-    }
-}
 
 fn rows<const N: usize>(machine: &Machine, steps: &[Step]) -> Vec<Row>
 where
@@ -34,9 +22,9 @@ where
     let choices = Choices::default();
     let mut setup = Setup::new(machine, &choices);
     let mut controller = Make::<N>::make(Entry::find(BASELINE).unwrap(), &mut setup);
-    let mut rows = Rows::default();
+    let mut rows = Vec::<Row>::new();
     Run::on(machine).cut_steps(steps, &mut *controller, &mut [&mut rows]).unwrap();
-    rows.0
+    rows
 }
 
 fn tnv40() -> Machine {

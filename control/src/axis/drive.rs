@@ -21,7 +21,7 @@
 
 use core::f64::consts::TAU;
 
-use super::{AxisLaw, AxisState};
+use super::{AxisLaw, AxisState, within};
 
 /// What a drive is set to beside the gains of its loops; zero is without.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -139,18 +139,6 @@ impl DriveLaw {
         let limited_nm = within(proportional_nm + state.integral_nm, limit_nm);
         state.filtered_nm += self.filter * (limited_nm - state.filtered_nm);
         state.filtered_nm
-    }
-}
-
-/// The value, or the end of -most to most that it is beyond.
-#[inline]
-fn within(value: f64, most: f64) -> f64 {
-    if value > most {
-        most
-    } else if value < -most {
-        -most
-    } else {
-        value
     }
 }
 

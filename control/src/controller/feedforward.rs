@@ -187,7 +187,8 @@ pub(super) mod tests {
         }
     }
 
-    fn axis(kd: f64, coulomb_friction_nm: f64) -> Parameters {
+    /// An axis whose drive has no torque limit.
+    pub(in super::super) fn axis(kd: f64, coulomb_friction_nm: f64) -> Parameters {
         Parameters {
             rad_per_mm: 0.6,
             kp_1_s: 50.0,

@@ -122,10 +122,9 @@ impl<const N: usize> Controller<N> for InputShaping<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axis::Parameters;
     use crate::controller::contour_compensation::tests::Circle;
     use crate::controller::feedforward::Gains;
-    use crate::controller::feedforward::tests::commands;
+    use crate::controller::feedforward::tests::{axis, commands};
     use crate::vector::norm;
     use crate::window::{Knot, KnotSource};
 
@@ -167,19 +166,9 @@ mod tests {
 
     /// A shaper before loops that follow without any lag: its command is the shaped path.
     fn shaped(path: &mut dyn KnotSource<2>, settings: &Settings, each: impl FnMut(usize, [f64; 2])) {
-        let axis = Parameters {
-            rad_per_mm: 0.6,
-            kp_1_s: 50.0,
-            kd: 0.02,
-            kv_nm_s_per_rad: 2.0,
-            torque_limit_nm: f64::INFINITY,
-            inertia_kg_m2: 0.01,
-            viscous_friction_nm_s: 0.03,
-            coulomb_friction_nm: 0.2,
-            coulomb_smoothing_rad_s: 0.05,
-        };
         let nothing = Gains { velocity: 0.0, acceleration: 0.0, friction: 0.0 };
-        let mut controller = InputShaping::new(Feedforward::new([axis; 2], nothing, SERVO_S), settings, SERVO_S);
+        let mut controller =
+            InputShaping::new(Feedforward::new([axis(0.02, 0.2); 2], nothing, SERVO_S), settings, SERVO_S);
         commands(path, &mut controller, SERVO_S, each);
     }
 

@@ -72,11 +72,10 @@ impl<A: Controller<N>, B: Controller<N>, const N: usize> Controller<N> for Sum<A
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::axis::Parameters;
     use crate::controller::contour_compensation::tests::Circle;
     use crate::controller::cross_coupled::tests::cut;
     use crate::controller::cross_coupled::{CrossCoupled, Settings};
-    use crate::controller::feedforward::tests::commands;
+    use crate::controller::feedforward::tests::{axis, commands};
     use crate::controller::feedforward::{Feedforward, Gains};
     use crate::vector::norm;
     use crate::window::{Knot, KnotSource};
@@ -84,18 +83,7 @@ mod tests {
     const SERVO_S: f64 = 0.001;
 
     fn feedforward(gains: Gains, kd: f64) -> Feedforward<2> {
-        let axis = Parameters {
-            rad_per_mm: 0.6,
-            kp_1_s: 50.0,
-            kd,
-            kv_nm_s_per_rad: 2.0,
-            torque_limit_nm: f64::INFINITY,
-            inertia_kg_m2: 0.01,
-            viscous_friction_nm_s: 0.03,
-            coulomb_friction_nm: 0.2,
-            coulomb_smoothing_rad_s: 0.05,
-        };
-        Feedforward::new([axis; 2], gains, SERVO_S)
+        Feedforward::new([axis(kd, 0.2); 2], gains, SERVO_S)
     }
 
     #[test]

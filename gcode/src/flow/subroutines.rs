@@ -15,7 +15,7 @@ use crate::state::Interpreter;
 use crate::state::lathe::ProfileCall;
 use crate::state::parameters::{LOCALS, MACRO_LOCALS};
 use crate::text::diagnostic::{LineFault, Read};
-use crate::text::expression::{Evaluator, ParameterSource};
+use crate::text::expression::{Evaluator, NoParameters};
 use crate::text::lexer::Cursor;
 use crate::text::source::{Mark, Source, SourceLine};
 
@@ -288,16 +288,6 @@ impl Flow {
 
 /// Definitions of subroutines in a file; the first of a label counts.
 fn find_definitions(source: &mut Source) -> io::Result<HashMap<Vec<u8>, (SubroutineKind, Mark)>> {
-    struct NoValues;
-    impl ParameterSource for NoValues {
-        fn numbered(&self, _index: usize) -> f64 {
-            0.0
-        }
-
-        fn named(&self, _name: &[u8]) -> Option<f64> {
-            None
-        }
-    }
     let mut found = HashMap::new();
     source.rewind()?;
     loop {
@@ -310,7 +300,7 @@ fn find_definitions(source: &mut Source) -> io::Result<HashMap<Vec<u8>, (Subrout
         if !at_o_word(&mut cursor) {
             continue;
         }
-        let Ok(head) = read_head(&mut Evaluator::new(cursor, &NoValues)) else {
+        let Ok(head) = read_head(&mut Evaluator::new(cursor, &NoParameters)) else {
             continue;
         };
         let kind = match head.keyword {

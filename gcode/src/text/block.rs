@@ -437,22 +437,11 @@ fn strange(bytes: &[u8], start: usize) -> Box<LineFault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    struct Nothing;
-
-    impl ParameterSource for Nothing {
-        fn numbered(&self, _index: usize) -> f64 {
-            0.0
-        }
-
-        fn named(&self, _name: &[u8]) -> Option<f64> {
-            None
-        }
-    }
+    use crate::text::expression::NoParameters;
 
     fn read(text: &str) -> Read<Block> {
         let mut block = Block::new();
-        block.read(Cursor::new(text.as_bytes()), &Nothing, Style::default()).map(|()| block)
+        block.read(Cursor::new(text.as_bytes()), &NoParameters, Style::default()).map(|()| block)
     }
 
     #[test]

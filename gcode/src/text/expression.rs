@@ -40,6 +40,19 @@ pub(crate) trait ParameterSource {
     }
 }
 
+/// A program without parameters: numbered ones are 0, and no name is known.
+pub(crate) struct NoParameters;
+
+impl ParameterSource for NoParameters {
+    fn numbered(&self, _index: usize) -> f64 {
+        0.0
+    }
+
+    fn named(&self, _name: &[u8]) -> Option<f64> {
+        None
+    }
+}
+
 /// What stands behind `#`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum Target {
