@@ -117,6 +117,11 @@ impl<const N: usize> Plant<N> {
         }
     }
 
+    /// Whether the tool is elsewhere than the encoders say.
+    pub fn has_geometry(&self) -> bool {
+        self.geometry.is_some()
+    }
+
     /// Where the tool is, mm.
     pub fn position_mm(&self) -> [f64; N] {
         self.tool_mm(self.joint_mm())

@@ -6,11 +6,13 @@
 //! | File | What |
 //! |---|---|
 //! | `simulate/foot.rs` | how far along the path the tool has come, and so the contour error |
+//! | `simulate/joints.rs` | the contour error without the geometry that no encoder sees |
 //! | `simulate/rests.rs` | which part of a long rest is simulated |
 //! | `simulate/uncut.rs` | how far the tool stays away from what it should have cut |
 //! | `simulate/tick_times.rs` | how long the ticks took |
 
 mod foot;
+mod joints;
 mod rests;
 mod tick_times;
 mod uncut;
@@ -30,6 +32,8 @@ use crate::trace::{Commanded, FadedOut, Outcome, Row, Sink};
 use crate::vector::distance;
 use crate::watch::{Cancelled, Watch};
 use foot::{FootTracker, settled_periods, settled_s};
+pub use joints::JointError;
+use joints::JointErrorMeter;
 pub use tick_times::TickTimes;
 use uncut::Uncut;
 
@@ -63,6 +67,8 @@ pub struct RunResult {
     pub time_s: f64,
     /// When the tool has arrived there, s.
     pub arrival_s: f64,
+    /// The contour error without the geometry that no encoder sees; none where the machine has no such geometry.
+    pub joint_error: Option<JointError>,
     /// The uncut path: the largest distance from a programmed point to what the tool did in the time that it has for it, mm.
     pub uncut_mm: f64,
     /// The most register entries that one contour error estimate looked at.
@@ -126,6 +132,7 @@ struct ClosedLoop<'a, const N: usize> {
     tick: Tick<N>,
     plant: Plant<N>,
     foot: FootTracker,
+    joint_error: Option<JointErrorMeter>,
     uncut: Uncut,
     /// The measured position.
     seen_mm: [f64; N],
@@ -146,6 +153,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let start_mm = joints_of(reference.at(0.0).position_mm);
         let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
         let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s, fade_mm_s2);
+        let plant = Plant::new(machine, start_mm);
         Self {
             machine,
             servo_s,
@@ -153,8 +161,9 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
             lost_mm: LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s),
             feed_periods: controller.schedule().servo_periods.max(1),
             tick: Tick::new(servo_s, controller.schedule(), bounds),
-            plant: Plant::new(machine, start_mm),
             foot: FootTracker::new(machine, tool_of(start_mm)),
+            joint_error: plant.has_geometry().then(|| JointErrorMeter::new(machine, tool_of(start_mm))),
+            plant,
             uncut: Uncut::new(settled_periods(machine), tool_of(start_mm)),
             seen_mm: start_mm,
             run: RunResult::default(),
@@ -200,6 +209,9 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
             sink.row(&row)?;
         }
         self.uncut.row(&row);
+        if let Some(meter) = &mut self.joint_error {
+            meter.row(reference, tau_s, tool_of(measurement.joint_mm), &row);
+        }
         reference.forget_before(tau_s - self.kept_s);
         if let Some(ended_s) = self.ended_s
             && (to_go_mm <= ARRIVED_MM || t_s >= ended_s + ARRIVAL_S)
@@ -258,6 +270,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         RunResult {
             engaged_share: if out + within == 0 { 1.0 } else { within as f64 / (out + within) as f64 },
             engaged_at_end: self.tick.state() == State::Engaged,
+            joint_error: self.joint_error.as_ref().map(JointErrorMeter::finish),
             uncut_mm: self.uncut.finish(ARRIVED_MM),
             ..self.run
         }

@@ -229,3 +229,30 @@ fn the_same_seed_gives_the_same_bits_and_others_give_others() {
     let exact = machine(&without(&["encoder_noise_um", "torque_noise_nm", "disturbance_wander", "jitter_s"]), "");
     assert!(bits(&exact, Some(1)) == bits(&exact, Some(2)), "without noise nothing is random");
 }
+
+/// What no encoder sees changes nothing that a controller is shown: without it, the joints of both machines are the same.
+#[test]
+fn the_error_of_the_joints_is_that_of_the_machine_without_its_geometry() {
+    let folder = tempfile::tempdir().unwrap();
+    let loops = [("velocity_feedforward", 0.95), ("encoder_noise_um", 0.05)];
+    let geometry = [("scale_um_m", 100.0), ("pitch_error_um", 3.0)];
+    let files = [text(&[loops, geometry].concat(), GEOMETRY), text(&loops, "")].map(|text| {
+        let path = folder.path().join(format!("{}.toml", text.len()));
+        std::fs::write(&path, text).unwrap();
+        path
+    });
+    for name in ["circle", "square", "pocket"] {
+        for controller in [BASELINE, "cross-coupled"] {
+            let entry = Entry::find(controller).unwrap();
+            let [with, plain] =
+                files.each_ref().map(|file| cut(&part(name), file, entry, &folder.path().join("t.csv")));
+            let (rms_um, max_um) = (with.joint_rms_um.unwrap(), with.joint_max_um.unwrap());
+            let of_geometry = [with.rms_um - plain.rms_um, with.max_um - plain.max_um];
+            let of_joints = [rms_um - plain.rms_um, max_um - plain.max_um];
+            // Which rows cut, and from where on a corner is passed, goes by the tool.
+            let few = of_joints.iter().zip(of_geometry).all(|(joints, whole)| joints.abs() < 0.05 * whole.abs());
+            assert!(few, "{name}, {controller}: {of_joints:?} {of_geometry:?}");
+            assert_eq!((plain.joint_rms_um, plain.joint_max_um), (None, None));
+        }
+    }
+}

@@ -88,6 +88,9 @@ fn print(job: &Job, outcome: &JobOutcome) -> std::io::Result<()> {
             ratio(|s| s.rms_um),
             ratio(|s| s.max_um)
         )?;
+        if let (Some(rms_um), Some(max_um)) = (now.joint_rms_um, now.joint_max_um) {
+            writeln!(out, "{:<18} without the geometry that no encoder sees: RMS {rms_um:.2}, max {max_um:.2} um", "")?;
+        }
         if let Ending::Diverged { at_s } = now.outcome {
             writeln!(out, "{:<18} diverged at {at_s:.3} s: the servo loop of this machine is unstable", "")?;
         }

@@ -69,6 +69,8 @@ impl Statistics {
             time_s: facts.run.time_s,
             rms_um: self.rms_um(),
             max_um: self.max_um(),
+            joint_rms_um: facts.run.joint_error.map(|joints| joints.rms_mm * 1e3),
+            joint_max_um: facts.run.joint_error.map(|joints| joints.max_mm * 1e3),
             uncut_um: facts.run.uncut_mm * 1e3,
             max_deviation_um: self.max_deviation_mm * 1e3,
             peak_torque_nm: self.peak_torque_nm,

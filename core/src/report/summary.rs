@@ -48,6 +48,12 @@ pub struct RunSummary {
     pub rms_um: f64,
     /// Largest contour error of the rows that cut, µm.
     pub max_um: f64,
+    /// The same two without the geometry that no encoder sees, µm; none where the machine has no such geometry.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint_rms_um: Option<f64>,
+    /// See above.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint_max_um: Option<f64>,
     /// Uncut path: largest distance from a programmed point to what the tool did in the time that it has for it, µm.
     pub uncut_um: f64,
     /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.

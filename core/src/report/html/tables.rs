@@ -59,13 +59,16 @@ fn write_summary_row(
         swatch(index),
         escaped(&run.controller)
     )?;
+    let joints = |um: Option<f64>| um.map_or(String::new(), |um| format!("<small>{} by encoders</small>", number(um)));
     let mut cell = |label: &str, text: String, value: fn(&RunSummary, usize) -> f64, k: usize| {
         let ratio = first.and_then(|f| change(value(f, k), value(run, k)));
         let ratio = ratio.map_or(String::new(), |r| format!("<small>{r}</small>"));
         write!(out, "<td role=\"cell\" data-label=\"{label}\">{text}{ratio}</td>")
     };
-    cell("RMS error, µm", number(run.rms_um), |r, _| r.rms_um, 0)?;
-    cell("Largest error, µm", number(run.max_um), |r, _| r.max_um, 0)?;
+    let [rms, max] = [(run.rms_um, run.joint_rms_um), (run.max_um, run.joint_max_um)]
+        .map(|(um, joint_um)| format!("{}{}", number(um), joints(joint_um)));
+    cell("RMS error, µm", rms, |r, _| r.rms_um, 0)?;
+    cell("Largest error, µm", max, |r, _| r.max_um, 0)?;
     cell("Uncut path, µm", number(run.uncut_um), |r, _| r.uncut_um, 0)?;
     cell("Machining time", duration(run.time_s), |r, _| r.time_s, 0)?;
     cell("Command deviation, µm", number(run.max_deviation_um), |r, _| r.max_deviation_um, 0)?;
