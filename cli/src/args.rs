@@ -50,7 +50,7 @@ pub(crate) struct RunArgs {
     /// G-code program.
     pub(crate) part: PathBuf,
     /// Built-in machine, or a machine file (.toml).
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = "tnv40")]
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
     pub(crate) machine: OsString,
     /// Controller; `feedwright controllers` lists them.
     #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BEST)]
@@ -93,7 +93,7 @@ pub(crate) struct RunArgs {
 #[derive(Debug, Args)]
 pub(crate) struct IdentifyArgs {
     /// Built-in machine, or a machine file (.toml).
-    #[arg(long, value_name = "NAME|FILE.toml", default_value = "tnv40")]
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
     pub(crate) machine: OsString,
     /// Controller that the model is for; `feedwright controllers` lists them.
     #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BEST)]

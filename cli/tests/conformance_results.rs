@@ -49,7 +49,7 @@ fn the_json_has_the_documented_numbers_of_every_run() {
     let names: Vec<&str> = runs.iter().map(|run| run["controller"].as_str().unwrap()).collect();
     assert_eq!(names, [BASELINE, BEST]);
     for run in runs {
-        assert_eq!((run["machine"].as_str(), run["part"].as_str()), (Some("tnv40"), Some("circle.ngc")));
+        assert_eq!((run["machine"].as_str(), run["part"].as_str()), (Some("workshop"), Some("circle.ngc")));
         assert_eq!(run["outcome"]["kind"], "completed");
         for key in ["time_s", "rms_um", "max_um", "uncut_um", "max_deviation_um", "tick_median_us"] {
             let value = run[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", run[key]));

@@ -32,7 +32,13 @@ pub const BUILT_IN: &[(&str, &str)] = &[
     ("rough", include_str!("../../machines/rough.toml")),
     ("soft", include_str!("../../machines/soft.toml")),
     ("coarse", include_str!("../../machines/coarse.toml")),
+    ("workshop", include_str!("../../machines/workshop.toml")),
+    ("stiff", include_str!("../../machines/stiff.toml")),
+    ("router", include_str!("../../machines/router.toml")),
 ];
+
+/// What is cut on where nothing else is said: the built-in machine that is most like one that somebody has.
+pub const DEFAULT: &str = "workshop";
 
 /// Names of the axes, in the order of every `[f64; 3]` of this library.
 pub const AXIS_NAMES: [&str; 3] = ["x", "y", "z"];
