@@ -112,6 +112,10 @@ speed part="parts/pocket.ngc":
     print(f"machining {machining_s:.2f} s, run {wall_s:.3f} s: {machining_s / wall_s:.0f} times faster, and it cuts twice")
     PYTHON
 
+# What each term of the plant does to a circle: the figure of docs/machine-file.md.
+plant-terms out="docs/plant_terms.svg":
+    cargo run --release --quiet -p feedwright --example plant_terms -- {{ out }}
+
 # Reading a print program of so many lines, 30 bytes each (GNU time): time, processor time and resident memory, three times.
 reading lines="2200000":
     #!/usr/bin/env bash
