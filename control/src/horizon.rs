@@ -63,6 +63,10 @@ pub const MAX_UNKNOWNS: usize = MAX_KNOTS * MAX_AXES;
 /// Where the path runs this slowly, mm/s, an error along it is on its way to be one across it: at rest it leads beyond the end.
 const RESTING_MM_S: f64 = 0.5;
 
+/// How many times the lag of the machine the horizon reaches ahead, or more: what is commanded later hardly moves the tool that is
+/// foreseen now.
+pub const LAGS_AHEAD: f64 = 3.6;
+
 /// Knots at the end of the horizon by which the tool has to be back at its time. Behind the horizon nothing is foreseen: a tool
 /// that is late or fast there when the path turns swings from one side of it to the other.
 const LAST_KNOTS: usize = 5;
@@ -299,7 +303,8 @@ impl<const N: usize, S: Solver<N>> OffsetPlan<N, S> {
         window: &Window<'_, N>,
         settings: &Settings<N>,
     ) -> PlanStep<N> {
-        let settings = self.restraint.on(settings, model.lag_s());
+        let horizon_s = (settings.knots() * self.periods) as f64 * window.feed_period_s;
+        let settings = self.restraint.on(settings, model.lag_s().max(horizon_s / LAGS_AHEAD));
         let problem = HorizonProblem::new(model, window, &self.accelerations_mm_s2, self.periods, &settings);
         let [need_mm, open_error_mm] = problem.open_errors_mm();
         let contour_mm2 = problem.contour_mm2();

@@ -54,7 +54,12 @@ macro_rules! with_integral {
 const TERMS: [Term; 20] = [
     term("tnv40 as it is", SLOW, 10.0, ""),
     term("PI speed loop", SLOW, 10.0, with_integral!("")),
-    term("Presliding, Stribeck", SLOW, 10.0, with_integral!("presliding_um = 10\nstribeck_nm = 0.1\nstribeck_mm_s = 2")),
+    term(
+        "Presliding, Stribeck",
+        SLOW,
+        10.0,
+        with_integral!("presliding_um = 10\nstribeck_nm = 0.1\nstribeck_mm_s = 2"),
+    ),
     term("Stick-slip", 0.2, 10.0, "presliding_um = 1\nstribeck_nm = 0.6\nstribeck_mm_s = 0.3\nspeed_integral_s = 0.01"),
     term("Asymmetric friction", SLOW, 10.0, "coulomb_asymmetry_nm = 0.15"),
     term("Cogging", SLOW, 10.0, "cogging_nm = 0.2\ncogging_per_rev = 24"),

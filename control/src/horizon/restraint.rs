@@ -1,13 +1,14 @@
 //! What holds a plan back: where a correction cannot do all of it, it is to do a part of it, and no harm.
 //!
 //! ```text
-//! q = q_0 + (n / D)^4 + q_s b^k + (a / S)^8     n = max_i (|eps_open,i|^2 + (z_i theta_open,i)^2)^(1/2)     D = min(D_max, 2 A lag^2)
+//! q = q_0 + (n / D)^4 + q_s b^k + (a / S)^8     n = max_i (|eps_open,i|^2 + (z_i theta_open,i)^2)^(1/2)     D = min(D_max, 2 A t^2)
 //! l = L min(1, u / U)^2             u = max((e^2 - e_0^2)^(1/2) / e_open)
 //! ```
 //!
 //! n is by how much the tool would miss its points without any offset, in the worst knot of the horizon: across the path, and
-//! along it as far as the path turns back there (z). D is the largest deviation, or how far the offset comes within the lag of
-//! the machine where its acceleration allows less. Of n beyond D nothing within the limits undoes all, and what is cut off at a
+//! along it as far as the path turns back there (z). D is the largest deviation, or how far the offset comes within t where
+//! its acceleration allows less: the lag of the machine, or, on one whose own feedforward leaves it hardly any, the lag that the horizon is
+//! made for. Of n beyond D nothing within the limits undoes all, and what is cut off at a
 //! limit need not be better than nothing; but of a servo that is nearly linear every *part* of a correction that helps does.
 //!
 //! u is the part of the contour error (RMS over the horizon) that the plan leaves: where it is large, limits bind, and the plan
@@ -23,7 +24,7 @@ use crate::vector::fourth_power;
 
 /// q at the most.
 const MAX_OFFSET_WEIGHT: f64 = 10.0;
-/// How far an offset that accelerates by A comes within the lag, in A lag^2: it has some of the lag before, and some behind.
+/// How far an offset that accelerates by A comes within t, in A t^2: it has some of the time before, and some behind.
 const REACH: f64 = 2.0;
 /// What is left of n and u from one tick to the next, where they become smaller: the correction that was held back comes in
 /// gently.
@@ -64,11 +65,11 @@ impl Restraint {
         self.drive_share = drive_share.max(LEFT * self.drive_share);
     }
 
-    /// The settings with q and l of a machine with this lag, s.
-    pub(super) fn on<const N: usize>(&self, settings: &Settings<N>, lag_s: f64) -> Settings<N> {
+    /// The settings with q and l where an offset has the time t, s.
+    pub(super) fn on<const N: usize>(&self, settings: &Settings<N>, time_s: f64) -> Settings<N> {
         let weight = settings.offset_weight
             + self.start_weight
-            + fourth_power(self.need_mm / within_mm(&settings.limits, lag_s));
+            + fourth_power(self.need_mm / within_mm(&settings.limits, time_s));
         let at_limit = fourth_power(self.drive_share / DRIVE_SHARE);
         let at_limit = at_limit * at_limit;
         let share = (self.undone / UNDONE_SHARE).min(1.0);
@@ -81,9 +82,9 @@ impl Restraint {
 }
 
 /// D, mm.
-fn within_mm<const N: usize>(limits: &CorrectionLimits<N>, lag_s: f64) -> f64 {
+fn within_mm<const N: usize>(limits: &CorrectionLimits<N>, time_s: f64) -> f64 {
     let least_mm_s2 = limits.acceleration_mm_s2.iter().copied().fold(f64::INFINITY, f64::min);
-    limits.deviation_mm.min(REACH * least_mm_s2 * lag_s * lag_s)
+    limits.deviation_mm.min(REACH * least_mm_s2 * time_s * time_s)
 }
 
 #[cfg(test)]
