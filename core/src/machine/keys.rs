@@ -54,16 +54,7 @@ pub const AXIS: &[Key<Axis>] = &[
     key!(acceleration_feedforward or zero, "(no unit)", 0.0, 2.0),
     key!(torque_filter_hz or zero, "Hz", 0.0, 1e5),
     key!(speed_limit_mm_s or zero, "mm/s", 0.0, 1e4),
-    Key {
-        name: "speed_from_encoder",
-        unit: "(0 or 1)",
-        range: [0.0, 1.0],
-        optional: true,
-        value: Value::Number {
-            get: |axis| axis.speed_from_encoder.then_some(1.0),
-            set: |axis, on| axis.speed_from_encoder = on > 0.5,
-        },
-    },
+    key!(flag speed_from_encoder),
     key!(encoder_noise_um or zero, "um", 0.0, 1e3),
     key!(interpolation_error_um or zero, "um", 0.0, 1e3),
     key!(signal_period_um or zero, "um", 0.0, 1e5),
@@ -93,16 +84,7 @@ pub const TRANSMISSION: &[Key<Transmission>] = &[
     key!(resonance_hz, "Hz", 0.1, 1e4),
     key!(damping_ratio, "(no unit)", 0.0, 1.0),
     key!(backlash_um, "um", 0.0, 1e4),
-    Key {
-        name: "scale_on_table",
-        unit: "(0 or 1)",
-        range: [0.0, 1.0],
-        optional: true,
-        value: Value::Number {
-            get: |transmission| transmission.scale_on_table.then_some(1.0),
-            set: |transmission, on| transmission.scale_on_table = on > 0.5,
-        },
-    },
+    key!(flag scale_on_table),
 ];
 
 /// Of `[geometry]`.

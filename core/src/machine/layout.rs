@@ -2,8 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::{AXIS_NAMES, Axis, Durations, Limits, Machine, Noise, Period, PlcEvent, Squareness, Transmission, keys};
-use crate::toml_file::key::read;
+use super::{AXIS_NAMES, Axis, Durations, Machine, Noise, Period, PlcEvent, Squareness, Transmission, keys};
+use crate::toml_file::key::{read, read_all};
 use crate::toml_file::{Document, Fault, Table};
 
 /// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
@@ -44,23 +44,19 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
         description: root.text("description", &mut faults),
         source: root.text("source", &mut faults),
         period,
-        limits: limits(root.table("limits", &mut faults), &mut faults),
+        limits: read_all(keys::LIMITS, root.table("limits", &mut faults), &mut faults),
         plc: root
             .optional_table("plc", &mut faults)
             .map(|table| plc(table, &mut plc_events, &mut faults))
             .unwrap_or_default(),
         plc_events,
         axes: axes(root.table("axis", &mut faults), period, &mut faults),
-        geometry: root.optional_table("geometry", &mut faults).map_or(Squareness::default(), |mut table| {
-            let squareness = read(keys::GEOMETRY, &mut table, &mut faults);
-            table.finish(&mut faults);
-            squareness
-        }),
-        noise: root.optional_table("noise", &mut faults).map_or(Noise::default(), |mut table| {
-            let noise = read(keys::NOISE, &mut table, &mut faults);
-            table.finish(&mut faults);
-            noise
-        }),
+        geometry: root
+            .optional_table("geometry", &mut faults)
+            .map_or(Squareness::default(), |table| read_all(keys::GEOMETRY, table, &mut faults)),
+        noise: root
+            .optional_table("noise", &mut faults)
+            .map_or(Noise::default(), |table| read_all(keys::NOISE, table, &mut faults)),
     };
     root.finish(&mut faults);
     if faults.is_empty() { Ok(machine) } else { Err(faults) }
@@ -84,12 +80,6 @@ fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
     }
     table.finish(faults);
     Period { servo_s, mechanics_s, mechanics_per_servo: ratio.round() as u32 }
-}
-
-fn limits(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Limits {
-    let limits = read(keys::LIMITS, &mut table, faults);
-    table.finish(faults);
-    limits
 }
 
 fn plc(mut table: Table<'_, '_>, events: &mut Vec<PlcEvent>, faults: &mut Vec<Fault>) -> Durations {

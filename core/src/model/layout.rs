@@ -6,7 +6,7 @@ use feedwright_control::model as block;
 
 use super::{About, FORMAT, Model, Weights, keys, kind_named, name, version};
 use crate::gcode::suggestion::nearest;
-use crate::toml_file::key::read;
+use crate::toml_file::key::{read, read_all};
 use crate::toml_file::{Document, Fault, Table};
 
 /// The model that a file holds, or every fault in it.
@@ -16,12 +16,8 @@ pub(super) fn model(document: &Document<'_>) -> Result<Model, Vec<Fault>> {
     let mut root = Table::root(document, None);
     let about: About = read(keys::ABOUT, &mut root, &mut faults);
     let kind = kind(&about, &root, &mut faults);
-    let mut table = root.table("period", &mut faults);
-    let period = read(keys::PERIOD, &mut table, &mut faults);
-    table.finish(&mut faults);
-    let mut table = root.table("fit", &mut faults);
-    let fit = read(keys::FIT, &mut table, &mut faults);
-    table.finish(&mut faults);
+    let period = read_all(keys::PERIOD, root.table("period", &mut faults), &mut faults);
+    let fit = read_all(keys::FIT, root.table("fit", &mut faults), &mut faults);
     let mut table = root.table("weights", &mut faults);
     // Which weights there have to be is said by the kind alone.
     let weights = kind.map(|kind| weights(kind, about.axes, &mut table, &mut faults)).unwrap_or_default();

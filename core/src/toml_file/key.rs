@@ -52,79 +52,39 @@ pub enum Value<T> {
 }
 
 /// `field, unit, least, most`; `optional field` is an `Option`, `field or zero` has that where it is left out; `whole field`,
-/// `numbers field` and `text field` are of those kinds.
+/// `numbers field` and `text field` are of those kinds; `flag field` is 0 or 1, and 0 where it is left out.
 macro_rules! key {
-    (optional $field:ident, $unit:literal, $least:expr, $most:expr) => {
+    (@ $field:ident, $unit:literal, [$least:expr, $most:expr], $optional:literal, $kind:ident, $get:expr, $set:expr) => {
         $crate::toml_file::Key {
             name: stringify!($field),
             unit: $unit,
             range: [$least, $most],
-            optional: true,
-            value: $crate::toml_file::key::Value::Number {
-                get: |part| part.$field,
-                set: |part, value| part.$field = Some(value),
-            },
+            optional: $optional,
+            value: $crate::toml_file::key::Value::$kind { get: $get, set: $set },
         }
+    };
+    (optional $field:ident, $unit:literal, $least:expr, $most:expr) => {
+        key!(@ $field, $unit, [$least, $most], true, Number, |part| part.$field, |part, value| part.$field = Some(value))
     };
     ($field:ident or zero, $unit:literal, $least:expr, $most:expr) => {
-        $crate::toml_file::Key {
-            name: stringify!($field),
-            unit: $unit,
-            range: [$least, $most],
-            optional: true,
-            value: $crate::toml_file::key::Value::Number {
-                get: |part| Some(part.$field).filter(|value| *value != 0.0),
-                set: |part, value| part.$field = value,
-            },
-        }
+        key!(@ $field, $unit, [$least, $most], true, Number,
+            |part| Some(part.$field).filter(|value| *value != 0.0), |part, value| part.$field = value)
+    };
+    (flag $field:ident) => {
+        key!(@ $field, "(0 or 1)", [0.0, 1.0], true, Number,
+            |part| part.$field.then_some(1.0), |part, value| part.$field = value > 0.5)
     };
     (whole $field:ident, $unit:literal, $least:expr, $most:expr) => {
-        $crate::toml_file::Key {
-            name: stringify!($field),
-            unit: $unit,
-            range: [$least, $most],
-            optional: false,
-            value: $crate::toml_file::key::Value::Whole {
-                get: |part| Some(part.$field),
-                set: |part, value| part.$field = value,
-            },
-        }
+        key!(@ $field, $unit, [$least, $most], false, Whole, |part| Some(part.$field), |part, value| part.$field = value)
     };
     (numbers $field:ident, $unit:literal, $least:expr, $most:expr) => {
-        $crate::toml_file::Key {
-            name: stringify!($field),
-            unit: $unit,
-            range: [$least, $most],
-            optional: false,
-            value: $crate::toml_file::key::Value::Numbers {
-                get: |part| &part.$field,
-                set: |part, value| part.$field = value,
-            },
-        }
+        key!(@ $field, $unit, [$least, $most], false, Numbers, |part| &part.$field, |part, value| part.$field = value)
     };
     (text $field:ident) => {
-        $crate::toml_file::Key {
-            name: stringify!($field),
-            unit: "",
-            range: [0.0, 0.0],
-            optional: false,
-            value: $crate::toml_file::key::Value::Text {
-                get: |part| &part.$field,
-                set: |part, value| part.$field = value,
-            },
-        }
+        key!(@ $field, "", [0.0, 0.0], false, Text, |part| &part.$field, |part, value| part.$field = value)
     };
     ($field:ident, $unit:literal, $least:expr, $most:expr) => {
-        $crate::toml_file::Key {
-            name: stringify!($field),
-            unit: $unit,
-            range: [$least, $most],
-            optional: false,
-            value: $crate::toml_file::key::Value::Number {
-                get: |part| Some(part.$field),
-                set: |part, value| part.$field = value,
-            },
-        }
+        key!(@ $field, $unit, [$least, $most], false, Number, |part| Some(part.$field), |part, value| part.$field = value)
     };
 }
 pub(crate) use key;
@@ -137,6 +97,13 @@ pub(crate) fn read<T: Default>(keys: &[Key<T>], table: &mut Table<'_, '_>, fault
             read_one(key, table, &mut part, faults);
         }
     }
+    part
+}
+
+/// A table that has these keys and no other.
+pub(crate) fn read_all<T: Default>(keys: &[Key<T>], mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> T {
+    let part = read(keys, &mut table, faults);
+    table.finish(faults);
     part
 }
 
