@@ -92,10 +92,7 @@ impl<const N: usize> Plant<N> {
             period: 0,
             disturbance_nm: each(|a| a.disturbance_nm),
             disturbance_rad_s,
-            disturbance_turn: disturbance_rad_s.map(|w| {
-                let (sin, cos) = (w * periods.mechanics_s).sin_cos();
-                [cos, sin]
-            }),
+            disturbance_turn: disturbance_rad_s.map(|w| cos_sin(w * periods.mechanics_s)),
             states,
             nonideal: nonideal.then(|| {
                 Box::new(std::array::from_fn(|i| NonidealAxis::new(machine, i, &laws[i], states[i].angle_rad, seed)))
@@ -185,8 +182,7 @@ impl<const N: usize> Plant<N> {
                 torque_nm[i] = law.torque_nm(reference_rad_s[i], state.speed_rad_s);
                 let load = law.friction_nm(state.speed_rad_s, sign[i]) + self.disturbance_nm[i] * disturbance[i][1];
                 law.accelerate(torque_nm[i] - load, state);
-                let ([c, s], [dc, ds]) = (disturbance[i], self.disturbance_turn[i]);
-                disturbance[i] = [c * dc - s * ds, s * dc + c * ds];
+                disturbance[i] = turned(disturbance[i], self.disturbance_turn[i]);
             }
         }
         torque_nm
@@ -212,8 +208,7 @@ impl<const N: usize> Plant<N> {
             for (i, axis) in nonideal.iter_mut().enumerate() {
                 let load_nm = self.disturbance_nm[i] * disturbance[i][1];
                 torque_nm[i] = axis.advance(&self.laws[i], &mut self.states[i], moment, load_nm);
-                let ([c, s], [dc, ds]) = (disturbance[i], disturbance_turn[i]);
-                disturbance[i] = [c * dc - s * ds, s * dc + c * ds];
+                disturbance[i] = turned(disturbance[i], disturbance_turn[i]);
             }
         }
         torque_nm
@@ -232,11 +227,20 @@ impl<const N: usize> Plant<N> {
     /// substep within it.
     fn disturbance_at_start(&self) -> [[f64; 2]; N] {
         let t_s = self.period as f64 * self.periods.servo_s;
-        self.disturbance_rad_s.map(|w| {
-            let (sin, cos) = (w * t_s).sin_cos();
-            [cos, sin]
-        })
+        self.disturbance_rad_s.map(|w| cos_sin(w * t_s))
     }
+}
+
+/// cos and sin of an angle.
+fn cos_sin(angle_rad: f64) -> [f64; 2] {
+    let (sin, cos) = angle_rad.sin_cos();
+    [cos, sin]
+}
+
+/// cos and sin of the sum of two angles.
+#[inline]
+fn turned([cos, sin]: [f64; 2], [by_cos, by_sin]: [f64; 2]) -> [f64; 2] {
+    [cos * by_cos - sin * by_sin, sin * by_cos + cos * by_sin]
 }
 
 /// Geometry that no encoder sees, of the first N axes.

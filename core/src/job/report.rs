@@ -82,7 +82,9 @@ fn describe(machine: &Machine) -> Vec<(String, String)> {
     ];
     let axes =
         ["x", "y", "z"].iter().zip(&machine.axes).map(|(name, axis)| (format!("axis.{name}"), serde_json::json!(axis)));
-    for (section, values) in sections.into_iter().chain(axes) {
+    let geometry = [("geometry".to_owned(), serde_json::json!(machine.geometry))];
+    let noise = [("noise".to_owned(), serde_json::json!(machine.noise))];
+    for (section, values) in sections.into_iter().chain(axes).chain(geometry).chain(noise) {
         for (key, value) in values.as_object().into_iter().flatten() {
             lines.push((format!("{section}.{key}"), value.to_string()));
         }
