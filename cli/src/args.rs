@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use feedwright::compare::{Knowledge, MAX_SEEDS, Shard};
 use feedwright::gcode::{AUTO, Dialect, INCH_MM, Increment, Settings, ToolTable};
 use miette::{Result, miette};
 
@@ -143,9 +144,34 @@ pub(crate) struct CompareArgs {
     /// several times; `feedwright controllers NAME` lists them.
     #[arg(long, value_name = "NAME.PARAMETER=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Take the default of every parameter instead of searching for the best.
-    #[arg(long)]
-    pub(crate) no_tuning: bool,
+    /// Where the values of the controllers' parameters come from: earlier searches that are kept with the program (where there is none,
+    /// a new search), a search for each controller and machine (an hour and more), or the defaults.
+    #[arg(long, value_name = "SOURCE", value_enum, default_value_t = TuningSource::Recorded)]
+    tuning: TuningSource,
+    /// As --tuning defaults.
+    #[arg(long, conflicts_with = "tuning")]
+    no_tuning: bool,
+    /// Search, and keep the values in this file beside those that it has; cut nothing. The program keeps core/src/compare/recorded.jsonl.
+    #[arg(long, value_name = "FILE.jsonl", group = "kept", conflicts_with_all = ["json", "html", "merge", "at_tolerance"])]
+    pub(crate) record: Option<PathBuf>,
+    /// What is cut.
+    #[arg(long, value_name = "WORK", value_enum, default_value_t = Work::Contours)]
+    pub(crate) work: Work,
+    /// Noise seeds that everything is cut with on a machine that has noise: the table has medians.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SEEDS)))]
+    pub(crate) seeds: u32,
+    /// What controllers are given of the machine; a row for each.
+    #[arg(long, value_name = "GIVEN,...", value_enum, value_delimiter = ',', default_values_t = [Given::Own, Given::TwentyPercentOff, Given::Unseen])]
+    pub(crate) knowledge: Vec<Given>,
+    /// Do only the i-th of n parts of the work; --merge puts the parts together.
+    #[arg(long, value_name = "I/N", requires = "kept", conflicts_with_all = ["json", "html", "merge"])]
+    pub(crate) shard: Option<Shard>,
+    /// Keep rows in this file as they are made, and go on with those that it has.
+    #[arg(long, value_name = "FILE.jsonl", group = "kept", conflicts_with = "merge")]
+    pub(crate) rows: Option<PathBuf>,
+    /// Cut nothing: make the table of the rows in these files, with the same options as for them.
+    #[arg(long, value_name = "FILE.jsonl,...", value_delimiter = ',')]
+    pub(crate) merge: Vec<PathBuf>,
     /// Also find, for each smooth contour, the feedrate at which each controller just holds 10 um.
     #[arg(long)]
     pub(crate) at_tolerance: bool,
@@ -160,6 +186,58 @@ pub(crate) struct CompareArgs {
     pub(crate) html: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
+}
+
+/// Where values of parameters come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TuningSource {
+    /// Earlier searches that are kept with the program; a search where there is none.
+    Recorded,
+    /// A search.
+    Search,
+    /// The defaults.
+    Defaults,
+}
+
+/// What is cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Work {
+    /// Seven contours at 50 mm/s.
+    Contours,
+    /// The contours, and the parts that come with the program.
+    Development,
+}
+
+/// What controllers are given of a machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Given {
+    /// Its parameters, an identification on it, or nothing, by the kind of the controller.
+    Own,
+    /// Parameters that are 20 % off.
+    #[value(name = "20%off")]
+    TwentyPercentOff,
+    /// An identification on tnv40.
+    Unseen,
+}
+
+impl From<Given> for Knowledge {
+    fn from(given: Given) -> Self {
+        match given {
+            Given::Own => Self::Own,
+            Given::TwentyPercentOff => Self::TwentyPercentOff,
+            Given::Unseen => Self::Unseen,
+        }
+    }
+}
+
+impl CompareArgs {
+    pub(crate) fn tuning(&self) -> TuningSource {
+        match (&self.record, self.no_tuning) {
+            (Some(_), _) => TuningSource::Search,
+            (None, true) => TuningSource::Defaults,
+            (None, false) => self.tuning,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

@@ -40,13 +40,30 @@ impl<T: Serialize + DeserializeOwned> Journal<T> {
             std::fs::create_dir_all(folder)?;
         }
         let text = std::fs::read_to_string(path).unwrap_or_default();
-        let lines = text.lines().filter_map(|line| serde_json::from_str(line).ok());
-        let rows = lines.map(|Record { key, row }| (key, row)).collect();
+        let rows = Self::rows_of(&text);
         let mut file = File::options().append(true).create(true).open(path)?;
         if !text.is_empty() && !text.ends_with('\n') {
             file.write_all(b"\n")?;
         }
         Ok(Self { file: Some((path.to_owned(), Mutex::new(file))), rows })
+    }
+
+    /// What a journal holds; nothing is added to it.
+    ///
+    /// # Errors
+    /// Where it cannot be read.
+    pub fn read(path: &Path) -> io::Result<Self> {
+        Ok(Self { file: None, rows: Self::rows_of(&String::from_utf8_lossy(&std::fs::read(path)?)) })
+    }
+
+    fn rows_of(text: &str) -> BTreeMap<String, T> {
+        let lines = text.lines().filter_map(|line| serde_json::from_str(line).ok());
+        lines.map(|Record { key, row }| (key, row)).collect()
+    }
+
+    /// Knows what another one holds, too.
+    pub fn take_over(&mut self, other: Self) {
+        self.rows.extend(other.rows);
     }
 
     /// What an earlier run has left under a key.

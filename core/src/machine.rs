@@ -259,6 +259,17 @@ impl Machine {
         Ok((path.display().to_string(), read_text(&KIND, &path)?))
     }
 
+    /// Whether anything of it is random: then two cuts differ by the seed of the noise.
+    pub fn is_noisy(&self) -> bool {
+        self.axes.iter().any(Axis::is_noisy)
+    }
+
+    /// The same machine with other random numbers.
+    #[must_use]
+    pub fn with_noise_seed(&self, seed: u64) -> Self {
+        Self { noise: Noise { seed }, ..self.clone() }
+    }
+
     /// The law of the first N axes.
     pub fn law<const N: usize>(&self) -> [AxisLaw; N] {
         std::array::from_fn(|i| AxisLaw::new(self.axis(i).parameters(), self.period.periods()))

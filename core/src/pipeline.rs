@@ -59,6 +59,10 @@ pub fn pieces<'p>(program: impl IntoIterator<Item = Canon, IntoIter: Send + 'p>)
     Box::new(Pieces::new(program.into_iter()))
 }
 
+/// The noise of a lap of practice has the machine's seed and so many bits further up the number of the lap: further apart than seeds
+/// that are counted through.
+const LAP_SEED_SHIFT: u32 = 32;
+
 /// A cut that is about to be made.
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
@@ -149,8 +153,11 @@ impl<'a> Run<'a> {
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
         controller.reset();
-        for _ in 1..self.laps {
-            self.lap(steps()?, controller, &mut [])?;
+        for lap in 1..self.laps {
+            // Noise does not repeat itself from lap to lap: what is learned of it is of no use.
+            let seed = self.machine.noise.seed.wrapping_add(u64::from(lap) << LAP_SEED_SHIFT);
+            let practice = self.machine.with_noise_seed(seed);
+            Run { machine: &practice, ..*self }.lap(steps()?, controller, &mut [])?;
             controller.next_lap();
         }
         self.lap(steps()?, controller, sinks)

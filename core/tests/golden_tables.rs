@@ -8,7 +8,7 @@
 mod table;
 
 use feedwright::compare::table::ComparisonRow;
-use feedwright::compare::{ComparisonOptions, Tuning, Workpiece, compare};
+use feedwright::compare::{ComparisonOptions, Knowledge, Tuning, Workpiece, compare};
 use feedwright::controllers::Entry;
 use feedwright::journal::Journal;
 use feedwright::machine::Machine;
@@ -72,9 +72,12 @@ fn the_kept_comparison_is_what_the_program_makes() {
     let [contours, machines, controllers] = AGAIN;
     let options = ComparisonOptions {
         workpieces: Workpiece::contours().into_iter().filter(|w| contours.contains(&w.name.as_str())).collect(),
+        nominal: Machine::load(kept.nominal.as_ref()).unwrap(),
         machines: machines.iter().map(|name| Machine::load(name.as_ref()).unwrap()).collect(),
         controllers: controllers.iter().map(|name| Entry::find(name).unwrap()).collect(),
+        knowledge: Knowledge::ALL.to_vec(),
         seed: kept.seed,
+        noise_seeds: kept.noise_seeds,
         tuning: Tuning::Known(kept.tuned.clone()),
         set: Vec::new(),
         at_tolerance: false,

@@ -4,9 +4,9 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use feedwright::compare::overview::{Claimed, each_once};
-use feedwright::compare::table::ComparisonRow;
-use feedwright::compare::{Comparison, IDENTIFIED_HERE};
+use feedwright::compare::overview::Claimed;
+use feedwright::compare::table::{ComparisonRow, each_once};
+use feedwright::compare::{Comparison, Knowledge};
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Knows};
 use feedwright::machine::Machine;
 use feedwright::paper::{Numbers, experiment};
@@ -131,9 +131,9 @@ fn machines(comparison: &Comparison) -> Result<String> {
         let rms_um = comparison.rms_over_contours_um(machine, controller);
         rms_um.ok_or_else(|| format!("{COMPARISON} has not every contour of {controller} on {machine}"))
     };
-    let home = format!("{BEST}{IDENTIFIED_HERE}");
+    let unseen = format!("{BEST}{}", Knowledge::Unseen.suffix());
     let mut table = String::new();
-    let columns = ["open-loop", "best of those without model", BEST, "the same, identified on it"];
+    let columns = ["open-loop", "best of those without model", BEST, "the same, identified on tnv40"];
     heading(&mut table, "RMS over all contours, \u{b5}m", &columns)?;
     for machine in comparison.machines() {
         let mut peers = Vec::new();
@@ -144,17 +144,21 @@ fn machines(comparison: &Comparison) -> Result<String> {
         }
         let (rms_um, name) = peers.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).ok_or("there are no peers")?;
         let (open, ours) = (over_all(machine, BASELINE)?, over_all(machine, BEST)?);
-        let identified = if machine == comparison.nominal { ours } else { over_all(machine, &home)? };
-        writeln!(table, "| {machine} | {open:.2} | {rms_um:.2} ({name}) | {ours:.2} | {identified:.2} |")?;
+        let unseen = if machine == comparison.nominal { ours } else { over_all(machine, &unseen)? };
+        writeln!(table, "| {machine} | {open:.2} | {rms_um:.2} ({name}) | {ours:.2} | {unseen:.2} |")?;
     }
     Ok(table)
 }
 
-/// What the search came to.
+/// What the searches came to.
 fn tuned(comparison: &Comparison) -> Result<String> {
-    let mut table = String::from("| controller | cuts | RMS on the eight, \u{b5}m | values |\n|---|--:|--:|---|\n");
+    let mut table = String::from(
+        "| controller | machine | evaluations | RMS, \u{b5}m | open loop, \u{b5}m | values |\n|---|---|--:|--:|--:|---|\n",
+    );
     for tuned in &comparison.tuned {
-        writeln!(table, "| {} | {} | {:.2} | {} |", tuned.controller, tuned.cuts, tuned.rms_um, tuned.words())?;
+        let (controller, machine, words) = (&tuned.controller, &tuned.machine, tuned.words());
+        let errors = format!("{:.3} | {:.2}", tuned.rms_um, tuned.open_um);
+        writeln!(table, "| {controller} | {machine} | {} | {errors} | {words} |", tuned.cuts)?;
     }
     Ok(table)
 }
@@ -162,13 +166,19 @@ fn tuned(comparison: &Comparison) -> Result<String> {
 /// One line for each claim: on how many contours and machines it holds, and where it does not.
 fn claims(comparison: &Comparison) -> Result<String> {
     let mut table = String::from("| claim | limit | holds | worst | falls short on |\n|---|--:|--:|--:|---|\n");
-    for Claimed { claim, limit, held, worst, verdicts } in comparison.claims() {
+    for Claimed { claim, limit, unit, held, worst, verdicts } in comparison.claims() {
+        let unit = unit.replace("um", "\u{b5}m");
         let short: Vec<String> = verdicts
             .iter()
             .filter(|verdict| !verdict.holds)
             .map(|verdict| format!("{} on {} ({:.2})", verdict.contour, verdict.machine, verdict.value))
             .collect();
-        writeln!(table, "| {claim} | {limit} | {held} of {} | {worst:.3} | {} |", verdicts.len(), short.join(", "))?;
+        writeln!(
+            table,
+            "| {claim} | {limit} {unit} | {held} of {} | {worst:.3} | {} |",
+            verdicts.len(),
+            short.join(", ")
+        )?;
     }
     Ok(table)
 }

@@ -2,7 +2,7 @@
 //! all that it was made of.
 
 use super::Comparison;
-use super::table::ComparisonRow;
+use super::table::{ComparisonRow, each_once};
 use super::tolerance::AtTolerance;
 use super::verdict::Verdict;
 
@@ -11,11 +11,13 @@ use super::verdict::Verdict;
 pub struct Claimed<'a> {
     /// What is claimed.
     pub claim: &'a str,
-    /// What the ratio may be.
+    /// What the value may be.
     pub limit: f64,
+    /// Its unit; empty for a ratio.
+    pub unit: &'a str,
     /// On how many it holds.
     pub held: usize,
-    /// The largest ratio.
+    /// The largest value.
     pub worst: f64,
     /// All of them.
     pub verdicts: Vec<&'a Verdict>,
@@ -58,8 +60,8 @@ impl Comparison {
         let of_claim = |claim| {
             let verdicts: Vec<&Verdict> = self.verdicts.iter().filter(|verdict| verdict.claim == claim).collect();
             let held = verdicts.iter().filter(|verdict| verdict.holds).count();
-            let worst = verdicts.iter().map(|verdict| verdict.value).fold(0.0, f64::max);
-            Claimed { claim, limit: verdicts[0].limit, held, worst, verdicts }
+            let worst = verdicts.iter().map(|verdict| verdict.value).fold(f64::NEG_INFINITY, f64::max);
+            Claimed { claim, limit: verdicts[0].limit, unit: &verdicts[0].unit, held, worst, verdicts }
         };
         each_once(self.verdicts.iter().map(|verdict| &verdict.claim)).into_iter().map(of_claim).collect()
     }
@@ -70,15 +72,4 @@ impl Comparison {
         let is_it = |row: &&AtTolerance| row.contour == contour && row.controller == controller;
         self.at_tolerance.iter().find(is_it).and_then(|row| row.feed_mm_s.zip(row.time_ratio))
     }
-}
-
-/// Names of a column, each once, in the order of the rows.
-pub fn each_once<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
-    let mut once: Vec<&str> = Vec::new();
-    for name in names {
-        if !once.contains(&name.as_str()) {
-            once.push(name);
-        }
-    }
-    once
 }

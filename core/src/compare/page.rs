@@ -3,10 +3,11 @@
 
 use std::io::{self, Write};
 
-use super::overview::{Claimed, each_once};
-use super::table::{ComparisonRow, knows};
+use super::Comparison;
+use super::competitor::Knowledge;
+use super::overview::Claimed;
+use super::table::{ComparisonRow, each_once, knows};
 use super::tolerance::TOLERANCE_UM;
-use super::{Comparison, IDENTIFIED_HERE};
 use crate::controllers::{BASELINE, BEST, Knows};
 use crate::report::figure::{COLORS, Figure, Panel, Polyline, write_foot, write_head};
 use crate::report::text::{escaped, number};
@@ -21,9 +22,14 @@ const NOTABLE: f64 = 0.02;
 /// Where `out` takes no more.
 pub fn write(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let introduction = format!(
-        "Every controller on every contour and machine. Controllers know {} at most and meet the other machines unseen; \
-         {BEST}{IDENTIFIED_HERE} and its like are identified on the machine that they cut on. Seed {}.",
-        comparison.nominal, comparison.seed
+        "Every controller on every workpiece and machine, tuned on each machine and made from what it may know of it: parameters, an \
+         identification, or nothing. {} has parameters that are 20 % off, {} was identified and tuned on {} and meets the others \
+         unseen. Errors are medians over the noise seeds, with the lowest and the highest below; uncut path, deviation, acceleration \
+         and torque are the worst of all. Seed {}.",
+        Knowledge::TwentyPercentOff.suffix(),
+        Knowledge::Unseen.suffix(),
+        comparison.nominal,
+        comparison.seed
     );
     write_head(out, "Comparison of controllers", &introduction, CSS)?;
     write_machines(out, comparison)?;
@@ -56,7 +62,7 @@ fn write_end(out: &mut impl Write) -> io::Result<()> {
 /// All controllers on all machines.
 fn write_machines(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let machines = comparison.machines();
-    out.write_all("<h2>RMS contour error over all contours, µm</h2>\n".as_bytes())?;
+    out.write_all("<h2>RMS contour error over all work, µm</h2>\n".as_bytes())?;
     write_heading(out, std::iter::once("controller").chain(machines.iter().copied()))?;
     for controller in comparison.controllers() {
         write!(out, "<tr{}><td>{}</td>", ours(controller), escaped(controller))?;
@@ -111,14 +117,15 @@ fn write_claims(out: &mut impl Write, comparison: &Comparison) -> io::Result<()>
     }
     let held = verdicts.iter().filter(|verdict| verdict.holds).count();
     writeln!(out, "<h2>Claims: {held} of {} hold</h2>", verdicts.len())?;
-    for Claimed { claim, limit, held, worst, verdicts } in comparison.claims() {
+    for Claimed { claim, limit, unit, held, worst, verdicts } in comparison.claims() {
         let class = if held == verdicts.len() { "better" } else { "worse" };
         writeln!(
             out,
-            "<details><summary>{claim}, at most {limit}: <span class=\"{class}\">{held} of {} hold</span>, worst {worst:.3}</summary>",
+            "<details><summary>{claim}, at most {limit}{}: <span class=\"{class}\">{held} of {} hold</span>, worst {worst:.3}</summary>",
+            if unit.is_empty() { String::new() } else { format!(" {unit}") },
             verdicts.len()
         )?;
-        write_heading(out, ["contour", "machine", "against", "ratio", ""])?;
+        write_heading(out, ["contour", "machine", "against", if unit.is_empty() { "ratio" } else { unit }, ""])?;
         for verdict in verdicts {
             let (class, word) = if verdict.holds { ("better", "holds") } else { ("worse", "falls short") };
             writeln!(
@@ -164,14 +171,21 @@ fn write_tuned(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> 
     if searched.is_empty() {
         return Ok(());
     }
-    out.write_all(b"<h2>Tuned values</h2>\n")?;
-    write_heading(out, ["controller", "cuts", "RMS, µm", "values"])?;
+    let open = "Evaluations, RMS over what was searched on, and that of open loop. A value at an end of its range may have a better one \
+                beyond; a correction that is switched off is no better than none.";
+    writeln!(out, "<h2>Tuned values</h2>\n<p>{open}</p>")?;
+    write_heading(out, ["controller", "machine", "evaluations", "RMS, µm", "open loop, µm", "values"])?;
     for tuned in searched {
-        let (name, rms) = (escaped(&tuned.controller), number(tuned.rms_um));
+        let names = [&tuned.controller, &tuned.machine].map(|name| escaped(name));
+        let at_end = tuned.switched_off || tuned.values.iter().any(|value| value.at_end.is_some());
         writeln!(
             out,
-            "<tr><td>{name}</td><td>{}</td><td>{rms}</td><td class=\"words\">{}</td></tr>",
+            "<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td class=\"words{}\">{}</td></tr>",
+            names.join("</td><td>"),
             tuned.cuts,
+            number(tuned.rms_um),
+            number(tuned.open_um),
+            if at_end { " worse" } else { "" },
             escaped(&tuned.words())
         )?;
     }
@@ -181,33 +195,44 @@ fn write_tuned(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> 
 fn write_cell(out: &mut impl Write, index: usize, rows: &[ComparisonRow]) -> io::Result<()> {
     let (contour, machine) = (escaped(&rows[0].contour), escaped(&rows[0].machine));
     writeln!(out, "<section id=\"cell-{index}\"><h2>{contour} on {machine}</h2>")?;
-    let ratios = ["time ratio", "RMS ratio", "max ratio"];
-    let measured = ["controller", "time, s", "RMS, µm", "max, µm", "uncut, µm"];
-    write_heading(out, measured.into_iter().chain(ratios).chain(["command off, µm", "torque, N m", ""]))?;
-    for row in rows {
-        let note = match (row.completed, &row.faded_out) {
-            (false, _) => "diverged".to_owned(),
-            (true, Some(cause)) => format!("left the loop: {cause}"),
-            (true, None) => String::new(),
-        };
-        write!(out, "<tr{}><td>{}</td><td>{:.3}</td>", ours(&row.controller), escaped(&row.controller), row.time_s)?;
-        let errors_um = [row.rms_um, row.max_um, row.uncut_um].map(number);
-        write!(out, "<td>{}</td>", errors_um.join("</td><td>"))?;
-        for ratio in [row.time_ratio, row.rms_ratio, row.max_ratio] {
-            let class = if ratio < 1.0 - NOTABLE {
-                " class=\"better\""
-            } else if ratio > 1.0 + NOTABLE {
-                " class=\"worse\""
-            } else {
-                ""
-            };
-            write!(out, "<td{class}>{ratio:.3}</td>")?;
-        }
-        let (off, torque) = (number(row.max_deviation_um), number(row.peak_torque_nm));
-        writeln!(out, "<td>{off}</td><td>{torque}</td><td class=\"note\">{}</td></tr>", escaped(&note))?;
-    }
+    let has_joints = rows.iter().any(|row| row.joint_rms_um.is_some());
+    let measured = ["controller", "time, s", "RMS, µm", "max, µm"];
+    let joints: &[&str] = if has_joints { &["RMS by encoders, µm", "max by encoders, µm"] } else { &[] };
+    let ratios = ["uncut, µm", "time ratio", "RMS ratio", "max ratio"];
+    let command = ["command off, µm", "command, m/s²", "torque, N m", ""];
+    write_heading(out, measured.into_iter().chain(joints.iter().copied()).chain(ratios).chain(command))?;
+    rows.iter().try_for_each(|row| write_row(out, row, has_joints))?;
     write_end(out)?;
     writeln!(out, "<figure>{}</figure></section>", errors(rows).to_svg())
+}
+
+fn write_row(out: &mut impl Write, row: &ComparisonRow, has_joints: bool) -> io::Result<()> {
+    write!(out, "<tr{}><td>{}</td><td>{:.3}</td>", ours(&row.controller), escaped(&row.controller), row.time_s)?;
+    for (um, spread_um) in [(row.rms_um, row.rms_spread_um), (row.max_um, row.max_spread_um)] {
+        write!(out, "<td>{}{}</td>", number(um), spread(row, spread_um))?;
+    }
+    if has_joints {
+        let [rms, max] = [row.joint_rms_um, row.joint_max_um].map(|um| um.map_or(String::new(), number));
+        write!(out, "<td>{rms}</td><td>{max}</td>")?;
+    }
+    write!(out, "<td>{}</td>", number(row.uncut_um))?;
+    for ratio in [row.time_ratio, row.rms_ratio, row.max_ratio] {
+        let class = if ratio < 1.0 - NOTABLE {
+            " class=\"better\""
+        } else if ratio > 1.0 + NOTABLE {
+            " class=\"worse\""
+        } else {
+            ""
+        };
+        write!(out, "<td{class}>{ratio:.3}</td>")?;
+    }
+    let command = [row.max_deviation_um, row.accel_mm_s2 * 1e-3, row.peak_torque_nm].map(number).join("</td><td>");
+    writeln!(out, "<td>{command}</td><td class=\"note\">{}</td></tr>", escaped(&row.note().unwrap_or_default()))
+}
+
+/// The lowest and the highest of all noise seeds, where there are several.
+fn spread(row: &ComparisonRow, [low, high]: [f64; 2]) -> String {
+    if row.seeds > 1 { format!("<small>{} to {}</small>", number(low), number(high)) } else { String::new() }
 }
 
 fn ours(controller: &str) -> &'static str {
@@ -218,7 +243,8 @@ fn ours(controller: &str) -> &'static str {
 fn errors(rows: &[ComparisonRow]) -> Figure {
     let peers = rows.iter().filter(|row| {
         let blind = matches!(knows(row), Some(Knows::Nothing | Knows::Identified));
-        blind && row.completed && row.controller != BASELINE && !row.controller.starts_with(BEST)
+        let own = !row.controller.ends_with(Knowledge::Unseen.suffix());
+        blind && own && row.completed && row.controller != BASELINE && !row.controller.starts_with(BEST)
     });
     let peer = peers.min_by(|a, b| a.rms_um.total_cmp(&b.rms_um));
     let named = |name: &str| rows.iter().find(|row| row.controller == name);

@@ -1,12 +1,14 @@
 //! The machining time at which a controller just holds a tolerance: the feedrate is raised until it does not.
 
-use rayon::prelude::*;
+use feedwright_control::Controller;
 use serde::{Deserialize, Serialize};
 
-use super::cut::{CompetitorMaker, cut};
-use super::tuned::Tuned;
-use super::{CORNER, ComparisonOptions, Competitor, Workpiece};
+use super::competitor::Competitor;
+use super::cut::{cut, seeds};
+use super::options::ComparisonOptions;
+use super::work::{CORNER, Workpiece};
 use crate::controllers::BASELINE;
+use crate::machine::Machine;
 use crate::path::contour::{CONTOURS, Contour};
 use crate::pipeline::{Run, RunError};
 use crate::trace::Outcome;
@@ -35,40 +37,42 @@ pub struct AtTolerance {
     pub time_ratio: Option<f64>,
 }
 
-/// All smooth contours, all controllers, on the nominal machine.
-pub(super) fn at_tolerance(
-    options: &ComparisonOptions,
-    tuned: &[Tuned],
-    watch: &dyn Watch,
-) -> Result<Vec<AtTolerance>, RunError> {
+/// The smooth contours among the workpieces.
+pub(super) fn contours(options: &ComparisonOptions) -> Vec<&'static Contour> {
     let named = |name: &str| CONTOURS.iter().find(|contour| contour.name == name && contour.is_smooth());
-    let contours = options.workpieces.iter().filter_map(|workpiece| named(&workpiece.name));
-    let pairs: Vec<_> =
-        contours.flat_map(|contour| options.controllers.iter().map(move |&entry| (contour, entry))).collect();
-    watch.begin("raising the feed to the tolerance", pairs.len() as u64);
-    let found: Result<Vec<AtTolerance>, RunError> = pairs
-        .par_iter()
-        .map(|&(contour, entry)| {
-            let competitor = Competitor { entry, identified_here: false };
-            let best = fastest(contour, &competitor, options, tuned, watch)?;
-            let row = AtTolerance {
-                contour: contour.name.to_owned(),
-                controller: competitor.name(),
-                feed_mm_s: best.map(|best| best.feed_mm_s),
-                time_s: best.map(|best| best.time_s),
-                time_ratio: None,
-            };
-            watch.advance(1);
-            Ok(row)
-        })
-        .collect();
-    let mut found = found?;
+    options.workpieces.iter().filter_map(|workpiece| named(&workpiece.name)).collect()
+}
+
+/// What a controller comes to on a contour; the ratio is still open.
+pub(super) fn raised(
+    contour: &Contour,
+    machine: &Machine,
+    competitor: &Competitor,
+    controller: &mut dyn Controller<2>,
+    options: &ComparisonOptions,
+    watch: &dyn Watch,
+) -> Result<AtTolerance, RunError> {
+    // One noise seed is enough for a feedrate.
+    let seed = seeds(machine, options).first().copied().unwrap_or(machine.noise.seed);
+    let machine = machine.with_noise_seed(seed);
+    let best = fastest(contour, Run::on(&machine).laps(competitor.entry.laps).watched(watch), controller, &machine)?;
+    Ok(AtTolerance {
+        contour: contour.name.to_owned(),
+        controller: competitor.name(),
+        feed_mm_s: best.map(|best| best.feed_mm_s),
+        time_s: best.map(|best| best.time_s),
+        time_ratio: None,
+    })
+}
+
+/// Ratios filled in.
+pub(super) fn against_baseline(mut found: Vec<AtTolerance>) -> Vec<AtTolerance> {
     let open: Vec<_> = found.iter().filter(|row| row.controller == BASELINE).cloned().collect();
     for row in &mut found {
         let base = open.iter().find(|base| base.contour == row.contour).and_then(|base| base.time_s);
         row.time_ratio = row.time_s.zip(base).map(|(time_s, base)| time_s / base);
     }
-    Ok(found)
+    found
 }
 
 /// A feedrate at which the tolerance holds, and the machining time there.
@@ -81,18 +85,14 @@ struct Holding {
 /// The fastest that is found, by bisection: nothing where the tolerance does not hold at the slowest.
 fn fastest(
     contour: &Contour,
-    competitor: &Competitor,
-    options: &ComparisonOptions,
-    tuned: &[Tuned],
-    watch: &dyn Watch,
+    run: Run<'_>,
+    controller: &mut dyn Controller<2>,
+    machine: &Machine,
 ) -> Result<Option<Holding>, RunError> {
-    let machine = options.nominal();
-    let mut controller = CompetitorMaker { competitor, nominal: machine, seed: options.seed, tuned }.make(machine);
-    let run = Run::on(machine).laps(competitor.entry.laps).watched(watch);
     let mut holding = |feed_mm_s: f64| -> Result<Option<Holding>, RunError> {
         let steps = contour.steps(feed_mm_s, CORNER).expect("the feedrate is one");
-        let workpiece = Workpiece { name: contour.name.to_owned(), smooth: true, steps };
-        let cut = cut(&workpiece, &mut *controller, run, &mut [])?;
+        let workpiece = Workpiece { name: contour.name.to_owned(), smooth: true, held_out: false, steps };
+        let cut = cut(&workpiece, controller, run, &mut [])?;
         let holds = cut.run.outcome == Outcome::Completed && cut.statistics.max_um() <= TOLERANCE_UM;
         Ok(holds.then_some(Holding { feed_mm_s, time_s: cut.run.time_s }))
     };

@@ -133,6 +133,13 @@ pub struct Axis {
 }
 
 impl Axis {
+    /// Whether anything of it is random.
+    pub(super) fn is_noisy(&self) -> bool {
+        [self.encoder_noise_um, self.jitter_s, self.torque_noise_nm, self.disturbance_wander]
+            .iter()
+            .any(|&size| size > 0.0)
+    }
+
     /// As the law of an axis takes them.
     pub fn parameters(&self) -> Parameters {
         Parameters {

@@ -51,6 +51,24 @@ impl Known {
         std::array::from_fn(|i| *self.axis(i))
     }
 
+    /// The same with wrong values of the axes: inertia and all friction by these factors. What the control is set to (gains,
+    /// feedforward, delays) is read off it and stays right. The torque that is left for acceleration follows from what is believed.
+    #[must_use]
+    pub fn misjudged(&self, inertia: f64, friction: f64) -> Self {
+        let axis = |axis: &KnownAxis| {
+            let mut believed = *axis;
+            believed.nominal.inertia_kg_m2 *= inertia;
+            believed.nominal.viscous_friction_nm_s *= friction;
+            believed.nominal.coulomb_friction_nm *= friction;
+            believed.friction.coulomb_asymmetry_nm *= friction;
+            believed.friction.stribeck_nm *= friction;
+            let more_nm = believed.nominal.coulomb_friction_nm - axis.nominal.coulomb_friction_nm;
+            believed.spare_torque_nm = (axis.spare_torque_nm - more_nm).max(0.0);
+            believed
+        };
+        Self { axes: self.axes.iter().map(axis).collect(), ..self.clone() }
+    }
+
     /// The nominal law of the first N axes.
     pub fn law<const N: usize>(&self) -> [axis::AxisLaw; N] {
         std::array::from_fn(|i| axis::AxisLaw::new(self.axis(i).nominal, self.period.periods()))
@@ -76,5 +94,30 @@ impl Machine {
             spare_torque_nm: (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0),
         };
         Known { period: self.period, limits: self.limits, axes: self.axes.iter().enumerate().map(axis).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_misjudged_is_inertia_and_friction_and_no_setting() {
+        let known = Machine::load("tnv40".as_ref()).unwrap().known();
+        let believed = known.misjudged(0.8, 1.2);
+        for i in 0..2 {
+            let (was, is) = (known.axis(i), believed.axis(i));
+            assert_eq!(is.nominal.inertia_kg_m2, 0.8 * was.nominal.inertia_kg_m2);
+            assert_eq!(is.nominal.viscous_friction_nm_s, 1.2 * was.nominal.viscous_friction_nm_s);
+            assert_eq!(is.nominal.coulomb_friction_nm, 1.2 * was.nominal.coulomb_friction_nm);
+            let more_nm = 0.2 * was.nominal.coulomb_friction_nm;
+            assert!((was.spare_torque_nm - is.spare_torque_nm - more_nm).abs() < 1e-12);
+            assert_eq!(
+                (is.nominal.kp_1_s, is.nominal.kv_nm_s_per_rad),
+                (was.nominal.kp_1_s, was.nominal.kv_nm_s_per_rad)
+            );
+            assert_eq!(is.drive, was.drive);
+        }
+        assert_eq!(known.misjudged(1.0, 1.0), known);
     }
 }
