@@ -77,7 +77,7 @@ type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N
 
 /// A row. Its last part makes the controller for N axes, of what is known of the machine and the values of its parameters.
 macro_rules! entry {
-    ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, [$($parameter:expr),*], |$setup:ident, $values:ident| $make:expr) => {{
+    ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, $parameters:expr, |$setup:ident, $values:ident| $make:expr) => {{
         fn make<const N: usize>($setup: &mut Setup<'_>, $values: &Values) -> Box<dyn Controller<N>> {
             $make
         }
@@ -88,7 +88,7 @@ macro_rules! entry {
             knows: Knows::$knows,
             identifier: [$(IdentifierKind::$kind)?].first().copied(),
             laps: $laps,
-            parameters: &[$($parameter),*],
+            parameters: &$parameters,
             plane: make::<2>,
             space: make::<3>,
         }
@@ -195,7 +195,7 @@ pub const CONTROLLERS: &[Entry] = &[
         ExactModel,
         laps: 1,
         [VELOCITY_GAIN, ACCELERATION_GAIN],
-        |setup, values| Box::new(make::feedforward_as_delivered::<N>(setup, values))
+        |setup, values| make::feedforward_as_delivered(setup, values)
     ),
     entry!(
         "feedforward-cross-coupled",
@@ -273,7 +273,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Arimoto, Kawamura and Miyazaki (1984)",
         EarlierLaps,
         laps: 2,
-        [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
+        iterative_learning::PARAMETERS,
         |setup, values| make::iterative_learning(setup, values)
     ),
     entry!(
@@ -282,7 +282,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Arimoto, Kawamura and Miyazaki (1984)",
         EarlierLaps,
         laps: 4,
-        [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
+        iterative_learning::PARAMETERS,
         |setup, values| make::iterative_learning(setup, values)
     ),
     entry!(
@@ -291,7 +291,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Arimoto, Kawamura and Miyazaki (1984)",
         EarlierLaps,
         laps: 11,
-        [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
+        iterative_learning::PARAMETERS,
         |setup, values| make::iterative_learning(setup, values)
     ),
     entry!(
@@ -364,6 +364,22 @@ impl Entry {
         self.parameters.iter().filter_map(|parameter| Some((parameter, parameter.searched?)))
     }
 
+    /// The controller of this row, with a model in place of a training.
+    ///
+    /// # Errors
+    /// A model that does not suit it.
+    pub fn make_with<'a, const N: usize>(
+        &self,
+        mut setup: Setup<'a>,
+        model: &'a Model,
+    ) -> Result<Box<dyn Controller<N>>, ModelMisfit>
+    where
+        Self: Make<N>,
+    {
+        setup.take(model, self, N)?;
+        Ok(self.make(&mut setup))
+    }
+
     /// The name that was probably meant by one that is none.
     pub fn meant_by(name: &str) -> Option<&'static str> {
         let names: Vec<&'static str> = CONTROLLERS.iter().map(|entry| entry.name).collect();
@@ -375,31 +391,15 @@ impl Entry {
 pub trait Make<const N: usize> {
     /// The controller of this row.
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>>;
-
-    /// The controller of this row, with a model in place of a training.
-    ///
-    /// # Errors
-    /// A model that does not suit it.
-    fn make_with<'a>(&self, setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<N>>, ModelMisfit>;
 }
 
 impl Make<2> for Entry {
-    fn make_with<'a>(&self, mut setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<2>>, ModelMisfit> {
-        setup.take(model, self, 2)?;
-        Ok(self.make(&mut setup))
-    }
-
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
         (self.plane)(setup, &Values::of(self, &setup.choices.set))
     }
 }
 
 impl Make<3> for Entry {
-    fn make_with<'a>(&self, mut setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<3>>, ModelMisfit> {
-        setup.take(model, self, 3)?;
-        Ok(self.make(&mut setup))
-    }
-
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
         (self.space)(setup, &Values::of(self, &setup.choices.set))
     }

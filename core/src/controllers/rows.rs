@@ -1,6 +1,6 @@
 //! Parameters that rows of the table have in common, and long ones: ranges, defaults, reasons.
 
-use feedwright_control::controller::feedforward::Gains;
+use feedwright_control::axis::inverse::Gains;
 use feedwright_control::controller::inverting::{self, Settings as Inverting};
 use feedwright_control::controller::kalman_disturbance::AxisNoise;
 use feedwright_control::controller::receding_horizon::Settings as Horizon;

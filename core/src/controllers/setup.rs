@@ -248,7 +248,7 @@ mod tests {
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let mut other = machine.clone();
         for axis in &mut other.axes {
-            (axis.disturbance_hz, axis.encoder_step_um, axis.drive_delay_s) = (3.0, 5.0, 0.004);
+            (axis.disturbance_hz, axis.encoder_step_um, axis.cogging_nm) = (3.0, 5.0, 0.1);
             (axis.torque_bits, axis.transmission) = (Some(9), Some(Default::default()));
         }
         assert!(other != machine && other.known() == machine.known());
