@@ -8,11 +8,13 @@
 //! | `controllers/rows.rs` | the parameters of the rows |
 //! | `controllers/setup.rs` | what they are made from: what is known of a machine, and a model |
 //! | `controllers/make.rs` | how each row is made from that |
+//! | `controllers/lqg_preview.rs` | the limit, by everything that can be known |
 //! | `controllers/model_predictive.rs`, `controllers/iterative_learning.rs` | those that are not fit for a servo thread |
 
 pub mod parameters;
 pub mod iterative_learning;
 pub mod model_predictive;
+pub mod lqg_preview;
 mod make;
 mod rows;
 mod setup;
@@ -29,8 +31,8 @@ use rows::{
     ACCELERATION_GAIN, ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT,
     CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, ETA, FORESEEN_MM, FRICTION_GAIN, INERTIA_SCALE,
     INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS, LAG_SCALE, LAST_WEIGHT,
-    LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, RHO, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES,
-    SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE, VELOCITY_GAIN,
+    LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, PRICE, RATE_WEIGHT, RHO, SHAPED_DAMPING, SHAPED_FREQUENCY,
+    SHAPER_IMPULSES, SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE, VELOCITY_GAIN,
 };
 use serde::{Deserialize, Serialize};
 pub use setup::{ModelMisfit, Setup};
@@ -68,6 +70,8 @@ pub enum Knows {
     Identified,
     /// The parameters of its model.
     ExactModel,
+    /// Everything that can be: the parameters, and the statistics of all noise.
+    Everything,
     /// What went wrong in earlier laps of the same part.
     EarlierLaps,
 }
@@ -266,6 +270,15 @@ pub const CONTROLLERS: &[Entry] = &[
         laps: 1,
         [Parameter { searched: Some([1e-11, 1e-4]), ..RATE_WEIGHT }, KNOTS, PLAN_PERIOD_S],
         |setup, values| make::model_predictive(setup, values)
+    ),
+    entry!(
+        "lqg-preview",
+        "the limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine",
+        "Anderson and Moore (1990)",
+        Everything,
+        laps: 1,
+        [PRICE],
+        |setup, values| make::lqg_preview(setup, values)
     ),
     entry!(
         "iterative-learning-1",

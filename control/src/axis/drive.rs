@@ -73,6 +73,19 @@ pub struct DriveState {
     filtered_nm: f64,
 }
 
+impl DriveState {
+    /// Integral of the speed loop, N m.
+    pub fn integral_nm(&self) -> f64 {
+        self.integral_nm
+    }
+
+    /// What an observer finds integral and filter to be higher, N m.
+    pub fn correct(&mut self, integral_nm: f64, filtered_nm: f64) {
+        self.integral_nm += integral_nm;
+        self.filtered_nm += filtered_nm;
+    }
+}
+
 /// A drive, ready to be integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DriveLaw {

@@ -47,7 +47,7 @@ const FRICTION_STEPS: u32 = 10;
 
 /// How late what goes to the drive and what comes from the encoder is, s.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Delays {
+pub struct LoopDelays {
     /// From the position loop to the speed loop.
     pub drive_s: f64,
     /// From the encoder to the position loop.
@@ -81,7 +81,7 @@ struct Missing {
 
 /// Mean speed and acceleration of the reference over a servo period, and its two ends.
 #[derive(Debug, Clone, Copy)]
-struct Motion {
+struct ReferenceMotion {
     speed_mm_s: f64,
     acceleration_mm_s2: f64,
 }
@@ -91,7 +91,7 @@ struct Motion {
 pub struct AxisInverse {
     law: AxisLaw,
     drive: DriveParameters,
-    delays: Delays,
+    delays: LoopDelays,
     /// What friction has beside smoothed Coulomb friction.
     friction: Option<FrictionLaw>,
     /// By how much the torque filter is late, s.
@@ -109,7 +109,7 @@ pub struct AxisInverse {
 
 impl AxisInverse {
     /// Of an axis.
-    pub fn new(law: AxisLaw, drive: DriveParameters, friction: FrictionParameters, delays: Delays) -> Self {
+    pub fn new(law: AxisLaw, drive: DriveParameters, friction: FrictionParameters, delays: LoopDelays) -> Self {
         Self {
             law,
             drive,
@@ -126,7 +126,7 @@ impl AxisInverse {
 
     /// Of an axis that has nothing beside its law.
     pub fn plain(law: AxisLaw) -> Self {
-        Self::new(law, DriveParameters::default(), FrictionParameters::default(), Delays::default())
+        Self::new(law, DriveParameters::default(), FrictionParameters::default(), LoopDelays::default())
     }
 
     /// The law that it inverts.
@@ -168,7 +168,8 @@ impl AxisInverse {
     pub fn lead_mm(&mut self, gains: Gains, at_mm: impl Fn(f64) -> f64, last_mm: f64, load_mm_s: f64) -> f64 {
         let servo_s = self.law.periods.servo_s;
         self.take_in(last_mm);
-        let missing = self.missing(gains, &at_mm, load_mm_s);
+        let own = self.without_lead(&at_mm);
+        let missing = self.missing(gains, &at_mm, own, load_mm_s);
         self.missing = missing;
         let parameters = &self.law.parameters;
         let change_1_s = (parameters.kd + self.drive.velocity_feedforward) / servo_s;
@@ -179,6 +180,22 @@ impl AxisInverse {
             + torque_1_s * (2.0 * last_mm - self.lead_before_mm);
         self.lead_before_mm = last_mm;
         needed_mm_s / ((1.0 + within) * (parameters.kp_1_s + change_1_s) + torque_1_s)
+    }
+
+    /// Reference speed, mm/s, with which the speed loop follows the motion over the period in which the reference acts that is sent at
+    /// the beginning of `at_mm`, from an integral and a friction of the presliding spring that are known there, N m.
+    pub fn reference_mm_s(
+        &mut self,
+        at_mm: impl Fn(f64) -> f64,
+        [integral_nm, presliding_nm]: [f64; 2],
+        load_mm_s: f64,
+    ) -> f64 {
+        self.presliding_nm = presliding_nm;
+        let Missing { speed_mm_s, torque_mm_s } = self.missing(Gains::EXACT, &at_mm, [0.0; 2], load_mm_s);
+        let [within, _] = self.integral_gains();
+        let parameters = &self.law.parameters;
+        let integral_mm_s = integral_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
+        speed_mm_s + (torque_mm_s - integral_mm_s) / (1.0 + within)
     }
 
     /// What the integral has become in the period that was asked for last, with the lead that it really had.
@@ -216,11 +233,16 @@ impl AxisInverse {
     }
 
     #[inline]
-    fn missing(&mut self, gains: Gains, at_mm: &impl Fn(f64) -> f64, load_mm_s: f64) -> Missing {
+    fn missing(
+        &mut self,
+        gains: Gains,
+        at_mm: &impl Fn(f64) -> f64,
+        [asked_mm_s, fed_nm_s]: [f64; 2],
+        load_mm_s: f64,
+    ) -> Missing {
         let (parameters, mechanics_s) = (self.law.parameters, self.law.periods.mechanics_s);
         let turning = self.motion(at_mm, self.delays.drive_s);
         let torque = if self.filter_lag_s > 0.0 { self.motion(at_mm, self.ahead_s()) } else { turning };
-        let [asked_mm_s, fed_nm_s] = self.without_lead(at_mm);
         let early_mm_s = gains.acceleration * mechanics_s * turning.acceleration_mm_s2;
         let inertia_kg_m2 = parameters.inertia_kg_m2 - parameters.viscous_friction_nm_s * mechanics_s;
         self.friction_mm_s =
@@ -234,10 +256,10 @@ impl AxisInverse {
     }
 
     #[inline]
-    fn motion(&self, at_mm: &impl Fn(f64) -> f64, after_s: f64) -> Motion {
+    fn motion(&self, at_mm: &impl Fn(f64) -> f64, after_s: f64) -> ReferenceMotion {
         let servo_s = self.law.periods.servo_s;
         let [before, here, after, beyond] = [-1.0, 0.0, 1.0, 2.0].map(|n: f64| at_mm(after_s + n * servo_s));
-        Motion {
+        ReferenceMotion {
             speed_mm_s: (after - here) / servo_s,
             acceleration_mm_s2: ((beyond - here) - (after - before)) / (2.0 * servo_s * servo_s),
         }
@@ -267,7 +289,7 @@ impl AxisInverse {
 
     /// Mean of the friction without its viscous part over a servo period of the motion, N m.
     #[inline]
-    fn friction_nm(&mut self, motion: Motion) -> f64 {
+    fn friction_nm(&mut self, motion: ReferenceMotion) -> f64 {
         let (parameters, servo_s) = (&self.law.parameters, self.law.periods.servo_s);
         let speed_rad_s = parameters.rad_per_mm * motion.speed_mm_s;
         let Some(friction) = &self.friction else {

@@ -67,7 +67,7 @@ pub struct ObservedAxis {
 
 /// What leaves for a drive, mm/s: reference speed, and torque beside it as a reference speed.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Sent {
+struct SentReference {
     speed_mm_s: f64,
     torque_mm_s: f64,
 }
@@ -86,7 +86,7 @@ struct AxisObserver {
     last_mm: Option<[f64; 2]>,
     moved_mm: f64,
     /// The newest first.
-    sent: [Sent; KEPT_PERIODS],
+    sent: [SentReference; KEPT_PERIODS],
     /// Reference speed that acted in the last servo period, and the integral at its start.
     acted_mm_s: f64,
     integral_mm_s: f64,
@@ -103,7 +103,7 @@ impl AxisObserver {
             error_mm: 0.0,
             last_mm: None,
             moved_mm: 0.0,
-            sent: [Sent::default(); KEPT_PERIODS],
+            sent: [SentReference::default(); KEPT_PERIODS],
             acted_mm_s: 0.0,
             integral_mm_s: 0.0,
         }
@@ -118,7 +118,7 @@ impl AxisObserver {
     fn go_on(&mut self, command_mm: f64, friction_mm_s: f64, measured_mm: f64) {
         let SampledAxis { alpha, beta, gamma_s, delta_s, .. } = self.of.axis;
         self.send(command_mm, measured_mm);
-        let Sent { speed_mm_s: asked_mm_s, torque_mm_s } = self.arrived();
+        let SentReference { speed_mm_s: asked_mm_s, torque_mm_s } = self.arrived();
         let beside_mm_s = torque_mm_s + self.integrated(asked_mm_s, measured_mm);
         self.last_mm = Some([command_mm, measured_mm]);
         let innovation_mm = measured_mm - self.position_mm;
@@ -141,14 +141,14 @@ impl AxisObserver {
         self.moved_mm = moved_mm;
         self.sent.copy_within(..KEPT_PERIODS - 1, 1);
         let [newest, ..] = &mut self.sent;
-        *newest = Sent {
+        *newest = SentReference {
             speed_mm_s: fed_back_mm_s + drive.velocity_feedforward * moved_mm / self.servo_s,
             torque_mm_s: drive.torque_1_s * change_mm,
         };
     }
 
     /// What acts in the servo period at whose start the tool was where it is measured now.
-    fn arrived(&self) -> Sent {
+    fn arrived(&self) -> SentReference {
         let periods = self.of.drive.delay_s / self.servo_s;
         let whole = libm::floor(periods);
         // A float that is not a number saturates to zero here.
@@ -157,7 +157,7 @@ impl AxisObserver {
         if part > 0.0 {
             let older = at(whole as usize + 1);
             let mean = |newer: f64, older: f64| newer + part * (older - newer);
-            Sent {
+            SentReference {
                 speed_mm_s: mean(newer.speed_mm_s, older.speed_mm_s),
                 torque_mm_s: mean(newer.torque_mm_s, older.torque_mm_s),
             }

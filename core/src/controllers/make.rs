@@ -22,6 +22,7 @@ use feedwright_control::{Controller, horizon, inversion};
 
 use super::Setup;
 use super::iterative_learning::{self, IterativeLearning};
+use super::lqg_preview::{self, LqgPreview};
 use super::model_predictive::{self, ModelPredictive};
 use super::parameters::Values;
 use crate::machine::{Known, KnownAxis, Period};
@@ -194,6 +195,11 @@ pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &V
     horizon.limits = correction_limits(&setup.known);
     let servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
     Box::new(ModelPredictive::new(&setup.known, model_predictive::Settings { servo_periods, horizon }))
+}
+
+pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let settings = lqg_preview::Settings { price_s2: values.number("price_s2") };
+    Box::new(LqgPreview::new(&setup.known, setup.statistics::<N>(), settings))
 }
 
 pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {

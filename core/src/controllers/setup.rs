@@ -14,7 +14,7 @@ use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
 use crate::identify::contour::Training;
 use crate::identify::{Excitation, cache, servo};
-use crate::machine::{Known, Machine};
+use crate::machine::{AxisStatistics, Known, Machine};
 use crate::model::{Model, Origin, name};
 
 /// What a controller is made from.
@@ -158,6 +158,11 @@ impl<'a> Setup<'a> {
         if let Some(progress) = &mut self.progress {
             progress(part);
         }
+    }
+
+    /// What is true of the machine beside: for the limit alone.
+    pub(super) fn statistics<const N: usize>(&self) -> [AxisStatistics; N] {
+        self.machine.statistics()
     }
 
     /// Takes a model in place of a training, of the controller that is made next.

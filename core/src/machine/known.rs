@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use feedwright_control::axis::drive::DriveParameters;
 use feedwright_control::axis::friction::FrictionParameters;
-use feedwright_control::axis::inverse::{AxisInverse, Delays};
+use feedwright_control::axis::inverse::{AxisInverse, LoopDelays};
 use feedwright_control::axis::{self, Parameters};
 
 use super::{Limits, Machine, Period};
@@ -35,7 +35,7 @@ pub struct KnownAxis {
     /// What the data sheets say of friction beside.
     pub friction: FrictionParameters,
     /// How late the bus and the encoder are; a manual has both.
-    pub delays: Delays,
+    pub delays: LoopDelays,
     /// Acceleration that a correction may add to the plan's, mm/s2.
     pub correction_accel_mm_s2: f64,
     /// Torque that is left for acceleration, N m: less friction, and less what the load takes at the most. The amplitude of a load
@@ -84,7 +84,7 @@ impl Machine {
             nominal: axis.parameters(),
             drive: axis.drive(),
             friction: axis.friction(),
-            delays: Delays { drive_s: axis.drive_delay_s, measurement_s: axis.measurement_delay_s },
+            delays: LoopDelays { drive_s: axis.drive_delay_s, measurement_s: axis.measurement_delay_s },
             correction_accel_mm_s2: self.correction_accel_mm_s2(i),
             spare_torque_nm: (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0),
         };
