@@ -14,6 +14,8 @@
 //! | `axis/drive.rs` | integral of the speed loop, feedforward, speed limit, torque filter |
 //! | `axis/friction.rs` | asymmetry, Stribeck's curve, presliding |
 //!
+//! `axis/inverse.rs` solves the law for the command, all of this included.
+//!
 //! Symbols: e error of the position at the motor, rad; w speed of the motor, rad/s; u torque, N m; Kp, Kd gains of the position
 //! loop, 1/s and none; Kv gain of the speed loop, N m s/rad; J inertia, kg m^2; B viscous friction, N m s/rad; Fc Coulomb friction,
 //! N m, which turns its sign over w_s, rad/s.
@@ -23,6 +25,7 @@
 
 pub mod drive;
 pub mod friction;
+pub mod inverse;
 
 use crate::activation::tanh;
 

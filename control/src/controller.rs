@@ -140,6 +140,11 @@ pub trait Controller<const N: usize> {
     fn corrects(&self) -> bool {
         true
     }
+    /// Whether its offset is there in the servo period in which it was decided, and not only in the next. It has to decide in every
+    /// servo period, and within it.
+    fn acts_at_once(&self) -> bool {
+        false
+    }
     /// Decides.
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N>;
 }

@@ -110,7 +110,8 @@ impl<const N: usize> Tick<N> {
         if decided {
             self.decide(controller, tool_mm);
         }
-        let part = f64::from(self.phase) / f64::from(self.schedule.servo_periods);
+        let reached = if controller.acts_at_once() { self.phase + 1 } else { self.phase };
+        let part = f64::from(reached) / f64::from(self.schedule.servo_periods);
         let offset_mm = self.command.offset_after_mm(part, self.offset_from_mm);
         self.phase += 1;
         Setpoint { tau_s, path, command_mm: add_scaled(path.position_mm, 1.0, offset_mm), decided }

@@ -8,11 +8,13 @@
 //! | `controllers/rows.rs` | the parameters of the rows |
 //! | `controllers/setup.rs` | what they are made from: what is known of a machine, and a model |
 //! | `controllers/make.rs` | how each row is made from that |
+//! | `controllers/lqg_preview.rs` | the limit, by everything that can be known |
 //! | `controllers/model_predictive.rs`, `controllers/iterative_learning.rs` | those that are not fit for a servo thread |
 
 pub mod parameters;
 pub mod iterative_learning;
 pub mod model_predictive;
+pub mod lqg_preview;
 mod make;
 mod rows;
 mod setup;
@@ -29,8 +31,8 @@ use rows::{
     ACCELERATION_GAIN, ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT,
     CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, ETA, FORESEEN_MM, FRICTION_GAIN, INERTIA_SCALE,
     INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS, LAG_SCALE, LAST_WEIGHT,
-    LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, RHO, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES,
-    SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE, VELOCITY_GAIN,
+    LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, PRICE, RATE_WEIGHT, RHO, SHAPED_DAMPING, SHAPED_FREQUENCY,
+    SHAPER_IMPULSES, SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE, VELOCITY_GAIN,
 };
 use serde::{Deserialize, Serialize};
 pub use setup::{ModelMisfit, Setup};
@@ -68,6 +70,8 @@ pub enum Knows {
     Identified,
     /// The parameters of its model.
     ExactModel,
+    /// Everything that can be: the parameters, and the statistics of all noise.
+    Everything,
     /// What went wrong in earlier laps of the same part.
     EarlierLaps,
 }
@@ -77,7 +81,7 @@ type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N
 
 /// A row. Its last part makes the controller for N axes, of what is known of the machine and the values of its parameters.
 macro_rules! entry {
-    ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, [$($parameter:expr),*], |$setup:ident, $values:ident| $make:expr) => {{
+    ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, $parameters:expr, |$setup:ident, $values:ident| $make:expr) => {{
         fn make<const N: usize>($setup: &mut Setup<'_>, $values: &Values) -> Box<dyn Controller<N>> {
             $make
         }
@@ -88,7 +92,7 @@ macro_rules! entry {
             knows: Knows::$knows,
             identifier: [$(IdentifierKind::$kind)?].first().copied(),
             laps: $laps,
-            parameters: &[$($parameter),*],
+            parameters: &$parameters,
             plane: make::<2>,
             space: make::<3>,
         }
@@ -195,7 +199,7 @@ pub const CONTROLLERS: &[Entry] = &[
         ExactModel,
         laps: 1,
         [VELOCITY_GAIN, ACCELERATION_GAIN],
-        |setup, values| Box::new(make::feedforward_as_delivered::<N>(setup, values))
+        |setup, values| make::feedforward_as_delivered(setup, values)
     ),
     entry!(
         "feedforward-cross-coupled",
@@ -268,12 +272,21 @@ pub const CONTROLLERS: &[Entry] = &[
         |setup, values| make::model_predictive(setup, values)
     ),
     entry!(
+        "lqg-preview",
+        "the limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine",
+        "Anderson and Moore (1990)",
+        Everything,
+        laps: 1,
+        [PRICE],
+        |setup, values| make::lqg_preview(setup, values)
+    ),
+    entry!(
         "iterative-learning-1",
         "offsets learned from the contour error of the same part, 1 lap of practice",
         "Arimoto, Kawamura and Miyazaki (1984)",
         EarlierLaps,
         laps: 2,
-        [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
+        iterative_learning::PARAMETERS,
         |setup, values| make::iterative_learning(setup, values)
     ),
     entry!(
@@ -282,7 +295,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Arimoto, Kawamura and Miyazaki (1984)",
         EarlierLaps,
         laps: 4,
-        [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
+        iterative_learning::PARAMETERS,
         |setup, values| make::iterative_learning(setup, values)
     ),
     entry!(
@@ -291,7 +304,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Arimoto, Kawamura and Miyazaki (1984)",
         EarlierLaps,
         laps: 11,
-        [iterative_learning::GAIN, iterative_learning::LEAD_S, iterative_learning::CUT_OFF_HZ],
+        iterative_learning::PARAMETERS,
         |setup, values| make::iterative_learning(setup, values)
     ),
     entry!(
@@ -364,6 +377,22 @@ impl Entry {
         self.parameters.iter().filter_map(|parameter| Some((parameter, parameter.searched?)))
     }
 
+    /// The controller of this row, with a model in place of a training.
+    ///
+    /// # Errors
+    /// A model that does not suit it.
+    pub fn make_with<'a, const N: usize>(
+        &self,
+        mut setup: Setup<'a>,
+        model: &'a Model,
+    ) -> Result<Box<dyn Controller<N>>, ModelMisfit>
+    where
+        Self: Make<N>,
+    {
+        setup.take(model, self, N)?;
+        Ok(self.make(&mut setup))
+    }
+
     /// The name that was probably meant by one that is none.
     pub fn meant_by(name: &str) -> Option<&'static str> {
         let names: Vec<&'static str> = CONTROLLERS.iter().map(|entry| entry.name).collect();
@@ -375,31 +404,15 @@ impl Entry {
 pub trait Make<const N: usize> {
     /// The controller of this row.
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>>;
-
-    /// The controller of this row, with a model in place of a training.
-    ///
-    /// # Errors
-    /// A model that does not suit it.
-    fn make_with<'a>(&self, setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<N>>, ModelMisfit>;
 }
 
 impl Make<2> for Entry {
-    fn make_with<'a>(&self, mut setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<2>>, ModelMisfit> {
-        setup.take(model, self, 2)?;
-        Ok(self.make(&mut setup))
-    }
-
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
         (self.plane)(setup, &Values::of(self, &setup.choices.set))
     }
 }
 
 impl Make<3> for Entry {
-    fn make_with<'a>(&self, mut setup: Setup<'a>, model: &'a Model) -> Result<Box<dyn Controller<3>>, ModelMisfit> {
-        setup.take(model, self, 3)?;
-        Ok(self.make(&mut setup))
-    }
-
     fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
         (self.space)(setup, &Values::of(self, &setup.choices.set))
     }

@@ -110,7 +110,7 @@ impl Job {
             let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
             let judged = entry.name == self.controller.name;
             let mut controller = match self.model.as_ref().filter(|_| judged) {
-                Some(model) => Make::<N>::make_with(entry, setup, model)?,
+                Some(model) => entry.make_with::<N>(setup, model)?,
                 None => Make::<N>::make(entry, &mut setup),
             };
             runs.push(self.cut_once(summary, entry, &mut *controller, judged.then_some(&mut files), watch)?);

@@ -10,6 +10,7 @@ mod error;
 pub mod keys;
 mod known;
 mod layout;
+mod statistics;
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -23,6 +24,7 @@ pub use axis::{Axis, Transmission};
 use error::KIND;
 pub use error::MachineError;
 pub use known::{Known, KnownAxis};
+pub use statistics::AxisStatistics;
 
 /// Machines that need no file: name and text.
 pub const BUILT_IN: &[(&str, &str)] = &[

@@ -35,6 +35,7 @@ pub(crate) fn controller(name: &str) -> Result<ExitCode> {
         Knows::Nothing => "nothing",
         Knows::Identified => "what was identified from a recording",
         Knows::ExactModel => "the parameters of its model",
+        Knows::Everything => "its parameters, and the statistics of everything that disturbs it",
         Knows::EarlierLaps => "what went wrong in earlier laps of the same part",
     };
     let mut lines =

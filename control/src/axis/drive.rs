@@ -38,6 +38,19 @@ pub struct DriveParameters {
     pub speed_limit_rad_s: f64,
 }
 
+impl DriveParameters {
+    /// By how much the torque filter makes a slow change of the torque late, s: from y' - y = k (u - y), u = y + (1/k - 1) (y' - y).
+    pub fn filter_lag_s(&self, mechanics_s: f64) -> f64 {
+        let part = filter_part(self.torque_filter_hz, mechanics_s);
+        mechanics_s * (1.0 / part - 1.0)
+    }
+}
+
+/// Part of the way that a torque filter goes in one mechanics period; one without a corner is none.
+fn filter_part(corner_hz: f64, mechanics_s: f64) -> f64 {
+    if corner_hz > 0.0 { 1.0 - libm::exp(-TAU * corner_hz * mechanics_s) } else { 1.0 }
+}
+
 /// What goes from the position loop to the drive.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct DriveReference {
@@ -58,6 +71,19 @@ pub struct DriveState {
     integral_nm: f64,
     /// Behind the filter, N m.
     filtered_nm: f64,
+}
+
+impl DriveState {
+    /// Integral of the speed loop, N m.
+    pub fn integral_nm(&self) -> f64 {
+        self.integral_nm
+    }
+
+    /// What an observer finds integral and filter to be higher, N m.
+    pub fn correct(&mut self, integral_nm: f64, filtered_nm: f64) {
+        self.integral_nm += integral_nm;
+        self.filtered_nm += filtered_nm;
+    }
 }
 
 /// A drive, ready to be integrated.
@@ -85,7 +111,7 @@ impl DriveLaw {
             plain: parameters == DriveParameters::default(),
             torque_for_change: parameters.acceleration_feedforward * law.parameters.inertia_kg_m2 / law.periods.servo_s,
             integral_gain: if time_s > 0.0 { gain * dt_s / time_s } else { 0.0 },
-            filter: if torque_filter_hz > 0.0 { 1.0 - libm::exp(-TAU * torque_filter_hz * dt_s) } else { 1.0 },
+            filter: filter_part(torque_filter_hz, dt_s),
         }
     }
 

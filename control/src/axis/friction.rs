@@ -100,6 +100,24 @@ impl FrictionLaw {
         after_rad_s
     }
 
+    /// The mean of the friction without its viscous part over a time at a constant speed that is forced upon the axis, N m.
+    #[inline]
+    pub fn along_nm(&self, speed_rad_s: f64, time_s: f64, presliding_nm: &mut f64) -> f64 {
+        if self.stiffness_nm_rad == 0.0 {
+            let [sign] = tanh([speed_rad_s * self.inverse_smoothing_s]);
+            return sign * self.level_nm(speed_rad_s, sign);
+        }
+        let direction = f64::copysign(1.0, speed_rad_s);
+        let level_nm = self.level_nm(speed_rad_s, direction).max(self.least_nm);
+        let slid = self.stiffness_nm_rad * speed_rad_s.abs() * time_s / level_nm;
+        let (sliding_nm, left) = (direction * level_nm, decay(slid));
+        let beyond_nm = *presliding_nm - sliding_nm;
+        *presliding_nm = sliding_nm + beyond_nm * left;
+        // The mean of e^-x from 0 to `slid`; of a short way its series, which does not cancel.
+        let mean = if slid < 1e-4 { 1.0 - 0.5 * slid } else { (1.0 - left) / slid };
+        if slid == 0.0 { *presliding_nm } else { sliding_nm + beyond_nm * mean }
+    }
+
     /// Level at a speed, in a direction from -1 to 1, N m.
     #[inline]
     fn level_nm(&self, speed_rad_s: f64, direction: f64) -> f64 {

@@ -147,7 +147,7 @@ pub(super) mod tests {
     }
 
     /// Along x at 50 mm/s.
-    struct Line;
+    pub(in crate::controller) struct Line;
 
     impl KnotSource<2> for Line {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {

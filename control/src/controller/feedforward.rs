@@ -1,16 +1,10 @@
 //! Velocity, acceleration and friction feedforward with the exact model of the machine.
 //!
-//! The loop takes position commands only, so the inverse dynamics go into the position command. In the servo period that
-//! begins at m Ts the drive holds
+//! The drive takes position commands only, so the inverse dynamics go into the position command: each axis leads the reference as
+//! [`crate::axis::inverse`] has it, with what its drive feeds forward by itself, the integral of its speed loop, its delays, its
+//! torque filter and its friction. What the drive does by itself is not done twice. Cogging and ripple of the motor are not known here.
 //!
-//! ```text
-//! w_ref(m) = kp e(m) + kd (e(m) - e(m-1)) / Ts,   e = c - x
-//! J dw/dt  = kv (w_ref - w) - B w - Fc tanh(w / w_s)
-//! ```
-//!
-//! A tool that is on the reference r at m Ts and at (m+1) Ts has the mean speed w = (r(m+1) - r(m)) / Ts between them,
-//! and the mean acceleration a, the change of the central differences (r(m+1) - r(m-1)) / 2 Ts over the period. The mean
-//! of the equation of motion over the period, solved for w_ref, and the position loop, solved for e, give the command:
+//! For an axis that is no more than a position loop, a P speed loop and smoothed Coulomb friction:
 //!
 //! ```text
 //! w_ref(m) = g_v w + [ g_a J a + g_v B w + g_f Fc tanh(w / w_s) ] / kv
@@ -18,8 +12,9 @@
 //! c(m)     = r(m) + e(m)
 //! ```
 //!
-//! with gains g of 1 for the exact model. The speed is taken half a period after the command because the command is
-//! held: this is the zero-order hold's delay, compensated.
+//! with gains g of 1 for the exact model, w the mean speed of the reference over the servo period that begins at m Ts, and a its mean
+//! acceleration. The speed is taken half a period after the command because the command is held: this is the zero-order hold's
+//! delay, compensated.
 //!
 //! Source: Masory (1986), "Improving contouring accuracy of NC/CNC systems with additional velocity feed forward loop";
 //! friction as in Armstrong-Helouvry, Dupont and Canudas de Wit (1994), "A survey of models, analysis tools and
@@ -29,8 +24,8 @@
 //! along the path, 1 mm at 50 mm/s and 50 1/s.
 
 use super::{Command, Controller, Measured, Schedule};
-use crate::activation::tanh;
-use crate::axis::Parameters;
+use crate::axis::inverse::AxisInverse;
+use crate::axis::inverse::Gains;
 use crate::window::Window;
 
 /// Preview behind the command of the next servo period that the differences need, servo periods.
@@ -40,6 +35,8 @@ const DIFFERENCES: f64 = 3.0;
 const PREVIEW_LAGS: f64 = 3.0;
 /// Of the [`crate::window::PREVIEW_KNOTS`]; the others reach behind.
 pub(super) const MAX_PREVIEW: f64 = 240.0;
+/// Periods of friction that are kept for an observer: the longest delays of a machine file, 20 ms each way, at a servo period of 1 ms.
+const KEPT_PERIODS: usize = 48;
 
 /// Preview for a command that leads the path by the lag of a loop, servo periods.
 pub fn preview(lag_s: f64, servo_s: f64) -> u32 {
@@ -47,77 +44,66 @@ pub fn preview(lag_s: f64, servo_s: f64) -> u32 {
     libm::ceil(PREVIEW_LAGS * lag_s / servo_s + DIFFERENCES).min(MAX_PREVIEW) as u32
 }
 
-/// How much of each part is fed forward; 1 is the exact model.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Gains {
-    /// Of what grows with the speed.
-    pub velocity: f64,
-    /// Of what grows with the acceleration.
-    pub acceleration: f64,
-    /// Of the Coulomb friction.
-    pub friction: f64,
-}
-
-impl Gains {
-    /// The exact model.
-    pub const EXACT: Self = Self { velocity: 1.0, acceleration: 1.0, friction: 1.0 };
-}
-
-/// Feedforward; keeps nothing between ticks.
+/// Feedforward.
 #[derive(Debug, Clone)]
 pub struct Feedforward<const N: usize> {
-    axes: [Parameters; N],
-    gains: Gains,
+    axes: [AxisInverse; N],
+    gains: [Gains; N],
     preview: u32,
+    /// Friction that was made up for in the last periods, the newest first, mm/s of reference speed.
+    friction_mm_s: [[f64; N]; KEPT_PERIODS],
 }
 
 impl<const N: usize> Feedforward<N> {
-    /// For a machine with these axes and a servo period of `servo_s`.
-    pub fn new(axes: [Parameters; N], gains: Gains, servo_s: f64) -> Self {
-        let lag_s = axes.iter().map(|axis| 1.0 / axis.kp_1_s + axis.inertia_kg_m2 / axis.kv_nm_s_per_rad);
-        let preview = preview(lag_s.fold(0.0, f64::max), servo_s);
-        Self { axes, gains, preview }
+    /// For these axes, with so much of each part.
+    pub fn new(axes: [AxisInverse; N], gains: [Gains; N]) -> Self {
+        let most = |of: fn(&AxisInverse) -> f64| axes.iter().map(of).fold(0.0, f64::max);
+        let servo_s = axes.iter().map(|axis| axis.law().periods.servo_s).fold(f64::INFINITY, f64::min);
+        let late = libm::ceil(most(AxisInverse::ahead_s) / servo_s).min(MAX_PREVIEW);
+        // A float that is not a number saturates to zero here.
+        let preview = (preview(most(AxisInverse::lag_s), servo_s) + late as u32).min(MAX_PREVIEW as u32);
+        Self { axes, gains, preview, friction_mm_s: [[0.0; N]; KEPT_PERIODS] }
     }
 
-    /// Reference speed of the speed loop, rad/s, that an axis needs to move at `speed_rad_s` and
-    /// `acceleration_rad_s2`.
-    fn reference_rad_s(&self, axis: &Parameters, speed_rad_s: f64, acceleration_rad_s2: f64) -> f64 {
-        let Gains { velocity, acceleration, friction } = self.gains;
-        let [sign] = tanh([speed_rad_s / axis.coulomb_smoothing_rad_s]);
-        let torque_nm = acceleration * axis.inertia_kg_m2 * acceleration_rad_s2
-            + velocity * axis.viscous_friction_nm_s * speed_rad_s
-            + friction * axis.coulomb_friction_nm * sign;
-        velocity * speed_rad_s + torque_nm / axis.kv_nm_s_per_rad
-    }
-
-    /// How far the command has to lead a reference over the servo period from its second point to its third, mm; the points are a
-    /// period apart, and `last_mm` is by how much it led in the last period.
+    /// How far the command of a servo period has to lead a reference, mm: `at_mm` is that so many seconds after the start of the period,
+    /// `last_mm` is by how much it led in the last period. To be called once a servo period.
     pub(super) fn lead_mm(
-        &self,
-        [before, here, after, beyond]: [[f64; N]; 4],
+        &mut self,
+        at_mm: impl Fn(f64) -> [f64; N],
         last_mm: [f64; N],
-        servo_s: f64,
+        load_mm_s: [f64; N],
     ) -> [f64; N] {
-        core::array::from_fn(|i| {
-            let axis = &self.axes[i];
-            let speed_mm_s = (after[i] - here[i]) / servo_s;
-            let acceleration_mm_s2 = ((beyond[i] - here[i]) - (after[i] - before[i])) / (2.0 * servo_s * servo_s);
-            let reference_rad_s =
-                self.reference_rad_s(axis, axis.rad_per_mm * speed_mm_s, axis.rad_per_mm * acceleration_mm_s2);
-            let derivative_1_s = axis.kd / servo_s;
-            (reference_rad_s / axis.rad_per_mm + derivative_1_s * last_mm[i]) / (axis.kp_1_s + derivative_1_s)
-        })
+        let gains = self.gains;
+        let mut lead_mm = [0.0; N];
+        let axes = self.axes.iter_mut().zip(gains).zip(last_mm).zip(load_mm_s).zip(&mut lead_mm).enumerate();
+        for (i, ((((axis, gains), last_mm), load_mm_s), lead_mm)) in axes {
+            // Every axis has its reference, which the linker cannot see.
+            let at_mm = |after_s| at_mm(after_s).get(i).copied().unwrap_or_default();
+            *lead_mm = axis.lead_mm(gains, at_mm, last_mm, load_mm_s);
+        }
+        let newest_mm_s = self.axes.each_ref().map(AxisInverse::friction_mm_s);
+        self.friction_mm_s.copy_within(..KEPT_PERIODS - 1, 1);
+        let [newest, ..] = &mut self.friction_mm_s;
+        *newest = newest_mm_s;
+        lead_mm
     }
 
-    /// The part of the reference speed that makes up for Coulomb friction in the servo period that begins, mm/s.
-    pub(super) fn friction_mm_s(&self, window: &Window<'_, N>) -> [f64; N] {
-        let servo_s = window.servo_s();
-        let [here, after] = [0.0, servo_s].map(|ahead_s| window.at(ahead_s).position_mm);
+    /// The lead of the next servo period on the path, against a load, mm/s of reference speed.
+    pub(super) fn command_against(&mut self, window: &Window<'_, N>, load_mm_s: [f64; N]) -> Command<N> {
+        let next_s = window.tau_s + window.feed_period_s;
+        let at_mm = |after_s: f64| window.preview.at(next_s + after_s).position_mm;
+        Command::straight(1.0, self.lead_mm(at_mm, window.offset_mm, load_mm_s))
+    }
+
+    /// The part of the reference speed that makes up for Coulomb friction in the servo period at whose start the position was that is
+    /// measured now, mm/s.
+    pub(super) fn friction_mm_s(&self) -> [f64; N] {
         core::array::from_fn(|i| {
             let axis = &self.axes[i];
-            let speed_rad_s = axis.rad_per_mm * (after[i] - here[i]) / servo_s;
-            let [sign] = tanh([speed_rad_s / axis.coulomb_smoothing_rad_s]);
-            self.gains.friction * axis.coulomb_friction_nm * sign / (axis.kv_nm_s_per_rad * axis.rad_per_mm)
+            // A float that is not a number saturates to zero here.
+            let age = libm::round(axis.late_s() / axis.law().periods.servo_s) as usize;
+            let of_axes = self.friction_mm_s.get(age.min(KEPT_PERIODS - 1)).unwrap_or(&[0.0; N]);
+            of_axes[i]
         })
     }
 }
@@ -127,21 +113,22 @@ impl<const N: usize> Controller<N> for Feedforward<N> {
         Schedule { servo_periods: 1, preview: self.preview }
     }
 
-    fn reset(&mut self) {}
+    fn reset(&mut self) {
+        self.axes.iter_mut().for_each(AxisInverse::reset);
+        self.friction_mm_s = [[0.0; N]; KEPT_PERIODS];
+    }
 
     /// The offset of the next servo period; that of this one is already under way.
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
-        let servo_s = window.servo_s();
-        let next_s = window.tau_s + window.feed_period_s;
-        let reference =
-            [-1.0, 0.0, 1.0, 2.0].map(|periods: f64| window.preview.at(next_s + periods * servo_s).position_mm);
-        Command::straight(1.0, self.lead_mm(reference, window.offset_mm, servo_s))
+        self.command_against(window, [0.0; N])
     }
 }
 
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+    use crate::activation::tanh;
+    use crate::axis::{AxisLaw, Parameters, Periods};
     use crate::contour_error::ContourError;
     use crate::vector::add_scaled;
     use crate::window::{Knot, KnotSource, Preview, Register};
@@ -202,9 +189,15 @@ pub(super) mod tests {
         }
     }
 
+    /// An axis that is nothing beside, whose mechanics period is a thousandth of the servo period.
+    pub(in super::super) fn inverse(axis: Parameters) -> AxisInverse {
+        let periods = Periods { servo_s: SERVO_S, mechanics_s: 1e-3 * SERVO_S, mechanics_per_servo: 1000 };
+        AxisInverse::plain(AxisLaw::new(axis, periods))
+    }
+
     /// Following error along the parabola at the end of a second, mm; the mechanics in steps of 1 us.
     fn error_mm(axis: &Parameters, gains: Gains) -> f64 {
-        let mut controller = Feedforward::new([*axis; 2], gains, SERVO_S);
+        let mut controller = Feedforward::new([inverse(*axis); 2], [gains; 2]);
         let (mut angle_rad, mut speed_rad_s, mut last_rad) = (0.0, 0.0, 0.0);
         let step_s = 1e-3 * SERVO_S;
         commands(&mut Parabola, &mut controller, SERVO_S, |_, command_mm| {

@@ -81,7 +81,7 @@ impl Shaper {
     }
 }
 
-/// Input shaping in front of feedforward; keeps nothing between ticks.
+/// Input shaping in front of feedforward.
 #[derive(Debug, Clone)]
 pub struct InputShaping<const N: usize> {
     feedforward: Feedforward<N>,
@@ -105,16 +105,18 @@ impl<const N: usize> Controller<N> for InputShaping<N> {
         Schedule { servo_periods: 1, preview: self.preview }
     }
 
-    fn reset(&mut self) {}
+    fn reset(&mut self) {
+        self.feedforward.reset();
+    }
 
     /// The command of the next servo period leads the shaped reference as feedforward alone leads the path.
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
-        let (servo_s, next_s) = (window.servo_s(), window.tau_s + window.feed_period_s);
-        let shaped = |tau_s: f64| self.shaper.at(window.preview, tau_s);
-        let reference_mm = [-1.0, 0.0, 1.0, 2.0].map(|periods: f64| shaped(next_s + periods * servo_s));
+        let next_s = window.tau_s + window.feed_period_s;
+        let shaper = self.shaper;
+        let shaped = |tau_s: f64| shaper.at(window.preview, tau_s);
         let beside_mm = |tau_s: f64| sub(shaped(tau_s), window.preview.at(tau_s).position_mm);
         let last_mm = sub(window.offset_mm, beside_mm(window.tau_s));
-        let lead_mm = self.feedforward.lead_mm(reference_mm, last_mm, servo_s);
+        let lead_mm = self.feedforward.lead_mm(|after_s| shaped(next_s + after_s), last_mm, [0.0; N]);
         Command::straight(1.0, add_scaled(lead_mm, 1.0, beside_mm(next_s)))
     }
 }
@@ -122,11 +124,12 @@ impl<const N: usize> Controller<N> for InputShaping<N> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::axis::inverse::Gains;
     use crate::controller::contour_compensation::tests::Circle;
-    use crate::controller::feedforward::Gains;
-    use crate::controller::feedforward::tests::{axis, commands};
+    use crate::controller::cross_coupled::tests::Line;
+    use crate::controller::feedforward::tests::{axis, commands, inverse};
     use crate::vector::norm;
-    use crate::window::{Knot, KnotSource};
+    use crate::window::KnotSource;
 
     const SERVO_S: f64 = 0.001;
 
@@ -168,17 +171,8 @@ mod tests {
     fn shaped(path: &mut dyn KnotSource<2>, settings: &Settings, each: impl FnMut(usize, [f64; 2])) {
         let nothing = Gains { velocity: 0.0, acceleration: 0.0, friction: 0.0 };
         let mut controller =
-            InputShaping::new(Feedforward::new([axis(0.02, 0.2); 2], nothing, SERVO_S), settings, SERVO_S);
+            InputShaping::new(Feedforward::new([inverse(axis(0.02, 0.2)); 2], [nothing; 2]), settings, SERVO_S);
         commands(path, &mut controller, SERVO_S, each);
-    }
-
-    /// Along x at 50 mm/s.
-    struct Line;
-
-    impl KnotSource<2> for Line {
-        fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
-        }
     }
 
     #[test]

@@ -72,18 +72,19 @@ impl<A: Controller<N>, B: Controller<N>, const N: usize> Controller<N> for Sum<A
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::axis::inverse::Gains;
     use crate::controller::contour_compensation::tests::Circle;
-    use crate::controller::cross_coupled::tests::cut;
+    use crate::controller::cross_coupled::tests::{Line, cut};
     use crate::controller::cross_coupled::{CrossCoupled, Settings};
-    use crate::controller::feedforward::tests::{axis, commands};
-    use crate::controller::feedforward::{Feedforward, Gains};
+    use crate::controller::feedforward::Feedforward;
+    use crate::controller::feedforward::tests::{axis, commands, inverse};
     use crate::vector::norm;
-    use crate::window::{Knot, KnotSource};
+    use crate::window::KnotSource;
 
     const SERVO_S: f64 = 0.001;
 
     fn feedforward(gains: Gains, kd: f64) -> Feedforward<2> {
-        Feedforward::new([axis(kd, 0.2); 2], gains, SERVO_S)
+        Feedforward::new([inverse(axis(kd, 0.2)); 2], [gains; 2])
     }
 
     #[test]
@@ -114,15 +115,6 @@ mod tests {
 
         fn command(&mut self, _: &Window<'_, 2>, _: &Measured<2>) -> Command<2> {
             Command::straight(1.0, [1.0, 0.0])
-        }
-    }
-
-    /// Along x at 50 mm/s.
-    struct Line;
-
-    impl KnotSource<2> for Line {
-        fn knot(&mut self, tau_s: f64) -> Knot<2> {
-            Knot { position_mm: [50.0 * tau_s, 0.0], tangent: [1.0, 0.0], feed_mm_s: 50.0, cutting: true }
         }
     }
 

@@ -25,7 +25,7 @@ use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 use super::parameters::{Parameter, number};
 
 /// Part of the error that a lap takes up.
-pub const GAIN: Parameter = number(
+const GAIN: Parameter = number(
     "gain",
     Settings::DEFAULT.gain,
     [0.0, 2.0],
@@ -33,7 +33,7 @@ pub const GAIN: Parameter = number(
     "part of the error that a lap takes up: 0 learns nothing, 2 swings from lap to lap",
 );
 /// Time by which an offset comes before the error that it is for.
-pub const LEAD_S: Parameter = number(
+const LEAD_S: Parameter = number(
     "lead_s",
     Settings::DEFAULT.lead_s,
     [0.0, 0.5],
@@ -41,13 +41,15 @@ pub const LEAD_S: Parameter = number(
     "time by which an offset comes before the error that it is for: the lag of the loop",
 );
 /// Cut-off of Q.
-pub const CUT_OFF_HZ: Parameter = number(
+const CUT_OFF_HZ: Parameter = number(
     "cut-off_hz",
     Settings::DEFAULT.cut_off_hz,
     [0.1, 1e4],
     Some([2.0, 100.0]),
     "frequency above which nothing is learned: beyond the bandwidth of the loop, learning grows noise",
 );
+/// Of every row, whatever its laps.
+pub const PARAMETERS: [Parameter; 3] = [GAIN, LEAD_S, CUT_OFF_HZ];
 
 /// The end of a program is followed until the tool has arrived; its errors are learned for as long, s.
 const ARRIVAL_S: f64 = 0.25;

@@ -1,13 +1,14 @@
 //! How each controller of the table is made from what is known of a machine, and from a model: one function for each row, or for
 //! several that differ in their laps alone.
 
-use feedwright_control::axis::{self, AxisState, Parameters};
+use feedwright_control::axis::inverse::{AxisInverse, Gains};
+use feedwright_control::axis::{AxisLaw, AxisState, Parameters};
 use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
 use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
 use feedwright_control::controller::cross_coupled_feedrate::{self, CrossCoupledFeedrate};
 use feedwright_control::controller::disturbance_observer;
-use feedwright_control::controller::disturbance_rejection::{DisturbanceRejection, ObservedAxis};
-use feedwright_control::controller::feedforward::{Feedforward, Gains};
+use feedwright_control::controller::disturbance_rejection::{DisturbanceRejection, ObservedAxis, ObservedDrive};
+use feedwright_control::controller::feedforward::Feedforward;
 use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
 use feedwright_control::controller::input_shaping::{self, InputShaping};
 use feedwright_control::controller::inverting;
@@ -21,6 +22,7 @@ use feedwright_control::{Controller, horizon, inversion};
 
 use super::Setup;
 use super::iterative_learning::{self, IterativeLearning};
+use super::lqg_preview::{self, LqgPreview};
 use super::model_predictive::{self, ModelPredictive};
 use super::parameters::Values;
 use crate::machine::{Known, KnownAxis, Period};
@@ -75,10 +77,19 @@ fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedf
     feedforward_with(setup, Gains { velocity, acceleration, friction })
 }
 
-/// The part of it that controls have as they are delivered.
-pub(super) fn feedforward_as_delivered<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedforward<N> {
+/// The part of it that controls have as they are delivered: it is set by the inertia and the gains of the loops, and knows of no
+/// delay, integral or filter. A drive that feeds forward by itself was delivered with that, and gets no more: there this is open loop.
+pub(super) fn feedforward_as_delivered<const N: usize>(
+    setup: &mut Setup<'_>,
+    values: &Values,
+) -> Box<dyn Controller<N>> {
     let [velocity, acceleration] = ["velocity_gain", "acceleration_gain"].map(|name| values.number(name));
-    feedforward_with(setup, Gains { velocity, acceleration, friction: 0.0 })
+    let axes = setup.known.law().map(AxisInverse::plain);
+    let gains = setup.known.axes::<N>().map(|KnownAxis { drive, .. }| {
+        let feeds_forward = drive.velocity_feedforward > 0.0 || drive.acceleration_feedforward > 0.0;
+        if feeds_forward { Gains::NONE } else { Gains { velocity, acceleration, friction: 0.0 } }
+    });
+    Box::new(Feedforward::<N>::new(axes, gains))
 }
 
 pub(super) fn feedforward_cross_coupled<const N: usize>(
@@ -90,15 +101,7 @@ pub(super) fn feedforward_cross_coupled<const N: usize>(
 
 /// Feedforward of so much of each part.
 fn feedforward_with<const N: usize>(setup: &Setup<'_>, gains: Gains) -> Feedforward<N> {
-    let Period { servo_s, mechanics_s, .. } = setup.known.period;
-    let axes = setup.known.axes().map(|axis| {
-        let parameters = axis.nominal;
-        // The speed loop answers to the speed at the start of a mechanics period, and so damps less than one without
-        // delay by so much inertia.
-        let early_nm_s = parameters.kv_nm_s_per_rad + parameters.viscous_friction_nm_s;
-        Parameters { inertia_kg_m2: parameters.inertia_kg_m2 - early_nm_s * mechanics_s, ..parameters }
-    });
-    Feedforward::new(axes, gains, servo_s)
+    Feedforward::new(setup.known.inverse(), [gains; N])
 }
 
 pub(super) fn input_shaping<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
@@ -157,16 +160,23 @@ pub(super) fn kalman_disturbance<const N: usize>(setup: &mut Setup<'_>, values: 
 fn observed_axes<const N: usize>(known: &Known, gains: impl Fn(&SampledAxis) -> [f64; 3]) -> [ObservedAxis; N] {
     let axes: [SampledAxis; N] = sampled_axes(known, [1.0; 2]);
     std::array::from_fn(|i| {
-        let nominal = known.axis(i).nominal;
+        let KnownAxis { nominal, drive, delays, .. } = *known.axis(i);
         let limit_mm_s = nominal.torque_limit_nm / (nominal.kv_nm_s_per_rad * nominal.rad_per_mm);
-        ObservedAxis { axis: axes[i], limit_mm_s, gains: gains(&axes[i]) }
+        let fed_nm_s2 = drive.acceleration_feedforward * nominal.inertia_kg_m2;
+        let drive = ObservedDrive {
+            velocity_feedforward: drive.velocity_feedforward,
+            torque_1_s: fed_nm_s2 / (nominal.kv_nm_s_per_rad * known.period.servo_s * known.period.servo_s),
+            speed_integral_s: drive.speed_integral_s,
+            delay_s: delays.drive_s + delays.measurement_s,
+        };
+        ObservedAxis { axis: axes[i], drive, limit_mm_s, gains: gains(&axes[i]) }
     })
 }
 
 /// The linear part of an axis over one servo period, as the plant integrates it.
 fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
     let linear = Parameters { torque_limit_nm: f64::INFINITY, coulomb_friction_nm: 0.0, ..*axis };
-    let law = axis::AxisLaw::new(linear, period.periods());
+    let law = AxisLaw::new(linear, period.periods());
     let over = |speed_rad_s: f64, reference_rad_s: f64| {
         let mut state = AxisState { speed_rad_s, ..AxisState::default() };
         for _ in 0..period.mechanics_per_servo {
@@ -185,6 +195,11 @@ pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &V
     horizon.limits = correction_limits(&setup.known);
     let servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
     Box::new(ModelPredictive::new(&setup.known, model_predictive::Settings { servo_periods, horizon }))
+}
+
+pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let settings = lqg_preview::Settings { price_s2: values.number("price_s2") };
+    Box::new(LqgPreview::new(&setup.known, setup.statistics::<N>(), settings))
 }
 
 pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {

@@ -1,12 +1,13 @@
 //! Parameters that rows of the table have in common, and long ones: ranges, defaults, reasons.
 
-use feedwright_control::controller::feedforward::Gains;
+use feedwright_control::axis::inverse::Gains;
 use feedwright_control::controller::inverting::{self, Settings as Inverting};
 use feedwright_control::controller::kalman_disturbance::AxisNoise;
 use feedwright_control::controller::receding_horizon::Settings as Horizon;
 use feedwright_control::controller::{cross_coupled, cross_coupled_feedrate, input_shaping, receding_horizon};
 use feedwright_control::horizon::MAX_KNOTS;
 
+use super::lqg_preview;
 use super::parameters::{Parameter, number, switch, whole};
 
 // Of those that invert the paper's identifier.
@@ -40,6 +41,14 @@ pub(super) const LEARNING_STEP: Parameter = number(
     [0.0, 0.5],
     None,
     "step of back-propagation while cutting: 0 keeps what was trained, large ones forget it",
+);
+// Of the limit.
+pub(super) const PRICE: Parameter = number(
+    "price_s2",
+    lqg_preview::Settings::DEFAULT.price_s2,
+    [1e-12, 1e-2],
+    Some([1e-11, 1e-5]),
+    "price of the reference speed beside the error: low rings between servo periods, high leaves the error as it is",
 );
 // Of those that plan over a horizon.
 pub(super) const RATE_WEIGHT: Parameter = number(

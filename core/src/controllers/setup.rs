@@ -14,7 +14,7 @@ use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
 use crate::identify::contour::Training;
 use crate::identify::{Excitation, cache, servo};
-use crate::machine::{Known, Machine};
+use crate::machine::{AxisStatistics, Known, Machine};
 use crate::model::{Model, Origin, name};
 
 /// What a controller is made from.
@@ -160,6 +160,11 @@ impl<'a> Setup<'a> {
         }
     }
 
+    /// What is true of the machine beside: for the limit alone.
+    pub(super) fn statistics<const N: usize>(&self) -> [AxisStatistics; N] {
+        self.machine.statistics()
+    }
+
     /// Takes a model in place of a training, of the controller that is made next.
     ///
     /// # Errors
@@ -248,7 +253,7 @@ mod tests {
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let mut other = machine.clone();
         for axis in &mut other.axes {
-            (axis.disturbance_hz, axis.encoder_step_um, axis.drive_delay_s) = (3.0, 5.0, 0.004);
+            (axis.disturbance_hz, axis.encoder_step_um, axis.cogging_nm) = (3.0, 5.0, 0.1);
             (axis.torque_bits, axis.transmission) = (Some(9), Some(Default::default()));
         }
         assert!(other != machine && other.known() == machine.known());

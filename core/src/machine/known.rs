@@ -1,13 +1,14 @@
 //! What may be known of a machine before it is identified: what its control is set to, and what its maker says of its axes.
 //!
 //! Controllers are made from this and from a trained model, never from a [`Machine`]. What is true of a simulated machine alone is
-//! not here: encoder, latencies, steps of the drive, ball screw, cogging and ripple, geometry, noise, phase and frequency of the
+//! not here: encoder, jitter, steps of the drive, ball screw, cogging and ripple, geometry, noise, phase and frequency of the
 //! disturbance.
 
 use std::f64::consts::TAU;
 
 use feedwright_control::axis::drive::DriveParameters;
 use feedwright_control::axis::friction::FrictionParameters;
+use feedwright_control::axis::inverse::{AxisInverse, LoopDelays};
 use feedwright_control::axis::{self, Parameters};
 
 use super::{Limits, Machine, Period};
@@ -33,6 +34,8 @@ pub struct KnownAxis {
     pub drive: DriveParameters,
     /// What the data sheets say of friction beside.
     pub friction: FrictionParameters,
+    /// How late the bus and the encoder are; a manual has both.
+    pub delays: LoopDelays,
     /// Acceleration that a correction may add to the plan's, mm/s2.
     pub correction_accel_mm_s2: f64,
     /// Torque that is left for acceleration, N m: less friction, and less what the load takes at the most. The amplitude of a load
@@ -73,6 +76,15 @@ impl Known {
     pub fn law<const N: usize>(&self) -> [axis::AxisLaw; N] {
         std::array::from_fn(|i| axis::AxisLaw::new(self.axis(i).nominal, self.period.periods()))
     }
+
+    /// The inverse of the first N axes, with all that is known of them.
+    pub fn inverse<const N: usize>(&self) -> [AxisInverse; N] {
+        let laws = self.law::<N>();
+        std::array::from_fn(|i| {
+            let axis = self.axis(i);
+            AxisInverse::new(laws[i], axis.drive, axis.friction, axis.delays)
+        })
+    }
 }
 
 impl KnownAxis {
@@ -90,6 +102,7 @@ impl Machine {
             nominal: axis.parameters(),
             drive: axis.drive(),
             friction: axis.friction(),
+            delays: LoopDelays { drive_s: axis.drive_delay_s, measurement_s: axis.measurement_delay_s },
             correction_accel_mm_s2: self.correction_accel_mm_s2(i),
             spare_torque_nm: (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0),
         };

@@ -1,0 +1,309 @@
+//! The law of an axis, solved for the command: by how much it has to lead a motion, so that the axis is on it.
+//!
+//! In the servo period that begins at m Ts the command c(m) = r(m) + o(m) makes the reference speed and the torque that act from
+//! m Ts + d on, for a period; d is the delay of the drive. A motor that is on the reference r at both ends of that time has the mean
+//! speed w = (r(m+1) - r(m)) / Ts and the mean acceleration a, the change of the central differences (r(m+1) - r(m-1)) / 2 Ts, each
+//! taken d later. The speed loop sees w - a dt, because it answers at the end of each mechanics period to the speed at its start.
+//! What the loops do not ask for by themselves where o = 0 is missing:
+//!
+//! ```text
+//! M_w = g_v (w - kp (r - y) - kd (r - y)' - fv r') - g_a a dt                        reference speed
+//! M_t = [ g_a (J a - B a dt - fa J r'') + g_v B w + g_f F + L ] / Kv                 torque, as a reference speed
+//! ```
+//!
+//! with y = r a measurement delay ago, primes for backward differences over Ts, F the mean of the friction along the motion, and L a
+//! load that is known. The mean of the speed loop over the period, with i the integral, gives the lead:
+//!
+//! ```text
+//! s      = kp o + (kd + fv) (o - o1) / Ts - M_w            what is asked for beyond what is needed
+//! M_t    = s + i + s (Ts + dt) / 2 Ti + fa J (o - 2 o1 + o2) / (Kv Ts^2)
+//! i'     = i + s Ts / Ti
+//! ```
+//!
+//! which is linear in o; o1 and o2 are the leads one and two periods before. It is a stable recursion: its poles are those of the
+//! position loop's own derivative and feedforward, and 1 - Ts / Ti. For a P speed loop without any of the rest it is
+//! `o = (M_w + M_t + kd o1 / Ts) / (kp + kd / Ts)`. The torque filter makes the torque late by its time constant: accelerations
+//! and friction are taken so much ahead.
+//!
+//! What is linear adds up: leads of parts (velocity alone, friction alone) sum to that of all, each with an integral of its own.
+//!
+//! Symbols: r reference, o lead, mm; J inertia; B viscous friction; Kv, Ti speed loop; fv, fa feedforward of the drive; g gains of the
+//! parts, 1 being all of it; the others as in [`super`] and [`super::drive`].
+//!
+//! Source: Masory (1986), "Improving contouring accuracy of NC/CNC systems with additional velocity feed forward loop", for
+//! the inverse of the loop; friction stepped along the reference as in Armstrong-Hélouvry, Dupont and Canudas de Wit (1994), "A survey
+//! of models, analysis tools and compensation methods for the control of machines with friction".
+//!
+//! Departures: torque limit and speed limit bound nothing here but the integral: a motion that needs more is not planned.
+
+use super::AxisLaw;
+use super::drive::DriveParameters;
+use super::friction::{FrictionLaw, FrictionParameters};
+use crate::activation::tanh;
+use crate::vector::bounded;
+
+/// Steps in a servo period along which friction that has a memory is taken: at 0.1 ms the breakaway over 10 um at 50 mm/s is two steps.
+const FRICTION_STEPS: u32 = 10;
+
+/// How late what goes to the drive and what comes from the encoder is, s.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct LoopDelays {
+    /// From the position loop to the speed loop.
+    pub drive_s: f64,
+    /// From the encoder to the position loop.
+    pub measurement_s: f64,
+}
+
+/// How much of each part is fed forward; 1 is the exact model.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Gains {
+    /// Of what grows with the speed.
+    pub velocity: f64,
+    /// Of what grows with the acceleration.
+    pub acceleration: f64,
+    /// Of the Coulomb friction.
+    pub friction: f64,
+}
+
+impl Gains {
+    /// The exact model.
+    pub const EXACT: Self = Self { velocity: 1.0, acceleration: 1.0, friction: 1.0 };
+    /// Nothing at all: the axis lags as it does.
+    pub const NONE: Self = Self { velocity: 0.0, acceleration: 0.0, friction: 0.0 };
+}
+
+/// What an axis needs that its loops do not ask for, mm/s of reference speed.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+struct Missing {
+    speed_mm_s: f64,
+    torque_mm_s: f64,
+}
+
+/// Mean speed and acceleration of the reference over a servo period, and its two ends.
+#[derive(Debug, Clone, Copy)]
+struct ReferenceMotion {
+    speed_mm_s: f64,
+    acceleration_mm_s2: f64,
+}
+
+/// The inverse of an axis, with what it remembers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisInverse {
+    law: AxisLaw,
+    drive: DriveParameters,
+    delays: LoopDelays,
+    /// What friction has beside smoothed Coulomb friction.
+    friction: Option<FrictionLaw>,
+    /// By how much the torque filter is late, s.
+    filter_lag_s: f64,
+    /// Friction of the presliding spring, N m.
+    presliding_nm: f64,
+    /// Friction that was last made up for, mm/s of reference speed.
+    friction_mm_s: f64,
+    /// Integral of the speed loop, mm/s of reference speed, before the period that was last asked for, and what was missing in that.
+    integral_mm_s: f64,
+    missing: Missing,
+    /// Lead of the period before that.
+    lead_before_mm: f64,
+}
+
+impl AxisInverse {
+    /// Of an axis.
+    pub fn new(law: AxisLaw, drive: DriveParameters, friction: FrictionParameters, delays: LoopDelays) -> Self {
+        Self {
+            law,
+            drive,
+            delays,
+            friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, friction)),
+            filter_lag_s: drive.filter_lag_s(law.periods.mechanics_s),
+            presliding_nm: 0.0,
+            friction_mm_s: 0.0,
+            integral_mm_s: 0.0,
+            missing: Missing::default(),
+            lead_before_mm: 0.0,
+        }
+    }
+
+    /// Of an axis that has nothing beside its law.
+    pub fn plain(law: AxisLaw) -> Self {
+        Self::new(law, DriveParameters::default(), FrictionParameters::default(), LoopDelays::default())
+    }
+
+    /// The law that it inverts.
+    pub fn law(&self) -> &AxisLaw {
+        &self.law
+    }
+
+    /// At rest.
+    pub fn reset(&mut self) {
+        (self.presliding_nm, self.friction_mm_s, self.integral_mm_s) = (0.0, 0.0, 0.0);
+        (self.missing, self.lead_before_mm) = (Missing::default(), 0.0);
+    }
+
+    /// Time constants of the loops together, s: about by how much the command leads.
+    pub fn lag_s(&self) -> f64 {
+        let parameters = &self.law.parameters;
+        1.0 / parameters.kp_1_s + parameters.inertia_kg_m2 / parameters.kv_nm_s_per_rad
+    }
+
+    /// How far beyond the command of a servo period the motion is looked at, s, but for the differences.
+    pub fn ahead_s(&self) -> f64 {
+        self.delays.drive_s + self.filter_lag_s
+    }
+
+    /// How long after the measured position it was last made up for, a friction acts, s.
+    pub fn late_s(&self) -> f64 {
+        self.ahead_s() + self.delays.measurement_s
+    }
+
+    /// Friction that the last lead makes up for, mm/s of reference speed.
+    pub fn friction_mm_s(&self) -> f64 {
+        self.friction_mm_s
+    }
+
+    /// By how much the command of a servo period has to lead the reference, mm. `at_mm` is the reference so many seconds after its
+    /// beginning, `last_mm` by how much the command really leads in the period before, and `load_mm_s` a load that the drive is to
+    /// carry beside, as a reference speed. To be called once a servo period.
+    #[inline]
+    pub fn lead_mm(&mut self, gains: Gains, at_mm: impl Fn(f64) -> f64, last_mm: f64, load_mm_s: f64) -> f64 {
+        let servo_s = self.law.periods.servo_s;
+        self.take_in(last_mm);
+        let own = self.without_lead(&at_mm);
+        let missing = self.missing(gains, &at_mm, own, load_mm_s);
+        self.missing = missing;
+        let parameters = &self.law.parameters;
+        let change_1_s = (parameters.kd + self.drive.velocity_feedforward) / servo_s;
+        let torque_1_s = self.torque_for_lead_1_s();
+        let [within, _] = self.integral_gains();
+        let needed_mm_s = missing.torque_mm_s - self.integral_mm_s
+            + (1.0 + within) * (missing.speed_mm_s + change_1_s * last_mm)
+            + torque_1_s * (2.0 * last_mm - self.lead_before_mm);
+        self.lead_before_mm = last_mm;
+        needed_mm_s / ((1.0 + within) * (parameters.kp_1_s + change_1_s) + torque_1_s)
+    }
+
+    /// Reference speed, mm/s, with which the speed loop follows the motion over the period in which the reference acts that is sent at
+    /// the beginning of `at_mm`, from an integral and a friction of the presliding spring that are known there, N m.
+    pub fn reference_mm_s(
+        &mut self,
+        at_mm: impl Fn(f64) -> f64,
+        [integral_nm, presliding_nm]: [f64; 2],
+        load_mm_s: f64,
+    ) -> f64 {
+        self.presliding_nm = presliding_nm;
+        let Missing { speed_mm_s, torque_mm_s } = self.missing(Gains::EXACT, &at_mm, [0.0; 2], load_mm_s);
+        let [within, _] = self.integral_gains();
+        let parameters = &self.law.parameters;
+        let integral_mm_s = integral_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
+        speed_mm_s + (torque_mm_s - integral_mm_s) / (1.0 + within)
+    }
+
+    /// What the integral has become in the period that was asked for last, with the lead that it really had.
+    #[inline]
+    fn take_in(&mut self, last_mm: f64) {
+        let [_, over] = self.integral_gains();
+        if over > 0.0 {
+            let Self { law, drive, .. } = self;
+            let change_1_s = (law.parameters.kd + drive.velocity_feedforward) / law.periods.servo_s;
+            let asked_mm_s = law.parameters.kp_1_s * last_mm + change_1_s * (last_mm - self.lead_before_mm);
+            let limit = law.parameters.torque_limit_nm / (law.parameters.kv_nm_s_per_rad * law.parameters.rad_per_mm);
+            let integral_mm_s = self.integral_mm_s + over * (asked_mm_s - self.missing.speed_mm_s);
+            self.integral_mm_s = bounded(integral_mm_s, -limit, limit);
+        }
+    }
+
+    /// What the integral makes of an error of the speed that lasts for a servo period: its mean within, and its end.
+    #[inline]
+    fn integral_gains(&self) -> [f64; 2] {
+        let time_s = self.drive.speed_integral_s;
+        if time_s > 0.0 {
+            let periods = &self.law.periods;
+            [0.5 * (periods.servo_s + periods.mechanics_s) / time_s, periods.servo_s / time_s]
+        } else {
+            [0.0; 2]
+        }
+    }
+
+    /// Torque of the drive's acceleration feedforward for a second difference of the lead, as a reference speed, 1/s.
+    #[inline]
+    fn torque_for_lead_1_s(&self) -> f64 {
+        let (parameters, servo_s) = (&self.law.parameters, self.law.periods.servo_s);
+        let nm_s2 = self.drive.acceleration_feedforward * parameters.inertia_kg_m2;
+        nm_s2 / (parameters.kv_nm_s_per_rad * servo_s * servo_s)
+    }
+
+    #[inline]
+    fn missing(
+        &mut self,
+        gains: Gains,
+        at_mm: &impl Fn(f64) -> f64,
+        [asked_mm_s, fed_nm_s]: [f64; 2],
+        load_mm_s: f64,
+    ) -> Missing {
+        let (parameters, mechanics_s) = (self.law.parameters, self.law.periods.mechanics_s);
+        let turning = self.motion(at_mm, self.delays.drive_s);
+        let torque = if self.filter_lag_s > 0.0 { self.motion(at_mm, self.ahead_s()) } else { turning };
+        let early_mm_s = gains.acceleration * mechanics_s * turning.acceleration_mm_s2;
+        let inertia_kg_m2 = parameters.inertia_kg_m2 - parameters.viscous_friction_nm_s * mechanics_s;
+        self.friction_mm_s =
+            gains.friction * self.friction_nm(torque) / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);
+        let linear = gains.acceleration * (inertia_kg_m2 * torque.acceleration_mm_s2 - fed_nm_s)
+            + gains.velocity * parameters.viscous_friction_nm_s * torque.speed_mm_s;
+        Missing {
+            speed_mm_s: gains.velocity * (turning.speed_mm_s - asked_mm_s) - early_mm_s,
+            torque_mm_s: linear / parameters.kv_nm_s_per_rad + self.friction_mm_s + load_mm_s,
+        }
+    }
+
+    #[inline]
+    fn motion(&self, at_mm: &impl Fn(f64) -> f64, after_s: f64) -> ReferenceMotion {
+        let servo_s = self.law.periods.servo_s;
+        let [before, here, after, beyond] = [-1.0, 0.0, 1.0, 2.0].map(|n: f64| at_mm(after_s + n * servo_s));
+        ReferenceMotion {
+            speed_mm_s: (after - here) / servo_s,
+            acceleration_mm_s2: ((beyond - here) - (after - before)) / (2.0 * servo_s * servo_s),
+        }
+    }
+
+    /// What the loops ask for where the command is the reference: reference speed, mm/s, and torque for a rad/mm, N m s.
+    #[inline]
+    fn without_lead(&self, at_mm: &impl Fn(f64) -> f64) -> [f64; 2] {
+        let servo_s = self.law.periods.servo_s;
+        let DriveParameters { velocity_feedforward, acceleration_feedforward, .. } = self.drive;
+        let late_s = self.delays.measurement_s;
+        let (mut asked_mm_s, mut fed_nm_s) = (0.0, 0.0);
+        if late_s > 0.0 {
+            let [here_mm, before_mm] = [0.0, -servo_s].map(|after_s| at_mm(after_s) - at_mm(after_s - late_s));
+            asked_mm_s +=
+                self.law.parameters.kp_1_s * here_mm + self.law.parameters.kd * (here_mm - before_mm) / servo_s;
+        }
+        if velocity_feedforward > 0.0 || acceleration_feedforward > 0.0 {
+            let [here, before, earlier] = [0.0, -1.0, -2.0].map(|n: f64| at_mm(n * servo_s));
+            let (now_mm, last_mm) = (here - before, before - earlier);
+            asked_mm_s += velocity_feedforward * now_mm / servo_s;
+            let inertia_kg_m2 = acceleration_feedforward * self.law.parameters.inertia_kg_m2;
+            fed_nm_s = inertia_kg_m2 * (now_mm - last_mm) / (servo_s * servo_s);
+        }
+        [asked_mm_s, fed_nm_s]
+    }
+
+    /// Mean of the friction without its viscous part over a servo period of the motion, N m.
+    #[inline]
+    fn friction_nm(&mut self, motion: ReferenceMotion) -> f64 {
+        let (parameters, servo_s) = (&self.law.parameters, self.law.periods.servo_s);
+        let speed_rad_s = parameters.rad_per_mm * motion.speed_mm_s;
+        let Some(friction) = &self.friction else {
+            let [sign] = tanh([speed_rad_s / parameters.coulomb_smoothing_rad_s]);
+            return parameters.coulomb_friction_nm * sign;
+        };
+        let acceleration_rad_s2 = parameters.rad_per_mm * motion.acceleration_mm_s2;
+        let step_s = servo_s / f64::from(FRICTION_STEPS);
+        let mut sum_nm = 0.0;
+        for step in 0..FRICTION_STEPS {
+            let from_middle_s = (f64::from(step) + 0.5) * step_s - 0.5 * servo_s;
+            let at_rad_s = speed_rad_s + acceleration_rad_s2 * from_middle_s;
+            sum_nm += friction.along_nm(at_rad_s, step_s, &mut self.presliding_nm);
+        }
+        sum_nm / f64::from(FRICTION_STEPS)
+    }
+}

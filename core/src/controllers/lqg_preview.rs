@@ -1,0 +1,222 @@
+//! The limit: linear-quadratic-Gaussian control with preview, by everything that can be known of the machine.
+//!
+//! ```text
+//! v = v_r - G (x - x_r)        x by a Kalman filter, G of a linear-quadratic regulator, v_r the exact inverse along the reference ahead
+//! ```
+//!
+//! It knows what the peers know, and the statistics of the noise, the amplitude, the frequency and the wandering of the disturbance,
+//! cogging and interpolation error with their phases; the random numbers, and the phase of the disturbance, it does not. It decides in
+//! every servo period, within it. Nobody has all this: it says how much of an error nobody can take away.
+//!
+//! What acts at the motor is the reference speed v of the speed loop: the command is solved for it, with the position that is measured,
+//! so that noise goes through the position loop only as far as the filter lets it. v_r carries friction (stepped from where it is
+//! estimated to be), cogging, the integral of the speed loop, and what the reference needs, [`AxisInverse::reference_mm_s`]. The regulator
+//! is that of the axis without integral and filter; the loads that the filter finds are among its states. Ripple is in the estimate
+//! and not in v_r. A ball screw is not known: on `soft` the regulator, as fast as it is, excites it, and the tool is lost.
+//!
+//! | File | What |
+//! |---|---|
+//! | `lqg_preview/riccati.rs` | the gains |
+//! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
+//! | `lqg_preview/estimate.rs` | the filter |
+//!
+//! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),
+//! "On the optimal digital state vector feedback controller with integral and preview actions".
+//!
+//! Departures: the part of the preview is the inverse of the known law, with which a reference is followed at no cost.
+
+mod riccati;
+mod linear;
+mod estimate;
+
+use feedwright_control::axis::AxisState;
+use feedwright_control::axis::drive::{DriveParameters, DriveReference, DriveState};
+use feedwright_control::axis::inverse::AxisInverse;
+use feedwright_control::controller::feedforward::preview;
+use feedwright_control::vector::norm;
+use feedwright_control::{Command, Controller, Measured, Schedule, Window};
+
+use crate::machine::{AxisStatistics, Known};
+use estimate::{AxisModel, Estimate, NOTHING_SENT, Sent};
+use linear::Linear;
+
+/// Servo periods beyond the command that the inverse looks at.
+const DIFFERENCES: f64 = 3.0;
+
+/// Settings of the controller.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Price of the reference speed beside the error of the position, s^2.
+    pub price_s2: f64,
+}
+
+impl Settings {
+    /// A tenth of the travel of a servo period, squared.
+    pub const DEFAULT: Self = Self { price_s2: 1e-8 };
+}
+
+/// Linear-quadratic-Gaussian control with preview.
+#[derive(Debug, Clone)]
+pub struct LqgPreview<const N: usize> {
+    axes: [AxisLqg; N],
+    preview: u32,
+}
+
+impl<const N: usize> LqgPreview<N> {
+    /// For a machine of which all this is known.
+    pub fn new(known: &Known, statistics: [AxisStatistics; N], settings: Settings) -> Self {
+        let inverse = known.inverse::<N>();
+        let servo_s = known.period.servo_s;
+        let lead_s = inverse.iter().map(|axis| axis.lag_s() + axis.ahead_s()).fold(0.0, f64::max);
+        let axes = std::array::from_fn(|i| {
+            let law = *inverse[i].law();
+            let regulated = Linear::new(&law, &DriveParameters::default(), &statistics[i]);
+            let (states, input, _) = regulated.sampled();
+            AxisLqg {
+                model: AxisModel::new(law, known.axis(i), statistics[i]),
+                inverse: inverse[i],
+                gains: riccati::regulator(&states, &input, &regulated.cost(settings.price_s2)),
+                drive_s: known.axis(i).delays.drive_s,
+                state: None,
+            }
+        });
+        Self { axes, preview: preview(lead_s, servo_s) + DIFFERENCES as u32 }
+    }
+}
+
+impl<const N: usize> Controller<N> for LqgPreview<N> {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: 1, preview: self.preview }
+    }
+
+    fn acts_at_once(&self) -> bool {
+        true
+    }
+
+    fn reset(&mut self) {
+        self.axes.iter_mut().for_each(|axis| axis.state = None);
+    }
+
+    /// Without a position it begins anew: what the tool does meanwhile nobody knows.
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        let position_mm = measured.map(|measured| measured.position_mm).filter(|mm| norm(*mm).is_finite());
+        let Some(position_mm) = position_mm else {
+            self.reset();
+            return;
+        };
+        for (i, axis) in self.axes.iter_mut().enumerate() {
+            axis.observe(window.offset_mm[i], position_mm[i]);
+        }
+    }
+
+    fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
+        let here_mm = window.now().position_mm;
+        let offset_mm = std::array::from_fn(|i| {
+            let at_mm = |after_s: f64| window.preview.at(window.tau_s + after_s).position_mm[i];
+            self.axes[i].offset_mm(here_mm[i], at_mm)
+        });
+        Command::straight(1.0, offset_mm)
+    }
+}
+
+/// An axis, its gains, and what it remembers.
+#[derive(Debug, Clone)]
+struct AxisLqg {
+    model: AxisModel,
+    inverse: AxisInverse,
+    /// Of the regulator.
+    gains: [f64; linear::STATES],
+    drive_s: f64,
+    state: Option<Running>,
+}
+
+/// What an axis remembers while it runs.
+#[derive(Debug, Clone, Copy)]
+struct Running {
+    estimate: Estimate,
+    sent: Sent,
+    /// The position loop as it is in the control.
+    position_loop: (AxisState, DriveState),
+    /// What is measured now, rad.
+    measured_rad: f64,
+    /// Where the reference was at the last decision, mm; the command was an offset beside it.
+    reference_mm: Option<f64>,
+}
+
+impl AxisLqg {
+    /// What was commanded in the last servo period, as an offset from the reference, has led to this position.
+    fn observe(&mut self, offset_mm: f64, position_mm: f64) {
+        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let measured_rad = position_mm * rad_per_mm;
+        let running = self.state.get_or_insert_with(|| Running {
+            estimate: AxisModel::at_rest(measured_rad),
+            sent: NOTHING_SENT,
+            position_loop: Default::default(),
+            measured_rad,
+            reference_mm: None,
+        });
+        if let Some(reference_mm) = running.reference_mm {
+            let (axis, drive) = &mut running.position_loop;
+            axis.angle_rad = running.measured_rad;
+            let command_rad = (reference_mm + offset_mm) * rad_per_mm;
+            let law = &self.model.law;
+            let reference = self.model.drive.position_loop(law, command_rad, running.measured_rad, axis, drive);
+            running.sent.rotate_right(1);
+            running.sent[0] = reference;
+            self.model.correct(&mut running.estimate, &running.sent, measured_rad);
+        }
+        running.measured_rad = measured_rad;
+    }
+
+    /// The offset of the command in this servo period; `at_mm` is the reference so many seconds from its start.
+    fn offset_mm(&mut self, here_mm: f64, at_mm: impl Fn(f64) -> f64) -> f64 {
+        let Some(running) = &mut self.state else { return 0.0 };
+        running.reference_mm = Some(here_mm);
+        let ahead = self.model.ahead(&running.estimate, &running.sent);
+        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let inner = [ahead.drive.integral_nm(), ahead.presliding_nm];
+        let load_mm_s = self.cogging_mm_s(&at_mm);
+        let reference_mm_s = self.inverse.reference_mm_s(&at_mm, inner, load_mm_s);
+        let wanted_rad_s = reference_mm_s * rad_per_mm - riccati::inner(&self.gains, &self.off(&ahead, &at_mm));
+        self.solved_mm(here_mm, wanted_rad_s)
+    }
+
+    /// By how much the axis is off the reference when what is sent now begins to act, and what acts on it.
+    fn off(&self, ahead: &Estimate, at_mm: &impl Fn(f64) -> f64) -> [f64; linear::STATES] {
+        let (rad_per_mm, periods) = (self.model.law.parameters.rad_per_mm, self.model.law.periods);
+        let servo_s = periods.servo_s;
+        let [before_mm, there_mm, after_mm] = [-1.0, 0.0, 1.0].map(|n: f64| at_mm(self.drive_s + n * servo_s));
+        // The speed of the law is that of the mechanics period that has ended: half of one ago.
+        let change_mm = (after_mm - there_mm) - (there_mm - before_mm);
+        let late_mm_s = 0.5 * periods.mechanics_s * change_mm / (servo_s * servo_s);
+        let there_mm_s = (after_mm - before_mm) / (2.0 * servo_s) - late_mm_s;
+        let off_rad = ahead.axis.angle_rad - there_mm * rad_per_mm;
+        let off_rad_s = ahead.axis.speed_rad_s - there_mm_s * rad_per_mm;
+        let [broadband, disturbance, quadrature, drift] = ahead.acting_nm;
+        [off_rad, off_rad_s, 0.0, 0.0, broadband, disturbance, quadrature, drift]
+    }
+
+    /// What cogging takes along the reference in the period in which what is sent now acts, mm/s of reference speed; by Simpson's rule.
+    fn cogging_mm_s(&self, at_mm: &impl Fn(f64) -> f64) -> f64 {
+        let (parameters, servo_s) = (self.model.law.parameters, self.model.law.periods.servo_s);
+        let cogging_nm = |n: f64| self.model.cogging_nm(at_mm(self.drive_s + n * servo_s) * parameters.rad_per_mm);
+        let mean_nm = (cogging_nm(0.0) + 4.0 * cogging_nm(0.5) + cogging_nm(1.0)) / 6.0;
+        -mean_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm)
+    }
+
+    /// The offset with which the position loop asks for a reference speed; torque beside it counts as that.
+    fn solved_mm(&self, here_mm: f64, wanted_rad_s: f64) -> f64 {
+        let (law, parameters) = (&self.model.law, self.model.law.parameters);
+        let Some(running) = &self.state else { return 0.0 };
+        let asked = |command_mm: f64| {
+            let (mut axis, mut drive) = running.position_loop;
+            let command_rad = command_mm * parameters.rad_per_mm;
+            let DriveReference { speed_rad_s, torque_nm } =
+                self.model.drive.position_loop(law, command_rad, running.measured_rad, &mut axis, &mut drive);
+            speed_rad_s + torque_nm / parameters.kv_nm_s_per_rad
+        };
+        // It is linear.
+        let (here, beyond) = (asked(here_mm), asked(here_mm + 1.0));
+        (wanted_rad_s - here) / (beyond - here)
+    }
+}

@@ -1,0 +1,144 @@
+//! What is estimated of an axis: the law of the axis itself, stepped with everything that is known, and corrected by a Kalman filter.
+//!
+//! ```text
+//! x <- f(x, what was sent)      between two measurements, every mechanics period, with friction, limits and cogging as they are
+//! x <- x + K (y - h(x))         h with the interpolation error of the encoder at the estimated angle
+//! ```
+//!
+//! Time is that of the measurement, which is late; [`Estimate::ahead`] goes on from there to the moment at which a reference acts that is
+//! sent now, with those that are under way.
+//!
+//! Source: Gelb (1974), Applied Optimal Estimation, section 6.1, the extended filter; its gain is that of the linear part, constant.
+
+use feedwright_control::axis::drive::{DriveLaw, DriveReference, DriveState};
+use feedwright_control::axis::friction::{FrictionLaw, FrictionParameters};
+use feedwright_control::axis::{self, AxisLaw, AxisState};
+
+use super::linear::{Linear, STATES, measured_rad2};
+use super::riccati::filter;
+use crate::machine::{AxisStatistics, KnownAxis};
+
+/// References that are kept, servo periods: 20 ms each way at 1 ms, the most of a machine file, and some.
+const KEPT_PERIODS: usize = 48;
+
+/// What does not change of an axis.
+#[derive(Debug, Clone)]
+pub(super) struct AxisModel {
+    pub(super) law: AxisLaw,
+    pub(super) drive: DriveLaw,
+    friction: Option<FrictionLaw>,
+    statistics: AxisStatistics,
+    linear: Linear,
+    gains: [f64; STATES],
+    /// Mechanics periods from a measurement until it is there, and from a reference until it acts.
+    late: [u32; 2],
+}
+
+/// State of an axis, and what acts on it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Estimate {
+    pub(super) axis: AxisState,
+    pub(super) drive: DriveState,
+    pub(super) presliding_nm: f64,
+    /// Broadband torque, the disturbance and its quadrature, and what is left, N m.
+    pub(super) acting_nm: [f64; 4],
+}
+
+/// What was sent to the drive, the newest first.
+pub(super) type Sent = [DriveReference; KEPT_PERIODS];
+/// Nothing was sent.
+pub(super) const NOTHING_SENT: Sent = [DriveReference { speed_rad_s: 0.0, torque_nm: 0.0 }; KEPT_PERIODS];
+
+impl AxisModel {
+    pub(super) fn new(law: AxisLaw, known: &KnownAxis, statistics: AxisStatistics) -> Self {
+        let linear = Linear::new(&law, &known.drive, &statistics);
+        let (states, _, noise) = linear.sampled();
+        let mut measured = [0.0; STATES];
+        measured[0] = 1.0;
+        let longest = (KEPT_PERIODS as u32 - 2) / 2 * law.periods.mechanics_per_servo;
+        // A float that is not a number saturates to zero here.
+        let late = |delay_s: f64| ((delay_s / law.periods.mechanics_s).round() as u32).min(longest);
+        Self {
+            law,
+            drive: DriveLaw::new(&law, known.drive),
+            friction: (known.friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, known.friction)),
+            statistics,
+            linear,
+            gains: filter(&states, &noise, &measured, measured_rad2(&statistics)),
+            late: [known.delays.measurement_s, known.delays.drive_s].map(late),
+        }
+    }
+
+    /// At rest at an angle.
+    pub(super) fn at_rest(angle_rad: f64) -> Estimate {
+        Estimate {
+            axis: AxisState { angle_rad, ..AxisState::default() },
+            drive: DriveState::default(),
+            presliding_nm: 0.0,
+            acting_nm: [0.0; 4],
+        }
+    }
+
+    /// Torque of the motor beside the drive's at an angle, N m.
+    pub(super) fn cogging_nm(&self, angle_rad: f64) -> f64 {
+        self.statistics.cogging_nm * (self.statistics.cogging_per_rev * angle_rad).sin()
+    }
+
+    /// One servo period on, and what was measured at its end.
+    pub(super) fn correct(&self, estimate: &mut Estimate, sent: &Sent, measured_rad: f64) {
+        let [measured_late, _] = self.late;
+        let periods = self.law.periods.mechanics_per_servo;
+        self.go_on(estimate, sent, measured_late + periods, periods);
+        let AxisStatistics { interpolation_rad, signal_per_rad, .. } = self.statistics;
+        let angle_rad = estimate.axis.angle_rad;
+        let shown_rad = angle_rad + interpolation_rad * (signal_per_rad * angle_rad).sin();
+        let missed_rad = measured_rad - shown_rad;
+        let [x, w, i, y, acting @ ..] = self.gains.map(|gain| gain * missed_rad);
+        estimate.axis.angle_rad += x;
+        estimate.axis.speed_rad_s += w;
+        estimate.drive.correct(i, y);
+        estimate.acting_nm.iter_mut().zip(acting).for_each(|(nm, more)| *nm += more);
+    }
+
+    /// As it will be when what is sent now begins to act.
+    pub(super) fn ahead(&self, estimate: &Estimate, sent: &Sent) -> Estimate {
+        let [measured_late, drive_late] = self.late;
+        let mut ahead = *estimate;
+        self.go_on(&mut ahead, sent, measured_late, measured_late + drive_late);
+        ahead
+    }
+
+    /// So many mechanics periods on, from one that is `before` the start of this servo period. `sent` holds what was sent until the last one.
+    fn go_on(&self, estimate: &mut Estimate, sent: &Sent, before: u32, periods: u32) {
+        let [_, drive_late] = self.late;
+        let per_servo = self.law.periods.mechanics_per_servo;
+        for n in 0..periods {
+            // So long ago was sent what acts: a servo period ago it was the newest, up to two the one before.
+            let ago = (before + drive_late).saturating_sub(n).max(1);
+            let age = (ago - 1) / per_servo;
+            let reference = sent.get(age as usize).copied().unwrap_or_default();
+            self.substep(estimate, reference);
+        }
+    }
+
+    fn substep(&self, estimate: &mut Estimate, reference: DriveReference) {
+        let (law, state) = (&self.law, &mut estimate.axis);
+        let drive_nm = self.drive.torque_nm(law, reference, state.speed_rad_s, &mut estimate.drive);
+        let [broadband, disturbance, _, drift] = estimate.acting_nm;
+        let forces_nm = drive_nm + self.cogging_nm(state.angle_rad) - broadband - disturbance - drift;
+        match &self.friction {
+            Some(friction) => {
+                let inverse_inertia = 1.0 / law.parameters.inertia_kg_m2;
+                let w = state.speed_rad_s;
+                state.speed_rad_s =
+                    friction.speed_after_rad_s(forces_nm, inverse_inertia, w, &mut estimate.presliding_nm);
+                state.angle_rad += law.periods.mechanics_s * state.speed_rad_s;
+            }
+            None => {
+                let [sign] = axis::signs(&[*law], [state.speed_rad_s]);
+                law.accelerate(forces_nm - law.friction_nm(state.speed_rad_s, sign), state);
+            }
+        }
+        estimate.acting_nm = self.linear.acting_after(&estimate.acting_nm);
+    }
+}
