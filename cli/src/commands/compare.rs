@@ -119,7 +119,7 @@ fn record_searches(
     OutputFile::commit_all(vec![file], &bar)?;
     let text = print::tuned(&tuned);
     printed(
-        write!(std::io::stdout(), "{text}recorded {} searches in {}\n", tuned.len(), record.display()),
+        writeln!(std::io::stdout(), "{text}recorded {} searches in {}", tuned.len(), record.display()),
         ExitCode::SUCCESS,
     )
 }

@@ -114,32 +114,33 @@ pub(super) const SOLVER_STEPS: Parameter = whole(
 );
 pub(super) const ON_RAPIDS: Parameter =
     switch("on_rapids", Horizon::<2>::DEFAULT.horizon.on_rapids, "whether rapids are corrected as cuts are");
-// Of cross-coupled control. Beyond these gains the loop is still stable on smooth paths, but catches the tool in acute corners.
+// Of cross-coupled control. Beyond the gains that the reasons name the loop is still stable on smooth paths, but catches the tool in
+// acute corners; what a machine can bear differs.
 pub(super) const CROSS_COUPLED_KP: Parameter = number(
     "kp",
     cross_coupled::Settings::DEFAULT.kp,
     [0.0, 100.0],
-    Some([0.1, 8.0]),
+    Some([0.1, 60.0]),
     "gain of the contour error: more corrects more; beyond 8 the tool is caught in acute corners",
 );
 pub(super) const CROSS_COUPLED_KI: Parameter = number(
     "ki_1_s",
     cross_coupled::Settings::DEFAULT.ki_1_s,
     [0.0, 1e5],
-    Some([1.0, 400.0]),
+    Some([0.1, 1e4]),
     "gain of its integral: 0 leaves a part of a steady error; beyond 400 the tool is caught in acute corners",
 );
 pub(super) const CROSS_COUPLED_KD: Parameter = number(
     "kd_s",
     cross_coupled::Settings::DEFAULT.kd_s,
     [0.0, 1.0],
-    Some([1e-4, 0.03]),
+    Some([1e-5, 0.5]),
     "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners",
 );
 // The same behind a feedforward, which leaves it a tenth of the error: on a noisy encoder next to no gain may be best.
-pub(super) const BEHIND_KP: Parameter = Parameter { searched: Some([0.01, 20.0]), ..CROSS_COUPLED_KP };
-pub(super) const BEHIND_KI: Parameter = Parameter { searched: Some([0.1, 2000.0]), ..CROSS_COUPLED_KI };
-pub(super) const BEHIND_KD: Parameter = Parameter { searched: Some([1e-5, 0.1]), ..CROSS_COUPLED_KD };
+pub(super) const BEHIND_KP: Parameter = Parameter { searched: Some([0.01, 60.0]), ..CROSS_COUPLED_KP };
+pub(super) const BEHIND_KI: Parameter = Parameter { searched: Some([0.01, 1e4]), ..CROSS_COUPLED_KI };
+pub(super) const BEHIND_KD: Parameter = Parameter { searched: Some([1e-6, 0.5]), ..CROSS_COUPLED_KD };
 // Parts of what the exact model calls for, and scales of its parameters.
 pub(super) const VELOCITY_GAIN: Parameter =
     number("velocity_gain", Gains::EXACT.velocity, [0.0, 10.0], Some([0.5, 1.5]), EXACT_REASON);
