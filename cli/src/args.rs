@@ -206,6 +206,8 @@ pub(crate) enum Work {
     Contours,
     /// The contours, and the parts that come with the program.
     Development,
+    /// Contours turned and scaled, and random programs, whose seeds were drawn after everything was tuned.
+    HeldOut,
 }
 
 /// What controllers are given of a machine.

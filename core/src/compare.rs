@@ -10,6 +10,7 @@
 //! | `compare/work.rs` | what is cut |
 //! | `compare/tuned.rs` | the values that a controller runs with |
 //! | `compare/recorded.rs` | values that earlier searches came to |
+//! | `compare/held_out_work.rs` | held-out work and its seeds |
 //! | `compare/competitor.rs` | a controller and what it is given of the machine |
 //! | `compare/options.rs` | what is compared |
 //! | `compare/table.rs` | rows and their ratios |
@@ -26,6 +27,7 @@ mod noise;
 pub mod work;
 pub mod tuned;
 pub mod recorded;
+pub mod held_out_work;
 mod competitor;
 mod options;
 pub mod table;

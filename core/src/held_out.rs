@@ -5,6 +5,7 @@
 //! | `held_out/variant.rs` | a machine as what differs from a built-in one, and its file |
 //! | `held_out/random.rs` | random numbers |
 //! | `held_out/machines.rs` | machines drawn at random |
+//! | `held_out/contours.rs` | contours turned and scaled at random |
 //! | `held_out/program_writer.rs` | writes a program |
 //! | `held_out/programs.rs` | programs drawn at random, by families |
 //! | `held_out/shrink.rs` | makes a failing case smaller |
@@ -12,6 +13,7 @@
 pub mod variant;
 mod random;
 pub mod machines;
+pub mod contours;
 mod program_writer;
 pub mod programs;
 pub mod shrink;

@@ -81,7 +81,7 @@ impl Workpiece {
 }
 
 /// The path of a program's text; none of one with mistakes.
-fn steps(name: &str, text: &str) -> Option<Vec<Step>> {
+pub(super) fn steps(name: &str, text: &str) -> Option<Vec<Step>> {
     let canon = gcode::Reader::from_text(name, text, gcode::Settings::default()).ok()?;
     let canon: Result<Vec<_>, _> = canon.collect();
     Pieces::new(canon.ok()?.into_iter()).collect::<Result<_, _>>().ok()

@@ -64,6 +64,29 @@ pub const CONTOURS: &[Contour] = &[
     },
 ];
 
+/// How a contour is put elsewhere: scaled, and turned about the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placement {
+    /// Factor on all lengths.
+    pub scale: f64,
+    /// Counter-clockwise, rad.
+    pub turn_rad: f64,
+}
+
+impl Placement {
+    const NONE: Self = Self { scale: 1.0, turn_rad: 0.0 };
+
+    /// A vector, scaled and turned. Where nothing is to be done it keeps its bits.
+    fn of(self, vector: [f64; 3]) -> [f64; 3] {
+        if self == Self::NONE {
+            return vector;
+        }
+        let [x, y, z] = scale(self.scale, vector);
+        let (sin, cos) = (libm::sin(self.turn_rad), libm::cos(self.turn_rad));
+        [cos * x - sin * y, sin * x + cos * y, z]
+    }
+}
+
 /// The contour of that name.
 pub fn contour(name: &str) -> Option<&'static Contour> {
     CONTOURS.iter().find(|contour| contour.name == name)
@@ -84,20 +107,28 @@ impl Contour {
     /// # Errors
     /// Where the feedrate is none.
     pub fn steps(&self, feed_mm_s: f64, corner: Corner) -> Result<Vec<Step>, PathError> {
+        self.placed_steps(Placement::NONE, feed_mm_s, corner)
+    }
+
+    /// As [`Contour::steps`], elsewhere.
+    ///
+    /// # Errors
+    /// Where the feedrate is none.
+    pub fn placed_steps(&self, place: Placement, feed_mm_s: f64, corner: Corner) -> Result<Vec<Step>, PathError> {
         if !(super::MIN_FEED_MM_S..=f64::MAX).contains(&feed_mm_s) {
             return Err(PathError::Feed { line: 1, feed_mm_s });
         }
         match self.outline {
-            Outline::Polygon(points) => Pieces::new(lines(points, feed_mm_s, corner).into_iter()).collect(),
+            Outline::Polygon(points) => Pieces::new(lines(points, place, feed_mm_s, corner).into_iter()).collect(),
             Outline::Circle(points, center, turns) => {
-                let mut canon = lines(points, feed_mm_s, corner);
-                let at = space(points[points.len() - 1]);
+                let mut canon = lines(points, place, feed_mm_s, corner);
+                let at = place.of(space(points[points.len() - 1]));
                 canon.push(Canon::Motion(Motion {
                     line: points.len() as u32,
                     kind: MotionKind::Feed,
                     start_mm: at,
                     end_mm: at,
-                    shape: Shape::Arc { plane: Plane::Xy, center_mm: space(center), turns },
+                    shape: Shape::Arc { plane: Plane::Xy, center_mm: place.of(space(center)), turns },
                     feed_mm_s,
                     corner,
                     others: AuxiliaryAxes::default(),
@@ -105,7 +136,9 @@ impl Contour {
                 Pieces::new(canon.into_iter()).collect()
             }
             Outline::Spline(spline) => {
-                let spline = Arc::new(spline());
+                let mut spline = spline();
+                spline.control_mm.iter_mut().for_each(|point_mm| *point_mm = place.of(*point_mm));
+                let spline = Arc::new(spline);
                 let ends_mm = [0, spline.control_mm.len() - 1].map(|i| spline.control_mm[i]);
                 let motion = Motion {
                     line: 1,
@@ -120,9 +153,9 @@ impl Contour {
                 Pieces::new(std::iter::once(Canon::Motion(motion))).collect()
             }
             Outline::Curve(jet, third) => {
-                let smooth = Smooth::new(Box::new(Closed { jet, third }));
+                let smooth = Smooth::new(Box::new(Closed { jet, third, place }));
                 Ok(vec![Step::Piece(Piece {
-                    start_mm: jet(0.0).position_mm,
+                    start_mm: place.of(jet(0.0).position_mm),
                     length_mm: smooth.length_mm(),
                     curve: Curve::Smooth(Arc::new(smooth)),
                     s_mm: 0.0,
@@ -142,15 +175,15 @@ fn space(point: [f64; 2]) -> [f64; 3] {
     [point[0], point[1], 0.0]
 }
 
-fn lines(points: &[[f64; 2]], feed_mm_s: f64, corner: Corner) -> Vec<Canon> {
+fn lines(points: &[[f64; 2]], place: Placement, feed_mm_s: f64, corner: Corner) -> Vec<Canon> {
     let ends = points.windows(2);
     ends.zip(1..)
         .map(|(ends, line)| {
             Canon::Motion(Motion {
                 line,
                 kind: MotionKind::Feed,
-                start_mm: space(ends[0]),
-                end_mm: space(ends[1]),
+                start_mm: place.of(space(ends[0])),
+                end_mm: place.of(space(ends[1])),
                 shape: Shape::Line,
                 feed_mm_s,
                 corner,
@@ -167,6 +200,7 @@ const SPANS: usize = 16;
 struct Closed {
     jet: fn(f64) -> Jet,
     third: fn(f64) -> [f64; 3],
+    place: Placement,
 }
 
 impl std::fmt::Debug for Closed {
@@ -184,15 +218,15 @@ impl Parametric for Closed {
         let per_span = TAU / SPANS as f64;
         let jet = (self.jet)(per_span * (span as f64 + u));
         Jet {
-            position_mm: jet.position_mm,
-            first: scale(per_span, jet.first),
-            second: scale(per_span * per_span, jet.second),
+            position_mm: self.place.of(jet.position_mm),
+            first: self.place.of(scale(per_span, jet.first)),
+            second: self.place.of(scale(per_span * per_span, jet.second)),
         }
     }
 
     fn third(&self, span: usize, u: f64) -> [f64; 3] {
         let per_span = TAU / SPANS as f64;
-        scale(per_span.powi(3), (self.third)(per_span * (span as f64 + u)))
+        self.place.of(scale(per_span.powi(3), (self.third)(per_span * (span as f64 + u))))
     }
 }
 
@@ -245,4 +279,29 @@ fn star_third(a: f64) -> [f64; 3] {
     let (r, dr, ddr, dddr) = (12.0 + 4.0 * cos5, -20.0 * sin5, -100.0 * cos5, 500.0 * sin5);
     let (inward, around) = (dddr - 3.0 * dr, 3.0 * ddr - r);
     [inward * cos - around * sin, inward * sin + around * cos, 0.0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Length and places of the first piece follow the placement; of a smooth curve to what its arc length is exact to.
+    #[test]
+    fn a_contour_elsewhere_is_the_same_scaled_and_turned() {
+        let place = Placement { scale: 1.5, turn_rad: 2.0 };
+        let corner = Corner::Continuous { tolerance_mm: None };
+        for contour in CONTOURS {
+            let (here, there) =
+                (contour.steps(50.0, corner).unwrap(), contour.placed_steps(place, 50.0, corner).unwrap());
+            let (Some(Step::Piece(a)), Some(Step::Piece(b))) = (here.first(), there.first()) else {
+                panic!("{}", contour.name)
+            };
+            assert!((1.5 * a.length_mm - b.length_mm).abs() < 1e-7, "{}", contour.name);
+            for part in [0.0, 0.3, 1.0] {
+                let wanted = place.of(a.curve.at(part * a.length_mm).position_mm);
+                let found = b.curve.at(part * b.length_mm).position_mm;
+                assert!((0..2).all(|k| (wanted[k] - found[k]).abs() < 1e-7), "{}: {wanted:?} {found:?}", contour.name);
+            }
+        }
+    }
 }

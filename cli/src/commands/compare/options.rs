@@ -1,5 +1,6 @@
 //! What is compared, from the arguments.
 
+use feedwright::compare::held_out_work::HeldOutSeeds;
 use feedwright::compare::{ComparisonOptions, Tuning, Workpiece, recorded};
 use feedwright::controllers::{BASELINE, CONTROLLERS, Entry};
 use feedwright::gcode::suggestion::nearest;
@@ -13,6 +14,7 @@ pub(super) fn options(args: &CompareArgs) -> Result<ComparisonOptions> {
     let mut workpieces = match args.work {
         Work::Contours => Workpiece::contours(),
         Work::Development => Workpiece::development(),
+        Work::HeldOut => HeldOutSeeds::recorded().workpieces(),
     };
     let mut machines: Vec<Machine> =
         BUILT_IN.iter().map(|(name, _)| Machine::load(name.as_ref())).collect::<Result<_, _>>()?;
