@@ -126,7 +126,7 @@ fn record_searches(
     }
     let text = print::tuned(&tuned);
     printed(
-        write!(std::io::stdout(), "{text}recorded {} searches in {}\n", tuned.len(), record.display()),
+        writeln!(std::io::stdout(), "{text}recorded {} searches in {}", tuned.len(), record.display()),
         ExitCode::SUCCESS,
     )
 }
