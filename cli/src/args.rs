@@ -152,7 +152,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, conflicts_with = "tuning")]
     no_tuning: bool,
     /// Search, and keep the values in this file beside those that it has; cut nothing. The program keeps core/src/compare/recorded.jsonl.
-    #[arg(long, value_name = "FILE.jsonl", group = "kept", conflicts_with_all = ["json", "html", "merge", "at_tolerance"])]
+    #[arg(long, value_name = "FILE.jsonl", conflicts_with_all = ["json", "html", "merge", "at_tolerance"])]
     pub(crate) record: Option<PathBuf>,
     /// What is cut.
     #[arg(long, value_name = "WORK", value_enum, default_value_t = Work::Contours)]
@@ -164,10 +164,10 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "GIVEN,...", value_enum, value_delimiter = ',', default_values_t = [Given::Own, Given::TwentyPercentOff, Given::Unseen])]
     pub(crate) knowledge: Vec<Given>,
     /// Do only the i-th of n parts of the work; --merge puts the parts together.
-    #[arg(long, value_name = "I/N", requires = "kept", conflicts_with_all = ["json", "html", "merge"])]
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["json", "html", "merge"])]
     pub(crate) shard: Option<Shard>,
     /// Keep rows in this file as they are made, and go on with those that it has.
-    #[arg(long, value_name = "FILE.jsonl", group = "kept", conflicts_with = "merge")]
+    #[arg(long, value_name = "FILE.jsonl", conflicts_with = "merge")]
     pub(crate) rows: Option<PathBuf>,
     /// Cut nothing: make the table of the rows in these files, with the same options as for them.
     #[arg(long, value_name = "FILE.jsonl,...", value_delimiter = ',')]

@@ -27,6 +27,10 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
     if let Some(threads) = args.threads {
         rayon::ThreadPoolBuilder::new().num_threads(threads.into()).build_global().into_diagnostic()?;
     }
+    if args.shard.is_some() && args.rows.is_none() && args.record.is_none() {
+        let help = "--rows FILE keeps the rows of a shard, --record FILE its searches";
+        return Err(miette!(help = help, "--shard: what it makes has no place"));
+    }
     let stamp = stamp(&options);
     if !args.merge.is_empty() {
         return merge(args, &options, &stamp, console);
@@ -41,7 +45,7 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
         eprintln!("going on where an earlier run was interrupted; rows that are there: {known}");
     }
     if let Some(record) = &args.record {
-        return record_searches(args, record, &options, &journal, console);
+        return record_searches(args, record, &options, journal, console);
     }
     if let (Some(shard), Some(rows)) = (args.shard, &args.rows) {
         let bar = console.bar(0);
@@ -99,7 +103,7 @@ fn record_searches(
     args: &CompareArgs,
     record: &Path,
     options: &ComparisonOptions,
-    journal: &Journal<Finished>,
+    journal: Journal<Finished>,
     console: &Console,
 ) -> Result<ExitCode> {
     let old = match std::fs::read_to_string(record) {
@@ -110,13 +114,16 @@ fn record_searches(
         Err(error) => return Err(error).into_diagnostic().wrap_err_with(|| record.display().to_string()),
     };
     let bar = console.bar(0);
-    let tuned = tune_alone(options, args.shard.unwrap_or(Shard::ALL), journal, &bar);
+    let tuned = tune_alone(options, args.shard.unwrap_or(Shard::ALL), &journal, &bar);
     bar.clear();
     let tuned = tuned?;
     let machines: Vec<Machine> = options.machines.iter().chain([&options.nominal]).cloned().collect();
     let mut file = OutputFiles::new(std::iter::empty::<&Path>()).start(record)?;
     file.write_all(recorded::text(old, &tuned, &machines, options.seed).as_bytes()).into_diagnostic()?;
     OutputFile::commit_all(vec![file], &bar)?;
+    if args.rows.is_none() {
+        journal.remove();
+    }
     let text = print::tuned(&tuned);
     printed(
         writeln!(std::io::stdout(), "{text}recorded {} searches in {}", tuned.len(), record.display()),

@@ -122,7 +122,7 @@ fn write_claims(out: &mut impl Write, comparison: &Comparison) -> io::Result<()>
         writeln!(
             out,
             "<details><summary>{claim}, at most {limit}{}: <span class=\"{class}\">{held} of {} hold</span>, worst {worst:.3}</summary>",
-            if unit.is_empty() { String::new() } else { format!(" {unit}") },
+            if unit.is_empty() { String::new() } else { format!(" {}", unit.replace("um", "µm")) },
             verdicts.len()
         )?;
         write_heading(out, ["contour", "machine", "against", if unit.is_empty() { "ratio" } else { unit }, ""])?;
@@ -249,7 +249,7 @@ fn errors(rows: &[ComparisonRow]) -> Figure {
     let peer = peers.min_by(|a, b| a.rms_um.total_cmp(&b.rms_um));
     let named = |name: &str| rows.iter().find(|row| row.controller == name);
     let shown: Vec<&ComparisonRow> = [named(BASELINE), peer, named(BEST)].into_iter().flatten().collect();
-    let largest = shown.iter().filter(|row| row.completed).map(|row| row.max_um).fold(0.0, f64::max);
+    let largest = shown.iter().filter(|row| row.completed).map(|row| row.max_spread_um[1]).fold(0.0, f64::max);
     let panel = |(row, color): (&&ComparisonRow, &str)| {
         let step = 1.0 / row.error_um.len().max(1) as f64;
         let points = row.error_um.iter().enumerate().map(|(i, &e)| [i as f64 * step * row.time_s, f64::from(e)]);
