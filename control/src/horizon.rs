@@ -130,6 +130,11 @@ pub type Sensitivity<const N: usize> = [[f64; N]; MAX_KNOTS];
 pub trait Predictor<const N: usize>: Clone {
     /// How far the tool is behind the command in the long run, s.
     fn lag_s(&self) -> f64;
+
+    /// How long the tool takes to follow an offset, s: its lag, but where a drive feeds forward of the path what it does not lag by.
+    fn response_s(&self) -> f64 {
+        self.lag_s()
+    }
     /// Moves on by one feed period; the tool at its end, mm. `felt` takes the derivative to the accelerations of the knots so
     /// far, axis by axis: what one axis feels of another is left out.
     fn advance(
@@ -304,7 +309,7 @@ impl<const N: usize, S: Solver<N>> OffsetPlan<N, S> {
         settings: &Settings<N>,
     ) -> PlanStep<N> {
         let horizon_s = (settings.knots() * self.periods) as f64 * window.feed_period_s;
-        let settings = self.restraint.on(settings, model.lag_s().max(horizon_s / LAGS_AHEAD));
+        let settings = self.restraint.on(settings, model.response_s().max(horizon_s / LAGS_AHEAD));
         let problem = HorizonProblem::new(model, window, &self.accelerations_mm_s2, self.periods, &settings);
         let [need_mm, open_error_mm] = problem.open_errors_mm();
         let contour_mm2 = problem.contour_mm2();

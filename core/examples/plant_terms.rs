@@ -111,7 +111,7 @@ fn panel(term: &Term) -> Result<Panel, Failure> {
     let machine = Machine::parse("term.toml", &format!("{head}{x}{y}{}", term.more))?;
     let circle = CONTOURS.iter().find(|contour| contour.name == "circle").ok_or("there is a circle")?;
     let steps = circle.steps(term.feed_mm_s, Corner::ExactPath)?;
-    let workpiece = Workpiece { name: "circle".to_owned(), smooth: true, steps };
+    let workpiece = Workpiece { name: "circle".to_owned(), smooth: true, held_out: false, steps };
     let choices = Choices::default();
     let entry = Entry::find(BASELINE).ok_or("the baseline is in the table")?;
     let mut controller = Make::<2>::make(entry, &mut Setup::new(&machine, &choices));

@@ -74,6 +74,9 @@ pub struct DriveState {
 }
 
 impl DriveState {
+    /// Before the first command.
+    pub const AT_REST: Self = Self { commanded_rad: None, commanded_rad_s: 0.0, integral_nm: 0.0, filtered_nm: 0.0 };
+
     /// Integral of the speed loop, N m.
     pub fn integral_nm(&self) -> f64 {
         self.integral_nm

@@ -21,7 +21,8 @@
 //!
 //! Source: Tomizuka (1987), "Zero phase error tracking algorithm for digital control".
 //!
-//! Departures: none in the filter. The Coulomb friction is not linear, and the model leaves it out.
+//! Departures: none in the filter. The Coulomb friction is not linear, and the model leaves it out. So it does what a drive has beside
+//! a P speed loop: integral, feedforward of its own, delays and torque filter; on a machine with these it inverts another loop.
 
 use super::feedforward::preview;
 use super::{Command, Controller, Measured, Schedule};
