@@ -68,7 +68,7 @@ const SAME_RATIO: f64 = 1e-3;
 
 #[test]
 fn the_kept_comparison_is_what_the_program_makes() {
-    let kept = table::comparison().unwrap();
+    let kept = table::comparison(table::COMPARISON).unwrap();
     let [contours, machines, controllers] = AGAIN;
     let options = ComparisonOptions {
         workpieces: Workpiece::contours().into_iter().filter(|w| contours.contains(&w.name.as_str())).collect(),

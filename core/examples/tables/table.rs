@@ -1,5 +1,8 @@
 //! The tables of the documents: made here, written by `just tables`, held by the golden tests.
 
+#[path = "realism.rs"]
+mod realism;
+
 use std::fmt::Write;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -15,8 +18,12 @@ use feedwright::paper::{Numbers, experiment};
 const MACHINE: &str = "tnv40";
 /// Seeds of the paper's experiment: the default of the command line.
 const SEEDS: u64 = 10;
-/// The comparison that the tables of the results are made from.
+/// The comparison on machines without noise.
 pub(crate) const COMPARISON: &str = "examples/02_horizon/compare.json";
+/// That of machines with noise, on held-out work.
+pub(crate) const HELD_OUT: &str = "examples/03_realism/held_out.json";
+/// That of machines with one imperfection each.
+pub(crate) const IMPERFECTIONS: &str = "examples/03_realism/imperfections.json";
 /// What stands after a table.
 const END: &str = "<!-- end of table -->\n";
 
@@ -38,25 +45,31 @@ pub(crate) fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
 }
 
-/// The comparison as it is kept.
-pub(crate) fn comparison() -> Result<Comparison> {
-    Ok(serde_json::from_slice(&std::fs::read(root().join(COMPARISON))?)?)
+/// A comparison as it is kept.
+pub(crate) fn comparison(file: &str) -> Result<Comparison> {
+    Ok(serde_json::from_slice(&std::fs::read(root().join(file))?)?)
 }
 
 impl Place {
-    /// The tables that show the comparison.
+    /// The tables that show the comparisons.
     pub(crate) fn results() -> Result<Vec<Self>> {
-        let comparison = comparison()?;
+        let [comparison, held_out, imperfections] =
+            [comparison(COMPARISON)?, comparison(HELD_OUT)?, comparison(IMPERFECTIONS)?];
         let readme = |name, table| Self { file: "README.md", name, table };
+        let realism = |name, table| Self { file: "examples/03_realism/README.md", name, table };
         let study = |name, table| Self { file: "examples/02_horizon/README.md", name, table };
         Ok(vec![
             readme("contours", contours(&comparison, SHOWN)?),
-            readme("machines", machines(&comparison)?),
+            readme("held-out work", realism::held_out(&held_out)?),
             study("contours", contours(&comparison, &controllers(&comparison))?),
             study("machines", machines(&comparison)?),
             study("tuned", tuned(&comparison)?),
             study("claims", claims(&comparison)?),
             study("tolerance", tolerance(&comparison)?),
+            realism("held-out work", realism::held_out(&held_out)?),
+            realism("imperfections", realism::imperfections(&imperfections)?),
+            realism("claims", claims(&held_out)?),
+            realism("tuned", tuned(&held_out)?),
         ])
     }
 
