@@ -177,3 +177,55 @@ impl<'a> Run<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use feedwright_control::controller::{Command, Measured, Schedule};
+    use feedwright_control::window::Window;
+
+    use super::*;
+    use crate::gcode::canon::Corner;
+    use crate::path::contour::contour;
+
+    /// Adds up what it measures in each lap.
+    #[derive(Default)]
+    struct Seen(Vec<f64>);
+
+    impl Controller<2> for Seen {
+        fn schedule(&self) -> Schedule {
+            Schedule { servo_periods: 1, preview: 0 }
+        }
+
+        fn reset(&mut self) {
+            self.0 = vec![0.0];
+        }
+
+        fn next_lap(&mut self) {
+            self.0.push(0.0);
+        }
+
+        fn command(&mut self, _: &Window<'_, 2>, measured: &Measured<2>) -> Command<2> {
+            if let Some(sum) = self.0.last_mut() {
+                *sum += measured.position_mm[0];
+            }
+            Command::straight(1.0, [0.0; 2])
+        }
+    }
+
+    #[test]
+    fn laps_differ_in_their_noise_and_in_nothing_else() {
+        let steps = contour("circle").unwrap().steps(50.0, Corner::ExactStop).unwrap();
+        let quiet = Machine::load("tnv40".as_ref()).unwrap();
+        let mut noisy = quiet.clone();
+        noisy.axes[0].encoder_noise_um = 1.0;
+        let laps = |machine: &Machine| {
+            let mut seen = Seen::default();
+            Run::on(machine).laps(3).cut_steps(&steps, &mut seen, &mut []).unwrap();
+            seen.0
+        };
+        let [a, b, c] = laps(&quiet).try_into().unwrap();
+        assert!(a == b && b == c, "{a} {b} {c}");
+        let [a, b, c] = laps(&noisy).try_into().unwrap();
+        assert!(a != b && b != c && a != c, "{a} {b} {c}");
+    }
+}
