@@ -19,9 +19,23 @@ paper out="target/paper":
 bench:
     cargo bench --workspace
 
-# Every controller on every contour and machine: about a minute.
+# Every controller on every contour, on machines without noise: the tables of examples/02_horizon.
 compare out="target/compare":
-    cargo run --release -- compare --at-tolerance --json {{ out }}.json --html {{ out }}.html
+    cargo run --release -- compare --only tnv40,heavy,sticky,rough,soft,coarse --at-tolerance --json {{ out }}.json --html {{ out }}.html
+
+# Every controller on held-out work, on machines with noise: the table of README.md.
+held-out-table out="target/held_out":
+    cargo run --release -- compare --work held-out --only workshop,stiff,router --json {{ out }}.json --html {{ out }}.html
+
+# What each imperfection costs each controller: the table of examples/03_realism. Each peer is tuned on each machine first.
+imperfections out="target/imperfections":
+    cargo run --release -- compare --only tnv40,circle,eight,star,square,contour-compensation,cross-coupled,disturbance-observer,kalman-disturbance,feedforward-as-delivered,feedforward,feedforward-cross-coupled,receding-horizon,lqg-preview \
+        --knowledge own,20%off $(printf -- '--machine %s ' examples/03_realism/machines/*.toml) --json {{ out }}.json --html {{ out }}.html
+
+# Search the values that `compare` runs with, for every controller on every built-in machine: an hour. Ends where it was interrupted.
+# Behind it new seeds are due: `cargo run --release -p feedwright --example draw_held_out`.
+record-searches:
+    cargo run --release -- compare --record core/src/compare/recorded.jsonl
 
 # Every program that is here, on every machine, against open loop: `just never-worse --sample 200` for a part of it. What was
 # interrupted goes on where it was. The corpus of foreign programs is not part of this repository.
@@ -65,7 +79,7 @@ tick ticks="100000" runs="5":
     taskset --cpu-list 1 target/release/examples/tick_percentiles {{ ticks }} {{ runs }}
 
 # Regenerate the tables and the figures of README.md and of examples/.
-tables: paper compare
+tables: paper compare held-out-table imperfections
     cp target/paper/figure_10.svg docs/paper_circle.svg
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
     cargo run --release -p feedwright --example tables

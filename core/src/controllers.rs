@@ -130,7 +130,7 @@ pub const CONTROLLERS: &[Entry] = &[
                 "rate_1_s",
                 contour_compensation::Settings::DEFAULT.rate_1_s,
                 [0.0, 1e4],
-                Some([1.0, 300.0]),
+                Some([1.0, 3000.0]),
                 "how fast the reference follows the error: small is late, large swings"
             ),
             number(

@@ -37,7 +37,7 @@ const LEAD_S: Parameter = number(
     "lead_s",
     Settings::DEFAULT.lead_s,
     [0.0, 0.5],
-    Some([0.005, 0.05]),
+    Some([0.001, 0.05]),
     "time by which an offset comes before the error that it is for: the lag of the loop",
 );
 /// Cut-off of Q.

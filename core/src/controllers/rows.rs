@@ -147,7 +147,7 @@ pub(super) const VELOCITY_GAIN: Parameter =
 pub(super) const ACCELERATION_GAIN: Parameter =
     number("acceleration_gain", Gains::EXACT.acceleration, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
 pub(super) const FRICTION_GAIN: Parameter =
-    number("friction_gain", Gains::EXACT.friction, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
+    number("friction_gain", Gains::EXACT.friction, [0.0, 10.0], Some([0.0, 4.0]), EXACT_REASON);
 pub(super) const LAG_SCALE: Parameter = number("lag_scale", 1.0, [0.1, 10.0], Some([0.5, 1.5]), EXACT_REASON);
 pub(super) const INERTIA_SCALE: Parameter = number("inertia_scale", 1.0, [0.01, 10.0], Some([0.5, 2.0]), EXACT_REASON);
 pub(super) const EXACT_REASON: &str =
