@@ -82,6 +82,11 @@ impl DriveState {
         self.integral_nm
     }
 
+    /// Torque behind the filter, N m.
+    pub fn filtered_nm(&self) -> f64 {
+        self.filtered_nm
+    }
+
     /// What an observer finds integral and filter to be higher, N m.
     pub fn correct(&mut self, integral_nm: f64, filtered_nm: f64) {
         self.integral_nm += integral_nm;

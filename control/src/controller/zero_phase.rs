@@ -19,13 +19,21 @@
 //!
 //! so that x / r = |B-|^2 / B-(1)^2 is real at every frequency and 1 at standstill.
 //!
+//! A drive that has more than a P speed loop (integral, feedforward of its own, delays, torque filter) has a loop of higher order,
+//! with several zeros and a delay of d periods: whoever makes the filter of it gives A B-, with the zeros of B- mirrored, and B+
+//! ([`Filter::of_loop`]).
+//!
+//! ```text
+//! x / c = z^-d B+ B- / A          c(k) = A(z^-1) B-(z) / (B+(z^-1) B-(1)^2)  r(k+d)
+//! ```
+//!
 //! Source: Tomizuka (1987), "Zero phase error tracking algorithm for digital control".
 //!
-//! Departures: none in the filter. The Coulomb friction is not linear, and the model leaves it out. So it does what a drive has beside
-//! a P speed loop: integral, feedforward of its own, delays and torque filter; on a machine with these it inverts another loop.
+//! Departures: none in the filter. The Coulomb friction is not linear, and the model leaves it out.
 
-use super::feedforward::preview;
+use super::feedforward::{MAX_PREVIEW, preview};
 use super::{Command, Controller, Measured, Schedule};
+use crate::vector::add_scaled;
 use crate::window::Window;
 
 /// One axis between two servo periods: the effect of its speed and of the reference speed that is held.
@@ -45,17 +53,25 @@ pub struct SampledAxis {
     pub kd: f64,
 }
 
+/// Most weights of the reference: 40 periods of delay, and the order of a loop and of its mirrored zeros.
+pub const MAX_WEIGHTS: usize = 64;
+/// Most zeros that are cancelled: three of a sampled drive with integral and filter, one of a part of a period of delay, two of feedforward.
+pub const MAX_CANCELLED: usize = 6;
+
 /// The filter of one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Filter {
-    /// Weights of the reference at k+2, k+1, k, k-1 and k-2; their sum is 1.
-    weights: [f64; 5],
-    /// q: the zero of the position loop, cancelled.
-    pole: f64,
+    /// Weights of the reference at k + ahead, and of as many before as `taps` says; their sum is 1.
+    weights: [f64; MAX_WEIGHTS],
+    ahead: u32,
+    taps: usize,
+    /// Of the commands before: 1 - B+, and what is left for the reference, B+(1). Of a drive without more, q and 1 - q.
+    feedback: [f64; MAX_CANCELLED],
+    direct: f64,
 }
 
 impl Filter {
-    /// For an axis with a servo period of `servo_s`.
+    /// For an axis with a P speed loop and nothing beside, with a servo period of `servo_s`.
     pub fn new(axis: &SampledAxis, servo_s: f64) -> Self {
         let SampledAxis { alpha, beta, gamma_s, delta_s: d, kp_1_s, kd } = *axis;
         let e = gamma_s * beta - alpha * d;
@@ -63,27 +79,70 @@ impl Filter {
         let pole = kd / (servo_s * gain);
         let a = [1.0, gain * d - 1.0 - alpha, alpha + gain * (e - pole * d), -gain * pole * e];
         let sum = (d + e) * (a[0] + a[1] + a[2] + a[3]);
-        let weights = [e * a[0], d * a[0] + e * a[1], d * a[1] + e * a[2], d * a[2] + e * a[3], d * a[3]];
-        Self { weights: weights.map(|weight| weight / sum), pole }
+        let of_reference = [e * a[0], d * a[0] + e * a[1], d * a[1] + e * a[2], d * a[2] + e * a[3], d * a[3]];
+        let mut weights = [0.0; MAX_WEIGHTS];
+        weights.iter_mut().zip(of_reference).for_each(|(to, weight)| *to = weight / sum);
+        let mut feedback = [0.0; MAX_CANCELLED];
+        feedback[0] = pole;
+        Self { weights, ahead: 2, taps: of_reference.len(), feedback, direct: 1.0 - pole }
+    }
+
+    /// Of any loop, by A B- with the zeros of B- mirrored, on any scale, of which the first weight is that of the reference `ahead`
+    /// periods on, and by B+, which begins with 1. None where there are too many, or where one is not a number.
+    pub fn of_loop(of_reference: &[f64], ahead: u32, cancelled: &[f64]) -> Option<Self> {
+        let (_, before) = cancelled.split_first()?;
+        let (sum, direct): (f64, f64) = (of_reference.iter().sum(), cancelled.iter().sum());
+        let finite = sum.abs() > 0.0 && of_reference.iter().chain(cancelled).all(|value| (value / sum).is_finite());
+        if !finite || of_reference.len() > MAX_WEIGHTS || before.len() > MAX_CANCELLED {
+            return None;
+        }
+        let (mut weights, mut feedback) = ([0.0; MAX_WEIGHTS], [0.0; MAX_CANCELLED]);
+        weights.iter_mut().zip(of_reference).for_each(|(to, weight)| *to = weight / sum);
+        feedback.iter_mut().zip(before).for_each(|(to, value)| *to = -value);
+        Some(Self { weights, ahead, taps: of_reference.len(), feedback, direct })
+    }
+
+    /// Weights of the reference, the first one the furthest ahead.
+    pub fn weights(&self) -> &[f64] {
+        self.weights.get(..self.taps).unwrap_or_default()
+    }
+
+    /// By how much the command is off the reference, from the commands before, the last one first, mm; `at_mm` is the reference so
+    /// many periods from that of the command. Offsets from the reference keep rest at rest to the bit.
+    #[inline]
+    fn offset_mm(&self, commanded_mm: impl Iterator<Item = f64>, at_mm: impl Fn(f64) -> f64) -> f64 {
+        let here_mm = at_mm(0.0);
+        let after = |tap: usize| f64::from(self.ahead) - tap as f64;
+        let weights = self.weights().iter().enumerate();
+        let filtered: f64 = weights.map(|(tap, weight)| weight * (at_mm(after(tap)) - here_mm)).sum();
+        let feedback = self.feedback.iter().zip(commanded_mm);
+        feedback.map(|(part, command_mm)| part * (command_mm - here_mm)).sum::<f64>() + self.direct * filtered
     }
 }
 
-/// Zero phase error tracking control; keeps nothing between ticks.
+/// Zero phase error tracking control; remembers the commands of the last periods.
 #[derive(Debug, Clone)]
 pub struct ZeroPhase<const N: usize> {
     filters: [Filter; N],
     preview: u32,
+    /// The last commands, the newest first, mm; none at the start.
+    commanded_mm: Option<[[f64; N]; MAX_CANCELLED]>,
 }
 
 impl<const N: usize> ZeroPhase<N> {
-    /// For these axes and a servo period of `servo_s`.
-    pub fn new(axes: &[SampledAxis; N], servo_s: f64) -> Self {
-        // The lags of the position loop and of the speed loop; the second is J / (kv + B).
-        let lag_s = axes.iter().map(|axis| 1.0 / axis.kp_1_s + axis.gamma_s / (1.0 - axis.alpha));
-        Self {
-            preview: preview(lag_s.fold(0.0, f64::max), servo_s),
-            filters: core::array::from_fn(|i| Filter::new(&axes[i], servo_s)),
-        }
+    /// Of these filters, for loops that lag by up to `lag_s`.
+    pub fn new(filters: [Filter; N], lag_s: f64, servo_s: f64) -> Self {
+        // The plain filter looks two periods ahead, which is within the differences that every preview has.
+        let more = filters.iter().map(|filter| filter.ahead).fold(2, u32::max) - 2;
+        let preview = (preview(lag_s, servo_s) + more).min(MAX_PREVIEW as u32);
+        Self { filters, preview, commanded_mm: None }
+    }
+}
+
+impl SampledAxis {
+    /// The lags of the position loop and of the speed loop, s; the second is J / (kv + B).
+    pub fn lag_s(&self) -> f64 {
+        1.0 / self.kp_1_s + self.gamma_s / (1.0 - self.alpha)
     }
 }
 
@@ -92,19 +151,28 @@ impl<const N: usize> Controller<N> for ZeroPhase<N> {
         Schedule { servo_periods: 1, preview: self.preview }
     }
 
-    fn reset(&mut self) {}
+    fn reset(&mut self) {
+        self.commanded_mm = None;
+    }
 
-    /// The command of the next servo period, k; offsets from its reference keep rest at rest to the bit.
+    /// Where the position is lost, the command goes back to the path by itself.
+    fn observe(&mut self, _: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        if measured.is_none() {
+            self.reset();
+        }
+    }
+
+    /// The command of the next servo period, k.
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let next_s = window.tau_s + window.feed_period_s;
-        let reference = [2.0, 1.0, 0.0, -1.0, -2.0]
-            .map(|ahead: f64| window.preview.at(next_s + ahead * window.servo_s()).position_mm);
-        let now_mm = window.now().position_mm;
+        let command_mm = add_scaled(window.offset_mm, 1.0, window.now().position_mm);
+        let commanded_mm = self.commanded_mm.get_or_insert([command_mm; MAX_CANCELLED]);
+        commanded_mm.copy_within(..MAX_CANCELLED - 1, 1);
+        let [newest_mm, ..] = commanded_mm;
+        *newest_mm = command_mm;
         let offset_mm = core::array::from_fn(|i| {
-            let Filter { weights, pole } = &self.filters[i];
-            let here_mm = reference[2][i];
-            let filtered: f64 = weights.iter().zip(&reference).map(|(weight, r)| weight * (r[i] - here_mm)).sum();
-            pole * (window.offset_mm[i] + now_mm[i] - here_mm) + (1.0 - pole) * filtered
+            let at_mm = |ahead: f64| window.preview.at(next_s + ahead * window.servo_s()).position_mm[i];
+            self.filters[i].offset_mm(commanded_mm.iter().map(|command_mm| command_mm[i]), at_mm)
         });
         Command::straight(1.0, offset_mm)
     }
@@ -142,7 +210,7 @@ mod tests {
     /// Drives two linear axes for a second; calls `each` with the time and the tool at the end of each servo period.
     fn drive(kd: f64, rad_s: f64, mut each: impl FnMut(f64, [f64; 2])) {
         let model = axis(kd);
-        let mut controller = ZeroPhase::new(&[model; 2], SERVO_S);
+        let mut controller = ZeroPhase::new([Filter::new(&model, SERVO_S); 2], model.lag_s(), SERVO_S);
         let (mut tool_mm, mut speed, mut last_mm) = ([0.0; 2], [0.0; 2], [0.0; 2]);
         commands(&mut Wave { rad_s }, &mut controller, SERVO_S, |n, command_mm| {
             for i in 0..2 {

@@ -1,7 +1,8 @@
 //! How each controller of the table is made from what is known of a machine, and from a model: one function for each row, or for
 //! several that differ in their laps alone.
 
-use feedwright_control::axis::inverse::{AxisInverse, Gains};
+use feedwright_control::axis::drive::DriveParameters;
+use feedwright_control::axis::inverse::{AxisInverse, Gains, LoopDelays};
 use feedwright_control::axis::{AxisLaw, AxisState, Parameters};
 use feedwright_control::controller::contour_compensation::{self, ContourCompensation};
 use feedwright_control::controller::cross_coupled::{self, CrossCoupled};
@@ -17,10 +18,11 @@ use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::sum::Sum;
 use feedwright_control::controller::two_dimensional::TwoDimensional;
-use feedwright_control::controller::zero_phase::{SampledAxis, ZeroPhase};
+use feedwright_control::controller::zero_phase::{Filter, SampledAxis, ZeroPhase};
 use feedwright_control::{Controller, horizon, inversion};
 
 use super::Setup;
+use super::closed_loop;
 use super::iterative_learning::{self, IterativeLearning};
 use super::lqg_preview::{self, LqgPreview};
 use super::model_predictive::{self, ModelPredictive};
@@ -125,17 +127,30 @@ pub(super) fn zero_phase_friction<const N: usize>(setup: &mut Setup<'_>, values:
 
 /// The inverse of the closed loop, with scales on its lag and its inertia.
 fn inverse<const N: usize>(setup: &Setup<'_>, values: &Values) -> ZeroPhase<N> {
-    let scales = ["lag_scale", "inertia_scale"].map(|name| values.number(name));
-    ZeroPhase::new(&sampled_axes(&setup.known, scales), setup.known.period.servo_s)
+    let (known, servo_s) = (&setup.known, setup.known.period.servo_s);
+    let [lag_scale, inertia_scale] = ["lag_scale", "inertia_scale"].map(|name| values.number(name));
+    let plain: [SampledAxis; N] = sampled_axes(known, [lag_scale, inertia_scale]);
+    let filters = std::array::from_fn(|i| {
+        let axis = known.axis(i);
+        let filter = if axis.drive == DriveParameters::default() && axis.delays == LoopDelays::default() {
+            None
+        } else {
+            closed_loop::inverting(axis, &scaled(&axis.nominal, [lag_scale, inertia_scale]), &known.period)
+        };
+        filter.unwrap_or_else(|| Filter::new(&plain[i], servo_s))
+    });
+    ZeroPhase::new(filters, plain.iter().map(SampledAxis::lag_s).fold(0.0, f64::max), servo_s)
+}
+
+/// With other lag and other inertia.
+fn scaled(nominal: &Parameters, [lag_scale, inertia_scale]: [f64; 2]) -> Parameters {
+    let inertia_kg_m2 = inertia_scale * nominal.inertia_kg_m2;
+    Parameters { kp_1_s: nominal.kp_1_s / lag_scale, inertia_kg_m2, ..*nominal }
 }
 
 /// The linear part of every axis, with scales on its lag and its inertia.
 fn sampled_axes<const N: usize>(known: &Known, scales: [f64; 2]) -> [SampledAxis; N] {
-    let [lag_scale, inertia_scale] = scales;
-    known.axes().map(|KnownAxis { nominal, .. }| {
-        let inertia_kg_m2 = inertia_scale * nominal.inertia_kg_m2;
-        sampled(&Parameters { kp_1_s: nominal.kp_1_s / lag_scale, inertia_kg_m2, ..nominal }, &known.period)
-    })
+    known.axes().map(|KnownAxis { nominal, .. }| sampled(&scaled(&nominal, scales), &known.period))
 }
 
 pub(super) fn disturbance_observer<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
@@ -174,7 +189,7 @@ fn observed_axes<const N: usize>(known: &Known, gains: impl Fn(&SampledAxis) -> 
 }
 
 /// The linear part of an axis over one servo period, as the plant integrates it.
-fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
+pub(super) fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
     let linear = Parameters { torque_limit_nm: f64::INFINITY, coulomb_friction_nm: 0.0, ..*axis };
     let law = AxisLaw::new(linear, period.periods());
     let over = |speed_rad_s: f64, reference_rad_s: f64| {
