@@ -46,7 +46,7 @@ pub use competitor::{Competitor, Knowledge};
 pub use noise::MAX_SEEDS;
 pub use options::{ComparisonOptions, RowsStamp, Tuning};
 use serde::{Deserialize, Serialize};
-pub use units::{Finished, Missing, Results, Shard, merged, tune_alone, work_on};
+pub use units::{Finished, MissingUnits, Shard, UnitResults, merged, tune_alone, work_on};
 pub use work::{FEED_MM_S, PartError, Workpiece};
 
 use crate::journal::Journal;
@@ -79,7 +79,7 @@ pub struct Comparison {
 
 impl Comparison {
     /// Of all that was cut.
-    pub fn new(options: &ComparisonOptions, results: Results) -> Self {
+    pub fn new(options: &ComparisonOptions, results: UnitResults) -> Self {
         let rows = table::in_order(&results.rows, options);
         let nominal = options.nominal.name.clone();
         let verdicts = verdict::verdicts(&rows, options);

@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright::compare::{
-    Comparison, ComparisonOptions, Finished, Missing, RowsStamp, Shard, compare, journal_path, merged, page, recorded,
-    rows_file, tune_alone, work_on,
+    Comparison, ComparisonOptions, Finished, MissingUnits, RowsStamp, Shard, compare, journal_path, merged, page,
+    recorded, rows_file, tune_alone, work_on,
 };
 use feedwright::identify::cache;
 use feedwright::journal::Journal;
@@ -134,7 +134,7 @@ fn record_searches(
 /// Puts the rows of shards together.
 fn merge(args: &CompareArgs, options: &ComparisonOptions, stamp: &RowsStamp, console: &Console) -> Result<ExitCode> {
     let journal = rows_file::read_all(&args.merge, stamp)?;
-    let results = merged(options, &journal).map_err(|Missing { units }| {
+    let results = merged(options, &journal).map_err(|MissingUnits { units }| {
         const NAMED: usize = 12;
         let more = if units.len() > NAMED { format!("\nand {} more", units.len() - NAMED) } else { String::new() };
         let names: Vec<&str> = units.iter().take(NAMED).map(String::as_str).collect();

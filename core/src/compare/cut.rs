@@ -5,7 +5,7 @@ use feedwright_control::Controller;
 use super::competitor::Competitor;
 use super::noise;
 use super::options::ComparisonOptions;
-use super::table::{ComparisonRow, Measured};
+use super::table::{ComparisonRow, CutNumbers};
 use super::work::Workpiece;
 use crate::machine::Machine;
 use crate::pipeline::{Run, RunError};
@@ -46,7 +46,7 @@ pub(super) fn cut(
     Ok(Cut { statistics, run })
 }
 
-impl Measured {
+impl CutNumbers {
     fn of(Cut { statistics, run }: &Cut, acceleration: &Acceleration) -> Self {
         Self {
             time_s: run.time_s,
@@ -83,7 +83,7 @@ pub(super) fn row(
             sinks.push(&mut errors);
         }
         let cut = cut(workpiece, controller, run, &mut sinks)?;
-        measured.push(Measured::of(&cut, &acceleration));
+        measured.push(CutNumbers::of(&cut, &acceleration));
     }
     Ok(ComparisonRow::new(workpiece, machine, competitor, &measured, errors.thinned()))
 }

@@ -11,7 +11,7 @@ use crate::machine::Machine;
 
 /// The numbers of one cut.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Measured {
+pub(super) struct CutNumbers {
     pub(super) time_s: f64,
     pub(super) rms_um: f64,
     pub(super) max_um: f64,
@@ -84,11 +84,11 @@ impl ComparisonRow {
         workpiece: &Workpiece,
         machine: &Machine,
         competitor: &Competitor,
-        measured: &[Measured],
+        measured: &[CutNumbers],
         error_um: Vec<f32>,
     ) -> Self {
-        let spread = |number: fn(&Measured) -> f64| median_and_spread(measured.iter().map(number));
-        let worst = |number: fn(&Measured) -> f64| measured.iter().map(number).fold(0.0, f64::max);
+        let spread = |number: fn(&CutNumbers) -> f64| median_and_spread(measured.iter().map(number));
+        let worst = |number: fn(&CutNumbers) -> f64| measured.iter().map(number).fold(0.0, f64::max);
         let joint = |k: usize| {
             let all: Option<Vec<f64>> = measured.iter().map(|cut| cut.joint_um.map(|um| um[k])).collect();
             all.map(|um| median_and_spread(um).0)
@@ -186,12 +186,13 @@ mod tests {
 
     #[test]
     fn a_row_has_medians_of_errors_the_worst_of_all_else_and_counts_what_was_lost() {
-        let cut = |rms_um: f64, uncut_um: f64| Measured { rms_um, uncut_um, completed: true, ..Measured::default() };
+        let cut =
+            |rms_um: f64, uncut_um: f64| CutNumbers { rms_um, uncut_um, completed: true, ..CutNumbers::default() };
         let mut measured = vec![cut(3.0, 7.0), cut(1.0, 9.0), cut(2.0, 8.0)];
         let workpiece = &Workpiece::contours()[0];
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let competitor = Competitor::own(Entry::find(BASELINE).unwrap());
-        let row = |measured: &[Measured]| ComparisonRow::new(workpiece, &machine, &competitor, measured, Vec::new());
+        let row = |measured: &[CutNumbers]| ComparisonRow::new(workpiece, &machine, &competitor, measured, Vec::new());
         let sound = row(&measured);
         assert_eq!((sound.rms_um, sound.rms_spread_um, sound.uncut_um), (2.0, [1.0, 3.0], 9.0));
         assert_eq!((sound.seeds, sound.lost, sound.completed, sound.note()), (3, 0, true, None));

@@ -36,7 +36,7 @@ pub enum Finished {
 
 /// All that was worked out, ratios still open.
 #[derive(Debug, Default)]
-pub struct Results {
+pub struct UnitResults {
     /// The values that the controllers ran with.
     pub tuned: Vec<Tuned>,
     /// Rows by machine, competitor and workpiece.
@@ -76,19 +76,19 @@ impl FromStr for Shard {
 
 /// What no journal holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Missing {
+pub struct MissingUnits {
     /// In words, in the order of the work.
     pub units: Vec<String>,
 }
 
 /// A unit of work.
 #[derive(Clone, Copy)]
-enum Unit<'a> {
+enum WorkUnit<'a> {
     Cuts(&'a Machine, Competitor),
     Tolerance(&'a Machine, &'static Contour, &'static Entry),
 }
 
-impl<'a> Unit<'a> {
+impl<'a> WorkUnit<'a> {
     fn all(options: &'a ComparisonOptions) -> Vec<Self> {
         let cuts = options.machines.iter().flat_map(|machine| {
             options.competitors(machine).into_iter().map(move |competitor| Self::Cuts(machine, competitor))
@@ -141,24 +141,24 @@ pub fn work_on(
     shard: Shard,
     journal: &Journal<Finished>,
     watch: &dyn Watch,
-) -> Result<Results, RunError> {
-    let units = shard.of(Unit::all(options));
+) -> Result<UnitResults, RunError> {
+    let units = shard.of(WorkUnit::all(options));
     let tuned = tune(options, &units, journal, watch)?;
     watch.begin("cutting", units.iter().map(|unit| unit.steps(options) as u64).sum());
-    let parts: Result<Vec<Results>, RunError> = units
+    let parts: Result<Vec<UnitResults>, RunError> = units
         .par_iter()
         .map(|unit| {
             let (on, entry) = unit.tuned_on(options);
             let values = tuned.iter().find(|tuned| tuned.machine == on.name && tuned.controller == entry.name);
             match unit {
-                Unit::Cuts(machine, competitor) => cuts(options, machine, competitor, values, journal, watch),
-                Unit::Tolerance(machine, contour, entry) => {
+                WorkUnit::Cuts(machine, competitor) => cuts(options, machine, competitor, values, journal, watch),
+                WorkUnit::Tolerance(machine, contour, entry) => {
                     raised(options, machine, contour, entry, values, journal, watch)
                 }
             }
         })
         .collect();
-    Ok(Results::of(tuned, parts?))
+    Ok(UnitResults::of(tuned, parts?))
 }
 
 /// Tunes what belongs to a shard, and cuts nothing.
@@ -171,16 +171,16 @@ pub fn tune_alone(
     journal: &Journal<Finished>,
     watch: &dyn Watch,
 ) -> Result<Vec<Tuned>, RunError> {
-    tune(options, &shard.of(Unit::all(options)), journal, watch)
+    tune(options, &shard.of(WorkUnit::all(options)), journal, watch)
 }
 
 /// The comparison as journals have it.
 ///
 /// # Errors
 /// What none of them has.
-pub fn merged(options: &ComparisonOptions, journal: &Journal<Finished>) -> Result<Results, Missing> {
-    let units = Unit::all(options);
-    let (mut results, mut missing) = (Results::default(), Vec::new());
+pub fn merged(options: &ComparisonOptions, journal: &Journal<Finished>) -> Result<UnitResults, MissingUnits> {
+    let units = WorkUnit::all(options);
+    let (mut results, mut missing) = (UnitResults::default(), Vec::new());
     for (machine, entry) in tuned_on(options, &units) {
         match (options.given(machine, entry), journal.get(&tuned_key(machine, entry))) {
             (Some(tuned), _) => results.tuned.push(tuned),
@@ -190,7 +190,7 @@ pub fn merged(options: &ComparisonOptions, journal: &Journal<Finished>) -> Resul
     }
     for unit in &units {
         match unit {
-            Unit::Cuts(machine, competitor) => {
+            WorkUnit::Cuts(machine, competitor) => {
                 let before = results.rows.len();
                 results.rows.extend(options.workpieces.iter().filter_map(|workpiece| {
                     match journal.get(&row_key(workpiece, machine, competitor)) {
@@ -204,16 +204,18 @@ pub fn merged(options: &ComparisonOptions, journal: &Journal<Finished>) -> Resul
                     missing.push(format!("{name} on {}: {open} of {of} workpieces", machine.name));
                 }
             }
-            Unit::Tolerance(machine, contour, entry) => match journal.get(&tolerance_key(machine, contour, entry)) {
-                Some(Finished::AtTolerance(row)) => results.at_tolerance.push(row.clone()),
-                _ => missing.push(format!("the tolerance of {} on {}", entry.name, contour.name)),
-            },
+            WorkUnit::Tolerance(machine, contour, entry) => {
+                match journal.get(&tolerance_key(machine, contour, entry)) {
+                    Some(Finished::AtTolerance(row)) => results.at_tolerance.push(row.clone()),
+                    _ => missing.push(format!("the tolerance of {} on {}", entry.name, contour.name)),
+                }
+            }
         }
     }
-    if missing.is_empty() { Ok(results) } else { Err(Missing { units: missing }) }
+    if missing.is_empty() { Ok(results) } else { Err(MissingUnits { units: missing }) }
 }
 
-impl Results {
+impl UnitResults {
     fn of(tuned: Vec<Tuned>, parts: Vec<Self>) -> Self {
         let mut all = Self { tuned, ..Self::default() };
         for part in parts {
@@ -225,7 +227,7 @@ impl Results {
 }
 
 /// Machines and controllers whose values the units need, each once, in the order of machines and controllers.
-fn tuned_on<'a>(options: &'a ComparisonOptions, units: &[Unit<'a>]) -> Vec<(&'a Machine, &'static Entry)> {
+fn tuned_on<'a>(options: &'a ComparisonOptions, units: &[WorkUnit<'a>]) -> Vec<(&'a Machine, &'static Entry)> {
     let needed: Vec<_> = units.iter().map(|unit| unit.tuned_on(options)).collect();
     let is_needed = |machine: &Machine, entry: &Entry| {
         needed.iter().any(|(on, of)| on.name == machine.name && of.name == entry.name)
@@ -241,7 +243,7 @@ fn tuned_on<'a>(options: &'a ComparisonOptions, units: &[Unit<'a>]) -> Vec<(&'a 
 /// The values that the units need.
 fn tune(
     options: &ComparisonOptions,
-    units: &[Unit<'_>],
+    units: &[WorkUnit<'_>],
     journal: &Journal<Finished>,
     watch: &dyn Watch,
 ) -> Result<Vec<Tuned>, RunError> {
@@ -274,7 +276,7 @@ fn cuts(
     tuned: Option<&Tuned>,
     journal: &Journal<Finished>,
     watch: &dyn Watch,
-) -> Result<Results, RunError> {
+) -> Result<UnitResults, RunError> {
     let seeds = cut::seeds(machine, options);
     // Made once and where it is needed: what it has identified serves all workpieces and seeds.
     let mut controller = None;
@@ -294,7 +296,7 @@ fn cuts(
         Ok(row)
     };
     let rows: Result<Vec<ComparisonRow>, RunError> = options.workpieces.iter().map(&mut row).collect();
-    Ok(Results { rows: rows?, ..Results::default() })
+    Ok(UnitResults { rows: rows?, ..UnitResults::default() })
 }
 
 /// The feed of a controller on a contour, raised until the tolerance just holds.
@@ -306,7 +308,7 @@ fn raised(
     tuned: Option<&Tuned>,
     journal: &Journal<Finished>,
     watch: &dyn Watch,
-) -> Result<Results, RunError> {
+) -> Result<UnitResults, RunError> {
     let key = tolerance_key(machine, contour, entry);
     let row = match journal.get(&key) {
         Some(Finished::AtTolerance(row)) => row.clone(),
@@ -319,5 +321,5 @@ fn raised(
         }
     };
     watch.advance(1);
-    Ok(Results { at_tolerance: vec![row], ..Results::default() })
+    Ok(UnitResults { at_tolerance: vec![row], ..UnitResults::default() })
 }

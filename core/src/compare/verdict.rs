@@ -110,7 +110,7 @@ impl Claim {
 }
 
 /// The rows of a workpiece on a machine.
-struct Cell<'a> {
+struct RowsHere<'a> {
     rows: Vec<&'a ComparisonRow>,
 }
 
@@ -119,7 +119,7 @@ pub(super) fn verdicts(rows: &[ComparisonRow], options: &ComparisonOptions) -> V
     let mut verdicts = Vec::new();
     let workpiece = |name: &str| options.workpieces.iter().find(|workpiece| workpiece.name == name);
     for here in rows.chunk_by(|a, b| a.contour == b.contour && a.machine == b.machine) {
-        let cell = Cell { rows: here.iter().collect() };
+        let cell = RowsHere { rows: here.iter().collect() };
         let (Some(ours), Some(workpiece)) = (cell.named(BEST), workpiece(&here[0].contour)) else { continue };
         let is_noisy = options.machines.iter().any(|machine| machine.name == ours.machine && machine.is_noisy());
         match (ours.machine == options.nominal.name, is_noisy) {
@@ -136,7 +136,7 @@ pub(super) fn verdicts(rows: &[ComparisonRow], options: &ComparisonOptions) -> V
     }
     for machine in options.machines.iter().filter(|machine| machine.is_noisy() && options.workpieces.len() > 1) {
         let means = over_all_work(rows, &machine.name);
-        let cell = Cell { rows: means.iter().collect() };
+        let cell = RowsHere { rows: means.iter().collect() };
         verdicts.extend(cell.named(BEST).into_iter().flat_map(|ours| cell.under_noise(ours)));
     }
     verdicts
@@ -166,7 +166,7 @@ fn over_all_work(rows: &[ComparisonRow], machine: &str) -> Vec<ComparisonRow> {
     each_once(on().map(|row| &row.controller)).into_iter().map(mean_of).collect()
 }
 
-impl<'a> Cell<'a> {
+impl<'a> RowsHere<'a> {
     fn named(&self, controller: &str) -> Option<&'a ComparisonRow> {
         self.rows.iter().copied().find(|row| row.controller == controller)
     }

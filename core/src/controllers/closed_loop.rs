@@ -238,7 +238,6 @@ fn zeros(polynomial: &[f64]) -> Vec<Complex> {
 }
 
 #[cfg(test)]
-#[expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 mod tests {
     use super::*;
     use crate::machine::{Axis, Known, Machine};
@@ -317,17 +316,6 @@ mod tests {
                 assert!((left - right).abs() < tolerance, "{:?}, {k}: {left} {right}", axis.drive);
             }
             assert!(positions_rad.iter().any(|position_rad| position_rad.abs() > 0.01));
-        }
-    }
-
-    #[test]
-    fn a_p_speed_loop_gets_the_filter_in_closed_form() {
-        let known = known(|axis| Axis { kd: 0.02, ..axis });
-        let axis = known.axis(0);
-        let filter = inverting(axis, &axis.nominal, &known.period).unwrap();
-        let plain = Filter::new(&super::super::make::sampled(&axis.nominal, &known.period), known.period.servo_s);
-        for (weight, wanted) in filter.weights().iter().zip(plain.weights()) {
-            assert!((weight - wanted).abs() < TOLERANCE, "{filter:?} {plain:?}");
         }
     }
 

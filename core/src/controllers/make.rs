@@ -280,3 +280,25 @@ fn inverting(setup: &Setup<'_>, values: &Values) -> inverting::Settings {
     settings.inversion.steps = values.whole("steps");
     settings
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::machine::Machine;
+
+    /// Rounding of a few hundred products of positions of about 1 rad.
+    const TOLERANCE: f64 = 1e-9;
+
+    #[test]
+    fn a_p_speed_loop_inverted_as_any_other_has_the_filter_in_closed_form() {
+        let mut machine = Machine::load("tnv40".as_ref()).unwrap();
+        machine.axes[0].kd = 0.02;
+        let known = machine.known();
+        let axis = known.axis(0);
+        let filter = closed_loop::inverting(axis, &axis.nominal, &known.period).unwrap();
+        let plain = Filter::new(&sampled(&axis.nominal, &known.period), known.period.servo_s);
+        for (weight, wanted) in filter.weights().iter().zip(plain.weights()) {
+            assert!((weight - wanted).abs() < TOLERANCE, "{filter:?} {plain:?}");
+        }
+    }
+}
