@@ -21,7 +21,7 @@ bench:
 
 # Every controller on every contour, on machines without noise: the tables of examples/02_horizon.
 compare out="target/compare":
-    cargo run --release -- compare --only tnv40,heavy,sticky,rough,soft,coarse --at-tolerance --json {{ out }}.json --html {{ out }}.html
+    cargo run --release -- compare --only tnv40,heavy,sticky,rough,soft,coarse --knowledge own,unseen --at-tolerance --json {{ out }}.json --html {{ out }}.html
 
 # Controllers that the README shows.
 shown := "contour-compensation,cross-coupled,disturbance-observer,kalman-disturbance,feedforward-as-delivered,feedforward,feedforward-cross-coupled,receding-horizon,lqg-preview"
