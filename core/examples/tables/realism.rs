@@ -22,35 +22,48 @@ const SHOWN: &[&str] = &[
     "lqg-preview",
 ];
 
-/// Of a controller on a machine, over all that was cut: RMS (quadratic mean), um, and the largest error, um. None where it was not cut, or
-/// not to its end.
-fn over_all_um(
+/// Of a controller on a machine, over all that was cut, um.
+struct OverAll {
+    /// Half of the workpieces have a lower RMS.
+    median_um: f64,
+    /// Quadratic mean of the RMS.
+    rms_um: f64,
+    /// Largest error.
+    max_um: f64,
+}
+
+/// None where it was not cut, or not to its end.
+fn over_all(
     comparison: &Comparison,
     machine: &str,
     controller: &str,
     [rms, max]: [fn(&ComparisonRow) -> f64; 2],
-) -> Option<[f64; 2]> {
-    let contours = comparison.contours();
-    let (mut square_um2, mut largest_um) = (0.0, 0.0_f64);
-    for contour in &contours {
-        let row = comparison.row(contour, machine, controller).filter(|row| row.completed)?;
-        square_um2 += rms(row).powi(2);
-        largest_um = largest_um.max(max(row));
-    }
-    Some([(square_um2 / contours.len() as f64).sqrt(), largest_um])
+) -> Option<OverAll> {
+    let row = |contour: &&str| comparison.row(contour, machine, controller).filter(|row| row.completed);
+    let rows: Vec<&ComparisonRow> = comparison.contours().iter().map(row).collect::<Option<_>>()?;
+    let mut each_um: Vec<f64> = rows.iter().map(|row| rms(row)).collect();
+    each_um.sort_by(f64::total_cmp);
+    let square_um2: f64 = each_um.iter().map(|um| um * um).sum();
+    Some(OverAll {
+        median_um: *each_um.get(each_um.len() / 2)?,
+        rms_um: (square_um2 / each_um.len() as f64).sqrt(),
+        max_um: rows.iter().map(|row| max(row)).fold(0.0, f64::max),
+    })
 }
 
-/// One line for each controller, one column for each machine: RMS and largest error by encoders, over all work.
+/// One line for each controller, one column for each machine: errors by encoders, over all work.
 pub(super) fn held_out(comparison: &Comparison) -> Result<String> {
     let machines = comparison.machines();
     let mut table = String::new();
-    heading(&mut table, "RMS / max, \u{b5}m", &machines)?;
+    heading(&mut table, "median RMS / RMS of all / max, \u{b5}m", &machines)?;
     for controller in SHOWN {
         write!(table, "| {controller} |")?;
         for machine in &machines {
             let numbers = [ComparisonRow::controlled_rms_um, ComparisonRow::controlled_max_um];
-            match over_all_um(comparison, machine, controller, numbers) {
-                Some([rms_um, max_um]) => write!(table, " {rms_um:.2} / {max_um:.1} |")?,
+            match over_all(comparison, machine, controller, numbers) {
+                Some(OverAll { median_um, rms_um, max_um }) => {
+                    write!(table, " {median_um:.2} / {rms_um:.2} / {max_um:.1} |")?;
+                }
                 None => write!(table, " lost |")?,
             }
         }
@@ -67,8 +80,8 @@ pub(super) fn imperfections(comparison: &Comparison) -> Result<String> {
         write!(table, "| {machine} |")?;
         for controller in SHOWN {
             let numbers: [fn(&ComparisonRow) -> f64; 2] = [|row| row.rms_um, |row| row.max_um];
-            match over_all_um(comparison, machine, controller, numbers) {
-                Some([rms_um, _]) => write!(table, " {rms_um:.3} |")?,
+            match over_all(comparison, machine, controller, numbers) {
+                Some(OverAll { rms_um, .. }) => write!(table, " {rms_um:.3} |")?,
                 None => write!(table, " lost |")?,
             }
         }
