@@ -176,16 +176,22 @@ fn tuned(comparison: &Comparison) -> Result<String> {
     Ok(table)
 }
 
+/// Places where a claim falls short that are named.
+const NAMED: usize = 6;
+
 /// One line for each claim: on how many contours and machines it holds, and where it does not.
 fn claims(comparison: &Comparison) -> Result<String> {
     let mut table = String::from("| claim | limit | holds | worst | falls short on |\n|---|--:|--:|--:|---|\n");
     for Claimed { claim, limit, unit, held, worst, verdicts } in comparison.claims() {
         let unit = unit.replace("um", "\u{b5}m");
-        let short: Vec<String> = verdicts
-            .iter()
-            .filter(|verdict| !verdict.holds)
+        let falling = || verdicts.iter().filter(|verdict| !verdict.holds);
+        let mut short: Vec<String> = falling()
+            .take(NAMED)
             .map(|verdict| format!("{} on {} ({:.2})", verdict.contour, verdict.machine, verdict.value))
             .collect();
+        if let more @ 1.. = falling().count().saturating_sub(NAMED) {
+            short.push(format!("and {more} more"));
+        }
         writeln!(
             table,
             "| {claim} | {limit} {unit} | {held} of {} | {worst:.3} | {} |",
