@@ -38,8 +38,8 @@ Friction, d the direction of motion, g(w, d) = Fc + Fa d + Fs exp(-(w / stribeck
     a = w + dt / J (P - B w - f);  d = sgn a;  w' = a / (1 + dt^2 S max(0, 1 - f d / g) / J)
     f' = d g + (f - d g) exp(-S |w'| dt / g)
 
-Semi-implicit Euler, every mass's speed and then its angle, t at the start of the step; the axis starts at rest at the first
-cmd. What an encoder shows of an angle: interpolation error A sin(2 pi x / signal period) and white noise added, in whole steps; x is the
+Semi-implicit Euler, every mass's speed and then its angle, t at the start of the step; the axis starts at rest at the
+first path point. What an encoder shows of an angle: interpolation error A sin(2 pi x / signal period) and white noise added, in whole steps; x is the
 motor's, or the table's where the scale is there, measurement_delay_s ago. Where t_s jumps, in a long rest, everything stays but t.
 
 The tool is where the geometry puts it: joint + scale joint + pitch_error sin(2 pi joint / lead), and of squareness x += xy y + xz z,
@@ -261,7 +261,7 @@ class Measuring:
         return moved / self.dt
 
 
-def cut(axis, index, period, seed, times_s, commands_mm, finer):
+def cut(axis, index, period, seed, times_s, start_mm, commands_mm, finer):
     """Where the joint is at the end of each servo period, mm, and its largest acceleration, mm/s2."""
     servo = period["servo_s"]
     substeps = round(servo / period["mechanics_s"])
@@ -278,7 +278,7 @@ def cut(axis, index, period, seed, times_s, commands_mm, finer):
         stiffness, damping = table * natural**2, 2 * screw["damping_ratio"] * table * natural
         gap = screw["backlash_um"] * 1e-3 * per_mm
 
-    angle = tool = commands_mm[0] * per_mm
+    angle = tool = start_mm * per_mm
     speed = tool_speed = largest = ahead = 0.0
     drive, friction = Drive(axis, period, seed), Friction(axis, dt)
     measuring = Measuring(axis, period, seed, index, angle)
@@ -365,7 +365,7 @@ def main(machine_file, trace_file, finer="1", seed=None):
     seed = machine.get("noise", {}).get("seed", 0) if seed is None else int(seed)
     column = lambda of, name: [float(row[f"{of}_{name}_mm"]) for row in rows]
     cuts = {
-        name: cut(machine["axis"][name], index, period, seed, times_s, column("cmd", name), finer)
+        name: cut(machine["axis"][name], index, period, seed, times_s, column("path", name)[0], column("cmd", name), finer)
         for index, name in enumerate("xyz")
         if f"cmd_{name}_mm" in rows[0]
     }
