@@ -3,14 +3,13 @@
 //! `plant_terms FILE.svg` cuts the circle of radius 10 mm open loop on tnv40 with one term more, and draws the deviation as a ball bar
 //! shows it. Slowly, where the lag of the loops does not cover what friction and torque do.
 
-use feedwright::compare::Workpiece;
-use feedwright::controllers::{BASELINE, Choices, Entry, Make, Setup};
 use feedwright::gcode::canon::Corner;
 use feedwright::machine::Machine;
 use feedwright::path::contour::CONTOURS;
 use feedwright::pipeline::Run;
 use feedwright::report::figure::{COLORS, Figure, LineStyle, Panel, Polyline};
 use feedwright::trace::{Row, Sink};
+use feedwright_control::controller::open_loop::OpenLoop;
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -111,12 +110,8 @@ fn panel(term: &Term) -> Result<Panel, Failure> {
     let machine = Machine::parse("term.toml", &format!("{head}{x}{y}{}", term.more))?;
     let circle = CONTOURS.iter().find(|contour| contour.name == "circle").ok_or("there is a circle")?;
     let steps = circle.steps(term.feed_mm_s, Corner::ExactPath)?;
-    let workpiece = Workpiece { name: "circle".to_owned(), smooth: true, held_out: false, steps };
-    let choices = Choices::default();
-    let entry = Entry::find(BASELINE).ok_or("the baseline is in the table")?;
-    let mut controller = Make::<2>::make(entry, &mut Setup::new(&machine, &choices));
     let mut tool = Tool::default();
-    Run::on(&machine).cut_steps(&workpiece.steps, &mut *controller, &mut [&mut tool])?;
+    Run::on(&machine).cut_steps::<2>(&steps, &mut OpenLoop, &mut [&mut tool])?;
     let kept = tool.0.len().div_ceil(POINTS).max(1);
     let enlargement = 0.5 * RADIUS_MM / (1e-3 * term.scale_um);
     let drawn = tool.0.iter().step_by(kept).map(|&[x, y]| {

@@ -98,3 +98,27 @@ impl Sink for Vec<Row> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// A row at rest at the origin.
+    pub(crate) fn row(t_s: f64) -> Row {
+        Row {
+            t_s,
+            s_mm: 0.0,
+            line: 1,
+            feed_plan_mm_s: 0.0,
+            cutting: true,
+            commanded: Commanded::Cut,
+            path_mm: [0.0; 3],
+            cmd_mm: [0.0; 3],
+            act_mm: [0.0; 3],
+            torque_nm: [0.0; 3],
+            foot_mm: [0.0; 3],
+            tangent: [1.0, 0.0, 0.0],
+            contour_error_mm: 0.0,
+        }
+    }
+}

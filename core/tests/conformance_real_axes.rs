@@ -4,29 +4,23 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
+#[path = "common/cut.rs"]
+mod cut;
+
 use std::path::Path;
 
-use feedwright::controllers::{BASELINE, BEST, Choices, Entry};
-use feedwright::job::{Job, Outputs};
-use feedwright::machine::Machine;
+use cut::cut;
+use feedwright::controllers::{BASELINE, BEST, Entry};
 
 /// RMS of the joints' contour error over open loop's.
 fn ratio(machine: &str, part: &str) -> f64 {
-    let job = Job {
-        part: Path::new(env!("CARGO_MANIFEST_DIR")).join("../parts").join(part),
-        machine: Machine::load(machine.as_ref()).unwrap(),
-        controller: Entry::find(BEST).unwrap(),
-        against: Entry::find(BASELINE).unwrap(),
-        feed_mm_s: None,
-        choices: Choices::default(),
-        model: None,
-        tolerance_um: None,
-        reader: feedwright::gcode::Settings::default(),
-        inputs: Vec::new(),
-        outputs: Outputs::default(),
-    };
-    let runs = job.run(&()).unwrap().report.runs;
-    let [open_um, corrected_um] = [&runs[0], &runs[1]].map(|run| run.summary.joint_rms_um.unwrap());
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let (part, machine) = (root.join("parts").join(part), root.join("machines").join(format!("{machine}.toml")));
+    let folder = tempfile::tempdir().unwrap();
+    let [open_um, corrected_um] = [BASELINE, BEST].map(|name| {
+        let summary = cut(&part, &machine, Entry::find(name).unwrap(), &folder.path().join("trace.csv"));
+        summary.joint_rms_um.unwrap()
+    });
     corrected_um / open_um
 }
 

@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use feedwright::compare::Comparison;
+use feedwright::compare::mean::quadratic_mean;
 use feedwright::compare::table::ComparisonRow;
 
 use super::{Result, heading};
@@ -39,15 +40,12 @@ fn over_all(
     controller: &str,
     [rms, max]: [fn(&ComparisonRow) -> f64; 2],
 ) -> Option<OverAll> {
-    let row = |contour: &&str| comparison.row(contour, machine, controller).filter(|row| row.completed);
-    let rows: Vec<&ComparisonRow> = comparison.contours().iter().map(row).collect::<Option<_>>()?;
-    let mut each_um: Vec<f64> = rows.iter().map(|row| rms(row)).collect();
+    let mut each_um = comparison.on_contours(machine, controller, rms)?;
     each_um.sort_by(f64::total_cmp);
-    let square_um2: f64 = each_um.iter().map(|um| um * um).sum();
     Some(OverAll {
         median_um: *each_um.get(each_um.len() / 2)?,
-        rms_um: (square_um2 / each_um.len() as f64).sqrt(),
-        max_um: rows.iter().map(|row| max(row)).fold(0.0, f64::max),
+        rms_um: quadratic_mean(each_um),
+        max_um: comparison.on_contours(machine, controller, max)?.into_iter().fold(0.0, f64::max),
     })
 }
 
@@ -79,9 +77,8 @@ pub(super) fn imperfections(comparison: &Comparison) -> Result<String> {
     for machine in comparison.machines() {
         write!(table, "| {machine} |")?;
         for controller in SHOWN {
-            let numbers: [fn(&ComparisonRow) -> f64; 2] = [|row| row.rms_um, |row| row.max_um];
-            match over_all(comparison, machine, controller, numbers) {
-                Some(OverAll { rms_um, .. }) => write!(table, " {rms_um:.3} |")?,
+            match comparison.rms_over_contours_um(machine, controller) {
+                Some(rms_um) => write!(table, " {rms_um:.3} |")?,
                 None => write!(table, " lost |")?,
             }
         }

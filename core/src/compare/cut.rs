@@ -152,31 +152,12 @@ impl Errors {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trace::Commanded;
-
-    fn row(t_s: f64, cmd_mm: [f64; 3]) -> Row {
-        let zero = [0.0; 3];
-        Row {
-            t_s,
-            s_mm: 0.0,
-            line: 1,
-            feed_plan_mm_s: 1.0,
-            cutting: true,
-            commanded: Commanded::Cut,
-            path_mm: zero,
-            cmd_mm,
-            act_mm: zero,
-            torque_nm: zero,
-            foot_mm: zero,
-            tangent: [1.0, 0.0, 0.0],
-            contour_error_mm: 0.0,
-        }
-    }
+    use crate::trace::tests::row;
 
     #[test]
     fn the_acceleration_of_a_parabola_is_its_own_and_none_is_seen_across_a_rest() {
         let mut seen = Acceleration::new(1e-3);
-        let at = |t_s: f64| row(t_s, [0.0, -400.0 * t_s * t_s, 0.0]);
+        let at = |t_s: f64| Row { cmd_mm: [0.0, -400.0 * t_s * t_s, 0.0], ..row(t_s) };
         (0..10).for_each(|n| seen.row(&at(f64::from(n) * 1e-3)).unwrap());
         assert!((seen.largest_mm_s2 - 800.0).abs() < 1e-6, "{}", seen.largest_mm_s2);
         // A second later it is somewhere else.

@@ -16,17 +16,6 @@ pub(super) fn reported(machine: &Machine, seed: u64, count: u32) -> Vec<u64> {
     (0..).map(|k| first.wrapping_add(k)).filter(|&other| other != of_file).take(count.max(1) as usize).collect()
 }
 
-/// The median, lowest and highest; of an even number the mean of the middle two.
-pub(super) fn median_and_spread(values: impl IntoIterator<Item = f64>) -> (f64, [f64; 2]) {
-    let mut values: Vec<f64> = values.into_iter().collect();
-    values.sort_by(f64::total_cmp);
-    let (Some(&low), Some(&high)) = (values.first(), values.last()) else { return (f64::NAN, [f64::NAN; 2]) };
-    let middle = values.len() / 2;
-    let median =
-        if values.len().is_multiple_of(2) { 0.5 * (values[middle - 1] + values[middle]) } else { values[middle] };
-    (median, [low, high])
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -41,12 +30,5 @@ mod tests {
         assert_eq!(all, [1002, 1003, 1004, 1005, 1006, 1007]);
         assert_eq!(reported(&noisy.with_noise_seed(1003), 1, 3), [1002, 1004, 1005]);
         assert!(reported(&noisy, 2, 6).iter().all(|seed| !all.contains(seed)));
-    }
-
-    #[test]
-    fn the_median_of_an_even_number_is_the_mean_of_the_middle_two() {
-        assert_eq!(median_and_spread([3.0, 1.0, 2.0]), (2.0, [1.0, 3.0]));
-        assert_eq!(median_and_spread([4.0, 1.0, 2.0, 3.0]), (2.5, [1.0, 4.0]));
-        assert_eq!(median_and_spread([7.0]), (7.0, [7.0, 7.0]));
     }
 }

@@ -2,6 +2,7 @@
 //! all that it was made of.
 
 use super::Comparison;
+use super::mean::quadratic_mean;
 use super::table::{ComparisonRow, each_once};
 use super::tolerance::AtTolerance;
 use super::verdict::Verdict;
@@ -44,15 +45,15 @@ impl Comparison {
         self.rows.iter().find(|row| row.contour == contour && row.machine == machine && row.controller == controller)
     }
 
+    /// A number of the rows of a controller on a machine, contour by contour; none where a cut is missing or was not completed.
+    pub fn on_contours(&self, machine: &str, controller: &str, number: fn(&ComparisonRow) -> f64) -> Option<Vec<f64>> {
+        let row = |contour: &str| self.row(contour, machine, controller).filter(|row| row.completed);
+        self.contours().into_iter().map(|contour| row(contour).map(number)).collect()
+    }
+
     /// RMS contour error over all contours (quadratic mean), um; none where a cut is missing or was not completed.
     pub fn rms_over_contours_um(&self, machine: &str, controller: &str) -> Option<f64> {
-        let contours = self.contours();
-        let mut sum_um2 = 0.0;
-        for contour in &contours {
-            let row = self.row(contour, machine, controller).filter(|row| row.completed)?;
-            sum_um2 += row.rms_um.powi(2);
-        }
-        Some((sum_um2 / contours.len() as f64).sqrt())
+        self.on_contours(machine, controller, |row| row.rms_um).map(quadratic_mean)
     }
 
     /// The claims, in the order of the verdicts.

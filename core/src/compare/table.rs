@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::competitor::Competitor;
-use super::noise::median_and_spread;
+use super::mean::median_and_spread;
 use super::options::ComparisonOptions;
 use super::work::Workpiece;
 use crate::controllers::{BASELINE, Knows};

@@ -9,6 +9,7 @@
 use rayon::prelude::*;
 
 use super::cut::cut;
+use super::mean::quadratic_mean;
 use super::tuned::{RangeEnd, Tuned, TunedValue};
 use super::work::Workpiece;
 use crate::controllers::{BASELINE, Choices, Entry, Make, Parameter, Setting, Setup};
@@ -129,14 +130,14 @@ impl Trial<'_> {
         let choices = Choices { seed: self.seed, set: settings.to_vec() };
         let mut controller = Make::<2>::make(self.entry, &mut Setup::new(self.machine, &choices));
         let run = Run::on(self.machine).laps(self.entry.laps).watched(self.watch);
-        let (mut square_sum_um2, mut time_s, mut sound) = (0.0, 0.0, true);
+        let (mut each_um, mut time_s, mut sound) = (Vec::with_capacity(self.workpieces.len()), 0.0, true);
         for workpiece in self.workpieces {
             let cut = cut(workpiece, &mut *controller, run, &mut [])?;
-            square_sum_um2 += cut.joint_rms_um().powi(2);
+            each_um.push(cut.joint_rms_um());
             time_s += cut.run.time_s;
             sound &= cut.is_sound();
         }
-        Ok(Evaluation { rms_um: (square_sum_um2 / self.workpieces.len() as f64).sqrt(), time_s, sound })
+        Ok(Evaluation { rms_um: quadratic_mean(each_um), time_s, sound })
     }
 
     /// The values of the parameters that are searched, at a point of the unit cube.

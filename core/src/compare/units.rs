@@ -182,10 +182,9 @@ pub fn merged(options: &ComparisonOptions, journal: &Journal<Finished>) -> Resul
     let units = WorkUnit::all(options);
     let (mut results, mut missing) = (UnitResults::default(), Vec::new());
     for (machine, entry) in tuned_on(options, &units) {
-        match (options.given(machine, entry), journal.get(&tuned_key(machine, entry))) {
-            (Some(tuned), _) => results.tuned.push(tuned),
-            (None, Some(Finished::Tuned(tuned))) => results.tuned.push(tuned.clone()),
-            _ => missing.push(format!("the values of {} on {}", entry.name, machine.name)),
+        match known(options, machine, entry, journal) {
+            Some(tuned) => results.tuned.push(tuned),
+            None => missing.push(format!("the values of {} on {}", entry.name, machine.name)),
         }
     }
     for unit in &units {
@@ -240,6 +239,19 @@ fn tuned_on<'a>(options: &'a ComparisonOptions, units: &[WorkUnit<'a>]) -> Vec<(
         .collect()
 }
 
+/// Values that are given, or that a journal holds.
+fn known(
+    options: &ComparisonOptions,
+    machine: &Machine,
+    entry: &'static Entry,
+    journal: &Journal<Finished>,
+) -> Option<Tuned> {
+    options.given(machine, entry).or_else(|| match journal.get(&tuned_key(machine, entry)) {
+        Some(Finished::Tuned(tuned)) => Some(tuned.clone()),
+        _ => None,
+    })
+}
+
 /// The values that the units need.
 fn tune(
     options: &ComparisonOptions,
@@ -252,13 +264,11 @@ fn tune(
     pairs
         .par_iter()
         .map(|(machine, entry)| {
-            let key = tuned_key(machine, entry);
-            let tuned = match (options.given(machine, entry), journal.get(&key)) {
-                (Some(tuned), _) => tuned,
-                (None, Some(Finished::Tuned(tuned))) => tuned.clone(),
-                _ => {
+            let tuned = match known(options, machine, entry, journal) {
+                Some(tuned) => tuned,
+                None => {
                     let tuned = tuning::search(entry, machine, options.seed, watch)?;
-                    journal.add(&key, &Finished::Tuned(tuned.clone()));
+                    journal.add(&tuned_key(machine, entry), &Finished::Tuned(tuned.clone()));
                     tuned
                 }
             };

@@ -11,6 +11,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::competitor::{Competitor, Knowledge};
+use super::mean::quadratic_mean;
 use super::options::ComparisonOptions;
 use super::table::{ComparisonRow, each_once, knows};
 use crate::controllers::{BASELINE, BEST, Knows};
@@ -152,8 +153,7 @@ fn over_all_work(rows: &[ComparisonRow], machine: &str) -> Vec<ComparisonRow> {
     let on = || rows.iter().filter(|row| row.machine == machine);
     let mean_of = |controller: &str| {
         let its: Vec<&ComparisonRow> = on().filter(|row| row.controller == controller).collect();
-        let square_um2: f64 = its.iter().map(|row| row.controlled_rms_um().powi(2)).sum();
-        let rms_um = (square_um2 / its.len() as f64).sqrt();
+        let rms_um = quadratic_mean(its.iter().map(|row| row.controlled_rms_um()));
         ComparisonRow {
             contour: ALL_WORK.to_owned(),
             rms_um,

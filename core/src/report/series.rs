@@ -186,27 +186,9 @@ impl Bucket {
 }
 
 #[cfg(test)]
-pub(super) mod tests {
+mod tests {
     use super::*;
-
-    /// A row at rest at the origin.
-    pub(crate) fn row(t_s: f64) -> Row {
-        Row {
-            t_s,
-            s_mm: 0.0,
-            line: 1,
-            feed_plan_mm_s: 0.0,
-            cutting: true,
-            commanded: crate::trace::Commanded::Cut,
-            path_mm: [0.0; 3],
-            cmd_mm: [0.0; 3],
-            act_mm: [0.0; 3],
-            torque_nm: [0.0; 3],
-            foot_mm: [0.0; 3],
-            tangent: [1.0, 0.0, 0.0],
-            contour_error_mm: 0.0,
-        }
-    }
+    use crate::trace::tests::row;
 
     #[test]
     fn actual_feed_is_the_speed_of_the_tool() {

@@ -145,7 +145,7 @@ impl Sink for Statistics {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::series::tests::row;
+    use crate::trace::tests::row;
 
     fn statistics_of(errors_um: &[f64]) -> Statistics {
         let mut statistics = Statistics::new();

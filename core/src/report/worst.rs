@@ -148,7 +148,7 @@ impl Peak {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::series::tests::row;
+    use crate::trace::tests::row;
 
     fn places_of(errors: impl Iterator<Item = f64>, step_mm: f64) -> Vec<WorstPlace> {
         let mut finder = WorstFinder::default();

@@ -125,31 +125,14 @@ fn to_segment(point_mm: Vector, from_mm: Vector, to_mm: Vector) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn row(path_mm: Vector, act_mm: Vector) -> Row {
-        Row {
-            t_s: 0.0,
-            s_mm: 0.0,
-            line: 1,
-            feed_plan_mm_s: 10.0,
-            cutting: true,
-            commanded: Commanded::Cut,
-            path_mm,
-            cmd_mm: act_mm,
-            act_mm,
-            torque_nm: [0.0; 3],
-            foot_mm: act_mm,
-            tangent: [1.0, 0.0, 0.0],
-            contour_error_mm: 0.0,
-        }
-    }
+    use crate::trace::tests::row;
 
     /// A path of one feed point a period, and a tool that is where `tool` says at the end of each.
     fn uncut(path: &[Vector], tool: impl Fn(usize) -> Vector, periods: usize) -> f64 {
         let mut uncut = Uncut::new(periods, path[0]);
         for (n, &path_mm) in path.iter().enumerate() {
             let act_mm = tool(n);
-            uncut.row(&row(path_mm, act_mm));
+            uncut.row(&Row { path_mm, act_mm, ..row(0.0) });
         }
         uncut.finish(0.01)
     }

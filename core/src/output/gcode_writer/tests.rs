@@ -4,27 +4,15 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::gcode::canon::Event;
+use crate::trace::tests::row as at_rest;
 
 /// Half the printed step on three axes is inside the tolerance already; this is for rounding of the test's own sums.
 const ROUNDING_MM: f64 = 1e-9;
 const DT_S: f64 = 1e-3;
 
 fn row(k: usize, cmd_mm: [f64; 3], cutting: bool) -> Row {
-    Row {
-        t_s: k as f64 * DT_S,
-        s_mm: 0.0,
-        line: 1,
-        feed_plan_mm_s: 0.0,
-        cutting,
-        commanded: if cutting { Commanded::Cut } else { Commanded::Rapid },
-        path_mm: cmd_mm,
-        cmd_mm,
-        act_mm: cmd_mm,
-        torque_nm: [0.0; 3],
-        foot_mm: cmd_mm,
-        tangent: [1.0, 0.0, 0.0],
-        contour_error_mm: 0.0,
-    }
+    let commanded = if cutting { Commanded::Cut } else { Commanded::Rapid };
+    Row { cutting, commanded, path_mm: cmd_mm, cmd_mm, act_mm: cmd_mm, foot_mm: cmd_mm, ..at_rest(k as f64 * DT_S) }
 }
 
 fn program(axes: usize, points: &[([f64; 3], bool)]) -> String {
