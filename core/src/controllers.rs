@@ -270,7 +270,7 @@ pub const CONTROLLERS: &[Entry] = &[
         "Lam, Manzie and Good (2010)",
         ExactModel,
         laps: 1,
-        [Parameter { searched: Some([1e-11, 1e-4]), ..RATE_WEIGHT }, KNOTS, PLAN_PERIOD_S],
+        [Parameter { searched: Some([1e-11, 1e-2]), ..RATE_WEIGHT }, KNOTS, PLAN_PERIOD_S],
         |setup, values| make::model_predictive(setup, values)
     ),
     entry!(

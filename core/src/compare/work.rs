@@ -25,6 +25,11 @@ const PARTS: [(&str, &str); 6] = [
     ("star.ngc", include_str!("../../../parts/star.ngc")),
 ];
 
+/// Contours that controllers are tuned on.
+const TUNING_CONTOURS: [&str; 2] = ["eight", "square"];
+/// What they are tuned on beside: tips of 11 and 24 degrees and a short edge.
+const TIPS: &str = "G1 X8 Y0 F3000\nX0 Y1.5\nX4 Y4\nX1 Y0.8\nX0 Y0\nM2\n";
+
 /// Something to cut.
 #[derive(Debug, Clone)]
 pub struct Workpiece {
@@ -50,6 +55,15 @@ impl Workpiece {
                 steps: contour.steps(FEED_MM_S, CORNER).expect("the built-in contours have a path"),
             })
             .collect()
+    }
+
+    /// What the peers are tuned on: a smooth contour, one with corners, and acute tips.
+    pub fn tuning() -> Vec<Self> {
+        let mut all = Self::contours();
+        all.retain(|workpiece| TUNING_CONTOURS.contains(&workpiece.name.as_str()));
+        let tips = steps("tips", TIPS).expect("the tips have a path, which a test holds");
+        all.push(Self { name: "tips".to_owned(), smooth: false, held_out: false, steps: tips });
+        all
     }
 
     /// What everything may be tuned on: the contours, and the parts in the plane that come with the program.
@@ -106,6 +120,12 @@ pub enum PartError {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn controllers_are_tuned_on_a_smooth_contour_on_corners_and_on_tips() {
+        let names: Vec<String> = Workpiece::tuning().into_iter().map(|workpiece| workpiece.name).collect();
+        assert_eq!(names, ["eight", "square", "tips"]);
+    }
 
     #[test]
     fn the_parts_of_the_development_set_are_in_the_plane_and_no_two_have_the_same_name() {

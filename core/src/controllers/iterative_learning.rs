@@ -29,7 +29,7 @@ const GAIN: Parameter = number(
     "gain",
     Settings::DEFAULT.gain,
     [0.0, 2.0],
-    Some([0.1, 1.5]),
+    Some([0.1, 1.9]),
     "part of the error that a lap takes up: 0 learns nothing, 2 swings from lap to lap",
 );
 /// Time by which an offset comes before the error that it is for.
@@ -37,7 +37,7 @@ const LEAD_S: Parameter = number(
     "lead_s",
     Settings::DEFAULT.lead_s,
     [0.0, 0.5],
-    Some([0.001, 0.05]),
+    Some([2e-4, 0.05]),
     "time by which an offset comes before the error that it is for: the lag of the loop",
 );
 /// Cut-off of Q.
@@ -45,7 +45,7 @@ const CUT_OFF_HZ: Parameter = number(
     "cut-off_hz",
     Settings::DEFAULT.cut_off_hz,
     [0.1, 1e4],
-    Some([2.0, 100.0]),
+    Some([2.0, 400.0]),
     "frequency above which nothing is learned: beyond the bandwidth of the loop, learning grows noise",
 );
 /// Of every row, whatever its laps.

@@ -47,7 +47,7 @@ pub(super) const PRICE: Parameter = number(
     "price_s2",
     lqg_preview::Settings::DEFAULT.price_s2,
     [1e-12, 1e-2],
-    Some([1e-11, 1e-5]),
+    Some([1e-11, 1e-3]),
     "price of the reference speed beside the error: low rings between servo periods, high leaves the error as it is",
 );
 // Of those that plan over a horizon.
@@ -143,13 +143,13 @@ pub(super) const BEHIND_KI: Parameter = Parameter { searched: Some([0.01, 1e4]),
 pub(super) const BEHIND_KD: Parameter = Parameter { searched: Some([1e-6, 0.5]), ..CROSS_COUPLED_KD };
 // Parts of what the exact model calls for, and scales of its parameters.
 pub(super) const VELOCITY_GAIN: Parameter =
-    number("velocity_gain", Gains::EXACT.velocity, [0.0, 10.0], Some([0.5, 1.5]), EXACT_REASON);
+    number("velocity_gain", Gains::EXACT.velocity, [0.0, 10.0], Some([0.1, 1.5]), EXACT_REASON);
 pub(super) const ACCELERATION_GAIN: Parameter =
     number("acceleration_gain", Gains::EXACT.acceleration, [0.0, 10.0], Some([0.0, 2.0]), EXACT_REASON);
 pub(super) const FRICTION_GAIN: Parameter =
     number("friction_gain", Gains::EXACT.friction, [0.0, 10.0], Some([0.0, 4.0]), EXACT_REASON);
-pub(super) const LAG_SCALE: Parameter = number("lag_scale", 1.0, [0.1, 10.0], Some([0.5, 1.5]), EXACT_REASON);
-pub(super) const INERTIA_SCALE: Parameter = number("inertia_scale", 1.0, [0.01, 10.0], Some([0.5, 2.0]), EXACT_REASON);
+pub(super) const LAG_SCALE: Parameter = number("lag_scale", 1.0, [0.01, 10.0], Some([0.1, 1.5]), EXACT_REASON);
+pub(super) const INERTIA_SCALE: Parameter = number("inertia_scale", 1.0, [0.01, 10.0], Some([0.2, 3.0]), EXACT_REASON);
 pub(super) const EXACT_REASON: &str =
     "1 is what the exact model calls for; another makes up for a model that is not exact";
 
