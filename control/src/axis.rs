@@ -26,6 +26,7 @@
 pub mod drive;
 pub mod friction;
 pub mod inverse;
+pub mod statistics;
 
 use crate::activation::tanh;
 

@@ -24,6 +24,7 @@ pub mod sum;
 pub mod disturbance_rejection;
 pub mod disturbance_observer;
 pub mod kalman_disturbance;
+pub mod lqg_preview;
 pub mod inverting;
 pub mod magnitude_only;
 pub mod two_dimensional;

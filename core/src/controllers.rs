@@ -9,13 +9,11 @@
 //! | `controllers/setup.rs` | what they are made from: what is known of a machine, and a model |
 //! | `controllers/closed_loop.rs` | the closed loop of an axis, for the filter that inverts it |
 //! | `controllers/make.rs` | how each row is made from that |
-//! | `controllers/lqg_preview.rs` | the limit, by everything that can be known |
 //! | `controllers/model_predictive.rs`, `controllers/iterative_learning.rs` | those that are not fit for a servo thread |
 
 pub mod parameters;
 pub mod iterative_learning;
 pub mod model_predictive;
-pub mod lqg_preview;
 mod closed_loop;
 mod make;
 mod rows;

@@ -24,7 +24,6 @@ pub use axis::{Axis, Transmission};
 use error::KIND;
 pub use error::MachineError;
 pub use known::{Known, KnownAxis};
-pub use statistics::AxisStatistics;
 
 /// Machines that need no file: name and text.
 pub const BUILT_IN: &[(&str, &str)] = &[

@@ -14,6 +14,7 @@ use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
 use feedwright_control::controller::input_shaping::{self, InputShaping};
 use feedwright_control::controller::inverting;
 use feedwright_control::controller::kalman_disturbance::{self, AxisNoise};
+use feedwright_control::controller::lqg_preview::{self, AxisKnowledge, LqgPreview};
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::sum::Sum;
@@ -24,7 +25,6 @@ use feedwright_control::{Controller, horizon, inversion};
 use super::Setup;
 use super::closed_loop;
 use super::iterative_learning::{self, IterativeLearning};
-use super::lqg_preview::{self, LqgPreview};
 use super::model_predictive::{self, ModelPredictive};
 use super::parameters::Values;
 use crate::machine::{Known, KnownAxis, Period};
@@ -214,7 +214,18 @@ pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &V
 
 pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let settings = lqg_preview::Settings { price_s2: values.number("price_s2") };
-    Box::new(LqgPreview::new(&setup.known, setup.statistics::<N>(), settings))
+    let (laws, statistics) = (setup.known.law::<N>(), setup.statistics::<N>());
+    let known = std::array::from_fn(|i| {
+        let axis = setup.known.axis(i);
+        AxisKnowledge {
+            law: laws[i],
+            drive: axis.drive,
+            friction: axis.friction,
+            delays: axis.delays,
+            statistics: statistics[i],
+        }
+    });
+    Box::new(LqgPreview::new(known, settings))
 }
 
 pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {

@@ -4,10 +4,11 @@ use feedwright_control::axis::inverse::Gains;
 use feedwright_control::controller::inverting::{self, Settings as Inverting};
 use feedwright_control::controller::kalman_disturbance::AxisNoise;
 use feedwright_control::controller::receding_horizon::Settings as Horizon;
-use feedwright_control::controller::{cross_coupled, cross_coupled_feedrate, input_shaping, receding_horizon};
+use feedwright_control::controller::{
+    cross_coupled, cross_coupled_feedrate, input_shaping, lqg_preview, receding_horizon,
+};
 use feedwright_control::horizon::MAX_KNOTS;
 
-use super::lqg_preview;
 use super::parameters::{Parameter, number, switch, whole};
 
 // Of those that invert the paper's identifier.

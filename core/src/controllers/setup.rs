@@ -3,6 +3,7 @@
 //! The machine itself stays in here: what makes a controller gets no hold of it, and cannot tell it what only the simulation
 //! knows. A training sees a recording of it.
 
+use feedwright_control::axis::statistics::AxisStatistics;
 use feedwright_control::identifier::IdentifierKind;
 use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::contour::ContourIdentifier;
@@ -14,7 +15,7 @@ use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
 use crate::identify::contour::Training;
 use crate::identify::{Excitation, cache, servo};
-use crate::machine::{AxisStatistics, Known, Machine};
+use crate::machine::{Known, Machine};
 use crate::model::{Model, Origin, name};
 
 /// What a controller is made from.

@@ -29,14 +29,15 @@ mod riccati;
 mod linear;
 mod estimate;
 
-use feedwright_control::axis::AxisState;
-use feedwright_control::axis::drive::{DriveParameters, DriveReference, DriveState};
-use feedwright_control::axis::inverse::AxisInverse;
-use feedwright_control::controller::feedforward::preview;
-use feedwright_control::vector::norm;
-use feedwright_control::{Command, Controller, Measured, Schedule, Window};
-
-use crate::machine::{AxisStatistics, Known};
+use super::feedforward::preview;
+use super::{Command, Controller, Measured, Schedule};
+use crate::axis::drive::{DriveParameters, DriveReference, DriveState};
+use crate::axis::friction::FrictionParameters;
+use crate::axis::inverse::{AxisInverse, LoopDelays};
+use crate::axis::statistics::AxisStatistics;
+use crate::axis::{AxisLaw, AxisState};
+use crate::vector::norm;
+use crate::window::Window;
 use estimate::{AxisModel, Estimate, NOTHING_SENT, Sent};
 use linear::Linear;
 
@@ -55,6 +56,21 @@ impl Settings {
     pub const DEFAULT: Self = Self { price_s2: 1e-8 };
 }
 
+/// What it is given of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisKnowledge {
+    /// Loops, inertia, friction.
+    pub law: AxisLaw,
+    /// What the drive has beside.
+    pub drive: DriveParameters,
+    /// What friction has beside.
+    pub friction: FrictionParameters,
+    /// How late the drive and the encoder are.
+    pub delays: LoopDelays,
+    /// Noise, and what depends on the angle of the motor.
+    pub statistics: AxisStatistics,
+}
+
 /// Linear-quadratic-Gaussian control with preview.
 #[derive(Debug, Clone)]
 pub struct LqgPreview<const N: usize> {
@@ -64,23 +80,12 @@ pub struct LqgPreview<const N: usize> {
 
 impl<const N: usize> LqgPreview<N> {
     /// For a machine of which all this is known.
-    pub fn new(known: &Known, statistics: [AxisStatistics; N], settings: Settings) -> Self {
-        let inverse = known.inverse::<N>();
-        let servo_s = known.period.servo_s;
-        let lead_s = inverse.iter().map(|axis| axis.lag_s() + axis.ahead_s()).fold(0.0, f64::max);
-        let axes = std::array::from_fn(|i| {
-            let law = *inverse[i].law();
-            let regulated = Linear::new(&law, &DriveParameters::default(), &statistics[i]);
-            let (states, input, _) = regulated.sampled();
-            AxisLqg {
-                model: AxisModel::new(law, known.axis(i), statistics[i]),
-                inverse: inverse[i],
-                gains: riccati::regulator(&states, &input, &regulated.cost(settings.price_s2)),
-                drive_s: known.axis(i).delays.drive_s,
-                state: None,
-            }
-        });
-        Self { axes, preview: preview(lead_s, servo_s) + DIFFERENCES as u32 }
+    pub fn new(known: [AxisKnowledge; N], settings: Settings) -> Self {
+        let axes = known.map(|axis| AxisLqg::new(axis, settings));
+        let preview_knots =
+            |axis: &AxisLqg| preview(axis.inverse.lag_s() + axis.inverse.ahead_s(), axis.model.law.periods.servo_s);
+        let longest = axes.iter().map(preview_knots).max().unwrap_or(0);
+        Self { axes, preview: longest + DIFFERENCES as u32 }
     }
 }
 
@@ -111,7 +116,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let here_mm = window.now().position_mm;
-        let offset_mm = std::array::from_fn(|i| {
+        let offset_mm = core::array::from_fn(|i| {
             let at_mm = |after_s: f64| window.preview.at(window.tau_s + after_s).position_mm[i];
             self.axes[i].offset_mm(here_mm[i], at_mm)
         });
@@ -144,6 +149,19 @@ struct Running {
 }
 
 impl AxisLqg {
+    fn new(known: AxisKnowledge, settings: Settings) -> Self {
+        let AxisKnowledge { law, drive, friction, delays, statistics } = known;
+        let regulated = Linear::new(&law, &DriveParameters::default(), &statistics);
+        let (states, input, _) = regulated.sampled();
+        Self {
+            model: AxisModel::new(&known),
+            inverse: AxisInverse::new(law, drive, friction, delays),
+            gains: riccati::regulator(&states, &input, &regulated.cost(settings.price_s2)),
+            drive_s: delays.drive_s,
+            state: None,
+        }
+    }
+
     /// What was commanded in the last servo period, as an offset from the reference, has led to this position.
     fn observe(&mut self, offset_mm: f64, position_mm: f64) {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;

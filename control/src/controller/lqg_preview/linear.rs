@@ -14,11 +14,11 @@
 //! Source: Gelb (1974), Applied Optimal Estimation, section 3.6, for shaping filters of coloured noise; sampling as in Franklin, Powell
 //! and Workman (1998), section 4.3, here by the same steps as the plant's.
 
-use feedwright_control::axis::AxisLaw;
-use feedwright_control::axis::drive::DriveParameters;
+use crate::axis::AxisLaw;
+use crate::axis::drive::DriveParameters;
+use crate::axis::statistics::AxisStatistics;
 
 use super::riccati::{Cost, Matrix, applied, inner, product, sum, transposed};
-use crate::machine::AxisStatistics;
 
 /// Number of states.
 pub(super) const STATES: usize = 8;
@@ -58,12 +58,13 @@ impl Linear {
             let y = y + filter * (kv * error_rad_s + i - y);
             let left_nm = y - parameters.viscous_friction_nm_s * w - n - p - d;
             let w = w + dt_s / parameters.inertia_kg_m2 * left_nm;
-            let (sin, cos) = (statistics.disturbance_rad_s * dt_s).sin_cos();
-            let keep = (-dt_s / memory_s(statistics)).exp();
-            let forget = if statistics.torque_noise_s > 0.0 { (-dt_s / statistics.torque_noise_s).exp() } else { 0.0 };
+            let (sin, cos) = libm::sincos(statistics.disturbance_rad_s * dt_s);
+            let keep = libm::exp(-dt_s / memory_s(statistics));
+            let forget =
+                if statistics.torque_noise_s > 0.0 { libm::exp(-dt_s / statistics.torque_noise_s) } else { 0.0 };
             [x + dt_s * w, w, i, y, forget * n, keep * (cos * p + sin * q), keep * (cos * q - sin * p), d]
         };
-        let columns: Matrix<STATES> = std::array::from_fn(|j| after(unit(j), 0.0));
+        let columns: Matrix<STATES> = core::array::from_fn(|j| after(unit(j), 0.0));
         Self {
             substep: transposed(&columns),
             substep_input: after([0.0; STATES], 1.0),
@@ -74,12 +75,12 @@ impl Linear {
 
     /// Over a servo period with a reference speed that is held: the states, the input, the covariance of the noise.
     pub(super) fn sampled(&self) -> (Matrix<STATES>, [f64; STATES], Matrix<STATES>) {
-        let mut states = std::array::from_fn(unit);
+        let mut states = core::array::from_fn(unit);
         let (mut input, mut covariance) = ([0.0; STATES], [[0.0; STATES]; STATES]);
         for _ in 0..self.substeps {
             states = product(&self.substep, &states);
             let carried = applied(&self.substep, &input);
-            input = std::array::from_fn(|i| carried[i] + self.substep_input[i]);
+            input = core::array::from_fn(|i| carried[i] + self.substep_input[i]);
             let spread = product(&product(&self.substep, &covariance), &transposed(&self.substep));
             covariance = sum(&spread, &self.substep_noise);
         }
@@ -89,12 +90,12 @@ impl Linear {
     /// Mean square of the position over the servo period, and a price for the input.
     pub(super) fn cost(&self, price_s2: f64) -> Cost<STATES> {
         let mut cost = Cost { states: [[0.0; STATES]; STATES], cross: [0.0; STATES], input: price_s2 };
-        let (mut states, mut input): (Matrix<STATES>, _) = (std::array::from_fn(unit), [0.0; STATES]);
+        let (mut states, mut input): (Matrix<STATES>, _) = (core::array::from_fn(unit), [0.0; STATES]);
         let share = 1.0 / f64::from(self.substeps);
         for _ in 0..self.substeps {
             states = product(&self.substep, &states);
             let carried = applied(&self.substep, &input);
-            input = std::array::from_fn(|i| carried[i] + self.substep_input[i]);
+            input = core::array::from_fn(|i| carried[i] + self.substep_input[i]);
             let [position, ..] = states;
             for (i, (row, cross)) in cost.states.iter_mut().zip(&mut cost.cross).enumerate() {
                 row.iter_mut().zip(&position).for_each(|(sum, other)| *sum += share * position[i] * other);
@@ -109,7 +110,7 @@ impl Linear {
     pub(super) fn acting_after(&self, acting: &[f64; 4]) -> [f64; 4] {
         let [n, p, q, d] = *acting;
         let state = [0.0, 0.0, 0.0, 0.0, n, p, q, d];
-        std::array::from_fn(|i| inner(&self.substep[4 + i], &state))
+        core::array::from_fn(|i| inner(&self.substep[4 + i], &state))
     }
 }
 
@@ -120,7 +121,7 @@ pub(super) fn measured_rad2(statistics: &AxisStatistics) -> f64 {
 }
 
 fn unit(j: usize) -> [f64; STATES] {
-    std::array::from_fn(|i| if i == j { 1.0 } else { 0.0 })
+    core::array::from_fn(|i| if i == j { 1.0 } else { 0.0 })
 }
 
 /// How long the disturbance keeps its phase, s.
@@ -132,12 +133,12 @@ fn memory_s(statistics: &AxisStatistics) -> f64 {
 /// Covariance of what comes in a mechanics period.
 fn noise(law: &AxisLaw, statistics: &AxisStatistics) -> Matrix<STATES> {
     let dt_s = law.periods.mechanics_s;
-    let fresh = |time_s: f64| if time_s > 0.0 { 1.0 - (-2.0 * dt_s / time_s).exp() } else { 1.0 };
+    let fresh = |time_s: f64| if time_s > 0.0 { 1.0 - libm::exp(-2.0 * dt_s / time_s) } else { 1.0 };
     let broadband_nm2 = statistics.torque_noise_nm * statistics.torque_noise_nm * fresh(statistics.torque_noise_s);
     let amplitude_nm = statistics.disturbance_nm;
     let swing_nm2 = 0.5 * amplitude_nm * amplitude_nm * fresh(memory_s(statistics));
     let drift_nm = DRIFT_SHARE * (law.parameters.coulomb_friction_nm + amplitude_nm);
     let drift_nm2 = drift_nm * drift_nm * dt_s;
     let variances = [0.0, 0.0, 0.0, 0.0, broadband_nm2, swing_nm2, swing_nm2, drift_nm2];
-    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { variances[i] } else { 0.0 }))
+    core::array::from_fn(|i| core::array::from_fn(|j| if i == j { variances[i] } else { 0.0 }))
 }

@@ -10,13 +10,14 @@
 //!
 //! Source: Gelb (1974), Applied Optimal Estimation, section 6.1, the extended filter; its gain is that of the linear part, constant.
 
-use feedwright_control::axis::drive::{DriveLaw, DriveReference, DriveState};
-use feedwright_control::axis::friction::{FrictionLaw, FrictionParameters};
-use feedwright_control::axis::{self, AxisLaw, AxisState};
+use crate::axis::drive::{DriveLaw, DriveReference, DriveState};
+use crate::axis::friction::{FrictionLaw, FrictionParameters};
+use crate::axis::statistics::AxisStatistics;
+use crate::axis::{self, AxisLaw, AxisState};
 
+use super::AxisKnowledge;
 use super::linear::{Linear, STATES, measured_rad2};
 use super::riccati::filter;
-use crate::machine::{AxisStatistics, KnownAxis};
 
 /// References that are kept, servo periods: 20 ms each way at 1 ms, the most of a machine file, and some.
 const KEPT_PERIODS: usize = 48;
@@ -50,22 +51,23 @@ pub(super) type Sent = [DriveReference; KEPT_PERIODS];
 pub(super) const NOTHING_SENT: Sent = [DriveReference { speed_rad_s: 0.0, torque_nm: 0.0 }; KEPT_PERIODS];
 
 impl AxisModel {
-    pub(super) fn new(law: AxisLaw, known: &KnownAxis, statistics: AxisStatistics) -> Self {
-        let linear = Linear::new(&law, &known.drive, &statistics);
+    pub(super) fn new(known: &AxisKnowledge) -> Self {
+        let AxisKnowledge { law, drive, friction, delays, statistics } = *known;
+        let linear = Linear::new(&law, &drive, &statistics);
         let (states, _, noise) = linear.sampled();
         let mut measured = [0.0; STATES];
         measured[0] = 1.0;
         let longest = (KEPT_PERIODS as u32 - 2) / 2 * law.periods.mechanics_per_servo;
         // A float that is not a number saturates to zero here.
-        let late = |delay_s: f64| ((delay_s / law.periods.mechanics_s).round() as u32).min(longest);
+        let late = |delay_s: f64| (libm::round(delay_s / law.periods.mechanics_s) as u32).min(longest);
         Self {
             law,
-            drive: DriveLaw::new(&law, known.drive),
-            friction: (known.friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, known.friction)),
+            drive: DriveLaw::new(&law, drive),
+            friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, friction)),
             statistics,
             linear,
             gains: filter(&states, &noise, &measured, measured_rad2(&statistics)),
-            late: [known.delays.measurement_s, known.delays.drive_s].map(late),
+            late: [delays.measurement_s, delays.drive_s].map(late),
         }
     }
 
@@ -81,7 +83,7 @@ impl AxisModel {
 
     /// Torque of the motor beside the drive's at an angle, N m.
     pub(super) fn cogging_nm(&self, angle_rad: f64) -> f64 {
-        self.statistics.cogging_nm * (self.statistics.cogging_per_rev * angle_rad).sin()
+        self.statistics.cogging_nm * libm::sin(self.statistics.cogging_per_rev * angle_rad)
     }
 
     /// One servo period on, and what was measured at its end.
@@ -91,7 +93,7 @@ impl AxisModel {
         self.go_on(estimate, sent, measured_late + periods, periods);
         let AxisStatistics { interpolation_rad, signal_per_rad, .. } = self.statistics;
         let angle_rad = estimate.axis.angle_rad;
-        let shown_rad = angle_rad + interpolation_rad * (signal_per_rad * angle_rad).sin();
+        let shown_rad = angle_rad + interpolation_rad * libm::sin(signal_per_rad * angle_rad);
         let missed_rad = measured_rad - shown_rad;
         let [x, w, i, y, acting @ ..] = self.gains.map(|gain| gain * missed_rad);
         estimate.axis.angle_rad += x;

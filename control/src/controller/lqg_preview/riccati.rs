@@ -36,7 +36,7 @@ pub(super) fn product<const S: usize>(a: &Matrix<S>, b: &Matrix<S>) -> Matrix<S>
 
 /// `a'`.
 pub(super) fn transposed<const S: usize>(a: &Matrix<S>) -> Matrix<S> {
-    std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
+    core::array::from_fn(|i| core::array::from_fn(|j| a[j][i]))
 }
 
 /// `a x`.
@@ -51,7 +51,7 @@ pub(super) fn inner<const S: usize>(a: &[f64; S], b: &[f64; S]) -> f64 {
 
 /// `a + b`.
 pub(super) fn sum<const S: usize>(a: &Matrix<S>, b: &Matrix<S>) -> Matrix<S> {
-    std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + b[i][j]))
+    core::array::from_fn(|i| core::array::from_fn(|j| a[i][j] + b[i][j]))
 }
 
 /// Gains of the filter: how much of what is measured beyond the prediction is added to each state.
@@ -64,7 +64,7 @@ pub(super) fn filter<const S: usize>(a: &Matrix<S>, noise: &Matrix<S>, measured:
         let seen = applied(&covariance, measured);
         let gains = seen.map(|p| p / (inner(measured, &seen) + variance));
         let updated: Matrix<S> =
-            std::array::from_fn(|i| std::array::from_fn(|j| covariance[i][j] - gains[i] * seen[j]));
+            core::array::from_fn(|i| core::array::from_fn(|j| covariance[i][j] - gains[i] * seen[j]));
         covariance = sum(&product(&product(a, &updated), &transposed(a)), noise);
         // Rounding turns it unsymmetric, and that grows.
         let mirrored = transposed(&covariance);
@@ -90,11 +90,11 @@ pub(super) fn regulator<const S: usize>(a: &Matrix<S>, b: &[f64; S], cost: &Cost
     converged(|_| {
         let of_input = applied(&to_go, b);
         let ahead = applied(&transposed(a), &of_input);
-        let asked: [f64; S] = std::array::from_fn(|i| ahead[i] + cost.cross[i]);
+        let asked: [f64; S] = core::array::from_fn(|i| ahead[i] + cost.cross[i]);
         let gains = asked.map(|asked| asked / (inner(b, &of_input) + cost.input));
         let carried = product(&product(&transposed(a), &to_go), a);
-        to_go = std::array::from_fn(|i| {
-            std::array::from_fn(|j| {
+        to_go = core::array::from_fn(|i| {
+            core::array::from_fn(|j| {
                 let gain = 0.5 * (gains[i] * asked[j] + asked[i] * gains[j]);
                 0.5 * (carried[i][j] + carried[j][i]) + cost.states[i][j] - gain
             })
@@ -127,7 +127,7 @@ mod tests {
         // p = a^2 p r / (p + r) + q: p^2 + p (r - a^2 r - q) - q r = 0, gain p / (p + r).
         for (a, q, r) in [(1.0, 0.1, 1.0), (0.9, 2.0, 0.5), (1.1, 0.01, 3.0_f64)] {
             let half: f64 = 0.5 * (r - a * a * r - q);
-            let p = -half + (half * half + q * r).sqrt();
+            let p = -half + libm::sqrt(half * half + q * r);
             let [gain] = filter(&[[a]], &[[q]], &[1.0], r);
             assert!((gain - p / (p + r)).abs() < 1e-12, "{a} {q} {r}: {gain}");
         }
@@ -138,7 +138,7 @@ mod tests {
         // Dual to the filter: s = a^2 s m / (m + b^2 s) + w, gain a b s / (m + b^2 s).
         for (a, b, w, m) in [(1.0, 1.0, 0.1, 1.0), (0.9, 0.3, 2.0, 0.5), (1.1, 2.0, 0.01, 3.0_f64)] {
             let (b2, half): (f64, f64) = (b * b, 0.5 * (m - a * a * m - b * b * w));
-            let s = (-half + (half * half + b2 * w * m).sqrt()) / b2;
+            let s = (-half + libm::sqrt(half * half + b2 * w * m)) / b2;
             let [gain] = regulator(&[[a]], &[b], &Cost { states: [[w]], cross: [0.0], input: m });
             assert!((gain - a * b * s / (m + b2 * s)).abs() < 1e-12, "{a} {b}: {gain}");
         }
@@ -158,7 +158,7 @@ mod tests {
         // Alpha-beta filter of tracking: lambda = sigma_a T^2 / sigma_n gives alpha, beta in closed form (Kalata 1984).
         let (t, sigma_a, sigma_n) = (0.1_f64, 3.0_f64, 0.2_f64);
         let lambda = sigma_a * t * t / sigma_n;
-        let r = (4.0 + lambda - (8.0 * lambda + lambda * lambda).sqrt()) / 4.0;
+        let r = (4.0 + lambda - libm::sqrt(8.0 * lambda + lambda * lambda)) / 4.0;
         let (alpha, beta) = (1.0 - r * r, 2.0 * (2.0 - (1.0 - r * r)) - 4.0 * r);
         let pushed = [0.5 * t * t * sigma_a, t * sigma_a];
         let noise = pushed.map(|a| pushed.map(|b| a * b));

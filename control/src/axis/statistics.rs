@@ -1,0 +1,30 @@
+//! What may be told of the noise of an axis beside its law: statistics, and what depends on the angle of the motor, with its phase.
+//!
+//! The random numbers themselves nobody knows. Symbols and spectra are those of `docs/machine-file.md`.
+
+/// What is true of an axis; at the motor shaft, zero is without.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct AxisStatistics {
+    /// RMS of the encoder's white noise, rad.
+    pub encoder_noise_rad: f64,
+    /// Its step, rad.
+    pub encoder_step_rad: f64,
+    /// Amplitude of its error within a signal period, rad.
+    pub interpolation_rad: f64,
+    /// Turns of the signal in a radian, times 2 pi.
+    pub signal_per_rad: f64,
+    /// RMS of the broadband torque, N m, and its correlation time, s.
+    pub torque_noise_nm: f64,
+    /// See above.
+    pub torque_noise_s: f64,
+    /// Amplitude of the disturbance, N m.
+    pub disturbance_nm: f64,
+    /// Its frequency, rad/s.
+    pub disturbance_rad_s: f64,
+    /// RMS by which that wanders, a part of it.
+    pub disturbance_wander: f64,
+    /// Amplitude of the cogging torque, N m.
+    pub cogging_nm: f64,
+    /// Its periods in a turn.
+    pub cogging_per_rev: f64,
+}
