@@ -65,6 +65,8 @@ pub struct Tick<const N: usize> {
     command: Command<N>,
     /// Servo periods since the start of the feed period.
     phase: u32,
+    /// The last command, mm.
+    command_mm: Option<[f64; N]>,
 }
 
 impl<const N: usize> Tick<N> {
@@ -84,6 +86,7 @@ impl<const N: usize> Tick<N> {
             offset_from_mm_s: [0.0; N],
             command: Command::AS_PLANNED,
             phase: 0,
+            command_mm: None,
         }
     }
 
@@ -106,7 +109,8 @@ impl<const N: usize> Tick<N> {
         self.register.push(path);
         self.preview.fill(reference, tau_s, f64::from(self.schedule.preview) * self.feed_period_s());
         let most_mm_s = self.guard.bounds().speed_mm_s;
-        self.feedback.take_in(tool_mm, path.position_mm, self.servo_s, most_mm_s);
+        let last_mm = self.command_mm.unwrap_or(path.position_mm);
+        self.feedback.take_in(tool_mm, last_mm, self.servo_s, most_mm_s);
         if decided {
             self.decide(controller, tool_mm);
         }
@@ -114,7 +118,9 @@ impl<const N: usize> Tick<N> {
         let part = f64::from(reached) / f64::from(self.schedule.servo_periods);
         let offset_mm = self.command.offset_after_mm(part, self.offset_from_mm);
         self.phase += 1;
-        Setpoint { tau_s, path, command_mm: add_scaled(path.position_mm, 1.0, offset_mm), decided }
+        let command_mm = add_scaled(path.position_mm, 1.0, offset_mm);
+        self.command_mm = Some(command_mm);
+        Setpoint { tau_s, path, command_mm, decided }
     }
 
     /// Plan time goes on by servo periods at rest that nobody computes; everything else stays.

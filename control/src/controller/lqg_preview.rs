@@ -75,6 +75,8 @@ pub struct AxisKnowledge {
 #[derive(Debug, Clone)]
 pub struct LqgPreview<const N: usize> {
     axes: [AxisLqg; N],
+    /// By how much the tool is to be behind the plan, s.
+    lag_s: f64,
     preview: u32,
 }
 
@@ -85,7 +87,8 @@ impl<const N: usize> LqgPreview<N> {
         let preview_knots =
             |axis: &AxisLqg| preview(axis.inverse.lag_s() + axis.inverse.ahead_s(), axis.model.law.periods.servo_s);
         let longest = axes.iter().map(preview_knots).max().unwrap_or(0);
-        Self { axes, preview: longest + DIFFERENCES as u32 }
+        let lag_s = axes.iter().map(AxisLqg::lag_s).fold(0.0, f64::max);
+        Self { axes, lag_s, preview: longest + DIFFERENCES as u32 }
     }
 }
 
@@ -117,7 +120,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let here_mm = window.now().position_mm;
         let offset_mm = core::array::from_fn(|i| {
-            let at_mm = |after_s: f64| window.preview.at(window.tau_s + after_s).position_mm[i];
+            let at_mm = |after_s: f64| window.at(after_s - self.lag_s).position_mm[i];
             self.axes[i].offset_mm(here_mm[i], at_mm)
         });
         Command::straight(1.0, offset_mm)
@@ -131,7 +134,7 @@ struct AxisLqg {
     inverse: AxisInverse,
     /// Of the regulator.
     gains: [f64; linear::STATES],
-    drive_s: f64,
+    known: AxisKnowledge,
     state: Option<Running>,
 }
 
@@ -157,9 +160,20 @@ impl AxisLqg {
             model: AxisModel::new(&known),
             inverse: AxisInverse::new(law, drive, friction, delays),
             gains: riccati::regulator(&states, &input, &regulated.cost(settings.price_s2)),
-            drive_s: delays.drive_s,
+            known,
             state: None,
         }
+    }
+
+    /// How far the axis is behind the command at constant speed where nothing is added to it, s.
+    fn lag_s(&self) -> f64 {
+        let (parameters, AxisKnowledge { drive, delays, .. }) = (self.model.law.parameters, self.known);
+        let friction = if drive.speed_integral_s > 0.0 {
+            0.0
+        } else {
+            parameters.viscous_friction_nm_s / parameters.kv_nm_s_per_rad
+        };
+        (1.0 + friction - drive.velocity_feedforward) / parameters.kp_1_s - delays.measurement_s
     }
 
     /// What was commanded in the last servo period, as an offset from the reference, has led to this position.
@@ -203,7 +217,7 @@ impl AxisLqg {
     fn off(&self, ahead: &Estimate, at_mm: &impl Fn(f64) -> f64) -> [f64; linear::STATES] {
         let (rad_per_mm, periods) = (self.model.law.parameters.rad_per_mm, self.model.law.periods);
         let servo_s = periods.servo_s;
-        let [before_mm, there_mm, after_mm] = [-1.0, 0.0, 1.0].map(|n: f64| at_mm(self.drive_s + n * servo_s));
+        let [before_mm, there_mm, after_mm] = [-1.0, 0.0, 1.0].map(|n: f64| at_mm(self.known.delays.drive_s + n * servo_s));
         // The speed of the law is that of the mechanics period that has ended: half of one ago.
         let change_mm = (after_mm - there_mm) - (there_mm - before_mm);
         let late_mm_s = 0.5 * periods.mechanics_s * change_mm / (servo_s * servo_s);
@@ -217,7 +231,7 @@ impl AxisLqg {
     /// What cogging takes along the reference in the period in which what is sent now acts, mm/s of reference speed; by Simpson's rule.
     fn cogging_mm_s(&self, at_mm: &impl Fn(f64) -> f64) -> f64 {
         let (parameters, servo_s) = (self.model.law.parameters, self.model.law.periods.servo_s);
-        let cogging_nm = |n: f64| self.model.cogging_nm(at_mm(self.drive_s + n * servo_s) * parameters.rad_per_mm);
+        let cogging_nm = |n: f64| self.model.cogging_nm(at_mm(self.known.delays.drive_s + n * servo_s) * parameters.rad_per_mm);
         let mean_nm = (cogging_nm(0.0) + 4.0 * cogging_nm(0.5) + cogging_nm(1.0)) / 6.0;
         -mean_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm)
     }
