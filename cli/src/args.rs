@@ -161,7 +161,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SEEDS)))]
     pub(crate) seeds: u32,
     /// What controllers are given of the machine; a row for each.
-    #[arg(long, value_name = "GIVEN,...", value_enum, value_delimiter = ',', default_values_t = [Given::Own, Given::TwentyPercentOff, Given::Unseen])]
+    #[arg(long, value_name = "GIVEN,...", value_enum, value_delimiter = ',', default_values_t = [Given::Own, Given::Identified, Given::TwentyPercentOff, Given::Unseen])]
     pub(crate) knowledge: Vec<Given>,
     /// Do only the i-th of n parts of the work; --merge puts the parts together.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["json", "html", "merge"])]
@@ -215,6 +215,8 @@ pub(crate) enum Work {
 pub(crate) enum Given {
     /// Its parameters, an identification on it, or nothing, by the kind of the controller.
     Own,
+    /// Parameters that are identified from a recording of the machine.
+    Identified,
     /// Parameters that are 20 % off.
     #[value(name = "20%off")]
     TwentyPercentOff,
@@ -226,6 +228,7 @@ impl From<Given> for Knowledge {
     fn from(given: Given) -> Self {
         match given {
             Given::Own => Self::Own,
+            Given::Identified => Self::Identified,
             Given::TwentyPercentOff => Self::TwentyPercentOff,
             Given::Unseen => Self::Unseen,
         }

@@ -3,13 +3,15 @@
 //! What a machine showed is a [`recording`]. A simulated machine cuts an identification excitation for it: laps of circles at
 //! random feeds, two thirds of them with random offsets of the command from the path, so that the data tell the effect of the
 //! feedrate from that of the path. [`contour`] trains the paper's network on it, [`servo`] the servo identifier; [`cache`]
-//! keeps what was trained. Neither training sees the machine.
+//! keeps what was trained. [`axis_parameters`] finds what an axis is, inertia and friction, where its drive's settings are known.
+//! None of them sees the machine.
 
 pub mod recording;
 mod excitation;
 pub mod contour;
 mod spread;
 pub mod servo;
+pub mod axis_parameters;
 pub mod cache;
 
 use feedwright_control::controller::{inverting, receding_horizon};
@@ -22,6 +24,10 @@ use recording::Recording;
 
 /// The generator behind everything random here: the same seed gives the same bits on every platform.
 pub type Rng = Xoshiro256PlusPlus;
+
+/// Laps that parameters of an axis are found from: six of each radius, a third of them without offsets. On workshop the standard errors
+/// are then below 0.1 % of the inertia and 2 % of the friction; all 60 would take more than twice the time.
+const AXIS_PARAMETER_LAPS: u32 = 24;
 
 /// What the machine cuts to be identified.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -38,6 +44,8 @@ pub struct Excitation {
     pub offset_mm: f64,
     /// Feed periods after which the offset is drawn anew.
     pub renewal_periods: u32,
+    /// Feed periods in which the command goes to it.
+    pub ramp_periods: u32,
     /// Feed period, s: as in the controller that will use the identifier.
     pub feed_period_s: f64,
 }
@@ -63,6 +71,7 @@ impl Excitation {
             laps: 60,
             offset_mm: 0.06,
             renewal_periods: 3,
+            ramp_periods: 1,
             feed_period_s: inverting::FEED_PERIOD_S,
         }
     }
@@ -82,6 +91,19 @@ impl Excitation {
             feed_period_s: receding_horizon::FEED_PERIOD_S,
             renewal_periods: 6,
             ..Self::general()
+        }
+    }
+    /// For the parameters of an axis: as for the servo identifier, with a knot in every servo period of a machine, since the law of
+    /// an axis is stepped through all of them.
+    pub fn axis_parameters(machine: &Machine) -> Self {
+        let servo = Self::servo();
+        let servo_periods = |time_s: f64| (time_s / machine.period.servo_s).round().max(1.0) as u32;
+        Self {
+            feed_period_s: machine.period.servo_s,
+            renewal_periods: servo_periods(f64::from(servo.renewal_periods) * servo.feed_period_s),
+            ramp_periods: servo_periods(f64::from(servo.ramp_periods) * servo.feed_period_s),
+            laps: AXIS_PARAMETER_LAPS,
+            ..servo
         }
     }
 }

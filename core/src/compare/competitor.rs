@@ -1,6 +1,7 @@
 //! Who competes: a controller, and what it is given of the machine that it cuts on.
 
 use feedwright_control::Controller;
+use feedwright_control::controller::open_loop::OpenLoop;
 use serde::{Deserialize, Serialize};
 
 use super::tuned::Tuned;
@@ -13,6 +14,8 @@ use crate::machine::Machine;
 pub enum Knowledge {
     /// All that its kind may have: the machine's parameters, an identification on the machine, or nothing.
     Own,
+    /// Inertia and friction as they are found from a recording of the machine; values that are tuned with the exact ones.
+    Identified,
     /// Inertia that is 20 % too low and friction that is 20 % too high; values that are tuned with the exact ones.
     TwentyPercentOff,
     /// An identification on the nominal machine, and the values that are tuned there.
@@ -27,12 +30,13 @@ const FRICTION_BELIEVED: f64 = 1.2;
 
 impl Knowledge {
     /// All kinds, in the order of the table.
-    pub const ALL: [Self; 3] = [Self::Own, Self::TwentyPercentOff, Self::Unseen];
+    pub const ALL: [Self; 4] = [Self::Own, Self::Identified, Self::TwentyPercentOff, Self::Unseen];
 
     /// What stands behind the name of the controller.
     pub const fn suffix(self) -> &'static str {
         match self {
             Self::Own => "",
+            Self::Identified => "+identified",
             Self::TwentyPercentOff => "+20%off",
             Self::Unseen => "+unseen",
         }
@@ -42,7 +46,7 @@ impl Knowledge {
     fn is_for(self, entry: &Entry) -> bool {
         match self {
             Self::Own => true,
-            Self::TwentyPercentOff => entry.knows == Knows::ExactModel,
+            Self::Identified | Self::TwentyPercentOff => entry.knows == Knows::ExactModel,
             Self::Unseen => entry.knows == Knows::Identified,
         }
     }
@@ -85,7 +89,8 @@ impl Competitor {
         Some(Self { entry, knowledge })
     }
 
-    /// Makes it for a machine. Recordings for an identification are made with the noise seed that the machine has here.
+    /// Makes it for a machine. Recordings for an identification are made with the noise seed that the machine has here. One whose
+    /// parameters cannot be identified there stays open loop.
     pub(super) fn make(
         &self,
         machine: &Machine,
@@ -99,8 +104,12 @@ impl Competitor {
         let unseen = Machine { period: machine.period, ..nominal.clone() };
         let known = if self.knowledge == Knowledge::Unseen { &unseen } else { machine };
         let mut setup = Setup::new(known, &choices);
-        if self.knowledge == Knowledge::TwentyPercentOff {
-            setup.known = setup.known.misjudged(INERTIA_BELIEVED, FRICTION_BELIEVED);
+        match self.knowledge {
+            Knowledge::TwentyPercentOff => {
+                setup.known = setup.known.misjudged(INERTIA_BELIEVED, FRICTION_BELIEVED);
+            }
+            Knowledge::Identified if setup.identify_parameters::<2>().is_err() => return Box::new(OpenLoop),
+            Knowledge::Own | Knowledge::Identified | Knowledge::Unseen => {}
         }
         Make::<2>::make(self.entry, &mut setup)
     }

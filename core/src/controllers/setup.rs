@@ -13,6 +13,7 @@ use thiserror::Error;
 
 use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
+use crate::identify::axis_parameters::{DriveSettings, NotIdentified, identify};
 use crate::identify::contour::Training;
 use crate::identify::{Excitation, cache, servo};
 use crate::machine::{Known, Machine};
@@ -183,6 +184,24 @@ impl<'a> Setup<'a> {
             let trained = servo::train(&excitation.record(self.machine, self.choices.seed).0);
             (trained.net, trained.spread)
         })
+    }
+
+    /// Takes inertia and friction of the first N axes from a recording of the machine, in place of those of its data sheets; what its
+    /// drives are set to stays known.
+    ///
+    /// # Errors
+    /// A machine that does not move so that its parameters show.
+    pub fn identify_parameters<const N: usize>(&mut self) -> Result<(), NotIdentified> {
+        let excitation = Excitation::axis_parameters(self.machine);
+        let (recording, _) = excitation.record::<N>(self.machine, self.choices.seed);
+        let found = |i: usize| {
+            let axis = self.known.axis(i);
+            let settings = DriveSettings::of(axis, &self.known.period);
+            Ok(identify(&recording, i, &settings)?.parameters.believed(axis, &settings))
+        };
+        let axes = (0..N).map(found).collect::<Result<Vec<_>, _>>()?;
+        self.known = self.known.with_axes(|i, known| axes.get(i).copied().unwrap_or(*known));
+        Ok(())
     }
 
     /// An identifier of the contour error for decisions each `feed_period_s`.

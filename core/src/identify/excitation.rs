@@ -10,7 +10,7 @@ use super::{Excitation, Rng};
 use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use crate::machine::Machine;
 use crate::pipeline::{Run, pieces};
-use crate::vector::add_scaled;
+use crate::vector::{add_scaled, sub};
 
 /// Every third lap runs undisturbed: the network sees the plain circle as well.
 const UNDISTURBED_EVERY: u32 = 3;
@@ -26,7 +26,8 @@ pub(super) fn record<const N: usize>(machine: &Machine, excitation: &Excitation,
                 servo_periods: machine.period.servo_periods(excitation.feed_period_s),
                 reach_mm: if undisturbed { 0.0 } else { excitation.offset_mm },
                 rng,
-                offset_mm: [0.0; N],
+                from_mm: [0.0; N],
+                to_mm: [0.0; N],
                 lap: Vec::new(),
             };
             // A lap that diverges simply ends.
@@ -72,7 +73,9 @@ struct ExcitationController<'a, const N: usize> {
     servo_periods: u32,
     reach_mm: f64,
     rng: &'a mut Rng,
-    offset_mm: [f64; N],
+    /// Where the offset goes from, and to.
+    from_mm: [f64; N],
+    to_mm: [f64; N],
     lap: Vec<RecordedKnot<N>>,
 }
 
@@ -90,15 +93,25 @@ impl<const N: usize> Controller<N> for ExcitationController<'_, N> {
     }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        if self.lap.len().is_multiple_of(self.excitation.renewal_periods as usize) {
+        let since = self.lap.len() % self.excitation.renewal_periods as usize;
+        if since == 0 {
             let reach = self.reach_mm;
-            self.offset_mm = std::array::from_fn(|_| self.rng.random_range(-reach..=reach));
+            self.from_mm = self.to_mm;
+            self.to_mm = std::array::from_fn(|_| self.rng.random_range(-reach..=reach));
         }
         self.lap.push(RecordedKnot {
             command_mm: add_scaled(window.now().position_mm, 1.0, window.offset_mm),
             tool_mm: measured.position_mm,
             contour_mm: measured.contour.vector_mm,
         });
-        Command::straight(1.0, self.offset_mm)
+        let (gone, ramp) = (since + 1, self.excitation.ramp_periods as usize);
+        let part = gone as f64 / ramp as f64;
+        let under_way = gone < ramp;
+        Command::straight(1.0, if under_way { lerp(self.from_mm, self.to_mm, part) } else { self.to_mm })
     }
+}
+
+/// A part of the way from one point to another.
+fn lerp<const N: usize>(from_mm: [f64; N], to_mm: [f64; N], part: f64) -> [f64; N] {
+    add_scaled(from_mm, part, sub(to_mm, from_mm))
 }

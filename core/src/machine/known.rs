@@ -69,7 +69,14 @@ impl Known {
             believed.spare_torque_nm = (axis.spare_torque_nm - more_nm).max(0.0);
             believed
         };
-        Self { axes: self.axes.iter().map(axis).collect(), ..self.clone() }
+        self.with_axes(|_, known| axis(known))
+    }
+
+    /// The same with other axes, made of those that it has, by their numbers.
+    #[must_use]
+    pub fn with_axes(&self, axis: impl Fn(usize, &KnownAxis) -> KnownAxis) -> Self {
+        let axes = self.axes.iter().enumerate().map(|(i, known)| axis(i, known)).collect();
+        Self { axes, ..self.clone() }
     }
 
     /// The nominal law of the first N axes.
