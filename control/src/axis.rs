@@ -27,6 +27,7 @@ pub mod drive;
 pub mod friction;
 pub mod inverse;
 pub mod statistics;
+pub mod knowledge;
 
 use crate::activation::tanh;
 

@@ -4,6 +4,7 @@
 //! |---|---|---|---|
 //! | contour | the contour error, as the paper does | [`ContourModel`] | [`crate::inversion`] |
 //! | servo | how the following error grows; the contour error is left to geometry | [`ServoModel`] | [`crate::horizon`] |
+//! | axes | the motion of each axis, by its law | [`crate::axis::knowledge::AxisKnowledge`] | [`crate::controller::lqg_preview`] |
 //!
 //! All see the same inputs of each axis, from a shift register ([`Delays`]): F(k), F(k-1), F(k-2) and two delays of the error,
 //! where F(k) is the feedrate from knot k to knot k + 1. A controller takes any identifier of its kind; [`contour`] and [`servo`]
@@ -41,6 +42,8 @@ pub enum IdentifierKind {
     Contour,
     /// The growth of the following error.
     Servo,
+    /// Where each axis goes, from its law and the statistics of its noise ([`crate::axis::knowledge`]).
+    Axes,
 }
 
 /// What all identifiers have in common.

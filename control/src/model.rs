@@ -4,12 +4,12 @@
 //! |---|---|---|
 //! | 0 | 8 | `FWMODEL` and a zero byte |
 //! | 8 | 4 | format: [`FORMAT`] |
-//! | 12 | 4 | kind of the identifier: 1 contour, 2 servo |
+//! | 12 | 4 | kind of the identifier: 1 contour, 2 servo, 3 axes |
 //! | 16 | 4 | N, number of axes |
 //! | 20 | 4 | n, number of numbers that follow the periods |
 //! | 24 | 8 | servo period, s |
 //! | 32 | 8 | feed period, s: time between knots |
-//! | 40 | 8 n | weights, group by group as [`Identifier::weights`] hands them over; of a servo the spread behind them, axis by axis, row by row |
+//! | 40 | 8 n | weights, group by group as [`Identifier::weights`] hands them over; of a servo the spread behind them, axis by axis, row by row; of axes the mechanics period, s, and axis by axis the numbers of [`AxisKnowledge::numbers`] |
 //! | 40 + 8 n | 4 | CRC-32 of all before: that of IEEE 802.3, reflected, of polynomial 0x04C11DB7 |
 //!
 //! Whole numbers are unsigned, numbers are IEEE 754 of double precision; all little-endian. [`ModelBlock::from_bytes`] needs no memory but
@@ -17,6 +17,8 @@
 
 use core::fmt;
 
+use crate::axis::Periods;
+use crate::axis::knowledge::AxisKnowledge;
 use crate::identifier::UNKNOWNS;
 use crate::identifier::adaptation::Spread;
 use crate::identifier::contour::ContourIdentifier;
@@ -47,6 +49,36 @@ pub struct ModelBlock<const N: usize> {
     pub trained: Trained<N>,
 }
 
+/// Identified axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IdentifiedAxes<const N: usize> {
+    /// Period of the speed loop and of the integration, s.
+    pub mechanics_s: f64,
+    /// What was found of each, with what its drive is set to.
+    pub axes: [AxisKnowledge; N],
+}
+
+impl<const N: usize> IdentifiedAxes<N> {
+    /// All zero.
+    pub const NULL: Self = Self { mechanics_s: 0.0, axes: [AxisKnowledge::NOTHING; N] };
+
+    /// Its numbers, one by one in the order of the block.
+    pub fn numbers(&mut self, each: &mut impl FnMut(&'static str, &mut f64)) {
+        each("mechanics_s", &mut self.mechanics_s);
+        self.axes.iter_mut().for_each(|axis| axis.numbers(each));
+    }
+
+    /// With the periods that follow.
+    #[must_use]
+    pub fn with_periods(mut self, servo_s: f64) -> Self {
+        // A float that is not a number, or too large, saturates here.
+        let mechanics_per_servo = (libm::round(servo_s / self.mechanics_s) as u32).max(1);
+        let periods = Periods { servo_s, mechanics_s: self.mechanics_s, mechanics_per_servo };
+        self.axes.iter_mut().for_each(|axis| axis.periods = periods);
+        self
+    }
+}
+
 /// What was trained.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Trained<const N: usize> {
@@ -54,6 +86,8 @@ pub enum Trained<const N: usize> {
     Contour(ContourIdentifier<N>),
     /// An identifier of the servo, and how others of its kind differ.
     Servo(ServoIdentifier<N>, Spread<N>),
+    /// The axes.
+    Axes(IdentifiedAxes<N>),
 }
 
 /// Why a block is no model.
@@ -109,6 +143,7 @@ impl<const N: usize> ModelBlock<N> {
         let mut trained = match kind {
             CONTOUR => Trained::Contour(ContourIdentifier::NULL),
             SERVO => Trained::Servo(ServoIdentifier::NULL, [[[0.0; UNKNOWNS]; UNKNOWNS]; N]),
+            AXES => Trained::Axes(IdentifiedAxes::NULL),
             kind => return Err(BlockError::Kind(kind)),
         };
         if axes as usize != N {
@@ -139,6 +174,9 @@ impl<const N: usize> ModelBlock<N> {
         if !trained.has_a_spread() {
             return Err(BlockError::Number(rest.number));
         }
+        if let Trained::Axes(axes) = &mut trained {
+            *axes = axes.with_periods(servo_s);
+        }
         Ok(Self { servo_s, feed_period_s, trained })
     }
 
@@ -150,6 +188,7 @@ impl<const N: usize> ModelBlock<N> {
         let kind = match self.trained.kind() {
             IdentifierKind::Contour => CONTOUR,
             IdentifierKind::Servo => SERVO,
+            IdentifierKind::Axes => AXES,
         };
         let mut crc = CRC_START;
         let mut put_counted = |bytes: &[u8]| {
@@ -171,6 +210,7 @@ impl<const N: usize> ModelBlock<N> {
 /// The kinds in a block.
 const CONTOUR: u32 = 1;
 const SERVO: u32 = 2;
+const AXES: u32 = 3;
 
 impl<const N: usize> Trained<N> {
     /// What it predicts.
@@ -178,6 +218,7 @@ impl<const N: usize> Trained<N> {
         match self {
             Self::Contour(_) => IdentifierKind::Contour,
             Self::Servo(..) => IdentifierKind::Servo,
+            Self::Axes(_) => IdentifierKind::Axes,
         }
     }
 
@@ -189,6 +230,7 @@ impl<const N: usize> Trained<N> {
                 net.weights(&mut |_, group| each(MAX_WEIGHT, group));
                 each(MAX_SPREAD, spread.as_flattened_mut().as_flattened_mut());
             }
+            Self::Axes(axes) => axes.numbers(&mut |_, number| each(MAX_WEIGHT, core::slice::from_mut(number))),
         }
     }
 

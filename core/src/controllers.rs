@@ -29,9 +29,9 @@ pub use parameters::{Parameter, Setting, SettingError};
 use parameters::{Values, number};
 use rows::{
     ACCELERATION_GAIN, ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT,
-    CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, ETA, FORESEEN_MM, FRICTION_GAIN, INERTIA_SCALE,
-    INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS, LAG_SCALE, LAST_WEIGHT,
-    LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, PRICE, RATE_WEIGHT, RHO, SHAPED_DAMPING, SHAPED_FREQUENCY,
+    CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, ETA, FORESEEN_MM, FRICTION_GAIN, IDENTIFIED_PRICE,
+    INERTIA_SCALE, INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, KNOTS, LAG_SCALE,
+    LAST_WEIGHT, LEARNING_STEP, ON_RAPIDS, PLAN_PERIOD_S, PRICE, RATE_WEIGHT, RHO, SHAPED_DAMPING, SHAPED_FREQUENCY,
     SHAPER_IMPULSES, SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE, VELOCITY_GAIN,
 };
 use serde::{Deserialize, Serialize};
@@ -344,6 +344,15 @@ pub const CONTROLLERS: &[Entry] = &[
             ON_RAPIDS
         ],
         |setup, values| make::receding_horizon(setup, values)
+    ),
+    entry!(
+        "lqg-identified",
+        "Kalman filter and linear-quadratic regulator with preview, by an identified law of each axis",
+        "Anderson and Moore (1990); Gautier, Janot and Vandanjon (2013)",
+        Identified(Axes),
+        laps: 1,
+        [IDENTIFIED_PRICE],
+        |setup, values| make::lqg_identified(setup, values)
     ),
 ];
 

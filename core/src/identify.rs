@@ -12,6 +12,7 @@ pub mod contour;
 mod spread;
 pub mod servo;
 pub mod axis_parameters;
+pub mod axes;
 pub mod cache;
 
 use feedwright_control::controller::{inverting, receding_horizon};

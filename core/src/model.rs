@@ -17,11 +17,11 @@ use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::servo::ServoIdentifier;
 use feedwright_control::identifier::{Identifier, IdentifierKind};
-use feedwright_control::model::{self as block, Trained};
+use feedwright_control::model::{self as block, IdentifiedAxes, Trained};
 use serde::Serialize;
 
 use crate::identify::recording::Recording;
-use crate::identify::{contour, servo};
+use crate::identify::{axes, contour, servo};
 use crate::toml_file::key::write;
 use crate::toml_file::{self, FileError, read_text};
 
@@ -91,6 +91,7 @@ pub(crate) struct Weights {
     pub(crate) hidden: Vec<f64>,
     pub(crate) output: Vec<f64>,
     pub(crate) spread: Vec<f64>,
+    pub(crate) axes: Vec<f64>,
 }
 
 impl Weights {
@@ -126,12 +127,16 @@ pub fn name(kind: IdentifierKind) -> &'static str {
     match kind {
         IdentifierKind::Contour => "contour",
         IdentifierKind::Servo => "servo",
+        IdentifierKind::Axes => "axes",
     }
 }
 
+/// All kinds.
+pub(crate) const KINDS: [IdentifierKind; 3] = [IdentifierKind::Contour, IdentifierKind::Servo, IdentifierKind::Axes];
+
 /// The kind of a name.
 pub(crate) fn kind_named(name_of_kind: &str) -> Option<IdentifierKind> {
-    [IdentifierKind::Contour, IdentifierKind::Servo].into_iter().find(|kind| name(*kind) == name_of_kind)
+    KINDS.into_iter().find(|kind| name(*kind) == name_of_kind)
 }
 
 /// Where a training comes from.
@@ -163,6 +168,18 @@ impl Model {
     ) -> Self {
         let fit = Fit { fit_um: trained.fit_um, samples: trained.samples as u64 };
         Self::sealed(IdentifierKind::Contour, recording, fit, Weights::of(trained.net.clone(), &[]), origin)
+    }
+
+    /// Of axes that were identified from a recording.
+    pub fn of_axes<const N: usize>(
+        recording: &Recording<N>,
+        identified: &axes::TrainedAxes<N>,
+        origin: Origin,
+    ) -> Self {
+        let fit = Fit { fit_um: identified.fit_um, samples: identified.samples as u64 };
+        let mut weights = Weights::default();
+        identified.axes.clone().numbers(&mut |_, number| weights.axes.push(*number));
+        Self::sealed(IdentifierKind::Axes, recording, fit, weights, origin)
     }
 
     fn sealed<const N: usize>(
@@ -261,6 +278,17 @@ impl Model {
         self.weights.fill().filter(|_| self.is(IdentifierKind::Contour, N))
     }
 
+    /// The axes that it holds; none where it holds another kind, or another number of them.
+    pub fn identified_axes<const N: usize>(&self) -> Option<IdentifiedAxes<N>> {
+        let (mut identified, mut numbers) = (IdentifiedAxes::<N>::NULL, self.weights.axes.iter());
+        let mut fits = self.is(IdentifierKind::Axes, N);
+        identified.numbers(&mut |_, number| match numbers.next() {
+            Some(own) => *number = *own,
+            None => fits = false,
+        });
+        (fits && numbers.next().is_none()).then(|| identified.with_periods(self.period.servo_s))
+    }
+
     fn is(&self, kind: IdentifierKind, axes: usize) -> bool {
         (self.kind(), self.axes()) == (kind, axes)
     }
@@ -270,6 +298,7 @@ impl Model {
         let trained = match self.kind() {
             IdentifierKind::Contour => Trained::Contour(self.contour()?),
             IdentifierKind::Servo => self.servo().map(|(net, spread)| Trained::Servo(net, spread))?,
+            IdentifierKind::Axes => Trained::Axes(self.identified_axes()?),
         };
         let ModelPeriods { servo_s, feed_period_s } = self.period;
         Some(block::ModelBlock { servo_s, feed_period_s, trained })

@@ -28,3 +28,20 @@ pub struct AxisStatistics {
     /// Its periods in a turn.
     pub cogging_per_rev: f64,
 }
+
+impl AxisStatistics {
+    /// No noise.
+    pub const NOTHING: Self = Self {
+        encoder_noise_rad: 0.0,
+        encoder_step_rad: 0.0,
+        interpolation_rad: 0.0,
+        signal_per_rad: 0.0,
+        torque_noise_nm: 0.0,
+        torque_noise_s: 0.0,
+        disturbance_nm: 0.0,
+        disturbance_rad_s: 0.0,
+        disturbance_wander: 0.0,
+        cogging_nm: 0.0,
+        cogging_per_rev: 0.0,
+    };
+}

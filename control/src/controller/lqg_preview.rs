@@ -31,11 +31,10 @@ mod estimate;
 
 use super::feedforward::preview;
 use super::{Command, Controller, Measured, Schedule};
+use crate::axis::AxisState;
 use crate::axis::drive::{DriveParameters, DriveReference, DriveState};
-use crate::axis::friction::FrictionParameters;
-use crate::axis::inverse::{AxisInverse, LoopDelays};
-use crate::axis::statistics::AxisStatistics;
-use crate::axis::{AxisLaw, AxisState};
+use crate::axis::inverse::AxisInverse;
+use crate::axis::knowledge::AxisKnowledge;
 use crate::vector::norm;
 use crate::window::Window;
 use estimate::{AxisModel, Estimate, NOTHING_SENT, Sent};
@@ -51,24 +50,13 @@ pub struct Settings {
     pub price_s2: f64,
 }
 
+/// Price that serves by an identified model, in squares of the servo period: of 180 random cuts on machines with late drives 0.01 leaves
+/// 37 worse than open loop, 0.1 six, 1 two; on workshop 1 has a tenth more error than 0.01.
+pub const IDENTIFIED_PRICE: f64 = 0.5;
+
 impl Settings {
     /// A tenth of the travel of a servo period, squared.
     pub const DEFAULT: Self = Self { price_s2: 1e-8 };
-}
-
-/// What it is given of an axis.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct AxisKnowledge {
-    /// Loops, inertia, friction.
-    pub law: AxisLaw,
-    /// What the drive has beside.
-    pub drive: DriveParameters,
-    /// What friction has beside.
-    pub friction: FrictionParameters,
-    /// How late the drive and the encoder are.
-    pub delays: LoopDelays,
-    /// Noise, and what depends on the angle of the motor.
-    pub statistics: AxisStatistics,
 }
 
 /// Linear-quadratic-Gaussian control with preview.
@@ -153,7 +141,8 @@ struct Running {
 
 impl AxisLqg {
     fn new(known: AxisKnowledge, settings: Settings) -> Self {
-        let AxisKnowledge { law, drive, friction, delays, statistics } = known;
+        let AxisKnowledge { drive, friction, delays, statistics, .. } = known;
+        let law = known.law();
         let regulated = Linear::new(&law, &DriveParameters::default(), &statistics);
         let (states, input, _) = regulated.sampled();
         Self {
@@ -217,7 +206,8 @@ impl AxisLqg {
     fn off(&self, ahead: &Estimate, at_mm: &impl Fn(f64) -> f64) -> [f64; linear::STATES] {
         let (rad_per_mm, periods) = (self.model.law.parameters.rad_per_mm, self.model.law.periods);
         let servo_s = periods.servo_s;
-        let [before_mm, there_mm, after_mm] = [-1.0, 0.0, 1.0].map(|n: f64| at_mm(self.known.delays.drive_s + n * servo_s));
+        let [before_mm, there_mm, after_mm] =
+            [-1.0, 0.0, 1.0].map(|n: f64| at_mm(self.known.delays.drive_s + n * servo_s));
         // The speed of the law is that of the mechanics period that has ended: half of one ago.
         let change_mm = (after_mm - there_mm) - (there_mm - before_mm);
         let late_mm_s = 0.5 * periods.mechanics_s * change_mm / (servo_s * servo_s);
@@ -231,7 +221,8 @@ impl AxisLqg {
     /// What cogging takes along the reference in the period in which what is sent now acts, mm/s of reference speed; by Simpson's rule.
     fn cogging_mm_s(&self, at_mm: &impl Fn(f64) -> f64) -> f64 {
         let (parameters, servo_s) = (self.model.law.parameters, self.model.law.periods.servo_s);
-        let cogging_nm = |n: f64| self.model.cogging_nm(at_mm(self.known.delays.drive_s + n * servo_s) * parameters.rad_per_mm);
+        let cogging_nm =
+            |n: f64| self.model.cogging_nm(at_mm(self.known.delays.drive_s + n * servo_s) * parameters.rad_per_mm);
         let mean_nm = (cogging_nm(0.0) + 4.0 * cogging_nm(0.5) + cogging_nm(1.0)) / 6.0;
         -mean_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm)
     }

@@ -14,8 +14,9 @@ use feedwright_control::controller::fuzzy_feedrate::{self, FuzzyFeedrate};
 use feedwright_control::controller::input_shaping::{self, InputShaping};
 use feedwright_control::controller::inverting;
 use feedwright_control::controller::kalman_disturbance::{self, AxisNoise};
-use feedwright_control::controller::lqg_preview::{self, AxisKnowledge, LqgPreview};
+use feedwright_control::controller::lqg_preview::{self, LqgPreview};
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
+use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::sum::Sum;
 use feedwright_control::controller::two_dimensional::TwoDimensional;
@@ -214,18 +215,18 @@ pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &V
 
 pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let settings = lqg_preview::Settings { price_s2: values.number("price_s2") };
-    let (laws, statistics) = (setup.known.law::<N>(), setup.statistics::<N>());
-    let known = std::array::from_fn(|i| {
-        let axis = setup.known.axis(i);
-        AxisKnowledge {
-            law: laws[i],
-            drive: axis.drive,
-            friction: axis.friction,
-            delays: axis.delays,
-            statistics: statistics[i],
-        }
-    });
+    let (periods, statistics) = (setup.known.period.periods(), setup.statistics::<N>());
+    let known = std::array::from_fn(|i| setup.known.axis(i).with_statistics(periods, statistics[i]));
     Box::new(LqgPreview::new(known, settings))
+}
+
+pub(super) fn lqg_identified<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let servo_s = setup.known.period.servo_s;
+    let settings = lqg_preview::Settings { price_s2: values.number("price") * servo_s * servo_s };
+    match setup.axes::<N>() {
+        Some(identified) => Box::new(LqgPreview::new(identified.axes, settings)),
+        None => Box::new(OpenLoop),
+    }
 }
 
 pub(super) fn iterative_learning<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {

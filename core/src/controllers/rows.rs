@@ -51,6 +51,15 @@ pub(super) const PRICE: Parameter = number(
     Some([1e-11, 1e-3]),
     "price of the reference speed beside the error: low rings between servo periods, high leaves the error as it is",
 );
+// Of the same by an identified model, which is to bear what that does not know.
+pub(super) const IDENTIFIED_PRICE: Parameter = number(
+    "price",
+    lqg_preview::IDENTIFIED_PRICE,
+    [1e-6, 1e4],
+    None,
+    "price of the reference speed beside the error, in squares of the servo period: low rings where the model misses a delay, high \
+     leaves the error as it is",
+);
 // Of those that plan over a horizon.
 pub(super) const RATE_WEIGHT: Parameter = number(
     "rate_weight_s2",

@@ -8,6 +8,7 @@ use feedwright_control::identifier::IdentifierKind;
 use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::identifier::servo::ServoIdentifier;
+use feedwright_control::model::IdentifiedAxes;
 use miette::Diagnostic;
 use thiserror::Error;
 
@@ -15,7 +16,7 @@ use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
 use crate::identify::axis_parameters::{DriveSettings, NotIdentified, identify};
 use crate::identify::contour::Training;
-use crate::identify::{Excitation, cache, servo};
+use crate::identify::{Excitation, axes, cache, servo};
 use crate::machine::{Known, Machine};
 use crate::model::{Model, Origin, name};
 
@@ -82,6 +83,9 @@ pub enum ModelMisfit {
         /// Axes that were asked for.
         asked: usize,
     },
+    /// The recording does not tell what an axis is.
+    #[error("the recording of the machine does not tell what its axes are: {0}")]
+    NotIdentified(NotIdentified),
     /// The model was trained for another period.
     #[error("the model was trained for a {period} of {found_s} s, and that of {of} is {needed_s} s")]
     Period {
@@ -204,6 +208,16 @@ impl<'a> Setup<'a> {
         Ok(())
     }
 
+    /// The identified axes; none where the machine does not move so that they show.
+    pub(super) fn axes<const N: usize>(&mut self) -> Option<IdentifiedAxes<N>> {
+        self.model.and_then(Model::identified_axes).or_else(|| {
+            let excitation = Excitation::axis_parameters(self.machine);
+            let (recording, _) = excitation.record::<N>(self.machine, self.choices.seed);
+            let found = axes::train(&recording, &self.known).ok()?.axes;
+            Some(found.with_periods(self.known.period.servo_s))
+        })
+    }
+
     /// An identifier of the contour error for decisions each `feed_period_s`.
     pub(super) fn contour<const N: usize>(&mut self, feed_period_s: f64) -> ContourIdentifier<N> {
         self.model.and_then(Model::contour).unwrap_or_else(|| {
@@ -237,6 +251,11 @@ impl<'a> Setup<'a> {
                 let excitation = Excitation { feed_period_s, ..Excitation::servo() };
                 let (recording, _) = excitation.record::<N>(self.machine, seed);
                 Model::of_servo(&recording, &servo::train(&recording), origin)
+            }
+            IdentifierKind::Axes => {
+                let (recording, _) = Excitation::axis_parameters(self.machine).record::<N>(self.machine, seed);
+                let trained = axes::train(&recording, &self.known).map_err(ModelMisfit::NotIdentified)?;
+                Model::of_axes(&recording, &trained, origin)
             }
             IdentifierKind::Contour => {
                 let excitation = Excitation { feed_period_s, ..Excitation::general() };

@@ -9,7 +9,9 @@ use std::f64::consts::TAU;
 use feedwright_control::axis::drive::DriveParameters;
 use feedwright_control::axis::friction::FrictionParameters;
 use feedwright_control::axis::inverse::{AxisInverse, LoopDelays};
-use feedwright_control::axis::{self, Parameters};
+use feedwright_control::axis::knowledge::AxisKnowledge;
+use feedwright_control::axis::statistics::AxisStatistics;
+use feedwright_control::axis::{self, Parameters, Periods};
 
 use super::{Limits, Machine, Period};
 
@@ -95,6 +97,12 @@ impl Known {
 }
 
 impl KnownAxis {
+    /// With periods and statistics, as a controller takes it.
+    pub fn with_statistics(&self, periods: Periods, statistics: AxisStatistics) -> AxisKnowledge {
+        let Self { nominal: parameters, drive, friction, delays, .. } = *self;
+        AxisKnowledge { parameters, periods, drive, friction, delays, statistics }
+    }
+
     /// Acceleration of the tool with the torque that is left for it, mm/s2.
     pub fn drive_mm_s2(&self) -> f64 {
         self.spare_torque_nm / self.nominal.inertia_kg_m2 * self.lead_mm_per_rev / TAU

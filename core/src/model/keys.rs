@@ -38,6 +38,7 @@ pub(crate) const fn weights(kind: IdentifierKind) -> &'static [Key<Weights>] {
     match kind {
         IdentifierKind::Contour => CONTOUR,
         IdentifierKind::Servo => SERVO,
+        IdentifierKind::Axes => AXES,
     }
 }
 
@@ -50,3 +51,5 @@ const SERVO: &[Key<Weights>] = &[
     key!(numbers output, "", -MAX_WEIGHT, MAX_WEIGHT),
     key!(numbers spread, "", -MAX_SPREAD, MAX_SPREAD),
 ];
+
+const AXES: &[Key<Weights>] = &[key!(numbers axes, "", -MAX_WEIGHT, MAX_WEIGHT)];

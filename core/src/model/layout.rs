@@ -1,10 +1,11 @@
 //! The layout of a model file: its tables, and what holds between their values.
 
+use feedwright_control::axis::knowledge::AxisKnowledge;
 use feedwright_control::identifier::UNKNOWNS;
 use feedwright_control::identifier::{HIDDEN, INPUTS, IdentifierKind};
 use feedwright_control::model as block;
 
-use super::{About, FORMAT, Model, Weights, keys, kind_named, name, version};
+use super::{About, FORMAT, KINDS, Model, Weights, keys, kind_named, name, version};
 use crate::gcode::suggestion::nearest;
 use crate::toml_file::key::{read, read_all};
 use crate::toml_file::{Document, Fault, Table};
@@ -85,11 +86,11 @@ fn of_this_format(document: &Document<'_>) -> Result<(), Fault> {
 fn kind(about: &About, root: &Table<'_, '_>, faults: &mut Vec<Fault>) -> Option<IdentifierKind> {
     let found = kind_named(&about.kind);
     if found.is_none() && !about.kind.is_empty() {
-        let names = [name(IdentifierKind::Contour), name(IdentifierKind::Servo)];
+        let names = KINDS.map(name);
         faults.push(Fault {
             at: root.place("kind"),
             label: "unknown",
-            message: format!("no identifier is of kind '{}'; there are {}", about.kind, names.join(" and ")),
+            message: format!("no identifier is of kind '{}'; there are {}", about.kind, names.join(", ")),
             hint: nearest(&about.kind, &names).map(|near| format!("did you mean '{near}'?")),
         });
     }
@@ -104,12 +105,15 @@ fn weights(kind: IdentifierKind, axes: u64, table: &mut Table<'_, '_>, faults: &
         return weights;
     }
     let n = axes as usize;
-    let of_servo = |number: usize| if kind == IdentifierKind::Servo { number } else { 0 };
+    let of = |kinds: &[IdentifierKind], number: usize| if kinds.contains(&kind) { number } else { 0 };
+    let (servo, nets) = ([IdentifierKind::Servo], [IdentifierKind::Servo, IdentifierKind::Contour]);
     let expected = [
-        ("linear", &weights.linear, of_servo(n * n * INPUTS)),
-        ("hidden", &weights.hidden, n * INPUTS * HIDDEN),
-        ("output", &weights.output, n * HIDDEN),
-        ("spread", &weights.spread, of_servo(n * UNKNOWNS * UNKNOWNS)),
+        ("linear", &weights.linear, of(&servo, n * n * INPUTS)),
+        ("hidden", &weights.hidden, of(&nets, n * INPUTS * HIDDEN)),
+        ("output", &weights.output, of(&nets, n * HIDDEN)),
+        ("spread", &weights.spread, of(&servo, n * UNKNOWNS * UNKNOWNS)),
+        // Before them the mechanics period.
+        ("axes", &weights.axes, of(&[IdentifierKind::Axes], 1 + n * AxisKnowledge::NOTHING.count())),
     ];
     for (key, found, expected) in expected {
         if found.len() != expected {

@@ -12,10 +12,10 @@
 
 use crate::axis::drive::{DriveLaw, DriveReference, DriveState};
 use crate::axis::friction::{FrictionLaw, FrictionParameters};
+use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::statistics::AxisStatistics;
 use crate::axis::{self, AxisLaw, AxisState};
 
-use super::AxisKnowledge;
 use super::linear::{Linear, STATES, measured_rad2};
 use super::riccati::filter;
 
@@ -52,7 +52,8 @@ pub(super) const NOTHING_SENT: Sent = [DriveReference { speed_rad_s: 0.0, torque
 
 impl AxisModel {
     pub(super) fn new(known: &AxisKnowledge) -> Self {
-        let AxisKnowledge { law, drive, friction, delays, statistics } = *known;
+        let AxisKnowledge { drive, friction, delays, statistics, .. } = *known;
+        let law = known.law();
         let linear = Linear::new(&law, &drive, &statistics);
         let (states, _, noise) = linear.sampled();
         let mut measured = [0.0; STATES];
@@ -117,7 +118,7 @@ impl AxisModel {
         for n in 0..periods {
             // So long ago was sent what acts: a servo period ago it was the newest, up to two the one before.
             let ago = (before + drive_late).saturating_sub(n).max(1);
-            let age = (ago - 1) / per_servo;
+            let age = (ago - 1).checked_div(per_servo).unwrap_or(0);
             let reference = sent.get(age as usize).copied().unwrap_or_default();
             self.substep(estimate, reference);
         }
