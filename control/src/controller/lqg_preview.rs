@@ -105,6 +105,14 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         }
     }
 
+    fn prediction_error_mm(&self) -> f64 {
+        norm(self.axes.each_ref().map(|axis| axis.moved_and_missed_mm()[1]))
+    }
+
+    fn moved_mm(&self) -> Option<[f64; N]> {
+        Some(self.axes.each_ref().map(|axis| axis.moved_and_missed_mm()[0]))
+    }
+
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let here_mm = window.now().position_mm;
         let offset_mm = core::array::from_fn(|i| {
@@ -129,14 +137,44 @@ struct AxisLqg {
 /// What an axis remembers while it runs.
 #[derive(Debug, Clone, Copy)]
 struct Running {
+    /// As it is, and as it would be without any offset, under the same load.
+    real: Tracked,
+    open: Tracked,
+    /// Where the path was at the last decision, mm; the command was an offset beside it.
+    path_mm: Option<f64>,
+    /// What was measured beyond what was expected, rad.
+    missed_rad: f64,
+}
+
+/// An axis behind its position loop.
+#[derive(Debug, Clone, Copy)]
+struct Tracked {
     estimate: Estimate,
     sent: Sent,
     /// The position loop as it is in the control.
     position_loop: (AxisState, DriveState),
     /// What is measured now, rad.
     measured_rad: f64,
-    /// Where the reference was at the last decision, mm; the command was an offset beside it.
-    reference_mm: Option<f64>,
+}
+
+impl Tracked {
+    fn at_rest(measured_rad: f64) -> Self {
+        Self {
+            estimate: AxisModel::at_rest(measured_rad),
+            sent: NOTHING_SENT,
+            position_loop: (AxisState::default(), DriveState::AT_REST),
+            measured_rad,
+        }
+    }
+
+    /// What the position loop makes of a command goes to the drive.
+    fn send(&mut self, model: &AxisModel, command_rad: f64) {
+        let (axis, drive) = &mut self.position_loop;
+        axis.angle_rad = self.measured_rad;
+        let reference = model.drive.position_loop(&model.law, command_rad, self.measured_rad, axis, drive);
+        self.sent.rotate_right(1);
+        self.sent[0] = reference;
+    }
 }
 
 impl AxisLqg {
@@ -165,35 +203,38 @@ impl AxisLqg {
         (1.0 + friction - drive.velocity_feedforward) / parameters.kp_1_s - delays.measurement_s
     }
 
-    /// What was commanded in the last servo period, as an offset from the reference, has led to this position.
+    /// What was commanded in the last servo period, as an offset from the path, has led to this position.
     fn observe(&mut self, offset_mm: f64, position_mm: f64) {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let measured_rad = position_mm * rad_per_mm;
-        let running = self.state.get_or_insert_with(|| Running {
-            estimate: AxisModel::at_rest(measured_rad),
-            sent: NOTHING_SENT,
-            position_loop: Default::default(),
-            measured_rad,
-            reference_mm: None,
-        });
-        if let Some(reference_mm) = running.reference_mm {
-            let (axis, drive) = &mut running.position_loop;
-            axis.angle_rad = running.measured_rad;
-            let command_rad = (reference_mm + offset_mm) * rad_per_mm;
-            let law = &self.model.law;
-            let reference = self.model.drive.position_loop(law, command_rad, running.measured_rad, axis, drive);
-            running.sent.rotate_right(1);
-            running.sent[0] = reference;
-            self.model.correct(&mut running.estimate, &running.sent, measured_rad);
+        let at_rest = Tracked::at_rest(measured_rad);
+        let running =
+            self.state.get_or_insert(Running { real: at_rest, open: at_rest, path_mm: None, missed_rad: 0.0 });
+        let Running { real, open, path_mm, missed_rad } = running;
+        if let Some(path_mm) = *path_mm {
+            real.send(&self.model, (path_mm + offset_mm) * rad_per_mm);
+            *missed_rad = self.model.correct(&mut real.estimate, &real.sent, measured_rad);
+            open.send(&self.model, path_mm * rad_per_mm);
+            open.estimate.acting_nm = real.estimate.acting_nm;
+            self.model.predict(&mut open.estimate, &open.sent);
+            open.measured_rad = open.estimate.axis.angle_rad;
         }
-        running.measured_rad = measured_rad;
+        real.measured_rad = measured_rad;
+    }
+
+    /// By how much the offset has moved it, and what was measured beyond what was expected, mm.
+    fn moved_and_missed_mm(&self) -> [f64; 2] {
+        let mm = 1.0 / self.model.law.parameters.rad_per_mm;
+        self.state.map_or([0.0; 2], |Running { real, open, missed_rad, .. }| {
+            [real.estimate.axis.angle_rad - open.estimate.axis.angle_rad, missed_rad].map(|rad| rad * mm)
+        })
     }
 
     /// The offset of the command in this servo period; `at_mm` is the reference so many seconds from its start.
     fn offset_mm(&mut self, here_mm: f64, at_mm: impl Fn(f64) -> f64) -> f64 {
         let Some(running) = &mut self.state else { return 0.0 };
-        running.reference_mm = Some(here_mm);
-        let ahead = self.model.ahead(&running.estimate, &running.sent);
+        running.path_mm = Some(here_mm);
+        let ahead = self.model.ahead(&running.real.estimate, &running.real.sent);
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let inner = [ahead.drive.integral_nm(), ahead.presliding_nm];
         let load_mm_s = self.cogging_mm_s(&at_mm);
@@ -232,10 +273,10 @@ impl AxisLqg {
         let (law, parameters) = (&self.model.law, self.model.law.parameters);
         let Some(running) = &self.state else { return 0.0 };
         let asked = |command_mm: f64| {
-            let (mut axis, mut drive) = running.position_loop;
+            let (mut axis, mut drive) = running.real.position_loop;
             let command_rad = command_mm * parameters.rad_per_mm;
             let DriveReference { speed_rad_s, torque_nm } =
-                self.model.drive.position_loop(law, command_rad, running.measured_rad, &mut axis, &mut drive);
+                self.model.drive.position_loop(law, command_rad, running.real.measured_rad, &mut axis, &mut drive);
             speed_rad_s + torque_nm / parameters.kv_nm_s_per_rad
         };
         // It is linear.

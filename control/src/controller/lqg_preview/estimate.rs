@@ -87,11 +87,16 @@ impl AxisModel {
         self.statistics.cogging_nm * libm::sin(self.statistics.cogging_per_rev * angle_rad)
     }
 
-    /// One servo period on, and what was measured at its end.
-    pub(super) fn correct(&self, estimate: &mut Estimate, sent: &Sent, measured_rad: f64) {
+    /// One servo period on.
+    pub(super) fn predict(&self, estimate: &mut Estimate, sent: &Sent) {
         let [measured_late, _] = self.late;
         let periods = self.law.periods.mechanics_per_servo;
         self.go_on(estimate, sent, measured_late + periods, periods);
+    }
+
+    /// One servo period on, and what was measured at its end; by how much that was not expected, rad.
+    pub(super) fn correct(&self, estimate: &mut Estimate, sent: &Sent, measured_rad: f64) -> f64 {
+        self.predict(estimate, sent);
         let AxisStatistics { interpolation_rad, signal_per_rad, .. } = self.statistics;
         let angle_rad = estimate.axis.angle_rad;
         let shown_rad = angle_rad + interpolation_rad * libm::sin(signal_per_rad * angle_rad);
@@ -101,6 +106,7 @@ impl AxisModel {
         estimate.axis.speed_rad_s += w;
         estimate.drive.correct(i, y);
         estimate.acting_nm.iter_mut().zip(acting).for_each(|(nm, more)| *nm += more);
+        missed_rad
     }
 
     /// As it will be when what is sent now begins to act.
