@@ -145,6 +145,13 @@ fn identified_parameters_are_worth_as_much_as_exact_ones_on_workshop_and_more_th
     });
     assert!((identified / exact - 1.0).abs() < AS_EXACT && exact != identified, "{exact} {identified} {off}");
     assert!(identified < (1.0 - AS_EXACT) * off, "{exact} {identified} {off}");
+    // The first table of the page has what the encoders see, and says so.
+    assert_eq!(comparison.controlled_rms_over_contours_um("workshop", "feedforward"), Some(exact));
+    assert!(comparison.rms_over_contours_um("workshop", "feedforward").unwrap() > 1.2 * exact);
+    let mut html = Vec::new();
+    page::write(&mut html, &comparison).unwrap();
+    let html = String::from_utf8(html).unwrap();
+    assert!(html.contains("By the encoders on workshop") && html.contains("largest whole contour error"), "{html}");
 }
 
 #[test]

@@ -56,6 +56,16 @@ impl Comparison {
         self.on_contours(machine, controller, |row| row.rms_um).map(quadratic_mean)
     }
 
+    /// As [`Self::rms_over_contours_um`], without the geometry that no encoder sees where the machine has any.
+    pub fn controlled_rms_over_contours_um(&self, machine: &str, controller: &str) -> Option<f64> {
+        self.on_contours(machine, controller, ComparisonRow::controlled_rms_um).map(quadratic_mean)
+    }
+
+    /// Whether a machine has geometry that no encoder sees.
+    pub fn has_geometry(&self, machine: &str) -> bool {
+        self.rows.iter().any(|row| row.machine == machine && row.joint_rms_um.is_some())
+    }
+
     /// The claims, in the order of the verdicts.
     pub fn claims(&self) -> Vec<Claimed<'_>> {
         let of_claim = |claim| {

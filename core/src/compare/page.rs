@@ -23,9 +23,10 @@ const NOTABLE: f64 = 0.02;
 pub fn write(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let introduction = format!(
         "Every controller on every workpiece and machine, tuned on each machine and made from what it may know of it: parameters, an \
-         identification, or nothing. {} has parameters that are 20 % off, {} was identified and tuned on {} and meets the others \
+         identification, or nothing. {} has parameters that are identified from a recording, {} such that are 20 % off, {} was identified and tuned on {} and meets the others \
          unseen. Errors are medians over the noise seeds, with the lowest and the highest below; uncut path, deviation, acceleration \
          and torque are the worst of all. Seed {}.",
+        Knowledge::Identified.suffix(),
         Knowledge::TwentyPercentOff.suffix(),
         Knowledge::Unseen.suffix(),
         comparison.nominal,
@@ -63,12 +64,21 @@ fn write_end(out: &mut impl Write) -> io::Result<()> {
 fn write_machines(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let machines = comparison.machines();
     out.write_all("<h2>RMS contour error over all work, µm</h2>\n".as_bytes())?;
+    let unseen: Vec<&str> = machines.iter().copied().filter(|machine| comparison.has_geometry(machine)).collect();
+    if !unseen.is_empty() {
+        writeln!(
+            out,
+            "<p>By the encoders on {}: pitch, scale and squareness, which no controller can know, are left out there. The tables \
+             below have the whole error, too.</p>",
+            escaped(&unseen.join(", "))
+        )?;
+    }
     write_heading(out, std::iter::once("controller").chain(machines.iter().copied()))?;
     for controller in comparison.controllers() {
         write!(out, "<tr{}><td>{}</td>", ours(controller), escaped(controller))?;
         for machine in &machines {
             let cut = comparison.rows.iter().any(|row| row.machine == *machine && row.controller == controller);
-            let text = match comparison.rms_over_contours_um(machine, controller) {
+            let text = match comparison.controlled_rms_over_contours_um(machine, controller) {
                 Some(rms_um) => number(rms_um),
                 None if cut => "diverged".to_owned(),
                 None => String::new(),
@@ -83,7 +93,12 @@ fn write_machines(out: &mut impl Write, comparison: &Comparison) -> io::Result<(
 /// Where each contour and machine is found, and what the receding horizon does there.
 fn write_contents(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let (machines, cells) = (comparison.machines(), cells(&comparison.rows));
-    writeln!(out, "<h2>Contours and machines</h2>\n<p>RMS / largest contour error of {}, µm.</p>", shown(comparison))?;
+    let whole = if machines.iter().any(|machine| comparison.has_geometry(machine)) { "whole " } else { "" };
+    writeln!(
+        out,
+        "<h2>Contours and machines</h2>\n<p>RMS / largest {whole}contour error of {}, µm.</p>",
+        shown(comparison)
+    )?;
     write_heading(out, std::iter::once("contour").chain(machines.iter().copied()))?;
     for contour in comparison.contours() {
         write!(out, "<tr><td>{}</td>", escaped(contour))?;
