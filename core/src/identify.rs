@@ -12,6 +12,7 @@ pub mod contour;
 mod spread;
 pub mod servo;
 pub mod axis_parameters;
+pub mod axis_statistics;
 pub mod axes;
 pub mod cache;
 
@@ -63,6 +64,11 @@ impl Excitation {
         (excitation::record(machine, self, &mut rng), rng)
     }
 
+    /// As [`Self::record`], all laps in one cut, with noise that goes on from lap to lap.
+    pub fn record_in_one<const N: usize>(&self, machine: &Machine, seed: u64) -> Recording<N> {
+        excitation::record_in_one(machine, self, &mut Rng::seed_from_u64(seed))
+    }
+
     /// The circle of eq. 11.
     pub fn paper() -> Self {
         Self {
@@ -94,6 +100,7 @@ impl Excitation {
             ..Self::general()
         }
     }
+
     /// For the parameters of an axis: as for the servo identifier, with a knot in every servo period of a machine, since the law of
     /// an axis is stepped through all of them.
     pub fn axis_parameters(machine: &Machine) -> Self {
@@ -105,6 +112,21 @@ impl Excitation {
             ramp_periods: servo_periods(f64::from(servo.ramp_periods) * servo.feed_period_s),
             laps: AXIS_PARAMETER_LAPS,
             ..servo
+        }
+    }
+
+    /// For the statistics of the axes of a machine: a minute at its servo period, at all speeds from slow ones, at which cogging moves the
+    /// axis, without offsets.
+    pub fn statistics(machine: &Machine) -> Self {
+        Self {
+            radii_mm: vec![2.0, 5.0, 10.0],
+            turns: vec![-1, 1, 1],
+            feed_mm_s: [2.0, 60.0],
+            laps: 30,
+            offset_mm: 0.0,
+            renewal_periods: 1,
+            ramp_periods: 1,
+            feed_period_s: machine.period.servo_s,
         }
     }
 }

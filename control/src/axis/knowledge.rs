@@ -89,6 +89,7 @@ impl AxisKnowledge {
             ("encoder_noise_rad", &mut s.encoder_noise_rad),
             ("encoder_step_rad", &mut s.encoder_step_rad),
             ("interpolation_rad", &mut s.interpolation_rad),
+            ("interpolation_phase_rad", &mut s.interpolation_phase_rad),
             ("signal_per_rad", &mut s.signal_per_rad),
             ("torque_noise_nm", &mut s.torque_noise_nm),
             ("torque_noise_s", &mut s.torque_noise_s),
@@ -96,6 +97,7 @@ impl AxisKnowledge {
             ("disturbance_rad_s", &mut s.disturbance_rad_s),
             ("disturbance_wander", &mut s.disturbance_wander),
             ("cogging_nm", &mut s.cogging_nm),
+            ("cogging_phase_rad", &mut s.cogging_phase_rad),
             ("cogging_per_rev", &mut s.cogging_per_rev),
         ] {
             each(name, number);

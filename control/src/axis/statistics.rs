@@ -11,6 +11,8 @@ pub struct AxisStatistics {
     pub encoder_step_rad: f64,
     /// Amplitude of its error within a signal period, rad.
     pub interpolation_rad: f64,
+    /// Phase of that where the angle is zero, rad.
+    pub interpolation_phase_rad: f64,
     /// Turns of the signal in a radian, times 2 pi.
     pub signal_per_rad: f64,
     /// RMS of the broadband torque, N m, and its correlation time, s.
@@ -25,6 +27,8 @@ pub struct AxisStatistics {
     pub disturbance_wander: f64,
     /// Amplitude of the cogging torque, N m.
     pub cogging_nm: f64,
+    /// Its phase where the angle is zero, rad.
+    pub cogging_phase_rad: f64,
     /// Its periods in a turn.
     pub cogging_per_rev: f64,
 }
@@ -35,6 +39,7 @@ impl AxisStatistics {
         encoder_noise_rad: 0.0,
         encoder_step_rad: 0.0,
         interpolation_rad: 0.0,
+        interpolation_phase_rad: 0.0,
         signal_per_rad: 0.0,
         torque_noise_nm: 0.0,
         torque_noise_s: 0.0,
@@ -42,6 +47,7 @@ impl AxisStatistics {
         disturbance_rad_s: 0.0,
         disturbance_wander: 0.0,
         cogging_nm: 0.0,
+        cogging_phase_rad: 0.0,
         cogging_per_rev: 0.0,
     };
 }

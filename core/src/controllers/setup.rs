@@ -16,7 +16,8 @@ use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
 use crate::identify::axis_parameters::{DriveSettings, NotIdentified, identify};
 use crate::identify::contour::Training;
-use crate::identify::{Excitation, axes, cache, servo};
+use crate::identify::axes::{self, AxisRecordings};
+use crate::identify::{Excitation, cache, servo};
 use crate::machine::{Known, Machine};
 use crate::model::{Model, Origin, name};
 
@@ -211,9 +212,8 @@ impl<'a> Setup<'a> {
     /// The identified axes; none where the machine does not move so that they show.
     pub(super) fn axes<const N: usize>(&mut self) -> Option<IdentifiedAxes<N>> {
         self.model.and_then(Model::identified_axes).or_else(|| {
-            let excitation = Excitation::axis_parameters(self.machine);
-            let (recording, _) = excitation.record::<N>(self.machine, self.choices.seed);
-            let found = axes::train(&recording, &self.known).ok()?.axes;
+            let recordings = AxisRecordings::<N>::of(self.machine, self.choices.seed);
+            let found = axes::train(&recordings, &self.known).ok()?.axes;
             Some(found.with_periods(self.known.period.servo_s))
         })
     }
@@ -253,9 +253,9 @@ impl<'a> Setup<'a> {
                 Model::of_servo(&recording, &servo::train(&recording), origin)
             }
             IdentifierKind::Axes => {
-                let (recording, _) = Excitation::axis_parameters(self.machine).record::<N>(self.machine, seed);
-                let trained = axes::train(&recording, &self.known).map_err(ModelMisfit::NotIdentified)?;
-                Model::of_axes(&recording, &trained, origin)
+                let recordings = AxisRecordings::<N>::of(self.machine, seed);
+                let trained = axes::train(&recordings, &self.known).map_err(ModelMisfit::NotIdentified)?;
+                Model::of_axes(&recordings.joined(), &trained, origin)
             }
             IdentifierKind::Contour => {
                 let excitation = Excitation { feed_period_s, ..Excitation::general() };

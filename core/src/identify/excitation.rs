@@ -41,6 +41,26 @@ pub(super) fn record<const N: usize>(machine: &Machine, excitation: &Excitation,
     Recording { servo_s, feed_period_s, stretches }
 }
 
+/// Cuts all laps one after the other, with offsets in all of them.
+pub(super) fn record_in_one<const N: usize>(machine: &Machine, excitation: &Excitation, rng: &mut Rng) -> Recording<N> {
+    let motions: Vec<Canon> =
+        (0..excitation.laps).map(|lap| Canon::Motion(circle::<N>(excitation, lap, rng))).collect();
+    let mut excitation_controller = ExcitationController {
+        excitation,
+        servo_periods: machine.period.servo_periods(excitation.feed_period_s),
+        reach_mm: excitation.offset_mm,
+        rng,
+        from_mm: [0.0; N],
+        to_mm: [0.0; N],
+        lap: Vec::new(),
+    };
+    Run::on(machine)
+        .cut(|| Ok(pieces(motions.clone())), &mut excitation_controller, &mut [])
+        .expect("circles on a machine that was checked, no sinks");
+    let (servo_s, feed_period_s) = (machine.period.servo_s, excitation.period_s(machine));
+    Recording { servo_s, feed_period_s, stretches: vec![excitation_controller.lap] }
+}
+
 /// One lap: radii, senses and planes in turn, feed and starting point at random.
 fn circle<const N: usize>(excitation: &Excitation, lap: u32, rng: &mut Rng) -> Motion {
     let lap_index = lap as usize;

@@ -21,6 +21,7 @@ impl Machine {
                 encoder_noise_rad: rad(axis.encoder_noise_um),
                 encoder_step_rad: rad(axis.encoder_step_um),
                 interpolation_rad: rad(axis.interpolation_error_um),
+                interpolation_phase_rad: 0.0,
                 signal_per_rad: if signal_rad > 0.0 { TAU / signal_rad } else { 0.0 },
                 torque_noise_nm: axis.torque_noise_nm,
                 torque_noise_s: axis.torque_noise_s,
@@ -28,6 +29,7 @@ impl Machine {
                 disturbance_rad_s: TAU * axis.disturbance_hz,
                 disturbance_wander: axis.disturbance_wander,
                 cogging_nm: axis.cogging_nm,
+                cogging_phase_rad: 0.0,
                 cogging_per_rev: axis.cogging_per_rev,
             }
         })

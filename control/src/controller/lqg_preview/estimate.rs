@@ -84,7 +84,8 @@ impl AxisModel {
 
     /// Torque of the motor beside the drive's at an angle, N m.
     pub(super) fn cogging_nm(&self, angle_rad: f64) -> f64 {
-        self.statistics.cogging_nm * libm::sin(self.statistics.cogging_per_rev * angle_rad)
+        let AxisStatistics { cogging_nm, cogging_per_rev, cogging_phase_rad, .. } = self.statistics;
+        cogging_nm * libm::sin(cogging_per_rev * angle_rad + cogging_phase_rad)
     }
 
     /// One servo period on.
@@ -97,9 +98,9 @@ impl AxisModel {
     /// One servo period on, and what was measured at its end; by how much that was not expected, rad.
     pub(super) fn correct(&self, estimate: &mut Estimate, sent: &Sent, measured_rad: f64) -> f64 {
         self.predict(estimate, sent);
-        let AxisStatistics { interpolation_rad, signal_per_rad, .. } = self.statistics;
+        let AxisStatistics { interpolation_rad, interpolation_phase_rad, signal_per_rad, .. } = self.statistics;
         let angle_rad = estimate.axis.angle_rad;
-        let shown_rad = angle_rad + interpolation_rad * libm::sin(signal_per_rad * angle_rad);
+        let shown_rad = angle_rad + interpolation_rad * libm::sin(signal_per_rad * angle_rad + interpolation_phase_rad);
         let missed_rad = measured_rad - shown_rad;
         let [x, w, i, y, acting @ ..] = self.gains.map(|gain| gain * missed_rad);
         estimate.axis.angle_rad += x;

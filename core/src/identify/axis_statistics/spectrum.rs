@@ -1,0 +1,138 @@
+//! Fourier transform, and the spectrum of a sequence with gaps.
+//!
+//! ```text
+//! X(f) = sum of x(k) exp(-2 pi i f k)                                   f in turns a sample
+//! I(f) = mean over segments of |sum of g m x exp(..)|^2 / sum of (g m)^2    g window, m 1 where x counts and 0 where it does not
+//! ```
+//!
+//! The window is Gaussian, cut off at four standard deviations: a line of Gaussian shape stays Gaussian behind it, and what leaks
+//! lies 70 dB below.
+//!
+//! Source: Cooley and Tukey (1965), An algorithm for the machine calculation of complex Fourier series; Welch (1967), The use of fast
+//! Fourier transform for the estimation of power spectra; Harris (1978) for the window.
+
+use std::f64::consts::{PI, TAU};
+
+/// A complex number: real and imaginary part.
+pub(super) type Complex = [f64; 2];
+
+/// Product.
+#[inline]
+pub(super) fn times([a, b]: Complex, [c, d]: Complex) -> Complex {
+    [a * c - b * d, a * d + b * c]
+}
+
+/// Conjugate.
+#[inline]
+pub(super) fn conjugate([a, b]: Complex) -> Complex {
+    [a, -b]
+}
+
+/// Square of the modulus.
+#[inline]
+pub(super) fn power([a, b]: Complex) -> f64 {
+    a * a + b * b
+}
+
+/// e^(i x).
+#[inline]
+pub(super) fn turned(angle_rad: f64) -> Complex {
+    let (sin, cos) = angle_rad.sin_cos();
+    [cos, sin]
+}
+
+/// Transform of a sequence whose length is a power of two, in place.
+pub(super) fn transform(values: &mut [Complex]) {
+    let length = values.len();
+    debug_assert!(length.is_power_of_two(), "{length}");
+    if length < 2 {
+        return;
+    }
+    let shift = usize::BITS - length.trailing_zeros();
+    for i in 0..length {
+        let j = i.reverse_bits() >> shift;
+        if i < j {
+            values.swap(i, j);
+        }
+    }
+    let turns: Vec<Complex> = (0..length / 2).map(|k| turned(-TAU * k as f64 / length as f64)).collect();
+    let mut half = 1;
+    while half < length {
+        let stride = length / (2 * half);
+        for block in values.chunks_exact_mut(2 * half) {
+            let (low, high) = block.split_at_mut(half);
+            for (k, (a, b)) in low.iter_mut().zip(high).enumerate() {
+                let turned = times(*b, turns[k * stride]);
+                *b = [a[0] - turned[0], a[1] - turned[1]];
+                *a = [a[0] + turned[0], a[1] + turned[1]];
+            }
+        }
+        half *= 2;
+    }
+}
+
+/// Its inverse.
+pub(super) fn transform_back(values: &mut [Complex]) {
+    values.iter_mut().for_each(|value| *value = conjugate(*value));
+    transform(values);
+    let scale = 1.0 / values.len() as f64;
+    values.iter_mut().for_each(|[a, b]| (*a, *b) = (*a * scale, -*b * scale));
+}
+
+/// Transform of real numbers, with zeros behind them up to a length.
+pub(super) fn transformed(values: &[f64], length: usize) -> Vec<Complex> {
+    let mut padded: Vec<Complex> = values.iter().map(|&value| [value, 0.0]).collect();
+    padded.resize(length, [0.0; 2]);
+    transform(&mut padded);
+    padded
+}
+
+/// The spectrum of a sequence from frequency zero to half a turn a sample.
+#[derive(Debug, Clone)]
+pub(super) struct Spectrum {
+    /// Mean square in a sample, were it white: at frequencies n / (2 (len - 1)).
+    pub(super) power: Vec<f64>,
+    /// How many independent values each stands for.
+    pub(super) weight_of_value: f64,
+    /// Standard deviation to which the window widens a line, turns a sample.
+    pub(super) width: f64,
+}
+
+/// Standard deviations of the window in half a segment.
+const WINDOW_DEVIATIONS: f64 = 4.0;
+/// Segments follow each other by so many parts of one: the windows then overlap at 0.6 of their height.
+const SEGMENT_PARTS: usize = 4;
+
+impl Spectrum {
+    /// Of what counts, in segments of a length that is a power of two.
+    pub(super) fn new(values: &[f64], counts: &[bool], length: usize) -> Self {
+        let middle = 0.5 * length as f64;
+        let deviation = middle / WINDOW_DEVIATIONS;
+        let window: Vec<f64> =
+            (0..length).map(|k| (-0.5 * ((k as f64 + 0.5 - middle) / deviation).powi(2)).exp()).collect();
+        let (mut sum, mut weight) = (vec![0.0; length / 2 + 1], 0.0);
+        let mut start = 0;
+        while start + length <= values.len() {
+            let seen = counts[start..start + length].iter();
+            let mut segment: Vec<Complex> = values[start..start + length]
+                .iter()
+                .zip(seen.clone())
+                .zip(&window)
+                .map(|((value, &counts), g)| if counts { [value * g, 0.0] } else { [0.0; 2] })
+                .collect();
+            weight += seen.zip(&window).filter(|&(&counts, _)| counts).map(|(_, g)| g * g).sum::<f64>();
+            transform(&mut segment);
+            sum.iter_mut().zip(&segment).for_each(|(sum, value)| *sum += power(*value));
+            start += length / SEGMENT_PARTS;
+        }
+        let width = 1.0 / (2.0 * PI * deviation * 2.0_f64.sqrt());
+        let seen = counts.iter().filter(|&&counts| counts).count() as f64;
+        let weight_of_value = seen / length as f64;
+        Self { power: sum.iter().map(|p| p / weight.max(f64::MIN_POSITIVE)).collect(), weight_of_value, width }
+    }
+
+    /// Frequency of a value, turns a sample.
+    pub(super) fn at(&self, n: usize) -> f64 {
+        0.5 * n as f64 / (self.power.len() - 1) as f64
+    }
+}
