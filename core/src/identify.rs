@@ -122,7 +122,7 @@ impl Excitation {
             radii_mm: vec![2.0, 5.0, 10.0],
             turns: vec![-1, 1, 1],
             feed_mm_s: [2.0, 60.0],
-            laps: 30,
+            laps: 24,
             offset_mm: 0.0,
             renewal_periods: 1,
             ramp_periods: 1,

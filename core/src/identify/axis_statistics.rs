@@ -37,7 +37,7 @@ use std::f64::consts::TAU;
 /// Length of a segment of the spectrum, s: 0.2 Hz are told apart, and a minute has some twenty.
 const SEGMENT_S: f64 = 4.0;
 /// Part of the Coulomb friction below which no torque is told from what a friction law leaves: laws of friction fit to some per cent.
-const LEAST_TORQUE: f64 = 0.02;
+const LEAST_TORQUE: f64 = 0.05;
 /// Differences of positions from which the step is found: enough for the least common one.
 const STEP_SAMPLES: usize = 4000;
 /// Part of the way of a recording that is rounding of numbers: ten thousand times that of a double.
@@ -47,6 +47,8 @@ const ROUNDING: f64 = 1e-12;
 const LEAST_STEP: f64 = 1e3;
 /// Part of the encoder's RMS noise below which its interpolation error is of no use: it is 2 % of the mean square.
 const LEAST_INTERPOLATION: f64 = 0.2;
+/// The same in least noises of an encoder, for those without noise: 0.005 um on a lead of 10 mm.
+const LEAST_NOISES: f64 = 5.0;
 /// Periods in a turn by which both kinds differ: what one leaves of a wave is not the other.
 const APART: f64 = 1.0;
 /// Steps of the encoder alone have this variance or less, times the square of the step over 12: rounding of a slow motion is not quite white.
@@ -91,10 +93,17 @@ fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> A
     }
     let noise = noise_of(&weighed.without(&waves));
     let weighed = Weighed::new(&innovations, &responses, &noise, period.servo_s);
-    let kinds: Vec<(Through, f64)> = waves.iter().map(|(through, wave)| (*through, wave.per_rad)).collect();
-    let amplitudes = weighed.together(&kinds);
-    let waves: Vec<(Through, Wave)> = kinds.iter().map(|kind| kind.0).zip(amplitudes).collect();
-    statistics(&noise, &waves, step_rad)
+    let shown = |(through, wave): &(Through, Wave)| match through {
+        Through::Motor => wave.amplitude() > least_nm,
+        Through::Encoder => wave.amplitude() > least_rad(&noise),
+    };
+    let again = weighed.amplitudes(&waves);
+    let kept: Vec<(Through, Wave)> = again.iter().copied().filter(shown).collect();
+    if kept.len() == again.len() {
+        return statistics(&noise, &kept, step_rad);
+    }
+    // What was none has spoilt the noise.
+    statistics(&noise_of(&weighed.without(&kept)), &kept, step_rad)
 }
 
 /// What repeats with place: the stronger kind first, the other in what is left.
@@ -106,7 +115,8 @@ fn waves(
     [step_rad, least_nm]: [f64; 2],
 ) -> Vec<(Through, Wave)> {
     let cogging = weighed.cogging(least_nm).map(|(wave, gain)| (Through::Motor, wave, gain));
-    let interpolation = weighed.interpolation(step_rad, LEAST_INTERPOLATION * noise.encoder_rad2.sqrt()).map(|(wave, gain)| (Through::Encoder, wave, gain));
+    let interpolation =
+        weighed.interpolation(step_rad, least_rad(noise)).map(|(wave, gain)| (Through::Encoder, wave, gain));
     let Some((through, wave, _)) = [cogging, interpolation].into_iter().flatten().max_by(|a, b| a.2.total_cmp(&b.2))
     else {
         return Vec::new();
@@ -114,11 +124,16 @@ fn waves(
     let left = weighed.without(&[(through, wave)]);
     let weighed = Weighed::new(&left, responses, noise, servo_s);
     let other = match through {
-        Through::Motor => weighed.interpolation(step_rad, LEAST_INTERPOLATION * noise.encoder_rad2.sqrt()).map(|(wave, _)| (Through::Encoder, wave)),
+        Through::Motor => weighed.interpolation(step_rad, least_rad(noise)).map(|(wave, _)| (Through::Encoder, wave)),
         Through::Encoder => weighed.cogging(least_nm).map(|(wave, _)| (Through::Motor, wave)),
     };
     let other = other.filter(|(_, other)| (other.per_rad - wave.per_rad).abs() > APART);
     [Some((through, wave)), other].into_iter().flatten().collect()
+}
+
+/// Least interpolation error that is of use, rad.
+fn least_rad(noise: &Noise) -> f64 {
+    (LEAST_INTERPOLATION * noise.encoder_rad2.sqrt()).max(LEAST_NOISES * innovation::LEAST_NOISE_RAD)
 }
 
 fn statistics(noise: &Noise, waves: &[(Through, Wave)], step_rad: f64) -> AxisStatistics {

@@ -29,7 +29,10 @@ const SHORTEST_PERIODS: f64 = 0.2;
 /// Most that a line wanders, part of its frequency: beyond, it is broadband.
 const WIDEST: f64 = 0.15;
 /// A line that is narrower than so much of what the window makes of it does not wander.
-const RESOLVED: f64 = 0.5;
+const RESOLVED: f64 = 1.0;
+/// Part of the mean square of the innovations that no term explains: the window leaks, and friction turns at other moments than expected.
+/// Terms that have no noise beside them would else be fitted to that.
+const LEFT_SHARE: f64 = 1e-2;
 /// Frequencies whose mean is taken where the spectrum is smooth.
 const GROUP: usize = 8;
 /// Frequencies on each side whose median a line is above.
@@ -50,6 +53,8 @@ pub(super) struct Noise {
     pub(super) line_hz: f64,
     /// See above.
     pub(super) wander_hz: f64,
+    /// What no term explains, in the innovations, rad^2.
+    pub(super) left_rad2: f64,
 }
 
 impl Noise {
@@ -66,7 +71,7 @@ impl Noise {
         } else {
             0.0
         };
-        self.encoder_rad2 * encoder + load * (broad_nm2 + line_nm2)
+        self.left_rad2 + self.encoder_rad2 * encoder + load * (broad_nm2 + line_nm2)
     }
 }
 
@@ -81,20 +86,26 @@ pub(super) struct Seen {
     servo_s: f64,
     window_hz: f64,
     weight: f64,
+    left_rad2: f64,
 }
 
 impl Seen {
     /// With responses over as many samples as the segments of the spectrum.
     pub(super) fn new(spectrum: &Spectrum, [load, encoder]: &[Vec<Complex>; 2], servo_s: f64) -> Self {
         let range = (0..spectrum.power.len()).filter(|&n| spectrum.at(n) / servo_s >= LEAST_HZ);
+        let mean_rad2 = range.clone().map(|n| spectrum.power[n]).sum::<f64>() / range.clone().count().max(1) as f64;
+        let left_rad2 = LEFT_SHARE * mean_rad2;
+        // Where there is less than that, or than the least noise, it is made up to it: nothing is told from it.
+        let least = |n: usize| left_rad2 + least_rad2() * power(encoder[n]);
         Self {
             hz: range.clone().map(|n| spectrum.at(n) / servo_s).collect(),
-            power: range.clone().map(|n| spectrum.power[n]).collect(),
+            power: range.clone().map(|n| spectrum.power[n] + least(n)).collect(),
             counts: range.clone().map(|_| 1.0).collect(),
             responses: range.map(|n| [power(load[n]), power(encoder[n])]).collect(),
             servo_s,
             window_hz: spectrum.width / servo_s,
             weight: spectrum.weight_of_value,
+            left_rad2,
         }
     }
 
@@ -154,7 +165,8 @@ impl Seen {
         let upper = self.power.len() / 2..;
         let mut shares: Vec<f64> =
             self.power[upper.clone()].iter().zip(&self.responses[upper]).map(|(i, [_, n])| i / n).collect();
-        let start = Noise { encoder_rad2: median(&mut shares).max(least_rad2()), ..Noise::default() };
+        let encoder_rad2 = median(&mut shares).max(least_rad2());
+        let start = Noise { encoder_rad2, left_rad2: self.left_rad2, ..Noise::default() };
         let made = |[r]: &[f64; 1]| Noise { encoder_rad2: r.exp() + least_rad2(), ..start };
         let ([r], _) = least([start.encoder_rad2.ln()], [0.3], |at| self.cost(&made(at)));
         made(&[r])
@@ -194,13 +206,18 @@ impl Seen {
             torque_nm: if broad { s.exp() } else { 0.0 },
             torque_s: if broad { t.exp() } else { 0.0 },
             line_nm: if start.line_nm > 0.0 { d.exp() } else { 0.0 },
-            line_hz: start.line_hz + window_hz * f,
+            line_hz: if start.line_nm > 0.0 { start.line_hz + window_hz * f } else { 0.0 },
             wander_hz: if start.line_nm > 0.0 { v.exp() } else { 0.0 },
+            left_rad2: start.left_rad2,
         };
+        let reach_hz = BESIDE as f64 * window_hz;
         let cost = |at: &[f64; 6]| {
             let noise = made(at);
             let is_within = (!broad || (SHORTEST_PERIODS * servo_s..=LONGEST_S).contains(&noise.torque_s))
-                && (start.line_nm == 0.0 || noise.line_hz > LEAST_HZ && noise.wander_hz < WIDEST * noise.line_hz);
+                && (start.line_nm == 0.0
+                    || noise.line_hz > LEAST_HZ
+                        && (noise.line_hz - start.line_hz).abs() < reach_hz
+                        && noise.wander_hz < WIDEST * noise.line_hz);
             if is_within { self.cost(&noise) } else { f64::INFINITY }
         };
         let log = |x: f64, least: f64| x.max(least).ln();

@@ -27,7 +27,7 @@ const SIGNAL_RAD: [f64; 2] = [TAU * 1e-4, TAU * 0.02];
 /// Most places into which a way is divided to look for a signal period.
 const MOST_PLACES: usize = 1 << 20;
 /// Best candidates of the scan that are tried themselves.
-const TRIED: usize = 4;
+const TRIED: usize = 2;
 
 /// A sine over the angle of the motor: a cos(n theta) + b sin(n theta).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -163,13 +163,7 @@ impl<'a> Weighed<'a> {
     }
 
     /// The best candidate itself, where it is beyond chance and above `least`.
-    fn best(
-        &self,
-        through: Through,
-        candidates: Vec<(f64, f64)>,
-        looked_at: f64,
-        least: f64,
-    ) -> Option<(Wave, f64)> {
+    fn best(&self, through: Through, candidates: Vec<(f64, f64)>, looked_at: f64, least: f64) -> Option<(Wave, f64)> {
         let least_gain = 2.0 * (looked_at / CHANCE).ln();
         let error = self.innovations_transformed();
         best_of(candidates, TRIED)
@@ -181,9 +175,11 @@ impl<'a> Weighed<'a> {
             .filter(|(wave, _)| wave.amplitude() > least)
     }
 
-    /// These waves together, most likely.
-    pub(super) fn together(&self, waves: &[(Through, f64)]) -> Vec<Wave> {
-        self.fitted(&self.innovations_transformed(), waves).map(|(waves, _)| waves).unwrap_or_default()
+    /// The same waves with the amplitudes that are most likely together.
+    pub(super) fn amplitudes(&self, waves: &[(Through, Wave)]) -> Vec<(Through, Wave)> {
+        let kinds: Vec<(Through, f64)> = waves.iter().map(|(through, wave)| (*through, wave.per_rad)).collect();
+        let fitted = self.fitted(&self.innovations_transformed(), &kinds).map(|(waves, _)| waves).unwrap_or_default();
+        kinds.into_iter().map(|(through, _)| through).zip(fitted).collect()
     }
 
     /// Innovations without what these waves make of them.
@@ -209,8 +205,7 @@ impl<'a> Weighed<'a> {
             u.iter().zip(v).zip(&self.weights).map(product).sum::<f64>() / self.length as f64
         };
         let scores: Vec<f64> = columns.iter().map(|column| inner(column, error)).collect();
-        let mut system: Vec<Vec<f64>> =
-            columns.iter().map(|u| columns.iter().map(|v| inner(u, v)).collect()).collect();
+        let mut system: Vec<Vec<f64>> = columns.iter().map(|u| columns.iter().map(|v| inner(u, v)).collect()).collect();
         let solved = solved(&mut system, &scores)?;
         let gain = solved.iter().zip(&scores).map(|(x, p)| x * p).sum();
         let wave = |(&(_, per_rad), pair): (&(Through, f64), &[f64])| Wave { per_rad, cos: pair[0], sin: pair[1] };
@@ -332,4 +327,3 @@ fn solved(system: &mut [Vec<f64>], right: &[f64]) -> Option<Vec<f64>> {
     }
     Some(x)
 }
-

@@ -53,8 +53,7 @@ mod tests {
 
     #[test]
     fn the_bottom_of_rosenbrocks_valley_is_found() {
-        let ([x, y], value) =
-            least([-1.2, 1.0], [0.5, 0.5], |[x, y]| (1.0 - x).powi(2) + 100.0 * (y - x * x).powi(2));
+        let ([x, y], value) = least([-1.2, 1.0], [0.5, 0.5], |[x, y]| (1.0 - x).powi(2) + 100.0 * (y - x * x).powi(2));
         assert!((x - 1.0).abs() < 1e-4 && (y - 1.0).abs() < 1e-4 && value < 1e-8, "{x} {y} {value}");
     }
 }
