@@ -116,8 +116,8 @@ const SMOOTHING_MM_S: f64 = 0.08;
 
 /// How many they are.
 const PARAMETERS: usize = 5;
-type Vector = SVector<f64, PARAMETERS>;
-type Matrix = SMatrix<f64, PARAMETERS, PARAMETERS>;
+type ParameterVector = SVector<f64, PARAMETERS>;
+type ParameterMatrix = SMatrix<f64, PARAMETERS, PARAMETERS>;
 
 impl AxisParameters {
     fn array(self) -> [f64; PARAMETERS] {
@@ -266,7 +266,7 @@ pub fn identify<const N: usize>(
     if stretches.len() < LEAST_STRETCHES {
         return Err(NotIdentified::TooShort { stretches: stretches.len(), settled_s });
     }
-    Fit { settings, stretches, settled }.run()
+    OutputErrorFit { settings, stretches, settled }.run()
 }
 
 /// Commands and measured positions of an axis, mm.
@@ -276,7 +276,7 @@ struct Stretch {
 }
 
 /// What is fitted.
-struct Fit<'a> {
+struct OutputErrorFit<'a> {
     settings: &'a DriveSettings,
     stretches: Vec<Stretch>,
     /// Knots at the beginning of a stretch that are left out.
@@ -285,13 +285,13 @@ struct Fit<'a> {
 
 /// The sum of squares, and a step's equations, in parameters over their scales.
 struct Linearised {
-    gradient: Vector,
-    curvature: Matrix,
+    gradient: ParameterVector,
+    curvature: ParameterMatrix,
     /// Sum of the squares of the gradient's parts by stretch.
-    scatter: Matrix,
+    scatter: ParameterMatrix,
 }
 
-impl Fit<'_> {
+impl OutputErrorFit<'_> {
     fn run(&self) -> Result<AxisEstimate, NotIdentified> {
         let scales = self.scales();
         let mut at =
@@ -349,12 +349,12 @@ impl Fit<'_> {
             self.left_mm(&AxisParameters::of(values))
         };
         let moved: [[Vec<Vec<f64>>; 2]; PARAMETERS] = std::array::from_fn(|i| [moved_by(i, -1.0), moved_by(i, 1.0)]);
-        let mut curvature = Matrix::zeros();
-        let (mut scatter, mut gradient) = (Matrix::zeros(), Vector::zeros());
+        let mut curvature = ParameterMatrix::zeros();
+        let (mut scatter, mut gradient) = (ParameterMatrix::zeros(), ParameterVector::zeros());
         for (stretch, left) in left.iter().enumerate() {
-            let mut of_stretch = Vector::zeros();
+            let mut of_stretch = ParameterVector::zeros();
             for (k, left) in left.iter().enumerate() {
-                let slopes = Vector::from_fn(|i, _| {
+                let slopes = ParameterVector::from_fn(|i, _| {
                     let [below, above] = &moved[i];
                     (below[stretch][k] - above[stretch][k]) / (2.0 * DIFFERENCES[i])
                 });
@@ -368,7 +368,7 @@ impl Fit<'_> {
     }
 
     /// The parameters after a step, where there is a law.
-    fn stepped(&self, at: &AxisParameters, scales: &[f64; PARAMETERS], step: &Vector) -> AxisParameters {
+    fn stepped(&self, at: &AxisParameters, scales: &[f64; PARAMETERS], step: &ParameterVector) -> AxisParameters {
         let before = at.array();
         let mut next = AxisParameters::of(std::array::from_fn(|i| before[i] + step[i] * scales[i]));
         next.inertia_kg_m2 = next.inertia_kg_m2.max(LEAST_INERTIA_STEP * at.inertia_kg_m2);
