@@ -20,7 +20,7 @@
 //! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
 //! | `lqg_preview/estimate.rs` | the filter |
 //!
-//! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),
+//! Source: Anderson and Moore (1990), Optimal Control: LinearAxis Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),
 //! "On the optimal digital state vector feedback controller with integral and preview actions".
 //!
 //! Departures: the part of the preview is the inverse of the known law, with which a reference is followed at no cost.
@@ -38,7 +38,7 @@ use crate::axis::knowledge::AxisKnowledge;
 use crate::vector::norm;
 use crate::window::Window;
 use estimate::{AxisModel, Estimate, NOTHING_SENT, Sent};
-use linear::Linear;
+use linear::LinearAxis;
 
 /// Servo periods beyond the command that the inverse looks at.
 const DIFFERENCES: f64 = 3.0;
@@ -59,7 +59,7 @@ impl Settings {
     pub const DEFAULT: Self = Self { price_s2: 1e-8 };
 }
 
-/// Linear-quadratic-Gaussian control with preview.
+/// LinearAxis-quadratic-Gaussian control with preview.
 #[derive(Debug, Clone)]
 pub struct LqgPreview<const N: usize> {
     axes: [AxisLqg; N],
@@ -77,6 +77,22 @@ impl<const N: usize> LqgPreview<N> {
         let longest = axes.iter().map(preview_knots).max().unwrap_or(0);
         let lag_s = axes.iter().map(AxisLqg::lag_s).fold(0.0, f64::max);
         Self { axes, lag_s, preview: longest + DIFFERENCES as u32 }
+    }
+}
+
+/// Stationary gains of an axis: by state, as in `lqg_preview/linear.rs`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LqgGains {
+    /// How much of what is measured beyond the prediction, rad, is added to each state.
+    pub filter: [f64; linear::STATES],
+    /// By how much the reference speed, rad/s, is less for a unit of each state.
+    pub regulator: [f64; linear::STATES],
+}
+
+impl<const N: usize> LqgPreview<N> {
+    /// Of each axis.
+    pub fn gains(&self) -> [LqgGains; N] {
+        self.axes.each_ref().map(|axis| LqgGains { filter: axis.model.gains, regulator: axis.gains })
     }
 }
 
@@ -181,7 +197,7 @@ impl AxisLqg {
     fn new(known: AxisKnowledge, settings: Settings) -> Self {
         let AxisKnowledge { drive, friction, delays, statistics, .. } = known;
         let law = known.law();
-        let regulated = Linear::new(&law, &DriveParameters::default(), &statistics);
+        let regulated = LinearAxis::new(&law, &DriveParameters::default(), &statistics);
         let (states, input, _) = regulated.sampled();
         Self {
             model: AxisModel::new(&known),

@@ -14,7 +14,8 @@
 //! that lie well within the unit circle, or within it on the side that does not ring, are cancelled; of the others only the phase is.
 //!
 //! Source: Tomizuka (1987), "Zero phase error tracking algorithm for digital control"; D by Faddeev and LeVerrier, Gantmacher (1959), The
-//! Theory of Matrices, chapter IV; zeros by simultaneous iteration, Durand (1960) and Kerner (1966).
+//! Theory of Matrices, chapter IV; zeros as eigenvalues of the companion matrix by the QR algorithm, Golub
+//! and Van Loan (2013), Matrix Computations, section 7.5.
 //!
 //! Departures: delays beyond [`MAX_DELAY_PERIODS`] count as so many. What the loop makes of u is taken to be late at the encoder as that of v
 //! is, Nu Nm / Nv: they differ by what the integral does within a servo period, less than 1e-4 of the position.
@@ -24,6 +25,7 @@
 use feedwright_control::axis::drive::{DriveLaw, DriveParameters, DriveReference, DriveState};
 use feedwright_control::axis::{AxisLaw, AxisState, Parameters};
 use feedwright_control::controller::zero_phase::Filter;
+use nalgebra::{DMatrix, SMatrix, Schur};
 
 use crate::machine::{KnownAxis, Period};
 
@@ -35,11 +37,10 @@ const MAX_DELAY_PERIODS: u32 = 40;
 const SOON_GONE: f64 = 0.5;
 /// Coefficients below this part of the largest are rounding.
 const ROUNDING: f64 = 1e-12;
-/// Rounds of the iteration for the zeros; those of a sampled drive are found in about 20.
-const ROUNDS: u32 = 500;
+/// Rounds of the QR iteration for the zeros; those of a sampled drive are found in a few for each.
+const ROUNDS: usize = 1000;
 
-/// A complex number.
-type Complex = [f64; 2];
+type Complex = nalgebra::Complex<f64>;
 
 /// The filter that inverts the closed loop of an axis, with other nominal parameters; none where it has no inverse.
 pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period) -> Option<Filter> {
@@ -48,10 +49,10 @@ pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period)
     let is_there = |value: &f64| value.abs() > ROUNDING * largest;
     let late = numerator.iter().position(is_there)?;
     let last = numerator.iter().rposition(is_there)?;
-    let zeros = zeros(&numerator[late..=last]);
+    let zeros = zeros(&numerator[late..=last])?;
     let (cancelled, mirrored): (Vec<Complex>, Vec<Complex>) = zeros.into_iter().partition(|zero| {
-        let size = size(*zero);
-        size <= SOON_GONE || (size < 1.0 && zero[0] > 0.0)
+        let size = zero.norm();
+        size <= SOON_GONE || (size < 1.0 && zero.re > 0.0)
     });
     // B-(z) is that of B-(1/z) the other way round, so many periods ahead.
     let ahead = late + mirrored.len();
@@ -152,17 +153,13 @@ impl ClosedAxis {
 }
 
 /// Characteristic polynomial of a matrix, by columns or by rows.
-fn characteristic(matrix: &[[f64; STATES]; STATES]) -> Vec<f64> {
+fn characteristic(columns: &[[f64; STATES]; STATES]) -> Vec<f64> {
+    let matrix = SMatrix::<f64, STATES, STATES>::from(*columns);
     let mut polynomial = vec![1.0];
-    let mut power = [[0.0; STATES]; STATES];
+    let mut power = SMatrix::<f64, STATES, STATES>::zeros();
     for k in 1..=STATES {
-        let last = polynomial[k - 1];
-        let shifted: [[f64; STATES]; STATES] =
-            std::array::from_fn(|i| std::array::from_fn(|j| power[i][j] + if i == j { last } else { 0.0 }));
-        power =
-            std::array::from_fn(|i| std::array::from_fn(|j| (0..STATES).map(|n| matrix[i][n] * shifted[n][j]).sum()));
-        let trace: f64 = (0..STATES).map(|i| power[i][i]).sum();
-        polynomial.push(-trace / k as f64);
+        power = matrix * (power + SMatrix::identity() * polynomial[k - 1]);
+        polynomial.push(-power.trace() / k as f64);
     }
     polynomial
 }
@@ -180,61 +177,31 @@ fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
     (0..a.len().max(b.len())).map(|i| at(a, i) + at(b, i)).collect()
 }
 
-fn multiplied(a: Complex, b: Complex) -> Complex {
-    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
-}
-
-fn size(a: Complex) -> f64 {
-    a[0].hypot(a[1])
-}
-
 /// The polynomial that begins with 1 and has these zeros in z, which come in conjugate pairs.
 fn with_zeros(zeros: &[Complex]) -> Vec<f64> {
-    let mut polynomial: Vec<Complex> = vec![[1.0, 0.0]];
+    let mut polynomial = vec![Complex::from(1.0)];
     for zero in zeros {
-        polynomial.push([0.0; 2]);
+        polynomial.push(Complex::from(0.0));
         for i in (1..polynomial.len()).rev() {
-            let [re, im] = multiplied(*zero, polynomial[i - 1]);
-            polynomial[i] = [polynomial[i][0] - re, polynomial[i][1] - im];
+            let before = polynomial[i - 1];
+            polynomial[i] -= zero * before;
         }
     }
-    polynomial.into_iter().map(|[re, _]| re).collect()
+    polynomial.into_iter().map(|coefficient| coefficient.re).collect()
 }
 
-/// The zeros in z of a polynomial in z^-1 whose first and last coefficients are not zero.
-fn zeros(polynomial: &[f64]) -> Vec<Complex> {
+/// The zeros in z of a polynomial in z^-1 whose first and last coefficients are not zero: the eigenvalues of its companion matrix.
+fn zeros(polynomial: &[f64]) -> Option<Vec<Complex>> {
     let (first, order) = (polynomial[0], polynomial.len() - 1);
-    // Every zero is within this circle (Cauchy).
-    let radius = 1.0 + polynomial[1..].iter().fold(0.0_f64, |most, value| most.max((value / first).abs()));
-    // Anywhere, but not symmetric to the real axis.
-    let mut found: Vec<Complex> = (0..order)
-        .map(|n| {
-            let (sin, cos) = (0.4 + std::f64::consts::TAU * n as f64 / order as f64).sin_cos();
-            [0.5 * radius.min(2.0) * cos, 0.5 * radius.min(2.0) * sin]
-        })
-        .collect();
-    for _ in 0..ROUNDS {
-        let mut moved = 0.0_f64;
-        for i in 0..order {
-            let here = found[i];
-            let add = |value: Complex, coefficient: &f64| {
-                let [re, im] = multiplied(value, here);
-                [re + coefficient / first, im]
-            };
-            let value = polynomial.iter().fold([0.0; 2], add);
-            let others = found.iter().enumerate().filter(|(j, _)| *j != i);
-            let slope = others
-                .fold([1.0, 0.0], |product, (_, other)| multiplied(product, [here[0] - other[0], here[1] - other[1]]));
-            let square = slope[0] * slope[0] + slope[1] * slope[1];
-            let [re, im] = multiplied(value, [slope[0] / square, -slope[1] / square]);
-            found[i] = [here[0] - re, here[1] - im];
-            moved = moved.max(re.hypot(im) / (1.0 + size(here)));
-        }
-        if moved < f64::EPSILON {
-            break;
-        }
+    if order == 0 {
+        return Some(Vec::new());
     }
-    found
+    let companion = DMatrix::from_fn(order, order, |i, j| match i {
+        0 => -polynomial[j + 1] / first,
+        _ => f64::from(u8::from(i == j + 1)),
+    });
+    let schur = Schur::try_new(companion, f64::EPSILON, ROUNDS)?;
+    Some(schur.complex_eigenvalues().iter().copied().collect())
 }
 
 #[cfg(test)]
@@ -322,10 +289,10 @@ mod tests {
     #[test]
     fn zeros_are_found_again() {
         let wanted = [[0.95, 0.0], [0.9, 0.1], [0.9, -0.1], [-0.97, 0.0], [-7.0, 0.0], [0.002, 0.0]];
-        let found = zeros(&with_zeros(&wanted));
+        let wanted = wanted.map(|[re, im]| Complex::new(re, im));
+        let found = zeros(&with_zeros(&wanted)).unwrap();
         for zero in wanted {
-            let nearest =
-                found.iter().map(|other| size([zero[0] - other[0], zero[1] - other[1]])).fold(f64::MAX, f64::min);
+            let nearest = found.iter().map(|other| (zero - other).norm()).fold(f64::MAX, f64::min);
             assert!(nearest < TOLERANCE, "{zero:?}: {found:?}");
         }
     }

@@ -14,9 +14,9 @@ use thiserror::Error;
 
 use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
+use crate::identify::axes::{self, AxisRecordings};
 use crate::identify::axis_parameters::{DriveSettings, NotIdentified, identify};
 use crate::identify::contour::Training;
-use crate::identify::axes::{self, AxisRecordings};
 use crate::identify::{Excitation, cache, servo};
 use crate::machine::{Known, Machine};
 use crate::model::{Model, Origin, name};

@@ -16,7 +16,7 @@ use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::statistics::AxisStatistics;
 use crate::axis::{self, AxisLaw, AxisState};
 
-use super::linear::{Linear, STATES, measured_rad2};
+use super::linear::{LinearAxis, STATES, measured_rad2};
 use super::riccati::filter;
 
 /// References that are kept, servo periods: 20 ms each way at 1 ms, the most of a machine file, and some.
@@ -29,8 +29,8 @@ pub(super) struct AxisModel {
     pub(super) drive: DriveLaw,
     friction: Option<FrictionLaw>,
     statistics: AxisStatistics,
-    linear: Linear,
-    gains: [f64; STATES],
+    linear: LinearAxis,
+    pub(super) gains: [f64; STATES],
     /// Mechanics periods from a measurement until it is there, and from a reference until it acts.
     late: [u32; 2],
 }
@@ -54,7 +54,7 @@ impl AxisModel {
     pub(super) fn new(known: &AxisKnowledge) -> Self {
         let AxisKnowledge { drive, friction, delays, statistics, .. } = *known;
         let law = known.law();
-        let linear = Linear::new(&law, &drive, &statistics);
+        let linear = LinearAxis::new(&law, &drive, &statistics);
         let (states, _, noise) = linear.sampled();
         let mut measured = [0.0; STATES];
         measured[0] = 1.0;

@@ -18,7 +18,7 @@ use crate::axis::AxisLaw;
 use crate::axis::drive::DriveParameters;
 use crate::axis::statistics::AxisStatistics;
 
-use super::riccati::{Cost, Matrix, applied, inner, product, sum, transposed};
+use super::riccati::{PeriodCost, StateMatrix, applied, inner, product, sum, transposed};
 
 /// Number of states.
 pub(super) const STATES: usize = 8;
@@ -33,17 +33,17 @@ const LEAST_NOISE_RAD: f64 = 6e-7;
 
 /// The linear model of an axis.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Linear {
+pub(super) struct LinearAxis {
     /// Over a mechanics period.
-    substep: Matrix<STATES>,
+    substep: StateMatrix<STATES>,
     /// What a reference speed of 1 rad/s adds in it.
     substep_input: [f64; STATES],
     /// Noise that comes in it, covariance.
-    substep_noise: Matrix<STATES>,
+    substep_noise: StateMatrix<STATES>,
     substeps: u32,
 }
 
-impl Linear {
+impl LinearAxis {
     /// Of an axis, with what its drive has beside and what acts on it.
     pub(super) fn new(law: &AxisLaw, drive: &DriveParameters, statistics: &AxisStatistics) -> Self {
         let (parameters, dt_s) = (law.parameters, law.periods.mechanics_s);
@@ -64,7 +64,7 @@ impl Linear {
                 if statistics.torque_noise_s > 0.0 { libm::exp(-dt_s / statistics.torque_noise_s) } else { 0.0 };
             [x + dt_s * w, w, i, y, forget * n, keep * (cos * p + sin * q), keep * (cos * q - sin * p), d]
         };
-        let columns: Matrix<STATES> = core::array::from_fn(|j| after(unit(j), 0.0));
+        let columns: StateMatrix<STATES> = core::array::from_fn(|j| after(unit(j), 0.0));
         Self {
             substep: transposed(&columns),
             substep_input: after([0.0; STATES], 1.0),
@@ -74,7 +74,7 @@ impl Linear {
     }
 
     /// Over a servo period with a reference speed that is held: the states, the input, the covariance of the noise.
-    pub(super) fn sampled(&self) -> (Matrix<STATES>, [f64; STATES], Matrix<STATES>) {
+    pub(super) fn sampled(&self) -> (StateMatrix<STATES>, [f64; STATES], StateMatrix<STATES>) {
         let mut states = core::array::from_fn(unit);
         let (mut input, mut covariance) = ([0.0; STATES], [[0.0; STATES]; STATES]);
         for _ in 0..self.substeps {
@@ -88,9 +88,9 @@ impl Linear {
     }
 
     /// Mean square of the position over the servo period, and a price for the input.
-    pub(super) fn cost(&self, price_s2: f64) -> Cost<STATES> {
-        let mut cost = Cost { states: [[0.0; STATES]; STATES], cross: [0.0; STATES], input: price_s2 };
-        let (mut states, mut input): (Matrix<STATES>, _) = (core::array::from_fn(unit), [0.0; STATES]);
+    pub(super) fn cost(&self, price_s2: f64) -> PeriodCost<STATES> {
+        let mut cost = PeriodCost { states: [[0.0; STATES]; STATES], cross: [0.0; STATES], input: price_s2 };
+        let (mut states, mut input): (StateMatrix<STATES>, _) = (core::array::from_fn(unit), [0.0; STATES]);
         let share = 1.0 / f64::from(self.substeps);
         for _ in 0..self.substeps {
             states = product(&self.substep, &states);
@@ -131,7 +131,7 @@ fn memory_s(statistics: &AxisStatistics) -> f64 {
 }
 
 /// Covariance of what comes in a mechanics period.
-fn noise(law: &AxisLaw, statistics: &AxisStatistics) -> Matrix<STATES> {
+fn noise(law: &AxisLaw, statistics: &AxisStatistics) -> StateMatrix<STATES> {
     let dt_s = law.periods.mechanics_s;
     let fresh = |time_s: f64| if time_s > 0.0 { 1.0 - libm::exp(-2.0 * dt_s / time_s) } else { 1.0 };
     let broadband_nm2 = statistics.torque_noise_nm * statistics.torque_noise_nm * fresh(statistics.torque_noise_s);

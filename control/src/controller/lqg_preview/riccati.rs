@@ -19,10 +19,10 @@ const CONVERGED: f64 = 1e-13;
 const LEAST_ITERATIONS: u32 = 200;
 
 /// A matrix, by rows.
-pub(super) type Matrix<const S: usize> = [[f64; S]; S];
+pub(super) type StateMatrix<const S: usize> = [[f64; S]; S];
 
 /// `a b`.
-pub(super) fn product<const S: usize>(a: &Matrix<S>, b: &Matrix<S>) -> Matrix<S> {
+pub(super) fn product<const S: usize>(a: &StateMatrix<S>, b: &StateMatrix<S>) -> StateMatrix<S> {
     let mut product = [[0.0; S]; S];
     for (row, a) in product.iter_mut().zip(a) {
         for (factor, b) in a.iter().zip(b) {
@@ -35,12 +35,12 @@ pub(super) fn product<const S: usize>(a: &Matrix<S>, b: &Matrix<S>) -> Matrix<S>
 }
 
 /// `a'`.
-pub(super) fn transposed<const S: usize>(a: &Matrix<S>) -> Matrix<S> {
+pub(super) fn transposed<const S: usize>(a: &StateMatrix<S>) -> StateMatrix<S> {
     core::array::from_fn(|i| core::array::from_fn(|j| a[j][i]))
 }
 
 /// `a x`.
-pub(super) fn applied<const S: usize>(a: &Matrix<S>, x: &[f64; S]) -> [f64; S] {
+pub(super) fn applied<const S: usize>(a: &StateMatrix<S>, x: &[f64; S]) -> [f64; S] {
     a.map(|row| inner(&row, x))
 }
 
@@ -50,12 +50,17 @@ pub(super) fn inner<const S: usize>(a: &[f64; S], b: &[f64; S]) -> f64 {
 }
 
 /// `a + b`.
-pub(super) fn sum<const S: usize>(a: &Matrix<S>, b: &Matrix<S>) -> Matrix<S> {
+pub(super) fn sum<const S: usize>(a: &StateMatrix<S>, b: &StateMatrix<S>) -> StateMatrix<S> {
     core::array::from_fn(|i| core::array::from_fn(|j| a[i][j] + b[i][j]))
 }
 
 /// Gains of the filter: how much of what is measured beyond the prediction is added to each state.
-pub(super) fn filter<const S: usize>(a: &Matrix<S>, noise: &Matrix<S>, measured: &[f64; S], variance: f64) -> [f64; S] {
+pub(super) fn filter<const S: usize>(
+    a: &StateMatrix<S>,
+    noise: &StateMatrix<S>,
+    measured: &[f64; S],
+    variance: f64,
+) -> [f64; S] {
     let mut covariance = *noise;
     for (i, row) in covariance.iter_mut().enumerate() {
         row[i] += variance;
@@ -63,7 +68,7 @@ pub(super) fn filter<const S: usize>(a: &Matrix<S>, noise: &Matrix<S>, measured:
     converged(|_| {
         let seen = applied(&covariance, measured);
         let gains = seen.map(|p| p / (inner(measured, &seen) + variance));
-        let updated: Matrix<S> =
+        let updated: StateMatrix<S> =
             core::array::from_fn(|i| core::array::from_fn(|j| covariance[i][j] - gains[i] * seen[j]));
         covariance = sum(&product(&product(a, &updated), &transposed(a)), noise);
         // Rounding turns it unsymmetric, and that grows.
@@ -75,9 +80,9 @@ pub(super) fn filter<const S: usize>(a: &Matrix<S>, noise: &Matrix<S>, measured:
 
 /// What a servo period costs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Cost<const S: usize> {
+pub(super) struct PeriodCost<const S: usize> {
     /// Of states.
-    pub(super) states: Matrix<S>,
+    pub(super) states: StateMatrix<S>,
     /// Of a state and the input.
     pub(super) cross: [f64; S],
     /// Of the input.
@@ -85,7 +90,7 @@ pub(super) struct Cost<const S: usize> {
 }
 
 /// Gains of the regulator: the input is less by so much for a unit of each state.
-pub(super) fn regulator<const S: usize>(a: &Matrix<S>, b: &[f64; S], cost: &Cost<S>) -> [f64; S] {
+pub(super) fn regulator<const S: usize>(a: &StateMatrix<S>, b: &[f64; S], cost: &PeriodCost<S>) -> [f64; S] {
     let mut to_go = cost.states;
     converged(|_| {
         let of_input = applied(&to_go, b);
@@ -139,7 +144,7 @@ mod tests {
         for (a, b, w, m) in [(1.0, 1.0, 0.1, 1.0), (0.9, 0.3, 2.0, 0.5), (1.1, 2.0, 0.01, 3.0_f64)] {
             let (b2, half): (f64, f64) = (b * b, 0.5 * (m - a * a * m - b * b * w));
             let s = (-half + libm::sqrt(half * half + b2 * w * m)) / b2;
-            let [gain] = regulator(&[[a]], &[b], &Cost { states: [[w]], cross: [0.0], input: m });
+            let [gain] = regulator(&[[a]], &[b], &PeriodCost { states: [[w]], cross: [0.0], input: m });
             assert!((gain - a * b * s / (m + b2 * s)).abs() < 1e-12, "{a} {b}: {gain}");
         }
     }
@@ -148,7 +153,7 @@ mod tests {
     fn a_load_that_the_input_does_not_reach_is_carried() {
         // x' = x + v - d: without a price for v it is v = d - x at once.
         let a = [[1.0, -1.0], [0.0, 1.0]];
-        let cost = Cost { states: [[1.0, 0.0], [0.0, 0.0]], cross: [0.0; 2], input: 1e-12 };
+        let cost = PeriodCost { states: [[1.0, 0.0], [0.0, 0.0]], cross: [0.0; 2], input: 1e-12 };
         let [of_x, of_load] = regulator(&a, &[1.0, 0.0], &cost);
         assert!((of_x - 1.0).abs() < 1e-9 && (of_load + 1.0).abs() < 1e-9, "{of_x} {of_load}");
     }
