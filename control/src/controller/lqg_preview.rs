@@ -20,7 +20,7 @@
 //! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
 //! | `lqg_preview/estimate.rs` | the filter |
 //!
-//! Source: Anderson and Moore (1990), Optimal Control: LinearAxis Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),
+//! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),
 //! "On the optimal digital state vector feedback controller with integral and preview actions".
 //!
 //! Departures: the part of the preview is the inverse of the known law, with which a reference is followed at no cost.
@@ -59,7 +59,7 @@ impl Settings {
     pub const DEFAULT: Self = Self { price_s2: 1e-8 };
 }
 
-/// LinearAxis-quadratic-Gaussian control with preview.
+/// Linear-quadratic-Gaussian control with preview.
 #[derive(Debug, Clone)]
 pub struct LqgPreview<const N: usize> {
     axes: [AxisLqg; N],
