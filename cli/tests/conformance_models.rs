@@ -14,15 +14,21 @@ fn cut(folder: &Folder, more: &[&str]) -> (String, String) {
 
 #[test]
 fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit() {
-    for (controller, seed) in [("receding-horizon", "1"), ("receding-horizon", "7"), ("two-dimensional", "3")] {
+    for (controller, seed, machine) in [
+        ("receding-horizon", "1", "tnv40"),
+        ("receding-horizon", "7", "tnv40"),
+        ("two-dimensional", "3", "tnv40"),
+        ("lqg-identified", "1", "workshop"),
+    ] {
         let folder = Folder::new();
-        let same = ["--controller", controller, "--seed", seed];
+        let same = ["--controller", controller, "--machine", machine, "--seed", seed];
         folder.run(&[&["identify", "--out", "m.model.toml"], &same[..]].concat()).succeeded();
         let trained = cut(&folder, &same);
         // Another seed: nothing may be trained.
-        let read = cut(&folder, &["--controller", controller, "--seed", "99", "--model", "m.model.toml"]);
+        let other = ["--controller", controller, "--machine", machine, "--seed", "99"];
+        let read = cut(&folder, &[&other[..], &["--model", "m.model.toml"]].concat());
         assert!(trained == read, "{controller}");
-        assert!(trained != cut(&folder, &["--controller", controller, "--seed", "99"]), "{controller}");
+        assert!(trained != cut(&folder, &other), "{controller}");
     }
 }
 
@@ -61,6 +67,10 @@ fn a_model_that_does_not_suit_is_refused_with_what_does() {
     refused(
         &["circle.ngc", "--controller", "two-dimensional"],
         &["the model holds a servo identifier, and two-dimensional needs a contour identifier"],
+    );
+    refused(
+        &["circle.ngc", "--controller", "lqg-identified"],
+        &["the model holds a servo identifier, and lqg-identified needs an axes identifier"],
     );
     refused(&["helix.ngc"], &["the model is for 2 axes, and 3 are controlled", "--axes 3"]);
     refused(
@@ -114,4 +124,44 @@ fn identify_writes_nothing_where_it_cannot_or_must_not() {
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("SOURCE_DATE_EPOCH is 'today'"));
     assert_eq!(folder.content(), before);
+}
+
+#[test]
+fn what_was_found_of_each_axis_is_shown_with_standard_errors() {
+    let folder = Folder::new();
+    let command = ["identify", "--controller", "lqg-identified", "--machine", "workshop", "--out", "m.model.toml"];
+    let told = folder.run(&command).succeeded().stdout;
+    let row = |label: &str| {
+        let line = told.lines().find(|line| line.starts_with(label)).unwrap_or_else(|| panic!("no {label}: {told}"));
+        let numbers = line[label.len()..].split_whitespace().filter_map(|word| word.parse::<f64>().ok());
+        numbers.collect::<Vec<f64>>()
+    };
+    for label in ["viscous friction, N m s/rad", "Coulomb friction, N m", "its asymmetry, N m", "presliding, um"] {
+        assert_eq!(row(label).len(), 4, "{told}");
+    }
+    assert_eq!(row("left of the position, um RMS").len(), 2, "{told}");
+    let text = folder.text("m.model.toml");
+    let (_, inertia) = text.split_once("inertia_kg_m2 = [").unwrap();
+    let inertia = inertia.split_once(']').unwrap().0.split(',').filter_map(|word| word.trim().parse::<f64>().ok());
+    for (stored, shown) in inertia.zip(row("inertia, kg m2").chunks(2)) {
+        assert!((stored - shown[0]).abs() < 0.01 * stored && shown[1] < 0.05 * stored, "{told}");
+    }
+    let told = folder.run(&["check", "m.model.toml"]).succeeded().stdout;
+    assert!(told.contains("axes model, 2 axes, simulated excitation of workshop, seed 1"), "{told}");
+}
+
+#[test]
+fn axes_that_do_not_show_are_told_of() {
+    let folder = Folder::new();
+    // Loops that take longer to settle than the excitation lasts.
+    let slow = include_str!("../../machines/tnv40.toml").lines();
+    let slow = slow.map(|line| if line.starts_with("kp_1_s") { "kp_1_s = 0.01" } else { line });
+    folder.file("slow.toml", slow.collect::<Vec<_>>().join("\n"));
+    let said = ["the axes of `", "cannot be identified", "hint: record for longer"];
+    let before = folder.content();
+    let same = ["--controller", "lqg-identified", "--machine", "slow.toml"];
+    folder.run(&[&["identify", "--out", "m.model.toml"], &same[..]].concat()).refused(&said);
+    assert_eq!(folder.content(), before);
+    let ran = folder.run(&[&["run", "circle.ngc", "--against", "lqg-identified"], &same[..]].concat());
+    assert!(ran.stderr.contains("lqg-identified cuts open loop: the axes of `"), "{}", ran.stderr);
 }

@@ -9,16 +9,16 @@
 //! | 20 | 4 | n, number of numbers that follow the periods |
 //! | 24 | 8 | servo period, s |
 //! | 32 | 8 | feed period, s: time between knots |
-//! | 40 | 8 n | weights, group by group as [`Identifier::weights`] hands them over; of a servo the spread behind them, axis by axis, row by row; of axes the mechanics period, s, and axis by axis the numbers of [`AxisKnowledge::numbers`] |
+//! | 40 | 8 n | weights, group by group as [`Identifier::weights`] hands them over; of a servo the spread behind them, axis by axis, row by row; of axes the mechanics period, s, and axis by axis [`AxisKnowledge::NUMBERS`] |
 //! | 40 + 8 n | 4 | CRC-32 of all before: that of IEEE 802.3, reflected, of polynomial 0x04C11DB7 |
 //!
 //! Whole numbers are unsigned, numbers are IEEE 754 of double precision; all little-endian. [`ModelBlock::from_bytes`] needs no memory but
 //! its result, does not panic, whatever the bytes are, and refuses what is not exactly this.
 
-use core::fmt;
+use core::{fmt, slice};
 
 use crate::axis::Periods;
-use crate::axis::knowledge::AxisKnowledge;
+use crate::axis::knowledge::{AxisKnowledge, Number};
 use crate::identifier::UNKNOWNS;
 use crate::identifier::adaptation::Spread;
 use crate::identifier::contour::ContourIdentifier;
@@ -31,6 +31,12 @@ pub const MAGIC: [u8; 8] = *b"FWMODEL\0";
 pub const FORMAT: u32 = 1;
 /// Servo periods that a machine can have, s: as a machine file bounds them.
 pub const SERVO_PERIODS_S: [f64; 2] = [1e-5, 0.1];
+/// Periods of the speed loop that it can have, s.
+pub const MECHANICS_PERIODS_S: [f64; 2] = [1e-7, 0.1];
+/// Most of them in a servo period: with more a tick takes longer than that.
+pub const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
+/// Relative distance from a whole number below which the servo period counts as a whole multiple: rounding of decimal numbers.
+const WHOLE_RATIO_TOLERANCE: f64 = 1e-9;
 /// Largest size of a weight. A hidden node that turns its sign within 0.25 mm/s has weights of 400.
 pub const MAX_WEIGHT: f64 = 1e6;
 /// Largest size of an entry of the spread: the square of what a linear weight may differ by.
@@ -62,20 +68,37 @@ impl<const N: usize> IdentifiedAxes<N> {
     /// All zero.
     pub const NULL: Self = Self { mechanics_s: 0.0, axes: [AxisKnowledge::NOTHING; N] };
 
-    /// Its numbers, one by one in the order of the block.
-    pub fn numbers(&mut self, each: &mut impl FnMut(&'static str, &mut f64)) {
-        each("mechanics_s", &mut self.mechanics_s);
-        self.axes.iter_mut().for_each(|axis| axis.numbers(each));
+    /// Its numbers in the order of the block, each with what it is bound by.
+    fn numbers(&mut self, each: &mut impl FnMut(&Bounds, &mut [f64])) {
+        let [least, most] = MECHANICS_PERIODS_S;
+        each(&Bounds::Within(least, most), slice::from_mut(&mut self.mechanics_s));
+        for axis in &mut self.axes {
+            for number in AxisKnowledge::NUMBERS {
+                each(&Bounds::Of(number), slice::from_mut((number.of)(axis)));
+            }
+        }
     }
 
-    /// With the periods that follow.
+    /// With the periods that follow; none where the servo period is no whole multiple of the mechanics period, or of too many.
     #[must_use]
-    pub fn with_periods(mut self, servo_s: f64) -> Self {
-        // A float that is not a number, or too large, saturates here.
-        let mechanics_per_servo = (libm::round(servo_s / self.mechanics_s) as u32).max(1);
-        let periods = Periods { servo_s, mechanics_s: self.mechanics_s, mechanics_per_servo };
+    pub fn with_periods(mut self, servo_s: f64) -> Option<Self> {
+        let ratio = servo_s / self.mechanics_s;
+        let whole = libm::round(ratio);
+        // What is not a number is no whole one.
+        let is_whole = libm::fabs(ratio - whole) <= WHOLE_RATIO_TOLERANCE * ratio;
+        if !(is_whole && whole >= 1.0 && whole <= MAX_MECHANICS_PER_SERVO) {
+            return None;
+        }
+        let periods = Periods { servo_s, mechanics_s: self.mechanics_s, mechanics_per_servo: whole as u32 };
         self.axes.iter_mut().for_each(|axis| axis.periods = periods);
-        self
+        Some(self)
+    }
+
+    /// Whether all of its numbers are within their ranges, with this servo period.
+    pub fn are_possible(&self, servo_s: f64) -> bool {
+        let [least, most] = MECHANICS_PERIODS_S;
+        let is_possible = self.mechanics_s >= least && self.mechanics_s <= most;
+        is_possible && self.with_periods(servo_s).is_some() && self.axes.iter().all(|axis| axis.is_possible())
     }
 }
 
@@ -159,12 +182,12 @@ impl<const N: usize> ModelBlock<N> {
         if crc_32(content) != u32::from_le_bytes(*checksum) {
             return Err(BlockError::Checksum);
         }
-        let servo_s = rest.number(SERVO_PERIODS_S)?;
-        let feed_period_s = rest.number(FEED_PERIODS_S)?;
+        let servo_s = rest.number(&Bounds::within(SERVO_PERIODS_S))?;
+        let feed_period_s = rest.number(&Bounds::within(FEED_PERIODS_S))?;
         let mut fault = None;
-        trained.numbers(&mut |most, group| {
+        trained.numbers(&mut |bounds, group| {
             for value in group {
-                match rest.number([-most, most]) {
+                match rest.number(bounds) {
                     Ok(number) => *value = number,
                     Err(error) => fault = fault.or(Some(error)),
                 }
@@ -175,7 +198,8 @@ impl<const N: usize> ModelBlock<N> {
             return Err(BlockError::Number(rest.number));
         }
         if let Trained::Axes(axes) = &mut trained {
-            *axes = axes.with_periods(servo_s);
+            // The mechanics period is the first number behind the two others.
+            *axes = axes.with_periods(servo_s).ok_or(BlockError::Number(2))?;
         }
         Ok(Self { servo_s, feed_period_s, trained })
     }
@@ -222,15 +246,16 @@ impl<const N: usize> Trained<N> {
         }
     }
 
-    /// All numbers in the order of the block, group by group, with the largest size that they may have.
-    fn numbers(&mut self, each: &mut impl FnMut(f64, &mut [f64])) {
+    /// All numbers in the order of the block, group by group, with what they are bound by.
+    fn numbers(&mut self, each: &mut impl FnMut(&Bounds, &mut [f64])) {
+        let weight = Bounds::Within(-MAX_WEIGHT, MAX_WEIGHT);
         match self {
-            Self::Contour(net) => net.weights(&mut |_, group| each(MAX_WEIGHT, group)),
+            Self::Contour(net) => net.weights(&mut |_, group| each(&weight, group)),
             Self::Servo(net, spread) => {
-                net.weights(&mut |_, group| each(MAX_WEIGHT, group));
-                each(MAX_SPREAD, spread.as_flattened_mut().as_flattened_mut());
+                net.weights(&mut |_, group| each(&weight, group));
+                each(&Bounds::Within(-MAX_SPREAD, MAX_SPREAD), spread.as_flattened_mut().as_flattened_mut());
             }
-            Self::Axes(axes) => axes.numbers(&mut |_, number| each(MAX_WEIGHT, core::slice::from_mut(number))),
+            Self::Axes(axes) => axes.numbers(each),
         }
     }
 
@@ -243,6 +268,28 @@ impl<const N: usize> Trained<N> {
             (0..UNKNOWNS).all(|i| square(i) >= 0.0)
                 && entries.into_iter().all(|(i, (j, p))| p * p <= (1.0 + SPREAD_ROUNDING) * square(i) * square(j))
         })
+    }
+}
+
+/// What a number is bound by.
+enum Bounds {
+    /// Least and most.
+    Within(f64, f64),
+    /// The range of a number of an axis.
+    Of(&'static Number),
+}
+
+impl Bounds {
+    fn within([least, most]: [f64; 2]) -> Self {
+        Self::Within(least, most)
+    }
+
+    fn hold(&self, value: f64) -> bool {
+        match self {
+            // Not a number is not within.
+            Self::Within(least, most) => value >= *least && value <= *most,
+            Self::Of(number) => number.holds(value),
+        }
     }
 }
 
@@ -260,13 +307,12 @@ impl Bytes<'_> {
         Some(*first)
     }
 
-    /// The next number, which is to lie between these.
-    fn number(&mut self, [least, most]: [f64; 2]) -> Result<f64, BlockError> {
+    /// The next number, which these are to hold.
+    fn number(&mut self, bounds: &Bounds) -> Result<f64, BlockError> {
         let index = self.number;
         self.number += 1;
         let number = f64::from_le_bytes(self.take().ok_or(BlockError::Length)?);
-        // Not a number is not within.
-        if number >= least && number <= most { Ok(number) } else { Err(BlockError::Number(index)) }
+        if bounds.hold(number) { Ok(number) } else { Err(BlockError::Number(index)) }
     }
 }
 
@@ -312,6 +358,20 @@ mod tests {
         ModelBlock { servo_s: 0.001, feed_period_s: 0.01, trained: Trained::Contour(net) }
     }
 
+    /// Each number within its range, and all different.
+    fn axes<const N: usize>() -> ModelBlock<N> {
+        let mut next = sequence();
+        let mut axes = IdentifiedAxes { mechanics_s: 1e-4, axes: [AxisKnowledge::NOTHING; N] };
+        for axis in &mut axes.axes {
+            for number in AxisKnowledge::NUMBERS {
+                let [least, most] = number.range;
+                *(number.of)(axis) = least + (0.1 + 0.05 * next()) * (most.min(1.0) - least);
+            }
+        }
+        let trained = Trained::Axes(axes.with_periods(0.001).unwrap());
+        ModelBlock { servo_s: 0.001, feed_period_s: 0.001, trained }
+    }
+
     fn block<const N: usize>(model: &ModelBlock<N>) -> Vec<u8> {
         let mut bytes = Vec::new();
         model.to_bytes(|more| bytes.extend_from_slice(more));
@@ -343,6 +403,8 @@ mod tests {
         assert_eq!(ModelBlock::from_bytes(&block(&servo::<3>())), Ok(servo::<3>()));
         assert_eq!(ModelBlock::from_bytes(&block(&contour::<2>())), Ok(contour::<2>()));
         assert_eq!(ModelBlock::from_bytes(&block(&contour::<3>())), Ok(contour::<3>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&axes::<2>())), Ok(axes::<2>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&axes::<3>())), Ok(axes::<3>()));
     }
 
     #[test]
@@ -356,23 +418,36 @@ mod tests {
         let n = 2 * (2 * 5 + 5 * 12 + 12) + 2 * 6 * 6;
         assert_eq!(bytes[40 + 8 * (n - 1)..][..8], spread[1][5][5].to_le_bytes());
         assert_eq!((n, bytes.len()), (0xec, 40 + 8 * n + 4));
+        let bytes = block(&axes::<3>());
+        let Trained::Axes(identified) = axes::<3>().trained else { panic!("axes") };
+        let at = |index: usize| f64::from_le_bytes(bytes[40 + 8 * index..][..8].try_into().unwrap());
+        let count = AxisKnowledge::NUMBERS.len();
+        assert_eq!((bytes[12], at(0), bytes.len()), (3, 1e-4, 40 + 8 * (1 + 3 * count) + 4));
+        assert_eq!(at(1), identified.axes[0].parameters.rad_per_mm);
+        assert_eq!(at(1 + count + 12), identified.axes[1].parameters.inertia_kg_m2);
+        assert_eq!(at(3 * count), identified.axes[2].statistics.cogging_per_rev);
     }
 
     #[test]
     fn any_changed_byte_is_refused() {
-        let bytes = block(&servo::<2>());
-        for at in 0..bytes.len() {
-            for change in [0x01, 0x80, 0xff] {
-                let mut changed = bytes.clone();
-                changed[at] ^= change;
-                assert!(ModelBlock::<2>::from_bytes(&changed).is_err(), "byte {at} by {change:#x}");
+        for bytes in [block(&servo::<2>()), block(&axes::<2>())] {
+            for at in 0..bytes.len() {
+                for change in [0x01, 0x80, 0xff] {
+                    let mut changed = bytes.clone();
+                    changed[at] ^= change;
+                    assert!(ModelBlock::<2>::from_bytes(&changed).is_err(), "byte {at} by {change:#x}");
+                }
             }
         }
     }
 
     #[test]
     fn any_other_length_is_refused() {
-        let bytes = block(&contour::<2>());
+        of_any_other_length_are_refused(block(&contour::<2>()));
+        of_any_other_length_are_refused(block(&axes::<2>()));
+    }
+
+    fn of_any_other_length_are_refused(bytes: Vec<u8>) {
         for length in 0..bytes.len() {
             assert!(ModelBlock::<2>::from_bytes(&bytes[..length]).is_err(), "{length}");
             let mut cut = bytes[..length].to_vec();
@@ -394,7 +469,8 @@ mod tests {
             ModelBlock::<2>::from_bytes(&sealed(bytes))
         };
         assert_eq!(with_whole(8, 2), Err(BlockError::Format(2)));
-        assert_eq!(with_whole(12, 3), Err(BlockError::Kind(3)));
+        assert_eq!(with_whole(12, 4), Err(BlockError::Kind(4)));
+        assert_eq!(with_whole(12, 3), Err(BlockError::Length));
         assert_eq!(with_whole(16, 3), Err(BlockError::Axes(3)));
         assert_eq!(with_whole(20, u32::MAX), Err(BlockError::Length));
         assert_eq!(ModelBlock::<3>::from_bytes(&block(&servo::<2>())), Err(BlockError::Axes(2)));
@@ -415,5 +491,44 @@ mod tests {
         assert!(refused(0, 0.0) && refused(1, 0.0) && refused(1, 2.0));
         // A mean square below zero, and a product beyond what the squares allow.
         assert!(refused(numbers - 1, -1e-3) && refused(numbers - 2, 0.9));
+    }
+
+    #[test]
+    fn every_number_of_an_axis_has_its_own_bounds() {
+        let bytes = block(&axes::<2>());
+        let read = |index, number| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number));
+        for axis in 0..2 {
+            for (i, number) in AxisKnowledge::NUMBERS.iter().enumerate() {
+                let index = 3 + axis * AxisKnowledge::NUMBERS.len() + i;
+                let [least, most] = number.range;
+                for value in [f64::NAN, f64::INFINITY, -f64::INFINITY, least - 1.0, 1.001 * most] {
+                    assert_eq!(read(index, value), Err(BlockError::Number(index)), "{} {value}", number.name);
+                }
+                assert!(read(index, least).is_ok() && read(index, most).is_ok(), "{}", number.name);
+                // What is divided by is zero or no less than its least.
+                let divides = number.or_none || least > 0.0;
+                assert_eq!(read(index, 1e-300).is_err(), divides, "{}", number.name);
+                assert_eq!(read(index, 0.0).is_err(), least > 0.0 && !number.or_none, "{}", number.name);
+            }
+        }
+    }
+
+    #[test]
+    fn axes_have_whole_mechanics_periods_in_a_servo_period() {
+        let bytes = block(&axes::<2>());
+        let read = |mechanics_s| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), 2, mechanics_s));
+        for hostile_s in [0.0, -0.0, -1e-4, f64::NAN, f64::INFINITY, 1e-300, 9e-8, 0.0003, 0.002, 0.1, 1e7] {
+            assert_eq!(read(hostile_s), Err(BlockError::Number(2)), "{hostile_s}");
+        }
+        for (fine_s, periods) in [(1e-7, 10_000), (1e-4, 10), (0.0005, 2), (0.001, 1)] {
+            let Ok(ModelBlock { trained: Trained::Axes(axes), .. }) = read(fine_s) else { panic!("{fine_s}") };
+            assert!(axes.axes.iter().all(|axis| axis.periods.mechanics_per_servo == periods), "{fine_s}");
+        }
+        // The longest servo period has a million of the shortest.
+        let longest = with_number(with_number(bytes.clone(), 0, 0.1), 2, 1e-7);
+        assert_eq!(ModelBlock::<2>::from_bytes(&longest), Err(BlockError::Number(2)));
+        let Trained::Axes(identified) = axes::<2>().trained else { panic!("axes") };
+        assert!(identified.are_possible(0.001) && !identified.are_possible(0.00015));
+        assert!(!IdentifiedAxes::<2>::NULL.are_possible(0.001));
     }
 }

@@ -35,7 +35,7 @@ use rows::{
     SHAPER_IMPULSES, SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE, VELOCITY_GAIN,
 };
 use serde::{Deserialize, Serialize};
-pub use setup::{ModelMisfit, Setup};
+pub use setup::{ModelMisfit, NothingIdentified, Setup};
 
 use crate::gcode::suggestion::nearest;
 use crate::model::Model;

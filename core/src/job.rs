@@ -20,7 +20,7 @@ use std::path::PathBuf;
 use feedwright_control::Controller;
 use serde::{Deserialize, Serialize};
 
-use crate::controllers::{Choices, Entry, Make, Setup};
+use crate::controllers::{Choices, Entry, Make, NothingIdentified, Setup};
 use crate::gcode::canon::{Canon, MotionKind};
 use crate::gcode::{self, ReadError, Reader, Summary};
 use crate::machine::Machine;
@@ -73,6 +73,8 @@ pub struct JobOutcome {
     pub report: Report,
     /// What the reader warned of.
     pub warnings: Vec<gcode::Diagnostic>,
+    /// Controllers that cut open loop, because nothing was identified that they could go by.
+    pub without_identification: Vec<NothingIdentified>,
     /// Whether the last run was cut to its end and within the tolerance, where one was asked for.
     pub within_tolerance: bool,
 }
@@ -102,7 +104,7 @@ impl Job {
         Entry: Make<N>,
     {
         let mut files = Files::create(self, N)?;
-        let mut runs = Vec::new();
+        let (mut runs, mut without_identification) = (Vec::new(), Vec::new());
         for entry in self.controllers() {
             watch.check()?;
             let mut steps = StageSteps::begin(watch, &format!("identifying for {}", entry.name));
@@ -111,7 +113,11 @@ impl Job {
             let judged = entry.name == self.controller.name;
             let mut controller = match self.model.as_ref().filter(|_| judged) {
                 Some(model) => entry.make_with::<N>(setup, model)?,
-                None => Make::<N>::make(entry, &mut setup),
+                None => {
+                    let controller = Make::<N>::make(entry, &mut setup);
+                    without_identification.extend(setup.remark(entry));
+                    controller
+                }
             };
             runs.push(self.cut_once(summary, entry, &mut *controller, judged.then_some(&mut files), watch)?);
         }
@@ -120,7 +126,7 @@ impl Job {
         let within_tolerance = self.within_tolerance(&report);
         files.finish(self, &report, watch)?;
         let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
-        Ok(JobOutcome { report, warnings, within_tolerance })
+        Ok(JobOutcome { report, warnings, without_identification, within_tolerance })
     }
 
     fn cut_once<const N: usize>(

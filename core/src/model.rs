@@ -12,6 +12,7 @@ mod layout;
 
 use std::path::Path;
 
+use feedwright_control::axis::knowledge::{AxisKnowledge, Number};
 use feedwright_control::identifier::UNKNOWNS;
 use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::contour::ContourIdentifier;
@@ -91,7 +92,9 @@ pub(crate) struct Weights {
     pub(crate) hidden: Vec<f64>,
     pub(crate) output: Vec<f64>,
     pub(crate) spread: Vec<f64>,
-    pub(crate) axes: Vec<f64>,
+    pub(crate) mechanics_s: f64,
+    /// Each of [`AxisKnowledge::NUMBERS`], axis by axis.
+    pub(crate) axes: Vec<Vec<f64>>,
 }
 
 impl Weights {
@@ -108,6 +111,18 @@ impl Weights {
         let mut weights = Self { spread: spread.to_vec(), ..Self::default() };
         net.weights(&mut |name, group| *weights.group(name) = group.to_vec());
         weights
+    }
+
+    fn of_axes<const N: usize>(mut identified: IdentifiedAxes<N>) -> Self {
+        let of = |number: &Number| identified.axes.iter_mut().map(|axis| *(number.of)(axis)).collect();
+        let axes = AxisKnowledge::NUMBERS.iter().map(of).collect();
+        Self { mechanics_s: identified.mechanics_s, axes, ..Self::default() }
+    }
+
+    /// Takes what a number is, axis by axis.
+    fn set_of_axes(&mut self, index: usize, numbers: Vec<f64>) {
+        self.axes.resize(AxisKnowledge::NUMBERS.len(), Vec::new());
+        self.axes[index] = numbers;
     }
 
     /// Fills an identifier; none where the numbers are not as many as it has.
@@ -128,6 +143,15 @@ pub fn name(kind: IdentifierKind) -> &'static str {
         IdentifierKind::Contour => "contour",
         IdentifierKind::Servo => "servo",
         IdentifierKind::Axes => "axes",
+    }
+}
+
+/// An identifier of a kind, with its article.
+pub(crate) fn one(kind: IdentifierKind) -> &'static str {
+    match kind {
+        IdentifierKind::Contour => "a contour identifier",
+        IdentifierKind::Servo => "a servo identifier",
+        IdentifierKind::Axes => "an axes identifier",
     }
 }
 
@@ -177,9 +201,7 @@ impl Model {
         origin: Origin,
     ) -> Self {
         let fit = Fit { fit_um: identified.fit_um, samples: identified.samples as u64 };
-        let mut weights = Weights::default();
-        identified.axes.clone().numbers(&mut |_, number| weights.axes.push(*number));
-        Self::sealed(IdentifierKind::Axes, recording, fit, weights, origin)
+        Self::sealed(IdentifierKind::Axes, recording, fit, Weights::of_axes(identified.axes), origin)
     }
 
     fn sealed<const N: usize>(
@@ -280,13 +302,14 @@ impl Model {
 
     /// The axes that it holds; none where it holds another kind, or another number of them.
     pub fn identified_axes<const N: usize>(&self) -> Option<IdentifiedAxes<N>> {
-        let (mut identified, mut numbers) = (IdentifiedAxes::<N>::NULL, self.weights.axes.iter());
-        let mut fits = self.is(IdentifierKind::Axes, N);
-        identified.numbers(&mut |_, number| match numbers.next() {
-            Some(own) => *number = *own,
-            None => fits = false,
-        });
-        (fits && numbers.next().is_none()).then(|| identified.with_periods(self.period.servo_s))
+        let Weights { mechanics_s, axes, .. } = &self.weights;
+        let mut identified = IdentifiedAxes::<N> { mechanics_s: *mechanics_s, ..IdentifiedAxes::NULL };
+        let mut fits = self.is(IdentifierKind::Axes, N) && axes.len() == AxisKnowledge::NUMBERS.len();
+        for (number, values) in AxisKnowledge::NUMBERS.iter().zip(axes) {
+            fits &= values.len() == N;
+            identified.axes.iter_mut().zip(values).for_each(|(axis, value)| *(number.of)(axis) = *value);
+        }
+        identified.with_periods(self.period.servo_s).filter(|_| fits)
     }
 
     fn is(&self, kind: IdentifierKind, axes: usize) -> bool {

@@ -1,10 +1,12 @@
 //! `feedwright identify`: a model of a machine, trained and written.
 
+use std::f64::consts::TAU;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright::controllers::{Choices, Setup};
+use feedwright::identify::axis_parameters::{AxisEstimate, AxisParameters};
 use feedwright::machine::{self, Machine};
 use feedwright::model::{Model, date, name};
 use feedwright::output::{OutputError, OutputFile, OutputFiles};
@@ -28,17 +30,76 @@ pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let bar = console.bar(0);
     let mut steps = StageSteps::begin(&bar, &format!("identifying for {}", controller.name));
     let mut progress = |part: f64| steps.reach(part);
-    let trained = Setup::new(&machine, &choices).telling(&mut progress).train(controller, usize::from(args.axes), date);
+    let mut setup = Setup::new(&machine, &choices).telling(&mut progress);
+    let trained = setup.train(controller, usize::from(args.axes), date);
+    let found = setup.found().and_then(|found| found.as_ref().ok()).cloned().unwrap_or_default();
     bar.clear();
     let model = trained?;
     file.write_all(model.text().as_bytes()).map_err(|error| OutputError::from_io(error, &args.out))?;
     OutputFile::commit_all(vec![file], &bar)?;
-    printed(print(&model, &args.out), ExitCode::SUCCESS)
+    printed(print(&model, &found, &machine, &args.out), ExitCode::SUCCESS)
 }
 
-fn print(model: &Model, place: &Path) -> std::io::Result<()> {
+fn print(model: &Model, found: &[AxisEstimate], machine: &Machine, place: &Path) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     let (kind, axes, fit) = (name(model.kind()), model.axes(), model.fit());
     writeln!(out, "{kind} identifier of {axes} axes, from {} samples: fits to {:.3} um RMS", fit.samples, fit.fit_um)?;
+    if !found.is_empty() {
+        print_axes(&mut out, found, machine)?;
+    }
     writeln!(out, "wrote {}", place.display())
+}
+
+/// What was found of each axis, with standard errors.
+fn print_axes(out: &mut impl Write, found: &[AxisEstimate], machine: &Machine) -> std::io::Result<()> {
+    write!(out, "{:<30}", "")?;
+    for name in ["x", "y", "z"].iter().take(found.len()) {
+        write!(out, " {name:>24}")?;
+    }
+    writeln!(out)?;
+    let um_per_rad = |i: usize| machine.axes[i].lead_mm_per_rev * 1e3 / TAU;
+    type Value = fn(&AxisParameters, f64) -> f64;
+    let rows: [(&str, Value); 5] = [
+        ("inertia, kg m2", |p, _| p.inertia_kg_m2),
+        ("viscous friction, N m s/rad", |p, _| p.viscous_friction_nm_s),
+        ("Coulomb friction, N m", |p, _| p.coulomb_friction_nm),
+        ("its asymmetry, N m", |p, _| p.coulomb_asymmetry_nm),
+        ("presliding, um", |p, um_per_rad| p.presliding_rad * um_per_rad),
+    ];
+    for (label, value) in rows {
+        write!(out, "{label:<30}")?;
+        for (i, axis) in found.iter().enumerate() {
+            let [found, error] = [&axis.parameters, &axis.standard_errors].map(|of| value(of, um_per_rad(i)));
+            write!(out, " {:>24}", format!("{} +- {}", three_digits(found), three_digits(error)))?;
+        }
+        writeln!(out)?;
+    }
+    write!(out, "{:<30}", "left of the position, um RMS")?;
+    for axis in found {
+        write!(out, " {:>24}", three_digits(axis.left_um))?;
+    }
+    writeln!(out)
+}
+
+/// With three digits, whatever its size.
+fn three_digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let before_the_point = value.abs().log10().floor() as i32;
+    match before_the_point {
+        -4..=2 => format!("{value:.*}", (2 - before_the_point) as usize),
+        _ => format!("{value:.2e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::three_digits;
+
+    #[test]
+    fn numbers_have_three_digits() {
+        let shown = [0.0, 1.0, 0.0123456, -0.000123456, 123.4, 1234.0, 9.87654e-7, f64::NAN].map(three_digits);
+        assert_eq!(shown, ["0", "1.00", "0.0123", "-0.000123", "123", "1.23e3", "9.88e-7", "NaN"]);
+    }
 }

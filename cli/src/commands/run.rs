@@ -25,6 +25,9 @@ pub(crate) fn run(args: RunArgs, console: &Console) -> Result<ExitCode> {
     for warning in outcome.warnings.iter().cloned() {
         warn(warning.into());
     }
+    for remark in outcome.without_identification.iter().cloned() {
+        warn(remark.into());
+    }
     let code = if outcome.within_tolerance { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
     printed(print(&job, &outcome), code)
 }

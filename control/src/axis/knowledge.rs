@@ -62,52 +62,84 @@ impl AxisKnowledge {
         AxisLaw::new(self.parameters, self.periods)
     }
 
-    /// Hands over its numbers in a fixed order, each with its name: what is stored of it beside the periods.
-    pub fn numbers(&mut self, each: &mut impl FnMut(&'static str, &mut f64)) {
-        let Self { parameters: p, drive: d, friction: f, delays, statistics: s, .. } = self;
-        for (name, number) in [
-            ("rad_per_mm", &mut p.rad_per_mm),
-            ("kp_1_s", &mut p.kp_1_s),
-            ("kd", &mut p.kd),
-            ("kv_nm_s_per_rad", &mut p.kv_nm_s_per_rad),
-            ("torque_limit_nm", &mut p.torque_limit_nm),
-            ("speed_integral_s", &mut d.speed_integral_s),
-            ("velocity_feedforward", &mut d.velocity_feedforward),
-            ("acceleration_feedforward", &mut d.acceleration_feedforward),
-            ("torque_filter_hz", &mut d.torque_filter_hz),
-            ("speed_limit_rad_s", &mut d.speed_limit_rad_s),
-            ("drive_delay_s", &mut delays.drive_s),
-            ("measurement_delay_s", &mut delays.measurement_s),
-            ("inertia_kg_m2", &mut p.inertia_kg_m2),
-            ("viscous_friction_nm_s", &mut p.viscous_friction_nm_s),
-            ("coulomb_friction_nm", &mut p.coulomb_friction_nm),
-            ("coulomb_smoothing_rad_s", &mut p.coulomb_smoothing_rad_s),
-            ("coulomb_asymmetry_nm", &mut f.coulomb_asymmetry_nm),
-            ("stribeck_nm", &mut f.stribeck_nm),
-            ("stribeck_rad_s", &mut f.stribeck_rad_s),
-            ("presliding_rad", &mut f.presliding_rad),
-            ("encoder_noise_rad", &mut s.encoder_noise_rad),
-            ("encoder_step_rad", &mut s.encoder_step_rad),
-            ("interpolation_rad", &mut s.interpolation_rad),
-            ("interpolation_phase_rad", &mut s.interpolation_phase_rad),
-            ("signal_per_rad", &mut s.signal_per_rad),
-            ("torque_noise_nm", &mut s.torque_noise_nm),
-            ("torque_noise_s", &mut s.torque_noise_s),
-            ("disturbance_nm", &mut s.disturbance_nm),
-            ("disturbance_rad_s", &mut s.disturbance_rad_s),
-            ("disturbance_wander", &mut s.disturbance_wander),
-            ("cogging_nm", &mut s.cogging_nm),
-            ("cogging_phase_rad", &mut s.cogging_phase_rad),
-            ("cogging_per_rev", &mut s.cogging_per_rev),
-        ] {
-            each(name, number);
-        }
+    /// What is stored of it, in this order: all but the periods. Ranges are those of a machine file, and keep out what cannot be
+    /// computed with.
+    pub const NUMBERS: &[Number] = &[
+        Number::within("rad_per_mm", "rad/mm", 1e-3, 1e3, |axis| &mut axis.parameters.rad_per_mm),
+        Number::within("kp_1_s", "1/s", 1e-3, 1e5, |axis| &mut axis.parameters.kp_1_s),
+        Number::within("kd", "", 0.0, 1e3, |axis| &mut axis.parameters.kd),
+        Number::within("kv_nm_s_per_rad", "N m s/rad", 1e-9, 1e6, |axis| &mut axis.parameters.kv_nm_s_per_rad),
+        Number::within("torque_limit_nm", "N m", 1e-6, 1e6, |axis| &mut axis.parameters.torque_limit_nm),
+        Number::or_none("speed_integral_s", "s", 1e-6, 10.0, |axis| &mut axis.drive.speed_integral_s),
+        Number::within("velocity_feedforward", "", 0.0, 2.0, |axis| &mut axis.drive.velocity_feedforward),
+        Number::within("acceleration_feedforward", "", 0.0, 1e3, |axis| &mut axis.drive.acceleration_feedforward),
+        Number::or_none("torque_filter_hz", "Hz", 1e-3, 1e5, |axis| &mut axis.drive.torque_filter_hz),
+        Number::or_none("speed_limit_rad_s", "rad/s", 1e-5, 1e7, |axis| &mut axis.drive.speed_limit_rad_s),
+        Number::within("drive_delay_s", "s", 0.0, 0.02, |axis| &mut axis.delays.drive_s),
+        Number::within("measurement_delay_s", "s", 0.0, 0.02, |axis| &mut axis.delays.measurement_s),
+        Number::within("inertia_kg_m2", "kg m2", 1e-9, 1e3, |axis| &mut axis.parameters.inertia_kg_m2),
+        Number::within("viscous_friction_nm_s", "N m s/rad", 0.0, 1e4, |axis| {
+            &mut axis.parameters.viscous_friction_nm_s
+        }),
+        Number::within("coulomb_friction_nm", "N m", 0.0, 1e5, |axis| &mut axis.parameters.coulomb_friction_nm),
+        Number::within("coulomb_smoothing_rad_s", "rad/s", 1e-6, 1e3, |axis| {
+            &mut axis.parameters.coulomb_smoothing_rad_s
+        }),
+        Number::within("coulomb_asymmetry_nm", "N m", -1e5, 1e5, |axis| &mut axis.friction.coulomb_asymmetry_nm),
+        Number::within("stribeck_nm", "N m", 0.0, 1e5, |axis| &mut axis.friction.stribeck_nm),
+        Number::or_none("stribeck_rad_s", "rad/s", 1e-6, 1e7, |axis| &mut axis.friction.stribeck_rad_s),
+        Number::or_none("presliding_rad", "rad", 1e-12, 1e4, |axis| &mut axis.friction.presliding_rad),
+        Number::within("encoder_noise_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.encoder_noise_rad),
+        Number::within("encoder_step_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.encoder_step_rad),
+        Number::within("interpolation_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.interpolation_rad),
+        Number::within("interpolation_phase_rad", "rad", -10.0, 10.0, |axis| &mut axis.statistics.interpolation_phase_rad),
+        Number::within("signal_per_rad", "1/rad", 0.0, 1e9, |axis| &mut axis.statistics.signal_per_rad),
+        Number::within("torque_noise_nm", "N m", 0.0, 1e5, |axis| &mut axis.statistics.torque_noise_nm),
+        Number::or_none("torque_noise_s", "s", 1e-9, 10.0, |axis| &mut axis.statistics.torque_noise_s),
+        Number::within("disturbance_nm", "N m", 0.0, 1e5, |axis| &mut axis.statistics.disturbance_nm),
+        Number::within("disturbance_rad_s", "rad/s", 0.0, 1e6, |axis| &mut axis.statistics.disturbance_rad_s),
+        Number::within("disturbance_wander", "", 0.0, 0.5, |axis| &mut axis.statistics.disturbance_wander),
+        Number::within("cogging_nm", "N m", 0.0, 1e5, |axis| &mut axis.statistics.cogging_nm),
+        Number::within("cogging_phase_rad", "rad", -10.0, 10.0, |axis| &mut axis.statistics.cogging_phase_rad),
+        Number::within("cogging_per_rev", "1/rev", 0.0, 1e4, |axis| &mut axis.statistics.cogging_per_rev),
+    ];
+
+    /// Whether each of its numbers is within its range.
+    pub fn is_possible(mut self) -> bool {
+        Self::NUMBERS.iter().all(|number| number.holds(*(number.of)(&mut self)))
+    }
+}
+
+/// A number of an axis.
+#[derive(Debug, Clone, Copy)]
+pub struct Number {
+    /// Name; its end is the unit.
+    pub name: &'static str,
+    /// Unit, as messages tell it; empty where there is none.
+    pub unit: &'static str,
+    /// Least and most.
+    pub range: [f64; 2],
+    /// Whether zero, which is below the range, tells that there is none of it. A divisor is one of these: what is next to zero and not
+    /// zero is refused.
+    pub or_none: bool,
+    /// The field.
+    pub of: fn(&mut AxisKnowledge) -> &mut f64,
+}
+
+type Field = fn(&mut AxisKnowledge) -> &mut f64;
+
+impl Number {
+    const fn within(name: &'static str, unit: &'static str, least: f64, most: f64, of: Field) -> Self {
+        Self { name, unit, range: [least, most], or_none: false, of }
     }
 
-    /// Numbers that it has.
-    pub fn count(mut self) -> usize {
-        let mut count = 0;
-        self.numbers(&mut |_, _| count += 1);
-        count
+    const fn or_none(name: &'static str, unit: &'static str, least: f64, most: f64, of: Field) -> Self {
+        Self { or_none: true, ..Self::within(name, unit, least, most, of) }
+    }
+
+    /// Whether it may have this value. What is not a number it may not have.
+    pub fn holds(&self, value: f64) -> bool {
+        let [least, most] = self.range;
+        (value >= least && value <= most) || (self.or_none && value == 0.0)
     }
 }

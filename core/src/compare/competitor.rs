@@ -1,6 +1,7 @@
 //! Who competes: a controller, and what it is given of the machine that it cuts on.
 
 use feedwright_control::Controller;
+use feedwright_control::identifier::IdentifierKind;
 use feedwright_control::controller::open_loop::OpenLoop;
 use serde::{Deserialize, Serialize};
 
@@ -109,6 +110,8 @@ impl Competitor {
                 setup.known = setup.known.misjudged(INERTIA_BELIEVED, FRICTION_BELIEVED);
             }
             Knowledge::Identified if setup.identify_parameters::<2>().is_err() => return Box::new(OpenLoop),
+            // What a drive is set to is read off it, wherever its axis was identified.
+            Knowledge::Unseen if self.entry.identifier == Some(IdentifierKind::Axes) => setup.known = machine.known(),
             Knowledge::Own | Knowledge::Identified | Knowledge::Unseen => {}
         }
         Make::<2>::make(self.entry, &mut setup)

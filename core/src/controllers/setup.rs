@@ -14,12 +14,12 @@ use thiserror::Error;
 
 use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
-use crate::identify::axes::{self, AxisRecordings};
-use crate::identify::axis_parameters::{DriveSettings, NotIdentified, identify};
+use crate::identify::axes::{self, AxisRecordings, TrainedAxes};
+use crate::identify::axis_parameters::{AxisEstimate, DriveSettings, NotIdentified, identify};
 use crate::identify::contour::Training;
 use crate::identify::{Excitation, cache, servo};
 use crate::machine::{Known, Machine};
-use crate::model::{Model, Origin, name};
+use crate::model::{Model, Origin, one};
 
 /// What a controller is made from.
 pub struct Setup<'a> {
@@ -33,6 +33,8 @@ pub struct Setup<'a> {
     model: Option<&'a Model>,
     /// Told of the progress of a training, 0 to 1.
     progress: Option<&'a mut dyn FnMut(f64)>,
+    /// What was found of each axis, where axes were identified, or why nothing was.
+    found: Option<Result<Vec<AxisEstimate>, NotIdentified>>,
 }
 
 /// Why a controller cannot be made with a model.
@@ -48,7 +50,7 @@ pub enum ModelMisfit {
         hint: String,
     },
     /// The model is of another kind.
-    #[error("the model holds a {found} identifier, and {controller} needs a {needed} identifier")]
+    #[error("the model holds {found}, and {controller} needs {needed}")]
     Kind {
         /// Name of the controller.
         controller: &'static str,
@@ -85,8 +87,13 @@ pub enum ModelMisfit {
         asked: usize,
     },
     /// The recording does not tell what an axis is.
-    #[error("the recording of the machine does not tell what its axes are: {0}")]
-    NotIdentified(NotIdentified),
+    #[error("the axes of `{machine}` cannot be identified: {cause}")]
+    NotIdentified {
+        /// Name of the machine.
+        machine: String,
+        /// Why.
+        cause: NotIdentified,
+    },
     /// The model was trained for another period.
     #[error("the model was trained for a {period} of {found_s} s, and that of {of} is {needed_s} s")]
     Period {
@@ -104,6 +111,19 @@ pub enum ModelMisfit {
     },
 }
 
+/// A controller that cuts open loop, because nothing was identified that it could go by.
+#[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
+#[error("{controller} cuts open loop: the axes of `{machine}` cannot be identified: {cause}")]
+#[diagnostic(severity(Warning))]
+pub struct NothingIdentified {
+    /// Its name.
+    pub controller: &'static str,
+    /// Name of the machine.
+    pub machine: String,
+    /// Why.
+    pub cause: NotIdentified,
+}
+
 /// Periods that differ by less are the same: they come from decimal numbers.
 const SAME_PERIOD: f64 = 1e-9;
 
@@ -119,7 +139,7 @@ impl Entry {
             "'feedwright identify --controller {controller} --axes {axes}' with this machine writes one that suits"
         );
         if model.kind() != needed {
-            let (found, needed) = (name(model.kind()), name(needed));
+            let (found, needed) = (one(model.kind()), one(needed));
             return Err(ModelMisfit::Kind { controller, found, needed, hint: anew });
         }
         if model.axes() != axes {
@@ -132,7 +152,10 @@ impl Entry {
         let (servo_s, feed_period_s) = (known.period.servo_s, self.feed_period_s(known, choices));
         period("servo period", "the machine", model.period().servo_s, servo_s, anew.clone())?;
         let found_s = model.period().feed_period_s;
-        let hint = format!("--set feed_period_s={found_s} takes that of the model; {anew}");
+        let hint = match self.parameter("feed_period_s") {
+            Some(_) => format!("--set feed_period_s={found_s} takes that of the model; {anew}"),
+            None => anew,
+        };
         period("feed period", controller, found_s, feed_period_s, hint)
     }
 
@@ -143,8 +166,11 @@ impl Entry {
         ModelMisfit::NoIdentifier { controller: self.name, hint }
     }
 
-    /// Time between decisions of one that uses an identifier, s.
+    /// Time between decisions of one that uses an identifier, s. One that cannot be set to another decides in each servo period.
     fn feed_period_s(&self, known: &Known, choices: &Choices) -> f64 {
+        if self.parameter("feed_period_s").is_none() {
+            return known.period.servo_s;
+        }
         let wished_s = Values::of(self, &choices.set).number("feed_period_s");
         f64::from(known.period.servo_periods(wished_s)) * known.period.servo_s
     }
@@ -153,12 +179,23 @@ impl Entry {
 impl<'a> Setup<'a> {
     /// For a machine, which is recorded where a model has to be trained.
     pub fn new(machine: &'a Machine, choices: &'a Choices) -> Self {
-        Self { known: machine.known(), choices, machine, model: None, progress: None }
+        Self { known: machine.known(), choices, machine, model: None, progress: None, found: None }
     }
 
     /// Tells of the progress of a training, 0 to 1.
     pub fn telling(self, progress: &'a mut dyn FnMut(f64)) -> Self {
         Self { progress: Some(progress), ..self }
+    }
+
+    /// What is to be told of a controller that was made from this: where nothing was identified it cuts open loop.
+    pub fn remark(&self, entry: &Entry) -> Option<NothingIdentified> {
+        let Some(Err(cause)) = &self.found else { return None };
+        Some(NothingIdentified { controller: entry.name, machine: self.machine.name.clone(), cause: *cause })
+    }
+
+    /// What was found of each axis by the last training of a model of axes, or why nothing was; none where there was none.
+    pub fn found(&self) -> Option<&Result<Vec<AxisEstimate>, NotIdentified>> {
+        self.found.as_ref()
     }
 
     fn tell(&mut self, part: f64) {
@@ -209,13 +246,20 @@ impl<'a> Setup<'a> {
         Ok(())
     }
 
-    /// The identified axes; none where the machine does not move so that they show.
+    /// The identified axes; none where the machine does not move so that they show, see [`Self::found`].
     pub(super) fn axes<const N: usize>(&mut self) -> Option<IdentifiedAxes<N>> {
         self.model.and_then(Model::identified_axes).or_else(|| {
-            let recordings = AxisRecordings::<N>::of(self.machine, self.choices.seed);
-            let found = axes::train(&recordings, &self.known).ok()?.axes;
-            Some(found.with_periods(self.known.period.servo_s))
+            let (_, trained) = self.train_axes().ok()?;
+            trained.axes.with_periods(self.known.period.servo_s)
         })
+    }
+
+    /// Records the machine and identifies its axes.
+    fn train_axes<const N: usize>(&mut self) -> Result<(AxisRecordings<N>, TrainedAxes<N>), NotIdentified> {
+        let recordings = AxisRecordings::of(self.machine, self.choices.seed);
+        let trained = axes::train(&recordings, &self.machine.known(), &self.known);
+        self.found = Some(trained.as_ref().map(|trained| trained.estimates.clone()).map_err(|cause| *cause));
+        Ok((recordings, trained?))
     }
 
     /// An identifier of the contour error for decisions each `feed_period_s`.
@@ -253,8 +297,8 @@ impl<'a> Setup<'a> {
                 Model::of_servo(&recording, &servo::train(&recording), origin)
             }
             IdentifierKind::Axes => {
-                let recordings = AxisRecordings::<N>::of(self.machine, seed);
-                let trained = axes::train(&recordings, &self.known).map_err(ModelMisfit::NotIdentified)?;
+                let not_identified = |cause| ModelMisfit::NotIdentified { machine: self.machine.name.clone(), cause };
+                let (recordings, trained) = self.train_axes::<N>().map_err(not_identified)?;
                 Model::of_axes(&recordings.joined(), &trained, origin)
             }
             IdentifierKind::Contour => {
@@ -278,12 +322,14 @@ mod tests {
         let choices = Choices::default();
         let servo =
             Setup::new(&machine, &choices).train(Entry::find("receding-horizon").unwrap(), 2, "today".to_owned());
-        let servo = servo.unwrap();
-        for entry in CONTROLLERS {
-            assert_eq!(entry.identifier.is_some(), entry.knows == Knows::Identified, "{}", entry.name);
-            let suits = entry.suits(&servo, &machine.known(), 2, &choices);
-            assert_eq!(suits.is_ok(), entry.identifier == Some(IdentifierKind::Servo), "{}: {suits:?}", entry.name);
-            assert!(entry.suits(&servo, &machine.known(), 3, &choices).is_err(), "{}", entry.name);
+        let axes = Setup::new(&machine, &choices).train(Entry::find("lqg-identified").unwrap(), 2, "today".to_owned());
+        for (model, kind) in [(servo.unwrap(), IdentifierKind::Servo), (axes.unwrap(), IdentifierKind::Axes)] {
+            for entry in CONTROLLERS {
+                assert_eq!(entry.identifier.is_some(), entry.knows == Knows::Identified, "{}", entry.name);
+                let suits = entry.suits(&model, &machine.known(), 2, &choices);
+                assert_eq!(suits.is_ok(), entry.identifier == Some(kind), "{}: {suits:?}", entry.name);
+                assert!(entry.suits(&model, &machine.known(), 3, &choices).is_err(), "{}", entry.name);
+            }
         }
     }
 
@@ -298,5 +344,21 @@ mod tests {
         assert!(other != machine && other.known() == machine.known());
         other.axes[1].inertia_kg_m2 *= 2.0;
         assert!(other.known() != machine.known());
+    }
+
+    #[test]
+    fn where_nothing_is_identified_the_training_fails_and_the_controller_tells_that_it_cuts_open_loop() {
+        let mut machine = Machine::load("tnv40".as_ref()).unwrap();
+        // The loop takes longer to settle than the excitation lasts.
+        machine.axes.iter_mut().for_each(|axis| axis.kp_1_s = 0.01);
+        let (choices, entry) = (Choices::default(), Entry::find("lqg-identified").unwrap());
+        let mut setup = Setup::new(&machine, &choices);
+        let refused = setup.train(entry, 2, "today".to_owned()).unwrap_err().to_string();
+        assert!(refused.starts_with("the axes of `tnv40` cannot be identified: 0 stretches are longer"), "{refused}");
+        let mut setup = Setup::new(&machine, &choices);
+        assert_eq!(setup.remark(entry), None);
+        let _ = super::super::Make::<2>::make(entry, &mut setup);
+        let told = setup.remark(entry).unwrap().to_string();
+        assert!(told.starts_with("lqg-identified cuts open loop: the axes of `tnv40` cannot"), "{told}");
     }
 }

@@ -6,7 +6,7 @@
 use feedwright_control::model::IdentifiedAxes;
 
 use super::Excitation;
-use super::axis_parameters::{DriveSettings, NotIdentified, identify};
+use super::axis_parameters::{AxisEstimate, DriveSettings, NotIdentified, identify};
 use super::axis_statistics::axis_statistics;
 use super::recording::Recording;
 use crate::machine::{Known, Machine};
@@ -16,6 +16,8 @@ use crate::machine::{Known, Machine};
 pub struct TrainedAxes<const N: usize> {
     /// The axes.
     pub axes: IdentifiedAxes<N>,
+    /// What was found of each, with standard errors.
+    pub estimates: Vec<AxisEstimate>,
     /// RMS of what a free run leaves of the measured positions, um per axis.
     pub fit_um: f64,
     /// Knots that they were found from.
@@ -46,24 +48,33 @@ impl<const N: usize> AxisRecordings<N> {
     }
 }
 
-/// Finds the axes of a machine whose drives are set as it is known.
+/// Finds the axes of a machine whose drives are set as it is known; they are to be used on one whose drives may be set otherwise.
 ///
 /// # Errors
 /// A recording in which parameters do not show.
-pub fn train<const N: usize>(recordings: &AxisRecordings<N>, known: &Known) -> Result<TrainedAxes<N>, NotIdentified> {
-    let found = |i: usize| {
-        let axis = known.axis(i);
-        let settings = DriveSettings::of(axis, &known.period);
-        identify(&recordings.parameters, i, &settings).map(|found| (found.parameters.believed(axis, &settings), found))
+pub fn train<const N: usize>(
+    recordings: &AxisRecordings<N>,
+    known: &Known,
+    used_on: &Known,
+) -> Result<TrainedAxes<N>, NotIdentified> {
+    let estimate = |i: usize| identify(&recordings.parameters, i, &DriveSettings::of(known.axis(i), &known.period));
+    let estimates = (0..N).map(estimate).collect::<Result<Vec<_>, _>>()?;
+    let believed = |of: &Known| {
+        of.with_axes(|i, axis| {
+            let settings = DriveSettings::of(axis, &of.period);
+            estimates.get(i).map_or(*axis, |found| found.parameters.believed(axis, &settings))
+        })
     };
-    let found = (0..N).map(found).collect::<Result<Vec<_>, _>>()?;
-    let believed = known.with_axes(|i, axis| found.get(i).map_or(*axis, |(believed, _)| *believed));
-    let statistics = axis_statistics(&recordings.statistics, &believed);
-    let axes = std::array::from_fn(|i| believed.axis(i).with_statistics(known.period.periods(), statistics[i]));
-    let square_um2: f64 = found.iter().map(|(_, found)| found.left_um * found.left_um).sum();
-    Ok(TrainedAxes {
-        axes: IdentifiedAxes { mechanics_s: known.period.mechanics_s, axes },
-        fit_um: (square_um2 / N as f64).sqrt(),
-        samples: recordings.joined().stretches.iter().map(Vec::len).sum(),
-    })
+    let statistics = axis_statistics(&recordings.statistics, &believed(known));
+    let (here, periods) = (believed(used_on), used_on.period.periods());
+    let axes = std::array::from_fn(|i| here.axis(i).with_statistics(periods, statistics[i]));
+    let axes = IdentifiedAxes { mechanics_s: used_on.period.mechanics_s, axes };
+    // What no axis can be, a component in a servo thread would refuse.
+    if !axes.are_possible(used_on.period.servo_s) {
+        return Err(NotIdentified::NotExcited);
+    }
+    let square_um2: f64 = estimates.iter().map(|found| found.left_um * found.left_um).sum();
+    let samples = [&recordings.parameters, &recordings.statistics];
+    let samples = samples.iter().flat_map(|recording| &recording.stretches).map(Vec::len).sum();
+    Ok(TrainedAxes { axes, estimates, fit_um: (square_um2 / N as f64).sqrt(), samples })
 }

@@ -1,11 +1,12 @@
 //! The keys of a model file: name, unit, range, and the field that each fills; see [`crate::toml_file::key`].
 
+use feedwright_control::axis::knowledge::AxisKnowledge;
 use feedwright_control::identifier::{FEED_PERIODS_S, IdentifierKind};
-use feedwright_control::model::{MAX_SPREAD, MAX_WEIGHT, SERVO_PERIODS_S};
+use feedwright_control::model::{MAX_SPREAD, MAX_WEIGHT, MECHANICS_PERIODS_S, SERVO_PERIODS_S};
 
 use super::{About, Fit, ModelPeriods, Weights};
 use crate::toml_file::Key;
-use crate::toml_file::key::key;
+use crate::toml_file::key::{Value, key};
 
 /// Most samples of a training that are believed: a century of decisions.
 const MAX_SAMPLES: f64 = 1e12;
@@ -52,4 +53,29 @@ const SERVO: &[Key<Weights>] = &[
     key!(numbers spread, "", -MAX_SPREAD, MAX_SPREAD),
 ];
 
-const AXES: &[Key<Weights>] = &[key!(numbers axes, "", -MAX_WEIGHT, MAX_WEIGHT)];
+/// The mechanics period, and a key for each number of an axis, with that of all axes in a row.
+macro_rules! axes_keys {
+    ($($index:literal)*) => {{
+        const { assert!(AxisKnowledge::NUMBERS.len() == [$($index),*].len(), "a key for each number of an axis") };
+        [key!(mechanics_s, "s", MECHANICS_PERIODS_S[0], MECHANICS_PERIODS_S[1]), $(of_axes::<$index>()),*]
+    }};
+}
+const AXES: &[Key<Weights>] = &axes_keys!(
+    0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32
+);
+
+const fn of_axes<const INDEX: usize>() -> Key<Weights> {
+    let number = &AxisKnowledge::NUMBERS[INDEX];
+    let [least, most] = number.range;
+    Key {
+        name: number.name,
+        unit: number.unit,
+        // What may be zero or no less than its least is looked at as a whole, once it is read.
+        range: [if number.or_none { 0.0 } else { least }, most],
+        optional: false,
+        value: Value::Numbers {
+            get: |weights| weights.axes.get(INDEX).map_or(&[], Vec::as_slice),
+            set: |weights, numbers| weights.set_of_axes(INDEX, numbers),
+        },
+    }
+}

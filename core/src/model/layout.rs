@@ -5,7 +5,7 @@ use feedwright_control::identifier::UNKNOWNS;
 use feedwright_control::identifier::{HIDDEN, INPUTS, IdentifierKind};
 use feedwright_control::model as block;
 
-use super::{About, FORMAT, KINDS, Model, Weights, keys, kind_named, name, version};
+use super::{About, FORMAT, KINDS, Model, Weights, keys, kind_named, name, one, version};
 use crate::gcode::suggestion::nearest;
 use crate::toml_file::key::{read, read_all};
 use crate::toml_file::{Document, Fault, Table};
@@ -112,19 +112,16 @@ fn weights(kind: IdentifierKind, axes: u64, table: &mut Table<'_, '_>, faults: &
         ("hidden", &weights.hidden, of(&nets, n * INPUTS * HIDDEN)),
         ("output", &weights.output, of(&nets, n * HIDDEN)),
         ("spread", &weights.spread, of(&servo, n * UNKNOWNS * UNKNOWNS)),
-        // Before them the mechanics period.
-        ("axes", &weights.axes, of(&[IdentifierKind::Axes], 1 + n * AxisKnowledge::NOTHING.count())),
     ];
-    for (key, found, expected) in expected {
+    // A number for each axis.
+    let of_axes = keys::weights(IdentifierKind::Axes).iter().filter(|key| key.name != "mechanics_s");
+    let of_axes = of_axes.zip(&weights.axes).map(|(key, found)| (key.name, found, n));
+    for (key, found, expected) in expected.into_iter().chain(of_axes) {
         if found.len() != expected {
             faults.push(Fault {
                 at: table.place(key),
                 label: "of another length",
-                message: format!(
-                    "{key} has {} numbers; a {} identifier of {n} axes has {expected}",
-                    found.len(),
-                    name(kind)
-                ),
+                message: format!("{key} has {} numbers; {} of {n} axes has {expected}", found.len(), one(kind)),
                 hint: None,
             });
         }
@@ -134,10 +131,34 @@ fn weights(kind: IdentifierKind, axes: u64, table: &mut Table<'_, '_>, faults: &
 
 /// Why a component would not take it, where it would not.
 fn refused(model: &Model) -> Option<String> {
+    if model.kind() == IdentifierKind::Axes {
+        return refused_axes(model);
+    }
     let bytes = model.block();
     let error = match model.axes() {
         2 => block::ModelBlock::<2>::from_bytes(&bytes).err(),
         _ => block::ModelBlock::<3>::from_bytes(&bytes).err(),
     };
     error.map(|error| format!("no training gives these weights: {error}"))
+}
+
+/// What a range alone does not tell of axes.
+fn refused_axes(model: &Model) -> Option<String> {
+    if model.block().is_empty() {
+        return Some(format!(
+            "servo_s is no whole multiple of mechanics_s, 1 to {} times",
+            block::MAX_MECHANICS_PER_SERVO
+        ));
+    }
+    AxisKnowledge::NUMBERS.iter().zip(&model.weights.axes).find_map(|(number, values)| {
+        let at = values.iter().position(|value| !number.holds(*value))?;
+        let [least, most] = number.range;
+        Some(format!(
+            "{}, number {} is {:e} {unit}; it must be 0 or lie between {least:e} and {most:e} {unit}",
+            number.name,
+            at + 1,
+            values[at],
+            unit = number.unit
+        ))
+    })
 }

@@ -1,6 +1,5 @@
 //! What a model file may hold, and what is said about one that holds something else.
 
-use feedwright_control::identifier::Identifier;
 use miette::Diagnostic;
 
 use super::*;
@@ -39,6 +38,22 @@ fn contour<const N: usize>() -> Model {
     Model::of_contour::<N>(&recording(), &trained, origin())
 }
 
+/// Axes like those of a machine: not short in decimals.
+fn axes<const N: usize>() -> Model {
+    let mut identified = IdentifiedAxes::<N> { mechanics_s: 1e-4, ..IdentifiedAxes::NULL };
+    let mut number = 0.1_f64;
+    for axis in &mut identified.axes {
+        for of in AxisKnowledge::NUMBERS {
+            let [least, most] = of.range;
+            number = (7.0 * number + 0.3).sin();
+            *(of.of)(axis) = least + (0.2 + 0.1 * number / 3.0) * (most.min(1.0) - least);
+        }
+    }
+    let trained = axes::TrainedAxes { axes: identified, estimates: Vec::new(), fit_um: 0.1 + 0.2, samples: 12_345 };
+    let recording = Recording { feed_period_s: 0.001, ..recording() };
+    Model::of_axes::<N>(&recording, &trained, origin())
+}
+
 fn problems(text: &str) -> Vec<Problem> {
     match Model::parse("broken.model.toml", text) {
         Err(FileError::Invalid { problems, .. }) => problems,
@@ -63,7 +78,7 @@ fn told_after(from: &str, to: &str) -> Vec<String> {
 
 #[test]
 fn what_is_written_reads_back_to_the_bit() {
-    for model in [servo::<2>(), servo::<3>(), contour::<2>(), contour::<3>()] {
+    for model in [servo::<2>(), servo::<3>(), contour::<2>(), contour::<3>(), axes::<2>(), axes::<3>()] {
         let read = Model::parse("written.model.toml", &model.text()).unwrap();
         assert_eq!(read, model);
         assert_eq!(read.block(), model.block());
@@ -80,12 +95,18 @@ fn the_block_is_what_control_takes() {
     assert_eq!(Some(taken), servo::<2>().control::<2>());
     let taken = block::ModelBlock::<3>::from_bytes(&contour::<3>().block()).unwrap();
     assert_eq!(Some(taken), contour::<3>().control::<3>());
+    let taken = block::ModelBlock::<3>::from_bytes(&axes::<3>().block()).unwrap();
+    assert_eq!(Some(taken), axes::<3>().control::<3>());
 }
 
 #[test]
 fn a_model_gives_nothing_but_what_it_holds() {
     assert!(servo::<2>().servo::<3>().is_none() && servo::<2>().contour::<2>().is_none());
     assert!(contour::<3>().contour::<2>().is_none() && contour::<3>().servo::<3>().is_none());
+    assert!(axes::<2>().identified_axes::<3>().is_none() && axes::<3>().identified_axes::<2>().is_none());
+    assert!(axes::<2>().servo::<2>().is_none() && axes::<2>().contour::<2>().is_none());
+    assert!(servo::<2>().identified_axes::<2>().is_none() && contour::<2>().identified_axes::<2>().is_none());
+    assert!(axes::<2>().identified_axes::<2>().is_some() && axes::<3>().identified_axes::<3>().is_some());
 }
 
 #[test]
@@ -172,12 +193,57 @@ fn kinds_have_their_own_weights() {
     let told = told_after("kind = \"servo\"", "kind = \"contour\"");
     assert!(told.iter().any(|told| told.contains("unknown key 'linear' in [weights]")), "{told:?}");
     let told = told_after("kind = \"servo\"", "kind = \"servos\"");
-    assert_eq!(told, ["3:8: no identifier is of kind 'servos'; there are contour and servo / did you mean 'servo'?"]);
+    assert_eq!(
+        told,
+        ["3:8: no identifier is of kind 'servos'; there are contour, servo, axes / did you mean 'servo'?"]
+    );
     let told = told_after("axes = 2", "axes = 3");
     assert!(
         told.len() == 4 && told[0].contains("linear has 20 numbers; a servo identifier of 3 axes has 45"),
         "{told:?}"
     );
+}
+
+#[test]
+fn every_number_of_an_axis_has_its_key_its_bounds_and_one_for_each_axis() {
+    let text = axes::<2>().text();
+    let array = |name: &str| {
+        let (_, rest) = text.split_once(&format!("\n{name} = [")).unwrap_or_else(|| panic!("no {name}"));
+        rest.split_once(']').unwrap().0.to_owned()
+    };
+    for number in AxisKnowledge::NUMBERS {
+        let (name, was) = (number.name, array(number.name));
+        let after = |to: &str| told(&text.replacen(&format!("{name} = [{was}]"), &format!("{name} = {to}"), 1));
+        let beyond = after(&format!("[{:?}, {:?}]", number.range[0], 2.0 * number.range[1]));
+        assert!(beyond.len() == 1 && beyond[0].contains(&format!("{name}, number 2 is")), "{beyond:?}");
+        let short = after(&format!("[{:?}]", number.range[0]));
+        let said = format!("{name} has 1 numbers; an axes identifier of 2 axes has 2");
+        assert!(short.len() == 1 && short[0].contains(&said), "{short:?}");
+    }
+    let told = told(&text.replacen("mechanics_s = 0.0001", "mechanics_s = 0", 1));
+    assert!(told.len() == 1 && told[0].contains("mechanics_s is 0 s; it must lie between 1e-7 and 0.1 s"), "{told:?}");
+}
+
+/// With the checksum that belongs to it.
+fn told_of(mut model: Model) -> Vec<String> {
+    model.about.checksum = model.checksum();
+    told(&model.text())
+}
+
+#[test]
+fn axes_that_cannot_be_computed_with_are_refused() {
+    let mut uneven = axes::<2>();
+    uneven.weights.mechanics_s = 0.0003;
+    let mut divides = axes::<2>();
+    let presliding = AxisKnowledge::NUMBERS.iter().position(|number| number.name == "presliding_rad").unwrap();
+    divides.weights.axes[presliding][1] = 1e-300;
+    for (model, said) in [
+        (uneven, "servo_s is no whole multiple of mechanics_s, 1 to 10000 times"),
+        (divides, "presliding_rad, number 2 is 1e-300 rad; it must be 0 or lie between 1e-12 and 1e4 rad"),
+    ] {
+        let told = told_of(model);
+        assert!(told.len() == 1 && told[0].contains(said), "{told:?}");
+    }
 }
 
 #[test]
@@ -260,7 +326,7 @@ fn the_document_has_the_units_and_ranges_of_all_keys() {
         keys.iter().map(row).collect()
     }
     let document = include_str!("../../../docs/model-file.md");
-    let weights = [IdentifierKind::Contour, IdentifierKind::Servo].map(|kind| rows(keys::weights(kind))).concat();
+    let weights = KINDS.map(|kind| rows(keys::weights(kind))).concat();
     for row in [rows(keys::ABOUT), rows(keys::PERIOD), rows(keys::FIT), weights].concat() {
         assert!(document.contains(&row), "docs/model-file.md has no row that begins {row}");
     }
