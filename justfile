@@ -24,11 +24,11 @@ compare out="target/compare":
     cargo run --release -- compare --only tnv40,heavy,sticky,rough,soft,coarse --knowledge own,unseen --at-tolerance --json {{ out }}.json --html {{ out }}.html
 
 # Controllers that the README shows.
-shown := "contour-compensation,cross-coupled,disturbance-observer,kalman-disturbance,feedforward-as-delivered,feedforward,feedforward-cross-coupled,receding-horizon,lqg-preview"
+shown := "contour-compensation,cross-coupled,disturbance-observer,kalman-disturbance,feedforward-as-delivered,feedforward,feedforward-cross-coupled,receding-horizon,lqg-identified,lqg-preview"
 
 # The table of README.md: held-out work on machines with noise.
 held-out-table out="target/held_out":
-    cargo run --release -- compare --work held-out --only workshop,stiff,router,{{ shown }} --knowledge own,20%off --json {{ out }}.json --html {{ out }}.html
+    cargo run --release -- compare --work held-out --only workshop,stiff,router,{{ shown }} --knowledge own,identified,20%off --json {{ out }}.json --html {{ out }}.html
 
 # What each imperfection costs each controller: the table of examples/03_realism. Each peer is tuned on each machine first.
 imperfections out="target/imperfections":

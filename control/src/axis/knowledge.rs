@@ -92,7 +92,9 @@ impl AxisKnowledge {
         Number::within("encoder_noise_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.encoder_noise_rad),
         Number::within("encoder_step_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.encoder_step_rad),
         Number::within("interpolation_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.interpolation_rad),
-        Number::within("interpolation_phase_rad", "rad", -10.0, 10.0, |axis| &mut axis.statistics.interpolation_phase_rad),
+        Number::within("interpolation_phase_rad", "rad", -10.0, 10.0, |axis| {
+            &mut axis.statistics.interpolation_phase_rad
+        }),
         Number::within("signal_per_rad", "1/rad", 0.0, 1e9, |axis| &mut axis.statistics.signal_per_rad),
         Number::within("torque_noise_nm", "N m", 0.0, 1e5, |axis| &mut axis.statistics.torque_noise_nm),
         Number::or_none("torque_noise_s", "s", 1e-9, 10.0, |axis| &mut axis.statistics.torque_noise_s),

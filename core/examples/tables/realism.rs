@@ -18,10 +18,18 @@ const SHOWN: &[&str] = &[
     "kalman-disturbance",
     "feedforward",
     "feedforward-cross-coupled",
+    "feedforward-cross-coupled+identified",
     "feedforward-cross-coupled+20%off",
     "receding-horizon",
+    "lqg-identified",
     "lqg-preview",
 ];
+
+/// Those of them that were cut.
+fn shown(comparison: &Comparison) -> Vec<&'static str> {
+    let was_cut = |controller: &&str| comparison.rows.iter().any(|row| row.controller == *controller);
+    SHOWN.iter().copied().filter(was_cut).collect()
+}
 
 /// Of a controller on a machine, over all that was cut, um.
 struct OverAll {
@@ -54,7 +62,7 @@ pub(super) fn held_out(comparison: &Comparison) -> Result<String> {
     let machines = comparison.machines();
     let mut table = String::new();
     heading(&mut table, "median RMS / RMS of all / max, \u{b5}m", &machines)?;
-    for controller in SHOWN {
+    for controller in shown(comparison) {
         write!(table, "| {controller} |")?;
         for machine in &machines {
             let numbers = [ComparisonRow::controlled_rms_um, ComparisonRow::controlled_max_um];
@@ -73,10 +81,11 @@ pub(super) fn held_out(comparison: &Comparison) -> Result<String> {
 /// One line for each machine, one column for each controller: RMS over all contours.
 pub(super) fn imperfections(comparison: &Comparison) -> Result<String> {
     let mut table = String::new();
-    heading(&mut table, "RMS over all contours, \u{b5}m", SHOWN)?;
+    let shown = shown(comparison);
+    heading(&mut table, "RMS over all contours, \u{b5}m", &shown)?;
     for machine in comparison.machines() {
         write!(table, "| {machine} |")?;
-        for controller in SHOWN {
+        for controller in &shown {
             match comparison.rms_over_contours_um(machine, controller) {
                 Some(rms_um) => write!(table, " {rms_um:.3} |")?,
                 None => write!(table, " lost |")?,

@@ -1,8 +1,8 @@
 //! Who competes: a controller, and what it is given of the machine that it cuts on.
 
 use feedwright_control::Controller;
-use feedwright_control::identifier::IdentifierKind;
 use feedwright_control::controller::open_loop::OpenLoop;
+use feedwright_control::identifier::IdentifierKind;
 use serde::{Deserialize, Serialize};
 
 use super::tuned::Tuned;

@@ -1,9 +1,10 @@
 //! Axes identified from a recording: what each is, by its law, and the statistics of its noise.
 //!
-//! What a drive is set to is known; [`super::axis_parameters`] finds inertia and friction, [`super::axis_statistics`] the noise. Of an axis that does not move so that they show,
-//! nothing is found.
+//! What a drive is set to is known; [`super::axis_parameters`] finds inertia and friction, [`super::axis_statistics`] the noise. Of an
+//! axis that does not move so that they show, nothing is found.
 
 use feedwright_control::model::IdentifiedAxes;
+use rayon::prelude::*;
 
 use super::Excitation;
 use super::axis_parameters::{AxisEstimate, DriveSettings, NotIdentified, identify};
@@ -58,7 +59,7 @@ pub fn train<const N: usize>(
     used_on: &Known,
 ) -> Result<TrainedAxes<N>, NotIdentified> {
     let estimate = |i: usize| identify(&recordings.parameters, i, &DriveSettings::of(known.axis(i), &known.period));
-    let estimates = (0..N).map(estimate).collect::<Result<Vec<_>, _>>()?;
+    let estimates = (0..N).into_par_iter().map(estimate).collect::<Result<Vec<_>, _>>()?;
     let believed = |of: &Known| {
         of.with_axes(|i, axis| {
             let settings = DriveSettings::of(axis, &of.period);

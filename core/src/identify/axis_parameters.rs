@@ -43,6 +43,7 @@ use feedwright_control::axis::friction::FrictionParameters;
 use feedwright_control::axis::inverse::LoopDelays;
 use feedwright_control::axis::{Parameters, Periods};
 use nalgebra::{SMatrix, SVector};
+use rayon::prelude::*;
 use thiserror::Error;
 
 use super::recording::Recording;
@@ -339,7 +340,7 @@ impl OutputErrorFit<'_> {
             let pairs = measured_mm.iter().zip(&simulated_mm).skip(self.settled);
             pairs.map(|(measured, simulated)| measured - simulated).collect()
         };
-        self.stretches.iter().map(left).collect()
+        self.stretches.par_iter().map(left).collect()
     }
 
     fn linearised(&self, at: &AxisParameters, scales: &[f64; PARAMETERS], left: &[Vec<f64>]) -> Linearised {
