@@ -9,6 +9,7 @@
 
 pub mod vector;
 pub mod activation;
+pub mod sine;
 pub mod least_squares;
 pub mod axis;
 pub mod window;

@@ -37,7 +37,7 @@ use crate::axis::inverse::AxisInverse;
 use crate::axis::knowledge::AxisKnowledge;
 use crate::vector::norm;
 use crate::window::Window;
-use estimate::{AxisModel, Estimate, NOTHING_SENT, Sent};
+use estimate::{AxisModel, Estimate, KEPT_PERIODS, NOTHING_SENT, Sent};
 use linear::LinearAxis;
 
 /// Servo periods beyond the command that the inverse looks at.
@@ -116,8 +116,8 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             self.reset();
             return;
         };
-        for (i, axis) in self.axes.iter_mut().enumerate() {
-            axis.observe(window.offset_mm[i], position_mm[i]);
+        for ((axis, offset_mm), position_mm) in self.axes.iter_mut().zip(window.offset_mm).zip(position_mm) {
+            axis.observe(offset_mm, position_mm);
         }
     }
 
@@ -131,10 +131,13 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let here_mm = window.now().position_mm;
-        let offset_mm = core::array::from_fn(|i| {
-            let at_mm = |after_s: f64| window.at(after_s - self.lag_s).position_mm[i];
-            self.axes[i].offset_mm(here_mm[i], at_mm)
-        });
+        let (mut offset_mm, lag_s) = ([0.0; N], self.lag_s);
+        for (i, (axis, offset_mm)) in self.axes.iter_mut().zip(&mut offset_mm).enumerate() {
+            // There is an i-th axis; the compiler is not to leave a panic for where there is none.
+            let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
+            let at_mm = |after_s: f64| of_axis(window.at(after_s - lag_s).position_mm);
+            *offset_mm = axis.offset_mm(of_axis(here_mm), at_mm);
+        }
         Command::straight(1.0, offset_mm)
     }
 }
@@ -188,7 +191,7 @@ impl Tracked {
         let (axis, drive) = &mut self.position_loop;
         axis.angle_rad = self.measured_rad;
         let reference = model.drive.position_loop(&model.law, command_rad, self.measured_rad, axis, drive);
-        self.sent.rotate_right(1);
+        self.sent.copy_within(..KEPT_PERIODS - 1, 1);
         self.sent[0] = reference;
     }
 }

@@ -15,12 +15,13 @@ use crate::axis::friction::{FrictionLaw, FrictionParameters};
 use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::statistics::AxisStatistics;
 use crate::axis::{self, AxisLaw, AxisState};
+use crate::sine::sin;
 
 use super::linear::{LinearAxis, STATES, measured_rad2};
 use super::riccati::filter;
 
 /// References that are kept, servo periods: 20 ms each way at 1 ms, the most of a machine file, and some.
-const KEPT_PERIODS: usize = 48;
+pub(super) const KEPT_PERIODS: usize = 48;
 
 /// What does not change of an axis.
 #[derive(Debug, Clone)]
@@ -85,7 +86,7 @@ impl AxisModel {
     /// Torque of the motor beside the drive's at an angle, N m.
     pub(super) fn cogging_nm(&self, angle_rad: f64) -> f64 {
         let AxisStatistics { cogging_nm, cogging_per_rev, cogging_phase_rad, .. } = self.statistics;
-        cogging_nm * libm::sin(cogging_per_rev * angle_rad + cogging_phase_rad)
+        cogging_nm * sin(cogging_per_rev * angle_rad + cogging_phase_rad)
     }
 
     /// One servo period on.
@@ -100,7 +101,7 @@ impl AxisModel {
         self.predict(estimate, sent);
         let AxisStatistics { interpolation_rad, interpolation_phase_rad, signal_per_rad, .. } = self.statistics;
         let angle_rad = estimate.axis.angle_rad;
-        let shown_rad = angle_rad + interpolation_rad * libm::sin(signal_per_rad * angle_rad + interpolation_phase_rad);
+        let shown_rad = angle_rad + interpolation_rad * sin(signal_per_rad * angle_rad + interpolation_phase_rad);
         let missed_rad = measured_rad - shown_rad;
         let [x, w, i, y, acting @ ..] = self.gains.map(|gain| gain * missed_rad);
         estimate.axis.angle_rad += x;

@@ -110,7 +110,8 @@ impl LinearAxis {
     pub(super) fn acting_after(&self, acting: &[f64; 4]) -> [f64; 4] {
         let [n, p, q, d] = *acting;
         let state = [0.0, 0.0, 0.0, 0.0, n, p, q, d];
-        core::array::from_fn(|i| inner(&self.substep[4 + i], &state))
+        let [.., broadband, disturbance, quadrature, drift] = &self.substep;
+        [broadband, disturbance, quadrature, drift].map(|row| inner(row, &state))
     }
 }
 

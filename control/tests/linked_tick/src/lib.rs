@@ -14,6 +14,7 @@ use feedwright_control::controller::disturbance_rejection::DisturbanceRejection;
 use feedwright_control::controller::feedforward::Feedforward;
 use feedwright_control::controller::fuzzy_feedrate::FuzzyFeedrate;
 use feedwright_control::controller::input_shaping::InputShaping;
+use feedwright_control::controller::lqg_preview::LqgPreview;
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;
 use feedwright_control::controller::open_loop::OpenLoop;
 use feedwright_control::controller::receding_horizon::RecedingHorizon;
@@ -67,6 +68,8 @@ servo_periods! {
     open_loop_3: OpenLoop, 3;
     receding_horizon_2: RecedingHorizon<2>, 2;
     receding_horizon_3: RecedingHorizon<3>, 3;
+    lqg_preview_2: LqgPreview<2>, 2;
+    lqg_preview_3: LqgPreview<3>, 3;
     magnitude_only_2: MagnitudeOnly<2>, 2;
     magnitude_only_3: MagnitudeOnly<3>, 3;
     two_dimensional_2: TwoDimensional<2>, 2;
