@@ -122,9 +122,9 @@ impl<const N: usize> Guard<N> {
         let good = controller.prediction_error_mm() < GOOD_SHARE * self.wrong_mm();
         let over = fade::is_over(window.offset_mm, window.offset_mm_s);
         let command = match self.engagement.go_on(bad, good, over, window.feed_period_s) {
-            State::Engaged => self.hold(window, wanted),
-            State::Shadow => self.hold(window, Command::AS_PLANNED),
-            State::Fading => self.hold(window, self.faded(window)),
+            State::Engaged => self.hold(window, wanted, controller.acts_at_once()),
+            State::Shadow => self.hold(window, Command::AS_PLANNED, controller.acts_at_once()),
+            State::Fading => self.hold(window, self.faded(window), controller.acts_at_once()),
         };
         self.rate = command.rate;
         command
@@ -174,8 +174,9 @@ impl<const N: usize> Guard<N> {
         Command::accelerated(window, acceleration)
     }
 
-    /// The command within the bounds. That of the deviation goes before the others.
-    fn hold(&self, window: &Window<'_, N>, wanted: Command<N>) -> Command<N> {
+    /// The command within the bounds. That of the deviation goes before the others. An offset that is there at once is one from the
+    /// path as it is now, any other from where it leads to in a feed period.
+    fn hold(&self, window: &Window<'_, N>, wanted: Command<N>, at_once: bool) -> Command<N> {
         let period_s = window.feed_period_s;
         let Bounds { deviation_mm, speed_mm_s, acceleration_mm_s2, .. } = self.bounds;
         let velocity = scale(1.0 / period_s, sub(wanted.offset_mm, window.offset_mm));
@@ -187,8 +188,12 @@ impl<const N: usize> Guard<N> {
         let free = add_scaled(window.offset_mm, period_s, velocity);
         let same = norm(sub(free, wanted.offset_mm)) <= SAME_MM;
         let offset_mm = if same { wanted.offset_mm } else { free };
-        let end_mm = near_the_path(window, rate * period_s, offset_mm, deviation_mm);
-        let near_mm = self.near_on_the_way(window, rate * period_s, end_mm);
+        let near_mm = if at_once {
+            near_the_path(window, 0.0, offset_mm, deviation_mm)
+        } else {
+            let end_mm = near_the_path(window, rate * period_s, offset_mm, deviation_mm);
+            self.near_on_the_way(window, rate * period_s, end_mm)
+        };
         if same && near_mm == offset_mm {
             return Command { rate, ..wanted };
         }

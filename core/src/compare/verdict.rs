@@ -44,6 +44,8 @@ pub const ALL_WORK: &str = "all work";
 pub const DELIVERED: &str = "feedforward-as-delivered";
 /// The peer that knows all that can be known, statistics of the noise included: a bound on what can be reached, not a competitor.
 pub const LIMIT: &str = "lqg-preview";
+/// No peers of each other: the default, and what is to follow it.
+const OURS: [&str; 2] = [BEST, "lqg-identified"];
 /// The same where there is no noise: it has the exact model and unlimited computing time.
 const NOISELESS_LIMIT: &str = "model-predictive";
 /// The best of the peers that controls could have tomorrow.
@@ -216,7 +218,7 @@ impl<'a> RowsHere<'a> {
     fn peers(&self, known: &[Knows]) -> impl Iterator<Item = &'a ComparisonRow> {
         self.rows.iter().copied().filter(|row| {
             let own = Competitor::find(&row.controller).is_some_and(|peer| peer.knowledge == Knowledge::Own);
-            let is_other = own && row.controller != BEST && row.controller != LIMIT;
+            let is_other = own && !OURS.contains(&row.controller.as_str()) && row.controller != LIMIT;
             is_other && row.completed && knows(row).is_some_and(|knows| known.contains(&knows))
         })
     }
