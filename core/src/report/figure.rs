@@ -34,6 +34,8 @@ pub struct Panel {
     pub curves: Vec<Polyline>,
     /// Whether a unit has the same length on both axes, as a path needs it.
     pub equal_axes: bool,
+    /// Whether both axes are logarithmic: points and ranges are the powers of ten, and ticks tell the numbers.
+    pub powers_of_ten: bool,
     /// Range of the horizontal axis; from the curves where there is none.
     pub x_range: Option<[f64; 2]>,
     /// Range of the vertical axis; from the curves where there is none.

@@ -36,6 +36,23 @@ pub(super) fn ticks([low, high]: [f64; 2], wanted: f64) -> Vec<(f64, String)> {
         .collect()
 }
 
+/// Ticks of a logarithmic axis whose range is in powers of ten: at 1, 2 and 5 times each, or at the powers alone where that is too many.
+pub(super) fn ticks_of_powers([low, high]: [f64; 2], wanted: f64) -> Vec<(f64, String)> {
+    let powers = (low.floor() as i32)..=(high.ceil() as i32);
+    let at = |digits: &[f64]| -> Vec<(f64, String)> {
+        let numbers = powers.clone().flat_map(|power| digits.iter().map(move |digit| (*digit, power)));
+        numbers
+            .map(|(digit, power)| (f64::from(power) + digit.log10(), digit * 10f64.powi(power), power))
+            .filter(|(place, ..)| (low - 1e-9..=high + 1e-9).contains(place))
+            .map(|(place, number, power)| {
+                (place, crate::report::text::fixed(number, usize::try_from(-power).unwrap_or(0)))
+            })
+            .collect()
+    };
+    let all = at(&[1.0, 2.0, 5.0]);
+    if all.len() as f64 <= 2.0 * wanted { all } else { at(&[1.0]) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -46,5 +63,14 @@ mod tests {
         assert_eq!(texts([-20.0, 31.0], 5.0), ["−20", "−10", "0", "10", "20", "30"]);
         assert_eq!(texts([0.0, 1.76], 4.0), ["0.0", "0.5", "1.0", "1.5"]);
         assert_eq!(texts([0.0, 0.001], 2.0), ["0.0000", "0.0005", "0.0010"]);
+    }
+
+    #[test]
+    fn ticks_of_powers_are_numbers() {
+        let texts = |r, n| ticks_of_powers(r, n).into_iter().map(|t| t.1).collect::<Vec<_>>();
+        assert_eq!(texts([-2.0, 0.5], 5.0), ["0.01", "0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"]);
+        assert_eq!(texts([-1.5, 3.0], 4.0), ["0.1", "1", "10", "100", "1000"]);
+        let places = ticks_of_powers([0.0, 0.4], 5.0).into_iter().map(|t| t.0).collect::<Vec<_>>();
+        assert_eq!(places, [0.0, 2f64.log10()]);
     }
 }

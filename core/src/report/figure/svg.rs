@@ -16,6 +16,8 @@ const LABELS_PX: f64 = 26.0;
 const AXIS_TITLE_PX: f64 = 20.0;
 const GAP_PX: f64 = 22.0;
 const LEGEND_PX: f64 = 28.0;
+/// Of each line of the legend behind the first.
+const LEGEND_LINE_PX: f64 = 18.0;
 const TICK_PX: f64 = 5.0;
 /// Distance of ticks aimed at.
 const X_TICK_PX: f64 = 75.0;
@@ -39,6 +41,7 @@ struct Area {
     height: f64,
     x: [f64; 2],
     y: [f64; 2],
+    ticks: fn([f64; 2], f64) -> Vec<(f64, String)>,
 }
 
 impl Area {
@@ -56,8 +59,8 @@ pub(super) fn write(figure: &Figure) -> String {
     let aspect = if figure.aspect > 0.0 { figure.aspect } else { DEFAULT_ASPECT };
     let entries = legend(figure);
     let mut body = String::new();
-    let mut top = if entries.is_empty() { 2.0 } else { LEGEND_PX };
-    put_legend(&mut body, &entries);
+    let lines = put_legend(&mut body, &entries);
+    let mut top = if lines == 0 { 2.0 } else { LEGEND_PX + LEGEND_LINE_PX * (lines - 1) as f64 };
     let left = figure.panels.iter().map(|p| left_room(p, aspect, columns)).fold(0.0, f64::max);
     let cell = (WIDTH - GAP_PX * (columns - 1) as f64) / columns as f64;
     for row in figure.panels.chunks(columns) {
@@ -82,7 +85,7 @@ fn left_room(panel: &Panel, aspect: f64, columns: usize) -> f64 {
     // What the room leaves is not known yet; a tenth more or less makes the same labels.
     let width = 0.85 * WIDTH / columns as f64;
     let area = fitted(panel, 0.0, 0.0, width, width * aspect);
-    let labels = axis::ticks(area.y, area.height / Y_TICK_PX);
+    let labels = (area.ticks)(area.y, area.height / Y_TICK_PX);
     let widest = labels.iter().map(|t| t.1.chars().count()).max().unwrap_or(1);
     DIGIT_PX * widest as f64 + 8.0 + if panel.y_title.is_empty() { 0.0 } else { 22.0 }
 }
@@ -98,7 +101,8 @@ fn fitted(panel: &Panel, left: f64, top: f64, width: f64, height: f64) -> Area {
         let about = |r: [f64; 2], px: f64| [0.5 * (r[0] + r[1] - per_px * px), 0.5 * (r[0] + r[1] + per_px * px)];
         (x, y) = (about(x, width), about(y, height));
     }
-    Area { left, top, width, height, x, y }
+    let ticks = if panel.powers_of_ten { axis::ticks_of_powers } else { axis::ticks };
+    Area { left, top, width, height, x, y, ticks }
 }
 
 /// `title_x` is where the title of the vertical axis stands, from the left of the area.
@@ -108,7 +112,7 @@ fn put_panel(out: &mut String, panel: &Panel, area: &Area, title_x: f64) {
     if !panel.title.is_empty() {
         put!(out, "<text x=\"0\" y=\"-8\" font-weight=\"600\">{}</text>\n", escaped(&panel.title));
     }
-    if area.y[0] < 0.0 && area.y[1] > 0.0 && !panel.equal_axes {
+    if area.y[0] < 0.0 && area.y[1] > 0.0 && !panel.equal_axes && !panel.powers_of_ten {
         let zero = area.py(0.0);
         put!(
             out,
@@ -144,12 +148,12 @@ fn put_panel(out: &mut String, panel: &Panel, area: &Area, title_x: f64) {
 fn put_axes(out: &mut String, area: &Area) {
     let (width, height) = (area.width, area.height);
     let (mut marks, mut labels) = (String::new(), String::new());
-    for (value, text) in axis::ticks(area.x, width / X_TICK_PX) {
+    for (value, text) in (area.ticks)(area.x, width / X_TICK_PX) {
         let x = area.px(value);
         put!(marks, "M{x:.2} {height:.2}v-{TICK_PX}M{x:.2} 0v{TICK_PX}");
         put!(labels, "<text x=\"{x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{text}</text>\n", height + 17.0);
     }
-    for (value, text) in axis::ticks(area.y, height / Y_TICK_PX) {
+    for (value, text) in (area.ticks)(area.y, height / Y_TICK_PX) {
         let y = area.py(value);
         put!(marks, "M0 {y:.2}h{TICK_PX}M{width:.2} {y:.2}h-{TICK_PX}");
         put!(labels, "<text x=\"-7\" y=\"{:.1}\" text-anchor=\"end\">{text}</text>\n", y + 0.34 * FONT_PX);
@@ -198,13 +202,20 @@ fn legend(figure: &Figure) -> Vec<&Polyline> {
     entries
 }
 
-fn put_legend(out: &mut String, entries: &[&Polyline]) {
-    let mut x = 0.0;
+/// Puts the legend; its lines.
+fn put_legend(out: &mut String, entries: &[&Polyline]) -> usize {
+    let (mut x, mut lines) = (0.0, usize::from(!entries.is_empty()));
     for curve in entries {
-        put!(out, "<path d=\"M{x:.1} 11h28\" fill=\"none\" {}/>\n", stroke(curve));
-        put!(out, "<text x=\"{:.1}\" y=\"15.5\">{}</text>\n", x + 35.0, escaped(&curve.label));
+        let end = x + 35.0 + text_px(&curve.label);
+        if x > 0.0 && end > WIDTH {
+            (x, lines) = (0.0, lines + 1);
+        }
+        let down = LEGEND_LINE_PX * (lines - 1) as f64;
+        put!(out, "<path d=\"M{x:.1} {}h28\" fill=\"none\" {}/>\n", 11.0 + down, stroke(curve));
+        put!(out, "<text x=\"{:.1}\" y=\"{}\">{}</text>\n", x + 35.0, 15.5 + down, escaped(&curve.label));
         x += 35.0 + text_px(&curve.label) + 22.0;
     }
+    lines
 }
 
 /// Width of a text, roughly: what the reader's font makes of it is not known here.
