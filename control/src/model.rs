@@ -69,12 +69,12 @@ impl<const N: usize> IdentifiedAxes<N> {
     pub const NULL: Self = Self { mechanics_s: 0.0, axes: [AxisKnowledge::NOTHING; N] };
 
     /// Its numbers in the order of the block, each with what it is bound by.
-    fn numbers(&mut self, each: &mut impl FnMut(&Bounds, &mut [f64])) {
+    fn numbers(&mut self, each: &mut impl FnMut(&NumberBounds, &mut [f64])) {
         let [least, most] = MECHANICS_PERIODS_S;
-        each(&Bounds::Within(least, most), slice::from_mut(&mut self.mechanics_s));
+        each(&NumberBounds::Within(least, most), slice::from_mut(&mut self.mechanics_s));
         for axis in &mut self.axes {
             for number in AxisKnowledge::NUMBERS {
-                each(&Bounds::Of(number), slice::from_mut((number.of)(axis)));
+                each(&NumberBounds::Of(number), slice::from_mut((number.of)(axis)));
             }
         }
     }
@@ -86,7 +86,7 @@ impl<const N: usize> IdentifiedAxes<N> {
         let whole = libm::round(ratio);
         // What is not a number is no whole one.
         let is_whole = libm::fabs(ratio - whole) <= WHOLE_RATIO_TOLERANCE * ratio;
-        if !(is_whole && whole >= 1.0 && whole <= MAX_MECHANICS_PER_SERVO) {
+        if !(is_whole && (1.0..=MAX_MECHANICS_PER_SERVO).contains(&whole)) {
             return None;
         }
         let periods = Periods { servo_s, mechanics_s: self.mechanics_s, mechanics_per_servo: whole as u32 };
@@ -182,8 +182,8 @@ impl<const N: usize> ModelBlock<N> {
         if crc_32(content) != u32::from_le_bytes(*checksum) {
             return Err(BlockError::Checksum);
         }
-        let servo_s = rest.number(&Bounds::within(SERVO_PERIODS_S))?;
-        let feed_period_s = rest.number(&Bounds::within(FEED_PERIODS_S))?;
+        let servo_s = rest.number(&NumberBounds::within(SERVO_PERIODS_S))?;
+        let feed_period_s = rest.number(&NumberBounds::within(FEED_PERIODS_S))?;
         let mut fault = None;
         trained.numbers(&mut |bounds, group| {
             for value in group {
@@ -247,13 +247,13 @@ impl<const N: usize> Trained<N> {
     }
 
     /// All numbers in the order of the block, group by group, with what they are bound by.
-    fn numbers(&mut self, each: &mut impl FnMut(&Bounds, &mut [f64])) {
-        let weight = Bounds::Within(-MAX_WEIGHT, MAX_WEIGHT);
+    fn numbers(&mut self, each: &mut impl FnMut(&NumberBounds, &mut [f64])) {
+        let weight = NumberBounds::Within(-MAX_WEIGHT, MAX_WEIGHT);
         match self {
             Self::Contour(net) => net.weights(&mut |_, group| each(&weight, group)),
             Self::Servo(net, spread) => {
                 net.weights(&mut |_, group| each(&weight, group));
-                each(&Bounds::Within(-MAX_SPREAD, MAX_SPREAD), spread.as_flattened_mut().as_flattened_mut());
+                each(&NumberBounds::Within(-MAX_SPREAD, MAX_SPREAD), spread.as_flattened_mut().as_flattened_mut());
             }
             Self::Axes(axes) => axes.numbers(each),
         }
@@ -272,14 +272,14 @@ impl<const N: usize> Trained<N> {
 }
 
 /// What a number is bound by.
-enum Bounds {
+enum NumberBounds {
     /// Least and most.
     Within(f64, f64),
     /// The range of a number of an axis.
     Of(&'static Number),
 }
 
-impl Bounds {
+impl NumberBounds {
     fn within([least, most]: [f64; 2]) -> Self {
         Self::Within(least, most)
     }
@@ -308,7 +308,7 @@ impl Bytes<'_> {
     }
 
     /// The next number, which these are to hold.
-    fn number(&mut self, bounds: &Bounds) -> Result<f64, BlockError> {
+    fn number(&mut self, bounds: &NumberBounds) -> Result<f64, BlockError> {
         let index = self.number;
         self.number += 1;
         let number = f64::from_le_bytes(self.take().ok_or(BlockError::Length)?);
