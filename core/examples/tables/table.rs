@@ -98,6 +98,7 @@ const SHOWN: &[&str] = &[
     "feedforward-cross-coupled",
     "model-predictive",
     "receding-horizon",
+    "lqg-identified",
 ];
 
 fn controllers(comparison: &Comparison) -> Vec<&str> {

@@ -28,7 +28,7 @@ use feedwright_control::axis::statistics::AxisStatistics;
 use super::recording::Recording;
 use crate::machine::{Known, KnownAxis, Period};
 use innovation::{AxisFilter, Innovations};
-use noise::{Noise, Seen};
+use noise::{NoiseFit, Seen};
 use place::{Through, Wave, Weighed};
 use spectrum::Spectrum;
 
@@ -109,8 +109,8 @@ fn of_axis(stretches: &[Vec<[f64; 2]>], known: &KnownAxis, period: &Period) -> A
 /// What repeats with place: the stronger kind first, the other in what is left.
 fn waves(
     weighed: &Weighed<'_>,
-    responses: &[Vec<spectrum::Complex>; 2],
-    noise: &Noise,
+    responses: &[Vec<spectrum::Phasor>; 2],
+    noise: &NoiseFit,
     servo_s: f64,
     [step_rad, least_nm]: [f64; 2],
 ) -> Vec<(Through, Wave)> {
@@ -132,11 +132,11 @@ fn waves(
 }
 
 /// Least interpolation error that is of use, rad.
-fn least_rad(noise: &Noise) -> f64 {
+fn least_rad(noise: &NoiseFit) -> f64 {
     (LEAST_INTERPOLATION * noise.encoder_rad2.sqrt()).max(LEAST_NOISES * innovation::LEAST_NOISE_RAD)
 }
 
-fn statistics(noise: &Noise, waves: &[(Through, Wave)], step_rad: f64) -> AxisStatistics {
+fn statistics(noise: &NoiseFit, waves: &[(Through, Wave)], step_rad: f64) -> AxisStatistics {
     let of_steps_rad2 = step_rad * step_rad / 12.0;
     let least_rad2 = (STEPS_ALONE * of_steps_rad2).max(4.0 * innovation::LEAST_NOISE_RAD.powi(2));
     let alone = noise.encoder_rad2 < least_rad2;

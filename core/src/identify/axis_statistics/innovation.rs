@@ -16,13 +16,13 @@ use feedwright_control::axis::drive::{DriveLaw, DriveReference, DriveState};
 use feedwright_control::axis::friction::{FrictionLaw, FrictionParameters};
 use feedwright_control::axis::{self, AxisLaw, AxisState};
 
-use super::spectrum::{Complex, transformed};
+use super::spectrum::{Phasor, transformed};
 use crate::machine::{KnownAxis, Period};
 
 /// Angle, speed, integral, filtered torque, load.
 const STATES: usize = 5;
-type Vector = [f64; STATES];
-type Matrix = [Vector; STATES];
+type FilterVector = [f64; STATES];
+type Matrix = [FilterVector; STATES];
 
 /// The load that the filter expects, as a part of the Coulomb friction, and how long it lasts, s: any that is of use to know.
 const LOAD_SHARE: f64 = 0.3;
@@ -49,7 +49,7 @@ pub(super) struct AxisFilter {
     friction: Option<FrictionLaw>,
     /// Mechanics periods from a measurement until it is there plus those from a reference until it acts.
     late: u32,
-    gains: Vector,
+    gains: FilterVector,
     linear: Matrix,
     /// Below this speed, rad/s, and within this way of a reversal, rad, friction turns.
     turning: [f64; 2],
@@ -57,7 +57,7 @@ pub(super) struct AxisFilter {
 
 /// What is estimated of an axis.
 #[derive(Debug, Clone, Copy, Default)]
-struct State {
+struct FilterState {
     axis: AxisState,
     drive: DriveState,
     presliding_nm: f64,
@@ -133,7 +133,7 @@ impl AxisFilter {
         let periods = |s: f64| (s / servo_s).ceil() as usize;
         let Some(&[_, first_rad]) = stretch.first() else { return };
         let start = AxisState { angle_rad: first_rad, ..AxisState::default() };
-        let mut state = State { axis: start, ..State::default() };
+        let mut state = FilterState { axis: start, ..FilterState::default() };
         let mut position_loop = (start, DriveState::default());
         let mut sent: Vec<DriveReference> = Vec::with_capacity(stretch.len());
         let (mut turns_for, mut turned_rad, mut forward) = (0, first_rad, true);
@@ -158,7 +158,7 @@ impl AxisFilter {
         }
     }
 
-    fn correct(&self, state: &mut State, error_rad: f64) {
+    fn correct(&self, state: &mut FilterState, error_rad: f64) {
         let [x, w, i, y, d] = self.gains.map(|gain| gain * error_rad);
         state.axis.angle_rad += x;
         state.axis.speed_rad_s += w;
@@ -167,7 +167,7 @@ impl AxisFilter {
     }
 
     /// From a measurement to the next: what was sent last acts only as many mechanics periods later as everything is late.
-    fn servo_period(&self, state: &mut State, sent: &[DriveReference]) {
+    fn servo_period(&self, state: &mut FilterState, sent: &[DriveReference]) {
         let per_servo = self.law.periods.mechanics_per_servo;
         for n in 0..per_servo {
             // Time is that of the measurement.
@@ -177,7 +177,7 @@ impl AxisFilter {
         }
     }
 
-    fn substep(&self, state: &mut State, reference: DriveReference) {
+    fn substep(&self, state: &mut FilterState, reference: DriveReference) {
         let (law, axis) = (&self.law, &mut state.axis);
         let drive_nm = self.drive.torque_nm(law, reference, axis.speed_rad_s, &mut state.drive);
         let forces_nm = drive_nm - state.load_nm;
@@ -200,13 +200,13 @@ impl AxisFilter {
         // Far beyond all speeds over which friction turns, and a way that presliding needs.
         let sliding_rad_s = 100.0 * self.turning[0] + self.turning[1] / self.law.periods.servo_s;
         let reference = DriveReference { speed_rad_s: sliding_rad_s, torque_nm: 0.0 };
-        let after = |by: Vector| -> Vector {
+        let after = |by: FilterVector| -> FilterVector {
             let [x, w, i, y, d] = by;
             let axis = AxisState { angle_rad: x, speed_rad_s: sliding_rad_s + w, error_rad: 0.0 };
             let mut drive = DriveState::default();
             drive.correct(i, y);
             let presliding_nm = self.law.parameters.coulomb_friction_nm;
-            let mut state = State { axis, drive, presliding_nm, load_nm: d };
+            let mut state = FilterState { axis, drive, presliding_nm, load_nm: d };
             (0..self.law.periods.mechanics_per_servo).for_each(|_| self.substep(&mut state, reference));
             let (drive, axis) = (state.drive, state.axis);
             [axis.angle_rad, axis.speed_rad_s, drive.integral_nm(), drive.filtered_nm(), state.load_nm]
@@ -224,28 +224,28 @@ impl AxisFilter {
     }
 
     /// What a load of 1 N m in a servo period adds to the states at its end; it leaves none behind.
-    fn push(&self) -> Vector {
-        let mut push: Vector = std::array::from_fn(|i| self.linear[i][STATES - 1]);
+    fn push(&self) -> FilterVector {
+        let mut push: FilterVector = std::array::from_fn(|i| self.linear[i][STATES - 1]);
         push[STATES - 1] = 0.0;
         push
     }
 
     /// Gains for a load that wanders by `load_nm` in [`LOAD_S`] and is new by that in each servo period, and a noise, rad: by iterating
     /// the Riccati equation, Anderson and Moore (1979), Optimal Filtering, section 4.4.
-    fn kalman(&self, load_nm: f64, noise_rad: f64) -> Vector {
+    fn kalman(&self, load_nm: f64, noise_rad: f64) -> FilterVector {
         let (push, variance) = (self.push(), noise_rad * noise_rad);
         let wander_nm2 = load_nm * load_nm * self.law.periods.servo_s / LOAD_S;
         let mut covariance: Matrix = [[0.0; STATES]; STATES];
         let mut gains = [0.0; STATES];
         for _ in 0..RICCATI_STEPS {
-            let seen: Vector = std::array::from_fn(|i| covariance[i][0]);
+            let seen: FilterVector = std::array::from_fn(|i| covariance[i][0]);
             gains = seen.map(|p| p / (seen[0] + variance));
             let updated: Matrix =
                 std::array::from_fn(|i| std::array::from_fn(|j| covariance[i][j] - gains[i] * seen[j]));
             let half: Matrix = std::array::from_fn(|i| {
                 std::array::from_fn(|j| (0..STATES).map(|k| self.linear[i][k] * updated[k][j]).sum())
             });
-            let inner = |a: &Vector, b: &Vector| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let inner = |a: &FilterVector, b: &FilterVector| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
             let next = |i: usize, j: usize| {
                 let both = 0.5 * (inner(&half[i], &self.linear[j]) + inner(&half[j], &self.linear[i]));
                 both + load_nm * load_nm * push[i] * push[j]
@@ -258,8 +258,8 @@ impl AxisFilter {
 
     /// What becomes of the innovations after 1 N m of load in a servo period, and after 1 rad of the encoder at a measurement: as
     /// transforms over `length` samples.
-    pub(super) fn responses(&self, length: usize) -> [Vec<Complex>; 2] {
-        let run = |mut off: Vector, first: f64| {
+    pub(super) fn responses(&self, length: usize) -> [Vec<Phasor>; 2] {
+        let run = |mut off: FilterVector, first: f64| {
             let mut response = vec![first];
             while response.len() < length / 2 {
                 response.push(off[0]);
@@ -273,8 +273,8 @@ impl AxisFilter {
     }
 
     /// By how much true states are ahead of estimated ones a servo period later, after such an innovation.
-    fn off_after(&self, off: Vector, innovation_rad: f64) -> Vector {
-        let corrected: Vector = std::array::from_fn(|i| off[i] - self.gains[i] * innovation_rad);
+    fn off_after(&self, off: FilterVector, innovation_rad: f64) -> FilterVector {
+        let corrected: FilterVector = std::array::from_fn(|i| off[i] - self.gains[i] * innovation_rad);
         std::array::from_fn(|i| self.linear[i].iter().zip(&corrected).map(|(a, x)| a * x).sum())
     }
 }

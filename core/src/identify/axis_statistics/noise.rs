@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 
 use super::innovation::LEAST_NOISE_RAD;
 use super::search::least;
-use super::spectrum::{Complex, Spectrum, power};
+use super::spectrum::{Phasor, Spectrum, power};
 
 /// Growth of ln L beyond which a term is admitted: chance gives 9.2 for three variables once in 10,000 times, and twice that lets
 /// the frequency be searched for.
@@ -40,7 +40,7 @@ const BESIDE: usize = 60;
 
 /// What the spectrum shows.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) struct Noise {
+pub(super) struct NoiseFit {
     /// Variance of the encoder, noise and steps, rad^2.
     pub(super) encoder_rad2: f64,
     /// RMS of the broadband torque, N m, and its correlation time, s.
@@ -57,7 +57,7 @@ pub(super) struct Noise {
     pub(super) left_rad2: f64,
 }
 
-impl Noise {
+impl NoiseFit {
     /// Expected spectrum at a frequency, Hz, of responses whose power is given; `window_hz` widens the line.
     pub(super) fn at(&self, hz: f64, [load, encoder]: [f64; 2], servo_s: f64, window_hz: f64) -> f64 {
         let keep = (-servo_s / self.torque_s.max(1e-9)).exp();
@@ -91,7 +91,7 @@ pub(super) struct Seen {
 
 impl Seen {
     /// With responses over as many samples as the segments of the spectrum.
-    pub(super) fn new(spectrum: &Spectrum, [load, encoder]: &[Vec<Complex>; 2], servo_s: f64) -> Self {
+    pub(super) fn new(spectrum: &Spectrum, [load, encoder]: &[Vec<Phasor>; 2], servo_s: f64) -> Self {
         let range = (0..spectrum.power.len()).filter(|&n| spectrum.at(n) / servo_s >= LEAST_HZ);
         let mean_rad2 = range.clone().map(|n| spectrum.power[n]).sum::<f64>() / range.clone().count().max(1) as f64;
         let left_rad2 = LEFT_SHARE * mean_rad2;
@@ -110,7 +110,7 @@ impl Seen {
     }
 
     /// - ln L.
-    fn cost(&self, noise: &Noise) -> f64 {
+    fn cost(&self, noise: &NoiseFit) -> f64 {
         let at = |(&hz, &responses)| noise.at(hz, responses, self.servo_s, self.window_hz);
         let expected = self.hz.iter().zip(&self.responses).map(at);
         let terms = expected.zip(&self.power).zip(&self.counts).map(|((s, i), count)| count * (s.ln() + i / s));
@@ -137,7 +137,7 @@ impl Seen {
     }
 
     /// What is most likely; of a torque below `least_nm` nothing is said.
-    pub(super) fn noise(&self, least_nm: f64) -> Noise {
+    pub(super) fn noise(&self, least_nm: f64) -> NoiseFit {
         let line = self.line();
         let seen = self.grouped(line.map(|line| line.line_hz));
         let white = seen.white();
@@ -161,30 +161,30 @@ impl Seen {
 
     /// An encoder alone: by the median in the upper half of the frequencies, that of an exponential distribution being ln 2 times its mean
     /// and that of many of them near to it.
-    fn white(&self) -> Noise {
+    fn white(&self) -> NoiseFit {
         let upper = self.power.len() / 2..;
         let mut shares: Vec<f64> =
             self.power[upper.clone()].iter().zip(&self.responses[upper]).map(|(i, [_, n])| i / n).collect();
         let encoder_rad2 = median(&mut shares).max(least_rad2());
-        let start = Noise { encoder_rad2, left_rad2: self.left_rad2, ..Noise::default() };
-        let made = |[r]: &[f64; 1]| Noise { encoder_rad2: r.exp() + least_rad2(), ..start };
+        let start = NoiseFit { encoder_rad2, left_rad2: self.left_rad2, ..NoiseFit::default() };
+        let made = |[r]: &[f64; 1]| NoiseFit { encoder_rad2: r.exp() + least_rad2(), ..start };
         let ([r], _) = least([start.encoder_rad2.ln()], [0.3], |at| self.cost(&made(at)));
         made(&[r])
     }
 
     /// Encoder and broadband torque, and the cost.
-    fn broadband(&self, white: Noise) -> (Noise, f64) {
+    fn broadband(&self, white: NoiseFit) -> (NoiseFit, f64) {
         let mut excess: Vec<f64> = self.power.iter().zip(&self.responses).map(|(i, [load, _])| i / load).collect();
         let torque_nm = median(&mut excess).max(1e-30).sqrt();
         [0.001, 0.005, 0.02]
-            .map(|torque_s| self.refined(Noise { torque_nm, torque_s, ..white }, true))
+            .map(|torque_s| self.refined(NoiseFit { torque_nm, torque_s, ..white }, true))
             .into_iter()
             .min_by(|a, b| a.1.total_cmp(&b.1))
             .unwrap_or((white, f64::INFINITY))
     }
 
     /// Where a line may be: what is furthest above its surroundings.
-    fn line(&self) -> Option<Noise> {
+    fn line(&self) -> Option<NoiseFit> {
         let beside = |n: usize| {
             let mut around = self.power[n.saturating_sub(BESIDE)..(n + BESIDE).min(self.power.len())].to_vec();
             median(&mut around)
@@ -195,13 +195,13 @@ impl Seen {
         let range = n.saturating_sub(BESIDE / 2)..(n + BESIDE / 2).min(self.power.len());
         let nm2: f64 = range.map(|n| (self.power[n] - level).max(0.0) / self.responses[n][0]).sum();
         let line_nm = (4.0 * nm2 * step_hz * self.servo_s).sqrt();
-        Some(Noise { line_nm, line_hz: self.hz[n], wander_hz: 0.02 * self.hz[n], ..Noise::default() })
+        Some(NoiseFit { line_nm, line_hz: self.hz[n], wander_hz: 0.02 * self.hz[n], ..NoiseFit::default() })
     }
 
     /// The most likely near a start, and the cost.
-    fn refined(&self, start: Noise, broad: bool) -> (Noise, f64) {
+    fn refined(&self, start: NoiseFit, broad: bool) -> (NoiseFit, f64) {
         let Self { servo_s, window_hz, .. } = *self;
-        let made = |[r, s, t, d, f, v]: &[f64; 6]| Noise {
+        let made = |[r, s, t, d, f, v]: &[f64; 6]| NoiseFit {
             encoder_rad2: r.exp() + least_rad2(),
             torque_nm: if broad { s.exp() } else { 0.0 },
             torque_s: if broad { t.exp() } else { 0.0 },
@@ -221,7 +221,7 @@ impl Seen {
             if is_within { self.cost(&noise) } else { f64::INFINITY }
         };
         let log = |x: f64, least: f64| x.max(least).ln();
-        let Noise { encoder_rad2, torque_nm, torque_s, line_nm, wander_hz, .. } = start;
+        let NoiseFit { encoder_rad2, torque_nm, torque_s, line_nm, wander_hz, .. } = start;
         let from = [
             encoder_rad2.ln(),
             log(torque_nm, 1e-15),
@@ -238,8 +238,8 @@ impl Seen {
 }
 
 /// A line beside other noise.
-fn with_line(line: &Noise, noise: &Noise) -> Noise {
-    Noise { line_nm: line.line_nm, line_hz: line.line_hz, wander_hz: line.wander_hz, ..*noise }
+fn with_line(line: &NoiseFit, noise: &NoiseFit) -> NoiseFit {
+    NoiseFit { line_nm: line.line_nm, line_hz: line.line_hz, wander_hz: line.wander_hz, ..*noise }
 }
 
 fn least_rad2() -> f64 {

@@ -15,8 +15,8 @@
 use std::f64::consts::TAU;
 
 use super::innovation::Innovations;
-use super::noise::{LEAST_HZ, Noise};
-use super::spectrum::{Complex, conjugate, power, times, transform, transform_back, transformed, turned};
+use super::noise::{LEAST_HZ, NoiseFit};
+use super::spectrum::{Phasor, conjugate, power, times, transform, transform_back, transformed, turned};
 
 /// A term that is not there is admitted once in so many times.
 const CHANCE: f64 = 1e-6;
@@ -55,7 +55,7 @@ pub(super) struct Weighed<'a> {
     innovations: &'a Innovations,
     length: usize,
     /// Responses to a load and to the encoder.
-    responses: &'a [Vec<Complex>; 2],
+    responses: &'a [Vec<Phasor>; 2],
     /// 1 / S.
     weights: Vec<f64>,
 }
@@ -73,8 +73,8 @@ impl<'a> Weighed<'a> {
     /// By the spectrum of a noise; the responses are over `length` samples, a power of two above the number of innovations.
     pub(super) fn new(
         innovations: &'a Innovations,
-        responses: &'a [Vec<Complex>; 2],
-        noise: &Noise,
+        responses: &'a [Vec<Phasor>; 2],
+        noise: &NoiseFit,
         servo_s: f64,
     ) -> Self {
         let length = responses[0].len();
@@ -92,9 +92,9 @@ impl<'a> Weighed<'a> {
     pub(super) fn cogging(&self, least_nm: f64) -> Option<(Wave, f64)> {
         let adjoint = self.adjoint(Through::Motor);
         let middles: Vec<f64> = self.middles().collect();
-        let steps: Vec<Complex> = middles.iter().map(|&angle_rad| turned(angle_rad)).collect();
+        let steps: Vec<Phasor> = middles.iter().map(|&angle_rad| turned(angle_rad)).collect();
         let information = self.information(&middles);
-        let mut turns: Vec<Complex> = vec![[1.0, 0.0]; steps.len()];
+        let mut turns: Vec<Phasor> = vec![[1.0, 0.0]; steps.len()];
         let mut candidates: Vec<(f64, f64)> = Vec::new();
         for n in 1..=MOST_PER_REV {
             let mut score = [0.0; 2];
@@ -137,7 +137,7 @@ impl<'a> Weighed<'a> {
     /// The frequency near one at which the score is greatest, by golden section.
     fn finest(&self, adjoint: &[f64], per_rad: f64, unit: f64) -> f64 {
         let score = |per_rad: f64| {
-            let add = |sum: Complex, (angle, a): (&f64, &f64)| {
+            let add = |sum: Phasor, (angle, a): (&f64, &f64)| {
                 let [cos, sin] = turned(per_rad * angle);
                 [sum[0] + a * cos, sum[1] + a * sin]
             };
@@ -194,14 +194,14 @@ impl<'a> Weighed<'a> {
     }
 
     /// The waves, and by how much 2 ln L grows with them; none where they cannot be told from each other.
-    fn fitted(&self, error: &[Complex], waves: &[(Through, f64)]) -> Option<(Vec<Wave>, f64)> {
-        let columns: Vec<Vec<Complex>> = waves
+    fn fitted(&self, error: &[Phasor], waves: &[(Through, f64)]) -> Option<(Vec<Wave>, f64)> {
+        let columns: Vec<Vec<Phasor>> = waves
             .iter()
             .flat_map(|&(through, per_rad)| self.regressors(through, per_rad))
             .map(|column| self.transformed(&column))
             .collect();
-        let inner = |u: &[Complex], v: &[Complex]| {
-            let product = |((u, v), w): ((&Complex, &Complex), &f64)| w * (u[0] * v[0] + u[1] * v[1]);
+        let inner = |u: &[Phasor], v: &[Phasor]| {
+            let product = |((u, v), w): ((&Phasor, &Phasor), &f64)| w * (u[0] * v[0] + u[1] * v[1]);
             u.iter().zip(v).zip(&self.weights).map(product).sum::<f64>() / self.length as f64
         };
         let scores: Vec<f64> = columns.iter().map(|column| inner(column, error)).collect();
@@ -215,7 +215,7 @@ impl<'a> Weighed<'a> {
     /// What cos and sin of an angle make of the innovations.
     fn regressors(&self, through: Through, per_rad: f64) -> [Vec<f64>; 2] {
         let length = self.length;
-        let mut values: Vec<Complex> = match through {
+        let mut values: Vec<Phasor> = match through {
             Through::Encoder => self.innovations.angle_rad.iter().map(|&x| turned(per_rad * x)).collect(),
             Through::Motor => {
                 // The mean over a servo period at constant speed; a torque of the motor is no load.
@@ -242,7 +242,7 @@ impl<'a> Weighed<'a> {
         self.innovations.angle_rad.windows(2).map(|pair| 0.5 * (pair[0] + pair[1]))
     }
 
-    fn response(&self, through: Through) -> &[Complex] {
+    fn response(&self, through: Through) -> &[Phasor] {
         let [load, encoder] = self.responses;
         match through {
             Through::Motor => load,
@@ -250,11 +250,11 @@ impl<'a> Weighed<'a> {
         }
     }
 
-    fn transformed(&self, values: &[f64]) -> Vec<Complex> {
+    fn transformed(&self, values: &[f64]) -> Vec<Phasor> {
         transformed(values, self.length)
     }
 
-    fn innovations_transformed(&self) -> Vec<Complex> {
+    fn innovations_transformed(&self) -> Vec<Phasor> {
         let counted = self.innovations.error_rad.iter().zip(&self.innovations.counts);
         let counted: Vec<f64> = counted.map(|(&error, &counts)| if counts { error } else { 0.0 }).collect();
         self.transformed(&counted)

@@ -14,35 +14,35 @@
 use std::f64::consts::{PI, TAU};
 
 /// A complex number: real and imaginary part.
-pub(super) type Complex = [f64; 2];
+pub(super) type Phasor = [f64; 2];
 
 /// Product.
 #[inline]
-pub(super) fn times([a, b]: Complex, [c, d]: Complex) -> Complex {
+pub(super) fn times([a, b]: Phasor, [c, d]: Phasor) -> Phasor {
     [a * c - b * d, a * d + b * c]
 }
 
 /// Conjugate.
 #[inline]
-pub(super) fn conjugate([a, b]: Complex) -> Complex {
+pub(super) fn conjugate([a, b]: Phasor) -> Phasor {
     [a, -b]
 }
 
 /// Square of the modulus.
 #[inline]
-pub(super) fn power([a, b]: Complex) -> f64 {
+pub(super) fn power([a, b]: Phasor) -> f64 {
     a * a + b * b
 }
 
 /// e^(i x).
 #[inline]
-pub(super) fn turned(angle_rad: f64) -> Complex {
+pub(super) fn turned(angle_rad: f64) -> Phasor {
     let (sin, cos) = angle_rad.sin_cos();
     [cos, sin]
 }
 
 /// Transform of a sequence whose length is a power of two, in place.
-pub(super) fn transform(values: &mut [Complex]) {
+pub(super) fn transform(values: &mut [Phasor]) {
     let length = values.len();
     debug_assert!(length.is_power_of_two(), "{length}");
     if length < 2 {
@@ -55,7 +55,7 @@ pub(super) fn transform(values: &mut [Complex]) {
             values.swap(i, j);
         }
     }
-    let turns: Vec<Complex> = (0..length / 2).map(|k| turned(-TAU * k as f64 / length as f64)).collect();
+    let turns: Vec<Phasor> = (0..length / 2).map(|k| turned(-TAU * k as f64 / length as f64)).collect();
     let mut half = 1;
     while half < length {
         let stride = length / (2 * half);
@@ -72,7 +72,7 @@ pub(super) fn transform(values: &mut [Complex]) {
 }
 
 /// Its inverse.
-pub(super) fn transform_back(values: &mut [Complex]) {
+pub(super) fn transform_back(values: &mut [Phasor]) {
     values.iter_mut().for_each(|value| *value = conjugate(*value));
     transform(values);
     let scale = 1.0 / values.len() as f64;
@@ -80,8 +80,8 @@ pub(super) fn transform_back(values: &mut [Complex]) {
 }
 
 /// Transform of real numbers, with zeros behind them up to a length.
-pub(super) fn transformed(values: &[f64], length: usize) -> Vec<Complex> {
-    let mut padded: Vec<Complex> = values.iter().map(|&value| [value, 0.0]).collect();
+pub(super) fn transformed(values: &[f64], length: usize) -> Vec<Phasor> {
+    let mut padded: Vec<Phasor> = values.iter().map(|&value| [value, 0.0]).collect();
     padded.resize(length, [0.0; 2]);
     transform(&mut padded);
     padded
@@ -114,7 +114,7 @@ impl Spectrum {
         let mut start = 0;
         while start + length <= values.len() {
             let seen = counts[start..start + length].iter();
-            let mut segment: Vec<Complex> = values[start..start + length]
+            let mut segment: Vec<Phasor> = values[start..start + length]
                 .iter()
                 .zip(seen.clone())
                 .zip(&window)
