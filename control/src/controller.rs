@@ -78,12 +78,12 @@ impl<const N: usize> Command<N> {
         Self { rate, offset_mm, bend_mm: [0.0; N] }
     }
 
-    /// An offset that accelerates by so much, from the place and the speed that it has.
+    /// An offset that accelerates by so much, from the place that it has and this speed.
     #[inline]
-    pub fn accelerated(window: &Window<'_, N>, acceleration_mm_s2: [f64; N]) -> Self {
+    pub fn accelerated(window: &Window<'_, N>, speed_mm_s: [f64; N], acceleration_mm_s2: [f64; N]) -> Self {
         let period_s = window.feed_period_s;
         let bend_mm = scale(0.5 * period_s * period_s, acceleration_mm_s2);
-        let moved_mm = add_scaled(bend_mm, period_s, window.offset_mm_s);
+        let moved_mm = add_scaled(bend_mm, period_s, speed_mm_s);
         Self { rate: 1.0, offset_mm: add_scaled(window.offset_mm, 1.0, moved_mm), bend_mm }
     }
 

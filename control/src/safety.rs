@@ -124,7 +124,9 @@ impl<const N: usize> Guard<N> {
         let command = match self.engagement.go_on(bad, good, over, window.feed_period_s) {
             State::Engaged => self.hold(window, wanted, controller.acts_at_once()),
             State::Shadow => self.hold(window, Command::AS_PLANNED, controller.acts_at_once()),
-            State::Fading => self.hold(window, self.faded(window), controller.acts_at_once()),
+            State::Fading => {
+                self.hold(window, self.faded(window, controller.acts_at_once()), controller.acts_at_once())
+            }
         };
         self.rate = command.rate;
         command
@@ -166,12 +168,17 @@ impl<const N: usize> Guard<N> {
     }
 
     /// The next step of the way back to the path, at the feed of the plan.
-    fn faded(&self, window: &Window<'_, N>) -> Command<N> {
+    fn faded(&self, window: &Window<'_, N>, at_once: bool) -> Command<N> {
         let most_mm_s2 = self.bounds.fade_mm_s2;
-        let acceleration = core::array::from_fn(|axis| {
-            fade::acceleration(window.offset_mm[axis], window.offset_mm_s[axis], window.feed_period_s, most_mm_s2)
-        });
-        Command::accelerated(window, acceleration)
+        let (mut speed_mm_s, mut acceleration_mm_s2) = (window.offset_mm_s, [0.0; N]);
+        let axes = speed_mm_s.iter_mut().zip(&mut acceleration_mm_s2).zip(window.offset_mm);
+        for ((speed_mm_s, acceleration_mm_s2), offset_mm) in axes {
+            if at_once {
+                *speed_mm_s = fade::begins_mm_s(offset_mm, *speed_mm_s, most_mm_s2);
+            }
+            *acceleration_mm_s2 = fade::acceleration(offset_mm, *speed_mm_s, window.feed_period_s, most_mm_s2);
+        }
+        Command::accelerated(window, speed_mm_s, acceleration_mm_s2)
     }
 
     /// The command within the bounds. That of the deviation goes before the others. An offset that is there at once is one from the
@@ -179,9 +186,17 @@ impl<const N: usize> Guard<N> {
     fn hold(&self, window: &Window<'_, N>, wanted: Command<N>, at_once: bool) -> Command<N> {
         let period_s = window.feed_period_s;
         let Bounds { deviation_mm, speed_mm_s, acceleration_mm_s2, .. } = self.bounds;
+        // One that acts at once may step as far in a shorter period as in the time in which a correction takes up its speed, and may stop
+        // at once.
+        let longer = if at_once { (TAKE_UP_S / period_s).max(1.0) } else { 1.0 };
         let velocity = scale(1.0 / period_s, sub(wanted.offset_mm, window.offset_mm));
-        let change = limit_norm(sub(velocity, window.offset_mm_s), acceleration_mm_s2 * period_s);
-        let velocity = limit_norm(add_scaled(window.offset_mm_s, 1.0, change), speed_mm_s);
+        let velocity = if at_once && norm(velocity) <= norm(window.offset_mm_s) {
+            velocity
+        } else {
+            let change = limit_norm(sub(velocity, window.offset_mm_s), longer * longer * acceleration_mm_s2 * period_s);
+            add_scaled(window.offset_mm_s, 1.0, change)
+        };
+        let velocity = limit_norm(velocity, longer * speed_mm_s);
         let step = acceleration_mm_s2 * period_s / window.now().feed_mm_s.max(f64::MIN_POSITIVE);
         let rate = bounded(bounded(wanted.rate, RATE_RANGE[0], RATE_RANGE[1]), self.rate - step, self.rate + step);
         // Where nothing binds, the offset is the controller's to the bit.
@@ -198,7 +213,7 @@ impl<const N: usize> Guard<N> {
             return Command { rate, ..wanted };
         }
         // What the path takes back comes on top, but not without bound.
-        let step_mm = limit_norm(sub(near_mm, window.offset_mm), MAX_TAKEN_BACK * speed_mm_s * period_s);
+        let step_mm = limit_norm(sub(near_mm, window.offset_mm), MAX_TAKEN_BACK * longer * speed_mm_s * period_s);
         Command::straight(rate, add_scaled(window.offset_mm, 1.0, step_mm))
     }
 

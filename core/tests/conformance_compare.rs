@@ -116,7 +116,7 @@ fn rows_are_complete_and_ratios_are_against_open_loop() {
     let rms_um = |controller: &str| comparison.row("circle", "rough", controller).unwrap().rms_um;
     let [exact, identified, off] = ["", "+identified", "+20%off"].map(|given| rms_um(&format!("feedforward{given}")));
     assert!(exact < off && identified < off && identified != exact, "{exact} {identified} {off}");
-    assert!(rms_um(BEST) != rms_um("receding-horizon+unseen"));
+    assert!(rms_um(BEST) != rms_um(&format!("{BEST}+unseen")));
     let mut html = Vec::new();
     page::write(&mut html, &comparison).unwrap();
     let html = String::from_utf8(html).unwrap();

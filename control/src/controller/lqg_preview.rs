@@ -18,6 +18,8 @@
 //! |---|---|
 //! | `lqg_preview/riccati.rs` | the gains |
 //! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
+//! | `lqg_preview/approach.rs` | the way back from where a drive at its torque limit has left the tool |
+//! | `lqg_preview/whiteness.rs` | how much of what is measured the filter believes |
 //! | `lqg_preview/estimate.rs` | the filter |
 //!
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),
@@ -27,18 +29,22 @@
 
 mod riccati;
 mod linear;
+mod approach;
+mod whiteness;
 mod estimate;
 
 use super::feedforward::preview;
 use super::{Command, Controller, Measured, Schedule};
-use crate::axis::AxisState;
 use crate::axis::drive::{DriveParameters, DriveReference, DriveState};
 use crate::axis::inverse::AxisInverse;
 use crate::axis::knowledge::AxisKnowledge;
+use crate::axis::{AxisState, Parameters};
 use crate::vector::norm;
 use crate::window::Window;
+use approach::Overtaxed;
 use estimate::{AxisModel, Estimate, KEPT_PERIODS, NOTHING_SENT, Sent};
 use linear::LinearAxis;
+use whiteness::Whiteness;
 
 /// Servo periods beyond the command that the inverse looks at.
 const DIFFERENCES: f64 = 3.0;
@@ -48,6 +54,8 @@ const DIFFERENCES: f64 = 3.0;
 pub struct Settings {
     /// Price of the reference speed beside the error of the position, s^2.
     pub price_s2: f64,
+    /// Whether the statistics are learnt from, or are exact.
+    pub learns: bool,
 }
 
 /// Price that serves by an identified model, in squares of the servo period: of 180 random cuts on machines with late drives 0.01 leaves
@@ -56,7 +64,7 @@ pub const IDENTIFIED_PRICE: f64 = 0.5;
 
 impl Settings {
     /// A tenth of the travel of a servo period, squared.
-    pub const DEFAULT: Self = Self { price_s2: 1e-8 };
+    pub const DEFAULT: Self = Self { price_s2: 1e-8, learns: false };
 }
 
 /// Linear-quadratic-Gaussian control with preview.
@@ -92,7 +100,7 @@ pub struct LqgGains {
 impl<const N: usize> LqgPreview<N> {
     /// Of each axis.
     pub fn gains(&self) -> [LqgGains; N] {
-        self.axes.each_ref().map(|axis| LqgGains { filter: axis.model.gains, regulator: axis.gains })
+        self.axes.each_ref().map(|axis| LqgGains { filter: axis.model.gains_as_given(), regulator: axis.gains })
     }
 }
 
@@ -163,6 +171,8 @@ struct Running {
     path_mm: Option<f64>,
     /// What was measured beyond what was expected, rad.
     missed_rad: f64,
+    whiteness: Whiteness,
+    overtaxed: Overtaxed,
 }
 
 /// An axis behind its position loop.
@@ -203,7 +213,7 @@ impl AxisLqg {
         let regulated = LinearAxis::new(&law, &DriveParameters::default(), &statistics);
         let (states, input, _) = regulated.sampled();
         Self {
-            model: AxisModel::new(&known),
+            model: AxisModel::new(&known, settings.learns),
             inverse: AxisInverse::new(law, drive, friction, delays),
             gains: riccati::regulator(&states, &input, &regulated.cost(settings.price_s2)),
             known,
@@ -227,12 +237,18 @@ impl AxisLqg {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let measured_rad = position_mm * rad_per_mm;
         let at_rest = Tracked::at_rest(measured_rad);
-        let running =
-            self.state.get_or_insert(Running { real: at_rest, open: at_rest, path_mm: None, missed_rad: 0.0 });
-        let Running { real, open, path_mm, missed_rad } = running;
+        let running = self.state.get_or_insert(Running {
+            real: at_rest,
+            open: at_rest,
+            path_mm: None,
+            missed_rad: 0.0,
+            whiteness: Whiteness::GIVEN,
+            overtaxed: Overtaxed::NOT,
+        });
+        let Running { real, open, path_mm, missed_rad, whiteness, .. } = running;
         if let Some(path_mm) = *path_mm {
             real.send(&self.model, (path_mm + offset_mm) * rad_per_mm);
-            *missed_rad = self.model.correct(&mut real.estimate, &real.sent, measured_rad);
+            *missed_rad = self.model.correct(&mut real.estimate, &real.sent, measured_rad, whiteness);
             open.send(&self.model, path_mm * rad_per_mm);
             open.estimate.acting_nm = real.estimate.acting_nm;
             self.model.predict(&mut open.estimate, &open.sent);
@@ -258,8 +274,28 @@ impl AxisLqg {
         let inner = [ahead.drive.integral_nm(), ahead.presliding_nm];
         let load_mm_s = self.cogging_mm_s(&at_mm);
         let reference_mm_s = self.inverse.reference_mm_s(&at_mm, inner, load_mm_s);
-        let wanted_rad_s = reference_mm_s * rad_per_mm - riccati::inner(&self.gains, &self.off(&ahead, &at_mm));
-        self.solved_mm(here_mm, wanted_rad_s)
+        let reference_rad_s = reference_mm_s * rad_per_mm;
+        let off = self.off(&ahead, &at_mm);
+        let Parameters { kv_nm_s_per_rad, torque_limit_nm, .. } = self.model.law.parameters;
+        let [_, off_rad_s, ..] = off;
+        let reference_nm = kv_nm_s_per_rad * (reference_rad_s - (ahead.axis.speed_rad_s - off_rad_s));
+        let asked_rad_s = self.asked_rad_s(reference_nm, &off);
+        let offset_mm = self.solved_mm(here_mm, reference_rad_s - asked_rad_s);
+        let Some(running) = &mut self.state else { return 0.0 };
+        running.overtaxed.take_in(reference_nm.abs() > torque_limit_nm, self.model.law.periods.servo_s);
+        running.overtaxed.left() * offset_mm
+    }
+
+    /// By how much the regulator asks for less speed than the reference has, which takes this torque: small errors of the position count in
+    /// full, large ones as far as the drive can brake.
+    fn asked_rad_s(&self, reference_nm: f64, off: &[f64; linear::STATES]) -> f64 {
+        let [of_position, of_speed, ..] = self.gains;
+        let [off_rad, ..] = *off;
+        let Parameters { torque_limit_nm, inertia_kg_m2, .. } = self.model.law.parameters;
+        let left_rad_s2 = approach::left_rad_s2(torque_limit_nm, reference_nm, inertia_kg_m2);
+        let braking = 1.0 + of_speed;
+        let closing_rad_s = approach::closing_rad_s(off_rad, of_position / braking, left_rad_s2);
+        riccati::inner(&self.gains, off) + (braking * closing_rad_s - of_position * off_rad)
     }
 
     /// By how much the axis is off the reference when what is sent now begins to act, and what acts on it.

@@ -321,6 +321,6 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> Controller<N> for RecedingH
         self.foreseen_mm2 = step.contour_mm2;
         self.open_error_mm = step.open_error_mm;
         self.missed.foresee(self.periods, step.open_mm);
-        Command::accelerated(window, step.acceleration_mm_s2)
+        Command::accelerated(window, window.offset_mm_s, step.acceleration_mm_s2)
     }
 }

@@ -20,10 +20,24 @@ const NONE_MM_S: f64 = 1e-3;
 /// The acceleration of the next period, mm/s^2, of an offset in one axis.
 #[inline]
 pub(super) fn acceleration(offset_mm: f64, offset_mm_s: f64, period_s: f64, most_mm_s2: f64) -> f64 {
+    let wanted_mm_s = wanted_mm_s(offset_mm, most_mm_s2);
+    bounded((wanted_mm_s - offset_mm_s) / period_s, -most_mm_s2, most_mm_s2)
+}
+
+/// The speed that an offset is to have on its way.
+#[inline]
+fn wanted_mm_s(offset_mm: f64, most_mm_s2: f64) -> f64 {
     let distance_mm = offset_mm.abs();
     let speed = (distance_mm / TIME_S).min(libm::sqrt(MARGIN * most_mm_s2 * distance_mm));
-    let wanted_mm_s = if offset_mm > 0.0 { -speed } else { speed };
-    bounded((wanted_mm_s - offset_mm_s) / period_s, -most_mm_s2, most_mm_s2)
+    if offset_mm > 0.0 { -speed } else { speed }
+}
+
+/// The speed with which an offset begins its way that has come where it is in one step: that of the step is none that it has to go on
+/// with, unless it leads back to the plan and can be braked there.
+#[inline]
+pub(super) fn begins_mm_s(offset_mm: f64, stepped_mm_s: f64, most_mm_s2: f64) -> f64 {
+    let wanted_mm_s = wanted_mm_s(offset_mm, most_mm_s2);
+    bounded(stepped_mm_s, wanted_mm_s.min(0.0), wanted_mm_s.max(0.0))
 }
 
 /// Whether there is nothing left to fade.
@@ -35,6 +49,25 @@ pub(super) fn is_over<const N: usize>(offset_mm: [f64; N], offset_mm_s: [f64; N]
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_offset_that_stepped_where_it_is_does_not_go_on_beyond() {
+        let most = 400.0;
+        for offset in [0.3, 0.01, -0.2] {
+            let wanted = wanted_mm_s(offset, most);
+            assert_eq!(begins_mm_s(offset, -wanted, most), 0.0);
+            assert_eq!(begins_mm_s(offset, 100.0 * wanted, most), wanted);
+            assert_eq!(begins_mm_s(offset, 0.5 * wanted, most), 0.5 * wanted);
+            let (mut o, mut v): (f64, f64) = (offset, begins_mm_s(offset, 300.0 * offset.signum(), most));
+            for _ in 0..2000 {
+                let a = acceleration(o, v, 0.001, most);
+                (o, v) = (o + 0.001 * (v + 0.0005 * a), v + 0.001 * a);
+                assert!(o.abs() <= offset.abs(), "{offset}: {o}");
+            }
+            assert!(is_over([o], [v]), "{offset}: {o} {v}");
+        }
+        assert_eq!(begins_mm_s(0.0, 50.0, most), 0.0);
+    }
 
     #[test]
     fn an_offset_comes_to_rest_at_zero_within_the_acceleration_whatever_its_speed() {

@@ -214,7 +214,7 @@ pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &V
 }
 
 pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let settings = lqg_preview::Settings { price_s2: values.number("price_s2") };
+    let settings = lqg_preview::Settings { price_s2: values.number("price_s2"), learns: false };
     let (periods, statistics) = (setup.known.period.periods(), setup.statistics::<N>());
     let known = std::array::from_fn(|i| setup.known.axis(i).with_statistics(periods, statistics[i]));
     Box::new(LqgPreview::new(known, settings))
@@ -222,7 +222,7 @@ pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values
 
 pub(super) fn lqg_identified<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let servo_s = setup.known.period.servo_s;
-    let settings = lqg_preview::Settings { price_s2: values.number("price") * servo_s * servo_s };
+    let settings = lqg_preview::Settings { price_s2: values.number("price") * servo_s * servo_s, learns: true };
     match setup.axes::<N>() {
         Some(identified) => Box::new(LqgPreview::new(identified.axes, settings)),
         None => Box::new(OpenLoop),

@@ -134,7 +134,7 @@ impl<const N: usize> Controller<N> for ModelPredictive<N> {
             own.state = foreseen.state;
         }
         self.expected_mm = Some([self.model.tool_mm(), expected_mm]);
-        Command::accelerated(window, step.acceleration_mm_s2)
+        Command::accelerated(window, window.offset_mm_s, step.acceleration_mm_s2)
     }
 }
 

@@ -19,9 +19,13 @@ use crate::sine::sin;
 
 use super::linear::{LinearAxis, STATES, measured_rad2};
 use super::riccati::filter;
+use super::whiteness::{GainTable, Whiteness};
 
 /// References that are kept, servo periods: 20 ms each way at 1 ms, the most of a machine file, and some.
 pub(super) const KEPT_PERIODS: usize = 48;
+
+/// Innovations that are smaller than this part of the measurement's noise are not learnt from.
+const LEAST_SHARE: f64 = 0.01;
 
 /// What does not change of an axis.
 #[derive(Debug, Clone)]
@@ -31,7 +35,9 @@ pub(super) struct AxisModel {
     friction: Option<FrictionLaw>,
     statistics: AxisStatistics,
     linear: LinearAxis,
-    pub(super) gains: [f64; STATES],
+    gains: GainTable,
+    /// Variance of the measurement as given, rad^2.
+    measured_rad2: f64,
     /// Mechanics periods from a measurement until it is there, and from a reference until it acts.
     late: [u32; 2],
 }
@@ -52,13 +58,16 @@ pub(super) type Sent = [DriveReference; KEPT_PERIODS];
 pub(super) const NOTHING_SENT: Sent = [DriveReference { speed_rad_s: 0.0, torque_nm: 0.0 }; KEPT_PERIODS];
 
 impl AxisModel {
-    pub(super) fn new(known: &AxisKnowledge) -> Self {
+    /// Of an axis; where it `learns`, with gains for other statistics, too.
+    pub(super) fn new(known: &AxisKnowledge, learns: bool) -> Self {
         let AxisKnowledge { drive, friction, delays, statistics, .. } = *known;
         let law = known.law();
         let linear = LinearAxis::new(&law, &drive, &statistics);
         let (states, _, noise) = linear.sampled();
         let mut measured = [0.0; STATES];
         measured[0] = 1.0;
+        let gains = |variance_rad2: f64| filter(&states, &noise, &measured, variance_rad2);
+        let measured_rad2 = measured_rad2(&statistics);
         let longest = (KEPT_PERIODS as u32 - 2) / 2 * law.periods.mechanics_per_servo;
         // A float that is not a number saturates to zero here.
         let late = |delay_s: f64| (libm::round(delay_s / law.periods.mechanics_s) as u32).min(longest);
@@ -68,9 +77,19 @@ impl AxisModel {
             friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, friction)),
             statistics,
             linear,
-            gains: filter(&states, &noise, &measured, measured_rad2(&statistics)),
+            gains: if learns {
+                GainTable::new(measured_rad2, gains)
+            } else {
+                GainTable::constant(gains(measured_rad2))
+            },
+            measured_rad2,
             late: [delays.measurement_s, delays.drive_s].map(late),
         }
+    }
+
+    /// Gains of the filter by the statistics as given.
+    pub(super) fn gains_as_given(&self) -> [f64; STATES] {
+        Whiteness::GIVEN.gains(&self.gains)
     }
 
     /// At rest at an angle.
@@ -97,13 +116,20 @@ impl AxisModel {
     }
 
     /// One servo period on, and what was measured at its end; by how much that was not expected, rad.
-    pub(super) fn correct(&self, estimate: &mut Estimate, sent: &Sent, measured_rad: f64) -> f64 {
+    pub(super) fn correct(
+        &self,
+        estimate: &mut Estimate,
+        sent: &Sent,
+        measured_rad: f64,
+        whiteness: &mut Whiteness,
+    ) -> f64 {
         self.predict(estimate, sent);
         let AxisStatistics { interpolation_rad, interpolation_phase_rad, signal_per_rad, .. } = self.statistics;
         let angle_rad = estimate.axis.angle_rad;
         let shown_rad = angle_rad + interpolation_rad * sin(signal_per_rad * angle_rad + interpolation_phase_rad);
         let missed_rad = measured_rad - shown_rad;
-        let [x, w, i, y, acting @ ..] = self.gains.map(|gain| gain * missed_rad);
+        whiteness.take_in(measured_rad, missed_rad, LEAST_SHARE * libm::sqrt(self.measured_rad2));
+        let [x, w, i, y, acting @ ..] = whiteness.gains(&self.gains).map(|gain| gain * missed_rad);
         estimate.axis.angle_rad += x;
         estimate.axis.speed_rad_s += w;
         estimate.drive.correct(i, y);

@@ -1,22 +1,26 @@
-//! Gains of a Kalman filter and of a linear-quadratic regulator in their steady state, by iterating the discrete Riccati equation.
+//! Gains of a Kalman filter and of a linear-quadratic regulator in their steady state, by doubling the horizon of the discrete Riccati equation.
 //!
 //! ```text
-//! filter:     K = P c / (c' P c + r)                     P <- A (P - K c' P) A' + Q
-//! regulator:  G = (b' S A + n') / (b' S b + m)           S <- A' S A + W - G' (b' S A + n')
+//! X = A' X (I + G X)^-1 A + H         regulator: G = b b' / m, H = W; filter: A' for A, G = c c' / r, H = Q
+//! W = I + G_k H_k
+//! A_k+1 = A_k W^-1 A_k      G_k+1 = G_k + A_k W^-1 G_k A_k'      H_k+1 = H_k + A_k' H_k W^-1 A_k
+//! regulator:  G = (b' X A + n') / (b' X b + m)        filter:  K = X c / (c' X c + r)
 //! ```
 //!
-//! for x' = A x + b v, y = c' x with noise of covariance Q and variance r, and the cost x' W x + 2 x' n v + m v^2 of a period.
-//! States that the input does not reach (a load, an oscillator) are no harm: their part of S grows, the gains do not contain it.
+//! for x' = A x + b v, y = c' x with noise of covariance Q and variance r, and the cost x' W x + 2 x' n v + m v^2 of a period; n is taken out first,
+//! by v = u - n' x / m. H_k is the solution over 2^k periods. States that the input does not reach (a load, an oscillator) are no harm: their part of
+//! X grows, the gains do not contain it.
 //!
-//! Source: Anderson and Moore (1979), Optimal Filtering, section 4.4; Anderson and Moore (1990), Optimal Control: Linear Quadratic
-//! Methods, section 2.4, and exercises for the cross term.
+//! Source: Anderson (1978), "Second-order convergent algorithms for the steady-state Riccati equation", Int. J. Control 28(2); Anderson and Moore (1979),
+//! Optimal Filtering, section 4.4; Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, section 2.4, and exercises for the
+//! cross term.
 
-/// Most iterations: 20 s at a servo period of 1 ms, beyond which nothing is of use.
-const ITERATIONS: u32 = 20_000;
+/// Most doublings: a million periods, beyond which nothing is of use.
+const DOUBLINGS: u32 = 20;
 /// Converged: no gain changes by a greater part of the largest.
-const CONVERGED: f64 = 1e-13;
-/// Iterations before that is looked at: nothing moves in the first ones where a noise needs several periods to be seen.
-const LEAST_ITERATIONS: u32 = 200;
+const CONVERGED: f64 = 1e-12;
+/// Doublings before that is looked at: nothing moves in the first ones where a noise needs several periods to be seen.
+const LEAST_DOUBLINGS: u32 = 8;
 
 /// A matrix, by rows.
 pub(super) type StateMatrix<const S: usize> = [[f64; S]; S];
@@ -61,20 +65,10 @@ pub(super) fn filter<const S: usize>(
     measured: &[f64; S],
     variance: f64,
 ) -> [f64; S] {
-    let mut covariance = *noise;
-    for (i, row) in covariance.iter_mut().enumerate() {
-        row[i] += variance;
-    }
-    converged(|_| {
-        let seen = applied(&covariance, measured);
-        let gains = seen.map(|p| p / (inner(measured, &seen) + variance));
-        let updated: StateMatrix<S> =
-            core::array::from_fn(|i| core::array::from_fn(|j| covariance[i][j] - gains[i] * seen[j]));
-        covariance = sum(&product(&product(a, &updated), &transposed(a)), noise);
-        // Rounding turns it unsymmetric, and that grows.
-        let mirrored = transposed(&covariance);
-        covariance = sum(&covariance, &mirrored).map(|row| row.map(|p| 0.5 * p));
-        gains
+    let seen = measured.map(|row| measured.map(|column| row * column / variance));
+    doubled(transposed(a), seen, *noise, |covariance| {
+        let seen = applied(covariance, measured);
+        seen.map(|p| p / (inner(measured, &seen) + variance))
     })
 }
 
@@ -91,36 +85,70 @@ pub(super) struct PeriodCost<const S: usize> {
 
 /// Gains of the regulator: the input is less by so much for a unit of each state.
 pub(super) fn regulator<const S: usize>(a: &StateMatrix<S>, b: &[f64; S], cost: &PeriodCost<S>) -> [f64; S] {
-    let mut to_go = cost.states;
-    converged(|_| {
-        let of_input = applied(&to_go, b);
+    let PeriodCost { states, cross, input } = cost;
+    let without: StateMatrix<S> = core::array::from_fn(|i| core::array::from_fn(|j| a[i][j] - b[i] * cross[j] / input));
+    let left: StateMatrix<S> =
+        core::array::from_fn(|i| core::array::from_fn(|j| states[i][j] - cross[i] * cross[j] / input));
+    let reached = b.map(|row| b.map(|column| row * column / input));
+    doubled(without, reached, left, |to_go| {
+        let of_input = applied(to_go, b);
         let ahead = applied(&transposed(a), &of_input);
-        let asked: [f64; S] = core::array::from_fn(|i| ahead[i] + cost.cross[i]);
-        let gains = asked.map(|asked| asked / (inner(b, &of_input) + cost.input));
-        let carried = product(&product(&transposed(a), &to_go), a);
-        to_go = core::array::from_fn(|i| {
-            core::array::from_fn(|j| {
-                let gain = 0.5 * (gains[i] * asked[j] + asked[i] * gains[j]);
-                0.5 * (carried[i][j] + carried[j][i]) + cost.states[i][j] - gain
-            })
-        });
-        gains
+        let asked: [f64; S] = core::array::from_fn(|i| ahead[i] + cross[i]);
+        asked.map(|asked| asked / (inner(b, &of_input) + input))
     })
 }
 
-/// Iterates until the gains change no more.
-fn converged<const S: usize>(mut step: impl FnMut(u32) -> [f64; S]) -> [f64; S] {
-    let mut gains = step(0);
-    for n in 1..ITERATIONS {
-        let next = step(n);
+/// Doubles the horizon until the gains by its solution change no more.
+fn doubled<const S: usize>(
+    mut a: StateMatrix<S>,
+    mut g: StateMatrix<S>,
+    mut h: StateMatrix<S>,
+    gains_by: impl Fn(&StateMatrix<S>) -> [f64; S],
+) -> [f64; S] {
+    let mut gains = gains_by(&h);
+    for n in 0..DOUBLINGS {
+        let turned = transposed(&a);
+        let mut w = product(&g, &h);
+        for (i, row) in w.iter_mut().enumerate() {
+            row[i] += 1.0;
+        }
+        let (of_a, of_g) = (solved(&w, &a), solved(&w, &g));
+        g = symmetric(&sum(&g, &product(&product(&a, &of_g), &turned)));
+        h = symmetric(&sum(&h, &product(&turned, &product(&h, &of_a))));
+        a = product(&a, &of_a);
+        let next = gains_by(&h);
         let largest = next.iter().fold(0.0_f64, |most, gain| most.max(gain.abs()));
         let change = next.iter().zip(&gains).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs()));
         gains = next;
-        if n > LEAST_ITERATIONS && change <= CONVERGED * largest {
+        if n > LEAST_DOUBLINGS && change <= CONVERGED * largest {
             break;
         }
     }
     gains
+}
+
+/// Rounding turns it unsymmetric, and that grows.
+fn symmetric<const S: usize>(a: &StateMatrix<S>) -> StateMatrix<S> {
+    sum(a, &transposed(a)).map(|row| row.map(|a| 0.5 * a))
+}
+
+/// `w^-1 a`, by elimination with the largest pivot of each column.
+fn solved<const S: usize>(w: &StateMatrix<S>, a: &StateMatrix<S>) -> StateMatrix<S> {
+    let (mut w, mut x) = (*w, *a);
+    for i in 0..S {
+        let pivot = (i..S).fold(i, |best, row| if w[row][i].abs() > w[best][i].abs() { row } else { best });
+        w.swap(i, pivot);
+        x.swap(i, pivot);
+        for row in 0..S {
+            let factor = w[row][i] / w[i][i];
+            if row != i && factor != 0.0 {
+                let (pivot_w, pivot_x) = (w[i], x[i]);
+                w[row].iter_mut().zip(&pivot_w).for_each(|(w, pivot)| *w -= factor * pivot);
+                x[row].iter_mut().zip(&pivot_x).for_each(|(x, pivot)| *x -= factor * pivot);
+            }
+        }
+    }
+    core::array::from_fn(|i| x[i].map(|x| x / w[i][i]))
 }
 
 #[cfg(test)]
