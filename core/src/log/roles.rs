@@ -91,6 +91,16 @@ pub(super) fn find(
     if axes.is_empty() {
         return Err(fault("no two columns are the command and the actual position of an axis".to_owned()));
     }
+    axes.retain(|axis| {
+        let is_rotary = !by_data && columns.axes.is_empty() && is_rotary(axis);
+        if is_rotary {
+            incomplete.push(LogFinding::Rotary { axis: axis.name.clone() });
+        }
+        !is_rotary
+    });
+    if axes.is_empty() {
+        return Err(fault("all axes with command and actual position are rotary".to_owned()));
+    }
     axes.truncate(MAX_AXES);
     for axis in &axes {
         findings.push(LogFinding::AxisColumns {
@@ -113,6 +123,13 @@ pub(super) fn find(
         }
     }
     Ok(Roles { time, axes })
+}
+
+/// Whether the name of an axis, or its unit, says that it turns.
+fn is_rotary(axis: &AxisRoles) -> bool {
+    let letter = axis.name.trim_end_matches(|c: char| c.is_ascii_digit());
+    ["a", "b", "c"].contains(&letter)
+        || ["deg", "degree", "degrees", "\u{b0}", "rad"].contains(&axis.unit.to_lowercase().as_str())
 }
 
 /// What columns there are, and how to say which is which.
