@@ -79,6 +79,13 @@ pub enum LogFinding {
         /// The axis.
         axis: String,
     },
+    /// An axis that goes further than a linear axis can, which is left out.
+    Endless {
+        /// The axis.
+        axis: String,
+        /// How far it goes, mm.
+        range_mm: f64,
+    },
     /// An axis that lacks a column.
     Incomplete {
         /// The axis.
@@ -202,6 +209,13 @@ impl fmt::Display for LogFinding {
             Self::CutOff { line } => write!(f, "line {line}, the last, is cut off and left out"),
             Self::Rotary { axis } => write!(f, "axis {axis} is rotary, in degrees, and left out"),
             Self::StandsStill { axis } => write!(f, "axis {axis} stands still and is left out"),
+            Self::Endless { axis, range_mm } => {
+                let range_mm = to_four_digits(*range_mm);
+                write!(
+                    f,
+                    "axis {axis} goes over {range_mm} mm, which no linear axis does: it is taken for a spindle and left out"
+                )
+            }
             Self::Incomplete { axis, lacks } => write!(f, "axis {axis} has no {lacks} and is left out"),
             Self::Offset { axis, offset_mm } => {
                 let offset_mm = to_four_digits(*offset_mm);

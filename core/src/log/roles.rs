@@ -5,7 +5,7 @@ use std::path::Path;
 use super::columns::{AxisChoice, ColumnChoice, Columns};
 use super::error::LogError;
 use super::finding::LogFinding;
-use super::names::{Meaning, Quantity, understand};
+use super::names::{Meaning, Quantity, is_spindle, understand};
 use super::pairs;
 use super::table::LogTable;
 use super::{LogFormat, MAX_AXES, TorqueUnit};
@@ -147,6 +147,9 @@ fn meanings(table: &LogTable) -> Vec<Meaning> {
         let mut meaning = understand(&column.name);
         if let Some(axis) = &column.axis {
             meaning.axis.clone_from(axis);
+            if is_spindle(axis) {
+                meaning.quantity = Quantity::Other;
+            }
         }
         if !column.unit.is_empty() {
             meaning.unit = column.unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned();

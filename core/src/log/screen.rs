@@ -22,6 +22,8 @@ const MIN_RECORD_S: f64 = 1.0;
 const MIN_SAMPLES: usize = 200;
 /// Largest range of an axis that stands still, mm.
 const STILL_MM: f64 = 1e-6;
+/// Longest way of a linear axis, mm.
+const LONGEST_MM: f64 = 30e3;
 /// Samples by which a copy of the command can be late in a control that feeds it back to itself.
 const COPY_SAMPLES: usize = 4;
 /// Part of the moving samples in which a copy equals the command.
@@ -58,6 +60,8 @@ pub(super) fn fit(
         let [command, actual] = [&axis.command_mm, &axis.actual_mm].map(|values| range(values));
         if command <= STILL_MM && actual <= STILL_MM {
             findings.push(LogFinding::StandsStill { axis: axis.name.clone() });
+        } else if command > LONGEST_MM {
+            findings.push(LogFinding::Endless { axis: axis.name, range_mm: command });
         } else {
             moving.push(axis);
         }

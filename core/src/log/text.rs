@@ -137,6 +137,7 @@ impl<'a> TextRows<'a> {
         if self.line < self.dialect.first_line {
             return Ok(());
         }
+        let line = if self.line == 1 { line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line) } else { line };
         let line = line.strip_suffix(b"\r").unwrap_or(line);
         match LineKind::of(line, self.dialect.delimiter) {
             LineKind::Blank | LineKind::Comment => return Ok(()),

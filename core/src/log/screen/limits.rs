@@ -8,12 +8,19 @@ use super::super::finding::LogFinding;
 const LEAST_PART: f64 = 5e-4;
 /// Samples one after the other that a torque stays at its limit.
 const RUN: usize = 3;
-/// Samples over which a speed is taken: steps of the encoder count less.
-const SPEED_SAMPLES: usize = 5;
+/// Shortest time over which a speed is taken, s, and steps of the encoder within it: noise and steps count less.
+const SPEED_S: f64 = 4e-3;
+const SPEED_STEPS: f64 = 20.0;
+/// Most samples over which a speed is taken.
+const MAX_SPEED_SAMPLES: usize = 50;
 /// How much faster the command is than the highest speed, where the speed has a limit.
 const FASTER: f64 = 1.2;
-/// Part of the samples in which the speed is near its highest, where that is a limit.
+/// Highest over lowest speed of what counts as one.
+const BAND: f64 = 1.08;
+/// Part of the samples in which the speed is at its limit, where there is one.
 const AT_LIMIT: f64 = 0.02;
+/// How much more often the speed is there than that of the command.
+const OFTENER: f64 = 2.0;
 
 /// Whether a torque stays at its largest value.
 pub(super) fn torque(axis: &LogAxis, clock: &Clock) -> Option<LogFinding> {
@@ -49,22 +56,30 @@ pub(super) fn torque(axis: &LogAxis, clock: &Clock) -> Option<LogFinding> {
 
 /// Whether the speed stays below that of the command.
 pub(super) fn speed(axis: &LogAxis, clock: &Clock) -> Option<LogFinding> {
+    // As many samples as the steps ask for at the speed of the command.
+    let reach_mm = axis.command_mm.windows(2).fold(0.0_f64, |reach, pair| reach.max((pair[1] - pair[0]).abs()));
+    let for_steps = SPEED_STEPS * axis.step_mm / reach_mm.max(f64::MIN_POSITIVE);
+    let samples = (SPEED_S / clock.sample_time_s).max(for_steps).ceil();
+    let samples = (samples as usize).clamp(1, MAX_SPEED_SAMPLES);
     let of = |values: &[f64]| -> Vec<f64> {
-        let across_s = SPEED_SAMPLES as f64 * clock.sample_time_s;
+        let across_s = samples as f64 * clock.sample_time_s;
         let stretches = clock.stretches.iter().filter_map(|stretch| values.get(stretch.clone()));
-        stretches
-            .flat_map(|part| part.windows(SPEED_SAMPLES + 1).map(|w| (w[SPEED_SAMPLES] - w[0]).abs() / across_s))
-            .collect()
+        stretches.flat_map(|part| part.windows(samples + 1).map(|w| (w[samples] - w[0]).abs() / across_s)).collect()
     };
     let (mut commanded, mut actual) = (of(&axis.command_mm), of(&axis.actual_mm));
     commanded.sort_by(f64::total_cmp);
     actual.sort_by(f64::total_cmp);
     let at = |values: &[f64], part: f64| values.get((part * values.len() as f64) as usize).copied();
-    let highest = at(&actual, 0.995)?;
-    let commanded_mm_s = at(&commanded, 0.995)?;
-    let near = &actual[actual.partition_point(|speed| *speed < 0.93 * highest)..];
-    let is_limited = commanded_mm_s > FASTER * highest && near.len() as f64 > AT_LIMIT * actual.len() as f64;
-    // The middle of those near it: noise and overshoot are above, ways to the limit below.
-    let limit_mm_s = at(near, 0.5)?;
+    let (fast, commanded_mm_s) = (at(&actual, 0.95)?, at(&commanded, 0.995)?);
+    // The band that holds most of the fast samples: overshoot is above it, ways to the limit are below.
+    let below = |values: &[f64], speed: f64| values.partition_point(|value| *value < speed);
+    let first = below(&actual, 0.5 * fast);
+    let within = |values: &[f64], from: f64| below(values, BAND * from) - below(values, from);
+    let from = actual[first..].iter().copied().max_by_key(|&from| within(&actual, from)).filter(|&from| from > 0.0)?;
+    let (here, there) = (within(&actual, from), within(&commanded, from));
+    let limit_mm_s = *actual.get(below(&actual, from) + here / 2)?;
+    let is_limited = commanded_mm_s > FASTER * BAND * from
+        && here as f64 > AT_LIMIT * actual.len() as f64
+        && here as f64 > OFTENER * there as f64;
     is_limited.then(|| LogFinding::SpeedLimit { axis: axis.name.clone(), limit_mm_s, commanded_mm_s })
 }

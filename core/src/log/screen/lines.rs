@@ -25,6 +25,8 @@ const NEIGHBOURS: usize = 24;
 const ABOVE: f64 = 40.0;
 /// Part of the power of all from which on a line is told.
 const LEAST_PART: f64 = 0.02;
+/// Square of the amplitude over the mean square of the following error from which on it is told: a hundredth of its RMS.
+const LEAST_SEEN: f64 = 1e-4;
 /// Values below which motion itself is.
 const FIRST: usize = 4;
 
@@ -48,7 +50,9 @@ pub(super) fn of_axis(axis: &LogAxis, clock: &Clock) -> Vec<LogFinding> {
     if let Some((frequency_hz, amplitude)) = torque.filter(|t| t.iter().all(|v| v.is_finite())).and_then(of) {
         found.push(LogFinding::TorqueLine { axis: axis.name.clone(), frequency_hz, amplitude, unit: axis.torque_unit });
     }
-    if let Some((frequency_hz, amplitude_um)) = of(&error) {
+    let mean_square = error.iter().map(|value| value * value).sum::<f64>() / error.len() as f64;
+    let is_seen = |amplitude_um: f64| amplitude_um * amplitude_um > LEAST_SEEN * mean_square;
+    if let Some((frequency_hz, amplitude_um)) = of(&error).filter(|line| is_seen(line.1)) {
         found.push(LogFinding::FollowingLine { axis: axis.name.clone(), frequency_hz, amplitude_um });
     }
     found
