@@ -6,6 +6,7 @@
 //! The modules stand in the order in which data flows; each uses only those above it.
 
 mod vector;
+mod spectrum;
 pub mod watch;
 pub mod kinematics;
 pub mod number;

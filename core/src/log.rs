@@ -19,8 +19,10 @@ mod decimal;
 mod dialect;
 mod text;
 mod matlab;
+mod sinumerik;
 mod clock;
 mod axes;
+mod screen;
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -178,15 +180,20 @@ fn read_table(path: &Path, columns: &Columns, watch: &dyn Watch) -> Result<LogTa
     if matlab::is_matlab(&head) {
         return matlab::read(path, &mut file, &mut steps, watch);
     }
+    if sinumerik::is_json(&head) {
+        return sinumerik::read(path, file, columns, &mut steps, watch);
+    }
     text::read(path, &mut file, &head, columns, &mut steps, watch)
 }
 
 /// The log in a table.
 fn of_table(path: &Path, mut table: LogTable, columns: &Columns) -> Result<Log, LogError> {
-    let mut findings = Vec::new();
+    let mut findings: Vec<LogFinding> =
+        table.cut_off_line.map(|line| LogFinding::CutOff { line }).into_iter().collect();
     let roles = roles::find(path, &table, columns, &mut findings)?;
     let clock = clock::of_table(path, &mut table, &roles, columns, &mut findings)?;
     let axes = axes::of_table(path, &mut table, &roles, columns, &clock, &mut findings)?;
-    let clock::Clock { sample_time_s, stretches, time_s } = clock;
+    let axes = screen::fit(path, axes, &clock, &mut findings)?;
+    let clock::Clock { sample_time_s, stretches, time_s, .. } = clock;
     Ok(Log { format: table.format, sample_time_s, stretches, time_s, axes, findings })
 }

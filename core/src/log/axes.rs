@@ -57,6 +57,16 @@ pub(super) fn of_table(
     Ok(axes.collect())
 }
 
+/// Range and highest speed of a command, in its unit and s.
+fn way(values: &[f64], clock: &Clock) -> (f64, f64) {
+    let [low, high] = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
+    let mut step = 0.0_f64;
+    for stretch in &clock.stretches {
+        step = values[stretch.clone()].windows(2).fold(step, |step, pair| step.max((pair[1] - pair[0]).abs()));
+    }
+    (high - low, step / clock.sample_time_s)
+}
+
 /// The unit of the positions: as said, as the file says, or by their size.
 fn unit(
     table: &LogTable,
@@ -72,17 +82,15 @@ fn unit(
         findings.push(LogFinding::PositionUnit { unit, because: "the column says so".to_owned() });
         return unit;
     }
-    let (mut range, mut speed) = (0.0_f64, 0.0_f64);
-    for axis in &roles.axes {
-        let values = &table.columns[axis.command].values;
-        let [low, high] = values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], &v| [a.min(v), b.max(v)]);
-        range = range.max(high - low);
-        for stretch in &clock.stretches {
-            for pair in values[stretch.clone()].windows(2) {
-                speed = speed.max((pair[1] - pair[0]).abs() / clock.sample_time_s);
-            }
-        }
-    }
+    // Range and highest speed of each command; the axis in the middle counts, as one may be a spindle that turns and turns.
+    let mut ways: Vec<(f64, f64)> = roles
+        .axes
+        .iter()
+        .map(|axis| way(&table.columns[axis.command].values, clock))
+        .filter(|way| way.0 > 0.0)
+        .collect();
+    ways.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let (range, speed) = ways.get(ways.len().saturating_sub(1) / 2).copied().unwrap_or_default();
     // Machines move by some millimetres at least and some metres at most, at some millimetres to a metre a second.
     let unit = match (range, speed) {
         _ if range < 2.0 && speed < 2.0 => PositionUnit::Metre,

@@ -17,6 +17,8 @@ pub(super) struct Clock {
     pub(super) sample_time_s: f64,
     pub(super) stretches: Vec<Range<usize>>,
     pub(super) time_s: Vec<f64>,
+    /// Shortest and longest time between samples, s, where the clock is uneven.
+    pub(super) uneven_s: Option<[f64; 2]>,
 }
 
 /// Servo period of a control where nothing else is known: that of LinuxCNC as it is delivered.
@@ -228,5 +230,5 @@ fn stretches(time_s: Vec<f64>, step_s: f64, breaks: &[usize], findings: &mut Vec
     if stretches.len() > GAPS_TOLD + 1 {
         findings.push(LogFinding::MoreGaps { count: stretches.len() - 1 - GAPS_TOLD });
     }
-    Clock { sample_time_s, stretches, time_s }
+    Clock { sample_time_s, stretches, time_s, uneven_s: is_uneven.then_some(range_s) }
 }

@@ -3,8 +3,8 @@
 use super::decimal;
 
 /// How a text table is written.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Dialect {
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TableDialect {
     /// Between columns; a space is any number of spaces and tabs.
     pub(super) delimiter: u8,
     /// Decimal point.
@@ -17,16 +17,19 @@ pub(super) struct Dialect {
     pub(super) units: Vec<String>,
     /// Line of the first row, from 1.
     pub(super) first_line: u64,
-    /// Comments before it.
-    pub(super) comments: Vec<String>,
-    /// Whether lines without numbers in between say that samples were lost.
-    pub(super) has_overruns: bool,
+    /// Time between rows, s, where a line before them says so.
+    pub(super) sample_time_s: Option<f64>,
+    /// Whether the rows are names and numbers by turns, as `halscope` wrote them before LinuxCNC 2.9.
+    pub(super) names_in_rows: bool,
 }
 
 /// Lines that are looked at.
 const LINES: usize = 400;
 /// What may stand between columns, the likelier first; where two do equally well, the first is it.
 const DELIMITERS: [u8; 5] = [b'\t', b';', b',', b'|', b' '];
+
+/// With which `halscope` begins, in lower case.
+const SAMPLING_PERIOD: &str = "sampling period is";
 
 /// The word with which `halsampler` says that samples were lost.
 pub(super) const OVERRUN: &[u8] = b"overrun";
@@ -62,7 +65,7 @@ pub(super) fn fields(line: &[u8], delimiter: u8) -> impl Iterator<Item = &[u8]> 
     blank.chain(other)
 }
 
-impl Dialect {
+impl TableDialect {
     /// The dialect of a text by its first lines; none where they hold no rows of numbers.
     pub(super) fn of(head: &[u8]) -> Option<Self> {
         let head = head.strip_prefix(b"\xef\xbb\xbf").unwrap_or(head);
@@ -104,17 +107,15 @@ impl Dialect {
         let score: usize = rows().map(|(_, count)| count.1).sum();
         let (first, _) = rows().next()?;
         let before = &lines[..first];
-        let comments = before
-            .iter()
-            .filter(|line| LineKind::of(line, delimiter) == LineKind::Comment)
-            .map(|line| {
-                String::from_utf8_lossy(line).trim_start_matches(['#', '%', '!', '/', ';', ' ']).trim().to_owned()
-            })
-            .collect();
-        let (names, units) = header(before, delimiter, columns);
-        let has_overruns = lines.iter().any(|line| LineKind::of(line, delimiter) == LineKind::Overrun);
+        let (mut names, units) = header(before, delimiter, columns);
+        let labels = labels(lines[first], delimiter, point);
+        let names_in_rows = !labels.is_empty();
+        if names_in_rows {
+            names = labels;
+        }
+        let sample_time_s = before.iter().find_map(|line| sample_time_s(&String::from_utf8_lossy(line)));
         let first_line = first as u64 + 1;
-        Some((score, Self { delimiter, point, columns, names, units, first_line, comments, has_overruns }))
+        Some((score, Self { delimiter, point, columns, names, units, first_line, sample_time_s, names_in_rows }))
     }
 }
 
@@ -127,6 +128,39 @@ fn count(line: &[u8], delimiter: u8, point: u8) -> (usize, usize) {
         numbers += usize::from(!decimal::trimmed(field).is_empty() && decimal::parse(field, point).is_some());
     }
     (all, numbers)
+}
+
+/// Names in a row of names and numbers by turns, each for the number behind it; none in any other row.
+fn labels(row: &[u8], delimiter: u8, point: u8) -> Vec<String> {
+    let mut names = Vec::new();
+    for (number, field) in fields(row, delimiter).enumerate() {
+        let is_number = decimal::parse(field, point).is_some_and(f64::is_finite);
+        if is_number != (number % 2 == 1) {
+            return Vec::new();
+        }
+        match names.last() {
+            Some(label) if is_number => names.push(String::clone(label)),
+            _ => names.push(String::from_utf8_lossy(field).into_owned()),
+        }
+    }
+    // Behind its number the name is that of the number alone.
+    for pair in names.chunks_exact_mut(2) {
+        pair[0].clear();
+    }
+    if names.len() % 2 == 0 { names } else { Vec::new() }
+}
+
+/// Time between samples, s, in a line such as `# Sampling period is 1000000 ns` or `# sample_time_s = 0.001`.
+fn sample_time_s(line: &str) -> Option<f64> {
+    let text = line.trim_start_matches(['#', '%', '!', '/', ';', ' ']).to_lowercase();
+    let number = |text: &str| text.split_whitespace().next()?.parse::<f64>().ok();
+    let value = if let Some(rest) = text.strip_prefix(SAMPLING_PERIOD) {
+        1e-9 * number(rest)?
+    } else {
+        let (name, value) = text.split_once('=')?;
+        number(value).filter(|_| ["sample_time_s", "period_s"].contains(&name.trim()))?
+    };
+    Some(value).filter(|value| value.is_finite() && *value > 0.0)
 }
 
 /// The most frequent number.
@@ -173,8 +207,8 @@ fn is_unit(word: &str) -> bool {
 mod tests {
     use super::*;
 
-    fn dialect(text: &str) -> Dialect {
-        Dialect::of(text.as_bytes()).unwrap_or_else(|| panic!("no dialect: {text}"))
+    fn dialect(text: &str) -> TableDialect {
+        TableDialect::of(text.as_bytes()).unwrap_or_else(|| panic!("no dialect: {text}"))
     }
 
     #[test]
@@ -196,7 +230,7 @@ mod tests {
             assert_eq!((found.first_line, found.names.len()), (1, 0), "{text:?}");
         }
         for text in ["", "\n\n", "a b c\n", "1\n2\n3\n", "# 1 2 3\n"] {
-            assert_eq!(Dialect::of(text.as_bytes()), None, "{text:?}");
+            assert_eq!(TableDialect::of(text.as_bytes()), None, "{text:?}");
         }
     }
 
@@ -209,6 +243,14 @@ mod tests {
         assert_eq!(with_units.units, ["[s]", "[mm]", "[mm]"]);
         let commented = dialect("# sample_time_s = 0.001\n# n x.cmd x.act\n0 1 2\n1 2 3\n");
         assert_eq!(commented.names, ["n", "x.cmd", "x.act"]);
-        assert_eq!(commented.comments[0], "sample_time_s = 0.001");
+        assert_eq!(commented.sample_time_s, Some(0.001));
+    }
+
+    #[test]
+    fn rows_of_names_and_numbers_are_taken_apart() {
+        let found = dialect("Sampling period is 2000000 nSec \n\nx-cmd +1.5 x-fb +1.4 \nx-cmd +1.6 x-fb +1.5 \n");
+        assert_eq!(found.names, ["", "x-cmd", "", "x-fb"]);
+        assert!(found.names_in_rows);
+        assert_eq!((found.sample_time_s, found.columns), (Some(0.002), 4));
     }
 }

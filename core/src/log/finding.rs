@@ -79,12 +79,86 @@ pub enum LogFinding {
         /// The axis.
         axis: String,
     },
+    /// An axis that goes further than a linear axis can, which is left out.
+    Endless {
+        /// The axis.
+        axis: String,
+        /// How far it goes, mm.
+        range_mm: f64,
+    },
     /// An axis that lacks a column.
     Incomplete {
         /// The axis.
         axis: String,
         /// What it lacks.
         lacks: &'static str,
+    },
+    /// Command and actual position have different zeros, which was taken out.
+    Offset {
+        /// The axis.
+        axis: String,
+        /// Command minus actual position, mm.
+        offset_mm: f64,
+    },
+    /// How far the actual position is behind.
+    Following {
+        /// The axis.
+        axis: String,
+        /// RMS of command minus actual position, um.
+        following_um: f64,
+        /// By how much later it is, s.
+        delay_s: f64,
+    },
+    /// The actual position comes in steps.
+    Steps {
+        /// The axis.
+        axis: String,
+        /// The step, um.
+        step_um: f64,
+    },
+    /// The torque stays at its largest value.
+    TorqueLimit {
+        /// The axis.
+        axis: String,
+        /// That value.
+        limit: f64,
+        /// Its unit.
+        unit: TorqueUnit,
+        /// Part of the samples.
+        part: f64,
+        /// First of them, s.
+        from_s: f64,
+        /// Last of them, s.
+        to_s: f64,
+    },
+    /// The speed stays below that of the command.
+    SpeedLimit {
+        /// The axis.
+        axis: String,
+        /// Speed that it does not exceed, mm/s.
+        limit_mm_s: f64,
+        /// Speed of the command, mm/s.
+        commanded_mm_s: f64,
+    },
+    /// A line in the spectrum of the torque.
+    TorqueLine {
+        /// The axis.
+        axis: String,
+        /// Its frequency, Hz.
+        frequency_hz: f64,
+        /// Its amplitude.
+        amplitude: f64,
+        /// Unit of the amplitude.
+        unit: TorqueUnit,
+    },
+    /// A line in the spectrum of the following error.
+    FollowingLine {
+        /// The axis.
+        axis: String,
+        /// Its frequency, Hz.
+        frequency_hz: f64,
+        /// Its amplitude, um.
+        amplitude_um: f64,
     },
     /// Columns of numbers that nothing is known of.
     Unused {
@@ -135,7 +209,46 @@ impl fmt::Display for LogFinding {
             Self::CutOff { line } => write!(f, "line {line}, the last, is cut off and left out"),
             Self::Rotary { axis } => write!(f, "axis {axis} is rotary, in degrees, and left out"),
             Self::StandsStill { axis } => write!(f, "axis {axis} stands still and is left out"),
+            Self::Endless { axis, range_mm } => {
+                let range_mm = to_four_digits(*range_mm);
+                write!(
+                    f,
+                    "axis {axis} goes over {range_mm} mm, which no linear axis does: it is taken for a spindle and left out"
+                )
+            }
             Self::Incomplete { axis, lacks } => write!(f, "axis {axis} has no {lacks} and is left out"),
+            Self::Offset { axis, offset_mm } => {
+                let offset_mm = to_four_digits(*offset_mm);
+                write!(
+                    f,
+                    "command and actual position of {axis} differ by {offset_mm} mm all the time, which is taken out"
+                )
+            }
+            Self::Following { axis, following_um, delay_s } => {
+                let (following_um, by) = (to_four_digits(*following_um), ms(delay_s.abs()));
+                let how = if *delay_s < 0.0 { "ahead" } else { "behind" };
+                write!(f, "the following error of {axis} is {following_um} um RMS, its actual position is {by} {how}")
+            }
+            Self::Steps { axis, step_um } => {
+                write!(f, "the actual position of {axis} comes in steps of {} um", to_four_digits(*step_um))
+            }
+            Self::TorqueLimit { axis, limit, unit, part, from_s, to_s } => {
+                let (limit, percent) = (to_four_digits(*limit), to_four_digits(100.0 * part));
+                write!(f, "the torque of {axis} is at its limit of {limit} {unit} in {percent} % of the samples, ")?;
+                write!(f, "from {from_s:.3} s to {to_s:.3} s")
+            }
+            Self::SpeedLimit { axis, limit_mm_s, commanded_mm_s } => {
+                let [limit, commanded] = [limit_mm_s, commanded_mm_s].map(|speed| to_four_digits(*speed));
+                write!(f, "the speed of {axis} stays below {limit} mm/s, where the command reaches {commanded} mm/s")
+            }
+            Self::TorqueLine { axis, frequency_hz, amplitude, unit } => {
+                let [at, size] = [frequency_hz, amplitude].map(|value| to_four_digits(*value));
+                write!(f, "the torque of {axis} swings at {at} Hz with an amplitude of {size} {unit}")
+            }
+            Self::FollowingLine { axis, frequency_hz, amplitude_um } => {
+                let [at, size] = [frequency_hz, amplitude_um].map(|value| to_four_digits(*value));
+                write!(f, "the following error of {axis} swings at {at} Hz with an amplitude of {size} um")
+            }
             Self::Unused { columns } => write!(
                 f,
                 "not used: column {}; hint: a torque or current is named with --columns, such as x.torque={}",

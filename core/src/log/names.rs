@@ -108,8 +108,7 @@ pub(super) fn understand(name: &str) -> Meaning {
     let words = words(bare);
     let axis = Some(axis(&words)).filter(|axis| !axis.is_empty()).unwrap_or_else(|| remainder(&words));
     let has = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()) || without_axis(word, list));
-    let is_spindle = ["s", "sp", "spindle"].contains(&axis.trim_end_matches(|c: char| c.is_ascii_digit()));
-    let (quantity, fit) = if is_spindle {
+    let (quantity, fit) = if is_spindle(&axis) {
         (Quantity::Other, 0)
     } else if has(&SPEEDS) && !has(&OTHERS) {
         (if has(&COMMANDS) { Quantity::Other } else { Quantity::Velocity }, 1)
@@ -136,6 +135,11 @@ pub(super) fn understand(name: &str) -> Meaning {
         (Quantity::Other, 0)
     };
     Meaning { quantity, axis, unit: unit.to_owned(), fit }
+}
+
+/// Whether an axis is a spindle by its name.
+pub(super) fn is_spindle(axis: &str) -> bool {
+    ["s", "sp", "spindle"].contains(&axis.trim_end_matches(|c: char| c.is_ascii_digit()))
 }
 
 /// What is left of a name without the words that are known: what those columns have in common that belong together.

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::columns::{AxisChoice, ColumnChoice, Columns};
 use super::error::LogError;
 use super::finding::LogFinding;
-use super::names::{Meaning, Quantity, understand};
+use super::names::{Meaning, Quantity, is_spindle, understand};
 use super::pairs;
 use super::table::LogTable;
 use super::{LogFormat, MAX_AXES, TorqueUnit};
@@ -91,6 +91,16 @@ pub(super) fn find(
     if axes.is_empty() {
         return Err(fault("no two columns are the command and the actual position of an axis".to_owned()));
     }
+    axes.retain(|axis| {
+        let is_rotary = !by_data && columns.axes.is_empty() && is_rotary(axis);
+        if is_rotary {
+            incomplete.push(LogFinding::Rotary { axis: axis.name.clone() });
+        }
+        !is_rotary
+    });
+    if axes.is_empty() {
+        return Err(fault("all axes with command and actual position are rotary".to_owned()));
+    }
     axes.truncate(MAX_AXES);
     for axis in &axes {
         findings.push(LogFinding::AxisColumns {
@@ -115,6 +125,13 @@ pub(super) fn find(
     Ok(Roles { time, axes })
 }
 
+/// Whether the name of an axis, or its unit, says that it turns.
+fn is_rotary(axis: &AxisRoles) -> bool {
+    let letter = axis.name.trim_end_matches(|c: char| c.is_ascii_digit());
+    ["a", "b", "c"].contains(&letter)
+        || ["deg", "degree", "degrees", "\u{b0}", "rad"].contains(&axis.unit.to_lowercase().as_str())
+}
+
 /// What columns there are, and how to say which is which.
 fn there_are(table: &LogTable) -> String {
     const SHOWN: usize = 30;
@@ -130,6 +147,9 @@ fn meanings(table: &LogTable) -> Vec<Meaning> {
         let mut meaning = understand(&column.name);
         if let Some(axis) = &column.axis {
             meaning.axis.clone_from(axis);
+            if is_spindle(axis) {
+                meaning.quantity = Quantity::Other;
+            }
         }
         if !column.unit.is_empty() {
             meaning.unit = column.unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned();

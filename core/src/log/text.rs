@@ -7,7 +7,7 @@ use std::path::Path;
 use memchr::memchr_iter;
 
 use super::columns::Columns;
-use super::dialect::{Dialect, LineKind, fields};
+use super::dialect::{LineKind, TableDialect, fields};
 use super::table::{LineNumbers, LogColumn, LogTable};
 use super::{LogError, LogFormat, decimal};
 use crate::watch::{StageSteps, Watch};
@@ -27,8 +27,9 @@ pub(super) fn read(
     watch: &dyn Watch,
 ) -> Result<LogTable, LogError> {
     let dialect = dialect_of(path, head)?;
-    let mut rows = Rows::new(path, dialect, columns);
+    let mut rows = TextRows::new(path, dialect, columns);
     let total_bytes = file.metadata().map_or(0, |found| found.len());
+    rows.reserve(head, total_bytes);
     let (mut chunk, mut carried, mut done_bytes) = (vec![0; CHUNK_BYTES], Vec::new(), 0_u64);
     loop {
         let count = match file.read(&mut chunk) {
@@ -67,7 +68,7 @@ pub(super) fn read(
 }
 
 /// The dialect, or why there is none.
-fn dialect_of(path: &Path, head: &[u8]) -> Result<Dialect, LogError> {
+fn dialect_of(path: &Path, head: &[u8]) -> Result<TableDialect, LogError> {
     const HINT: &str = "logs are text tables, files of halsampler and halscope, MATLAB files (version 5 to 7) and JSON of Sinumerik Edge";
     if head.is_empty() {
         return Err(LogError::format(path, None, "the file is empty", HINT));
@@ -80,16 +81,16 @@ fn dialect_of(path: &Path, head: &[u8]) -> Result<Dialect, LogError> {
         let message = format!("the file is neither text nor a binary format that is read: byte {at} is zero");
         return Err(LogError::format(path, None, message, HINT));
     }
-    Dialect::of(head).ok_or_else(|| {
+    TableDialect::of(head).ok_or_else(|| {
         let message = "no rows of at least two numbers within the first 64 KiB";
         LogError::format(path, None, message, HINT)
     })
 }
 
 /// The rows so far.
-struct Rows<'a> {
+struct TextRows<'a> {
     path: &'a Path,
-    dialect: Dialect,
+    dialect: TableDialect,
     table: LogTable,
     /// Which columns are kept.
     kept: Vec<bool>,
@@ -99,8 +100,8 @@ struct Rows<'a> {
     is_last: bool,
 }
 
-impl<'a> Rows<'a> {
-    fn new(path: &'a Path, dialect: Dialect, columns: &Columns) -> Self {
+impl<'a> TextRows<'a> {
+    fn new(path: &'a Path, dialect: TableDialect, columns: &Columns) -> Self {
         let name = |names: &[String], i: usize| names.get(i).cloned().unwrap_or_default();
         let found = (0..dialect.columns)
             .map(|i| LogColumn { name: name(&dialect.names, i), unit: name(&dialect.units, i), ..LogColumn::default() })
@@ -110,11 +111,24 @@ impl<'a> Rows<'a> {
             columns: found,
             breaks: Vec::new(),
             lines: LineNumbers::default(),
-            sample_time_s: None,
+            sample_time_s: dialect.sample_time_s,
             cut_off_line: None,
         };
-        let kept = super::roles::needed(&table, columns);
+        let mut kept = super::roles::needed(&table, columns);
+        if dialect.names_in_rows {
+            kept.iter_mut().step_by(2).for_each(|kept| *kept = false);
+        }
         Self { path, dialect, table, kept, row: 0, line: 0, is_last: false }
+    }
+
+    /// Room for about as many rows as there are, so that columns need not grow: that would take twice their memory.
+    fn reserve(&mut self, head: &[u8], total_bytes: u64) {
+        let lines = memchr_iter(b'\n', head).count().max(1);
+        let rows = (total_bytes as f64 / head.len() as f64 * lines as f64 * 1.02) as usize + 1;
+        for (column, _) in self.table.columns.iter_mut().zip(&self.kept).filter(|(_, kept)| **kept) {
+            // What cannot be had now is asked for row by row.
+            let _ = column.values.try_reserve_exact(rows);
+        }
     }
 
     /// One line, without its end.
@@ -123,6 +137,7 @@ impl<'a> Rows<'a> {
         if self.line < self.dialect.first_line {
             return Ok(());
         }
+        let line = if self.line == 1 { line.strip_prefix(b"\xef\xbb\xbf").unwrap_or(line) } else { line };
         let line = line.strip_suffix(b"\r").unwrap_or(line);
         match LineKind::of(line, self.dialect.delimiter) {
             LineKind::Blank | LineKind::Comment => return Ok(()),
@@ -168,9 +183,31 @@ impl<'a> Rows<'a> {
     }
 
     fn finish(mut self) -> Result<LogTable, LogError> {
+        if self.dialect.names_in_rows {
+            self.table.columns.retain(|column| !column.name.is_empty());
+        }
+        self.table.format = self.format();
         for column in &mut self.table.columns {
             column.values.shrink_to_fit();
         }
         Ok(self.table)
+    }
+}
+
+impl TextRows<'_> {
+    /// Whose text it is: LinuxCNC's recorders have marks of their own.
+    fn format(&self) -> LogFormat {
+        let first = self.table.columns.first();
+        let counts = first.is_some_and(|column| {
+            let is_named = ["", "n"].contains(&column.name.as_str()) && column.values.len() > 1;
+            is_named && column.values.windows(2).take(1000).all(|pair| pair[1] - pair[0] == 1.0)
+        });
+        let named_n = counts && first.is_some_and(|column| column.name == "n");
+        let is_blank = self.dialect.delimiter == b' ';
+        match self.dialect.sample_time_s {
+            Some(_) if self.dialect.names_in_rows || !counts => LogFormat::Halscope,
+            _ if !self.table.breaks.is_empty() || named_n || (counts && is_blank) => LogFormat::Halsampler,
+            _ => LogFormat::TextTable,
+        }
     }
 }
