@@ -31,6 +31,7 @@ pub mod model;
 pub mod controllers;
 pub mod report;
 pub mod job;
+pub mod log_job;
 pub mod paper;
 pub mod held_out;
 pub mod compare;

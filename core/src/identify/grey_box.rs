@@ -92,6 +92,9 @@ pub enum NotFound {
         /// Its name.
         axis: String,
     },
+    /// Ended from outside.
+    #[error("interrupted")]
+    Ended,
     /// No law fits.
     #[error(
         "no law of a servo axis fits axis {axis}: the best leaves {left_um:.1} um RMS of a following error of {following_um:.1} um\n  hint: check with --columns that command and actual position belong to this axis"
@@ -109,19 +112,28 @@ pub enum NotFound {
 /// Samples that a fit or a score needs.
 const LEAST_SAMPLES: usize = 100;
 
+/// Mechanics periods in a servo period of the machine that is made of a record.
+pub const SERVO_MECHANICS: u32 = axis_run::MECHANICS_PER_SERVO;
+
+/// Servo period of that machine, s.
+pub fn servo_period_s(sample_s: f64) -> f64 {
+    axis_run::periods(sample_s).0.servo_s
+}
+
 /// A torque column, in the unit of the file.
 pub type TorqueValues<'a> = Option<&'a [f64]>;
 
-/// Identifies axes that were recorded together. `tell` is told which part of the work is done, 0 to 1.
+/// Identifies axes that were recorded together. `tell` is told which part of the work is done, 0 to 1, and
+/// answers whether to go on.
 ///
 /// # Errors
-/// A record that does not tell the law of an axis.
+/// A record that does not tell the law of an axis, or an end from outside.
 pub fn identify(
     records: &[AxisRecord<'_>],
     torques: &[TorqueValues<'_>],
     time_s: &[f64],
     options: &GreyBoxOptions,
-    mut tell: impl FnMut(f64),
+    mut tell: impl FnMut(f64) -> bool,
 ) -> Result<FoundMachine, NotFound> {
     let first = records.first().ok_or(NotFound::NoAxis)?;
     let split = match &options.times_s {
@@ -140,7 +152,7 @@ pub fn identify(
         let facts = options.facts.get(i).copied().unwrap_or_default();
         let torque = torques.get(i).copied().flatten();
         let done = |part: f64| (i as f64 + part) / records.len() as f64;
-        axes.push(law_fit::find(record, torque, &split, facts, |part| tell(done(part)))?);
+        axes.push(law_fit::find(record, torque, &split, facts, &mut |part| tell(done(part)))?);
     }
     let contour = ContourScores::of(records, &axes, &split.score);
     Ok(FoundMachine { axes, split, contour, sample_s: first.sample_s })

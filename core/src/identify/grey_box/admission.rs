@@ -29,10 +29,10 @@ const BASE: [LawTerm; 5] =
 const GAINED: f64 = 0.02;
 const GAINED_S: f64 = 0.02;
 /// Starts and terms that are followed up after a first look.
-const FOLLOWED_STARTS: usize = 4;
+const FOLLOWED_STARTS: usize = 3;
 const FOLLOWED_TERMS: usize = 4;
 /// Steps of fits: of starts, and of terms.
-const START_STEPS: usize = 12;
+const START_STEPS: usize = 10;
 const TERM_STEPS: usize = 8;
 const MOST_TERMS: usize = 8;
 /// Gains of loops that a fit begins with: of the speed loop over the inertia, of the position loop, and 1 / Ti, 1/s.
@@ -53,8 +53,8 @@ pub(super) fn admit(
     record: &AxisRecord<'_>,
     [train, valid]: [&[bool]; 2],
     moving_s: f64,
-    mut tell: impl FnMut(f64),
-) -> Admitted {
+    mut tell: impl FnMut(f64) -> bool,
+) -> Option<Admitted> {
     let on = |counts| OutputErrors { record, counts };
     let (train, valid) = (on(train), on(valid));
     let gained = 1.0 - GAINED - GAINED_S / moving_s.max(GAINED_S);
@@ -63,7 +63,9 @@ pub(super) fn admit(
     let mut at = first.1;
     let mut left_mm = valid.rms_mm(&at);
     for round in 0..MOST_TERMS {
-        tell((round + 1) as f64 / (MOST_TERMS + 1) as f64);
+        if !tell((round + 1) as f64 / (MOST_TERMS + 1) as f64) {
+            return None;
+        }
         let Some((new, found, found_mm)) = best_term(record, &train, &valid, &terms, &at) else { break };
         if found_mm > gained * left_mm {
             break;
@@ -71,7 +73,7 @@ pub(super) fn admit(
         terms.extend(new);
         (at, left_mm) = (found.values, found_mm);
     }
-    Admitted { terms, values: at }
+    Some(Admitted { terms, values: at })
 }
 
 /// The base, with an integral part where that leaves less.
@@ -156,12 +158,16 @@ fn best_term(
         .map(|(_, candidate, start)| {
             let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
             let fitted = train.least(&start, &all, TERM_STEPS);
-            let valid_mm = valid.rms_mm(&fitted.values);
+            let told = train.told_apart(&fitted.values, &all);
+            let valid_mm = if told > LEAST_TOLD { valid.rms_mm(&fitted.values) } else { f64::INFINITY };
             (candidate.terms, fitted, valid_mm)
         })
         .collect();
     followed.into_iter().min_by(|a, b| a.2.total_cmp(&b.2))
 }
+
+/// Least part of what a number does to the position that no other number does as well.
+const LEAST_TOLD: f64 = 1e-3;
 
 /// A start that leaves so many times more than the fit is lost.
 const LOST: f64 = 30.0;

@@ -44,8 +44,10 @@ pub struct AxisScores {
     pub simulated_mm: Vec<Option<f64>>,
     /// The same of the ARX that is best over the whole run.
     pub arx_mm: Vec<Option<f64>>,
-    /// Innovations of the filter that runs begin with, mm.
-    pub innovations_mm: Vec<f64>,
+    /// Correlation of the filter's innovations with those one sample before, over the scored samples: zero were they white.
+    pub innovation_correlation: f64,
+    /// The same of what the whole run leaves.
+    pub residual_correlation: f64,
 }
 
 impl AxisScores {
@@ -105,6 +107,9 @@ pub(super) fn score(record: &AxisRecord<'_>, values: &TermValues, fit: &[bool], 
     let at_um = [0, 1, 2].map(|i| 1e3 * rms(missed.iter().filter_map(|missed| missed.get(i).copied())));
     let whole_um = 1e3 * left_rms(record, &simulated_mm, |_| true);
     let one_step_um = 1e3 * rms((0..scored.len()).filter(|&k| scored[k]).map(|k| filtered.innovations_mm[k]));
+    let innovation_correlation = correlation(scored, |k| filtered.innovations_mm[k]);
+    let residual_correlation =
+        correlation(scored, |k| simulated_mm[k].map_or(0.0, |simulated| record.actual_mm[k] - simulated));
     let beyond = beyond(record, fit, scored, &simulated_mm);
     let (arx, arx_mm) = score_arx(record, fit, scored, &samples, &parts, ahead);
     AxisScores {
@@ -115,8 +120,19 @@ pub(super) fn score(record: &AxisRecord<'_>, values: &TermValues, fit: &[bool], 
         stays: stays(record, scored, &samples, &parts, ahead),
         simulated_mm,
         arx_mm,
-        innovations_mm: filtered.innovations_mm,
+        innovation_correlation,
+        residual_correlation,
     }
+}
+
+/// Of values with those one sample before.
+fn correlation(scored: &[bool], value: impl Fn(usize) -> f64) -> f64 {
+    let (mut products, mut squares) = (0.0, 0.0);
+    for k in (1..scored.len()).filter(|&k| scored[k] && scored[k - 1]) {
+        products += value(k) * value(k - 1);
+        squares += value(k) * value(k);
+    }
+    if squares > 0.0 { products / squares } else { 0.0 }
 }
 
 /// First and last scored sample of each stretch.

@@ -31,7 +31,7 @@ pub(super) fn find(
     torque: Option<&[f64]>,
     split: &SampleSplit,
     facts: AxisFacts,
-    mut tell: impl FnMut(f64),
+    tell: &mut dyn FnMut(f64) -> bool,
 ) -> Result<FoundAxis, NotFound> {
     let (train, valid, moving_s) = split.inner(record);
     if moving_s == 0.0 {
@@ -40,10 +40,10 @@ pub(super) fn find(
     let windows = windows(record, &split.fit);
     let thinned = AxisRecord { stretches: &windows, ..*record };
     let [train, valid] = [train, valid].map(|counts| behind_starts(&thinned, &counts, windows.len() != record.stretches.len()));
-    let admitted = admit(&thinned, [&train, &valid], moving_s, |part| tell(PARTS[0] * part));
+    let admitted = admit(&thinned, [&train, &valid], moving_s, |part| tell(PARTS[0] * part)).ok_or(NotFound::Ended)?;
     let errors = OutputErrors { record, counts: &split.fit };
     let fitted = errors.least(&admitted.values, &admitted.terms, STEPS);
-    tell(PARTS[1]);
+    go_on(tell(PARTS[1]))?;
     let following_mm = record.following_mm(&split.fit);
     if fitted.rms_mm.is_nan() || fitted.rms_mm > NO_LAW * following_mm {
         return Err(NotFound::NoLaw {
@@ -64,9 +64,9 @@ pub(super) fn find(
     let certain = StandardErrors::of(&errors, &values, &terms);
     let half_intervals = certain.errors.iter().map(|error| certain.factor * error).collect();
     let resolved = torque.and_then(|torque| resolve(&errors, torque, &values, &terms, &facts, fitted.rms_mm));
-    tell(0.5 * (PARTS[1] + 1.0));
+    go_on(tell(0.5 * (PARTS[1] + 1.0)))?;
     let scores = score(record, &values, &split.fit, &split.score);
-    tell(1.0);
+    go_on(tell(1.0))?;
     Ok(FoundAxis {
         name: record.name.to_owned(),
         values,
@@ -80,6 +80,10 @@ pub(super) fn find(
         step_um: 1e3 * record.step_mm,
         most: FoundAxis::most(record),
     })
+}
+
+fn go_on(wanted: bool) -> Result<(), NotFound> {
+    if wanted { Ok(()) } else { Err(NotFound::Ended) }
 }
 
 /// Friction by the torque column, and the law with it.

@@ -93,6 +93,22 @@ impl OutputErrors<'_> {
         after.into_iter().fold(before, |best, next| if next.rms_mm < best.rms_mm { next } else { best })
     }
 
+    /// The least part, of all terms, of what a term does to the position that no sum of the others does as well: 1 / VIF.
+    pub(super) fn told_apart(&self, values: &TermValues, terms: &[LawTerm]) -> f64 {
+        let slopes = self.slopes(values, terms);
+        let nothing = vec![0.0; slopes.first().map_or(0, Vec::len)];
+        let (curvature, _) = normal_equations(&slopes, &nothing);
+        let n = terms.len();
+        let size = |i: usize| curvature[(i, i)].sqrt();
+        let scaled = DMatrix::from_fn(n, n, |i, j| {
+            let both = size(i) * size(j);
+            // A number that does nothing at all is told from the others: it will be left out for that.
+            if both > 0.0 { curvature[(i, j)] / both } else { f64::from(u8::from(i == j)) }
+        });
+        let Some(inverse) = scaled.cholesky().map(|cholesky| cholesky.inverse()) else { return 0.0 };
+        (0..n).map(|i| 1.0 / inverse[(i, i)]).fold(1.0, f64::min)
+    }
+
     /// The least from a start, over these terms, in at most so many steps.
     pub(super) fn least(&self, start: &TermValues, terms: &[LawTerm], steps: usize) -> Fitted {
         let mut at = *start;

@@ -201,6 +201,11 @@ impl TermValues {
         (2.0 * most * mechanics_s).max(SMOOTHING_MM_S)
     }
 
+    /// The same for a machine file, mm/s.
+    pub fn smoothing_at_mm_s(&self, mechanics_s: f64) -> f64 {
+        self.smoothing_mm_s(mechanics_s)
+    }
+
     pub(super) fn drive(&self) -> DriveParameters {
         let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
         DriveParameters {
