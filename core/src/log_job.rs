@@ -181,9 +181,8 @@ impl LogIdentified {
         for (i, axis) in self.machine.axes.iter().enumerate() {
             let _ = writeln!(text, "axis {}: {}", axis.name, self.verdict(i));
             for number in axis.numbers() {
-                let interval = number.interval.map_or(String::new(), |[low, high]| {
-                    format!("{} to {}", digits(low), digits(high))
-                });
+                let interval =
+                    number.interval.map_or(String::new(), |[low, high]| format!("{} to {}", digits(low), digits(high)));
                 let _ = writeln!(
                     text,
                     "  {:<27} {:>12} {:<10} {:<24} {}",

@@ -45,7 +45,10 @@ pub fn write(out: &mut impl Write, identified: &LogIdentified) -> io::Result<()>
             number(contour.arx_um)
         )?;
     }
-    let lists = [("What was noticed", log.findings.iter().map(ToString::to_string).collect()), ("What to record", identified.advice())];
+    let lists = [
+        ("What was noticed", log.findings.iter().map(ToString::to_string).collect()),
+        ("What to record", identified.advice()),
+    ];
     for (title, lines) in lists {
         let lines: Vec<String> = lines;
         if !lines.is_empty() {
@@ -60,10 +63,19 @@ pub fn write(out: &mut impl Write, identified: &LogIdentified) -> io::Result<()>
 fn write_axis(out: &mut impl Write, identified: &LogIdentified, i: usize, axis: &FoundAxis) -> io::Result<()> {
     let name = escaped(&axis.name).to_string();
     writeln!(out, "<section><h2>Axis {name}</h2>\n<p><b>{}</b></p>", escaped(&sentence(&identified.verdict(i))))?;
-    writeln!(out, "<figure>{}<figcaption><b>Following error of axis {name}.</b> {}</figcaption></figure>", following(identified, i, axis).to_svg(), "Measured, and as free runs over the scored samples have it; below, what they leave. Gaps are samples that were fitted.")?;
-    writeln!(out, "<div class=\"wide\"><table><thead><tr><th>number</th><th>value</th><th>interval</th><th>unit</th><th></th></tr></thead><tbody>")?;
+    writeln!(
+        out,
+        "<figure>{}<figcaption><b>Following error of axis {name}.</b> {}</figcaption></figure>",
+        following(identified, i, axis).to_svg(),
+        "Measured, and as free runs over the scored samples have it; below, what they leave. Gaps are samples that were fitted."
+    )?;
+    writeln!(
+        out,
+        "<div class=\"wide\"><table><thead><tr><th>number</th><th>value</th><th>interval</th><th>unit</th><th></th></tr></thead><tbody>"
+    )?;
     for number in axis.numbers() {
-        let interval = number.interval.map_or(String::new(), |[low, high]| format!("{} to {}", digits(low), digits(high)));
+        let interval =
+            number.interval.map_or(String::new(), |[low, high]| format!("{} to {}", digits(low), digits(high)));
         writeln!(
             out,
             "<tr><td>{}</td><td>{}</td><td>{interval}</td><td>{}</td><td class=\"words\">{}</td></tr>",
@@ -90,12 +102,22 @@ fn sentence(words: &str) -> String {
 }
 
 fn write_errors(out: &mut impl Write, axis: &FoundAxis) -> io::Result<()> {
-    writeln!(out, "<p>RMS of what predictions miss, µm, of a following error of {} µm:</p>", number(axis.scores.following_um))?;
-    writeln!(out, "<div class=\"wide\"><table><thead><tr><th>model</th><th>20 ms</th><th>50 ms</th><th>100 ms</th><th>whole run</th><th>one step</th></tr></thead><tbody>")?;
+    writeln!(
+        out,
+        "<p>RMS of what predictions miss, µm, of a following error of {} µm:</p>",
+        number(axis.scores.following_um)
+    )?;
+    writeln!(
+        out,
+        "<div class=\"wide\"><table><thead><tr><th>model</th><th>20 ms</th><th>50 ms</th><th>100 ms</th><th>whole run</th><th>one step</th></tr></thead><tbody>"
+    )?;
     let mut row = |class: &str, name: &str, errors: &FreeRunErrors| {
         let [a, b, c] = errors.at_um.map(micrometres);
         let [whole, step] = [errors.whole_um, errors.one_step_um].map(micrometres);
-        writeln!(out, "<tr{class}><td>{name}</td><td>{a}</td><td>{b}</td><td>{c}</td><td>{whole}</td><td>{step}</td></tr>")
+        writeln!(
+            out,
+            "<tr{class}><td>{name}</td><td>{a}</td><td>{b}</td><td>{c}</td><td>{whole}</td><td>{step}</td></tr>"
+        )
     };
     row(" class=\"ours\"", "law of the axis", &axis.scores.grey_box)?;
     for (arx, errors) in &axis.scores.arx {
@@ -104,7 +126,12 @@ fn write_errors(out: &mut impl Write, axis: &FoundAxis) -> io::Result<()> {
     row("", "the error stays", &axis.scores.stays)?;
     writeln!(out, "</tbody></table></div>")?;
     if let Some((um, share)) = axis.scores.beyond {
-        writeln!(out, "<p>{:.0} % of what was scored is faster than all that was fitted; there the law misses {} µm.</p>", 100.0 * share, number(um))?;
+        writeln!(
+            out,
+            "<p>{:.0} % of what was scored is faster than all that was fitted; there the law misses {} µm.</p>",
+            100.0 * share,
+            number(um)
+        )?;
     }
     Ok(())
 }

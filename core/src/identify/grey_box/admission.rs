@@ -43,7 +43,7 @@ const INTEGRALS_1_S: [f64; 2] = [0.0, 40.0];
 const LOOPS_APART: f64 = 0.6;
 
 /// A term that may be admitted, with what belongs to it, and the values that it begins with.
-struct Candidate {
+struct TermCandidate {
     terms: Vec<LawTerm>,
     start: TermValues,
 }
@@ -86,11 +86,8 @@ fn begin(record: &AxisRecord<'_>, train: &OutputErrors<'_>, gained: f64) -> (Vec
         let starts = starts(record, train.counts, integral);
         let mut ranked: Vec<(f64, TermValues)> = starts.par_iter().map(|at| (train.rms_mm(at), *at)).collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let fits: Vec<Fitted> = ranked
-            .par_iter()
-            .take(FOLLOWED_STARTS)
-            .map(|(_, at)| train.least(at, &terms, START_STEPS))
-            .collect();
+        let fits: Vec<Fitted> =
+            ranked.par_iter().take(FOLLOWED_STARTS).map(|(_, at)| train.least(at, &terms, START_STEPS)).collect();
         let best = fits.into_iter().min_by(|a, b| a.rms_mm.total_cmp(&b.rms_mm));
         best.map(|best| (terms, best))
     };
@@ -141,7 +138,7 @@ fn best_term(
 ) -> Option<(Vec<LawTerm>, Fitted, f64)> {
     let slopes = train.slopes(at, terms);
     let now_mm = train.rms_mm(at);
-    let mut looked: Vec<(f64, Candidate, TermValues)> = candidates(record, terms, at)
+    let mut looked: Vec<(f64, TermCandidate, TermValues)> = candidates(record, terms, at)
         .into_par_iter()
         .filter_map(|candidate| {
             // A start that loses the run is no start.
@@ -173,7 +170,7 @@ const LEAST_TOLD: f64 = 1e-3;
 const LOST: f64 = 30.0;
 
 /// Terms that the law does not have yet.
-fn candidates(record: &AxisRecord<'_>, terms: &[LawTerm], at: &TermValues) -> Vec<Candidate> {
+fn candidates(record: &AxisRecord<'_>, terms: &[LawTerm], at: &TermValues) -> Vec<TermCandidate> {
     let sample_s = record.sample_s;
     let most = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let speed_mm_s = record.slopes(record.actual_mm, 3);
@@ -202,7 +199,7 @@ fn candidates(record: &AxisRecord<'_>, terms: &[LawTerm], at: &TermValues) -> Ve
         for value in values {
             let start = at.with(term, *value);
             let terms = if term == LawTerm::Stribeck { vec![term, LawTerm::StribeckSpeed] } else { vec![term] };
-            candidates.push(Candidate { terms, start });
+            candidates.push(TermCandidate { terms, start });
         }
     }
     candidates

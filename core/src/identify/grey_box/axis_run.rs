@@ -167,7 +167,8 @@ impl AxisRun {
         for servo_periods in [3.0, 2.0, 1.0] {
             let at = sample as f64 - servo_periods / self.servo_per_sample as f64;
             let position_mm = mm - servo_periods * servo_s * mm_s;
-            reference = self.drive.position_loop(&self.law, self.command_mm(commands, at), position_mm, &mut axis, &mut drive);
+            reference =
+                self.drive.position_loop(&self.law, self.command_mm(commands, at), position_mm, &mut axis, &mut drive);
         }
         let integral = if self.values.get(LawTerm::Integral) > 0.0 { carried } else { 0.0 };
         drive.correct(integral, carried);

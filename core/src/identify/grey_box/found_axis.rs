@@ -129,7 +129,8 @@ impl FoundAxis {
 
     /// Inertia at the shaft, kg m2, its standard error, and where it comes from.
     pub fn inertia(&self) -> (f64, Option<f64>, NumberSource) {
-        let to_shaft = |inertia: f64| if self.facts.lead_mm_per_rev.is_some() { inertia } else { self.at_shaft(inertia) };
+        let to_shaft =
+            |inertia: f64| if self.facts.lead_mm_per_rev.is_some() { inertia } else { self.at_shaft(inertia) };
         if let Some(inertia) = self.facts.inertia {
             return (to_shaft(inertia), None, NumberSource::Given);
         }
@@ -163,7 +164,8 @@ impl FoundAxis {
             .collect();
         let (inertia, error, source) = self.inertia();
         let interval = error.map(|error| [inertia - 1.645 * error, inertia + 1.645 * error]);
-        let number = |key, name, unit, value, interval, source| FoundNumber { key, name, unit, value, interval, source };
+        let number =
+            |key, name, unit, value, interval, source| FoundNumber { key, name, unit, value, interval, source };
         numbers.push(number("inertia_kg_m2", "inertia J at the shaft", "kg m2", inertia, interval, source));
         let apart = self.gains_source();
         numbers.push(number("kp_1_s", "Kp", "1/s", told.kp_1_s(), None, apart));

@@ -1,5 +1,6 @@
 //! The law of one axis, from its record to its scores.
 
+use super::NotFound;
 use super::admission::admit;
 use super::axis_record::AxisRecord;
 use super::found_axis::{AxisFacts, FoundAxis, ResolvedLaw};
@@ -9,7 +10,6 @@ use super::sample_split::SampleSplit;
 use super::standard_errors::StandardErrors;
 use super::terms::{LawTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
-use super::NotFound;
 
 /// Samples that terms are admitted with: windows of the record where it has more.
 const ADMISSION_SAMPLES: usize = 12_000;
@@ -39,7 +39,8 @@ pub(super) fn find(
     }
     let windows = windows(record, &split.fit);
     let thinned = AxisRecord { stretches: &windows, ..*record };
-    let [train, valid] = [train, valid].map(|counts| behind_starts(&thinned, &counts, windows.len() != record.stretches.len()));
+    let [train, valid] =
+        [train, valid].map(|counts| behind_starts(&thinned, &counts, windows.len() != record.stretches.len()));
     let admitted = admit(&thinned, [&train, &valid], moving_s, |part| tell(PARTS[0] * part)).ok_or(NotFound::Ended)?;
     let errors = OutputErrors { record, counts: &split.fit };
     let fitted = errors.least(&admitted.values, &admitted.terms, STEPS);

@@ -70,7 +70,8 @@ impl LinearArx {
         }
         // Columns in their own sizes.
         let sizes = DVector::from_fn(n, |i, _| squares[(i, i)].sqrt().max(f64::MIN_POSITIVE));
-        let scaled = DMatrix::from_fn(n, n, |i, j| squares[(i, j)] / (sizes[i] * sizes[j]) + if i == j { RIDGE } else { 0.0 });
+        let scaled =
+            DMatrix::from_fn(n, n, |i, j| squares[(i, j)] / (sizes[i] * sizes[j]) + if i == j { RIDGE } else { 0.0 });
         let found = scaled.cholesky()?.solve(&products.component_div(&sizes)).component_div(&sizes);
         arx.weights = found.iter().copied().collect();
         found.iter().all(|weight| weight.is_finite()).then_some(arx)

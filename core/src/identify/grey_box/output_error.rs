@@ -193,10 +193,13 @@ fn stepped(
             let wanted = value + step[i] * change(at, term);
             let is_size = matches!(
                 term,
-                LawTerm::LoopGain | LawTerm::Damping | LawTerm::SpeedLimit | LawTerm::AccelerationLimit | LawTerm::StribeckSpeed
+                LawTerm::LoopGain
+                    | LawTerm::Damping
+                    | LawTerm::SpeedLimit
+                    | LawTerm::AccelerationLimit
+                    | LawTerm::StribeckSpeed
             );
-            let bounded =
-                if is_size { wanted.clamp(value / LARGEST_FACTOR, value * LARGEST_FACTOR) } else { wanted };
+            let bounded = if is_size { wanted.clamp(value / LARGEST_FACTOR, value * LARGEST_FACTOR) } else { wanted };
             next.with(term, bounded)
         });
     }

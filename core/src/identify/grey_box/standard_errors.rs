@@ -35,9 +35,8 @@ impl StandardErrors {
         let n = terms.len();
         let (curvature, _) = normal_equations(&slopes, &left);
         let sizes: Vec<f64> = (0..n).map(|i| curvature[(i, i)].sqrt().max(f64::MIN_POSITIVE)).collect();
-        let scaled = DMatrix::from_fn(n, n, |i, j| {
-            curvature[(i, j)] / (sizes[i] * sizes[j]) + if i == j { RIDGE } else { 0.0 }
-        });
+        let scaled =
+            DMatrix::from_fn(n, n, |i, j| curvature[(i, j)] / (sizes[i] * sizes[j]) + if i == j { RIDGE } else { 0.0 });
         let Some(inverse) = scaled.cholesky().map(|cholesky| cholesky.inverse()) else {
             return Self { errors: vec![f64::INFINITY; n], factor: 1.645 };
         };

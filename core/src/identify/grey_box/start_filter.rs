@@ -42,8 +42,7 @@ impl StartFilter {
     pub(super) fn best(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -> Self {
         let ahead = ((RUN_S / record.sample_s).round() as usize).max(1);
         let samples = starts(record, counts, ahead, RUNS);
-        let all: Vec<Self> =
-            POSITION.iter().flat_map(|&position| LOAD.map(|load| Self { position, load })).collect();
+        let all: Vec<Self> = POSITION.iter().flat_map(|&position| LOAD.map(|load| Self { position, load })).collect();
         let missed: Vec<f64> = all
             .par_iter()
             .map(|filter| {

@@ -190,8 +190,7 @@ impl Regressors {
         // Error of a ratio, to first order.
         let ratio_error = |i: usize| {
             let ratio = found[i] / scale;
-            let variance =
-                covariance[(i, i)] - 2.0 * ratio * covariance[(i, 0)] + ratio * ratio * covariance[(0, 0)];
+            let variance = covariance[(i, i)] - 2.0 * ratio * covariance[(i, 0)] + ratio * ratio * covariance[(0, 0)];
             variance.max(0.0).sqrt() / scale.abs()
         };
         Some(TorqueColumn {

@@ -49,11 +49,18 @@ impl LawVerdict {
             um(grey_box.whole_um),
             um(scores.following_um)
         );
-        let against = format!("the best linear model misses {} um, and {} um after 100 ms where the law misses {} um", um(linear.whole_um), um(linear.at_um[2]), um(grey_box.at_um[2]));
+        let against = format!(
+            "the best linear model misses {} um, and {} um after 100 ms where the law misses {} um",
+            um(linear.whole_um),
+            um(linear.at_um[2]),
+            um(grey_box.at_um[2])
+        );
         match self {
             Self::LawHolds => format!("the law holds: {missed}; {against}"),
             Self::LinearSuffices => format!("linear suffices: {missed}; {against}"),
-            Self::LinearIsBetter => format!("a linear model is better: {missed}; {against}. Something moves this axis that the law does not have"),
+            Self::LinearIsBetter => format!(
+                "a linear model is better: {missed}; {against}. Something moves this axis that the law does not have"
+            ),
             Self::TooMuchLeft => format!("not good enough for control: {missed}; {against}"),
         }
     }
@@ -64,5 +71,11 @@ fn um(value: f64) -> String {
     if !value.is_finite() {
         return "more than any number of".to_owned();
     }
-    if value < 10.0 { format!("{value:.2}") } else if value < 100.0 { format!("{value:.1}") } else { format!("{value:.0}") }
+    if value < 10.0 {
+        format!("{value:.2}")
+    } else if value < 100.0 {
+        format!("{value:.1}")
+    } else {
+        format!("{value:.0}")
+    }
 }
