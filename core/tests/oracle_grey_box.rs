@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 mod common {
-    pub mod identification_log;
+    pub(crate) mod identification_log;
 }
 
 use std::path::Path;

@@ -96,6 +96,13 @@ fn axis(text: &mut String, found: &FoundAxis, servo_s: f64) {
     if found.noise_um > 0.0 {
         key(text, "encoder_noise_um", found.noise_um.min(1e3), "by third differences of the actual position");
     }
+    if let Some(resolved) = &found.resolved {
+        let window = digits(resolved.values.get(LawTerm::SpeedWindow));
+        let _ = writeln!(
+            text,
+            "# by the torque column the drive takes the speed over {window} s; the gains here have that in them, as no key does"
+        );
+    }
     let late = digits(found.values.get(LawTerm::RecordDelay));
     let _ = writeln!(
         text,

@@ -4,13 +4,13 @@ use feedwright::log::{Fitness, Log, LogAxis, LogFormat, TorqueUnit};
 use feedwright::machine::Machine;
 
 /// Random numbers from 0 to 1: a generator of Lehmer's kind suffices to draw moves.
-pub fn drawn(state: &mut u64) -> f64 {
+pub(crate) fn drawn(state: &mut u64) -> f64 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     (*state >> 11) as f64 / (1_u64 << 53) as f64
 }
 
 /// Commands of moves of trapezoidal speed, mm, one a servo period.
-pub fn commands_mm(servo_s: f64, time_s: f64, seed: u64) -> Vec<f64> {
+pub(crate) fn commands_mm(servo_s: f64, time_s: f64, seed: u64) -> Vec<f64> {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(12345);
     let samples = (time_s / servo_s) as usize;
     let (mut at_mm, mut way) = (0.0_f64, vec![]);
@@ -36,7 +36,7 @@ pub fn commands_mm(servo_s: f64, time_s: f64, seed: u64) -> Vec<f64> {
 }
 
 /// The log of a machine's first two axes, actual positions in steps, um, as they are when a command is given.
-pub fn log_of(machine: &Machine, time_s: f64, step_um: f64, seed: u64) -> Log {
+pub(crate) fn log_of(machine: &Machine, time_s: f64, step_um: f64, seed: u64) -> Log {
     let servo_s = machine.period.servo_s;
     let commands = [commands_mm(servo_s, time_s, 2 * seed), commands_mm(servo_s, time_s, 2 * seed + 1)];
     let mut plant = feedwright::plant::Plant::<2>::with_seed(machine, [0.0; 2], seed);

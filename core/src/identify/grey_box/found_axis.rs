@@ -186,7 +186,8 @@ impl FoundAxis {
             None if term == LawTerm::Viscous => (None, NumberSource::Given),
             None => (None, NumberSource::Assumed),
         };
-        let interval = half.map(|half| [value - half, value + half]);
+        let [least, most] = row.range;
+        let interval = half.map(|half| [(value - half).max(least), (value + half).min(most)]);
         FoundNumber { key: term.key(), name: row.name, unit: row.unit, value, interval, source }
     }
 

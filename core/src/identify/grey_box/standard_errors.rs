@@ -18,8 +18,8 @@ use super::terms::{LawTerm, TermValues};
 const BLOCK_S: f64 = 0.25;
 const MOST_BLOCKS: usize = 120;
 const LEAST_BLOCKS: usize = 8;
-/// A number whose error is above this part of its size, or of its range, is not determined.
-const RIDGE: f64 = 1e-14;
+/// Part of a diagonal that is added to it: numbers that do the same to the position then share what is left.
+const RIDGE: f64 = 1e-10;
 
 /// Standard errors of the terms, and the factor that makes half an interval of 90 % of them.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +34,8 @@ impl StandardErrors {
         let slopes = errors.slopes(values, terms);
         let n = terms.len();
         let (curvature, _) = normal_equations(&slopes, &left);
-        let sizes: Vec<f64> = (0..n).map(|i| curvature[(i, i)].sqrt().max(f64::MIN_POSITIVE)).collect();
+        let sizes: Vec<f64> =
+            (0..n).map(|i| if curvature[(i, i)] > 0.0 { curvature[(i, i)].sqrt() } else { 1.0 }).collect();
         let scaled =
             DMatrix::from_fn(n, n, |i, j| curvature[(i, j)] / (sizes[i] * sizes[j]) + if i == j { RIDGE } else { 0.0 });
         let Some(inverse) = scaled.cholesky().map(|cholesky| cholesky.inverse()) else {
@@ -53,7 +54,10 @@ impl StandardErrors {
             blocks += 1.0;
         }
         let covariance = &inverse * scatter * &inverse * (blocks / (blocks - 1.0_f64).max(1.0));
-        let error = |i: usize| covariance[(i, i)].max(0.0).sqrt() / sizes[i] * change(values, terms[i]);
+        // What a number that moves nothing is, nobody can say.
+        let moves = |i: usize| curvature[(i, i)] > 0.0;
+        let size = |i: usize| covariance[(i, i)].max(0.0).sqrt() / sizes[i] * change(values, terms[i]);
+        let error = |i: usize| if moves(i) { size(i) } else { f64::INFINITY };
         Self { errors: (0..n).map(error).collect(), factor: student(blocks - 1.0) }
     }
 }

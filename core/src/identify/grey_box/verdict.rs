@@ -18,6 +18,11 @@ pub enum LawVerdict {
 
 /// A linear model that leaves no more than this of what the law leaves does as well.
 const AS_GOOD: f64 = 1.15;
+/// So does one that leaves no more than this of the following error, and less than so many times what the law leaves, where the signs of
+/// the speed would not make it better: there is no friction to speak of.
+const SMALL: f64 = 0.01;
+const NEAR: f64 = 2.0;
+const SIGNS_HELP: f64 = 0.9;
 /// A law that leaves more than this of what ARX leaves after 100 ms is worse.
 const WORSE: f64 = 1.5;
 /// A law that leaves more than this part of the following error is of no use for a correction.
@@ -29,11 +34,14 @@ impl LawVerdict {
         let scores = &axis.scores;
         let (grey_box, linear) = (scores.grey_box, scores.best_linear());
         let ratio = |of: fn(&FreeRunErrors) -> f64| of(&linear) / of(&grey_box);
+        let apart = ratio(|errors| errors.at_um[2]).max(ratio(|errors| errors.whole_um));
+        let best = scores.best_arx();
+        let signs_help = best.whole_um < SIGNS_HELP * linear.whole_um || best.at_um[2] < SIGNS_HELP * linear.at_um[2];
         if grey_box.whole_um > TOO_MUCH * scores.following_um {
             Self::TooMuchLeft
         } else if grey_box.at_um[2] > WORSE * scores.best_arx().at_um[2] {
             Self::LinearIsBetter
-        } else if ratio(|errors| errors.at_um[2]).max(ratio(|errors| errors.whole_um)) < AS_GOOD {
+        } else if apart < AS_GOOD || (apart < NEAR && linear.whole_um < SMALL * scores.following_um && !signs_help) {
             Self::LinearSuffices
         } else {
             Self::LawHolds
