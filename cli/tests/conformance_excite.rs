@@ -1,7 +1,5 @@
 //! `excite`: its program passes `check`, is cut by `run`, and what is recorded meanwhile is read as a log without options.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 #[path = "common/command.rs"]
 #[expect(dead_code, reason = "every test file uses a part of this")]
 mod common;

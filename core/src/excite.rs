@@ -177,7 +177,7 @@ impl MoveWriter {
     }
 
     /// To one side, to the other, and back.
-    fn to_both_sides(&mut self, axis: usize, length_mm: f64, feed_mm_s: f64) {
+    fn there_and_back(&mut self, axis: usize, length_mm: f64, feed_mm_s: f64) {
         let letter = AXIS_NAMES[axis].to_uppercase();
         let length_mm = rounded(length_mm);
         for part in [1.0, -2.0, 1.0] {
@@ -191,7 +191,7 @@ impl MoveWriter {
         self.rest();
         let half_mm = 0.5 * travel_mm;
         for (creep_mm_s, way_mm) in CREEPS {
-            self.to_both_sides(axis, way_mm.min(half_mm), creep_mm_s.min(fastest_mm_s));
+            self.there_and_back(axis, way_mm.min(half_mm), creep_mm_s.min(fastest_mm_s));
         }
         self.rest();
         // What can be reached within the travel: half of it to speed up, half to slow down.
@@ -200,12 +200,12 @@ impl MoveWriter {
             let feed_mm_s = part * reached_mm_s;
             // Ways of a quarter of a second at that speed, and what it takes to come to it.
             let way_mm = 0.5 * (0.25 * feed_mm_s + feed_mm_s * feed_mm_s / self.accel_mm_s2);
-            self.to_both_sides(axis, way_mm.clamp(0.5, half_mm), feed_mm_s);
+            self.there_and_back(axis, way_mm.clamp(0.5, half_mm), feed_mm_s);
         }
         self.rest();
         for (way_mm, times) in STROKES {
             for _ in 0..times {
-                self.to_both_sides(axis, 0.5 * way_mm, fastest_mm_s);
+                self.there_and_back(axis, 0.5 * way_mm, fastest_mm_s);
             }
         }
         self.rest();
