@@ -26,6 +26,8 @@ pub(crate) enum CommandArgs {
     /// Identify a machine from its LOG, and write its machine file; without a LOG, identify a simulated machine and write the
     /// model that a controller of `run` uses, for `run --model`.
     Identify(IdentifyArgs),
+    /// Write a G-code program that shows how the axes of a machine behave: run it, record a log, identify the machine from it.
+    Excite(ExciteArgs),
     /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
     Paper(PaperArgs),
     /// Compare all controllers on contours and machines, in one table.
@@ -174,6 +176,19 @@ impl std::str::FromStr for Times {
             _ => Err("write two times in s, the earlier first, as in 0:12.5".to_owned()),
         }
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExciteArgs {
+    /// Built-in machine, or a machine file (.toml), whose limits the program keeps.
+    #[arg(long, value_name = "NAME|LIMITS.toml")]
+    pub(crate) machine: OsString,
+    /// Travel of each axis, mm: half of it on each side of where the machine stands.
+    #[arg(long, value_name = "MM", default_value_t = feedwright::excite::ExciteOptions::default().travel_mm, allow_negative_numbers = true)]
+    pub(crate) travel: f64,
+    /// Place of the program.
+    #[arg(long, value_name = "FILE.ngc")]
+    pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Args)]

@@ -25,6 +25,7 @@ pub mod output;
 pub mod journal;
 pub mod simulate;
 pub mod pipeline;
+pub mod excite;
 pub mod log;
 pub mod identify;
 pub mod model;

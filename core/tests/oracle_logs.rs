@@ -1,7 +1,5 @@
 //! Logs of real machines: rates, stretches and following errors that were computed from the same files by other means.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 

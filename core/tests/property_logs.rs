@@ -15,7 +15,7 @@ fn check(log: &Log) {
     let rows = log.time_s.len();
     assert!(log.sample_time_s > 0.0 && log.sample_time_s.is_finite());
     assert!(!log.axes.is_empty() && log.axes.len() <= feedwright::log::MAX_AXES);
-    assert_eq!(log.stretches.iter().map(std::iter::ExactSizeIterator::len).sum::<usize>(), rows);
+    assert_eq!(log.stretches.iter().map(ExactSizeIterator::len).sum::<usize>(), rows);
     assert!(log.stretches.windows(2).all(|pair| pair[0].end == pair[1].start && !pair[0].is_empty()));
     assert!(log.time_s.windows(2).all(|pair| pair[1] > pair[0]));
     for axis in &log.axes {

@@ -177,8 +177,11 @@ fn without_column(
     let mut time_s: Vec<f64> = (0..table.rows()).map(|row| row as f64 * sample_time_s).collect();
     // How much is missing is not known: one sample.
     let mut late = 0;
+    let mut breaks = table.breaks.iter().filter(|&&at| at > 0).peekable();
     for (row, time_s) in time_s.iter_mut().enumerate() {
-        late += table.breaks.iter().filter(|&&at| at == row && row > 0).count();
+        while breaks.next_if(|&&at| at <= row).is_some() {
+            late += 1;
+        }
         *time_s += late as f64 * sample_time_s;
     }
     Ok(stretches(time_s, sample_time_s, &table.breaks, findings))

@@ -217,6 +217,21 @@ impl fmt::Display for LogFinding {
                 )
             }
             Self::Incomplete { axis, lacks } => write!(f, "axis {axis} has no {lacks} and is left out"),
+            Self::Unused { columns } => write!(
+                f,
+                "not used: column {}; hint: a torque or current is named with --columns, such as x.torque={}",
+                columns.join(", "),
+                columns.last().map_or("5", String::as_str)
+            ),
+            _ => self.of_axis(f),
+        }
+    }
+}
+
+impl LogFinding {
+    /// What is told of an axis that is accepted.
+    fn of_axis(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
             Self::Offset { axis, offset_mm } => {
                 let offset_mm = to_four_digits(*offset_mm);
                 write!(
@@ -249,12 +264,8 @@ impl fmt::Display for LogFinding {
                 let [at, size] = [frequency_hz, amplitude_um].map(|value| to_four_digits(*value));
                 write!(f, "the following error of {axis} swings at {at} Hz with an amplitude of {size} um")
             }
-            Self::Unused { columns } => write!(
-                f,
-                "not used: column {}; hint: a torque or current is named with --columns, such as x.torque={}",
-                columns.join(", "),
-                columns.last().map_or("5", String::as_str)
-            ),
+            // All others are told above.
+            _ => Ok(()),
         }
     }
 }

@@ -14,7 +14,7 @@ const MAX_RATIO: f64 = 1.6;
 
 /// Two columns that belong together.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Pair {
+pub(super) struct ColumnPair {
     pub(super) command: usize,
     pub(super) actual: usize,
     /// RMS of their difference.
@@ -42,7 +42,7 @@ pub(super) fn delay_samples(a: &[f64], b: &[f64]) -> f64 {
 
 /// Pairs among columns, those first that stand first in the file. Columns of different lengths, and those with values that are no
 /// numbers, belong to none.
-pub(super) fn find(columns: &[&[f64]]) -> Vec<Pair> {
+pub(super) fn find(columns: &[&[f64]]) -> Vec<ColumnPair> {
     let rows = columns.iter().map(|values| values.len()).max().unwrap_or(0);
     let stride = rows.div_ceil(SAMPLES).max(1);
     let moments: Vec<(f64, f64)> = columns.iter().map(|values| moments(values, stride)).collect();
@@ -61,7 +61,7 @@ pub(super) fn find(columns: &[&[f64]]) -> Vec<Pair> {
 }
 
 /// The nearest belong together, each column to one other.
-fn matched(usable: &[usize], columns: &[&[f64]], moments: &[(f64, f64)], stride: usize) -> Vec<Pair> {
+fn matched(usable: &[usize], columns: &[&[f64]], moments: &[(f64, f64)], stride: usize) -> Vec<ColumnPair> {
     let mut near = Vec::new();
     for (n, &i) in usable.iter().enumerate() {
         for &j in &usable[n + 1..] {
@@ -91,7 +91,7 @@ fn matched(usable: &[usize], columns: &[&[f64]], moments: &[(f64, f64)], stride:
         (taken[i], taken[j]) = (true, true);
         let j_leads = delay_samples(columns[i], columns[j]) < 0.0;
         let (command, actual) = if j_leads { (j, i) } else { (i, j) };
-        pairs.push(Pair { command, actual, rms });
+        pairs.push(ColumnPair { command, actual, rms });
     }
     pairs
 }

@@ -28,8 +28,9 @@ const LONGEST_MM: f64 = 30e3;
 const COPY_SAMPLES: usize = 4;
 /// Part of the moving samples in which a copy equals the command.
 const COPY_PART: f64 = 0.99;
-/// By how many samples an actual position may lead its command: interpolation and feedforward make less.
-const LEAD_SAMPLES: f64 = 0.5;
+/// By how many samples an actual position may lead its command: one where it is recorded at the end of the servo period and the
+/// command at its start, and what feedforward adds.
+const LEAD_SAMPLES: f64 = 2.0;
 /// Part of the following error that a lead explains, where columns are swapped.
 const EXPLAINED: f64 = 0.5;
 /// How much nearer the actual position is to the command of another axis, where columns are mixed.
@@ -40,6 +41,8 @@ const MIN_CORRELATION: f64 = 0.3;
 const OFFSET_MM: f64 = 1.0;
 /// Steps up to which a servo model can be of use for control, mm: what such a model predicts is to be good to micrometres.
 const FINE_STEP_MM: f64 = 0.005;
+/// Samples of which a median or a distribution is taken, at the most: long logs are not held twice.
+const LOOKED_AT: usize = 200_000;
 /// Part of the following error that a coarse step may have.
 const COARSE_PART: f64 = 0.1;
 /// Part of the time between samples by which an uneven clock may vary.
@@ -134,7 +137,9 @@ fn too_slow(clock: &Clock) -> Option<Refusal> {
 
 /// Two zeros that differ are no following error: the difference is taken out.
 fn align(axis: &mut LogAxis, findings: &mut Vec<LogFinding>) {
-    let mut errors: Vec<f64> = axis.command_mm.iter().zip(&axis.actual_mm).map(|(c, a)| c - a).collect();
+    let stride = axis.command_mm.len().div_ceil(LOOKED_AT).max(1);
+    let pairs = axis.command_mm.iter().zip(&axis.actual_mm).step_by(stride);
+    let mut errors: Vec<f64> = pairs.map(|(command, actual)| command - actual).collect();
     let spread = range(&errors);
     let middle = errors.len() / 2;
     if errors.is_empty() {

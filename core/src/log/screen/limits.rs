@@ -3,6 +3,7 @@
 use super::super::LogAxis;
 use super::super::clock::Clock;
 use super::super::finding::LogFinding;
+use super::LOOKED_AT;
 
 /// Part of the samples at one value from which on it is a limit.
 const LEAST_PART: f64 = 5e-4;
@@ -63,8 +64,11 @@ pub(super) fn speed(axis: &LogAxis, clock: &Clock) -> Option<LogFinding> {
     let samples = (samples as usize).clamp(1, MAX_SPEED_SAMPLES);
     let of = |values: &[f64]| -> Vec<f64> {
         let across_s = samples as f64 * clock.sample_time_s;
+        let stride = values.len().div_ceil(LOOKED_AT).max(1);
         let stretches = clock.stretches.iter().filter_map(|stretch| values.get(stretch.clone()));
-        stretches.flat_map(|part| part.windows(samples + 1).map(|w| (w[samples] - w[0]).abs() / across_s)).collect()
+        stretches
+            .flat_map(|part| part.windows(samples + 1).step_by(stride).map(|w| (w[samples] - w[0]).abs() / across_s))
+            .collect()
     };
     let (mut commanded, mut actual) = (of(&axis.command_mm), of(&axis.actual_mm));
     commanded.sort_by(f64::total_cmp);
