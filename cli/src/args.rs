@@ -23,8 +23,11 @@ pub(crate) struct Cli {
 pub(crate) enum CommandArgs {
     /// Cut a part on a simulated machine, open loop and with a controller, and write the report.
     Run(Box<RunArgs>),
-    /// Identify a simulated machine: write the model that a controller of `run` uses, for `run --model`.
+    /// Identify a machine from its LOG, and write its machine file; without a LOG, identify a simulated machine and write the
+    /// model that a controller of `run` uses, for `run --model`.
     Identify(IdentifyArgs),
+    /// Write a G-code program that shows how the axes of a machine behave: run it, record a log, identify the machine from it.
+    Excite(ExciteArgs),
     /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
     Paper(PaperArgs),
     /// Compare all controllers on contours and machines, in one table.
@@ -93,6 +96,11 @@ pub(crate) struct RunArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct IdentifyArgs {
+    /// Log of commanded and actual positions of a real machine: halsampler, halscope, MATLAB v5, Sinumerik Edge, or a table of text.
+    #[arg(value_name = "LOG", conflicts_with_all = ["machine", "controller", "axes", "set", "seed"])]
+    pub(crate) log: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) of_log: LogArgs,
     /// Built-in machine, or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
     pub(crate) machine: OsString,
@@ -108,8 +116,78 @@ pub(crate) struct IdentifyArgs {
     /// Seed of what is cut to identify the machine, and of the training.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Place of the model.
-    #[arg(long, value_name = "FILE.model.toml")]
+    /// Place of the machine file; of a simulated machine, of its model.
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) out: PathBuf,
+}
+
+/// What is said of a log.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Options of a LOG")]
+pub(crate) struct LogArgs {
+    /// Which column is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,x.torque=5,unit=mm,time=ms.
+    #[arg(long, value_name = "COLUMNS", requires = "log")]
+    pub(crate) columns: Option<feedwright::log::columns::Columns>,
+    /// Fit this time of the log, s; all else by --score. Without both, blocks of motion take turns.
+    #[arg(long, value_name = "FROM:TO", requires = "score", requires = "log")]
+    pub(crate) fit: Option<Times>,
+    /// Judge by this time of the log, s.
+    #[arg(long, value_name = "FROM:TO", requires = "fit", requires = "log")]
+    pub(crate) score: Option<Times>,
+    /// Travel for a turn of the motor, mm; without it an axis counts as linear: kg, N s/m, N.
+    #[arg(long, value_name = "MM_PER_REV", requires = "log", value_parser = positive)]
+    pub(crate) lead: Option<f64>,
+    /// Inertia at the motor, kg m2; without --lead the mass, kg. Positions do not tell it.
+    #[arg(long, value_name = "KG_M2|KG", requires = "log", value_parser = positive)]
+    pub(crate) inertia: Option<f64>,
+    /// Viscous friction at the motor, N m s/rad; without --lead N s/m.
+    #[arg(long, value_name = "N_M_S|N_S_PER_M", requires = "log", value_parser = positive)]
+    pub(crate) viscous: Option<f64>,
+    /// Torque, N m, for a unit of the torque column; without --lead force, N.
+    #[arg(long, value_name = "N_M|N", requires = "log", value_parser = positive)]
+    pub(crate) torque_gain: Option<f64>,
+    /// Write a page: numbers, measured against predicted, what is left.
+    #[arg(long, value_name = "FILE.html", requires = "log")]
+    pub(crate) report: Option<PathBuf>,
+    /// Write all results.
+    #[arg(long, value_name = "FILE.json", requires = "log")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+/// A number above zero.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("it must be a number above 0".to_owned()),
+    }
+}
+
+/// A part of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Times(pub(crate) std::ops::Range<f64>);
+
+impl std::str::FromStr for Times {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let ends = text.split_once(':').and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
+        match ends {
+            Some((from, to)) if from < to => Ok(Self(from..to)),
+            _ => Err("write two times in s, the earlier first, as in 0:12.5".to_owned()),
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExciteArgs {
+    /// Built-in machine, or a machine file (.toml), whose limits the program keeps.
+    #[arg(long, value_name = "NAME|LIMITS.toml")]
+    pub(crate) machine: OsString,
+    /// Travel of each axis, mm: half of it on each side of where the machine stands.
+    #[arg(long, value_name = "MM", default_value_t = feedwright::excite::ExciteOptions::default().travel_mm, allow_negative_numbers = true)]
+    pub(crate) travel: f64,
+    /// Place of the program.
+    #[arg(long, value_name = "FILE.ngc")]
     pub(crate) out: PathBuf,
 }
 

@@ -3,6 +3,7 @@
 pub(crate) mod canon;
 pub(crate) mod check;
 pub(crate) mod compare;
+pub(crate) mod excite;
 pub(crate) mod held_out;
 pub(crate) mod identify;
 pub(crate) mod list;

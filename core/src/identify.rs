@@ -13,6 +13,7 @@ mod spread;
 pub mod servo;
 pub mod axis_parameters;
 pub mod axis_statistics;
+pub mod grey_box;
 pub mod axes;
 pub mod cache;
 

@@ -6,6 +6,7 @@
 //! The modules stand in the order in which data flows; each uses only those above it.
 
 mod vector;
+mod spectrum;
 pub mod watch;
 pub mod kinematics;
 pub mod number;
@@ -24,11 +25,14 @@ pub mod output;
 pub mod journal;
 pub mod simulate;
 pub mod pipeline;
+pub mod excite;
+pub mod log;
 pub mod identify;
 pub mod model;
 pub mod controllers;
 pub mod report;
 pub mod job;
+pub mod log_job;
 pub mod paper;
 pub mod held_out;
 pub mod compare;

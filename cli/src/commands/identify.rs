@@ -1,5 +1,7 @@
 //! `feedwright identify`: a model of a machine, trained and written.
 
+mod from_log;
+
 use std::f64::consts::TAU;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -19,6 +21,9 @@ use crate::controllers::{find, settings};
 use crate::message::printed;
 
 pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
+    if let Some(log) = &args.log {
+        return from_log::run(log, args, console);
+    }
     let controller = find(&args.controller)?;
     let set = settings(&args.set, Some(controller), &[controller])?;
     let choices = Choices { seed: args.seed, set };

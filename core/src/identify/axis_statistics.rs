@@ -17,7 +17,6 @@
 //! Departures: one line and one order of cogging, the strongest; ripple of the motor and the ball screw count as broadband torque.
 
 mod search;
-mod spectrum;
 mod innovation;
 mod noise;
 mod place;
@@ -27,10 +26,10 @@ use feedwright_control::axis::statistics::AxisStatistics;
 
 use super::recording::Recording;
 use crate::machine::{Known, KnownAxis, Period};
+use crate::spectrum::{self, Spectrum};
 use innovation::{AxisFilter, Innovations};
 use noise::{NoiseFit, Seen};
 use place::{Through, Wave, Weighed};
-use spectrum::Spectrum;
 
 use std::f64::consts::TAU;
 

@@ -16,8 +16,8 @@ use feedwright_control::axis::drive::{DriveLaw, DriveReference, DriveState};
 use feedwright_control::axis::friction::{FrictionLaw, FrictionParameters};
 use feedwright_control::axis::{self, AxisLaw, AxisState};
 
-use super::spectrum::{Phasor, transformed};
 use crate::machine::{KnownAxis, Period};
+use crate::spectrum::{Phasor, transformed};
 
 /// Angle, speed, integral, filtered torque, load.
 const STATES: usize = 5;

@@ -15,7 +15,7 @@ use std::f64::consts::TAU;
 
 use super::innovation::LEAST_NOISE_RAD;
 use super::search::least;
-use super::spectrum::{Phasor, Spectrum, power};
+use crate::spectrum::{Phasor, Spectrum, power};
 
 /// Growth of ln L beyond which a term is admitted: chance gives 9.2 for three variables once in 10,000 times, and twice that lets
 /// the frequency be searched for.

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 
 use super::innovation::Innovations;
 use super::noise::{LEAST_HZ, NoiseFit};
-use super::spectrum::{Phasor, conjugate, power, times, transform, transform_back, transformed, turned};
+use crate::spectrum::{Phasor, conjugate, power, times, transform, transform_back, transformed, turned};
 
 /// A term that is not there is admitted once in so many times.
 const CHANCE: f64 = 1e-6;

@@ -14,35 +14,35 @@
 use std::f64::consts::{PI, TAU};
 
 /// A complex number: real and imaginary part.
-pub(super) type Phasor = [f64; 2];
+pub(crate) type Phasor = [f64; 2];
 
 /// Product.
 #[inline]
-pub(super) fn times([a, b]: Phasor, [c, d]: Phasor) -> Phasor {
+pub(crate) fn times([a, b]: Phasor, [c, d]: Phasor) -> Phasor {
     [a * c - b * d, a * d + b * c]
 }
 
 /// Conjugate.
 #[inline]
-pub(super) fn conjugate([a, b]: Phasor) -> Phasor {
+pub(crate) fn conjugate([a, b]: Phasor) -> Phasor {
     [a, -b]
 }
 
 /// Square of the modulus.
 #[inline]
-pub(super) fn power([a, b]: Phasor) -> f64 {
+pub(crate) fn power([a, b]: Phasor) -> f64 {
     a * a + b * b
 }
 
 /// e^(i x).
 #[inline]
-pub(super) fn turned(angle_rad: f64) -> Phasor {
+pub(crate) fn turned(angle_rad: f64) -> Phasor {
     let (sin, cos) = angle_rad.sin_cos();
     [cos, sin]
 }
 
 /// Transform of a sequence whose length is a power of two, in place.
-pub(super) fn transform(values: &mut [Phasor]) {
+pub(crate) fn transform(values: &mut [Phasor]) {
     let length = values.len();
     debug_assert!(length.is_power_of_two(), "{length}");
     if length < 2 {
@@ -72,7 +72,7 @@ pub(super) fn transform(values: &mut [Phasor]) {
 }
 
 /// Its inverse.
-pub(super) fn transform_back(values: &mut [Phasor]) {
+pub(crate) fn transform_back(values: &mut [Phasor]) {
     values.iter_mut().for_each(|value| *value = conjugate(*value));
     transform(values);
     let scale = 1.0 / values.len() as f64;
@@ -80,7 +80,7 @@ pub(super) fn transform_back(values: &mut [Phasor]) {
 }
 
 /// Transform of real numbers, with zeros behind them up to a length.
-pub(super) fn transformed(values: &[f64], length: usize) -> Vec<Phasor> {
+pub(crate) fn transformed(values: &[f64], length: usize) -> Vec<Phasor> {
     let mut padded: Vec<Phasor> = values.iter().map(|&value| [value, 0.0]).collect();
     padded.resize(length, [0.0; 2]);
     transform(&mut padded);
@@ -89,13 +89,13 @@ pub(super) fn transformed(values: &[f64], length: usize) -> Vec<Phasor> {
 
 /// The spectrum of a sequence from frequency zero to half a turn a sample.
 #[derive(Debug, Clone)]
-pub(super) struct Spectrum {
+pub(crate) struct Spectrum {
     /// Mean square in a sample, were it white: at frequencies n / (2 (len - 1)).
-    pub(super) power: Vec<f64>,
+    pub(crate) power: Vec<f64>,
     /// How many independent values each stands for.
-    pub(super) weight_of_value: f64,
+    pub(crate) weight_of_value: f64,
     /// Standard deviation to which the window widens a line, turns a sample.
-    pub(super) width: f64,
+    pub(crate) width: f64,
 }
 
 /// Standard deviations of the window in half a segment.
@@ -105,7 +105,7 @@ const SEGMENT_PARTS: usize = 4;
 
 impl Spectrum {
     /// Of what counts, in segments of a length that is a power of two.
-    pub(super) fn new(values: &[f64], counts: &[bool], length: usize) -> Self {
+    pub(crate) fn new(values: &[f64], counts: &[bool], length: usize) -> Self {
         let middle = 0.5 * length as f64;
         let deviation = middle / WINDOW_DEVIATIONS;
         let window: Vec<f64> =
@@ -132,7 +132,7 @@ impl Spectrum {
     }
 
     /// Frequency of a value, turns a sample.
-    pub(super) fn at(&self, n: usize) -> f64 {
+    pub(crate) fn at(&self, n: usize) -> f64 {
         0.5 * n as f64 / (self.power.len() - 1) as f64
     }
 }

@@ -1,0 +1,216 @@
+//! Least squares of what free runs leave of the actual position.
+//!
+//! ```text
+//! minimise  V(p) = sum_k (y(k) - y_s(k; c, p))^2      over the samples that count
+//! (S^T S + l diag(S^T S)) dp = S^T (y - y_s),   S = dy_s / dp by differences to both sides
+//! ```
+//!
+//! y actual position, c commands, y_s free run on the commands alone, from the beginning of each stretch. What is noise of the encoder
+//! or of the load does not depend on the command, and leaves the minimum where it is (see [`super::super::axis_parameters`]).
+//!
+//! Source: Levenberg (1944), Marquardt (1963) for the damped step; the output error as in [`super::super::axis_parameters`].
+
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::axis_record::AxisRecord;
+use super::axis_run::{AxisRun, Commands};
+use super::terms::{LawTerm, TermValues};
+
+/// A record, and which of its samples count.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct OutputErrors<'a> {
+    pub(super) record: &'a AxisRecord<'a>,
+    pub(super) counts: &'a [bool],
+}
+
+/// The least that was found.
+#[derive(Debug, Clone)]
+pub(super) struct Fitted {
+    pub(super) values: TermValues,
+    /// RMS over what counts, mm.
+    pub(super) rms_mm: f64,
+}
+
+/// Damping at the start, after a step that helped, after one that did not; given up at the last.
+const DAMPING: f64 = 1e-2;
+const DAMPING_AFTER: [f64; 2] = [0.2, 6.0];
+const DAMPING_MOST: f64 = 1e5;
+/// A gain or a time is changed by no more than this in one step, up or down.
+const LARGEST_FACTOR: f64 = 2.5;
+/// Part of V below which a step gains nothing.
+const DONE: f64 = 1e-4;
+
+impl OutputErrors<'_> {
+    /// What free runs of all stretches leave at the samples that count, mm.
+    pub(super) fn left_mm(&self, values: &TermValues) -> Vec<f64> {
+        let run = AxisRun::new(values, self.record.sample_s);
+        let mut left = vec![];
+        for stretch in self.record.stretches {
+            let Some(last) = stretch.clone().rev().find(|&k| self.counts[k]) else { continue };
+            let commands = Commands::new(&self.record.command_mm[stretch.clone()]);
+            let [mm, mm_s] = self.record.start(stretch, stretch.start);
+            let mut state = run.state(&commands, 0, mm, mm_s);
+            for k in stretch.start..=last {
+                if self.counts[k] {
+                    left.push(self.record.actual_mm[k] - state.position_mm());
+                }
+                run.step(&commands, k - stretch.start, &mut state);
+            }
+        }
+        left
+    }
+
+    /// RMS of it, mm; infinite where the run is lost.
+    pub(super) fn rms_mm(&self, values: &TermValues) -> f64 {
+        root_mean_square(&self.left_mm(values))
+    }
+
+    /// Derivatives of the free run, a column for each term, over the change that it was made with.
+    pub(super) fn slopes(&self, values: &TermValues, terms: &[LawTerm]) -> Vec<Vec<f64>> {
+        let slope = |&term: &LawTerm| {
+            let (value, by) = (values.get(term), change(values, term));
+            let [above, below] = [value + by, value - by].map(|at| values.with(term, at));
+            let apart = (above.get(term) - below.get(term)) / by;
+            let (above, below) = rayon::join(|| self.left_mm(&above), || self.left_mm(&below));
+            // At an end of its range a number that nothing moves has no slope.
+            let per = if apart > 0.0 { 1.0 / apart } else { 0.0 };
+            below.iter().zip(&above).map(|(below, above)| (below - above) * per).collect()
+        };
+        terms.par_iter().map(slope).collect()
+    }
+
+    /// One step of all terms from a start, with slopes that are known of the first of them.
+    pub(super) fn one_step(&self, start: &TermValues, terms: &[LawTerm], known: &[Vec<f64>]) -> Fitted {
+        let left = self.left_mm(start);
+        let mut slopes = known.to_vec();
+        slopes.extend(self.slopes(start, &terms[known.len()..]));
+        let (curvature, gradient) = normal_equations(&slopes, &left);
+        let before = Fitted { values: *start, rms_mm: root_mean_square(&left) };
+        let after = [DAMPING, 1.0]
+            .map(|damping| stepped(start, terms, &curvature, &gradient, damping))
+            .map(|values| Fitted { values, rms_mm: self.rms_mm(&values) });
+        after.into_iter().fold(before, |best, next| if next.rms_mm < best.rms_mm { next } else { best })
+    }
+
+    /// The least part, of all terms, of what a term does to the position that no sum of the others does as well: 1 / VIF.
+    pub(super) fn told_apart(&self, values: &TermValues, terms: &[LawTerm]) -> f64 {
+        let slopes = self.slopes(values, terms);
+        let nothing = vec![0.0; slopes.first().map_or(0, Vec::len)];
+        let (curvature, _) = normal_equations(&slopes, &nothing);
+        let n = terms.len();
+        let size = |i: usize| curvature[(i, i)].sqrt();
+        let scaled = DMatrix::from_fn(n, n, |i, j| {
+            let both = size(i) * size(j);
+            // A number that does nothing at all is told from the others: it will be left out for that.
+            if both > 0.0 { curvature[(i, j)] / both } else { f64::from(u8::from(i == j)) }
+        });
+        let Some(inverse) = scaled.cholesky().map(|cholesky| cholesky.inverse()) else { return 0.0 };
+        (0..n).map(|i| 1.0 / inverse[(i, i)]).fold(1.0, f64::min)
+    }
+
+    /// The least from a start, over these terms, in at most so many steps.
+    pub(super) fn least(&self, start: &TermValues, terms: &[LawTerm], steps: usize) -> Fitted {
+        let mut at = *start;
+        let mut left = self.left_mm(&at);
+        let (mut cost, mut damping) = (square(&left), DAMPING);
+        for _ in 0..steps {
+            let slopes = self.slopes(&at, terms);
+            let (curvature, gradient) = normal_equations(&slopes, &left);
+            let before = cost;
+            while damping < DAMPING_MOST {
+                let next = stepped(&at, terms, &curvature, &gradient, damping);
+                let next_left = self.left_mm(&next);
+                let next_cost = square(&next_left);
+                if next_cost < cost {
+                    (at, left, cost) = (next, next_left, next_cost);
+                    damping = (damping * DAMPING_AFTER[0]).max(1e-9);
+                    break;
+                }
+                damping *= DAMPING_AFTER[1];
+            }
+            if damping >= DAMPING_MOST || (before - cost).abs() < DONE * before {
+                break;
+            }
+        }
+        Fitted { values: at, rms_mm: root_mean_square(&left) }
+    }
+}
+
+/// By how much a number is changed for a difference.
+pub(super) fn change(values: &TermValues, term: LawTerm) -> f64 {
+    let [part, least] = term.row().change;
+    (part * values.get(term).abs()).max(least)
+}
+
+/// S^T S and S^T r.
+pub(super) fn normal_equations(slopes: &[Vec<f64>], left: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
+    let n = slopes.len();
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let rows: Vec<Vec<f64>> =
+        (0..n).into_par_iter().map(|i| (0..=i).map(|j| dot(&slopes[i], &slopes[j])).collect()).collect();
+    let curvature = DMatrix::from_fn(n, n, |i, j| rows[i.max(j)][i.min(j)]);
+    (curvature, DVector::from_fn(n, |i, _| dot(&slopes[i], left)))
+}
+
+/// The values after a damped step. A number at an end of its range that would be left beyond it stays there, and the step is that of
+/// the others.
+fn stepped(
+    at: &TermValues,
+    terms: &[LawTerm],
+    curvature: &DMatrix<f64>,
+    gradient: &DVector<f64>,
+    damping: f64,
+) -> TermValues {
+    let mut held = vec![false; terms.len()];
+    loop {
+        let mut damped = curvature.clone();
+        let mut towards = gradient.clone();
+        for i in 0..terms.len() {
+            let diagonal = curvature[(i, i)];
+            damped[(i, i)] += damping * diagonal + f64::MIN_POSITIVE;
+            if held[i] || diagonal <= 0.0 {
+                damped.row_mut(i).fill(0.0);
+                damped.column_mut(i).fill(0.0);
+                damped[(i, i)] = 1.0;
+                towards[i] = 0.0;
+            }
+        }
+        let Some(cholesky) = damped.cholesky() else { return *at };
+        let step = cholesky.solve(&towards);
+        let mut is_new = false;
+        for (i, &term) in terms.iter().enumerate() {
+            let wanted = at.get(term) + step[i] * change(at, term);
+            if !held[i] && step[i] != 0.0 && at.get(term) == at.with(term, wanted).get(term) {
+                (held[i], is_new) = (true, true);
+            }
+        }
+        if is_new {
+            continue;
+        }
+        return terms.iter().enumerate().fold(*at, |next, (i, &term)| {
+            let value = at.get(term);
+            let wanted = value + step[i] * change(at, term);
+            let is_size = matches!(
+                term,
+                LawTerm::LoopGain
+                    | LawTerm::Damping
+                    | LawTerm::SpeedLimit
+                    | LawTerm::AccelerationLimit
+                    | LawTerm::StribeckSpeed
+            );
+            let bounded = if is_size { wanted.clamp(value / LARGEST_FACTOR, value * LARGEST_FACTOR) } else { wanted };
+            next.with(term, bounded)
+        });
+    }
+}
+
+/// Sum of squares; infinite where one is not a number.
+fn square(left: &[f64]) -> f64 {
+    let sum: f64 = left.iter().map(|left| left * left).sum();
+    if sum.is_finite() { sum } else { f64::INFINITY }
+}
+
+fn root_mean_square(left: &[f64]) -> f64 {
+    (square(left) / left.len().max(1) as f64).sqrt()
+}

@@ -1,0 +1,89 @@
+//! What to say of an identified axis, in words.
+
+use super::found_axis::FoundAxis;
+use super::free_run_scores::FreeRunErrors;
+
+/// What an identification came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LawVerdict {
+    /// The law predicts clearly better than a linear model.
+    LawHolds,
+    /// A linear model without signs predicts as well.
+    LinearSuffices,
+    /// A linear model predicts better.
+    LinearIsBetter,
+    /// Too much is left to predict with it.
+    TooMuchLeft,
+}
+
+/// A linear model that leaves no more than this of what the law leaves does as well.
+const AS_GOOD: f64 = 1.15;
+/// So does one that leaves no more than this of the following error, and less than so many times what the law leaves, where the signs of
+/// the speed would not make it better: there is no friction to speak of.
+const SMALL: f64 = 0.01;
+const NEAR: f64 = 2.0;
+const SIGNS_HELP: f64 = 0.9;
+/// A law that leaves more than this of what ARX leaves after 100 ms is worse.
+const WORSE: f64 = 1.5;
+/// A law that leaves more than this part of the following error is of no use for a correction.
+const TOO_MUCH: f64 = 0.3;
+
+impl LawVerdict {
+    /// Of an axis.
+    pub fn of(axis: &FoundAxis) -> Self {
+        let scores = &axis.scores;
+        let (grey_box, linear) = (scores.grey_box, scores.best_linear());
+        let ratio = |of: fn(&FreeRunErrors) -> f64| of(&linear) / of(&grey_box);
+        let apart = ratio(|errors| errors.at_um[2]).max(ratio(|errors| errors.whole_um));
+        let best = scores.best_arx();
+        let signs_help = best.whole_um < SIGNS_HELP * linear.whole_um || best.at_um[2] < SIGNS_HELP * linear.at_um[2];
+        if grey_box.whole_um > TOO_MUCH * scores.following_um {
+            Self::TooMuchLeft
+        } else if grey_box.at_um[2] > WORSE * scores.best_arx().at_um[2] {
+            Self::LinearIsBetter
+        } else if apart < AS_GOOD || (apart < NEAR && linear.whole_um < SMALL * scores.following_um && !signs_help) {
+            Self::LinearSuffices
+        } else {
+            Self::LawHolds
+        }
+    }
+
+    /// In a sentence or two.
+    pub fn words(self, axis: &FoundAxis) -> String {
+        let scores = &axis.scores;
+        let (grey_box, linear) = (scores.grey_box, scores.best_linear());
+        let missed = format!(
+            "a free run over all that was not fitted misses {} um RMS of a following error of {} um",
+            um(grey_box.whole_um),
+            um(scores.following_um)
+        );
+        let against = format!(
+            "the best linear model misses {} um, and {} um after 100 ms where the law misses {} um",
+            um(linear.whole_um),
+            um(linear.at_um[2]),
+            um(grey_box.at_um[2])
+        );
+        match self {
+            Self::LawHolds => format!("the law holds: {missed}; {against}"),
+            Self::LinearSuffices => format!("linear suffices: {missed}; {against}"),
+            Self::LinearIsBetter => format!(
+                "a linear model is better: {missed}; {against}. Something moves this axis that the law does not have"
+            ),
+            Self::TooMuchLeft => format!("not good enough for control: {missed}; {against}"),
+        }
+    }
+}
+
+/// With three digits.
+fn um(value: f64) -> String {
+    if !value.is_finite() {
+        return "more than any number of".to_owned();
+    }
+    if value < 10.0 {
+        format!("{value:.2}")
+    } else if value < 100.0 {
+        format!("{value:.1}")
+    } else {
+        format!("{value:.0}")
+    }
+}

@@ -1,0 +1,288 @@
+//! What the name of a column says: which quantity of which axis, in which unit.
+
+/// What a column holds, by its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Quantity {
+    Time,
+    /// Samples, counted.
+    Counter,
+    Command,
+    Actual,
+    /// A position, whichever.
+    Position,
+    Torque,
+    /// Actual speed.
+    Velocity,
+    /// Anything else, or nothing that is known.
+    Other,
+}
+
+/// A name, understood.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct Meaning {
+    pub(super) quantity: Quantity,
+    /// Name of the axis; empty where there is none.
+    pub(super) axis: String,
+    /// Unit in the name; empty where there is none.
+    pub(super) unit: String,
+    /// How well the word fits, the more the better: of two columns of a kind the better is taken.
+    pub(super) fit: u8,
+}
+
+const COMMANDS: [&str; 18] = [
+    "cmd",
+    "command",
+    "commanded",
+    "des",
+    "desired",
+    "demand",
+    "demanded",
+    "ref",
+    "reference",
+    "setpoint",
+    "set",
+    "sp",
+    "soll",
+    "sollwert",
+    "nominal",
+    "qg",
+    "comm",
+    "rpos",
+];
+/// Where the command is to end up, perhaps only later.
+const TARGETS: [&str; 3] = ["target", "goal", "ziel"];
+const ACTUALS: [&str; 16] = [
+    "act", "actual", "fb", "fbk", "feedback", "meas", "measured", "measure", "enc", "encoder", "ist", "istwert", "qm",
+    "real", "mpos", "apos",
+];
+const TORQUES: [&str; 11] = ["torque", "trq", "tq", "tau", "moment", "force", "current", "iq", "curr", "vir", "amps"];
+const POSITIONS: [&str; 4] = ["pos", "position", "posn", "lage"];
+const TIMES: [&str; 8] = ["t", "time", "timestamp", "zeit", "clock", "seconds", "millis", "ms"];
+const COUNTERS: [&str; 9] = ["n", "sample", "samples", "cycle", "index", "idx", "counter", "count", "k"];
+const SPEEDS: [&str; 5] = ["velocity", "vel", "speed", "geschwindigkeit", "v"];
+/// Words of quantities that are none of these.
+const OTHERS: [&str; 36] = [
+    "acceleration",
+    "accel",
+    "acc",
+    "jerk",
+    "error",
+    "err",
+    "ferror",
+    "dev",
+    "deviation",
+    "diff",
+    "lag",
+    "ffw",
+    "feedforward",
+    "power",
+    "voltage",
+    "volt",
+    "load",
+    "temp",
+    "temperature",
+    "bus",
+    "limit",
+    "max",
+    "min",
+    "offset",
+    "status",
+    "state",
+    "dtg",
+    "line",
+    "inpos",
+    "clk",
+    "feedrate",
+    "spindle",
+    "inertia",
+    "output",
+    "integral",
+    "overrun",
+];
+/// Letters of axes.
+const LETTERS: &str = "xyzabcuvw";
+
+/// What a name says.
+pub(super) fn understand(name: &str) -> Meaning {
+    let (bare, unit) = split_unit(name);
+    let words = words(bare);
+    let axis = Some(axis(&words)).filter(|axis| !axis.is_empty()).unwrap_or_else(|| remainder(&words));
+    let has = |list: &[&str]| words.iter().any(|word| list.contains(&word.as_str()) || without_axis(word, list));
+    let (quantity, fit) = if is_spindle(&axis) {
+        (Quantity::Other, 0)
+    } else if has(&SPEEDS) && !has(&OTHERS) {
+        (if has(&COMMANDS) { Quantity::Other } else { Quantity::Velocity }, 1)
+    } else if has(&SPEEDS) || has(&OTHERS) {
+        (Quantity::Other, 0)
+    } else if has(&TORQUES) && !has(&POSITIONS) {
+        // Where there are both, torque says more than current.
+        (Quantity::Torque, if has(&["torque", "force", "vir", "tau"]) { 3 } else { 2 - u8::from(has(&COMMANDS)) })
+    } else if has(&COMMANDS) {
+        (Quantity::Command, 2)
+    } else if has(&ACTUALS) {
+        (Quantity::Actual, 2)
+    } else if has(&TARGETS) {
+        (Quantity::Command, 1)
+    } else if has(&POSITIONS) {
+        (Quantity::Position, 1)
+    } else if has(&TIMES) {
+        (Quantity::Time, if words.len() == 1 { 2 } else { 1 })
+    } else if has(&COUNTERS) {
+        (Quantity::Counter, 2)
+    } else if words.len() <= 2 && words.first().is_some_and(|word| word.len() == 1 && LETTERS.contains(word.as_str())) {
+        (Quantity::Position, 0)
+    } else {
+        (Quantity::Other, 0)
+    };
+    Meaning { quantity, axis, unit: unit.to_owned(), fit }
+}
+
+/// Whether an axis is a spindle by its name.
+pub(super) fn is_spindle(axis: &str) -> bool {
+    ["s", "sp", "spindle"].contains(&axis.trim_end_matches(|c: char| c.is_ascii_digit()))
+}
+
+/// What is left of a name without the words that are known: what those columns have in common that belong together.
+fn remainder(words: &[String]) -> String {
+    let lists: [&[&str]; 8] = [&COMMANDS, &TARGETS, &ACTUALS, &TORQUES, &POSITIONS, &SPEEDS, &TIMES, &COUNTERS];
+    let unknown = words.iter().filter(|word| !lists.iter().any(|list| list.contains(&word.as_str())));
+    unknown.map(String::as_str).collect::<Vec<_>>().concat()
+}
+
+/// A name without the unit in brackets behind it, and the unit; or without `_mm` and the like.
+fn split_unit(name: &str) -> (&str, &str) {
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        if let Some((bare, rest)) = name.rsplit_once(open)
+            && let Some(unit) = rest.trim_end().strip_suffix(close)
+            && unit.contains(|c: char| !c.is_ascii_digit())
+        {
+            return (bare, unit.trim());
+        }
+    }
+    const ENDINGS: [&str; 10] = ["mm", "um", "m", "inch", "in", "s", "ms", "us", "ns", "nm"];
+    match name.rsplit_once('_') {
+        Some((bare, unit)) if ENDINGS.contains(&unit.to_lowercase().as_str()) && !bare.is_empty() => (bare, unit),
+        _ => (name, ""),
+    }
+}
+
+/// The words of a name: separated by signs, by changes from letters to digits, and by capitals.
+fn words(name: &str) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    let mut before = ' ';
+    for c in name.chars() {
+        if !c.is_alphanumeric() {
+            before = ' ';
+            continue;
+        }
+        let starts =
+            before == ' ' || (c.is_numeric() != before.is_numeric()) || (c.is_uppercase() && before.is_lowercase());
+        if starts {
+            words.push(String::new());
+        }
+        if let Some(word) = words.last_mut() {
+            word.extend(c.to_lowercase());
+        }
+        before = c;
+    }
+    words
+}
+
+/// Whether a word is one of a list with the letter of an axis before or behind it, as in `xfb`.
+fn without_axis(word: &str, list: &[&str]) -> bool {
+    let is_letter = |c: Option<char>| c.is_some_and(|c| LETTERS.contains(c));
+    list.iter().filter(|known| known.len() > 1).any(|known| {
+        let before = word.strip_suffix(known).is_some_and(|rest| rest.len() == 1 && is_letter(rest.chars().next()));
+        let behind = word.strip_prefix(known).is_some_and(|rest| rest.len() == 1 && is_letter(rest.chars().next()));
+        before || behind
+    })
+}
+
+/// The axis of a name: a letter, a joint's number, or a letter joined to a word that is known.
+fn axis(words: &[String]) -> String {
+    let letter = |word: &str| word.len() == 1 && LETTERS.contains(word);
+    if let Some(at) =
+        words.iter().position(|word| ["joint", "axis", "motor", "drive", "pid", "ax"].contains(&word.as_str()))
+    {
+        match words.get(at + 1) {
+            Some(name) if letter(name) => return name.clone(),
+            Some(number) if number.chars().all(|c| c.is_ascii_digit()) => return format!("{}{number}", words[at]),
+            _ => {}
+        }
+    }
+    if let Some(word) = words.iter().find(|word| letter(word)) {
+        return word.clone();
+    }
+    let lists: [&[&str]; 6] = [&COMMANDS, &ACTUALS, &TARGETS, &TORQUES, &POSITIONS, &SPEEDS];
+    words
+        .iter()
+        .filter(|word| lists.iter().any(|list| !list.contains(&word.as_str()) && without_axis(word, list)))
+        .find_map(|word| {
+            let ends = [word.chars().next(), word.chars().next_back()];
+            let known = |rest: &str| lists.iter().any(|list| list.contains(&rest));
+            match ends {
+                [Some(first), _] if LETTERS.contains(first) && known(&word[first.len_utf8()..]) => {
+                    Some(first.to_string())
+                }
+                [_, Some(last)] => Some(last.to_string()),
+                _ => None,
+            }
+        })
+        .unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_machines_give_are_understood() {
+        use Quantity::{Actual, Command, Counter, Other, Position, Time, Torque, Velocity};
+        for (name, quantity, axis) in [
+            ("t", Time, ""),
+            ("Time [s]", Time, ""),
+            ("time_ms", Time, ""),
+            ("n", Counter, ""),
+            ("CYCLE", Counter, ""),
+            ("qg", Command, ""),
+            ("qm", Actual, ""),
+            ("vir", Torque, ""),
+            ("x", Position, "x"),
+            ("xfb", Actual, "x"),
+            ("x.cmd", Command, "x"),
+            ("y_act_mm", Actual, "y"),
+            ("X1_ActualPosition", Actual, "x"),
+            ("X1_CommandPosition", Command, "x"),
+            ("X1_ActualVelocity", Velocity, "x"),
+            ("X1_CommandVelocity", Other, "x"),
+            ("X1_CurrentFeedback", Torque, "x"),
+            ("X1_ActualAcceleration", Other, "x"),
+            ("X1_DCBusVoltage", Other, "x"),
+            ("S1_ActualPosition", Other, "s1"),
+            ("DES_POS|1", Command, "1"),
+            ("ENC_POS|1", Actual, "1"),
+            ("TORQUE|1", Torque, "1"),
+            ("TORQUE_FFW|1", Other, "ffw1"),
+            ("q2_ref", Command, "q2"),
+            ("table desired", Command, "table"),
+            ("joint.0.motor-pos-cmd", Command, "joint0"),
+            ("joint.0.motor-pos-fb", Actual, "joint0"),
+            ("joint.1.f-error", Other, "joint1"),
+            ("axis.x.pos-cmd", Command, "x"),
+            ("x-pos-fb", Actual, "x"),
+            ("pid.x.output", Other, "x"),
+            ("Sollwert Z", Command, "z"),
+            ("current_position_x", Position, "x"),
+            ("posy", Position, "y"),
+            ("dtg", Other, "dtg"),
+            ("period_clk", Other, "periodclk"),
+        ] {
+            let found = understand(name);
+            assert_eq!((found.quantity, found.axis.as_str()), (quantity, axis), "{name}: {found:?}");
+        }
+        assert_eq!(understand("Time [s]").unit, "s");
+        assert_eq!(understand("time_ms").unit, "ms");
+        assert_eq!(understand("torque (N m)").unit, "N m");
+        assert_eq!(understand("x(1)").unit, "");
+    }
+}

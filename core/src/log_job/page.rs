@@ -1,0 +1,211 @@
+//! The page of an identification: verdict, numbers, measured against predicted, errors by horizon, spectrum of what is left.
+//!
+//! One file without references to anything outside it; equal identifications give equal bytes.
+
+use std::io::{self, Write};
+
+use super::{LogIdentified, digits};
+use crate::identify::grey_box::found_axis::FoundAxis;
+use crate::identify::grey_box::free_run_scores::FreeRunErrors;
+use crate::report::figure::{COLORS, Figure, LineStyle, Panel, Polyline, write_foot, write_head};
+use crate::report::text::{escaped, number};
+use crate::spectrum::Spectrum;
+
+const CSS: &str = include_str!("../../assets/report/compare.css");
+/// Points of a curve: two for each pixel.
+const POINTS: usize = 1500;
+/// Segment of a spectrum, samples, at the most.
+const SEGMENT: usize = 1024;
+
+/// Writes the page.
+///
+/// # Errors
+/// Where `out` takes no more.
+pub fn write(out: &mut impl Write, identified: &LogIdentified) -> io::Result<()> {
+    let log = &identified.log;
+    let used = identified.of_samples.map_or(String::new(), |all| format!(", windows of {all}"));
+    let introduction = format!(
+        "The law of each axis, found from commanded and actual positions ({}, {} samples of {} ms{used}). It was fitted on one part of the record and is judged by \
+         the other: a free run gets the commands and nothing else. Intervals are those of 90 %.",
+        log.format,
+        log.time_s.len(),
+        digits(1e3 * log.sample_time_s),
+    );
+    write_head(out, &format!("Identification from {}", identified.job.name), &introduction, CSS)?;
+    for (i, axis) in identified.machine.axes.iter().enumerate() {
+        write_axis(out, identified, i, axis)?;
+    }
+    if let Some(contour) = &identified.machine.contour {
+        let [a, b] = contour.plane.map(|i| escaped(&identified.machine.axes[i].name).to_string());
+        writeln!(
+            out,
+            "<h2>Contour error of {a} and {b}</h2>\n<p>Where both move it is {} µm RMS; the free runs miss {} µm of it, those of the best ARX {} µm.</p>",
+            number(contour.measured_um),
+            number(contour.grey_box_um),
+            number(contour.arx_um)
+        )?;
+    }
+    let lists = [
+        ("What was noticed", log.findings.iter().map(ToString::to_string).collect()),
+        ("What to record", identified.advice()),
+    ];
+    for (title, lines) in lists {
+        let lines: Vec<String> = lines;
+        if !lines.is_empty() {
+            writeln!(out, "<h2>{title}</h2>\n<ul>")?;
+            lines.iter().try_for_each(|line| writeln!(out, "<li>{}</li>", escaped(line)))?;
+            writeln!(out, "</ul>")?;
+        }
+    }
+    write_foot(out)
+}
+
+fn write_axis(out: &mut impl Write, identified: &LogIdentified, i: usize, axis: &FoundAxis) -> io::Result<()> {
+    let name = escaped(&axis.name).to_string();
+    writeln!(out, "<section><h2>Axis {name}</h2>\n<p><b>{}</b></p>", escaped(&sentence(&identified.verdict(i))))?;
+    writeln!(
+        out,
+        "<figure>{}<figcaption><b>Following error of axis {name}.</b> {}</figcaption></figure>",
+        following(identified, i, axis).to_svg(),
+        "Measured, and as free runs over the scored samples have it; below, what they leave. Gaps are samples that were fitted."
+    )?;
+    writeln!(
+        out,
+        "<div class=\"wide\"><table><thead><tr><th>number</th><th>value</th><th>interval</th><th>unit</th><th></th></tr></thead><tbody>"
+    )?;
+    for number in axis.numbers() {
+        let interval =
+            number.interval.map_or(String::new(), |[low, high]| format!("{} to {}", digits(low), digits(high)));
+        writeln!(
+            out,
+            "<tr><td>{}</td><td>{}</td><td>{interval}</td><td>{}</td><td class=\"words\">{}</td></tr>",
+            escaped(number.name),
+            digits(number.value),
+            escaped(number.unit),
+            number.source.word()
+        )?;
+    }
+    writeln!(out, "</tbody></table></div>")?;
+    write_errors(out, axis)?;
+    writeln!(
+        out,
+        "<figure>{}<figcaption><b>Spectrum of what the free run of axis {name} leaves.</b> RMS in a band of a hertz. Correlation from sample to sample: {:.2} of what is left, {:.2} one step ahead.</figcaption></figure></section>",
+        spectrum(identified, i, axis).to_svg(),
+        axis.scores.residual_correlation,
+        axis.scores.innovation_correlation
+    )
+}
+
+fn sentence(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).chain(['.']).collect())
+}
+
+fn write_errors(out: &mut impl Write, axis: &FoundAxis) -> io::Result<()> {
+    writeln!(
+        out,
+        "<p>RMS of what predictions miss, µm, of a following error of {} µm:</p>",
+        number(axis.scores.following_um)
+    )?;
+    writeln!(
+        out,
+        "<div class=\"wide\"><table><thead><tr><th>model</th><th>20 ms</th><th>50 ms</th><th>100 ms</th><th>whole run</th><th>one step</th></tr></thead><tbody>"
+    )?;
+    let mut row = |class: &str, name: &str, errors: &FreeRunErrors| {
+        let [a, b, c] = errors.at_um.map(micrometres);
+        let [whole, step] = [errors.whole_um, errors.one_step_um].map(micrometres);
+        writeln!(
+            out,
+            "<tr{class}><td>{name}</td><td>{a}</td><td>{b}</td><td>{c}</td><td>{whole}</td><td>{step}</td></tr>"
+        )
+    };
+    row(" class=\"ours\"", "law of the axis", &axis.scores.grey_box)?;
+    for (arx, errors) in &axis.scores.arx {
+        row("", &format!("ARX, {}", arx.words()), errors)?;
+    }
+    row("", "the error stays", &axis.scores.stays)?;
+    writeln!(out, "</tbody></table></div>")?;
+    if let Some((um, share)) = axis.scores.beyond {
+        writeln!(
+            out,
+            "<p>{:.0} % of what was scored is faster than all that was fitted; there the law misses {} µm.</p>",
+            100.0 * share,
+            number(um)
+        )?;
+    }
+    Ok(())
+}
+
+fn micrometres(um: f64) -> String {
+    if um.is_finite() { number(um) } else { "lost".to_owned() }
+}
+
+/// A curve of no more points than can be seen: the first, the least and the largest of each piece would be too many colours; every n-th.
+fn curve(label: &str, color: &str, line: LineStyle, points: &[[f64; 2]]) -> Polyline {
+    let apart = points.len().div_ceil(POINTS).max(1);
+    let points = points.iter().copied().step_by(apart).collect();
+    Polyline { label: label.to_owned(), points, color: color.to_owned(), line }
+}
+
+fn following(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Figure {
+    let (log, axis) = (&identified.log, &identified.log.axes[i]);
+    let scored = &identified.machine.split.score;
+    let first = scored.iter().position(|scored| *scored).unwrap_or(0);
+    let last = scored.iter().rposition(|scored| *scored).unwrap_or(0);
+    let over = |value: &dyn Fn(usize) -> Option<f64>| -> Vec<[f64; 2]> {
+        (first..=last).map(|k| [log.time_s[k], value(k).map_or(f64::NAN, |mm| 1e3 * mm)]).collect()
+    };
+    let measured = over(&|k| scored[k].then(|| axis.command_mm[k] - axis.actual_mm[k]));
+    let predicted = over(&|k| found.scores.simulated_mm[k].map(|mm| axis.command_mm[k] - mm));
+    let left = over(&|k| found.scores.simulated_mm[k].map(|mm| axis.actual_mm[k] - mm));
+    let of_arx = over(&|k| found.scores.arx_mm[k].map(|mm| axis.actual_mm[k] - mm));
+    let panel = |title: &str, y_title: &str, curves| Panel {
+        title: title.to_owned(),
+        x_title: "Time [s]".to_owned(),
+        y_title: y_title.to_owned(),
+        curves,
+        ..Panel::default()
+    };
+    let above = vec![
+        curve("measured", COLORS[0], LineStyle::Solid, &measured),
+        curve("law of the axis", COLORS[1], LineStyle::Dashed, &predicted),
+    ];
+    let below = vec![
+        curve("best ARX", COLORS[2], LineStyle::Thin, &of_arx),
+        curve("law of the axis", COLORS[1], LineStyle::Solid, &left),
+    ];
+    let panels = vec![panel("", "Following error [µm]", above), panel("", "Left [µm]", below)];
+    Figure { panels, columns: 1, aspect: 0.36 }
+}
+
+fn spectrum(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Figure {
+    let (log, axis) = (&identified.log, &identified.log.axes[i]);
+    let of = |simulated: &[Option<f64>]| -> Vec<[f64; 2]> {
+        let left = |k: usize| simulated[k].map_or(0.0, |mm| 1e3 * (axis.actual_mm[k] - mm));
+        let values: Vec<f64> = (0..simulated.len()).map(left).collect();
+        let counts: Vec<bool> = simulated.iter().map(Option::is_some).collect();
+        let longest = counts.chunk_by(|a, b| a == b).filter(|run| run[0]).map(<[bool]>::len).max().unwrap_or(0);
+        let length = SEGMENT.min(longest.next_power_of_two() / 2).max(16);
+        let spectrum = Spectrum::new(&values, &counts, length);
+        // Mean square in a sample, were it white, spread over half the rate of samples.
+        (1..spectrum.power.len())
+            .map(|n| {
+                let hz = spectrum.at(n) / log.sample_time_s;
+                let um = (spectrum.power[n] * 2.0 * log.sample_time_s).sqrt();
+                [hz.log10(), um.max(1e-9).log10()]
+            })
+            .collect()
+    };
+    let curves = vec![
+        curve("best ARX", COLORS[2], LineStyle::Thin, &of(&found.scores.arx_mm)),
+        curve("law of the axis", COLORS[1], LineStyle::Solid, &of(&found.scores.simulated_mm)),
+    ];
+    let panel = Panel {
+        x_title: "Frequency [Hz]".to_owned(),
+        y_title: "Left [µm/√Hz]".to_owned(),
+        curves,
+        powers_of_ten: true,
+        ..Panel::default()
+    };
+    Figure { panels: vec![panel], columns: 1, aspect: 0.36 }
+}
