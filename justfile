@@ -72,6 +72,11 @@ solvers:
     cargo build --release --quiet --package feedwright --example solvers
     taskset --cpu-list 1 target/release/examples/solvers
 
+# The limit, peers and our controllers over the level of each kind of noise: table, figures and noise.json of examples/05_noise, some ten
+# to twenty minutes. `just noise-levels target/noise 2` tries it with two levels each.
+noise-levels out="examples/05_noise" levels="5":
+    cargo run --release --quiet -p feedwright --example noise_levels -- {{ out }} {{ levels }}
+
 # How the error depends on what the correction may accelerate: table, and figure for examples/02_horizon.
 correction-acceleration out="target/correction_acceleration.svg":
     cargo run --release --quiet -p feedwright --example correction_acceleration -- {{ out }}

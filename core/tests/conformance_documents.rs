@@ -6,7 +6,8 @@
 use std::path::{Path, PathBuf};
 
 /// Folders with documents; not searched deeper.
-const FOLDERS: [&str; 4] = ["", "docs", "examples/01_paper_circle", "examples/02_horizon"];
+const FOLDERS: [&str; 6] =
+    ["", "docs", "examples/01_paper_circle", "examples/02_horizon", "examples/03_realism", "examples/05_noise"];
 
 fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
