@@ -24,6 +24,7 @@ pub mod output;
 pub mod journal;
 pub mod simulate;
 pub mod pipeline;
+pub mod cycle_time;
 pub mod identify;
 pub mod model;
 pub mod controllers;
