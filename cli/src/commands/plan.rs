@@ -7,6 +7,7 @@ use std::time::Instant;
 
 use feedwright::cycle_time::{CycleTime, cycle_time};
 use feedwright::gcode::{self, Reader};
+use feedwright::job::JobError;
 use feedwright::machine::{Machine, is_path};
 use feedwright::output::{OutputFile, OutputFiles};
 use feedwright::pipeline::pieces;
@@ -24,7 +25,7 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tool_table].into_iter().flatten());
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
     let settings = args.reader.settings()?;
-    let summary = gcode::check(&args.part, settings.clone())?;
+    let summary = gcode::check(&args.part, settings.clone()).map_err(JobError::from)?;
     for warning in summary.warnings {
         warn(warning.into());
     }
