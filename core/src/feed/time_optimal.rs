@@ -182,7 +182,7 @@ impl TimeOptimal {
     fn step_s(&self) -> f64 {
         let jerk = self.caps.axes.iter().map(|limits| limits.jerk_mm_s3).fold(0.0, f64::max);
         let step_s = STEP * (self.tolerance_mm / jerk).cbrt();
-        step_s.max(STEPS_S[0]).min(STEPS_S[1]).max(LEAST_WAY * self.tolerance_mm / self.feed_mm_s)
+        step_s.clamp(STEPS_S[0], STEPS_S[1]).max(LEAST_WAY * self.tolerance_mm / self.feed_mm_s)
     }
 
     /// Steps of a window.

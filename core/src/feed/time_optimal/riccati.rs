@@ -21,6 +21,9 @@ pub(super) struct Stage<const N: usize, const M: usize> {
     pub(super) d: [f64; N],
 }
 
+/// A stage with the cost of what follows it.
+type Condensed<const N: usize, const M: usize> = ([[f64; N]; N], [[f64; N]; M], [[f64; M]; M]);
+
 impl<const N: usize, const M: usize> Stage<N, M> {
     pub(super) const ZERO: Self = Self {
         q: [[0.0; N]; N],
@@ -63,7 +66,7 @@ impl<const N: usize, const M: usize> Stage<N, M> {
 
     /// `Q + A'PA`, `S + B'PA`, `R + B'PB`.
     #[inline]
-    fn condensed(&self, p: &[[f64; N]; N]) -> ([[f64; N]; N], [[f64; N]; M], [[f64; M]; M]) {
+    fn condensed(&self, p: &[[f64; N]; N]) -> Condensed<N, M> {
         let mut pa = [[0.0; N]; N];
         let mut pb = [[0.0; M]; N];
         for row in 0..N {

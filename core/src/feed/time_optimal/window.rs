@@ -108,7 +108,7 @@ impl<const D: usize, const N: usize> WindowProblem<D, N> {
 
     /// Whether a component of the last state is given: it rests.
     pub(super) const fn is_given(&self, component: usize) -> bool {
-        component % 3 != 0 || self.exact_end
+        !component.is_multiple_of(3) || self.exact_end
     }
 
     /// The states that the jerks and durations lead to from the first state, without any defect; what that misses the last state by is
