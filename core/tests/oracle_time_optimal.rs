@@ -5,8 +5,6 @@
 //! are used, accelerations and jerks are at most sqrt(2) times as long, so the mean speed is at most `2^(1/4)` times that. The circle of 10 mm from rest to rest within 10 um: 0.5516 s by a nonlinear program that shares nothing with this
 //! one (IPOPT).
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 #[expect(dead_code, reason = "each test uses its own part")]
 #[path = "common/programs.rs"]
 mod common;
