@@ -19,6 +19,10 @@ paper out="target/paper":
 bench:
     cargo bench --workspace
 
+# Time-optimal planner against the bound, program by program: ratios, violations, blocks/s. Foreign programs where they are.
+bench-plan *programs:
+    cargo run --release -p feedwright --example bench_plan -- {{ programs }}
+
 # Every controller on every contour, on machines without noise: the tables of examples/02_horizon.
 compare out="target/compare":
     cargo run --release -- compare --only tnv40,heavy,sticky,rough,soft,coarse --knowledge own,unseen --at-tolerance --json {{ out }}.json --html {{ out }}.html

@@ -23,6 +23,8 @@ pub(crate) struct Cli {
 pub(crate) enum CommandArgs {
     /// Cut a part on a simulated machine, open loop and with a controller, and write the report.
     Run(Box<RunArgs>),
+    /// Tell the cycle time of a program on a machine: by tool, by kind of motion, and what binds it.
+    Plan(PlanArgs),
     /// Identify a machine from its LOG, and write its machine file; without a LOG, identify a simulated machine and write the
     /// model that a controller of `run` uses, for `run --model`.
     Identify(IdentifyArgs),
@@ -90,6 +92,27 @@ pub(crate) struct RunArgs {
     /// Model of the machine for the controller, in place of a training; `feedwright identify` writes one.
     #[arg(long, value_name = "FILE.model.toml")]
     pub(crate) model: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    /// G-code program.
+    pub(crate) part: PathBuf,
+    /// Built-in machine, or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
+    pub(crate) machine: OsString,
+    /// Distance of the planned path from the programmed one where the program says none, um, in place of the machine's
+    /// path_tolerance_um.
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Plan each path from rest to rest as a whole too, and tell its time: what no plan can be faster than by much.
+    #[arg(long)]
+    pub(crate) bound: bool,
+    /// Write all results.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
 }

@@ -9,4 +9,5 @@ pub(crate) mod identify;
 pub(crate) mod list;
 pub(crate) mod never_worse;
 pub(crate) mod paper;
+pub(crate) mod plan;
 pub(crate) mod run;

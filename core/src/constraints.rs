@@ -37,6 +37,8 @@ pub struct Constraints {
     pub axes: Vec<AxisLimits>,
     /// Most that a rotary axis turns in a second, degrees; infinite where there is no bound.
     pub rotary_deg_s: f64,
+    /// Largest distance of the planned path from the programmed one where the program says none, mm.
+    pub path_tolerance_mm: Option<f64>,
 }
 
 /// A limit that is none.
@@ -71,7 +73,7 @@ impl From<&Limits> for PathLimits {
 /// Nothing but those of the path.
 impl From<&PathLimits> for Constraints {
     fn from(path: &PathLimits) -> Self {
-        Self { path: *path, axes: Vec::new(), rotary_deg_s: f64::INFINITY }
+        Self { path: *path, axes: Vec::new(), rotary_deg_s: f64::INFINITY, path_tolerance_mm: None }
     }
 }
 
@@ -83,7 +85,8 @@ impl From<&Machine> for Constraints {
             jerk_mm_s3: axis.max_jerk_mm_s3.unwrap_or(f64::INFINITY),
         });
         let rotary_deg_s = if machine.plc.rotary_deg_s > 0.0 { machine.plc.rotary_deg_s } else { f64::INFINITY };
-        Self { path: (&machine.limits).into(), axes: axes.collect(), rotary_deg_s }
+        let path_tolerance_mm = machine.limits.path_tolerance_um.map(|um| 1e-3 * um);
+        Self { path: (&machine.limits).into(), axes: axes.collect(), rotary_deg_s, path_tolerance_mm }
     }
 }
 
@@ -119,6 +122,32 @@ impl Constraints {
                     return Err(LimitsError { name, value, bound: "from 1e-6" });
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// Checks that each axis has velocity, acceleration and jerk, and the path a tolerance: planners that plan axis by axis need them.
+    ///
+    /// # Errors
+    /// The first that is not there.
+    pub fn check_axes(&self) -> Result<(), LimitsError> {
+        let bound = "from 1e-6 to 1e12, for a planner that plans axis by axis";
+        let none = [AxisLimits::NONE];
+        for axis in if self.axes.is_empty() { &none[..] } else { &self.axes[..] } {
+            for (name, value) in [
+                ("max_velocity_mm_s", axis.velocity_mm_s),
+                ("max_accel_mm_s2", axis.accel_mm_s2),
+                ("max_jerk_mm_s3", axis.jerk_mm_s3),
+            ] {
+                if !(1e-6..=1e12).contains(&value) {
+                    return Err(LimitsError { name, value, bound });
+                }
+            }
+        }
+        let value = self.path_tolerance_mm.unwrap_or(f64::NAN) * 1e3;
+        if !(1e-3..=1e6).contains(&value) {
+            let bound = "from 1e-3 to 1e6, for a planner that chooses the path";
+            return Err(LimitsError { name: "path_tolerance_um", value, bound });
         }
         Ok(())
     }

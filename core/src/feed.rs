@@ -6,7 +6,8 @@
 //! clock as [`Phase`]s, with the events between them.
 //!
 //! Planners are a family: this file has the contract and the table [`MEMBERS`], each member one file. Those that need no more than
-//! a bound on the square of the speed take the path as [`sections::Section`]s.
+//! a bound on the square of the speed take the path as [`sections::Section`]s. Those that choose the path too, within its tolerance,
+//! say with each span what the axes do ([`AxisMotion`]).
 //!
 //! | File | What |
 //! |---|---|
@@ -14,6 +15,7 @@
 //! | `sections.rs` | the path to sections with a bound on the square of the speed |
 //! | `trapezoid.rs` | member: constant accelerations, time-optimal |
 //! | `unlimited.rs` | null member: every section at its bound |
+//! | `time_optimal.rs` | member: speed and path within the tolerance, axis by axis, with jerk |
 //! | `plan.rs` | pieces, spans and events on the clock |
 
 pub mod joint;
@@ -21,11 +23,43 @@ pub mod plan;
 pub mod sections;
 pub mod trapezoid;
 pub mod unlimited;
+pub mod time_optimal;
 
-use crate::constraints::Constraints;
+use crate::constraints::{Constraints, PathLimits};
 use crate::gcode::canon::Event;
 use crate::path::Piece;
 use sections::Capped;
+
+/// What the axes do from a moment on, at a constant jerk of each.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisMotion {
+    /// Position at its start, mm.
+    pub position_mm: [f64; 3],
+    /// Velocity at its start.
+    pub velocity_mm_s: [f64; 3],
+    /// Acceleration at its start.
+    pub accel_mm_s2: [f64; 3],
+    /// Jerk.
+    pub jerk_mm_s3: [f64; 3],
+}
+
+impl AxisMotion {
+    /// At rest in the origin.
+    pub const REST: Self =
+        Self { position_mm: [0.0; 3], velocity_mm_s: [0.0; 3], accel_mm_s2: [0.0; 3], jerk_mm_s3: [0.0; 3] };
+
+    /// The same motion from `t` seconds later on.
+    #[inline]
+    pub fn after(&self, t: f64) -> Self {
+        let Self { position_mm: p, velocity_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j } = self;
+        Self {
+            position_mm: std::array::from_fn(|k| p[k] + t * (v[k] + t * (0.5 * a[k] + t * j[k] / 6.0))),
+            velocity_mm_s: std::array::from_fn(|k| v[k] + t * (a[k] + 0.5 * t * j[k])),
+            accel_mm_s2: std::array::from_fn(|k| a[k] + t * j[k]),
+            jerk_mm_s3: *j,
+        }
+    }
+}
 
 /// Motion at constant jerk along a piece.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,6 +76,9 @@ pub struct Span {
     pub accel_mm_s2: f64,
     /// Jerk.
     pub jerk_mm_s3: f64,
+    /// Where the motion leaves the piece within its tolerance: what the axes do, while the values above say which place of the piece
+    /// stands for each moment.
+    pub motion: Option<AxisMotion>,
 }
 
 /// A span on the clock, or a rest.
@@ -61,6 +98,8 @@ pub struct Phase {
     pub accel_mm_s2: f64,
     /// Jerk.
     pub jerk_mm_s3: f64,
+    /// What the axes do, where that is not what the piece says.
+    pub motion: Option<AxisMotion>,
     /// Line of the event that makes the tool rest; `None` when it moves.
     pub rest: Option<u32>,
 }
@@ -106,6 +145,13 @@ pub trait FeedPlanner: Send {
     fn pop(&mut self) -> Option<Span>;
 }
 
+/// Highest speed on a piece without its curvature, mm/s: its feedrate, or that of rapids, and what moves along.
+pub fn feed_mm_s(piece: &Piece, constraints: &Constraints) -> f64 {
+    let PathLimits { max_feed_mm_s, rapid_mm_s, .. } = constraints.path;
+    let feed_mm_s = if piece.cutting { piece.feed_mm_s.min(max_feed_mm_s) } else { rapid_mm_s };
+    feed_mm_s.min(constraints.along_mm_s(piece.turn_deg_mm, piece.further_mm_mm))
+}
+
 /// A row of [`MEMBERS`].
 #[derive(Debug, Clone, Copy)]
 pub struct Member {
@@ -113,6 +159,8 @@ pub struct Member {
     pub name: &'static str,
     /// What it does, for lists.
     pub about: &'static str,
+    /// Whether it needs velocity, acceleration and jerk of each axis; otherwise it keeps the bounds along and across the path.
+    pub needs_axes: bool,
     /// Makes one for constraints that have been checked.
     pub make: fn(&Constraints) -> Box<dyn FeedPlanner>,
 }
@@ -122,6 +170,7 @@ pub const MEMBERS: &[Member] = &[
     Member {
         name: "trapezoid",
         about: "constant tangential acceleration, time-optimal",
+        needs_axes: false,
         make: |constraints| {
             let planner = trapezoid::Trapezoid::new(constraints.path.tangential_accel_mm_s2);
             Box::new(Capped::new(constraints, planner))
@@ -130,9 +179,25 @@ pub const MEMBERS: &[Member] = &[
     Member {
         name: "unlimited",
         about: "no bound on tangential acceleration: the least time that any plan can take",
+        needs_axes: false,
         make: |constraints| Box::new(Capped::new(constraints, unlimited::Unlimited::default())),
     },
+    Member {
+        name: "time-optimal",
+        about: "speed and path within the tolerance in least time, with velocity, acceleration and jerk of each axis",
+        needs_axes: true,
+        make: |constraints| Box::new(time_optimal::TimeOptimal::new(constraints)),
+    },
 ];
+
+/// The bound that `time-optimal` is measured by: each path from rest to rest as a whole, with the tolerance held at nodes only. Memory
+/// grows with the program, so it is no member.
+pub const WHOLE: Member = Member {
+    name: "whole",
+    about: "time-optimal, each path from rest to rest as a whole",
+    needs_axes: true,
+    make: |constraints| Box::new(time_optimal::TimeOptimal::whole(constraints)),
+};
 
 /// The planner of that name.
 pub fn planner(name: &str) -> Option<&'static Member> {

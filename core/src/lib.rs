@@ -27,6 +27,7 @@ pub mod simulate;
 pub mod pipeline;
 pub mod excite;
 pub mod log;
+pub mod cycle_time;
 pub mod identify;
 pub mod model;
 pub mod controllers;

@@ -132,6 +132,10 @@ pub struct Limits {
     pub corner_jump_mm_s: f64,
     /// Largest distance of the corrected command from the programmed path, mm.
     pub max_deviation_mm: f64,
+    /// Largest distance of the planned path from the programmed one where the program says none (G64 without P), um; none is a planner
+    /// that keeps to the programmed path.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path_tolerance_um: Option<f64>,
 }
 
 /// How long PLC and spindle hold the motion up: table `[plc]`, all zero without it.
@@ -274,6 +278,14 @@ impl Machine {
     /// The law of the first N axes.
     pub fn law<const N: usize>(&self) -> [AxisLaw; N] {
         std::array::from_fn(|i| AxisLaw::new(self.axis(i).parameters(), self.period.periods()))
+    }
+
+    /// Whether each axis has limits of its own, and the path a tolerance: then it is planned axis by axis.
+    pub fn has_axis_limits(&self) -> bool {
+        let limited = |axis: &Axis| {
+            axis.max_velocity_mm_s.is_some() && axis.max_accel_mm_s2.is_some() && axis.max_jerk_mm_s3.is_some()
+        };
+        self.limits.path_tolerance_um.is_some() && self.axes.iter().all(limited)
     }
 
     /// Two or three.

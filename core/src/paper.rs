@@ -20,7 +20,7 @@ use crate::identify::Excitation;
 use crate::identify::cache::identified;
 use crate::identify::contour::{TrainedContour, Training};
 use crate::machine::Machine;
-use crate::pipeline::{Run, RunError, pieces};
+use crate::pipeline::{Run, RunError, Stages, pieces};
 use crate::report::Statistics;
 use crate::trace::{Outcome, Sink};
 use crate::watch::Watch;
@@ -180,7 +180,11 @@ impl Bench<'_> {
         let mut statistics = Statistics::new();
         let mut all: Vec<&mut dyn Sink> = vec![&mut statistics];
         all.extend(sinks.iter_mut().map(|sink| &mut **sink as &mut dyn Sink));
-        let run = Run::on(self.machine).watched(self.watch).cut(|| Ok(pieces([circle()])), controller, &mut all)?;
+        let run = Run::on(self.machine).stages(Stages::default()).watched(self.watch).cut(
+            || Ok(pieces([circle()])),
+            controller,
+            &mut all,
+        )?;
         Ok(Numbers {
             time_s: run.time_s,
             rms_um: statistics.rms_um(),

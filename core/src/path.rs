@@ -102,6 +102,11 @@ impl Curve {
         }
     }
 
+    /// Whether it is a straight line.
+    pub const fn is_straight(&self) -> bool {
+        matches!(self, Self::Line(_))
+    }
+
     /// Position and unit tangent at arc length `s_mm` from the start.
     #[inline]
     pub fn at(&self, s_mm: f64) -> Point {

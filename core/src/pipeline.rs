@@ -42,6 +42,12 @@ impl Default for Stages {
 }
 
 impl Stages {
+    /// Those that suit a machine: where each axis has limits of its own, the planner that keeps them; otherwise the first of each family.
+    pub fn of(machine: &Machine) -> Self {
+        let planner = feed::MEMBERS.iter().find(|member| member.needs_axes == machine.has_axis_limits());
+        Self { planner: planner.unwrap_or(&feed::MEMBERS[0]), ..Self::default() }
+    }
+
     /// The reference of the steps of a program on a machine.
     ///
     /// # Errors
@@ -106,9 +112,9 @@ impl From<Stopped> for RunError {
 }
 
 impl<'a> Run<'a> {
-    /// One lap on a machine.
+    /// One lap on a machine, by the stages that suit it.
     pub fn on(machine: &'a Machine) -> Self {
-        Self { machine, stages: Stages::default(), laps: 1, watch: &() }
+        Self { machine, stages: Stages::of(machine), laps: 1, watch: &() }
     }
 
     /// With laps of practice: the last of so many counts.
@@ -117,7 +123,7 @@ impl<'a> Run<'a> {
         Self { laps, ..self }
     }
 
-    /// With other members of the families than the first.
+    /// With other members of the families.
     #[must_use]
     pub const fn stages(self, stages: Stages) -> Self {
         Self { stages, ..self }

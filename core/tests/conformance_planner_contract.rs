@@ -43,7 +43,15 @@ impl FeedPlanner for RestToRest {
         for jerk_mm_s3 in [j, -j, -j, j] {
             let t = duration_s;
             let piece = self.pieces;
-            self.ready.push_back(Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, jerk_mm_s3 });
+            self.ready.push_back(Span {
+                piece,
+                from_mm,
+                duration_s,
+                speed_mm_s,
+                accel_mm_s2,
+                jerk_mm_s3,
+                motion: None,
+            });
             from_mm += t * (speed_mm_s + t * (accel_mm_s2 / 2.0 + t * jerk_mm_s3 / 6.0));
             speed_mm_s += t * (accel_mm_s2 + t * jerk_mm_s3 / 2.0);
             accel_mm_s2 += t * jerk_mm_s3;
@@ -61,6 +69,7 @@ impl FeedPlanner for RestToRest {
 const REST_TO_REST: Member = Member {
     name: "rest-to-rest",
     about: "constant jerk, a stop at each joint",
+    needs_axes: false,
     make: |constraints: &Constraints| {
         let jerk_mm_s3 = constraints.axes.iter().map(|axis| axis.jerk_mm_s3).fold(f64::INFINITY, f64::min);
         Box::new(RestToRest { jerk_mm_s3, ..RestToRest::default() })

@@ -70,6 +70,9 @@ impl<'p> Plan<'p> {
         plc: Plc,
     ) -> Result<Self, LimitsError> {
         constraints.check()?;
+        if planner.needs_axes {
+            constraints.check_axes()?;
+        }
         Ok(Self {
             steps,
             rapid_mm_s: constraints.path.rapid_mm_s,
@@ -152,9 +155,10 @@ impl<'p> Plan<'p> {
     fn take_spans(&mut self) {
         while let Some(span) = self.planner.pop() {
             self.happen_before(span.piece);
-            let Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, jerk_mm_s3 } = span;
+            let Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, jerk_mm_s3, motion } = span;
             let tau_s = self.clock.advance(duration_s);
-            let phase = Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, jerk_mm_s3, rest: None };
+            let phase =
+                Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, jerk_mm_s3, motion, rest: None };
             self.ready.push_back(Planned::Phase(phase));
         }
     }
@@ -176,7 +180,17 @@ impl<'p> Plan<'p> {
                 let tau_s = self.clock.advance(duration_s);
                 let (speed_mm_s, accel_mm_s2, jerk_mm_s3) = (0.0, 0.0, 0.0);
                 let rest = Some(line);
-                let phase = Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, jerk_mm_s3, rest };
+                let phase = Phase {
+                    tau_s,
+                    duration_s,
+                    piece,
+                    from_mm,
+                    speed_mm_s,
+                    accel_mm_s2,
+                    jerk_mm_s3,
+                    motion: None,
+                    rest,
+                };
                 self.ready.push_back(Planned::Phase(phase));
             }
         }

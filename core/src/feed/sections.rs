@@ -9,8 +9,8 @@
 //! is given away. Neighbouring sections that are both bounded by the same feedrate alone are joined.
 
 use super::joint::{JointSide, joint_cap};
-use super::{FeedPlanner, Span};
-use crate::constraints::{Constraints, PathLimits};
+use super::{FeedPlanner, Span, feed_mm_s};
+use crate::constraints::Constraints;
 use crate::gcode::canon::Corner;
 use crate::path::smooth::{MAX_CURVATURE_1_MM, Smooth};
 use crate::path::{Curve, Piece};
@@ -103,16 +103,9 @@ impl<P: SectionPlanner> FeedPlanner for Capped<P> {
     }
 }
 
-/// Bound on the square of the speed on a piece without its curvature, mm2/s2.
-fn feed_cap(piece: &Piece, constraints: &Constraints) -> f64 {
-    let PathLimits { max_feed_mm_s, rapid_mm_s, .. } = constraints.path;
-    let feed = if piece.cutting { piece.feed_mm_s.min(max_feed_mm_s) } else { rapid_mm_s };
-    feed.min(constraints.along_mm_s(piece.turn_deg_mm, piece.further_mm_mm)).powi(2)
-}
-
 /// Hands the sections of a piece to `push`, in order; `joint_cap` belongs to the first.
 pub fn sections(piece: &Piece, number: u64, joint_cap: f64, constraints: &Constraints, mut push: impl FnMut(Section)) {
-    let feed = feed_cap(piece, constraints);
+    let feed = feed_mm_s(piece, constraints).powi(2);
     let normal_accel_mm_s2 = constraints.path.normal_accel_mm_s2;
     let bound = |curvature: f64| feed.min(normal_accel_mm_s2 / curvature.clamp(0.0, MAX_CURVATURE_1_MM));
     match &piece.curve {

@@ -147,6 +147,7 @@ impl Trapezoid {
                     speed_mm_s: speed,
                     accel_mm_s2: 0.5 * slope,
                     jerk_mm_s3: 0.0,
+                    motion: None,
                 });
             }
             speed = end;

@@ -24,6 +24,7 @@ impl SectionPlanner for Unlimited {
             speed_mm_s: start,
             accel_mm_s2: 0.5 * (end_cap - start_cap) / length_mm,
             jerk_mm_s3: 0.0,
+            motion: None,
         });
     }
 

@@ -1,6 +1,7 @@
 //! The layout of a machine file: its tables, and what holds between their values.
 
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 use super::{AXIS_NAMES, Axis, Durations, Machine, Noise, Period, PlcEvent, Squareness, Transmission, keys};
 use crate::toml_file::key::{read, read_all};
@@ -39,12 +40,14 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
     }
     let period = period(root.table("period", &mut faults), &mut faults);
     let mut plc_events = Vec::new();
+    let limits = root.table("limits", &mut faults);
+    let in_limits = limits.header();
     let machine = Machine {
         name: root.text("name", &mut faults),
         description: root.text("description", &mut faults),
         source: root.text("source", &mut faults),
         period,
-        limits: read_all(keys::LIMITS, root.table("limits", &mut faults), &mut faults),
+        limits: read_all(keys::LIMITS, limits, &mut faults),
         plc: root
             .optional_table("plc", &mut faults)
             .map(|table| plc(table, &mut plc_events, &mut faults))
@@ -58,9 +61,34 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
             .optional_table("noise", &mut faults)
             .map_or(Noise::default(), |table| read_all(keys::NOISE, table, &mut faults)),
     };
+    tolerance_with_axes(&machine, in_limits, &mut faults);
     root.finish(&mut faults);
     if faults.is_empty() { Ok(machine) } else { Err(faults) }
 }
+
+/// Limits of axes and the tolerance of the path belong together: no planner keeps one without the others.
+fn tolerance_with_axes(machine: &Machine, at: Range<usize>, faults: &mut Vec<Fault>) {
+    let limited = machine.axes.iter().any(|axis| axis.max_velocity_mm_s.is_some());
+    let label = "one without the other";
+    match (limited, machine.limits.path_tolerance_um) {
+        (true, None) => faults.push(Fault {
+            at,
+            label,
+            message: "the axes have limits of their own, and [limits] has no path_tolerance_um".to_owned(),
+            hint: Some("path_tolerance_um = 10 lets the planned path leave the programmed one by 10 um".to_owned()),
+        }),
+        (false, Some(tolerance_um)) => faults.push(Fault {
+            at,
+            label,
+            message: format!("path_tolerance_um is {tolerance_um} um, and the axes have no limits of their own"),
+            hint: Some(format!("give each axis {}, or leave path_tolerance_um out", AXIS_LIMITS.join(", "))),
+        }),
+        _ => {}
+    }
+}
+
+/// The limits of an axis: all or none.
+const AXIS_LIMITS: [&str; 3] = ["max_velocity_mm_s", "max_accel_mm_s2", "max_jerk_mm_s3"];
 
 fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
     let Period { servo_s, mechanics_s, .. } = read(keys::PERIOD, &mut table, faults);
@@ -154,6 +182,19 @@ fn axes(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Ve
     if let Some(present) = table.optional_table(z, faults) {
         axes.push(axis(present, period, faults));
     }
+    let limited = axes.iter().position(|axis| axis.max_velocity_mm_s.is_some());
+    let unlimited = axes.iter().position(|axis| axis.max_velocity_mm_s.is_none());
+    if let (Some(limited), Some(unlimited)) = (limited, unlimited)
+        && axes.iter().all(|axis| axis.max_velocity_mm_s.is_some() == axis.max_jerk_mm_s3.is_some())
+    {
+        let [has, lacks] = [limited, unlimited].map(|i| AXIS_NAMES[i]);
+        faults.push(Fault {
+            at: table.header(),
+            label: "some axes with limits, some without",
+            message: format!("axis.{has} has limits of its own, and axis.{lacks} lacks {}", AXIS_LIMITS.join(", ")),
+            hint: Some("a planner that plans axis by axis needs those of every axis".to_owned()),
+        });
+    }
     table.finish(faults);
     axes
 }
@@ -169,6 +210,27 @@ fn axis(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Ax
 
 /// Longest delay, in servo periods: what is under way is kept.
 const MAX_DELAY_PERIODS: f64 = 60.0;
+
+/// An axis has all of its limits or none.
+fn all_limits(axis: &Axis, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
+    let limits = [axis.max_velocity_mm_s, axis.max_accel_mm_s2, axis.max_jerk_mm_s3];
+    let those = |there: bool| {
+        let named = AXIS_LIMITS.iter().zip(limits).filter(move |(_, limit)| limit.is_some() == there);
+        named.map(|(name, _)| *name).collect::<Vec<_>>()
+    };
+    if let ([first, ..], [_, ..]) = (&those(true)[..], &those(false)[..]) {
+        faults.push(Fault {
+            at: table.place(first),
+            label: "not without the others",
+            message: format!(
+                "{} given, {} missing: an axis has all three or none",
+                those(true).join(", "),
+                those(false).join(", ")
+            ),
+            hint: Some("a limit that no planner could keep is not dropped silently".to_owned()),
+        });
+    }
+}
 
 /// What holds between the values of an axis.
 fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
@@ -188,6 +250,7 @@ fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mu
             });
         }
     }
+    all_limits(axis, table, faults);
     let (asymmetry_nm, coulomb_nm) = (axis.coulomb_asymmetry_nm, axis.coulomb_friction_nm);
     if asymmetry_nm.abs() > coulomb_nm {
         faults.push(Fault {

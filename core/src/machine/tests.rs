@@ -353,7 +353,10 @@ fn what_is_written_reads_as_the_same_machine() {
     }
     let mut odd = Machine::load("soft".as_ref()).unwrap();
     odd.description = "a \"quoted\" \\ text\nof two lines".to_owned();
-    odd.axes[0].max_jerk_mm_s3 = Some(2.5e5);
+    odd.limits.path_tolerance_um = Some(7.5);
+    for axis in &mut odd.axes {
+        (axis.max_velocity_mm_s, axis.max_accel_mm_s2, axis.max_jerk_mm_s3) = (Some(150.0), Some(1e3), Some(2.5e5));
+    }
     odd.axes[1].torque_bits = Some(12);
     odd.axes[1].encoder_step_um = 0.1 + 0.2;
     odd.axes[1].speed_from_encoder = true;
@@ -390,5 +393,40 @@ fn the_document_has_the_units_and_ranges_of_all_keys() {
     ];
     for row in all.concat() {
         assert!(document.contains(&row), "docs/machine-file.md has no row that begins {row}");
+    }
+}
+
+/// tnv40 with limits of so many axes, and a tolerance of the path.
+fn limited(axes: usize, keys: &str, tolerance: &str) -> Result<Machine, MachineError> {
+    let mut text = TNV40.to_owned();
+    for name in &AXIS_NAMES[..axes] {
+        text = text.replacen(&format!("[axis.{name}]\n"), &format!("[axis.{name}]\n{keys}"), 1);
+    }
+    Machine::parse("limited.toml", &text.replacen("[limits]\n", &format!("[limits]\n{tolerance}"), 1))
+}
+
+const ALL_LIMITS: &str = "max_velocity_mm_s = 200\nmax_accel_mm_s2 = 2000\nmax_jerk_mm_s3 = 5e4\n";
+const TOLERANCE: &str = "path_tolerance_um = 10\n";
+
+#[test]
+fn limits_of_axes_are_given_for_all_or_for_none() {
+    assert!(limited(3, ALL_LIMITS, TOLERANCE).unwrap().has_axis_limits());
+    assert!(!tnv40().has_axis_limits());
+    let said = |machine: Result<Machine, MachineError>| match machine {
+        Err(MachineError::File(FileError::Invalid { problems, .. })) => {
+            problems.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
+        }
+        other => panic!("expected faults, got {other:?}"),
+    };
+    let some = said(limited(3, "max_velocity_mm_s = 200\n", TOLERANCE));
+    assert!(some.contains("max_accel_mm_s2, max_jerk_mm_s3 missing"), "{some}");
+    assert!(said(limited(2, ALL_LIMITS, TOLERANCE)).contains("axis.z lacks"));
+    assert!(said(limited(3, ALL_LIMITS, "")).contains("no path_tolerance_um"));
+    assert!(said(limited(0, "", TOLERANCE)).contains("the axes have no limits of their own"));
+    for value in ["0", "-5", "nan", "inf"] {
+        let keys = ALL_LIMITS.replace("5e4", value);
+        assert!(said(limited(3, &keys, TOLERANCE)).contains("max_jerk_mm_s3"), "{value}");
+        let tolerance = format!("path_tolerance_um = {value}\n");
+        assert!(said(limited(3, ALL_LIMITS, &tolerance)).contains("path_tolerance_um"), "{value}");
     }
 }

@@ -3,12 +3,16 @@
 use super::nearest::{Range, nearest};
 use super::{Foot, Sample};
 use crate::blend::{PlannedPiece, ProgrammedPart};
-use crate::feed::Phase;
-use crate::path::{Piece, signed_distance_mm};
+use crate::feed::{AxisMotion, Phase};
+use crate::path::{Piece, Point, signed_distance_mm};
+use crate::vector::{norm, scale};
 use std::collections::VecDeque;
 
 /// Times that a servo period looks at: two or three samples, and both ends of the range for the nearest point.
 const HINTS: usize = 6;
+
+/// A slower motion has the direction of its piece, mm/s: that of its velocity would be rounding.
+const MIN_DIRECTED_MM_S: f64 = 1e-6;
 
 /// Pieces and phases in order, the oldest forgotten.
 #[derive(Debug, Default)]
@@ -79,6 +83,9 @@ impl KeptPath {
         let along_s = along(&phase, tau_s);
         let local_mm = local_mm(&phase, piece, along_s);
         let at = piece.curve.at(local_mm);
+        if let Some(motion) = phase.motion {
+            return beside(piece, local_mm, at, &motion.after(along_s), ended);
+        }
         let (s_mm, programmed_mm) = match *origin {
             ProgrammedPart::Unchanged(_) => (piece.s_mm + local_mm, at.position_mm),
             ProgrammedPart::Part { from_mm, to_mm } => {
@@ -187,6 +194,26 @@ impl KeptPath {
             self.hints[slot] = lo;
         }
         self.phases.get(lo).map(|phase| (*phase, lo))
+    }
+}
+
+/// Where the reference is that leaves its piece, while `at` is the point of the piece that stands for it.
+fn beside(piece: &Piece, local_mm: f64, at: Point, motion: &AxisMotion, ended: bool) -> Sample {
+    let speed_mm_s = norm(motion.velocity_mm_s);
+    Sample {
+        position_mm: motion.position_mm,
+        tangent: if speed_mm_s > MIN_DIRECTED_MM_S {
+            scale(1.0 / speed_mm_s, motion.velocity_mm_s)
+        } else {
+            at.tangent
+        },
+        s_mm: piece.s_mm + local_mm,
+        programmed_mm: at.position_mm,
+        feed_mm_s: if ended { 0.0 } else { speed_mm_s },
+        line: piece.line,
+        cutting: piece.cutting && !ended,
+        rapid: !piece.cutting,
+        resting: ended,
     }
 }
 

@@ -1,0 +1,114 @@
+//! `feedwright plan`: the cycle time of a program, and what binds it.
+
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use feedwright::cycle_time::{CycleTime, cycle_time};
+use feedwright::gcode::{self, Reader};
+use feedwright::job::JobError;
+use feedwright::machine::{Machine, is_path};
+use feedwright::output::{OutputFile, OutputFiles};
+use feedwright::pipeline::pieces;
+use miette::{IntoDiagnostic, Result, miette};
+use serde_json::json;
+
+use crate::args::PlanArgs;
+use crate::console::Console;
+use crate::message::{printed, warn};
+
+pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
+    let machine = machine(args)?;
+    let machine_file = Some(Path::new(&args.machine)).filter(|path| is_path(path));
+    let tool_table = args.reader.tool_table.as_deref();
+    let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tool_table].into_iter().flatten());
+    let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
+    let settings = args.reader.settings()?;
+    let summary = gcode::check(&args.part, settings.clone()).map_err(JobError::from)?;
+    for warning in summary.warnings {
+        warn(warning.into());
+    }
+    let bar = console.bar(0);
+    let begun = Instant::now();
+    // The program was checked from end to end before: a mistake here means that the file changed, and ends it.
+    let steps = || Ok(pieces(Reader::open(&args.part, settings.clone())?.map_while(std::result::Result::ok)));
+    let found = cycle_time(&machine, false, steps, &bar)?;
+    let took_s = begun.elapsed().as_secs_f64();
+    // The bound is no part of what planning takes.
+    let found = if args.bound {
+        let bound_s = cycle_time(&machine, true, steps, &bar)?.bound_s;
+        CycleTime { bound_s, ..found }
+    } else {
+        found
+    };
+    bar.clear();
+    if let Some(mut file) = json {
+        let mut value = serde_json::to_value(&found).into_diagnostic()?;
+        value["part"] = json!(args.part.display().to_string());
+        value["machine"] = json!(machine.name);
+        value["path_tolerance_um"] = json!(machine.limits.path_tolerance_um);
+        value["blocks_per_s"] = json!(found.blocks as f64 / took_s);
+        serde_json::to_writer_pretty(&mut file, &value).into_diagnostic()?;
+        writeln!(file).into_diagnostic()?;
+        OutputFile::commit_all(vec![file], &bar)?;
+    }
+    printed(print(args, &found, took_s), ExitCode::SUCCESS)
+}
+
+/// The machine, with the tolerance of the arguments.
+fn machine(args: &PlanArgs) -> Result<Machine> {
+    let mut machine = Machine::load(&args.machine)?;
+    let Some(tolerance_um) = args.tolerance else {
+        return Ok(machine);
+    };
+    if !machine.has_axis_limits() {
+        return Err(miette!(
+            help =
+                "give its axes max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3, and [limits] path_tolerance_um",
+            "--tolerance {tolerance_um} um: {} has no limits of its axes, and is planned on the programmed path",
+            machine.name
+        ));
+    }
+    if !(LEAST_UM..=MOST_UM).contains(&tolerance_um) {
+        return Err(miette!("--tolerance is {tolerance_um} um; it must be from {LEAST_UM} to {MOST_UM} um"));
+    }
+    machine.limits.path_tolerance_um = Some(tolerance_um);
+    Ok(machine)
+}
+
+/// As in a machine file.
+const LEAST_UM: f64 = 0.01;
+const MOST_UM: f64 = 1e4;
+
+fn print(args: &PlanArgs, found: &CycleTime, took_s: f64) -> std::io::Result<()> {
+    let mut out = std::io::stdout().lock();
+    let CycleTime { time_s, cutting_s, rapid_s, waiting_s, blocks, .. } = found;
+    writeln!(out, "{:<28} {time_s:>12.3} s, planned by {}", "cycle time", found.planner)?;
+    for (name, part_s) in [("cutting", cutting_s), ("rapids", rapid_s), ("waiting", waiting_s)] {
+        writeln!(out, "  {name:<26} {part_s:>12.3} s")?;
+    }
+    for tool in found.tools.iter().filter(|_| found.tools.len() > 1) {
+        writeln!(out, "  {:<26} {:>12.3} s", format!("tool {}", tool.tool), tool.time_s)?;
+    }
+    if let Some(bound_s) = found.bound_s {
+        writeln!(
+            out,
+            "{:<28} {bound_s:>12.3} s, motion {:.4} times that",
+            "bound of motion",
+            (cutting_s + rapid_s) / bound_s
+        )?;
+    }
+    if let Some(violation) = found.largest_violation {
+        writeln!(out, "{:<28} {violation:>12.6} of its limit", "largest use of a limit")?;
+        writeln!(out, "{:<28} {:>12.3} um", "largest deviation", found.largest_deviation_um)?;
+    }
+    for binding in &found.binding {
+        writeln!(out, "  {:<26} {:>12.1} % of the motion", binding.limit, 100.0 * binding.share)?;
+    }
+    writeln!(out, "{:<28} {:>12.0} blocks/s", "planned", *blocks as f64 / took_s)?;
+    if let Some(json) = &args.json {
+        writeln!(out, "wrote {}", json.display())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,70 @@
+//! `feedwright plan`: the cycle time of a program, on machines with and without limits of their axes.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+#[path = "common/command.rs"]
+#[expect(dead_code, reason = "every test file uses a part of this")]
+mod common;
+
+use common::Folder;
+use serde_json::Value;
+
+const LIMITS: &str = "max_velocity_mm_s = 200\nmax_accel_mm_s2 = 2000\nmax_jerk_mm_s3 = 50000\n";
+
+/// A machine file with limits of all axes.
+fn folder() -> Folder {
+    let folder = Folder::new();
+    let axes = ["x", "y", "z"].map(|axis| format!("[axis.{axis}]\n{LIMITS}")).concat();
+    let head = "base = \"tnv40\"\nname = \"m\"\ndescription = \"d\"\nsource = \"s\"\n";
+    folder.file("m.toml", format!("{head}[limits]\npath_tolerance_um = 10\n{axes}"));
+    folder.file("two.ngc", "G21 F6000\nT1 M6\nG1 X10\nX10 Y10\nG4 P0.5\nT2 M6\nG1 X0 Y0\nG0 X5\nM2\n");
+    folder
+}
+
+fn planned(folder: &Folder, arguments: &[&str]) -> Value {
+    let all: Vec<&str> = ["plan", "two.ngc", "--json", "p.json"].iter().chain(arguments).copied().collect();
+    folder.run(&all).succeeded();
+    serde_json::from_slice(&folder.read("p.json")).unwrap()
+}
+
+#[test]
+fn the_cycle_time_is_that_of_its_parts() {
+    let folder = folder();
+    let found = planned(&folder, &["--machine", "m.toml", "--bound"]);
+    let number = |key: &str| found[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", found[key]));
+    assert_eq!(found["planner"], "time-optimal");
+    let parts_s = number("cutting_s") + number("rapid_s") + number("waiting_s");
+    assert!((parts_s - number("time_s")).abs() < 1e-9, "{found}");
+    assert!(number("waiting_s") >= 0.5 && number("rapid_s") > 0.0, "{found}");
+    let tools: Vec<u64> =
+        found["tools"].as_array().unwrap().iter().map(|tool| tool["tool"].as_u64().unwrap()).collect();
+    assert!(tools.ends_with(&[1, 2]), "{tools:?}");
+    let ratio = (number("cutting_s") + number("rapid_s")) / number("bound_s");
+    assert!((0.999..1.03).contains(&ratio), "{ratio}");
+    assert!(number("largest_violation") <= 1.0 + 1e-6, "{found}");
+    assert!(number("largest_deviation_um") <= 10.1, "{found}");
+    assert!(number("blocks_per_s") > 0.0);
+}
+
+#[test]
+fn a_larger_tolerance_is_faster_and_needs_limits_of_the_axes() {
+    let folder = folder();
+    let time = |um: &str| planned(&folder, &["--machine", "m.toml", "--tolerance", um])["time_s"].as_f64().unwrap();
+    assert!(time("100") < time("1"));
+    let tolerance = ["plan", "two.ngc", "--machine", "tnv40", "--tolerance", "10"];
+    folder.run(&tolerance).refused(&["--tolerance", "max_jerk_mm_s3"]);
+    folder.run(&["plan", "two.ngc", "--machine", "m.toml", "--tolerance", "-1"]).refused(&["--tolerance", "-1"]);
+    let found = planned(&folder, &["--machine", "tnv40"]);
+    assert_eq!((found["planner"].as_str(), found["bound_s"].as_f64()), (Some("trapezoid"), None));
+}
+
+#[test]
+fn a_cut_takes_the_planner_of_its_machine() {
+    let folder = folder();
+    let planned_s = planned(&folder, &["--machine", "m.toml"])["time_s"].as_f64().unwrap();
+    folder.run(&["run", "two.ngc", "--machine", "m.toml", "--json", "r.json"]).succeeded();
+    let results: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    let open_loop_s = results["runs"][0]["time_s"].as_f64().unwrap();
+    // The cut ends when the tool has settled behind the plan.
+    assert!(open_loop_s >= planned_s - 1e-3 && open_loop_s < planned_s + 1.0, "{open_loop_s} {planned_s}");
+}

@@ -1,0 +1,250 @@
+//! Newton steps of a window in time proportional to its nodes: the Riccati recursion of a linear system with a quadratic cost.
+//!
+//! minimise `sum x'Q x / 2 + u'S x + u'R u / 2 + gx'x + gu'u` with `x+ = A x + B u + d`, `x_0 = 0`. `A` and `B` have the blocks of one
+//! axis each, with the duration common to all. Source: Rao, Wright, Rawlings (1998), "Application of interior-point methods to model
+//! predictive control", section 3.
+
+/// One node and the step behind it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stage<const N: usize, const M: usize> {
+    pub(super) q: [[f64; N]; N],
+    pub(super) s: [[f64; N]; M],
+    pub(super) r: [[f64; M]; M],
+    pub(super) gx: [f64; N],
+    pub(super) gu: [f64; M],
+    /// Of each axis: offset by velocity, offset by acceleration, velocity by acceleration.
+    pub(super) a: [[f64; 3]; M],
+    /// State of each axis by its jerk.
+    pub(super) bj: [[f64; 3]; M],
+    /// State of each axis by the duration.
+    pub(super) bh: [[f64; 3]; M],
+    pub(super) d: [f64; N],
+}
+
+/// A stage with the cost of what follows it.
+type Condensed<const N: usize, const M: usize> = ([[f64; N]; N], [[f64; N]; M], [[f64; M]; M]);
+
+impl<const N: usize, const M: usize> Stage<N, M> {
+    pub(super) const ZERO: Self = Self {
+        q: [[0.0; N]; N],
+        s: [[0.0; N]; M],
+        r: [[0.0; M]; M],
+        gx: [0.0; N],
+        gu: [0.0; M],
+        a: [[0.0; 3]; M],
+        bj: [[0.0; 3]; M],
+        bh: [[0.0; 3]; M],
+        d: [0.0; N],
+    };
+
+    /// A' y.
+    #[inline]
+    fn at(&self, y: &[f64; N]) -> [f64; N] {
+        let mut out = [0.0; N];
+        for k in 0..N / 3 {
+            let a = &self.a[k];
+            let (o, v, c) = (y[3 * k], y[3 * k + 1], y[3 * k + 2]);
+            out[3 * k] = o;
+            out[3 * k + 1] = a[0] * o + v;
+            out[3 * k + 2] = a[1] * o + a[2] * v + c;
+        }
+        out
+    }
+
+    /// B' y.
+    #[inline]
+    fn bt(&self, y: &[f64; N]) -> [f64; M] {
+        let mut out = [0.0; M];
+        for k in 0..N / 3 {
+            for t in 0..3 {
+                out[k] += self.bj[k][t] * y[3 * k + t];
+                out[M - 1] += self.bh[k][t] * y[3 * k + t];
+            }
+        }
+        out
+    }
+
+    /// `Q + A'PA`, `S + B'PA`, `R + B'PB`.
+    #[inline]
+    fn condensed(&self, p: &[[f64; N]; N]) -> Condensed<N, M> {
+        let mut pa = [[0.0; N]; N];
+        let mut pb = [[0.0; M]; N];
+        for row in 0..N {
+            pa[row] = self.at(&p[row]);
+            pb[row] = self.bt(&p[row]);
+        }
+        let (mut q, mut s, mut r) = (self.q, self.s, self.r);
+        for k in 0..N / 3 {
+            let a = &self.a[k];
+            let (o, v, c) = (3 * k, 3 * k + 1, 3 * k + 2);
+            for column in 0..N {
+                q[o][column] += pa[o][column];
+                q[v][column] += a[0] * pa[o][column] + pa[v][column];
+                q[c][column] += a[1] * pa[o][column] + a[2] * pa[v][column] + pa[c][column];
+                for t in 0..3 {
+                    s[k][column] += self.bj[k][t] * pa[3 * k + t][column];
+                    s[M - 1][column] += self.bh[k][t] * pa[3 * k + t][column];
+                }
+            }
+            for column in 0..M {
+                for t in 0..3 {
+                    r[k][column] += self.bj[k][t] * pb[3 * k + t][column];
+                    r[M - 1][column] += self.bh[k][t] * pb[3 * k + t][column];
+                }
+            }
+        }
+        (q, s, r)
+    }
+}
+
+/// A Newton step, and the multipliers that it leads to.
+#[derive(Debug)]
+pub(super) struct NewtonStep<const N: usize, const M: usize> {
+    pub(super) dx: Vec<[f64; N]>,
+    pub(super) du: Vec<[f64; M]>,
+    pub(super) multipliers: Vec<[f64; N]>,
+    p: Vec<[[f64; N]; N]>,
+    pv: Vec<[f64; N]>,
+    gain: Vec<[[f64; N]; M]>,
+    k: Vec<[f64; M]>,
+}
+
+impl<const N: usize, const M: usize> NewtonStep<N, M> {
+    /// Room for so many steps.
+    pub(super) fn new(n: usize) -> Self {
+        Self {
+            dx: vec![[0.0; N]; n + 1],
+            du: vec![[0.0; M]; n],
+            multipliers: vec![[0.0; N]; n + 1],
+            p: vec![[[0.0; N]; N]; n + 1],
+            pv: vec![[0.0; N]; n + 1],
+            gain: vec![[[0.0; N]; M]; n],
+            k: vec![[0.0; M]; n],
+        }
+    }
+
+    /// From the last node to the first; `false` where the cost is not convex in what is free.
+    pub(super) fn backward(&mut self, stages: &[Stage<N, M>]) -> bool {
+        let n = stages.len() - 1;
+        self.p[n] = stages[n].q;
+        self.pv[n] = stages[n].gx;
+        for i in (0..n).rev() {
+            let stage = &stages[i];
+            let p = &self.p[i + 1];
+            let mut pd = self.pv[i + 1];
+            for row in 0..N {
+                pd[row] += (0..N).map(|column| p[row][column] * stage.d[column]).sum::<f64>();
+            }
+            let (mut q, mut y, r) = stage.condensed(p);
+            let (mut gx, mut yk) = (stage.at(&pd), stage.bt(&pd));
+            (0..N).for_each(|t| gx[t] += stage.gx[t]);
+            (0..M).for_each(|t| yk[t] += stage.gu[t]);
+            let Some(l) = cholesky(&r) else {
+                return false;
+            };
+            divide_by_lower(&l, &mut y, &mut yk);
+            for row in 0..N {
+                for t in 0..M {
+                    let f = y[t][row];
+                    (0..N).for_each(|column| q[row][column] -= f * y[t][column]);
+                    gx[row] -= f * yk[t];
+                }
+            }
+            divide_by_upper(&l, &mut y, &mut yk);
+            for row in 0..N {
+                for column in 0..row {
+                    let mean = 0.5 * (q[row][column] + q[column][row]);
+                    (q[row][column], q[column][row]) = (mean, mean);
+                }
+            }
+            (self.p[i], self.pv[i], self.gain[i], self.k[i]) = (q, gx, y, yk);
+        }
+        true
+    }
+
+    /// From the first node to the last, behind [`Self::backward`].
+    pub(super) fn forward(&mut self, stages: &[Stage<N, M>]) {
+        self.dx[0] = [0.0; N];
+        for (i, stage) in stages.iter().enumerate() {
+            let dx = self.dx[i];
+            let mut multipliers = self.pv[i];
+            for row in 0..N {
+                multipliers[row] += (0..N).map(|column| self.p[i][row][column] * dx[column]).sum::<f64>();
+            }
+            self.multipliers[i] = multipliers;
+            if i + 1 == stages.len() {
+                break;
+            }
+            let mut du = [0.0; M];
+            for row in 0..M {
+                let along: f64 = (0..N).map(|column| self.gain[i][row][column] * dx[column]).sum();
+                du[row] = -self.k[i][row] - along;
+            }
+            let mut next = stage.d;
+            for k in 0..N / 3 {
+                let a = &stage.a[k];
+                let (o, v, c) = (dx[3 * k], dx[3 * k + 1], dx[3 * k + 2]);
+                let (bj, bh) = (&stage.bj[k], &stage.bh[k]);
+                next[3 * k] += o + a[0] * v + a[1] * c + bj[0] * du[k] + bh[0] * du[M - 1];
+                next[3 * k + 1] += v + a[2] * c + bj[1] * du[k] + bh[1] * du[M - 1];
+                next[3 * k + 2] += c + bj[2] * du[k] + bh[2] * du[M - 1];
+            }
+            self.du[i] = du;
+            self.dx[i + 1] = next;
+        }
+    }
+}
+
+/// A pivot must be more than this part of its diagonal: below it is rounding.
+const LEAST_PIVOT: f64 = 1e-14;
+
+/// Lower triangle `L` with `L L' = r`; none where `r` is not positive definite.
+#[inline]
+fn cholesky<const M: usize>(r: &[[f64; M]; M]) -> Option<[[f64; M]; M]> {
+    let mut l = [[0.0; M]; M];
+    for row in 0..M {
+        for column in 0..=row {
+            let rest = (0..column).fold(r[row][column], |rest, t| rest - l[row][t] * l[column][t]);
+            if row == column {
+                let positive = rest > LEAST_PIVOT * (1.0 + r[row][row].abs());
+                if !positive {
+                    return None;
+                }
+                l[row][row] = rest.sqrt();
+            } else {
+                l[row][column] = rest / l[column][column];
+            }
+        }
+    }
+    Some(l)
+}
+
+/// `L^-1` times the rows of `y`, and times `k`.
+#[inline]
+fn divide_by_lower<const N: usize, const M: usize>(l: &[[f64; M]; M], y: &mut [[f64; N]; M], k: &mut [f64; M]) {
+    for row in 0..M {
+        for t in 0..row {
+            let f = l[row][t];
+            (0..N).for_each(|column| y[row][column] -= f * y[t][column]);
+            k[row] -= f * k[t];
+        }
+        let f = 1.0 / l[row][row];
+        (0..N).for_each(|column| y[row][column] *= f);
+        k[row] *= f;
+    }
+}
+
+/// `L'^-1` times the same.
+#[inline]
+fn divide_by_upper<const N: usize, const M: usize>(l: &[[f64; M]; M], y: &mut [[f64; N]; M], k: &mut [f64; M]) {
+    for row in (0..M).rev() {
+        for t in row + 1..M {
+            let f = l[t][row];
+            (0..N).for_each(|column| y[row][column] -= f * y[t][column]);
+            k[row] -= f * k[t];
+        }
+        let f = 1.0 / l[row][row];
+        (0..N).for_each(|column| y[row][column] *= f);
+        k[row] *= f;
+    }
+}

@@ -1,0 +1,146 @@
+//! From a mesh to a window, and from its solution to steps.
+
+use super::interior_point::{SolverSettings, solve};
+use super::mesh::MeshNode;
+use super::steps::{AxisCaps, PlannedStep};
+use super::track::Track;
+use super::window::{WindowProblem, WindowUnits, WindowUnknowns};
+use crate::feed::AxisMotion;
+use crate::vector::{norm, scale, sub};
+
+/// A shorter way of an axis within a window is none, mm: a thousandth of what any encoder resolves.
+const STILL_MM: f64 = 1e-9;
+
+/// A mesh that is to be solved.
+pub(super) struct MeshProblem<'a> {
+    pub(super) track: &'a Track,
+    pub(super) caps: &'a AxisCaps,
+    pub(super) nodes: &'a [MeshNode],
+    pub(super) step_s: f64,
+    pub(super) tolerance_mm: f64,
+    /// Factor on the feedrate of each node.
+    pub(super) feed_parts: &'a [f64],
+    pub(super) ends: bool,
+    /// Begin with a motion along the chords, so many times slower, instead of with that of the nodes.
+    pub(super) slower: Option<f64>,
+    pub(super) settings: SolverSettings,
+}
+
+impl MeshProblem<'_> {
+    /// Steps of least time; none where the method comes to none.
+    pub(super) fn solve(&self) -> Option<(Vec<PlannedStep>, u32)> {
+        let centers: Vec<[f64; 3]> = self.nodes.iter().map(|node| self.track.at(node.s_mm).position_mm).collect();
+        let first = &self.nodes.first()?.motion;
+        let moves = |k: usize| {
+            let from = centers[0][k];
+            centers.iter().any(|center| (center[k] - from).abs() > STILL_MM)
+                || (first.position_mm[k] - from).abs() > STILL_MM
+                || first.velocity_mm_s[k] != 0.0
+                || first.accel_mm_s2[k] != 0.0
+        };
+        let axes: Vec<usize> = (0..3).filter(|&k| moves(k)).collect();
+        match axes[..] {
+            [k] => self.of_axes::<1, 3, 2>([k], &centers),
+            [k, l] => self.of_axes::<2, 6, 3>([k, l], &centers),
+            [k, l, m] => self.of_axes::<3, 9, 4>([k, l, m], &centers),
+            _ => None,
+        }
+    }
+
+    fn of_axes<const D: usize, const N: usize, const M: usize>(
+        &self,
+        axes: [usize; D],
+        centers: &[[f64; 3]],
+    ) -> Option<(Vec<PlannedStep>, u32)> {
+        let units = WindowUnits {
+            step_s: self.step_s,
+            offset_mm: self.tolerance_mm,
+            velocity_mm_s: axes.map(|k| self.caps.axes[k].velocity_mm_s),
+            accel_mm_s2: axes.map(|k| self.caps.axes[k].accel_mm_s2),
+            jerk_mm_s3: axes.map(|k| self.caps.axes[k].jerk_mm_s3),
+        };
+        let state = |i: usize| {
+            let mut x = [0.0; N];
+            let motion = self.guessed(i, centers);
+            for (d, &k) in axes.iter().enumerate() {
+                x[3 * d] = (motion.position_mm[k] - centers[i][k]) / units.offset_mm;
+                x[3 * d + 1] = motion.velocity_mm_s[k] / units.velocity_mm_s[d];
+                x[3 * d + 2] = motion.accel_mm_s2[k] / units.accel_mm_s2[d];
+            }
+            x
+        };
+        let n = self.nodes.len() - 1;
+        let x: Vec<[f64; N]> = (0..=n).map(state).collect();
+        let u = (0..n).map(|i| {
+            let h_s = self.nodes[i + 1].duration_s;
+            let mut u = [0.0; M];
+            u[D] = h_s / units.step_s * self.slower.unwrap_or(1.0);
+            for (d, &k) in axes.iter().enumerate() {
+                let change = self.guessed(i + 1, centers).accel_mm_s2[k] - self.guessed(i, centers).accel_mm_s2[k];
+                u[d] = change / h_s / units.jerk_mm_s3[d];
+            }
+            u
+        });
+        let u = u.collect();
+        let problem = WindowProblem {
+            units,
+            way: (0..n)
+                .map(|i| std::array::from_fn(|d| (centers[i + 1][axes[d]] - centers[i][axes[d]]) / units.offset_mm))
+                .collect(),
+            radius: self.nodes.iter().map(|node| node.radius_mm / units.offset_mm).collect(),
+            feed_mm_s: (0..=n).map(|i| self.feed_mm_s(i)).collect(),
+            first: x[0],
+            exact_end: self.ends,
+        };
+        let (mut solution, iterations) = solve(&problem, WindowUnknowns { x, u }, self.settings)?;
+        problem.roll_out(&mut solution);
+        Some((self.steps_of(&problem, &solution, axes, centers), iterations))
+    }
+
+    /// What the axes do at a node by the first guess.
+    fn guessed(&self, i: usize, centers: &[[f64; 3]]) -> AxisMotion {
+        let node = &self.nodes[i];
+        let Some(slower) = self.slower.filter(|_| i > 0) else {
+            return node.motion;
+        };
+        let way = sub(centers[(i + 1).min(self.nodes.len() - 1)], centers[i - 1]);
+        let speed_mm_s = (node.s_mm - self.nodes[i - 1].s_mm) / node.duration_s / slower;
+        let velocity_mm_s = scale(speed_mm_s / norm(way).max(STILL_MM), way);
+        AxisMotion { position_mm: centers[i], velocity_mm_s, ..AxisMotion::REST }
+    }
+
+    /// The smallest feedrate of both steps at a node.
+    fn feed_mm_s(&self, i: usize) -> f64 {
+        let lo_mm = self.nodes[i.saturating_sub(1)].s_mm;
+        let hi_mm = self.nodes[(i + 1).min(self.nodes.len() - 1)].s_mm;
+        let feeds = self.track.between(lo_mm, hi_mm).map(|piece| piece.feed_mm_s);
+        feeds.fold(f64::INFINITY, f64::min) * self.feed_parts[i]
+    }
+
+    fn steps_of<const D: usize, const N: usize, const M: usize>(
+        &self,
+        problem: &WindowProblem<D, N>,
+        solution: &WindowUnknowns<N, M>,
+        axes: [usize; D],
+        centers: &[[f64; 3]],
+    ) -> Vec<PlannedStep> {
+        let units = &problem.units;
+        let mut steps = Vec::with_capacity(solution.u.len());
+        for (i, u) in solution.u.iter().enumerate() {
+            let mut motion = AxisMotion { position_mm: centers[i], ..AxisMotion::REST };
+            let x = &solution.x[i];
+            for (d, &k) in axes.iter().enumerate() {
+                motion.position_mm[k] += x[3 * d] * units.offset_mm;
+                motion.velocity_mm_s[k] = x[3 * d + 1] * units.velocity_mm_s[d];
+                motion.accel_mm_s2[k] = x[3 * d + 2] * units.accel_mm_s2[d];
+                motion.jerk_mm_s3[k] = u[d] * units.jerk_mm_s3[d];
+            }
+            if i == 0 {
+                motion = AxisMotion { jerk_mm_s3: motion.jerk_mm_s3, ..self.nodes[0].motion };
+            }
+            let (from_mm, to_mm) = (self.nodes[i].s_mm, self.nodes[i + 1].s_mm);
+            steps.push(PlannedStep { from_mm, to_mm, duration_s: u[D] * units.step_s, motion });
+        }
+        steps
+    }
+}

@@ -1,0 +1,81 @@
+//! Steps of constant jerk per axis, beside the path.
+
+use crate::constraints::AxisLimits;
+use crate::feed::AxisMotion;
+use crate::vector::dot;
+
+/// Limits of the three axes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct AxisCaps {
+    pub(super) axes: [AxisLimits; 3],
+}
+
+impl AxisCaps {
+    /// A limit along a direction: that of the axis that reaches its own first.
+    pub(super) fn along(&self, direction: [f64; 3], of: impl Fn(&AxisLimits) -> f64) -> f64 {
+        let parts = self.axes.iter().zip(direction).filter(|(_, part)| part.abs() > 1e-12);
+        parts.map(|(limits, part)| of(limits) / part.abs()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How long the slowest axis takes to stop from a speed: `v / a + a / j`.
+    pub(super) fn stop_s(&self, speed_mm_s: f64) -> f64 {
+        let stop_s = |limits: &AxisLimits| {
+            let AxisLimits { velocity_mm_s, accel_mm_s2, jerk_mm_s3 } = *limits;
+            let speed_mm_s = velocity_mm_s.min(speed_mm_s);
+            if speed_mm_s * jerk_mm_s3 < accel_mm_s2 * accel_mm_s2 {
+                2.0 * (speed_mm_s / jerk_mm_s3).sqrt()
+            } else {
+                speed_mm_s / accel_mm_s2 + accel_mm_s2 / jerk_mm_s3
+            }
+        };
+        self.axes.iter().map(stop_s).fold(0.0, f64::max)
+    }
+}
+
+/// A step from one place of the programmed path to another.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PlannedStep {
+    pub(super) from_mm: f64,
+    pub(super) to_mm: f64,
+    pub(super) duration_s: f64,
+    /// Where the axes are at its beginning, and what they do.
+    pub(super) motion: AxisMotion,
+}
+
+/// Place on the programmed path over the time of a step: `s, s', s'' / 2, s''' / 6`.
+pub(super) type PlacePowers = [f64; 4];
+
+/// The place of the programmed path that stands for each moment of a step: with the speed of the motion along the path at both ends, or,
+/// where that would run backwards, evenly.
+pub(super) fn place_powers(step: &PlannedStep, from: [f64; 3], to: [f64; 3]) -> PlacePowers {
+    let h = step.duration_s;
+    let way_mm = step.to_mm - step.from_mm;
+    let mean = way_mm / h;
+    let first = dot(step.motion.velocity_mm_s, from);
+    let last = dot(step.motion.after(h).velocity_mm_s, to);
+    // Fritsch and Carlson (1980): no more than three times the mean at either end is monotone.
+    if (0.0..=3.0 * mean).contains(&first) && (0.0..=3.0 * mean).contains(&last) {
+        [step.from_mm, first, (3.0 * mean - 2.0 * first - last) / h, (first + last - 2.0 * mean) / (h * h)]
+    } else {
+        [step.from_mm, mean, 0.0, 0.0]
+    }
+}
+
+/// The place after a time.
+pub(super) fn place_after(powers: &PlacePowers, t: f64) -> f64 {
+    powers[0] + t * (powers[1] + t * (powers[2] + t * powers[3]))
+}
+
+/// When a place is reached, by halving.
+pub(super) fn time_of_place(powers: &PlacePowers, place_mm: f64, duration_s: f64) -> f64 {
+    let (mut lo, mut hi) = (0.0, duration_s);
+    for _ in 0..52 {
+        let middle = 0.5 * (lo + hi);
+        if place_after(powers, middle) < place_mm {
+            lo = middle;
+        } else {
+            hi = middle;
+        }
+    }
+    hi
+}

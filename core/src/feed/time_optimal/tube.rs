@@ -1,0 +1,153 @@
+//! What the nodes do not bound: between them, the distance of the motion from the path, of the path from the motion, and the feedrate.
+
+use super::mesh::{MeshNode, NEAR_START};
+use super::steps::PlannedStep;
+use super::track::Track;
+use crate::vector::{add_scaled, distance, dot, norm, sub};
+
+/// Moments within a step at which it is looked at.
+const MOMENTS: u32 = 6;
+
+/// Joints of a step that are looked at closely: those that stand out most from the chord between its nodes.
+const JOINTS: usize = 2;
+
+/// What the tolerance may be exceeded by, mm: a hundredth of a micrometre.
+const OVER_MM: f64 = 1e-5;
+
+/// A radius is made no smaller than this part at once.
+const LEAST_RADIUS: f64 = 0.3;
+
+/// Nodes near to the start of a window, whose state is given, can be moved by no more than a little.
+const SLOWLY: f64 = 0.97;
+
+/// A step that exceeds something.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Excess {
+    pub(super) step: usize,
+    /// By how much it leaves the tube, mm, 0 where it does not.
+    pub(super) tube_mm: f64,
+    /// The part of the feedrate that would keep it, 1 where it does.
+    pub(super) feed_part: f64,
+}
+
+/// All steps that exceed something.
+pub(super) fn excesses(track: &Track, steps: &[PlannedStep]) -> Vec<Excess> {
+    let mut found = Vec::new();
+    for (i, step) in steps.iter().enumerate() {
+        let tube_mm = away_mm(track, steps, i).max(left_out_mm(track, steps, i));
+        let feed_mm_s =
+            track.between(step.from_mm, step.to_mm).map(|piece| piece.feed_mm_s).fold(f64::INFINITY, f64::min);
+        let part = (feed_mm_s / fastest_mm_s(step)).min(1.0);
+        let feed_part = part;
+        if tube_mm > OVER_MM || feed_part < 1.0 {
+            found.push(Excess { step: i, tube_mm: tube_mm.max(0.0), feed_part });
+        }
+    }
+    found
+}
+
+/// The largest speed along the path within a step: the square of a quadratic has its maximum at an end or within; looked at closely.
+fn fastest_mm_s(step: &PlannedStep) -> f64 {
+    let at = |m: u32| norm(step.motion.after(step.duration_s * f64::from(m) / f64::from(4 * MOMENTS)).velocity_mm_s);
+    (0..=4 * MOMENTS).map(at).fold(0.0, f64::max)
+}
+
+/// How far the motion of a step leaves the tube, mm.
+fn away_mm(track: &Track, steps: &[PlannedStep], i: usize) -> f64 {
+    let step = &steps[i];
+    let tolerance = |step: &PlannedStep| {
+        let pieces = track.between(step.from_mm, step.to_mm);
+        pieces.map(|piece| piece.tolerance_mm).fold(f64::INFINITY, f64::min)
+    };
+    let tolerance_mm = tolerance(step);
+    // The nearest point may lie a little before or behind.
+    let margin_mm = 2.0 * tolerance_mm + 0.5 * (step.to_mm - step.from_mm);
+    let mut most = f64::NEG_INFINITY;
+    for m in 0..=MOMENTS {
+        let motion = step.motion.after(step.duration_s * f64::from(m) / f64::from(MOMENTS));
+        let away = track.distance(motion.position_mm, step.from_mm - margin_mm, step.to_mm + margin_mm);
+        most = most.max(away - tolerance_mm);
+    }
+    most
+}
+
+/// How far the path between the nodes of a step stays away from the motion, mm, beyond the tolerance.
+fn left_out_mm(track: &Track, steps: &[PlannedStep], i: usize) -> f64 {
+    let step = &steps[i];
+    let (from, to) = (track.at(step.from_mm).position_mm, track.at(step.to_mm).position_mm);
+    let chord = sub(to, from);
+    let square = dot(chord, chord).max(1e-18);
+    let mut furthest = [(0.0_f64, [0.0; 3], 0.0); JOINTS];
+    for piece in track.between(step.from_mm, step.to_mm) {
+        if piece.s_mm <= step.from_mm {
+            continue;
+        }
+        let joint = piece.curve.at(0.0).position_mm;
+        let along = (dot(sub(joint, from), chord) / square).clamp(0.0, 1.0);
+        let away = distance(add_scaled(from, along, chord), joint);
+        if away > furthest[JOINTS - 1].0 {
+            furthest[JOINTS - 1] = (away, joint, piece.tolerance_mm);
+            furthest.sort_by(|a, b| b.0.total_cmp(&a.0));
+        }
+    }
+    let near = &steps[i.saturating_sub(1)..(i + 2).min(steps.len())];
+    let left_out = furthest.iter().filter(|joint| joint.0 > 0.0).map(|&(_, joint, tolerance_mm)| {
+        near.iter().map(|step| motion_distance_mm(step, joint)).fold(f64::INFINITY, f64::min) - tolerance_mm
+    });
+    left_out.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Distance of a point from the motion of a step, by chords: between them a motion of 2 ms bends by nanometres.
+fn motion_distance_mm(step: &PlannedStep, point_mm: [f64; 3]) -> f64 {
+    let at = |m: u32| step.motion.after(step.duration_s * f64::from(m) / f64::from(2 * MOMENTS)).position_mm;
+    let mut least = f64::INFINITY;
+    for m in 0..2 * MOMENTS {
+        let (from, to) = (at(m), at(m + 1));
+        let chord = sub(to, from);
+        let along = (dot(sub(point_mm, from), chord) / dot(chord, chord).max(1e-24)).clamp(0.0, 1.0);
+        least = least.min(distance(add_scaled(from, along, chord), point_mm));
+    }
+    least
+}
+
+/// The same mesh with what is exceeded tightened: smaller offsets, or a node more where a step is still long, and smaller feedrates.
+pub(super) fn tightened(
+    nodes: &[MeshNode],
+    feed_parts: &[f64],
+    steps: &[PlannedStep],
+    excesses: &[Excess],
+    step_s: f64,
+    track: &Track,
+) -> (Vec<MeshNode>, Vec<f64>) {
+    let mut next: Vec<MeshNode> = nodes.to_vec();
+    let mut parts = feed_parts.to_vec();
+    // What was found is the better guess.
+    for (node, step) in next.iter_mut().skip(1).zip(steps) {
+        node.duration_s = step.duration_s;
+        node.motion = step.motion.after(step.duration_s);
+    }
+    for excess in excesses {
+        for i in [excess.step, excess.step + 1] {
+            let node = &mut next[i];
+            let offset_mm = distance(node.motion.position_mm, track.at(node.s_mm).position_mm);
+            let least = if i < NEAR_START { SLOWLY * offset_mm } else { LEAST_RADIUS * node.radius_mm };
+            node.radius_mm = (node.radius_mm - 1.2 * excess.tube_mm).max(least.min(node.radius_mm));
+            parts[i] *= 1.0 - 1.3 * (1.0 - excess.feed_part);
+        }
+    }
+    for excess in excesses.iter().rev().filter(|excess| excess.tube_mm > 0.0) {
+        let step = &steps[excess.step];
+        if step.duration_s > 0.3 * step_s && step.to_mm - step.from_mm > 1e-6 {
+            let s_mm = 0.5 * (step.from_mm + step.to_mm);
+            let half_s = 0.5 * step.duration_s;
+            let motion = step.motion.after(half_s);
+            let offset_mm = distance(motion.position_mm, track.at(s_mm).position_mm);
+            let least = if excess.step < NEAR_START { offset_mm } else { LEAST_RADIUS * offset_mm };
+            let radius_mm = (0.9 * track.piece(s_mm).tolerance_mm - excess.tube_mm).max(least);
+            next[excess.step + 1].duration_s = half_s;
+            next.insert(excess.step + 1, MeshNode { s_mm, duration_s: half_s, motion, radius_mm });
+            parts.insert(excess.step + 1, parts[excess.step].min(parts[excess.step + 1]));
+        }
+    }
+    (next, parts)
+}
