@@ -65,9 +65,9 @@ fn write_axis(out: &mut impl Write, identified: &LogIdentified, i: usize, axis: 
     writeln!(out, "<section><h2>Axis {name}</h2>\n<p><b>{}</b></p>", escaped(&sentence(&identified.verdict(i))))?;
     writeln!(
         out,
-        "<figure>{}<figcaption><b>Following error of axis {name}.</b> {}</figcaption></figure>",
-        following(identified, i, axis).to_svg(),
-        "Measured, and as free runs over the scored samples have it; below, what they leave. Gaps are samples that were fitted."
+        "<figure>{}<figcaption><b>Following error of axis {name}.</b> Measured, and as free runs over the scored samples have it; below, what they leave. \
+         Gaps are samples that were fitted.</figcaption></figure>",
+        following(identified, i, axis).to_svg()
     )?;
     writeln!(
         out,
