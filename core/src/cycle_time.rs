@@ -1,7 +1,7 @@
 //! Cycle time of a program on a machine: how long its plan takes, with which tool and in which kind of motion, what binds it, and
 //! whether it keeps what it has to.
 //!
-//! The plan is looked at as it comes out, every [`SAMPLE_S`]; memory does not grow with the program.
+//! The plan is looked at as it comes out, every 0.1 ms; memory does not grow with the program.
 
 use std::collections::VecDeque;
 

@@ -1,7 +1,5 @@
 //! What an identification writes: JSON with what it promises, a machine file that reads back, a page that refers to nothing outside.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 mod common {
     pub(crate) mod identification_log;
 }

@@ -1,12 +1,12 @@
 //! Least time within the tolerance of the programmed path: speed and path are chosen together, under the velocity, acceleration and
 //! jerk of each axis.
 //!
-//! The path from one rest to the next is planned in windows. A window has [`mesh`] nodes on the programmed path, a few milliseconds of
-//! motion apart; its least time ([`interior_point`]) ends at rest. The first part of a window is committed, the next window begins
+//! The path from one rest to the next is planned in windows. A window has `mesh` nodes on the programmed path, a few milliseconds of
+//! motion apart; its least time (`interior_point`) ends at rest. The first part of a window is committed, the next window begins
 //! there. What of a window was not committed is kept: where the next window comes to no solution, or its solution leaves the tube, the motion goes
 //! on along it, and so at worst comes to rest on the path; from there it goes on straight from rest to rest.
 //!
-//! Look-ahead: the time in which the slowest axis stops, and [`BEYOND_S`].
+//! Look-ahead: the time in which the slowest axis stops, and 0.18 s.
 //!
 //! | File | What |
 //! |---|---|

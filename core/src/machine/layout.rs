@@ -40,12 +40,13 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
     }
     let period = period(root.table("period", &mut faults), &mut faults);
     let mut plc_events = Vec::new();
+    let [name, description, source] = ["name", "description", "source"].map(|key| root.text(key, &mut faults));
     let limits = root.table("limits", &mut faults);
     let in_limits = limits.header();
     let machine = Machine {
-        name: root.text("name", &mut faults),
-        description: root.text("description", &mut faults),
-        source: root.text("source", &mut faults),
+        name,
+        description,
+        source,
         period,
         limits: read_all(keys::LIMITS, limits, &mut faults),
         plc: root
@@ -66,24 +67,16 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
     if faults.is_empty() { Ok(machine) } else { Err(faults) }
 }
 
-/// Limits of axes and the tolerance of the path belong together: no planner keeps one without the others.
+/// A tolerance of the path asks for a planner that needs the limits of each axis; these alone stand there for what else uses them.
 fn tolerance_with_axes(machine: &Machine, at: Range<usize>, faults: &mut Vec<Fault>) {
-    let limited = machine.axes.iter().any(|axis| axis.max_velocity_mm_s.is_some());
-    let label = "one without the other";
-    match (limited, machine.limits.path_tolerance_um) {
-        (true, None) => faults.push(Fault {
+    let limited = machine.axes.iter().all(|axis| axis.max_velocity_mm_s.is_some());
+    if let (false, Some(tolerance_um)) = (limited, machine.limits.path_tolerance_um) {
+        faults.push(Fault {
             at,
-            label,
-            message: "the axes have limits of their own, and [limits] has no path_tolerance_um".to_owned(),
-            hint: Some("path_tolerance_um = 10 lets the planned path leave the programmed one by 10 um".to_owned()),
-        }),
-        (false, Some(tolerance_um)) => faults.push(Fault {
-            at,
-            label,
+            label: "not without limits of the axes",
             message: format!("path_tolerance_um is {tolerance_um} um, and the axes have no limits of their own"),
             hint: Some(format!("give each axis {}, or leave path_tolerance_um out", AXIS_LIMITS.join(", "))),
-        }),
-        _ => {}
+        });
     }
 }
 

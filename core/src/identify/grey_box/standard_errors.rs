@@ -65,8 +65,9 @@ impl StandardErrors {
 /// The 95 % quantile of Student's distribution by Cornish and Fisher's expansion.
 fn student(freedom: f64) -> f64 {
     let (z, f) = (1.644_853_626_951_472_f64, freedom.max(2.0));
-    let (z3, z5) = (z.powi(3), z.powi(5));
-    z + (z3 + z) / (4.0 * f) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * f * f)
+    let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
+    let third = (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * f.powi(3));
+    z + (z3 + z) / (4.0 * f) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * f * f) + third
 }
 
 #[cfg(test)]
