@@ -121,13 +121,13 @@ impl<const N: usize> Guard<N> {
         };
         let good = controller.prediction_error_mm() < GOOD_SHARE * self.wrong_mm();
         let over = fade::is_over(window.offset_mm, window.offset_mm_s);
-        let command = match self.engagement.go_on(bad, good, over, window.feed_period_s) {
-            State::Engaged => self.hold(window, wanted, controller.acts_at_once()),
-            State::Shadow => self.hold(window, Command::AS_PLANNED, controller.acts_at_once()),
-            State::Fading => {
-                self.hold(window, self.faded(window, controller.acts_at_once()), controller.acts_at_once())
-            }
+        let at_once = controller.acts_at_once();
+        let asked = match self.engagement.go_on(bad, good, over, window.feed_period_s) {
+            State::Engaged => wanted,
+            State::Shadow => Command::AS_PLANNED,
+            State::Fading => self.faded(window, at_once),
         };
+        let command = self.hold(window, asked, at_once);
         self.rate = command.rate;
         command
     }

@@ -36,8 +36,8 @@ pub(super) struct AxisModel {
     statistics: AxisStatistics,
     linear: LinearAxis,
     gains: GainTable,
-    /// Variance of the measurement as given, rad^2.
-    measured_rad2: f64,
+    /// Innovations that are smaller are not learnt from, rad.
+    least_rad: f64,
     /// Mechanics periods from a measurement until it is there, and from a reference until it acts.
     late: [u32; 2],
 }
@@ -82,7 +82,7 @@ impl AxisModel {
             } else {
                 GainTable::constant(gains(measured_rad2))
             },
-            measured_rad2,
+            least_rad: LEAST_SHARE * libm::sqrt(measured_rad2),
             late: [delays.measurement_s, delays.drive_s].map(late),
         }
     }
@@ -128,7 +128,7 @@ impl AxisModel {
         let angle_rad = estimate.axis.angle_rad;
         let shown_rad = angle_rad + interpolation_rad * sin(signal_per_rad * angle_rad + interpolation_phase_rad);
         let missed_rad = measured_rad - shown_rad;
-        whiteness.take_in(measured_rad, missed_rad, LEAST_SHARE * libm::sqrt(self.measured_rad2));
+        whiteness.take_in(measured_rad, missed_rad, self.least_rad);
         let [x, w, i, y, acting @ ..] = whiteness.gains(&self.gains).map(|gain| gain * missed_rad);
         estimate.axis.angle_rad += x;
         estimate.axis.speed_rad_s += w;
