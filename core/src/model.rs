@@ -7,6 +7,7 @@
 //! It finds what was changed by hand or lost on the way; it is no signature.
 
 pub mod date;
+pub mod exact;
 pub mod keys;
 mod layout;
 

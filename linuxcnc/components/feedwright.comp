@@ -1,0 +1,202 @@
+component feedwright "Contouring correction between the position command and the drives";
+
+description """
+Corrects the position commands of two or three linear joints so that the tool is nearer to the commanded path. It stands between
+joint.N.motor-pos-cmd and the drives, and knows of each axis what a model file has: its loops, inertia, friction and noise.
+
+The command is delayed by \\fBdelay\\fR, so that the correction sees ahead, and the drive gets the delayed command and an offset. What goes
+back to joint.N.motor-pos-fb is the command now and the following error of the drive, so that FERROR and MIN_FERROR keep their meaning.
+
+There is no delay and no correction while the machine jogs, homes or probes, while a spindle is followed (G33, G33.1, G76), and
+wherever \\fBdirect\\fR is set. The delay is taken up and given up where the command rests.
+
+While \\fBpowered\\fR is off, drives and LinuxCNC get the actual position.
+
+A correction that fails is faded out, and comes back when its predictions have held for a while: the machine then cuts as without it.
+\\fBenable\\fR fades it in and out within 0.3 s, in motion as well.
+
+.B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
+
+\\fBmodel\\fR is written by 'feedwright block'. A file that is missing, damaged, or for another machine raises \\fBfault\\fR; commands are
+then passed on as they are. \\fBrecord\\fR keeps the inputs and outputs of the first seconds in memory and writes them to
+\\fBrecording\\fR when the component is unloaded; 'feedwright-replay' computes them again.""";
+
+examples """
+.nf
+loadrt feedwright model=/home/me/linuxcnc/mill.fwmodel
+addf motion-command-handler servo-thread
+addf motion-controller      servo-thread
+addf feedwright             servo-thread
+net x-cmd joint.0.motor-pos-cmd => feedwright.command-0
+net x-drive feedwright.drive-0  => drive.x.position-cmd
+net x-actual drive.x.position-fb => feedwright.actual-0
+net x-fb feedwright.feedback-0  => joint.0.motor-pos-fb
+.fi
+
+and so on for each joint; feedwright.hal has all of it.""";
+
+see_also """\\fBfeedwright_plant\\fR(9), \\fBmotion\\fR(9)""";
+
+pin in float command-#[3] "Position command, from joint.N.motor-pos-cmd, mm";
+pin in float actual-#[3] "Actual position, from the drive or encoder, mm";
+pin out float drive-#[3] "Position command of the drive, mm";
+pin out float feedback-#[3] "To joint.N.motor-pos-fb, mm";
+pin out float correction-#[3] "Offset of the drive's command from the path, mm";
+
+pin in bit powered "Whether the amplifiers are on, from joint.0.amp-enable-out";
+pin in bit enable "Whether the correction is wanted";
+pin in bit coordinated = 1 "Whether a program or MDI moves the machine, from motion.coord-mode; otherwise there is no delay";
+pin in s32 motion-type "From motion.motion-type: a rapid is not corrected for harm, a probing motion is not delayed";
+pin in bit spindle-index "From spindle.0.index-enable: the motion behind it is not delayed";
+pin in bit direct "No delay and no correction, from outside";
+
+pin in float delay = 0.010 "Delay of the command, 0.008 to 0.015 s; taken over where the command rests";
+pin in float deviation-limit = 0.5 "Largest distance of the drive's command from the path, mm";
+pin in float speed-limit = 400 "Highest speed of the machine, mm/s: actual positions that leap by more are no positions";
+pin in float correction-acceleration = 400 "Acceleration with which an offset fades, mm/s^2; 0 is without limit";
+
+pin out float contour-error "Distance of the actual position from the path, mm";
+pin out float contour-error-without "What it would be without the correction, by the model, mm";
+pin out bit saturated "A limit holds the correction";
+pin out u32 state "0 amplifiers off, 1 without delay, 2 delayed, without correction, 3 the correction fades, 4 it is in the loop";
+pin out bit fault "There is no correction, for the reason in \\fBcause\\fR; it clears itself";
+pin out u32 cause """Why there was no correction last: 1 to 7 model file, 8 servo period, 9 the correction was not a number, 10 actual position
+lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside""";
+pin out u32 faults "How often there was a fault";
+pin out u32 delay-periods "Servo periods of delay now";
+pin out bit heartbeat "Changes in each servo period";
+pin out s32 tick-time "Time of the last servo period in this component, ns";
+param rw s32 tick-max "Longest of them, ns";
+
+modparam dummy model """Model file""";
+modparam dummy joints """Number of joints, 2 or 3 (default: 3)""";
+modparam dummy record """Seconds of which inputs and outputs are kept (default: 0)""";
+modparam dummy recording """File that they are written to when the component is unloaded""";
+
+option singleton yes;
+option extra_setup yes;
+option extra_cleanup yes;
+option no_convenience_defines yes;
+
+function _ fp;
+
+license "MIT OR Apache-2.0";
+author "The feedwright contributors";
+;;
+
+#include "load.h"
+#include "record.h"
+
+static char *model = "";
+RTAPI_MP_STRING(model, "model file");
+static int joints = 3;
+RTAPI_MP_INT(joints, "number of joints, 2 or 3");
+static int record = 0;
+RTAPI_MP_INT(record, "seconds of which inputs and outputs are kept");
+static char *recording = "";
+RTAPI_MP_STRING(recording, "file that they are written to");
+
+static feedwright_servo *servo;
+static uint8_t model_bytes[FEEDWRIGHT_MODEL_BYTES];
+static size_t model_length;
+static bool begun, failed;
+
+static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extra_arg)
+{
+    size_t bytes = feedwright_servo_bytes();
+    uint32_t fault = 0;
+    (void)__comp_inst;
+    (void)extra_arg;
+    if (joints != 2 && joints != 3) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: joints=%d: 2 or 3 can be corrected\n", prefix, joints);
+        return -EINVAL;
+    }
+    if (feedwright_servo_layout() != (sizeof(feedwright_inputs) << 16 | sizeof(feedwright_outputs))) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: the library is of another version than the component\n", prefix);
+        return -EINVAL;
+    }
+    servo = library_memory(bytes);
+    if (!servo || !record_start(record)) {
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: no memory\n", prefix);
+        return -ENOMEM;
+    }
+    model_length = read_model(prefix, model, model_bytes);
+    if (!CONTAINED(fault = feedwright_servo_new(servo, bytes, (uint32_t)joints, model_bytes, model_length)))
+        fault = FEEDWRIGHT_FAILED;
+    failed = fault == FEEDWRIGHT_FAILED;
+    if (fault)
+        rtapi_print_msg(RTAPI_MSG_ERR, "%s: %s: %s; commands are passed on as they are\n", prefix, model, feedwright_fault(fault));
+    rtapi_print_msg(RTAPI_MSG_INFO, "%s: state of %lu bytes, model of %lu\n", prefix, (unsigned long)bytes, (unsigned long)model_length);
+    return 0;
+}
+
+static void extra_cleanup(void)
+{
+    record_write(recording, joints, model_bytes, model_length);
+    free(servo);
+}
+
+/* The period of the thread is known in its first servo period. */
+static void begin(long period)
+{
+    uint32_t fault = 0;
+    begun = true;
+    if (!failed && !CONTAINED(fault = feedwright_servo_runs_at(servo, period * 1e-9)))
+        failed = true;
+    record_period(period);
+}
+
+static uint32_t flags(const struct __comp_state *c)
+{
+    bool direct = *c->direct || !*c->coordinated || *c->motion_type == 5;
+    return (*c->powered ? FEEDWRIGHT_POWERED : 0) | (*c->enable ? FEEDWRIGHT_ENABLED : 0) | (direct ? FEEDWRIGHT_DIRECT : 0) |
+           (*c->spindle_index ? FEEDWRIGHT_SPINDLE : 0) | (*c->motion_type != 1 ? FEEDWRIGHT_CUTTING : 0);
+}
+
+#define FUNCTION(name) static void name(struct __comp_state *__comp_inst, long period)
+FUNCTION(_)
+{
+    struct __comp_state *c = __comp_inst;
+    long long start = rtapi_get_time();
+    feedwright_inputs in = {
+        .delay_s = *c->delay,
+        .deviation_mm = *c->deviation_limit,
+        .speed_mm_s = *c->speed_limit,
+        .correction_mm_s2 = *c->correction_acceleration,
+        .flags = flags(c),
+    };
+    feedwright_outputs out = { .fault = FEEDWRIGHT_FAILED, .state = 1 };
+    uint32_t last_cause = *c->fault ? *c->cause : 0;
+    int i;
+    for (i = 0; i < 3; i++) {
+        bool there = i < joints;
+        in.command_mm[i] = there ? *c->command[i] : 0;
+        in.actual_mm[i] = there ? *c->actual[i] : 0;
+        out.drive_mm[i] = *c->powered ? in.command_mm[i] : in.actual_mm[i];
+        out.feedback_mm[i] = in.actual_mm[i];
+    }
+    if (!begun)
+        begin(period);
+    if (!failed && !CONTAINED(feedwright_servo_step(servo, &in, &out)))
+        failed = true;
+    for (i = 0; i < joints; i++) {
+        *c->drive[i] = out.drive_mm[i];
+        *c->feedback[i] = out.feedback_mm[i];
+        *c->correction[i] = out.correction_mm[i];
+    }
+    *c->contour_error = out.contour_error_mm;
+    *c->contour_error_without = out.without_mm;
+    *c->saturated = out.saturated != 0;
+    *c->state = out.state;
+    *c->fault = out.fault != 0;
+    if (out.fault && out.fault != last_cause)
+        *c->faults += 1;
+    if (out.fault)
+        *c->cause = out.fault;
+    *c->delay_periods = out.delay_periods;
+    *c->heartbeat = !*c->heartbeat;
+    record_period_of(&in, &out);
+    *c->tick_time = (hal_s32_t)(rtapi_get_time() - start);
+    if (*c->tick_time > c->tick_max)
+        c->tick_max = *c->tick_time;
+}

@@ -1,0 +1,47 @@
+//! Values of two or three axes in memory of the caller.
+
+use core::ptr::NonNull;
+
+/// A value for two axes, or for three.
+pub(crate) enum TwoOrThree<A, B> {
+    /// For two.
+    Two(A),
+    /// For three.
+    Three(B),
+}
+
+/// Puts a value into memory of the caller; false where that is too small, not aligned or none.
+///
+/// # Safety
+/// `memory` has `bytes` bytes, or is null, and nobody else uses it.
+pub(crate) unsafe fn put<T>(memory: *mut T, bytes: usize, make: impl FnOnce() -> T) -> bool {
+    let Some(memory) = NonNull::new(memory) else { return false };
+    if bytes < size_of::<T>() || !memory.is_aligned() {
+        return false;
+    }
+    // SAFETY: it is aligned and large enough.
+    unsafe { memory.write(make()) };
+    true
+}
+
+/// The bytes of a model.
+///
+/// # Safety
+/// There are so many bytes, or `bytes` is null.
+pub(crate) unsafe fn model<'a>(bytes: *const u8, length: usize) -> &'a [u8] {
+    if bytes.is_null() {
+        return &[];
+    }
+    // SAFETY: as the caller promises.
+    unsafe { core::slice::from_raw_parts(bytes, length) }
+}
+
+/// The first N of three numbers.
+pub(crate) fn first<const N: usize>(three: [f64; 3]) -> [f64; N] {
+    core::array::from_fn(|i| three.get(i).copied().unwrap_or(0.0))
+}
+
+/// N numbers as three, zero beyond.
+pub(crate) fn three<const N: usize>(numbers: [f64; N]) -> [f64; 3] {
+    core::array::from_fn(|i| numbers.get(i).copied().unwrap_or(0.0))
+}

@@ -1,0 +1,71 @@
+//! The simulated machine.
+
+use feedwright_servo::machine::axes_of;
+use feedwright_servo::plant::SimulatedMachine;
+
+use crate::memory::{TwoOrThree, first, model, put, three};
+
+/// `feedwright_plant`.
+pub(crate) struct CPlant(TwoOrThree<SimulatedMachine<2>, SimulatedMachine<3>>);
+
+/// Bytes that a machine needs.
+#[unsafe(no_mangle)]
+pub(crate) extern "C" fn feedwright_plant_bytes() -> usize {
+    size_of::<CPlant>()
+}
+
+/// A new machine of two or three joints; whether there is one.
+///
+/// # Safety
+/// There are so many bytes at `memory`, which nobody else uses, and so many at `bytes`.
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn feedwright_plant_new(
+    memory: *mut CPlant,
+    memory_bytes: usize,
+    joints: u32,
+    bytes: *const u8,
+    length: usize,
+    seed: u64,
+) -> bool {
+    // SAFETY: as the caller promises.
+    let bytes = unsafe { model(bytes, length) };
+    if joints == 2 {
+        let Ok(machine) = axes_of(bytes) else { return false };
+        // SAFETY: as the caller promises.
+        unsafe { put(memory, memory_bytes, || CPlant(TwoOrThree::Two(SimulatedMachine::new(&machine, seed)))) }
+    } else {
+        let Ok(machine) = axes_of(bytes) else { return false };
+        // SAFETY: as the caller promises.
+        unsafe { put(memory, memory_bytes, || CPlant(TwoOrThree::Three(SimulatedMachine::new(&machine, seed)))) }
+    }
+}
+
+/// One servo period under a command; tool, measured position and torque at its end.
+///
+/// # Safety
+/// `plant` was made by [`feedwright_plant_new`]; the others are what they are declared to be.
+#[unsafe(no_mangle)]
+pub(crate) unsafe extern "C" fn feedwright_plant_step(
+    plant: &mut CPlant,
+    command_mm: &[f64; 3],
+    powered: bool,
+    inertia: f64,
+    position_mm: &mut [f64; 3],
+    measured_mm: &mut [f64; 3],
+    torque_nm: &mut [f64; 3],
+) {
+    [*position_mm, *measured_mm, *torque_nm] = match &mut plant.0 {
+        TwoOrThree::Two(plant) => step(plant, *command_mm, powered, inertia),
+        TwoOrThree::Three(plant) => step(plant, *command_mm, powered, inertia),
+    };
+}
+
+fn step<const N: usize>(
+    plant: &mut SimulatedMachine<N>,
+    command_mm: [f64; 3],
+    powered: bool,
+    inertia: f64,
+) -> [[f64; 3]; 3] {
+    plant.step(first(command_mm), powered, inertia);
+    [plant.position_mm(), plant.measured_mm(), plant.torque_nm()].map(three)
+}

@@ -1,0 +1,13 @@
+//! What stands between the position command of a control and the drive: the path that is known while the command is delayed, the
+//! correction along it, and the rules by which it comes and goes. Beside it a simulated machine that takes the same commands.
+//!
+//! Nothing here allocates, panics, locks, reads a clock or does I/O in a servo period. Lengths in mm, times in s.
+#![no_std]
+#![forbid(unsafe_code)]
+
+pub mod history;
+pub mod plant;
+pub mod trust;
+pub mod correction;
+pub mod machine;
+pub mod servo;

@@ -1,0 +1,257 @@
+//! A simulated machine: the servo axes of [`feedwright_control::axis`], each with what a model file has of it.
+//!
+//! Loops, inertia, friction, delays, the drive's feedforward and filter, the disturbance, cogging, broadband torque, and the encoder's noise
+//! and step are those of the file. Two masses, geometry and jitter are not in a model file, and not here.
+//!
+//! ```text
+//! load = D sin(W t) + x                  t at the start of a mechanics period; x(c+1) = a x(c) + s sqrt(1 - a^2) n(c), a = exp(-dt / T)
+//! y    = q round((angle + s n) / q)      what the encoder shows
+//! ```
+//!
+//! Random numbers n: sums of twelve 16-bit parts of SplitMix64, which are nearly normal. Source: Steele, Lea and Flood (2014), "Fast
+//! splittable pseudorandom number generators".
+
+use core::f64::consts::TAU;
+
+use feedwright_control::axis::drive::{DriveLaw, DriveReference, DriveState};
+use feedwright_control::axis::friction::{FrictionLaw, FrictionParameters};
+use feedwright_control::axis::knowledge::AxisKnowledge;
+use feedwright_control::axis::statistics::AxisStatistics;
+use feedwright_control::axis::{self, AxisLaw, AxisState};
+use feedwright_control::model::IdentifiedAxes;
+use feedwright_control::sine::sin;
+
+/// References and positions that are kept, servo periods: 20 ms each way at 1 ms, and some.
+const KEPT: usize = 128;
+
+/// N axes and their state.
+#[derive(Debug, Clone)]
+pub struct SimulatedMachine<const N: usize> {
+    axes: [SimulatedAxis; N],
+    /// Servo periods since the start.
+    period: u64,
+}
+
+impl<const N: usize> SimulatedMachine<N> {
+    /// At rest at zero, with random numbers by a seed.
+    pub fn new(machine: &IdentifiedAxes<N>, seed: u64) -> Self {
+        let mut axes = machine.axes.map(SimulatedAxis::new);
+        for (i, axis) in axes.iter_mut().enumerate() {
+            axis.noise.state ^= splitmix(seed.wrapping_add(i as u64));
+        }
+        Self { axes, period: 0 }
+    }
+
+    /// The same axes, without noise and disturbance.
+    pub fn without_noise(machine: &IdentifiedAxes<N>) -> Self {
+        let quiet = |axis| SimulatedAxis::new(AxisKnowledge { statistics: AxisStatistics::NOTHING, ..axis });
+        Self { axes: machine.axes.map(quiet), period: 0 }
+    }
+
+    /// Stands at a place.
+    pub fn place(&mut self, position_mm: [f64; N]) {
+        self.axes.iter_mut().zip(position_mm).for_each(|(axis, mm)| axis.place(mm));
+    }
+
+    /// One servo period under a command, with so many times the inertia. A drive that has no power, or no command, brings its axis to a stand.
+    pub fn step(&mut self, command_mm: [f64; N], powered: bool, inertia: f64) {
+        for (axis, command_mm) in self.axes.iter_mut().zip(command_mm) {
+            if powered && command_mm.is_finite() {
+                axis.turn(command_mm, inertia, self.period);
+            } else {
+                let position_mm = axis.position_mm();
+                axis.place(position_mm);
+            }
+        }
+        self.period += 1;
+    }
+
+    /// Where the tool is, mm.
+    pub fn position_mm(&self) -> [f64; N] {
+        self.axes.each_ref().map(SimulatedAxis::position_mm)
+    }
+
+    /// Where the control has it, mm.
+    pub fn measured_mm(&self) -> [f64; N] {
+        self.axes.each_ref().map(|axis| axis.arrived_rad / axis.law.parameters.rad_per_mm)
+    }
+
+    /// Torque of each motor at the end of the servo period, N m.
+    pub fn torque_nm(&self) -> [f64; N] {
+        self.axes.each_ref().map(|axis| axis.torque_nm)
+    }
+}
+
+#[derive(Debug, Clone)]
+struct SimulatedAxis {
+    known: AxisKnowledge,
+    law: AxisLaw,
+    drive: DriveLaw,
+    friction: Option<FrictionLaw>,
+    inertia: f64,
+    state: AxisState,
+    drive_state: DriveState,
+    presliding_nm: f64,
+    torque_nm: f64,
+    broadband_nm: f64,
+    /// Share of the broadband torque that is left after a mechanics period.
+    kept: f64,
+    /// References on their way to the drive, the newest first.
+    sent: [DriveReference; KEPT],
+    /// Angles that the encoder has shown, the newest first, each at the moment from which it is there at the start of a servo period.
+    shown_rad: [f64; KEPT],
+    arrived_rad: f64,
+    noise: NoiseSource,
+}
+
+impl SimulatedAxis {
+    fn new(known: AxisKnowledge) -> Self {
+        let law = known.law();
+        let statistics = known.statistics;
+        let kept = if statistics.torque_noise_s > 0.0 {
+            libm::exp(-known.periods.mechanics_s / statistics.torque_noise_s)
+        } else {
+            0.0
+        };
+        Self {
+            known,
+            law,
+            drive: DriveLaw::new(&law, known.drive),
+            friction: friction_of(&known, &law),
+            inertia: 1.0,
+            state: AxisState::default(),
+            drive_state: DriveState::AT_REST,
+            presliding_nm: 0.0,
+            torque_nm: 0.0,
+            broadband_nm: 0.0,
+            kept,
+            sent: [DriveReference::default(); KEPT],
+            shown_rad: [0.0; KEPT],
+            arrived_rad: 0.0,
+            noise: NoiseSource { state: 0 },
+        }
+    }
+
+    fn position_mm(&self) -> f64 {
+        self.state.angle_rad / self.law.parameters.rad_per_mm
+    }
+
+    fn place(&mut self, position_mm: f64) {
+        let angle_rad = position_mm * self.law.parameters.rad_per_mm;
+        self.state = AxisState { angle_rad, ..AxisState::default() };
+        (self.drive_state, self.presliding_nm, self.torque_nm) = (DriveState::AT_REST, 0.0, 0.0);
+        self.sent = [DriveReference::default(); KEPT];
+        self.shown_rad = [angle_rad; KEPT];
+        self.arrived_rad = angle_rad;
+    }
+
+    /// The machine is as heavy as this many times what its file says.
+    fn load(&mut self, inertia: f64) {
+        let possible = inertia > 0.0 && inertia.is_finite();
+        if possible && inertia.to_bits() != self.inertia.to_bits() {
+            self.inertia = inertia;
+            let mut parameters = self.known.parameters;
+            parameters.inertia_kg_m2 *= inertia;
+            self.law = AxisLaw::new(parameters, self.known.periods);
+            self.friction = friction_of(&self.known, &self.law);
+        }
+    }
+
+    fn turn(&mut self, command_mm: f64, inertia: f64, period: u64) {
+        self.load(inertia);
+        let periods = self.known.periods;
+        let command_rad = command_mm * self.law.parameters.rad_per_mm;
+        let reference =
+            self.drive.position_loop(&self.law, command_rad, self.arrived_rad, &mut self.state, &mut self.drive_state);
+        self.sent.copy_within(..KEPT - 1, 1);
+        self.sent[0] = reference;
+        let late = |delay_s: f64| libm::round(delay_s / periods.mechanics_s) as u32;
+        let (drive_late, shown_late) = (late(self.known.delays.drive_s), late(self.known.delays.measurement_s));
+        let per_servo = periods.mechanics_per_servo.max(1);
+        // An angle is taken where it is a delay before the start of a servo period.
+        let takes_at = (per_servo - shown_late % per_servo) % per_servo;
+        for substep in 0..per_servo {
+            if substep == takes_at && takes_at > 0 {
+                self.show();
+            }
+            // So long before the end of this servo period was sent what acts now.
+            let ago = (drive_late + per_servo - 1 - substep) / per_servo;
+            let acting = self.sent.get(ago as usize).copied().unwrap_or_default();
+            self.mechanics(acting, (period as f64) * periods.servo_s + f64::from(substep) * periods.mechanics_s);
+        }
+        if takes_at == 0 {
+            self.show();
+        }
+        let whole = if takes_at == 0 { shown_late / per_servo } else { shown_late.div_ceil(per_servo) - 1 };
+        self.arrived_rad = self.shown_rad.get(whole as usize).copied().unwrap_or(self.arrived_rad);
+    }
+
+    /// The encoder is read.
+    fn show(&mut self) {
+        let statistics = self.known.statistics;
+        let angle_rad = self.state.angle_rad;
+        let interpolation_rad = statistics.interpolation_rad
+            * sin(statistics.signal_per_rad * angle_rad + statistics.interpolation_phase_rad);
+        let seen_rad = angle_rad + interpolation_rad + statistics.encoder_noise_rad * self.noise.normal();
+        let step_rad = statistics.encoder_step_rad;
+        let shown_rad = if step_rad > 0.0 { step_rad * libm::round(seen_rad / step_rad) } else { seen_rad };
+        self.shown_rad.copy_within(..KEPT - 1, 1);
+        self.shown_rad[0] = shown_rad;
+    }
+
+    /// One mechanics period.
+    fn mechanics(&mut self, reference: DriveReference, t_s: f64) {
+        let (statistics, law) = (self.known.statistics, &self.law);
+        let turns = statistics.disturbance_rad_s * t_s / TAU;
+        let disturbance_nm = statistics.disturbance_nm * sin(TAU * (turns - libm::floor(turns)));
+        let step_nm = statistics.torque_noise_nm * libm::sqrt(1.0 - self.kept * self.kept);
+        self.broadband_nm = self.kept * self.broadband_nm + step_nm * self.noise.normal();
+        let (angle_rad, w) = (self.state.angle_rad, self.state.speed_rad_s);
+        let cogging_nm =
+            statistics.cogging_nm * sin(statistics.cogging_per_rev * angle_rad + statistics.cogging_phase_rad);
+        self.torque_nm = self.drive.torque_nm(law, reference, w, &mut self.drive_state);
+        let forces_nm = self.torque_nm + cogging_nm - disturbance_nm - self.broadband_nm;
+        match &self.friction {
+            Some(friction) => {
+                let inverse_inertia = 1.0 / law.parameters.inertia_kg_m2;
+                self.state.speed_rad_s =
+                    friction.speed_after_rad_s(forces_nm, inverse_inertia, w, &mut self.presliding_nm);
+                self.state.angle_rad += law.periods.mechanics_s * self.state.speed_rad_s;
+            }
+            None => {
+                let [sign] = axis::signs(&[*law], [w]);
+                law.accelerate(forces_nm - law.friction_nm(w, sign), &mut self.state);
+            }
+        }
+    }
+}
+
+fn friction_of(known: &AxisKnowledge, law: &AxisLaw) -> Option<FrictionLaw> {
+    (known.friction != FrictionParameters::default()).then(|| FrictionLaw::new(law, known.friction))
+}
+
+/// Random numbers of an axis.
+#[derive(Debug, Clone, Copy)]
+struct NoiseSource {
+    state: u64,
+}
+
+impl NoiseSource {
+    /// Of mean 0 and standard deviation 1.
+    fn normal(&mut self) -> f64 {
+        let mut sum = 0_i64;
+        for _ in 0..3 {
+            self.state = self.state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            let bits = splitmix(self.state);
+            sum += [0, 16, 32, 48].iter().map(|shift| (bits >> shift & 0xffff) as i64).sum::<i64>();
+        }
+        // Twelve times the mean of 16 bits.
+        (sum - 393_210) as f64 / 65536.0
+    }
+}
+
+fn splitmix(mut z: u64) -> u64 {
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}

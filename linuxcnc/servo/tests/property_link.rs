@@ -1,0 +1,234 @@
+//! The link in a closed loop with the simulated machine: what it does to the contour error, and what it never does.
+
+use std::f64::consts::TAU;
+
+use feedwright_control::axis::inverse::LoopDelays;
+use feedwright_control::axis::knowledge::AxisKnowledge;
+use feedwright_control::axis::{Parameters, Periods};
+use feedwright_control::model::{BlockError, IdentifiedAxes};
+use feedwright_control::safety::engagement::Cause;
+use feedwright_servo::machine::Refused;
+use feedwright_servo::plant::SimulatedMachine;
+use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkLimits, LinkOutputs, Servo};
+
+const SERVO_S: f64 = 0.001;
+const LIMITS: LinkLimits = LinkLimits { delay_s: 0.010, deviation_mm: 0.5, speed_mm_s: 400.0, correction_mm_s2: 400.0 };
+/// Servo periods until the link has settled, and of a turn of the circle.
+const SETTLE: usize = 400;
+const TURN: usize = 1257;
+/// Of the contour error without the correction: as a sweep in a real control has it.
+const LEFT: f64 = 0.05;
+
+/// Of the same, with a model that is wrong: the two bursts that it takes to find that out are a fifth of the time.
+const HARM: f64 = 1.5;
+
+/// Two axes alike, with the numbers of the machine of Lee, Cho and Jeon (2005).
+fn machine() -> IdentifiedAxes<2> {
+    let parameters = Parameters {
+        rad_per_mm: TAU / 10.0,
+        kp_1_s: 50.0,
+        kd: 0.0,
+        kv_nm_s_per_rad: 2.0,
+        torque_limit_nm: 30.0,
+        inertia_kg_m2: 0.0103,
+        viscous_friction_nm_s: 0.0336,
+        coulomb_friction_nm: 0.2,
+        coulomb_smoothing_rad_s: 0.05,
+    };
+    let periods = Periods { servo_s: SERVO_S, mechanics_s: 0.0001, mechanics_per_servo: 10 };
+    let delays = LoopDelays { drive_s: 0.001, measurement_s: 0.0005 };
+    let mut slower = parameters;
+    slower.inertia_kg_m2 = 0.012;
+    slower.coulomb_friction_nm = 0.3;
+    let axis = |parameters| AxisKnowledge { parameters, periods, delays, ..AxisKnowledge::NOTHING };
+    IdentifiedAxes { mechanics_s: periods.mechanics_s, axes: [axis(parameters), axis(slower)] }
+}
+
+/// Rest, a turn of a circle of 10 mm at 50 mm/s with soft ends, rest.
+fn command_mm(n: usize) -> [f64; 2] {
+    let part = (n.saturating_sub(SETTLE) as f64 / (1.25 * TURN as f64)).min(1.0);
+    // A fifth of the time to take up the speed, and a fifth to give it up.
+    let ramp = 0.2;
+    let gone = |t: f64| if t < ramp { t * t / (2.0 * ramp) } else { t - 0.5 * ramp };
+    let whole = gone(1.0) - 0.5 * ramp;
+    let way = if part > 1.0 - ramp { whole - (1.0 - part).powi(2) / (2.0 * ramp) } else { gone(part) };
+    let angle = TAU * way / whole;
+    [10.0 - 10.0 * angle.cos(), 10.0 * angle.sin()]
+}
+
+/// What happened in a servo period.
+struct Period {
+    inputs: LinkInputs<2>,
+    outputs: LinkOutputs<2>,
+    tool_mm: [f64; 2],
+}
+
+/// A turn, with inputs that are changed on the way.
+fn turn(
+    model: Result<IdentifiedAxes<2>, Refused>,
+    limits: &LinkLimits,
+    change: impl FnMut(usize, &mut LinkInputs<2>),
+) -> Vec<Period> {
+    turn_on(&machine(), model, limits, change)
+}
+
+/// A turn on another machine than that of the model.
+fn turn_on(
+    real: &IdentifiedAxes<2>,
+    model: Result<IdentifiedAxes<2>, Refused>,
+    limits: &LinkLimits,
+    mut change: impl FnMut(usize, &mut LinkInputs<2>),
+) -> Vec<Period> {
+    let (mut plant, mut servo) = (SimulatedMachine::new(real, 1), Servo::new(model));
+    assert!(matches!(servo.runs_at(SERVO_S), LinkFault::None | LinkFault::Model(_)));
+    let mut periods = Vec::new();
+    for n in 0..SETTLE + 2 * TURN {
+        let mut inputs = LinkInputs {
+            command_mm: command_mm(n),
+            actual_mm: plant.measured_mm(),
+            powered: true,
+            enabled: true,
+            direct: false,
+            spindle: false,
+            cutting: true,
+        };
+        change(n, &mut inputs);
+        let outputs = servo.step(&inputs, limits);
+        plant.step(outputs.drive_mm, inputs.powered, 1.0);
+        periods.push(Period { inputs, outputs, tool_mm: plant.position_mm() });
+    }
+    periods
+}
+
+/// RMS of the distance of the tool from the circle while it goes round, mm.
+fn rms_mm(periods: &[Period]) -> f64 {
+    let cut = &periods[SETTLE + 100..SETTLE + TURN];
+    let off = |period: &Period| ((period.tool_mm[0] - 10.0).hypot(period.tool_mm[1]) - 10.0).powi(2);
+    (cut.iter().map(off).sum::<f64>() / cut.len() as f64).sqrt()
+}
+
+#[test]
+fn the_correction_takes_the_contour_error_away() {
+    let without = rms_mm(&turn(Ok(machine()), &LIMITS, |_, inputs| inputs.enabled = false));
+    assert!(without > 0.01, "{without}");
+    for delay_s in [0.008, 0.010, 0.015] {
+        let periods = turn(Ok(machine()), &LinkLimits { delay_s, ..LIMITS }, |_, _| {});
+        assert!(rms_mm(&periods) < LEFT * without, "{delay_s}: {} {without}", rms_mm(&periods));
+        assert!(periods.iter().all(|period| period.outputs.fault == LinkFault::None), "{delay_s}");
+    }
+}
+
+#[test]
+fn a_model_that_is_wrong_does_no_more_harm_than_it_takes_to_see_it() {
+    for late_s in [0.002, 0.003, 0.005] {
+        let mut real = machine();
+        real.axes.iter_mut().for_each(|axis| axis.delays.drive_s += late_s);
+        let without = rms_mm(&turn_on(&real, Ok(machine()), &LIMITS, |_, inputs| inputs.enabled = false));
+        let periods = turn_on(&real, Ok(machine()), &LIMITS, |_, _| {});
+        assert!(rms_mm(&periods) < HARM * without, "{late_s}: {} {without}", rms_mm(&periods));
+        let found = periods.iter().any(|period| period.outputs.fault == LinkFault::Faded(Cause::Harmful));
+        assert!(found || rms_mm(&periods) < without, "{late_s}: nothing was told");
+    }
+}
+
+#[test]
+fn the_following_error_of_the_control_is_that_of_the_drive() {
+    for period in turn(Ok(machine()), &LIMITS, |_, inputs| inputs.enabled = false) {
+        let (inputs, outputs) = (&period.inputs, &period.outputs);
+        for i in 0..2 {
+            let theirs_mm = inputs.command_mm[i] - outputs.feedback_mm[i];
+            let drives_mm = outputs.drive_mm[i] - inputs.actual_mm[i];
+            assert!((theirs_mm - drives_mm).abs() < 1e-9, "{theirs_mm} {drives_mm}");
+        }
+    }
+}
+
+#[test]
+fn without_power_the_drive_and_the_control_have_the_actual_position() {
+    let periods = turn(Ok(machine()), &LIMITS, |n, inputs| inputs.powered = !(1000..1200).contains(&n));
+    for period in &periods[1000..1200] {
+        assert_eq!(period.outputs.link, Link::Off);
+        assert_eq!(period.outputs.drive_mm, period.inputs.actual_mm);
+        assert_eq!(period.outputs.feedback_mm, period.inputs.actual_mm);
+    }
+}
+
+#[test]
+fn the_delay_comes_and_goes_at_rest_alone_and_nothing_leaps() {
+    // Wanted and unwanted every 70 ms, through rest and motion.
+    let periods = turn(Ok(machine()), &LIMITS, |n, inputs| inputs.direct = n / 70 % 2 == 0);
+    let step = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    for pair in periods.windows(2) {
+        assert!(step(pair[0].outputs.drive_mm, pair[1].outputs.drive_mm) < 0.2);
+        if pair[0].outputs.link != pair[1].outputs.link {
+            assert!(step(pair[0].inputs.command_mm, pair[1].inputs.command_mm) < 0.06);
+        }
+    }
+    assert!(periods.iter().any(|period| period.outputs.link == Link::Delayed));
+}
+
+#[test]
+fn what_is_not_a_number_goes_no_further() {
+    for from in [0, 500, 900] {
+        let spoilt = [f64::NAN, f64::INFINITY];
+        for which in 0..4 {
+            let periods = turn(Ok(machine()), &LIMITS, |n, inputs| {
+                if (from..from + 30).contains(&n) {
+                    let into = if which < 2 { &mut inputs.command_mm } else { &mut inputs.actual_mm };
+                    into[n % 2] = spoilt[which % 2];
+                }
+            });
+            for period in &periods {
+                let LinkOutputs { drive_mm, feedback_mm, correction_mm, contour_error_mm, without_mm, .. } =
+                    period.outputs;
+                let all = drive_mm.iter().chain(&feedback_mm).chain(&correction_mm);
+                assert!(all.chain([&contour_error_mm, &without_mm]).all(|mm| mm.is_finite()), "{from} {which}");
+            }
+            assert!(
+                from == 0 || periods.iter().any(|period| period.outputs.fault != LinkFault::None),
+                "{from} {which}"
+            );
+            assert_eq!(periods[periods.len() - 1].outputs.fault, LinkFault::None, "{from} {which}: it has come back");
+        }
+    }
+}
+
+#[test]
+fn without_a_model_commands_are_passed_on_to_the_bit() {
+    let refused = Refused::Block(BlockError::Checksum);
+    for period in turn(Err(refused), &LIMITS, |_, _| {}) {
+        assert_eq!(period.outputs.drive_mm, period.inputs.command_mm);
+        assert_eq!(period.outputs.feedback_mm, period.inputs.actual_mm);
+        assert_eq!(period.outputs.fault, LinkFault::Model(refused));
+    }
+    assert_eq!(Servo::new(Ok(machine())).runs_at(0.002), LinkFault::Model(Refused::Period));
+}
+
+#[test]
+fn enabling_and_disabling_in_motion_fades() {
+    let periods = turn(Ok(machine()), &LIMITS, |n, inputs| inputs.enabled = (SETTLE + 200..SETTLE + 800).contains(&n));
+    let correction = |n: usize| periods[n].outputs.correction_mm;
+    assert_eq!(correction(SETTLE + 190), [0.0; 2]);
+    assert_eq!(correction(SETTLE + 1150), [0.0; 2]);
+    assert!(correction(SETTLE + 700)[0].hypot(correction(SETTLE + 700)[1]) > 0.01);
+    for n in SETTLE..SETTLE + TURN {
+        let step_mm = (0..2).map(|i| (correction(n)[i] - correction(n - 1)[i]).abs()).fold(0.0, f64::max);
+        assert!(step_mm < 0.02, "{n}: {step_mm}");
+    }
+}
+
+#[test]
+fn the_simulated_axis_lags_as_its_loops_say() {
+    // At constant speed the position error is v (1 + B / Kv) / kp and what Coulomb friction takes, Fc / Kv kp at the motor.
+    let mut plant = SimulatedMachine::new(&machine(), 1);
+    let v = 50.0;
+    for n in 0..1000_u32 {
+        plant.step([v * SERVO_S * f64::from(n), 0.0], true, 1.0);
+    }
+    let axis = machine().axes[0].parameters;
+    let friction_mm_s = axis.coulomb_friction_nm / axis.kv_nm_s_per_rad / axis.rad_per_mm;
+    let error_mm = (v * (1.0 + axis.viscous_friction_nm_s / axis.kv_nm_s_per_rad) + friction_mm_s) / axis.kp_1_s;
+    // Delays are within the loop: what it sees is the same error.
+    let measured_mm = v * SERVO_S * 1000.0 - plant.measured_mm()[0];
+    assert!((measured_mm - error_mm).abs() < 1e-9, "{measured_mm} {error_mm}");
+}

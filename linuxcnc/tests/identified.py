@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""The whole way of a machine owner, on a simulated machine: the program of `feedwright excite` runs through the same HAL chain, the log is
+identified, and the model of it corrects live.
+
+    identified.py [--feedwright COMMAND] [--machine NAME]
+
+Prints the products that make the motion, as identified and as they are, and what is cut with the model. Exit code 1 where they differ by
+more than 2 %, or a target is missed.
+"""
+import argparse
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+import headless
+import measure
+import programs
+
+# Relative.
+SAME = 0.02
+
+
+def log_of(recording):
+    lines = ["# sample_time_s = 0.001", "# n x.cmd x.act y.cmd y.act z.cmd z.act"]
+    for n, row in enumerate(recording.rows):
+        pairs = " ".join(f"{command:.9f} {actual:.9f}" for command, actual in zip(row.drive, row.feedback))
+        lines.append(f"{n} {pairs}")
+    return "\n".join(lines) + "\n"
+
+
+def products(axis):
+    """What positions tell of an axis; its inertia they do not."""
+    kv, inertia = axis["kv_nm_s_per_rad"], axis["inertia_kg_m2"]
+    return {"Kp Kv / J": axis["kp_1_s"] * kv / inertia, "(Kv + B) / J": (kv + axis["viscous_friction_nm_s"]) / inertia,
+            "Fc / J": axis["coulomb_friction_nm"] / inertia}
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--feedwright", default=os.environ.get("FEEDWRIGHT", "feedwright"), help="the command")
+    parser.add_argument("--machine", default="tnv40")
+    args = parser.parse_args()
+    run = lambda *words: subprocess.run([args.feedwright, "--quiet", *map(str, words)], check=True, capture_output=True, text=True).stdout
+    with tempfile.TemporaryDirectory(prefix="feedwright-identified-") as name:
+        folder = pathlib.Path(name)
+        folder.chmod(0o755)
+        block, program, log, found = (folder / file for file in ("machine.fwmodel", "excite.ngc", "log.txt", "found.toml"))
+        run("block", args.machine, "--axes", 3, "--out", block)
+        run("excite", "--machine", args.machine, "--out", program)
+        recording = headless.run("cut", {"program": program.read_text(), "params": {"feedwright.direct": 1}},
+                                 {"FEEDWRIGHT": {"MACHINE": block, "MODEL": block}}, limit_s=300)
+        log.write_text(log_of(recording))
+        truth = tomllib.loads((headless.HERE.parents[1] / "machines" / f"{args.machine}.toml").read_text())
+        run("identify", log, "--lead", truth["axis"]["x"]["lead_mm_per_rev"], "--inertia", truth["axis"]["x"]["inertia_kg_m2"], "--out", found)
+        machine, wrong = tomllib.loads(found.read_text()), 0
+        for axis in "xyz":
+            for product, value in products(machine["axis"][axis]).items():
+                true = products(truth["axis"][axis])[product]
+                off = value / true - 1
+                wrong += abs(off) > SAME
+                print(f"{axis} {product:14} {value:10.3f}, true {true:10.3f}: {100 * off:+.2f} %")
+        model = folder / "model.fwmodel"
+        run("block", found, "--out", model)
+        wrong += measure.table((str(block), str(model)), {}, programs.programs(True))
+    return 1 if wrong else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,149 @@
+"""What is done with LinuxCNC in a run: each function is one, and gets the machine of headless.py."""
+
+
+def cut(machine, program, enable=True, params=None):
+    """A program from beginning to end."""
+    machine.on()
+    machine.home()
+    machine.hal("setp", "feedwright.enable", int(enable))
+    for pin, value in (params or {}).items():
+        machine.hal("setp", pin, value)
+    machine.open(program)
+    machine.record()
+    machine.begin()
+    machine.finish()
+
+
+LONG = "G21 G17 G90 G94 G64 P0.01\nG0 X0 Y0\nG4 P0.3\n" + "G2 X0 Y0 I10 J0 F3000\n" * 3 + "G4 P0.2\nM2\n"
+
+
+def in_mid_cut(machine, at_s, changes, again_s=None, restore=None, params=None, program=LONG, enable=1):
+    """A program, in which pins are set after a while, and again later."""
+    machine.on()
+    machine.home()
+    machine.hal("setp", "feedwright.enable", enable)
+    for pin, value in (params or {}).items():
+        machine.hal("setp", pin, value)
+    machine.open(program)
+    machine.record()
+    machine.begin()
+    machine.wait(at_s)
+    for pin, value in changes.items():
+        machine.hal("setp", pin, value)
+    if again_s is not None:
+        machine.wait(again_s)
+        for pin, value in restore.items():
+            machine.hal("setp", pin, value)
+    ended_by = "end"
+    try:
+        machine.finish(20)
+    except Exception:
+        if not machine.messages:
+            raise
+        ended_by = "error"
+    return {"ended_by": ended_by, "alive": machine.status.task_state}
+
+
+def hold(machine, at_s=0.9):
+    """Feed hold on the way round a corner, on again, override from 0 to 200 %."""
+    machine.on()
+    machine.home()
+    machine.open("G21 G90 G61\nG0 X0 Y0\nG4 P0.3\nG1 X20 F3000\nG1 Y20\nG1 X0\nG1 Y0\nG1 X20\nG1 Y20\nG4 P0.2\nM2\n")
+    machine.record()
+    machine.begin()
+    machine.wait(at_s)
+    machine.command.auto(machine.linuxcnc.AUTO_PAUSE)
+    machine.wait(0.5)
+    machine.command.auto(machine.linuxcnc.AUTO_RESUME)
+    for share in (0.0, 2.0, 0.5, 1.0):
+        machine.command.feedrate(share)
+        machine.wait(0.3)
+    machine.finish()
+
+
+def abort(machine):
+    """Abort in mid-cut, and a move behind it."""
+    machine.on()
+    machine.home()
+    machine.open(LONG)
+    machine.record()
+    machine.begin()
+    machine.wait(1.5)
+    machine.command.abort()
+    machine.command.wait_complete(5)
+    machine.wait(0.5)
+    machine.mdi("G0 X0 Y0")
+
+
+def estop(machine):
+    """Emergency stop in mid-cut, and on again."""
+    machine.on()
+    machine.home()
+    machine.open(LONG)
+    machine.record()
+    machine.begin()
+    machine.wait(1.5)
+    machine.command.state(machine.linuxcnc.STATE_ESTOP)
+    machine.wait(0.5)
+    machine.on()
+    machine.wait(0.3)
+    machine.mdi("G0 X0 Y0")
+
+
+def jog(machine):
+    """Continuous and incremental jog, joints and teleop."""
+    machine.on()
+    machine.home()
+    machine.mode(machine.linuxcnc.MODE_MANUAL)
+    machine.record()
+    machine.command.teleop_enable(1)
+    machine.wait(0.2)
+    machine.command.jog(machine.linuxcnc.JOG_CONTINUOUS, 0, 0, 30.0)
+    machine.wait(0.6)
+    machine.command.jog(machine.linuxcnc.JOG_STOP, 0, 0)
+    machine.wait(0.3)
+    machine.command.jog(machine.linuxcnc.JOG_INCREMENT, 0, 1, 20.0, 5.0)
+    machine.wait(0.8)
+    machine.mdi("G1 X3 Y3 F1500")
+    machine.mdi("G0 X0 Y0")
+
+
+def home_again(machine):
+    """Homing with search and latch on switches in the machine (home.hal)."""
+    machine.on()
+    machine.record()
+    machine.home(60)
+    machine.mdi("G0 X1 Y1")
+    return {"home": [machine.hal("getp", f"joint.{i}.motor-offset") for i in range(3)]}
+
+
+PROBE_MM_MIN = (60, 300, 1500)
+
+
+def probe(machine, enable):
+    """A probing motion to a plane behind a cut; where it tripped."""
+    machine.on()
+    machine.home()
+    machine.hal("setp", "feedwright.enable", int(enable))
+    machine.record()
+    machine.mdi("G21 G90 G64 G1 X5 Y5 Z0 F3000")
+    trips = []
+    for speed in PROBE_MM_MIN:
+        machine.mdi(f"G38.2 Z-20 F{speed}")
+        machine.poll()
+        trips.append(machine.status.probed_position[2])
+        machine.mdi("G1 Z0 F3000")
+    return {"trips": trips}
+
+
+def thread(machine):
+    """A motion that follows the spindle."""
+    machine.on()
+    machine.home()
+    machine.record()
+    machine.mdi("G21 G90 G64 G1 X0 Y0 Z0 F3000")
+    machine.mdi("M3 S600")
+    machine.wait(0.5)
+    machine.mdi("G33 Z-10 K1")
+    machine.mdi("G1 X5 Z0 F3000")
+    machine.mdi("M5")
