@@ -1,6 +1,10 @@
 //! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
 
+use feedwright_control::axis::knowledge::AxisKnowledge;
+use feedwright_control::axis::transmission::TransmissionParameters;
+use feedwright_control::axis::{Parameters, Periods};
 use feedwright_control::contour_error::{ContourError, Estimator};
+use feedwright_control::controller::lqg_preview::{self, LqgPreview};
 use feedwright_control::controller::receding_horizon::{self, RecedingHorizon};
 use feedwright_control::controller::{inverting::Settings, two_dimensional::TwoDimensional};
 use feedwright_control::identifier::UNKNOWNS;
@@ -52,6 +56,37 @@ pub(crate) fn horizon<const N: usize>(knots: usize) -> RecedingHorizon<N> {
     let mut settings = receding_horizon::Settings::DEFAULT;
     settings.horizon.knots = knots;
     RecedingHorizon::new(net, &[[[0.0; UNKNOWNS]; UNKNOWNS]; N], settings)
+}
+
+/// The regulator of axes like those of tnv40 with quick speed loops, as the tool of a [`Rig`] follows, each with noise, a disturbance and, where
+/// `gives`, a ball screw with backlash: it decides in every servo period.
+pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
+    let mut axis = AxisKnowledge::NOTHING;
+    axis.periods = Periods { servo_s: 0.001, mechanics_s: 1e-4, mechanics_per_servo: 10 };
+    axis.parameters = Parameters {
+        rad_per_mm: 0.628,
+        kp_1_s: 1.0 / LAG_S,
+        kd: 0.0,
+        kv_nm_s_per_rad: 2.0,
+        torque_limit_nm: 30.0,
+        inertia_kg_m2: 0.002,
+        viscous_friction_nm_s: 0.0,
+        coulomb_friction_nm: 0.0,
+        coulomb_smoothing_rad_s: 0.05,
+    };
+    axis.friction.presliding_rad = 1e-4;
+    (axis.statistics.encoder_noise_rad, axis.statistics.torque_noise_nm) = (1e-4, 0.1);
+    (axis.statistics.disturbance_nm, axis.statistics.disturbance_rad_s) = (0.01, 150.0);
+    if gives {
+        axis.transmission = TransmissionParameters {
+            table_share: 0.4,
+            resonance_rad_s: 600.0,
+            damping_ratio: 0.05,
+            backlash_rad: 0.002,
+        };
+    }
+    let settings = lqg_preview::Settings { price_s2: lqg_preview::IDENTIFIED_PRICE * 1e-6, learns: true };
+    LqgPreview::new([axis; N], settings)
 }
 
 /// What the tool of a [`Rig`] does; it is behind by 20 ms in either case.

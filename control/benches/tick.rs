@@ -30,6 +30,15 @@ fn horizon_tick<const N: usize>(bencher: Bencher<'_, '_>, knots: usize) {
     bencher.bench_local(|| rig::decide(&mut controller, black_box(&window), black_box(&measured)));
 }
 
+/// Kalman filter, regulator and inverse of each axis; behind a ball screw that gives, too.
+#[divan::bench(consts = [2, 3], args = [false, true])]
+fn regulator_tick<const N: usize>(bencher: Bencher<'_, '_>, gives: bool) {
+    let surroundings = rig::Surroundings::<N>::new();
+    let (window, measured) = (surroundings.window(), surroundings.measured());
+    let mut controller = rig::regulator(gives);
+    bencher.bench_local(|| rig::decide(&mut controller, black_box(&window), black_box(&measured)));
+}
+
 #[divan::bench(consts = [2, 3])]
 fn contour_error<const N: usize>(bencher: Bencher<'_, '_>) {
     let surroundings = rig::Surroundings::<N>::new();

@@ -1,4 +1,4 @@
-//! Percentiles of the time of a decision of the receding horizon: `just tick`.
+//! Percentiles of the time of a decision of the receding horizon, and of the regulator, which decides in every servo period: `just tick`.
 //!
 //! `tick_percentiles TICKS RUNS`. Timed is the servo period in which the controller decides, whole: reference, register,
 //! preview, contour error, plan, safety layer, command. The tool follows the command, so that the plan and the adaptation
@@ -16,6 +16,8 @@ mod rig;
 use std::hint::black_box;
 use std::time::Instant;
 
+use feedwright_control::Controller;
+
 /// The servo period that the times are a share of.
 const SERVO_US: f64 = 1000.0;
 /// Shares of the ticks that take no longer, per mille.
@@ -25,21 +27,26 @@ fn main() {
     let mut arguments = std::env::args().skip(1).map(|a| a.parse::<usize>().unwrap());
     let (ticks, runs) = (arguments.next().unwrap(), arguments.next().unwrap());
     println!("{ticks} decisions, best of {runs} runs: us (share of a servo period of 1 ms)");
-    println!("axes knots        median           99 %         99.9 %        maximum   maximum of all runs");
+    println!("{:34}  median           99 %         99.9 %        maximum   maximum of all runs", "controller, axes");
     for knots in [10, 20] {
-        report(2, knots, &measure::<2>(knots, ticks, runs));
-        report(3, knots, &measure::<3>(knots, ticks, runs));
+        let name = format!("horizon of {knots} knots");
+        report(&name, 2, &measure(|| rig::horizon::<2>(knots), ticks, runs));
+        report(&name, 3, &measure(|| rig::horizon::<3>(knots), ticks, runs));
+    }
+    for (name, gives) in [("regulator", false), ("regulator, ball screw that gives", true)] {
+        report(name, 2, &measure(|| rig::regulator::<2>(gives), ticks, runs));
+        report(name, 3, &measure(|| rig::regulator::<3>(gives), ticks, runs));
     }
 }
 
 /// The percentiles of each run, us.
-fn measure<const N: usize>(knots: usize, ticks: usize, runs: usize) -> Vec<[f64; 4]> {
-    (0..runs).map(|_| percentiles(run_us::<N>(knots, ticks))).collect()
+fn measure<const N: usize, C: Controller<N>>(controller: impl Fn() -> C, ticks: usize, runs: usize) -> Vec<[f64; 4]> {
+    (0..runs).map(|_| percentiles(run_us(controller(), ticks))).collect()
 }
 
 /// The times of so many decisions, us.
-fn run_us<const N: usize>(knots: usize, ticks: usize) -> Vec<f64> {
-    let mut rig = rig::Rig::<N, _>::new(rig::horizon(knots), rig::Tool::Follows);
+fn run_us<const N: usize, C: Controller<N>>(controller: C, ticks: usize) -> Vec<f64> {
+    let mut rig = rig::Rig::new(controller, rig::Tool::Follows);
     let mut times_us = Vec::with_capacity(ticks);
     while times_us.len() < ticks {
         let start = Instant::now();
@@ -59,10 +66,10 @@ fn percentiles(mut times_us: Vec<f64>) -> [f64; 4] {
     PER_MILLE.map(|share| times_us[(times_us.len() * share).div_ceil(1000) - 1])
 }
 
-fn report(axes: usize, knots: usize, runs: &[[f64; 4]]) {
+fn report(name: &str, axes: usize, runs: &[[f64; 4]]) {
     let best = runs.iter().min_by(|a, b| a[2].total_cmp(&b[2])).unwrap();
     let longest_us = runs.iter().map(|run| run[3]).fold(0.0, f64::max);
-    print!("{axes:4} {knots:5}");
+    print!("{:34}", format!("{name}, {axes}"));
     best.iter().for_each(|us| print!(" {us:6.1} ({:4.1} %)", 100.0 * us / SERVO_US));
     println!(" {longest_us:6.1}");
 }

@@ -13,8 +13,9 @@
 //! |---|---|
 //! | `axis/drive.rs` | integral of the speed loop, feedforward, speed limit, torque filter |
 //! | `axis/friction.rs` | asymmetry, Stribeck's curve, presliding |
+//! | `axis/transmission.rs` | motor and table as two masses: stiffness, damping, backlash of the ball screw |
 //!
-//! `axis/inverse.rs` solves the law for the command, all of this included.
+//! `axis/mechanics.rs` steps motor, table and friction under given torques, `axis/inverse.rs` solves the law for the command, all of this included.
 //!
 //! Symbols: e error of the position at the motor, rad; w speed of the motor, rad/s; u torque, N m; Kp, Kd gains of the position
 //! loop, 1/s and none; Kv gain of the speed loop, N m s/rad; J inertia, kg m^2; B viscous friction, N m s/rad; Fc Coulomb friction,
@@ -25,6 +26,8 @@
 
 pub mod drive;
 pub mod friction;
+pub mod transmission;
+pub mod mechanics;
 pub mod inverse;
 pub mod statistics;
 pub mod knowledge;

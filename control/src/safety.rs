@@ -28,6 +28,8 @@ const RATE_RANGE: [f64; 2] = [0.1, 3.0];
 /// Time in which the correction may take up the highest speed it is allowed, s. Feedforward of the exact model takes as
 /// little at a corner; of what leaps more, no machine could follow any.
 const TAKE_UP_S: f64 = 0.001;
+/// A correction that acts at once takes at least this long to come back, s: twice the time constant of a usual position loop.
+const LEAST_BACK_S: f64 = 0.04;
 /// Decisions in a row with a wrong prediction. One is a shock, which no model foresees.
 const WRONG_DECISIONS: u32 = 4;
 /// A prediction is wrong where it misses by this part of the largest deviation.
@@ -74,12 +76,22 @@ pub struct Guard<const N: usize> {
     foreseen: u32,
     benefit: Benefit<N>,
     engagement: Engagement,
+    /// Time in which a correction comes back, s.
+    take_up_s: f64,
 }
 
 impl<const N: usize> Guard<N> {
     /// At the start of a program.
     pub fn new(bounds: Bounds) -> Self {
-        Self { bounds, rate: 1.0, wrong: 0, foreseen: 0, benefit: Benefit::NONE, engagement: Engagement::START }
+        Self {
+            bounds,
+            rate: 1.0,
+            wrong: 0,
+            foreseen: 0,
+            benefit: Benefit::NONE,
+            engagement: Engagement::START,
+            take_up_s: LEAST_BACK_S,
+        }
     }
 
     /// What the command is held to.
@@ -123,6 +135,7 @@ impl<const N: usize> Guard<N> {
         let over = fade::is_over(window.offset_mm, window.offset_mm_s);
         let at_once = controller.acts_at_once();
         let asked = match self.engagement.go_on(bad, good, over, window.feed_period_s) {
+            State::Engaged if at_once => self.taken_up(wanted, window.feed_period_s),
             State::Engaged => wanted,
             State::Shadow => Command::AS_PLANNED,
             State::Fading => self.faded(window, at_once),
@@ -130,6 +143,21 @@ impl<const N: usize> Guard<N> {
         let command = self.hold(window, asked, at_once);
         self.rate = command.rate;
         command
+    }
+
+    /// A controller that acts at once comes back as gently as it left: in the time in which an offset of this size is taken up from rest to rest within
+    /// the acceleration of a fade. The largest of `o s(t / T)`, s = 3 x^2 - 2 x^3, is 6 o / T^2.
+    fn taken_up(&mut self, wanted: Command<N>, period_s: f64) -> Command<N> {
+        let Some(back_for_s) = self.engagement.back_for_s() else { return wanted };
+        if back_for_s <= period_s {
+            self.take_up_s = libm::sqrt(6.0 * norm(wanted.offset_mm) / self.bounds.fade_mm_s2).max(LEAST_BACK_S);
+        }
+        let part = bounded(back_for_s / self.take_up_s, 0.0, 1.0);
+        if part < 1.0 {
+            Command::straight(wanted.rate, scale(part * part * (3.0 - 2.0 * part), wanted.offset_mm))
+        } else {
+            wanted
+        }
     }
 
     /// Why a controller must not be followed. It hears how well it did.
@@ -149,7 +177,9 @@ impl<const N: usize> Guard<N> {
         let [with_mm2, without_mm2] = controller.foreseen_mm2();
         let foreseen = with_mm2 > FORESEEN_MM2 + FORESEEN * without_mm2;
         self.foreseen = if foreseen { self.foreseen + 1 } else { 0 };
-        let harm = self.benefit.is_harm(window, measured.position_mm, &measured.contour, controller.moved_mm());
+        // Where nothing that is predicted can be true, neither can what an offset is said to have done.
+        let harm = prediction_error_mm < f64::INFINITY
+            && self.benefit.is_harm(window, measured.position_mm, &measured.contour, controller.moved_mm());
         controller.judged(self.benefit.overdone());
         if !sum.is_finite() {
             Some(Cause::NotANumber)

@@ -8,7 +8,6 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `plant/transmission.rs` | motor and table as two masses: stiffness, damping, backlash of the ball screw |
 //! | `plant/drive.rs` | delay and jitter of what goes to the drive, steps of the torque command |
 //! | `plant/encoder.rs` | what is measured: interpolation error, noise, steps, latency, speed by differences |
 //! | `plant/torque.rs` | ripple and cogging of the motor, broadband torque, a disturbance whose frequency wanders |
@@ -22,7 +21,6 @@
 //! the machine file.
 
 mod noise;
-mod transmission;
 mod drive;
 mod encoder;
 mod torque;
@@ -127,7 +125,7 @@ impl<const N: usize> Plant<N> {
     /// Where the joints are, mm.
     fn joint_mm(&self) -> [f64; N] {
         match &self.nonideal {
-            Some(nonideal) => self.in_mm(std::array::from_fn(|i| nonideal[i].table_rad)),
+            Some(nonideal) => self.in_mm(std::array::from_fn(|i| nonideal[i].table_rad())),
             None => self.in_mm(self.states.map(|state| state.angle_rad)),
         }
     }

@@ -6,6 +6,7 @@ use super::drive::DriveParameters;
 use super::friction::FrictionParameters;
 use super::inverse::LoopDelays;
 use super::statistics::AxisStatistics;
+use super::transmission::TransmissionParameters;
 use super::{AxisLaw, Parameters, Periods};
 
 /// What is given of an axis.
@@ -19,6 +20,8 @@ pub struct AxisKnowledge {
     pub drive: DriveParameters,
     /// What friction has beside.
     pub friction: FrictionParameters,
+    /// Its ball screw.
+    pub transmission: TransmissionParameters,
     /// How late the drive and the encoder are.
     pub delays: LoopDelays,
     /// Noise, and what depends on the angle of the motor.
@@ -53,6 +56,7 @@ impl AxisKnowledge {
             stribeck_rad_s: 0.0,
             presliding_rad: 0.0,
         },
+        transmission: TransmissionParameters::RIGID,
         delays: LoopDelays { drive_s: 0.0, measurement_s: 0.0 },
         statistics: AxisStatistics::NOTHING,
     };
@@ -89,6 +93,10 @@ impl AxisKnowledge {
         Number::within("stribeck_nm", "N m", 0.0, 1e5, |axis| &mut axis.friction.stribeck_nm),
         Number::or_none("stribeck_rad_s", "rad/s", 1e-6, 1e7, |axis| &mut axis.friction.stribeck_rad_s),
         Number::or_none("presliding_rad", "rad", 1e-12, 1e4, |axis| &mut axis.friction.presliding_rad),
+        Number::or_none("table_share", "", 0.01, 0.99, |axis| &mut axis.transmission.table_share),
+        Number::or_none("resonance_rad_s", "rad/s", 1e-1, 1e6, |axis| &mut axis.transmission.resonance_rad_s),
+        Number::within("damping_ratio", "", 0.0, 1.0, |axis| &mut axis.transmission.damping_ratio),
+        Number::within("backlash_rad", "rad", 0.0, 1e3, |axis| &mut axis.transmission.backlash_rad),
         Number::within("encoder_noise_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.encoder_noise_rad),
         Number::within("encoder_step_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.encoder_step_rad),
         Number::within("interpolation_rad", "rad", 0.0, 1e3, |axis| &mut axis.statistics.interpolation_rad),

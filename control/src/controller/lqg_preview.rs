@@ -12,13 +12,16 @@
 //! so that noise goes through the position loop only as far as the filter lets it. v_r carries friction (stepped from where it is
 //! estimated to be), cogging, the integral of the speed loop, and what the reference needs, [`AxisInverse::reference_mm_s`]. The regulator
 //! is that of the axis without integral and filter; the loads that the filter finds are among its states. Ripple is in the estimate
-//! and not in v_r. A ball screw is not known: on `soft` the regulator, as fast as it is, excites it, and the tool is lost.
+//! and not in v_r. Where the ball screw gives, it is the table that is held on the reference: the motor's is ahead by the twist, and both masses
+//! are states.
 //!
 //! | File | What |
 //! |---|---|
 //! | `lqg_preview/riccati.rs` | the gains |
 //! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
+//! | `lqg_preview/screw.rs` | where the motor has to be behind a ball screw that gives |
 //! | `lqg_preview/approach.rs` | the way back from where a drive at its torque limit has left the tool |
+//! | `lqg_preview/outliers.rs` | measurements that cannot be true |
 //! | `lqg_preview/whiteness.rs` | how much of what is measured the filter believes |
 //! | `lqg_preview/estimate.rs` | the filter |
 //!
@@ -29,7 +32,9 @@
 
 mod riccati;
 mod linear;
+mod screw;
 mod approach;
+mod outliers;
 mod whiteness;
 mod estimate;
 
@@ -38,13 +43,14 @@ use super::{Command, Controller, Measured, Schedule};
 use crate::axis::drive::{DriveParameters, DriveReference, DriveState};
 use crate::axis::inverse::AxisInverse;
 use crate::axis::knowledge::AxisKnowledge;
+use crate::axis::mechanics::MechanicsState;
 use crate::axis::{AxisState, Parameters};
 use crate::vector::norm;
 use crate::window::Window;
 use approach::Overtaxed;
-use estimate::{AxisModel, Estimate, KEPT_PERIODS, NOTHING_SENT, Sent};
+use estimate::{AxisModel, Estimate, KEPT_PERIODS, Learnt, NOTHING_SENT, Sent};
 use linear::LinearAxis;
-use whiteness::Whiteness;
+use screw::{ScrewTwist, TwistCourse};
 
 /// Servo periods beyond the command that the inverse looks at.
 const DIFFERENCES: f64 = 3.0;
@@ -80,8 +86,10 @@ impl<const N: usize> LqgPreview<N> {
     /// For a machine of which all this is known.
     pub fn new(known: [AxisKnowledge; N], settings: Settings) -> Self {
         let axes = known.map(|axis| AxisLqg::new(axis, settings));
-        let preview_knots =
-            |axis: &AxisLqg| preview(axis.inverse.lag_s() + axis.inverse.ahead_s(), axis.model.law.periods.servo_s);
+        let preview_knots = |axis: &AxisLqg| {
+            let twist_s = axis.twist.map_or(0.0, |twist| twist.ahead_s());
+            preview(axis.inverse.lag_s() + axis.inverse.ahead_s() + twist_s, axis.model.law.periods.servo_s)
+        };
         let longest = axes.iter().map(preview_knots).max().unwrap_or(0);
         let lag_s = axes.iter().map(AxisLqg::lag_s).fold(0.0, f64::max);
         Self { axes, lag_s, preview: longest + DIFFERENCES as u32 }
@@ -155,6 +163,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
 struct AxisLqg {
     model: AxisModel,
     inverse: AxisInverse,
+    twist: Option<ScrewTwist>,
     /// Of the regulator.
     gains: [f64; linear::STATES],
     known: AxisKnowledge,
@@ -171,7 +180,7 @@ struct Running {
     path_mm: Option<f64>,
     /// What was measured beyond what was expected, rad.
     missed_rad: f64,
-    whiteness: Whiteness,
+    learnt: Learnt,
     overtaxed: Overtaxed,
 }
 
@@ -210,14 +219,17 @@ impl AxisLqg {
     fn new(known: AxisKnowledge, settings: Settings) -> Self {
         let AxisKnowledge { drive, friction, delays, statistics, .. } = known;
         let law = known.law();
-        let regulated = LinearAxis::new(&law, &DriveParameters::default(), &statistics);
+        let model = AxisModel::new(&known, settings.learns);
+        let screw = model.mechanics.transmission();
+        let regulated = LinearAxis::new(&law, &DriveParameters::default(), screw, &statistics);
         let (states, input, _) = regulated.sampled();
         Self {
-            model: AxisModel::new(&known, settings.learns),
             inverse: AxisInverse::new(law, drive, friction, delays),
+            twist: screw.map(|screw| ScrewTwist::new(&law, screw)),
             gains: riccati::regulator(&states, &input, &regulated.cost(settings.price_s2)),
             known,
             state: None,
+            model,
         }
     }
 
@@ -242,26 +254,31 @@ impl AxisLqg {
             open: at_rest,
             path_mm: None,
             missed_rad: 0.0,
-            whiteness: Whiteness::GIVEN,
+            learnt: Learnt::NOTHING,
             overtaxed: Overtaxed::NOT,
         });
-        let Running { real, open, path_mm, missed_rad, whiteness, .. } = running;
-        if let Some(path_mm) = *path_mm {
-            real.send(&self.model, (path_mm + offset_mm) * rad_per_mm);
-            *missed_rad = self.model.correct(&mut real.estimate, &real.sent, measured_rad, whiteness);
-            open.send(&self.model, path_mm * rad_per_mm);
-            open.estimate.acting_nm = real.estimate.acting_nm;
-            self.model.predict(&mut open.estimate, &open.sent);
-            open.measured_rad = open.estimate.axis.angle_rad;
-        }
-        real.measured_rad = measured_rad;
+        let Running { real, open, path_mm, missed_rad, learnt, .. } = running;
+        let Some(path_mm) = *path_mm else {
+            real.measured_rad = measured_rad;
+            return;
+        };
+        real.send(&self.model, (path_mm + offset_mm) * rad_per_mm);
+        let told = self.model.correct(&mut real.estimate, &real.sent, measured_rad, learnt);
+        real.measured_rad = told.measured_rad;
+        let possible = self.model.is_possible(&real.estimate);
+        *missed_rad = if possible { told.missed_rad } else { f64::INFINITY };
+        open.send(&self.model, path_mm * rad_per_mm);
+        open.estimate.acting_nm = real.estimate.acting_nm;
+        self.model.predict(&mut open.estimate, &open.sent);
+        open.measured_rad = open.estimate.masses.motor.angle_rad;
     }
 
     /// By how much the offset has moved it, and what was measured beyond what was expected, mm.
     fn moved_and_missed_mm(&self) -> [f64; 2] {
         let mm = 1.0 / self.model.law.parameters.rad_per_mm;
-        self.state.map_or([0.0; 2], |Running { real, open, missed_rad, .. }| {
-            [real.estimate.axis.angle_rad - open.estimate.axis.angle_rad, missed_rad].map(|rad| rad * mm)
+        self.state.as_ref().map_or([0.0; 2], |Running { real, open, missed_rad, .. }| {
+            let [with_rad, without_rad] = [real, open].map(|tracked| tracked.estimate.masses.table.angle_rad);
+            [with_rad - without_rad, *missed_rad].map(|rad| rad * mm)
         })
     }
 
@@ -271,14 +288,17 @@ impl AxisLqg {
         running.path_mm = Some(here_mm);
         let ahead = self.model.ahead(&running.real.estimate, &running.real.sent);
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
-        let inner = [ahead.drive.integral_nm(), ahead.presliding_nm];
-        let load_mm_s = self.cogging_mm_s(&at_mm);
-        let reference_mm_s = self.inverse.reference_mm_s(&at_mm, inner, load_mm_s);
+        let inner = [ahead.drive.integral_nm(), ahead.masses.presliding_nm];
+        let acts_s = self.known.delays.drive_s;
+        let twist = self.twist.map_or(TwistCourse::NONE, |twist| twist.course(&at_mm, acts_s));
+        let load_mm_s = self.cogging_mm_s(&at_mm) - twist.spared_mm_s();
+        let motor_mm = |after_s: f64| at_mm(after_s) + twist.mm(after_s);
+        let reference_mm_s = self.inverse.reference_mm_s(motor_mm, inner, load_mm_s);
         let reference_rad_s = reference_mm_s * rad_per_mm;
-        let off = self.off(&ahead, &at_mm);
+        let off = self.off(&ahead, &at_mm, &motor_mm);
         let Parameters { kv_nm_s_per_rad, torque_limit_nm, .. } = self.model.law.parameters;
         let [_, off_rad_s, ..] = off;
-        let reference_nm = kv_nm_s_per_rad * (reference_rad_s - (ahead.axis.speed_rad_s - off_rad_s));
+        let reference_nm = kv_nm_s_per_rad * (reference_rad_s - (ahead.masses.motor.speed_rad_s - off_rad_s));
         let asked_rad_s = self.asked_rad_s(reference_nm, &off);
         let offset_mm = self.solved_mm(here_mm, reference_rad_s - asked_rad_s);
         let Some(running) = &mut self.state else { return 0.0 };
@@ -289,8 +309,9 @@ impl AxisLqg {
     /// By how much the regulator asks for less speed than the reference has, which takes this torque: small errors of the position count in
     /// full, large ones as far as the drive can brake.
     fn asked_rad_s(&self, reference_nm: f64, off: &[f64; linear::STATES]) -> f64 {
-        let [of_position, of_speed, ..] = self.gains;
-        let [off_rad, ..] = *off;
+        let [of_motor, of_motor_speed, .., of_table, of_table_speed] = self.gains;
+        let (of_position, of_speed) = (of_motor + of_table, of_motor_speed + of_table_speed);
+        let [.., off_rad, _] = *off;
         let Parameters { torque_limit_nm, inertia_kg_m2, .. } = self.model.law.parameters;
         let left_rad_s2 = approach::left_rad_s2(torque_limit_nm, reference_nm, inertia_kg_m2);
         let braking = 1.0 + of_speed;
@@ -299,7 +320,21 @@ impl AxisLqg {
     }
 
     /// By how much the axis is off the reference when what is sent now begins to act, and what acts on it.
-    fn off(&self, ahead: &Estimate, at_mm: &impl Fn(f64) -> f64) -> [f64; linear::STATES] {
+    fn off(
+        &self,
+        ahead: &Estimate,
+        table_mm: &impl Fn(f64) -> f64,
+        motor_mm: &impl Fn(f64) -> f64,
+    ) -> [f64; linear::STATES] {
+        let MechanicsState { motor, table, .. } = ahead.masses;
+        let [x, w] = self.off_reference([motor.angle_rad, motor.speed_rad_s], motor_mm);
+        let [xt, wt] = self.off_reference([table.angle_rad, table.speed_rad_s], table_mm);
+        let [broadband, disturbance, quadrature, drift] = ahead.acting_nm;
+        [x, w, 0.0, 0.0, broadband, disturbance, quadrature, drift, xt, wt]
+    }
+
+    /// By how much an angle, rad, and its speed, rad/s, are off theirs.
+    fn off_reference(&self, [angle_rad, speed_rad_s]: [f64; 2], at_mm: &impl Fn(f64) -> f64) -> [f64; 2] {
         let (rad_per_mm, periods) = (self.model.law.parameters.rad_per_mm, self.model.law.periods);
         let servo_s = periods.servo_s;
         let [before_mm, there_mm, after_mm] =
@@ -308,10 +343,7 @@ impl AxisLqg {
         let change_mm = (after_mm - there_mm) - (there_mm - before_mm);
         let late_mm_s = 0.5 * periods.mechanics_s * change_mm / (servo_s * servo_s);
         let there_mm_s = (after_mm - before_mm) / (2.0 * servo_s) - late_mm_s;
-        let off_rad = ahead.axis.angle_rad - there_mm * rad_per_mm;
-        let off_rad_s = ahead.axis.speed_rad_s - there_mm_s * rad_per_mm;
-        let [broadband, disturbance, quadrature, drift] = ahead.acting_nm;
-        [off_rad, off_rad_s, 0.0, 0.0, broadband, disturbance, quadrature, drift]
+        [angle_rad - there_mm * rad_per_mm, speed_rad_s - there_mm_s * rad_per_mm]
     }
 
     /// What cogging takes along the reference in the period in which what is sent now acts, mm/s of reference speed; by Simpson's rule.

@@ -88,6 +88,11 @@ impl Engagement {
         self.fade
     }
 
+    /// For how long it has been back in the loop, s; none of one that never left it.
+    pub(super) fn back_for_s(&self) -> Option<f64> {
+        self.fade.map(|_| self.for_s)
+    }
+
     /// Goes on by a decision: `bad` is why the controller must not be followed, `good` whether it may be followed again, and
     /// `over` whether its offset has come to rest.
     pub(super) fn go_on(&mut self, bad: Option<Cause>, good: bool, over: bool, period_s: f64) -> State {

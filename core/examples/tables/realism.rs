@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use feedwright::average::quadratic_mean;
 use feedwright::compare::Comparison;
-use feedwright::compare::mean::quadratic_mean;
 use feedwright::compare::table::ComparisonRow;
 
 use super::{Result, heading};

@@ -215,9 +215,7 @@ pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &V
 
 pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let settings = lqg_preview::Settings { price_s2: values.number("price_s2"), learns: false };
-    let (periods, statistics) = (setup.known.period.periods(), setup.statistics::<N>());
-    let known = std::array::from_fn(|i| setup.known.axis(i).with_statistics(periods, statistics[i]));
-    Box::new(LqgPreview::new(known, settings))
+    Box::new(LqgPreview::new(setup.truth::<N>(), settings))
 }
 
 pub(super) fn lqg_identified<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {

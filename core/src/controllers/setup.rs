@@ -3,7 +3,7 @@
 //! The machine itself stays in here: what makes a controller gets no hold of it, and cannot tell it what only the simulation
 //! knows. A training sees a recording of it.
 
-use feedwright_control::axis::statistics::AxisStatistics;
+use feedwright_control::axis::knowledge::AxisKnowledge;
 use feedwright_control::identifier::IdentifierKind;
 use feedwright_control::identifier::adaptation::Spread;
 use feedwright_control::identifier::contour::ContourIdentifier;
@@ -18,7 +18,7 @@ use crate::identify::axes::{self, AxisRecordings, TrainedAxes};
 use crate::identify::axis_parameters::{AxisEstimate, DriveSettings, NotIdentified, identify};
 use crate::identify::contour::Training;
 use crate::identify::{Excitation, cache, servo};
-use crate::machine::{Known, Machine};
+use crate::machine::{Known, KnownAxis, Machine};
 use crate::model::{Model, Origin, one};
 
 /// What a controller is made from.
@@ -204,9 +204,14 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// What is true of the machine beside: for the limit alone.
-    pub(super) fn statistics<const N: usize>(&self) -> [AxisStatistics; N] {
-        self.machine.statistics()
+    /// What is true of the axes of the machine: for the limit alone. A screw with a scale on the table counts as rigid.
+    pub(super) fn truth<const N: usize>(&self) -> [AxisKnowledge; N] {
+        let (periods, statistics) = (self.known.period.periods(), self.machine.statistics::<N>());
+        std::array::from_fn(|i| {
+            let axis = KnownAxis { transmission: self.machine.axis(i).transmission(), ..*self.known.axis(i) };
+            let axis = if axis.scale_on_table { *self.known.axis(i) } else { axis };
+            axis.with_statistics(periods, statistics[i])
+        })
     }
 
     /// Takes a model in place of a training, of the controller that is made next.

@@ -28,7 +28,13 @@
 //! ```
 //!
 //! They tell what the noise does, not what the law does not have: Stribeck's curve goes into the Coulomb friction and the presliding, a
-//! compliant screw with backlash and a bus that is late at random into all of them.
+//! bus that is late at random into all of them.
+//!
+//! | File | What |
+//! |---|---|
+//! | `axis_parameters/free_run.rs` | what the law makes of the commands alone |
+//! | `axis_parameters/output_error_fit.rs` | the steps of Gauss and Newton, and the standard errors |
+//! | `axis_parameters/screw_fit.rs` | whether the ball screw gives, and by how much |
 //!
 //! Source: Gautier, Janot and Vandanjon (2013), A new closed-loop output error method for parameter identification of robot dynamics,
 //! IEEE Trans. Control Systems Technology 21(2), for the output error of an axis in its loop with known gains; Landau and Karimi (1997),
@@ -37,18 +43,19 @@
 //! Longitudinal data analysis using generalized linear models, Biometrika 73(1), for the standard errors.
 
 mod free_run;
+mod output_error_fit;
+mod screw_fit;
 
 use feedwright_control::axis::drive::DriveParameters;
 use feedwright_control::axis::friction::FrictionParameters;
 use feedwright_control::axis::inverse::LoopDelays;
+use feedwright_control::axis::transmission::TransmissionParameters;
 use feedwright_control::axis::{Parameters, Periods};
-use nalgebra::{SMatrix, SVector};
-use rayon::prelude::*;
 use thiserror::Error;
 
 use super::recording::Recording;
 use crate::machine::{KnownAxis, Period};
-use free_run::FreeRun;
+use output_error_fit::{OutputErrorFit, START_KNOTS, Stretch};
 
 /// What a drive is set to: any control shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,6 +76,8 @@ pub struct DriveSettings {
     pub fed_kg_m2: f64,
     /// How late bus and encoder are.
     pub delays: LoopDelays,
+    /// Whether the position is measured at the table, behind the screw.
+    pub scale_on_table: bool,
     /// Periods of its loops.
     pub periods: Periods,
 }
@@ -86,6 +95,7 @@ impl DriveSettings {
             drive: axis.drive,
             fed_kg_m2: axis.drive.acceleration_feedforward * nominal.inertia_kg_m2,
             delays: axis.delays,
+            scale_on_table: axis.scale_on_table,
             periods: period.periods(),
         }
     }
@@ -109,22 +119,67 @@ pub struct AxisParameters {
     pub coulomb_asymmetry_nm: f64,
     /// Deflection before it slides, rad; zero where it cannot be told from none.
     pub presliding_rad: f64,
+    /// The ball screw; rigid where nothing of it shows.
+    pub transmission: TransmissionParameters,
 }
 
 /// Speed over which Coulomb friction turns its sign where nothing of presliding is seen, mm/s of travel: as tnv40's. It only keeps the
 /// law smooth, and is no parameter that a recording could tell: a millisecond of a reversal.
 const SMOOTHING_MM_S: f64 = 0.08;
 
-/// How many they are.
-const PARAMETERS: usize = 5;
-type ParameterVector = SVector<f64, PARAMETERS>;
-type ParameterMatrix = SMatrix<f64, PARAMETERS, PARAMETERS>;
+/// How many they are: inertia and friction, and those of the screw.
+const PARAMETERS: usize = 9;
+/// Those of an axis with a rigid screw.
+const RIGID_PARAMETERS: usize = 5;
 
 impl AxisParameters {
     fn array(self) -> [f64; PARAMETERS] {
-        let Self { inertia_kg_m2, viscous_friction_nm_s, coulomb_friction_nm, coulomb_asymmetry_nm, presliding_rad } =
-            self;
-        [inertia_kg_m2, viscous_friction_nm_s, coulomb_friction_nm, coulomb_asymmetry_nm, presliding_rad]
+        let Self {
+            inertia_kg_m2,
+            viscous_friction_nm_s,
+            coulomb_friction_nm,
+            coulomb_asymmetry_nm,
+            presliding_rad,
+            transmission: TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad },
+        } = self;
+        [
+            inertia_kg_m2,
+            viscous_friction_nm_s,
+            coulomb_friction_nm,
+            coulomb_asymmetry_nm,
+            presliding_rad,
+            table_share,
+            resonance_rad_s,
+            damping_ratio,
+            backlash_rad,
+        ]
+    }
+
+    fn of(values: [f64; PARAMETERS]) -> Self {
+        let [
+            inertia_kg_m2,
+            viscous_friction_nm_s,
+            coulomb_friction_nm,
+            coulomb_asymmetry_nm,
+            presliding_rad,
+            table_share,
+            resonance_rad_s,
+            damping_ratio,
+            backlash_rad,
+        ] = values;
+        Self {
+            inertia_kg_m2,
+            viscous_friction_nm_s,
+            coulomb_friction_nm,
+            coulomb_asymmetry_nm,
+            presliding_rad,
+            transmission: TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad },
+        }
+    }
+
+    /// Whether anything shows of a ball screw that gives.
+    pub fn has_screw(&self) -> bool {
+        self.transmission != TransmissionParameters::RIGID
     }
 
     /// What is then believed of an axis with these settings: nothing of its data sheets but the drive.
@@ -136,6 +191,7 @@ impl AxisParameters {
             nominal,
             drive: settings.drive_of(self.inertia_kg_m2),
             friction: self.friction(),
+            transmission: self.transmission,
             spare_torque_nm: (axis.spare_torque_nm + less_nm).max(0.0),
             ..*axis
         }
@@ -164,11 +220,6 @@ impl AxisParameters {
             presliding_rad: self.presliding_rad,
             ..FrictionParameters::default()
         }
-    }
-
-    fn of(values: [f64; PARAMETERS]) -> Self {
-        let [inertia_kg_m2, viscous_friction_nm_s, coulomb_friction_nm, coulomb_asymmetry_nm, presliding_rad] = values;
-        Self { inertia_kg_m2, viscous_friction_nm_s, coulomb_friction_nm, coulomb_asymmetry_nm, presliding_rad }
     }
 }
 
@@ -217,28 +268,6 @@ pub enum NotIdentified {
 const LEAST_STRETCHES: usize = 2;
 /// Time constants of the position loop after which the beginning is forgotten: what the drive had summed up is not recorded. e^-5 is 0.7 %.
 const SETTLED_CONSTANTS: f64 = 5.0;
-/// Knots that the speed at the start is taken over: the mean of five differences has a fifth of the noise of one.
-const START_KNOTS: usize = 5;
-/// Speed loop beside the position loop, before anything is known: Kv / J four times Kp, as loops are usually set.
-const LOOPS_APART: f64 = 4.0;
-/// Coulomb friction before anything is known, a part of the torque limit; the first steps find it from anywhere.
-const FRICTION_SHARE: f64 = 0.01;
-/// Presliding before anything is known, and the least that is told from none, mm of travel: a fiftieth of the usual 10 um.
-const PRESLIDING_MM: [f64; 2] = [0.005, 0.0002];
-/// Differences to both sides that a derivative is taken over, parts of the scales. A free run that sticks and slips is not smooth: over
-/// differences of a thousandth the derivatives on workshop are mostly that, and 30 steps do not suffice where these need four to six.
-const DIFFERENCES: [f64; PARAMETERS] = [0.05, 0.5, 0.1, 0.1, 0.1];
-/// The inertia is no smaller than this part of what it was a step before: below zero there is no law.
-const LEAST_INERTIA_STEP: f64 = 0.3;
-/// Steps at the most; three to ten are usual.
-const MAX_STEPS: u32 = 30;
-/// Part of the squares below which a step gains nothing: on workshop V itself is irregular by that much, and parameters move by less than
-/// their standard errors.
-const DONE: f64 = 2e-3;
-/// Damping of Levenberg and Marquardt: at the start, after a step that helped and after one that did not; given up at the last.
-const DAMPING: f64 = 1e-3;
-const DAMPING_AFTER: [f64; 2] = [0.1, 10.0];
-const DAMPING_MOST: f64 = 1e6;
 
 /// Finds the parameters of an axis.
 ///
@@ -267,142 +296,13 @@ pub fn identify<const N: usize>(
     if stretches.len() < LEAST_STRETCHES {
         return Err(NotIdentified::TooShort { stretches: stretches.len(), settled_s });
     }
-    OutputErrorFit { settings, stretches, settled }.run()
-}
-
-/// Commands and measured positions of an axis, mm.
-struct Stretch {
-    commands_mm: Vec<f64>,
-    measured_mm: Vec<f64>,
-}
-
-/// What is fitted.
-struct OutputErrorFit<'a> {
-    settings: &'a DriveSettings,
-    stretches: Vec<Stretch>,
-    /// Knots at the beginning of a stretch that are left out.
-    settled: usize,
-}
-
-/// The sum of squares, and a step's equations, in parameters over their scales.
-struct Linearised {
-    gradient: ParameterVector,
-    curvature: ParameterMatrix,
-    /// Sum of the squares of the gradient's parts by stretch.
-    scatter: ParameterMatrix,
-}
-
-impl OutputErrorFit<'_> {
-    fn run(&self) -> Result<AxisEstimate, NotIdentified> {
-        let scales = self.scales();
-        let mut at =
-            AxisParameters { viscous_friction_nm_s: 0.0, coulomb_asymmetry_nm: 0.0, ..AxisParameters::of(scales) };
-        let (mut left, mut damping, mut steps) = (self.left_mm(&at), DAMPING, 0);
-        let mut here = self.linearised(&at, &scales, &left);
-        while steps < MAX_STEPS && damping < DAMPING_MOST {
-            steps += 1;
-            let mut damped = here.curvature;
-            (0..PARAMETERS).for_each(|i| damped[(i, i)] *= 1.0 + damping);
-            let step = damped.cholesky().ok_or(NotIdentified::NotExcited)?.solve(&here.gradient);
-            let next = self.stepped(&at, &scales, &step);
-            let next_left = self.left_mm(&next);
-            let gained = 1.0 - squares(&next_left) / squares(&left);
-            // What is not a number is no gain.
-            if gained >= 0.0 {
-                (at, left, damping) = (next, next_left, damping * DAMPING_AFTER[0]);
-                here = self.linearised(&at, &scales, &left);
-            } else {
-                damping *= DAMPING_AFTER[1];
-            }
-            if gained.abs() < DONE {
-                break;
-            }
-        }
-        self.estimate(at, &scales, &here, &left, steps)
+    let fit = OutputErrorFit { settings, stretches, settled };
+    let rigid = fit.rigid()?;
+    // A scale on the table sees what the screw does, and the loops hold the table.
+    if settings.scale_on_table {
+        return Ok(rigid);
     }
-
-    /// Sizes of the parameters before anything is known; those of all but the inertia and the presliding begin at zero.
-    fn scales(&self) -> [f64; PARAMETERS] {
-        let DriveSettings { rad_per_mm, kp_1_s, kv_nm_s_per_rad, torque_limit_nm, .. } = *self.settings;
-        let friction_nm = FRICTION_SHARE * torque_limit_nm;
-        let inertia = kv_nm_s_per_rad / (LOOPS_APART * kp_1_s);
-        [inertia, 0.01 * kv_nm_s_per_rad, friction_nm, friction_nm, PRESLIDING_MM[0] * rad_per_mm]
-    }
-
-    /// What the free run of these parameters leaves of each measured position, mm, by stretch.
-    fn left_mm(&self, at: &AxisParameters) -> Vec<Vec<f64>> {
-        let run = FreeRun::new(self.settings, at);
-        let left = |stretch: &Stretch| {
-            let Stretch { commands_mm, measured_mm } = stretch;
-            let moved_mm = measured_mm[START_KNOTS] - measured_mm[0];
-            let start_mm_s = moved_mm / (START_KNOTS as f64 * self.settings.periods.servo_s);
-            let simulated_mm = run.measured_mm(commands_mm, measured_mm[0], start_mm_s);
-            let pairs = measured_mm.iter().zip(&simulated_mm).skip(self.settled);
-            pairs.map(|(measured, simulated)| measured - simulated).collect()
-        };
-        self.stretches.par_iter().map(left).collect()
-    }
-
-    fn linearised(&self, at: &AxisParameters, scales: &[f64; PARAMETERS], left: &[Vec<f64>]) -> Linearised {
-        let moved_by = |i: usize, by: f64| {
-            let mut values = at.array();
-            values[i] += by * DIFFERENCES[i] * scales[i];
-            self.left_mm(&AxisParameters::of(values))
-        };
-        let moved: [[Vec<Vec<f64>>; 2]; PARAMETERS] = std::array::from_fn(|i| [moved_by(i, -1.0), moved_by(i, 1.0)]);
-        let mut curvature = ParameterMatrix::zeros();
-        let (mut scatter, mut gradient) = (ParameterMatrix::zeros(), ParameterVector::zeros());
-        for (stretch, left) in left.iter().enumerate() {
-            let mut of_stretch = ParameterVector::zeros();
-            for (k, left) in left.iter().enumerate() {
-                let slopes = ParameterVector::from_fn(|i, _| {
-                    let [below, above] = &moved[i];
-                    (below[stretch][k] - above[stretch][k]) / (2.0 * DIFFERENCES[i])
-                });
-                of_stretch.axpy(*left, &slopes, 1.0);
-                curvature.ger(1.0, &slopes, &slopes, 1.0);
-            }
-            scatter.ger(1.0, &of_stretch, &of_stretch, 1.0);
-            gradient += of_stretch;
-        }
-        Linearised { gradient, curvature, scatter }
-    }
-
-    /// The parameters after a step, where there is a law.
-    fn stepped(&self, at: &AxisParameters, scales: &[f64; PARAMETERS], step: &ParameterVector) -> AxisParameters {
-        let before = at.array();
-        let mut next = AxisParameters::of(std::array::from_fn(|i| before[i] + step[i] * scales[i]));
-        next.inertia_kg_m2 = next.inertia_kg_m2.max(LEAST_INERTIA_STEP * at.inertia_kg_m2);
-        next.viscous_friction_nm_s = next.viscous_friction_nm_s.max(0.0);
-        next.coulomb_friction_nm = next.coulomb_friction_nm.max(0.0);
-        next.presliding_rad = next.presliding_rad.max(PRESLIDING_MM[1] * self.settings.rad_per_mm);
-        next
-    }
-
-    fn estimate(
-        &self,
-        at: AxisParameters,
-        scales: &[f64; PARAMETERS],
-        here: &Linearised,
-        left: &[Vec<f64>],
-        steps: u32,
-    ) -> Result<AxisEstimate, NotIdentified> {
-        let inverse = here.curvature.cholesky().ok_or(NotIdentified::NotExcited)?.inverse();
-        let n = self.stretches.len() as f64;
-        let covariance = inverse * here.scatter * inverse * (n / (n - 1.0));
-        let standard = std::array::from_fn(|i| covariance[(i, i)].max(0.0).sqrt() * scales[i]);
-        let knots: usize = left.iter().map(Vec::len).sum();
-        let left_um = (squares(left) / knots as f64).sqrt() * 1e3;
-        let mut at = at;
-        if at.presliding_rad <= PRESLIDING_MM[1] * self.settings.rad_per_mm {
-            at.presliding_rad = 0.0;
-        }
-        Ok(AxisEstimate { parameters: at, standard_errors: AxisParameters::of(standard), left_um, steps })
-    }
-}
-
-fn squares(left: &[Vec<f64>]) -> f64 {
-    left.iter().flatten().map(|left| left * left).sum()
+    Ok(screw_fit::with_screw(&fit, &rigid).unwrap_or(rigid))
 }
 
 #[cfg(test)]

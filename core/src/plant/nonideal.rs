@@ -7,14 +7,15 @@
 //! What the machine file does not name is passed over, to the bit.
 
 use feedwright_control::axis::drive::{DriveLaw, DriveParameters, DriveState};
-use feedwright_control::axis::friction::{FrictionLaw, FrictionParameters};
-use feedwright_control::axis::{self, AxisLaw, AxisState};
+use feedwright_control::axis::friction::FrictionParameters;
+use feedwright_control::axis::mechanics::{MechanicsLaw, MechanicsState};
+use feedwright_control::axis::transmission::TableState;
+use feedwright_control::axis::{AxisLaw, AxisState};
 
 use super::drive::{Delay, in_steps, torque_step_nm};
 use super::encoder::{Encoder, Latency, SpeedByDifference};
 use super::noise::{CorrelatedNoise, RandomStream, RandomUse};
 use super::torque::{MotorTorque, Wander, broadband};
-use super::transmission::Coupling;
 use crate::machine::{Axis, Machine};
 
 /// What an axis has on top of the ideal one, and its state.
@@ -30,17 +31,12 @@ pub(super) struct NonidealAxis {
     /// Whether there is any of the two.
     is_sensed: bool,
     motor: Option<MotorTorque>,
-    friction: Option<FrictionLaw>,
-    /// Friction of the presliding spring, N m.
-    presliding_nm: f64,
-    inverse_inertia: f64,
+    mechanics: MechanicsLaw,
     broadband: Option<CorrelatedNoise>,
     pub(super) wander: Option<Wander>,
-    coupling: Option<Coupling>,
     scale_on_table: bool,
-    /// Angle of the table at the motor shaft, rad, and its speed, rad/s; those of the motor where there is no coupling.
-    pub(super) table_rad: f64,
-    table_rad_s: f64,
+    /// Table and friction; the motor is given at each step.
+    masses: MechanicsState,
 }
 
 /// A mechanics period: its number within the servo period, and since the start of the machine.
@@ -54,7 +50,6 @@ impl NonidealAxis {
     pub(super) fn new(machine: &Machine, index: usize, law: &AxisLaw, angle_rad: f64, seed: u64) -> Self {
         let (axis, period) = (machine.axis(index), &machine.period);
         let encoder = Encoder::new(axis, RandomStream::new(seed, index, RandomUse::Encoder));
-        let friction = axis.friction();
         let latency = Latency::new(axis, period, angle_rad);
         let speed = SpeedByDifference::new(axis, encoder, seed, index);
         Self {
@@ -67,15 +62,11 @@ impl NonidealAxis {
             latency,
             speed,
             motor: MotorTorque::new(axis),
-            friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(law, friction)),
-            presliding_nm: 0.0,
-            inverse_inertia: 1.0 / axis.inertia_kg_m2,
+            mechanics: MechanicsLaw::new(law, axis.friction(), axis.transmission()),
             broadband: broadband(axis, period.mechanics_s, seed, index),
             wander: Wander::new(axis, period.servo_s, period.mechanics_s, seed, index),
-            coupling: axis.transmission.as_ref().map(|transmission| Coupling::new(axis, transmission)),
             scale_on_table: axis.transmission.is_some_and(|transmission| transmission.scale_on_table),
-            table_rad: angle_rad,
-            table_rad_s: 0.0,
+            masses: MechanicsState::at_rest(angle_rad),
         }
     }
 
@@ -104,11 +95,10 @@ impl NonidealAxis {
     /// The axis goes on as another one: where its parts are and how fast, what its drive has summed up, and the disturbance's phase.
     pub(super) fn take_over(&mut self, before: Option<&Self>, motor: &AxisState) {
         let Some(before) = before else {
-            (self.table_rad, self.table_rad_s) = (motor.angle_rad, motor.speed_rad_s);
+            self.masses.table = TableState { angle_rad: motor.angle_rad, speed_rad_s: motor.speed_rad_s };
             return;
         };
-        (self.table_rad, self.table_rad_s) = (before.table_rad, before.table_rad_s);
-        (self.drive_state, self.presliding_nm) = (before.drive_state, before.presliding_nm);
+        (self.masses, self.drive_state) = (before.masses, before.drive_state);
         if let (Some(wander), Some(before)) = (&mut self.wander, &before.wander) {
             wander.take_over(before);
         }
@@ -122,10 +112,16 @@ impl NonidealAxis {
         }
     }
 
+    /// Angle of the table at the motor shaft, rad; the motor's where the screw is rigid.
+    #[inline]
+    pub(super) fn table_rad(&self) -> f64 {
+        self.masses.table.angle_rad
+    }
+
     /// What the encoder shows.
     #[inline]
     fn shown_rad(&self, motor: &AxisState, counter: u64) -> f64 {
-        self.encoder.read(if self.scale_on_table { self.table_rad } else { motor.angle_rad }, counter)
+        self.encoder.read(if self.scale_on_table { self.table_rad() } else { motor.angle_rad }, counter)
     }
 
     /// The position loop: what it asks for leaves for the drive.
@@ -157,7 +153,9 @@ impl NonidealAxis {
             Some(unevenness) => unevenness.at_nm(torque_nm, motor.angle_rad),
             None => torque_nm,
         };
-        self.mechanics(law, motor, motor_nm, load_nm);
+        self.masses.motor = *motor;
+        self.mechanics.advance(&mut self.masses, motor_nm, load_nm);
+        *motor = self.masses.motor;
         torque_nm
     }
 
@@ -174,48 +172,4 @@ impl NonidealAxis {
             None => motor.speed_rad_s,
         }
     }
-
-    #[inline]
-    fn mechanics(&mut self, law: &AxisLaw, motor: &mut AxisState, motor_nm: f64, load_nm: f64) {
-        let dt_s = law.periods.mechanics_s;
-        match &self.coupling {
-            Some(coupling) => {
-                let twist_rad = motor.angle_rad - self.table_rad;
-                let through = coupling.torque_nm(twist_rad, motor.speed_rad_s - self.table_rad_s);
-                motor.speed_rad_s += dt_s * coupling.inverse_motor_inertia * (motor_nm - through);
-                match &self.friction {
-                    Some(friction) => {
-                        let (forces_nm, inverse) = (through - load_nm, coupling.inverse_table_inertia);
-                        let slide = &mut self.presliding_nm;
-                        self.table_rad_s = friction.speed_after_rad_s(forces_nm, inverse, self.table_rad_s, slide);
-                    }
-                    None => {
-                        let load_nm = friction_nm(law, self.table_rad_s) + load_nm;
-                        self.table_rad_s += dt_s * coupling.inverse_table_inertia * (through - load_nm);
-                    }
-                }
-                motor.angle_rad += dt_s * motor.speed_rad_s;
-                self.table_rad += dt_s * self.table_rad_s;
-            }
-            None => {
-                match &self.friction {
-                    Some(friction) => {
-                        let (forces_nm, inverse) = (motor_nm - load_nm, self.inverse_inertia);
-                        let slide = &mut self.presliding_nm;
-                        motor.speed_rad_s = friction.speed_after_rad_s(forces_nm, inverse, motor.speed_rad_s, slide);
-                        motor.angle_rad += dt_s * motor.speed_rad_s;
-                    }
-                    None => law.accelerate(motor_nm - (friction_nm(law, motor.speed_rad_s) + load_nm), motor),
-                }
-                (self.table_rad, self.table_rad_s) = (motor.angle_rad, motor.speed_rad_s);
-            }
-        }
-    }
-}
-
-/// Viscous and Coulomb friction alone, N m.
-#[inline]
-fn friction_nm(law: &AxisLaw, speed_rad_s: f64) -> f64 {
-    let [sign] = axis::signs(&[*law], [speed_rad_s]);
-    law.friction_nm(speed_rad_s, sign)
 }

@@ -11,6 +11,8 @@ equations", Int. J. Control 77).
 State: x, w (rad, rad/s of the motor), n (broadband torque), p, q (disturbance and its quadrature), d (random walk), N m.
 In a mechanics period dt, under a reference speed v:
     w' = w + dt / J (Kv (v - w) - B w - n - p - d),   x' = x + dt w'
+Behind a ball screw that gives, with xt, wt of the table as two states more, k its stiffness and c its damping, it is the table that costs:
+    T = k (x - xt) + c (w - wt),   w' = w + dt / Jm (Kv (v - w) - T),   wt' = wt + dt / Jt (T - B wt - n - p - d)
     n' = e^(-dt / tn) n,   (p, q)' = e^(-dt / tm) turned by 2 pi f dt,   d' = d
 """
 
@@ -109,6 +111,9 @@ class Axis:
         self.torque, self.torque_s = axis.get("torque_noise_nm", 0.0), axis.get("torque_noise_s", 0.0)
         self.swing, self.omega = axis["disturbance_nm"], 2.0 * math.pi * axis["disturbance_hz"]
         wander = axis.get("disturbance_wander", 0.0) * self.omega
+        self.screw = axis.get("transmission")
+        self.size = 8 if self.screw else 6
+        self.table = 6 if self.screw else 0
         self.memory_s = min(1.0 / wander, LONGEST_MEMORY_S) if wander else LONGEST_MEMORY_S
 
     def substep(self):
@@ -127,10 +132,24 @@ class Axis:
             [0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
         ]
         b = [[dt * j * self.kv], [j * self.kv], [0.0], [0.0], [0.0], [0.0]]
+        return self.two_masses(a) if self.screw else (a, b)
+
+    def two_masses(self, one):
+        dt, table = self.dt, self.inertia * self.screw["table_share"]
+        omega = 2.0 * math.pi * self.screw["resonance_hz"]
+        k, c = table * omega**2, 2.0 * self.screw["damping_ratio"] * table * omega
+        jm, jt = dt / (self.inertia - table), dt / table
+        # x, w, n, p, q, d, xt, wt
+        speed = [-jm * k, 1.0 - jm * (self.kv + c), 0.0, 0.0, 0.0, 0.0, jm * k, jm * c]
+        of_table = [jt * k, jt * c, -jt, -jt, 0.0, -jt, -jt * k, 1.0 - jt * (c + self.viscous)]
+        place = [float(i == 0) + dt * s for i, s in enumerate(speed)]
+        place_of_table = [float(i == 6) + dt * s for i, s in enumerate(of_table)]
+        a = [place, speed] + [row + [0.0, 0.0] for row in one[2:]] + [place_of_table, of_table]
+        b = [[dt * jm * self.kv], [jm * self.kv]] + [[0.0] for _ in range(6)]
         return a, b
 
     def noise(self, drift):
-        q = zeros(6, 6)
+        q = zeros(self.size, self.size)
         fresh = 1.0 - math.exp(-2.0 * self.dt / self.torque_s) if self.torque_s else 1.0
         q[2][2] = self.torque**2 * fresh
         q[3][3] = q[4][4] = 0.5 * self.swing**2 * (1.0 - math.exp(-2.0 * self.dt / self.memory_s))
@@ -140,15 +159,15 @@ class Axis:
     def sampled(self, drift):
         """Over a servo period: A, b, Q, and the cost's W, n, m without the price."""
         a, b = self.substep()
-        states, inputs, q = eye(6), zeros(6, 1), zeros(6, 6)
-        w, cross, m = zeros(6, 6), zeros(6, 1), 0.0
+        states, inputs, q = eye(self.size), zeros(self.size, 1), zeros(self.size, self.size)
+        w, cross, m = zeros(self.size, self.size), zeros(self.size, 1), 0.0
         for _ in range(self.substeps):
             states, inputs = mul(a, states), add(mul(a, inputs), b)
             q = add(mul(a, mul(q, turn(a))), self.noise(drift))
-            place, share = turn([states[0]]), 1.0 / self.substeps
+            place, share = turn([states[self.table]]), 1.0 / self.substeps
             w = add(w, mul(place, turn(place)), share)
-            cross = add(cross, place, share * inputs[0][0])
-            m += share * inputs[0][0] ** 2
+            cross = add(cross, place, share * inputs[self.table][0])
+            m += share * inputs[self.table][0] ** 2
         return states, inputs, q, w, cross, m
 
 
@@ -157,7 +176,7 @@ def main(path, name, price_s2):
     a, b, q, w, cross, m = axis.sampled(drift=True)
     m += float(price_s2)
     variance = axis.noise_rad**2
-    c = [[1.0], [0.0], [0.0], [0.0], [0.0], [0.0]]
+    c = [[float(i == 0)] for i in range(axis.size)]
     # The filter: the same equation of the transposed system.
     p = riccati(turn(a), scale(mul(c, turn(c)), 1.0 / variance), q)
     gain = scale(mul(p, c), 1.0 / (p[0][0] + variance))
@@ -177,7 +196,7 @@ def main(path, name, price_s2):
     kqk = add(kqk, mul(gain, turn(gain)), variance)
     noise = [p + q for p, q in zip(true_q, qk)] + [p + q for p, q in zip(turn(qk), kqk)]
     covariance = lyapunov(upper + lower, noise)
-    rms_um = math.sqrt(covariance[0][0]) / axis.rad * 1e3
+    rms_um = math.sqrt(covariance[axis.table][axis.table]) / axis.rad * 1e3
     print(json.dumps({"filter": [g for [g] in gain], "regulator": regulator[0], "rms_um": rms_um}))
 
 

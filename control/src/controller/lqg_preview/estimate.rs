@@ -10,14 +10,15 @@
 //!
 //! Source: Gelb (1974), Applied Optimal Estimation, section 6.1, the extended filter; its gain is that of the linear part, constant.
 
+use crate::axis::AxisLaw;
 use crate::axis::drive::{DriveLaw, DriveReference, DriveState};
-use crate::axis::friction::{FrictionLaw, FrictionParameters};
 use crate::axis::knowledge::AxisKnowledge;
+use crate::axis::mechanics::{MechanicsLaw, MechanicsState};
 use crate::axis::statistics::AxisStatistics;
-use crate::axis::{self, AxisLaw, AxisState};
 use crate::sine::sin;
 
 use super::linear::{LinearAxis, STATES, measured_rad2};
+use super::outliers::{self, Outliers};
 use super::riccati::filter;
 use super::whiteness::{GainTable, Whiteness};
 
@@ -27,17 +28,22 @@ pub(super) const KEPT_PERIODS: usize = 48;
 /// Innovations that are smaller than this part of the measurement's noise are not learnt from.
 const LEAST_SHARE: f64 = 0.01;
 
+/// Largest load that counts as one, a part of the torque limit: about what a drive that may reach three times its rated torque for a moment
+/// can hold.
+const LARGEST_LOAD: f64 = 1.0 / 3.0;
+
 /// What does not change of an axis.
 #[derive(Debug, Clone)]
 pub(super) struct AxisModel {
     pub(super) law: AxisLaw,
     pub(super) drive: DriveLaw,
-    friction: Option<FrictionLaw>,
+    pub(super) mechanics: MechanicsLaw,
     statistics: AxisStatistics,
     linear: LinearAxis,
     gains: GainTable,
-    /// Innovations that are smaller are not learnt from, rad.
+    /// Innovations that are smaller are not learnt from, and those that are larger are believed in part, rad.
     least_rad: f64,
+    believed_rad: f64,
     /// Mechanics periods from a measurement until it is there, and from a reference until it acts.
     late: [u32; 2],
 }
@@ -45,11 +51,45 @@ pub(super) struct AxisModel {
 /// State of an axis, and what acts on it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Estimate {
-    pub(super) axis: AxisState,
+    pub(super) masses: MechanicsState,
     pub(super) drive: DriveState,
-    pub(super) presliding_nm: f64,
     /// Broadband torque, the disturbance and its quadrature, and what is left, N m.
     pub(super) acting_nm: [f64; 4],
+}
+
+impl Estimate {
+    /// What the filter finds them to be higher.
+    fn correct(&mut self, corrections: [f64; STATES]) {
+        let [x, w, i, y, n, p, q, d, xt, wt] = corrections;
+        let MechanicsState { motor, table, .. } = &mut self.masses;
+        motor.angle_rad += x;
+        motor.speed_rad_s += w;
+        table.angle_rad += xt;
+        table.speed_rad_s += wt;
+        self.drive.correct(i, y);
+        self.acting_nm.iter_mut().zip([n, p, q, d]).for_each(|(nm, more)| *nm += more);
+    }
+}
+
+/// What is learnt from innovations.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Learnt {
+    pub(super) whiteness: Whiteness,
+    pub(super) outliers: Outliers,
+}
+
+impl Learnt {
+    /// Nothing yet.
+    pub(super) const NOTHING: Self = Self { whiteness: Whiteness::GIVEN, outliers: Outliers::NONE };
+}
+
+/// What a measurement told.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Innovation {
+    /// By how much it was not expected, rad.
+    pub(super) missed_rad: f64,
+    /// As what it is taken, rad.
+    pub(super) measured_rad: f64,
 }
 
 /// What was sent to the drive, the newest first.
@@ -60,9 +100,10 @@ pub(super) const NOTHING_SENT: Sent = [DriveReference { speed_rad_s: 0.0, torque
 impl AxisModel {
     /// Of an axis; where it `learns`, with gains for other statistics, too.
     pub(super) fn new(known: &AxisKnowledge, learns: bool) -> Self {
-        let AxisKnowledge { drive, friction, delays, statistics, .. } = *known;
+        let AxisKnowledge { drive, friction, transmission, delays, statistics, .. } = *known;
         let law = known.law();
-        let linear = LinearAxis::new(&law, &drive, &statistics);
+        let mechanics = MechanicsLaw::new(&law, friction, transmission);
+        let linear = LinearAxis::new(&law, &drive, mechanics.transmission(), &statistics);
         let (states, _, noise) = linear.sampled();
         let mut measured = [0.0; STATES];
         measured[0] = 1.0;
@@ -74,7 +115,7 @@ impl AxisModel {
         Self {
             law,
             drive: DriveLaw::new(&law, drive),
-            friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, friction)),
+            mechanics,
             statistics,
             linear,
             gains: if learns {
@@ -83,6 +124,7 @@ impl AxisModel {
                 GainTable::constant(gains(measured_rad2))
             },
             least_rad: LEAST_SHARE * libm::sqrt(measured_rad2),
+            believed_rad: outliers::believed_rad(&law, measured_rad2),
             late: [delays.measurement_s, delays.drive_s].map(late),
         }
     }
@@ -94,12 +136,7 @@ impl AxisModel {
 
     /// At rest at an angle.
     pub(super) fn at_rest(angle_rad: f64) -> Estimate {
-        Estimate {
-            axis: AxisState { angle_rad, ..AxisState::default() },
-            drive: DriveState::default(),
-            presliding_nm: 0.0,
-            acting_nm: [0.0; 4],
-        }
+        Estimate { masses: MechanicsState::at_rest(angle_rad), drive: DriveState::default(), acting_nm: [0.0; 4] }
     }
 
     /// Torque of the motor beside the drive's at an angle, N m.
@@ -115,26 +152,33 @@ impl AxisModel {
         self.go_on(estimate, sent, measured_late + periods, periods);
     }
 
-    /// One servo period on, and what was measured at its end; by how much that was not expected, rad.
+    /// One servo period on, and what was measured at its end: by how much that was not expected, rad, and as what it is taken.
     pub(super) fn correct(
         &self,
         estimate: &mut Estimate,
         sent: &Sent,
         measured_rad: f64,
-        whiteness: &mut Whiteness,
-    ) -> f64 {
+        learnt: &mut Learnt,
+    ) -> Innovation {
         self.predict(estimate, sent);
         let AxisStatistics { interpolation_rad, interpolation_phase_rad, signal_per_rad, .. } = self.statistics;
-        let angle_rad = estimate.axis.angle_rad;
+        let angle_rad = estimate.masses.motor.angle_rad;
         let shown_rad = angle_rad + interpolation_rad * sin(signal_per_rad * angle_rad + interpolation_phase_rad);
         let missed_rad = measured_rad - shown_rad;
-        whiteness.take_in(measured_rad, missed_rad, self.least_rad);
-        let [x, w, i, y, acting @ ..] = whiteness.gains(&self.gains).map(|gain| gain * missed_rad);
-        estimate.axis.angle_rad += x;
-        estimate.axis.speed_rad_s += w;
-        estimate.drive.correct(i, y);
-        estimate.acting_nm.iter_mut().zip(acting).for_each(|(nm, more)| *nm += more);
-        missed_rad
+        let (believed_rad, servo_s) = (self.believed_rad, self.law.periods.servo_s);
+        let taken_rad = learnt.outliers.bounded_rad(measured_rad, missed_rad, believed_rad, servo_s);
+        learnt.whiteness.take_in(measured_rad, taken_rad, self.least_rad);
+        estimate.correct(learnt.whiteness.gains(&self.gains).map(|gain| gain * taken_rad));
+        // A frozen encoder is for the safety layer to see: it tells nothing of the predictions.
+        let missed_rad = if taken_rad == 0.0 { 0.0 } else { missed_rad };
+        Innovation { missed_rad, measured_rad: shown_rad + taken_rad }
+    }
+
+    /// Whether there can be such a load. One that is larger is a law that is not that of the axis: other gains, another inertia.
+    pub(super) fn is_possible(&self, estimate: &Estimate) -> bool {
+        let [broadband, disturbance, _, drift] = estimate.acting_nm;
+        // What is not a number is none.
+        (broadband + disturbance + drift).abs() <= LARGEST_LOAD * self.law.parameters.torque_limit_nm
     }
 
     /// As it will be when what is sent now begins to act.
@@ -159,23 +203,11 @@ impl AxisModel {
     }
 
     fn substep(&self, estimate: &mut Estimate, reference: DriveReference) {
-        let (law, state) = (&self.law, &mut estimate.axis);
-        let drive_nm = self.drive.torque_nm(law, reference, state.speed_rad_s, &mut estimate.drive);
-        let [broadband, disturbance, _, drift] = estimate.acting_nm;
-        let forces_nm = drive_nm + self.cogging_nm(state.angle_rad) - broadband - disturbance - drift;
-        match &self.friction {
-            Some(friction) => {
-                let inverse_inertia = 1.0 / law.parameters.inertia_kg_m2;
-                let w = state.speed_rad_s;
-                state.speed_rad_s =
-                    friction.speed_after_rad_s(forces_nm, inverse_inertia, w, &mut estimate.presliding_nm);
-                state.angle_rad += law.periods.mechanics_s * state.speed_rad_s;
-            }
-            None => {
-                let [sign] = axis::signs(&[*law], [state.speed_rad_s]);
-                law.accelerate(forces_nm - law.friction_nm(state.speed_rad_s, sign), state);
-            }
-        }
-        estimate.acting_nm = self.linear.acting_after(&estimate.acting_nm);
+        let Estimate { masses, drive, acting_nm } = estimate;
+        let drive_nm = self.drive.torque_nm(&self.law, reference, masses.motor.speed_rad_s, drive);
+        let motor_nm = drive_nm + self.cogging_nm(masses.motor.angle_rad);
+        let [broadband, disturbance, _, drift] = *acting_nm;
+        self.mechanics.advance(masses, motor_nm, broadband + disturbance + drift);
+        *acting_nm = self.linear.acting_after(acting_nm);
     }
 }

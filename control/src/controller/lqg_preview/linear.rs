@@ -7,6 +7,9 @@
 //! | n | N m | broadband torque, noise with a correlation time |
 //! | p, q | N m | the disturbance and its quadrature: an oscillator that forgets its phase |
 //! | d | N m | what is left, a random walk |
+//! | xt, wt | rad, rad/s | of the table; those of the motor where the ball screw is rigid |
+//!
+//! Backlash is not linear, and not here: the flanks are taken to be in contact.
 //!
 //! A sine whose frequency wanders by s, of standard deviation, keeps its phase for about 1 / s: that long the oscillator remembers, and
 //! the noise that it is given holds its amplitude up.
@@ -17,11 +20,14 @@
 use crate::axis::AxisLaw;
 use crate::axis::drive::DriveParameters;
 use crate::axis::statistics::AxisStatistics;
+use crate::axis::transmission::TransmissionLaw;
 
 use super::riccati::{PeriodCost, StateMatrix, applied, inner, product, sum, transposed};
 
 /// Number of states.
-pub(super) const STATES: usize = 8;
+pub(super) const STATES: usize = 10;
+/// The table's angle among them: it is what cuts.
+const TABLE: usize = 8;
 /// Longest time for which the oscillator remembers its phase, s: one that remembers longer takes longer to find it at the start. On tnv40
 /// with 0.5 um of encoder noise 10 s leave 0.08 um RMS, 100 s 0.09.
 const LONGEST_MEMORY_S: f64 = 10.0;
@@ -45,24 +51,42 @@ pub(super) struct LinearAxis {
 
 impl LinearAxis {
     /// Of an axis, with what its drive has beside and what acts on it.
-    pub(super) fn new(law: &AxisLaw, drive: &DriveParameters, statistics: &AxisStatistics) -> Self {
+    pub(super) fn new(
+        law: &AxisLaw,
+        drive: &DriveParameters,
+        screw: Option<&TransmissionLaw>,
+        statistics: &AxisStatistics,
+    ) -> Self {
         let (parameters, dt_s) = (law.parameters, law.periods.mechanics_s);
         let kv = parameters.kv_nm_s_per_rad;
         let integral = if drive.speed_integral_s > 0.0 { kv * dt_s / drive.speed_integral_s } else { 0.0 };
         let filter = dt_s / (dt_s + drive.filter_lag_s(dt_s));
         // Columns: what becomes of a unit of each state; the last is the reference.
         let after = |state: [f64; STATES], reference_rad_s: f64| {
-            let [x, w, i, y, n, p, q, d] = state;
+            let [x, w, i, y, n, p, q, d, xt, wt] = state;
             let error_rad_s = reference_rad_s - w;
             let i = i + integral * error_rad_s;
             let y = y + filter * (kv * error_rad_s + i - y);
-            let left_nm = y - parameters.viscous_friction_nm_s * w - n - p - d;
-            let w = w + dt_s / parameters.inertia_kg_m2 * left_nm;
+            let viscous_nm_s = parameters.viscous_friction_nm_s;
+            let [[x, w], [xt, wt]] = match screw {
+                Some(screw) => {
+                    let through_nm = screw.stiffness_nm_rad * (x - xt) + screw.damping_nm_s * (w - wt);
+                    let w = w + dt_s * screw.inverse_motor_inertia * (y - through_nm);
+                    let left_nm = through_nm - viscous_nm_s * wt - n - p - d;
+                    let wt = wt + dt_s * screw.inverse_table_inertia * left_nm;
+                    [[x + dt_s * w, w], [xt + dt_s * wt, wt]]
+                }
+                None => {
+                    let left_nm = y - viscous_nm_s * w - n - p - d;
+                    let w = w + dt_s / parameters.inertia_kg_m2 * left_nm;
+                    [[x + dt_s * w, w]; 2]
+                }
+            };
             let (sin, cos) = libm::sincos(statistics.disturbance_rad_s * dt_s);
             let keep = libm::exp(-dt_s / memory_s(statistics));
             let forget =
                 if statistics.torque_noise_s > 0.0 { libm::exp(-dt_s / statistics.torque_noise_s) } else { 0.0 };
-            [x + dt_s * w, w, i, y, forget * n, keep * (cos * p + sin * q), keep * (cos * q - sin * p), d]
+            [x, w, i, y, forget * n, keep * (cos * p + sin * q), keep * (cos * q - sin * p), d, xt, wt]
         };
         let columns: StateMatrix<STATES> = core::array::from_fn(|j| after(unit(j), 0.0));
         Self {
@@ -87,7 +111,7 @@ impl LinearAxis {
         (states, input, covariance)
     }
 
-    /// Mean square of the position over the servo period, and a price for the input.
+    /// Mean square of the table's position over the servo period, and a price for the input.
     pub(super) fn cost(&self, price_s2: f64) -> PeriodCost<STATES> {
         let mut cost = PeriodCost { states: [[0.0; STATES]; STATES], cross: [0.0; STATES], input: price_s2 };
         let (mut states, mut input): (StateMatrix<STATES>, _) = (core::array::from_fn(unit), [0.0; STATES]);
@@ -96,21 +120,21 @@ impl LinearAxis {
             states = product(&self.substep, &states);
             let carried = applied(&self.substep, &input);
             input = core::array::from_fn(|i| carried[i] + self.substep_input[i]);
-            let [position, ..] = states;
+            let position = states[TABLE];
             for (i, (row, cross)) in cost.states.iter_mut().zip(&mut cost.cross).enumerate() {
                 row.iter_mut().zip(&position).for_each(|(sum, other)| *sum += share * position[i] * other);
-                *cross += share * position[i] * input[0];
+                *cross += share * position[i] * input[TABLE];
             }
-            cost.input += share * input[0] * input[0];
+            cost.input += share * input[TABLE] * input[TABLE];
         }
         cost
     }
 
-    /// The states a mechanics period later, of which the first four are the axis's own and are not wanted: what acts, alone.
+    /// What acts a mechanics period later.
     pub(super) fn acting_after(&self, acting: &[f64; 4]) -> [f64; 4] {
         let [n, p, q, d] = *acting;
-        let state = [0.0, 0.0, 0.0, 0.0, n, p, q, d];
-        let [.., broadband, disturbance, quadrature, drift] = &self.substep;
+        let state = [0.0, 0.0, 0.0, 0.0, n, p, q, d, 0.0, 0.0];
+        let [_, _, _, _, broadband, disturbance, quadrature, drift, ..] = &self.substep;
         [broadband, disturbance, quadrature, drift].map(|row| inner(row, &state))
     }
 }
@@ -140,6 +164,6 @@ fn noise(law: &AxisLaw, statistics: &AxisStatistics) -> StateMatrix<STATES> {
     let swing_nm2 = 0.5 * amplitude_nm * amplitude_nm * fresh(memory_s(statistics));
     let drift_nm = DRIFT_SHARE * (law.parameters.coulomb_friction_nm + amplitude_nm);
     let drift_nm2 = drift_nm * drift_nm * dt_s;
-    let variances = [0.0, 0.0, 0.0, 0.0, broadband_nm2, swing_nm2, swing_nm2, drift_nm2];
+    let variances = [0.0, 0.0, 0.0, 0.0, broadband_nm2, swing_nm2, swing_nm2, drift_nm2, 0.0, 0.0];
     core::array::from_fn(|i| core::array::from_fn(|j| if i == j { variances[i] } else { 0.0 }))
 }

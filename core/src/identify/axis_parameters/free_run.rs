@@ -4,10 +4,10 @@
 //! mechanics periods, and takes nothing of the recording but the commands and where the axis starts: no measured position comes in, so
 //! neither does its noise.
 
+use feedwright_control::axis::AxisLaw;
 use feedwright_control::axis::drive::{DriveLaw, DriveReference, DriveState};
-use feedwright_control::axis::friction::FrictionLaw;
 use feedwright_control::axis::inverse::LoopDelays;
-use feedwright_control::axis::{AxisLaw, AxisState};
+use feedwright_control::axis::mechanics::{MechanicsLaw, MechanicsState};
 
 use super::{AxisParameters, DriveSettings};
 
@@ -15,7 +15,7 @@ use super::{AxisParameters, DriveSettings};
 pub(super) struct FreeRun {
     law: AxisLaw,
     drive: DriveLaw,
-    friction: FrictionLaw,
+    mechanics: MechanicsLaw,
     /// Delays of the drive and of the measurement, mechanics periods.
     late: [usize; 2],
 }
@@ -27,7 +27,7 @@ impl FreeRun {
         Self {
             law,
             drive: DriveLaw::new(&law, settings.drive_of(axis.inertia_kg_m2)),
-            friction: FrictionLaw::new(&law, axis.friction()),
+            mechanics: MechanicsLaw::new(&law, axis.friction(), axis.transmission),
             // A float that is not a number saturates to zero here.
             late: [drive_s, measurement_s].map(|delay_s| (delay_s / settings.periods.mechanics_s).round() as usize),
         }
@@ -40,41 +40,29 @@ impl FreeRun {
         let per_servo = self.law.periods.mechanics_per_servo as usize;
         let [drive_late, measured_late] = self.late;
         let start_rad = start_mm * scale;
-        let mut motor = AxisState { angle_rad: start_rad, speed_rad_s: start_mm_s * scale, error_rad: 0.0 };
-        let (mut drive, mut presliding_nm) = (DriveState::AT_REST, 0.0);
+        let mut masses = MechanicsState::at_rest(start_rad);
+        (masses.motor.speed_rad_s, masses.table.speed_rad_s) = (start_mm_s * scale, start_mm_s * scale);
+        let mut drive = DriveState::AT_REST;
         let mut course_rad = Vec::with_capacity(commands_mm.len() * per_servo);
         let mut sent = Vec::<DriveReference>::with_capacity(commands_mm.len());
         let mut measured_mm = Vec::with_capacity(commands_mm.len());
         for command_mm in commands_mm {
-            course_rad.push(motor.angle_rad);
+            course_rad.push(masses.motor.angle_rad);
             let measured_rad =
                 (course_rad.len() - 1).checked_sub(measured_late).map_or(start_rad, |moment| course_rad[moment]);
             measured_mm.push(measured_rad / scale);
-            sent.push(self.drive.position_loop(&self.law, command_mm * scale, measured_rad, &mut motor, &mut drive));
+            let command_rad = command_mm * scale;
+            sent.push(self.drive.position_loop(&self.law, command_rad, measured_rad, &mut masses.motor, &mut drive));
             for substep in 0..per_servo {
                 if substep > 0 {
-                    course_rad.push(motor.angle_rad);
+                    course_rad.push(masses.motor.angle_rad);
                 }
                 let arrived = (course_rad.len() - 1).checked_sub(drive_late).map(|moment| sent[moment / per_servo]);
-                self.advance(arrived.unwrap_or_default(), &mut motor, &mut drive, &mut presliding_nm);
+                let reference = arrived.unwrap_or_default();
+                let torque_nm = self.drive.torque_nm(&self.law, reference, masses.motor.speed_rad_s, &mut drive);
+                self.mechanics.advance(&mut masses, torque_nm, 0.0);
             }
         }
         measured_mm
-    }
-
-    /// One mechanics period.
-    #[inline]
-    fn advance(
-        &self,
-        reference: DriveReference,
-        motor: &mut AxisState,
-        drive: &mut DriveState,
-        presliding_nm: &mut f64,
-    ) {
-        let torque_nm = self.drive.torque_nm(&self.law, reference, motor.speed_rad_s, drive);
-        let inverse_inertia = 1.0 / self.law.parameters.inertia_kg_m2;
-        motor.speed_rad_s =
-            self.friction.speed_after_rad_s(torque_nm, inverse_inertia, motor.speed_rad_s, presliding_nm);
-        motor.angle_rad += self.law.periods.mechanics_s * motor.speed_rad_s;
     }
 }

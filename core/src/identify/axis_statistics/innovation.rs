@@ -13,14 +13,15 @@
 //! Source: Kailath (1968), An innovations approach to least-squares estimation; Gelb (1974), Applied Optimal Estimation, section 6.1.
 
 use feedwright_control::axis::drive::{DriveLaw, DriveReference, DriveState};
-use feedwright_control::axis::friction::{FrictionLaw, FrictionParameters};
-use feedwright_control::axis::{self, AxisLaw, AxisState};
+use feedwright_control::axis::mechanics::{MechanicsLaw, MechanicsState};
+use feedwright_control::axis::transmission::TableState;
+use feedwright_control::axis::{AxisLaw, AxisState};
 
 use crate::machine::{KnownAxis, Period};
 use crate::spectrum::{Phasor, transformed};
 
-/// Angle, speed, integral, filtered torque, load.
-const STATES: usize = 5;
+/// Angle, speed, integral, filtered torque, angle and speed of the table, load.
+const STATES: usize = 7;
 type FilterVector = [f64; STATES];
 type Matrix = [FilterVector; STATES];
 
@@ -46,7 +47,7 @@ const MOST_MEDIANS: f64 = 4.0;
 pub(super) struct AxisFilter {
     law: AxisLaw,
     drive: DriveLaw,
-    friction: Option<FrictionLaw>,
+    mechanics: MechanicsLaw,
     /// Mechanics periods from a measurement until it is there plus those from a reference until it acts.
     late: u32,
     gains: FilterVector,
@@ -58,9 +59,8 @@ pub(super) struct AxisFilter {
 /// What is estimated of an axis.
 #[derive(Debug, Clone, Copy, Default)]
 struct FilterState {
-    axis: AxisState,
+    masses: MechanicsState,
     drive: DriveState,
-    presliding_nm: f64,
     load_nm: f64,
 }
 
@@ -103,7 +103,7 @@ impl AxisFilter {
         let mut filter = Self {
             law,
             drive: DriveLaw::new(&law, known.drive),
-            friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, friction)),
+            mechanics: MechanicsLaw::new(&law, friction, known.transmission),
             late: substeps(known.delays.measurement_s) + substeps(known.delays.drive_s),
             gains: [0.0; STATES],
             linear: [[0.0; STATES]; STATES],
@@ -132,22 +132,22 @@ impl AxisFilter {
         let servo_s = self.law.periods.servo_s;
         let periods = |s: f64| (s / servo_s).ceil() as usize;
         let Some(&[_, first_rad]) = stretch.first() else { return };
-        let start = AxisState { angle_rad: first_rad, ..AxisState::default() };
-        let mut state = FilterState { axis: start, ..FilterState::default() };
-        let mut position_loop = (start, DriveState::default());
+        let mut state = FilterState { masses: MechanicsState::at_rest(first_rad), ..FilterState::default() };
+        let mut position_loop = (state.masses.motor, DriveState::default());
         let mut sent: Vec<DriveReference> = Vec::with_capacity(stretch.len());
         let (mut turns_for, mut turned_rad, mut forward) = (0, first_rad, true);
         for (n, &[command_rad, measured_rad]) in stretch.iter().enumerate() {
-            let error_rad = measured_rad - state.axis.angle_rad;
-            let speed_rad_s = state.axis.speed_rad_s;
+            let error_rad = measured_rad - state.masses.motor.angle_rad;
+            let speed_rad_s = state.masses.motor.speed_rad_s;
             if (speed_rad_s > 0.0) != forward {
-                (forward, turned_rad) = (speed_rad_s > 0.0, state.axis.angle_rad);
+                (forward, turned_rad) = (speed_rad_s > 0.0, state.masses.motor.angle_rad);
             }
             let [turning_rad_s, turning_rad] = self.turning;
-            let turns = speed_rad_s.abs() < turning_rad_s || (state.axis.angle_rad - turned_rad).abs() < turning_rad;
+            let turns =
+                speed_rad_s.abs() < turning_rad_s || (state.masses.motor.angle_rad - turned_rad).abs() < turning_rad;
             turns_for = if turns { periods(REMEMBERED_S) } else { turns_for.saturating_sub(1) };
             found.error_rad.push(error_rad);
-            found.angle_rad.push(state.axis.angle_rad);
+            found.angle_rad.push(state.masses.motor.angle_rad);
             found.counts.push(n >= periods(START_S));
             found.turns.push(turns_for > 0);
             self.correct(&mut state, error_rad);
@@ -159,9 +159,12 @@ impl AxisFilter {
     }
 
     fn correct(&self, state: &mut FilterState, error_rad: f64) {
-        let [x, w, i, y, d] = self.gains.map(|gain| gain * error_rad);
-        state.axis.angle_rad += x;
-        state.axis.speed_rad_s += w;
+        let [x, w, i, y, xt, wt, d] = self.gains.map(|gain| gain * error_rad);
+        let MechanicsState { motor, table, .. } = &mut state.masses;
+        motor.angle_rad += x;
+        motor.speed_rad_s += w;
+        table.angle_rad += xt;
+        table.speed_rad_s += wt;
         state.drive.correct(i, y);
         state.load_nm += d;
     }
@@ -178,21 +181,9 @@ impl AxisFilter {
     }
 
     fn substep(&self, state: &mut FilterState, reference: DriveReference) {
-        let (law, axis) = (&self.law, &mut state.axis);
-        let drive_nm = self.drive.torque_nm(law, reference, axis.speed_rad_s, &mut state.drive);
-        let forces_nm = drive_nm - state.load_nm;
-        match &self.friction {
-            Some(friction) => {
-                let inverse = 1.0 / law.parameters.inertia_kg_m2;
-                axis.speed_rad_s =
-                    friction.speed_after_rad_s(forces_nm, inverse, axis.speed_rad_s, &mut state.presliding_nm);
-                axis.angle_rad += law.periods.mechanics_s * axis.speed_rad_s;
-            }
-            None => {
-                let [sign] = axis::signs(&[*law], [axis.speed_rad_s]);
-                law.accelerate(forces_nm - law.friction_nm(axis.speed_rad_s, sign), axis);
-            }
-        }
+        let speed_rad_s = state.masses.motor.speed_rad_s;
+        let drive_nm = self.drive.torque_nm(&self.law, reference, speed_rad_s, &mut state.drive);
+        self.mechanics.advance(&mut state.masses, drive_nm, state.load_nm);
     }
 
     /// The linear part of a servo period while friction slides, by differences.
@@ -200,21 +191,28 @@ impl AxisFilter {
         // Far beyond all speeds over which friction turns, and a way that presliding needs.
         let sliding_rad_s = 100.0 * self.turning[0] + self.turning[1] / self.law.periods.servo_s;
         let reference = DriveReference { speed_rad_s: sliding_rad_s, torque_nm: 0.0 };
+        let friction_nm = self.law.friction_nm(sliding_rad_s, 1.0);
+        let behind_rad = self.mechanics.transmission().map_or(0.0, |screw| screw.twist_rad(friction_nm));
         let after = |by: FilterVector| -> FilterVector {
-            let [x, w, i, y, d] = by;
-            let axis = AxisState { angle_rad: x, speed_rad_s: sliding_rad_s + w, error_rad: 0.0 };
+            let [x, w, i, y, xt, wt, d] = by;
+            let motor = AxisState { angle_rad: x, speed_rad_s: sliding_rad_s + w, error_rad: 0.0 };
+            let table = TableState { angle_rad: xt - behind_rad, speed_rad_s: sliding_rad_s + wt };
             let mut drive = DriveState::default();
             drive.correct(i, y);
             let presliding_nm = self.law.parameters.coulomb_friction_nm;
-            let mut state = FilterState { axis, drive, presliding_nm, load_nm: d };
+            let masses = MechanicsState { motor, table, presliding_nm };
+            let mut state = FilterState { masses, drive, load_nm: d };
             (0..self.law.periods.mechanics_per_servo).for_each(|_| self.substep(&mut state, reference));
-            let (drive, axis) = (state.drive, state.axis);
-            [axis.angle_rad, axis.speed_rad_s, drive.integral_nm(), drive.filtered_nm(), state.load_nm]
+            let (drive, MechanicsState { motor, table, .. }) = (state.drive, state.masses);
+            let [integral_nm, filtered_nm] = [drive.integral_nm(), drive.filtered_nm()];
+            let [xt, wt] = [table.angle_rad, table.speed_rad_s];
+            [motor.angle_rad, motor.speed_rad_s, integral_nm, filtered_nm, xt, wt, state.load_nm]
         };
         // A torque is small beside the limit, a speed is what it makes in a servo period.
         let nm = 1e-3 * self.law.parameters.torque_limit_nm;
         let rad_s = nm / self.law.parameters.inertia_kg_m2 * self.law.periods.servo_s;
-        let sizes = [rad_s * self.law.periods.servo_s, rad_s, nm, nm, nm];
+        let rad = rad_s * self.law.periods.servo_s;
+        let sizes = [rad, rad_s, nm, nm, rad, rad_s, nm];
         let columns: Matrix = std::array::from_fn(|j| {
             let by = |sign: f64| std::array::from_fn(|i| if i == j { sign * sizes[j] } else { 0.0 });
             let (more, less) = (after(by(1.0)), after(by(-1.0)));

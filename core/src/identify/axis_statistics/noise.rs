@@ -15,6 +15,7 @@ use std::f64::consts::TAU;
 
 use super::innovation::LEAST_NOISE_RAD;
 use super::search::least;
+use crate::average::middle_of;
 use crate::spectrum::{Phasor, Spectrum, power};
 
 /// Growth of ln L beyond which a term is admitted: chance gives 9.2 for three variables once in 10,000 times, and twice that lets
@@ -165,7 +166,7 @@ impl Seen {
         let upper = self.power.len() / 2..;
         let mut shares: Vec<f64> =
             self.power[upper.clone()].iter().zip(&self.responses[upper]).map(|(i, [_, n])| i / n).collect();
-        let encoder_rad2 = median(&mut shares).max(least_rad2());
+        let encoder_rad2 = middle_of(&mut shares).max(least_rad2());
         let start = NoiseFit { encoder_rad2, left_rad2: self.left_rad2, ..NoiseFit::default() };
         let made = |[r]: &[f64; 1]| NoiseFit { encoder_rad2: r.exp() + least_rad2(), ..start };
         let ([r], _) = least([start.encoder_rad2.ln()], [0.3], |at| self.cost(&made(at)));
@@ -175,7 +176,7 @@ impl Seen {
     /// Encoder and broadband torque, and the cost.
     fn broadband(&self, white: NoiseFit) -> (NoiseFit, f64) {
         let mut excess: Vec<f64> = self.power.iter().zip(&self.responses).map(|(i, [load, _])| i / load).collect();
-        let torque_nm = median(&mut excess).max(1e-30).sqrt();
+        let torque_nm = middle_of(&mut excess).max(1e-30).sqrt();
         [0.001, 0.005, 0.02]
             .map(|torque_s| self.refined(NoiseFit { torque_nm, torque_s, ..white }, true))
             .into_iter()
@@ -187,7 +188,7 @@ impl Seen {
     fn line(&self) -> Option<NoiseFit> {
         let beside = |n: usize| {
             let mut around = self.power[n.saturating_sub(BESIDE)..(n + BESIDE).min(self.power.len())].to_vec();
-            median(&mut around)
+            middle_of(&mut around)
         };
         let above = |n: usize| self.power[n] / beside(n);
         let n = (0..self.power.len()).max_by(|&a, &b| above(a).total_cmp(&above(b)))?;
@@ -244,13 +245,4 @@ fn with_line(line: &NoiseFit, noise: &NoiseFit) -> NoiseFit {
 
 fn least_rad2() -> f64 {
     LEAST_NOISE_RAD * LEAST_NOISE_RAD
-}
-
-/// The one in the middle; zero of none.
-fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }

@@ -1,0 +1,181 @@
+//! Motor and table as two masses, joined by the ball screw: stiffness, damping and backlash.
+//!
+//! ```text
+//! phi  = angle_m - angle_t                            twist, rad at the motor shaft
+//! T    = max(0, k (phi - b/2) + c (w_m - w_t))        phi >  b/2
+//! T    = min(0, k (phi + b/2) + c (w_m - w_t))        phi < -b/2
+//! T    = 0                                            in the gap: flanks push and do not pull
+//! J_m dw_m/dt = u - T         J_t dw_t/dt = T - friction(w_t) - disturbance
+//! ```
+//!
+//! with J_m + J_t = J, so that the rigid axis is the limit of a stiff screw. Friction and disturbance act on the table: guideways and
+//! cutter are there. The resonance is that of the table while the servo holds the motor, k = J_t w_r^2, c = 2 D J_t w_r, which is what a
+//! knock on the table shows; free, the two swing against each other at w_r sqrt(J / J_m).
+//!
+//! Source: two-mass drive as in Altintas (2012), Manufacturing Automation, section 5; backlash as a dead zone with damping
+//! in contact, Nordin and Gutman (2002), eq. 4.
+
+/// What a ball screw is, at the motor shaft; all zero is a rigid one.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct TransmissionParameters {
+    /// Part of the axis's inertia that is on the table's side.
+    pub table_share: f64,
+    /// Resonance of the table on the screw while the motor is held, rad/s.
+    pub resonance_rad_s: f64,
+    /// Its damping ratio.
+    pub damping_ratio: f64,
+    /// Backlash, rad.
+    pub backlash_rad: f64,
+}
+
+impl TransmissionParameters {
+    /// A screw that does not give.
+    pub const RIGID: Self = Self { table_share: 0.0, resonance_rad_s: 0.0, damping_ratio: 0.0, backlash_rad: 0.0 };
+}
+
+/// Where the table is and how fast, at the motor shaft.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct TableState {
+    /// Its angle, rad.
+    pub angle_rad: f64,
+    /// Its speed, rad/s.
+    pub speed_rad_s: f64,
+}
+
+/// A ball screw, ready to be integrated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TransmissionLaw {
+    /// Of the motor's side, 1/(kg m2).
+    pub inverse_motor_inertia: f64,
+    /// Of the table's side, 1/(kg m2).
+    pub inverse_table_inertia: f64,
+    /// Stiffness, N m/rad.
+    pub stiffness_nm_rad: f64,
+    /// Damping in contact, N m s/rad.
+    pub damping_nm_s: f64,
+    /// Half of the backlash, rad.
+    pub half_gap_rad: f64,
+    /// Resonance of the table on the screw while the motor is held, rad/s.
+    pub resonance_rad_s: f64,
+}
+
+/// Most that the two masses may turn against each other in a mechanics period, rad: from 2 on the integration is unstable.
+const MOST_PHASE_RAD: f64 = 1.0;
+
+impl TransmissionLaw {
+    /// Of an axis with this inertia, kg m2; none where the screw is rigid, or so stiff that no mechanics period could follow it.
+    pub fn new(inertia_kg_m2: f64, mechanics_s: f64, parameters: TransmissionParameters) -> Option<Self> {
+        let TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad } = parameters;
+        let table_kg_m2 = inertia_kg_m2 * table_share;
+        let free_rad_s = resonance_rad_s / libm::sqrt(1.0 - table_share);
+        let gives = table_share > 0.0 && resonance_rad_s > 0.0 && free_rad_s * mechanics_s <= MOST_PHASE_RAD;
+        gives.then(|| Self {
+            inverse_motor_inertia: 1.0 / (inertia_kg_m2 - table_kg_m2),
+            inverse_table_inertia: 1.0 / table_kg_m2,
+            stiffness_nm_rad: table_kg_m2 * resonance_rad_s * resonance_rad_s,
+            damping_nm_s: 2.0 * damping_ratio * table_kg_m2 * resonance_rad_s,
+            half_gap_rad: 0.5 * backlash_rad,
+            resonance_rad_s,
+        })
+    }
+
+    /// By how much the motor is ahead of the table under a torque that lasts, rad.
+    pub fn twist_rad(&self, torque_nm: f64) -> f64 {
+        torque_nm / self.stiffness_nm_rad + libm::copysign(self.half_gap_rad, torque_nm)
+    }
+
+    /// The torque from motor to table, N m.
+    #[inline]
+    pub fn torque_nm(&self, twist_rad: f64, twist_rad_s: f64) -> f64 {
+        let damped = self.damping_nm_s * twist_rad_s;
+        if twist_rad > self.half_gap_rad {
+            (self.stiffness_nm_rad * (twist_rad - self.half_gap_rad) + damped).max(0.0)
+        } else if twist_rad < -self.half_gap_rad {
+            (self.stiffness_nm_rad * (twist_rad + self.half_gap_rad) + damped).min(0.0)
+        } else {
+            0.0
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+    use std::vec::Vec;
+
+    use super::*;
+    use core::f64::consts::TAU;
+
+    const DT_S: f64 = 1e-5;
+    const INERTIA_KG_M2: f64 = 0.01;
+    const BACKLASH_RAD: f64 = 0.003;
+
+    fn soft(backlash_rad: f64) -> (TransmissionLaw, TransmissionParameters) {
+        let resonance_rad_s = TAU * 60.0;
+        let screw = TransmissionParameters { table_share: 0.5, resonance_rad_s, damping_ratio: 0.02, backlash_rad };
+        (TransmissionLaw::new(INERTIA_KG_M2, DT_S, screw).expect("it is not rigid"), screw)
+    }
+
+    #[test]
+    fn a_screw_without_a_table_or_a_resonance_that_can_be_followed_is_rigid() {
+        let (_, screw) = soft(0.0);
+        for rigid in [
+            TransmissionParameters::RIGID,
+            TransmissionParameters { table_share: 0.0, ..screw },
+            TransmissionParameters { resonance_rad_s: 0.0, ..screw },
+            TransmissionParameters { resonance_rad_s: 1e6, ..screw },
+        ] {
+            assert_eq!(TransmissionLaw::new(INERTIA_KG_M2, DT_S, rigid), None);
+        }
+    }
+
+    #[test]
+    fn the_table_rings_at_the_frequency_and_with_the_damping_that_are_named() {
+        let (law, screw) = soft(0.0);
+        // The table swings against the held motor, from a twist of a milliradian.
+        let mut table = TableState { angle_rad: 1e-3, speed_rad_s: 0.0 };
+        let (mut upward, mut peaks, mut before) = (Vec::new(), Vec::new(), table.angle_rad);
+        for step in 0..50_000 {
+            table.speed_rad_s += DT_S * law.inverse_table_inertia * law.torque_nm(-table.angle_rad, -table.speed_rad_s);
+            table.angle_rad += DT_S * table.speed_rad_s;
+            if before < 0.0 && table.angle_rad >= 0.0 {
+                upward.push(step);
+                peaks.push(0.0_f64);
+            }
+            if let Some(peak) = peaks.last_mut() {
+                *peak = peak.max(table.angle_rad);
+            }
+            before = table.angle_rad;
+        }
+        let periods = upward.len() - 1;
+        let period_s = f64::from(upward[periods] - upward[0]) * DT_S / periods as f64;
+        let undamped = libm::sqrt(1.0 - screw.damping_ratio * screw.damping_ratio);
+        let damped_hz = screw.resonance_rad_s / TAU * undamped;
+        assert!((1.0 / period_s - damped_hz).abs() < 0.01 * damped_hz, "{} Hz", 1.0 / period_s);
+        // Logarithmic decrement, from peak to peak: 2 pi zeta / sqrt(1 - zeta^2). At zero twist the flanks part: while
+        // they pull they are let go, which costs the least bit of damping.
+        let decrement = libm::log(peaks[0] / peaks[5]) / 5.0;
+        let expected = TAU * screw.damping_ratio / undamped;
+        assert!((decrement - expected).abs() < 0.1 * expected, "{decrement} {expected}");
+    }
+
+    #[test]
+    fn a_torque_twists_the_screw_by_its_stiffness_behind_the_gap() {
+        let (law, screw) = soft(BACKLASH_RAD);
+        let half_gap_rad = 0.5 * BACKLASH_RAD;
+        for twist in [-1e-4, 0.0, 0.1, half_gap_rad * 0.999] {
+            assert_eq!(law.torque_nm(twist, 0.0) != 0.0, twist.abs() > half_gap_rad, "{twist}");
+        }
+        let stiffness = screw.table_share * INERTIA_KG_M2 * screw.resonance_rad_s * screw.resonance_rad_s;
+        let torque = law.torque_nm(half_gap_rad + 1e-3, 0.0);
+        assert!((torque - stiffness * 1e-3).abs() < 1e-9, "{torque}");
+    }
+
+    #[test]
+    fn flanks_push_and_do_not_pull() {
+        let (law, _) = soft(BACKLASH_RAD);
+        for speed in [-1e3, -1.0, 0.0, 1.0, 1e3] {
+            assert!(law.torque_nm(0.01, speed) >= 0.0 && law.torque_nm(-0.01, speed) <= 0.0);
+        }
+    }
+}
