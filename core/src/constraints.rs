@@ -1,6 +1,11 @@
 //! What the machine allows: along the path, the same in all directions, and axis by axis.
 
+pub mod speed_caps;
+
+use std::sync::Arc;
+
 use crate::machine::{Limits, Machine};
+use speed_caps::SpeedCaps;
 
 /// Bounds along and across the path, the same in all directions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,6 +44,8 @@ pub struct Constraints {
     pub rotary_deg_s: f64,
     /// Largest distance of the planned path from the programmed one where the program says none, mm.
     pub path_tolerance_mm: Option<f64>,
+    /// Bounds on the speed place by place, for planners that plan axis by axis.
+    pub speed_caps: Option<Arc<SpeedCaps>>,
 }
 
 /// A limit that is none.
@@ -73,7 +80,7 @@ impl From<&Limits> for PathLimits {
 /// Nothing but those of the path.
 impl From<&PathLimits> for Constraints {
     fn from(path: &PathLimits) -> Self {
-        Self { path: *path, axes: Vec::new(), rotary_deg_s: f64::INFINITY, path_tolerance_mm: None }
+        Self { path: *path, axes: Vec::new(), rotary_deg_s: f64::INFINITY, path_tolerance_mm: None, speed_caps: None }
     }
 }
 
@@ -86,7 +93,7 @@ impl From<&Machine> for Constraints {
         });
         let rotary_deg_s = if machine.plc.rotary_deg_s > 0.0 { machine.plc.rotary_deg_s } else { f64::INFINITY };
         let path_tolerance_mm = machine.limits.path_tolerance_um.map(|um| 1e-3 * um);
-        Self { path: (&machine.limits).into(), axes: axes.collect(), rotary_deg_s, path_tolerance_mm }
+        Self { path: (&machine.limits).into(), axes: axes.collect(), rotary_deg_s, path_tolerance_mm, speed_caps: None }
     }
 }
 

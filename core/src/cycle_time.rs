@@ -28,6 +28,9 @@ const BINDS: f64 = 0.999;
 /// The tolerance binds where so much of it is used: a planner keeps a part of it for what it does not look at.
 const TOLERANCE_BINDS: f64 = 0.8;
 
+/// A cap on the speed, which holds roughly, binds where so much of it is used.
+const CAP_BINDS: f64 = 0.98;
+
 /// The nearest point is looked for so many tolerances along the path, and in no more pieces to either side than these.
 const WAY: f64 = 10.0;
 const MOST_PIECES: usize = 64;
@@ -91,14 +94,27 @@ fn limit_names() -> Vec<String> {
 pub fn cycle_time<'p>(
     machine: &Machine,
     bound: bool,
+    steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
+    watch: &dyn Watch,
+) -> Result<CycleTime, RunError> {
+    cycle_time_within(machine, &Constraints::from(machine), bound, steps, watch)
+}
+
+/// The same within other constraints than the machine's.
+///
+/// # Errors
+/// As [`cycle_time`].
+pub fn cycle_time_within<'p>(
+    machine: &Machine,
+    constraints: &Constraints,
+    bound: bool,
     mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
     watch: &dyn Watch,
 ) -> Result<CycleTime, RunError> {
     let stages = Stages::of(machine);
-    let constraints = Constraints::from(machine);
     let mut plan =
-        Plan::new((stages.blend.make)(steps()?, &constraints), &constraints, stages.planner, Plc::of(machine))?;
-    let mut sampler = Sampler::new(&constraints, stages.planner.name);
+        Plan::new((stages.blend.make)(steps()?, constraints), constraints, stages.planner, Plc::of(machine))?;
+    let mut sampler = Sampler::new(constraints, stages.planner.name);
     for planned in plan.by_ref() {
         watch.check()?;
         sampler.take(planned);
@@ -108,9 +124,9 @@ pub fn cycle_time<'p>(
     }
     let mut result = sampler.finish();
     if bound && stages.planner.needs_axes {
-        let blended = (stages.blend.make)(steps()?, &constraints);
+        let blended = (stages.blend.make)(steps()?, constraints);
         let mut time_s = 0.0;
-        for planned in Plan::new(blended, &constraints, &feed::WHOLE, Plc::default())? {
+        for planned in Plan::new(blended, constraints, &feed::WHOLE, Plc::default())? {
             watch.check()?;
             if let Planned::Phase(Phase { duration_s, rest: None, .. }) = planned {
                 time_s += duration_s;
@@ -188,6 +204,7 @@ impl<'a> Sampler<'a> {
         }
         let feed_mm_s = feed::feed_mm_s(piece, self.constraints);
         let tolerance_mm = self.tolerance_mm(piece);
+        let piece_mm = piece.s_mm;
         let count = (duration_s / SAMPLE_S).ceil().max(1.0);
         for i in 0..count as u32 {
             let t = duration_s * (f64::from(i) + 0.5) / count;
@@ -200,7 +217,15 @@ impl<'a> Sampler<'a> {
             self.binds(0, norm(motion.velocity_mm_s) / feed_mm_s, BINDS, duration_s / count);
             let away_mm = self.distance_mm(index, motion.position_mm, tolerance_mm);
             self.result.largest_deviation_um = self.result.largest_deviation_um.max(1e3 * away_mm);
-            self.binds(1, away_mm / tolerance_mm, TOLERANCE_BINDS, duration_s / count);
+            let cap_mm_s = self
+                .constraints
+                .speed_caps
+                .as_ref()
+                .map_or(f64::INFINITY, |caps| caps.at(piece_mm + phase.place_mm(t)));
+            // Where the speed is held down for the tool to stay within the tolerance, it is the tolerance that binds.
+            let capped = norm(motion.velocity_mm_s) >= CAP_BINDS * cap_mm_s;
+            let used = if capped { 1.0 } else { away_mm / tolerance_mm };
+            self.binds(1, used, TOLERANCE_BINDS, duration_s / count);
         }
         // Acceleration is straight over a phase: its ends are its extremes.
         for motion in phase.motion.into_iter().flat_map(|motion| [motion, motion.after(duration_s)]) {

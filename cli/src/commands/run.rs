@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright::controllers::Choices;
-use feedwright::job::{Job, JobOutcome, Outputs};
+use feedwright::fastest::{FastestError, FastestPlan};
+use feedwright::job::{Job, JobError, JobOutcome, Outputs};
 use feedwright::machine::{self, Machine};
 use feedwright::model::Model;
 use feedwright::report::{Outcome as Ending, RunSummary};
@@ -14,14 +15,21 @@ use miette::Result;
 use crate::args::RunArgs;
 use crate::console::Console;
 use crate::controllers::{find, settings};
-use crate::message::{OUT_OF_TOLERANCE, printed, warn};
+use crate::message::{OUT_OF_TOLERANCE, printed, tell, warn};
 
 pub(crate) fn run(args: RunArgs, console: &Console) -> Result<ExitCode> {
     let job = job(args)?;
     let bar = console.bar(0);
     let outcome = job.run(&bar);
     bar.clear();
-    let outcome = outcome?;
+    // That nothing is fast enough is what the answer is, and no mistake of what was asked for.
+    let outcome = match outcome {
+        Err(error @ JobError::Fastest { error: FastestError::Impossible { .. }, .. }) => {
+            tell(&error.into());
+            return Ok(ExitCode::from(OUT_OF_TOLERANCE));
+        }
+        outcome => outcome?,
+    };
     for warning in outcome.warnings.iter().cloned() {
         warn(warning.into());
     }
@@ -44,6 +52,7 @@ fn job(args: RunArgs) -> Result<Job> {
         choices: Choices { seed: args.seed, set },
         model: args.model.as_deref().map(Model::read).transpose()?,
         tolerance_um: args.tolerance,
+        fastest: args.fastest,
         reader: args.reader.settings()?,
         inputs: Some(PathBuf::from(args.machine))
             .filter(|path| machine::is_path(path))
@@ -118,9 +127,28 @@ fn print(job: &Job, outcome: &JobOutcome) -> std::io::Result<()> {
         let verdict = if outcome.within_tolerance { "within" } else { "out of" };
         writeln!(out, "{verdict} tolerance: max {:.2} um, allowed {tolerance_um} um", last.summary.max_um)?;
     }
+    if let Some(plan) = &outcome.fastest {
+        print_fastest(&mut out, plan)?;
+    }
     let outputs = &job.outputs;
     for path in [&outputs.report, &outputs.json, &outputs.trace, &outputs.out].into_iter().flatten() {
         writeln!(out, "wrote {}", path.display())?;
+    }
+    Ok(())
+}
+
+fn print_fastest(out: &mut impl Write, plan: &FastestPlan) -> std::io::Result<()> {
+    let FastestPlan { cycle, largest_um, rounds, machine, .. } = plan;
+    let moving_s = cycle.cutting_s + cycle.rapid_s;
+    writeln!(out, "least time: {moving_s:.3} s of motion, largest error {largest_um:.2} um, found in {rounds} cuts")?;
+    if let Some(bound_s) = cycle.bound_s {
+        writeln!(out, "  bound of the path alone {bound_s:.3} s, motion {:.4} times that", moving_s / bound_s)?;
+    }
+    if let Some(path_um) = machine.limits.path_tolerance_um {
+        writeln!(out, "  of the tolerance, {path_um:.2} um are the path's")?;
+    }
+    for binding in &cycle.binding {
+        writeln!(out, "  {:<16} binds {:>5.1} % of the motion", binding.limit, 100.0 * binding.share)?;
     }
     Ok(())
 }

@@ -6,7 +6,7 @@
 //! there. What of a window was not committed is kept: where the next window comes to no solution, or its solution leaves the tube, the motion goes
 //! on along it, and so at worst comes to rest on the path; from there it goes on straight from rest to rest.
 //!
-//! Look-ahead: the time in which the slowest axis stops, and 0.18 s.
+//! Look-ahead: the time in which the slowest axis stops, and 0.25 s.
 //!
 //! | File | What |
 //! |---|---|
@@ -46,10 +46,10 @@ use steps::{AxisCaps, PlannedStep, place_after, place_powers, time_of_place};
 use track::Track;
 
 /// Look-ahead beyond the time to stop, s.
-const BEYOND_S: f64 = 0.18;
+const BEYOND_S: f64 = 0.25;
 
 /// Part of a window that is committed.
-const COMMITTED: f64 = 0.25;
+const COMMITTED: f64 = 0.4;
 
 /// Step of time, in times `(tolerance / jerk)^(1/3)`: within it jerk leads away from a chord by less than a hundredth of the tolerance.
 const STEP: f64 = 0.35;
@@ -75,18 +75,19 @@ const ROUNDS: usize = 5;
 /// In the last round so much beyond the tolerance is taken, mm.
 const LAST_OVER_MM: f64 = 5e-5;
 
+/// And so much beyond the feedrate, as a part of it.
+const LAST_OVER: f64 = 1e-9;
+
 /// First guesses, tried in turn: the motion of the nodes, or so many times slower along the chords; and the barrier to begin with. The
 /// first is for nodes whose motion was a solution.
 const GUESSES: [(Option<f64>, f64); 4] = [(None, 0.01), (None, 0.1), (Some(1.3), 0.1), (Some(2.0), 1.0)];
 
-/// Nodes keep this part of the feedrate away from it, for what lies between them.
-const FEED_MARGIN: f64 = 1e-6;
+/// Nodes keep this part of the feedrate away from it, for rounding; where the speed rises by more between two nodes, the window is
+/// solved again with more.
+const FEED_MARGIN: f64 = 1e-7;
 
-/// The barrier at the end: 1e-4 of the time.
+/// The barrier at the end: 1e-5 of the time, and as near to the feedrate.
 const LAST_MU: f64 = 4e-6;
-
-/// For what the speed rises by between them, no more than this.
-const MOST_BULGE: f64 = 0.05;
 
 /// Tolerance of exact path and exact stop, mm.
 const EXACT_MM: f64 = 1e-3;
@@ -146,7 +147,7 @@ impl TimeOptimal {
         Self {
             constraints: constraints.clone(),
             caps: AxisCaps { axes: [limits(0), limits(1), limits(2)] },
-            track: Track::default(),
+            track: Track::new(constraints.speed_caps.clone()),
             pieces: 0,
             last: None,
             tolerance_mm: f64::INFINITY,
@@ -200,7 +201,7 @@ impl TimeOptimal {
         self.track.look(&self.caps);
         let only = self.track.only().filter(|_| self.from.s_mm == 0.0).filter(|piece| piece.curve.is_straight());
         if let Some(piece) = only {
-            let (length_mm, feed_mm_s) = (piece.length_mm, piece.feed_mm_s);
+            let (length_mm, feed_mm_s) = (piece.length_mm, self.track.least_mm_s(0.0, piece.length_mm));
             let to_mm = piece.curve.at(length_mm).position_mm;
             let steps = straight(self.from.motion.position_mm, to_mm, [0.0, length_mm], feed_mm_s, &self.caps);
             self.hand_out(&steps);
@@ -209,7 +210,7 @@ impl TimeOptimal {
                 self.plan_window();
             }
         }
-        self.track = Track::default();
+        self.track = Track::new(self.constraints.speed_caps.clone());
         self.tail.clear();
         (self.tolerance_mm, self.feed_mm_s) = (f64::INFINITY, 0.0);
     }
@@ -246,7 +247,7 @@ impl TimeOptimal {
             step_s *= nodes.len() as f64 / (2 * FEWEST) as f64;
         }
         let (nodes, ends) = self.mesh(&[], step_s);
-        let first = self.solution(&nodes, &vec![1.0; nodes.len()], ends, step_s, &GUESSES[1..])?;
+        let first = self.solution(&nodes, &vec![1.0; nodes.len() - 1], ends, step_s, &GUESSES[1..])?;
         let time_s: f64 = first.iter().map(|step| step.duration_s).sum();
         if ends {
             step_s = step_s.min(time_s / FEWEST as f64);
@@ -271,18 +272,17 @@ impl TimeOptimal {
     /// With nodes in times of what is known, solved until nothing is exceeded.
     fn solve_behind(&mut self, known: &[PlannedStep], step_s: f64) -> Option<(Vec<PlannedStep>, bool)> {
         let (mut nodes, ends) = self.mesh(known, step_s);
-        let mut feed_parts = self.feed_parts(&nodes, step_s);
+        let mut feed_parts = vec![1.0 - FEED_MARGIN; nodes.len() - 1];
         for round in 0..ROUNDS {
             let guesses = if round == 0 { &GUESSES[1..] } else { &GUESSES[..] };
             let steps = self.solution(&nodes, &feed_parts, ends, step_s, guesses)?;
             if self.whole {
                 return Some((steps, ends));
             }
-            let mut excesses = tube::excesses(&self.track, &steps);
             let soon = if ends { steps.len() } else { self.soon(&steps) };
-            excesses.retain(|excess| excess.step < soon || excess.feed_part < 1.0);
+            let mut excesses = tube::excesses(&self.track, &self.caps, &steps, soon);
             if round + 1 == ROUNDS {
-                excesses.retain(|excess| excess.tube_mm > LAST_OVER_MM || excess.feed_part < 1.0 - FEED_MARGIN);
+                excesses.retain(|excess| excess.tube_mm > LAST_OVER_MM || excess.feed_part < 1.0 - LAST_OVER);
             }
             if excesses.is_empty() {
                 return Some((steps, ends));
@@ -314,25 +314,9 @@ impl TimeOptimal {
         None
     }
 
-    /// The part of the feedrate that each node may use.
-    fn feed_parts(&self, nodes: &[MeshNode], step_s: f64) -> Vec<f64> {
-        let bulge_mm_s = self.bulge_mm_s(step_s);
-        let part = |node: &MeshNode| {
-            let feed_mm_s = self.track.piece(node.s_mm).feed_mm_s;
-            1.0 - FEED_MARGIN - (bulge_mm_s / feed_mm_s).min(MOST_BULGE)
-        };
-        nodes.iter().map(part).collect()
-    }
-
-    /// What the speed may rise by between two nodes at the feedrate, `h^2 j / 8`, as a part of it, with a half more for longer steps.
-    fn bulge_mm_s(&self, step_s: f64) -> f64 {
-        let jerk = self.caps.axes.iter().map(|limits| limits.jerk_mm_s3).fold(0.0, f64::max);
-        1.5 * step_s * step_s * jerk / 8.0
-    }
-
     /// How many steps may be committed before another window is solved: of the others, the tube at nodes is enough.
     fn soon(&self, steps: &[PlannedStep]) -> usize {
-        let until_s = 2.0 * self.committed_s();
+        let until_s = 2.0 * self.committed_s(steps);
         let mut time_s = 0.0;
         let soon = steps.iter().take_while(|step| {
             time_s += step.duration_s;
@@ -341,9 +325,10 @@ impl TimeOptimal {
         soon.count() + 1
     }
 
-    /// How much of a window is committed, s.
-    fn committed_s(&self) -> f64 {
-        COMMITTED * self.window() as f64 * self.step_s()
+    /// How much of a window is committed, s: less where it came out shorter than it was estimated.
+    fn committed_s(&self, steps: &[PlannedStep]) -> f64 {
+        let time_s: f64 = steps.iter().map(|step| step.duration_s).sum();
+        COMMITTED * time_s.min(self.window() as f64 * self.step_s())
     }
 
     const fn most_iterations(&self) -> u32 {
@@ -352,7 +337,7 @@ impl TimeOptimal {
 
     /// Hands out the first part of the tail, or all of it.
     fn commit(&mut self, all: bool) {
-        let until_s = self.committed_s();
+        let until_s = self.committed_s(&self.tail).max(self.step_s());
         let mut count = 0;
         let mut time_s = 0.0;
         while count < self.tail.len() && (all || time_s < until_s) {
@@ -384,8 +369,7 @@ impl TimeOptimal {
         }
         // At an end that is not the end of the track the rest is by chance as good as anywhere.
         let end_mm = if s_mm + way_mm > s_mm { s_mm + way_mm } else { self.track.end_mm };
-        let feeds = self.track.between(s_mm, end_mm).map(|piece| piece.feed_mm_s);
-        let feed_mm_s = feeds.fold(f64::INFINITY, f64::min);
+        let feed_mm_s = self.track.least_mm_s(s_mm, end_mm);
         let steps = straight(start_mm, to_mm, [s_mm, end_mm], feed_mm_s, &self.caps);
         self.hand_out(&steps);
         self.from = MeshStart { s_mm: end_mm, motion: AxisMotion { position_mm: to_mm, ..AxisMotion::REST } };

@@ -1,13 +1,19 @@
 //! The bounds of a window: slacks, their multipliers, and how far a step may go.
 //!
 //! Every bound is on the unknowns of one node or step, so an iterate is strictly inside of all of them from the beginning, and stays
-//! there: `|v|, |a|, |j| <= 1` of each axis, `h > 0`, the offset within its tube and the speed within its feedrate.
+//! there: `|v|, |a|, |j| <= 1` of each axis, `h > 0`, the offset within its tube and the control velocity of each step within its feedrate.
 
 use super::riccati::NewtonStep;
-use super::window::{WindowProblem, WindowUnknowns};
+use super::window::{StepOfAxis, WindowProblem, WindowUnknowns};
 
 /// Least duration of a step, in units.
 pub(super) const LEAST_STEP: f64 = 1e-4;
+
+/// The feedrate binds where so little of its square is left.
+const AT_FEED: f64 = 1e-4;
+
+/// So often a step that is too long for a feedrate is halved to find the longest.
+const CURVED_HALVINGS: u32 = 12;
 
 /// First iterates keep this part of each bound away from it.
 const FIRST_SLACK: f64 = 0.05;
@@ -21,7 +27,6 @@ pub(super) struct NodeMultipliers<const D: usize> {
     pub(super) v: [[f64; 2]; D],
     pub(super) a: [[f64; 2]; D],
     pub(super) tube: f64,
-    pub(super) feed: f64,
 }
 
 /// Multipliers of the bounds of a step.
@@ -29,12 +34,40 @@ pub(super) struct NodeMultipliers<const D: usize> {
 pub(super) struct StepMultipliers<const D: usize> {
     pub(super) j: [[f64; 2]; D],
     pub(super) h: f64,
+    pub(super) feed: f64,
 }
 
-/// `1 - sum w v^2`.
+/// `1 - sum w c^2`.
 #[inline]
-pub(super) fn feed_slack<const D: usize, const N: usize>(w: &[f64; D], x: &[f64; N]) -> f64 {
-    1.0 - (0..D).map(|k| w[k] * x[3 * k + 1] * x[3 * k + 1]).sum::<f64>()
+pub(super) fn feed_slack<const D: usize>(w: &[f64; D], c: &[f64; D]) -> f64 {
+    1.0 - (0..D).map(|k| w[k] * c[k] * c[k]).sum::<f64>()
+}
+
+/// The control velocity of a step, `v + h a / 2`: with those of its neighbours the polygon of which the velocity is the quadratic
+/// B-spline. Where it is within a ball, so is the velocity.
+#[inline]
+pub(super) fn control<const D: usize, const N: usize, const M: usize>(
+    steps: &[StepOfAxis; D],
+    x: &[f64; N],
+    u: &[f64; M],
+) -> [f64; D] {
+    std::array::from_fn(|k| x[3 * k + 1] + 0.5 * steps[k].d1 * u[D] * x[3 * k + 2])
+}
+
+/// By how much the slack of the feedrate changes along a change of the unknowns, to first order.
+#[inline]
+fn feed_slope<const D: usize, const N: usize, const M: usize>(
+    steps: &[StepOfAxis; D],
+    w: &[f64; D],
+    [x, dx]: [&[f64; N]; 2],
+    [u, du]: [&[f64; M]; 2],
+) -> f64 {
+    let c = control(steps, x, u);
+    let along = |k: usize| {
+        let change = 0.5 * steps[k].d1 * (du[D] * x[3 * k + 2] + u[D] * dx[3 * k + 2]);
+        w[k] * c[k] * (dx[3 * k + 1] + change)
+    };
+    -2.0 * (0..D).map(along).sum::<f64>()
 }
 
 /// `r^2 - sum o^2`.
@@ -59,8 +92,8 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
     /// The first one: inside of all bounds, each multiplier `mu / slack`.
     pub(super) fn first(problem: &'a WindowProblem<D, N>, at: WindowUnknowns<N, M>, mu: f64) -> Self {
         let n = problem.way.len();
-        let node = NodeMultipliers { v: [[0.0; 2]; D], a: [[0.0; 2]; D], tube: 0.0, feed: 0.0 };
-        let step = StepMultipliers { j: [[0.0; 2]; D], h: 0.0 };
+        let node = NodeMultipliers { v: [[0.0; 2]; D], a: [[0.0; 2]; D], tube: 0.0 };
+        let step = StepMultipliers { j: [[0.0; 2]; D], h: 0.0, feed: 0.0 };
         let (nodes, steps, multipliers) = (vec![node; n + 1], vec![step; n], vec![[0.0; N]; n + 1]);
         let mut first = Self { problem, at, multipliers, nodes, steps, mu };
         first.put_inside();
@@ -75,12 +108,18 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
         [i > 0 && i < n, i > 0 && (i < n || !self.problem.exact_end)]
     }
 
+    /// Whether the feedrate binds anywhere.
+    pub(super) fn is_at_feed(&self) -> bool {
+        let steps = self.problem.steps();
+        let mut all = self.at.x.iter().zip(&self.at.u).enumerate();
+        all.any(|(i, (x, u))| feed_slack(&self.problem.feed_weights(i), &control(&steps, x, u)) < AT_FEED)
+    }
+
     fn put_inside(&mut self) {
         let most = 1.0 - FIRST_SLACK;
         let n = self.problem.way.len();
         self.at.x[0] = self.problem.first;
         for i in 1..=n {
-            let w = self.problem.feed_weights(i);
             let x = &mut self.at.x[i];
             for s in 0..N {
                 if i == n && self.problem.is_given(s) {
@@ -89,19 +128,37 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
                     x[s] = x[s].clamp(-most, most);
                 }
             }
-            let speed = (1.0 - feed_slack(&w, x)).max(0.0).sqrt();
             let offset = (1.0 - tube_slack(1.0, x)).max(0.0).sqrt();
-            let slower = if speed > most { most / speed } else { 1.0 };
             let radius = most * self.problem.radius[i];
             let nearer = if offset > radius { radius / offset } else { 1.0 };
-            for k in 0..D {
-                x[3 * k + 1] *= slower;
-                x[3 * k] *= nearer;
-            }
+            (0..D).for_each(|k| x[3 * k] *= nearer);
         }
         for u in &mut self.at.u {
             (0..D).for_each(|k| u[k] = u[k].clamp(-most, most));
             u[D] = u[D].max(10.0 * LEAST_STEP);
+        }
+        self.put_inside_feed(most);
+    }
+
+    /// Slower where the control velocity is not well within the feedrate; behind the given state for a shorter time.
+    fn put_inside_feed(&mut self, most: f64) {
+        let steps = self.problem.steps();
+        for (i, (x, u)) in self.at.x.iter_mut().zip(&mut self.at.u).enumerate() {
+            let w = self.problem.feed_weights(i);
+            if i == 0 {
+                let at_once = feed_slack(&w, &std::array::from_fn(|k| x[3 * k + 1]));
+                while feed_slack(&w, &control(&steps, x, u)) < 0.5 * at_once && u[D] > 10.0 * LEAST_STEP {
+                    u[D] = (0.5 * u[D]).max(10.0 * LEAST_STEP);
+                }
+                continue;
+            }
+            let speed = (1.0 - feed_slack(&w, &control(&steps, x, u))).max(0.0).sqrt();
+            if speed > most {
+                for k in 0..D {
+                    x[3 * k + 1] *= most / speed;
+                    x[3 * k + 2] *= most / speed;
+                }
+            }
         }
     }
 
@@ -113,12 +170,13 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
                 z.v[k] = pair(x[3 * k + 1]);
                 z.a[k] = pair(x[3 * k + 2]);
             }
-            z.feed = mu / feed_slack(&self.problem.feed_weights(i), x);
             z.tube = mu / tube_slack(self.problem.radius[i], x);
         }
-        for (u, z) in self.at.u.iter().zip(&mut self.steps) {
+        let steps = self.problem.steps();
+        for (i, (u, z)) in self.at.u.iter().zip(&mut self.steps).enumerate() {
             (0..D).for_each(|k| z.j[k] = pair(u[k]));
             z.h = mu / (u[D] - LEAST_STEP);
+            z.feed = mu / feed_slack(&self.problem.feed_weights(i), &control(&steps, &self.at.x[i], u));
         }
     }
 
@@ -126,8 +184,14 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
     pub(super) fn logarithms(&self, at: &WindowUnknowns<N, M>) -> f64 {
         let mut sum = 0.0;
         // A product of slacks has one logarithm.
-        for u in &at.u {
-            sum += (0..D).fold(u[D] - LEAST_STEP, |product, k| product * (1.0 - u[k] * u[k])).ln();
+        let steps = self.problem.steps();
+        for (i, u) in at.u.iter().enumerate() {
+            let feed = feed_slack(&self.problem.feed_weights(i), &control(&steps, &at.x[i], u));
+            // Two negative slacks would make a positive product.
+            if feed <= 0.0 {
+                return f64::NAN;
+            }
+            sum += (0..D).fold(feed * (u[D] - LEAST_STEP), |product, k| product * (1.0 - u[k] * u[k])).ln();
         }
         for (i, x) in at.x.iter().enumerate() {
             let [moves, offset] = self.is_bounded(i);
@@ -136,7 +200,6 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
                 for k in 0..D {
                     product *= (1.0 - x[3 * k + 1] * x[3 * k + 1]) * (1.0 - x[3 * k + 2] * x[3 * k + 2]);
                 }
-                product *= feed_slack(&self.problem.feed_weights(i), x);
             }
             if offset {
                 product *= tube_slack(self.problem.radius[i], x);
@@ -154,6 +217,19 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
             (0..D).for_each(|k| longest.interval(u[k], du[k], z.j[k]));
             longest.bound(u[D] - LEAST_STEP, du[D], z.h);
         }
+        let steps = self.problem.steps();
+        for i in 0..self.at.u.len() {
+            let w = self.problem.feed_weights(i);
+            let (x, u, dx, du) = (&self.at.x[i], &self.at.u[i], &newton.dx[i], &newton.du[i]);
+            let at = |t: f64| -> [f64; D] {
+                std::array::from_fn(|k| {
+                    let (v, a) = (x[3 * k + 1] + t * dx[3 * k + 1], x[3 * k + 2] + t * dx[3 * k + 2]);
+                    v + 0.5 * steps[k].d1 * (u[D] + t * du[D]) * a
+                })
+            };
+            let slope = feed_slope(&steps, &w, [x, dx], [u, du]);
+            longest.curved(|t| feed_slack(&w, &at(t)), slope, self.steps[i].feed);
+        }
         for (i, (x, dx)) in self.at.x.iter().zip(&newton.dx).enumerate() {
             let z = &self.nodes[i];
             let [moves, offset] = self.is_bounded(i);
@@ -162,13 +238,6 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
                     longest.interval(x[3 * k + 1], dx[3 * k + 1], z.v[k]);
                     longest.interval(x[3 * k + 2], dx[3 * k + 2], z.a[k]);
                 }
-                let w = self.problem.feed_weights(i);
-                let [mut along, mut square] = [0.0; 2];
-                for k in 0..D {
-                    along += w[k] * x[3 * k + 1] * dx[3 * k + 1];
-                    square += w[k] * dx[3 * k + 1] * dx[3 * k + 1];
-                }
-                longest.ball(feed_slack(&w, x), along, square, z.feed);
             }
             if offset {
                 let [mut along, mut square] = [0.0; 2];
@@ -193,8 +262,14 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
             update(&mut z[0], 1.0 + value, change, 1.0 + next);
             update(&mut z[1], 1.0 - value, -change, 1.0 - next);
         };
+        let steps = self.problem.steps();
         for (i, z) in self.steps.iter_mut().enumerate() {
-            let (u, du, next) = (&self.at.u[i], &newton.du[i], &next.u[i]);
+            let (x, dx, u, du) = (&self.at.x[i], &newton.dx[i], &self.at.u[i], &newton.du[i]);
+            let w = self.problem.feed_weights(i);
+            let slacks = [(x, u), (&next.x[i], &next.u[i])].map(|(x, u)| feed_slack(&w, &control(&steps, x, u)));
+            let slope = feed_slope(&steps, &w, [x, dx], [u, du]);
+            update(&mut z.feed, slacks[0], slope, slacks[1]);
+            let next = &next.u[i];
             (0..D).for_each(|k| both(&mut z.j[k], u[k], du[k], next[k]));
             update(&mut z.h, u[D] - LEAST_STEP, du[D], next[D] - LEAST_STEP);
         }
@@ -206,9 +281,6 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
                     both(&mut z.v[k], x[3 * k + 1], dx[3 * k + 1], next[3 * k + 1]);
                     both(&mut z.a[k], x[3 * k + 2], dx[3 * k + 2], next[3 * k + 2]);
                 }
-                let w = self.problem.feed_weights(i);
-                let along: f64 = (0..D).map(|k| w[k] * x[3 * k + 1] * dx[3 * k + 1]).sum();
-                update(&mut z.feed, feed_slack(&w, x), -2.0 * along, feed_slack(&w, next));
             }
             if i < n || !self.problem.exact_end {
                 let r = self.problem.radius[i];
@@ -251,6 +323,21 @@ impl Longest {
     fn interval(&mut self, value: f64, change: f64, z: [f64; 2]) {
         self.bound(1.0 + value, change, z[0]);
         self.bound(1.0 - value, -change, z[1]);
+    }
+
+    /// A slack that is no quadratic, with its slope: the longest step by halving where it is too long.
+    fn curved(&mut self, slack: impl Fn(f64) -> f64, slope: f64, z: f64) {
+        let now = slack(0.0);
+        let least = (1.0 - self.tau) * now;
+        if slack(self.unknowns) < least {
+            let (mut lo, mut hi) = (0.0, self.unknowns);
+            for _ in 0..CURVED_HALVINGS {
+                let middle = 0.5 * (lo + hi);
+                if slack(middle) < least { hi = middle } else { lo = middle }
+            }
+            self.unknowns = lo;
+        }
+        self.multiplier((self.mu - z * slope) / now - z, z);
     }
 
     /// A slack that falls by `2 along t + square t^2`.

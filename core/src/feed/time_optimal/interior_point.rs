@@ -5,7 +5,7 @@
 //! "On the implementation of an interior-point filter line-search algorithm for large-scale nonlinear programming", sections 2 and 3,
 //! without its restoration and its second-order correction: a search that fails ends in a short step, and too many of them in `None`.
 
-use super::barrier::{LEAST_STEP, WindowIterate, feed_slack, tube_slack};
+use super::barrier::{LEAST_STEP, WindowIterate, control, feed_slack, tube_slack};
 use super::riccati::{NewtonStep, Stage};
 use super::window::{StepOfAxis, WindowProblem, WindowUnknowns};
 
@@ -26,6 +26,10 @@ const PATIENT_DEFECT: f64 = 1e-3;
 
 /// With no iterations left, a solution with a barrier up to this is better than none.
 const LAST_RESORT_MU: f64 = 1e-3;
+
+/// Where the feedrate binds, the barrier falls once more by this for so many iterations at most: the speed comes as near to it.
+const POLISH: f64 = 0.05;
+const POLISHING: u32 = 8;
 
 /// Line searches that may fail.
 const MOST_FAILURES: u32 = 12;
@@ -97,39 +101,47 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         let mut merit = self.merit(&self.iterate.at);
         let first_theta = merit.theta.max(1.0);
         let (mut failures, mut waited) = (0, 0);
+        // What is solved, and the iteration in which it was, while it is being polished.
+        let mut solved: Option<(WindowUnknowns<N, M>, u32)> = None;
         for iteration in 0..settings.most_iterations {
-            self.shift *= SHIFT_FALLS;
-            if self.shift < LEAST_SHIFT {
-                self.shift = 0.0;
+            if solved.as_ref().is_some_and(|(_, since)| iteration - since > POLISHING) {
+                return solved;
             }
+            self.let_shift_fall();
             let mut error = self.assemble().max(merit.largest);
             waited += 1;
-            while error <= KAPPA * self.iterate.mu || (waited > PATIENCE && merit.largest < PATIENT_DEFECT) {
+            let kappa = if solved.is_some() { 1.0 } else { KAPPA };
+            while error <= kappa * self.iterate.mu
+                || (solved.is_none() && waited > PATIENCE && merit.largest < PATIENT_DEFECT)
+            {
                 if self.iterate.mu <= settings.last_mu {
-                    if merit.largest < LARGEST_DEFECT {
+                    if merit.largest >= LARGEST_DEFECT {
+                        break;
+                    }
+                    if self.iterate.mu < settings.last_mu || !self.iterate.is_at_feed() {
                         return Some((self.iterate.at, iteration));
                     }
+                    solved = Some((self.iterate.at.clone(), iteration));
+                    self.iterate.mu = POLISH * settings.last_mu;
+                    self.filter.clear();
+                    self.assemble();
+                    merit = self.merit(&self.iterate.at);
                     break;
                 }
-                let mu = self.iterate.mu;
-                self.iterate.mu = (0.2 * mu).min(mu.powf(1.5)).max(settings.last_mu);
-                self.filter.clear();
+                self.lower_barrier(settings.last_mu);
                 waited = 0;
                 error = self.assemble().max(merit.largest);
                 merit = self.merit(&self.iterate.at);
             }
-            let slope = self.newton_step()?;
+            let Some(slope) = self.newton_step() else { return solved };
             let tau = (1.0 - self.iterate.mu).max(0.99);
             let (longest, dual) = self.iterate.longest(&self.newton, tau);
             let step = self.search(merit, slope, longest, first_theta).unwrap_or_else(|| {
-                // A short step whatever it gives, and a more careful one next.
                 failures += 1;
-                self.filter.clear();
-                self.shift = (self.shift * 10.0).max(1e-2);
-                0.05 * longest
+                self.careful(longest)
             });
             if failures > MOST_FAILURES {
-                return None;
+                return solved;
             }
             // So short a step comes of a Hessian that is barely convex: the next one is to be more so.
             if step < SHORT && self.shift > 0.0 {
@@ -139,11 +151,33 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
             self.iterate.go(&mut self.trial, &self.newton, step, dual);
             merit = self.merit(&self.iterate.at);
             if !merit.phi.is_finite() {
-                return None;
+                return solved;
             }
         }
-        (self.iterate.mu <= LAST_RESORT_MU && merit.largest < LARGEST_DEFECT)
-            .then_some((self.iterate.at, settings.most_iterations))
+        let serves = self.iterate.mu <= LAST_RESORT_MU && merit.largest < LARGEST_DEFECT;
+        solved.or_else(|| serves.then_some((self.iterate.at, settings.most_iterations)))
+    }
+
+    /// What is added to the Hessian is less from iteration to iteration.
+    fn let_shift_fall(&mut self) {
+        self.shift *= SHIFT_FALLS;
+        if self.shift < LEAST_SHIFT {
+            self.shift = 0.0;
+        }
+    }
+
+    /// The next lower barrier.
+    fn lower_barrier(&mut self, last_mu: f64) {
+        let mu = self.iterate.mu;
+        self.iterate.mu = (0.2 * mu).min(mu.powf(1.5)).max(last_mu);
+        self.filter.clear();
+    }
+
+    /// A short step whatever it gives, and a more careful one next.
+    fn careful(&mut self, longest: f64) -> f64 {
+        self.filter.clear();
+        self.shift = (self.shift * 10.0).max(1e-2);
+        0.05 * longest
     }
 
     /// The Newton step; answers the slope of the cost along it.
@@ -272,18 +306,6 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
                     error = error.max((z[0] * below - mu).abs()).max((z[1] * above - mu).abs());
                 }
             }
-            let w = problem.feed_weights(i);
-            let slack = feed_slack(&w, x);
-            error = error.max((z.feed * slack - mu).abs());
-            for k in 0..D {
-                let row = 3 * k + 1;
-                let along = w[k] * x[row];
-                stage.q[row][row] += 2.0 * z.feed * w[k];
-                stage.gx[row] += 2.0 * mu / slack * along;
-                residual[row] += 2.0 * z.feed * along;
-                let curved = 4.0 * z.feed / slack * along;
-                (0..D).for_each(|l| stage.q[row][3 * l + 1] += curved * w[l] * x[3 * l + 1]);
-            }
         }
         if offset {
             let slack = tube_slack(problem.radius[i], x);
@@ -302,6 +324,43 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
             stage.q[s][s] += self.shift;
         }
         error
+    }
+
+    /// What the bound of a control velocity comes to; answers its part of the gradient by the duration.
+    fn feed(&self, i: usize, stage: &mut Stage<N, M>, residual: &mut [f64; N]) -> f64 {
+        let WindowIterate { problem, at, mu, .. } = &self.iterate;
+        let (x, u, z) = (&at.x[i], &at.u[i], self.iterate.steps[i].feed);
+        let w = problem.feed_weights(i);
+        let c = control(&self.steps, x, u);
+        let slack = feed_slack(&w, &c);
+        // Gradient of `sum w c^2` by velocities and accelerations, and by the duration.
+        let (mut by_x, mut by_h) = ([0.0; N], 0.0);
+        for k in 0..D {
+            let half = 0.5 * self.steps[k].d1;
+            let (v, a) = (3 * k + 1, 3 * k + 2);
+            let (of_a, of_h) = (half * u[D], half * x[a]);
+            by_x[v] = 2.0 * w[k] * c[k];
+            by_x[a] = by_x[v] * of_a;
+            by_h += by_x[v] * of_h;
+            let curved = 2.0 * z * w[k];
+            stage.q[v][v] += curved;
+            stage.q[v][a] += curved * of_a;
+            stage.q[a][v] += curved * of_a;
+            stage.q[a][a] += curved * of_a * of_a;
+            stage.s[D][v] += curved * of_h;
+            stage.s[D][a] += curved * (of_a * of_h + c[k] * half);
+            stage.r[D][D] += curved * of_h * of_h;
+        }
+        for row in (0..N).filter(|row| row % 3 != 0) {
+            let f = z / slack * by_x[row];
+            (0..N).for_each(|column| stage.q[row][column] += f * by_x[column]);
+            stage.s[D][row] += f * by_h;
+            stage.gx[row] += mu / slack * by_x[row];
+            residual[row] += z * by_x[row];
+        }
+        stage.r[D][D] += z / slack * by_h * by_h;
+        stage.gu[D] += mu / slack * by_h;
+        z * by_h
     }
 
     /// What a step comes to: its derivatives, the second ones times their multipliers, its bounds.
@@ -340,6 +399,9 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
             residual[3 * k + 1] += lo * along[0] + lv;
             residual[3 * k + 2] += lo * along[1] + lv * along[2] + la;
         }
+        of_h += self.feed(i, stage, residual);
+        let feed_slack = feed_slack(&problem.feed_weights(i), &control(&self.steps, x, u));
+        error = error.max((z.feed * feed_slack - mu).abs());
         let end = problem.end(&self.steps, i, x, u);
         (0..N).for_each(|s| stage.d[s] = end[s] - at.x[i + 1][s]);
         error.max(of_h.abs())

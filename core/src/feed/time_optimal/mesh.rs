@@ -11,6 +11,9 @@ const ACCEL_PART: f64 = 0.75;
 /// Nodes that are near to the start of a window, whose state is given.
 pub(super) const NEAR_START: usize = 8;
 
+/// So many steps that follow a start that is given have their nodes where they were: what was planned there stays possible exactly.
+const ALIGNED: usize = 16;
+
 /// The part by which an offset may exceed that of the window before.
 const PLANNED_SLACK: f64 = 1e-3;
 
@@ -25,6 +28,8 @@ pub(super) struct MeshNode {
     pub(super) duration_s: f64,
     pub(super) motion: AxisMotion,
     pub(super) radius_mm: f64,
+    /// Whether the motion was planned before.
+    pub(super) followed: bool,
 }
 
 /// What a mesh begins with.
@@ -55,7 +60,7 @@ impl<'a> Mesh<'a> {
         start: MeshStart,
     ) -> Self {
         let MeshStart { s_mm, motion } = start;
-        let nodes = vec![MeshNode { s_mm, duration_s: 0.0, motion, radius_mm: 0.0 }];
+        let nodes = vec![MeshNode { s_mm, duration_s: 0.0, motion, radius_mm: 0.0, followed: true }];
         Self { track, caps, step_s, most, radius_part, nodes }
     }
 
@@ -67,18 +72,24 @@ impl<'a> Mesh<'a> {
         self.nodes.len() > self.most
     }
 
-    fn push(&mut self, s_mm: f64, duration_s: f64, motion: AxisMotion) {
+    fn push(&mut self, s_mm: f64, duration_s: f64, motion: AxisMotion, followed: bool) {
         let mut radius_mm = self.radius_part * self.track.piece(s_mm).tolerance_mm;
         // What was planned may use the whole tolerance between its nodes; it stays possible. An estimate lies on the path.
         let planned_mm = distance(motion.position_mm, self.track.at(s_mm).position_mm);
         radius_mm = radius_mm.max((1.0 + PLANNED_SLACK) * planned_mm);
-        self.nodes.push(MeshNode { s_mm, duration_s, motion, radius_mm });
+        self.nodes.push(MeshNode { s_mm, duration_s, motion, radius_mm, followed });
     }
 
     /// Follows steps for a time.
     pub(super) fn follow(&mut self, steps: &[PlannedStep], until_s: f64) {
         let (mut begins_s, mut last_s) = (0.0, 0.0);
-        for step in steps {
+        for (i, step) in steps.iter().enumerate() {
+            if i < ALIGNED && begins_s + step.duration_s < until_s && step.to_mm > self.last_mm() {
+                self.push(step.to_mm, step.duration_s, step.motion.after(step.duration_s), true);
+                begins_s += step.duration_s;
+                last_s = begins_s;
+                continue;
+            }
             let powers = place_powers(step, self.track.at(step.from_mm).tangent, self.track.at(step.to_mm).tangent);
             loop {
                 if self.is_full() || last_s + self.step_s > until_s {
@@ -99,7 +110,7 @@ impl<'a> Mesh<'a> {
                 if s_mm <= self.last_mm() {
                     break;
                 }
-                self.push(s_mm, next_s - last_s, step.motion.after(next_s - begins_s));
+                self.push(s_mm, next_s - last_s, step.motion.after(next_s - begins_s), true);
                 last_s = next_s;
             }
             begins_s += step.duration_s;
@@ -141,7 +152,7 @@ impl<'a> Mesh<'a> {
             let at = self.track.at(next_mm);
             let motion =
                 AxisMotion { position_mm: at.position_mm, velocity_mm_s: scale(speed, at.tangent), ..AxisMotion::REST };
-            self.push(next_mm, (next_mm - s_mm) / speed, motion);
+            self.push(next_mm, (next_mm - s_mm) / speed, motion, false);
             s_mm = next_mm;
         }
         self.track.ended && s_mm >= end_mm

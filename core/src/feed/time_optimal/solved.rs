@@ -6,10 +6,25 @@ use super::steps::{AxisCaps, PlannedStep};
 use super::track::Track;
 use super::window::{WindowProblem, WindowUnits, WindowUnknowns};
 use crate::feed::AxisMotion;
-use crate::vector::{norm, scale, sub};
+use crate::vector::{angle, norm, scale, sub};
 
 /// A shorter way of an axis within a window is none, mm: a thousandth of what any encoder resolves.
 const STILL_MM: f64 = 1e-9;
+
+/// Pieces so near to a step belong to it, mm.
+const AT_MM: f64 = 1e-9;
+
+/// The part by which the first control velocity may exceed the velocity that is given.
+const GIVEN_PART: f64 = 1e-7;
+
+/// So much of a turn that was planned before is reckoned with: a motion that turns less would exceed the feedrate between its nodes.
+const FOLLOWED_TURN: f64 = 0.98;
+
+/// The part by which a speed may exceed the one that was planned before, where that is above a cap.
+const PLANNED_PART: f64 = 1e-3;
+
+/// The least cosine of half a turn: sharper corners are passed slowly whatever is allowed.
+const LEAST_COS: f64 = 0.9;
 
 /// A mesh that is to be solved.
 pub(super) struct MeshProblem<'a> {
@@ -18,7 +33,7 @@ pub(super) struct MeshProblem<'a> {
     pub(super) nodes: &'a [MeshNode],
     pub(super) step_s: f64,
     pub(super) tolerance_mm: f64,
-    /// Factor on the feedrate of each node.
+    /// Factor on the feedrate of each step.
     pub(super) feed_parts: &'a [f64],
     pub(super) ends: bool,
     /// Begin with a motion along the chords, so many times slower, instead of with that of the nodes.
@@ -88,7 +103,7 @@ impl MeshProblem<'_> {
                 .map(|i| std::array::from_fn(|d| (centers[i + 1][axes[d]] - centers[i][axes[d]]) / units.offset_mm))
                 .collect(),
             radius: self.nodes.iter().map(|node| node.radius_mm / units.offset_mm).collect(),
-            feed_mm_s: (0..=n).map(|i| self.feed_mm_s(i)).collect(),
+            feed_mm_s: (0..n).map(|i| self.feed_mm_s(i)).collect(),
             first: x[0],
             exact_end: self.ends,
         };
@@ -109,12 +124,42 @@ impl MeshProblem<'_> {
         AxisMotion { position_mm: centers[i], velocity_mm_s, ..AxisMotion::REST }
     }
 
-    /// The smallest feedrate of both steps at a node.
+    /// What a control velocity may be: the feedrate, the smallest one where pieces meet, and more where the path turns: the polygon of
+    /// control velocities of a steady circle lies around it. A control velocity that is given stays possible.
     fn feed_mm_s(&self, i: usize) -> f64 {
-        let lo_mm = self.nodes[i.saturating_sub(1)].s_mm;
-        let hi_mm = self.nodes[(i + 1).min(self.nodes.len() - 1)].s_mm;
-        let feeds = self.track.between(lo_mm, hi_mm).map(|piece| piece.feed_mm_s);
-        feeds.fold(f64::INFINITY, f64::min) * self.feed_parts[i]
+        let [from, to] = [&self.nodes[i], &self.nodes[i + 1]];
+        let feeds = self.track.between(from.s_mm - AT_MM, to.s_mm + AT_MM).map(|piece| piece.feed_mm_s);
+        let feed_mm_s = feeds.fold(f64::INFINITY, f64::min) * self.feed_parts[i];
+        let cap_mm_s = self.track.cap_mm_s(from.s_mm).min(self.track.cap_mm_s(to.s_mm));
+        // What was planned under a cap stays possible beside it: caps hold roughly, feedrates exactly.
+        let planned_mm_s = norm(from.motion.velocity_mm_s).max(norm(to.motion.velocity_mm_s));
+        let cap_mm_s = if from.followed { cap_mm_s.max((1.0 + PLANNED_PART) * planned_mm_s) } else { cap_mm_s };
+        let around_mm_s = feed_mm_s.min(cap_mm_s) / self.turn_cos(i);
+        if i > 0 {
+            return around_mm_s;
+        }
+        let given_mm_s = norm(from.motion.velocity_mm_s);
+        around_mm_s.max((1.0 + GIVEN_PART) * given_mm_s)
+    }
+
+    /// Cosine of half the angle by which the velocity turns within a step: on a curve by its tangents, elsewhere by what was planned
+    /// before; 1 where nothing was, and the speed then stays below the feedrate by as much as the motion turns.
+    fn turn_cos(&self, i: usize) -> f64 {
+        let [from, to] = [&self.nodes[i], &self.nodes[i + 1]];
+        let piece = self.track.piece(from.s_mm);
+        let directions = if piece.s_mm + piece.length_mm >= to.s_mm {
+            [from, to].map(|node| piece.curve.at((node.s_mm - piece.s_mm).max(0.0).min(piece.length_mm)).tangent)
+        } else {
+            [[0.0; 3]; 2]
+        };
+        let turn = if directions[0] != directions[1] {
+            angle(directions[0], directions[1])
+        } else if from.followed && to.followed {
+            FOLLOWED_TURN * angle(from.motion.velocity_mm_s, to.motion.velocity_mm_s)
+        } else {
+            0.0
+        };
+        (0.5 * turn).cos().max(LEAST_COS)
     }
 
     fn steps_of<const D: usize, const N: usize, const M: usize>(

@@ -1,15 +1,20 @@
 //! The programmed path from one rest to the next, as far as it is known, with what bounds the speed at places of it.
 
 use super::steps::AxisCaps;
+use crate::constraints::speed_caps::SpeedCaps;
 use crate::path::{Curve, Piece};
 use crate::vector::{angle, distance, norm, sub};
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// Where the directions of two pieces differ by this, a node lies on their joint, rad.
 const SHARP_RAD: f64 = 0.2;
 
 /// Widest span over which the path is looked at as a whole, mm; so much of it has to be known beyond a place.
 const WIDEST_MM: f64 = 2.56;
+
+/// Each span is so many times the one before.
+const WIDER: f64 = 1.5;
 
 /// Distance of places, in tolerances, near the ends of pieces.
 const GRID: f64 = 2.0;
@@ -19,6 +24,9 @@ const GRID: f64 = 2.0;
 pub(super) struct TrackPiece {
     pub(super) number: u64,
     pub(super) curve: Curve,
+    /// Where it begins: position, arc length from the start of the program and from the rest.
+    pub(super) start_mm: [f64; 3],
+    pub(super) program_mm: f64,
     pub(super) s_mm: f64,
     pub(super) length_mm: f64,
     pub(super) feed_mm_s: f64,
@@ -42,12 +50,39 @@ pub(super) struct Track {
     places: VecDeque<TrackPlace>,
     /// Joints where a node has to be.
     joints: VecDeque<f64>,
+    /// Bounds on the speed by the arc length from the start of the program.
+    caps: Option<Arc<SpeedCaps>>,
     pub(super) end_mm: f64,
     /// The tool rests behind the last piece.
     pub(super) ended: bool,
 }
 
 impl Track {
+    /// Without pieces.
+    pub(super) fn new(caps: Option<Arc<SpeedCaps>>) -> Self {
+        Self { caps, ..Self::default() }
+    }
+
+    /// Bound on the speed at a place beside its feedrate, mm/s.
+    pub(super) fn cap_mm_s(&self, s_mm: f64) -> f64 {
+        let Some(caps) = &self.caps else {
+            return f64::INFINITY;
+        };
+        let piece = self.piece(s_mm);
+        caps.at(piece.program_mm + (s_mm - piece.s_mm))
+    }
+
+    /// The smallest bound and feedrate between two places, mm/s.
+    pub(super) fn least_mm_s(&self, lo_mm: f64, hi_mm: f64) -> f64 {
+        let feeds = self.between(lo_mm, hi_mm).map(|piece| piece.feed_mm_s).fold(f64::INFINITY, f64::min);
+        let Some(caps) = &self.caps else {
+            return feeds;
+        };
+        let piece = self.piece(lo_mm);
+        let from_mm = piece.program_mm + (lo_mm - piece.s_mm);
+        feeds.min(caps.least(from_mm, from_mm + (hi_mm - lo_mm)))
+    }
+
     /// Adds a piece.
     pub(super) fn push(&mut self, number: u64, piece: &Piece, feed_mm_s: f64, tolerance_mm: f64) {
         let Piece { curve, length_mm, .. } = piece;
@@ -59,7 +94,18 @@ impl Track {
             }
         }
         let (curve, length_mm) = (curve.clone(), *length_mm);
-        self.pieces.push_back(TrackPiece { number, curve, s_mm: self.end_mm, length_mm, feed_mm_s, tolerance_mm });
+        let (start_mm, s_mm) = (curve.at(0.0).position_mm, self.end_mm);
+        let program_mm = piece.s_mm;
+        self.pieces.push_back(TrackPiece {
+            number,
+            curve,
+            start_mm,
+            program_mm,
+            s_mm,
+            length_mm,
+            feed_mm_s,
+            tolerance_mm,
+        });
         self.end_mm += length_mm;
     }
 
@@ -157,13 +203,14 @@ impl Track {
     }
 
     /// Bound on the speed at a place: the turn over the widest span over which the tube lets a motion go straight on takes its time by
-    /// acceleration and jerk. An estimate: it decides how far nodes are apart, not what the axes do.
+    /// acceleration; the part of it that does not grow with the span, a corner, by jerk as well; the other, a bend, by the jerk of an
+    /// acceleration that turns. An estimate: it decides how far nodes are apart, not what the axes do.
     fn place(&self, s_mm: f64, caps: &AxisCaps) -> TrackPlace {
         let piece = self.piece(s_mm);
         let here = self.at(s_mm);
         let tolerance_mm = piece.tolerance_mm;
         let first_mm = self.pieces.front().map_or(0.0, |piece| piece.s_mm);
-        let (mut turn, mut used_mm) = ([0.0_f64; 3], 0.0);
+        let (mut turn, mut used_mm, mut narrower) = ([0.0_f64; 3], 0.0, [0.0_f64; 3]);
         let mut width_mm = 2.0 * tolerance_mm;
         while width_mm <= WIDEST_MM && s_mm - width_mm >= first_mm && s_mm + width_mm <= self.end_mm {
             let before = sub(here.position_mm, self.at(s_mm - width_mm).position_mm);
@@ -173,15 +220,23 @@ impl Track {
             if used_mm > 0.0 && norm(this) * width_mm > 6.0 * tolerance_mm {
                 break;
             }
+            narrower = if used_mm > 0.0 { turn } else { [0.0; 3] };
             (turn, used_mm) = (this, width_mm);
-            width_mm *= 1.5;
+            width_mm *= WIDER;
         }
-        let mut cap_mm_s = piece.feed_mm_s.min(caps.along(here.tangent, |limits| limits.velocity_mm_s));
+        let mut cap_mm_s = piece.feed_mm_s.min(self.cap_mm_s(s_mm));
+        cap_mm_s = cap_mm_s.min(caps.along(here.tangent, |limits| limits.velocity_mm_s));
+        let bend = norm(turn) / used_mm.max(1e-12);
         for (k, limits) in caps.axes.iter().enumerate() {
+            // turn = corner + bend * span, by the last two spans.
+            let corner = (turn[k] - (turn[k] - narrower[k]) / (1.0 - 1.0 / WIDER)).abs().min(turn[k].abs());
             let turn = turn[k].abs();
             if turn > 1e-9 {
                 cap_mm_s = cap_mm_s.min((limits.accel_mm_s2 * used_mm / turn).sqrt());
-                cap_mm_s = cap_mm_s.min((limits.jerk_mm_s3 * used_mm * used_mm / turn).cbrt());
+                cap_mm_s = cap_mm_s.min((limits.jerk_mm_s3 / (bend * bend)).cbrt());
+            }
+            if corner > 1e-9 {
+                cap_mm_s = cap_mm_s.min((limits.jerk_mm_s3 * used_mm * used_mm / corner).cbrt());
             }
         }
         let at_cap_s =
@@ -193,6 +248,10 @@ impl Track {
     pub(super) fn distance(&self, point_mm: [f64; 3], lo_mm: f64, hi_mm: f64) -> f64 {
         let mut least = f64::INFINITY;
         for piece in self.between(lo_mm, hi_mm) {
+            // No point of it is nearer than its start by more than its length.
+            if distance(piece.start_mm, point_mm) - piece.length_mm > least {
+                continue;
+            }
             let lo = (lo_mm - piece.s_mm).max(0.0).min(piece.length_mm);
             let hi = (hi_mm - piece.s_mm).max(0.0).min(piece.length_mm);
             for s_mm in [piece.curve.nearest(point_mm, lo, hi), lo, hi] {

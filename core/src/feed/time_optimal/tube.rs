@@ -1,18 +1,29 @@
 //! What the nodes do not bound: between them, the distance of the motion from the path, of the path from the motion, and the feedrate.
 
 use super::mesh::{MeshNode, NEAR_START};
-use super::steps::PlannedStep;
+use super::steps::{AxisCaps, PlannedStep};
 use super::track::Track;
+use crate::feed::AxisMotion;
 use crate::vector::{add_scaled, distance, dot, norm, sub};
 
 /// Moments within a step at which it is looked at.
 const MOMENTS: u32 = 6;
+
+/// So often the time between two of them is halved for the moment of the largest speed: it is flat there, and exact to rounding.
+const HALVINGS: u32 = 24;
 
 /// Joints of a step that are looked at closely: those that stand out most from the chord between its nodes.
 const JOINTS: usize = 2;
 
 /// What the tolerance may be exceeded by, mm: a hundredth of a micrometre.
 const OVER_MM: f64 = 1e-5;
+
+/// A feedrate that is exceeded is lowered by so many times as much.
+const FEED_TIGHTER: f64 = 1.2;
+
+/// What the velocity of an axis may be exceeded by between nodes. A step that exceeds it gets a node more as if it left the tube by this, mm.
+const FAST_OVER: f64 = 1e-4;
+const TOO_FAST_MM: f64 = 6e-5;
 
 /// A radius is made no smaller than this part at once.
 const LEAST_RADIUS: f64 = 0.3;
@@ -30,15 +41,17 @@ pub(super) struct Excess {
     pub(super) feed_part: f64,
 }
 
-/// All steps that exceed something.
-pub(super) fn excesses(track: &Track, steps: &[PlannedStep]) -> Vec<Excess> {
+/// All steps that exceed something; whether they leave the tube is asked of the first ones only.
+pub(super) fn excesses(track: &Track, caps: &AxisCaps, steps: &[PlannedStep], first: usize) -> Vec<Excess> {
     let mut found = Vec::new();
     for (i, step) in steps.iter().enumerate() {
-        let tube_mm = away_mm(track, steps, i).max(left_out_mm(track, steps, i));
+        let mut tube_mm = if i < first { away_mm(track, steps, i).max(left_out_mm(track, steps, i)) } else { 0.0 };
+        if i < first && is_too_fast(caps, step) {
+            tube_mm = tube_mm.max(TOO_FAST_MM);
+        }
         let feed_mm_s =
             track.between(step.from_mm, step.to_mm).map(|piece| piece.feed_mm_s).fold(f64::INFINITY, f64::min);
-        let part = (feed_mm_s / fastest_mm_s(step)).min(1.0);
-        let feed_part = part;
+        let feed_part = (feed_mm_s / fastest_mm_s(step)).min(1.0);
         if tube_mm > OVER_MM || feed_part < 1.0 {
             found.push(Excess { step: i, tube_mm: tube_mm.max(0.0), feed_part });
         }
@@ -46,10 +59,38 @@ pub(super) fn excesses(track: &Track, steps: &[PlannedStep]) -> Vec<Excess> {
     found
 }
 
-/// The largest speed along the path within a step: the square of a quadratic has its maximum at an end or within; looked at closely.
+/// Whether an axis exceeds its velocity within a step: between nodes the velocity of an axis has its extreme where the acceleration is
+/// zero.
+fn is_too_fast(caps: &AxisCaps, step: &PlannedStep) -> bool {
+    let AxisMotion { accel_mm_s2: a, jerk_mm_s3: j, .. } = step.motion;
+    (0..3).any(|k| {
+        let t = (-a[k] / j[k]).clamp(0.0, step.duration_s);
+        // Without jerk the extremes are at the ends.
+        t.is_finite() && step.motion.after(t).velocity_mm_s[k].abs() > (1.0 + FAST_OVER) * caps.axes[k].velocity_mm_s
+    })
+}
+
+/// The largest speed along the path within a step. The velocity is a quadratic, so its square has at most two maxima within: each is
+/// between two moments and is found by halving what its derivative `v a` changes its sign in.
 fn fastest_mm_s(step: &PlannedStep) -> f64 {
-    let at = |m: u32| norm(step.motion.after(step.duration_s * f64::from(m) / f64::from(4 * MOMENTS)).velocity_mm_s);
-    (0..=4 * MOMENTS).map(at).fold(0.0, f64::max)
+    let h = step.duration_s;
+    let speed = |t: f64| norm(step.motion.after(t).velocity_mm_s);
+    let rises = |t: f64| {
+        let motion = step.motion.after(t);
+        dot(motion.velocity_mm_s, motion.accel_mm_s2) > 0.0
+    };
+    let mut most = speed(0.0).max(speed(h));
+    for m in 0..MOMENTS {
+        let [mut lo, mut hi] = [m, m + 1].map(|m| h * f64::from(m) / f64::from(MOMENTS));
+        if rises(lo) && !rises(hi) {
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (lo + hi);
+                if rises(middle) { lo = middle } else { hi = middle }
+            }
+            most = most.max(speed(lo));
+        }
+    }
+    most
 }
 
 /// How far the motion of a step leaves the tube, mm.
@@ -82,7 +123,7 @@ fn left_out_mm(track: &Track, steps: &[PlannedStep], i: usize) -> f64 {
         if piece.s_mm <= step.from_mm {
             continue;
         }
-        let joint = piece.curve.at(0.0).position_mm;
+        let joint = piece.start_mm;
         let along = (dot(sub(joint, from), chord) / square).clamp(0.0, 1.0);
         let away = distance(add_scaled(from, along, chord), joint);
         if away > furthest[JOINTS - 1].0 {
@@ -132,7 +173,11 @@ pub(super) fn tightened(
             let offset_mm = distance(node.motion.position_mm, track.at(node.s_mm).position_mm);
             let least = if i < NEAR_START { SLOWLY * offset_mm } else { LEAST_RADIUS * node.radius_mm };
             node.radius_mm = (node.radius_mm - 1.2 * excess.tube_mm).max(least.min(node.radius_mm));
-            parts[i] *= 1.0 - 1.3 * (1.0 - excess.feed_part);
+        }
+        // The velocity of a step is between its control velocity and those of its neighbours.
+        let last = parts.len() - 1;
+        for part in &mut parts[excess.step.saturating_sub(2)..=(excess.step + 2).min(last)] {
+            *part *= 1.0 - FEED_TIGHTER * (1.0 - excess.feed_part);
         }
     }
     for excess in excesses.iter().rev().filter(|excess| excess.tube_mm > 0.0) {
@@ -145,8 +190,8 @@ pub(super) fn tightened(
             let least = if excess.step < NEAR_START { offset_mm } else { LEAST_RADIUS * offset_mm };
             let radius_mm = (0.9 * track.piece(s_mm).tolerance_mm - excess.tube_mm).max(least);
             next[excess.step + 1].duration_s = half_s;
-            next.insert(excess.step + 1, MeshNode { s_mm, duration_s: half_s, motion, radius_mm });
-            parts.insert(excess.step + 1, parts[excess.step].min(parts[excess.step + 1]));
+            next.insert(excess.step + 1, MeshNode { s_mm, duration_s: half_s, motion, radius_mm, followed: false });
+            parts.insert(excess.step + 1, parts[excess.step]);
         }
     }
     (next, parts)

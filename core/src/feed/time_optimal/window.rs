@@ -28,7 +28,7 @@ pub(super) struct WindowProblem<const D: usize, const N: usize> {
     pub(super) way: Vec<[f64; D]>,
     /// Largest length of the offset of each node.
     pub(super) radius: Vec<f64>,
-    /// Largest speed along the path at each node, mm/s.
+    /// Largest length of the control velocity of each step, mm/s.
     pub(super) feed_mm_s: Vec<f64>,
     /// State of the first node.
     pub(super) first: [f64; N],
@@ -101,7 +101,7 @@ impl<const D: usize, const N: usize> WindowProblem<D, N> {
         end
     }
 
-    /// Weights `w` of the squares of the velocities, `sum w v^2 <= 1` at a node.
+    /// Weights `w` of the squares of control velocities, `sum w c^2 <= 1` in a step.
     pub(super) fn feed_weights(&self, i: usize) -> [f64; D] {
         std::array::from_fn(|k| (self.units.velocity_mm_s[k] / self.feed_mm_s[i]).powi(2))
     }
