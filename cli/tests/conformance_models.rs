@@ -165,3 +165,26 @@ fn axes_that_do_not_show_are_told_of() {
     let ran = folder.run(&[&["run", "circle.ngc", "--against", "lqg-identified"], &same[..]].concat());
     assert!(ran.stderr.contains("lqg-identified cuts open loop: the axes of `"), "{}", ran.stderr);
 }
+
+#[test]
+fn a_block_is_of_a_model_or_of_a_machine_and_nothing_is_written_where_neither_is_there() {
+    let folder = Folder::new();
+    folder.run(&["block", "workshop", "--out", "exact.fwmodel"]).succeeded();
+    folder
+        .run(&["identify", "--controller", "lqg-identified", "--machine", "tnv40", "--out", "m.model.toml"])
+        .succeeded();
+    let told = folder.run(&["block", "m.model.toml", "--out", "found.fwmodel"]).succeeded().stdout;
+    assert!(told.contains("the model of kind 'axes', 2 axes: 644 bytes"), "{told}");
+    let before = folder.content();
+    for (arguments, texts) in [
+        (
+            ["m.model.toml", "--axes", "3"],
+            ["the model m.model.toml has 2 axes", "identify the machine again with --axes"],
+        ),
+        (["missing.toml", "--axes", "3"], ["missing.toml", "cannot"]),
+        (["tnv40", "--axes", "4"], ["a block is of 2 or 3 axes", "--axes"]),
+    ] {
+        folder.run(&[&["block"], &arguments[..], &["--out", "more.fwmodel"]].concat()).refused(&texts);
+        assert_eq!(folder.content(), before, "{arguments:?}");
+    }
+}

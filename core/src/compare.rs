@@ -6,7 +6,6 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `compare/mean.rs` | what several numbers come to |
 //! | `compare/noise.rs` | noise seeds, medians |
 //! | `compare/work.rs` | what is cut |
 //! | `compare/tuned.rs` | the values that a controller runs with |
@@ -24,7 +23,6 @@
 //! | `compare/rows_file.rs` | files of rows that the user names |
 //! | `compare/page.rs` | the page |
 
-pub mod mean;
 mod noise;
 pub mod work;
 pub mod tuned;

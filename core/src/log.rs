@@ -23,6 +23,7 @@ mod sinumerik;
 mod clock;
 mod axes;
 mod screen;
+mod joined;
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};

@@ -6,7 +6,9 @@
 //!
 //! What is computed is in [`crate::identify::grey_box`].
 
+mod axis_keys;
 mod machine_text;
+mod update;
 mod json;
 mod page;
 
@@ -16,16 +18,19 @@ use std::ops::Range;
 use miette::Diagnostic;
 use thiserror::Error;
 
+use crate::identify::grey_box::axis_facts::AxisFacts;
 use crate::identify::grey_box::axis_record::AxisRecord;
-use crate::identify::grey_box::found_axis::{AxisFacts, FoundAxis, NumberSource};
+use crate::identify::grey_box::found_axis::NumberSource;
 use crate::identify::grey_box::verdict::LawVerdict;
 use crate::identify::grey_box::{FoundMachine, GreyBoxOptions, NotFound, identify};
 use crate::log::{Fitness, Log};
+use crate::machine::Machine;
 use crate::watch::{Cancelled, StageSteps, Watch};
 
 pub use json::write as write_json;
 pub use machine_text::machine_text;
-pub use page::write as write_page;
+pub use page::{following as following_figure, write as write_page};
+pub use update::{UpdateError, updated_text};
 
 /// What is asked for.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -36,6 +41,8 @@ pub struct LogJob {
     pub times_s: Option<[Range<f64>; 2]>,
     /// What is known of every axis.
     pub facts: AxisFacts,
+    /// The machine as it was known before: what the log does not tell stays.
+    pub before: Option<Machine>,
 }
 
 /// What it came to.
@@ -73,7 +80,7 @@ impl LogJob {
     /// # Errors
     /// A log that does not tell the law of an axis, or an end from outside.
     pub fn run(self, log: Log, watch: &dyn Watch) -> Result<LogIdentified, LogJobError> {
-        let (log, of_samples) = thinned(log);
+        let (log, of_samples) = informative(log);
         let records: Vec<AxisRecord<'_>> = log
             .axes
             .iter()
@@ -87,7 +94,7 @@ impl LogJob {
             })
             .collect();
         let torques: Vec<Option<&[f64]>> = log.axes.iter().map(|axis| axis.torque.as_deref()).collect();
-        let options = GreyBoxOptions { times_s: self.times_s.clone(), facts: vec![self.facts; records.len()] };
+        let options = GreyBoxOptions { times_s: self.times_s.clone(), facts: self.facts_of(&log) };
         let mut steps = StageSteps::begin(watch, "identifying the axes");
         let machine = identify(&records, &torques, &log.time_s, &options, |part| {
             steps.reach(part);
@@ -98,8 +105,21 @@ impl LogJob {
     }
 }
 
+impl LogJob {
+    /// What is known of each axis of a log.
+    fn facts_of(&self, log: &Log) -> Vec<AxisFacts> {
+        let names: Vec<&str> = log.axes.iter().map(|axis| axis.name.as_str()).collect();
+        let places = places(&names);
+        let of_axis = |i: usize| {
+            let place = places.iter().position(|place| *place == Some(i))?;
+            self.before.as_ref()?.axes.get(place)
+        };
+        (0..names.len()).map(|i| of_axis(i).map_or(self.facts, |axis| self.facts.or_of(axis))).collect()
+    }
+}
+
 /// A log of no more samples than are used: windows of a longer one, evenly over those in which it moves.
-fn thinned(log: Log) -> (Log, Option<usize>) {
+pub fn informative(log: Log) -> (Log, Option<usize>) {
     let samples = log.time_s.len();
     if samples <= MOST_SAMPLES {
         return (log, None);
@@ -116,9 +136,14 @@ fn thinned(log: Log) -> (Log, Option<usize>) {
             from = to;
         }
     }
-    let most = MOST_SAMPLES / WINDOW_SAMPLES;
-    let apart = windows.len().div_ceil(most).max(1);
-    let windows: Vec<Range<usize>> = windows.into_iter().step_by(apart).collect();
+    let moving: usize = windows.iter().map(ExactSizeIterator::len).sum();
+    let apart = moving.div_ceil(MOST_SAMPLES).max(1);
+    let mut used = 0;
+    let within = |window: &Range<usize>| {
+        used += window.len();
+        used <= MOST_SAMPLES
+    };
+    let windows: Vec<Range<usize>> = windows.into_iter().step_by(apart).take_while(within).collect();
     let of = |values: &[f64]| -> Vec<f64> { windows.iter().flat_map(|w| values[w.clone()].iter().copied()).collect() };
     let mut short = log;
     short.time_s = of(&short.time_s);
@@ -138,6 +163,12 @@ fn thinned(log: Log) -> (Log, Option<usize>) {
 }
 
 impl LogIdentified {
+    /// Which axis of the log is x, y and z of the machine file.
+    fn places(&self) -> [Option<usize>; 3] {
+        let names: Vec<&str> = self.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+        places(&names)
+    }
+
     /// The verdict of an axis, in words.
     pub fn verdict(&self, axis: usize) -> String {
         let found = &self.machine.axes[axis];
@@ -160,7 +191,7 @@ impl LogIdentified {
                 advice.push(format!("axis {name}: positions do not tell Kp, Kv and B apart; B is taken as zero. Give --inertia and --viscous, or record the torque"));
             }
             if axis.resolved.is_none() {
-                advice.push(format!("axis {name}: the drive is taken to know the speed exactly. One that takes it from positions over some samples looks like a smaller inertia: the products may be too large by 10 % and more. A torque column tells"));
+                advice.push(format!("axis {name}: the drive is taken to know the speed exactly. One that takes it from positions over some samples looks like a smaller inertia: the products may be too large by 10 % and more. --speed-window says it, a torque column tells"));
             }
             if axis.scores.beyond.is_some() {
                 advice.push(format!("axis {name}: part of what was scored is faster than all that was fitted. Record all speeds in both parts"));
@@ -173,6 +204,29 @@ impl LogIdentified {
             }
         }
         advice
+    }
+
+    /// What other settings of the drives would bring, as far as the log supports it: of axes whose law holds.
+    pub fn improvements(&self) -> Vec<String> {
+        let mut improvements = vec![];
+        for (found, axis) in self.machine.axes.iter().zip(&self.log.axes) {
+            let is_sound = matches!(LawVerdict::of(found), LawVerdict::LawHolds | LawVerdict::LinearSuffices);
+            if !is_sound || axis.verdict != Fitness::ForControl {
+                continue;
+            }
+            improvements.extend(found.gain_changes.iter().map(|change| {
+                format!(
+                    "axis {}: {} would leave {} um RMS of following error on the motions of the log, simulated ({} um by the gains alone), where there \
+                     are {} um now",
+                    found.name,
+                    change.words(),
+                    digits(change.simulated_um),
+                    digits(change.predicted_um),
+                    digits(change.now_um)
+                )
+            }));
+        }
+        improvements
     }
 
     /// A table of the numbers, as a terminal shows it.
@@ -211,8 +265,8 @@ pub(crate) fn digits(value: f64) -> String {
 }
 
 /// Name of the axis of a machine file that each axis of the log becomes: those that are called so, the others in their order.
-pub(crate) fn places(axes: &[FoundAxis]) -> [Option<usize>; 3] {
-    let named = |name: &str| axes.iter().position(|axis| axis.name.to_lowercase().starts_with(name));
+fn places(axes: &[&str]) -> [Option<usize>; 3] {
+    let named = |name: &str| axes.iter().position(|axis| axis.to_lowercase().starts_with(name));
     let mut places = ["x", "y", "z"].map(named);
     let mut left = (0..axes.len()).filter(|i| !places.contains(&Some(*i))).collect::<Vec<_>>().into_iter();
     for place in &mut places {

@@ -36,6 +36,8 @@ pub const BUILT_IN: &[(&str, &str)] = &[
     ("workshop", include_str!("../../machines/workshop.toml")),
     ("stiff", include_str!("../../machines/stiff.toml")),
     ("router", include_str!("../../machines/router.toml")),
+    ("emps", include_str!("../../machines/emps.toml")),
+    ("sinumerik", include_str!("../../machines/sinumerik.toml")),
 ];
 
 /// What is cut on where nothing else is said: the built-in machine that is most like one that somebody has.

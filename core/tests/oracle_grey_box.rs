@@ -9,7 +9,8 @@ mod common {
 use std::path::Path;
 
 use common::identification_log::{commands_mm, log_of};
-use feedwright::identify::grey_box::found_axis::{AxisFacts, FoundAxis, NumberSource};
+use feedwright::identify::grey_box::axis_facts::AxisFacts;
+use feedwright::identify::grey_box::found_axis::{FoundAxis, NumberSource};
 use feedwright::identify::grey_box::terms::LawTerm;
 use feedwright::identify::grey_box::verdict::LawVerdict;
 use feedwright::log::Log;
@@ -73,7 +74,7 @@ fn gains_that_are_given_scale_the_machine_file_and_nothing_else() {
         inertia: Some(is.inertia_kg_m2),
         viscous: Some(is.viscous_friction_nm_s),
         lead_mm_per_rev: Some(is.lead_mm_per_rev),
-        torque_gain: None,
+        ..AxisFacts::default()
     };
     let found = identified(log, LogJob { facts, ..LogJob::default() });
     let mine = Machine::parse("mine.toml", &machine_text(&found, "mine")).unwrap();

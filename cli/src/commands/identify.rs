@@ -21,16 +21,17 @@ use crate::controllers::{find, settings};
 use crate::message::printed;
 
 pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
-    if let Some(log) = &args.log {
-        return from_log::run(log, args, console);
-    }
+    // Without --out there is --update, which belongs to a log.
+    let Some(out) = args.out.as_deref().filter(|_| args.log.is_empty()) else {
+        return from_log::run(&args.log, args, console);
+    };
     let controller = find(&args.controller)?;
     let set = settings(&args.set, Some(controller), &[controller])?;
     let choices = Choices { seed: args.seed, set };
     let machine = Machine::load(&args.machine)?;
     let input = PathBuf::from(&args.machine);
     let input = Some(input.as_path()).filter(|path| machine::is_path(path));
-    let mut file = OutputFiles::new(input).start(&args.out)?;
+    let mut file = OutputFiles::new(input).start(out)?;
     let date = date::today()?;
     let bar = console.bar(0);
     let mut steps = StageSteps::begin(&bar, &format!("identifying for {}", controller.name));
@@ -40,9 +41,9 @@ pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let found = setup.found().and_then(|found| found.as_ref().ok()).cloned().unwrap_or_default();
     bar.clear();
     let model = trained?;
-    file.write_all(model.text().as_bytes()).map_err(|error| OutputError::from_io(error, &args.out))?;
+    file.write_all(model.text().as_bytes()).map_err(|error| OutputError::from_io(error, out))?;
     OutputFile::commit_all(vec![file], &bar)?;
-    printed(print(&model, &found, &machine, &args.out), ExitCode::SUCCESS)
+    printed(print(&model, &found, &machine, out), ExitCode::SUCCESS)
 }
 
 fn print(model: &Model, found: &[AxisEstimate], machine: &Machine, place: &Path) -> std::io::Result<()> {
@@ -64,14 +65,20 @@ fn print_axes(out: &mut impl Write, found: &[AxisEstimate], machine: &Machine) -
     writeln!(out)?;
     let um_per_rad = |i: usize| machine.axes[i].lead_mm_per_rev * 1e3 / TAU;
     type Value = fn(&AxisParameters, f64) -> f64;
-    let rows: [(&str, Value); 5] = [
+    let rows: [(&str, Value); 9] = [
         ("inertia, kg m2", |p, _| p.inertia_kg_m2),
         ("viscous friction, N m s/rad", |p, _| p.viscous_friction_nm_s),
         ("Coulomb friction, N m", |p, _| p.coulomb_friction_nm),
         ("its asymmetry, N m", |p, _| p.coulomb_asymmetry_nm),
         ("presliding, um", |p, um_per_rad| p.presliding_rad * um_per_rad),
+        ("resonance on the screw, Hz", |p, _| p.transmission.resonance_rad_s / TAU),
+        ("its damping ratio", |p, _| p.transmission.damping_ratio),
+        ("share of the table", |p, _| p.transmission.table_share),
+        ("backlash, um", |p, um_per_rad| p.transmission.backlash_rad * um_per_rad),
     ];
-    for (label, value) in rows {
+    let of_screw = |label: &str| rows[5..].iter().any(|(of_screw, _)| *of_screw == label);
+    let gives = found.iter().any(|axis| axis.parameters.has_screw());
+    for (label, value) in rows.into_iter().filter(|(label, _)| gives || !of_screw(label)) {
         write!(out, "{label:<30}")?;
         for (i, axis) in found.iter().enumerate() {
             let [found, error] = [&axis.parameters, &axis.standard_errors].map(|of| value(of, um_per_rad(i)));

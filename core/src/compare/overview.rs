@@ -2,10 +2,10 @@
 //! all that it was made of.
 
 use super::Comparison;
-use super::mean::quadratic_mean;
 use super::table::{ComparisonRow, each_once};
 use super::tolerance::AtTolerance;
 use super::verdict::Verdict;
+use crate::average::quadratic_mean;
 
 /// One claim, and what became of it everywhere.
 #[derive(Debug)]

@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::competitor::Competitor;
-use super::mean::median_and_spread;
 use super::options::ComparisonOptions;
 use super::work::Workpiece;
+use crate::average::median_and_spread;
 use crate::controllers::{BASELINE, Knows};
 use crate::machine::Machine;
 

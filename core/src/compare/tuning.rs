@@ -9,9 +9,9 @@
 use rayon::prelude::*;
 
 use super::cut::cut;
-use super::mean::quadratic_mean;
 use super::tuned::{RangeEnd, Tuned, TunedValue};
 use super::work::Workpiece;
+use crate::average::quadratic_mean;
 use crate::controllers::{BASELINE, Choices, Entry, Make, Parameter, Setting, Setup};
 use crate::machine::Machine;
 use crate::pipeline::{Run, RunError};

@@ -11,9 +11,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::competitor::{Competitor, Knowledge};
-use super::mean::quadratic_mean;
 use super::options::ComparisonOptions;
 use super::table::{ComparisonRow, each_once, knows};
+use crate::average::quadratic_mean;
 use crate::controllers::{BASELINE, BEST, Knows};
 
 /// One claim on one workpiece of one machine.

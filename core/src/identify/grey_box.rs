@@ -15,19 +15,24 @@
 //! | `grey_box/standard_errors.rs` | intervals where what is left is coloured |
 //! | `grey_box/torque_column.rs` | what a torque column tells beside |
 //! | `grey_box/linear_arx.rs`, `grey_box/start_filter.rs`, `grey_box/free_run_scores.rs` | how far predictions miss |
+//! | `grey_box/residual_noise.rs` | what free runs leave, as a load |
+//! | `grey_box/gain_changes.rs` | what other gains would bring |
 //! | `grey_box/found_axis.rs`, `grey_box/verdict.rs` | what was found, and what to say of it |
 
 pub mod axis_record;
 pub mod sample_split;
 pub mod terms;
+pub mod axis_facts;
 mod axis_run;
 mod output_error;
-mod admission;
 mod standard_errors;
+mod admission;
 pub mod torque_column;
 pub mod linear_arx;
 mod start_filter;
 pub mod free_run_scores;
+pub mod residual_noise;
+pub mod gain_changes;
 pub mod found_axis;
 mod law_fit;
 pub mod contour_scores;
@@ -37,9 +42,10 @@ use std::ops::Range;
 
 use thiserror::Error;
 
+use axis_facts::AxisFacts;
 use axis_record::AxisRecord;
 use contour_scores::ContourScores;
-use found_axis::{AxisFacts, FoundAxis};
+use found_axis::FoundAxis;
 use sample_split::SampleSplit;
 
 /// What an identification is told beside the record.

@@ -9,6 +9,7 @@ use super::finding::LogFinding;
 use super::roles::{AxisRoles, Roles, TimeColumn};
 use super::table::LogTable;
 use super::units::TimeUnit;
+use crate::average::middle_of;
 use crate::number::to_four_digits;
 
 /// When the samples were taken.
@@ -83,8 +84,7 @@ fn median_step(values: &[f64]) -> f64 {
     const STEPS: usize = 100_000;
     let stride = values.len().div_ceil(STEPS).max(1);
     let mut steps: Vec<f64> = values.windows(2).step_by(stride).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len() / 2;
-    if steps.is_empty() { 0.0 } else { *steps.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    middle_of(&mut steps)
 }
 
 /// The unit of the time column.

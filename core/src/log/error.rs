@@ -52,6 +52,17 @@ pub enum LogError {
         #[related]
         refusals: Vec<Refusal>,
     },
+    /// It does not belong to the log before it.
+    #[error("{}: {message}", path.display())]
+    Apart {
+        /// The file.
+        path: PathBuf,
+        /// What differs.
+        message: String,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
     /// The reading was ended from outside.
     #[error(transparent)]
     #[diagnostic(transparent)]
@@ -108,6 +119,11 @@ impl LogError {
     /// Columns that are missing.
     pub(super) fn columns(path: &Path, message: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Columns { path: path.to_owned(), message: message.into(), hint: hint.into() }
+    }
+
+    /// A log of something else than the one before it.
+    pub(super) fn apart(path: PathBuf, message: String, hint: &str) -> Self {
+        Self::Apart { path, message, hint: hint.to_owned() }
     }
 
     /// A record that is refused for one reason.

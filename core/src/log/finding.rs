@@ -24,6 +24,13 @@ pub enum LogFinding {
         /// Whether the data said so, and not the names.
         by_data: bool,
     },
+    /// Another log of the same machine goes on here.
+    Joined {
+        /// Its file.
+        path: String,
+        /// Time from which it is in the log as a whole, s.
+        from_s: f64,
+    },
     /// Unit of the positions.
     PositionUnit {
         /// The unit.
@@ -206,6 +213,7 @@ impl fmt::Display for LogFinding {
                 )
             }
             Self::MoreGaps { count } => write!(f, "{count} more gaps"),
+            Self::Joined { path, from_s } => write!(f, "{path} is joined at {} s of the time", to_four_digits(*from_s)),
             Self::CutOff { line } => write!(f, "line {line}, the last, is cut off and left out"),
             Self::Rotary { axis } => write!(f, "axis {axis} is rotary, in degrees, and left out"),
             Self::StandsStill { axis } => write!(f, "axis {axis} stands still and is left out"),

@@ -11,6 +11,7 @@ use super::error::{LogError, Refusal, RefusalReason};
 use super::finding::LogFinding;
 use super::pairs::delay_samples;
 use super::{Fitness, LogAxis};
+use crate::average::rms;
 use crate::number::to_four_digits;
 
 /// Longest time between samples, s: position loops of machines have gains from 10 1/s on, and two samples within the 100 ms of the
@@ -98,11 +99,6 @@ fn range(values: &[f64]) -> f64 {
     let [low, high] =
         values.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &v| [low.min(v), high.max(v)]);
     if high > low { high - low } else { 0.0 }
-}
-
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value * value, count + 1.0));
-    if count > 0.0 { f64::sqrt(sum / count) } else { 0.0 }
 }
 
 /// RMS of command minus actual position, mm.

@@ -36,6 +36,7 @@ pub fn write(out: &mut impl io::Write, identified: &LogIdentified) -> io::Result
         "of_samples": identified.of_samples,
         "findings": identified.log.findings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "advice": identified.advice(),
+        "improvements": identified.improvements(),
         "contour": contour,
         "axes": axes,
     });

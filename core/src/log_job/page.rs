@@ -3,6 +3,7 @@
 //! One file without references to anything outside it; equal identifications give equal bytes.
 
 use std::io::{self, Write};
+use std::ops::Range;
 
 use super::{LogIdentified, digits};
 use crate::identify::grey_box::found_axis::FoundAxis;
@@ -47,6 +48,7 @@ pub fn write(out: &mut impl Write, identified: &LogIdentified) -> io::Result<()>
     }
     let lists = [
         ("What was noticed", log.findings.iter().map(ToString::to_string).collect()),
+        ("What other settings would bring", identified.improvements()),
         ("What to record", identified.advice()),
     ];
     for (title, lines) in lists {
@@ -67,7 +69,7 @@ fn write_axis(out: &mut impl Write, identified: &LogIdentified, i: usize, axis: 
         out,
         "<figure>{}<figcaption><b>Following error of axis {name}.</b> Measured, and as free runs over the scored samples have it; below, what they leave. \
          Gaps are samples that were fitted.</figcaption></figure>",
-        following(identified, i, axis).to_svg()
+        following(identified, i, f64::NEG_INFINITY..f64::INFINITY).to_svg()
     )?;
     writeln!(
         out,
@@ -147,16 +149,19 @@ fn curve(label: &str, color: &str, line: LineStyle, points: &[[f64; 2]]) -> Poly
     Polyline { label: label.to_owned(), points, color: color.to_owned(), line }
 }
 
-fn following(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Figure {
-    let (log, axis) = (&identified.log, &identified.log.axes[i]);
+/// Following error of an axis over times of the log, s, as measured and as free runs over the scored samples have it; below what they leave.
+pub fn following(identified: &LogIdentified, i: usize, times_s: Range<f64>) -> Figure {
+    let (log, axis, found) = (&identified.log, &identified.log.axes[i], &identified.machine.axes[i]);
     let scored = &identified.machine.split.score;
-    let first = scored.iter().position(|scored| *scored).unwrap_or(0);
-    let last = scored.iter().rposition(|scored| *scored).unwrap_or(0);
+    let is_shown = |k: usize| scored[k] && times_s.contains(&log.time_s[k]);
+    let first = (0..scored.len()).find(|&k| is_shown(k)).unwrap_or(0);
+    let last = (0..scored.len()).rfind(|&k| is_shown(k)).unwrap_or(0);
     let over = |value: &dyn Fn(usize) -> Option<f64>| -> Vec<[f64; 2]> {
         (first..=last).map(|k| [log.time_s[k], value(k).map_or(f64::NAN, |mm| 1e3 * mm)]).collect()
     };
     let measured = over(&|k| scored[k].then(|| axis.command_mm[k] - axis.actual_mm[k]));
     let predicted = over(&|k| found.scores.simulated_mm[k].map(|mm| axis.command_mm[k] - mm));
+    let by_arx = over(&|k| found.scores.arx_mm[k].map(|mm| axis.command_mm[k] - mm));
     let left = over(&|k| found.scores.simulated_mm[k].map(|mm| axis.actual_mm[k] - mm));
     let of_arx = over(&|k| found.scores.arx_mm[k].map(|mm| axis.actual_mm[k] - mm));
     let panel = |title: &str, y_title: &str, curves| Panel {
@@ -168,6 +173,7 @@ fn following(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Figure 
     };
     let above = vec![
         curve("measured", COLORS[0], LineStyle::Solid, &measured),
+        curve("best ARX", COLORS[2], LineStyle::Thin, &by_arx),
         curve("law of the axis", COLORS[1], LineStyle::Dashed, &predicted),
     ];
     let below = vec![

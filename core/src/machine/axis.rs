@@ -5,6 +5,7 @@ use std::f64::consts::TAU;
 use feedwright_control::axis::Parameters;
 use feedwright_control::axis::drive::DriveParameters;
 use feedwright_control::axis::friction::FrictionParameters;
+use feedwright_control::axis::transmission::TransmissionParameters;
 use serde::Serialize;
 
 /// A servo axis: mechanics at the motor shaft and the two control loops.
@@ -174,6 +175,16 @@ impl Axis {
             stribeck_rad_s: self.stribeck_mm_s * self.rad_per_mm(),
             presliding_rad: self.presliding_um * 1e-3 * self.rad_per_mm(),
         }
+    }
+
+    /// Its ball screw.
+    pub fn transmission(&self) -> TransmissionParameters {
+        self.transmission.map_or(TransmissionParameters::RIGID, |screw| TransmissionParameters {
+            table_share: screw.table_share,
+            resonance_rad_s: TAU * screw.resonance_hz,
+            damping_ratio: screw.damping_ratio,
+            backlash_rad: screw.backlash_um * 1e-3 * TAU / self.lead_mm_per_rev,
+        })
     }
 
     /// Turn of the motor for a travel, rad/mm.

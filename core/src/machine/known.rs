@@ -11,6 +11,7 @@ use feedwright_control::axis::friction::FrictionParameters;
 use feedwright_control::axis::inverse::{AxisInverse, LoopDelays};
 use feedwright_control::axis::knowledge::AxisKnowledge;
 use feedwright_control::axis::statistics::AxisStatistics;
+use feedwright_control::axis::transmission::TransmissionParameters;
 use feedwright_control::axis::{self, Parameters, Periods};
 
 use super::{Limits, Machine, Period};
@@ -36,6 +37,10 @@ pub struct KnownAxis {
     pub drive: DriveParameters,
     /// What the data sheets say of friction beside.
     pub friction: FrictionParameters,
+    /// Its ball screw: rigid, until it is identified.
+    pub transmission: TransmissionParameters,
+    /// Whether the position is measured at the table.
+    pub scale_on_table: bool,
     /// How late the bus and the encoder are; a manual has both.
     pub delays: LoopDelays,
     /// Acceleration that a correction may add to the plan's, mm/s2.
@@ -99,8 +104,8 @@ impl Known {
 impl KnownAxis {
     /// With periods and statistics, as a controller takes it.
     pub fn with_statistics(&self, periods: Periods, statistics: AxisStatistics) -> AxisKnowledge {
-        let Self { nominal: parameters, drive, friction, delays, .. } = *self;
-        AxisKnowledge { parameters, periods, drive, friction, delays, statistics }
+        let Self { nominal: parameters, drive, friction, transmission, delays, .. } = *self;
+        AxisKnowledge { parameters, periods, drive, friction, transmission, delays, statistics }
     }
 
     /// Acceleration of the tool with the torque that is left for it, mm/s2.
@@ -117,6 +122,8 @@ impl Machine {
             nominal: axis.parameters(),
             drive: axis.drive(),
             friction: axis.friction(),
+            transmission: TransmissionParameters::RIGID,
+            scale_on_table: axis.transmission.is_some_and(|screw| screw.scale_on_table),
             delays: LoopDelays { drive_s: axis.drive_delay_s, measurement_s: axis.measurement_delay_s },
             correction_accel_mm_s2: self.correction_accel_mm_s2(i),
             spare_torque_nm: (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0),

@@ -208,7 +208,7 @@ fn unknown_names_list_the_known_ones() {
     let error = Machine::load(OsStr::new("tnv4")).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "no machine is called 'tnv4'; there is tnv40, heavy, sticky, rough, soft, coarse, workshop, stiff, router"
+        "no machine is called 'tnv4'; there is tnv40, heavy, sticky, rough, soft, coarse, workshop, stiff, router, emps, sinumerik"
     );
     assert_eq!(error.help().unwrap().to_string(), "did you mean 'tnv40'?");
     assert!(Machine::load(OsStr::new("lathe")).unwrap_err().help().unwrap().to_string().contains("ending in .toml"));

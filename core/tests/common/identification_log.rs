@@ -35,11 +35,20 @@ pub(crate) fn commands_mm(servo_s: f64, time_s: f64, seed: u64) -> Vec<f64> {
     way
 }
 
-/// The log of a machine's first two axes, actual positions in steps, um, as they are when a command is given.
+/// The log of a machine's first two axes under moves that are drawn, actual positions in steps, um, as they are when a command is given.
 pub(crate) fn log_of(machine: &Machine, time_s: f64, step_um: f64, seed: u64) -> Log {
     let servo_s = machine.period.servo_s;
-    let commands = [commands_mm(servo_s, time_s, 2 * seed), commands_mm(servo_s, time_s, 2 * seed + 1)];
+    logged(machine, [commands_mm(servo_s, time_s, 2 * seed), commands_mm(servo_s, time_s, 2 * seed + 1)], step_um, seed)
+}
+
+/// Servo periods that are let go by, for each seed, before a log begins: a disturbance then has another phase.
+const PERIODS_LATER: u64 = 17;
+
+/// The same under given commands, mm.
+pub(crate) fn logged(machine: &Machine, commands: [Vec<f64>; 2], step_um: f64, seed: u64) -> Log {
+    let servo_s = machine.period.servo_s;
     let mut plant = feedwright::plant::Plant::<2>::with_seed(machine, [0.0; 2], seed);
+    plant.skip(PERIODS_LATER * seed);
     let mut actual = [vec![], vec![]];
     let mut now_mm = [0.0; 2];
     let step_mm = 1e-3 * step_um;

@@ -1,38 +1,45 @@
 //! `feedwright identify LOG`: the machine file of a real machine.
 
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use feedwright::identify::grey_box::found_axis::AxisFacts;
-use feedwright::log::Log;
-use feedwright::log_job::{LogIdentified, LogJob, machine_text, write_json, write_page};
+use feedwright::identify::grey_box::axis_facts::AxisFacts;
+use feedwright::log::{Log, LogError};
+use feedwright::log_job::{LogIdentified, LogJob, machine_text, updated_text, write_json, write_page};
 use feedwright::machine::Machine;
 use feedwright::output::{OutputError, OutputFile, OutputFiles};
-use miette::Result;
+use feedwright::watch::Watch;
+use miette::{IntoDiagnostic, Result};
 
 use crate::args::{IdentifyArgs, LogArgs};
 use crate::console::Console;
 use crate::message::printed;
 
-pub(super) fn run(path: &Path, args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
+pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let of_log = &args.of_log;
-    let columns = of_log.columns.clone().unwrap_or_default();
-    let mut files = OutputFiles::new([path]);
+    let before = of_log.update.as_deref().map(before).transpose()?;
+    // Clap asks for one of both.
+    let out = args.out.as_deref().or(of_log.update.as_deref()).unwrap_or(Path::new("mine.toml"));
+    let mut files = OutputFiles::new(paths.iter().map(PathBuf::as_path));
     let start = |files: &mut OutputFiles, path: &Path| files.start(path);
-    let mut machine = start(&mut files, &args.out)?;
+    let mut machine = start(&mut files, out)?;
     let mut json = of_log.json.as_deref().map(|path| start(&mut files, path)).transpose()?;
     let mut page = of_log.report.as_deref().map(|path| start(&mut files, path)).transpose()?;
     let bar = console.bar(0);
-    let log = Log::read_watched(path, &columns, &bar)?;
+    let log = read(paths, of_log, &bar)?;
     if !console.is_quiet() {
         bar.aside(|| log.findings.iter().for_each(|finding| eprintln!("{finding}")));
     }
-    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned();
-    let identified = job(name, of_log).run(log, &bar)?;
-    let text = machine_text(&identified, &stem(&args.out));
+    let name = paths.iter().map(|path| file_name(path)).collect::<Vec<_>>().join(", ");
+    let (text_before, machine_before) = before.unzip();
+    let identified = LogJob { before: machine_before, ..job(name, of_log) }.run(log, &bar)?;
+    let text = match &text_before {
+        Some(before) => updated_text(&identified, before)?,
+        None => machine_text(&identified, &stem(out)),
+    };
     // Whatever was found, the file is one that reads back.
-    Machine::parse(&args.out.display().to_string(), &text)?;
+    Machine::parse(&out.display().to_string(), &text)?;
     let written = |error, file: &OutputFile| OutputError::from_io(error, file.path());
     machine.write_all(text.as_bytes()).map_err(|error| written(error, &machine))?;
     if let Some(file) = &mut json {
@@ -48,10 +55,37 @@ pub(super) fn run(path: &Path, args: &IdentifyArgs, console: &Console) -> Result
     printed(print(&identified, &places), ExitCode::SUCCESS)
 }
 
+/// The logs, one behind the other.
+fn read(paths: &[PathBuf], of_log: &LogArgs, watch: &dyn Watch) -> Result<Log, LogError> {
+    let columns = of_log.columns.clone().unwrap_or_default();
+    let read = |path: &PathBuf| Ok((path.clone(), Log::read_watched(path, &columns, watch)?));
+    Log::joined(paths.iter().map(read).collect::<Result<_, LogError>>()?)
+}
+
+/// A machine file that is updated.
+fn before(path: &Path) -> Result<(String, Machine)> {
+    let machine = Machine::load(path.as_os_str())?;
+    let text = std::fs::read_to_string(path).into_diagnostic()?;
+    Ok((text, machine))
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
 fn job(name: String, args: &LogArgs) -> LogJob {
     let times_s = args.fit.clone().zip(args.score.clone()).map(|(fit, score)| [fit.0, score.0]);
-    let LogArgs { inertia, viscous, lead, torque_gain, .. } = *args;
-    LogJob { name, times_s, facts: AxisFacts { inertia, viscous, lead_mm_per_rev: lead, torque_gain } }
+    let LogArgs { inertia, viscous, lead, torque_gain, speed_window, record_delay, .. } = *args;
+    let facts = AxisFacts {
+        inertia,
+        viscous,
+        lead_mm_per_rev: lead,
+        torque_gain,
+        speed_window_s: speed_window,
+        record_delay_s: record_delay.filter(|late_s| late_s.is_finite()),
+        before: None,
+    };
+    LogJob { name, times_s, facts, before: None }
 }
 
 /// What the machine is called: as its file.
@@ -62,7 +96,7 @@ fn stem(path: &Path) -> String {
 fn print(identified: &LogIdentified, places: &[String]) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
     write!(out, "{}", identified.table())?;
-    for line in identified.advice() {
+    for line in identified.improvements().into_iter().chain(identified.advice()) {
         writeln!(out, "{line}")?;
     }
     writeln!(out, "wrote {}", places.join(", "))

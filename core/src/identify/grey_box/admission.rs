@@ -2,16 +2,20 @@
 //!
 //! Every axis begins with the four products, the lateness of the record, and a speed loop with or without an integral part. Each
 //! further term is first tried with one step of all numbers; those that promise most are fitted, and the one that leaves least of the inner
-//! validation samples is admitted, where it leaves enough less. What was admitted is left out again where it turns out to do nothing.
+//! validation samples is admitted, where it leaves enough less and is told from the others, or is many times its standard error. What was admitted is left out again where it turns out to do nothing.
 //!
 //! Source: forward selection as in Draper and Smith (1998), Applied Regression Analysis, chapter 15, with held-out samples in place of
 //! the F test, since residuals are coloured.
 
+use std::f64::consts::TAU;
+
 use nalgebra::{Matrix3, Vector3};
 use rayon::prelude::*;
 
+use super::axis_facts::AxisFacts;
 use super::axis_record::AxisRecord;
-use super::output_error::{Fitted, OutputErrors};
+use super::output_error::{Fitted, NEARLY_DONE, OutputErrors};
+use super::standard_errors::StandardErrors;
 use super::terms::{LawTerm, TERMS, TermValues};
 
 /// The terms of an axis, and a fit of them.
@@ -21,9 +25,12 @@ pub(super) struct Admitted {
     pub(super) values: TermValues,
 }
 
-/// Numbers that every axis has.
-const BASE: [LawTerm; 5] =
-    [LawTerm::LoopGain, LawTerm::Damping, LawTerm::Coulomb, LawTerm::Offset, LawTerm::RecordDelay];
+/// Numbers that every axis has: where it is known how late the record is, what else is late is the drive.
+fn base(facts: &AxisFacts) -> [LawTerm; 5] {
+    let late = if facts.record_delay_s.is_some() { LawTerm::LoopDelay } else { LawTerm::RecordDelay };
+    [LawTerm::LoopGain, LawTerm::Damping, LawTerm::Coulomb, LawTerm::Offset, late]
+}
+
 /// Part of the RMS of the inner validation by which a term has to lower it, and what this is more in a second of motion: little motion
 /// tells little.
 const GAINED: f64 = 0.02;
@@ -53,12 +60,13 @@ pub(super) fn admit(
     record: &AxisRecord<'_>,
     [train, valid]: [&[bool]; 2],
     moving_s: f64,
+    facts: &AxisFacts,
     mut tell: impl FnMut(f64) -> bool,
 ) -> Option<Admitted> {
     let on = |counts| OutputErrors { record, counts };
     let (train, valid) = (on(train), on(valid));
     let gained = 1.0 - GAINED - GAINED_S / moving_s.max(GAINED_S);
-    let first = begin(record, &train, gained);
+    let first = begin(record, &train, gained, facts);
     let mut terms = first.0;
     let mut at = first.1;
     let mut left_mm = valid.rms_mm(&at);
@@ -66,28 +74,45 @@ pub(super) fn admit(
         if !tell((round + 1) as f64 / (MOST_TERMS + 1) as f64) {
             return None;
         }
-        let Some((new, found, found_mm)) = best_term(record, &train, &valid, &terms, &at) else { break };
-        if found_mm > gained * left_mm {
-            break;
-        }
-        terms.extend(new);
-        (at, left_mm) = (found.values, found_mm);
+        let Some(best) = best_term(record, [&train, &valid], &terms, &at, gained * left_mm) else { break };
+        terms.extend(best.terms);
+        (at, left_mm) = (best.values, best.valid_mm);
     }
     Some(Admitted { terms, values: at })
 }
 
-/// The base, with an integral part where that leaves less.
-fn begin(record: &AxisRecord<'_>, train: &OutputErrors<'_>, gained: f64) -> (Vec<LawTerm>, TermValues) {
+/// The base, with an integral part where that leaves less. What an earlier record told stands from the beginning on.
+fn begin(
+    record: &AxisRecord<'_>,
+    train: &OutputErrors<'_>,
+    gained: f64,
+    facts: &AxisFacts,
+) -> (Vec<LawTerm>, TermValues) {
+    let base = base(facts);
+    if let Some(before) = facts.before {
+        let all = base.iter().chain((before.get(LawTerm::Integral) > 0.0).then_some(&LawTerm::Integral));
+        let terms: Vec<LawTerm> = all.copied().collect();
+        let before = before.with(LawTerm::RecordDelay, facts.record_delay_s.unwrap_or(0.0));
+        return (terms.clone(), train.least(&before, &terms, START_STEPS, NEARLY_DONE).values);
+    }
     let of_kind = |integral: f64| {
-        let mut terms = BASE.to_vec();
+        let mut terms = base.to_vec();
         if integral > 0.0 {
             terms.push(LawTerm::Integral);
         }
+        let late_s = facts.record_delay_s.unwrap_or(0.0);
         let starts = starts(record, train.counts, integral);
-        let mut ranked: Vec<(f64, TermValues)> = starts.par_iter().map(|at| (train.rms_mm(at), *at)).collect();
+        let mut ranked: Vec<(f64, TermValues)> = starts
+            .par_iter()
+            .map(|at| at.with(LawTerm::RecordDelay, late_s))
+            .map(|at| (train.rms_mm(&at), at))
+            .collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let fits: Vec<Fitted> =
-            ranked.par_iter().take(FOLLOWED_STARTS).map(|(_, at)| train.least(at, &terms, START_STEPS)).collect();
+        let fits: Vec<Fitted> = ranked
+            .par_iter()
+            .take(FOLLOWED_STARTS)
+            .map(|(_, at)| train.least(at, &terms, START_STEPS, NEARLY_DONE))
+            .collect();
         let best = fits.into_iter().min_by(|a, b| a.rms_mm.total_cmp(&b.rms_mm));
         best.map(|best| (terms, best))
     };
@@ -97,7 +122,7 @@ fn begin(record: &AxisRecord<'_>, train: &OutputErrors<'_>, gained: f64) -> (Vec
         (_, Some(integral)) => (integral.0, integral.1.values),
         (Some(plain), None) => (plain.0, plain.1.values),
         // There is a start whatever the record.
-        (None, None) => (BASE.to_vec(), TermValues([0.0; TERMS])),
+        (None, None) => (base.to_vec(), TermValues([0.0; TERMS])),
     }
 }
 
@@ -128,14 +153,23 @@ fn starts(record: &AxisRecord<'_>, counts: &[bool], integral: f64) -> Vec<TermVa
     starts
 }
 
-/// The term that leaves least of the inner validation.
+/// A term that may be admitted, fitted.
+struct FollowedTerm {
+    terms: Vec<LawTerm>,
+    values: TermValues,
+    /// RMS that it leaves of the inner validation, mm.
+    valid_mm: f64,
+}
+
+/// The term that leaves least of the inner validation, less than a bound, mm, of those that are told from the others or many times their
+/// standard error.
 fn best_term(
     record: &AxisRecord<'_>,
-    train: &OutputErrors<'_>,
-    valid: &OutputErrors<'_>,
+    [train, valid]: [&OutputErrors<'_>; 2],
     terms: &[LawTerm],
     at: &TermValues,
-) -> Option<(Vec<LawTerm>, Fitted, f64)> {
+    clearly_mm: f64,
+) -> Option<FollowedTerm> {
     let slopes = train.slopes(at, terms);
     let now_mm = train.rms_mm(at);
     let mut looked: Vec<(f64, TermCandidate, TermValues)> = candidates(record, terms, at)
@@ -150,21 +184,29 @@ fn best_term(
         .collect();
     looked.sort_by(|a, b| a.0.total_cmp(&b.0));
     looked.truncate(FOLLOWED_TERMS);
-    let followed: Vec<(Vec<LawTerm>, Fitted, f64)> = looked
-        .into_par_iter()
-        .map(|(_, candidate, start)| {
-            let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
-            let fitted = train.least(&start, &all, TERM_STEPS);
-            let told = train.told_apart(&fitted.values, &all);
-            let valid_mm = if told > LEAST_TOLD { valid.rms_mm(&fitted.values) } else { f64::INFINITY };
-            (candidate.terms, fitted, valid_mm)
-        })
-        .collect();
-    followed.into_iter().min_by(|a, b| a.2.total_cmp(&b.2))
+    let followed = looked.into_par_iter().filter_map(|(_, candidate, start)| {
+        let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
+        let values = train.least(&start, &all, TERM_STEPS, NEARLY_DONE).values;
+        let valid_mm = valid.rms_mm(&values);
+        if valid_mm >= clearly_mm {
+            return None;
+        }
+        let is_told = train.told_apart(&values, &all) > LEAST_TOLD || {
+            let errors = StandardErrors::of(train, &values, &all).errors;
+            errors.get(terms.len()).is_some_and(|error| values.get(candidate.terms[0]) > CERTAIN * error)
+        };
+        is_told.then_some(FollowedTerm { terms: candidate.terms, values, valid_mm })
+    });
+    // One number before two: a screw of two can stand for much that one number is.
+    followed.min_by(|a, b| a.terms.len().cmp(&b.terms.len()).then(a.valid_mm.total_cmp(&b.valid_mm)))
 }
 
+/// A resonance of 20 Hz and more shows in samples of less than this, s: five and more in a period.
+const SLOWEST_FOR_RESONANCE_S: f64 = 0.005;
 /// Least part of what a number does to the position that no other number does as well.
 const LEAST_TOLD: f64 = 1e-3;
+/// Standard errors that a number is, of whatever size its effect.
+const CERTAIN: f64 = 6.0;
 
 /// A start that leaves so many times more than the fit is lost.
 const LOST: f64 = 30.0;
@@ -176,7 +218,7 @@ fn candidates(record: &AxisRecord<'_>, terms: &[LawTerm], at: &TermValues) -> Ve
     let speed_mm_s = record.slopes(record.actual_mm, 3);
     let acceleration_mm_s2 = most(&record.slopes(&speed_mm_s, 3));
     let of_damping = 0.1 * at.get(LawTerm::Damping);
-    let starts: [(LawTerm, &[f64]); 11] = [
+    let starts: [(LawTerm, &[f64]); 13] = [
         (LawTerm::Integral, &[10.0, 60.0]),
         (LawTerm::VelocityFeedforward, &[0.3, 0.95]),
         (LawTerm::AccelerationFeedforward, &[0.5]),
@@ -188,17 +230,30 @@ fn candidates(record: &AxisRecord<'_>, terms: &[LawTerm], at: &TermValues) -> Ve
         (LawTerm::SpeedLimit, &[0.97 * most(&speed_mm_s)]),
         (LawTerm::AccelerationLimit, &[0.9 * acceleration_mm_s2]),
         (LawTerm::Viscous, &[of_damping]),
+        (LawTerm::Resonance, &[1.0 / (TAU * 40.0), 1.0 / (TAU * 90.0)]),
+        (LawTerm::Backlash, &[0.003, 0.02]),
     ];
     let mut candidates = vec![];
     for (term, values) in starts {
         // Without an integral the two parts of the damping are the same to the position.
-        let is_told = term != LawTerm::Viscous || terms.contains(&LawTerm::Integral);
+        let is_told = match term {
+            LawTerm::Viscous => terms.contains(&LawTerm::Integral),
+            // Within a rigid screw there is none that the motor's encoder sees.
+            // What swings faster than a fifth of the rate does not show, and what swings below 20 Hz is no screw of a machine tool.
+            LawTerm::Resonance => sample_s < SLOWEST_FOR_RESONANCE_S,
+            LawTerm::Backlash => terms.contains(&LawTerm::Resonance),
+            _ => true,
+        };
         if terms.contains(&term) || !is_told {
             continue;
         }
         for value in values {
             let start = at.with(term, *value);
-            let terms = if term == LawTerm::Stribeck { vec![term, LawTerm::StribeckSpeed] } else { vec![term] };
+            let (terms, start) = match term {
+                LawTerm::Stribeck => (vec![term, LawTerm::StribeckSpeed], start),
+                LawTerm::Resonance => (vec![term, LawTerm::TableShare], start.with(LawTerm::TableShare, 0.5)),
+                _ => (vec![term], start),
+            };
             candidates.push(TermCandidate { terms, start });
         }
     }

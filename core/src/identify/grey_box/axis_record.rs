@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::average::rms;
+
 /// Commanded and actual positions of an axis at an even clock.
 #[derive(Debug, Clone, Copy)]
 pub struct AxisRecord<'a> {
@@ -73,9 +75,3 @@ impl AxisRecord<'_> {
 
 /// Samples that position and speed at a start are taken from.
 const START_SAMPLES: usize = 8;
-
-/// Root of the mean square; zero of none.
-pub(super) fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, n) = values.fold((0.0, 0_usize), |(sum, n), value| (sum + value * value, n + 1));
-    (sum / n.max(1) as f64).sqrt()
-}

@@ -6,9 +6,11 @@
 
 use feedwright_control::axis::drive::{DriveLaw, DriveReference, DriveState};
 use feedwright_control::axis::friction::FrictionLaw;
+use feedwright_control::axis::transmission::{TransmissionLaw, TransmissionParameters};
 use feedwright_control::axis::{AxisLaw, AxisState, Periods};
 
 use super::terms::{LawTerm, TermValues};
+use crate::machine::Transmission;
 
 /// Mechanics periods in a servo period: as tnv40's.
 pub(super) const MECHANICS_PER_SERVO: u32 = 10;
@@ -95,6 +97,10 @@ pub(super) struct AxisRun {
     loop_late: f64,
     /// Window of the speed, mechanics periods; none is the speed itself.
     window: Option<f64>,
+    /// Motor and table, where the screw is not rigid.
+    screw: Option<TransmissionLaw>,
+    /// The speed is taken at the start of each servo period, and held.
+    holds: bool,
 }
 
 /// Where an axis is, and what its drive remembers.
@@ -105,6 +111,10 @@ pub(super) struct RunState {
     presliding: f64,
     /// A load that an observer found, mm/s2.
     load: f64,
+    /// Position and speed of the table, mm and mm/s, where it is a mass of its own.
+    table: [f64; 2],
+    /// Speed that the drive has taken, mm/s.
+    taken_mm_s: f64,
     /// Positions at the starts of mechanics periods.
     course: Recent<f64>,
     /// References of servo periods.
@@ -132,6 +142,8 @@ impl RunState {
         self.axis.angle_rad += mm;
         self.course.values.iter_mut().for_each(|position| *position += mm);
         self.axis.speed_rad_s += mm_s;
+        self.table[0] += mm;
+        self.table[1] += mm_s;
         self.load += mm_s2;
     }
 }
@@ -150,6 +162,8 @@ impl AxisRun {
             late_samples: values.get(LawTerm::RecordDelay) / sample_s,
             loop_late: values.get(LawTerm::LoopDelay) / periods.mechanics_s,
             window: (window > 1.0).then_some(window),
+            screw: screw_law(values, periods.mechanics_s),
+            holds: values.get(LawTerm::SpeedHold) > 0.0,
         }
     }
 
@@ -179,9 +193,19 @@ impl AxisRun {
             drive,
             presliding: sliding,
             load: 0.0,
+            table: [mm - self.leads_mm(sign), mm_s],
+            taken_mm_s: mm_s,
             course: Recent::new(longest, |age| mm - age as f64 * mechanics_s * mm_s),
             sent: Recent::new(sent, |_| reference),
         }
+    }
+
+    /// By how much the motor leads the table while it moves evenly: half the backlash, and what friction twists the screw by.
+    fn leads_mm(&self, sign: f64) -> f64 {
+        let twist_s = self.values.get(LawTerm::Resonance);
+        let share = self.values.get(LawTerm::TableShare).max(f64::MIN_POSITIVE);
+        let twisted = self.values.get(LawTerm::Coulomb) / share * twist_s * twist_s;
+        if self.screw.is_some() { sign * (0.5 * self.values.get(LawTerm::Backlash) + twisted) } else { 0.0 }
     }
 
     #[inline]
@@ -226,7 +250,7 @@ impl AxisRun {
     fn advance(&self, substep: f64, state: &mut RunState) {
         let reference = self.arrived(substep, state);
         let dt_s = self.law.periods.mechanics_s;
-        let speed = match self.window {
+        let taken_mm_s = match self.window {
             Some(window) => {
                 state.course.push(state.axis.angle_rad);
                 let (whole, part) = (window.floor() as usize, window.fract());
@@ -235,10 +259,35 @@ impl AxisRun {
             }
             None => state.axis.speed_rad_s,
         };
-        let drive = self.drive.torque_nm(&self.law, reference, speed, &mut state.drive);
-        let forces = drive - state.load;
-        state.axis.speed_rad_s =
-            self.friction.speed_after_rad_s(forces, 1.0, state.axis.speed_rad_s, &mut state.presliding);
+        if !self.holds || substep == 0.0 {
+            state.taken_mm_s = taken_mm_s;
+        }
+        let drive = self.drive.torque_nm(&self.law, reference, state.taken_mm_s, &mut state.drive);
+        match &self.screw {
+            None => {
+                let forces = drive - state.load;
+                state.axis.speed_rad_s =
+                    self.friction.speed_after_rad_s(forces, 1.0, state.axis.speed_rad_s, &mut state.presliding);
+            }
+            Some(screw) => {
+                let [table_mm, table_mm_s] = &mut state.table;
+                let through = screw.torque_nm(state.axis.angle_rad - *table_mm, state.axis.speed_rad_s - *table_mm_s);
+                state.axis.speed_rad_s += dt_s * screw.inverse_motor_inertia * (drive - through);
+                let (forces, inverse) = (through - state.load, screw.inverse_table_inertia);
+                *table_mm_s = self.friction.speed_after_rad_s(forces, inverse, *table_mm_s, &mut state.presliding);
+                *table_mm += dt_s * *table_mm_s;
+            }
+        }
         state.axis.angle_rad += dt_s * state.axis.speed_rad_s;
     }
+}
+
+/// The screw of an axis of inertia 1, whose motor turns by 1 for a mm.
+fn screw_law(values: &TermValues, mechanics_s: f64) -> Option<TransmissionLaw> {
+    let Transmission { table_share, resonance_hz, damping_ratio, backlash_um, .. } =
+        values.transmission(mechanics_s)?;
+    let resonance_rad_s = std::f64::consts::TAU * resonance_hz;
+    let screw =
+        TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad: 1e-3 * backlash_um };
+    TransmissionLaw::new(1.0, mechanics_s, screw)
 }

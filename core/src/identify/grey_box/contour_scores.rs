@@ -4,8 +4,9 @@
 //! eps = n . (p - c)      n normal of the commanded motion in the plane of the axes
 //! ```
 
-use super::axis_record::{AxisRecord, rms};
+use super::axis_record::AxisRecord;
 use super::found_axis::FoundAxis;
+use crate::average::rms;
 
 /// RMS of the contour error, and of what predictions miss of it, um.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,10 @@
 //! What was found of an axis: its law, numbers with intervals, scores, and what of it is assumed.
 
+use super::axis_facts::AxisFacts;
 use super::axis_record::AxisRecord;
 use super::free_run_scores::AxisScores;
+use super::gain_changes::GainChange;
+use super::residual_noise::ResidualNoise;
 use super::terms::{LawTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
 
@@ -14,6 +17,8 @@ pub enum NumberSource {
     TorqueColumn,
     /// It was given.
     Given,
+    /// The record does not tell it, an earlier one did.
+    Kept,
     /// The record cannot tell it: it stands for what nobody said.
     Assumed,
 }
@@ -25,6 +30,7 @@ impl NumberSource {
             Self::Identified => "identified",
             Self::TorqueColumn => "identified with the torque column",
             Self::Given => "given",
+            Self::Kept => "kept",
             Self::Assumed => "assumed",
         }
     }
@@ -47,19 +53,6 @@ pub struct FoundNumber {
     pub source: NumberSource,
 }
 
-/// What is known of the machine beside the record.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct AxisFacts {
-    /// Inertia at the motor shaft, kg m2, or mass of a linear axis, kg.
-    pub inertia: Option<f64>,
-    /// Viscous friction, N m s/rad at the shaft, or N s/m of a linear axis.
-    pub viscous: Option<f64>,
-    /// Travel for a turn of the motor, mm; none is a linear axis.
-    pub lead_mm_per_rev: Option<f64>,
-    /// Torque, N m at the shaft, or force, N of a linear axis, for a unit of the torque column.
-    pub torque_gain: Option<f64>,
-}
-
 /// An identified axis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FoundAxis {
@@ -71,7 +64,7 @@ pub struct FoundAxis {
     pub terms: Vec<LawTerm>,
     /// Half of the interval of 90 % of each, in the same order.
     pub half_intervals: Vec<f64>,
-    /// What the torque column told.
+    /// The law with what the drive does to the speed, where a torque column or a fact tells it.
     pub resolved: Option<ResolvedLaw>,
     /// What was given.
     pub facts: AxisFacts,
@@ -79,6 +72,10 @@ pub struct FoundAxis {
     pub fit_um: f64,
     /// How well it predicts.
     pub scores: AxisScores,
+    /// What its free run leaves, as a load; none where that is no more than the encoder shows.
+    pub residual: Option<ResidualNoise>,
+    /// What other settings of its drive would bring.
+    pub gain_changes: Vec<GainChange>,
     /// RMS of noise of the encoder beside its steps, um.
     pub noise_um: f64,
     /// Step of the encoder, um.
@@ -87,19 +84,31 @@ pub struct FoundAxis {
     pub most: [f64; 2],
 }
 
-/// A law whose friction, and so the scale of everything, is from a torque column; with the window over which the drive takes the speed.
+/// A law with the window over which the drive takes the speed: with that the scale of everything is told, which positions alone leave open.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ResolvedLaw {
     /// Values of it.
     pub values: TermValues,
     /// Half of the interval of 90 % of those that have one.
     pub half_intervals: Vec<(LawTerm, f64)>,
-    /// What the column told of the mechanics.
-    pub torque: TorqueColumn,
-    /// What it told of the drive.
+    /// What a torque column told of the mechanics; none where the window was given.
+    pub torque: Option<TorqueColumn>,
+    /// What the column told of the drive.
     pub drive: Option<DriveColumn>,
     /// RMS that its free run leaves of the fitted samples, um.
     pub fit_um: f64,
+}
+
+impl ResolvedLaw {
+    /// Where a term of it comes from.
+    fn source(&self, term: LawTerm) -> NumberSource {
+        let is_fitted = self.half_intervals.iter().any(|(of, _)| *of == term);
+        match &self.torque {
+            Some(_) => NumberSource::TorqueColumn,
+            None if is_fitted => NumberSource::Identified,
+            None => NumberSource::Given,
+        }
+    }
 }
 
 /// Lead that is taken where nobody says one, mm/rev.
@@ -134,8 +143,8 @@ impl FoundAxis {
         if let Some(inertia) = self.facts.inertia {
             return (to_shaft(inertia), None, NumberSource::Given);
         }
-        if let (Some(resolved), Some(gain)) = (&self.resolved, self.facts.torque_gain) {
-            let torque = &resolved.torque;
+        let torque = self.resolved.as_ref().and_then(|resolved| resolved.torque.as_ref());
+        if let (Some(torque), Some(gain)) = (torque, self.facts.torque_gain) {
             // u = J a / g: N m for rad/s2 at the shaft, N for m/s2 of a linear axis.
             let per = if self.facts.lead_mm_per_rev.is_some() { self.rad_per_mm() } else { 1e-3 };
             let of = |units: f64| to_shaft((units * gain / per).abs());
@@ -157,7 +166,11 @@ impl FoundAxis {
             .into_iter()
             .filter(|term| {
                 let always = matches!(term, LawTerm::LoopGain | LawTerm::Damping | LawTerm::Coulomb | LawTerm::Offset);
-                let needs = *term != LawTerm::StribeckSpeed || told.get(LawTerm::Stribeck) > 0.0;
+                let needs = match term {
+                    LawTerm::StribeckSpeed => told.get(LawTerm::Stribeck) > 0.0,
+                    LawTerm::TableShare => told.get(LawTerm::Resonance) > 0.0,
+                    _ => true,
+                };
                 (always || told.get(*term) != 0.0) && needs
             })
             .map(|term| self.number(term, told.get(term)))
@@ -180,10 +193,11 @@ impl FoundAxis {
         let (half, source) = match &self.resolved {
             Some(resolved) => {
                 let half = resolved.half_intervals.iter().find(|(of, _)| *of == term).map(|(_, half)| *half);
-                (half, NumberSource::TorqueColumn)
+                (half, resolved.source(term))
             }
             None if self.terms.contains(&term) => (self.half_interval(term), NumberSource::Identified),
-            None if term == LawTerm::Viscous => (None, NumberSource::Given),
+            None if self.facts.before.is_some() => (None, NumberSource::Kept),
+            None if term == LawTerm::Viscous || term == LawTerm::RecordDelay => (None, NumberSource::Given),
             None => (None, NumberSource::Assumed),
         };
         let [least, most] = row.range;
@@ -193,7 +207,7 @@ impl FoundAxis {
 
     /// Whether Kp, Kv and B are told apart.
     pub fn gains_source(&self) -> NumberSource {
-        if self.resolved.is_some() {
+        if self.resolved.as_ref().is_some_and(|resolved| resolved.torque.is_some()) {
             NumberSource::TorqueColumn
         } else if self.facts.viscous.is_some() && self.facts.inertia.is_some() {
             NumberSource::Given

@@ -5,11 +5,12 @@
 
 use rayon::prelude::*;
 
-use super::axis_record::{AxisRecord, rms};
+use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands};
 use super::linear_arx::{ArxData, LinearArx, ORDERS};
 use super::start_filter::{StartFilter, run_ahead, starts};
 use super::terms::TermValues;
+use crate::average::rms;
 
 /// Horizons, s, and what they are called.
 pub const HORIZONS: [(f64, &str); 3] = [(0.02, "20ms"), (0.05, "50ms"), (0.1, "100ms")];

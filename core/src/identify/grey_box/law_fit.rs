@@ -2,22 +2,27 @@
 
 use super::NotFound;
 use super::admission::admit;
+use super::axis_facts::AxisFacts;
 use super::axis_record::AxisRecord;
-use super::found_axis::{AxisFacts, FoundAxis, ResolvedLaw};
-use super::free_run_scores::score;
-use super::output_error::OutputErrors;
+use super::axis_run::periods;
+use super::found_axis::{FoundAxis, ResolvedLaw};
+use super::free_run_scores::{AxisScores, score};
+use super::gain_changes::GainChange;
+use super::output_error::{DONE, OutputErrors};
+use super::residual_noise::ResidualNoise;
 use super::sample_split::SampleSplit;
 use super::standard_errors::StandardErrors;
 use super::terms::{LawTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
+use crate::average::middle_of;
 
 /// Samples that terms are admitted with: windows of the record where it has more.
-const ADMISSION_SAMPLES: usize = 12_000;
-const WINDOW_SAMPLES: usize = 3000;
+const ADMISSION_SAMPLES: usize = 15_000;
+const WINDOW_SAMPLES: usize = 1500;
 /// Beginning of a window that does not count, s.
 const SETTLING_S: f64 = 0.2;
 /// Steps of the last fit.
-const STEPS: usize = 25;
+const STEPS: usize = 40;
 /// A law that leaves more than this part of the following error is none.
 const NO_LAW: f64 = 0.9;
 /// Friction from a torque column holds where the fit is worse by no more than this.
@@ -41,32 +46,33 @@ pub(super) fn find(
     let thinned = AxisRecord { stretches: &windows, ..*record };
     let [train, valid] =
         [train, valid].map(|counts| behind_starts(&thinned, &counts, windows.len() != record.stretches.len()));
-    let admitted = admit(&thinned, [&train, &valid], moving_s, |part| tell(PARTS[0] * part)).ok_or(NotFound::Ended)?;
+    let admitted =
+        admit(&thinned, [&train, &valid], moving_s, &facts, |part| tell(PARTS[0] * part)).ok_or(NotFound::Ended)?;
     let errors = OutputErrors { record, counts: &split.fit };
-    let fitted = errors.least(&admitted.values, &admitted.terms, STEPS);
+    let fitted = errors.least(&admitted.values, &admitted.terms, STEPS, DONE);
     go_on(tell(PARTS[1]))?;
-    let following_mm = record.following_mm(&split.fit);
-    if fitted.rms_mm.is_nan() || fitted.rms_mm > NO_LAW * following_mm {
-        return Err(NotFound::NoLaw {
-            axis: record.name.to_owned(),
-            left_um: 1e3 * fitted.rms_mm,
-            following_um: 1e3 * following_mm,
-        });
-    }
+    is_law(record, &split.fit, fitted.rms_mm)?;
     // What came to nothing is not there.
     let mut terms = admitted.terms;
     terms.retain(|term| *term <= LawTerm::RecordDelay || fitted.values.get(*term) > 0.0);
     let mut values = fitted.values;
     if let (Some(viscous), Some(inertia)) = (facts.viscous, facts.inertia)
         && !terms.contains(&LawTerm::Viscous)
+        && facts.before.is_none()
     {
         values = values.with(LawTerm::Viscous, viscous / inertia);
     }
     let certain = StandardErrors::of(&errors, &values, &terms);
     let half_intervals = certain.errors.iter().map(|error| certain.factor * error).collect();
-    let resolved = torque.and_then(|torque| resolve(&errors, torque, &values, &terms, &facts, fitted.rms_mm));
+    let resolved = match facts.speed_window_s {
+        Some(window_s) => with_window(&errors, window_s, &values, &terms, fitted.rms_mm),
+        None => torque.and_then(|torque| resolve(&errors, torque, &values, &terms, &facts, fitted.rms_mm)),
+    };
     go_on(tell(0.5 * (PARTS[1] + 1.0)))?;
     let scores = score(record, &values, &split.fit, &split.score);
+    let noise_um = noise_um(record);
+    let residual = residual(record, &values, &scores, noise_um);
+    let gain_changes = GainChange::find(record, &values, &split.score);
     go_on(tell(1.0))?;
     Ok(FoundAxis {
         name: record.name.to_owned(),
@@ -77,14 +83,60 @@ pub(super) fn find(
         facts,
         fit_um: 1e3 * fitted.rms_mm,
         scores,
-        noise_um: noise_um(record),
+        residual,
+        gain_changes,
+        noise_um,
         step_um: 1e3 * record.step_mm,
         most: FoundAxis::most(record),
     })
 }
 
+/// Whether a fit that leaves so much is a law at all.
+fn is_law(record: &AxisRecord<'_>, fit: &[bool], left_mm: f64) -> Result<(), NotFound> {
+    let following_mm = record.following_mm(fit);
+    if left_mm <= NO_LAW * following_mm {
+        return Ok(());
+    }
+    Err(NotFound::NoLaw { axis: record.name.to_owned(), left_um: 1e3 * left_mm, following_um: 1e3 * following_mm })
+}
+
+/// What whole runs leave beside the noise of the encoder, as a load.
+fn residual(record: &AxisRecord<'_>, values: &TermValues, scores: &AxisScores, noise_um: f64) -> Option<ResidualNoise> {
+    let encoder_mm2 = (1e-3 * noise_um).powi(2) + record.step_mm.powi(2) / 12.0;
+    ResidualNoise::of(record, values, &scores.simulated_mm, encoder_mm2)
+}
+
 fn go_on(wanted: bool) -> Result<(), NotFound> {
     if wanted { Ok(()) } else { Err(NotFound::Ended) }
+}
+
+/// The law of a drive that closes its loops once a servo period, with a window of the speed that is given. Such a drive records itself:
+/// nothing is late in the record.
+fn with_window(
+    errors: &OutputErrors<'_>,
+    window_s: f64,
+    values: &TermValues,
+    terms: &[LawTerm],
+    rms_mm: f64,
+) -> Option<ResolvedLaw> {
+    let servo_s = periods(errors.record.sample_s).0.servo_s;
+    let told = [LawTerm::RecordDelay, LawTerm::LoopDelay, LawTerm::FilterTime, LawTerm::SpeedWindow];
+    let free: Vec<LawTerm> = terms.iter().copied().filter(|term| !told.contains(term)).collect();
+    // To first order: what it is late by, it is too light by.
+    let late_s = 0.5 * (window_s + servo_s);
+    let lighter = 1.0 / (1.0 + values.speed_gain_1_s() * late_s);
+    let start = [LawTerm::LoopGain, LawTerm::Damping, LawTerm::Coulomb, LawTerm::Offset]
+        .into_iter()
+        .fold(*values, |start, term| start.with(term, lighter * start.get(term)));
+    let start = told.into_iter().fold(start, |start, term| start.with(term, 0.0));
+    let start = start.with(LawTerm::SpeedWindow, window_s).with(LawTerm::SpeedHold, servo_s);
+    let fitted = errors.least(&start, &free, STEPS, DONE);
+    if fitted.rms_mm.is_nan() || fitted.rms_mm > HOLDS * rms_mm {
+        return None;
+    }
+    let certain = StandardErrors::of(errors, &fitted.values, &free);
+    let half_intervals = free.into_iter().zip(certain.errors.iter().map(|error| certain.factor * error)).collect();
+    Some(ResolvedLaw { values: fitted.values, half_intervals, torque: None, drive: None, fit_um: 1e3 * fitted.rms_mm })
 }
 
 /// Friction by the torque column, and the law with it.
@@ -122,7 +174,7 @@ fn resolve(
     let mut free: Vec<LawTerm> = terms.iter().copied().filter(|term| !fixed.contains(term)).collect();
     free.push(LawTerm::SpeedWindow);
     let start = start.with(LawTerm::LoopDelay, 0.0).with(LawTerm::SpeedWindow, 2.0 * record.sample_s);
-    let fitted = errors.least(&start, &free, STEPS);
+    let fitted = errors.least(&start, &free, STEPS, DONE);
     if fitted.rms_mm.is_nan() || fitted.rms_mm > HOLDS * rms_mm {
         return None;
     }
@@ -139,7 +191,7 @@ fn resolve(
         let damping = (scale * drive.speed_gain_1_s).hypot(half(found.viscous_error_1_s));
         half_intervals.extend([(LawTerm::LoopGain, scale * drive.loop_gain_1_s2), (LawTerm::Damping, damping)]);
     }
-    Some(ResolvedLaw { values: fitted.values, half_intervals, torque: found, drive, fit_um: 1e3 * fitted.rms_mm })
+    Some(ResolvedLaw { values: fitted.values, half_intervals, torque: Some(found), drive, fit_um: 1e3 * fitted.rms_mm })
 }
 
 /// Turn of the motor for a travel, rad/mm; of a linear axis one.
@@ -147,25 +199,34 @@ fn record_per_rad(facts: &AxisFacts) -> f64 {
     facts.lead_mm_per_rev.map_or(1.0, |lead| std::f64::consts::TAU / lead)
 }
 
-/// Windows of a record, evenly over what is fitted of it, where it is longer than the admission of terms needs.
+/// Windows of a record, where it is longer than the admission of terms needs: of those that are fitted for the most part, the ones in which
+/// the command accelerates most, and some evenly over the rest, for friction at constant speed.
 fn windows(record: &AxisRecord<'_>, fit: &[bool]) -> Vec<std::ops::Range<usize>> {
     if fit.iter().filter(|fit| **fit).count() <= ADMISSION_SAMPLES {
         return record.stretches.to_vec();
     }
+    let accelerations = record.command_acceleration_mm_s2();
     let mut all = vec![];
     for stretch in record.stretches {
         let mut from = stretch.start;
         while from < stretch.end {
             let to = (from + WINDOW_SAMPLES).min(stretch.end);
-            // Half of it has to be fitted.
             if 2 * (from..to).filter(|&k| fit[k]).count() > WINDOW_SAMPLES {
-                all.push(from..to);
+                let square: f64 = (from..to).filter(|&k| fit[k]).map(|k| accelerations[k] * accelerations[k]).sum();
+                all.push((square, from..to));
             }
             from = to;
         }
     }
-    let apart = all.len().div_ceil(ADMISSION_SAMPLES / WINDOW_SAMPLES).max(1);
-    all.into_iter().step_by(apart).collect()
+    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let most = ADMISSION_SAMPLES / WINDOW_SAMPLES;
+    let lively = most - most / 3;
+    let rest = all.split_off(lively.min(all.len()));
+    let apart = rest.len().div_ceil((most / 3).max(1)).max(1);
+    let mut windows: Vec<_> =
+        all.into_iter().chain(rest.into_iter().step_by(apart)).map(|(_, window)| window).collect();
+    windows.sort_by_key(|window| window.start);
+    windows
 }
 
 /// Without the beginnings of windows, and without what is in none.
@@ -190,11 +251,7 @@ fn noise_um(record: &AxisRecord<'_>) -> f64 {
         .flat_map(|stretch| record.actual_mm[stretch.clone()].windows(4))
         .map(|y| (y[3] - 3.0 * y[2] + 3.0 * y[1] - y[0]).abs())
         .collect();
-    if differences.is_empty() {
-        return 0.0;
-    }
-    let middle = differences.len() / 2;
-    let median = *differences.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let median = middle_of(&mut differences);
     // A normal distribution has its median at 0.6745 deviations; the weights 1, 3, 3, 1 have a sum of squares of 20.
     let of_all = median / 0.6745 / 20.0_f64.sqrt();
     1e3 * (of_all * of_all - record.step_mm * record.step_mm / 12.0).max(0.0).sqrt()

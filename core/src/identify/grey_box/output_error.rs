@@ -38,8 +38,9 @@ const DAMPING_AFTER: [f64; 2] = [0.2, 6.0];
 const DAMPING_MOST: f64 = 1e5;
 /// A gain or a time is changed by no more than this in one step, up or down.
 const LARGEST_FACTOR: f64 = 2.5;
-/// Part of V below which a step gains nothing.
-const DONE: f64 = 1e-4;
+/// Part of V below which a step gains nothing: where the fit is to be the last, and where it only chooses.
+pub(super) const DONE: f64 = 1e-6;
+pub(super) const NEARLY_DONE: f64 = 1e-4;
 
 impl OutputErrors<'_> {
     /// What free runs of all stretches leave at the samples that count, mm.
@@ -109,8 +110,8 @@ impl OutputErrors<'_> {
         (0..n).map(|i| 1.0 / inverse[(i, i)]).fold(1.0, f64::min)
     }
 
-    /// The least from a start, over these terms, in at most so many steps.
-    pub(super) fn least(&self, start: &TermValues, terms: &[LawTerm], steps: usize) -> Fitted {
+    /// The least from a start, over these terms, in at most so many steps, or until one gains less than a part of V.
+    pub(super) fn least(&self, start: &TermValues, terms: &[LawTerm], steps: usize, done: f64) -> Fitted {
         let mut at = *start;
         let mut left = self.left_mm(&at);
         let (mut cost, mut damping) = (square(&left), DAMPING);
@@ -129,7 +130,7 @@ impl OutputErrors<'_> {
                 }
                 damping *= DAMPING_AFTER[1];
             }
-            if damping >= DAMPING_MOST || (before - cost).abs() < DONE * before {
+            if damping >= DAMPING_MOST || (before - cost).abs() < done * before {
                 break;
             }
         }

@@ -13,9 +13,10 @@
 
 use rayon::prelude::*;
 
-use super::axis_record::{AxisRecord, rms};
+use super::axis_record::AxisRecord;
 use super::axis_run::{AxisRun, Commands, RunState};
 use super::terms::{LawTerm, TermValues};
+use crate::average::rms;
 
 /// Gains that are tried.
 const POSITION: [f64; 6] = [0.03, 0.1, 0.2, 0.4, 0.7, 1.0];

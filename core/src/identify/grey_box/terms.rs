@@ -18,12 +18,16 @@
 //! | integral | 1 / Ti |
 //! | filter | time constant of the torque filter |
 //! | window | (y(t) - y(t - T)) / T takes the place of the speed |
+//! | hold | the drive takes the speed once a servo period, and not all the time |
 //! | limits | of the reference speed, of the torque over the inertia |
+//! | resonance, table share, backlash | motor and table as two masses, see `core/src/plant/transmission.rs` |
 //! | presliding, Stribeck | see `control/src/axis/friction.rs` |
 
 use feedwright_control::axis::Parameters;
 use feedwright_control::axis::drive::DriveParameters;
 use feedwright_control::axis::friction::FrictionParameters;
+
+use crate::machine::{Axis, Transmission};
 
 /// A number of an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -62,10 +66,18 @@ pub enum LawTerm {
     StribeckSpeed,
     /// B / J, 1/s.
     Viscous,
+    /// Time constant of the resonance of the table on the screw, motor held: 1 / (2 pi f), s.
+    Resonance,
+    /// Part of the inertia that is on the table's side of the screw.
+    TableShare,
+    /// Backlash, mm.
+    Backlash,
+    /// Servo period at which the drive takes the speed, s; zero is a drive that sees it all the time. Given, never fitted.
+    SpeedHold,
 }
 
 /// How many there are.
-pub const TERMS: usize = 17;
+pub const TERMS: usize = 21;
 
 /// Range of a number, and by how much it is changed for a difference.
 #[derive(Debug, Clone, Copy)]
@@ -99,6 +111,10 @@ impl LawTerm {
         Self::Stribeck,
         Self::StribeckSpeed,
         Self::Viscous,
+        Self::Resonance,
+        Self::TableShare,
+        Self::Backlash,
+        Self::SpeedHold,
     ];
 
     /// Key in files.
@@ -121,6 +137,10 @@ impl LawTerm {
             Self::Stribeck => "stribeck_part",
             Self::StribeckSpeed => "stribeck_mm_s",
             Self::Viscous => "b_over_j_1_s",
+            Self::Resonance => "resonance_time_s",
+            Self::TableShare => "table_share",
+            Self::Backlash => "backlash_mm",
+            Self::SpeedHold => "speed_hold_s",
         }
     }
 
@@ -144,6 +164,10 @@ impl LawTerm {
             Self::Stribeck => row("Stribeck", "", [0.0, 2.0], [0.0, 0.05]),
             Self::StribeckSpeed => row("Stribeck speed", "mm/s", [0.2, 1e3], [0.1, 0.02]),
             Self::Viscous => row("B / J", "1/s", [0.0, 1e4], [0.02, 0.2]),
+            Self::Resonance => row("time constant of the resonance", "s", [0.0, 0.008], [0.03, 1e-5]),
+            Self::TableShare => row("part of J at the table", "", [0.05, 0.95], [0.0, 0.03]),
+            Self::Backlash => row("backlash", "mm", [0.0, 0.2], [0.05, 2e-4]),
+            Self::SpeedHold => row("the speed is taken every", "s", [0.0, 0.1], [0.0, 1e-4]),
         }
     }
 }
@@ -153,6 +177,34 @@ impl LawTerm {
 pub struct TermValues(pub [f64; TERMS]);
 
 impl TermValues {
+    /// Those of an axis of a machine file. Of its torque limit nothing is said: the log comes to it or does not.
+    pub fn of_axis(axis: &Axis) -> Self {
+        let j = axis.inertia_kg_m2;
+        let per_mm = j * axis.rad_per_mm();
+        let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
+        let plain = Self([0.0; TERMS])
+            .with(LawTerm::LoopGain, axis.kp_1_s * axis.kv_nm_s_per_rad / j)
+            .with(LawTerm::Damping, (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / j)
+            .with(LawTerm::Viscous, axis.viscous_friction_nm_s / j)
+            .with(LawTerm::Coulomb, axis.coulomb_friction_nm / per_mm)
+            .with(LawTerm::Offset, axis.coulomb_asymmetry_nm / per_mm)
+            .with(LawTerm::LoopDelay, axis.drive_delay_s)
+            .with(LawTerm::VelocityFeedforward, axis.velocity_feedforward)
+            .with(LawTerm::AccelerationFeedforward, axis.acceleration_feedforward)
+            .with(LawTerm::Integral, inverse(axis.speed_integral_s))
+            .with(LawTerm::FilterTime, inverse(axis.torque_filter_hz) / std::f64::consts::TAU)
+            .with(LawTerm::SpeedLimit, axis.speed_limit_mm_s)
+            .with(LawTerm::Presliding, 1e-3 * axis.presliding_um)
+            .with(LawTerm::Stribeck, axis.stribeck_nm * inverse(axis.coulomb_friction_nm))
+            .with(LawTerm::StribeckSpeed, axis.stribeck_mm_s);
+        axis.transmission.map_or(plain, |screw| {
+            plain
+                .with(LawTerm::Resonance, 1.0 / (std::f64::consts::TAU * screw.resonance_hz))
+                .with(LawTerm::TableShare, screw.table_share)
+                .with(LawTerm::Backlash, 1e-3 * screw.backlash_um)
+        })
+    }
+
     /// Of one.
     pub fn get(&self, term: LawTerm) -> f64 {
         self.0[term as usize]
@@ -217,6 +269,18 @@ impl TermValues {
         }
     }
 
+    /// Motor and table as two masses; none where the screw is rigid. In um where a machine file has um.
+    pub fn transmission(&self, mechanics_s: f64) -> Option<Transmission> {
+        let time_s = self.get(LawTerm::Resonance);
+        (time_s > STIFFEST * mechanics_s).then(|| Transmission {
+            table_share: self.get(LawTerm::TableShare),
+            resonance_hz: 1.0 / (std::f64::consts::TAU * time_s),
+            damping_ratio: ASSUMED_DAMPING_RATIO,
+            backlash_um: 1e3 * self.get(LawTerm::Backlash),
+            scale_on_table: false,
+        })
+    }
+
     pub(super) fn friction(&self) -> FrictionParameters {
         FrictionParameters {
             coulomb_asymmetry_nm: self.get(LawTerm::Offset),
@@ -226,6 +290,11 @@ impl TermValues {
         }
     }
 }
+
+/// Damping of a screw that nobody has measured: of the size that machine tools have.
+pub(crate) const ASSUMED_DAMPING_RATIO: f64 = 0.02;
+/// Mechanics periods that the time constant of a resonance has at least: a stiffer screw is rigid.
+const STIFFEST: f64 = 2.0;
 
 /// As tnv40's: a millisecond of a reversal.
 const SMOOTHING_MM_S: f64 = 0.08;
