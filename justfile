@@ -61,6 +61,15 @@ same-outputs old:
     cargo build --release --quiet
     scripts/same-outputs {{ old }} target/release/feedwright
 
+# A stretch of a log as measured and as its law and a linear model predict it, over times of which nothing was fitted: the figure of README.md
+# is that of the public bench EMPS, `just identification-figure DATA_EMPS.mat 0:12.42 12.42:25 13:18`.
+identification-figure log fit score shown out="docs/identification.svg":
+    cargo run --release -p feedwright --example identification_figure -- {{ log }} {{ fit }} {{ score }} {{ shown }} {{ out }}
+
+# Simulated machines cut the program of `excite` and are identified from the log: the table of docs/identification.md.
+identification-sweep repeats="5":
+    cargo run --release -p feedwright --example identification_sweep -- {{ repeats }} tnv40 heavy sticky soft coarse sliding
+
 # Random programs on random machines against open loop: `just held-out 20261 2000 --failures target/failures`. Seeds of a
 # verdict are drawn after the settings are frozen.
 held-out seed count *options:
@@ -85,7 +94,7 @@ noise-levels out="examples/05_noise" levels="5":
 correction-acceleration out="target/correction_acceleration.svg":
     cargo run --release --quiet -p feedwright --example correction_acceleration -- {{ out }}
 
-# Percentiles of the time of a whole decision of the receding horizon, on one core; counts on an idle machine only.
+# Percentiles of the time of a whole decision of the receding horizon and of the regulator, on one core; counts on an idle machine only.
 tick ticks="100000" runs="5":
     cargo build --release --quiet -p feedwright-control --example tick_percentiles
     taskset --cpu-list 1 target/release/examples/tick_percentiles {{ ticks }} {{ runs }}
@@ -113,7 +122,7 @@ instructions:
         valgrind --tool=callgrind --callgrind-out-file=/dev/null target/release/examples/instructions "$1" "$2" 2>&1 |
             sed -n 's/.*Collected : //p'
     }
-    for work in paper-tick horizon-tick horizon-20 servo-period horizon-period learn; do
+    for work in paper-tick horizon-tick horizon-20 servo-period horizon-period regulator-period screw-period learn; do
         few=$(counted "$work" 1000)
         many=$(counted "$work" 3000)
         printf '%-14s %8d instructions\n' "$work" $(((many - few) / 2000))
@@ -160,3 +169,23 @@ reading lines="2200000":
     for command in check canon check canon check canon; do
         command time --format "$command: %e s, %U s of processor, %M KiB" target/release/feedwright --quiet "$command" "$folder/print.gcode" >/dev/null
     done
+
+# Build the HAL components and install them for LinuxCNC (Debian: linuxcnc-uspace, linuxcnc-uspace-dev), and make the models of
+# linuxcnc/configs/workshop-sim.
+linuxcnc:
+    linuxcnc/build
+
+# Formatting, lints and tests of linuxcnc/, and cuts and faults in a real LinuxCNC without a screen: what .ci/run runs of it.
+linuxcnc-check:
+    linuxcnc/check
+
+# Every program and fault in a real LinuxCNC, on machines that differ: the figures of docs/linuxcnc.md. Half an hour, most of it waiting.
+linuxcnc-sweep: linuxcnc
+    #!/usr/bin/env bash
+    set -euo pipefail
+    cargo build --release --quiet
+    export FEEDWRIGHT=$PWD/target/release/feedwright
+    cd linuxcnc
+    python3 tests/sweep.py
+    python3 tests/identified.py
+    python3 tests/faults.py --machine configs/workshop-sim/machine.fwmodel:configs/workshop-sim/model.fwmodel

@@ -30,6 +30,8 @@ pub(crate) enum CommandArgs {
     Identify(IdentifyArgs),
     /// Write a G-code program that shows how the axes of a machine behave: run it, record a log, identify the machine from it.
     Excite(ExciteArgs),
+    /// Write what a component in a servo thread reads: a model, or a machine with exactly the numbers of its file, as a block of bytes.
+    Block(BlockArgs),
     /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
     Paper(PaperArgs),
     /// Compare all controllers on contours and machines, in one table.
@@ -74,6 +76,9 @@ pub(crate) struct RunArgs {
     /// Largest contour error allowed, um: exit code 1 where it is exceeded.
     #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
+    /// Cut in the least time in which the tool stays within --tolerance; feedrates are the ceiling.
+    #[arg(long, requires = "tolerance")]
+    pub(crate) fastest: bool,
     /// Write one row per servo period.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trace: Option<PathBuf>,
@@ -120,8 +125,9 @@ pub(crate) struct PlanArgs {
 #[derive(Debug, Args)]
 pub(crate) struct IdentifyArgs {
     /// Log of commanded and actual positions of a real machine: halsampler, halscope, MATLAB v5, Sinumerik Edge, or a table of text.
+    /// Several are of one machine, with the same axes.
     #[arg(value_name = "LOG", conflicts_with_all = ["machine", "controller", "axes", "set", "seed"])]
-    pub(crate) log: Option<PathBuf>,
+    pub(crate) log: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) of_log: LogArgs,
     /// Built-in machine, or a machine file (.toml).
@@ -140,8 +146,8 @@ pub(crate) struct IdentifyArgs {
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Place of the machine file; of a simulated machine, of its model.
-    #[arg(long, value_name = "FILE.toml")]
-    pub(crate) out: PathBuf,
+    #[arg(long, value_name = "FILE.toml", required_unless_present = "update")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// What is said of a log.
@@ -151,6 +157,9 @@ pub(crate) struct LogArgs {
     /// Which column is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,x.torque=5,unit=mm,time=ms.
     #[arg(long, value_name = "COLUMNS", requires = "log")]
     pub(crate) columns: Option<feedwright::log::columns::Columns>,
+    /// Machine file that is updated: what the logs do not tell stays as it is. It is written to --out, without that in its place.
+    #[arg(long, value_name = "FILE.toml", requires = "log")]
+    pub(crate) update: Option<PathBuf>,
     /// Fit this time of the log, s; all else by --score. Without both, blocks of motion take turns.
     #[arg(long, value_name = "FROM:TO", requires = "score", requires = "log")]
     pub(crate) fit: Option<Times>,
@@ -169,6 +178,14 @@ pub(crate) struct LogArgs {
     /// Torque, N m, for a unit of the torque column; without --lead force, N.
     #[arg(long, value_name = "N_M|N", requires = "log", value_parser = positive)]
     pub(crate) torque_gain: Option<f64>,
+    /// Time over which the drive takes the speed from positions, s, of one that closes its loops at the rate of the log and recorded it
+    /// itself: two samples are 0.002 at 1 kHz. Positions do not tell it.
+    #[arg(long, value_name = "S", requires = "log", value_parser = positive)]
+    pub(crate) speed_window: Option<f64>,
+    /// By how much the log has the actual position later than the command, s: 0 where both were sampled at the same moment, as by
+    /// halsampler. Without it a delay of the drive counts as one of the record.
+    #[arg(long, value_name = "S", requires = "log", allow_negative_numbers = true)]
+    pub(crate) record_delay: Option<f64>,
     /// Write a page: numbers, measured against predicted, what is left.
     #[arg(long, value_name = "FILE.html", requires = "log")]
     pub(crate) report: Option<PathBuf>,
@@ -212,6 +229,28 @@ pub(crate) struct ExciteArgs {
     /// Place of the program.
     #[arg(long, value_name = "FILE.ngc")]
     pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BlockArgs {
+    /// Model file (.model.toml), built-in machine, or machine file (.toml).
+    #[arg(value_name = "FILE.model.toml|NAME|FILE.toml")]
+    pub(crate) file: OsString,
+    /// Number of axes, 2 or 3 [default: all that there are].
+    #[arg(long, value_parser = axes_of_a_block)]
+    pub(crate) axes: Option<usize>,
+    /// Place of the block.
+    #[arg(long, value_name = "FILE.fwmodel")]
+    pub(crate) out: PathBuf,
+}
+
+/// 2 or 3.
+fn axes_of_a_block(text: &str) -> Result<usize, String> {
+    match text {
+        "2" => Ok(2),
+        "3" => Ok(3),
+        _ => Err("a block is of 2 or 3 axes".to_owned()),
+    }
 }
 
 #[derive(Debug, Args)]

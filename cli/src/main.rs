@@ -36,6 +36,7 @@ fn main() -> ExitCode {
         CommandArgs::Plan(args) => commands::plan::run(&args, &console),
         CommandArgs::Identify(args) => commands::identify::run(&args, &console),
         CommandArgs::Excite(args) => commands::excite::run(&args, &console),
+        CommandArgs::Block(args) => commands::block::run(&args, &console),
         CommandArgs::Paper(args) => commands::paper::run(&args, &console),
         CommandArgs::Compare(args) => commands::compare::run(&args, &console),
         CommandArgs::NeverWorse(args) => commands::never_worse::run(&args, &console),

@@ -21,6 +21,7 @@ use feedwright_control::Controller;
 use serde::{Deserialize, Serialize};
 
 use crate::controllers::{Choices, Entry, Make, NothingIdentified, Setup};
+use crate::fastest::{FastestError, FastestPlan, fastest, with_tolerance};
 use crate::gcode::canon::{Canon, MotionKind};
 use crate::gcode::{self, ReadError, Reader, Summary};
 use crate::machine::Machine;
@@ -57,6 +58,8 @@ pub struct Job {
     pub model: Option<Model>,
     /// Largest contour error that is allowed, um.
     pub tolerance_um: Option<f64>,
+    /// Cut as fast as the tolerance allows the controller that is asked for.
+    pub fastest: bool,
     /// Settings of the reader.
     pub reader: gcode::Settings,
     /// Files that were read to make this job, besides the program: no output may take their place.
@@ -75,6 +78,8 @@ pub struct JobOutcome {
     pub warnings: Vec<gcode::Diagnostic>,
     /// Controllers that cut open loop, because nothing was identified that they could go by.
     pub without_identification: Vec<NothingIdentified>,
+    /// The plan of least time, where that was asked for.
+    pub fastest: Option<FastestPlan>,
     /// Whether the last run was cut to its end and within the tolerance, where one was asked for.
     pub within_tolerance: bool,
 }
@@ -104,6 +109,7 @@ impl Job {
         Entry: Make<N>,
     {
         let mut files = Files::create(self, N)?;
+        let fastest = self.fastest_plan::<N>(watch)?;
         let (mut runs, mut without_identification) = (Vec::new(), Vec::new());
         for entry in self.controllers() {
             watch.check()?;
@@ -119,14 +125,37 @@ impl Job {
                     controller
                 }
             };
-            runs.push(self.cut_once(summary, entry, &mut *controller, judged.then_some(&mut files), watch)?);
+            let written = judged.then_some(&mut files);
+            runs.push(self.cut_once(summary, entry, &mut *controller, fastest.as_ref(), written, watch)?);
         }
         watch.begin("writing", 1);
         let report = self.report(N, summary, runs);
         let within_tolerance = self.within_tolerance(&report);
         files.finish(self, &report, watch)?;
         let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
-        Ok(JobOutcome { report, warnings, without_identification, within_tolerance })
+        Ok(JobOutcome { report, warnings, without_identification, fastest, within_tolerance })
+    }
+
+    /// The plan of least time, found with a controller of its own.
+    fn fastest_plan<const N: usize>(&self, watch: &dyn Watch) -> Result<Option<FastestPlan>, JobError>
+    where
+        Entry: Make<N>,
+    {
+        let Some(tolerance_um) = self.tolerance_um.filter(|_| self.fastest) else {
+            return Ok(None);
+        };
+        watch.begin("planning the least time", 1);
+        let mut setup = Setup::new(&self.machine, &self.choices);
+        let mut controller = match &self.model {
+            Some(model) => self.controller.make_with::<N>(setup, model)?,
+            None => Make::<N>::make(self.controller, &mut setup),
+        };
+        let steps = || Ok(pieces(self.program()?));
+        let found = fastest(&self.machine, tolerance_um, steps, &mut *controller, self.controller.laps, watch);
+        found.map(Some).map_err(|error| match error {
+            FastestError::Run(error) => JobError::of_run(&self.part, error),
+            error => JobError::Fastest { part: self.part.clone(), error },
+        })
     }
 
     fn cut_once<const N: usize>(
@@ -134,6 +163,7 @@ impl Job {
         summary: &Summary,
         entry: &Entry,
         controller: &mut dyn Controller<N>,
+        fastest: Option<&FastestPlan>,
         files: Option<&mut Files>,
         watch: &dyn Watch,
     ) -> Result<ReportedRun, JobError> {
@@ -143,10 +173,19 @@ impl Job {
         let mut cut = CutProgress { steps, length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
         let mut sinks: Vec<&mut dyn Sink> = vec![&mut statistics, &mut series, &mut timeline, &mut cut];
         sinks.extend(files.map(|files| files as &mut dyn Sink));
-        let run = Run::on(&self.machine)
+        let machine = fastest.map_or(&self.machine, |plan| &plan.machine);
+        let steps = || {
+            let steps = pieces(self.program()?);
+            Ok(match fastest.and_then(|plan| plan.machine.limits.path_tolerance_um) {
+                Some(path_um) => with_tolerance(steps, 1e-3 * path_um),
+                None => steps,
+            })
+        };
+        let run = Run::on(machine)
+            .capped(fastest.map(|plan| &plan.caps))
             .laps(entry.laps)
             .watched(watch)
-            .cut(|| Ok(pieces(self.program()?)), controller, &mut sinks)
+            .cut(steps, controller, &mut sinks)
             .map_err(|error| JobError::of_run(&self.part, error))?;
         let facts = RunFacts {
             controller: entry.name.to_owned(),

@@ -7,6 +7,7 @@
 
 mod vector;
 mod spectrum;
+pub mod average;
 pub mod watch;
 pub mod kinematics;
 pub mod number;
@@ -28,6 +29,7 @@ pub mod pipeline;
 pub mod excite;
 pub mod log;
 pub mod cycle_time;
+pub mod fastest;
 pub mod identify;
 pub mod model;
 pub mod controllers;

@@ -7,10 +7,13 @@
 //! Whatever cuts goes through [`Run`]: the main job, the comparison, the experiments of the paper, the excitation of an
 //! identification, tests.
 
+use std::sync::Arc;
+
 use feedwright_control::Controller;
 use thiserror::Error;
 
 use crate::blend::{self, BlendMember};
+use crate::constraints::speed_caps::SpeedCaps;
 use crate::constraints::{Constraints, LimitsError};
 use crate::feed::plan::Plan;
 use crate::feed::{self, Member};
@@ -53,9 +56,21 @@ impl Stages {
     /// # Errors
     /// Where a limit of the machine is none.
     pub fn reference<'p>(self, steps: Steps<'p>, machine: &Machine) -> Result<Reference<'p>, LimitsError> {
-        let constraints = Constraints::from(machine);
-        let blended = (self.blend.make)(steps, &constraints);
-        let plan = Plan::new(blended, &constraints, self.planner, Plc::of(machine))?;
+        self.reference_within(steps, machine, &Constraints::from(machine))
+    }
+
+    /// The same within other constraints than the machine's.
+    ///
+    /// # Errors
+    /// Where a limit is none.
+    pub fn reference_within<'p>(
+        self,
+        steps: Steps<'p>,
+        machine: &Machine,
+        constraints: &Constraints,
+    ) -> Result<Reference<'p>, LimitsError> {
+        let blended = (self.blend.make)(steps, constraints);
+        let plan = Plan::new(blended, constraints, self.planner, Plc::of(machine))?;
         Ok(Reference::new(plan))
     }
 }
@@ -73,6 +88,7 @@ const LAP_SEED_SHIFT: u32 = 32;
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
     machine: &'a Machine,
+    caps: Option<&'a Arc<SpeedCaps>>,
     stages: Stages,
     laps: u32,
     watch: &'a dyn Watch,
@@ -114,13 +130,19 @@ impl From<Stopped> for RunError {
 impl<'a> Run<'a> {
     /// One lap on a machine, by the stages that suit it.
     pub fn on(machine: &'a Machine) -> Self {
-        Self { machine, stages: Stages::of(machine), laps: 1, watch: &() }
+        Self { machine, caps: None, stages: Stages::of(machine), laps: 1, watch: &() }
     }
 
     /// With laps of practice: the last of so many counts.
     #[must_use]
     pub const fn laps(self, laps: u32) -> Self {
         Self { laps, ..self }
+    }
+
+    /// With bounds on the speed, place by place.
+    #[must_use]
+    pub const fn capped(self, caps: Option<&'a Arc<SpeedCaps>>) -> Self {
+        Self { caps, ..self }
     }
 
     /// With other members of the families.
@@ -175,7 +197,8 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        let mut reference = self.stages.reference(steps, self.machine)?;
+        let constraints = Constraints { speed_caps: self.caps.cloned(), ..Constraints::from(self.machine) };
+        let mut reference = self.stages.reference_within(steps, self.machine, &constraints)?;
         let result = simulate(self.machine, &mut reference, controller, sinks, self.watch)?;
         match reference.fault() {
             Some(fault) => Err(fault.clone().into()),

@@ -6,6 +6,7 @@ use thiserror::Error;
 
 use crate::constraints::LimitsError;
 use crate::controllers::ModelMisfit;
+use crate::fastest::FastestError;
 use crate::gcode::{self, CheckError, ReadError};
 use crate::number::shown;
 use crate::output::OutputError;
@@ -71,6 +72,14 @@ pub enum JobError {
     Ending {
         /// The place.
         path: PathBuf,
+    },
+    /// No plan is within the tolerance.
+    #[error("{}: {error}", part.display())]
+    Fastest {
+        /// The program.
+        part: PathBuf,
+        /// Why.
+        error: FastestError,
     },
     /// The cut did not come to its end.
     #[error(transparent)]
