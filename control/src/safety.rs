@@ -173,7 +173,11 @@ impl<const N: usize> Guard<N> {
     {
         let sum = wanted.rate + wanted.offset_mm.iter().chain(&wanted.bend_mm).sum::<f64>();
         let prediction_error_mm = controller.prediction_error_mm();
-        self.wrong = if prediction_error_mm > self.wrong_mm() { self.wrong + 1 } else { 0 };
+        self.wrong = match prediction_error_mm {
+            f64::INFINITY => WRONG_DECISIONS,
+            wrong_mm if wrong_mm > self.wrong_mm() => self.wrong + 1,
+            _ => 0,
+        };
         let [with_mm2, without_mm2] = controller.foreseen_mm2();
         let foreseen = with_mm2 > FORESEEN_MM2 + FORESEEN * without_mm2;
         self.foreseen = if foreseen { self.foreseen + 1 } else { 0 };

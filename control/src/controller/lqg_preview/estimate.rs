@@ -152,6 +152,18 @@ impl AxisModel {
         self.go_on(estimate, sent, measured_late + periods, periods);
     }
 
+    /// Mean square of what noise and loads that nobody foresees move the axis by, and the encoder adds, in a free run of so many servo periods, rad^2.
+    pub(super) fn unforeseen_rad2(&self, periods: u32) -> f64 {
+        self.linear.spread_rad2(&self.statistics, periods) + measured_rad2(&self.statistics)
+    }
+
+    /// What the encoder shows, rad.
+    pub(super) fn shown_rad(&self, estimate: &Estimate) -> f64 {
+        let AxisStatistics { interpolation_rad, interpolation_phase_rad, signal_per_rad, .. } = self.statistics;
+        let angle_rad = estimate.masses.motor.angle_rad;
+        angle_rad + interpolation_rad * sin(signal_per_rad * angle_rad + interpolation_phase_rad)
+    }
+
     /// One servo period on, and what was measured at its end: by how much that was not expected, rad, and as what it is taken.
     pub(super) fn correct(
         &self,
@@ -161,9 +173,7 @@ impl AxisModel {
         learnt: &mut Learnt,
     ) -> Innovation {
         self.predict(estimate, sent);
-        let AxisStatistics { interpolation_rad, interpolation_phase_rad, signal_per_rad, .. } = self.statistics;
-        let angle_rad = estimate.masses.motor.angle_rad;
-        let shown_rad = angle_rad + interpolation_rad * sin(signal_per_rad * angle_rad + interpolation_phase_rad);
+        let shown_rad = self.shown_rad(estimate);
         let missed_rad = measured_rad - shown_rad;
         let (believed_rad, servo_s) = (self.believed_rad, self.law.periods.servo_s);
         let taken_rad = learnt.outliers.bounded_rad(measured_rad, missed_rad, believed_rad, servo_s);

@@ -26,7 +26,10 @@ use super::riccati::{PeriodCost, StateMatrix, applied, inner, product, sum, tran
 
 /// Number of states.
 pub(super) const STATES: usize = 10;
-/// The table's angle among them: it is what cuts.
+/// Loads among them: the broadband torque, the disturbance, and then its quadrature.
+const BROADBAND: usize = 4;
+const DISTURBANCE: usize = 5;
+/// The table's angle: it is what cuts.
 const TABLE: usize = 8;
 /// Longest time for which the oscillator remembers its phase, s: one that remembers longer takes longer to find it at the start. On tnv40
 /// with 0.5 um of encoder noise 10 s leave 0.08 um RMS, 100 s 0.09.
@@ -109,6 +112,20 @@ impl LinearAxis {
             covariance = sum(&spread, &self.substep_noise);
         }
         (states, input, covariance)
+    }
+
+    /// Variance of the motor's angle after so many servo periods, of which nothing but the state at their start is known: no load, no noise, rad^2.
+    pub(super) fn spread_rad2(&self, statistics: &AxisStatistics, periods: u32) -> f64 {
+        let (states, _, noise) = self.sampled();
+        let swing_nm2 = 0.5 * statistics.disturbance_nm * statistics.disturbance_nm;
+        let broadband_nm2 = statistics.torque_noise_nm * statistics.torque_noise_nm;
+        let mut covariance = [[0.0; STATES]; STATES];
+        [(BROADBAND, broadband_nm2), (DISTURBANCE, swing_nm2), (DISTURBANCE + 1, swing_nm2)]
+            .map(|(state, nm2)| covariance[state][state] = nm2);
+        for _ in 0..periods {
+            covariance = sum(&product(&product(&states, &covariance), &transposed(&states)), &noise);
+        }
+        covariance[0][0]
     }
 
     /// Mean square of the table's position over the servo period, and a price for the input.
