@@ -120,8 +120,9 @@ impl LinearAxis {
         let swing_nm2 = 0.5 * statistics.disturbance_nm * statistics.disturbance_nm;
         let broadband_nm2 = statistics.torque_noise_nm * statistics.torque_noise_nm;
         let mut covariance = [[0.0; STATES]; STATES];
-        [(BROADBAND, broadband_nm2), (DISTURBANCE, swing_nm2), (DISTURBANCE + 1, swing_nm2)]
-            .map(|(state, nm2)| covariance[state][state] = nm2);
+        for (state, nm2) in [(BROADBAND, broadband_nm2), (DISTURBANCE, swing_nm2), (DISTURBANCE + 1, swing_nm2)] {
+            covariance[state][state] = nm2;
+        }
         for _ in 0..periods {
             covariance = sum(&product(&product(&states, &covariance), &transposed(&states)), &noise);
         }
