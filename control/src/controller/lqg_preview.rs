@@ -164,8 +164,12 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             self.reset();
             return;
         };
-        for ((axis, offset_mm), position_mm) in self.axes.iter_mut().zip(window.offset_mm).zip(position_mm) {
-            axis.observe(offset_mm, position_mm);
+        // Where it begins in mid-motion the machine is on the path, so far behind it.
+        let behind_mm = [-self.lag_s, -self.lag_s - window.servo_s()].map(|after_s| window.at(after_s).position_mm);
+        let speed_mm_s = scale(1.0 / window.servo_s(), sub(behind_mm[0], behind_mm[1]));
+        let measured_axes = window.offset_mm.into_iter().zip(position_mm).zip(speed_mm_s);
+        for (axis, ((offset_mm, position_mm), speed_mm_s)) in self.axes.iter_mut().zip(measured_axes) {
+            axis.observe(offset_mm, position_mm, speed_mm_s);
         }
         if let Some(measured) = measured.filter(|_| self.doubts) {
             self.doubt(window, measured);
@@ -237,9 +241,9 @@ struct Tracked {
 }
 
 impl Tracked {
-    fn at_rest(measured_rad: f64) -> Self {
+    fn moving(measured_rad: f64, speed_rad_s: f64) -> Self {
         Self {
-            estimate: AxisModel::at_rest(measured_rad),
+            estimate: AxisModel::moving(measured_rad, speed_rad_s),
             sent: NOTHING_SENT,
             position_loop: (AxisState::default(), DriveState::AT_REST),
             measured_rad,
@@ -285,19 +289,19 @@ impl AxisLqg {
         (1.0 + friction - drive.velocity_feedforward) / parameters.kp_1_s - delays.measurement_s
     }
 
-    /// What was commanded in the last servo period, as an offset from the path, has led to this position.
-    fn observe(&mut self, offset_mm: f64, position_mm: f64) {
+    /// What was commanded in the last servo period, as an offset from the path, has led to this position. Where it begins it has about this speed.
+    fn observe(&mut self, offset_mm: f64, position_mm: f64, speed_mm_s: f64) {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let measured_rad = position_mm * rad_per_mm;
-        let at_rest = Tracked::at_rest(measured_rad);
+        let moving = Tracked::moving(measured_rad, speed_mm_s * rad_per_mm);
         let running = self.state.get_or_insert(Running {
-            real: at_rest,
-            open: at_rest,
+            real: moving,
+            open: moving,
             path_mm: None,
             missed_rad: 0.0,
             learnt: Learnt::NOTHING,
             overtaxed: Overtaxed::NOT,
-            trial: LawTrial::from(&at_rest.estimate),
+            trial: LawTrial::from(&moving.estimate),
         });
         let Running { real, open, path_mm, missed_rad, learnt, trial, .. } = running;
         let Some(path_mm) = *path_mm else {

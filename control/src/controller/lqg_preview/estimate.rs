@@ -134,9 +134,11 @@ impl AxisModel {
         Whiteness::GIVEN.gains(&self.gains)
     }
 
-    /// At rest at an angle.
-    pub(super) fn at_rest(angle_rad: f64) -> Estimate {
-        Estimate { masses: MechanicsState::at_rest(angle_rad), drive: DriveState::default(), acting_nm: [0.0; 4] }
+    /// At an angle and a speed, with nothing that is known to act.
+    pub(super) fn moving(angle_rad: f64, speed_rad_s: f64) -> Estimate {
+        let mut masses = MechanicsState::at_rest(angle_rad);
+        (masses.motor.speed_rad_s, masses.table.speed_rad_s) = (speed_rad_s, speed_rad_s);
+        Estimate { masses, drive: DriveState::default(), acting_nm: [0.0; 4] }
     }
 
     /// Torque of the motor beside the drive's at an angle, N m.

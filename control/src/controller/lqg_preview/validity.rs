@@ -94,8 +94,9 @@ impl Validity {
         let allowed_mm2 = LEAST_MM2
             + DEVIATIONS * DEVIATIONS * unforeseen_mm2
             + FOLLOWING_SHARE * FOLLOWING_SHARE * self.following_mm2;
-        // What is not a number is wrong.
-        !(self.missed_mm2 <= allowed_mm2)
+        let holds = self.missed_mm2 <= allowed_mm2;
+        // What is not a number does not hold.
+        !holds
     }
 
     /// The part of the correction that is followed, for a position loop with this time constant.
@@ -142,8 +143,8 @@ mod tests {
     #[test]
     fn a_correction_comes_in_while_the_path_moves() {
         assert_eq!(Validity::UNKNOWN.taken_up(0.02), 0.0);
-        assert!((after(25, 0.0, 0.0).taken_up(0.02) - 0.5).abs() < 1e-9);
-        assert_eq!(after(51, 0.0, 0.0).taken_up(0.02), 1.0);
+        assert!((after(40, 0.0, 0.0).taken_up(0.02) - 0.5).abs() < 1e-9);
+        assert_eq!(after(81, 0.0, 0.0).taken_up(0.02), 1.0);
         let mut standing = Validity::UNKNOWN;
         (0..100).for_each(|_| standing.take_in([0.0; 2], [0.0; 2], false, SERVO_S));
         assert_eq!(standing.taken_up(0.02), 0.0);
