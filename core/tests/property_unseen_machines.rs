@@ -29,7 +29,7 @@ const BROKEN_UM: f64 = 400.0;
 /// Part of the cuts that may be worse, and by how much at the most: what was measured, rounded up.
 const WORSE: f64 = 0.03;
 const WORST_RATIO: f64 = 6.0;
-const WORST_RATIO_BY_LAW: f64 = 1.1;
+const WORST_RATIO_BY_LAW: f64 = 2.5;
 /// An RMS that differs from open loop's by less is the same, um: it is below the steps of any encoder.
 const SAME_UM: f64 = 0.5;
 

@@ -84,11 +84,10 @@ pub struct LqgPreview<const N: usize> {
     /// By how much the tool is to be behind the plan, s.
     lag_s: f64,
     preview: u32,
-    /// Whether the law may be wrong, the slowest time constant of a position loop, s, and what noise and loads make a free run miss, mm^2.
+    /// Whether the law may be wrong, and what noise and loads make a free run miss, mm^2.
     doubts: bool,
-    time_constant_s: f64,
     unforeseen_mm2: f64,
-    validity: Validity,
+    validity: Validity<N>,
 }
 
 impl<const N: usize> LqgPreview<N> {
@@ -105,7 +104,6 @@ impl<const N: usize> LqgPreview<N> {
             lag_s,
             preview: longest + DIFFERENCES as u32,
             doubts: settings.learns,
-            time_constant_s: known.iter().map(|axis| 1.0 / axis.parameters.kp_1_s).fold(0.0, f64::max),
             unforeseen_mm2: axes.iter().map(AxisLqg::unforeseen_mm2).sum(),
             validity: Validity::UNKNOWN,
             axes,
@@ -118,12 +116,7 @@ impl<const N: usize> LqgPreview<N> {
     fn doubt(&mut self, window: &Window<'_, N>, measured: &Measured<N>) {
         let missed_mm = self.axes.each_ref().map(AxisLqg::law_missed_mm);
         let following_mm = sub(add_scaled(window.now().position_mm, 1.0, window.offset_mm), measured.position_mm);
-        let moves = self
-            .axes
-            .iter()
-            .zip(window.now().position_mm)
-            .any(|(axis, mm)| axis.path_mm().is_some_and(|was| was != mm));
-        self.validity.take_in(missed_mm, following_mm, moves, window.feed_period_s);
+        self.validity.take_in(missed_mm, following_mm, measured.position_mm, window.feed_period_s);
     }
 }
 
@@ -197,7 +190,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             let at_mm = |after_s: f64| of_axis(window.at(after_s - lag_s).position_mm);
             *offset_mm = axis.offset_mm(of_axis(here_mm), at_mm);
         }
-        let part = if self.doubts { self.validity.taken_up(self.time_constant_s) } else { 1.0 };
+        let part = if self.doubts { self.validity.taken_up(self.unforeseen_mm2) } else { 1.0 };
         Command::straight(1.0, scale(part, offset_mm))
     }
 }
@@ -338,11 +331,6 @@ impl AxisLqg {
     fn unforeseen_mm2(&self) -> f64 {
         let Parameters { rad_per_mm, .. } = self.model.law.parameters;
         self.model.unforeseen_rad2(validity::run_periods(self.model.law.periods.servo_s)) / (rad_per_mm * rad_per_mm)
-    }
-
-    /// Where the path was at the last decision, mm.
-    fn path_mm(&self) -> Option<f64> {
-        self.state.as_ref().and_then(|running| running.path_mm)
     }
 
     /// The offset of the command in this servo period; `at_mm` is the reference so many seconds from its start.

@@ -9,14 +9,17 @@
 //! ```
 //!
 //! s is what noise and loads that nobody foresees move the axis by in a free run, by the statistics. As long as the law has shown nothing,
-//! little is risked: in the first 4 / Kp of motion the correction comes in gradually.
+//! little is risked: the correction comes in over the first way, 25 times as long as what may be missed.
+//!
+//! Of 134 cuts on machines whose inertia, friction and gains are up to three times larger or smaller, that are late, or soft, 120 were worse than open loop by
+//! the law of another machine, by up to 1.4 mm; now two are, by 2.1 times at the most. With 15 times as long four are, by 2.8.
 //!
 //! Against g, the way by which the offset has moved the tool by the law, in place of f: with g / 2 a law with gains, inertia and friction 10 %
 //! off, which leaves a tenth of the error of open loop, counts as wrong. With f / 5 three of 36 such cuts are worse than open loop, with f / 10 none.
 //!
 //! Source: the free run as in Ljung (1999), System Identification, section 16.6, where models are validated by simulation; the rule is our own.
 
-use crate::vector::dot;
+use crate::vector::{dot, norm, sub};
 
 use super::estimate::{AxisModel, Estimate, Sent};
 
@@ -24,13 +27,13 @@ use super::estimate::{AxisModel, Estimate, Sent};
 const RUN_S: f64 = 0.03;
 /// Time over which squares are averaged, s.
 const MEMORY_S: f64 = 0.005;
-/// What may always be missed, mm^2 (2 um).
+/// What may be missed without any noise, mm^2 (2 um).
 const LEAST_MM2: f64 = 4e-6;
 /// Standard deviations of what nobody foresees, and the part of the following error.
 const DEVIATIONS: f64 = 4.0;
 const FOLLOWING_SHARE: f64 = 0.1;
-/// Time constants of the position loop in which a correction comes in.
-const TAKE_UP: f64 = 4.0;
+/// Way from the start over which a correction comes in, times what may be missed: a law that is wrong by a few parts in a hundred shows there.
+const PROVEN: f64 = 25.0;
 
 /// A free run beside the filter, of an axis.
 #[derive(Debug, Clone, Copy)]
@@ -64,46 +67,45 @@ impl LawTrial {
 
 /// What is known of the laws of all axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Validity {
+pub(super) struct Validity<const N: usize> {
     missed_mm2: f64,
     following_mm2: f64,
-    /// Time for which the path has moved, s.
-    moved_s: f64,
+    /// Where it began, and how far from there it has been, mm.
+    began_mm: Option<[f64; N]>,
+    farthest_mm: f64,
 }
 
-impl Validity {
+impl<const N: usize> Validity<N> {
     /// Nothing yet.
-    pub(super) const UNKNOWN: Self = Self { missed_mm2: 0.0, following_mm2: 0.0, moved_s: 0.0 };
+    pub(super) const UNKNOWN: Self = Self { missed_mm2: 0.0, following_mm2: 0.0, began_mm: None, farthest_mm: 0.0 };
 
-    /// A servo period, with m and f of the axes, mm.
-    pub(super) fn take_in<const N: usize>(
-        &mut self,
-        missed_mm: [f64; N],
-        following_mm: [f64; N],
-        moves: bool,
-        servo_s: f64,
-    ) {
+    /// A servo period, with m and f of the axes and their measured position, mm.
+    pub(super) fn take_in(&mut self, missed_mm: [f64; N], following_mm: [f64; N], position_mm: [f64; N], servo_s: f64) {
         let part = (servo_s / MEMORY_S).min(1.0);
         self.missed_mm2 += part * (dot(missed_mm, missed_mm) - self.missed_mm2);
         self.following_mm2 += part * (dot(following_mm, following_mm) - self.following_mm2);
-        self.moved_s += if moves { servo_s } else { 0.0 };
+        let began_mm = *self.began_mm.get_or_insert(position_mm);
+        self.farthest_mm = self.farthest_mm.max(norm(sub(position_mm, began_mm)));
     }
 
     /// Whether the laws are wrong, where noise and loads that nobody foresees miss by a mean square of `unforeseen_mm2`.
     pub(super) fn is_wrong(&self, unforeseen_mm2: f64) -> bool {
-        let allowed_mm2 = LEAST_MM2
-            + DEVIATIONS * DEVIATIONS * unforeseen_mm2
-            + FOLLOWING_SHARE * FOLLOWING_SHARE * self.following_mm2;
-        let holds = self.missed_mm2 <= allowed_mm2;
+        let following_mm2 = FOLLOWING_SHARE * FOLLOWING_SHARE * self.following_mm2;
+        let holds = self.missed_mm2 <= always_mm2(unforeseen_mm2) + following_mm2;
         // What is not a number does not hold.
         !holds
     }
 
-    /// The part of the correction that is followed, for a position loop with this time constant.
-    pub(super) fn taken_up(&self, time_constant_s: f64) -> f64 {
-        let part = (self.moved_s / (TAKE_UP * time_constant_s)).min(1.0);
+    /// The part of the correction that is followed.
+    pub(super) fn taken_up(&self, unforeseen_mm2: f64) -> f64 {
+        let part = (self.farthest_mm / (PROVEN * libm::sqrt(always_mm2(unforeseen_mm2)))).min(1.0);
         part * part * (3.0 - 2.0 * part)
     }
+}
+
+/// What may always be missed, mm^2.
+fn always_mm2(unforeseen_mm2: f64) -> f64 {
+    LEAST_MM2 + DEVIATIONS * DEVIATIONS * unforeseen_mm2
 }
 
 /// Servo periods of a free run.
@@ -117,9 +119,9 @@ mod tests {
 
     const SERVO_S: f64 = 0.001;
 
-    fn after(periods: u32, missed_mm: f64, following_mm: f64) -> Validity {
+    fn after(periods: u32, missed_mm: f64, following_mm: f64) -> Validity<2> {
         let mut validity = Validity::UNKNOWN;
-        (0..periods).for_each(|_| validity.take_in([missed_mm, 0.0], [0.0, following_mm], true, SERVO_S));
+        (0..periods).for_each(|_| validity.take_in([missed_mm, 0.0], [0.0, following_mm], [0.0; 2], SERVO_S));
         validity
     }
 
@@ -137,16 +139,20 @@ mod tests {
             let validity = after(200, missed_mm, following_mm);
             assert_eq!(validity.is_wrong(unforeseen_mm2), wrong, "{missed_mm} {following_mm} {unforeseen_mm2}");
         }
-        assert!(!Validity::UNKNOWN.is_wrong(0.0));
+        assert!(!Validity::<2>::UNKNOWN.is_wrong(0.0));
     }
 
     #[test]
-    fn a_correction_comes_in_while_the_path_moves() {
-        assert_eq!(Validity::UNKNOWN.taken_up(0.02), 0.0);
-        assert!((after(40, 0.0, 0.0).taken_up(0.02) - 0.5).abs() < 1e-9);
-        assert_eq!(after(81, 0.0, 0.0).taken_up(0.02), 1.0);
-        let mut standing = Validity::UNKNOWN;
-        (0..100).for_each(|_| standing.take_in([0.0; 2], [0.0; 2], false, SERVO_S));
-        assert_eq!(standing.taken_up(0.02), 0.0);
+    fn a_correction_comes_in_over_the_first_way_and_stays() {
+        let mut validity = after(100, 0.0, 0.0);
+        let mut at = |x_mm: f64| {
+            validity.take_in([0.0; 2], [0.0; 2], [x_mm, 0.0], SERVO_S);
+            validity.taken_up(0.0)
+        };
+        let [begin, middle, end, back] = [0.0, 0.025, 0.0501, 0.0].map(&mut at);
+        assert_eq!([begin, end, back], [0.0, 1.0, 1.0]);
+        assert!((middle - 0.5).abs() < 1e-9, "{middle}");
+        // Four standard deviations of 10 um take 20 times as long.
+        assert!(validity.taken_up(1e-4) < 0.01);
     }
 }
