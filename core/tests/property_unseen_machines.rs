@@ -30,6 +30,7 @@ const BROKEN_UM: f64 = 400.0;
 const WORSE: f64 = 0.03;
 const WORST_RATIO: f64 = 6.0;
 const WORST_RATIO_BY_LAW: f64 = 2.5;
+const WORSE_BY_LAW: f64 = 0.05;
 /// An RMS that differs from open loop's by less is the same, um: it is below the steps of any encoder.
 const SAME_UM: f64 = 0.5;
 
@@ -83,15 +84,15 @@ fn cut(workpiece: &Workpiece, machine: &Machine, controller: &mut dyn Controller
 
 #[test]
 fn hardly_any_machine_is_cut_worse_than_open_loop() {
-    judge(BEST, MACHINES, WORST_RATIO);
+    judge(BEST, MACHINES, WORSE, WORST_RATIO);
 }
 
 #[test]
 fn a_law_of_another_machine_is_not_followed() {
-    judge(BY_LAW, MACHINES_BY_LAW, WORST_RATIO_BY_LAW);
+    judge(BY_LAW, MACHINES_BY_LAW, WORSE_BY_LAW, WORST_RATIO_BY_LAW);
 }
 
-fn judge(name: &str, machines: u64, worst_ratio: f64) {
+fn judge(name: &str, machines: u64, most_worse: f64, worst_ratio: f64) {
     let contours: Vec<Workpiece> =
         Workpiece::contours().into_iter().filter(|w| ["circle", "star", "square"].contains(&w.name.as_str())).collect();
     let judged: Vec<(String, f64, f64)> = (0..machines)
@@ -130,7 +131,7 @@ fn judge(name: &str, machines: u64, worst_ratio: f64) {
     for (what, rms_um, open_um) in &worse {
         eprintln!("{what}: {rms_um:.2} um, open loop {open_um:.2} um");
     }
-    assert!((worse.len() as f64) <= WORSE * judged.len() as f64, "worse than open loop on {} cuts", worse.len());
+    assert!((worse.len() as f64) <= most_worse * judged.len() as f64, "worse than open loop on {} cuts", worse.len());
     assert!(quantile(1.0) <= worst_ratio, "{} times open loop", quantile(1.0));
     assert!(judged.len() as u64 > 2 * machines, "only {} cuts were judged", judged.len());
 }
