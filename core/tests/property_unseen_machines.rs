@@ -21,7 +21,7 @@ use rayon::prelude::*;
 
 /// Machines; of the controller by a law fewer, which each cost as much as three of the default.
 const MACHINES: u64 = 48;
-const MACHINES_BY_LAW: u64 = 16;
+const MACHINES_BY_LAW: u64 = 10;
 /// That controller.
 const BY_LAW: &str = "lqg-identified";
 /// Where the open loop itself rings by more than this, the machine is broken, um.
@@ -30,7 +30,7 @@ const BROKEN_UM: f64 = 400.0;
 const WORSE: f64 = 0.03;
 const WORST_RATIO: f64 = 6.0;
 const WORST_RATIO_BY_LAW: f64 = 2.5;
-const WORSE_BY_LAW: f64 = 0.05;
+const WORSE_BY_LAW: f64 = 0.1;
 /// An RMS that differs from open loop's by less is the same, um: it is below the steps of any encoder.
 const SAME_UM: f64 = 0.5;
 
