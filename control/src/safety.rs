@@ -17,7 +17,7 @@ pub(crate) mod feedback;
 
 use crate::contour_error::locate;
 use crate::controller::{Command, Controller, Measured};
-use crate::vector::{add_scaled, bounded, dot, limit_norm, norm, scale, sub};
+use crate::vector::{add_scaled, bounded, dot, limit_norm, norm, scale, smooth_step, sub};
 use crate::window::Window;
 use benefit::Benefit;
 use engagement::Engagement;
@@ -153,11 +153,7 @@ impl<const N: usize> Guard<N> {
             self.take_up_s = libm::sqrt(6.0 * norm(wanted.offset_mm) / self.bounds.fade_mm_s2).max(LEAST_BACK_S);
         }
         let part = bounded(back_for_s / self.take_up_s, 0.0, 1.0);
-        if part < 1.0 {
-            Command::straight(wanted.rate, scale(part * part * (3.0 - 2.0 * part), wanted.offset_mm))
-        } else {
-            wanted
-        }
+        if part < 1.0 { Command::straight(wanted.rate, scale(smooth_step(part), wanted.offset_mm)) } else { wanted }
     }
 
     /// Why a controller must not be followed. It hears how well it did.

@@ -66,6 +66,12 @@ pub fn bounded(x: f64, least: f64, most: f64) -> f64 {
     x.max(least).min(most)
 }
 
+/// `3 x^2 - 2 x^3`: from 0 to 1, and begins and ends without a slope.
+#[inline]
+pub fn smooth_step(x: f64) -> f64 {
+    x * x * (3.0 - 2.0 * x)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

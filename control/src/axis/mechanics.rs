@@ -30,9 +30,14 @@ pub struct MechanicsState {
 impl MechanicsState {
     /// At rest at an angle, in the middle of the backlash.
     pub fn at_rest(angle_rad: f64) -> Self {
+        Self::moving(angle_rad, 0.0)
+    }
+
+    /// At a speed, motor and table alike.
+    pub fn moving(angle_rad: f64, speed_rad_s: f64) -> Self {
         Self {
-            motor: AxisState { angle_rad, ..AxisState::default() },
-            table: TableState { angle_rad, speed_rad_s: 0.0 },
+            motor: AxisState { angle_rad, speed_rad_s, ..AxisState::default() },
+            table: TableState { angle_rad, speed_rad_s },
             presliding_nm: 0.0,
         }
     }

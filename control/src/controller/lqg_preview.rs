@@ -109,9 +109,18 @@ impl<const N: usize> LqgPreview<N> {
             axes,
         }
     }
-}
 
-impl<const N: usize> LqgPreview<N> {
+    /// Of each axis.
+    pub fn gains(&self) -> [LqgGains; N] {
+        self.axes.each_ref().map(|axis| LqgGains { filter: axis.model.gains_as_given(), regulator: axis.gains })
+    }
+
+    /// Speed of the machine on the path, so far behind it, mm/s.
+    fn lagging_mm_s(&self, window: &Window<'_, N>) -> [f64; N] {
+        let behind_mm = [-self.lag_s, -self.lag_s - window.servo_s()].map(|after_s| window.at(after_s).position_mm);
+        scale(1.0 / window.servo_s(), sub(behind_mm[0], behind_mm[1]))
+    }
+
     /// Compares what was measured with the law.
     fn doubt(&mut self, window: &Window<'_, N>, measured: &Measured<N>) {
         let missed_mm = self.axes.each_ref().map(AxisLqg::law_missed_mm);
@@ -127,13 +136,6 @@ pub struct LqgGains {
     pub filter: [f64; linear::STATES],
     /// By how much the reference speed, rad/s, is less for a unit of each state.
     pub regulator: [f64; linear::STATES],
-}
-
-impl<const N: usize> LqgPreview<N> {
-    /// Of each axis.
-    pub fn gains(&self) -> [LqgGains; N] {
-        self.axes.each_ref().map(|axis| LqgGains { filter: axis.model.gains_as_given(), regulator: axis.gains })
-    }
 }
 
 impl<const N: usize> Controller<N> for LqgPreview<N> {
@@ -157,9 +159,8 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             self.reset();
             return;
         };
-        // Where it begins in mid-motion the machine is on the path, so far behind it.
-        let behind_mm = [-self.lag_s, -self.lag_s - window.servo_s()].map(|after_s| window.at(after_s).position_mm);
-        let speed_mm_s = scale(1.0 / window.servo_s(), sub(behind_mm[0], behind_mm[1]));
+        let begins = self.axes.iter().any(|axis| axis.state.is_none());
+        let speed_mm_s = if begins { self.lagging_mm_s(window) } else { [0.0; N] };
         let measured_axes = window.offset_mm.into_iter().zip(position_mm).zip(speed_mm_s);
         for (axis, ((offset_mm, position_mm), speed_mm_s)) in self.axes.iter_mut().zip(measured_axes) {
             axis.observe(offset_mm, position_mm, speed_mm_s);
@@ -220,6 +221,22 @@ struct Running {
     learnt: Learnt,
     overtaxed: Overtaxed,
     trial: LawTrial,
+}
+
+impl Running {
+    /// Where nothing is known yet but an angle and a speed.
+    fn at(angle_rad: f64, speed_rad_s: f64) -> Self {
+        let moving = Tracked::moving(angle_rad, speed_rad_s);
+        Self {
+            real: moving,
+            open: moving,
+            path_mm: None,
+            missed_rad: 0.0,
+            learnt: Learnt::NOTHING,
+            overtaxed: Overtaxed::NOT,
+            trial: LawTrial::from(&moving.estimate),
+        }
+    }
 }
 
 /// An axis behind its position loop.
@@ -286,16 +303,7 @@ impl AxisLqg {
     fn observe(&mut self, offset_mm: f64, position_mm: f64, speed_mm_s: f64) {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let measured_rad = position_mm * rad_per_mm;
-        let moving = Tracked::moving(measured_rad, speed_mm_s * rad_per_mm);
-        let running = self.state.get_or_insert(Running {
-            real: moving,
-            open: moving,
-            path_mm: None,
-            missed_rad: 0.0,
-            learnt: Learnt::NOTHING,
-            overtaxed: Overtaxed::NOT,
-            trial: LawTrial::from(&moving.estimate),
-        });
+        let running = self.state.get_or_insert_with(|| Running::at(measured_rad, speed_mm_s * rad_per_mm));
         let Running { real, open, path_mm, missed_rad, learnt, trial, .. } = running;
         let Some(path_mm) = *path_mm else {
             real.measured_rad = measured_rad;

@@ -4,7 +4,7 @@ use crate::trust::Trust;
 use feedwright_control::contour_error::locate;
 use feedwright_control::controller::lqg_preview::{IDENTIFIED_PRICE, LqgPreview, Settings};
 use feedwright_control::model::IdentifiedAxes;
-use feedwright_control::vector::{norm, scale, sub};
+use feedwright_control::vector::{norm, scale, smooth_step, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
 /// Time in which the correction comes in or goes, s.
@@ -76,11 +76,6 @@ impl<const N: usize> Correction<N> {
         (self.share, self.wanted_mm, self.without_mm) = (0.0, [0.0; N], 0.0);
     }
 
-    /// 3 s^2 - 2 s^3 begins and ends without a step of the speed.
-    fn smooth_share(&self) -> f64 {
-        self.share * self.share * (3.0 - 2.0 * self.share)
-    }
-
     /// What was asked for last, mm.
     pub fn wanted_mm(&self) -> [f64; N] {
         self.wanted_mm
@@ -131,9 +126,9 @@ impl<const N: usize> Controller<N> for Correction<N> {
         let (index, reach) = (measured.contour.index, measured.contour.index.saturating_neg());
         let without = locate(window, sub(measured.position_mm, moved_mm), index, reach);
         self.without_mm = norm(without.vector_mm);
-        let share = self.followed.then_some(self.smooth_share());
+        let share = self.followed.then_some(smooth_step(self.share));
         self.trust.take_in(window, measured, share, self.without_mm);
-        self.wanted_mm = scale(self.smooth_share(), full.offset_mm);
+        self.wanted_mm = scale(smooth_step(self.share), full.offset_mm);
         Command { offset_mm: self.wanted_mm, ..full }
     }
 }

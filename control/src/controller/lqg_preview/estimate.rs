@@ -136,8 +136,7 @@ impl AxisModel {
 
     /// At an angle and a speed, with nothing that is known to act.
     pub(super) fn moving(angle_rad: f64, speed_rad_s: f64) -> Estimate {
-        let mut masses = MechanicsState::at_rest(angle_rad);
-        (masses.motor.speed_rad_s, masses.table.speed_rad_s) = (speed_rad_s, speed_rad_s);
+        let masses = MechanicsState::moving(angle_rad, speed_rad_s);
         Estimate { masses, drive: DriveState::default(), acting_nm: [0.0; 4] }
     }
 

@@ -19,7 +19,7 @@
 //!
 //! Source: the free run as in Ljung (1999), System Identification, section 16.6, where models are validated by simulation; the rule is our own.
 
-use crate::vector::{dot, norm, sub};
+use crate::vector::{dot, norm, smooth_step, sub};
 
 use super::estimate::{AxisModel, Estimate, Sent};
 
@@ -99,7 +99,7 @@ impl<const N: usize> Validity<N> {
     /// The part of the correction that is followed.
     pub(super) fn taken_up(&self, unforeseen_mm2: f64) -> f64 {
         let part = (self.farthest_mm / (PROVEN * libm::sqrt(always_mm2(unforeseen_mm2)))).min(1.0);
-        part * part * (3.0 - 2.0 * part)
+        smooth_step(part)
     }
 }
 

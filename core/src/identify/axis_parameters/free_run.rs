@@ -40,8 +40,7 @@ impl FreeRun {
         let per_servo = self.law.periods.mechanics_per_servo as usize;
         let [drive_late, measured_late] = self.late;
         let start_rad = start_mm * scale;
-        let mut masses = MechanicsState::at_rest(start_rad);
-        (masses.motor.speed_rad_s, masses.table.speed_rad_s) = (start_mm_s * scale, start_mm_s * scale);
+        let mut masses = MechanicsState::moving(start_rad, start_mm_s * scale);
         let mut drive = DriveState::AT_REST;
         let mut course_rad = Vec::with_capacity(commands_mm.len() * per_servo);
         let mut sent = Vec::<DriveReference>::with_capacity(commands_mm.len());
