@@ -85,7 +85,8 @@ pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
             backlash_rad: 0.002,
         };
     }
-    let settings = lqg_preview::Settings { price_s2: lqg_preview::IDENTIFIED_PRICE * 1e-6, learns: true };
+    let bounds = lqg_preview::OffsetBounds { largest_mm: 0.5, fastest_mm_s: 400.0 };
+    let settings = lqg_preview::Settings { price_s2: lqg_preview::IDENTIFIED_PRICE * 1e-6, bounds, learns: true };
     LqgPreview::new([axis; N], settings)
 }
 

@@ -214,13 +214,21 @@ pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &V
 }
 
 pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let settings = lqg_preview::Settings { price_s2: values.number("price_s2"), learns: false };
+    let settings = lqg_preview::Settings {
+        price_s2: values.number("price_s2"),
+        bounds: offset_bounds(&setup.known),
+        learns: false,
+    };
     Box::new(LqgPreview::new(setup.truth::<N>(), settings))
 }
 
 pub(super) fn lqg_identified<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let servo_s = setup.known.period.servo_s;
-    let settings = lqg_preview::Settings { price_s2: values.number("price") * servo_s * servo_s, learns: true };
+    let settings = lqg_preview::Settings {
+        price_s2: values.number("price") * servo_s * servo_s,
+        bounds: offset_bounds(&setup.known),
+        learns: true,
+    };
     match setup.axes::<N>() {
         Some(identified) => Box::new(LqgPreview::new(identified.axes, settings)),
         None => Box::new(OpenLoop),
@@ -279,6 +287,12 @@ pub fn correction_limits<const N: usize>(known: &Known) -> horizon::CorrectionLi
         deviation_mm: PLANNED_DEVIATION * known.limits.max_deviation_mm,
         drive_mm_s2: std::array::from_fn(|i| known.axis(i).drive_mm_s2()),
     }
+}
+
+/// What the safety layer holds an offset to.
+fn offset_bounds(known: &Known) -> lqg_preview::OffsetBounds {
+    let limits = known.limits;
+    lqg_preview::OffsetBounds { largest_mm: limits.max_deviation_mm, fastest_mm_s: limits.rapid_mm_s }
 }
 
 /// Settings of the controllers that invert the paper's identifier.

@@ -2,8 +2,9 @@
 
 use crate::trust::Trust;
 use feedwright_control::contour_error::locate;
-use feedwright_control::controller::lqg_preview::{IDENTIFIED_PRICE, LqgPreview, Settings};
+use feedwright_control::controller::lqg_preview::{IDENTIFIED_PRICE, LqgPreview, OffsetBounds, Settings};
 use feedwright_control::model::IdentifiedAxes;
+use feedwright_control::safety::Bounds;
 use feedwright_control::vector::{norm, scale, smooth_step, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
@@ -28,7 +29,8 @@ pub struct Correction<const N: usize> {
 impl<const N: usize> Correction<N> {
     /// By identified axes, with a servo period of `servo_s`.
     pub fn new(identified: &IdentifiedAxes<N>, servo_s: f64) -> Self {
-        let settings = Settings { price_s2: IDENTIFIED_PRICE * servo_s * servo_s, learns: true };
+        let price_s2 = IDENTIFIED_PRICE * servo_s * servo_s;
+        let settings = Settings { price_s2, bounds: OffsetBounds::NONE, learns: true };
         let controller = LqgPreview::new(identified.axes, settings);
         Self {
             controller,
@@ -38,6 +40,12 @@ impl<const N: usize> Correction<N> {
             without_mm: 0.0,
             trust: Trust::new(identified),
         }
+    }
+
+    /// Holds the offset to these bounds.
+    pub fn hold_to(&mut self, bounds: &Bounds) {
+        let (largest_mm, fastest_mm_s) = (bounds.deviation_mm, bounds.speed_mm_s);
+        self.controller.hold_to(OffsetBounds { largest_mm, fastest_mm_s });
     }
 
     /// Whether it is not tried any more: its model is wrong.

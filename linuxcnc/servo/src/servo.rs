@@ -256,6 +256,9 @@ impl<const N: usize> Servo<N> {
             fade_mm_s2: if limits.correction_mm_s2 > 0.0 { limits.correction_mm_s2 } else { UNLIMITED_MM_S2 },
             ..Bounds::new(limits.deviation_mm, limits.speed_mm_s, 0.0)
         };
+        if let Ok(correction) = &mut self.correction {
+            correction.hold_to(&bounds);
+        }
         // The command that is pushed next is the newest; the preview looks a knot further than it is asked to.
         let schedule = Schedule { servo_periods: 1, preview: (delay - NEWER - 1) as u32 };
         self.tick = Tick::new(self.servo_s, schedule, bounds);

@@ -1,45 +1,96 @@
-//! The way back to a reference that is far off, no faster than the drive can brake.
+//! The way back to a reference that is far off, with no more than there is for it.
 //!
 //! ```text
-//! s = f(e)                                  the speed at which the regulator closes an error e of the position, rad/s
-//! f(e) = l e                                |e| <= b a / 2 l^2
-//! f(e) = sgn(e) (sqrt(2 b a |e|) - b a / 2 l)      beyond, with the same value and slope where they meet
+//! u_k = G_k x                        G_k by the price 4^k p, k = 0 to 11
+//! U_k = min(U, R 2^k sqrt(p))
+//! u   = u_k of the first k with |u_k| <= U_k, and no less than U_k-1
 //! ```
 //!
-//! with l = g_x / (1 + g_w) of the gains of the regulator: the torque of the speed loop is Kv times f(e) and the error of the speed, times 1 + g_w. a is
-//! the acceleration that the drive has left for it, b the part of it that is relied on. A linear regulator that comes from far with a drive at its
-//! torque limit asks for more speed than can be braked away, and overshoots as far as it came.
+//! x is by how much the axis is off the reference, u by how much less reference speed is asked for, beside what loads take. U is what there is for that:
+//! what torque is left, and the largest offset; R is how fast an offset may change, and sqrt(p) about the time in which a law of price p closes an error.
+//! A linear regulator that asks for more than there is acts later than it reckons with: it overshoots as far as it came, or swings for good. The law of
+//! a higher price asks for less, and closes more slowly; as the axis comes nearer, a lower one takes over. Near the reference it is the lowest.
+//!
+//! Of 180 random cuts with the lowest price of a hundredth of the servo period squared 14 are worse than open loop with one price, none in RMS with these.
 //!
 //! A reference that takes more torque than there is, for long, cannot be followed; the axis by itself rounds it off. Then the offset goes back to
 //! nothing, over [`TO_NOTHING_S`] of such demand, and comes back more slowly ([`Overtaxed`]). At a corner more is asked for only for a period or two.
 //!
-//! Source: Workman, Kosut and Franklin (1987), "Adaptive proximate time-optimal servomechanisms: continuous time case", Proc. American
-//! Control Conference.
+//! Source: Wredenhagen and Belanger (1994), "Piecewise-linear LQ control for systems with input constraints", Automatica 30(3); the bound by the rate,
+//! and the way from one law to the next, are our own.
 
+use super::linear::{self, STATES};
+use super::riccati::inner;
 use crate::vector::bounded;
 
-/// Part of the acceleration that is left that is relied on: the loops answer late.
+/// Part of the torque that is left that is relied on: the loops answer late.
 const RELIED_ON: f64 = 0.5;
 /// Part of the torque limit that counts as left where the reference takes more.
 const LEAST_LEFT: f64 = 0.1;
+/// Prices, and the ratio of the time of one to that of the one before.
+const PRICES: usize = 12;
+const RATIO: f64 = 2.0;
 
-/// Acceleration that is left beside what the reference takes, rad/s^2.
-pub(super) fn left_rad_s2(torque_limit_nm: f64, reference_nm: f64, inertia_kg_m2: f64) -> f64 {
+/// Torque that is relied on beside what the reference takes, N m.
+pub(super) fn left_nm(torque_limit_nm: f64, reference_nm: f64) -> f64 {
     let left_nm = torque_limit_nm - reference_nm.abs();
-    left_nm.max(LEAST_LEFT * torque_limit_nm) / inertia_kg_m2
+    RELIED_ON * left_nm.max(LEAST_LEFT * torque_limit_nm)
 }
 
-/// Speed at which an error of the position is to be closed, rad/s; `gain_1_s` is that of small errors.
-pub(super) fn closing_rad_s(error_rad: f64, gain_1_s: f64, left_rad_s2: f64) -> f64 {
-    let linear_rad_s = gain_1_s * error_rad;
-    let most_rad_s2 = RELIED_ON * left_rad_s2;
-    // The speed at which the two meet, twice b a / 2 l.
-    let meeting_rad_s = most_rad_s2 / (2.0 * gain_1_s);
-    if linear_rad_s.abs() > meeting_rad_s {
-        let braked_rad_s = libm::sqrt(2.0 * most_rad_s2 * error_rad.abs()) - meeting_rad_s;
-        libm::copysign(braked_rad_s, error_rad)
-    } else {
-        linear_rad_s
+/// What there is for an error, in reference speed of the axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Room {
+    /// U, rad/s.
+    pub(super) most_rad_s: f64,
+    /// R, rad/s^2.
+    pub(super) change_rad_s2: f64,
+}
+
+/// Gains of the regulator by price, from the lowest on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct PricedGains {
+    /// sqrt(p), s.
+    time_s: f64,
+    gains: [[f64; STATES]; PRICES],
+}
+
+impl PricedGains {
+    /// By the lowest price, s^2, of a regulator whose gains are known for any.
+    pub(super) fn new(lowest_s2: f64, gains: impl Fn(f64) -> [f64; STATES]) -> Self {
+        let mut price_s2 = lowest_s2 / (RATIO * RATIO);
+        let gains = core::array::from_fn(|_| {
+            price_s2 *= RATIO * RATIO;
+            gains(price_s2)
+        });
+        Self { time_s: libm::sqrt(lowest_s2), gains }
+    }
+
+    /// Near the reference.
+    pub(super) fn near(&self) -> [f64; STATES] {
+        let [near, ..] = self.gains;
+        near
+    }
+
+    /// By how much less reference speed is asked for where the axis is so far off, rad/s.
+    pub(super) fn asked_rad_s(&self, off: &[f64; STATES], room: Room) -> f64 {
+        let [error, loads] = linear::error_and_loads(off);
+        inner(&self.near(), &loads) + self.closing_rad_s(&error, room)
+    }
+
+    /// u.
+    fn closing_rad_s(&self, error: &[f64; STATES], Room { most_rad_s, change_rad_s2 }: Room) -> f64 {
+        let (mut time_s, mut least_rad_s, mut closing_rad_s) = (self.time_s, 0.0, 0.0);
+        for gains in &self.gains {
+            let asked_rad_s = inner(gains, error);
+            let bound_rad_s = most_rad_s.min(change_rad_s2 * time_s);
+            let size_rad_s = asked_rad_s.abs().max(least_rad_s).min(bound_rad_s);
+            closing_rad_s = libm::copysign(size_rad_s, asked_rad_s);
+            if asked_rad_s.abs() <= bound_rad_s {
+                break;
+            }
+            (time_s, least_rad_s) = (RATIO * time_s, bound_rad_s);
+        }
+        closing_rad_s
     }
 }
 
@@ -73,40 +124,84 @@ impl Overtaxed {
 mod tests {
     use super::*;
 
-    #[test]
-    fn value_and_slope_are_continuous_where_the_two_meet() {
-        let (gain, left) = (200.0, 3000.0);
-        let meeting_rad = RELIED_ON * left / (2.0 * gain * gain);
-        for sign in [-1.0, 1.0] {
-            let at = |parts: f64| closing_rad_s(sign * parts * meeting_rad, gain, left);
-            assert!((at(1.0 - 1e-9) - at(1.0 + 1e-9)).abs() < 1e-6);
-            let slopes = [0.999, 1.0].map(|parts| (at(parts + 0.001) - at(parts)) / (0.001 * meeting_rad * sign));
-            assert!(slopes.iter().all(|slope| (slope - gain).abs() < 1e-3 * gain), "{slopes:?}");
-        }
+    /// Of a double integrator that is closed in the time of the price, critically damped.
+    fn of_double_integrator(price_s2: f64) -> [f64; STATES] {
+        let time_s = libm::sqrt(price_s2);
+        core::array::from_fn(|state| match state {
+            0 => 1.0 / (time_s * time_s),
+            1 => 2.0 / time_s,
+            _ => 0.0,
+        })
+    }
+
+    fn off(error_rad: f64, error_rad_s: f64) -> [f64; STATES] {
+        core::array::from_fn(|state| match state {
+            0 => error_rad,
+            1 => error_rad_s,
+            _ => 0.0,
+        })
     }
 
     #[test]
-    fn a_drive_at_its_limit_comes_to_rest_without_overshoot() {
-        // A double integrator whose acceleration is bounded, under f and a loop of the speed ten times as fast as the gain.
-        let (gain, left, step_s) = (100.0, 3000.0, 1e-5);
-        let overshoot = |closing: &dyn Fn(f64) -> f64| {
-            let (mut error_rad, mut speed_rad_s, mut least_rad) = (5.0_f64, 0.0_f64, 0.0_f64);
-            for _ in 0..100_000 {
-                let wanted_rad_s2 = 10.0 * gain * (-closing(error_rad) - speed_rad_s);
-                speed_rad_s += step_s * wanted_rad_s2.max(-left).min(left);
-                error_rad += step_s * speed_rad_s;
-                least_rad = least_rad.min(error_rad);
-            }
-            assert!(error_rad.abs() < 1e-3, "{error_rad}");
-            -least_rad
-        };
-        assert!(overshoot(&|error_rad| closing_rad_s(error_rad, gain, left)) < 1e-6);
-        assert!(overshoot(&|error_rad| gain * error_rad) > 0.5, "the linear one is no example");
+    fn what_is_asked_for_is_continuous_and_never_more_than_there_is() {
+        let gains = PricedGains::new(1e-6, of_double_integrator);
+        let room = Room { most_rad_s: 100.0, change_rad_s2: 5000.0 };
+        let asked = |error_rad: f64| gains.asked_rad_s(&off(error_rad, 0.0), room);
+        assert_eq!(asked(1e-6), 1.0, "near the reference the lowest price counts in full");
+        let mut before_rad_s = 0.0;
+        for n in 1..20_000 {
+            let asked_rad_s = asked(5e-6 * f64::from(n));
+            assert!(asked_rad_s >= before_rad_s && asked_rad_s <= room.most_rad_s, "{n}: {asked_rad_s}");
+            assert!(asked_rad_s - before_rad_s < 5.1, "{n}: {before_rad_s} {asked_rad_s}");
+            before_rad_s = asked_rad_s;
+        }
+        assert_eq!(asked(-1e3), -room.most_rad_s);
+        assert!(asked(f64::NAN).is_nan() || asked(f64::NAN).abs() <= room.most_rad_s);
+    }
+
+    #[test]
+    fn loads_are_taken_up_however_little_there_is_for_the_error() {
+        let gains = PricedGains::new(1e-6, |_| [1.0; STATES]);
+        let mut off = [0.0; STATES];
+        (off[0], off[7]) = (1.0, 30.0);
+        assert_eq!(gains.asked_rad_s(&off, Room { most_rad_s: 0.1, change_rad_s2: f64::INFINITY }), 30.1);
+    }
+
+    /// Largest overshoot and what is left after a second, rad, of a double integrator under what is asked for, whose acceleration is bounded and
+    /// changes at a bounded rate, by periods of 1 ms.
+    fn overshoot_and_rest_rad(asked: &dyn Fn(f64, f64) -> f64, [most, change]: [f64; 2], from_rad: f64) -> [f64; 2] {
+        let (mut error_rad, mut speed_rad_s, mut acts, mut overshoot_rad) = (from_rad, 0.0_f64, 0.0_f64, 0.0_f64);
+        for _ in 0..1000 {
+            let step = (-asked(error_rad, speed_rad_s) - acts).max(-change * 0.001).min(change * 0.001);
+            acts = (acts + step).max(-most).min(most);
+            error_rad += 0.001 * speed_rad_s + 0.5e-6 * acts;
+            speed_rad_s += 0.001 * acts;
+            overshoot_rad = overshoot_rad.max(-error_rad);
+        }
+        [overshoot_rad, error_rad.abs()]
+    }
+
+    #[test]
+    fn within_bounds_that_a_linear_law_swings_at_the_way_back_is_short_and_still() {
+        let gains = PricedGains::new(4e-6, of_double_integrator);
+        let bounds = [100.0, 5000.0];
+        let room = Room { most_rad_s: 100.0, change_rad_s2: 5000.0 };
+        for from_rad in [1e-4, 1e-3, 0.01, 0.1, 1.0] {
+            let priced = |x: f64, w: f64| gains.asked_rad_s(&off(x, w), room);
+            let [overshoot_rad, rest_rad] = overshoot_and_rest_rad(&priced, bounds, from_rad);
+            assert!(
+                overshoot_rad < 0.2 * from_rad && rest_rad < 1e-3 * from_rad,
+                "{from_rad}: {overshoot_rad} {rest_rad}"
+            );
+        }
+        let linear = |x: f64, w: f64| inner(&gains.near(), &off(x, w));
+        let [overshoot_rad, _] = overshoot_and_rest_rad(&linear, bounds, 0.01);
+        assert!(overshoot_rad > 0.01, "the linear one is no example: {overshoot_rad}");
     }
 
     #[test]
     fn what_the_reference_takes_is_not_left() {
-        assert_eq!(left_rad_s2(10.0, -4.0, 0.01), 600.0);
-        assert_eq!(left_rad_s2(10.0, 12.0, 0.01), 100.0);
+        assert_eq!(left_nm(10.0, -4.0), 3.0);
+        assert_eq!(left_nm(10.0, 12.0), 0.5);
     }
 }

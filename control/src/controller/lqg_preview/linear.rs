@@ -163,6 +163,12 @@ pub(super) fn measured_rad2(statistics: &AxisStatistics) -> f64 {
     (statistics.encoder_noise_rad * statistics.encoder_noise_rad + step_rad2).max(LEAST_NOISE_RAD * LEAST_NOISE_RAD)
 }
 
+/// Of states, those of the axis, and the loads.
+pub(super) fn error_and_loads(states: &[f64; STATES]) -> [[f64; STATES]; 2] {
+    let [x, w, i, y, n, p, q, d, xt, wt] = *states;
+    [[x, w, i, y, 0.0, 0.0, 0.0, 0.0, xt, wt], [0.0, 0.0, 0.0, 0.0, n, p, q, d, 0.0, 0.0]]
+}
+
 fn unit(j: usize) -> [f64; STATES] {
     core::array::from_fn(|i| if i == j { 1.0 } else { 0.0 })
 }
