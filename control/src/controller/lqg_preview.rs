@@ -20,7 +20,7 @@
 //! | `lqg_preview/riccati.rs` | the gains |
 //! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
 //! | `lqg_preview/screw.rs` | where the motor has to be behind a ball screw that gives |
-//! | `lqg_preview/approach.rs` | the way back from where a drive at its torque limit has left the tool |
+//! | `lqg_preview/approach.rs` | the way back of a tool that is far off, with no more than there is for it |
 //! | `lqg_preview/outliers.rs` | measurements that cannot be true |
 //! | `lqg_preview/whiteness.rs` | how much of what is measured the filter believes |
 //! | `lqg_preview/estimate.rs` | the filter |
