@@ -6,7 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 use feedwright::compare::Workpiece;
-use feedwright::controllers::{BASELINE, BEST, Choices, Entry, HORIZON, Make, Setup};
+use feedwright::controllers::{BASELINE, BEST, Choices, Entry, Make, Setup};
 use feedwright::machine::Machine;
 use feedwright::path::Step;
 use feedwright::plant::Plant;
@@ -34,8 +34,8 @@ const ROUNDING: f64 = 1e-6;
 const LAG_S: f64 = 0.022;
 /// Servo periods of 1 ms from the beginning of a fault on that are watched.
 const WATCHED: usize = 1400;
-/// Times of a fault on a contour, at most about, of each controller: the one that plans ahead, and the one that acts in every servo period.
-const TIMES: [(&str, usize); 2] = [(HORIZON, 40), (BEST, 10)];
+/// Times of a fault on a contour, at most about, of each controller: the default, and the one that acts in every servo period.
+const TIMES: [(&str, usize); 2] = [(BEST, 40), ("lqg-identified", 10)];
 /// A leap of the measured position, mm, in X.
 const LEAP_MM: f64 = 1.0;
 
@@ -317,7 +317,7 @@ fn changing(what: &str, from: &Machine, to: &Machine, most: f64) -> Vec<String> 
     let periods = (path.read_to_end_s() / servo_s) as usize;
     let lines: Vec<u32> = (0..periods).map(|n| path.at(n as f64 * servo_s).line).collect();
     let second_lap = periods / LAPS..2 * periods / LAPS;
-    let (mut best, mut base) = (controller(from, HORIZON), controller(from, BASELINE));
+    let (mut best, mut base) = (controller(from, BEST), controller(from, BASELINE));
     let mut failures = Vec::new();
     let changes: Vec<usize> = second_lap.filter(|n| lines[*n] != lines[n - 1]).collect();
     assert!(changes.len() >= 4, "{changes:?}");
