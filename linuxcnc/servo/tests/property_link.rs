@@ -169,7 +169,8 @@ fn the_delay_comes_and_goes_at_rest_alone_and_nothing_leaps() {
 
 #[test]
 fn what_is_not_a_number_goes_no_further() {
-    for from in [0, 500, 900] {
+    // Behind the last there is time for two ways back: one that has just begun may do harm once.
+    for from in [0, 500, 700] {
         let spoilt = [f64::NAN, f64::INFINITY];
         for which in 0..4 {
             let periods = turn(Ok(machine()), &LIMITS, |n, inputs| {
