@@ -86,7 +86,7 @@ pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
         };
     }
     let bounds = lqg_preview::OffsetBounds { largest_mm: 0.5, fastest_mm_s: 400.0 };
-    let settings = lqg_preview::Settings { price_s2: lqg_preview::IDENTIFIED_PRICE * 1e-6, bounds, learns: true };
+    let settings = lqg_preview::Settings::identified(lqg_preview::IDENTIFIED_PRICE, 1e-3, bounds);
     LqgPreview::new([axis; N], settings)
 }
 

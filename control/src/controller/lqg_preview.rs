@@ -21,6 +21,7 @@
 //! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
 //! | `lqg_preview/screw.rs` | where the motor has to be behind a ball screw that gives |
 //! | `lqg_preview/approach.rs` | the way back of a tool that is far off, with no more than there is for it |
+//! | `lqg_preview/feasible.rs` | whether there is torque for the reference ahead |
 //! | `lqg_preview/outliers.rs` | measurements that cannot be true |
 //! | `lqg_preview/whiteness.rs` | how much of what is measured the filter believes |
 //! | `lqg_preview/estimate.rs` | the filter |
@@ -35,6 +36,7 @@ mod riccati;
 mod linear;
 mod screw;
 mod approach;
+mod feasible;
 mod outliers;
 mod whiteness;
 mod estimate;
@@ -50,14 +52,18 @@ use crate::axis::transmission::TransmissionParameters;
 use crate::axis::{AxisState, Parameters};
 use crate::vector::{add_scaled, norm, scale, sub};
 use crate::window::Window;
-use approach::{Overtaxed, PricedGains, Room};
+use approach::{PricedGains, Room};
 use estimate::{AxisModel, Estimate, KEPT_PERIODS, Learnt, NOTHING_SENT, Sent};
+use feasible::Feasibility;
 use linear::LinearAxis;
 use screw::{ScrewTwist, TwistCourse};
 use validity::{LawTrial, Validity};
 
 /// Servo periods beyond the command that the inverse looks at.
 const DIFFERENCES: f64 = 3.0;
+
+/// An offset that differs by less from what was asked for is that, mm.
+const FOLLOWED_MM: f64 = 1e-4;
 
 /// What an offset is held to, whatever is asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,10 +90,9 @@ pub struct Settings {
     pub learns: bool,
 }
 
-/// Price that serves by an identified model, in squares of the servo period. 0.01 leaves 0.12 um in place of 0.18 on workshop and none of 180 random cuts worse than
-/// open loop, but comes back roughly behind a lost position, follows the law of another machine further (5 times open loop on one of 28 cuts), and is lost behind
-/// rapids at the torque limit.
-pub const IDENTIFIED_PRICE: f64 = 1.0;
+/// Price that serves by an identified model, in squares of the servo period. With 1 there is half as much again left on workshop; as long as the law is
+/// not trusted, it is 256 times as high.
+pub const IDENTIFIED_PRICE: f64 = 0.01;
 /// By a law that may be wrong a screw that gives is regulated in no less than so many radians of its resonance: backlash is not in the law of the
 /// regulator. On soft 2 leaves 0.6 of what 0 leaves on star, circle and square, and 0.1 on pocket.
 const SCREW_RAD: f64 = 2.0;
@@ -95,6 +100,11 @@ const SCREW_RAD: f64 = 2.0;
 impl Settings {
     /// A tenth of the travel of a servo period, squared.
     pub const DEFAULT: Self = Self { price_s2: 1e-8, bounds: OffsetBounds::NONE, learns: false };
+
+    /// For an identified model: a price in squares of a servo period of `servo_s`.
+    pub fn identified(price: f64, servo_s: f64, bounds: OffsetBounds) -> Self {
+        Self { price_s2: price * servo_s * servo_s, bounds, learns: true }
+    }
 
     /// Near the reference, for an axis with this screw.
     fn lowest_price_s2(&self, screw: &TransmissionParameters) -> f64 {
@@ -114,10 +124,11 @@ pub struct LqgPreview<const N: usize> {
     /// By how much the tool is to be behind the plan, s.
     lag_s: f64,
     preview: u32,
-    /// Whether the law may be wrong, and what noise and loads make a free run miss, mm^2.
-    doubts: bool,
-    unforeseen_mm2: f64,
-    validity: Validity<N>,
+    /// Where the law may be wrong.
+    validity: Option<Validity<N>>,
+    feasibility: Feasibility,
+    /// The offset that was asked for last, mm.
+    asked_mm: [f64; N],
 }
 
 impl<const N: usize> LqgPreview<N> {
@@ -133,9 +144,9 @@ impl<const N: usize> LqgPreview<N> {
         Self {
             lag_s,
             preview: longest + DIFFERENCES as u32,
-            doubts: settings.learns,
-            unforeseen_mm2: axes.iter().map(AxisLqg::unforeseen_mm2).sum(),
-            validity: Validity::UNKNOWN,
+            validity: settings.learns.then(|| Validity::unknown(axes.iter().map(AxisLqg::unforeseen_mm2).sum())),
+            feasibility: Feasibility::FOLLOWED,
+            asked_mm: [0.0; N],
             axes,
         }
     }
@@ -152,17 +163,21 @@ impl<const N: usize> LqgPreview<N> {
             .map(|axis| LqgGains { filter: axis.model.gains_as_given(), regulator: axis.regulator.near() })
     }
 
+    /// Takes in what comes to be known of the reference.
+    fn look_ahead(&mut self, window: &Window<'_, N>) {
+        let servo_s = window.servo_s();
+        let end_s = f64::from(self.preview) * servo_s;
+        let beyond = self.axes.iter().enumerate().any(|(i, axis)| {
+            let at_mm = |before_s: f64| window.at(end_s - before_s).position_mm.get(i).copied().unwrap_or(0.0);
+            feasible::is_beyond(&axis.model.law, at_mm)
+        });
+        self.feasibility.take_in(beyond, end_s + self.lag_s, servo_s);
+    }
+
     /// Speed of the machine on the path, so far behind it, mm/s.
     fn lagging_mm_s(&self, window: &Window<'_, N>) -> [f64; N] {
         let behind_mm = [-self.lag_s, -self.lag_s - window.servo_s()].map(|after_s| window.at(after_s).position_mm);
         scale(1.0 / window.servo_s(), sub(behind_mm[0], behind_mm[1]))
-    }
-
-    /// Compares what was measured with the law.
-    fn doubt(&mut self, window: &Window<'_, N>, measured: &Measured<N>) {
-        let missed_mm = self.axes.each_ref().map(AxisLqg::law_missed_mm);
-        let following_mm = sub(add_scaled(window.now().position_mm, 1.0, window.offset_mm), measured.position_mm);
-        self.validity.take_in(missed_mm, following_mm, measured.position_mm, window.feed_period_s);
     }
 }
 
@@ -186,7 +201,8 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
 
     fn reset(&mut self) {
         self.axes.iter_mut().for_each(|axis| axis.state = None);
-        self.validity = Validity::UNKNOWN;
+        self.validity.iter_mut().for_each(Validity::forget);
+        self.feasibility = Feasibility::FOLLOWED;
     }
 
     /// Without a position it begins anew: what the tool does meanwhile nobody knows.
@@ -202,14 +218,17 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         for (axis, ((offset_mm, position_mm), speed_mm_s)) in self.axes.iter_mut().zip(measured_axes) {
             axis.observe(offset_mm, position_mm, speed_mm_s);
         }
-        if let Some(measured) = measured.filter(|_| self.doubts) {
-            self.doubt(window, measured);
+        let missed_mm = self.axes.each_ref().map(AxisLqg::law_missed_mm);
+        let following_mm = sub(add_scaled(window.now().position_mm, 1.0, window.offset_mm), position_mm);
+        let followed = norm(sub(window.offset_mm, self.asked_mm)) <= FOLLOWED_MM;
+        if let Some(validity) = &mut self.validity {
+            validity.take_in(missed_mm, following_mm, position_mm, followed, window.feed_period_s);
         }
     }
 
     /// Infinite where the law is wrong.
     fn prediction_error_mm(&self) -> f64 {
-        if self.doubts && self.validity.is_wrong(self.unforeseen_mm2) {
+        if self.validity.as_ref().is_some_and(Validity::is_wrong) {
             return f64::INFINITY;
         }
         norm(self.axes.each_ref().map(|axis| axis.moved_and_missed_mm()[1]))
@@ -222,14 +241,17 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let here_mm = window.now().position_mm;
         let (mut offset_mm, lag_s) = ([0.0; N], self.lag_s);
+        let [taken_up, trusted] = self.validity.as_ref().map_or([1.0; 2], |v| [v.taken_up(), v.trusted()]);
+        self.look_ahead(window);
+        let open = self.feasibility.open();
         for (i, (axis, offset_mm)) in self.axes.iter_mut().zip(&mut offset_mm).enumerate() {
             // There is an i-th axis; the compiler is not to leave a panic for where there is none.
             let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
             let at_mm = |after_s: f64| of_axis(window.at(after_s - lag_s).position_mm);
-            *offset_mm = axis.offset_mm(of_axis(here_mm), at_mm);
+            *offset_mm = axis.offset_mm(of_axis(here_mm), trusted, open, at_mm);
         }
-        let part = if self.doubts { self.validity.taken_up(self.unforeseen_mm2) } else { 1.0 };
-        Command::straight(1.0, scale(part, offset_mm))
+        self.asked_mm = offset_mm;
+        Command::straight(1.0, scale(taken_up, offset_mm))
     }
 }
 
@@ -256,7 +278,6 @@ struct Running {
     /// What was measured beyond what was expected, rad.
     missed_rad: f64,
     learnt: Learnt,
-    overtaxed: Overtaxed,
     trial: LawTrial,
 }
 
@@ -270,7 +291,6 @@ impl Running {
             path_mm: None,
             missed_rad: 0.0,
             learnt: Learnt::NOTHING,
-            overtaxed: Overtaxed::NOT,
             trial: LawTrial::from(&moving.estimate),
         }
     }
@@ -295,6 +315,14 @@ impl Tracked {
             position_loop: (AxisState::default(), DriveState::AT_REST),
             measured_rad,
         }
+    }
+
+    /// The reference speed that the position loop makes of a command; torque beside it counts as that.
+    fn asked_rad_s(&self, model: &AxisModel, command_rad: f64) -> f64 {
+        let (mut axis, mut drive) = self.position_loop;
+        let DriveReference { speed_rad_s, torque_nm } =
+            model.drive.position_loop(&model.law, command_rad, self.measured_rad, &mut axis, &mut drive);
+        speed_rad_s + torque_nm / model.law.parameters.kv_nm_s_per_rad
     }
 
     /// What the position loop makes of a command goes to the drive.
@@ -382,8 +410,9 @@ impl AxisLqg {
         self.model.unforeseen_rad2(validity::run_periods(self.model.law.periods.servo_s)) / (rad_per_mm * rad_per_mm)
     }
 
-    /// The offset of the command in this servo period; `at_mm` is the reference so many seconds from its start.
-    fn offset_mm(&mut self, here_mm: f64, at_mm: impl Fn(f64) -> f64) -> f64 {
+    /// The offset of the command in this servo period, by a law that is `trusted` so far; `at_mm` is the reference so many seconds from its start, in whose
+    /// place the `open` loop is followed in part.
+    fn offset_mm(&mut self, here_mm: f64, trusted: f64, open: f64, at_mm: impl Fn(f64) -> f64) -> f64 {
         let Some(running) = &mut self.state else { return 0.0 };
         running.path_mm = Some(here_mm);
         let ahead = self.model.ahead(&running.real.estimate, &running.real.sent);
@@ -394,20 +423,37 @@ impl AxisLqg {
         let load_mm_s = self.cogging_mm_s(&at_mm) - twist.spared_mm_s();
         let motor_mm = |after_s: f64| at_mm(after_s) + twist.mm(after_s);
         let reference_mm_s = self.inverse.reference_mm_s(motor_mm, inner, load_mm_s);
-        let reference_rad_s = reference_mm_s * rad_per_mm;
-        let off = self.off(&ahead, &at_mm, &motor_mm);
-        let Parameters { kv_nm_s_per_rad, torque_limit_nm, .. } = self.model.law.parameters;
+        let mut reference_rad_s = reference_mm_s * rad_per_mm;
+        let mut off = self.off(&ahead, &at_mm, &motor_mm);
+        if open > 0.0 {
+            let (open_rad_s, open_off) = self.beside_open(here_mm, &ahead);
+            reference_rad_s += open * (open_rad_s - reference_rad_s);
+            off.iter_mut().zip(open_off).for_each(|(off, of_open)| *off += open * (of_open - *off));
+        }
+        let Parameters { kv_nm_s_per_rad, .. } = self.model.law.parameters;
         let [_, off_rad_s, ..] = off;
         let reference_nm = kv_nm_s_per_rad * (reference_rad_s - (ahead.masses.motor.speed_rad_s - off_rad_s));
-        let asked_rad_s = self.asked_rad_s(reference_nm, &off);
-        let offset_mm = self.solved_mm(here_mm, reference_rad_s - asked_rad_s);
-        let Some(running) = &mut self.state else { return 0.0 };
-        running.overtaxed.take_in(reference_nm.abs() > torque_limit_nm, self.model.law.periods.servo_s);
-        running.overtaxed.left() * offset_mm
+        let asked_rad_s = self.asked_rad_s(reference_nm, &off, trusted);
+        self.solved_mm(here_mm, reference_rad_s - asked_rad_s)
+    }
+
+    /// The reference speed of the axis by itself, without any offset, and by how much the axis is off it.
+    fn beside_open(&self, here_mm: f64, ahead: &Estimate) -> (f64, [f64; linear::STATES]) {
+        let Some(Running { open, .. }) = &self.state else { return (0.0, [0.0; linear::STATES]) };
+        let beside = self.model.ahead(&open.estimate, &open.sent);
+        let Parameters { kv_nm_s_per_rad, rad_per_mm, .. } = self.model.law.parameters;
+        let integral_rad_s = (beside.drive.integral_nm() - ahead.drive.integral_nm()) / kv_nm_s_per_rad;
+        let reference_rad_s = open.asked_rad_s(&self.model, here_mm * rad_per_mm) + integral_rad_s;
+        let [real, open] = [ahead, &beside].map(|estimate| estimate.masses);
+        let x = real.motor.angle_rad - open.motor.angle_rad;
+        let w = real.motor.speed_rad_s - open.motor.speed_rad_s;
+        let xt = real.table.angle_rad - open.table.angle_rad;
+        let wt = real.table.speed_rad_s - open.table.speed_rad_s;
+        (reference_rad_s, [x, w, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, xt, wt])
     }
 
     /// By how much the regulator asks for less speed than the reference has, which takes this torque.
-    fn asked_rad_s(&self, reference_nm: f64, off: &[f64; linear::STATES]) -> f64 {
+    fn asked_rad_s(&self, reference_nm: f64, off: &[f64; linear::STATES], trusted: f64) -> f64 {
         let Parameters { torque_limit_nm, kp_1_s, kv_nm_s_per_rad, rad_per_mm, .. } = self.model.law.parameters;
         let by_torque_rad_s = approach::left_nm(torque_limit_nm, reference_nm) / kv_nm_s_per_rad;
         let of_offset = kp_1_s * rad_per_mm;
@@ -415,7 +461,7 @@ impl AxisLqg {
             most_rad_s: by_torque_rad_s.min(of_offset * self.bounds.largest_mm),
             change_rad_s2: of_offset * self.bounds.fastest_mm_s,
         };
-        self.regulator.asked_rad_s(off, room)
+        self.regulator.asked_rad_s(off, room, trusted)
     }
 
     /// By how much the axis is off the reference when what is sent now begins to act, and what acts on it.
@@ -454,17 +500,11 @@ impl AxisLqg {
         -mean_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm)
     }
 
-    /// The offset with which the position loop asks for a reference speed; torque beside it counts as that.
+    /// The offset with which the position loop asks for a reference speed.
     fn solved_mm(&self, here_mm: f64, wanted_rad_s: f64) -> f64 {
-        let (law, parameters) = (&self.model.law, self.model.law.parameters);
         let Some(running) = &self.state else { return 0.0 };
-        let asked = |command_mm: f64| {
-            let (mut axis, mut drive) = running.real.position_loop;
-            let command_rad = command_mm * parameters.rad_per_mm;
-            let DriveReference { speed_rad_s, torque_nm } =
-                self.model.drive.position_loop(law, command_rad, running.real.measured_rad, &mut axis, &mut drive);
-            speed_rad_s + torque_nm / parameters.kv_nm_s_per_rad
-        };
+        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let asked = |command_mm: f64| running.real.asked_rad_s(&self.model, command_mm * rad_per_mm);
         // It is linear.
         let (here, beyond) = (asked(here_mm), asked(here_mm + 1.0));
         (wanted_rad_s - here) / (beyond - here)

@@ -223,12 +223,8 @@ pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values
 }
 
 pub(super) fn lqg_identified<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let servo_s = setup.known.period.servo_s;
-    let settings = lqg_preview::Settings {
-        price_s2: values.number("price") * servo_s * servo_s,
-        bounds: offset_bounds(&setup.known),
-        learns: true,
-    };
+    let bounds = offset_bounds(&setup.known);
+    let settings = lqg_preview::Settings::identified(values.number("price"), setup.known.period.servo_s, bounds);
     match setup.axes::<N>() {
         Some(identified) => Box::new(LqgPreview::new(identified.axes, settings)),
         None => Box::new(OpenLoop),

@@ -57,8 +57,7 @@ pub(super) const IDENTIFIED_PRICE: Parameter = number(
     lqg_preview::IDENTIFIED_PRICE,
     [1e-6, 1e4],
     None,
-    "price of the reference speed beside the error, in squares of the servo period, near the reference: low rings where the model misses, high \
-     leaves the error as it is",
+    "price of the reference speed beside the error, in squares of the servo period, near the reference: high leaves the error as it is",
 );
 // Of those that plan over a horizon.
 pub(super) const RATE_WEIGHT: Parameter = number(

@@ -29,8 +29,7 @@ pub struct Correction<const N: usize> {
 impl<const N: usize> Correction<N> {
     /// By identified axes, with a servo period of `servo_s`.
     pub fn new(identified: &IdentifiedAxes<N>, servo_s: f64) -> Self {
-        let price_s2 = IDENTIFIED_PRICE * servo_s * servo_s;
-        let settings = Settings { price_s2, bounds: OffsetBounds::NONE, learns: true };
+        let settings = Settings::identified(IDENTIFIED_PRICE, servo_s, OffsetBounds::NONE);
         let controller = LqgPreview::new(identified.axes, settings);
         Self {
             controller,
