@@ -146,7 +146,9 @@ fn a_parameter_that_cannot_be_set() {
     let folder = Folder::new();
     let refuses = |set: &str, says: &[&str]| {
         let before = folder.content();
-        folder.run(&["run", "circle.ngc", "--set", set]).refused(&[&["--set", set][..], says].concat());
+        folder
+            .run(&["run", "circle.ngc", "--controller", "receding-horizon", "--set", set])
+            .refused(&[&["--set", set][..], says].concat());
         assert_eq!(before, folder.content());
     };
     refuses("knots", &["the value is missing", "--set knots=VALUE"]);
@@ -155,8 +157,10 @@ fn a_parameter_that_cannot_be_set() {
     refuses("rho=0.01", &["receding-horizon has no parameter 'rho'", "feedwright controllers receding-horizon"]);
     refuses("two-dimensional.rho=0.01", &["two-dimensional does not take part", "receding-horizon, open-loop"]);
     refuses("two-dimensionl.rho=1", &["no controller is called 'two-dimensionl'", "did you mean 'two-dimensional'?"]);
-    let twice = ["run", "circle.ngc", "--set", "knots=10", "--set", "receding-horizon.knots=12"];
-    folder.run(&twice).refused(&["knots of receding-horizon is set twice"]);
+    let twice = ["--set", "knots=10", "--set", "receding-horizon.knots=12"];
+    folder
+        .run(&[&["run", "circle.ngc", "--controller", "receding-horizon"], &twice[..]].concat())
+        .refused(&["knots of receding-horizon is set twice"]);
     folder.run(&["compare", "--set", "knots=10"]).refused(&["whose parameter it is is missing", "CONTROLLER.knots=10"]);
 }
 

@@ -38,7 +38,17 @@ fn the_same_identification_writes_the_same_bytes() {
     for name in ["1", "2"] {
         let mut command = folder.command();
         command.env("SOURCE_DATE_EPOCH", "1700000000").env("LC_ALL", "de_DE.UTF-8");
-        command.args(["identify", "--axes", "3", "--machine", "heavy", "--out", &format!("{name}.model.toml")]);
+        command.args([
+            "identify",
+            "--controller",
+            "receding-horizon",
+            "--axes",
+            "3",
+            "--machine",
+            "heavy",
+            "--out",
+            &format!("{name}.model.toml"),
+        ]);
         assert!(command.output().unwrap().status.success());
     }
     let text = folder.text("1.model.toml");
@@ -54,7 +64,7 @@ fn a_model_that_does_not_suit_is_refused_with_what_does() {
     let folder = Folder::new();
     folder.file("helix.ngc", "G21 G17 G90\nG0 X0 Y0\nG2 X0 Y0 Z-1 I2 J0 F1200\nM2\n");
     folder.file("half.toml", include_str!("../../machines/tnv40.toml").replace("servo_s = 0.001", "servo_s = 0.0005"));
-    folder.run(&["identify", "--out", "m.model.toml"]).succeeded();
+    folder.run(&["identify", "--controller", "receding-horizon", "--out", "m.model.toml"]).succeeded();
     let before = folder.content();
     let refused = |arguments: &[&str], texts: &[&str]| {
         folder.run(&[&["run"], arguments, &["--model", "m.model.toml"]].concat()).refused(texts);
@@ -72,13 +82,16 @@ fn a_model_that_does_not_suit_is_refused_with_what_does() {
         &["circle.ngc", "--controller", "lqg-identified"],
         &["the model holds a servo identifier, and lqg-identified needs an axes identifier"],
     );
-    refused(&["helix.ngc"], &["the model is for 2 axes, and 3 are controlled", "--axes 3"]);
     refused(
-        &["circle.ngc", "--machine", "half.toml"],
+        &["helix.ngc", "--controller", "receding-horizon"],
+        &["the model is for 2 axes, and 3 are controlled", "--axes 3"],
+    );
+    refused(
+        &["circle.ngc", "--controller", "receding-horizon", "--machine", "half.toml"],
         &["a servo period of 0.001 s, and that of the machine is 0.0005 s"],
     );
     refused(
-        &["circle.ngc", "--set", "feed_period_s=0.005"],
+        &["circle.ngc", "--controller", "receding-horizon", "--set", "feed_period_s=0.005"],
         &["a feed period of 0.003 s", "--set feed_period_s=0.003"],
     );
 }

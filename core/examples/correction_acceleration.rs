@@ -4,7 +4,7 @@
 //! `correction_acceleration FILE.svg` cuts contours on `tnv40` with `correction_accel_mm_s2` at each value, and open loop.
 
 use feedwright::compare::Workpiece;
-use feedwright::controllers::{BASELINE, BEST, Choices, Entry, Make, Setup};
+use feedwright::controllers::{BASELINE, Choices, Entry, HORIZON, Make, Setup};
 use feedwright::machine::Machine;
 use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
@@ -31,7 +31,7 @@ fn main() -> Result<(), Failure> {
     for acceleration_mm_s2 in ACCELERATIONS_MM_S2 {
         let mut machine = machine.clone();
         machine.axes.iter_mut().for_each(|axis| axis.correction_accel_mm_s2 = Some(acceleration_mm_s2));
-        rows.push(row(&machine, &workpieces, BEST)?);
+        rows.push(row(&machine, &workpieces, HORIZON)?);
     }
     print_table(&open, &rows);
     std::fs::write(file, figure(&open, &rows).to_svg())?;

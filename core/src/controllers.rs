@@ -357,7 +357,9 @@ pub const CONTROLLERS: &[Entry] = &[
 ];
 
 /// The best there is.
-pub const BEST: &str = "receding-horizon";
+pub const BEST: &str = "lqg-identified";
+/// The best of those that need nothing but a recording, and adapt while cutting.
+pub const HORIZON: &str = "receding-horizon";
 /// What others are compared against.
 pub const BASELINE: &str = "open-loop";
 

@@ -2,7 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use feedwright::controllers::{BEST, Choices, Entry, Make, Setup};
+use feedwright::controllers::{Choices, Entry, HORIZON, Make, Setup};
 use feedwright::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright::machine::Machine;
 use feedwright::pipeline::{Run, pieces};
@@ -76,7 +76,8 @@ fn circle_behind(name: &str, length_mm: f64, machine: &Machine, seed: u64) -> f6
 
 #[test]
 fn nothing_drifts_on_a_straight_line_of_ten_minutes() {
-    let cases = [(BEST, "tnv40"), (BEST, "rough"), (BEST, "coarse"), (REGULATOR, "tnv40"), (REGULATOR, "coarse")];
+    let cases =
+        [(HORIZON, "tnv40"), (HORIZON, "rough"), (HORIZON, "coarse"), (REGULATOR, "tnv40"), (REGULATOR, "coarse")];
     cases.par_iter().for_each(|&(controller, name)| {
         let machine = Machine::load(name.as_ref()).unwrap();
         let behind_um = |length_mm: f64| circle_behind(controller, length_mm, &machine, 1);
@@ -95,7 +96,7 @@ fn nothing_drifts_on_a_straight_line_of_ten_minutes() {
 #[test]
 fn the_worst_of_ten_seeds_is_near_the_median() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
-    for controller in [BEST, REGULATOR] {
+    for controller in [HORIZON, REGULATOR] {
         let mut errors_um: Vec<f64> =
             (1..=10_u64).into_par_iter().map(|seed| circle_behind(controller, SHORT_LINE_MM, &machine, seed)).collect();
         errors_um.sort_by(f64::total_cmp);

@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 use feedwright::compare::Workpiece;
-use feedwright::controllers::{BASELINE, BEST, Choices, Entry, Make, Setup};
+use feedwright::controllers::{BASELINE, Choices, Entry, HORIZON, Make, Setup};
 use feedwright::machine::Machine;
 use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
@@ -36,7 +36,7 @@ fn no_acceleration_of_the_correction_makes_a_cut_worse_than_open_loop() {
         for acceleration_mm_s2 in ACCELERATIONS_MM_S2 {
             let mut machine = tnv40.clone();
             machine.axes.iter_mut().for_each(|axis| axis.correction_accel_mm_s2 = Some(acceleration_mm_s2));
-            let um = errors_um(&machine, workpiece, BEST);
+            let um = errors_um(&machine, workpiece, HORIZON);
             let worse = (0..2).any(|i| um[i] > open_um[i] + NO_WORSE_UM[i]);
             assert!(!worse, "{} at {acceleration_mm_s2} mm/s2: {um:?} um, open loop {open_um:?} um", workpiece.name);
         }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Choices, Entry, Make, Setting, Setup};
+use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Choices, Entry, HORIZON, Make, Setting, Setup};
 use feedwright::gcode::{Dialect, Increment, Settings};
 use feedwright::job::{Job, JobError, Outputs};
 use feedwright::machine::{BUILT_IN, Machine};
@@ -71,7 +71,7 @@ fn what_is_no_job_is_refused_with_the_reason() {
     text["controller"] = "receding".into();
     assert!(refused(&text).contains("no controller is called 'receding'"), "{}", refused(&text));
     text["controller"] = BEST.into();
-    text["choices"]["set"] = serde_json::json!([{ "controller": BEST, "name": "knots", "value": 21.0 }]);
+    text["choices"]["set"] = serde_json::json!([{ "controller": HORIZON, "name": "knots", "value": 21.0 }]);
     assert!(refused(&text).contains("knots is 1 to 20, whole"), "{}", refused(&text));
     text["choices"]["set"] = serde_json::json!([]);
     text["machine"] = "name = 'none'".into();

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use cut::cut;
-use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Entry};
+use feedwright::controllers::{BASELINE, CONTROLLERS, Entry, HORIZON};
 use python::python;
 
 /// Lines of the pocket that are cut: tool change, dwell, rapids, the first helix and the first passes of a level.
@@ -66,7 +66,7 @@ fn part(name: &str) -> PathBuf {
 
 /// The controllers that stand for all where all would take long.
 fn two() -> [&'static Entry; 2] {
-    [BASELINE, BEST].map(|name| Entry::find(name).unwrap())
+    [BASELINE, HORIZON].map(|name| Entry::find(name).unwrap())
 }
 
 /// A finer step for those two alone. Others drive the rapids of the pocket into the torque limit, where the closed form of
@@ -112,7 +112,7 @@ fn so_they_do_with_backlash_encoder_steps_delay_and_torque_steps() {
     for machine in ["soft", "coarse"] {
         // With backlash a finer step has the flanks strike at other times, and what a quick command makes of that the closed
         // form does not know: by the same step it is the same to the last digit.
-        let steps = |entry: &Entry| if machine == "soft" && entry.name == BEST { &[1] } else { finer(entry) };
+        let steps = |entry: &Entry| if machine == "soft" && entry.name == HORIZON { &[1] } else { finer(entry) };
         for entry in CONTROLLERS {
             agrees(python, &part("circle"), &machine_file(machine), entry, steps(entry));
         }

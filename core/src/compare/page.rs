@@ -90,7 +90,7 @@ fn write_machines(out: &mut impl Write, comparison: &Comparison) -> io::Result<(
     write_end(out)
 }
 
-/// Where each contour and machine is found, and what the receding horizon does there.
+/// Where each contour and machine is found, and what the default controller does there.
 fn write_contents(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let (machines, cells) = (comparison.machines(), cells(&comparison.rows));
     let whole = if machines.iter().any(|machine| comparison.has_geometry(machine)) { "whole " } else { "" };
@@ -254,7 +254,7 @@ fn ours(controller: &str) -> &'static str {
     if controller.starts_with(BEST) { " class=\"ours\"" } else { "" }
 }
 
-/// Error over the cut: open loop, the best peer that knows no model, and the receding horizon, on one scale.
+/// Error over the cut: open loop, the best peer that knows no model, and the default, on one scale.
 fn errors(rows: &[ComparisonRow]) -> Figure {
     let peers = rows.iter().filter(|row| {
         let blind = matches!(knows(row), Some(Knows::Nothing | Knows::Identified));

@@ -1,4 +1,4 @@
-//! What is claimed of the receding horizon: value, limit, and whether it holds.
+//! What is claimed of the default controller: value, limit, and whether it holds.
 //!
 //! - Nominal machine, contours without corners: against open loop, the best peer that knows no model, and the exact model. The square:
 //!   RMS and largest error in um.
@@ -14,7 +14,7 @@ use super::competitor::{Competitor, Knowledge};
 use super::options::ComparisonOptions;
 use super::table::{ComparisonRow, each_once, knows};
 use crate::average::quadratic_mean;
-use crate::controllers::{BASELINE, BEST, Knows};
+use crate::controllers::{BASELINE, BEST, HORIZON, Knows};
 
 /// One claim on one workpiece of one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -44,8 +44,8 @@ pub const ALL_WORK: &str = "all work";
 pub const DELIVERED: &str = "feedforward-as-delivered";
 /// The peer that knows all that can be known, statistics of the noise included: a bound on what can be reached, not a competitor.
 pub const LIMIT: &str = "lqg-preview";
-/// No peers of each other: the default, and what is to follow it.
-const OURS: [&str; 2] = [BEST, "lqg-identified"];
+/// No peers of each other: the default, and the one that adapts.
+const OURS: [&str; 2] = [BEST, HORIZON];
 /// The same where there is no noise: it has the exact model and unlimited computing time.
 const NOISELESS_LIMIT: &str = "model-predictive";
 /// The best of the peers that controls could have tomorrow.
