@@ -202,7 +202,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
     fn reset(&mut self) {
         self.axes.iter_mut().for_each(|axis| axis.state = None);
         self.validity.iter_mut().for_each(Validity::forget);
-        self.feasibility = Feasibility::FOLLOWED;
+        (self.feasibility, self.asked_mm) = (Feasibility::FOLLOWED, [0.0; N]);
     }
 
     /// Without a position it begins anew: what the tool does meanwhile nobody knows.

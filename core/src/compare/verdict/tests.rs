@@ -108,7 +108,7 @@ fn elsewhere_the_unseen_and_the_identified_row_are_held_against_the_same_peer() 
         // Another machine's identification is no peer's.
         row("circle", "rough", "two-dimensional+unseen", [0.1, 9.0]),
         row("circle", "rough", BEST, [0.8, 2.0]),
-        row("circle", "rough", "receding-horizon+unseen", [2.4, 5.0]),
+        row("circle", "rough", "lqg-identified+unseen", [2.4, 5.0]),
     ];
     assert_eq!(told(&rows), [of("contour-compensation", 600.0, false), of("contour-compensation", 200.0, true)]);
 }
