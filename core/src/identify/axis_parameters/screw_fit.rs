@@ -73,11 +73,17 @@ pub(super) fn with_screw(fit: &OutputErrorFit<'_>, rigid: &AxisEstimate) -> Opti
 
 /// Whether less is left of the stretches, beyond doubt.
 fn is_less(with_screw: &FitState, rigid: &FitState) -> bool {
-    let less: Vec<f64> = rigid.by_stretch_mm2().zip(with_screw.by_stretch_mm2()).map(|(a, b)| (a / b).ln()).collect();
+    with_screw.squares_mm2() < LESS * rigid.squares_mm2()
+        && is_below(rigid.by_stretch_mm2().zip(with_screw.by_stretch_mm2()))
+}
+
+/// Whether the second of pairs of squares is below the first, beyond doubt. A stretch in which the axis stands still leaves nothing, and says nothing.
+fn is_below(pairs_mm2: impl Iterator<Item = (f64, f64)>) -> bool {
+    let less: Vec<f64> = pairs_mm2.map(|(a, b)| (a / b).ln()).filter(|less| less.is_finite()).collect();
     let n = less.len() as f64;
     let mean = less.iter().sum::<f64>() / n;
     let variance = less.iter().map(|less| (less - mean).powi(2)).sum::<f64>() / (n - 1.0);
-    with_screw.squares_mm2() < LESS * rigid.squares_mm2() && mean > BEYOND_DOUBT * (variance / n).sqrt()
+    mean > BEYOND_DOUBT * (variance / n).sqrt()
 }
 
 fn start(fit: &OutputErrorFit<'_>, rigid: AxisParameters, hz: f64, backlash_share: f64) -> AxisParameters {
@@ -88,4 +94,19 @@ fn start(fit: &OutputErrorFit<'_>, rigid: AxisParameters, hz: f64, backlash_shar
         backlash_rad: START_BACKLASH_MM * fit.settings.rad_per_mm + backlash_share * rigid.presliding_rad,
     };
     AxisParameters { transmission, presliding_rad: (1.0 - backlash_share) * rigid.presliding_rad, ..rigid }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stretches_in_which_the_axis_stands_still_say_nothing() {
+        let moves = [(4.0, 1.0), (4.4, 1.0), (3.6, 1.0), (4.2, 1.1)];
+        let stands = [(0.0, 0.0); 3];
+        let is_below = |pairs: &[&[(f64, f64)]]| is_below(pairs.concat().into_iter());
+        assert!(is_below(&[&moves]) && is_below(&[&moves, &stands]));
+        assert!(!is_below(&[&stands]) && !is_below(&[&moves[..1]]), "there is no doubt to be judged by");
+        assert!(!is_below(&[&[(1.0, 1.0), (2.0, 1.0), (1.0, 2.0)]]));
+    }
 }
