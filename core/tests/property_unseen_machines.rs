@@ -27,8 +27,8 @@ const BROKEN_UM: f64 = 400.0;
 /// Part of the cuts that may be worse, and by how much at the most: what was measured, rounded up.
 const WORSE: f64 = 0.03;
 const WORST_RATIO: f64 = 6.0;
-const WORST_RATIO_BY_LAW: f64 = 2.5;
-const WORSE_BY_LAW: f64 = 0.1;
+const WORST_RATIO_BY_LAW: f64 = 1.05;
+const WORSE_BY_LAW: f64 = 0.0;
 /// An RMS that differs from open loop's by less is the same, um: it is below the steps of any encoder.
 const SAME_UM: f64 = 0.5;
 
@@ -88,6 +88,26 @@ fn hardly_any_machine_is_cut_worse_than_open_loop() {
 #[test]
 fn a_law_of_another_machine_is_not_followed() {
     judge(BEST, MACHINES_BY_LAW, WORSE_BY_LAW, WORST_RATIO_BY_LAW);
+}
+
+/// Part of open loop's RMS that is left by a law that does not know of a delay, at the most: 0.45 was measured, on the square,
+/// and 0.22 on all others.
+const LEFT_BY_LATE: f64 = 0.5;
+
+#[test]
+fn drives_that_are_late_without_the_law_knowing_it_are_still_corrected() {
+    let contours = Workpiece::contours();
+    let (mut best, mut base) = (controller(BEST, &tnv40()), controller(BASELINE, &tnv40()));
+    for delay_s in [0.001, 0.002] {
+        let mut machine = tnv40();
+        machine.axes.iter_mut().for_each(|axis| axis.drive_delay_s = delay_s);
+        for workpiece in contours.iter().filter(|w| ["circle", "eight", "star", "square"].contains(&w.name.as_str())) {
+            let [corrected_um, open_um] =
+                [&mut best, &mut base].map(|controller| cut(workpiece, &machine, &mut **controller).1.rms_um());
+            eprintln!("{} {delay_s} s late: {corrected_um:.2} um of {open_um:.2}", workpiece.name);
+            assert!(corrected_um <= LEFT_BY_LATE * open_um, "{}: {corrected_um} um of {open_um}", workpiece.name);
+        }
+    }
 }
 
 fn judge(name: &str, machines: u64, most_worse: f64, worst_ratio: f64) {

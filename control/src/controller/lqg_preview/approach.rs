@@ -11,7 +11,7 @@
 //! within three of them an error is closed.
 //! A linear regulator that asks for more than there is acts later than it reckons with: it overshoots as far as it came, or swings for good. The
 //! law of a higher price asks for less, and closes more slowly; as the axis comes nearer, a lower one takes over. Near the reference it is the
-//! lowest; k begins at 4 where the law is not trusted, and comes down to 0 with that.
+//! lowest; k begins at 4 where the law is not trusted, at 6 where loads are not taken up, and comes down to 0 with that.
 //!
 //! Of 180 random cuts with the lowest price of a hundredth of the servo period squared 14 are worse than open loop with one price, none in RMS
 //! or in the largest error with these.
@@ -32,8 +32,11 @@ const RATIO: f64 = 2.0;
 /// Time constants in which an error is closed. On router 1 leaves half as much again on the square, and 10 runs into the safety layer on the star;
 /// a double integrator whose input takes 20 ms from nothing to its most swings by 3 and not by 1, one that takes 5 ms by neither.
 const CLOSED: f64 = 3.0;
-/// The lowest price that counts where the law is not trusted: 4^k p.
+/// The lowest price that counts where the law is not trusted, 4^k p, and by how much k is higher where loads are not taken up. By a law that does not
+/// know that the drives are 2 ms late the square with jumps at its corners is cut with 3.2 um RMS of 1.7 with 1 of the second, with 0.5 with 2; the
+/// circle with 1.1 of 9 and with 1.8, and with 3.1 with 3.
 const UNTRUSTED: f64 = 4.0;
+const WITHOUT_LOADS: f64 = 2.0;
 
 /// Torque that is relied on beside what the reference takes, N m.
 pub(super) fn left_nm(torque_limit_nm: f64, reference_nm: f64) -> f64 {
@@ -48,6 +51,20 @@ pub(super) struct Room {
     pub(super) most_rad_s: f64,
     /// R, rad/s^2.
     pub(super) change_rad_s2: f64,
+}
+
+/// How far a law is followed, both 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Trusted {
+    /// Its lowest price.
+    pub(super) near: f64,
+    /// Loads that the filter finds by it.
+    pub(super) loads: f64,
+}
+
+impl Trusted {
+    /// In everything.
+    pub(super) const FULLY: Self = Self { near: 1.0, loads: 1.0 };
 }
 
 /// Gains of the regulator by price, from the lowest on.
@@ -75,19 +92,17 @@ impl PricedGains {
         near
     }
 
-    /// By how much less reference speed is asked for where the axis is so far off, rad/s, by a law that is `trusted` so far, 0 to 1.
-    pub(super) fn asked_rad_s(&self, off: &[f64; STATES], room: Room, trusted: f64) -> f64 {
+    /// By how much less reference speed is asked for where the axis is so far off, rad/s, by a law that is `trusted` so far.
+    pub(super) fn asked_rad_s(&self, off: &[f64; STATES], room: Room, trusted: Trusted) -> f64 {
         let [error, loads] = linear::error_and_loads(off);
+        let loads_rad_s = trusted.loads * inner(&self.near(), &loads);
         // A float that is not a number saturates to zero here.
-        let lowest = UNTRUSTED * (1.0 - trusted);
+        let lowest = UNTRUSTED * (1.0 - trusted.near) + WITHOUT_LOADS * (1.0 - trusted.loads);
         let below = lowest as usize;
         let part = lowest - below as f64;
-        let mut asked_rad_s = inner(&self.near(), &loads) + self.closing_rad_s(&error, room, below);
-        if part > 0.0 {
-            let cautious_rad_s = inner(&self.near(), &loads) + self.closing_rad_s(&error, room, below + 1);
-            asked_rad_s += part * (cautious_rad_s - asked_rad_s);
-        }
-        asked_rad_s
+        let asked_rad_s = |from: usize| loads_rad_s + self.closing_rad_s(&error, room, from);
+        let bold_rad_s = asked_rad_s(below);
+        if part > 0.0 { bold_rad_s + part * (asked_rad_s(below + 1) - bold_rad_s) } else { bold_rad_s }
     }
 
     /// u, from a price on.
@@ -133,7 +148,7 @@ mod tests {
     fn what_is_asked_for_is_continuous_and_never_more_than_there_is() {
         let gains = PricedGains::new(1e-6, of_double_integrator);
         let room = Room { most_rad_s: 100.0, change_rad_s2: 5000.0 };
-        let asked = |error_rad: f64| gains.asked_rad_s(&off(error_rad, 0.0), room, 1.0);
+        let asked = |error_rad: f64| gains.asked_rad_s(&off(error_rad, 0.0), room, Trusted::FULLY);
         assert_eq!(asked(1e-6), 1.0, "near the reference the lowest price counts in full");
         let mut before_rad_s = 0.0;
         for n in 1..20_000 {
@@ -151,7 +166,10 @@ mod tests {
         let gains = PricedGains::new(1e-6, |_| [1.0; STATES]);
         let mut off = [0.0; STATES];
         (off[0], off[7]) = (1.0, 30.0);
-        assert_eq!(gains.asked_rad_s(&off, Room { most_rad_s: 0.1, change_rad_s2: f64::INFINITY }, 1.0), 30.1);
+        assert_eq!(
+            gains.asked_rad_s(&off, Room { most_rad_s: 0.1, change_rad_s2: f64::INFINITY }, Trusted::FULLY),
+            30.1
+        );
     }
 
     /// Largest overshoot and what is left after a second, rad, of a double integrator under what is asked for, whose acceleration is bounded and
@@ -174,7 +192,7 @@ mod tests {
         let bounds = [100.0, 2e4];
         let room = Room { most_rad_s: 100.0, change_rad_s2: 2e4 };
         for from_rad in [1e-4, 1e-3, 0.01, 0.1, 1.0] {
-            let priced = |x: f64, w: f64| gains.asked_rad_s(&off(x, w), room, 1.0);
+            let priced = |x: f64, w: f64| gains.asked_rad_s(&off(x, w), room, Trusted::FULLY);
             let [overshoot_rad, rest_rad] = overshoot_and_rest_rad(&priced, bounds, from_rad);
             assert!(
                 overshoot_rad < 0.2 * from_rad && rest_rad < 1e-3 * from_rad,

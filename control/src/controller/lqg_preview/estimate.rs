@@ -18,6 +18,7 @@ use crate::axis::statistics::AxisStatistics;
 use crate::sine::sin;
 
 use super::linear::{LinearAxis, STATES, measured_rad2};
+use super::one_step::OneStep;
 use super::outliers::{self, Outliers};
 use super::riccati::filter;
 use super::whiteness::{GainTable, Whiteness};
@@ -27,6 +28,9 @@ pub(super) const KEPT_PERIODS: usize = 48;
 
 /// Innovations that are smaller than this part of the measurement's noise are not learnt from.
 const LEAST_SHARE: f64 = 0.01;
+
+/// Least part of an innovation that counts as noise of the measurement.
+const LEAST_SHARE_LEFT: f64 = 1e-6;
 
 /// Largest load that counts as one, a part of the torque limit: about what a drive that may reach three times its rated torque for a moment
 /// can hold.
@@ -41,6 +45,8 @@ pub(super) struct AxisModel {
     statistics: AxisStatistics,
     linear: LinearAxis,
     gains: GainTable,
+    /// Variance of the measurement as given, rad^2.
+    measured_rad2: f64,
     /// Innovations that are smaller are not learnt from, and those that are larger are believed in part, rad.
     least_rad: f64,
     believed_rad: f64,
@@ -90,6 +96,21 @@ pub(super) struct Innovation {
     pub(super) missed_rad: f64,
     /// As what it is taken, rad.
     pub(super) measured_rad: f64,
+    /// Mean square of what is not expected by the statistics, rad^2.
+    pub(super) expected_rad2: f64,
+    /// By how much the torque has moved the axis, beside its speed, rad.
+    pub(super) pushed_rad: f64,
+}
+
+impl Innovation {
+    /// As that of a servo period, with so many mm to a rad.
+    pub(super) fn step(&self, mm: f64) -> OneStep {
+        OneStep {
+            missed_mm2: self.missed_rad * self.missed_rad * mm * mm,
+            expected_mm2: self.expected_rad2 * mm * mm,
+            pushed_mm2: self.pushed_rad * self.pushed_rad * mm * mm,
+        }
+    }
 }
 
 /// What was sent to the drive, the newest first.
@@ -123,6 +144,7 @@ impl AxisModel {
             } else {
                 GainTable::constant(gains(measured_rad2))
             },
+            measured_rad2,
             least_rad: LEAST_SHARE * libm::sqrt(measured_rad2),
             believed_rad: outliers::believed_rad(&law, measured_rad2),
             late: [delays.measurement_s, delays.drive_s].map(late),
@@ -173,16 +195,21 @@ impl AxisModel {
         measured_rad: f64,
         learnt: &mut Learnt,
     ) -> Innovation {
+        let before_rad_s = estimate.masses.motor.speed_rad_s;
         self.predict(estimate, sent);
+        let pushed_rad = (estimate.masses.motor.speed_rad_s - before_rad_s) * self.law.periods.servo_s;
         let shown_rad = self.shown_rad(estimate);
         let missed_rad = measured_rad - shown_rad;
         let (believed_rad, servo_s) = (self.believed_rad, self.law.periods.servo_s);
         let taken_rad = learnt.outliers.bounded_rad(measured_rad, missed_rad, believed_rad, servo_s);
         learnt.whiteness.take_in(measured_rad, taken_rad, self.least_rad);
-        estimate.correct(learnt.whiteness.gains(&self.gains).map(|gain| gain * taken_rad));
+        let gains = learnt.whiteness.gains(&self.gains);
+        estimate.correct(gains.map(|gain| gain * taken_rad));
+        let [of_angle, ..] = gains;
+        let expected_rad2 = learnt.whiteness.variance() * self.measured_rad2 / (1.0 - of_angle).max(LEAST_SHARE_LEFT);
         // A frozen encoder is for the safety layer to see: it tells nothing of the predictions.
         let missed_rad = if taken_rad == 0.0 { 0.0 } else { missed_rad };
-        Innovation { missed_rad, measured_rad: shown_rad + taken_rad }
+        Innovation { missed_rad, measured_rad: shown_rad + taken_rad, expected_rad2, pushed_rad }
     }
 
     /// Whether there can be such a load. One that is larger is a law that is not that of the axis: other gains, another inertia.

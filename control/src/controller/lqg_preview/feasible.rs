@@ -23,17 +23,17 @@ const FOR_REFERENCE: f64 = 0.9;
 const TO_OPEN_S: f64 = 0.02;
 const BACK_S: f64 = 0.05;
 
-/// Whether a reference takes more torque than there is: at the end of what is known of it, `at_mm` by time before that, s.
-pub(super) fn is_beyond(law: &AxisLaw, at_mm: impl Fn(f64) -> f64) -> bool {
+/// Times before the end of what is known of the reference at which [`is_beyond`] asks for it, s.
+pub(super) const BEFORE_END_S: [f64; 3] = [0.0, AVERAGED_S, 2.0 * AVERAGED_S];
+
+/// Whether an axis takes more torque than there is along its reference, mm at [`BEFORE_END_S`].
+pub(super) fn is_beyond(law: &AxisLaw, [newest_mm, middle_mm, oldest_mm]: [f64; 3]) -> bool {
     let parameters = &law.parameters;
-    let [newest_mm, middle_mm, oldest_mm] = [0.0, AVERAGED_S, 2.0 * AVERAGED_S].map(at_mm);
     let speed_rad_s = (newest_mm - oldest_mm) / (2.0 * AVERAGED_S) * parameters.rad_per_mm;
     let acceleration_mm_s2 = ((newest_mm - middle_mm) - (middle_mm - oldest_mm)) / (AVERAGED_S * AVERAGED_S);
-    let moves = if speed_rad_s == 0.0 { 0.0 } else { libm::copysign(1.0, speed_rad_s) };
-    let needed_nm = parameters.inertia_kg_m2 * acceleration_mm_s2 * parameters.rad_per_mm
-        + parameters.viscous_friction_nm_s * speed_rad_s
-        + parameters.coulomb_friction_nm * moves;
-    needed_nm.abs() > FOR_REFERENCE * parameters.torque_limit_nm
+    let sign = if speed_rad_s == 0.0 { 0.0 } else { libm::copysign(1.0, speed_rad_s) };
+    let inertia_nm = parameters.inertia_kg_m2 * acceleration_mm_s2 * parameters.rad_per_mm;
+    (inertia_nm + law.friction_nm(speed_rad_s, sign)).abs() > FOR_REFERENCE * parameters.torque_limit_nm
 }
 
 /// How far the way of the axes by themselves takes the place of the reference.
@@ -65,31 +65,28 @@ impl Feasibility {
 mod tests {
     use super::*;
     use crate::axis::{Parameters, Periods};
+    use crate::controller::feedforward;
 
     /// 0.01 kg m^2, 1 N m of friction, 10 N m, 1 rad a mm.
     fn law() -> AxisLaw {
         let parameters = Parameters {
             rad_per_mm: 1.0,
-            kp_1_s: 50.0,
-            kd: 0.0,
-            kv_nm_s_per_rad: 2.0,
             torque_limit_nm: 10.0,
-            inertia_kg_m2: 0.01,
             viscous_friction_nm_s: 0.0,
-            coulomb_friction_nm: 1.0,
-            coulomb_smoothing_rad_s: 0.05,
+            ..feedforward::tests::axis(0.0, 1.0)
         };
         AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 1e-4, mechanics_per_servo: 10 })
     }
 
     #[test]
     fn what_takes_more_than_nine_tenths_of_the_torque_is_beyond() {
-        let speeds_up = |mm_s2: f64| is_beyond(&law(), |before_s| 0.5 * mm_s2 * (1.0 - before_s) * (1.0 - before_s));
-        let slows_down = |mm_s2: f64| is_beyond(&law(), |before_s| -0.5 * mm_s2 * (1.0 + before_s) * (1.0 + before_s));
+        let is_beyond = |at_mm: &dyn Fn(f64) -> f64| is_beyond(&law(), BEFORE_END_S.map(at_mm));
+        let speeds_up = |mm_s2: f64| is_beyond(&|before_s| 0.5 * mm_s2 * (1.0 - before_s) * (1.0 - before_s));
+        let slows_down = |mm_s2: f64| is_beyond(&|before_s| -0.5 * mm_s2 * (1.0 + before_s) * (1.0 + before_s));
         assert_eq!([790.0, 810.0].map(speeds_up), [false, true], "friction comes on top");
         assert_eq!([990.0, 1010.0].map(slows_down), [false, true], "friction helps");
-        assert!(!is_beyond(&law(), |before_s| -100.0 * before_s), "a constant speed takes friction only");
-        assert!(!is_beyond(&law(), |_| f64::NAN));
+        assert!(!is_beyond(&|before_s| -100.0 * before_s), "a constant speed takes friction only");
+        assert!(!is_beyond(&|_| f64::NAN));
     }
 
     #[test]

@@ -144,19 +144,10 @@ mod tests {
     use crate::axis::mechanics::{MechanicsLaw, MechanicsState};
     use crate::axis::transmission::TransmissionParameters;
     use crate::axis::{Parameters, Periods};
+    use crate::controller::feedforward;
 
     fn law() -> AxisLaw {
-        let parameters = Parameters {
-            rad_per_mm: 0.6,
-            kp_1_s: 50.0,
-            kd: 0.0,
-            kv_nm_s_per_rad: 2.0,
-            torque_limit_nm: 30.0,
-            inertia_kg_m2: 0.01,
-            viscous_friction_nm_s: 0.03,
-            coulomb_friction_nm: 0.2,
-            coulomb_smoothing_rad_s: 0.05,
-        };
+        let parameters = Parameters { torque_limit_nm: 30.0, ..feedforward::tests::axis(0.0, 0.2) };
         AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 1e-5, mechanics_per_servo: 100 })
     }
 

@@ -11,7 +11,8 @@
 //! s is what noise and loads that nobody foresees move the axis by in a free run, by the statistics. As long as the law has shown nothing,
 //! little is risked: the correction comes in over the first way, 25 times as long as what may be missed.
 //!
-//! A law that has begun just now, that is not followed, or that misses more than noise and f / 20 is not trusted, and asks for little; trust takes 0.3 s.
+//! A law that has begun just now, that is not followed, by which servo periods do not go (`one_step.rs`), or that misses more than noise and f / 20 is
+//! not trusted, and asks for little; trust takes 0.3 s.
 //! With all of it from the beginning, the way back behind a lost position takes up to 44,000 mm/s^2 on tnv40, and by the law of another machine
 //! three of 28 cuts are worse, one five times.
 //!
@@ -25,12 +26,12 @@
 
 use crate::vector::{bounded, dot, norm, smooth_step, sub};
 
+use super::approach::Trusted;
 use super::estimate::{AxisModel, Estimate, Sent};
+use super::one_step::{Course, MEMORY_S, OneStep, TO_DOUBT_S};
 
 /// Time of a free run, s: about the time constant of a usual position loop.
 const RUN_S: f64 = 0.03;
-/// Time over which squares are averaged, s.
-const MEMORY_S: f64 = 0.005;
 /// What may be missed without any noise, mm^2 (2 um).
 const LEAST_MM2: f64 = 4e-6;
 /// Standard deviations of what nobody foresees, and the part of the following error.
@@ -38,11 +39,8 @@ const DEVIATIONS: f64 = 4.0;
 const FOLLOWING_SHARE: f64 = 0.1;
 /// Way from the start over which a correction comes in, times what may be missed: a law that is wrong by a few parts in a hundred shows there.
 const PROVEN: f64 = 25.0;
-/// Part of the following error that a law that is trusted may miss, and the time of that after which it is trusted in full, and of the contrary
-/// after which it is not at all, s.
+/// Part of the following error that a law that is trusted may miss.
 const TRUSTED_SHARE: f64 = 0.05;
-const TO_TRUST_S: f64 = 0.3;
-const TO_DOUBT_S: f64 = 0.005;
 
 /// A free run beside the filter, of an axis.
 #[derive(Debug, Clone, Copy)]
@@ -84,8 +82,9 @@ pub(super) struct Validity<const N: usize> {
     /// Where it began, and how far from there it has been, mm.
     began_mm: Option<[f64; N]>,
     farthest_mm: f64,
-    /// How far the laws are trusted, 0 to 1.
-    trusted: f64,
+    course: Course,
+    /// How far the laws are trusted near the reference, 0 to 1.
+    near: f64,
 }
 
 impl<const N: usize> Validity<N> {
@@ -97,14 +96,20 @@ impl<const N: usize> Validity<N> {
             following_mm2: 0.0,
             began_mm: None,
             farthest_mm: 0.0,
-            trusted: 0.0,
+            course: Course::AS_SAID,
+            near: 0.0,
         }
     }
 
     /// Nothing any more.
     pub(super) fn forget(&mut self) {
         (self.missed_mm2, self.following_mm2, self.began_mm) = (0.0, 0.0, None);
-        (self.farthest_mm, self.trusted) = (0.0, 0.0);
+        (self.farthest_mm, self.course, self.near) = (0.0, Course::AS_SAID, 0.0);
+    }
+
+    /// How a servo period went within itself, before [`Self::take_in`].
+    pub(super) fn take_in_step(&mut self, step: OneStep, servo_s: f64) {
+        self.course.take_in(step, servo_s);
     }
 
     /// A servo period, with m and f of the axes and their measured position, mm.
@@ -121,8 +126,9 @@ impl<const N: usize> Validity<N> {
         self.following_mm2 += part * (dot(following_mm, following_mm) - self.following_mm2);
         let began_mm = *self.began_mm.get_or_insert(position_mm);
         self.farthest_mm = self.farthest_mm.max(norm(sub(position_mm, began_mm)));
-        let change = if !followed || self.misses(TRUSTED_SHARE) { -servo_s / TO_DOUBT_S } else { servo_s / TO_TRUST_S };
-        self.trusted = bounded(self.trusted + change, 0.0, 1.0);
+        let holds = followed && self.course.is_as_said() && !self.misses(TRUSTED_SHARE);
+        let change = if holds { servo_s / self.course.trust_time_s() } else { -servo_s / TO_DOUBT_S };
+        self.near = bounded(self.near + change, 0.0, 1.0);
     }
 
     /// Whether more is missed than noise and this part of the following error; what is not a number is.
@@ -131,9 +137,9 @@ impl<const N: usize> Validity<N> {
         !holds
     }
 
-    /// How far the laws are trusted, 0 to 1.
-    pub(super) fn trusted(&self) -> f64 {
-        smooth_step(self.trusted)
+    /// How far the laws are followed.
+    pub(super) fn trusted(&self) -> Trusted {
+        Trusted { near: smooth_step(self.near), loads: self.course.loads() }
     }
 
     /// Whether the laws are wrong.
@@ -185,7 +191,7 @@ mod tests {
     fn a_law_is_trusted_that_holds_and_is_followed_for_a_while() {
         let goes_on = |validity: &mut Validity<2>, missed_mm: f64, followed: bool, periods: u32| {
             (0..periods).for_each(|_| validity.take_in([missed_mm, 0.0], [0.0; 2], [0.0; 2], followed, SERVO_S));
-            validity.trusted()
+            validity.trusted().near
         };
         let mut validity = Validity::unknown(0.0);
         assert_eq!(goes_on(&mut validity, 0.0, false, 1000), 0.0, "it is not followed");

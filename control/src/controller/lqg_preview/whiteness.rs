@@ -67,6 +67,11 @@ impl Whiteness {
     /// As given.
     pub(super) const GIVEN: Self = Self { power: 0.0, before_rad: 0.0, measured_rad: f64::NAN };
 
+    /// Variance of the measurement, in parts of what is given.
+    pub(super) fn variance(&self) -> f64 {
+        libm::exp2(2.0 * self.power)
+    }
+
     /// Gains of the filter.
     pub(super) fn gains(&self, table: &GainTable) -> [f64; STATES] {
         table.at(self.power)
