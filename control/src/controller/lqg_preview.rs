@@ -27,6 +27,7 @@
 //! | `lqg_preview/outliers.rs` | measurements that cannot be true |
 //! | `lqg_preview/whiteness.rs` | how much of what is measured the filter believes |
 //! | `lqg_preview/estimate.rs` | the filter |
+//! | `lqg_preview/proof.rs` | what a law that was wrong has to hold through |
 //! | `lqg_preview/validity.rs` | whether the law is that of the axis |
 //! | `lqg_preview/regulated_axis.rs` | an axis: filter, regulator and inverse |
 //!
@@ -45,6 +46,7 @@ mod one_step;
 mod outliers;
 mod whiteness;
 mod estimate;
+mod proof;
 mod validity;
 mod regulated_axis;
 
@@ -57,7 +59,7 @@ use approach::Trusted;
 use feasible::Feasibility;
 use one_step::OneStep;
 use regulated_axis::AxisLqg;
-use validity::Validity;
+use validity::{Shown, Validity};
 
 pub use regulated_axis::LqgGains;
 pub use settings::{IDENTIFIED_PRICE, OffsetBounds, Settings};
@@ -158,10 +160,12 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         }
         if let Some(validity) = &mut self.validity {
             let missed_mm = self.axes.each_ref().map(AxisLqg::law_missed_mm);
-            let following_mm = sub(add_scaled(window.now().position_mm, 1.0, window.offset_mm), position_mm);
+            let path_mm = window.now().position_mm;
+            let following_mm = sub(add_scaled(path_mm, 1.0, window.offset_mm), position_mm);
+            let shown = Shown { missed_mm, following_mm, position_mm, path_mm };
             let followed = norm(sub(window.offset_mm, self.asked_mm)) <= FOLLOWED_MM;
             validity.take_in_step(OneStep::sum(self.axes.iter().map(AxisLqg::step)), window.feed_period_s);
-            validity.take_in(missed_mm, following_mm, position_mm, followed, window.feed_period_s);
+            validity.take_in(&shown, followed, window.feed_period_s);
         }
     }
 

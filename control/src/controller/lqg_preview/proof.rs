@@ -1,0 +1,162 @@
+//! What a law has to hold through before it is taken for right again.
+//!
+//! ```text
+//! c  change of the commanded speed: against its mean over the last 30 ms
+//!
+//! c0 the largest c when it was wrong
+//!
+//! c falls below c0 / 2, comes to 0.9 c0, and the law holds for 60 ms from there; or it holds for T at 0.9 c0
+//! ```
+//!
+//! By a law with three times the inertia every corner is wrong, and every straight line in between right: taken for right there, it did
+//! harm in each corner anew. On a circle, where c is the same all the time, time is the proof: T is 60 ms at first, and four times as long each time that the
+//! law was wrong again, up to 1 s. With 1 s from the beginning a law by which friction is twice as large leaves 15.5 um on a circle in place of 0.9, since the
+//! first 60 ms of a motion miss a larger part of the following error than all that follows. A shock on a straight line needs no more than the time.
+
+use crate::vector::{add_scaled, norm, sub};
+
+/// Time of the mean, s: that of a free run.
+const MEAN_S: f64 = 0.03;
+/// Time over which an error of the law shows, s: two free runs.
+const TO_SHOW_S: f64 = 0.06;
+/// T at the most, s, and by what it grows.
+const MOST_S: f64 = 1.0;
+const AGAIN: f64 = 4.0;
+/// Part of c0 that is as much, and that which is little; the c0 that is none, mm/s.
+const AS_MUCH: f64 = 0.9;
+const LITTLE: f64 = 0.5;
+const NO_CHANGE_MM_S: f64 = 1.0;
+
+/// What a law has held through since it was wrong last.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Trial {
+    /// Whether c was little.
+    calm: bool,
+    /// Time since it was as much again, and time at as much, s.
+    since_s: Option<f64>,
+    at_as_much_s: f64,
+}
+
+impl Trial {
+    const BEGUN: Self = Self { calm: false, since_s: None, at_as_much_s: 0.0 };
+
+    /// One servo period with a c, by a law that was wrong at c0: whether that is enough.
+    fn holds_through(&mut self, change_mm_s: f64, wrong_mm_s: f64, needs_s: f64, servo_s: f64) -> bool {
+        let as_much = change_mm_s >= AS_MUCH * wrong_mm_s;
+        self.calm |= change_mm_s < LITTLE * wrong_mm_s;
+        self.at_as_much_s += if as_much { servo_s } else { 0.0 };
+        let begins = (as_much && self.calm) || wrong_mm_s < NO_CHANGE_MM_S;
+        self.since_s = self.since_s.map(|since_s| since_s + servo_s).or(begins.then_some(0.0));
+        self.since_s > Some(TO_SHOW_S) || self.at_as_much_s > needs_s
+    }
+}
+
+/// Changes of the commanded speed, when the law was wrong and since.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Proof<const N: usize> {
+    path_mm: Option<[f64; N]>,
+    mean_mm_s: [f64; N],
+    /// The largest c lately, and when the law was wrong.
+    lately_mm_s: f64,
+    wrong_mm_s: f64,
+    /// Whether it has yet to hold, and T, s.
+    needed: bool,
+    needs_s: f64,
+    trial: Trial,
+}
+
+impl<const N: usize> Proof<N> {
+    /// Of a law that was never wrong.
+    pub(super) const NOT_NEEDED: Self = Self {
+        path_mm: None,
+        mean_mm_s: [0.0; N],
+        lately_mm_s: 0.0,
+        wrong_mm_s: 0.0,
+        needed: false,
+        needs_s: TO_SHOW_S,
+        trial: Trial::BEGUN,
+    };
+
+    /// A servo period in which the law is wrong, or holds.
+    pub(super) fn take_in(&mut self, path_mm: [f64; N], wrong: bool, servo_s: f64) {
+        let last_mm = self.path_mm.replace(path_mm).unwrap_or(path_mm);
+        let off_mm_s = sub(sub(path_mm, last_mm).map(|mm| mm / servo_s), self.mean_mm_s);
+        let part = (servo_s / MEAN_S).min(1.0);
+        self.mean_mm_s = add_scaled(self.mean_mm_s, part, off_mm_s);
+        let change_mm_s = norm(off_mm_s);
+        self.lately_mm_s = change_mm_s.max((1.0 - part) * self.lately_mm_s);
+        if wrong {
+            (self.needed, self.trial) = (true, Trial::BEGUN);
+            self.wrong_mm_s = self.wrong_mm_s.max(self.lately_mm_s);
+        } else if self.needed && self.trial.holds_through(change_mm_s, self.wrong_mm_s, self.needs_s, servo_s) {
+            (self.needed, self.wrong_mm_s) = (false, 0.0);
+            self.needs_s = (AGAIN * self.needs_s).min(MOST_S);
+        }
+    }
+
+    /// Whether the law has yet to hold.
+    pub(super) fn is_needed(&self) -> bool {
+        self.needed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SERVO_S: f64 = 0.001;
+
+    /// Along a line whose speed goes from 0 to 50 mm/s within 25 ms, 0.4 s each; `wrong` by the servo period.
+    fn goes(corners: usize, wrong: impl Fn(usize) -> bool) -> Proof<1> {
+        let mut proof = Proof::NOT_NEEDED;
+        let mut x_mm = 0.0;
+        for n in 0..400 * corners {
+            x_mm += 50.0 * SERVO_S * ((n % 400) as f64 / 25.0).min(1.0);
+            proof.take_in([x_mm], wrong(n), SERVO_S);
+        }
+        proof
+    }
+
+    #[test]
+    fn a_law_that_fails_where_the_speed_changes_has_to_hold_there() {
+        assert!(!goes(1, |_| false).is_needed());
+        assert!(goes(1, |n| (10..40).contains(&n)).is_needed(), "the straight line behind is no proof");
+        assert!(!goes(2, |n| (10..40).contains(&n)).is_needed(), "it has held through the second corner");
+        assert!(goes(3, |n| (10..40).contains(&(n % 400))).is_needed());
+    }
+
+    #[test]
+    fn where_the_speed_changes_all_the_time_the_proof_takes_longer_each_time() {
+        let mut proof = Proof::NOT_NEEDED;
+        let mut periods = 0;
+        let mut holds_for = || {
+            let mut after_s = 0.0;
+            for n in 0_u32.. {
+                let t_s = f64::from(periods) * SERVO_S;
+                periods += 1;
+                proof.take_in([50.0 * t_s * t_s], n < 200, SERVO_S);
+                if !proof.is_needed() {
+                    break;
+                }
+                after_s = f64::from(n.saturating_sub(200)) * SERVO_S;
+            }
+            after_s
+        };
+        for expected_s in [0.06, 0.24, 0.96, 1.0, 1.0] {
+            let held_s = holds_for();
+            assert!((held_s - expected_s).abs() < 3.0 * SERVO_S, "{held_s} {expected_s}");
+        }
+    }
+
+    #[test]
+    fn a_shock_on_a_straight_line_needs_no_proof() {
+        assert!(!goes(1, |n| (250..260).contains(&n)).is_needed());
+    }
+
+    #[test]
+    fn what_is_not_a_number_is_no_proof() {
+        let mut proof = goes(1, |n| (10..40).contains(&n));
+        proof.take_in([f64::NAN], false, SERVO_S);
+        assert!(proof.is_needed());
+    }
+}
