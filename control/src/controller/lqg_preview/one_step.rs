@@ -29,7 +29,7 @@ const LEAST_MM2: f64 = 1e-8;
 const DEVIATIONS: f64 = 4.0;
 const PUSHED_SHARE: f64 = 1.5;
 /// Time over which squares are averaged, s.
-pub(super) const MEMORY_S: f64 = 0.005;
+const MEMORY_S: f64 = 0.005;
 /// Time after which a law is not trusted at all, s.
 pub(super) const TO_DOUBT_S: f64 = 0.005;
 /// Time of the contrary after which it is in full, s: so many times longer each time that loads were let go, up to the longest.
