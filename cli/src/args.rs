@@ -97,6 +97,12 @@ pub(crate) struct RunArgs {
     /// Model of the machine for the controller, in place of a training; `feedwright identify` writes one.
     #[arg(long, value_name = "FILE.model.toml")]
     pub(crate) model: Option<PathBuf>,
+    /// Log of commanded and actual positions, recorded while a machine cut this program: its contour error is shown beside those predicted.
+    #[arg(long, value_name = "LOG")]
+    pub(crate) log: Option<PathBuf>,
+    /// Which column of the log is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,unit=mm,time=ms.
+    #[arg(long, value_name = "COLUMNS", requires = "log")]
+    pub(crate) columns: Option<String>,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
 }

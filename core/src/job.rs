@@ -16,6 +16,7 @@ mod report;
 mod stored;
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use feedwright_control::Controller;
 use serde::{Deserialize, Serialize};
@@ -24,9 +25,12 @@ use crate::controllers::{Choices, Entry, Make, NothingIdentified, Setup};
 use crate::fastest::{FastestError, FastestPlan, fastest, with_tolerance};
 use crate::gcode::canon::{Canon, MotionKind};
 use crate::gcode::{self, ReadError, Reader, Summary};
+use crate::log::columns::Columns;
+use crate::log::{Log, LogFinding};
 use crate::machine::Machine;
+use crate::measured::measured;
 use crate::model::Model;
-use crate::pipeline::{Run, pieces};
+use crate::pipeline::{Run, RunError, Stages, pieces};
 use crate::report::{Report, ReportedRun, RunFacts, Series, Statistics};
 use crate::trace::{Row, Sink};
 use crate::watch::{StageSteps, Watch};
@@ -60,6 +64,8 @@ pub struct Job {
     pub tolerance_um: Option<f64>,
     /// Cut as fast as the tolerance allows the controller that is asked for.
     pub fastest: bool,
+    /// What a machine recorded while it cut the program, shown beside what is predicted.
+    pub log: Option<LogFile>,
     /// Settings of the reader.
     pub reader: gcode::Settings,
     /// Files that were read to make this job, besides the program: no output may take their place.
@@ -68,8 +74,20 @@ pub struct Job {
     pub outputs: Outputs,
 }
 
-/// What a job came to. The runs stand in the order in which they were made: what is compared against, then the
-/// controller that was asked for.
+/// What stands for a controller in the run of a log.
+pub const MEASURED: &str = "measured";
+
+/// A log, and what is said of its columns, as [`Columns`] reads it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LogFile {
+    /// The file.
+    pub path: PathBuf,
+    /// Its columns, where they are not guessed.
+    pub columns: Option<String>,
+}
+
+/// What a job came to. The runs stand in the order in which they were made: what is compared against, what was
+/// measured, where there is a log, then the controller that was asked for.
 #[derive(Debug)]
 pub struct JobOutcome {
     /// Everything that the page shows.
@@ -78,6 +96,8 @@ pub struct JobOutcome {
     pub warnings: Vec<gcode::Diagnostic>,
     /// Controllers that cut open loop, because nothing was identified that they could go by.
     pub without_identification: Vec<NothingIdentified>,
+    /// What was guessed or noticed of the log.
+    pub log_findings: Vec<LogFinding>,
     /// The plan of least time, where that was asked for.
     pub fastest: Option<FastestPlan>,
     /// Whether the last run was cut to its end and within the tolerance, where one was asked for.
@@ -128,12 +148,51 @@ impl Job {
             let written = judged.then_some(&mut files);
             runs.push(self.cut_once(summary, entry, &mut *controller, fastest.as_ref(), written, watch)?);
         }
+        let mut log_findings = Vec::new();
+        if let Some(log) = &self.log {
+            let at = runs.len() - 1;
+            let (run, findings) = self.measured(log, N, watch)?;
+            runs.insert(at, run);
+            log_findings = findings;
+        }
         watch.begin("writing", 1);
         let report = self.report(N, summary, runs);
         let within_tolerance = self.within_tolerance(&report);
         files.finish(self, &report, watch)?;
         let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
-        Ok(JobOutcome { report, warnings, without_identification, fastest, within_tolerance })
+        Ok(JobOutcome { report, warnings, without_identification, log_findings, fastest, within_tolerance })
+    }
+
+    /// What a log says of the cut.
+    fn measured(
+        &self,
+        file: &LogFile,
+        axes: usize,
+        watch: &dyn Watch,
+    ) -> Result<(ReportedRun, Vec<LogFinding>), JobError> {
+        let columns = match &file.columns {
+            Some(text) => Columns::from_str(text).map_err(|error| JobError::LogColumns { error })?,
+            None => Columns::default(),
+        };
+        let log = Log::read_watched(&file.path, &columns, watch)?;
+        watch.begin("comparing the log", 1);
+        let of_log = |error| JobError::Measured { log: file.path.clone(), part: self.part.clone(), error };
+        let steps = pieces(self.program()?);
+        let limits = |error| JobError::of_run(&self.part, RunError::Limits(error));
+        let mut reference = Stages::of(&self.machine).reference(steps, &self.machine).map_err(limits)?;
+        let (mut statistics, mut series) = (Statistics::new(), Series::new());
+        let run = measured(&log, &self.machine, axes, &mut reference, &mut [&mut statistics, &mut series], watch)
+            .map_err(of_log)?;
+        let facts = RunFacts {
+            controller: MEASURED.to_owned(),
+            machine: self.machine.name.clone(),
+            part: self.part_name(),
+            axes,
+            run,
+        };
+        let mut summary = statistics.summary(facts, |_| String::new());
+        self.fill_in_texts(&mut summary.worst)?;
+        Ok((ReportedRun { summary, series, events: Vec::new() }, log.findings))
     }
 
     /// The plan of least time, found with a controller of its own.

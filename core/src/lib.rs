@@ -28,6 +28,7 @@ pub mod simulate;
 pub mod pipeline;
 pub mod excite;
 pub mod log;
+pub mod measured;
 pub mod cycle_time;
 pub mod fastest;
 pub mod identify;

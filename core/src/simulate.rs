@@ -11,11 +11,11 @@
 //! | `simulate/uncut.rs` | how far the tool stays away from what it should have cut |
 //! | `simulate/tick_times.rs` | how long the ticks took |
 
-mod foot;
+pub(crate) mod foot;
 mod joints;
 mod rests;
 mod tick_times;
-mod uncut;
+pub(crate) mod uncut;
 
 use std::time::Instant;
 

@@ -32,6 +32,7 @@ fn job(machine: &str, controller: &str) -> Job {
         fastest: false,
         reader: Settings::default(),
         inputs: Vec::new(),
+        log: None,
         outputs: Outputs::default(),
     }
 }

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use feedwright::controllers::Choices;
 use feedwright::fastest::{FastestError, FastestPlan};
-use feedwright::job::{Job, JobError, JobOutcome, Outputs};
+use feedwright::job::{Job, JobError, JobOutcome, LogFile, MEASURED, Outputs};
 use feedwright::machine::{self, Machine};
 use feedwright::model::Model;
 use feedwright::report::{Outcome as Ending, RunSummary};
@@ -36,6 +36,7 @@ pub(crate) fn run(args: RunArgs, console: &Console) -> Result<ExitCode> {
     for remark in outcome.without_identification.iter().cloned() {
         warn(remark.into());
     }
+    outcome.log_findings.iter().for_each(|finding| eprintln!("{finding}"));
     let code = if outcome.within_tolerance { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
     printed(print(&job, &outcome), code)
 }
@@ -53,12 +54,14 @@ fn job(args: RunArgs) -> Result<Job> {
         model: args.model.as_deref().map(Model::read).transpose()?,
         tolerance_um: args.tolerance,
         fastest: args.fastest,
+        log: args.log.clone().map(|path| LogFile { path, columns: args.columns }),
         reader: args.reader.settings()?,
         inputs: Some(PathBuf::from(args.machine))
             .filter(|path| machine::is_path(path))
             .into_iter()
             .chain(args.reader.tool_table)
             .chain(args.model)
+            .chain(args.log)
             .collect(),
         outputs: Outputs { report: Some(report), json: args.json, trace: args.trace, out: args.out },
         part: args.part,
@@ -117,6 +120,7 @@ fn print(job: &Job, outcome: &JobOutcome) -> std::io::Result<()> {
         }
     }
     if let [first, .., last] = &runs[..]
+        && first.summary.controller != MEASURED
         && last.summary.rms_um > first.summary.rms_um
         && last.summary.max_um > first.summary.max_um
     {

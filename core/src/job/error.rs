@@ -8,6 +8,9 @@ use crate::constraints::LimitsError;
 use crate::controllers::ModelMisfit;
 use crate::fastest::FastestError;
 use crate::gcode::{self, CheckError, ReadError};
+use crate::log::LogError;
+use crate::log::columns::ColumnsError;
+use crate::measured::MeasuredError;
 use crate::number::shown;
 use crate::output::OutputError;
 use crate::path::PathError;
@@ -72,6 +75,27 @@ pub enum JobError {
     Ending {
         /// The place.
         path: PathBuf,
+    },
+    /// The log cannot be read.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Log(#[from] LogError),
+    /// What is said of its columns cannot be read.
+    #[error("columns of the log: {error}")]
+    LogColumns {
+        /// Why.
+        error: ColumnsError,
+    },
+    /// The log is not one of the program.
+    #[error("{} is not compared with {}: {error}", log.display(), part.display())]
+    Measured {
+        /// The log.
+        log: PathBuf,
+        /// The program.
+        part: PathBuf,
+        /// Why.
+        #[diagnostic_source]
+        error: MeasuredError,
     },
     /// No plan is within the tolerance.
     #[error("{}: {error}", part.display())]

@@ -45,7 +45,7 @@ const TIE_MM: f64 = 1e-9;
 const MAX_STEPS: f64 = 512.0;
 
 /// How long after the reference a following tool has reached a point of the path, s.
-pub(super) fn settled_s(machine: &Machine) -> f64 {
+pub(crate) fn settled_s(machine: &Machine) -> f64 {
     let slowest_1_s = machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
     let delay_s = machine
         .axes

@@ -19,7 +19,7 @@ use crate::trace::{Commanded, Row};
 use crate::vector::{Vector, add_scaled, distance, dot, sub};
 
 /// The uncut path of a run.
-pub(super) struct Uncut {
+pub(crate) struct Uncut {
     /// Servo periods in which the tool has to come to a feed point.
     periods: u64,
     /// Servo periods so far.
@@ -43,7 +43,7 @@ struct FeedPoint {
 
 impl Uncut {
     /// For a tool at rest at `start_mm` that has `periods` servo periods for each feed point.
-    pub(super) fn new(periods: usize, start_mm: Vector) -> Self {
+    pub(crate) fn new(periods: usize, start_mm: Vector) -> Self {
         Self {
             periods: periods.max(1) as u64,
             rows: 0,
@@ -56,7 +56,7 @@ impl Uncut {
     }
 
     /// Takes a row.
-    pub(super) fn row(&mut self, row: &Row) {
+    pub(crate) fn row(&mut self, row: &Row) {
         let from_mm = self.trace_mm[self.trace_mm.len() - 1];
         if row.commanded == Commanded::Cut && self.last_mm != Some(row.path_mm) {
             let again_mm = self.way_mm + distance(row.path_mm, from_mm) - self.largest_mm;
@@ -74,7 +74,7 @@ impl Uncut {
     }
 
     /// The largest distance, mm. A tool within `arrived_mm` of the end has arrived there, though its rows end before it settles.
-    pub(super) fn finish(mut self, arrived_mm: f64) -> f64 {
+    pub(crate) fn finish(mut self, arrived_mm: f64) -> f64 {
         let last_mm = self.trace_mm[self.trace_mm.len() - 1];
         if let Some(end_mm) = self.last_mm
             && distance(last_mm, end_mm) <= arrived_mm

@@ -21,6 +21,7 @@ pub(crate) fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Pa
         fastest: false,
         reader: feedwright::gcode::Settings::default(),
         inputs: Vec::new(),
+        log: None,
         outputs: Outputs { trace: Some(trace.to_owned()), ..Outputs::default() },
     };
     job.run(&()).unwrap().report.runs.remove(0).summary

@@ -1,0 +1,120 @@
+//! A log of a cut has the contour error that the cut had, and a log of anything else is refused with its reason.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+use std::path::{Path, PathBuf};
+
+use feedwright::controllers::{BASELINE, Choices, Entry, Make, Setup};
+use feedwright::gcode::{Reader, Settings};
+use feedwright::log::{Fitness, Log, LogAxis, LogFormat, TorqueUnit};
+use feedwright::machine::Machine;
+use feedwright::measured::{MeasuredError, measured};
+use feedwright::pipeline::{Run, Stages, pieces};
+use feedwright::report::Statistics;
+use feedwright::simulate::RunResult;
+use feedwright::trace::Row;
+
+fn part(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../parts/{name}.ngc"))
+}
+
+fn steps(name: &str) -> feedwright::path::Steps<'static> {
+    pieces(Reader::open(&part(name), Settings::default()).unwrap().map_while(Result::ok))
+}
+
+fn tnv40() -> Machine {
+    Machine::load("tnv40".as_ref()).unwrap()
+}
+
+/// The part, cut open loop: its rows, and what the run said.
+fn cut(name: &str) -> (Vec<Row>, Statistics, RunResult) {
+    let machine = tnv40();
+    let choices = Choices::default();
+    let mut setup = Setup::new(&machine, &choices);
+    let mut controller = Make::<2>::make(Entry::find(BASELINE).unwrap(), &mut setup);
+    let (mut rows, mut statistics) = (Vec::new(), Statistics::new());
+    let run = Run::on(&machine).cut(|| Ok(steps(name)), &mut *controller, &mut [&mut rows, &mut statistics]).unwrap();
+    (rows, statistics, run)
+}
+
+/// Rows as a recorder has them, in coordinates that are shifted.
+fn log(rows: &[Row], shift_mm: [f64; 2]) -> Log {
+    let axis = |name: &str, i: usize| LogAxis {
+        name: name.to_owned(),
+        command_mm: rows.iter().map(|row| row.path_mm[i] + shift_mm[i]).collect(),
+        actual_mm: rows.iter().map(|row| row.act_mm[i] + shift_mm[i]).collect(),
+        torque: None,
+        torque_unit: TorqueUnit::Unknown,
+        step_mm: 0.0,
+        verdict: Fitness::ForControl,
+    };
+    Log {
+        format: LogFormat::TextTable,
+        sample_time_s: 0.001,
+        stretches: vec![0..rows.len()],
+        time_s: rows.iter().map(|row| row.t_s).collect(),
+        axes: vec![axis("x", 0), axis("y", 1)],
+        findings: Vec::new(),
+    }
+}
+
+fn compared(log: &Log, name: &str) -> Result<(Statistics, RunResult), MeasuredError> {
+    let machine = tnv40();
+    let mut reference = Stages::of(&machine).reference(steps(name), &machine).unwrap();
+    let mut statistics = Statistics::new();
+    measured(log, &machine, 2, &mut reference, &mut [&mut statistics], &()).map(|run| (statistics, run))
+}
+
+#[test]
+fn a_log_has_the_contour_error_of_the_cut() {
+    for name in ["circle", "star", "square", "eight", "slot"] {
+        let (rows, simulated, run) = cut(name);
+        for shift_mm in [[0.0; 2], [-123.4, 56.7]] {
+            let (found, result) = compared(&log(&rows, shift_mm), name).unwrap();
+            for (measured_um, simulated_um) in [
+                (found.rms_um(), simulated.rms_um()),
+                (found.max_um(), simulated.max_um()),
+                (1e3 * result.uncut_mm, 1e3 * run.uncut_mm),
+            ] {
+                // The shift is known as well as two boxes that are sampled apart fill each other.
+                assert!(
+                    (measured_um / simulated_um - 1.0).abs() < 0.01,
+                    "{name} {shift_mm:?}: {measured_um} {simulated_um}; {} {} {}",
+                    found.rms_um(),
+                    found.max_um(),
+                    result.uncut_mm
+                );
+            }
+            assert!(result.time_s <= run.time_s + 0.002, "{name}: {} {}", result.time_s, run.time_s);
+        }
+    }
+}
+
+#[test]
+fn a_log_of_another_program_is_refused() {
+    let (rows, ..) = cut("star");
+    let other = compared(&log(&rows, [0.0; 2]), "circle");
+    assert!(matches!(other, Err(MeasuredError::NotBegun { .. } | MeasuredError::Leaves { .. })));
+    let (rows, ..) = cut("circle");
+    // The circle begins where it does not, and leaves it.
+    let mut wrong = log(&rows, [0.0; 2]);
+    let half = rows.len() / 2;
+    wrong.axes[0].command_mm[half..].iter_mut().for_each(|x_mm| *x_mm += 5.0);
+    assert!(matches!(compared(&wrong, "circle"), Err(MeasuredError::Leaves { off_mm, .. }) if off_mm > 1.0));
+}
+
+#[test]
+fn half_a_log_and_one_with_a_gap_or_without_an_axis_are_refused() {
+    let (rows, ..) = cut("circle");
+    let half = log(&rows[..rows.len() / 2], [0.0; 2]);
+    assert!(
+        matches!(compared(&half, "circle"), Err(MeasuredError::EndsEarly { share, .. }) if (0.3..0.7).contains(&share))
+    );
+    let mut gap = log(&rows, [0.0; 2]);
+    gap.stretches = vec![0..100, 100..rows.len()];
+    assert!(matches!(compared(&gap, "circle"), Err(MeasuredError::Gap { .. })));
+    let mut without = log(&rows, [0.0; 2]);
+    without.axes.pop();
+    let message = compared(&without, "circle").unwrap_err().to_string();
+    assert_eq!(message, "the log has no axis y, which the program moves; it has x");
+}
