@@ -21,6 +21,8 @@ const PERIOD_S: f64 = 1e-3;
 const KEPT: usize = 20;
 /// Half a unit of the last decimal that is recorded, in each axis, and rounding of sums over some thousand periods.
 const SAME_MM: f64 = 2e-6;
+/// The same where radii are rounded: the path has arcs in place of a spiral, and the spiral is found again from those.
+const SAME_SPIRAL_MM: f64 = 3e-4;
 
 fn constraints() -> Constraints {
     let path = PathLimits {
@@ -79,10 +81,11 @@ fn commands_are_those_of_linuxcnc() {
         let name = program.file_stem().unwrap().display();
         let ours = commands(&program, planner("linuxcnc").unwrap());
         assert_eq!(ours.len() - 1, periods, "{name}");
+        let same_mm = if name.to_string() == "arcs_rounded" { SAME_SPIRAL_MM } else { SAME_MM };
         for (i, theirs) in theirs.iter().enumerate() {
             let ours = ours[KEPT * i];
             let away_mm = (0..3).map(|k| (ours[k] - theirs[k]).abs()).fold(0.0, f64::max);
-            assert!(away_mm < SAME_MM, "{name}, period {}: {ours:?} {theirs:?}", KEPT * i);
+            assert!(away_mm < same_mm, "{name}, period {}: {ours:?} {theirs:?}", KEPT * i);
         }
     }
 }

@@ -182,7 +182,9 @@ impl BlendCorner {
         if norm(circle.rise_mm) > 0.0 || !(parallel(1.0) || parallel(-1.0)) {
             return None;
         }
-        let outward = sub(self.point_mm, circle.center_mm);
+        let center_mm = add_scaled(circle.center_mm, circle.growth_mm(), self.tangents[i]);
+        let outward = sub(self.point_mm, center_mm);
+        let radius_mm = norm(outward);
         let curves_in =
             if i == 0 { dot(outward, self.tangents[1]) < 0.0 } else { dot(outward, self.tangents[0]) > 0.0 };
         let part = if i == 0 { 2.0 / 3.0 } else { 1.0 / 3.0 };
@@ -193,8 +195,10 @@ impl BlendCorner {
             self.directions[i] = scale(1.0 / norm(secant).max(f64::MIN_POSITIVE), secant);
             self.theta = self.theta.min(theta - 0.25 * most);
         }
-        let length_mm = circle.radius_mm * if curves_in { (0.25 * most).sin() } else { most };
-        Some(CornerSide { circle: Some((*circle, curves_in, most)), length_mm })
+        let length_mm = radius_mm * if curves_in { (0.25 * most).sin() } else { most };
+        // A spiral counts as the circle that touches it.
+        let touching = CircleShape { center_mm, radius_mm, ..*circle };
+        Some(CornerSide { circle: Some((touching, curves_in, most)), length_mm })
     }
 
     fn size(
@@ -301,9 +305,11 @@ impl BlendCorner {
     ) -> bool {
         let most = NORMAL_RATIO * KINK_PART * size.accel_mm_s2 / (size.planned_mm_s / PERIOD_S);
         let others = [left[0].tangents()[1], left[1].tangents()[0]];
+        let radii_mm = shape.ends_mm.map(norm);
+        let growth_mm = (radii_mm[1] - radii_mm[0]) / shape.angle;
         (0..2).filter(|&i| sides[i].circle.is_some()).all(|i| {
-            let own = cross(self.across, shape.ends_mm[i]);
-            angle(own, others[i]) <= most
+            let round = cross(self.across, shape.ends_mm[i]);
+            angle(add_scaled(round, growth_mm / radii_mm[i], shape.ends_mm[i]), others[i]) <= most
         })
     }
 }

@@ -3,10 +3,10 @@
 
 use std::collections::VecDeque;
 
-use super::limits::DirectionLimits;
+use super::limits::{DirectionLimits, NORMAL_RATIO};
 use super::shape::{CircleShape, LineShape, SegmentShape};
 use crate::gcode::canon::Corner;
-use crate::path::{Curve, Piece};
+use crate::path::Piece;
 use crate::vector::{add_scaled, distance, dot, norm, sub};
 
 /// Most points of a line that is joined.
@@ -20,6 +20,13 @@ const MOST_CHORDS: f64 = 1e6;
 
 /// Turned more than this out of the plane of X and Y a circle is not flat enough to be two lines.
 const IN_XY: f64 = 1.0 - 1e-9;
+
+/// Parts of a spiral turn by the same angle, to this part of it, and meet within a milliradian.
+const SAME_ANGLE: f64 = 1e-3;
+const SAME_DIRECTION: f64 = 1.0 - 5e-7;
+
+/// Most parts of a spiral.
+const MOST_PARTS: usize = 4096;
 
 /// A block.
 #[derive(Debug, Clone)]
@@ -69,6 +76,30 @@ impl BlockMode {
     }
 }
 
+/// Circles of one line of the program, each tangent to the one before: an arc with unequal radii.
+#[derive(Debug, Default)]
+struct ArcParts {
+    parts: Vec<CircleShape>,
+    line: u32,
+    /// Where they begin and end on the program.
+    s_mm: [f64; 2],
+    end_mm: [f64; 3],
+}
+
+impl ArcParts {
+    /// Whether a circle is the next part. Circles with the same radius are motions of their own.
+    fn goes_on(&self, next: &CircleShape, line: u32) -> bool {
+        self.parts.last().is_some_and(|last| {
+            line == self.line
+                && last.radius_mm != next.radius_mm
+                && dot(last.normal, next.normal) > IN_XY
+                && (last.angle - next.angle).abs() < SAME_ANGLE * next.angle
+                && dot(last.tangent(last.angle), next.tangent(0.0)) > SAME_DIRECTION
+                && self.parts.len() < MOST_PARTS
+        })
+    }
+}
+
 /// Makes blocks of pieces.
 #[derive(Debug)]
 pub(super) struct BlockMaker {
@@ -78,6 +109,8 @@ pub(super) struct BlockMaker {
     from: ([f64; 3], f64),
     /// Points that are joined.
     chain: Vec<([f64; 3], f64)>,
+    /// Circles that may be parts of a spiral.
+    arcs: ArcParts,
     /// Blocks that are made.
     pub ready: VecDeque<PlannerBlock>,
 }
@@ -85,12 +118,20 @@ pub(super) struct BlockMaker {
 impl BlockMaker {
     /// None yet.
     pub(super) fn new(limits: DirectionLimits) -> Self {
-        Self { limits, mode: None, from: ([0.0; 3], 0.0), chain: Vec::new(), ready: VecDeque::new() }
+        Self {
+            limits,
+            mode: None,
+            from: ([0.0; 3], 0.0),
+            chain: Vec::new(),
+            arcs: ArcParts::default(),
+            ready: VecDeque::new(),
+        }
     }
 
     /// The tool rests at a point; arc length begins again.
     pub(super) fn begin(&mut self, at_mm: [f64; 3]) {
         self.chain.clear();
+        self.arcs = ArcParts::default();
         self.from = (at_mm, 0.0);
     }
 
@@ -101,39 +142,50 @@ impl BlockMaker {
             self.mode = Some(mode);
         }
         let end_mm = piece.curve.at(piece.length_mm).position_mm;
-        let (middle_s_mm, end_s_mm) = (s_mm + 0.5 * piece.length_mm, s_mm + piece.length_mm);
-        match (CircleShape::of(piece), &piece.curve) {
-            (Some(circle), _) => {
-                let flat = circle.normal[2].abs() > IN_XY;
-                let away_mm = circle.radius_mm * (1.0 - (0.5 * circle.angle).cos());
-                if flat && away_mm < mode.joins_within_mm() {
-                    self.see(&mode, circle.at(0.5 * circle.angle), middle_s_mm);
-                    self.see(&mode, end_mm, end_s_mm);
-                } else {
-                    self.flush();
-                    self.circle(circle, &mode, [s_mm, end_s_mm]);
-                    self.from = (end_mm, end_s_mm);
-                }
+        let end_s_mm = s_mm + piece.length_mm;
+        if let Some(circle) = CircleShape::of(piece) {
+            if !self.arcs.goes_on(&circle, piece.line) {
+                self.finish_arc();
+                self.arcs = ArcParts { line: piece.line, s_mm: [s_mm, s_mm], ..ArcParts::default() };
             }
-            (None, Curve::Line(_)) => self.see(&mode, end_mm, end_s_mm),
-            (None, _) => {
-                let chords = chords(piece);
-                for i in 1..=chords {
-                    let along_mm = piece.length_mm * i as f64 / chords as f64;
-                    self.see(&mode, piece.curve.at(along_mm).position_mm, s_mm + along_mm);
-                }
-            }
+            self.arcs.parts.push(circle);
+            self.arcs.s_mm[1] = end_s_mm;
+            self.arcs.end_mm = end_mm;
+            return;
+        }
+        self.finish_arc();
+        let chords = if piece.curve.is_straight() { 1 } else { chords(piece) };
+        for i in 1..chords {
+            let along_mm = piece.length_mm * i as f64 / chords as f64;
+            self.see(&mode, piece.curve.at(along_mm).position_mm, s_mm + along_mm);
+        }
+        self.see(&mode, end_mm, end_s_mm);
+    }
+
+    /// The circles that wait are a whole motion.
+    fn finish_arc(&mut self) {
+        let ArcParts { parts, s_mm, end_mm, .. } = std::mem::take(&mut self.arcs);
+        let (Some(circle), Some(mode)) = (CircleShape::spiral(&parts), self.mode) else { return };
+        let away_mm = circle.radius_mm * (1.0 - (0.5 * circle.angle).cos());
+        if circle.normal[2].abs() > IN_XY && away_mm < mode.joins_within_mm() {
+            let middle = CircleShape { growth: 0.0, ..circle }.at(0.5 * circle.angle);
+            self.see(&mode, middle, 0.5 * (s_mm[0] + s_mm[1]));
+            self.see(&mode, end_mm, s_mm[1]);
+        } else {
+            self.flush_lines();
+            self.circle(circle, &mode, s_mm);
+            self.from = (end_mm, s_mm[1]);
         }
     }
 
     /// The next point.
     fn see(&mut self, mode: &BlockMode, point: [f64; 3], s_mm: f64) {
         if !self.chain.is_empty() && !self.is_linkable(point, mode.joins_within_mm()) {
-            self.flush();
+            self.flush_lines();
         }
         self.chain.push((point, s_mm));
         if mode.is_rotary || mode.is_rapid {
-            self.flush();
+            self.flush_lines();
         }
     }
 
@@ -152,8 +204,14 @@ impl BlockMaker {
             })
     }
 
-    /// Makes a line of the points that wait.
+    /// Makes blocks of all that waits.
     pub(super) fn flush(&mut self) {
+        self.finish_arc();
+        self.flush_lines();
+    }
+
+    /// Makes a line of the points that wait.
+    fn flush_lines(&mut self) {
         let (Some(&(end_mm, end_s_mm)), Some(mode)) = (self.chain.last(), self.mode) else { return };
         if let Some(line) = LineShape::new(self.from.0, end_mm) {
             let mut places_mm = vec![[0.0, self.from.1]];
@@ -178,13 +236,15 @@ impl BlockMaker {
     /// A circle keeps the limits of the plane in every direction, and those of the chord for what goes along.
     fn circle(&mut self, circle: CircleShape, mode: &BlockMode, s_mm: [f64; 2]) {
         let [axes_mm_s, axes_mm_s2] = self.limits.of_plane(circle.normal);
-        let round_mm_s = (super::limits::NORMAL_RATIO * axes_mm_s2 * circle.radius_mm).sqrt();
+        let least_mm = circle.radius_mm.min(circle.end_radius_mm());
+        let round_mm_s = (NORMAL_RATIO * axes_mm_s2 * least_mm.hypot(circle.growth_mm())).sqrt();
         let chord = sub(circle.at(circle.angle), circle.at(0.0));
         let of_chord = |limits: [f64; 3]| (0..3).map(|k| chord[k].abs() / limits[k]).fold(0.0, f64::max);
+        let flat_mm = (least_mm * circle.angle).hypot(circle.growth * circle.radius_mm);
+        let way_mm = flat_mm.hypot(norm(circle.rise_mm));
+        let highest_mm_s = way_mm / (flat_mm / axes_mm_s.min(round_mm_s)).max(of_chord(self.limits.velocity_mm_s));
+        let accel_mm_s2 = way_mm / (flat_mm / axes_mm_s2).max(of_chord(self.limits.accel_mm_s2));
         let length_mm = circle.length_mm();
-        let highest_mm_s =
-            length_mm / (circle.flat_mm() / axes_mm_s.min(round_mm_s)).max(of_chord(self.limits.velocity_mm_s));
-        let accel_mm_s2 = length_mm / (circle.flat_mm() / axes_mm_s2).max(of_chord(self.limits.accel_mm_s2));
         let places_mm = vec![[0.0, s_mm[0]], [length_mm, s_mm[1]]];
         self.block(SegmentShape::Circle(circle), places_mm, mode, [highest_mm_s, accel_mm_s2]);
     }

@@ -18,7 +18,7 @@ pub(super) struct LineShape {
     pub length_mm: f64,
 }
 
-/// A circle or helix: `center + cos(phi) first + sin(phi) second + rise phi / angle`.
+/// A circle, helix or spiral: `center + (1 + growth phi / angle) (cos(phi) first + sin(phi) second) + rise phi / angle`.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CircleShape {
     /// Centre, beside the start.
@@ -29,10 +29,12 @@ pub(super) struct CircleShape {
     pub second_mm: Vector,
     /// Unit vector of the axis that it turns about, to the left.
     pub normal: Vector,
-    /// Radius.
+    /// Radius at the start.
     pub radius_mm: f64,
     /// Angle turned.
     pub angle: f64,
+    /// By which part of itself the radius grows.
+    pub growth: f64,
     /// Way along the axis.
     pub rise_mm: Vector,
 }
@@ -101,29 +103,72 @@ impl CircleShape {
             normal: cross(forward, inward),
             radius_mm,
             angle: in_plane * piece.length_mm / radius_mm,
+            growth: 0.0,
             rise_mm: scale(piece.length_mm, rise),
         };
         (shape.angle.is_finite() && shape.angle > 0.0).then_some(shape)
     }
 
+    /// The spiral of which circles are the parts, each turning by as much: the one through the beginning, a joint, and the end.
+    pub(super) fn spiral(parts: &[Self]) -> Option<Self> {
+        let (first, last) = (parts.first()?, parts.last()?);
+        let half = parts.len() / 2;
+        let (joint, share) = (parts.get(half)?, half as f64 / parts.len() as f64);
+        let (angle, rise_mm) = parts
+            .iter()
+            .fold((0.0, [0.0; 3]), |(angle, rise), part| (angle + part.angle, add_scaled(rise, 1.0, part.rise_mm)));
+        if half == 0 {
+            return Some(*first);
+        }
+        // In the plane, with complex numbers, from the beginning: c = (p_m - s e / E p_N) / (1 - e (1 - s) - s e / E).
+        let frame = [scale(1.0 / first.radius_mm, first.first_mm), scale(1.0 / first.radius_mm, first.second_mm)];
+        let start_mm = first.at(0.0);
+        let seen = |point: Vector| frame.map(|axis| dot(sub(point, start_mm), axis));
+        let (middle, end) = (seen(joint.at(0.0)), seen(last.at(last.angle)));
+        let turn = |angle: f64, size: f64| [size * angle.cos(), size * angle.sin()];
+        let back = turn((share - 1.0) * angle, share);
+        let there = turn(share * angle, 1.0 - share);
+        let divisor = [1.0 - there[0] - back[0], -there[1] - back[1]];
+        let moved = times(back, end);
+        let center = over([middle[0] - moved[0], middle[1] - moved[1]], divisor)?;
+        let center_mm = add_scaled(add_scaled(start_mm, center[0], frame[0]), center[1], frame[1]);
+        let first_mm = sub(start_mm, center_mm);
+        let radius_mm = norm(first_mm);
+        let end_radius_mm = (end[0] - center[0]).hypot(end[1] - center[1]);
+        let second_mm = cross(first.normal, first_mm);
+        let growth = end_radius_mm / radius_mm - 1.0;
+        let shape = Self { center_mm, first_mm, second_mm, radius_mm, angle, growth, rise_mm, ..*first };
+        growth.is_finite().then_some(shape)
+    }
+
     /// A point of it.
     pub(super) fn at(&self, angle: f64) -> Vector {
-        let (sin, cos) = angle.sin_cos();
-        std::array::from_fn(|k| {
-            self.center_mm[k] + cos * self.first_mm[k] + sin * self.second_mm[k] + angle / self.angle * self.rise_mm[k]
-        })
+        let radial = self.radial_mm(angle);
+        std::array::from_fn(|k| self.center_mm[k] + radial[k] + angle / self.angle * self.rise_mm[k])
     }
 
     /// From the axis to a point of it.
     pub(super) fn radial_mm(&self, angle: f64) -> Vector {
         let (sin, cos) = angle.sin_cos();
-        add_scaled(scale(cos, self.first_mm), sin, self.second_mm)
+        scale(1.0 + self.growth * angle / self.angle, add_scaled(scale(cos, self.first_mm), sin, self.second_mm))
     }
 
     /// Unit tangent.
     pub(super) fn tangent(&self, angle: f64) -> Vector {
-        let tangent = add_scaled(cross(self.normal, self.radial_mm(angle)), 1.0 / self.angle, self.rise_mm);
+        let radial = self.radial_mm(angle);
+        let round = add_scaled(cross(self.normal, radial), 1.0 / self.angle, self.rise_mm);
+        let tangent = add_scaled(round, self.growth_mm() / norm(radial), radial);
         scale(1.0 / norm(tangent), tangent)
+    }
+
+    /// By how much the radius grows in a radian.
+    pub(super) fn growth_mm(&self) -> f64 {
+        self.growth * self.radius_mm / self.angle
+    }
+
+    /// Radius at the end.
+    pub(super) fn end_radius_mm(&self) -> f64 {
+        self.radius_mm * (1.0 + self.growth)
     }
 
     /// Length.
@@ -131,25 +176,45 @@ impl CircleShape {
         self.flat_mm().hypot(norm(self.rise_mm))
     }
 
+    /// Ways in a radian at both ends; between them LinuxCNC takes them to change evenly.
+    fn slopes_mm(&self) -> [f64; 2] {
+        [self.radius_mm, self.end_radius_mm()].map(|mm| mm.hypot(self.growth_mm()))
+    }
+
     /// Length without the rise.
     pub(super) fn flat_mm(&self) -> f64 {
-        self.radius_mm * self.angle
+        let [start, end] = self.slopes_mm();
+        0.5 * self.angle * (start + end)
+    }
+
+    /// Angle after a part of the length.
+    pub(super) fn angle_after(&self, part: f64) -> f64 {
+        let [start, end] = self.slopes_mm();
+        let along_mm = part * self.flat_mm();
+        let square = start * start + 2.0 * (end - start) / self.angle * along_mm;
+        2.0 * along_mm / (start + square.max(0.0).sqrt())
     }
 
     /// Radius of curvature.
     pub(super) fn curvature_radius_mm(&self) -> f64 {
-        self.radius_mm + dot(self.rise_mm, self.rise_mm) / self.radius_mm
+        let growth = self.growth_mm().powi(2);
+        let inner = growth + self.radius_mm * self.radius_mm;
+        let flat_mm = inner * inner.sqrt() / (inner + growth);
+        flat_mm + dot(self.rise_mm, self.rise_mm) / flat_mm
     }
 
     /// What is left without a part of its beginning.
     pub(super) fn without_start(&self, angle: f64) -> Self {
         let part = (self.angle - angle) / self.angle;
-        let (sin, cos) = angle.sin_cos();
+        let first_mm = self.radial_mm(angle);
+        let radius_mm = norm(first_mm);
         Self {
             center_mm: add_scaled(self.center_mm, angle / self.angle, self.rise_mm),
-            first_mm: self.radial_mm(angle),
-            second_mm: add_scaled(scale(cos, self.second_mm), -sin, self.first_mm),
+            first_mm,
+            second_mm: cross(self.normal, first_mm),
+            radius_mm,
             angle: self.angle - angle,
+            growth: self.end_radius_mm() / radius_mm - 1.0,
             rise_mm: scale(part, self.rise_mm),
             ..*self
         }
@@ -158,8 +223,19 @@ impl CircleShape {
     /// What is left without a part of its end.
     pub(super) fn without_end(&self, angle: f64) -> Self {
         let part = (self.angle - angle) / self.angle;
-        Self { angle: self.angle - angle, rise_mm: scale(part, self.rise_mm), ..*self }
+        let (rise_mm, growth) = (scale(part, self.rise_mm), part * self.growth);
+        Self { angle: self.angle - angle, growth, rise_mm, ..*self }
     }
+}
+
+/// Product and quotient of complex numbers.
+fn times(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
+fn over(a: [f64; 2], b: [f64; 2]) -> Option<[f64; 2]> {
+    let square = b[0] * b[0] + b[1] * b[1];
+    (square > 0.0).then(|| times(a, [b[0] / square, -b[1] / square]))
 }
 
 impl BlendShape {
@@ -209,7 +285,7 @@ impl SegmentShape {
     pub(super) fn at(&self, along_mm: f64) -> Vector {
         match self {
             Self::Line(line) => line.at(along_mm),
-            Self::Circle(circle) => circle.at(along_mm / circle.length_mm() * circle.angle),
+            Self::Circle(circle) => circle.at(circle.angle_after(along_mm / circle.length_mm())),
             Self::Blend(blend) => blend.at(along_mm),
         }
     }
