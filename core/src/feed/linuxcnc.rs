@@ -22,6 +22,10 @@
 //! The tolerance P bounds blends alone: Q comes on top. A block takes at least 1.02 servo periods. Corners are laid out for an override of
 //! 200 %.
 //!
+//! LinuxCNC repeats the beginning of a line that has begun and is then taken into the blend behind it, which happens to lines of a few um at the
+//! beginning of a motion, and so ends up to 1 um beside the path, measured on the real one. The model does the same, and comes to the end of the
+//! path in the last servo period.
+//!
 //! Not modelled: overrides and holds while it moves, spindle synchronisation, probing, UVW as a path of their own; a computer that is late
 //! with a block (the queue is then shorter, and the motion slower, for some periods); `G5` as LinuxCNC cuts it into arcs: here a spline is
 //! lines within 1 um of it.
@@ -51,7 +55,7 @@ mod joint_spline;
 use super::{FeedPlanner, Span, feed_mm_s};
 use crate::constraints::Constraints;
 use crate::path::Piece;
-use crate::vector::{Vector, add_scaled};
+use crate::vector::{Vector, add_scaled, distance};
 use blocks::{BlockMaker, BlockMode, PlannerBlock};
 use joint_spline::{JointSpline, PeriodMotion, PeriodPoint};
 use limits::{DirectionLimits, PERIOD_S};
@@ -60,6 +64,9 @@ use std::collections::VecDeque;
 
 /// No block comes into the queue while it holds so many segments. LinuxCNC's holds 2000; the look-ahead goes back over 50.
 const MOST_SEGMENTS: usize = 200;
+
+/// Rounding of sums over many periods.
+const BESIDE_MM: f64 = 1e-8;
 
 /// Servo periods in which a segment may stand still.
 const MOST_STILL: u32 = 1000;
@@ -71,8 +78,8 @@ enum QueueInput {
     Start(Vector),
     /// A block.
     Block(Box<PlannerBlock>),
-    /// The tool comes to rest, at so much arc length.
-    Rest(f64),
+    /// The tool comes to rest, at this end of the path.
+    Rest(PeriodPoint),
 }
 
 /// A piece that has been pushed.
@@ -97,8 +104,9 @@ pub struct Linuxcnc {
     pushed: u64,
     /// Rests so far, of what was pushed.
     rests: u64,
-    /// Arc length behind the last rest, of what was pushed.
+    /// Arc length behind the last rest, and where the path ends, of what was pushed.
     s_mm: f64,
+    end_mm: Vector,
     queue: SegmentQueue,
     spline: JointSpline,
     at: PeriodPoint,
@@ -119,6 +127,7 @@ impl Linuxcnc {
             pushed: 0,
             rests: 0,
             s_mm: 0.0,
+            end_mm: [0.0; 3],
             queue: SegmentQueue::new(limits),
             spline: JointSpline::at_rest(at),
             at,
@@ -137,7 +146,8 @@ impl Linuxcnc {
         self.blocks.flush();
         self.take_blocks();
         if self.s_mm > 0.0 {
-            self.inputs.push_back(QueueInput::Rest(self.s_mm));
+            let end = PeriodPoint { position_mm: self.end_mm, station_mm: self.s_mm };
+            self.inputs.push_back(QueueInput::Rest(end));
             self.rests += 1;
         }
         self.s_mm = 0.0;
@@ -160,10 +170,12 @@ impl Linuxcnc {
                 }
                 self.run_period();
             }
-            Some(QueueInput::Rest(s_mm)) if self.queue.segments.is_empty() => {
-                self.at.station_mm = *s_mm;
+            Some(QueueInput::Rest(end)) if self.queue.segments.is_empty() => {
+                // The spline rests two periods after its points; one more where LinuxCNC's motion ends beside the path.
+                let beside = distance(self.at.position_mm, end.position_mm) > BESIDE_MM;
+                self.at = *end;
                 self.inputs.pop_front();
-                for _ in 0..2 {
+                for _ in 0..if beside { 3 } else { 2 } {
                     let motion = self.spline.next(self.at);
                     self.hand_out(&motion);
                 }
@@ -255,6 +267,7 @@ impl FeedPlanner for Linuxcnc {
         self.pieces.push_back(PushedPiece { number, rests, s_mm, length_mm: piece.length_mm });
         self.pushed += 1;
         self.s_mm += piece.length_mm;
+        self.end_mm = piece.curve.at(piece.length_mm).position_mm;
         self.take_blocks();
     }
 

@@ -37,6 +37,8 @@ pub(super) struct CircleShape {
     pub growth: f64,
     /// Way along the axis.
     pub rise_mm: Vector,
+    /// What rounding leaves between its end and that of the program.
+    pub left_over_mm: Vector,
 }
 
 /// A circular arc between two segments, with what is left of a line that it replaces before it.
@@ -105,6 +107,7 @@ impl CircleShape {
             angle: in_plane * piece.length_mm / radius_mm,
             growth: 0.0,
             rise_mm: scale(piece.length_mm, rise),
+            left_over_mm: [0.0; 3],
         };
         (shape.angle.is_finite() && shape.angle > 0.0).then_some(shape)
     }
@@ -138,13 +141,15 @@ impl CircleShape {
         let second_mm = cross(first.normal, first_mm);
         let growth = end_radius_mm / radius_mm - 1.0;
         let shape = Self { center_mm, first_mm, second_mm, radius_mm, angle, growth, rise_mm, ..*first };
-        growth.is_finite().then_some(shape)
+        let left_over_mm = sub(last.at(last.angle), shape.at(angle));
+        growth.is_finite().then_some(Self { left_over_mm, ..shape })
     }
 
     /// A point of it.
     pub(super) fn at(&self, angle: f64) -> Vector {
         let radial = self.radial_mm(angle);
-        std::array::from_fn(|k| self.center_mm[k] + radial[k] + angle / self.angle * self.rise_mm[k])
+        let part = angle / self.angle;
+        std::array::from_fn(|k| self.center_mm[k] + radial[k] + part * (self.rise_mm[k] + self.left_over_mm[k]))
     }
 
     /// From the axis to a point of it.
@@ -209,13 +214,14 @@ impl CircleShape {
         let first_mm = self.radial_mm(angle);
         let radius_mm = norm(first_mm);
         Self {
-            center_mm: add_scaled(self.center_mm, angle / self.angle, self.rise_mm),
+            center_mm: add_scaled(self.center_mm, 1.0 - part, add_scaled(self.rise_mm, 1.0, self.left_over_mm)),
             first_mm,
             second_mm: cross(self.normal, first_mm),
             radius_mm,
             angle: self.angle - angle,
             growth: self.end_radius_mm() / radius_mm - 1.0,
             rise_mm: scale(part, self.rise_mm),
+            left_over_mm: scale(part, self.left_over_mm),
             ..*self
         }
     }
@@ -223,8 +229,8 @@ impl CircleShape {
     /// What is left without a part of its end.
     pub(super) fn without_end(&self, angle: f64) -> Self {
         let part = (self.angle - angle) / self.angle;
-        let (rise_mm, growth) = (scale(part, self.rise_mm), part * self.growth);
-        Self { angle: self.angle - angle, growth, rise_mm, ..*self }
+        let [rise_mm, left_over_mm] = [self.rise_mm, self.left_over_mm].map(|way| scale(part, way));
+        Self { angle: self.angle - angle, growth: part * self.growth, rise_mm, left_over_mm, ..*self }
     }
 }
 
