@@ -118,6 +118,9 @@ pub(crate) struct PlanArgs {
     /// path_tolerance_um.
     #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
+    /// Planner in place of the one that suits the machine: trapezoid, time-optimal, unlimited, or linuxcnc, which plans as LinuxCNC 2.9 does.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) planner: Option<String>,
     /// Plan each path from rest to rest as a whole too, and tell its time: what no plan can be faster than by much.
     #[arg(long)]
     pub(crate) bound: bool,

@@ -68,3 +68,18 @@ fn a_cut_takes_the_planner_of_its_machine() {
     // The cut ends when the tool has settled behind the plan.
     assert!(open_loop_s >= planned_s - 1e-3 && open_loop_s < planned_s + 1.0, "{open_loop_s} {planned_s}");
 }
+
+#[test]
+fn a_planner_is_taken_by_name() {
+    let folder = folder();
+    let planner = |name: &str| planned(&folder, &["--machine", "m.toml", "--planner", name]);
+    let found = planner("linuxcnc");
+    assert_eq!(found["planner"], "linuxcnc");
+    assert!(found["cutting_s"].as_f64().unwrap() > 0.1 && found["largest_deviation_um"].as_f64().is_some(), "{found}");
+    assert_eq!(planner("trapezoid")["planner"], "trapezoid");
+    let unknown = ["plan", "two.ngc", "--machine", "m.toml", "--planner", "grbl"];
+    folder.run(&unknown).refused(&["grbl", "time-optimal, linuxcnc"]);
+    // Its axes need limits of their own.
+    let without = ["plan", "two.ngc", "--machine", "tnv40", "--planner", "linuxcnc"];
+    folder.run(&without).refused(&["max_velocity_mm_s"]);
+}

@@ -108,10 +108,24 @@ pub fn cycle_time_within<'p>(
     machine: &Machine,
     constraints: &Constraints,
     bound: bool,
+    steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
+    watch: &dyn Watch,
+) -> Result<CycleTime, RunError> {
+    cycle_time_by(Stages::of(machine), machine, constraints, bound, steps, watch)
+}
+
+/// The same by stages of one's own choice.
+///
+/// # Errors
+/// As [`cycle_time`].
+pub fn cycle_time_by<'p>(
+    stages: Stages,
+    machine: &Machine,
+    constraints: &Constraints,
+    bound: bool,
     mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
     watch: &dyn Watch,
 ) -> Result<CycleTime, RunError> {
-    let stages = Stages::of(machine);
     let mut plan =
         Plan::new((stages.blend.make)(steps()?, constraints), constraints, stages.planner, Plc::of(machine))?;
     let mut sampler = Sampler::new(constraints, stages.planner.name);
@@ -236,7 +250,7 @@ impl<'a> Sampler<'a> {
     fn tolerance_mm(&self, piece: &Piece) -> f64 {
         let machine_mm = self.constraints.path_tolerance_mm.unwrap_or(f64::INFINITY);
         match piece.corner {
-            Corner::Continuous { tolerance_mm: Some(tolerance_mm) } => tolerance_mm,
+            Corner::Continuous { tolerance_mm: Some(tolerance_mm), .. } => tolerance_mm,
             _ => machine_mm,
         }
     }

@@ -230,7 +230,7 @@ pub fn with_tolerance<'p>(steps: Steps<'p>, tolerance_mm: f64) -> Steps<'p> {
         step.map(|step| match step {
             Step::Piece(mut piece) => {
                 if matches!(piece.corner, Corner::Continuous { .. }) {
-                    piece.corner = Corner::Continuous { tolerance_mm: Some(tolerance_mm) };
+                    piece.corner = Corner::Continuous { tolerance_mm: Some(tolerance_mm), merge_mm: None };
                 }
                 Step::Piece(piece)
             }

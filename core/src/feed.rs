@@ -16,6 +16,7 @@
 //! | `trapezoid.rs` | member: constant accelerations, time-optimal |
 //! | `unlimited.rs` | null member: every section at its bound |
 //! | `time_optimal.rs` | member: speed and path within the tolerance, axis by axis, with jerk |
+//! | `linuxcnc.rs` | member: what LinuxCNC's own planner makes of the path |
 //! | `plan.rs` | pieces, spans and events on the clock |
 
 pub mod joint;
@@ -24,6 +25,7 @@ pub mod sections;
 pub mod trapezoid;
 pub mod unlimited;
 pub mod time_optimal;
+pub mod linuxcnc;
 
 use crate::constraints::{Constraints, PathLimits};
 use crate::gcode::canon::Event;
@@ -161,6 +163,8 @@ pub struct Member {
     pub about: &'static str,
     /// Whether it needs velocity, acceleration and jerk of each axis; otherwise it keeps the bounds along and across the path.
     pub needs_axes: bool,
+    /// Whether it keeps the jerk of each axis.
+    pub limits_jerk: bool,
     /// Makes one for constraints that have been checked.
     pub make: fn(&Constraints) -> Box<dyn FeedPlanner>,
 }
@@ -171,6 +175,7 @@ pub const MEMBERS: &[Member] = &[
         name: "trapezoid",
         about: "constant tangential acceleration, time-optimal",
         needs_axes: false,
+        limits_jerk: false,
         make: |constraints| {
             let planner = trapezoid::Trapezoid::new(constraints.path.tangential_accel_mm_s2);
             Box::new(Capped::new(constraints, planner))
@@ -180,13 +185,22 @@ pub const MEMBERS: &[Member] = &[
         name: "unlimited",
         about: "no bound on tangential acceleration: the least time that any plan can take",
         needs_axes: false,
+        limits_jerk: false,
         make: |constraints| Box::new(Capped::new(constraints, unlimited::Unlimited::default())),
     },
     Member {
         name: "time-optimal",
         about: "speed and path within the tolerance in least time, with velocity, acceleration and jerk of each axis",
         needs_axes: true,
+        limits_jerk: true,
         make: |constraints| Box::new(time_optimal::TimeOptimal::new(constraints)),
+    },
+    Member {
+        name: "linuxcnc",
+        about: "as LinuxCNC 2.9 plans: velocity and acceleration of each axis without a bound on jerk, its blends of G64",
+        needs_axes: true,
+        limits_jerk: false,
+        make: |constraints| Box::new(linuxcnc::Linuxcnc::new(constraints)),
     },
 ];
 
@@ -196,6 +210,7 @@ pub const WHOLE: Member = Member {
     name: "whole",
     about: "time-optimal, each path from rest to rest as a whole",
     needs_axes: true,
+    limits_jerk: true,
     make: |constraints| Box::new(time_optimal::TimeOptimal::whole(constraints)),
 };
 

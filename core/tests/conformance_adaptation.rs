@@ -49,7 +49,7 @@ fn line_and_circle(length_mm: f64) -> Vec<Canon> {
             end_mm: [to_x, 0.0, 0.0],
             shape,
             feed_mm_s: FEED_MM_S,
-            corner: Corner::Continuous { tolerance_mm: None },
+            corner: Corner::Continuous { tolerance_mm: None, merge_mm: None },
             others: AuxiliaryAxes::default(),
         })
     };

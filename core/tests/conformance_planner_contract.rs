@@ -70,6 +70,7 @@ const REST_TO_REST: Member = Member {
     name: "rest-to-rest",
     about: "constant jerk, a stop at each joint",
     needs_axes: false,
+    limits_jerk: true,
     make: |constraints: &Constraints| {
         let jerk_mm_s3 = constraints.axes.iter().map(|axis| axis.jerk_mm_s3).fold(f64::INFINITY, f64::min);
         Box::new(RestToRest { jerk_mm_s3, ..RestToRest::default() })

@@ -30,7 +30,8 @@ fn linear() -> Machine {
 #[test]
 #[ignore = "plans and cuts a circle some twenty times: cargo test --release --test oracle_fastest -- --ignored"]
 fn a_circle_is_cut_in_the_least_time_of_open_loop() {
-    let steps = contour("circle").unwrap().steps(200.0, Corner::Continuous { tolerance_mm: None }).unwrap();
+    let steps =
+        contour("circle").unwrap().steps(200.0, Corner::Continuous { tolerance_mm: None, merge_mm: None }).unwrap();
     let machine = linear();
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as feedwright::path::Steps<'_>);
     let plan = fastest::<2>(&machine, 10.0, all, &mut OpenLoop, 1, &()).unwrap();
@@ -41,7 +42,8 @@ fn a_circle_is_cut_in_the_least_time_of_open_loop() {
 
 #[test]
 fn a_machine_without_limits_of_its_axes_is_refused() {
-    let steps = contour("circle").unwrap().steps(200.0, Corner::Continuous { tolerance_mm: None }).unwrap();
+    let steps =
+        contour("circle").unwrap().steps(200.0, Corner::Continuous { tolerance_mm: None, merge_mm: None }).unwrap();
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as feedwright::path::Steps<'_>);
     let mut bare = linear();
     bare.axes[1].max_jerk_mm_s3 = None;

@@ -49,8 +49,8 @@ fn corner() -> impl Strategy<Value = Corner> {
     prop::sample::select(vec![
         Corner::ExactStop,
         Corner::ExactPath,
-        Corner::Continuous { tolerance_mm: None },
-        Corner::Continuous { tolerance_mm: Some(0.01) },
+        Corner::Continuous { tolerance_mm: None, merge_mm: None },
+        Corner::Continuous { tolerance_mm: Some(0.01), merge_mm: None },
     ])
 }
 

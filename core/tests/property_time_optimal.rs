@@ -188,7 +188,7 @@ fn exact_stops_rest_at_each_end_and_exact_paths_at_corners() {
 fn a_larger_tolerance_is_not_slower() {
     let square = [[0.0; 3], [20.0, 0.0, 0.0], [20.0, 20.0, 0.0], [0.0, 20.0, 0.0], [0.0; 3]];
     let with = |tolerance_mm: f64| {
-        let corner = Corner::Continuous { tolerance_mm: Some(tolerance_mm) };
+        let corner = Corner::Continuous { tolerance_mm: Some(tolerance_mm), merge_mm: None };
         time_s(&check("square", &constraints(), &path(polyline(&square, 200.0, corner)), tolerance_mm))
     };
     let times = [0.001, 0.01, 0.1].map(with);

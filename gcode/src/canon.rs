@@ -133,6 +133,9 @@ pub enum Corner {
     Continuous {
         /// P of G64.
         tolerance_mm: Option<f64>,
+        /// Q of G64: how far points may lie from a line that stands for several short ones.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        merge_mm: Option<f64>,
     },
 }
 

@@ -90,11 +90,22 @@ fn full_circles_helices_and_turns() {
 #[test]
 fn corners_follow_g61_and_g64() {
     let corners: Vec<Corner> =
-        motions("G0 X1\nG61 X2\nG61.1 X3\nG64 P0.01 X4\nG64 X5\nM2").iter().map(|m| m.corner).collect();
-    let free = Corner::Continuous { tolerance_mm: None };
+        motions("G0 X1\nG61 X2\nG61.1 X3\nG64 P0.01 X4\nG64 X5\nG64 P0.01 Q0 X6\nG20 G64 P1 Q2 X7\nM2")
+            .iter()
+            .map(|m| m.corner)
+            .collect();
+    let free = Corner::Continuous { tolerance_mm: None, merge_mm: None };
     assert_eq!(
         corners,
-        [free, Corner::ExactPath, Corner::ExactStop, Corner::Continuous { tolerance_mm: Some(0.01) }, free]
+        [
+            free,
+            Corner::ExactPath,
+            Corner::ExactStop,
+            Corner::Continuous { tolerance_mm: Some(0.01), merge_mm: None },
+            free,
+            Corner::Continuous { tolerance_mm: Some(0.01), merge_mm: Some(0.0) },
+            Corner::Continuous { tolerance_mm: Some(25.4), merge_mm: Some(50.8) },
+        ]
     );
 }
 

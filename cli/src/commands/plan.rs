@@ -5,12 +5,14 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use feedwright::cycle_time::{CycleTime, cycle_time};
+use feedwright::constraints::Constraints;
+use feedwright::cycle_time::{CycleTime, cycle_time_by};
+use feedwright::feed;
 use feedwright::gcode::{self, Reader};
 use feedwright::job::JobError;
 use feedwright::machine::{Machine, is_path};
 use feedwright::output::{OutputFile, OutputFiles};
-use feedwright::pipeline::pieces;
+use feedwright::pipeline::{Stages, pieces};
 use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
 
@@ -20,6 +22,7 @@ use crate::message::{printed, warn};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let machine = machine(args)?;
+    let stages = stages(args, &machine)?;
     let machine_file = Some(Path::new(&args.machine)).filter(|path| is_path(path));
     let tool_table = args.reader.tool_table.as_deref();
     let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tool_table].into_iter().flatten());
@@ -33,11 +36,13 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let begun = Instant::now();
     // The program was checked from end to end before: a mistake here means that the file changed, and ends it.
     let steps = || Ok(pieces(Reader::open(&args.part, settings.clone())?.map_while(std::result::Result::ok)));
-    let found = cycle_time(&machine, false, steps, &bar)?;
+    let constraints = Constraints::from(&machine);
+    let plan = |bound: bool| cycle_time_by(stages, &machine, &constraints, bound, steps, &bar);
+    let found = plan(false)?;
     let took_s = begun.elapsed().as_secs_f64();
     // The bound is no part of what planning takes.
     let found = if args.bound {
-        let bound_s = cycle_time(&machine, true, steps, &bar)?.bound_s;
+        let bound_s = plan(true)?.bound_s;
         CycleTime { bound_s, ..found }
     } else {
         found
@@ -75,6 +80,19 @@ fn machine(args: &PlanArgs) -> Result<Machine> {
     }
     machine.limits.path_tolerance_um = Some(tolerance_um);
     Ok(machine)
+}
+
+/// The stages that suit the machine, with the planner of the arguments.
+fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
+    let stages = Stages::of(machine);
+    let Some(name) = &args.planner else {
+        return Ok(stages);
+    };
+    let planner = feed::planner(name).ok_or_else(|| {
+        let names: Vec<&str> = feed::MEMBERS.iter().map(|member| member.name).collect();
+        miette!("--planner {name} is not one of {}", names.join(", "))
+    })?;
+    Ok(Stages { planner, ..stages })
 }
 
 /// As in a machine file.

@@ -13,7 +13,7 @@ use crate::path::{PathError, Step};
 /// Feedrate of the contours, mm/s.
 pub const FEED_MM_S: f64 = 50.0;
 /// How corners of the contours are taken: at the speed that the machine's limits allow.
-pub(crate) const CORNER: Corner = Corner::Continuous { tolerance_mm: None };
+pub(crate) const CORNER: Corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
 
 /// The parts in the XY plane that come with the program.
 const PARTS: [(&str, &str); 6] = [

@@ -65,7 +65,7 @@ mod tests {
         normal_accel_mm_s2: 400.0,
         corner_jump_mm_s: 8.0,
     };
-    const BLEND: Corner = Corner::Continuous { tolerance_mm: None };
+    const BLEND: Corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
 
     fn side(direction: f64, length_mm: f64) -> JointSide {
         JointSide { tangent: [direction.cos(), direction.sin(), 0.0], curvature_1_mm: 0.0, length_mm }

@@ -175,7 +175,7 @@ impl TimeOptimal {
         let machine_mm = self.constraints.path_tolerance_mm.unwrap_or(DEFAULT_MM);
         let tolerance_mm = match corner {
             Corner::ExactStop | Corner::ExactPath => EXACT_MM.min(machine_mm),
-            Corner::Continuous { tolerance_mm } => tolerance_mm.unwrap_or(machine_mm),
+            Corner::Continuous { tolerance_mm, .. } => tolerance_mm.unwrap_or(machine_mm),
         };
         tolerance_mm.max(LEAST_MM)
     }

@@ -289,7 +289,7 @@ mod tests {
     #[test]
     fn a_contour_elsewhere_is_the_same_scaled_and_turned() {
         let place = Placement { scale: 1.5, turn_rad: 2.0 };
-        let corner = Corner::Continuous { tolerance_mm: None };
+        let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
         for contour in CONTOURS {
             let (here, there) =
                 (contour.steps(50.0, corner).unwrap(), contour.placed_steps(place, 50.0, corner).unwrap());

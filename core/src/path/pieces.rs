@@ -232,7 +232,7 @@ mod tests {
     use crate::gcode::canon::{Corner, Plane};
 
     fn motion(start_mm: Vector, end_mm: Vector, shape: Shape) -> Canon {
-        let corner = Corner::Continuous { tolerance_mm: None };
+        let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
         Canon::Motion(Motion {
             line: 1,
             kind: MotionKind::Feed,

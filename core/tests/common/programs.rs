@@ -11,7 +11,7 @@ pub(crate) const LIMITS: PathLimits = PathLimits {
     corner_jump_mm_s: 8.0,
 };
 
-pub(crate) const BLEND: Corner = Corner::Continuous { tolerance_mm: None };
+pub(crate) const BLEND: Corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
 
 pub(crate) fn line(start_mm: [f64; 3], end_mm: [f64; 3], feed_mm_s: f64, corner: Corner) -> Canon {
     let kind = MotionKind::Feed;

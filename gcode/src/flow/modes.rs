@@ -158,7 +158,11 @@ impl Interpreter {
                         "the tolerance P of G64 is negative; the smallest is 0",
                     ));
                 }
-                Corner::Continuous { tolerance_mm: tolerance.filter(|&p| p > 0.0) }
+                let merge = block.get(b'q').map(|q| q * self.modal.unit_mm);
+                Corner::Continuous {
+                    tolerance_mm: tolerance.filter(|&p| p > 0.0),
+                    merge_mm: merge.filter(|&q| q >= 0.0),
+                }
             }
         })
     }

@@ -61,7 +61,7 @@ impl Modal {
             feed_mode: FeedMode::PerMinute,
             feed: 0.0,
             feed_unit_mm: 1.0,
-            corner: Corner::Continuous { tolerance_mm: None },
+            corner: Corner::Continuous { tolerance_mm: None, merge_mm: None },
             // As LinuxCNC begins, though its manual says otherwise.
             retract_to_r: true,
             diameter: false,

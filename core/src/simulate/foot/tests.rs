@@ -8,7 +8,7 @@ fn machine() -> Machine {
 }
 
 fn motion(start_mm: Vector, end_mm: Vector, shape: Shape) -> Canon {
-    let (kind, corner) = (MotionKind::Feed, Corner::Continuous { tolerance_mm: None });
+    let (kind, corner) = (MotionKind::Feed, Corner::Continuous { tolerance_mm: None, merge_mm: None });
     Canon::Motion(Motion {
         line: 1,
         kind,
