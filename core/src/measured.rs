@@ -10,7 +10,8 @@
 //!
 //! W is the time in which a loop of the machine has followed, and what a control may delay the command by beside. The record begins where
 //! the command first comes to where the program begins to cut; what it shows before, and the way there, are left out. Positions of the
-//! machine are those of the program but for a shift along each axis, which is found where both fill boxes of the same size.
+//! machine are those of the program but for a shift along each axis, which is found where both fill boxes of the same size; to less than a micrometre it is
+//! known where the command rests before the first cut.
 //!
 //! Actual positions are those of the encoders: what no encoder sees is not in them.
 
@@ -24,7 +25,7 @@ use crate::simulate::foot::settled_s;
 use crate::simulate::uncut::Uncut;
 use crate::simulate::{RunResult, Stopped};
 use crate::trace::{Commanded, Row, Sink};
-use crate::vector::{Vector, distance};
+use crate::vector::{Vector, add_scaled, distance, sub};
 use crate::watch::Watch;
 
 /// What a control may delay the command by before it goes to the drives, s.
@@ -35,16 +36,17 @@ const BACK_MM: f64 = 0.01;
 const REACH: f64 = 3.0;
 const REACH_MM: f64 = 0.02;
 /// The command has come to the beginning where it is this near, mm.
-const BEGUN_MM: f64 = 0.02;
+const BEGUN_MM: f64 = 0.05;
 /// A command further from the path while it cuts is not that of the program, mm.
 const LEFT_MM: f64 = 1.0;
-/// Boxes that differ by less have the same size, mm; a shift that is less is none.
+/// Boxes that differ by less have the same size, mm, and lie in the same place: corners are rounded.
 const SAME_SIZE_MM: f64 = 0.05;
-const NO_SHIFT_MM: f64 = 0.001;
 /// A command that moves by less in a sample rests, mm.
 const RESTS_MM: f64 = 1e-6;
 /// The path is looked at in steps of so much plan time, s.
 const STEP_S: f64 = 0.001;
+/// Halvings of such a step: what is left is a billionth of it.
+const HALVINGS: usize = 30;
 /// Samples between two questions whether to go on.
 const SAMPLES_BETWEEN_CHECKS: usize = 10_000;
 
@@ -140,6 +142,7 @@ pub fn measured(
     let mut record = Record::of(log, axes)?;
     record.shift_mm = planned.shift_mm(&record, axes);
     let first = record.begins(planned.start_mm)?;
+    record.shift_to(first, planned.start_mm);
     let mut comparison = Comparison::new(machine, log.sample_time_s, planned.start_s_mm, &record.at(first));
     for k in first..record.len() {
         let row = comparison.row(&record, first, k, reference)?;
@@ -169,19 +172,19 @@ impl PlannedPath {
         let end_s = reference.read_to_end_s();
         let mut boxes_mm = [NO_BOX; 2];
         let (mut start, mut end_s_mm) = (None, 0.0);
-        let mut last = reference.at(0.0);
+        let mut last_s = 0.0;
         let steps = (end_s / STEP_S).ceil() as u64;
         for n in 0..=steps {
             let sample = reference.at(n as f64 * STEP_S);
             if sample.cutting && !sample.resting {
-                start.get_or_insert((last.programmed_mm, last.s_mm));
+                start.get_or_insert_with(|| first_cut(reference, last_s, n as f64 * STEP_S));
                 end_s_mm = reference.at((n + 1) as f64 * STEP_S).s_mm;
             }
             grow(&mut boxes_mm[0], sample.programmed_mm);
             if start.is_some() {
                 grow(&mut boxes_mm[1], sample.programmed_mm);
             }
-            last = sample;
+            last_s = n as f64 * STEP_S;
         }
         let (start_mm, start_s_mm) = start.ok_or(MeasuredError::NothingCut)?;
         Ok(Self { start_mm, start_s_mm, end_s_mm, boxes_mm })
@@ -196,9 +199,19 @@ impl PlannedPath {
         let Some(ours) = self.boxes_mm.iter().find(same) else { return [0.0; 3] };
         std::array::from_fn(|i| {
             let shift_mm = 0.5 * (ours[0][i] + ours[1][i] - theirs[0][i] - theirs[1][i]);
-            if i < axes && shift_mm.abs() > NO_SHIFT_MM { shift_mm } else { 0.0 }
+            if i < axes && shift_mm.abs() > SAME_SIZE_MM { shift_mm } else { 0.0 }
         })
     }
+}
+
+/// Where the program begins to cut, and its arc length there, between two plan times.
+fn first_cut(reference: &mut Reference<'_>, mut before_s: f64, mut after_s: f64) -> (Vector, f64) {
+    for _ in 0..HALVINGS {
+        let middle_s = 0.5 * (before_s + after_s);
+        if reference.at(middle_s).cutting { after_s = middle_s } else { before_s = middle_s }
+    }
+    let begin = reference.at(after_s);
+    (begin.programmed_mm, begin.s_mm)
 }
 
 const NO_BOX: [Vector; 2] = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
@@ -246,6 +259,16 @@ impl<'a> Record<'a> {
             actual_mm[i] += axis.actual_mm[k];
         }
         Sampled { time_s: self.time_s[k], command_mm, actual_mm }
+    }
+
+    /// Shifts the record so that the command begins at `start_mm`, where it rests there in the first sample that is near, or behind.
+    fn shift_to(&mut self, first: usize, start_mm: Vector) {
+        let away_mm = |k: usize| distance(self.at(k).command_mm, start_mm);
+        let near = (first..self.len()).take_while(|&k| away_mm(k) < BEGUN_MM);
+        let rests = |k: &usize| *k > 0 && distance(self.at(*k).command_mm, self.at(k - 1).command_mm) < RESTS_MM;
+        let Some(at) = near.into_iter().find(rests) else { return };
+        let off_mm = sub(start_mm, self.at(at).command_mm);
+        self.shift_mm = add_scaled(self.shift_mm, 1.0, off_mm);
     }
 
     /// The sample in which the command is at `start_mm` first.
