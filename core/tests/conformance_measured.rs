@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use feedwright::controllers::{BASELINE, Choices, Entry, Make, Setup};
@@ -51,7 +52,7 @@ fn log(rows: &[Row], shift_mm: [f64; 2]) -> Log {
     Log {
         format: LogFormat::TextTable,
         sample_time_s: 0.001,
-        stretches: vec![0..rows.len()],
+        stretches: vec![Range { start: 0, end: rows.len() }],
         time_s: rows.iter().map(|row| row.t_s).collect(),
         axes: vec![axis("x", 0), axis("y", 1)],
         findings: Vec::new(),
