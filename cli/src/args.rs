@@ -78,6 +78,9 @@ pub(crate) struct RunArgs {
     /// Largest contour error allowed, um: exit code 1 where it is exceeded.
     #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
+    /// Measure errors and uncut path to this program in place of PART: what another program for the same part comes to.
+    #[arg(long, value_name = "ORIGINAL.ngc", conflicts_with = "fastest")]
+    pub(crate) reference: Option<PathBuf>,
     /// Cut in the least time in which the tool stays within --tolerance; feedrates are the ceiling.
     #[arg(long, requires = "tolerance")]
     pub(crate) fastest: bool,

@@ -46,3 +46,23 @@ fn what_is_asked_for_wrongly_is_refused_with_a_hint() {
     folder.run(&["correct", "circle.ngc", "--out", "circle.ngc"]).refused(&["circle.ngc"]);
     folder.run(&["correct", "none.ngc"]).refused(&["none.ngc"]);
 }
+
+#[test]
+fn a_program_is_measured_to_another_and_half_a_program_does_not_win() {
+    let folder = Folder::new();
+    folder.file("square.ngc", "G21 G90 G61 F1200\nG1 X10\nY10\nX0\nY0\nM2\n");
+    folder.file("half.ngc", "G21 G90 G61 F1200\nG1 X10\nY10\nM2\n");
+    folder.file("beside.ngc", "G21 G90 G61 F1200\nG1 X10\nY10.1\nX0\nY0\nM2\n");
+    let uncut_and_max = |part: &str| {
+        let arguments = [part, "--machine", "tnv40", "--reference", "square.ngc", "--json", "r.json"];
+        folder.run_open_loop(&arguments).succeeded();
+        let results: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+        assert_eq!(results["reference"], "square.ngc");
+        ["uncut_um", "max_um"].map(|key| results["runs"][0][key].as_f64().unwrap())
+    };
+    let [whole_um, _] = uncut_and_max("square.ngc");
+    let [half_um, _] = uncut_and_max("half.ngc");
+    let [_, beside_um] = uncut_and_max("beside.ngc");
+    assert!(whole_um < 50.0 && half_um > 4000.0, "{whole_um} {half_um}");
+    assert!((90.0..120.0).contains(&beside_um), "{beside_um}");
+}

@@ -194,16 +194,26 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
+        self.laps_of(|run| Ok(run.blended(steps()?)), controller, sinks)
+    }
+
+    /// All laps, each along paths of its own.
+    fn laps_of<'p, const N: usize>(
+        &self,
+        mut blended: impl FnMut(&Run<'_>) -> Result<BlendedSteps<'p>, ReadError>,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
         controller.reset();
         for lap in 1..self.laps {
             // Noise does not repeat itself from lap to lap: what is learned of it is of no use.
             let seed = self.machine.noise.seed.wrapping_add(u64::from(lap) << LAP_SEED_SHIFT);
             let practice = self.machine.with_noise_seed(seed);
             let practising = Run { machine: &practice, ..*self };
-            practising.lap(practising.blended(steps()?), controller, &mut [])?;
+            practising.lap(blended(&practising)?, controller, &mut [])?;
             controller.next_lap();
         }
-        self.lap(self.blended(steps()?), controller, sinks)
+        self.lap(blended(self)?, controller, sinks)
     }
 
     /// As [`Run::cut`], along the path of another program, with errors to the programmed one.
@@ -216,8 +226,7 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        controller.reset();
-        let mut result = self.lap(aligned.steps(), controller, sinks)?;
+        let mut result = self.laps_of(|_| Ok(aligned.steps()), controller, sinks)?;
         result.uncut_mm = result.uncut_mm.max(aligned.left_out_mm);
         Ok(result)
     }
