@@ -24,6 +24,7 @@
 //! | `arc_fit.rs` | points to arcs and lines |
 //! | `exported.rs` | a program as the other control cuts it |
 //! | `command_update.rs` | a better command from the errors of a cut |
+//! | `stretch_cut.rs` | what each stretch comes to in a cut |
 //! | `rounds.rs` | cut, change, fit, until it gets no better |
 //! | `block_words.rs` | motions and events as blocks |
 //! | `source_line.rs` | a line without its motion |
@@ -38,6 +39,7 @@ mod stretches;
 mod arc_fit;
 pub mod exported;
 mod command_update;
+mod stretch_cut;
 mod rounds;
 mod block_words;
 mod source_line;

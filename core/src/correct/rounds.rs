@@ -3,12 +3,11 @@
 //! Each stretch is judged by itself: the tool rests at its ends, so that it does not see the others. The best command of each is kept, and a
 //! stretch whose command gets no better is left alone. One that is cut within [`GOOD_MM`] from the start stays as it is programmed.
 
-use std::ops::Range;
-
 use super::arc_fit::{ArcFit, FitMotion};
 use super::command_update::{SlowEnd, UpdateSettings, new_command};
 use super::exported::{CutRow, CutRows, ExportedCut};
 use super::loop_lag::{LoopLag, loop_lags};
+use super::stretch_cut::{StretchCut, by_stretch, overshoot_mm};
 use super::stretches::{ProgramPart, SmoothStretch, StretchCommand, assembled, stretches};
 use super::target::TargetControl;
 use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind};
@@ -16,7 +15,6 @@ use crate::machine::Machine;
 use crate::path::pieces::Pieces;
 use crate::path::{PathError, Step};
 use crate::pipeline::RunError;
-use crate::vector::{dot, norm};
 use crate::watch::StageSteps;
 
 /// Cuts at the most, and those without a gain after which a stretch is left alone.
@@ -28,8 +26,6 @@ const CHECKS: u32 = 4;
 const LEAST_GAIN: f64 = 0.02;
 /// A stretch whose largest error is less stays as it is, mm: what blocks that fit a command miss it by.
 const GOOD_MM: f64 = 1e-3;
-/// Weight of the largest error beside the RMS.
-const MAX_WEIGHT: f64 = 0.3;
 /// A stretch may take longer by this part, and by so many dwells.
 const MORE_TIME: f64 = 0.05;
 const MORE_DWELLS: f64 = 1.5;
@@ -58,9 +54,8 @@ const COMMAND_SMOOTHING_S: f64 = 0.009;
 const FADE_S: f64 = 0.01;
 /// Least distance of points that blocks are fitted to, mm.
 const LEAST_MM: f64 = 0.01;
-/// A tool that runs over the end of a stretch by more goes there slowly, mm; looked at so long before and behind the end, s.
+/// A tool that runs over the end of a stretch by more goes there slowly, mm.
 const OVERSHOOT_MM: f64 = 2e-3;
-const AROUND_END_S: f64 = 0.02;
 /// Time constants of the loop in which it brakes from there, and that the slow way takes.
 const BRAKES_IN: f64 = 0.25;
 const SETTLES_IN: f64 = 3.0;
@@ -93,23 +88,6 @@ struct StretchRounds {
     since: u32,
     slow_end: Option<SlowEnd>,
     done: bool,
-}
-
-/// What a stretch came to in a cut.
-#[derive(Debug, Clone, Default)]
-struct StretchCut {
-    rows: Range<usize>,
-    square_sum_mm2: f64,
-    max_mm: f64,
-    cutting: u32,
-    periods: u32,
-}
-
-impl StretchCut {
-    fn figure_mm(&self) -> f64 {
-        let rms_mm = if self.cutting == 0 { 0.0 } else { (self.square_sum_mm2 / f64::from(self.cutting)).sqrt() };
-        rms_mm + MAX_WEIGHT * self.max_mm
-    }
 }
 
 /// The path of canonical steps.
@@ -235,15 +213,6 @@ fn slow_end(machine: &Machine) -> SlowEnd {
     SlowEnd { speed_mm_s, length_mm: speed_mm_s * SETTLES_IN * slowest_s }
 }
 
-/// How far the tool runs over the end of a stretch, mm.
-fn overshoot_mm(rows: &[CutRow], cut: &StretchCut, stretch: &SmoothStretch, servo_s: f64) -> f64 {
-    let around = (AROUND_END_S / servo_s) as usize;
-    let [_, direction] = stretch.directions();
-    let from = cut.rows.end.saturating_sub(around).max(cut.rows.start);
-    let near = &rows[from..(cut.rows.end + around).min(rows.len())];
-    near.iter().map(|row| -dot(row.error_mm, direction)).fold(0.0, f64::max)
-}
-
 fn settings(machine: &Machine) -> UpdateSettings {
     UpdateSettings {
         smoothing_s: SMOOTHING_S,
@@ -357,30 +326,4 @@ fn as_motion(fitted: FitMotion, stretch: &SmoothStretch) -> Motion {
     let feed_mm_s = if feed_mm_s > 0.0 { feed_mm_s } else { first.feed_mm_s };
     let others = AuxiliaryAxes::default();
     Motion { line: first.line, kind: MotionKind::Feed, start_mm, end_mm, shape, feed_mm_s, corner, others }
-}
-
-/// Rows and errors of each stretch; what the tool still does when the command has gone on belongs to it, until the next begins.
-fn by_stretch(rows: &[CutRow], count: usize) -> Vec<StretchCut> {
-    let mut cuts = vec![StretchCut::default(); count];
-    let mut last = None;
-    for (n, row) in rows.iter().enumerate() {
-        if row.moves {
-            last = (row.line as usize).checked_sub(1);
-            if let Some(cut) = last.and_then(|last| cuts.get_mut(last)) {
-                let from = if cut.rows.is_empty() { n } else { cut.rows.start };
-                cut.rows = from..n + 1;
-            }
-        }
-        let Some(cut) = last.and_then(|last| cuts.get_mut(last)) else { continue };
-        if row.moves {
-            cut.periods += 1;
-        }
-        if row.cutting {
-            let error_mm = norm(row.error_mm);
-            cut.square_sum_mm2 += error_mm * error_mm;
-            cut.max_mm = cut.max_mm.max(error_mm);
-            cut.cutting += 1;
-        }
-    }
-    cuts
 }
