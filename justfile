@@ -188,4 +188,6 @@ linuxcnc-sweep: linuxcnc
     cd linuxcnc
     python3 tests/sweep.py
     python3 tests/identified.py
+    python3 tests/corrected.py
+    python3 tests/planner.py
     python3 tests/faults.py --machine configs/workshop-sim/machine.fwmodel:configs/workshop-sim/model.fwmodel

@@ -23,6 +23,8 @@ pub(crate) struct Cli {
 pub(crate) enum CommandArgs {
     /// Cut a part on a simulated machine, open loop and with a controller, and write the report.
     Run(Box<RunArgs>),
+    /// Write a corrected program for a control that gets no feedback from us, and tell what it comes to as that control cuts it.
+    Correct(CorrectArgs),
     /// Tell the cycle time of a program on a machine: by tool, by kind of motion, and what binds it.
     Plan(PlanArgs),
     /// Identify a machine from its LOG, and write its machine file; without a LOG, identify a simulated machine and write the
@@ -76,6 +78,9 @@ pub(crate) struct RunArgs {
     /// Largest contour error allowed, um: exit code 1 where it is exceeded.
     #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
+    /// Measure errors and uncut path to this program in place of PART: what another program for the same part comes to.
+    #[arg(long, value_name = "ORIGINAL.ngc", conflicts_with = "fastest")]
+    pub(crate) reference: Option<PathBuf>,
     /// Cut in the least time in which the tool stays within --tolerance; feedrates are the ceiling.
     #[arg(long, requires = "tolerance")]
     pub(crate) fastest: bool,
@@ -105,6 +110,36 @@ pub(crate) struct RunArgs {
     pub(crate) columns: Option<String>,
     #[command(flatten)]
     pub(crate) reader: ReaderArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CorrectArgs {
+    /// G-code program.
+    pub(crate) part: PathBuf,
+    /// Built-in machine, or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
+    pub(crate) machine: OsString,
+    /// Control that the corrected program is for: how it plans the speed, and what its blocks may hold.
+    #[arg(long = "for", value_name = "CONTROL", default_value = feedwright::correct::TARGETS[0].name, long_help = controls())]
+    pub(crate) target: String,
+    /// Place of the corrected program; it is written only where it is better than the original, else the exit code is 1.
+    #[arg(long, value_name = "FILE.ngc")]
+    pub(crate) out: Option<PathBuf>,
+    /// Largest contour error allowed of the corrected program as the control cuts it, um: exit code 1 where it is exceeded.
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Write all results.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}
+
+/// The controls of `--for`, one a line.
+fn controls() -> String {
+    let rows = feedwright::correct::TARGETS.iter().map(|target| format!("\n  {:<10} {}", target.name, target.about));
+    let about = "Control that the corrected program is for: how it plans the speed, and what its blocks may hold.";
+    about.to_owned() + &rows.collect::<String>()
 }
 
 #[derive(Debug, Args)]

@@ -4,6 +4,7 @@ pub(crate) mod block;
 pub(crate) mod canon;
 pub(crate) mod check;
 pub(crate) mod compare;
+pub(crate) mod correct;
 pub(crate) mod excite;
 pub(crate) mod held_out;
 pub(crate) mod identify;

@@ -33,6 +33,7 @@ fn main() -> ExitCode {
     }
     let result = match cli.command {
         CommandArgs::Run(args) => commands::run::run(*args, &console),
+        CommandArgs::Correct(args) => commands::correct::run(&args, &console),
         CommandArgs::Plan(args) => commands::plan::run(&args, &console),
         CommandArgs::Identify(args) => commands::identify::run(&args, &console),
         CommandArgs::Excite(args) => commands::excite::run(&args, &console),

@@ -10,8 +10,10 @@
 //! | File | What |
 //! |---|---|
 //! | `exact.rs` | null member: the planned path is the programmed one |
+//! | `aligned.rs` | no member: the path of another program, beside the programmed one |
 
 pub mod exact;
+pub mod aligned;
 
 use crate::constraints::Constraints;
 use crate::gcode::canon::Event;

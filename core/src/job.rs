@@ -21,6 +21,7 @@ use std::str::FromStr;
 use feedwright_control::Controller;
 use serde::{Deserialize, Serialize};
 
+use crate::blend::aligned::AlignedPaths;
 use crate::controllers::{Choices, Entry, Make, NothingIdentified, Setup};
 use crate::fastest::{FastestError, FastestPlan, fastest, with_tolerance};
 use crate::gcode::canon::{Canon, MotionKind};
@@ -30,6 +31,7 @@ use crate::log::{Log, LogFinding};
 use crate::machine::Machine;
 use crate::measured::measured;
 use crate::model::Model;
+use crate::path::{Step, Steps};
 use crate::pipeline::{Run, RunError, Stages, pieces};
 use crate::report::{Report, ReportedRun, RunFacts, Series, Statistics};
 use crate::trace::{Row, Sink};
@@ -62,6 +64,9 @@ pub struct Job {
     pub model: Option<Model>,
     /// Largest contour error that is allowed, um.
     pub tolerance_um: Option<f64>,
+    /// A program that errors are measured to, in place of the one that is cut.
+    #[serde(default)]
+    pub reference: Option<PathBuf>,
     /// Cut as fast as the tolerance allows the controller that is asked for.
     pub fastest: bool,
     /// What a machine recorded while it cut the program, shown beside what is predicted.
@@ -129,6 +134,7 @@ impl Job {
         Entry: Make<N>,
     {
         let mut files = Files::create(self, N)?;
+        let aligned = self.aligned()?;
         let fastest = self.fastest_plan::<N>(watch)?;
         let (mut runs, mut without_identification) = (Vec::new(), Vec::new());
         for entry in self.controllers() {
@@ -146,7 +152,8 @@ impl Job {
                 }
             };
             let written = judged.then_some(&mut files);
-            runs.push(self.cut_once(summary, entry, &mut *controller, fastest.as_ref(), written, watch)?);
+            let plan = (fastest.as_ref(), aligned.as_ref());
+            runs.push(self.cut_once(summary, entry, &mut *controller, plan, written, watch)?);
         }
         let mut log_findings = Vec::new();
         if let Some(log) = &self.log {
@@ -222,7 +229,7 @@ impl Job {
         summary: &Summary,
         entry: &Entry,
         controller: &mut dyn Controller<N>,
-        fastest: Option<&FastestPlan>,
+        (fastest, aligned): (Option<&FastestPlan>, Option<&AlignedPaths>),
         files: Option<&mut Files>,
         watch: &dyn Watch,
     ) -> Result<ReportedRun, JobError> {
@@ -240,12 +247,12 @@ impl Job {
                 None => steps,
             })
         };
-        let run = Run::on(machine)
-            .capped(fastest.map(|plan| &plan.caps))
-            .laps(entry.laps)
-            .watched(watch)
-            .cut(steps, controller, &mut sinks)
-            .map_err(|error| JobError::of_run(&self.part, error))?;
+        let run = Run::on(machine).capped(fastest.map(|plan| &plan.caps)).laps(entry.laps).watched(watch);
+        let run = match aligned {
+            Some(aligned) => run.cut_aligned(aligned, controller, &mut sinks),
+            None => run.cut(steps, controller, &mut sinks),
+        };
+        let run = run.map_err(|error| JobError::of_run(&self.part, error))?;
         let facts = RunFacts {
             controller: entry.name.to_owned(),
             machine: self.machine.name.clone(),
@@ -256,6 +263,19 @@ impl Job {
         let mut summary = statistics.summary(facts, |_| String::new());
         self.fill_in_texts(&mut summary.worst)?;
         Ok(ReportedRun { summary, series, events: timeline.events })
+    }
+
+    /// The path that is cut beside the one that errors are measured to, where that is another.
+    fn aligned(&self) -> Result<Option<AlignedPaths>, JobError> {
+        let Some(reference) = &self.reference else { return Ok(None) };
+        gcode::check(reference, self.reader.clone())?;
+        let original = Reader::open(reference, self.reader.clone())?.map_while(Result::ok);
+        let steps = |part: &PathBuf, steps: Steps<'_>| {
+            let of_path = |fault| JobError::Path { part: part.clone(), fault };
+            steps.collect::<Result<Vec<Step>, _>>().map_err(of_path)
+        };
+        let (original, other) = (steps(reference, pieces(original))?, steps(&self.part, pieces(self.program()?))?);
+        Ok(Some(AlignedPaths::new(&original, &other)))
     }
 
     /// The controllers in the order in which they cut: the one that is asked for last, and once.

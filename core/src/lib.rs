@@ -36,6 +36,7 @@ pub mod model;
 pub mod controllers;
 pub mod report;
 pub mod job;
+pub mod correct;
 pub mod log_job;
 pub mod paper;
 pub mod held_out;

@@ -12,7 +12,8 @@ use std::sync::Arc;
 use feedwright_control::Controller;
 use thiserror::Error;
 
-use crate::blend::{self, BlendMember};
+use crate::blend::aligned::AlignedPaths;
+use crate::blend::{self, BlendMember, BlendedSteps};
 use crate::constraints::speed_caps::SpeedCaps;
 use crate::constraints::{Constraints, LimitsError};
 use crate::feed::plan::Plan;
@@ -69,9 +70,22 @@ impl Stages {
         machine: &Machine,
         constraints: &Constraints,
     ) -> Result<Reference<'p>, LimitsError> {
-        let blended = (self.blend.make)(steps, constraints);
-        let plan = Plan::new(blended, constraints, self.planner, Plc::of(machine))?;
-        Ok(Reference::new(plan))
+        self.reference_of(self.blended(steps, constraints), machine, constraints)
+    }
+
+    /// The planned path beside the programmed one.
+    fn blended<'p>(self, steps: Steps<'p>, constraints: &Constraints) -> BlendedSteps<'p> {
+        (self.blend.make)(steps, constraints)
+    }
+
+    /// The reference of two paths that are there already.
+    fn reference_of<'p>(
+        self,
+        blended: BlendedSteps<'p>,
+        machine: &Machine,
+        constraints: &Constraints,
+    ) -> Result<Reference<'p>, LimitsError> {
+        Ok(Reference::new(Plan::new(blended, constraints, self.planner, Plc::of(machine))?))
     }
 }
 
@@ -180,25 +194,58 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
+        self.laps_of(|run| Ok(run.blended(steps()?)), controller, sinks)
+    }
+
+    /// All laps, each along paths of its own.
+    fn laps_of<'p, const N: usize>(
+        &self,
+        mut blended: impl FnMut(&Run<'_>) -> Result<BlendedSteps<'p>, ReadError>,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
         controller.reset();
         for lap in 1..self.laps {
             // Noise does not repeat itself from lap to lap: what is learned of it is of no use.
             let seed = self.machine.noise.seed.wrapping_add(u64::from(lap) << LAP_SEED_SHIFT);
             let practice = self.machine.with_noise_seed(seed);
-            Run { machine: &practice, ..*self }.lap(steps()?, controller, &mut [])?;
+            let practising = Run { machine: &practice, ..*self };
+            practising.lap(blended(&practising)?, controller, &mut [])?;
             controller.next_lap();
         }
-        self.lap(steps()?, controller, sinks)
+        self.lap(blended(self)?, controller, sinks)
+    }
+
+    /// As [`Run::cut`], along the path of another program, with errors to the programmed one.
+    ///
+    /// # Errors
+    /// See there.
+    pub fn cut_aligned<const N: usize>(
+        &self,
+        aligned: &AlignedPaths,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        let mut result = self.laps_of(|_| Ok(aligned.steps()), controller, sinks)?;
+        result.uncut_mm = result.uncut_mm.max(aligned.left_out_mm);
+        Ok(result)
+    }
+
+    fn constraints(&self) -> Constraints {
+        Constraints { speed_caps: self.caps.cloned(), ..Constraints::from(self.machine) }
+    }
+
+    fn blended<'p>(&self, steps: Steps<'p>) -> BlendedSteps<'p> {
+        self.stages.blended(steps, &self.constraints())
     }
 
     fn lap<const N: usize>(
         &self,
-        steps: Steps<'_>,
+        blended: BlendedSteps<'_>,
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        let constraints = Constraints { speed_caps: self.caps.cloned(), ..Constraints::from(self.machine) };
-        let mut reference = self.stages.reference_within(steps, self.machine, &constraints)?;
+        let mut reference = self.stages.reference_of(blended, self.machine, &self.constraints())?;
         let result = simulate(self.machine, &mut reference, controller, sinks, self.watch)?;
         match reference.fault() {
             Some(fault) => Err(fault.clone().into()),

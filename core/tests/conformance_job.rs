@@ -29,6 +29,7 @@ fn job(machine: &str, controller: &str) -> Job {
         choices: Choices::default(),
         model: None,
         tolerance_um: None,
+        reference: None,
         fastest: false,
         reader: Settings::default(),
         inputs: Vec::new(),

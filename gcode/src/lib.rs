@@ -89,6 +89,7 @@ pub use flow::reader::Reader;
 pub use flow::summary::{CheckError, Summary, check, summarize};
 pub use settings::tools::{Tool, ToolTable, ToolTableError};
 pub use settings::{AUTO, DIALECTS, Dialect, Increment, Settings, UnknownDialect, UnknownIncrement};
+pub use state::in_force::ModesInForce;
 pub use state::modal::INCH_MM;
 #[doc(hidden)]
 pub use text::block::count_words;

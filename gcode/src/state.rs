@@ -12,6 +12,7 @@ mod offsets;
 mod tool_data;
 mod saved;
 mod values;
+pub(crate) mod in_force;
 
 use std::collections::VecDeque;
 

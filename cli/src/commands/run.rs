@@ -9,7 +9,7 @@ use feedwright::fastest::{FastestError, FastestPlan};
 use feedwright::job::{Job, JobError, JobOutcome, LogFile, MEASURED, Outputs};
 use feedwright::machine::{self, Machine};
 use feedwright::model::Model;
-use feedwright::report::{Outcome as Ending, RunSummary};
+use feedwright::report::{Outcome as Ending, ReportedRun, RunSummary};
 use miette::Result;
 
 use crate::args::RunArgs;
@@ -53,6 +53,7 @@ fn job(args: RunArgs) -> Result<Job> {
         choices: Choices { seed: args.seed, set },
         model: args.model.as_deref().map(Model::read).transpose()?,
         tolerance_um: args.tolerance,
+        reference: args.reference.clone(),
         fastest: args.fastest,
         log: args.log.clone().map(|path| LogFile { path, columns: args.columns }),
         reader: args.reader.settings()?,
@@ -62,6 +63,7 @@ fn job(args: RunArgs) -> Result<Job> {
             .chain(args.reader.tool_table)
             .chain(args.model)
             .chain(args.log)
+            .chain(args.reference)
             .collect(),
         outputs: Outputs { report: Some(report), json: args.json, trace: args.trace, out: args.out },
         part: args.part,
@@ -119,14 +121,10 @@ fn print(job: &Job, outcome: &JobOutcome) -> std::io::Result<()> {
             )?;
         }
     }
-    if let [first, .., last] = &runs[..]
-        && first.summary.controller != MEASURED
-        && last.summary.rms_um > first.summary.rms_um
-        && last.summary.max_um > first.summary.max_um
-    {
-        let (worse, better) = (&last.summary.controller, &first.summary.controller);
-        writeln!(out, "{worse} is worse than {better} for this part on this machine: do not use its command")?;
+    if let Some(reference) = &job.reference {
+        writeln!(out, "errors and uncut path are those to {}", reference.display())?;
     }
+    print_worse(&mut out, runs)?;
     if let (Some(tolerance_um), Some(last)) = (job.tolerance_um, runs.last()) {
         let verdict = if outcome.within_tolerance { "within" } else { "out of" };
         writeln!(out, "{verdict} tolerance: max {:.2} um, allowed {tolerance_um} um", last.summary.max_um)?;
@@ -137,6 +135,19 @@ fn print(job: &Job, outcome: &JobOutcome) -> std::io::Result<()> {
     let outputs = &job.outputs;
     for path in [&outputs.report, &outputs.json, &outputs.trace, &outputs.out].into_iter().flatten() {
         writeln!(out, "wrote {}", path.display())?;
+    }
+    Ok(())
+}
+
+/// Says so where the controller does harm.
+fn print_worse(out: &mut impl Write, runs: &[ReportedRun]) -> std::io::Result<()> {
+    if let [first, .., last] = runs
+        && first.summary.controller != MEASURED
+        && last.summary.rms_um > first.summary.rms_um
+        && last.summary.max_um > first.summary.max_um
+    {
+        let (worse, better) = (&last.summary.controller, &first.summary.controller);
+        writeln!(out, "{worse} is worse than {better} for this part on this machine: do not use its command")?;
     }
     Ok(())
 }

@@ -141,6 +141,8 @@ impl Sink for Files {
 struct Results<'a> {
     version: &'static str,
     part: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reference: Option<&'a Path>,
     tolerance_um: Option<f64>,
     within_tolerance: bool,
     settings: std::collections::BTreeMap<&'a str, &'a str>,
@@ -152,6 +154,7 @@ fn write_json(out: &mut impl io::Write, job: &Job, report: &Report) -> io::Resul
     let results = Results {
         version: env!("CARGO_PKG_VERSION"),
         part: &report.part,
+        reference: job.reference.as_deref(),
         tolerance_um: job.tolerance_um,
         within_tolerance: job.within_tolerance(report),
         settings: report.settings.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect(),

@@ -47,6 +47,9 @@ impl Job {
         if let Some(model) = self.model.as_ref().map(Model::about) {
             settings.push(value("Model", format!("{}, {}", model.source, model.date)));
         }
+        if let Some(reference) = &self.reference {
+            settings.push(value("Errors measured to", reference.display().to_string()));
+        }
         if let Some(feed_mm_s) = self.feed_mm_s {
             settings.push(value("Feedrate, in place of the programmed", format!("{feed_mm_s} mm/s")));
         }

@@ -83,9 +83,6 @@ impl KeptPath {
         let along_s = along(&phase, tau_s);
         let local_mm = local_mm(&phase, piece, along_s);
         let at = piece.curve.at(local_mm);
-        if let Some(motion) = phase.motion {
-            return beside(piece, local_mm, at, &motion.after(along_s), ended);
-        }
         let (s_mm, programmed_mm) = match *origin {
             ProgrammedPart::Unchanged(_) => (piece.s_mm + local_mm, at.position_mm),
             ProgrammedPart::Part { from_mm, to_mm } => {
@@ -93,6 +90,10 @@ impl KeptPath {
                 (s_mm, self.nearest_along(at.position_mm, s_mm, s_mm).position_mm)
             }
         };
+        if let Some(motion) = phase.motion {
+            let stands = Point { position_mm: programmed_mm, tangent: at.tangent };
+            return beside(piece, s_mm, stands, &motion.after(along_s), ended);
+        }
         let resting = ended || phase.rest.is_some();
         Sample {
             position_mm: at.position_mm,
@@ -197,8 +198,8 @@ impl KeptPath {
     }
 }
 
-/// Where the reference is that leaves its piece, while `at` is the point of the piece that stands for it.
-fn beside(piece: &Piece, local_mm: f64, at: Point, motion: &AxisMotion, ended: bool) -> Sample {
+/// Where the reference is that leaves its piece, while `at`, at `s_mm`, is the point of the programmed path that stands for it.
+fn beside(piece: &Piece, s_mm: f64, at: Point, motion: &AxisMotion, ended: bool) -> Sample {
     let speed_mm_s = norm(motion.velocity_mm_s);
     Sample {
         position_mm: motion.position_mm,
@@ -207,7 +208,7 @@ fn beside(piece: &Piece, local_mm: f64, at: Point, motion: &AxisMotion, ended: b
         } else {
             at.tangent
         },
-        s_mm: piece.s_mm + local_mm,
+        s_mm,
         programmed_mm: at.position_mm,
         feed_mm_s: if ended { 0.0 } else { speed_mm_s },
         line: piece.line,

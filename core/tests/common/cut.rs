@@ -18,6 +18,7 @@ pub(crate) fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Pa
         choices: Choices::default(),
         model: None,
         tolerance_um: None,
+        reference: None,
         fastest: false,
         reader: feedwright::gcode::Settings::default(),
         inputs: Vec::new(),

@@ -16,6 +16,7 @@ use crate::flow::program::Flow;
 use crate::flow::statements::statement;
 use crate::settings::{Dialect, Settings};
 use crate::state::Interpreter;
+use crate::state::in_force::ModesInForce;
 use crate::text::block::{Block, Style};
 use crate::text::codes::Group;
 use crate::text::codes::fanuc::{CodeSet, OWN};
@@ -119,6 +120,11 @@ impl Reader {
     /// The dialect that the program is read as, and why it was chosen.
     pub const fn dialect(&self) -> (Dialect, &'static str) {
         (self.interpreter.dialect, self.dialect_reason)
+    }
+
+    /// The modes in force behind the line that the last step came from.
+    pub fn modes(&self) -> ModesInForce {
+        ModesInForce::of(&self.interpreter)
     }
 
     /// Warnings so far, at most as many as [`Settings::max_errors`].

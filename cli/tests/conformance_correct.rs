@@ -1,0 +1,68 @@
+//! `feedwright correct`: what it writes, tells and refuses.
+
+#[path = "common/command.rs"]
+#[expect(dead_code, reason = "every test file uses a part of this")]
+mod common;
+
+use common::Folder;
+use serde_json::Value;
+
+#[test]
+fn what_is_told_is_that_of_the_file_and_decides_the_tolerance() {
+    let folder = Folder::new();
+    let arguments =
+        ["correct", "circle.ngc", "--machine", "tnv40", "--out", "p.ngc", "--json", "p.json", "--tolerance", "2"];
+    let ran = folder.run(&arguments).succeeded();
+    assert!(ran.stdout.contains("as exported") && ran.stdout.contains("within tolerance"), "{}", ran.stdout);
+    let results: Value = serde_json::from_slice(&folder.read("p.json")).unwrap();
+    let number = |side: &str, key: &str| results[side][key].as_f64().unwrap();
+    assert!(number("as_exported", "rms_um") < 0.1 * number("original", "rms_um"), "{results}");
+    assert!(number("as_exported", "max_um") <= 2.0 && number("as_exported", "uncut_um") < 3.0, "{results}");
+    assert_eq!(results["written"], true);
+    assert!(folder.text("p.ngc").starts_with("(corrected by feedwright for the machine tnv40, control generic)\n"));
+    let tight = ["correct", "circle.ngc", "--machine", "tnv40", "--tolerance", "0.01"];
+    let ran = folder.run(&tight);
+    assert_eq!(ran.code, Some(1));
+    assert!(ran.stdout.contains("out of tolerance"), "{}", ran.stdout);
+}
+
+#[test]
+fn a_program_that_is_no_better_is_not_written() {
+    let folder = Folder::new();
+    folder.file("line.ngc", "G21 G90 G64\nG1 X40 F300\nM2\n");
+    let ran = folder.run(&["correct", "line.ngc", "--machine", "tnv40", "--out", "p.ngc", "--json", "p.json"]);
+    assert_eq!(ran.code, Some(1));
+    assert!(ran.stdout.contains("no corrected program:"), "{}", ran.stdout);
+    assert!(!folder.path().join("p.ngc").exists());
+    let results: Value = serde_json::from_slice(&folder.read("p.json")).unwrap();
+    assert!(results["written"] == false && results["refusal"].is_string(), "{results}");
+}
+
+#[test]
+fn what_is_asked_for_wrongly_is_refused_with_a_hint() {
+    let folder = Folder::new();
+    folder.run(&["correct", "circle.ngc", "--for", "fanuk"]).refused(&["--for", "fanuk", "did you mean 'fanuc'?"]);
+    folder.run(&["correct", "circle.ngc", "--tolerance", "-1"]).refused(&["--tolerance is -1 um", "above 0"]);
+    folder.run(&["correct", "circle.ngc", "--out", "circle.ngc"]).refused(&["circle.ngc"]);
+    folder.run(&["correct", "none.ngc"]).refused(&["none.ngc"]);
+}
+
+#[test]
+fn a_program_is_measured_to_another_and_half_a_program_does_not_win() {
+    let folder = Folder::new();
+    folder.file("square.ngc", "G21 G90 G61 F1200\nG1 X10\nY10\nX0\nY0\nM2\n");
+    folder.file("half.ngc", "G21 G90 G61 F1200\nG1 X10\nY10\nM2\n");
+    folder.file("beside.ngc", "G21 G90 G61 F1200\nG1 X10\nY10.1\nX0\nY0\nM2\n");
+    let uncut_and_max = |part: &str| {
+        let arguments = [part, "--machine", "tnv40", "--reference", "square.ngc", "--json", "r.json"];
+        folder.run_open_loop(&arguments).succeeded();
+        let results: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+        assert_eq!(results["reference"], "square.ngc");
+        ["uncut_um", "max_um"].map(|key| results["runs"][0][key].as_f64().unwrap())
+    };
+    let [whole_um, _] = uncut_and_max("square.ngc");
+    let [half_um, _] = uncut_and_max("half.ngc");
+    let [_, beside_um] = uncut_and_max("beside.ngc");
+    assert!(whole_um < 50.0 && half_um > 4000.0, "{whole_um} {half_um}");
+    assert!((90.0..120.0).contains(&beside_um), "{beside_um}");
+}

@@ -1,0 +1,81 @@
+//! The controls that a corrected program is for.
+//!
+//! A row says how the control plans the speed, by the name of a [feed planner](crate::feed), and what its programs may hold. To add
+//! a control is one row.
+
+use crate::feed;
+use crate::gcode::canon::Corner;
+use crate::machine::Machine;
+use crate::pipeline::Stages;
+
+/// A row of [`TARGETS`].
+#[derive(Debug, Clone, Copy)]
+pub struct TargetControl {
+    /// Name, as in `--for`.
+    pub name: &'static str,
+    /// What it stands for, for lists.
+    pub about: &'static str,
+    /// Member of the family of feed planners; none is the one that suits the machine.
+    pub planner: Option<&'static str>,
+    /// How blocks of a corrected stretch meet; none is as in the program, and without exact stops.
+    pub corner: Option<Corner>,
+    /// Most characters of a line.
+    pub columns: usize,
+    /// Decimals of a coordinate in mm.
+    pub decimals: u32,
+}
+
+/// All of them; the first is the one to take when nobody chooses.
+pub const TARGETS: &[TargetControl] = &[
+    TargetControl {
+        name: "generic",
+        about: "any control with look-ahead and arcs: the planner that suits the machine",
+        planner: None,
+        corner: None,
+        columns: 120,
+        decimals: 5,
+    },
+    TargetControl {
+        name: "linuxcnc",
+        about: "LinuxCNC 2.9: its own planner, with the limits that the machine file has of each axis",
+        planner: Some("linuxcnc"),
+        corner: Some(Corner::Continuous { tolerance_mm: Some(0.001), merge_mm: Some(0.0) }),
+        columns: 120,
+        decimals: 5,
+    },
+    TargetControl {
+        name: "grbl",
+        about: "grbl: constant acceleration along the path, lines of 80 characters",
+        planner: Some("trapezoid"),
+        corner: None,
+        columns: 80,
+        decimals: 4,
+    },
+    TargetControl {
+        name: "fanuc",
+        about: "Fanuc and its relatives: constant acceleration along the path, steps of 1 um",
+        planner: Some("trapezoid"),
+        corner: None,
+        columns: 120,
+        decimals: 3,
+    },
+];
+
+impl TargetControl {
+    /// The target of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        TARGETS.iter().find(|target| target.name == name)
+    }
+
+    /// How it plans on a machine.
+    pub fn stages(&self, machine: &Machine) -> Stages {
+        let planner = self.planner.and_then(feed::planner);
+        let own = Stages::of(machine);
+        Stages { planner: planner.unwrap_or(own.planner), ..own }
+    }
+
+    /// Printed steps in a millimetre.
+    pub(super) fn steps_per_mm(&self) -> f64 {
+        10_f64.powi(self.decimals as i32)
+    }
+}

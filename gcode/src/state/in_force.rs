@@ -1,0 +1,69 @@
+//! Modes in force at a place of a program, for those who write blocks there.
+
+use super::Interpreter;
+use super::frame::{Frame, Position};
+use super::modal::FeedMode;
+use crate::canon::{Corner, Plane};
+
+/// What a block that is written behind a step of a program would mean.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModesInForce {
+    /// Millimetres of a unit of length: 1, or 25.4 of an inch.
+    pub unit_mm: f64,
+    /// Whether coordinates count from where the tool is (G91).
+    pub incremental: bool,
+    /// Whether centres of arcs are coordinates (G90.1).
+    pub arc_absolute: bool,
+    /// Plane of arcs.
+    pub plane: Plane,
+    /// Whether F is a way in a minute (G94).
+    pub feed_per_minute: bool,
+    /// Whether cutter compensation or the diameters of a lathe make another path of coordinates than they say.
+    pub changes_coordinates: bool,
+    /// How corners are taken.
+    pub corner: Corner,
+    frame: Frame,
+}
+
+impl ModesInForce {
+    pub(crate) fn of(interpreter: &Interpreter) -> Self {
+        let modal = &interpreter.modal;
+        Self {
+            unit_mm: modal.unit_mm,
+            incremental: modal.incremental,
+            arc_absolute: modal.arc_absolute,
+            plane: modal.plane,
+            feed_per_minute: matches!(modal.feed_mode, FeedMode::PerMinute),
+            changes_coordinates: interpreter.compensates() || modal.diameter,
+            corner: modal.corner,
+            frame: interpreter.frame.clone(),
+        }
+    }
+
+    /// Coordinates of the program, in mm, of a place of the machine.
+    pub fn to_program(&self, machine_mm: [f64; 3]) -> [f64; 3] {
+        let [x, y, z] = machine_mm;
+        let position: Position = [x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let [x, y, z, ..] = self.frame.to_program(&position);
+        [x, y, z]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Reader, Settings};
+
+    #[test]
+    fn units_offsets_and_distances_are_those_behind_the_motion() {
+        let text = "G20 G90 F10\nG1 X1\nG92 X0\nG91 G1 X1\nM2\n";
+        let mut reader = Reader::from_text("part.ngc", text, Settings::default()).unwrap();
+        reader.next().unwrap().unwrap();
+        let first = reader.modes();
+        assert!(!first.incremental && first.unit_mm == 25.4 && first.feed_per_minute);
+        assert_eq!(first.to_program([25.4, 0.0, 0.0]), [25.4, 0.0, 0.0]);
+        reader.next().unwrap().unwrap();
+        let second = reader.modes();
+        assert!(second.incremental);
+        assert!((second.to_program([50.8, 0.0, 0.0])[0] - 25.4).abs() < 1e-12);
+    }
+}
