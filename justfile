@@ -184,6 +184,7 @@ linuxcnc-sweep: linuxcnc
     #!/usr/bin/env bash
     set -euo pipefail
     cargo build --release --quiet
+    cargo build --quiet -p feedwright --example linuxcnc_planner
     export FEEDWRIGHT=$PWD/target/release/feedwright
     cd linuxcnc
     python3 tests/sweep.py
