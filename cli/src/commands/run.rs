@@ -136,6 +136,13 @@ fn print(job: &Job, outcome: &JobOutcome) -> std::io::Result<()> {
     for path in [&outputs.report, &outputs.json, &outputs.trace, &outputs.out].into_iter().flatten() {
         writeln!(out, "wrote {}", path.display())?;
     }
+    if let Some(path) = outputs.out.as_deref().filter(|path| path.extension().is_some_and(|ending| ending != "csv")) {
+        let path = path.display();
+        writeln!(
+            out,
+            "{path} is the command of this cut, with feedback: `feedwright correct` writes programs for controls that have none"
+        )?;
+    }
     Ok(())
 }
 
