@@ -139,11 +139,11 @@ pub fn measured(
         return Err(MeasuredError::Gap { at_s: log.time_s[first.end - 1] });
     }
     let planned = PlannedPath::of(reference)?;
-    let mut record = Record::of(log, axes)?;
+    let mut record = RecordedAxes::of(log, axes)?;
     record.shift_mm = planned.shift_mm(&record, axes);
     let first = record.begins(planned.start_mm)?;
     record.shift_to(first, planned.start_mm);
-    let mut comparison = Comparison::new(machine, log.sample_time_s, planned.start_s_mm, &record.at(first));
+    let mut comparison = MeasuredCut::new(machine, log.sample_time_s, planned.start_s_mm, &record.at(first));
     for k in first..record.len() {
         let row = comparison.row(&record, first, k, reference)?;
         for sink in sinks.iter_mut() {
@@ -191,7 +191,7 @@ impl PlannedPath {
     }
 
     /// By how much positions of the log are shifted, mm: none where that cannot be told.
-    fn shift_mm(&self, record: &Record<'_>, axes: usize) -> Vector {
+    fn shift_mm(&self, record: &RecordedAxes<'_>, axes: usize) -> Vector {
         let mut theirs = NO_BOX;
         (0..record.len()).for_each(|k| grow(&mut theirs, record.at(k).command_mm));
         let size = |[low, high]: [Vector; 2], i: usize| high[i] - low[i];
@@ -224,7 +224,7 @@ fn grow(bounds: &mut [Vector; 2], point_mm: Vector) {
 }
 
 /// The axes of a log that the program moves.
-struct Record<'a> {
+struct RecordedAxes<'a> {
     axes: Vec<&'a LogAxis>,
     time_s: &'a [f64],
     shift_mm: Vector,
@@ -237,7 +237,7 @@ struct Sampled {
     actual_mm: Vector,
 }
 
-impl<'a> Record<'a> {
+impl<'a> RecordedAxes<'a> {
     fn of(log: &'a Log, axes: usize) -> Result<Self, MeasuredError> {
         let there = || log.axes.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>().join(", ");
         let named = |axis: &'static str| {
@@ -321,7 +321,7 @@ impl Follower {
 }
 
 /// The comparison under way.
-struct Comparison {
+struct MeasuredCut {
     sample_s: f64,
     /// Samples in which a tool has followed.
     follows: usize,
@@ -334,7 +334,7 @@ struct Comparison {
     uncut: Uncut,
 }
 
-impl Comparison {
+impl MeasuredCut {
     fn new(machine: &Machine, sample_s: f64, start_s_mm: f64, begin: &Sampled) -> Self {
         let follows = ((settled_s(machine) + DELAY_S) / sample_s).ceil() as usize;
         Self {
@@ -351,7 +351,7 @@ impl Comparison {
 
     fn row(
         &mut self,
-        record: &Record<'_>,
+        record: &RecordedAxes<'_>,
         first: usize,
         k: usize,
         reference: &Reference<'_>,

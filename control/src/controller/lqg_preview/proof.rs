@@ -29,7 +29,7 @@ const NO_CHANGE_MM_S: f64 = 1.0;
 
 /// What a law has held through since it was wrong last.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Trial {
+struct ProofTrial {
     /// Whether c was little.
     calm: bool,
     /// Time since it was as much again, and time at as much, s.
@@ -37,7 +37,7 @@ struct Trial {
     at_as_much_s: f64,
 }
 
-impl Trial {
+impl ProofTrial {
     const BEGUN: Self = Self { calm: false, since_s: None, at_as_much_s: 0.0 };
 
     /// One servo period with a c, by a law that was wrong at c0: whether that is enough.
@@ -62,7 +62,7 @@ pub(super) struct Proof<const N: usize> {
     /// Whether it has yet to hold, and T, s.
     needed: bool,
     needs_s: f64,
-    trial: Trial,
+    trial: ProofTrial,
 }
 
 impl<const N: usize> Proof<N> {
@@ -74,7 +74,7 @@ impl<const N: usize> Proof<N> {
         wrong_mm_s: 0.0,
         needed: false,
         needs_s: TO_SHOW_S,
-        trial: Trial::BEGUN,
+        trial: ProofTrial::BEGUN,
     };
 
     /// A servo period in which the law is wrong, or holds.
@@ -86,7 +86,7 @@ impl<const N: usize> Proof<N> {
         let change_mm_s = norm(off_mm_s);
         self.lately_mm_s = change_mm_s.max((1.0 - part) * self.lately_mm_s);
         if wrong {
-            (self.needed, self.trial) = (true, Trial::BEGUN);
+            (self.needed, self.trial) = (true, ProofTrial::BEGUN);
             self.wrong_mm_s = self.wrong_mm_s.max(self.lately_mm_s);
         } else if self.needed && self.trial.holds_through(change_mm_s, self.wrong_mm_s, self.needs_s, servo_s) {
             (self.needed, self.wrong_mm_s) = (false, 0.0);
