@@ -132,7 +132,11 @@ fn print(job: &Job, outcome: &JobOutcome) -> std::io::Result<()> {
     if let Some(plan) = &outcome.fastest {
         print_fastest(&mut out, plan)?;
     }
-    let outputs = &job.outputs;
+    print_written(&mut out, &job.outputs)
+}
+
+/// Which files there are.
+fn print_written(out: &mut impl Write, outputs: &Outputs) -> std::io::Result<()> {
     for path in [&outputs.report, &outputs.json, &outputs.trace, &outputs.out].into_iter().flatten() {
         writeln!(out, "wrote {}", path.display())?;
     }
