@@ -271,13 +271,15 @@ impl<'a> RecordedAxes<'a> {
         self.shift_mm = add_scaled(self.shift_mm, 1.0, off_mm);
     }
 
-    /// The sample in which the command is at `start_mm` first.
+    /// The sample in which the command has come nearest to `start_mm`, the first time that it is there.
     fn begins(&self, start_mm: Vector) -> Result<usize, MeasuredError> {
+        let away = |k: usize| distance(self.at(k).command_mm, start_mm);
         let mut nearest = (f64::INFINITY, 0);
         for k in 0..self.len() {
-            let away_mm = distance(self.at(k).command_mm, start_mm);
+            let away_mm = away(k);
             if away_mm < BEGUN_MM {
-                return Ok(k);
+                let arrived = |k: &usize| *k + 1 == self.len() || away(*k + 1) >= away(*k);
+                return Ok((k..self.len()).find(arrived).unwrap_or(k));
             }
             if away_mm < nearest.0 {
                 nearest = (away_mm, k);
