@@ -49,8 +49,8 @@ mod verified;
 use std::path::PathBuf;
 
 use crate::gcode::canon::Canon;
-use crate::gcode::{self, Settings, Summary};
-use crate::job::JobError;
+use crate::gcode::{self, Settings};
+use crate::job::{JobError, axes_that_move};
 use crate::machine::Machine;
 use crate::path::Step;
 use crate::watch::Watch;
@@ -122,7 +122,7 @@ impl CorrectJob {
     pub fn run(&self, watch: &dyn Watch) -> Result<CorrectOutcome, JobError> {
         watch.begin("reading the program", 1);
         let summary = gcode::check(&self.part, self.reader.clone())?;
-        let axes = self.axes(&summary)?;
+        let axes = axes_that_move(&self.part, &summary, &self.machine)?;
         let source = SourceProgram::read(&self.part, &self.reader)?;
         let path_error = |fault| JobError::Path { part: self.part.clone(), fault };
         let original = steps_of(&source.steps).map_err(path_error)?;
@@ -158,15 +158,6 @@ impl CorrectJob {
             dwell_s: found.dwell_s,
             warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
         })
-    }
-
-    /// Two axes where the program stays in the XY plane.
-    fn axes(&self, summary: &Summary) -> Result<usize, JobError> {
-        match (summary.moves[2], self.machine.axis_count()) {
-            (false, _) => Ok(2),
-            (true, 3..) => Ok(3),
-            (true, _) => Err(JobError::NoZ { part: self.part.clone(), machine: self.machine.name.clone() }),
-        }
     }
 
     /// A text that says what was found, with as many lines of the original as can be; none where no text does.

@@ -15,7 +15,7 @@ mod files;
 mod report;
 mod stored;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use feedwright_control::Controller;
@@ -119,7 +119,7 @@ impl Job {
         watch.begin("reading the program", 1);
         self.check_values()?;
         let summary = gcode::check(&self.part, self.reader.clone())?;
-        let axes = self.axes(&summary)?;
+        let axes = axes_that_move(&self.part, &summary, &self.machine)?;
         if let Some(model) = &self.model {
             self.controller.suits(model, &self.machine.known(), axes, &self.choices)?;
         }
@@ -287,15 +287,6 @@ impl Job {
         }
     }
 
-    /// Two axes where the program stays in the XY plane and the third would only stand still.
-    fn axes(&self, summary: &Summary) -> Result<usize, JobError> {
-        match (summary.moves[2], self.machine.axis_count()) {
-            (false, _) => Ok(2),
-            (true, 3..) => Ok(3),
-            (true, _) => Err(JobError::NoZ { part: self.part.clone(), machine: self.machine.name.clone() }),
-        }
-    }
-
     /// The canonical steps of the program, with the feedrate replaced where that was asked for.
     fn program(&self) -> Result<impl Iterator<Item = Canon> + Send + use<>, ReadError> {
         let feed_mm_s = self.feed_mm_s;
@@ -309,6 +300,18 @@ impl Job {
             }
             step
         }))
+    }
+}
+
+/// Two axes where the program stays in the XY plane and the third would only stand still.
+///
+/// # Errors
+/// A program that moves an axis that the machine does not have.
+pub(crate) fn axes_that_move(part: &Path, summary: &Summary, machine: &Machine) -> Result<usize, JobError> {
+    match (summary.moves[2], machine.axis_count()) {
+        (false, _) => Ok(2),
+        (true, 3..) => Ok(3),
+        (true, _) => Err(JobError::NoZ { part: part.to_owned(), machine: machine.name.clone() }),
     }
 }
 

@@ -290,6 +290,11 @@ impl Machine {
         self.limits.path_tolerance_um.is_some() && self.axes.iter().all(limited)
     }
 
+    /// The lowest gain of a position loop, 1/s.
+    pub fn slowest_kp_1_s(&self) -> f64 {
+        self.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min)
+    }
+
     /// Two or three.
     pub fn axis_count(&self) -> usize {
         self.axes.len()

@@ -149,7 +149,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
     /// At rest at the start of the path.
     fn new(machine: &'a Machine, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
         let servo_s = machine.period.servo_s;
-        let slowest_s = 1.0 / machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
+        let slowest_s = 1.0 / machine.slowest_kp_1_s();
         let start_mm = joints_of(reference.at(0.0).position_mm);
         let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
         let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s, fade_mm_s2);

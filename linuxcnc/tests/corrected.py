@@ -29,14 +29,6 @@ path_tolerance_um = 10
 SMOOTH, CORNERS = (0.1, 0.25), (0.25, 0.3)
 
 
-def with_rests(text):
-    """Rests before and behind the cut."""
-    lines = []
-    for line in text.splitlines():
-        lines += (["G4 P0.2"] if line.startswith("M2") else []) + [line] + (["G4 P0.3"] if line.startswith("G0") else [])
-    return "\n".join(lines) + "\n"
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--feedwright", default=os.environ.get("FEEDWRIGHT", "feedwright"), help="the command")
@@ -52,10 +44,10 @@ def main():
         print(f"{'program':10} {'original, um':>16} {'corrected':>16}  time")
         for part, (rms, most) in (("circle", SMOOTH), ("star", SMOOTH), ("eight", SMOOTH), ("square", CORNERS)):
             run("correct", programs.PARTS / f"{part}.ngc", "--machine", machine, "--for", "linuxcnc", "--out", out)
-            original = with_rests((programs.PARTS / f"{part}.ngc").read_text())
+            original = programs.with_rests((programs.PARTS / f"{part}.ngc").read_text())
             cut = lambda text: measure.figures(
                 headless.run("cut", {"program": text, "enable": False}, {"FEEDWRIGHT": {"MACHINE": block, "MODEL": block}}), original)
-            was, now = cut(original), cut(with_rests(out.read_text()))
+            was, now = cut(original), cut(programs.with_rests(out.read_text()))
             ok = now[0][0] <= rms * was[0][0] and now[0][1] <= most * was[0][1]
             missed += not ok
             cells = [f"{figures[0][0]:.2f} / {figures[0][1]:.2f}" for figures in (was, now)]

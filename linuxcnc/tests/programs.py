@@ -5,19 +5,18 @@ import pathlib
 PARTS = pathlib.Path(__file__).resolve().parents[2] / "parts"
 
 
-def part(name, mode):
-    """A part of the repository in a path mode, with rests before and behind the cut."""
-    text = (PARTS / f"{name}.ngc").read_text()
+def with_rests(text):
+    """Rests before and behind the cut."""
     lines = []
     for line in text.splitlines():
-        if line.startswith("G21"):
-            line = f"G21 G17 G90 G94 {mode}"
-        if line.startswith("M2"):
-            lines.append("G4 P0.2")
-        lines.append(line)
-        if line.startswith("G0"):
-            lines.append("G4 P0.3")
+        lines += (["G4 P0.2"] if line.startswith("M2") else []) + [line] + (["G4 P0.3"] if line.startswith("G0") else [])
     return "\n".join(lines) + "\n"
+
+
+def part(name, mode):
+    """A part of the repository in a path mode, with rests before and behind the cut."""
+    lines = (PARTS / f"{name}.ngc").read_text().splitlines()
+    return with_rests("\n".join(f"G21 G17 G90 G94 {mode}" if line.startswith("G21") else line for line in lines))
 
 
 def helix(mode):

@@ -38,7 +38,7 @@ pub(super) fn loop_lags<const N: usize>(machine: &Machine) -> [LoopLag; N] {
         ..*axis
     };
     let free = Machine { axes: machine.axes.iter().map(axis).collect(), ..super::nominal::deterministic(machine) };
-    let slowest_1_s = free.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
+    let slowest_1_s = free.slowest_kp_1_s();
     let servo_s = free.period.servo_s;
     let periods = (TEST_TIME_CONSTANTS / slowest_1_s / servo_s).ceil();
     let looks = MOMENTS.map(|part| (part * periods) as u64);

@@ -106,8 +106,7 @@ pub(super) fn rounds(
         _ => loop_lags::<3>(cut.machine).to_vec(),
     };
     let slowest_s = lags.iter().map(|lag| lag.first_s).fold(0.0, f64::max);
-    let settles_s =
-        DWELL_TIME_CONSTANTS / cut.machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
+    let settles_s = DWELL_TIME_CONSTANTS / cut.machine.slowest_kp_1_s();
     let dwell_s = (DWELL_LAGS * slowest_s).max(settles_s).clamp(DWELL_S[0], DWELL_S[1]);
     let dwell_s = (1e3 * dwell_s).round() / 1e3;
     let settings = settings(cut.machine);
@@ -209,7 +208,7 @@ impl RoundsBench<'_> {
 
 /// A way to the end that is so slow that it brakes in a part of the loop's time constant, and as long as that takes to settle.
 fn slow_end(machine: &Machine) -> SlowEnd {
-    let slowest_s = 1.0 / machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
+    let slowest_s = 1.0 / machine.slowest_kp_1_s();
     let speed_mm_s = machine.limits.tangential_accel_mm_s2 * BRAKES_IN * slowest_s;
     SlowEnd { speed_mm_s, length_mm: speed_mm_s * SETTLES_IN * slowest_s }
 }

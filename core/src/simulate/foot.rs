@@ -46,7 +46,7 @@ const MAX_STEPS: f64 = 512.0;
 
 /// How long after the reference a following tool has reached a point of the path, s.
 pub(crate) fn settled_s(machine: &Machine) -> f64 {
-    let slowest_1_s = machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
+    let slowest_1_s = machine.slowest_kp_1_s();
     let delay_s = machine
         .axes
         .iter()
@@ -84,7 +84,7 @@ struct FootSearch<'a, 'p> {
 impl FootTracker {
     /// At rest at the start of the path.
     pub(super) fn new(machine: &Machine, start_mm: Vector) -> Self {
-        let slowest_1_s = machine.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min);
+        let slowest_1_s = machine.slowest_kp_1_s();
         Self {
             passed_mm: VecDeque::new(),
             periods: settled_periods(machine),
