@@ -179,7 +179,7 @@ linuxcnc:
 linuxcnc-check:
     linuxcnc/check
 
-# Every program and fault in a real LinuxCNC, on machines that differ: the figures of docs/linuxcnc.md. Half an hour, most of it waiting.
+# Every program and fault in a real LinuxCNC, on machines that differ: the figures of docs/linuxcnc.md. An hour and a half, most of it waiting.
 linuxcnc-sweep: linuxcnc
     #!/usr/bin/env bash
     set -euo pipefail
@@ -188,6 +188,7 @@ linuxcnc-sweep: linuxcnc
     export FEEDWRIGHT=$PWD/target/release/feedwright
     cd linuxcnc
     python3 tests/sweep.py
+    python3 tests/paper.py --figure ../docs/linuxcnc_paper.svg
     python3 tests/identified.py
     python3 tests/corrected.py
     python3 tests/planner.py

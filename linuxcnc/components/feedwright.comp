@@ -4,6 +4,10 @@ description """
 Corrects the position commands of two or three linear joints so that the tool is nearer to the commanded path. It stands between
 joint.N.motor-pos-cmd and the drives, and knows of each axis what a model file has: its loops, inertia, friction and noise.
 
+With a model of axes ('feedwright identify --controller lqg-identified') the geometry of the command is corrected in every servo period. With one for the
+controllers of Lee, Cho and Jeon (two-dimensional, magnitude-only) it is corrected every 10 ms, and the feedrate through \\fBadaptive-feed\\fR;
+the delay is then no less than 13 ms.
+
 The command is delayed by \\fBdelay\\fR, so that the correction sees ahead, and the drive gets the delayed command and an offset. What goes
 back to joint.N.motor-pos-fb is the command now and the following error of the drive, so that FERROR and MIN_FERROR keep their meaning.
 
@@ -49,6 +53,7 @@ pin in bit coordinated = 1 "Whether a program or MDI moves the machine, from mot
 pin in s32 motion-type "From motion.motion-type: a rapid is not corrected for harm, a probing motion is not delayed";
 pin in bit spindle-index "From spindle.0.index-enable: the motion behind it is not delayed";
 pin in bit direct "No delay and no correction, from outside";
+pin in bit speed_alone "With a model for the paper's controllers: the feedrate alone is changed, the geometry stays on the path; taken over where the command rests";
 
 pin in float delay = 0.010 "Delay of the command, 0.008 to 0.015 s; taken over where the command rests";
 pin in float deviation-limit = 0.5 "Largest distance of the drive's command from the path, mm";
@@ -56,7 +61,10 @@ pin in float speed-limit = 400 "Highest speed of the machine, mm/s: actual posit
 pin in float correction-acceleration = 400 "Acceleration with which an offset fades, mm/s^2; 0 is without limit";
 
 pin out float contour-error "Distance of the actual position from the path, mm";
-pin out float contour-error-without "What it would be without the correction, by the model, mm";
+pin out float contour-error-without "What it would be without the correction, by a model of axes, mm";
+pin out float adaptive-feed = 1 """To motion.adaptive-feed, which heeds it in programs with M52 P1: \\fBadaptive-scale\\fR times the feedrate that a controller asks for,
+as a multiple of that of now; within 0 and 1. The paper's controllers ask for 0.5 to 1.2, lqg-identified for 1""";
+param rw float adaptive-scale = 1 "0.5 where the feed override stands at 200 %: LinuxCNC takes no more than 1, and only so a cut can be sooner than programmed";
 pin out bit saturated "A limit holds the correction";
 pin out u32 state "0 amplifiers off, 1 without delay, 2 delayed, without correction, 3 the correction fades, 4 it is in the loop";
 pin out bit fault "There is no correction, for the reason in \\fBcause\\fR; it clears itself";
@@ -84,6 +92,7 @@ license "MIT OR Apache-2.0";
 author "The feedwright contributors";
 ;;
 
+#include "faults.h"
 #include "load.h"
 #include "record.h"
 
@@ -150,7 +159,8 @@ static uint32_t flags(const struct __comp_state *c)
 {
     bool direct = *c->direct || !*c->coordinated || *c->motion_type == 5;
     return (*c->powered ? FEEDWRIGHT_POWERED : 0) | (*c->enable ? FEEDWRIGHT_ENABLED : 0) | (direct ? FEEDWRIGHT_DIRECT : 0) |
-           (*c->spindle_index ? FEEDWRIGHT_SPINDLE : 0) | (*c->motion_type != 1 ? FEEDWRIGHT_CUTTING : 0);
+           (*c->spindle_index ? FEEDWRIGHT_SPINDLE : 0) | (*c->motion_type != 1 ? FEEDWRIGHT_CUTTING : 0) |
+           (*c->speed_alone ? FEEDWRIGHT_SPEED_ALONE : 0);
 }
 
 #define FUNCTION(name) static void name(struct __comp_state *__comp_inst, long period)
@@ -165,7 +175,8 @@ FUNCTION(_)
         .correction_mm_s2 = *c->correction_acceleration,
         .flags = flags(c),
     };
-    feedwright_outputs out = { .fault = FEEDWRIGHT_FAILED, .state = 1 };
+    feedwright_outputs out = { .fault = FEEDWRIGHT_FAILED, .state = 1, .rate = 1 };
+    double adaptive;
     uint32_t last_cause = *c->fault ? *c->cause : 0;
     int i;
     for (i = 0; i < 3; i++) {
@@ -186,6 +197,8 @@ FUNCTION(_)
     }
     *c->contour_error = out.contour_error_mm;
     *c->contour_error_without = out.without_mm;
+    adaptive = c->adaptive_scale * out.rate;
+    *c->adaptive_feed = adaptive > 0 ? (adaptive < 1 ? adaptive : 1) : 0;
     *c->saturated = out.saturated != 0;
     *c->state = out.state;
     *c->fault = out.fault != 0;

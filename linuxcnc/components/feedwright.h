@@ -1,7 +1,6 @@
-/* What feedwright computes between a position command and a drive, and a simulated machine. The library is hal/ beside this folder; its
- * `#[repr(C)]` types and these are the same, which feedwright_servo_layout() tells at load time. Lengths in mm, times in s.
- *
- * Nothing here allocates. `_new` is for before the thread runs, `_step` for each servo period. */
+/* What feedwright computes between a position command and the drives, and a simulated machine: the library of ../hal, of which this file is made.
+ * Lengths in mm, times in s. Nothing here allocates: `_new` is for before the thread runs, `_step` for each servo period. */
+
 #ifndef FEEDWRIGHT_H
 #define FEEDWRIGHT_H
 
@@ -9,80 +8,126 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum {
-    FEEDWRIGHT_POWERED = 1, /* the amplifiers are on */
-    FEEDWRIGHT_ENABLED = 2, /* the correction is wanted */
-    FEEDWRIGHT_DIRECT = 4,  /* no delay is wanted */
-    FEEDWRIGHT_SPINDLE = 8, /* a spindle is about to be followed */
-    FEEDWRIGHT_CUTTING = 16 /* this motion cuts */
-};
+// The amplifiers are on.
+#define FEEDWRIGHT_POWERED 1
 
+// The correction is wanted.
+#define FEEDWRIGHT_ENABLED 2
+
+// No delay is wanted.
+#define FEEDWRIGHT_DIRECT 4
+
+// A spindle is about to be followed.
+#define FEEDWRIGHT_SPINDLE 8
+
+// This motion cuts.
+#define FEEDWRIGHT_CUTTING 16
+
+// A controller that changes the feedrate leaves the geometry on the path.
+#define FEEDWRIGHT_SPEED_ALONE 32
+
+// The simulated machine.
+typedef struct feedwright_plant feedwright_plant;
+
+// The link between command and drives.
+typedef struct feedwright_servo feedwright_servo;
+
+// What comes from the control and the drives in a servo period.
 typedef struct {
+    // Position commands.
     double command_mm[3];
+    // Actual positions.
     double actual_mm[3];
-    double delay_s;          /* of the command, 0.008 to 0.015 */
-    double deviation_mm;     /* of the drive's command from the path */
-    double speed_mm_s;       /* highest of the machine */
-    double correction_mm_s2; /* of an offset that fades; 0 is without limit */
+    // Delay of the command, 0.008 to 0.015.
+    double delay_s;
+    // Largest distance of the drive's command from the path.
+    double deviation_mm;
+    // Highest speed of the machine.
+    double speed_mm_s;
+    // Acceleration of an offset that fades; 0 is without limit.
+    double correction_mm_s2;
+    // The sum of FEEDWRIGHT_POWERED and so on.
     uint32_t flags;
+    // Nothing.
     uint32_t reserved;
 } feedwright_inputs;
 
+// What goes to the drives and the control.
 typedef struct {
+    // Position commands of the drives.
     double drive_mm[3];
+    // What the control takes for the actual positions.
     double feedback_mm[3];
+    // Offsets of the drives' commands from the path.
     double correction_mm[3];
+    // Distance of the actual position from the path.
     double contour_error_mm;
-    double without_mm; /* contour error without the correction, by the model */
-    uint32_t state;    /* 0 off, 1 without delay, 2 delayed, 3 fading, 4 in the loop */
-    uint32_t fault;    /* see feedwright_fault() */
+    // The same without the correction, by the model.
+    double without_mm;
+    // Feedrate that the control is asked for, as a multiple of its own.
+    double rate;
+    // 0 amplifiers off, 1 without delay, 2 delayed, 3 the correction fades, 4 it is in the loop.
+    uint32_t state;
+    // Why there is no correction, 0 for nothing; faults.h has words for it.
+    uint32_t fault;
+    // Whether a limit holds the correction.
     uint32_t saturated;
+    // Servo periods of delay.
     uint32_t delay_periods;
 } feedwright_outputs;
 
-typedef struct feedwright_servo feedwright_servo;
-typedef struct feedwright_plant feedwright_plant;
+// The caller's: where a panic ends. It must not return.
+extern void feedwright_panicked(void) __attribute__((noreturn));
 
+// Bytes that a link needs.
 size_t feedwright_servo_bytes(void);
-size_t feedwright_servo_layout(void); /* sizeof(feedwright_inputs) << 16 | sizeof(feedwright_outputs) */
-/* Returns the fault that it begins with, 0 for none, UINT32_MAX where the memory is too small. Without a model it passes commands on. */
-uint32_t feedwright_servo_new(feedwright_servo *memory, size_t memory_bytes, uint32_t joints, const uint8_t *model, size_t length);
-/* The servo period of the thread, before the first step; returns the fault that there is then. */
+
+// Sizes of inputs and outputs, for the caller to compare with its own.
+size_t feedwright_servo_layout(void);
+
+// A new link of two or three joints, with or without a model; the fault that it begins with, or the largest number where the memory is
+// none for it.
+//
+// # Safety
+// There are so many bytes at `memory`, which nobody else uses, and so many at `bytes`.
+uint32_t feedwright_servo_new(feedwright_servo *memory, size_t memory_bytes, uint32_t joints, const uint8_t *bytes, size_t length);
+
+// Tells the servo period of the thread, before the first step; the fault that there is then.
+//
+// # Safety
+// `servo` was made by [`feedwright_servo_new`].
 uint32_t feedwright_servo_runs_at(feedwright_servo *servo, double servo_s);
+
+// One servo period.
+//
+// # Safety
+// `servo` was made by [`feedwright_servo_new`]; the others are what they are declared to be.
 void feedwright_servo_step(feedwright_servo *servo, const feedwright_inputs *inputs, feedwright_outputs *outputs);
 
+// Bytes that a machine needs.
 size_t feedwright_plant_bytes(void);
-bool feedwright_plant_new(feedwright_plant *memory, size_t memory_bytes, uint32_t joints, const uint8_t *model, size_t length,
+
+// A new machine of two or three joints; whether there is one.
+//
+// # Safety
+// There are so many bytes at `memory`, which nobody else uses, and so many at `bytes`.
+bool feedwright_plant_new(feedwright_plant *memory,
+                          size_t memory_bytes,
+                          uint32_t joints,
+                          const uint8_t *bytes,
+                          size_t length,
                           uint64_t seed);
-void feedwright_plant_step(feedwright_plant *plant, const double command_mm[3], bool powered, double inertia, double position_mm[3],
-                           double measured_mm[3], double torque_nm[3]);
 
-/* The caller's: where a panic ends. It must not return. */
-_Noreturn void feedwright_panicked(void);
+// One servo period under a command; tool, measured position and torque at its end.
+//
+// # Safety
+// `plant` was made by [`feedwright_plant_new`]; the others are what they are declared to be.
+void feedwright_plant_step(feedwright_plant *plant,
+                           const double (*command_mm)[3],
+                           bool powered,
+                           double inertia,
+                           double (*position_mm)[3],
+                           double (*measured_mm)[3],
+                           double (*torque_nm)[3]);
 
-/* A fault in words. */
-static inline const char *feedwright_fault(uint32_t fault)
-{
-    static const char *const words[] = {
-        "none",
-        "the file is no model: make it with 'feedwright block'",
-        "the model is of another format than this component reads",
-        "the model is not one of identified axes: identify with --controller lqg-identified",
-        "the model is for another number of axes than there are joints",
-        "the model is cut off, or has something behind it",
-        "the model is damaged: its checksum does not fit",
-        "a number of the model is out of its bounds",
-        "the model is for another servo period than that of the thread",
-        "the correction was not a number",
-        "the actual position was lost: not a number, leapt, or stood still under a moving command",
-        "the machine does not do what the model predicts",
-        "the correction made the contour error larger",
-        "the command was not a number",
-        "the component failed inside and passes commands on",
-    };
-    return fault < sizeof words / sizeof words[0] ? words[fault] : "unknown";
-}
-
-#define FEEDWRIGHT_FAILED 14u
-
-#endif
+#endif  /* FEEDWRIGHT_H */

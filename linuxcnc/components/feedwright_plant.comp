@@ -78,7 +78,7 @@ FUNCTION(_)
     (void)period;
     for (i = 0; i < joints; i++)
         command_mm[i] = *c->command[i];
-    if (!failed && !CONTAINED(feedwright_plant_step(plant, command_mm, *c->powered, *c->inertia, tool_mm, measured_mm, torque_nm)))
+    if (!failed && !CONTAINED(feedwright_plant_step(plant, &command_mm, *c->powered, *c->inertia, &tool_mm, &measured_mm, &torque_nm)))
         failed = true;
     for (i = 0; i < joints && !failed; i++) {
         *c->tool[i] = tool_mm[i];

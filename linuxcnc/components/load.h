@@ -11,7 +11,7 @@
 
 #include "feedwright.h"
 
-/* A model of three axes has 850 bytes. */
+/* A model of three axes has 1,800 bytes at the most. */
 #define FEEDWRIGHT_MODEL_BYTES 4096
 
 static size_t read_model(const char *component, const char *path, uint8_t *bytes)

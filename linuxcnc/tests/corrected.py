@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 """Programs of `feedwright correct` in a real LinuxCNC without any live correction: original and corrected text, against the original path.
 
-    corrected.py [--feedwright COMMAND]
+    corrected.py
 
 Exit code 1 where a smooth path keeps more than a tenth of its RMS or a quarter of its largest error, or a square more than a quarter and 0.3.
 """
 import argparse
-import os
 import pathlib
 import subprocess
 import sys
@@ -31,7 +30,6 @@ SMOOTH, CORNERS = (0.1, 0.25), (0.25, 0.3)
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--feedwright", default=os.environ.get("FEEDWRIGHT", "feedwright"), help="the command")
     args = parser.parse_args()
     missed = 0
     with tempfile.TemporaryDirectory(prefix="feedwright-corrected-") as name:
@@ -39,7 +37,7 @@ def main():
         folder.chmod(0o755)
         machine, block, out = folder / "machine.toml", folder / "machine.fwmodel", folder / "corrected.ngc"
         machine.write_text(MACHINE)
-        run = lambda *words: subprocess.run([args.feedwright, "--quiet", *map(str, words)], check=True, stdout=subprocess.DEVNULL)
+        run = lambda *words: subprocess.run([headless.FEEDWRIGHT, "--quiet", *map(str, words)], check=True, stdout=subprocess.DEVNULL)
         run("block", "tnv40", "--axes", 3, "--out", block)
         print(f"{'program':10} {'original, um':>16} {'corrected':>16}  time")
         for part, (rms, most) in (("circle", SMOOTH), ("star", SMOOTH), ("eight", SMOOTH), ("square", CORNERS)):
@@ -48,10 +46,10 @@ def main():
             cut = lambda text: measure.figures(
                 headless.run("cut", {"program": text, "enable": False}, {"FEEDWRIGHT": {"MACHINE": block, "MODEL": block}}), original)
             was, now = cut(original), cut(programs.with_rests(out.read_text()))
-            ok = now[0][0] <= rms * was[0][0] and now[0][1] <= most * was[0][1]
+            ok = now.programmed[0] <= rms * was.programmed[0] and now.programmed[1] <= most * was.programmed[1]
             missed += not ok
-            cells = [f"{figures[0][0]:.2f} / {figures[0][1]:.2f}" for figures in (was, now)]
-            print(f"{part:10} {cells[0]:>16} {cells[1]:>16}  {now[2] / was[2]:.3f}  {'' if ok else 'MISSED'}", flush=True)
+            cells = [f"{figures.programmed[0]:.2f} / {figures.programmed[1]:.2f}" for figures in (was, now)]
+            print(f"{part:10} {cells[0]:>16} {cells[1]:>16}  {now.time_s / was.time_s:.3f}  {'' if ok else 'MISSED'}", flush=True)
     return 1 if missed else 0
 
 

@@ -40,6 +40,8 @@ SIGNALS = {"joint.0.motor-pos-cmd": "x-command", "joint.1.motor-pos-cmd": "y-com
            "feedwright.feedback-0": "x-feedback", "feedwright.feedback-1": "y-feedback", "feedwright.feedback-2": "z-feedback",
            "motion.motion-type": "motion-type"}
 STARTS_S, ENDS_S = 40, 20
+# The command that makes models and reads programs.
+FEEDWRIGHT = os.environ.get("FEEDWRIGHT", "feedwright")
 
 
 @dataclasses.dataclass

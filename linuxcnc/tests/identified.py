@@ -2,14 +2,13 @@
 """The whole way of a machine owner, on a simulated machine: the program of `feedwright excite` runs through the same HAL chain, the log is
 identified, and the model of it corrects live.
 
-    identified.py [--feedwright COMMAND] [--machine NAME]
+    identified.py [--machine NAME]
 
 Prints the products that make the motion, as identified and as they are, what is cut with the model, and what `feedwright run --log` reads out of
 a record of that. Exit code 1 where products differ by more than 2 %, the largest contour error by more than 0.1 um, or a target is missed.
 """
 import argparse
 import json
-import os
 import pathlib
 import subprocess
 import sys
@@ -42,10 +41,9 @@ def products(axis):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--feedwright", default=os.environ.get("FEEDWRIGHT", "feedwright"), help="the command")
     parser.add_argument("--machine", default="tnv40")
     args = parser.parse_args()
-    run = lambda *words: subprocess.run([args.feedwright, "--quiet", *map(str, words)], check=True, capture_output=True, text=True).stdout
+    run = lambda *words: subprocess.run([headless.FEEDWRIGHT, "--quiet", *map(str, words)], check=True, capture_output=True, text=True).stdout
     with tempfile.TemporaryDirectory(prefix="feedwright-identified-") as name:
         folder = pathlib.Path(name)
         folder.chmod(0o755)
@@ -77,7 +75,7 @@ def main():
             columns = ",".join(f"{axis}.{what}={axis}.{what}" for axis in moved for what in ("cmd", "act"))
             run("run", part, "--machine", found, "--log", log, "--columns", columns, "--json", results, "--report", folder / "report.html")
             read = next(each for each in json.loads(results.read_text())["runs"] if each["controller"] == "measured")
-            rms, most = measure.figures(recording, program)[0]
+            rms, most = measure.figures(recording, program).programmed
             # Where the cut ends and the rest begins the two tell otherwise, so that their means differ by some per cent.
             wrong += abs(read["max_um"] - most) > SAME_UM
             print(f"{name:24} read out of the record: {read['rms_um']:.2f} / {read['max_um']:.2f} um, by the exact path {rms:.2f} / {most:.2f}")

@@ -1,8 +1,15 @@
-"""Programs that are cut: the parts of this repository, and some that need three axes or many segments."""
+"""Programs that are cut: the parts of this repository, some that need three axes or many segments, and, where they are, programs of others."""
 import math
 import pathlib
+import re
+import sys
 
 PARTS = pathlib.Path(__file__).resolve().parents[2] / "parts"
+# Foreign programs are no part of this repository: file, and lines that are cut, some 20 s.
+FOREIGN = PARTS.parent.parent / "shared" / "corpus" / "gcode"
+OTHERS = {"meander": ("linuxcnc-tp/51MeanderAve.ngc", 200), "ball": ("cncjs/tball.gcode", 600), "spiral": ("linuxcnc-tp/spiral_lines.ngc", 500)}
+CORNERS = ("square", "slot", "pocket")
+MODES = ("G61", "G64 P0.01", "G64 P0.001 Q0")
 
 
 def with_rests(text):
@@ -16,7 +23,7 @@ def with_rests(text):
 def part(name, mode):
     """A part of the repository in a path mode, with rests before and behind the cut."""
     lines = (PARTS / f"{name}.ngc").read_text().splitlines()
-    return with_rests("\n".join(f"G21 G17 G90 G94 {mode}" if line.startswith("G21") else line for line in lines))
+    return with_rests("\n".join(f"G21 G17 G90 G94 {mode}" if re.match(r"(N\d+ )?G21\b", line) else line for line in lines))
 
 
 def helix(mode):
@@ -35,9 +42,17 @@ def segments(mode, count=500):
 
 
 def spline(mode):
-    """Cubic splines that meet smoothly, as LinuxCNC reads G5."""
-    return (f"G21 G17 G90 G94 {mode}\nG0 X0 Y0\nG4 P0.3\nF3000\nG5 I10 J15 P-10 Q15 X40 Y0\nG5 I10 J-15 P-10 Q-15 X80 Y0\n"
+    """Cubic splines that meet smoothly, as LinuxCNC reads G5, behind a rapid in which the law of the axes proves itself."""
+    return (f"G21 G17 G90 G94 {mode}\nG0 X-5 Y-5\nG0 X0 Y0\nG4 P0.3\nF3000\nG5 I10 J15 P-10 Q15 X40 Y0\nG5 I10 J-15 P-10 Q-15 X80 Y0\n"
             "G5 I10 J15 P0 Q15 X100 Y-20\nG4 P0.2\nM2\n")
+
+
+def foreign(name, mode):
+    """The beginning of a foreign program, in a path mode of ours."""
+    file, count = OTHERS[name]
+    lines = (FOREIGN / file).read_text().splitlines()[:count]
+    lines = [re.sub(r"(?i)G6[14](\.1)?|(?<![A-Z])[PQ]0[\d.]*(?![\d.])", "", line) if re.match(r"(?i)\s*G6[14]", line) else line for line in lines]
+    return "\n".join([f"G21 G17 G90 G94 {mode}", "G4 P0.3", *(line for line in lines if not re.match(r"(?i)\s*M(2|30)\b", line)), "G4 P0.2", "M2"]) + "\n"
 
 
 def programs(quick=False):
@@ -46,16 +61,14 @@ def programs(quick=False):
              ("square G61", part("square", "G61"), True), ("helix G64", helix("G64"), False)]
     if quick:
         return found
-    return found + [
-        ("eight G64 P0.01", part("eight", "G64 P0.01"), False),
-        ("ellipse G64 P0.01", part("ellipse", "G64 P0.01"), False),
-        ("star G64 P0.001 Q0", part("star", "G64 P0.001 Q0"), False),
-        ("eight G64 P0.001 Q0", part("eight", "G64 P0.001 Q0"), False),
-        ("square G64 P0.01", part("square", "G64 P0.01"), True),
-        ("square G64 P0.001 Q0", part("square", "G64 P0.001 Q0"), True),
-        ("star G61", part("star", "G61"), True),
-        ("spline G64 P0.01", spline("G64 P0.01"), False),
-        ("slot G64 P0.01", part("slot", "G64 P0.01"), True),
-        ("segments G64 P0.01", segments("G64 P0.01"), True),
-        ("segments G64 P0.001 Q0", segments("G64 P0.001 Q0"), True),
-    ]
+    if not FOREIGN.is_dir():
+        print(f"no foreign programs at {FOREIGN}: they are not cut", file=sys.stderr)
+    for mode in MODES:
+        # With stops at corners, or with the corners of chords, no path is smooth.
+        smooth = mode != "G61"
+        found += [(f"{name} {mode}", part(name, mode), name in CORNERS or not smooth)
+                  for name in ("circle", "star", "eight", "ellipse", "square", "slot", "pocket")]
+        found += [(f"helix {mode}", helix(mode), False), (f"spline {mode}", spline(mode), not smooth), (f"segments {mode}", segments(mode), True)]
+        if FOREIGN.is_dir():
+            found += [(f"{name} {mode}", foreign(name, mode), True) for name in OTHERS]
+    return found

@@ -1,13 +1,15 @@
 """What is done with LinuxCNC in a run: each function is one, and gets the machine of headless.py."""
 
 
-def cut(machine, program, enable=True, params=None):
+def cut(machine, program, enable=True, params=None, override=1.0):
     """A program from beginning to end."""
     machine.on()
     machine.home()
     machine.hal("setp", "feedwright.enable", int(enable))
     for pin, value in (params or {}).items():
         machine.hal("setp", pin, value)
+    machine.command.feedrate(override)
+    machine.command.set_optional_stop(False)
     machine.open(program)
     machine.record()
     machine.begin()

@@ -1,19 +1,19 @@
 #!/usr/bin/env python3
 """Every program on tnv40, and the quick ones on machines that differ: never worse than without the correction.
 
-    sweep.py [--feedwright COMMAND] [--only CASE]
+    sweep.py [--only CASE]
 
 Models are identified with `feedwright identify`, on the machine itself or, where that is said, on the machine that it once was. Takes some
 25 minutes, most of them waiting. Exit code 1 where a target is missed.
 """
 import argparse
 import dataclasses
-import os
 import pathlib
 import subprocess
 import sys
 import tempfile
 
+import headless
 import measure
 import programs
 
@@ -64,7 +64,6 @@ def made(folder, command, case):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--feedwright", default=os.environ.get("FEEDWRIGHT", "feedwright"), help="the command that makes models")
     parser.add_argument("--only", default="", help="cases whose name begins so")
     parser.add_argument("--skip", type=int, default=0, help="so many cases at the beginning")
     args = parser.parse_args()
@@ -76,7 +75,7 @@ def main():
             folder = pathlib.Path(name)
             folder.chmod(0o755)
             print(f"\n{case.name}", flush=True)
-            machine = made(folder, args.feedwright, case)
+            machine = made(folder, headless.FEEDWRIGHT, case)
             missed += measure.table(machine, case.pins, programs.programs(not case.whole), never_worse=not case.whole)
     return 1 if missed else 0
 

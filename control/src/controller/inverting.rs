@@ -40,6 +40,9 @@ pub struct Settings {
     pub learning_step: f64,
     /// Slowest and fastest the controller may run, as a multiple of the planned feedrate.
     pub rate_range: [f64; 2],
+    /// Whether another planner is told the rate and goes by it later: the path ahead is then what will be commanded, and the rate is no
+    /// part of this feed period.
+    pub is_planned_elsewhere: bool,
 }
 
 impl Settings {
@@ -50,6 +53,7 @@ impl Settings {
         inversion: inversion::Settings { rho: 0.001, eta: 0.3, steps: 5, step_limit: 0.1, gradient: Gradient::Printed },
         learning_step: 0.003,
         rate_range: [0.5, 1.2],
+        is_planned_elsewhere: false,
     };
 }
 
@@ -164,7 +168,8 @@ impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<
         let across = add_scaled(change, -along, direction);
         let [slowest, fastest] = self.settings.rate_range;
         let rate = bounded(1.0 + along / planned_feed, slowest, fastest);
-        let feed = add_scaled(across, rate, planned);
+        let commanded = if self.settings.is_planned_elsewhere { 1.0 } else { rate };
+        let feed = add_scaled(across, commanded, planned);
         self.last = Some(self.delays.inputs(seen_feed(feed)));
         let stale = TANGENTIAL_LEAK * dot(window.offset_mm, direction);
         Command::straight(rate, add_scaled(add_scaled(window.offset_mm, period_s, across), -stale, direction))

@@ -1,4 +1,4 @@
-//! The C interface of [`feedwright_servo`], as `feedwright.h` declares it: memory comes from the caller, nothing is allocated, and a panic
+//! The C interface of [`feedwright_servo`], of which `feedwright.h` is made: memory comes from the caller, nothing is allocated, and a panic
 //! ends in a function of the caller, which does not come back here.
 //!
 //! | Function | When |
@@ -7,15 +7,15 @@
 //! | those ending in `_step` | once a servo period |
 #![no_std]
 
-mod servo;
-mod plant;
+pub mod servo;
+pub mod plant;
 mod memory;
 
 use core::panic::PanicInfo;
 
 unsafe extern "C" {
-    /// Leaves the library for good; the caller's.
-    fn feedwright_panicked() -> !;
+    /// The caller's: where a panic ends. It must not return.
+    pub fn feedwright_panicked() -> !;
 }
 
 #[panic_handler]

@@ -5,12 +5,12 @@ use feedwright_servo::plant::SimulatedMachine;
 
 use crate::memory::{TwoOrThree, first, model, put, three};
 
-/// `feedwright_plant`.
-pub(crate) struct CPlant(TwoOrThree<SimulatedMachine<2>, SimulatedMachine<3>>);
+/// The simulated machine.
+pub struct CPlant(TwoOrThree<SimulatedMachine<2>, SimulatedMachine<3>>);
 
 /// Bytes that a machine needs.
 #[unsafe(no_mangle)]
-pub(crate) extern "C" fn feedwright_plant_bytes() -> usize {
+pub extern "C" fn feedwright_plant_bytes() -> usize {
     size_of::<CPlant>()
 }
 
@@ -19,7 +19,7 @@ pub(crate) extern "C" fn feedwright_plant_bytes() -> usize {
 /// # Safety
 /// There are so many bytes at `memory`, which nobody else uses, and so many at `bytes`.
 #[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn feedwright_plant_new(
+pub unsafe extern "C" fn feedwright_plant_new(
     memory: *mut CPlant,
     memory_bytes: usize,
     joints: u32,
@@ -45,7 +45,7 @@ pub(crate) unsafe extern "C" fn feedwright_plant_new(
 /// # Safety
 /// `plant` was made by [`feedwright_plant_new`]; the others are what they are declared to be.
 #[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn feedwright_plant_step(
+pub unsafe extern "C" fn feedwright_plant_step(
     plant: &mut CPlant,
     command_mm: &[f64; 3],
     powered: bool,

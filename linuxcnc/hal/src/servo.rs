@@ -3,56 +3,82 @@
 use feedwright_control::model::BlockError;
 use feedwright_control::safety::State;
 use feedwright_control::safety::engagement::Cause;
-use feedwright_servo::machine::{Refused, axes_of};
+use feedwright_servo::machine::{Refused, model_of};
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkLimits, LinkOutputs, Servo};
 
 use crate::memory::{TwoOrThree, first, model, put, three};
 
-/// `feedwright_inputs`.
+/// The amplifiers are on.
+pub const FEEDWRIGHT_POWERED: u32 = 1;
+/// The correction is wanted.
+pub const FEEDWRIGHT_ENABLED: u32 = 2;
+/// No delay is wanted.
+pub const FEEDWRIGHT_DIRECT: u32 = 4;
+/// A spindle is about to be followed.
+pub const FEEDWRIGHT_SPINDLE: u32 = 8;
+/// This motion cuts.
+pub const FEEDWRIGHT_CUTTING: u32 = 16;
+/// A controller that changes the feedrate leaves the geometry on the path.
+pub const FEEDWRIGHT_SPEED_ALONE: u32 = 32;
+
+/// What comes from the control and the drives in a servo period.
 #[repr(C)]
-pub(crate) struct CInputs {
+pub struct CInputs {
+    /// Position commands.
     command_mm: [f64; 3],
+    /// Actual positions.
     actual_mm: [f64; 3],
+    /// Delay of the command, 0.008 to 0.015.
     delay_s: f64,
+    /// Largest distance of the drive's command from the path.
     deviation_mm: f64,
+    /// Highest speed of the machine.
     speed_mm_s: f64,
+    /// Acceleration of an offset that fades; 0 is without limit.
     correction_mm_s2: f64,
+    /// The sum of FEEDWRIGHT_POWERED and so on.
     flags: u32,
+    /// Nothing.
     reserved: u32,
 }
 
-const POWERED: u32 = 1;
-const ENABLED: u32 = 2;
-const DIRECT: u32 = 4;
-const SPINDLE: u32 = 8;
-const CUTTING: u32 = 16;
-
-/// `feedwright_outputs`.
+/// What goes to the drives and the control.
 #[repr(C)]
-pub(crate) struct COutputs {
+pub struct COutputs {
+    /// Position commands of the drives.
     drive_mm: [f64; 3],
+    /// What the control takes for the actual positions.
     feedback_mm: [f64; 3],
+    /// Offsets of the drives' commands from the path.
     correction_mm: [f64; 3],
+    /// Distance of the actual position from the path.
     contour_error_mm: f64,
+    /// The same without the correction, by the model.
     without_mm: f64,
+    /// Feedrate that the control is asked for, as a multiple of its own.
+    rate: f64,
+    /// 0 amplifiers off, 1 without delay, 2 delayed, 3 the correction fades, 4 it is in the loop.
     state: u32,
+    /// Why there is no correction, 0 for nothing; faults.h has words for it.
     fault: u32,
+    /// Whether a limit holds the correction.
     saturated: u32,
+    /// Servo periods of delay.
     delay_periods: u32,
 }
 
-/// `feedwright_servo`.
-pub(crate) struct CServo(TwoOrThree<Servo<2>, Servo<3>>);
+/// The link between command and drives.
+pub struct CServo(TwoOrThree<Servo<2>, Servo<3>>);
 
 /// Bytes that a link needs.
 #[unsafe(no_mangle)]
-pub(crate) extern "C" fn feedwright_servo_bytes() -> usize {
+pub extern "C" fn feedwright_servo_bytes() -> usize {
     size_of::<CServo>()
 }
 
 /// Sizes of inputs and outputs, for the caller to compare with its own.
 #[unsafe(no_mangle)]
-pub(crate) extern "C" fn feedwright_servo_layout() -> usize {
+pub extern "C" fn feedwright_servo_layout() -> usize {
     size_of::<CInputs>() << 16 | size_of::<COutputs>()
 }
 
@@ -62,7 +88,7 @@ pub(crate) extern "C" fn feedwright_servo_layout() -> usize {
 /// # Safety
 /// There are so many bytes at `memory`, which nobody else uses, and so many at `bytes`.
 #[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn feedwright_servo_new(
+pub unsafe extern "C" fn feedwright_servo_new(
     memory: *mut CServo,
     memory_bytes: usize,
     joints: u32,
@@ -74,13 +100,13 @@ pub(crate) unsafe extern "C" fn feedwright_servo_new(
     let mut fault = 0;
     let make = || {
         CServo(if joints == 2 {
-            let axes = axes_of(bytes);
-            fault = axes.as_ref().err().map_or(0, |refused| number(LinkFault::Model(*refused)));
-            TwoOrThree::Two(Servo::new(axes))
+            let model = model_of(bytes);
+            fault = model.as_ref().err().map_or(0, |refused| number(LinkFault::Model(*refused)));
+            TwoOrThree::Two(Servo::new(model))
         } else {
-            let axes = axes_of(bytes);
-            fault = axes.as_ref().err().map_or(0, |refused| number(LinkFault::Model(*refused)));
-            TwoOrThree::Three(Servo::new(axes))
+            let model = model_of(bytes);
+            fault = model.as_ref().err().map_or(0, |refused| number(LinkFault::Model(*refused)));
+            TwoOrThree::Three(Servo::new(model))
         })
     };
     // SAFETY: as the caller promises.
@@ -92,7 +118,7 @@ pub(crate) unsafe extern "C" fn feedwright_servo_new(
 /// # Safety
 /// `servo` was made by [`feedwright_servo_new`].
 #[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn feedwright_servo_runs_at(servo: &mut CServo, servo_s: f64) -> u32 {
+pub unsafe extern "C" fn feedwright_servo_runs_at(servo: &mut CServo, servo_s: f64) -> u32 {
     number(match &mut servo.0 {
         TwoOrThree::Two(servo) => servo.runs_at(servo_s),
         TwoOrThree::Three(servo) => servo.runs_at(servo_s),
@@ -104,7 +130,7 @@ pub(crate) unsafe extern "C" fn feedwright_servo_runs_at(servo: &mut CServo, ser
 /// # Safety
 /// `servo` was made by [`feedwright_servo_new`]; the others are what they are declared to be.
 #[unsafe(no_mangle)]
-pub(crate) unsafe extern "C" fn feedwright_servo_step(servo: &mut CServo, inputs: &CInputs, outputs: &mut COutputs) {
+pub unsafe extern "C" fn feedwright_servo_step(servo: &mut CServo, inputs: &CInputs, outputs: &mut COutputs) {
     *outputs = match &mut servo.0 {
         TwoOrThree::Two(servo) => step(servo, inputs),
         TwoOrThree::Three(servo) => step(servo, inputs),
@@ -116,20 +142,23 @@ fn step<const N: usize>(servo: &mut Servo<N>, inputs: &CInputs) -> COutputs {
     let of = LinkInputs {
         command_mm: first(inputs.command_mm),
         actual_mm: first(inputs.actual_mm),
-        powered: is(POWERED),
-        enabled: is(ENABLED),
-        direct: is(DIRECT),
-        spindle: is(SPINDLE),
-        cutting: is(CUTTING),
+        powered: is(FEEDWRIGHT_POWERED),
+        enabled: is(FEEDWRIGHT_ENABLED),
+        direct: is(FEEDWRIGHT_DIRECT),
+        spindle: is(FEEDWRIGHT_SPINDLE),
+        cutting: is(FEEDWRIGHT_CUTTING),
     };
     let CInputs { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, .. } = *inputs;
-    let outputs = servo.step(&of, &LinkLimits { delay_s, deviation_mm, speed_mm_s, correction_mm_s2 });
+    let limits =
+        LinkLimits { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, speed_alone: is(FEEDWRIGHT_SPEED_ALONE) };
+    let outputs = servo.step(&of, &limits);
     COutputs {
         drive_mm: three(outputs.drive_mm),
         feedback_mm: three(outputs.feedback_mm),
         correction_mm: three(outputs.correction_mm),
         contour_error_mm: outputs.contour_error_mm,
         without_mm: outputs.without_mm,
+        rate: outputs.rate,
         state: state(&outputs),
         fault: number(outputs.fault),
         saturated: u32::from(outputs.saturated),
@@ -137,7 +166,7 @@ fn step<const N: usize>(servo: &mut Servo<N>, inputs: &CInputs) -> COutputs {
     }
 }
 
-/// As `feedwright.h` counts them.
+/// As [`COutputs`] counts them.
 fn state<const N: usize>(outputs: &LinkOutputs<N>) -> u32 {
     match (outputs.link, outputs.state) {
         (Link::Off, _) => 0,
@@ -148,7 +177,7 @@ fn state<const N: usize>(outputs: &LinkOutputs<N>) -> u32 {
     }
 }
 
-/// As `feedwright.h` counts them.
+/// As `faults.h` counts them.
 fn number(fault: LinkFault) -> u32 {
     match fault {
         LinkFault::None => 0,

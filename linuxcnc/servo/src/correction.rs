@@ -1,9 +1,12 @@
 //! The controller behind a share that fades in and out, and what it says of itself.
+//!
+//! A controller that changes the feedrate says so to the control, whose planner goes by it: here time is what the control makes of it, and goes on as it is.
 
+use crate::live_controller::LiveController;
+use crate::machine::LinkModel;
 use crate::trust::Trust;
 use feedwright_control::contour_error::locate;
-use feedwright_control::controller::lqg_preview::{IDENTIFIED_PRICE, LqgPreview, OffsetBounds, Settings};
-use feedwright_control::model::IdentifiedAxes;
+use feedwright_control::controller::lqg_preview::OffsetBounds;
 use feedwright_control::safety::Bounds;
 use feedwright_control::vector::{norm, scale, smooth_step, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
@@ -15,7 +18,7 @@ const OUT_S: f64 = 0.1;
 /// A correction of which a share is asked for.
 #[derive(Debug, Clone)]
 pub struct Correction<const N: usize> {
-    controller: LqgPreview<N>,
+    controller: LiveController<N>,
     /// How much of it, 0 to 1, on a line of time.
     share: f64,
     followed: bool,
@@ -23,38 +26,62 @@ pub struct Correction<const N: usize> {
     wanted_mm: [f64; N],
     /// Contour error that there would be without it, by the model, mm.
     without_mm: f64,
-    trust: Trust<N>,
+    /// Feedrate that was asked for last, as a multiple of that of now.
+    rate: f64,
+    /// Of axes that are identified.
+    trust: Option<Trust<N>>,
 }
 
 impl<const N: usize> Correction<N> {
-    /// By identified axes, with a servo period of `servo_s`.
-    pub fn new(identified: &IdentifiedAxes<N>, servo_s: f64) -> Self {
-        let settings = Settings::identified(IDENTIFIED_PRICE, servo_s, OffsetBounds::NONE);
-        let controller = LqgPreview::new(identified.axes, settings);
+    /// By a model, with a servo period of `servo_s`.
+    pub fn new(model: &LinkModel<N>, servo_s: f64) -> Self {
+        let trust = match model {
+            LinkModel::Axes(identified) => Some(Trust::new(identified)),
+            LinkModel::Contour(_) => None,
+        };
         Self {
-            controller,
+            controller: LiveController::new(model, servo_s),
             share: 0.0,
             followed: true,
             wanted_mm: [0.0; N],
             without_mm: 0.0,
-            trust: Trust::new(identified),
+            rate: 1.0,
+            trust,
         }
     }
 
-    /// Holds the offset to these bounds.
-    pub fn hold_to(&mut self, bounds: &Bounds) {
+    /// Holds the offset to these bounds; `speed_alone` leaves the geometry of the paper's controllers on the path.
+    pub fn hold_to(&mut self, bounds: &Bounds, speed_alone: bool) {
         let (largest_mm, fastest_mm_s) = (bounds.deviation_mm, bounds.speed_mm_s);
         self.controller.hold_to(OffsetBounds { largest_mm, fastest_mm_s });
+        self.controller.change_speed_alone(speed_alone);
+    }
+
+    /// Feedrate that was asked for last, as a multiple of that of now.
+    pub fn rate(&self) -> f64 {
+        self.rate
+    }
+
+    /// Servo periods that it has to see ahead.
+    pub fn looks_ahead(&self) -> u64 {
+        self.controller.looks_ahead()
+    }
+
+    /// When it decides, and what it sees where so many servo periods ahead are known.
+    pub fn schedule_within(&self, ahead: u32) -> Schedule {
+        self.controller.schedule_within(ahead)
     }
 
     /// Whether it is not tried any more: its model is wrong.
     pub fn is_lost(&self) -> bool {
-        self.trust.is_lost()
+        self.trust.as_ref().is_some_and(Trust::is_lost)
     }
 
     /// Another machine may be there.
     pub fn forgive(&mut self) {
-        self.trust.forgive();
+        if let Some(trust) = &mut self.trust {
+            trust.forgive();
+        }
     }
 
     /// A servo period on the way in or out.
@@ -72,15 +99,20 @@ impl<const N: usize> Correction<N> {
         };
         self.share = (self.share + step).clamp(0.0, 1.0);
         if self.share == 0.0 {
-            self.trust.wait(servo_s);
+            self.rate = 1.0;
+            if let Some(trust) = &mut self.trust {
+                trust.wait(servo_s);
+            }
         }
     }
 
     /// Out of the loop at once.
     pub fn restart(&mut self) {
         self.controller.reset();
-        self.trust.restart();
-        (self.share, self.wanted_mm, self.without_mm) = (0.0, [0.0; N], 0.0);
+        if let Some(trust) = &mut self.trust {
+            trust.restart();
+        }
+        (self.share, self.rate, self.wanted_mm, self.without_mm) = (0.0, 1.0, [0.0; N], 0.0);
     }
 
     /// What was asked for last, mm.
@@ -133,9 +165,14 @@ impl<const N: usize> Controller<N> for Correction<N> {
         let (index, reach) = (measured.contour.index, measured.contour.index.saturating_neg());
         let without = locate(window, sub(measured.position_mm, moved_mm), index, reach);
         self.without_mm = norm(without.vector_mm);
-        let share = self.followed.then_some(smooth_step(self.share));
-        self.trust.take_in(window, measured, share, self.without_mm);
-        self.wanted_mm = scale(smooth_step(self.share), full.offset_mm);
-        Command { offset_mm: self.wanted_mm, ..full }
+        let share = smooth_step(self.share);
+        if let Some(trust) = &mut self.trust {
+            trust.take_in(window, measured, self.followed.then_some(share), self.without_mm);
+        }
+        self.wanted_mm = scale(share, full.offset_mm);
+        let is_asked_for = full.rate.is_finite();
+        self.rate = if is_asked_for { 1.0 + share * (full.rate - 1.0) } else { 1.0 };
+        // What is not a number is for the safety layer to see.
+        Command { rate: if is_asked_for { 1.0 } else { full.rate }, offset_mm: self.wanted_mm, ..full }
     }
 }

@@ -7,7 +7,8 @@
 
 pub mod history;
 pub mod plant;
-pub mod trust;
-pub mod correction;
 pub mod machine;
+pub mod trust;
+pub mod live_controller;
+pub mod correction;
 pub mod servo;

@@ -1,5 +1,6 @@
 //! What is read from a model file.
 
+use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_control::model::{BlockError, IdentifiedAxes, ModelBlock, Trained};
 
 /// Why a model cannot be used here.
@@ -7,29 +8,67 @@ use feedwright_control::model::{BlockError, IdentifiedAxes, ModelBlock, Trained}
 pub enum Refused {
     /// The bytes are no model of so many axes.
     Block(BlockError),
-    /// It is of an identifier; identified axes are needed.
+    /// It is of another kind than is needed.
     Kind,
     /// It was identified with another servo period.
     Period,
 }
 
+/// What a correction is by.
+#[derive(Debug, Clone)]
+pub enum LinkModel<const N: usize> {
+    /// The law of each axis.
+    Axes(IdentifiedAxes<N>),
+    /// What the contour error will be.
+    Contour(TrainedContour<N>),
+}
+
+/// An identifier of the contour error, and its periods.
+#[derive(Debug, Clone)]
+pub struct TrainedContour<const N: usize> {
+    /// The identifier.
+    pub identifier: ContourIdentifier<N>,
+    /// Servo period, s.
+    pub servo_s: f64,
+    /// Time between decisions, s.
+    pub feed_period_s: f64,
+}
+
+impl<const N: usize> LinkModel<N> {
+    /// Servo period, s.
+    pub fn servo_s(&self) -> f64 {
+        match self {
+            Self::Axes(axes) => axes.axes.first().map_or(0.0, |axis| axis.periods.servo_s),
+            Self::Contour(contour) => contour.servo_s,
+        }
+    }
+}
+
 /// Parts by which the period of a thread may differ from that of the model: threads of LinuxCNC are whole nanoseconds.
 const PERIOD_TOLERANCE: f64 = 1e-3;
+
+/// The model in these bytes.
+///
+/// # Errors
+/// What is wrong with them.
+pub fn model_of<const N: usize>(bytes: &[u8]) -> Result<LinkModel<N>, Refused> {
+    let ModelBlock { servo_s, feed_period_s, trained } = ModelBlock::from_bytes(bytes).map_err(Refused::Block)?;
+    match trained {
+        Trained::Axes(axes) => Ok(LinkModel::Axes(axes)),
+        Trained::Contour(identifier) => Ok(LinkModel::Contour(TrainedContour { identifier, servo_s, feed_period_s })),
+        Trained::Servo(..) => Err(Refused::Kind),
+    }
+}
 
 /// The axes in these bytes.
 ///
 /// # Errors
 /// What is wrong with them.
 pub fn axes_of<const N: usize>(bytes: &[u8]) -> Result<IdentifiedAxes<N>, Refused> {
-    match ModelBlock::from_bytes(bytes).map_err(Refused::Block)?.trained {
-        Trained::Axes(axes) => Ok(axes),
-        Trained::Contour(_) | Trained::Servo(..) => Err(Refused::Kind),
+    match model_of(bytes)? {
+        LinkModel::Axes(axes) => Ok(axes),
+        LinkModel::Contour(_) => Err(Refused::Kind),
     }
-}
-
-/// Their servo period, s.
-pub fn servo_s<const N: usize>(axes: &IdentifiedAxes<N>) -> f64 {
-    axes.axes.first().map_or(0.0, |axis| axis.periods.servo_s)
 }
 
 /// Whether a model with a servo period of `theirs_s` is for a thread of `servo_s`.

@@ -15,7 +15,6 @@
 //! | [`Link::Direct`] | the command, and what is left of an offset while it fades |
 //! | [`Link::Delayed`] | the command late, and the offset that the safety layer lets through |
 
-use feedwright_control::model::IdentifiedAxes;
 use feedwright_control::safety::engagement::Cause;
 use feedwright_control::safety::{Bounds, State};
 use feedwright_control::vector::{add_scaled, norm, scale, sub};
@@ -23,7 +22,7 @@ use feedwright_control::{Schedule, Tick};
 
 use crate::correction::Correction;
 use crate::history::{Delayed, History, NEWER};
-use crate::machine::{self, Refused};
+use crate::machine::{self, LinkModel, Refused};
 
 /// Delays that can be set, s: below, the inverse of a drive that is late has nothing to look at; above, it sees no more that it needs.
 pub const DELAYS_S: [f64; 2] = [0.008, 0.015];
@@ -37,6 +36,9 @@ const UNLIMITED_MM_S2: f64 = 1e6;
 const WITHOUT_MODEL_S: f64 = 0.001;
 /// An offset nearer to what was asked for is that, mm.
 const SAME_MM: f64 = 1e-9;
+
+/// Servo periods of the longest delay.
+const MOST_PERIODS: u64 = 128;
 
 /// A tick that is not used yet.
 const AT_REST: Schedule = Schedule { servo_periods: 1, preview: 0 };
@@ -71,6 +73,8 @@ pub struct LinkLimits {
     pub speed_mm_s: f64,
     /// Acceleration with which an offset fades, mm/s2; 0 is without limit.
     pub correction_mm_s2: f64,
+    /// Whether a controller that changes the feedrate leaves the geometry on the path.
+    pub speed_alone: bool,
 }
 
 /// How the drive is connected to the command.
@@ -110,6 +114,8 @@ pub struct LinkOutputs<const N: usize> {
     pub contour_error_mm: f64,
     /// What it would be without the correction, by the model, mm.
     pub without_mm: f64,
+    /// Feedrate that the control is asked for, as a multiple of its own.
+    pub rate: f64,
     /// How the drive is connected.
     pub link: Link,
     /// Whether the correction is in the loop, as the safety layer sees it.
@@ -146,10 +152,10 @@ pub struct Servo<const N: usize> {
 }
 
 impl<const N: usize> Servo<N> {
-    /// For these axes, or without any.
-    pub fn new(axes: Result<IdentifiedAxes<N>, Refused>) -> Self {
-        let servo_s = axes.as_ref().map_or(WITHOUT_MODEL_S, machine::servo_s);
-        let correction = axes.map(|axes| Correction::new(&axes, servo_s));
+    /// By this model, or without one.
+    pub fn new(model: Result<LinkModel<N>, Refused>) -> Self {
+        let servo_s = model.as_ref().map_or(WITHOUT_MODEL_S, LinkModel::servo_s);
+        let correction = model.map(|model| Correction::new(&model, servo_s));
         Self {
             servo_s,
             history: History::EMPTY,
@@ -242,12 +248,13 @@ impl<const N: usize> Servo<N> {
         }
     }
 
-    /// Servo periods in a delay within [`DELAYS_S`].
+    /// Servo periods in a delay within [`DELAYS_S`], and no fewer than the controller looks ahead.
     fn periods(&self, delay_s: f64) -> u64 {
         let [least_s, most_s] = DELAYS_S;
         // Not a number is the least.
         let delay_s = delay_s.max(least_s).min(most_s);
-        (libm::round(delay_s / self.servo_s) as u64).clamp(NEWER + 2, 128)
+        let looks_ahead = self.correction.as_ref().map_or(0, Correction::looks_ahead);
+        (libm::round(delay_s / self.servo_s) as u64).max(looks_ahead + NEWER + 1).min(MOST_PERIODS)
     }
 
     fn take_up(&mut self, limits: &LinkLimits) {
@@ -256,11 +263,15 @@ impl<const N: usize> Servo<N> {
             fade_mm_s2: if limits.correction_mm_s2 > 0.0 { limits.correction_mm_s2 } else { UNLIMITED_MM_S2 },
             ..Bounds::new(limits.deviation_mm, limits.speed_mm_s, 0.0)
         };
-        if let Ok(correction) = &mut self.correction {
-            correction.hold_to(&bounds);
-        }
         // The command that is pushed next is the newest; the preview looks a knot further than it is asked to.
-        let schedule = Schedule { servo_periods: 1, preview: (delay - NEWER - 1) as u32 };
+        let ahead = (delay - NEWER - 1) as u32;
+        let schedule = match &mut self.correction {
+            Ok(correction) => {
+                correction.hold_to(&bounds, limits.speed_alone);
+                correction.schedule_within(ahead)
+            }
+            Err(_) => AT_REST,
+        };
         self.tick = Tick::new(self.servo_s, schedule, bounds);
         self.delay = delay as u32;
         self.first = (self.history.newest() + 1).saturating_sub(delay);
@@ -280,6 +291,7 @@ impl<const N: usize> Servo<N> {
             correction_mm: [0.0; N],
             contour_error_mm: 0.0,
             without_mm: 0.0,
+            rate: 1.0,
             link: self.link,
             state: State::Shadow,
             saturated: false,
@@ -326,6 +338,7 @@ impl<const N: usize> Servo<N> {
             correction_mm: add_scaled(offset_mm, 1.0, self.residual_mm),
             contour_error_mm: known(norm(self.tick.contour().vector_mm)),
             without_mm: known(correction.without_mm()),
+            rate: correction.rate(),
             link: Link::Delayed,
             state,
             saturated: held && state == State::Engaged,

@@ -7,12 +7,13 @@ use feedwright_control::axis::knowledge::AxisKnowledge;
 use feedwright_control::axis::{Parameters, Periods};
 use feedwright_control::model::{BlockError, IdentifiedAxes};
 use feedwright_control::safety::engagement::Cause;
-use feedwright_servo::machine::Refused;
+use feedwright_servo::machine::{LinkModel, Refused};
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkLimits, LinkOutputs, Servo};
 
 const SERVO_S: f64 = 0.001;
-const LIMITS: LinkLimits = LinkLimits { delay_s: 0.010, deviation_mm: 0.5, speed_mm_s: 400.0, correction_mm_s2: 400.0 };
+const LIMITS: LinkLimits =
+    LinkLimits { delay_s: 0.010, deviation_mm: 0.5, speed_mm_s: 400.0, correction_mm_s2: 400.0, speed_alone: false };
 /// Servo periods until the link has settled, and of a turn of the circle.
 const SETTLE: usize = 400;
 const TURN: usize = 1257;
@@ -79,7 +80,7 @@ fn turn_on(
     limits: &LinkLimits,
     mut change: impl FnMut(usize, &mut LinkInputs<2>),
 ) -> Vec<Period> {
-    let (mut plant, mut servo) = (SimulatedMachine::new(real, 1), Servo::new(model));
+    let (mut plant, mut servo) = (SimulatedMachine::new(real, 1), Servo::new(model.map(LinkModel::Axes)));
     assert!(matches!(servo.runs_at(SERVO_S), LinkFault::None | LinkFault::Model(_)));
     let mut periods = Vec::new();
     for n in 0..SETTLE + 2 * TURN {
@@ -203,7 +204,7 @@ fn without_a_model_commands_are_passed_on_to_the_bit() {
         assert_eq!(period.outputs.feedback_mm, period.inputs.actual_mm);
         assert_eq!(period.outputs.fault, LinkFault::Model(refused));
     }
-    assert_eq!(Servo::new(Ok(machine())).runs_at(0.002), LinkFault::Model(Refused::Period));
+    assert_eq!(Servo::new(Ok(LinkModel::Axes(machine()))).runs_at(0.002), LinkFault::Model(Refused::Period));
 }
 
 #[test]

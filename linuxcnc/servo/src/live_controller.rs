@@ -1,0 +1,155 @@
+//! The controllers that can stand in the link, by the kind of the model: the regulator of identified axes, or the paper's two.
+
+use feedwright_control::controller::inverting;
+use feedwright_control::controller::lqg_preview::{IDENTIFIED_PRICE, LqgPreview, OffsetBounds, Settings};
+use feedwright_control::controller::magnitude_only::MagnitudeOnly;
+use feedwright_control::controller::two_dimensional::TwoDimensional;
+use feedwright_control::{Command, Controller, Measured, Schedule, Window};
+
+use crate::machine::{LinkModel, TrainedContour};
+
+/// One of them.
+#[derive(Debug, Clone)]
+pub enum LiveController<const N: usize> {
+    /// `lqg-identified`.
+    Regulator(LqgPreview<N>),
+    /// `two-dimensional` or `magnitude-only`.
+    Inversion(Inversion<N>),
+}
+
+/// The paper's controllers, with one identifier.
+#[derive(Debug, Clone)]
+pub struct Inversion<const N: usize> {
+    both: TwoDimensional<N>,
+    magnitude: MagnitudeOnly<N>,
+    speed_alone: bool,
+}
+
+impl<const N: usize> Inversion<N> {
+    fn new(contour: &TrainedContour<N>) -> Self {
+        let settings = inverting::Settings {
+            // A float that is not a number, or below zero, saturates to 0.
+            servo_periods: (libm::round(contour.feed_period_s / contour.servo_s) as u32).clamp(1, MOST_PERIODS),
+            is_planned_elsewhere: true,
+            ..inverting::Settings::DEFAULT
+        };
+        Self {
+            both: TwoDimensional::new(contour.identifier.clone(), settings),
+            magnitude: MagnitudeOnly::new(contour.identifier.clone(), settings),
+            speed_alone: false,
+        }
+    }
+
+    fn chosen(&self) -> &dyn Controller<N> {
+        if self.speed_alone { &self.magnitude } else { &self.both }
+    }
+
+    fn chosen_mut(&mut self) -> &mut dyn Controller<N> {
+        if self.speed_alone { &mut self.magnitude } else { &mut self.both }
+    }
+}
+
+/// Servo periods between decisions that a link keeps commands for.
+const MOST_PERIODS: u32 = 100;
+
+impl<const N: usize> LiveController<N> {
+    /// By a model, with a servo period of `servo_s`.
+    pub fn new(model: &LinkModel<N>, servo_s: f64) -> Self {
+        match model {
+            LinkModel::Axes(identified) => {
+                let settings = Settings::identified(IDENTIFIED_PRICE, servo_s, OffsetBounds::NONE);
+                Self::Regulator(LqgPreview::new(identified.axes, settings))
+            }
+            LinkModel::Contour(contour) => Self::Inversion(Inversion::new(contour)),
+        }
+    }
+
+    /// Holds the offset to these bounds, where the safety layer alone does not.
+    pub fn hold_to(&mut self, bounds: OffsetBounds) {
+        if let Self::Regulator(regulator) = self {
+            regulator.hold_to(bounds);
+        }
+    }
+
+    /// Whether the paper's controllers leave the geometry on the path. Taken over at rest.
+    pub fn change_speed_alone(&mut self, speed_alone: bool) {
+        if let Self::Inversion(inversion) = self {
+            inversion.speed_alone = speed_alone;
+        }
+    }
+
+    /// Servo periods that it has to see ahead: the regulator takes what there is.
+    pub fn looks_ahead(&self) -> u64 {
+        match self {
+            Self::Regulator(_) => 1,
+            Self::Inversion(inversion) => {
+                let Schedule { servo_periods, preview } = inversion.chosen().schedule();
+                u64::from(servo_periods) * u64::from(preview)
+            }
+        }
+    }
+
+    /// When it decides, and what it sees where so many servo periods ahead are known.
+    pub fn schedule_within(&self, ahead: u32) -> Schedule {
+        match self {
+            Self::Regulator(_) => Schedule { servo_periods: 1, preview: ahead },
+            Self::Inversion(inversion) => inversion.chosen().schedule(),
+        }
+    }
+
+    fn as_controller(&self) -> &dyn Controller<N> {
+        match self {
+            Self::Regulator(regulator) => regulator,
+            Self::Inversion(inversion) => inversion.chosen(),
+        }
+    }
+
+    fn as_controller_mut(&mut self) -> &mut dyn Controller<N> {
+        match self {
+            Self::Regulator(regulator) => regulator,
+            Self::Inversion(inversion) => inversion.chosen_mut(),
+        }
+    }
+}
+
+impl<const N: usize> Controller<N> for LiveController<N> {
+    fn schedule(&self) -> Schedule {
+        self.as_controller().schedule()
+    }
+
+    fn reset(&mut self) {
+        self.as_controller_mut().reset();
+    }
+
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        self.as_controller_mut().observe(window, measured);
+    }
+
+    fn prediction_error_mm(&self) -> f64 {
+        self.as_controller().prediction_error_mm()
+    }
+
+    fn moved_mm(&self) -> Option<[f64; N]> {
+        self.as_controller().moved_mm()
+    }
+
+    fn foreseen_mm2(&self) -> [f64; 2] {
+        self.as_controller().foreseen_mm2()
+    }
+
+    fn judged(&mut self, overdone: f64) {
+        self.as_controller_mut().judged(overdone);
+    }
+
+    fn acts_at_once(&self) -> bool {
+        self.as_controller().acts_at_once()
+    }
+
+    fn corrects(&self) -> bool {
+        self.as_controller().corrects()
+    }
+
+    fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
+        self.as_controller_mut().command(window, measured)
+    }
+}
