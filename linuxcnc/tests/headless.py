@@ -72,7 +72,7 @@ class Failed(Exception):
     """LinuxCNC or the scenario did not come to its end."""
 
 
-def run(scenario, settings=None, ini=None, hal="", limit_s=120, keep=None):
+def run(scenario, settings=None, ini=None, hal="", limit_s=270, keep=None):
     """Runs a scenario of scenarios.py. `settings` go to it; `ini` are values of the INI file, as {"SECTION": {"KEY": value}}, and `hal` are
     lines of HAL beside those of the configuration. Recordings of the component go to the folder `keep`."""
     with tempfile.TemporaryDirectory(prefix="feedwright-") as name, open("/tmp/feedwright-linuxcnc.lock", "w") as lock:

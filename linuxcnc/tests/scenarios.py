@@ -1,6 +1,10 @@
 """What is done with LinuxCNC in a run: each function is one, and gets the machine of headless.py."""
 
 
+# A program may take so long, s.
+LIMIT_S = 240
+
+
 def cut(machine, program, enable=True, params=None, override=1.0):
     """A program from beginning to end."""
     machine.on()
@@ -13,7 +17,7 @@ def cut(machine, program, enable=True, params=None, override=1.0):
     machine.open(program)
     machine.record()
     machine.begin()
-    machine.finish()
+    machine.finish(LIMIT_S)
 
 
 LONG = "G21 G17 G90 G94 G64 P0.01\nG0 X0 Y0\nG4 P0.3\n" + "G2 X0 Y0 I10 J0 F3000\n" * 3 + "G4 P0.2\nM2\n"

@@ -26,6 +26,7 @@ class Case:
     changes: dict = dataclasses.field(default_factory=dict)
     identified: bool = True
     pins: dict = dataclasses.field(default_factory=dict)
+    periods: dict = dataclasses.field(default_factory=dict)
     whole: bool = False
 
 
@@ -41,6 +42,7 @@ CASES = [
     Case("workshop, delay 8 ms", "workshop", pins={"feedwright.delay": 0.008}),
     Case("workshop, delay 15 ms", "workshop", pins={"feedwright.delay": 0.015}),
     Case("correction 2000 mm/s2", "tnv40", pins={"feedwright.correction-acceleration": 2000}),
+    Case("servo period 0.25 ms", "tnv40", periods={"servo_s": 0.00025, "mechanics_s": 0.00005}),
     Case("correction unlimited", "tnv40", pins={"feedwright.correction-acceleration": 0}),
 ]
 
@@ -48,11 +50,11 @@ CASES = [
 def made(folder, command, case):
     """Block of the machine, and block of its model."""
     machine = case.base
-    if case.changes:
+    if case.changes or case.periods:
         machine = folder / "machine.toml"
-        keys = "\n".join(f"{key} = {value}" for key, value in case.changes.items())
-        axes = "".join(f"\n[axis.{axis}]\n{keys}\n" for axis in "xyz")
-        machine.write_text(f'base = "{case.base}"\nname = "swept"\ndescription = "{case.name}"\nsource = "a sweep"\n{axes}')
+        table = lambda name, values: f"\n[{name}]\n" + "".join(f"{key} = {value}\n" for key, value in values.items())
+        tables = table("period", case.periods) + "".join(table(f"axis.{axis}", case.changes) for axis in "xyz")
+        machine.write_text(f'base = "{case.base}"\nname = "swept"\ndescription = "{case.name}"\nsource = "a sweep"\n{tables}')
     known = machine if case.identified else case.base
     block, model, identified = folder / "machine.fwmodel", folder / "model.fwmodel", folder / "swept.model.toml"
     run = lambda *words: subprocess.run([command, "--quiet", *map(str, words)], check=True, stdout=subprocess.DEVNULL)

@@ -37,6 +37,8 @@ const WITHOUT_MODEL_S: f64 = 0.001;
 /// An offset nearer to what was asked for is that, mm.
 const SAME_MM: f64 = 1e-9;
 
+/// A command that goes further in a servo period than the machine, so many times, has leapt.
+const LEAP: f64 = 2.0;
 /// Servo periods of the longest delay.
 const MOST_PERIODS: u64 = 128;
 
@@ -149,6 +151,8 @@ pub struct Servo<const N: usize> {
     unasked: u64,
     /// Whether the control was heard at all.
     heard: bool,
+    /// Servo periods since the command leapt.
+    since_leap: u64,
 }
 
 impl<const N: usize> Servo<N> {
@@ -171,6 +175,7 @@ impl<const N: usize> Servo<N> {
             follows: false,
             unasked: 0,
             heard: false,
+            since_leap: u64::MAX,
         }
     }
 
@@ -188,7 +193,12 @@ impl<const N: usize> Servo<N> {
         if norm(inputs.actual_mm).is_finite() {
             self.actual_mm = inputs.actual_mm;
         }
+        self.since_leap = self.since_leap.saturating_add(1);
         if told {
+            let step_mm = norm(sub(inputs.command_mm, self.command_mm));
+            if self.heard && step_mm > LEAP * limits.speed_mm_s * self.servo_s {
+                self.since_leap = 0;
+            }
             (self.command_mm, self.heard) = (inputs.command_mm, true);
         }
         let outputs = if inputs.powered && self.heard { self.on(inputs, limits, told) } else { self.off(told) };
@@ -318,6 +328,10 @@ impl<const N: usize> Servo<N> {
 
     fn delayed(&mut self, inputs: &LinkInputs<N>) -> LinkOutputs<N> {
         let Ok(correction) = &mut self.correction else { return self.direct() };
+        // Until no part of it is ahead any more: what no machine can follow says nothing of the law.
+        if self.since_leap <= u64::from(self.delay) {
+            correction.restart();
+        }
         correction.fade(inputs.enabled, self.tick.state() == State::Engaged, self.servo_s);
         let mut path = Delayed { history: &self.history, first: self.first, servo_s: self.servo_s };
         let setpoint = self.tick.step(&mut path, correction, inputs.actual_mm);
