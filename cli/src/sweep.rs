@@ -13,7 +13,7 @@ use feedwright::never_worse::{SweepJob, SweepOptions, Swept, journal_path, sweep
 use feedwright::output::{OutputFile, OutputFiles};
 use miette::{IntoDiagnostic, Result, WrapErr};
 
-use crate::args::SweepArgs;
+use crate::args::sweep::SweepArgs;
 use crate::console::Console;
 use crate::controllers::{find, settings};
 use crate::message::OUT_OF_TOLERANCE;

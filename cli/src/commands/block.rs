@@ -10,7 +10,7 @@ use feedwright::model::exact::exact_block;
 use feedwright::output::{OutputError, OutputFile, OutputFiles};
 use miette::{Result, miette};
 
-use crate::args::BlockArgs;
+use crate::args::block::BlockArgs;
 use crate::console::Console;
 use crate::message::printed;
 

@@ -9,7 +9,7 @@ use feedwright::gcode::Reader;
 use miette::Result;
 use rayon::prelude::*;
 
-use crate::args::CanonArgs;
+use crate::args::canon::CanonArgs;
 use crate::console::Console;
 use crate::message::{fail, printed};
 use lines::Lines;

@@ -18,7 +18,7 @@ use miette::{Report, Result, miette};
 use rayon::iter::{ParallelBridge, ParallelIterator};
 use serde_json::{Value, json};
 
-use crate::args::{CheckArgs, Format};
+use crate::args::check::{CheckArgs, Format};
 use crate::console::Console;
 use crate::files_to_check::FilesToCheck;
 use crate::findings::{Finding, sarif};

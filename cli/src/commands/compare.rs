@@ -18,7 +18,7 @@ use feedwright::output::{OutputFile, OutputFiles};
 use feedwright::watch::Watch;
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
-use crate::args::CompareArgs;
+use crate::args::compare::CompareArgs;
 use crate::console::Console;
 use crate::message::printed;
 
@@ -86,7 +86,7 @@ fn kept(stamp: &RowsStamp) -> Journal<Finished> {
 /// A search takes a minute and more for each controller and machine.
 fn tell_searches(args: &CompareArgs, options: &ComparisonOptions) {
     let searched = options.to_search();
-    if args.tuning() == crate::args::TuningSource::Recorded && !searched.is_empty() {
+    if args.tuning() == crate::args::compare::TuningSource::Recorded && !searched.is_empty() {
         const NAMED: usize = 4;
         let names: Vec<String> =
             searched.iter().take(NAMED).map(|(machine, name)| format!("{name} on {machine}")).collect();

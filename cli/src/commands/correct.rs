@@ -11,7 +11,7 @@ use feedwright::output::{OutputFile, OutputFiles};
 use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
 
-use crate::args::CorrectArgs;
+use crate::args::correct::CorrectArgs;
 use crate::console::Console;
 use crate::message::{OUT_OF_TOLERANCE, printed, warn};
 

@@ -9,7 +9,7 @@ use feedwright::machine::{self, Machine};
 use feedwright::output::{OutputError, OutputFile, OutputFiles};
 use miette::Result;
 
-use crate::args::ExciteArgs;
+use crate::args::excite::ExciteArgs;
 use crate::console::Console;
 use crate::message::printed;
 

@@ -12,7 +12,7 @@ use feedwright::output::{OutputFile, OutputFiles};
 use feedwright::watch::Watch;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
-use crate::args::HeldOutArgs;
+use crate::args::held_out::HeldOutArgs;
 use crate::console::Console;
 use crate::message::printed;
 use crate::sweep::Sweep;

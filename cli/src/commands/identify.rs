@@ -15,7 +15,7 @@ use feedwright::output::{OutputError, OutputFile, OutputFiles};
 use feedwright::watch::StageSteps;
 use miette::Result;
 
-use crate::args::IdentifyArgs;
+use crate::args::identify::IdentifyArgs;
 use crate::console::Console;
 use crate::controllers::{find, settings};
 use crate::message::printed;

@@ -12,7 +12,7 @@ use glob::Pattern;
 use miette::{Result, miette};
 use rayon::prelude::*;
 
-use crate::args::NeverWorseArgs;
+use crate::args::never_worse::NeverWorseArgs;
 use crate::console::Console;
 use crate::files_to_check::FilesToCheck;
 use crate::message::printed;

@@ -11,7 +11,7 @@ use feedwright::report::figure::{CaptionedFigure, write_page};
 use feedwright::watch::Watch;
 use miette::{IntoDiagnostic, Result, WrapErr};
 
-use crate::args::PaperArgs;
+use crate::args::paper::PaperArgs;
 use crate::console::Console;
 use crate::message::printed;
 

@@ -16,7 +16,7 @@ use feedwright::pipeline::{Stages, pieces};
 use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
 
-use crate::args::PlanArgs;
+use crate::args::plan::PlanArgs;
 use crate::console::Console;
 use crate::message::{printed, warn};
 

@@ -12,7 +12,7 @@ use feedwright::model::Model;
 use feedwright::report::{Outcome as Ending, ReportedRun, RunSummary};
 use miette::Result;
 
-use crate::args::RunArgs;
+use crate::args::run::RunArgs;
 use crate::console::Console;
 use crate::controllers::{find, settings};
 use crate::message::{OUT_OF_TOLERANCE, printed, tell, warn};

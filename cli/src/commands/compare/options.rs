@@ -7,7 +7,7 @@ use feedwright::gcode::suggestion::nearest;
 use feedwright::machine::{BUILT_IN, Machine};
 use miette::{Result, miette};
 
-use crate::args::{CompareArgs, TuningSource, Work};
+use crate::args::compare::{CompareArgs, TuningSource, Work};
 use crate::controllers;
 
 pub(super) fn options(args: &CompareArgs) -> Result<ComparisonOptions> {

@@ -9,7 +9,7 @@ use feedwright::compare::tolerance::{AtTolerance, TOLERANCE_UM};
 use feedwright::compare::tuned::Tuned;
 use feedwright::compare::verdict::Verdict;
 
-use crate::args::CompareArgs;
+use crate::args::compare::CompareArgs;
 
 pub(super) fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();

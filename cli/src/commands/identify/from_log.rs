@@ -12,7 +12,7 @@ use feedwright::output::{OutputError, OutputFile, OutputFiles};
 use feedwright::watch::Watch;
 use miette::{IntoDiagnostic, Result};
 
-use crate::args::{IdentifyArgs, LogArgs};
+use crate::args::identify::{IdentifyArgs, LogArgs};
 use crate::console::Console;
 use crate::message::printed;
 

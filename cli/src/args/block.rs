@@ -1,0 +1,28 @@
+//! Options of `feedwright block`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+
+#[derive(Debug, Args)]
+pub(crate) struct BlockArgs {
+    /// Model file (.model.toml), built-in machine, or machine file (.toml).
+    #[arg(value_name = "FILE.model.toml|NAME|FILE.toml")]
+    pub(crate) file: OsString,
+    /// Number of axes, 2 or 3 [default: all that there are].
+    #[arg(long, value_parser = axes_of_a_block)]
+    pub(crate) axes: Option<usize>,
+    /// Place of the block.
+    #[arg(long, value_name = "FILE.fwmodel")]
+    pub(crate) out: PathBuf,
+}
+
+/// 2 or 3.
+fn axes_of_a_block(text: &str) -> Result<usize, String> {
+    match text {
+        "2" => Ok(2),
+        "3" => Ok(3),
+        _ => Err("a block is of 2 or 3 axes".to_owned()),
+    }
+}

@@ -1,0 +1,38 @@
+//! Options of `feedwright correct`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::reader::ReaderArgs;
+
+#[derive(Debug, Args)]
+pub(crate) struct CorrectArgs {
+    /// G-code program.
+    pub(crate) part: PathBuf,
+    /// Built-in machine, or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
+    pub(crate) machine: OsString,
+    /// Control that the corrected program is for: how it plans the speed, and what its blocks may hold.
+    #[arg(long = "for", value_name = "CONTROL", default_value = feedwright::correct::TARGETS[0].name, long_help = controls())]
+    pub(crate) target: String,
+    /// Place of the corrected program; it is written only where it is better than the original, else the exit code is 1.
+    #[arg(long, value_name = "FILE.ngc")]
+    pub(crate) out: Option<PathBuf>,
+    /// Largest contour error allowed of the corrected program as the control cuts it, um: exit code 1 where it is exceeded.
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Write all results.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}
+
+/// The controls of `--for`, one a line.
+fn controls() -> String {
+    let rows = feedwright::correct::TARGETS.iter().map(|target| format!("\n  {:<10} {}", target.name, target.about));
+    let about = "Control that the corrected program is for: how it plans the speed, and what its blocks may hold.";
+    about.to_owned() + &rows.collect::<String>()
+}

@@ -1,0 +1,19 @@
+//! Options of `feedwright excite`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+
+#[derive(Debug, Args)]
+pub(crate) struct ExciteArgs {
+    /// Built-in machine, or a machine file (.toml), whose limits the program keeps.
+    #[arg(long, value_name = "NAME|LIMITS.toml")]
+    pub(crate) machine: OsString,
+    /// Travel of each axis, mm: half of it on each side of where the machine stands.
+    #[arg(long, value_name = "MM", default_value_t = feedwright::excite::ExciteOptions::default().travel_mm, allow_negative_numbers = true)]
+    pub(crate) travel: f64,
+    /// Place of the program.
+    #[arg(long, value_name = "FILE.ngc")]
+    pub(crate) out: PathBuf,
+}

@@ -1,0 +1,29 @@
+//! Options of `feedwright held-out`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::sweep::SweepArgs;
+
+#[derive(Debug, Args)]
+pub(crate) struct HeldOutArgs {
+    /// Seed of programs and machines.
+    pub(crate) drawn_by: u64,
+    /// Number of cuts.
+    pub(crate) count: usize,
+    /// Programs for each machine, which is identified once for all of them.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) programs: u16,
+    /// Only machines without encoder steps and delay.
+    #[arg(long)]
+    pub(crate) rigid: bool,
+    /// Make the worst failures smaller and write each as DIR/N.ngc and DIR/N.toml.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) failures: Option<PathBuf>,
+    /// Failures that are made smaller.
+    #[arg(long, value_name = "N", default_value_t = 10, requires = "failures")]
+    pub(crate) smallest: usize,
+    #[command(flatten)]
+    pub(crate) sweep: SweepArgs,
+}

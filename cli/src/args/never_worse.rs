@@ -1,0 +1,32 @@
+//! Options of `feedwright never-worse`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::reader::ReaderArgs;
+use super::sweep::SweepArgs;
+
+#[derive(Debug, Args)]
+pub(crate) struct NeverWorseArgs {
+    /// G-code programs, and folders of programs.
+    #[arg(required = true)]
+    pub(crate) programs: Vec<PathBuf>,
+    /// Only programs whose path fits this pattern, such as '*circle*'.
+    #[arg(long, value_name = "GLOB")]
+    pub(crate) only: Option<String>,
+    /// Machine to cut on: built-in, or a machine file; may be given several times. Without it, 19 variants of tnv40.
+    #[arg(long, value_name = "NAME|FILE.toml")]
+    pub(crate) machine: Vec<OsString>,
+    /// Cut no more of a program than this time of machining on tnv40, s.
+    #[arg(long, value_name = "S", default_value_t = 600.0)]
+    pub(crate) limit_s: f64,
+    /// Cut so many of all pairs of program and machine, drawn by the seed.
+    #[arg(long, value_name = "N")]
+    pub(crate) sample: Option<usize>,
+    #[command(flatten)]
+    pub(crate) sweep: SweepArgs,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}

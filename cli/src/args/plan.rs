@@ -1,0 +1,32 @@
+//! Options of `feedwright plan`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::reader::ReaderArgs;
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArgs {
+    /// G-code program.
+    pub(crate) part: PathBuf,
+    /// Built-in machine, or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
+    pub(crate) machine: OsString,
+    /// Distance of the planned path from the programmed one where the program says none, um, in place of the machine's
+    /// path_tolerance_um.
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Planner in place of the one that suits the machine: trapezoid, time-optimal, unlimited, or linuxcnc, which plans as LinuxCNC 2.9 does.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) planner: Option<String>,
+    /// Plan each path from rest to rest as a whole too, and tell its time: what no plan can be faster than by much.
+    #[arg(long)]
+    pub(crate) bound: bool,
+    /// Write all results.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}

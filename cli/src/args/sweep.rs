@@ -1,0 +1,28 @@
+//! Options of the commands that compare a controller with open loop on many machines.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// How a controller is compared with open loop.
+#[derive(Debug, Args)]
+pub(crate) struct SweepArgs {
+    /// Controller; `feedwright controllers` lists them.
+    #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BEST)]
+    pub(crate) controller: String,
+    /// Set a parameter of the controller, such as knots=10; may be given several times. `feedwright controllers NAME` lists them.
+    #[arg(long, value_name = "PARAMETER=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Seed of the controller's training, and of the sample.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Threads; all cores where it is left out. The result does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Where finished cuts are kept, so that an interrupted run goes on [default: in the cache, by version].
+    #[arg(long, value_name = "FILE.jsonl")]
+    pub(crate) journal: Option<PathBuf>,
+    /// Write all cuts.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+}
