@@ -18,6 +18,7 @@ use std::path::Path;
 use feedwright_control::axis::{AxisLaw, Periods};
 use serde::Serialize;
 
+use crate::gcode::input;
 use crate::toml_file::key::write;
 use crate::toml_file::{self, FileError, quoted, read_text};
 pub use axis::{Axis, Transmission};
@@ -177,7 +178,7 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 impl Machine {
     /// A machine by the name of one that is built in, or by the path of a machine file.
     ///
-    /// Whatever ends in `.toml` or contains a path separator is a path.
+    /// Whatever ends in `.toml` or contains a path separator is a path, and so is `-`, the standard input.
     ///
     /// # Errors
     /// No such name or file, a file that cannot be read or is not text, and every fault found in its text.
@@ -200,7 +201,7 @@ impl Machine {
     /// A file that cannot be read or is not text, and every fault found in its text.
     pub fn read(path: &Path) -> Result<Self, MachineError> {
         let text = read_text(&KIND, path)?;
-        Self::parse(&path.display().to_string(), &text)
+        Self::parse(&input::name(path), &text)
     }
 
     /// A machine from the text of a machine file; `file` is its name in messages.
@@ -325,9 +326,10 @@ impl Machine {
     }
 }
 
-/// Whether `--machine` means a file rather than the name of a built-in machine.
+/// Whether `--machine` means a file, or the standard input, rather than the name of a built-in machine.
 pub fn is_path(name_or_path: &Path) -> bool {
-    name_or_path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+    input::is_standard_input(name_or_path)
+        || name_or_path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
         || name_or_path.components().count() != 1
 }
 

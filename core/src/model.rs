@@ -22,6 +22,7 @@ use feedwright_control::identifier::{Identifier, IdentifierKind};
 use feedwright_control::model::{self as block, IdentifiedAxes, Trained};
 use serde::Serialize;
 
+use crate::gcode::input;
 use crate::identify::recording::Recording;
 use crate::identify::{axes, contour, servo};
 use crate::toml_file::key::write;
@@ -233,7 +234,7 @@ impl Model {
     /// # Errors
     /// A file that cannot be read or is not text, and every fault found in its text.
     pub fn read(path: &Path) -> Result<Self, FileError> {
-        Self::parse(&path.display().to_string(), &read_text(&FILE, path)?)
+        Self::parse(&input::name(path), &read_text(&FILE, path)?)
     }
 
     /// A model from the text of a model file; `file` is its name in messages.

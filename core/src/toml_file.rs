@@ -14,6 +14,8 @@ use std::path::Path;
 
 use toml::de::DeTable;
 
+use crate::gcode::input;
+
 pub(crate) use fault::Fault;
 pub use fault::{FileError, Kind, Problem};
 pub use key::Key;
@@ -56,8 +58,12 @@ pub(crate) fn read_text(kind: &'static Kind, path: &Path) -> Result<String, File
 
     let unreadable = |source| FileError::unreadable(kind, path, source);
     let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(unreadable)?;
-    file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    if input::is_standard_input(path) {
+        bytes.extend_from_slice(input::standard_input().map_err(unreadable)?);
+    } else {
+        let file = std::fs::File::open(path).map_err(unreadable)?;
+        file.take(MAX_FILE_BYTES + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+    }
     if bytes.len() as u64 > MAX_FILE_BYTES {
         return Err(FileError::TooLarge { kind, path: path.to_owned(), limit_bytes: MAX_FILE_BYTES, hint: kind.is });
     }

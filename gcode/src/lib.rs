@@ -94,5 +94,6 @@ pub use state::modal::INCH_MM;
 #[doc(hidden)]
 pub use text::block::count_words;
 pub use text::diagnostic::{Diagnostic, Severity};
+pub use text::input;
 pub use text::read_error::ReadError;
 pub use text::suggestion;

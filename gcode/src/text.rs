@@ -4,6 +4,7 @@ pub mod suggestion;
 pub(crate) mod diagnostic;
 pub(crate) mod read_error;
 pub(crate) mod characters;
+pub mod input;
 pub(crate) mod source;
 pub(crate) mod lexer;
 pub(crate) mod expression;

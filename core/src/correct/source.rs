@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::gcode::canon::Canon;
-use crate::gcode::{Dialect, ModesInForce, ReadError, Reader, Settings};
+use crate::gcode::{Dialect, ModesInForce, ReadError, Reader, Settings, input};
 
 /// A program that is to be corrected.
 #[derive(Debug, Clone)]
@@ -22,7 +22,7 @@ pub(super) struct SourceProgram {
 impl SourceProgram {
     /// The program in a file, which has been checked.
     pub(super) fn read(part: &Path, settings: &Settings) -> Result<Self, ReadError> {
-        let bytes = std::fs::read(part).map_err(|cause| ReadError::Io { path: part.to_owned(), cause })?;
+        let bytes = input::read(part).map_err(|cause| ReadError::Io { path: part.to_owned(), cause })?;
         let mut reader = Reader::open(part, settings.clone())?;
         let dialect = reader.dialect().0;
         let (mut steps, mut modes, mut in_force) = (Vec::new(), Vec::<ModesInForce>::new(), Vec::new());

@@ -21,6 +21,7 @@ use crate::text::block::{Block, Style};
 use crate::text::codes::Group;
 use crate::text::codes::fanuc::{CodeSet, OWN};
 use crate::text::diagnostic::{Diagnostic, LineFault, Read, Severity};
+use crate::text::input;
 use crate::text::lexer::{Cursor, END};
 use crate::text::read_error::ReadError;
 use crate::text::source::{MAX_LINE_BYTES, Source, SourceLine};
@@ -71,10 +72,14 @@ impl Reader {
     /// A file that cannot be read or is no G-code program.
     pub fn open(path: &Path, settings: Settings) -> Result<Self, ReadError> {
         let io_error = |cause| ReadError::Io { path: path.to_owned(), cause };
+        let name: Arc<str> = input::name(path).into();
+        if input::is_standard_input(path) {
+            let source = Source::from_text(name, input::read(path).map_err(io_error)?);
+            return Self::new(source, None, settings);
+        }
         if fs::metadata(path).map_err(io_error)?.is_dir() {
             return Err(ReadError::Directory { path: path.to_owned() });
         }
-        let name: Arc<str> = path.display().to_string().into();
         let source = Source::from_file(name, fs::File::open(path).map_err(io_error)?).map_err(io_error)?;
         Self::new(source, path.parent().map(Path::to_owned), settings)
     }

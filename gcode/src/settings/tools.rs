@@ -3,16 +3,17 @@
 //! One tool a line, words in any order, `;` begins a remark: `T1 P1 Z+25.4 D6.0 ; end mill`.
 
 use std::collections::BTreeMap;
+use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::{fs, io};
 
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use crate::text::codes::AXIS_LETTERS;
 use crate::text::diagnostic::{Diagnostic, LineFault, Read, Severity};
+use crate::text::input;
 
 /// One tool.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -51,7 +52,7 @@ impl ToolTable {
     /// # Errors
     /// A file that cannot be read, or the faults of all its lines.
     pub fn read(path: &Path, unit_mm: f64) -> Result<Self, ToolTableError> {
-        let bytes = fs::read(path).map_err(|cause| ToolTableError::Io { path: path.to_owned(), cause })?;
+        let bytes = input::read(path).map_err(|cause| ToolTableError::Io { path: path.to_owned(), cause })?;
         let file: Arc<str> = path.display().to_string().into();
         let (mut table, mut faults) = (Self::default(), Vec::new());
         for (line, bytes) in (1..).zip(bytes.split(|&byte| byte == b'\n')) {
