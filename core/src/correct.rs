@@ -36,7 +36,7 @@ mod loop_lag;
 mod target;
 mod source;
 mod stretches;
-mod arc_fit;
+pub(crate) mod arc_fit;
 pub mod exported;
 mod command_update;
 mod stretch_cut;

@@ -1,6 +1,7 @@
 //! Finished work, line by line on disk: what was interrupted goes on where it was, and what is there is not done again.
 //!
-//! A row is known by its key. A line that cannot be read, such as the last of a run that was killed, is worked out anew.
+//! A row is known by its key. A line that cannot be read, such as the last of a run that was killed, or whose checksum is wrong, is
+//! worked out anew.
 
 use std::collections::BTreeMap;
 use std::fs::File;
@@ -10,6 +11,8 @@ use std::sync::Mutex;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
+
+use crate::checked_json::{checked, with_check};
 
 /// A line of the file.
 #[derive(Serialize, Deserialize)]
@@ -23,12 +26,13 @@ struct Record<T> {
 pub struct Journal<T> {
     file: Option<(PathBuf, Mutex<File>)>,
     rows: BTreeMap<String, T>,
+    damaged: usize,
 }
 
 impl<T: Serialize + DeserializeOwned> Journal<T> {
     /// Keeps nothing.
     pub const fn none() -> Self {
-        Self { file: None, rows: BTreeMap::new() }
+        Self { file: None, rows: BTreeMap::new(), damaged: 0 }
     }
 
     /// The journal in a file; what an earlier run has left there is known.
@@ -39,13 +43,13 @@ impl<T: Serialize + DeserializeOwned> Journal<T> {
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder)?;
         }
-        let text = std::fs::read_to_string(path).unwrap_or_default();
-        let rows = Self::rows_of(&text);
+        let text = String::from_utf8_lossy(&std::fs::read(path).unwrap_or_default()).into_owned();
+        let (rows, damaged) = Self::rows_of(&text);
         let mut file = File::options().append(true).create(true).open(path)?;
         if !text.is_empty() && !text.ends_with('\n') {
             file.write_all(b"\n")?;
         }
-        Ok(Self { file: Some((path.to_owned(), Mutex::new(file))), rows })
+        Ok(Self { file: Some((path.to_owned(), Mutex::new(file))), rows, damaged })
     }
 
     /// What a journal holds; nothing is added to it.
@@ -53,17 +57,33 @@ impl<T: Serialize + DeserializeOwned> Journal<T> {
     /// # Errors
     /// Where it cannot be read.
     pub fn read(path: &Path) -> io::Result<Self> {
-        Ok(Self { file: None, rows: Self::rows_of(&String::from_utf8_lossy(&std::fs::read(path)?)) })
+        let (rows, damaged) = Self::rows_of(&String::from_utf8_lossy(&std::fs::read(path)?));
+        Ok(Self { file: None, rows, damaged })
     }
 
-    fn rows_of(text: &str) -> BTreeMap<String, T> {
-        let lines = text.lines().filter_map(|line| serde_json::from_str(line).ok());
-        lines.map(|Record { key, row }| (key, row)).collect()
+    /// The rows of a text, and how many lines are damaged; half a line at the end is not, but unfinished.
+    fn rows_of(text: &str) -> (BTreeMap<String, T>, usize) {
+        let (mut rows, mut damaged) = (BTreeMap::new(), 0);
+        for line in text.split_inclusive('\n').filter(|line| !line.trim().is_empty()) {
+            match checked(line).and_then(|line| serde_json::from_str(&line).ok()) {
+                Some(Record { key, row }) => {
+                    rows.insert(key, row);
+                }
+                None => damaged += usize::from(line.ends_with('\n')),
+            }
+        }
+        (rows, damaged)
+    }
+
+    /// Lines that were there and are of no use.
+    pub const fn damaged(&self) -> usize {
+        self.damaged
     }
 
     /// Knows what another one holds, too.
     pub fn take_over(&mut self, other: Self) {
         self.rows.extend(other.rows);
+        self.damaged += other.damaged;
     }
 
     /// What an earlier run has left under a key.
@@ -82,7 +102,7 @@ impl<T: Serialize + DeserializeOwned> Journal<T> {
         let file = self.file.as_ref().and_then(|(_, file)| file.lock().ok());
         if let (Some(mut file), Ok(line)) = (file, line) {
             // In one piece, so that two runs may share a journal.
-            let _ = file.write_all(format!("{line}\n").as_bytes());
+            let _ = file.write_all(format!("{}\n", with_check(&line)).as_bytes());
         }
     }
 
@@ -109,12 +129,20 @@ mod tests {
         let text = std::fs::read_to_string(&path).expect("it was written");
         std::fs::write(&path, &text[..text.len() - 3]).expect("it can be written");
         let again = Journal::open(&path).expect("a journal");
+        assert_eq!(again.damaged(), 0);
         assert_eq!((again.get("first"), again.get("second")), (Some(&1), None));
         again.add("third", &3);
         let last: Journal<i32> = Journal::open(&path).expect("a journal");
         assert_eq!(last.rows().collect::<Vec<_>>(), [&1, &3]);
         last.remove();
         assert!(!path.exists());
+        let spoiled = Journal::open(&path).expect("a journal");
+        spoiled.add("fourth", &44);
+        spoiled.add("fifth", &5);
+        let text = std::fs::read_to_string(&path).expect("it was written");
+        std::fs::write(&path, text.replace("44", "45")).expect("it can be written");
+        let found: Journal<i32> = Journal::open(&path).expect("a journal");
+        assert_eq!((found.get("fourth"), found.get("fifth"), found.damaged()), (None, Some(&5), 1));
         let none = Journal::none();
         none.add("first", &1);
         assert_eq!(none.get("first"), None);

@@ -1,24 +1,25 @@
 //! Output files that are there whole or not at all.
 //!
 //! An [`OutputFile`] is written to a temporary file beside its target and renamed by [`OutputFile::commit_all`]. Dropped before
-//! that (an error, a panic, an end from outside), it leaves nothing. The data is not forced to the disk: it survives the end of
-//! the process, not of the power.
+//! that (an error, a panic, an end from outside), it leaves nothing; what a process leaves that was killed, the next one removes. What
+//! goes to the standard output (`-`), to a pipe or to a device waits in a file without a name until all is complete. The data is not
+//! forced to the disk: it survives the end of the process, not of the power.
 
 mod error;
+mod part_files;
 
 mod stab;
 mod polyline;
 pub mod gcode_writer;
 
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
-
-use tempfile::TempPath;
 
 use crate::watch::Watch;
 
 pub use error::{FileOperation, OutputError};
+use part_files::PartFile;
 
 /// Rows of a trace are 150-300 bytes: a few hundred rows for one call of the operating system.
 const BUFFER_BYTES: usize = 64 << 10;
@@ -37,8 +38,16 @@ pub struct OutputFile {
     /// Where it will stand, symbolic links resolved.
     target: PathBuf,
     out: BufWriter<Named>,
-    /// `None` for a target that is no regular file (a pipe, a device): that is written directly.
-    temporary: Option<TempPath>,
+    place: OutputPlace,
+}
+
+/// Where a file goes when it is complete.
+enum OutputPlace {
+    /// To its target, from beside it.
+    Beside(PartFile),
+    /// To a pipe or a device.
+    Device(File),
+    StandardOutput,
 }
 
 /// A file whose errors name it.
@@ -60,7 +69,7 @@ impl OutputFiles {
     /// A target that is a directory, that is one of the inputs or that another output of this run goes to; a directory that is
     /// missing or cannot be written to.
     pub fn start(&mut self, path: &Path) -> Result<OutputFile, OutputError> {
-        let target = resolve(path)?;
+        let target = if is_standard_output(path) { path.to_owned() } else { resolve(path)? };
         if let Some(input) = self.inputs.iter().find(|input| fs::canonicalize(input).is_ok_and(|input| input == target))
         {
             return Err(OutputError::IsInput { path: path.to_owned(), input: input.clone() });
@@ -78,14 +87,17 @@ impl OutputFile {
     fn create(path: &Path, target: PathBuf) -> Result<Self, OutputError> {
         let folder = target.parent().unwrap_or(Path::new("/")).to_owned();
         let failed = |error| OutputError::io(FileOperation::Create, path, &folder, error);
-        let (file, temporary) = if fs::metadata(&target).is_ok_and(|found| !found.is_file()) {
-            (File::options().write(true).open(&target).map_err(failed)?, None)
+        let (file, place) = if is_standard_output(path) {
+            (tempfile::tempfile().map_err(failed)?, OutputPlace::StandardOutput)
+        } else if fs::metadata(&target).is_ok_and(|found| !found.is_file()) {
+            let device = File::options().write(true).open(&target).map_err(failed)?;
+            (tempfile::tempfile().map_err(failed)?, OutputPlace::Device(device))
         } else {
-            let (file, temporary) = create_beside(&target, &folder).map_err(failed)?;
-            (file, Some(temporary))
+            let (file, beside) = PartFile::create(&target, &folder).map_err(failed)?;
+            (file, OutputPlace::Beside(beside))
         };
         let named = Named { file, shown: path.to_owned(), folder };
-        Ok(Self { shown: path.to_owned(), target, out: BufWriter::with_capacity(BUFFER_BYTES, named), temporary })
+        Ok(Self { shown: path.to_owned(), target, out: BufWriter::with_capacity(BUFFER_BYTES, named), place })
     }
 
     /// Where the file will stand, as it was given.
@@ -103,16 +115,42 @@ impl OutputFile {
             file.out.flush().map_err(|error| OutputError::from_io(error, &file.shown))?;
         }
         watch.check()?;
-        files.into_iter().try_for_each(Self::commit)
+        // What can still be refused goes first.
+        let (beside, elsewhere): (Vec<_>, Vec<_>) =
+            files.into_iter().partition(|file| matches!(file.place, OutputPlace::Beside(_)));
+        elsewhere.into_iter().chain(beside).try_for_each(Self::commit)
     }
 
     fn commit(mut self) -> Result<(), OutputError> {
-        let Some(temporary) = self.temporary.take() else { return Ok(()) };
-        temporary.persist(&self.target).map_err(|failed| {
-            let folder = &self.out.get_ref().folder;
-            OutputError::io(FileOperation::Rename, &self.shown, folder, failed.error)
-        })
+        self.out.flush().map_err(|error| OutputError::from_io(error, &self.shown))?;
+        let Named { file, shown, folder } = self.out.get_mut();
+        let failed = |step, error| OutputError::io(step, shown, folder, error);
+        match self.place {
+            OutputPlace::Beside(beside) => {
+                beside.persist(&self.target).map_err(|error| failed(FileOperation::Rename, error))
+            }
+            OutputPlace::Device(mut device) => {
+                hand_over(file, &mut device).map_err(|error| failed(FileOperation::Write, error))
+            }
+            OutputPlace::StandardOutput => match hand_over(file, &mut io::stdout().lock()) {
+                // A reader that went away (`| head`) has seen enough.
+                Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(failed(FileOperation::Write, error)),
+                _ => Ok(()),
+            },
+        }
     }
+}
+
+/// Whether a target is the standard output; `./-` is a file of that name.
+pub fn is_standard_output(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Copies what has been kept.
+fn hand_over(kept: &mut File, to: &mut impl Write) -> io::Result<()> {
+    kept.seek(SeekFrom::Start(0))?;
+    io::copy(kept, to)?;
+    to.flush()
 }
 
 impl Write for OutputFile {
@@ -158,27 +196,6 @@ fn resolve(path: &Path) -> Result<PathBuf, OutputError> {
         Ok(folder) => Ok(folder.join(name)),
         Err(error) => Err(OutputError::io(FileOperation::Create, path, folder, error)),
     }
-}
-
-/// The error without the name of the hidden file, which nobody asked for.
-fn of_the_system(error: io::Error) -> io::Error {
-    let inner = error.get_ref().and_then(|inner| inner.source()).and_then(|inner| inner.downcast_ref::<io::Error>());
-    inner.and_then(io::Error::raw_os_error).map_or(error, io::Error::from_raw_os_error)
-}
-
-fn create_beside(target: &Path, folder: &Path) -> io::Result<(File, TempPath)> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".feedwright-").suffix(".part");
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // A file that is replaced keeps its permissions; a new one gets what the user's umask leaves.
-        let mode = fs::metadata(target).map_or(0o666, |found| found.permissions().mode());
-        builder.permissions(fs::Permissions::from_mode(mode & 0o777));
-    }
-    #[cfg(not(unix))]
-    let _ = target;
-    Ok(builder.tempfile_in(folder).map_err(of_the_system)?.into_parts())
 }
 
 #[cfg(test)]

@@ -33,22 +33,22 @@ const TWO_FOR_ONE: usize = 2;
 
 /// A point to be passed.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct FitPoint {
+pub(crate) struct FitPoint {
     /// Where it is, mm.
-    pub(super) at_mm: Vector,
+    pub(crate) at_mm: Vector,
     /// Direction of travel, of length 1 in the plane; zero where there is no way in the plane.
-    pub(super) tangent: [f64; 2],
+    pub(crate) tangent: [f64; 2],
     /// Feedrate from here on, mm/s; a motion ends where it changes.
-    pub(super) feed_mm_s: f64,
+    pub(crate) feed_mm_s: f64,
 }
 
 /// A motion of the fit.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct FitMotion {
-    pub(super) start_mm: Vector,
-    pub(super) end_mm: Vector,
-    pub(super) shape: Shape,
-    pub(super) feed_mm_s: f64,
+pub(crate) struct FitMotion {
+    pub(crate) start_mm: Vector,
+    pub(crate) end_mm: Vector,
+    pub(crate) shape: Shape,
+    pub(crate) feed_mm_s: f64,
 }
 
 /// An arc or a line of the plane, with its rise.
@@ -64,7 +64,7 @@ struct FitArc {
 }
 
 /// Fits points.
-pub(super) struct ArcFit<'a> {
+pub(crate) struct ArcFit<'a> {
     points: &'a [FitPoint],
     tolerance_mm: f64,
     /// Printed steps in a millimetre.
@@ -72,12 +72,12 @@ pub(super) struct ArcFit<'a> {
 }
 
 impl<'a> ArcFit<'a> {
-    pub(super) const fn new(points: &'a [FitPoint], tolerance_mm: f64, steps_per_mm: f64) -> Self {
+    pub(crate) const fn new(points: &'a [FitPoint], tolerance_mm: f64, steps_per_mm: f64) -> Self {
         Self { points, tolerance_mm, steps_per_mm }
     }
 
     /// The motions, from the first point to the last.
-    pub(super) fn motions(&self) -> Vec<FitMotion> {
+    pub(crate) fn motions(&self) -> Vec<FitMotion> {
         let (mut motions, mut at) = (Vec::new(), 0);
         while at + 1 < self.points.len() {
             let (next, arcs) = self.longest(at);

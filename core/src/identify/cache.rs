@@ -1,9 +1,11 @@
 //! Trained identifiers are kept by content: the same recording and training find the same weights. The recording is made
 //! anew each time, which takes a fraction of the training, so that no change of machine, plant or planner finds old weights.
 //!
-//! One small JSON file each, in the user's cache folder, or in `$FEEDWRIGHT_CACHE` where that is set. A file that cannot
-//! be read or does not hold a network is trained anew; one that cannot be written is not an error.
+//! One small JSON file each, in the user's cache folder, or in `$FEEDWRIGHT_CACHE` where that is set; where that is empty nothing is
+//! kept. Each has a checksum: what cannot be read, is damaged or does not hold a network is trained anew; one that cannot be written
+//! is not an error.
 
+use std::io::Write;
 use std::path::PathBuf;
 
 use feedwright_control::identifier::contour::ContourIdentifier;
@@ -13,7 +15,9 @@ use serde::{Deserialize, Serialize};
 use super::contour::{TrainedContour, Training, train};
 use super::recording::Recording;
 use super::{Excitation, Rng};
+use crate::checked_json::{checked, with_check};
 use crate::machine::Machine;
+use crate::output::{OutputFile, OutputFiles};
 
 /// Raised whenever the same recording gives other weights: a change of the network or of its training.
 const FORMAT: u32 = 4;
@@ -60,6 +64,7 @@ pub fn trained<const N: usize>(
 /// The folder of the cache, where there is one.
 pub fn folder() -> Option<PathBuf> {
     match std::env::var_os("FEEDWRIGHT_CACHE") {
+        Some(folder) if folder.is_empty() => None,
         Some(folder) => Some(PathBuf::from(folder)),
         None => directories::ProjectDirs::from("", "", "feedwright").map(|dirs| dirs.cache_dir().to_owned()),
     }
@@ -81,7 +86,7 @@ fn key<const N: usize>(recording: &Recording<N>, training: &Training, rng: &Rng)
 }
 
 fn load<const N: usize>(file: &PathBuf) -> Option<TrainedContour<N>> {
-    let stored: StoredWeights = serde_json::from_slice(&std::fs::read(file).ok()?).ok()?;
+    let stored: StoredWeights = serde_json::from_str(&checked(&std::fs::read_to_string(file).ok()?)?).ok()?;
     let complete = stored.hidden.len() == N * INPUTS * HIDDEN && stored.output.len() == N * HIDDEN;
     if !complete || stored.hidden.iter().chain(&stored.output).any(|w| !w.is_finite()) {
         return None;
@@ -104,8 +109,8 @@ fn store<const N: usize>(file: &std::path::Path, identified: &TrainedContour<N>)
         fit_um: identified.fit_um,
         samples: identified.samples,
     };
-    let beside = tempfile::NamedTempFile::new_in(folder)?;
-    serde_json::to_writer(&beside, &stored)?;
-    beside.persist(file)?;
-    Ok(())
+    let text = with_check(&serde_json::to_string(&stored)?);
+    let mut kept = OutputFiles::default().start(file).map_err(std::io::Error::other)?;
+    kept.write_all(text.as_bytes())?;
+    OutputFile::commit_all(vec![kept], &()).map_err(std::io::Error::other)
 }

@@ -136,8 +136,8 @@ fn a_link_is_followed_and_permissions_are_kept() {
 #[test]
 fn a_full_device_is_reported_by_name() {
     let mut file = start(Path::new("/dev/full"));
-    let error = file.write_all(&vec![0; 2 * BUFFER_BYTES]).unwrap_err();
-    let error = OutputError::from_io(error, Path::new("elsewhere"));
+    file.write_all(&vec![0; 2 * BUFFER_BYTES]).unwrap();
+    let error = OutputFile::commit_all(vec![file], &()).unwrap_err();
     let text = error.to_string();
     assert!(text.starts_with("cannot write /dev/full: No space left on device"), "{text}");
     // What is free in the folder around a device says nothing about it.
@@ -166,4 +166,46 @@ fn a_full_disk_leaves_neither_file_nor_temporary() {
     let error = OutputError::from_io(error.expect("256 KiB do not fit into 64 KiB"), &path);
     assert!(matches!(&error, OutputError::Io { free_bytes: Some(free), .. } if *free < 65536), "{error:?}");
     assert!(left.is_empty(), "{left:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_a_killed_process_left_is_removed_and_what_another_one_writes_is_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let abandoned = folder.path().join(".feedwright-a1b2c3.part");
+    fs::write(&abandoned, "half").unwrap();
+    fs::write(folder.path().join(".feedwright-notes"), "of somebody else").unwrap();
+    let under_way = start(&folder.path().join("first.csv"));
+    assert!(!abandoned.exists());
+    let second = start(&folder.path().join("second.csv"));
+    assert_eq!(names(folder.path()).len(), 3);
+    OutputFile::commit_all(vec![under_way, second], &()).unwrap();
+    assert_eq!(names(folder.path()), [".feedwright-notes", "first.csv", "second.csv"]);
+}
+
+#[test]
+fn nothing_goes_to_a_device_before_all_is_complete() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pipe");
+    let made = std::process::Command::new("mkfifo").arg(&path).status().is_ok_and(|status| status.success());
+    if !made {
+        eprintln!("SKIPPED: no pipe can be made");
+        return;
+    }
+    let reader = std::thread::spawn({
+        let path = path.clone();
+        move || fs::read(path).unwrap()
+    });
+    let mut dropped = start(&path);
+    dropped.write_all(&vec![b'x'; 3 * BUFFER_BYTES]).unwrap();
+    drop(dropped);
+    assert_eq!(reader.join().unwrap(), b"");
+    assert!(matches!(
+        {
+            let mut files = OutputFiles::default();
+            let first = files.start(Path::new("-")).unwrap();
+            (files.start(Path::new("-")).err(), first)
+        },
+        (Some(OutputError::Twice { .. }), _)
+    ));
 }

@@ -74,7 +74,8 @@ pub struct Placement {
 }
 
 impl Placement {
-    const NONE: Self = Self { scale: 1.0, turn_rad: 0.0 };
+    /// Where it is defined.
+    pub const NONE: Self = Self { scale: 1.0, turn_rad: 0.0 };
 
     /// A vector, scaled and turned. Where nothing is to be done it keeps its bits.
     fn of(self, vector: [f64; 3]) -> [f64; 3] {
@@ -118,23 +119,12 @@ impl Contour {
         if !(super::MIN_FEED_MM_S..=f64::MAX).contains(&feed_mm_s) {
             return Err(PathError::Feed { line: 1, feed_mm_s });
         }
+        if let Some(canon) = self.lines_and_arcs(place, feed_mm_s, corner) {
+            return Pieces::new(canon.into_iter()).collect();
+        }
         match self.outline {
-            Outline::Polygon(points) => Pieces::new(lines(points, place, feed_mm_s, corner).into_iter()).collect(),
-            Outline::Circle(points, center, turns) => {
-                let mut canon = lines(points, place, feed_mm_s, corner);
-                let at = place.of(space(points[points.len() - 1]));
-                canon.push(Canon::Motion(Motion {
-                    line: points.len() as u32,
-                    kind: MotionKind::Feed,
-                    start_mm: at,
-                    end_mm: at,
-                    shape: Shape::Arc { plane: Plane::Xy, center_mm: place.of(space(center)), turns },
-                    feed_mm_s,
-                    corner,
-                    others: AuxiliaryAxes::default(),
-                }));
-                Pieces::new(canon.into_iter()).collect()
-            }
+            // Made above.
+            Outline::Polygon(_) | Outline::Circle(..) => Ok(Vec::new()),
             Outline::Spline(spline) => {
                 let mut spline = spline();
                 spline.control_mm.iter_mut().for_each(|point_mm| *point_mm = place.of(*point_mm));
@@ -167,6 +157,29 @@ impl Contour {
                     further_mm_mm: 0.0,
                 })])
             }
+        }
+    }
+
+    /// The motions of a contour that is made of straight lines and full circles; none of others.
+    pub fn lines_and_arcs(&self, place: Placement, feed_mm_s: f64, corner: Corner) -> Option<Vec<Canon>> {
+        match self.outline {
+            Outline::Polygon(points) => Some(lines(points, place, feed_mm_s, corner)),
+            Outline::Circle(points, center, turns) => {
+                let mut canon = lines(points, place, feed_mm_s, corner);
+                let at = place.of(space(points[points.len() - 1]));
+                canon.push(Canon::Motion(Motion {
+                    line: points.len() as u32,
+                    kind: MotionKind::Feed,
+                    start_mm: at,
+                    end_mm: at,
+                    shape: Shape::Arc { plane: Plane::Xy, center_mm: place.of(space(center)), turns },
+                    feed_mm_s,
+                    corner,
+                    others: AuxiliaryAxes::default(),
+                }));
+                Some(canon)
+            }
+            Outline::Curve(..) | Outline::Spline(_) => None,
         }
     }
 }
