@@ -162,6 +162,7 @@ fn main() -> io::Result<()> {
     ];
     for job in &jobs {
         let report = Report {
+            assumed: feedwright::report::Assumptions::default(),
             title: format!("{} <b>&</b>", job.name),
             part: format!("{}.ngc", job.name),
             machine: vec![("axes".to_owned(), job.axes.to_string()), ("servo period".to_owned(), "1 ms".to_owned())],

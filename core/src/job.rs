@@ -6,11 +6,13 @@
 //! | File | What |
 //! |---|---|
 //! | `job/error.rs` | what can go wrong |
+//! | `job/assumed.rs` | what it assumes of its machine |
 //! | `job/files.rs` | the files that it writes, all of them or none |
 //! | `job/report.rs` | what the page shows |
 //! | `job/stored.rs` | how it is serialised |
 
 mod error;
+mod assumed;
 mod files;
 mod report;
 mod stored;
@@ -29,10 +31,11 @@ use crate::gcode::{self, ReadError, Reader, Summary};
 use crate::log::columns::Columns;
 use crate::log::{Log, LogFinding};
 use crate::machine::Machine;
-use crate::measured::measured;
+use crate::measured::{MeasuredRun, measured};
 use crate::model::Model;
 use crate::path::{Step, Steps};
 use crate::pipeline::{Run, RunError, Stages, pieces};
+use crate::report::harm::Harm;
 use crate::report::{Report, ReportedRun, RunFacts, Series, Statistics};
 use crate::trace::{Row, Sink};
 use crate::watch::{StageSteps, Watch};
@@ -49,6 +52,9 @@ pub struct Job {
     /// The machine that cuts it.
     #[serde(with = "stored::machine")]
     pub machine: Machine,
+    /// The file that the machine was read from; none where it is built in.
+    #[serde(default)]
+    pub machine_file: Option<PathBuf>,
     /// The controller that is asked for.
     #[serde(with = "stored::entry")]
     pub controller: &'static Entry,
@@ -105,6 +111,10 @@ pub struct JobOutcome {
     pub log_findings: Vec<LogFinding>,
     /// The plan of least time, where that was asked for.
     pub fastest: Option<FastestPlan>,
+    /// In what the correction is worse than open loop; nothing where it is compared with something else.
+    pub harm: Vec<Harm>,
+    /// Whether the command of the controller was written, where that was asked for: it was cut to its end, and does no harm.
+    pub is_of_use: bool,
     /// Whether the last run was cut to its end and within the tolerance, where one was asked for.
     pub within_tolerance: bool,
 }
@@ -163,11 +173,21 @@ impl Job {
             log_findings = findings;
         }
         watch.begin("writing", 1);
-        let report = self.report(N, summary, runs);
+        let report = self.report(N, summary, runs, &without_identification);
+        let (harm, is_of_use) = (self.harm(&report), self.is_of_use(&report));
         let within_tolerance = self.within_tolerance(&report);
         files.finish(self, &report, watch)?;
         let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
-        Ok(JobOutcome { report, warnings, without_identification, log_findings, fastest, within_tolerance })
+        Ok(JobOutcome {
+            report,
+            warnings,
+            without_identification,
+            log_findings,
+            fastest,
+            harm,
+            is_of_use,
+            within_tolerance,
+        })
     }
 
     /// What a log says of the cut.
@@ -188,8 +208,9 @@ impl Job {
         let limits = |error| JobError::of_run(&self.part, RunError::Limits(error));
         let mut reference = Stages::of(&self.machine).reference(steps, &self.machine).map_err(limits)?;
         let (mut statistics, mut series) = (Statistics::new(), Series::new());
-        let run = measured(&log, &self.machine, axes, &mut reference, &mut [&mut statistics, &mut series], watch)
-            .map_err(of_log)?;
+        let MeasuredRun { run, findings: of_axes } =
+            measured(&log, &self.machine, axes, &mut reference, &mut [&mut statistics, &mut series], watch)
+                .map_err(of_log)?;
         let facts = RunFacts {
             controller: MEASURED.to_owned(),
             machine: self.machine.name.clone(),
@@ -199,7 +220,7 @@ impl Job {
         };
         let mut summary = statistics.summary(facts, |_| String::new());
         self.fill_in_texts(&mut summary.worst)?;
-        Ok((ReportedRun { summary, series, events: Vec::new() }, log.findings))
+        Ok((ReportedRun { summary, series, events: Vec::new() }, [log.findings, of_axes].concat()))
     }
 
     /// The plan of least time, found with a controller of its own.

@@ -30,6 +30,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::ops::Range;
 use std::path::Path;
 
+use crate::gcode::input;
 use crate::watch::{StageSteps, Watch};
 use columns::Columns;
 pub use error::LogError;
@@ -49,6 +50,8 @@ pub struct Log {
     pub time_s: Vec<f64>,
     /// Axes in the order of the file, at most [`MAX_AXES`]: those that have command and actual position, and move.
     pub axes: Vec<LogAxis>,
+    /// Axes that have both and whose command stands still.
+    pub still: Vec<LogAxis>,
     /// What was guessed or noticed, in the order in which it is to be told.
     pub findings: Vec<LogFinding>,
 }
@@ -170,7 +173,7 @@ const HEAD_BYTES: usize = 64 << 10;
 /// The columns of a file, whatever its format.
 fn read_table(path: &Path, columns: &Columns, watch: &dyn Watch) -> Result<LogTable, LogError> {
     let unreadable = |source| LogError::unreadable(path, source);
-    let mut file = File::open(path).map_err(unreadable)?;
+    let mut file = open(path).map_err(unreadable)?;
     if file.metadata().map_err(unreadable)?.is_dir() {
         return Err(unreadable(std::io::Error::from(std::io::ErrorKind::IsADirectory)));
     }
@@ -187,6 +190,17 @@ fn read_table(path: &Path, columns: &Columns, watch: &dyn Watch) -> Result<LogTa
     text::read(path, &mut file, &head, columns, &mut steps, watch)
 }
 
+/// The file; what comes from the standard input goes to one without a name, as formats are read from several places.
+fn open(path: &Path) -> std::io::Result<File> {
+    if !input::is_standard_input(path) {
+        return File::open(path);
+    }
+    let mut file = tempfile::tempfile()?;
+    std::io::copy(&mut input::standard_input()?, &mut file)?;
+    file.seek(SeekFrom::Start(0))?;
+    Ok(file)
+}
+
 /// The log in a table.
 fn of_table(path: &Path, mut table: LogTable, columns: &Columns) -> Result<Log, LogError> {
     let mut findings: Vec<LogFinding> =
@@ -194,7 +208,7 @@ fn of_table(path: &Path, mut table: LogTable, columns: &Columns) -> Result<Log, 
     let roles = roles::find(path, &table, columns, &mut findings)?;
     let clock = clock::of_table(path, &mut table, &roles, columns, &mut findings)?;
     let axes = axes::of_table(path, &mut table, &roles, columns, &clock, &mut findings)?;
-    let axes = screen::fit(path, axes, &clock, &mut findings)?;
+    let [axes, still] = screen::fit(path, axes, &clock, &mut findings)?;
     let clock::Clock { sample_time_s, stretches, time_s, .. } = clock;
-    Ok(Log { format: table.format, sample_time_s, stretches, time_s, axes, findings })
+    Ok(Log { format: table.format, sample_time_s, stretches, time_s, axes, still, findings })
 }

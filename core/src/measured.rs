@@ -15,9 +15,11 @@
 //!
 //! Actual positions are those of the encoders: what no encoder sees is not in them.
 
+mod pairing;
+
 use thiserror::Error;
 
-use crate::log::{Log, LogAxis};
+use crate::log::{Log, LogAxis, LogFinding};
 use crate::machine::Machine;
 use crate::number::shown;
 use crate::reference::{Foot, Reference};
@@ -27,6 +29,7 @@ use crate::simulate::{RunResult, Stopped};
 use crate::trace::{Commanded, Row, Sink};
 use crate::vector::{Vector, add_scaled, distance, sub};
 use crate::watch::Watch;
+use pairing::PairedAxes;
 
 /// What a control may delay the command by before it goes to the drives, s.
 const DELAY_S: f64 = 0.05;
@@ -123,7 +126,17 @@ fn place(point_mm: Vector) -> String {
     format!("X{x} Y{y} Z{z}")
 }
 
-/// The rows of a log, as if it were a run: each goes to every sink. `axes` of the machine are compared, 2 or 3.
+/// A cut that a machine recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredRun {
+    /// What it came to.
+    pub run: RunResult,
+    /// What was taken for granted of its axes.
+    pub findings: Vec<LogFinding>,
+}
+
+/// The rows of a log, as if it were a run: each goes to every sink. `axes` of the machine are compared, 2 or 3. One that stands still in
+/// the program need not be in the log.
 ///
 /// # Errors
 /// Where the log is not one of this program: see [`MeasuredError`].
@@ -134,12 +147,14 @@ pub fn measured(
     reference: &mut Reference<'_>,
     sinks: &mut [&mut dyn Sink],
     watch: &dyn Watch,
-) -> Result<RunResult, MeasuredError> {
+) -> Result<MeasuredRun, MeasuredError> {
     if let [first, _, ..] = &log.stretches[..] {
         return Err(MeasuredError::Gap { at_s: log.time_s[first.end - 1] });
     }
     let planned = PlannedPath::of(reference)?;
-    let mut record = RecordedAxes::of(log, axes)?;
+    let PairedAxes { axes: recorded, findings } = PairedAxes::of(log, planned.range_mm(), axes)?;
+    let mut record =
+        RecordedAxes { axes: recorded, time_s: &log.time_s, shift_mm: [0.0; 3], still_mm: planned.start_mm };
     record.shift_mm = planned.shift_mm(&record, axes);
     let first = record.begins(planned.start_mm)?;
     record.shift_to(first, planned.start_mm);
@@ -153,7 +168,7 @@ pub fn measured(
             watch.check().map_err(|cancelled| MeasuredError::Stopped { stopped: cancelled.into() })?;
         }
     }
-    comparison.finish(&planned)
+    Ok(MeasuredRun { run: comparison.finish(&planned)?, findings })
 }
 
 /// What the plan of the program says of its path.
@@ -188,6 +203,12 @@ impl PlannedPath {
         }
         let (start_mm, start_s_mm) = start.ok_or(MeasuredError::NothingCut)?;
         Ok(Self { start_mm, start_s_mm, end_s_mm, boxes_mm })
+    }
+
+    /// How far each axis goes, mm.
+    fn range_mm(&self) -> Vector {
+        let [low, high] = self.boxes_mm[0];
+        sub(high, low)
     }
 
     /// By how much positions of the log are shifted, mm: none where that cannot be told.
@@ -225,9 +246,11 @@ fn grow(bounds: &mut [Vector; 2], point_mm: Vector) {
 
 /// The axes of a log that the program moves.
 struct RecordedAxes<'a> {
-    axes: Vec<&'a LogAxis>,
+    axes: Vec<Option<&'a LogAxis>>,
     time_s: &'a [f64],
     shift_mm: Vector,
+    /// Where axes are that the log does not have, mm.
+    still_mm: Vector,
 }
 
 /// A sample, in the coordinates of the program.
@@ -237,17 +260,7 @@ struct Sampled {
     actual_mm: Vector,
 }
 
-impl<'a> RecordedAxes<'a> {
-    fn of(log: &'a Log, axes: usize) -> Result<Self, MeasuredError> {
-        let there = || log.axes.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>().join(", ");
-        let named = |axis: &'static str| {
-            let found = log.axes.iter().find(|candidate| candidate.name.eq_ignore_ascii_case(axis));
-            found.ok_or_else(|| MeasuredError::MissingAxis { axis, there: there() })
-        };
-        let axes = ["x", "y", "z"].into_iter().take(axes).map(named).collect::<Result<_, _>>()?;
-        Ok(Self { axes, time_s: &log.time_s, shift_mm: [0.0; 3] })
-    }
-
+impl RecordedAxes<'_> {
     fn len(&self) -> usize {
         self.time_s.len()
     }
@@ -255,8 +268,13 @@ impl<'a> RecordedAxes<'a> {
     fn at(&self, k: usize) -> Sampled {
         let (mut command_mm, mut actual_mm) = (self.shift_mm, self.shift_mm);
         for (i, axis) in self.axes.iter().enumerate() {
-            command_mm[i] += axis.command_mm[k];
-            actual_mm[i] += axis.actual_mm[k];
+            match axis {
+                Some(axis) => {
+                    command_mm[i] += axis.command_mm[k];
+                    actual_mm[i] += axis.actual_mm[k];
+                }
+                None => (command_mm[i], actual_mm[i]) = (self.still_mm[i], self.still_mm[i]),
+            }
         }
         Sampled { time_s: self.time_s[k], command_mm, actual_mm }
     }

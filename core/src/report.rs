@@ -16,7 +16,10 @@ mod worst;
 mod histogram;
 mod summary;
 mod statistics;
+pub mod harm;
+mod assumptions;
 
+pub use assumptions::{Assumptions, LawKnowledge};
 pub use histogram::Histogram;
 pub use html::write_html;
 pub use series::{Series, SeriesPoint};
@@ -37,6 +40,8 @@ pub struct Report {
     pub machine: Vec<(String, String)>,
     /// Settings of the run: name and value, in the order in which they are shown.
     pub settings: Vec<(String, String)>,
+    /// What the figures rest on.
+    pub assumed: Assumptions,
     /// Largest contour error that the part allows, µm, where one was asked for.
     pub tolerance_um: Option<f64>,
     /// One for each controller. The first is what the others are compared with; the last is the one that is judged.

@@ -23,6 +23,7 @@ fn job(machine: &str, controller: &str) -> Job {
     Job {
         part: part(),
         machine: Machine::load(machine.as_ref()).unwrap(),
+        machine_file: None,
         controller: Entry::find(controller).unwrap(),
         against: Entry::find(BASELINE).unwrap(),
         feed_mm_s: None,

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use feedwright::controllers::{BASELINE, Choices, Entry, Make, Setup};
 use feedwright::gcode::{Reader, Settings};
-use feedwright::log::{Fitness, Log, LogAxis, LogFormat, TorqueUnit};
+use feedwright::log::{Fitness, Log, LogAxis, LogFinding, LogFormat, TorqueUnit};
 use feedwright::machine::Machine;
 use feedwright::measured::{MeasuredError, measured};
 use feedwright::pipeline::{Run, Stages, pieces};
@@ -55,6 +55,7 @@ fn log(rows: &[Row], shift_mm: [f64; 2]) -> Log {
         stretches: vec![Range { start: 0, end: rows.len() }],
         time_s: rows.iter().map(|row| row.t_s).collect(),
         axes: vec![axis("x", 0), axis("y", 1)],
+        still: Vec::new(),
         findings: Vec::new(),
     }
 }
@@ -63,7 +64,7 @@ fn compared(log: &Log, name: &str) -> Result<(Statistics, RunResult), MeasuredEr
     let machine = tnv40();
     let mut reference = Stages::of(&machine).reference(steps(name), &machine).unwrap();
     let mut statistics = Statistics::new();
-    measured(log, &machine, 2, &mut reference, &mut [&mut statistics], &()).map(|run| (statistics, run))
+    measured(log, &machine, 2, &mut reference, &mut [&mut statistics], &()).map(|found| (statistics, found.run))
 }
 
 #[test]
@@ -118,4 +119,62 @@ fn half_a_log_and_one_with_a_gap_or_without_an_axis_are_refused() {
     without.axes.pop();
     let message = compared(&without, "circle").unwrap_err().to_string();
     assert_eq!(message, "the log has no axis y, which the program moves; it has x");
+}
+
+/// A program that goes along one axis only, its log, and the columns of the other: without record, standing still with noise, or
+/// without names.
+#[test]
+fn an_axis_that_stands_still_in_the_program_need_not_be_in_the_log() {
+    let machine = tnv40();
+    let program = |axis: char| format!("G21 G90 G64\nG0 X0 Y0\nG1 {axis}20 F1200\n{axis}0\nM2\n");
+    for (axis, i) in [('X', 0), ('Y', 1)] {
+        let steps =
+            || pieces(Reader::from_text("line.ngc", program(axis), Settings::default()).unwrap().map_while(Result::ok));
+        let choices = Choices::default();
+        let mut setup = Setup::new(&machine, &choices);
+        let mut controller = Make::<2>::make(Entry::find(BASELINE).unwrap(), &mut setup);
+        let mut rows = Vec::new();
+        Run::on(&machine).cut(|| Ok(steps()), &mut *controller, &mut [&mut rows]).unwrap();
+        let compared = |log: &Log| {
+            let mut reference = Stages::of(&machine).reference(steps(), &machine).unwrap();
+            let mut statistics = Statistics::new();
+            let found = measured(log, &machine, 2, &mut reference, &mut [&mut statistics], &()).unwrap();
+            (statistics.max_um(), found.findings)
+        };
+        let whole = log(&rows, [0.0, 700.0]);
+        let (expected_um, findings) = compared(&whole);
+        assert!(findings.is_empty(), "{findings:?}");
+        let alone = |name: &str, findings: Vec<LogFinding>| Log {
+            axes: vec![LogAxis { name: name.to_owned(), ..whole.axes[i].clone() }],
+            findings,
+            ..whole.clone()
+        };
+        let still = LogFinding::TakenAsStill { axis: if i == 0 { "y" } else { "x" }.to_owned() };
+        // As if the axis that is not there had been where its command was.
+        let mut held = whole.clone();
+        held.axes[1 - i].actual_mm.clone_from(&whole.axes[1 - i].command_mm);
+        let held_um = compared(&held).0;
+        assert!(held_um < expected_um, "{axis}: {held_um} {expected_um}");
+        let is_held = |log: &Log, findings: &[LogFinding]| {
+            let (found_um, told) = compared(log);
+            assert!((found_um - held_um).abs() < 1e-6 && told == findings, "{axis}: {found_um} {held_um} {told:?}");
+        };
+        is_held(&alone(["x", "y"][i], vec![]), std::slice::from_ref(&still));
+        let kept = Log { still: vec![whole.axes[1 - i].clone()], ..alone(["x", "y"][i], vec![]) };
+        assert_eq!(compared(&kept), (expected_um, vec![]), "{axis}");
+        // Columns without names: the only axis that moves is the only one that the program moves.
+        let guessed = LogFinding::AxisColumns {
+            axis: "x".to_owned(),
+            command: "1".to_owned(),
+            actual: "2".to_owned(),
+            torque: None,
+            torque_unit: TorqueUnit::Unknown,
+            by_data: true,
+        };
+        let mut told = vec![still];
+        if i == 1 {
+            told.push(LogFinding::TakenFor { axis: "x".to_owned(), program: "y".to_owned() });
+        }
+        is_held(&alone("x", vec![guessed]), &told);
+    }
 }

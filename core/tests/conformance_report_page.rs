@@ -64,6 +64,7 @@ fn run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> ReportedRun 
 
 fn report(axes: usize, rows: usize) -> Report {
     Report {
+        assumed: feedwright::report::Assumptions::default(),
         title: HOSTILE.to_owned(),
         part: HOSTILE.to_owned(),
         machine: vec![(HOSTILE.to_owned(), HOSTILE.to_owned())],

@@ -82,7 +82,7 @@ pub enum JobError {
     },
     /// `--out` with an ending that says nothing.
     #[error("{} does not say what to write", path.display())]
-    #[diagnostic(help("the ending decides: .csv for setpoints, .ngc for G-code"))]
+    #[diagnostic(help("the ending decides: .csv for setpoints, .ngc for G-code; - is G-code on the standard output"))]
     Ending {
         /// The place.
         path: PathBuf,

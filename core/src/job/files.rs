@@ -9,9 +9,10 @@ use super::{Job, JobError};
 use crate::feed::TimedEvent;
 use crate::machine::PlcEvent;
 use crate::output::gcode_writer::GcodeWriter;
-use crate::output::{OutputError, OutputFile, OutputFiles};
+use crate::output::{OutputError, OutputFile, OutputFiles, is_standard_output};
 use crate::plc;
-use crate::report::{Report, RunSummary, TimelineEvent, write_html};
+use crate::report::harm::Harm;
+use crate::report::{Assumptions, Report, RunSummary, TimelineEvent, write_html};
 use crate::trace::csv::{SetpointWriter, TraceWriter};
 use crate::trace::{Row, Sink};
 use crate::watch::Watch;
@@ -45,6 +46,8 @@ impl Outputs {
         match ending.as_deref() {
             Some("csv") => Ok(Form::Setpoints),
             Some("ngc" | "nc" | "gcode" | "tap") => Ok(Form::Gcode),
+            // A program on the standard output; setpoints are a file.
+            _ if is_standard_output(path) => Ok(Form::Gcode),
             _ => Err(JobError::Ending { path: path.to_owned() }),
         }
     }
@@ -58,7 +61,7 @@ impl Job {
         let most_mm_s = self.machine.limits.max_feed_mm_s;
         if let Some(value) = self.feed_mm_s.filter(|feed| !positive(feed, most_mm_s)) {
             let bounds = format!("above 0 and up to {most_mm_s} mm/s, the machine's max_feed_mm_s");
-            let hint = Some("the unit is mm/s: F3000 in a program, which is mm/min, is --feed 50");
+            let hint = Some("F3000 in a program is --feed 3000mm/min, or 50mm/s");
             return Err(JobError::Value { name: "--feed", value, unit: " mm/s", bounds, hint });
         }
         if let Some(value) = self.tolerance_um.filter(|tolerance| !positive(tolerance, MAX_TOLERANCE_UM)) {
@@ -117,8 +120,10 @@ impl Files {
             complete.push(output);
         }
         complete.extend(self.trace.map(TraceWriter::finish).transpose()?);
-        complete.extend(self.setpoints.map(SetpointWriter::finish).transpose()?);
-        complete.extend(self.gcode.map(GcodeWriter::finish).transpose()?);
+        if job.is_of_use(report) {
+            complete.extend(self.setpoints.map(SetpointWriter::finish).transpose()?);
+            complete.extend(self.gcode.map(GcodeWriter::finish).transpose()?);
+        }
         OutputFile::commit_all(complete, watch)?;
         Ok(())
     }
@@ -145,6 +150,9 @@ struct Results<'a> {
     reference: Option<&'a Path>,
     tolerance_um: Option<f64>,
     within_tolerance: bool,
+    simulated: bool,
+    assumed: &'a Assumptions,
+    worse_than_open_loop: Vec<Harm>,
     settings: std::collections::BTreeMap<&'a str, &'a str>,
     machine: &'a crate::machine::Machine,
     runs: Vec<&'a RunSummary>,
@@ -157,6 +165,9 @@ fn write_json(out: &mut impl io::Write, job: &Job, report: &Report) -> io::Resul
         reference: job.reference.as_deref(),
         tolerance_um: job.tolerance_um,
         within_tolerance: job.within_tolerance(report),
+        simulated: true,
+        assumed: &report.assumed,
+        worse_than_open_loop: job.harm(report),
         settings: report.settings.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect(),
         machine: &job.machine,
         runs: report.runs.iter().map(|run| &run.summary).collect(),

@@ -3,22 +3,29 @@
 use std::io::BufRead;
 
 use super::{Job, JobError};
-use crate::gcode::Summary;
+use crate::controllers::{BASELINE, NothingIdentified};
+use crate::gcode::{Summary, input};
 use crate::machine::Machine;
 use crate::model::Model;
+use crate::report::harm::{Harm, harm};
 use crate::report::{Outcome, Report, ReportedRun, WorstPlace};
 
 impl Job {
     /// The part as the report calls it: the file's name.
     pub(super) fn part_name(&self) -> String {
-        self.part.file_name().unwrap_or(self.part.as_os_str()).to_string_lossy().into_owned()
+        let name = std::path::PathBuf::from(input::name(&self.part));
+        name.file_name().unwrap_or(name.as_os_str()).to_string_lossy().into_owned()
     }
 
     /// Looks up the texts of the worst places' lines, in one pass over the program.
     pub(super) fn fill_in_texts(&self, worst: &mut [WorstPlace]) -> Result<(), JobError> {
         let reread = |cause| JobError::Reread { part: self.part.clone(), cause };
         let last = worst.iter().map(|place| place.line).max().unwrap_or(0);
-        let mut file = std::io::BufReader::new(std::fs::File::open(&self.part).map_err(reread)?);
+        let mut file: Box<dyn BufRead> = if input::is_standard_input(&self.part) {
+            Box::new(input::standard_input().map_err(reread)?)
+        } else {
+            Box::new(std::io::BufReader::new(std::fs::File::open(&self.part).map_err(reread)?))
+        };
         let mut text = Vec::new();
         for line in 1..=last {
             text.clear();
@@ -31,7 +38,13 @@ impl Job {
     }
 
     /// Everything that the page shows.
-    pub(super) fn report(&self, axes: usize, summary: &Summary, runs: Vec<ReportedRun>) -> Report {
+    pub(super) fn report(
+        &self,
+        axes: usize,
+        summary: &Summary,
+        runs: Vec<ReportedRun>,
+        unidentified: &[NothingIdentified],
+    ) -> Report {
         let value = |name: &str, value: String| (name.to_owned(), value);
         let mut settings = vec![
             value("Compared against", self.against.name.to_owned()),
@@ -58,9 +71,26 @@ impl Job {
             part: self.part_name(),
             machine: describe(&self.machine),
             settings,
+            assumed: self.assumptions(unidentified),
             tolerance_um: self.tolerance_um,
             runs,
         }
+    }
+
+    /// In what the controller that is asked for is worse than open loop; nothing where it is compared with something else.
+    pub(super) fn harm(&self, report: &Report) -> Vec<Harm> {
+        let of = |name: &str| report.runs.iter().map(|run| &run.summary).find(|run| run.controller == name);
+        match (of(BASELINE), of(self.controller.name)) {
+            (Some(before), Some(after)) if before.outcome == Outcome::Completed => harm(before, after),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether the command of the controller that is asked for may be used: it was cut to its end, and is not worse than open loop.
+    pub(super) fn is_of_use(&self, report: &Report) -> bool {
+        let mut runs = report.runs.iter().map(|run| &run.summary);
+        let cut = runs.any(|run| run.controller == self.controller.name && run.outcome == Outcome::Completed);
+        cut && self.harm(report).is_empty()
     }
 
     /// Whether the run that was asked for is one to be content with.

@@ -18,6 +18,9 @@ pub enum LogError {
         path: PathBuf,
         /// Why.
         source: io::Error,
+        /// Remedy.
+        #[help]
+        hint: Option<&'static str>,
     },
     /// The file is none of the formats, or not a whole one.
     #[error("{}{}: {message}", path.display(), line_of(*line))]
@@ -108,7 +111,12 @@ pub enum RefusalReason {
 impl LogError {
     /// A file that the system does not hand out.
     pub(super) fn unreadable(path: &Path, source: io::Error) -> Self {
-        Self::Unreadable { path: path.to_owned(), source }
+        let hint = match source.kind() {
+            io::ErrorKind::IsADirectory => Some("name a file in it"),
+            io::ErrorKind::NotFound => Some("name the file that the recorder wrote, with its folder"),
+            _ => None,
+        };
+        Self::Unreadable { path: path.to_owned(), source, hint }
     }
 
     /// A file that is not what it should be.

@@ -81,8 +81,20 @@ pub enum LogFinding {
         /// The axis.
         axis: String,
     },
-    /// An axis that stands still, which is left out.
+    /// An axis whose command stands still: nothing can be identified of it.
     StandsStill {
+        /// The axis.
+        axis: String,
+    },
+    /// An axis without a name that is taken for one of the program.
+    TakenFor {
+        /// What the log calls it.
+        axis: String,
+        /// The axis of the program.
+        program: String,
+    },
+    /// An axis that stands still in the program and that the log does not have.
+    TakenAsStill {
         /// The axis.
         axis: String,
     },
@@ -216,7 +228,7 @@ impl fmt::Display for LogFinding {
             Self::Joined { path, from_s } => write!(f, "{path} is joined at {} s of the time", to_four_digits(*from_s)),
             Self::CutOff { line } => write!(f, "line {line}, the last, is cut off and left out"),
             Self::Rotary { axis } => write!(f, "axis {axis} is rotary, in degrees, and left out"),
-            Self::StandsStill { axis } => write!(f, "axis {axis} stands still and is left out"),
+            Self::StandsStill { axis } => write!(f, "axis {axis} stands still: nothing can be identified of it"),
             Self::Endless { axis, range_mm } => {
                 let range_mm = to_four_digits(*range_mm);
                 write!(
@@ -272,6 +284,15 @@ impl LogFinding {
                 let [at, size] = [frequency_hz, amplitude_um].map(|value| to_four_digits(*value));
                 write!(f, "the following error of {axis} swings at {at} Hz with an amplitude of {size} um")
             }
+            Self::TakenFor { axis, program } => write!(
+                f,
+                "{axis} of the log is taken for {program} of the program, as the columns have no names and as many axes move in both"
+            ),
+            Self::TakenAsStill { axis } => write!(
+                f,
+                "axis {axis} stands still in the program, and the log has no record of it: it is taken to be where it was; hint: --columns \
+                 {axis}.cmd=COLUMN,{axis}.act=COLUMN says which columns are its"
+            ),
             // All others are told above.
             _ => Ok(()),
         }

@@ -60,6 +60,8 @@ impl Log {
                 axis.append(other);
             }
         }
+        // What stands still in one may move in another.
+        self.still.clear();
         self.findings.push(LogFinding::Joined { path, from_s });
         self.findings.extend(log.findings);
     }
@@ -106,6 +108,7 @@ mod tests {
             stretches: vec![0..2, 2..3],
             time_s: vec![5.0, 5.0 + sample_time_s, 6.0],
             axes: vec![axis],
+            still: vec![],
             findings: vec![],
         };
         ("a.csv".into(), log)

@@ -21,8 +21,11 @@ const MAX_SAMPLE_TIME_S: f64 = 0.05;
 const MIN_RECORD_S: f64 = 1.0;
 /// Fewest samples: ten for each number that describes an axis.
 const MIN_SAMPLES: usize = 200;
-/// Largest range of an axis that stands still, mm.
+/// Largest range of a position that stands still, mm.
 const STILL_MM: f64 = 1e-6;
+/// Largest range of the actual position of an axis that is held where its command stands still, mm: more is no noise and no load, but
+/// another axis.
+const HELD_MM: f64 = 0.1;
 /// Longest way of a linear axis, mm.
 const LONGEST_MM: f64 = 30e3;
 /// Samples by which a copy of the command can be late in a control that feeds it back to itself.
@@ -49,21 +52,22 @@ const COARSE_PART: f64 = 0.1;
 /// Part of the time between samples by which an uneven clock may vary.
 const UNEVEN_PART: f64 = 0.25;
 
-/// The axes that are left, screened; findings are added.
+/// The axes that move, screened, and those whose command stands still; findings are added.
 pub(super) fn fit(
     path: &Path,
     axes: Vec<LogAxis>,
     clock: &Clock,
     findings: &mut Vec<LogFinding>,
-) -> Result<Vec<LogAxis>, LogError> {
+) -> Result<[Vec<LogAxis>; 2], LogError> {
     let mut refusals = Vec::new();
     refusals.extend(too_short(clock));
     refusals.extend(too_slow(clock));
-    let mut moving = Vec::new();
+    let (mut moving, mut still) = (Vec::new(), Vec::new());
     for axis in axes {
         let [command, actual] = [&axis.command_mm, &axis.actual_mm].map(|values| range(values));
-        if command <= STILL_MM && actual <= STILL_MM {
+        if command <= STILL_MM && actual <= HELD_MM {
             findings.push(LogFinding::StandsStill { axis: axis.name.clone() });
+            still.push(axis);
         } else if command > LONGEST_MM {
             findings.push(LogFinding::Endless { axis: axis.name, range_mm: command });
         } else {
@@ -92,7 +96,7 @@ pub(super) fn fit(
         tell(axis, clock, findings);
         axis.verdict = verdict(axis, clock);
     }
-    Ok(moving)
+    Ok([moving, still])
 }
 
 fn range(values: &[f64]) -> f64 {

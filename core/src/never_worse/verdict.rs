@@ -4,12 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use super::cut::SweepRow;
 
-/// The RMS may be larger by so much, um: below what any encoder resolves.
-pub const RMS_UM: f64 = 0.05;
-/// The largest error may be larger by so much, um.
-pub const MAX_UM: f64 = 1.0;
-/// The uncut path may be larger by so much, um.
-pub const UNCUT_UM: f64 = 1.0;
+pub use crate::report::harm::{MAX_UM, RMS_UM, UNCUT_UM};
 
 /// A way of being worse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

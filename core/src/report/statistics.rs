@@ -3,6 +3,8 @@
 //! - RMS contour error: sqrt(sum of e² / n) over the n rows that cut.
 //! - Largest contour error: the largest |e| over the rows that cut.
 //! - Largest deviation of the command: the largest |corrected - path| over all rows.
+//! - Largest acceleration of the command: the largest |c(k) - 2 c(k-1) + c(k-2)| / dt^2 over rows that follow each other evenly;
+//!   across a rest of which a part was left out there is none.
 //! - Peak torque: the largest |torque| of each axis over all rows.
 //! - Cutting length and time: what arc length and time advance by while rows cut.
 //!
@@ -15,6 +17,9 @@ use super::summary::{RunFacts, RunSummary};
 use super::worst::WorstFinder;
 use crate::trace::{Row, Sink};
 
+/// Periods that differ by less are the same: times are rounded.
+const SAME_PERIOD: f64 = 1e-3;
+
 /// Streaming statistics of a run.
 #[derive(Debug, Clone)]
 pub struct Statistics {
@@ -23,6 +28,9 @@ pub struct Statistics {
     square_sum_mm2: f64,
     max_mm: f64,
     max_deviation_mm: f64,
+    max_command_accel_mm_s2: f64,
+    /// Times and commands of the last two rows, the last first.
+    commands: [Option<(f64, [f64; 3])>; 2],
     peak_torque_nm: [f64; 3],
     cutting_length_mm: f64,
     cutting_time_s: f64,
@@ -46,6 +54,8 @@ impl Statistics {
             square_sum_mm2: 0.0,
             max_mm: 0.0,
             max_deviation_mm: 0.0,
+            max_command_accel_mm_s2: 0.0,
+            commands: [None; 2],
             peak_torque_nm: [0.0; 3],
             cutting_length_mm: 0.0,
             cutting_time_s: 0.0,
@@ -73,6 +83,7 @@ impl Statistics {
             joint_max_um: facts.run.joint_error.map(|joints| joints.max_mm * 1e3),
             uncut_um: facts.run.uncut_mm * 1e3,
             max_deviation_um: self.max_deviation_mm * 1e3,
+            max_command_accel_mm_s2: self.max_command_accel_mm_s2,
             peak_torque_nm: self.peak_torque_nm,
             cutting_length_mm: self.cutting_length_mm,
             cutting_time_s: self.cutting_time_s,
@@ -106,6 +117,20 @@ impl Statistics {
         self.max_mm * 1e3
     }
 
+    /// Takes the command of a row.
+    fn command(&mut self, t_s: f64, command_mm: [f64; 3]) {
+        let [last, before] = self.commands;
+        self.commands = [Some((t_s, command_mm)), last];
+        let (Some((last_s, last_mm)), Some((before_s, before_mm))) = (last, before) else { return };
+        let (dt_s, dt_before_s) = (t_s - last_s, last_s - before_s);
+        if (dt_s - dt_before_s).abs() > SAME_PERIOD * dt_s {
+            return;
+        }
+        let second: [f64; 3] = std::array::from_fn(|k| command_mm[k] - 2.0 * last_mm[k] + before_mm[k]);
+        let accel_mm_s2 = second[0].hypot(second[1]).hypot(second[2]) / (dt_s * dt_s);
+        self.max_command_accel_mm_s2 = self.max_command_accel_mm_s2.max(accel_mm_s2);
+    }
+
     fn cut(&mut self, row: &Row) {
         let error_mm = row.contour_error_mm;
         self.cutting_rows += 1;
@@ -134,6 +159,7 @@ impl Sink for Statistics {
         let (c, p) = (row.cmd_mm, row.path_mm);
         let deviation_mm = (c[0] - p[0]).hypot(c[1] - p[1]).hypot(c[2] - p[2]);
         self.max_deviation_mm = self.max_deviation_mm.max(deviation_mm);
+        self.command(row.t_s, c);
         if row.cutting {
             self.cut(row);
         }
@@ -161,6 +187,25 @@ mod tests {
         let statistics = statistics_of(&sine);
         assert!((statistics.rms_um() - 10.0 / 2f64.sqrt()).abs() < 1e-9);
         assert!((statistics.max_um() - 10.0).abs() < 1e-12);
+    }
+
+    /// A command along x^2 + y^2 = r^2 has v^2 / r, a jump over a rest has none.
+    #[test]
+    fn the_acceleration_of_the_command_is_that_of_its_curve() {
+        let (radius_mm, speed_mm_s) = (10.0, 50.0);
+        let at = |t_s: f64| {
+            let angle: f64 = speed_mm_s / radius_mm * t_s;
+            [radius_mm * angle.cos(), radius_mm * angle.sin(), 0.0]
+        };
+        let mut statistics = Statistics::new();
+        for t_s in (0..100).map(|k| f64::from(k) * 1e-3) {
+            statistics.row(&Row { cmd_mm: at(t_s), path_mm: at(t_s), ..row(t_s) }).unwrap();
+        }
+        statistics.row(&Row { cmd_mm: [900.0, 0.0, 0.0], ..row(5.0) }).unwrap();
+        statistics.row(&Row { cmd_mm: [900.0, 0.0, 0.0], ..row(5.001) }).unwrap();
+        let facts = RunFacts { axes: 2, ..RunFacts::default() };
+        let accel_mm_s2 = statistics.summary(facts, |_| String::new()).max_command_accel_mm_s2;
+        assert!((accel_mm_s2 / (speed_mm_s * speed_mm_s / radius_mm) - 1.0).abs() < 1e-4, "{accel_mm_s2}");
     }
 
     #[test]

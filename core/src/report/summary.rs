@@ -58,6 +58,8 @@ pub struct RunSummary {
     pub uncut_um: f64,
     /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.
     pub max_deviation_um: f64,
+    /// Largest acceleration of the command from one servo period to the next, mm/s2.
+    pub max_command_accel_mm_s2: f64,
     /// Largest torque of each axis, N m.
     pub peak_torque_nm: [f64; 3],
     /// Arc length that was cut, mm.

@@ -12,6 +12,7 @@ pub(crate) fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Pa
     let job = Job {
         part: part.to_owned(),
         machine: Machine::read(machine).unwrap(),
+        machine_file: Some(machine.to_owned()),
         controller: entry,
         against: entry,
         feed_mm_s: None,

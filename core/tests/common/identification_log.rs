@@ -75,6 +75,7 @@ pub(crate) fn logged(machine: &Machine, commands: [Vec<f64>; 2], step_um: f64, s
         stretches: std::iter::once(0..samples).collect(),
         time_s: (0..samples).map(|k| k as f64 * servo_s).collect(),
         axes: axes.collect(),
+        still: vec![],
         findings: vec![],
     }
 }
