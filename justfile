@@ -109,6 +109,10 @@ tables: paper compare held-out-table imperfections
 mistakes:
     FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright-cli --test golden_gcode_mistakes
 
+# Write the help of all commands in docs/command-line.md anew.
+help:
+    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright-cli --test golden_help
+
 # The reader beside LinuxCNC on random programs (Debian: linuxcnc-uspace): about a quarter of an hour for 20,000.
 gcode-compare programs="20000" first="1":
     cargo run --release --quiet -p feedwright --example gcode_compare -- {{ programs }} {{ first }}

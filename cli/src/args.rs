@@ -1,6 +1,7 @@
 //! The command line: a file of options for each command.
 
 pub(crate) mod reader;
+mod feed;
 pub(crate) mod sweep;
 pub(crate) mod run;
 pub(crate) mod correct;
@@ -14,65 +15,152 @@ pub(crate) mod never_worse;
 pub(crate) mod held_out;
 pub(crate) mod check;
 pub(crate) mod canon;
+pub(crate) mod export_contour;
+pub(crate) mod completions;
+pub(crate) mod man;
 
-use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+use std::io::{self, IsTerminal};
+
+use clap::{ColorChoice, Command, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
 use block::BlockArgs;
 use canon::CanonArgs;
 use check::CheckArgs;
 use compare::CompareArgs;
+use completions::CompletionsArgs;
 use correct::CorrectArgs;
 use excite::ExciteArgs;
+use export_contour::ExportContourArgs;
 use held_out::HeldOutArgs;
 use identify::IdentifyArgs;
+use man::ManArgs;
 use never_worse::NeverWorseArgs;
 use paper::PaperArgs;
 use plan::PlanArgs;
 use run::RunArgs;
 
-/// Predict the contour error of a CNC program on a machine, and correct it.
+use crate::terminal::{ColorWhen, columns, is_dumb, set_color};
+
+/// Predict the contour error of a CNC program on a machine, and correct it
+///
+/// feedwright reads a G-code program and a machine file, simulates the cut servo period by servo period, and shows how far the tool
+/// leaves the programmed path, and where. Then it corrects the command.
 #[derive(Debug, Parser)]
-#[command(version, max_term_width = 110)]
+#[command(name = "feedwright", version, propagate_version = true, max_term_width = MOST_COLUMNS, after_long_help = AFTER)]
 pub(crate) struct Cli {
-    /// Show no progress, and not as what a program is read.
-    #[arg(short, long, global = true)]
+    /// Print results and errors only: no progress, no remarks.
+    #[arg(short, long, global = true, help_heading = EVERYWHERE)]
     pub(crate) quiet: bool,
+    /// When messages are coloured.
+    ///
+    /// auto colours on a terminal, unless NO_COLOR is set or TERM is dumb.
+    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE)]
+    pub(crate) color: ColorWhen,
     #[command(subcommand)]
     pub(crate) command: CommandArgs,
 }
 
+const EVERYWHERE: &str = "Options of every command";
+
+/// Longer lines are hard to read.
+const MOST_COLUMNS: usize = 100;
+
+const AFTER: &str = "\
+Files: wherever a file is read, - is the standard input, and wherever one is written, - is the standard output; tables and remarks go to \
+the standard error then. ./- is a file of that name. A file is written when everything has gone well, and as a whole.
+
+Exit codes: 0 done, and within tolerance; 1 out of tolerance, worse than without a correction, or mistakes in a file that was checked; \
+2 an error, nothing was written; 130 interrupted.
+
+Environment: FEEDWRIGHT_CACHE is the folder of what is kept between runs, empty for none; NO_COLOR and TERM=dumb turn colours off, \
+TERM=dumb progress too; COLUMNS is the width of tables and messages where it is not that of the terminal.
+
+First steps:
+  feedwright export-contour star --out star.ngc
+  feedwright run star.ngc
+cut a part on a simulated machine, and star.report.html shows how it went. `feedwright COMMAND --help` has examples of each command.";
+
 #[derive(Debug, Subcommand)]
 pub(crate) enum CommandArgs {
-    /// Cut a part on a simulated machine, open loop and with a controller, and write the report.
     Run(Box<RunArgs>),
-    /// Write a corrected program for a control that gets no feedback from us, and tell what it comes to as that control cuts it.
     Correct(CorrectArgs),
-    /// Tell the cycle time of a program on a machine: by tool, by kind of motion, and what binds it.
     Plan(PlanArgs),
-    /// Identify a machine from its LOG, and write its machine file; without a LOG, identify a simulated machine and write the
-    /// model that a controller of `run` uses, for `run --model`.
-    Identify(IdentifyArgs),
-    /// Write a G-code program that shows how the axes of a machine behave: run it, record a log, identify the machine from it.
-    Excite(ExciteArgs),
-    /// Write what a component in a servo thread reads: a model, or a machine with exactly the numbers of its file, as a block of bytes.
-    Block(BlockArgs),
-    /// Run the experiments of Lee, Cho and Jeon (2005), section 4, and draw Figures 7 to 10.
-    Paper(PaperArgs),
-    /// Compare all controllers on contours and machines, in one table.
-    Compare(CompareArgs),
-    /// Cut programs on many machines, open loop and corrected, and list where the correction did harm.
-    NeverWorse(NeverWorseArgs),
-    /// The same with random programs on random machines, and the smallest case of what fails.
-    HeldOut(HeldOutArgs),
-    /// Report all mistakes of G-code programs, machine files and model files; of a folder, of all programs in it.
     Check(CheckArgs),
-    /// Print the canonical motions of a program, one JSON object a line, in mm and s.
-    Canon(CanonArgs),
-    /// List the built-in machines.
+    Identify(IdentifyArgs),
+    Excite(ExciteArgs),
+    /// List the built-in machines
     Machines,
-    /// List the controllers; with a name, all of one and of its parameters.
+    /// List the controllers, or the parameters of one
     Controllers {
         /// Its name.
         name: Option<String>,
     },
+    ExportContour(ExportContourArgs),
+    Canon(CanonArgs),
+    Block(BlockArgs),
+    Paper(PaperArgs),
+    Compare(CompareArgs),
+    NeverWorse(NeverWorseArgs),
+    HeldOut(HeldOutArgs),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
+}
+
+impl CommandArgs {
+    /// Whether it writes files, which an interrupt must not leave half-written.
+    pub(crate) const fn writes_files(&self) -> bool {
+        !matches!(self, Self::Check(_) | Self::Canon(_) | Self::Machines | Self::Controllers { .. })
+    }
+}
+
+impl Cli {
+    /// Reads the command line; help, version and mistakes of it end the process.
+    pub(crate) fn from_command_line() -> Self {
+        let color = color_said(std::env::args_os());
+        set_color(color);
+        let matches = command(color).get_matches();
+        Self::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+    }
+}
+
+/// The command with its help as the terminal shows it.
+fn command(color: ColorWhen) -> Command {
+    let color = match color {
+        ColorWhen::Always => ColorChoice::Always,
+        ColorWhen::Never => ColorChoice::Never,
+        ColorWhen::Auto if is_dumb() => ColorChoice::Never,
+        ColorWhen::Auto => ColorChoice::Auto,
+    };
+    let command = Cli::command().color(color);
+    if io::stdout().is_terminal() { command } else { command.term_width(columns().min(MOST_COLUMNS)) }
+}
+
+/// What `--color` says, before the command line is read: its mistakes are coloured, too.
+fn color_said(arguments: impl Iterator<Item = OsString>) -> ColorWhen {
+    let arguments: Vec<String> = arguments.map(|argument| argument.to_string_lossy().into_owned()).collect();
+    let of_option = |(at, argument): (usize, &String)| match argument.as_str() {
+        "--color" => arguments.get(at + 1).cloned(),
+        argument => argument.strip_prefix("--color=").map(str::to_owned),
+    };
+    let said = arguments.iter().take_while(|argument| *argument != "--").enumerate().find_map(of_option);
+    said.and_then(|said| ColorWhen::from_str(&said, false).ok()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_holds_together() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn color_is_known_before_the_rest_is_read() {
+        let said = |words: &str| color_said(words.split(' ').map(OsString::from));
+        assert_eq!(said("feedwright run --color always x"), ColorWhen::Always);
+        assert_eq!(said("feedwright --color=never"), ColorWhen::Never);
+        assert_eq!([said("feedwright -- --color=never"), said("feedwright --color pink")], [ColorWhen::Auto; 2]);
+    }
 }

@@ -1,9 +1,11 @@
 //! Errors and warnings on stderr, and the exit codes that go with them.
 
-use std::io::{self, IsTerminal};
+use std::io;
 use std::process::ExitCode;
 
-use miette::{GraphicalReportHandler, GraphicalTheme, Report, Result, miette};
+use miette::{GraphicalReportHandler, GraphicalTheme, Report, Result, ThemeCharacters, ThemeStyles, miette};
+
+use crate::terminal::{is_stderr_colored, shows_unicode, text_columns, wrapped};
 
 /// The result is out of tolerance.
 pub(crate) const OUT_OF_TOLERANCE: u8 = 1;
@@ -13,8 +15,6 @@ pub(crate) const MISTAKES: u8 = 1;
 pub(crate) const ERROR: u8 = 2;
 /// As shells have it for SIGINT.
 pub(crate) const INTERRUPTED: u8 = 130;
-/// Width of messages where there is no terminal to ask.
-const WIDTH: usize = 120;
 
 /// Shows an error.
 pub(crate) fn fail(report: &Report) -> ExitCode {
@@ -38,6 +38,11 @@ pub(crate) fn printed(result: io::Result<()>, code: ExitCode) -> Result<ExitCode
     }
 }
 
+/// Tells something that is no warning.
+pub(crate) fn remark(text: &str) {
+    eprintln!("{}", wrapped(text, 2));
+}
+
 /// Shows a warning.
 pub(crate) fn warn(report: Report) {
     show(&report);
@@ -48,11 +53,15 @@ pub(crate) fn tell(report: &Report) {
     show(report);
 }
 
-/// Plain text where stderr is no terminal or `NO_COLOR` is set. Causes that the message tells already are not told twice.
+/// Plain text where stderr shows no colours, ASCII where it shows no more. Causes that the message tells already are not told twice.
 fn show(report: &Report) {
-    let plain = !io::stderr().is_terminal() || std::env::var_os("NO_COLOR").is_some_and(|v| !v.is_empty());
-    let theme = if plain { GraphicalTheme::unicode_nocolor() } else { GraphicalTheme::unicode() };
-    let mut handler = GraphicalReportHandler::new_themed(theme).with_width(WIDTH).with_links(false);
+    let characters = if shows_unicode() { ThemeCharacters::unicode() } else { ThemeCharacters::ascii() };
+    let styles = if is_stderr_colored() { ThemeStyles::ansi() } else { ThemeStyles::none() };
+    let theme = GraphicalTheme { characters, styles };
+    let mut handler = GraphicalReportHandler::new_themed(theme)
+        .with_width(text_columns())
+        .with_links(false)
+        .with_word_splitter(textwrap::WordSplitter::NoHyphenation);
     let message = report.to_string();
     if report.chain().skip(1).all(|cause| message.contains(&cause.to_string())) {
         handler = handler.without_cause_chain();

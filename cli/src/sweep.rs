@@ -1,7 +1,7 @@
 //! What the commands share that compare a controller with open loop on many cuts: the journal, the bar, the table.
 
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -16,13 +16,17 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use crate::args::sweep::SweepArgs;
 use crate::console::Console;
 use crate::controllers::{find, settings};
-use crate::message::OUT_OF_TOLERANCE;
+use crate::message::{OUT_OF_TOLERANCE, remark};
+use crate::streams::tables;
+use crate::table::{ConsoleTable, TableColumn};
+use crate::terminal::wrapped;
 
 /// A sweep that is about to begin: everything that can be refused has been.
 pub(crate) struct Sweep {
     pub(crate) options: SweepOptions,
     journal: Journal<SweepRow>,
     json: Option<OutputFile>,
+    json_to: Option<PathBuf>,
 }
 
 impl Sweep {
@@ -35,7 +39,11 @@ impl Sweep {
         let options = SweepOptions { controller, set, seed: args.seed, threads };
         let mut files = OutputFiles::new(inputs.iter().copied());
         let json = args.json.as_ref().map(|path| files.start(path)).transpose()?;
-        Ok(Self { options, journal: journal(args.journal.as_deref())?, json })
+        let journal = journal(args.journal.as_deref())?;
+        if journal.damaged() > 0 {
+            remark(&format!("lines of the journal that are damaged, and cut anew: {}", journal.damaged()));
+        }
+        Ok(Self { options, journal, json, json_to: args.json.clone() })
     }
 
     /// Cuts all jobs and writes what was asked for.
@@ -52,7 +60,7 @@ impl Sweep {
             file.write_all(b"\n").into_diagnostic()?;
             OutputFile::commit_all(vec![file], &bar)?;
         }
-        Ok(Done { summary, known, threads, took_s })
+        Ok(Done { summary, known, threads, took_s, json: self.json_to })
     }
 }
 
@@ -74,6 +82,7 @@ pub(crate) struct Done {
     known: usize,
     threads: usize,
     took_s: f64,
+    json: Option<PathBuf>,
 }
 
 impl Done {
@@ -83,22 +92,27 @@ impl Done {
     }
 
     /// Failures, then totals.
-    pub(crate) fn print(&self, out: &mut impl Write) -> io::Result<()> {
+    pub(crate) fn print(&self) -> io::Result<()> {
+        let out = &mut *tables([self.json.as_deref()]);
         let SweepSummary { judged, not_judged, worse, by_fault, rows, .. } = &self.summary;
         let failures: Vec<&Judged> = rows.iter().filter(|judged| !judged.faults.is_empty()).collect();
-        if !failures.is_empty() {
-            writeln!(
-                out,
-                "{:<44} {:<16} {:>19} {:>19}  worse in",
-                "RMS / max um", "machine", "open loop", "corrected"
-            )?;
-        }
-        for Judged { row, faults, .. } in failures {
+        let mut table = ConsoleTable::new(vec![
+            TableColumn::new("RMS / max um"),
+            TableColumn::new("machine"),
+            TableColumn::new("open loop"),
+            TableColumn::new("corrected"),
+            TableColumn::new("worse in"),
+        ]);
+        for Judged { row, faults, .. } in &failures {
             let names: Vec<&str> = faults.iter().map(|fault| fault.name()).collect();
-            let why = row.corrected.lost.as_ref().map_or(String::new(), |why| format!(" ({why})"));
             let [before, after] = [&row.open_loop, &row.corrected].map(figures);
-            let (program, machine) = (shortened(&row.program), &row.machine);
-            writeln!(out, "{program:<44} {machine:<16} {before:>19} {after:>19}  {}{why}", names.join(", "))?;
+            table.row(vec![row.program.clone(), row.machine.clone(), before, after, names.join(", ")]);
+            if let Some(why) = &row.corrected.lost {
+                table.remark(why.clone());
+            }
+        }
+        if !failures.is_empty() {
+            table.print(out)?;
         }
         let by_fault: Vec<String> = by_fault.iter().map(|(fault, cuts)| format!("{} {cuts}", fault.name())).collect();
         writeln!(out, "{worse} of {judged} cuts worse than open loop ({})", by_fault.join(", "))?;
@@ -108,13 +122,15 @@ impl Done {
         self.print_numbers(out)
     }
 
-    fn print_numbers(&self, out: &mut impl Write) -> io::Result<()> {
+    fn print_numbers(&self, out: &mut dyn Write) -> io::Result<()> {
         let SweepSummary { rms_ratio, rms_ratio_rigid, engaged_share, machining_s, .. } = &self.summary;
         let mut quantiles = |what: &str, ratios: &Option<Quantiles>| match ratios {
-            Some(Quantiles { cuts, median, p90, p99, largest }) => writeln!(
-                out,
-                "RMS against open loop, {what}: median {median:.3}, 90 % {p90:.3}, 99 % {p99:.3}, largest {largest:.3} ({cuts} cuts)"
-            ),
+            Some(Quantiles { cuts, median, p90, p99, largest }) => {
+                let text = format!(
+                    "RMS against open loop, {what}: median {median:.3}, 90 % {p90:.3}, 99 % {p99:.3}, largest {largest:.3} ({cuts} cuts)"
+                );
+                writeln!(out, "{}", wrapped(&text, 2))
+            }
             None => Ok(()),
         };
         quantiles("all cuts", rms_ratio)?;
@@ -138,16 +154,4 @@ impl Done {
 /// RMS and largest error, um.
 fn figures(figures: &Figures) -> String {
     format!("{:.2} / {:.1}", figures.rms_um, figures.max_um)
-}
-
-/// The end of a path that is too long for its column.
-fn shortened(path: &str) -> String {
-    /// Width of the column.
-    const WIDTH: usize = 44;
-    let letters = path.chars().count();
-    if letters <= WIDTH {
-        path.to_owned()
-    } else {
-        format!("...{}", path.chars().skip(letters + 3 - WIDTH).collect::<String>())
-    }
 }

@@ -120,16 +120,19 @@ fn a_value_out_of_its_range() {
     for (option, values, says) in [
         (
             "--feed",
-            &["0", "-5", "nan", "inf", "1e300", "1000"][..],
+            &["0mm/s", "-5mm/s", "1e300mm/s", "1e999mm/s", "1000mm/s", "99m/min"][..],
             &["--feed", "mm/s", "200", "max_feed_mm_s", "F3000"][..],
         ),
+        ("--feed", &["0", "-5", "50", "1e300"], &["--feed", "it has no unit", "mm/min is", "mm/s is"]),
+        ("--feed", &["nan", "inf", "mm/s", ""], &["--feed", "begins with no number", "50mm/s"]),
         ("--tolerance", &["0", "-5", "nan", "inf", "1e300"], &["--tolerance", "um", "above 0"]),
     ] {
         for value in values {
             refuses(&folder, &["circle.ngc", option, value], says);
         }
     }
-    refuses(&folder, &["circle.ngc", "--feed", "1e300"], &["--feed is 1e300 mm/s"]);
+    refuses(&folder, &["circle.ngc", "--feed", "1e300mm/s"], &["--feed is 1e300 mm/s"]);
+    refuses(&folder, &["circle.ngc", "--feed", "5q"], &["'q' is no unit of a feedrate", "mm/min, mm/s"]);
     for option in ["--feed", "--tolerance", "--seed"] {
         refuses(&folder, &["circle.ngc", option, "fast"], &[option, "fast"]);
     }
@@ -139,6 +142,34 @@ fn a_value_out_of_its_range() {
         folder.run(&["run", "circle.ngc", option, "two-dimensionl"]).refused(&says);
         assert_eq!(before, folder.content());
     }
+}
+
+#[test]
+fn what_commands_beside_run_are_asked_for() {
+    let folder = Folder::new();
+    let refuses = |arguments: &[&str], says: &[&str]| {
+        let before = folder.content();
+        folder.run(arguments).refused(says);
+        assert_eq!(before, folder.content(), "{arguments:?}");
+    };
+    refuses(
+        &["plan", "circle.ngc", "--tolerance", "1e-9"],
+        &["--tolerance is", "0.01 to 10000 um", "0.01 mm is --tolerance 10"],
+    );
+    refuses(
+        &["plan", "circle.ngc", "--planner", "linuxnc"],
+        &["no planner is called 'linuxnc'", "did you mean 'linuxcnc'?"],
+    );
+    refuses(&["never-worse", "circle.ngc", "--sample", "0"], &["--sample", "from 1 on"]);
+    refuses(&["held-out", "1", "0"], &["<COUNT>", "from 1 on"]);
+    for command in ["man", "paper"] {
+        refuses(
+            &[command, "--out", "circle.ngc"],
+            &["cannot make the folder circle.ngc", "a file stands in its place"],
+        );
+    }
+    refuses(&["identify", ".", "--out", "mine.toml"], &["cannot read log", "is a directory", "name a file in it"]);
+    refuses(&["run", "circle.ngc", "--out", "circle.ngc/s.csv"], &["circle.ngc is a file, not a directory"]);
 }
 
 #[test]
@@ -375,9 +406,8 @@ fn a_machine_that_diverges_is_a_result() {
             let text = run.to_string();
             assert!(!text.contains("null") && !text.contains("NaN"), "{text}");
         }
-        for file in ["t.csv", "s.csv"] {
-            assert!(!folder.text(file).contains("NaN") && !folder.text(file).contains("inf"), "{file}");
-        }
+        assert!(!folder.text("t.csv").contains("NaN") && !folder.text("t.csv").contains("inf"));
+        assert!(ran.stdout.contains("s.csv was not written") && !folder.path().join("s.csv").exists(), "{ran:?}");
         assert!(!folder.text("r.html").contains("NaN"));
     }
 }

@@ -5,7 +5,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+/// Write a model as bytes, for a component in a servo thread
+///
+/// Of a model file, or of a machine with exactly the numbers of its file.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright block mine.model.toml --out mine.fwmodel")]
 pub(crate) struct BlockArgs {
     /// Model file (.model.toml), built-in machine, or machine file (.toml).
     #[arg(value_name = "FILE.model.toml|NAME|FILE.toml")]

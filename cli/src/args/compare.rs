@@ -8,7 +8,14 @@ use feedwright::compare::{Knowledge, MAX_SEEDS, Shard};
 
 use super::reader::ReaderArgs;
 
+/// Compare all controllers on contours and machines
+///
+/// One table: errors, time, torque, and how they compare with open loop.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  feedwright compare --only workshop --html compare.html
+  feedwright compare --only circle,star,tnv40,open-loop,lqg-identified")]
 pub(crate) struct CompareArgs {
     /// Only these contours, machines and controllers; what is not named in its kind is left out.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]

@@ -7,7 +7,16 @@ use clap::Args;
 
 use super::reader::ReaderArgs;
 
+/// Write a corrected program for a control without feedback
+///
+/// The correction is computed for the control that is named with --for: its planner, its arcs, its decimals. The new program is read
+/// again, planned as that control would, cut in simulation and compared with the original before it is written.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright correct part.ngc --machine mine.toml --for linuxcnc --out corrected.ngc
+
+Exit codes: 0 done; 1 out of --tolerance, or no better than the original: nothing is written then; 2 an error.")]
 pub(crate) struct CorrectArgs {
     /// G-code program.
     pub(crate) part: PathBuf,

@@ -5,7 +5,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+/// Write a program to record a log with, for identify
+///
+/// Run it on the machine in the air, record commanded and actual positions meanwhile, and give the log to `feedwright identify`. The
+/// first lines of the program say what to check before.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright excite --machine limits.toml --travel 40 --out excite.ngc")]
 pub(crate) struct ExciteArgs {
     /// Built-in machine, or a machine file (.toml), whose limits the program keeps.
     #[arg(long, value_name = "NAME|LIMITS.toml")]

@@ -4,13 +4,20 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::sweep::SweepArgs;
+use super::sweep::{SweepArgs, at_least_one};
 
+/// The same with random programs on random machines
+///
+/// With --failures the smallest case of what fails is written.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright held-out 1 100 --failures failures")]
 pub(crate) struct HeldOutArgs {
     /// Seed of programs and machines.
     pub(crate) drawn_by: u64,
     /// Number of cuts.
+    #[arg(value_parser = at_least_one)]
     pub(crate) count: usize,
     /// Programs for each machine, which is identified once for all of them.
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..))]

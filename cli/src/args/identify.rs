@@ -5,7 +5,16 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+/// Identify a machine from its log, and write its machine file
+///
+/// The log has commanded and actual positions of the axes at the servo period. Without a log a simulated machine is identified, and
+/// the model is written that `feedwright run --model` takes.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  feedwright identify cut.csv --out mine.toml --report mine.html
+  feedwright identify today.csv --update mine.toml
+  feedwright identify --machine workshop --out workshop.model.toml")]
 pub(crate) struct IdentifyArgs {
     /// Log of commanded and actual positions of a real machine: halsampler, halscope, MATLAB v5, Sinumerik Edge, or a table of text.
     /// Several are of one machine, with the same axes.

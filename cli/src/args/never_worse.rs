@@ -6,9 +6,17 @@ use std::path::PathBuf;
 use clap::Args;
 
 use super::reader::ReaderArgs;
-use super::sweep::SweepArgs;
+use super::sweep::{SweepArgs, at_least_one};
 
+/// Find programs and machines where a correction does harm
+///
+/// Each program is cut on each machine, open loop and corrected.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright never-worse parts --sample 100 --limit-s 60
+
+Exit codes: 0 nothing is worse; 1 a cut is; 2 an error.")]
 pub(crate) struct NeverWorseArgs {
     /// G-code programs, and folders of programs.
     #[arg(required = true)]
@@ -23,7 +31,7 @@ pub(crate) struct NeverWorseArgs {
     #[arg(long, value_name = "S", default_value_t = 600.0)]
     pub(crate) limit_s: f64,
     /// Cut so many of all pairs of program and machine, drawn by the seed.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) sample: Option<usize>,
     #[command(flatten)]
     pub(crate) sweep: SweepArgs,

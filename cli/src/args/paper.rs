@@ -5,7 +5,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+/// Repeat the experiments of Lee, Cho and Jeon (2005)
+///
+/// Those of section 4, with Figures 7 to 10.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright paper --out paper")]
 pub(crate) struct PaperArgs {
     /// Folder for the figures, the page and paper.json; made where it is missing.
     #[arg(long, value_name = "DIR")]

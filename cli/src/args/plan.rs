@@ -7,7 +7,13 @@ use clap::Args;
 
 use super::reader::ReaderArgs;
 
+/// Tell the cycle time of a program, and what limits it
+///
+/// By tool, by kind of motion, and by the limit that binds: feedrate, acceleration or jerk of an axis.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright plan part.ngc --machine mine.toml --planner linuxcnc")]
 pub(crate) struct PlanArgs {
     /// G-code program.
     pub(crate) part: PathBuf,

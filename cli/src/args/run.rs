@@ -5,9 +5,22 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::feed::feed_mm_s;
 use super::reader::ReaderArgs;
 
+/// Cut a part on a simulated machine, and show its contour error
+///
+/// The program is cut twice, open loop and with a controller that corrects the command, and both are written into a report
+/// (PART.report.html, one file that any browser shows). Nothing moves: all figures are those of a simulation of the machine file.
 #[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  feedwright run part.ngc
+  feedwright run part.ngc --machine mine.toml --tolerance 10 --out setpoints.csv
+  feedwright run part.ngc --machine mine.toml --log cut.csv
+  cat part.ngc | feedwright run - --json - | jq '.runs[].max_um'
+
+Exit codes: 0 done; 1 out of --tolerance, or the correction is worse than open loop: --out is not written then; 2 an error.")]
 pub(crate) struct RunArgs {
     /// G-code program.
     pub(crate) part: PathBuf,
@@ -20,8 +33,8 @@ pub(crate) struct RunArgs {
     /// Controller to compare against.
     #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BASELINE)]
     pub(crate) against: String,
-    /// Feedrate in place of every programmed one, mm/s.
-    #[arg(long, value_name = "MM_S", allow_negative_numbers = true)]
+    /// Feedrate in place of every programmed one, with its unit, such as 3000mm/min or 50mm/s.
+    #[arg(long, value_name = "FEED", value_parser = feed_mm_s, allow_hyphen_values = true)]
     pub(crate) feed: Option<f64>,
     /// Set a parameter of the controller, such as knots=10; of the other as NAME.knots=10. May be given several times;
     /// `feedwright controllers NAME` lists them.

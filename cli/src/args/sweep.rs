@@ -4,6 +4,14 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+/// A number of cuts.
+pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count) if count > 0 => Ok(count),
+        _ => Err("it must be a whole number from 1 on".to_owned()),
+    }
+}
+
 /// How a controller is compared with open loop.
 #[derive(Debug, Args)]
 pub(crate) struct SweepArgs {

@@ -13,6 +13,7 @@ use miette::{Result, miette};
 use crate::args::block::BlockArgs;
 use crate::console::Console;
 use crate::message::printed;
+use crate::streams::{tables, tell_written};
 
 pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
     let from = Path::new(&args.file);
@@ -37,7 +38,8 @@ pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
     let mut file = OutputFiles::new(input).start(&args.out)?;
     file.write_all(&bytes).map_err(|error| OutputError::from_io(error, &args.out))?;
     OutputFile::commit_all(vec![file], &console.bar(0))?;
-    let mut out = std::io::stdout().lock();
-    let told = writeln!(out, "{what}, {axes} axes: {} bytes in {}", bytes.len(), args.out.display());
-    printed(told, ExitCode::SUCCESS)
+    let place = Some(args.out.as_path());
+    let mut out = tables([place]);
+    let told = writeln!(out, "{what}, {axes} axes: {} bytes", bytes.len());
+    printed(told.and_then(|()| tell_written(&mut *out, [place])), ExitCode::SUCCESS)
 }

@@ -5,20 +5,23 @@ mod lines;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use feedwright::gcode::Reader;
+use feedwright::gcode::{Reader, input};
 use miette::Result;
 use rayon::prelude::*;
 
 use crate::args::canon::CanonArgs;
 use crate::console::Console;
 use crate::message::{fail, printed};
+use crate::streams::check_inputs;
 use lines::Lines;
 
 pub(crate) fn run(args: &CanonArgs, console: &Console) -> Result<ExitCode> {
+    let tools = args.reader.tool_table.as_deref();
+    check_inputs(console, [("the program", Some(args.file.as_path())), ("--tool-table", tools)])?;
     let reader = Reader::open(&args.file, args.reader.settings()?)?;
     if !console.is_quiet() {
         let (dialect, reason) = reader.dialect();
-        eprintln!("{}: read as {dialect}: {reason}", args.file.display());
+        eprintln!("{}: read as {dialect}: {reason}", input::name(&args.file));
     }
     let mut code = ExitCode::SUCCESS;
     let result = print(reader, &mut code);

@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
-use feedwright::gcode::{self, CheckError, Settings};
+use feedwright::gcode::{self, CheckError, Settings, input};
 use feedwright::machine::{Machine, MachineError};
 use feedwright::model::{Model, name};
 use feedwright::toml_file::{FileError, Problem};
@@ -24,6 +24,7 @@ use crate::files_to_check::FilesToCheck;
 use crate::findings::{Finding, sarif};
 use crate::message::{ERROR, MISTAKES, printed, tell, warn};
 use crate::progress::Bar;
+use crate::streams::check_inputs;
 
 /// What came of one file, best first: the worst of all files is the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -72,6 +73,8 @@ struct CheckOutput {
 }
 
 pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<ExitCode> {
+    let files = args.files.iter().map(|file| ("a file", Some(file.as_path())));
+    check_inputs(console, files.chain([("--tool-table", args.reader.tool_table.as_deref())]))?;
     let settings = args.reader.settings()?;
     let found = FilesToCheck::find(&args.files);
     let bar = console.bar_unless(args.format != Format::Text, found.files.len() as u64);
@@ -146,14 +149,14 @@ impl CheckOutput {
                 for report in checked.reports {
                     if checked.line.is_some() { warn(report) } else { tell(&report) }
                 }
-                checked.line.iter().try_for_each(|line| writeln!(out, "{}: {line}", file.display()))?;
+                checked.line.iter().try_for_each(|line| writeln!(out, "{}: {line}", input::name(file)))?;
             }
             Format::Github => {
                 checked.findings.iter().try_for_each(|finding| writeln!(out, "{}", finding.github()))?;
             }
             Format::Sarif => self.findings.extend(checked.findings),
             Format::Json => self.files.push(json!({
-                "file": file.display().to_string(),
+                "file": input::name(file),
                 "outcome": checked.outcome.name(),
                 "amounts_to": checked.line,
                 "findings": checked.findings.iter().map(Finding::json).collect::<Vec<_>>(),
@@ -176,7 +179,7 @@ fn check_file(file: &Path, settings: &Settings) -> CheckedFile {
 
 /// What is told where a file as a whole is wrong.
 fn refused(file: &Path, outcome: FileOutcome, report: Report) -> CheckedFile {
-    let findings = vec![Finding::of_file(&file.display().to_string(), &report)];
+    let findings = vec![Finding::of_file(&input::name(file), &report)];
     CheckedFile { outcome, line: None, reports: vec![report], findings }
 }
 

@@ -20,7 +20,7 @@ use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use crate::args::compare::CompareArgs;
 use crate::console::Console;
-use crate::message::printed;
+use crate::message::{printed, remark};
 
 pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
     let options = options::options(args)?;
@@ -40,6 +40,9 @@ pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
         Some(path) => rows_file::open(path, &stamp)?,
         None => kept(&stamp),
     };
+    if journal.damaged() > 0 {
+        remark(&format!("lines of rows that are damaged, and cut anew: {}", journal.damaged()));
+    }
     let known = journal.rows().filter(|finished| matches!(finished, Finished::Row(_))).count();
     if known > 0 {
         eprintln!("going on where an earlier run was interrupted; rows that are there: {known}");

@@ -14,6 +14,7 @@ use serde_json::json;
 use crate::args::correct::CorrectArgs;
 use crate::console::Console;
 use crate::message::{OUT_OF_TOLERANCE, printed, warn};
+use crate::streams::{check_inputs, tables, tell_written};
 
 /// Largest tolerance that is no slip of the unit, um.
 const MAX_TOLERANCE_UM: f64 = 1e6;
@@ -21,6 +22,12 @@ const MAX_TOLERANCE_UM: f64 = 1e6;
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let target = target(&args.target)?;
     check_tolerance(args.tolerance)?;
+    let machine_path = Path::new(&args.machine);
+    let tools = args.reader.tool_table.as_deref();
+    check_inputs(
+        console,
+        [("the program", Some(args.part.as_path())), ("--machine", Some(machine_path)), ("--tool-table", tools)],
+    )?;
     let machine = Machine::load(&args.machine)?;
     let machine_file = Some(Path::new(&args.machine)).filter(|path| is_path(path));
     let tool_table = args.reader.tool_table.as_deref();
@@ -97,7 +104,7 @@ fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, withi
 }
 
 fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = tables([args.out.as_deref(), args.json.as_deref()]);
     let CorrectOutcome { original, corrected, stretches: [all, changed], rounds, .. } = outcome;
     writeln!(out, "{:<18} {:>9} {:>10} {:>10} {:>10} {:>8}", "", "time s", "RMS um", "max um", "uncut um", "blocks")?;
     for (name, figures) in [("original", original), ("as exported", corrected)] {
@@ -116,9 +123,6 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
         let verdict = if within { "within" } else { "out of" };
         writeln!(out, "{verdict} tolerance: max {:.2} um, allowed {tolerance_um} um", corrected.max_um)?;
     }
-    let written = args.out.as_ref().filter(|_| outcome.program.is_some());
-    for path in [written, args.json.as_ref()].into_iter().flatten() {
-        writeln!(out, "wrote {}", path.display())?;
-    }
-    Ok(())
+    let written = args.out.as_deref().filter(|_| outcome.program.is_some());
+    tell_written(&mut *out, [written, args.json.as_deref()])
 }

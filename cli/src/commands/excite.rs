@@ -12,6 +12,8 @@ use miette::Result;
 use crate::args::excite::ExciteArgs;
 use crate::console::Console;
 use crate::message::printed;
+use crate::streams::{tables, tell_written};
+use crate::terminal::wrapped;
 
 pub(crate) fn run(args: &ExciteArgs, console: &Console) -> Result<ExitCode> {
     let machine = Machine::load(&args.machine)?;
@@ -21,13 +23,13 @@ pub(crate) fn run(args: &ExciteArgs, console: &Console) -> Result<ExitCode> {
     file.write_all(program.text.as_bytes()).map_err(|error| OutputError::from_io(error, &args.out))?;
     OutputFile::commit_all(vec![file], &console.bar(0))?;
     let (axes, takes_s, feed_mm_s) = (machine.axis_count(), program.takes_s, program.max_feed_mm_s);
-    let mut out = std::io::stdout().lock();
-    let told = writeln!(
-        out,
-        "{axes} axes, about {takes_s:.0} s, at most {feed_mm_s:.1} mm/s, within {} mm on each side of where the machine stands\n\
-         wrote {}; its first lines say what to check before, and how to record",
-        0.5 * args.travel,
-        args.out.display()
+    let place = Some(args.out.as_path());
+    let text = format!(
+        "{axes} axes, about {takes_s:.0} s, at most {feed_mm_s:.1} mm/s, within {} mm on each side of where the machine stands; the first \
+         lines of the program say what to check before, and how to record",
+        0.5 * args.travel
     );
+    let mut out = tables([place]);
+    let told = writeln!(out, "{}", wrapped(&text, 2)).and_then(|()| tell_written(&mut *out, [place]));
     printed(told, ExitCode::SUCCESS)
 }

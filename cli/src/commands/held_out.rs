@@ -10,11 +10,12 @@ use feedwright::never_worse::summary::Judged;
 use feedwright::never_worse::{SweepJob, SweepOptions};
 use feedwright::output::{OutputFile, OutputFiles};
 use feedwright::watch::Watch;
-use miette::{IntoDiagnostic, Result, WrapErr};
+use miette::{IntoDiagnostic, Result};
 
 use crate::args::held_out::HeldOutArgs;
 use crate::console::Console;
 use crate::message::printed;
+use crate::streams::make_folder;
 use crate::sweep::Sweep;
 
 /// Trials for each failure: enough for a few hundred lines and a machine of thirty changes.
@@ -23,9 +24,7 @@ const TRIALS: u32 = 400;
 pub(crate) fn run(args: &HeldOutArgs, console: &Console) -> Result<ExitCode> {
     let sweep = Sweep::new(&args.sweep, &[])?;
     if let Some(folder) = &args.failures {
-        std::fs::create_dir_all(folder)
-            .into_diagnostic()
-            .wrap_err_with(|| format!("{}: no folder can be made there", folder.display()))?;
+        make_folder(folder)?;
     }
     let class = if args.rigid { Class::Rigid } else { Class::Any };
     let generated = draw(args.drawn_by, args.count, args.programs.into(), class)?;
@@ -33,7 +32,7 @@ pub(crate) fn run(args: &HeldOutArgs, console: &Console) -> Result<ExitCode> {
     let jobs: Vec<SweepJob> = generated.iter().map(|made| made.job.clone()).collect();
     let options = sweep.options.clone();
     let done = sweep.run(&jobs, console)?;
-    let printing = done.print(&mut std::io::stdout().lock());
+    let printing = done.print();
     if let Some(folder) = &args.failures {
         let failures = done.summary.rows.iter().filter(|judged| !judged.faults.is_empty()).take(args.smallest);
         write_smallest(folder, failures, &generated, &options, console)?;

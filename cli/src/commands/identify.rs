@@ -19,6 +19,8 @@ use crate::args::identify::IdentifyArgs;
 use crate::console::Console;
 use crate::controllers::{find, settings};
 use crate::message::printed;
+use crate::streams::{tables, tell_written};
+use crate::table::{ConsoleTable, TableColumn};
 
 pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     // Without --out there is --update, which belongs to a log.
@@ -47,31 +49,28 @@ pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
 }
 
 fn print(model: &Model, found: &[AxisEstimate], machine: &Machine, place: &Path) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = tables([Some(place)]);
     let (kind, axes, fit) = (name(model.kind()), model.axes(), model.fit());
     writeln!(out, "{kind} identifier of {axes} axes, from {} samples: fits to {:.3} um RMS", fit.samples, fit.fit_um)?;
     if !found.is_empty() {
-        print_axes(&mut out, found, machine)?;
+        print_axes(&mut *out, found, machine)?;
     }
-    writeln!(out, "wrote {}", place.display())
+    tell_written(&mut *out, [Some(place)])
 }
 
 /// What was found of each axis, with standard errors.
-fn print_axes(out: &mut impl Write, found: &[AxisEstimate], machine: &Machine) -> std::io::Result<()> {
-    write!(out, "{:<30}", "")?;
-    for name in ["x", "y", "z"].iter().take(found.len()) {
-        write!(out, " {name:>24}")?;
-    }
-    writeln!(out)?;
+fn print_axes(out: &mut dyn Write, found: &[AxisEstimate], machine: &Machine) -> std::io::Result<()> {
+    let names = ["x", "y", "z"].into_iter().take(found.len()).map(TableColumn::new);
+    let mut table = ConsoleTable::new(std::iter::once(TableColumn::new("")).chain(names).collect());
     let um_per_rad = |i: usize| machine.axes[i].lead_mm_per_rev * 1e3 / TAU;
     type Value = fn(&AxisParameters, f64) -> f64;
     let rows: [(&str, Value); 9] = [
         ("inertia, kg m2", |p, _| p.inertia_kg_m2),
-        ("viscous friction, N m s/rad", |p, _| p.viscous_friction_nm_s),
-        ("Coulomb friction, N m", |p, _| p.coulomb_friction_nm),
-        ("its asymmetry, N m", |p, _| p.coulomb_asymmetry_nm),
+        ("viscous, N m s/rad", |p, _| p.viscous_friction_nm_s),
+        ("Coulomb, N m", |p, _| p.coulomb_friction_nm),
+        ("asymmetry, N m", |p, _| p.coulomb_asymmetry_nm),
         ("presliding, um", |p, um_per_rad| p.presliding_rad * um_per_rad),
-        ("resonance on the screw, Hz", |p, _| p.transmission.resonance_rad_s / TAU),
+        ("resonance, Hz", |p, _| p.transmission.resonance_rad_s / TAU),
         ("its damping ratio", |p, _| p.transmission.damping_ratio),
         ("share of the table", |p, _| p.transmission.table_share),
         ("backlash, um", |p, um_per_rad| p.transmission.backlash_rad * um_per_rad),
@@ -79,18 +78,16 @@ fn print_axes(out: &mut impl Write, found: &[AxisEstimate], machine: &Machine) -
     let of_screw = |label: &str| rows[5..].iter().any(|(of_screw, _)| *of_screw == label);
     let gives = found.iter().any(|axis| axis.parameters.has_screw());
     for (label, value) in rows.into_iter().filter(|(label, _)| gives || !of_screw(label)) {
-        write!(out, "{label:<30}")?;
-        for (i, axis) in found.iter().enumerate() {
+        let cell = |(i, axis): (usize, &AxisEstimate)| {
             let [found, error] = [&axis.parameters, &axis.standard_errors].map(|of| value(of, um_per_rad(i)));
-            write!(out, " {:>24}", format!("{} +- {}", three_digits(found), three_digits(error)))?;
-        }
-        writeln!(out)?;
+            format!("{} +- {}", three_digits(found), three_digits(error))
+        };
+        table.row(std::iter::once(label.to_owned()).chain(found.iter().enumerate().map(cell)).collect());
     }
-    write!(out, "{:<30}", "left of the position, um RMS")?;
-    for axis in found {
-        write!(out, " {:>24}", three_digits(axis.left_um))?;
-    }
-    writeln!(out)
+    let left = found.iter().map(|axis| three_digits(axis.left_um));
+    table.row(std::iter::once("left, um RMS".to_owned()).chain(left).collect());
+    table.print(out)?;
+    writeln!(out, "left: what the law found leaves of the measured position")
 }
 
 /// With three digits, whatever its size.

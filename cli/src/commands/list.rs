@@ -10,12 +10,14 @@ use miette::Result;
 
 use crate::controllers;
 use crate::message::printed;
+use crate::terminal::wrapped;
 
 pub(crate) fn machines() -> Result<ExitCode> {
     let mut lines = String::new();
     for (name, text) in BUILT_IN {
         let machine = Machine::parse(&format!("{name}.toml"), text)?;
-        lines += &format!("{name:<10} {} axes  {}\n", machine.axis_count(), machine.description);
+        let line = format!("{name:<10} {} axes  {}", machine.axis_count(), machine.description);
+        lines += &(wrapped(&line, 19) + "\n");
     }
     print(&lines)
 }
@@ -24,7 +26,8 @@ pub(crate) fn controllers() -> Result<ExitCode> {
     let mut lines = String::new();
     for entry in CONTROLLERS {
         let best = if entry.name == BEST { " (default)" } else { "" };
-        lines += &format!("{:<18} {}; {}{best}\n", entry.name, entry.summary, entry.source);
+        let line = format!("{:<26} {}; {}{best}", entry.name, entry.summary, entry.source);
+        lines += &(wrapped(&line, 27) + "\n");
     }
     print(&lines)
 }
@@ -38,8 +41,12 @@ pub(crate) fn controller(name: &str) -> Result<ExitCode> {
         Knows::Everything => "its parameters, and the statistics of everything that disturbs it",
         Knows::EarlierLaps => "what went wrong in earlier laps of the same part",
     };
-    let mut lines =
-        format!("{}: {}\nsource: {}\nknows of the machine: {knows}\n", entry.name, entry.summary, entry.source);
+    let head = [
+        format!("{}: {}", entry.name, entry.summary),
+        format!("source: {}", entry.source),
+        format!("knows of the machine: {knows}"),
+    ];
+    let mut lines: String = head.iter().map(|line| wrapped(line, 2) + "\n").collect();
     if entry.laps > 1 {
         lines += &format!("laps of the part: {}, all but the last are practice\n", entry.laps);
     }
@@ -48,8 +55,8 @@ pub(crate) fn controller(name: &str) -> Result<ExitCode> {
     }
     for parameter in entry.parameters {
         let default = shown(parameter.default);
-        lines +=
-            &format!("\n{} = {default}, allowed {}\n    {}\n", parameter.name, parameter.range(), parameter.reason);
+        let reason = wrapped(&format!("    {}", parameter.reason), 4);
+        lines += &format!("\n{} = {default}, allowed {}\n{reason}\n", parameter.name, parameter.range());
     }
     print(&lines)
 }

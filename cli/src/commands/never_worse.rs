@@ -41,7 +41,7 @@ pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> 
     };
     announce(&jobs);
     let done = sweep.run(&jobs, console)?;
-    printed(done.print(&mut std::io::stdout().lock()), done.code())
+    printed(done.print(), done.code())
 }
 
 fn machines_of(args: &NeverWorseArgs) -> Result<Vec<Machine>> {
@@ -103,5 +103,7 @@ fn read(files: &[PathBuf], settings: &Settings, limit_s: f64, console: &Console)
 fn announce(jobs: &[SweepJob]) {
     let hours = jobs.iter().map(|job| job.program.machining_s).sum::<f64>() / 3600.0;
     let shortened = jobs.iter().filter(|job| job.program.shortened).count();
-    eprintln!("{} cuts, {hours:.1} h of machining on {PACE}; of a part of the program: {shortened}", jobs.len());
+    let parts =
+        if shortened > 0 { format!("; {shortened} of them of the beginning of a program") } else { String::new() };
+    eprintln!("{} cuts, {hours:.1} h of machining on {PACE}{parts}", jobs.len());
 }

@@ -9,11 +9,13 @@ use feedwright::output::{OutputFile, OutputFiles};
 use feedwright::paper::{self, Paper, figures::figures};
 use feedwright::report::figure::{CaptionedFigure, write_page};
 use feedwright::watch::Watch;
-use miette::{IntoDiagnostic, Result, WrapErr};
+use miette::{IntoDiagnostic, Result};
 
 use crate::args::paper::PaperArgs;
 use crate::console::Console;
 use crate::message::printed;
+use crate::streams::make_folder;
+use crate::terminal::wrapped;
 
 /// Introduction of the page.
 const INTRODUCTION: &str = "The experiments of S. S. Lee, J. H. Cho and G. J. Jeon, \"Two dimensional feedrate control for \
@@ -22,9 +24,7 @@ const INTRODUCTION: &str = "The experiments of S. S. Lee, J. H. Cho and G. J. Je
 
 pub(crate) fn run(args: &PaperArgs, console: &Console) -> Result<ExitCode> {
     let machine = Machine::load(&args.machine)?;
-    std::fs::create_dir_all(&args.out)
-        .into_diagnostic()
-        .wrap_err_with(|| format!("cannot make the folder {}", args.out.display()))?;
+    make_folder(&args.out)?;
     let seeds: Vec<u64> = (1..=args.seeds).collect();
     let bar = console.bar(0);
     let made =
@@ -59,19 +59,19 @@ fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure], watch: &dyn 
 
 fn print(folder: &Path, paper: &Paper) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
-    writeln!(out, "{:>4}  {:>24}  {:>24}  {:>24}", "", "open loop", "magnitude only", "two-dimensional")?;
+    writeln!(out, "{:>4} {:>24} {:>24} {:>24}", "", "open loop", "magnitude only", "two-dimensional")?;
     writeln!(out, "{:>4}{}", "seed", format!("  {:>8} {:>7} {:>7}", "time s", "RMS um", "max um").repeat(3))?;
     for seed in &paper.seeds {
         write!(out, "{:>4}", seed.seed)?;
         for cut in [seed.open_loop, seed.magnitude_only, seed.two_dimensional] {
-            write!(out, "  {:>8.3} {:>7.2} {:>7.2}", cut.time_s, cut.rms_um, cut.max_um)?;
+            write!(out, " {:>8.3} {:>7.2} {:>7.2}", cut.time_s, cut.rms_um, cut.max_um)?;
         }
         writeln!(out)?;
     }
-    writeln!(
-        out,
+    let text = format!(
         "worst seed, two-dimensional against magnitude only: RMS x {:.3}, max x {:.3}; time against open loop x {:.3}",
         paper.worst_rms_ratio, paper.worst_max_ratio, paper.worst_time_ratio
-    )?;
+    );
+    writeln!(out, "{}", wrapped(&text, 2))?;
     writeln!(out, "wrote {}", folder.join("paper.html").display())
 }

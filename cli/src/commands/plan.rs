@@ -8,9 +8,11 @@ use std::time::Instant;
 use feedwright::constraints::Constraints;
 use feedwright::cycle_time::{CycleTime, cycle_time_by};
 use feedwright::feed;
+use feedwright::gcode::suggestion::nearest;
 use feedwright::gcode::{self, Reader};
 use feedwright::job::JobError;
 use feedwright::machine::{Machine, is_path};
+use feedwright::number::shown;
 use feedwright::output::{OutputFile, OutputFiles};
 use feedwright::pipeline::{Stages, pieces};
 use miette::{IntoDiagnostic, Result, miette};
@@ -19,13 +21,19 @@ use serde_json::json;
 use crate::args::plan::PlanArgs;
 use crate::console::Console;
 use crate::message::{printed, warn};
+use crate::streams::{check_inputs, tables, tell_written};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
+    let machine_path = Path::new(&args.machine);
+    let tools = args.reader.tool_table.as_deref();
+    check_inputs(
+        console,
+        [("the program", Some(args.part.as_path())), ("--machine", Some(machine_path)), ("--tool-table", tools)],
+    )?;
     let machine = machine(args)?;
     let stages = stages(args, &machine)?;
-    let machine_file = Some(Path::new(&args.machine)).filter(|path| is_path(path));
-    let tool_table = args.reader.tool_table.as_deref();
-    let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tool_table].into_iter().flatten());
+    let machine_file = Some(machine_path).filter(|path| is_path(path));
+    let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tools].into_iter().flatten());
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
     let settings = args.reader.settings()?;
     let summary = gcode::check(&args.part, settings.clone()).map_err(JobError::from)?;
@@ -67,6 +75,14 @@ fn machine(args: &PlanArgs) -> Result<Machine> {
     let Some(tolerance_um) = args.tolerance else {
         return Ok(machine);
     };
+    if !(LEAST_UM..=MOST_UM).contains(&tolerance_um) {
+        let help = "the unit is um: 0.01 mm is --tolerance 10";
+        let tolerance_um = shown(tolerance_um);
+        return Err(miette!(
+            help = help,
+            "--tolerance is {tolerance_um} um; it must be from {LEAST_UM} to {MOST_UM} um"
+        ));
+    }
     if !machine.has_axis_limits() {
         return Err(miette!(
             help =
@@ -74,9 +90,6 @@ fn machine(args: &PlanArgs) -> Result<Machine> {
             "--tolerance {tolerance_um} um: {} has no limits of its axes, and is planned on the programmed path",
             machine.name
         ));
-    }
-    if !(LEAST_UM..=MOST_UM).contains(&tolerance_um) {
-        return Err(miette!("--tolerance is {tolerance_um} um; it must be from {LEAST_UM} to {MOST_UM} um"));
     }
     machine.limits.path_tolerance_um = Some(tolerance_um);
     Ok(machine)
@@ -90,7 +103,12 @@ fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
     };
     let planner = feed::planner(name).ok_or_else(|| {
         let names: Vec<&str> = feed::MEMBERS.iter().map(|member| member.name).collect();
-        miette!("--planner {name} is not one of {}", names.join(", "))
+        let near = nearest(name, &names).map_or_else(String::new, |near| format!("did you mean '{near}'? "));
+        miette!(
+            help = format!("{near}leave --planner out for the one that suits the machine"),
+            "no planner is called '{name}'; there are {}",
+            names.join(", ")
+        )
     })?;
     Ok(Stages { planner, ..stages })
 }
@@ -100,7 +118,8 @@ const LEAST_UM: f64 = 0.01;
 const MOST_UM: f64 = 1e4;
 
 fn print(args: &PlanArgs, found: &CycleTime, took_s: f64) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let json = args.json.as_deref();
+    let mut out = tables([json]);
     let CycleTime { time_s, cutting_s, rapid_s, waiting_s, blocks, .. } = found;
     writeln!(out, "{:<28} {time_s:>12.3} s, planned by {}", "cycle time", found.planner)?;
     for (name, part_s) in [("cutting", cutting_s), ("rapids", rapid_s), ("waiting", waiting_s)] {
@@ -121,12 +140,12 @@ fn print(args: &PlanArgs, found: &CycleTime, took_s: f64) -> std::io::Result<()>
         writeln!(out, "{:<28} {violation:>12.6} of its limit", "largest use of a limit")?;
         writeln!(out, "{:<28} {:>12.3} um", "largest deviation", found.largest_deviation_um)?;
     }
+    if !found.binding.is_empty() {
+        writeln!(out, "what limits the speed")?;
+    }
     for binding in &found.binding {
         writeln!(out, "  {:<26} {:>12.1} % of the motion", binding.limit, 100.0 * binding.share)?;
     }
     writeln!(out, "{:<28} {:>12.0} blocks/s", "planned", *blocks as f64 / took_s)?;
-    if let Some(json) = &args.json {
-        writeln!(out, "wrote {}", json.display())?;
-    }
-    Ok(())
+    tell_written(&mut *out, [json])
 }

@@ -10,17 +10,18 @@ use feedwright::compare::tuned::Tuned;
 use feedwright::compare::verdict::Verdict;
 
 use crate::args::compare::CompareArgs;
+use crate::streams::{tables, tell_written};
+use crate::table::{ConsoleTable, TableColumn};
+use crate::terminal::wrapped;
 
 pub(super) fn print(args: &CompareArgs, comparison: &Comparison) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+    let files = || [args.json.as_deref(), args.html.as_deref()];
+    let out = &mut *tables(files());
     out.write_all(tuned(&comparison.tuned).as_bytes())?;
-    print_rows(&mut out, &comparison.rows)?;
-    print_at_tolerance(&mut out, &comparison.at_tolerance)?;
-    print_verdicts(&mut out, &comparison.verdicts)?;
-    for path in [&args.json, &args.html].into_iter().flatten() {
-        writeln!(out, "wrote {}", path.display())?;
-    }
-    Ok(())
+    rows(&comparison.rows).print(out)?;
+    print_at_tolerance(out, &comparison.at_tolerance)?;
+    print_verdicts(out, &comparison.verdicts)?;
+    tell_written(out, files())
 }
 
 /// What searches came to.
@@ -38,85 +39,88 @@ pub(super) fn tuned(tuned: &[Tuned]) -> String {
     text
 }
 
-fn print_rows(out: &mut impl Write, rows: &[ComparisonRow]) -> std::io::Result<()> {
+fn rows(rows: &[ComparisonRow]) -> ConsoleTable {
+    let mut table = ConsoleTable::new(vec![
+        TableColumn::new(""),
+        TableColumn::optional("time s", 5),
+        TableColumn::new("RMS um"),
+        TableColumn::optional("lowest to highest", 9),
+        TableColumn::optional("encoders um", 6),
+        TableColumn::new("max um"),
+        TableColumn::optional("uncut um", 1),
+        TableColumn::optional("time", 2),
+        TableColumn::optional("RMS", 3),
+        TableColumn::optional("max", 4),
+        TableColumn::optional("off um", 7),
+        TableColumn::optional("m/s2", 8),
+        TableColumn::optional("N m", 8),
+    ]);
     let mut heading = String::new();
     for row in rows {
         let here = format!("{} on {}", row.contour, row.machine);
         if here != heading {
-            writeln!(
-                out,
-                "\n{here:<36} {:>8} {:>9} {:>19} {:>9} {:>9} {:>9} {:>6} {:>6} {:>6} {:>8} {:>8} {:>7}",
-                "time s",
-                "RMS um",
-                "lowest to highest",
-                "encoders",
-                "max um",
-                "uncut um",
-                "time",
-                "RMS",
-                "max",
-                "off um",
-                "m/s2",
-                "N m"
-            )?;
+            table.section(here.clone());
             heading = here;
         }
         let [low, high] = row.rms_spread_um;
-        let spread = if row.seeds > 1 { format!("{low:.3} to {high:.3}") } else { String::new() };
-        let encoders = row.joint_rms_um.map_or(String::new(), |um| format!("{um:.3}"));
-        writeln!(
-            out,
-            "{:<36} {:>8.3} {:>9.3} {spread:>19} {encoders:>9} {:>9.2} {:>9.2} {:>6.3} {:>6.3} {:>6.3} {:>8.0} {:>8.1} {:>7.2}{}",
-            row.controller,
-            row.time_s,
-            row.rms_um,
-            row.max_um,
-            row.uncut_um,
-            row.time_ratio,
-            row.rms_ratio,
-            row.max_ratio,
-            row.max_deviation_um,
-            row.accel_mm_s2 * 1e-3,
-            row.peak_torque_nm,
-            row.note().map_or(String::new(), |note| format!("  {note}")),
-        )?;
+        table.row(vec![
+            row.controller.clone(),
+            format!("{:.3}", row.time_s),
+            format!("{:.3}", row.rms_um),
+            if row.seeds > 1 { format!("{low:.3} to {high:.3}") } else { String::new() },
+            row.joint_rms_um.map_or(String::new(), |um| format!("{um:.3}")),
+            format!("{:.2}", row.max_um),
+            format!("{:.2}", row.uncut_um),
+            format!("{:.3}", row.time_ratio),
+            format!("{:.3}", row.rms_ratio),
+            format!("{:.3}", row.max_ratio),
+            format!("{:.0}", row.max_deviation_um),
+            format!("{:.1}", row.accel_mm_s2 * 1e-3),
+            format!("{:.2}", row.peak_torque_nm),
+        ]);
+        if let Some(note) = row.note() {
+            table.remark(note.to_string());
+        }
     }
-    Ok(())
+    table
 }
 
-fn print_at_tolerance(out: &mut impl Write, rows: &[AtTolerance]) -> std::io::Result<()> {
+fn print_at_tolerance(out: &mut dyn Write, rows: &[AtTolerance]) -> std::io::Result<()> {
     if rows.is_empty() {
         return Ok(());
     }
-    let limit = format!("max {TOLERANCE_UM} um");
-    writeln!(out, "\n{limit:<20} {:<28} {:>9} {:>9} {:>6}", "", "feed mm/s", "time s", "time")?;
+    let mut table = ConsoleTable::new(vec![
+        TableColumn::new(""),
+        TableColumn::new("feed mm/s"),
+        TableColumn::new("time s"),
+        TableColumn::new("time"),
+    ]);
     let number = |value: Option<f64>| value.map_or("-".to_owned(), |value| format!("{value:.3}"));
+    let mut contour = "";
     for row in rows {
+        if row.contour != contour {
+            table.section(format!("{}, max {TOLERANCE_UM} um", row.contour));
+            contour = &row.contour;
+        }
         let feed = row.feed_mm_s.map_or("-".to_owned(), |feed| format!("{feed:.1}"));
-        let (time, ratio) = (number(row.time_s), number(row.time_ratio));
-        writeln!(out, "{:<20} {:<28} {feed:>9} {time:>9} {ratio:>6}", row.contour, row.controller)?;
+        table.row(vec![row.controller.clone(), feed, number(row.time_s), number(row.time_ratio)]);
     }
-    Ok(())
+    table.print(out)
 }
 
-fn print_verdicts(out: &mut impl Write, verdicts: &[Verdict]) -> std::io::Result<()> {
+fn print_verdicts(out: &mut dyn Write, verdicts: &[Verdict]) -> std::io::Result<()> {
     if verdicts.is_empty() {
         return Ok(());
     }
-    writeln!(out, "\n{:<66} {:<18} {:<10} {:>8} {:>8}", "", "", "", "value", "limit")?;
+    writeln!(out)?;
     for verdict in verdicts {
-        let against = if verdict.against.is_empty() { String::new() } else { format!(" ({})", verdict.against) };
-        writeln!(
-            out,
-            "{:<66} {:<18} {:<10} {:>8.3} {:>8.3} {:<5} {}{against}",
-            verdict.claim,
-            verdict.contour,
-            verdict.machine,
-            verdict.value,
-            verdict.limit,
-            verdict.unit,
-            if verdict.holds { "holds" } else { "FALLS SHORT" },
-        )?;
+        let Verdict { claim, contour, machine, value, limit, unit, against, .. } = verdict;
+        let against = if against.is_empty() { String::new() } else { format!(" ({against})") };
+        let holds = if verdict.holds { "holds" } else { "FALLS SHORT" };
+        let place = [contour.to_string(), machine.to_string()].into_iter().filter(|word| !word.is_empty());
+        let place = place.collect::<Vec<_>>().join(" on ");
+        let text = format!("{holds}: {claim}; {place}: {value:.3}, limit {limit:.3} {unit}{against}");
+        writeln!(out, "{}", wrapped(&text, 2))?;
     }
     let held = verdicts.iter().filter(|verdict| verdict.holds).count();
     writeln!(out, "{held} of {} claims hold", verdicts.len())

@@ -4,6 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
+use feedwright::gcode::input;
 use feedwright::identify::grey_box::axis_facts::AxisFacts;
 use feedwright::log::{Log, LogError};
 use feedwright::log_job::{LogIdentified, LogJob, machine_text, updated_text, write_json, write_page};
@@ -14,10 +15,14 @@ use miette::{IntoDiagnostic, Result};
 
 use crate::args::identify::{IdentifyArgs, LogArgs};
 use crate::console::Console;
-use crate::message::printed;
+use crate::message::{printed, remark};
+use crate::streams::{check_inputs, tables, tell_written};
+use crate::terminal::wrapped;
 
 pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let of_log = &args.of_log;
+    let logs = paths.iter().map(|path| ("the log", Some(path.as_path())));
+    check_inputs(console, logs.chain([("--update", of_log.update.as_deref())]))?;
     let before = of_log.update.as_deref().map(before).transpose()?;
     // Clap asks for one of both.
     let out = args.out.as_deref().or(of_log.update.as_deref()).unwrap_or(Path::new("mine.toml"));
@@ -29,7 +34,7 @@ pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> 
     let bar = console.bar(0);
     let log = read(paths, of_log, &bar)?;
     if !console.is_quiet() {
-        bar.aside(|| log.findings.iter().for_each(|finding| eprintln!("{finding}")));
+        bar.aside(|| log.findings.iter().for_each(|finding| remark(&finding.to_string())));
     }
     let name = paths.iter().map(|path| file_name(path)).collect::<Vec<_>>().join(", ");
     let (text_before, machine_before) = before.unzip();
@@ -49,7 +54,7 @@ pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> 
         write_page(file, &identified).map_err(|error| written(error, file))?;
     }
     let all: Vec<OutputFile> = [Some(machine), json, page].into_iter().flatten().collect();
-    let places: Vec<String> = all.iter().map(|file| file.path().display().to_string()).collect();
+    let places: Vec<PathBuf> = all.iter().map(|file| file.path().to_owned()).collect();
     bar.clear();
     OutputFile::commit_all(all, &bar)?;
     printed(print(&identified, &places), ExitCode::SUCCESS)
@@ -65,7 +70,7 @@ fn read(paths: &[PathBuf], of_log: &LogArgs, watch: &dyn Watch) -> Result<Log, L
 /// A machine file that is updated.
 fn before(path: &Path) -> Result<(String, Machine)> {
     let machine = Machine::load(path.as_os_str())?;
-    let text = std::fs::read_to_string(path).into_diagnostic()?;
+    let text = String::from_utf8_lossy(&input::read(path).into_diagnostic()?).into_owned();
     Ok((text, machine))
 }
 
@@ -93,11 +98,12 @@ fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(|| "mine".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-fn print(identified: &LogIdentified, places: &[String]) -> std::io::Result<()> {
-    let mut out = std::io::stdout().lock();
+fn print(identified: &LogIdentified, places: &[PathBuf]) -> std::io::Result<()> {
+    let places = || places.iter().map(|path| Some(path.as_path()));
+    let mut out = tables(places());
     write!(out, "{}", identified.table())?;
     for line in identified.improvements().into_iter().chain(identified.advice()) {
-        writeln!(out, "{line}")?;
+        writeln!(out, "{}", wrapped(&line, 2))?;
     }
-    writeln!(out, "wrote {}", places.join(", "))
+    tell_written(&mut *out, places())
 }
