@@ -20,7 +20,7 @@ Exit codes: 0 done; 1 out of --tolerance, or no better than the original: nothin
 pub(crate) struct CorrectArgs {
     /// G-code program.
     pub(crate) part: PathBuf,
-    /// Built-in machine, or a machine file (.toml).
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
     pub(crate) machine: OsString,
     /// Control that the corrected program is for: how it plans the speed, and what its blocks may hold.
@@ -32,7 +32,7 @@ pub(crate) struct CorrectArgs {
     /// Largest contour error allowed of the corrected program as the control cuts it, um: exit code 1 where it is exceeded.
     #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
-    /// Write all results.
+    /// Write all results as JSON.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
     #[command(flatten)]

@@ -14,7 +14,7 @@ use clap::Args;
 Example:
   feedwright excite --machine limits.toml --travel 40 --out excite.ngc")]
 pub(crate) struct ExciteArgs {
-    /// Built-in machine, or a machine file (.toml), whose limits the program keeps.
+    /// Machine whose limits the program keeps: one that is built in, or a machine file (.toml).
     #[arg(long, value_name = "NAME|LIMITS.toml")]
     pub(crate) machine: OsString,
     /// Travel of each axis, mm: half of it on each side of where the machine stands.

@@ -22,7 +22,7 @@ pub(crate) struct IdentifyArgs {
     pub(crate) log: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) of_log: LogArgs,
-    /// Built-in machine, or a machine file (.toml).
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
     pub(crate) machine: OsString,
     /// Controller that the model is for; `feedwright controllers` lists them.
@@ -34,7 +34,7 @@ pub(crate) struct IdentifyArgs {
     /// Set a parameter of the controller; feed_period_s is the one that the model depends on.
     #[arg(long, value_name = "PARAMETER=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Seed of what is cut to identify the machine, and of the training.
+    /// Seed of the recording that a simulated machine is identified from.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Place of the machine file; of a simulated machine, of its model.
@@ -52,10 +52,10 @@ pub(crate) struct LogArgs {
     /// Machine file that is updated: what the logs do not tell stays as it is. It is written to --out, without that in its place.
     #[arg(long, value_name = "FILE.toml", requires = "log")]
     pub(crate) update: Option<PathBuf>,
-    /// Fit this time of the log, s; all else by --score. Without both, blocks of motion take turns.
+    /// Identify from this part of the log, s; --score says by which to judge. Without both, blocks of motion take turns.
     #[arg(long, value_name = "FROM:TO", requires = "score", requires = "log")]
     pub(crate) fit: Option<Times>,
-    /// Judge by this time of the log, s.
+    /// Judge by this part of the log, s.
     #[arg(long, value_name = "FROM:TO", requires = "fit", requires = "log")]
     pub(crate) score: Option<Times>,
     /// Travel for a turn of the motor, mm; without it an axis counts as linear: kg, N s/m, N.
@@ -81,7 +81,7 @@ pub(crate) struct LogArgs {
     /// Write a page: numbers, measured against predicted, what is left.
     #[arg(long, value_name = "FILE.html", requires = "log")]
     pub(crate) report: Option<PathBuf>,
-    /// Write all results.
+    /// Write all results as JSON.
     #[arg(long, value_name = "FILE.json", requires = "log")]
     pub(crate) json: Option<PathBuf>,
 }

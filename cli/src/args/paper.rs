@@ -16,7 +16,7 @@ pub(crate) struct PaperArgs {
     /// Folder for the figures, the page and paper.json; made where it is missing.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
-    /// Built-in machine, or a machine file (.toml).
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = "tnv40")]
     pub(crate) machine: OsString,
     /// Number of seeds, from 1.

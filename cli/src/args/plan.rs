@@ -17,7 +17,7 @@ Example:
 pub(crate) struct PlanArgs {
     /// G-code program.
     pub(crate) part: PathBuf,
-    /// Built-in machine, or a machine file (.toml).
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
     pub(crate) machine: OsString,
     /// Distance of the planned path from the programmed one where the program says none, um, in place of the machine's
@@ -30,7 +30,7 @@ pub(crate) struct PlanArgs {
     /// Plan each path from rest to rest as a whole too, and tell its time: what no plan can be faster than by much.
     #[arg(long)]
     pub(crate) bound: bool,
-    /// Write all results.
+    /// Write all results as JSON.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
     #[command(flatten)]

@@ -24,13 +24,13 @@ Exit codes: 0 done; 1 out of --tolerance, or the correction is worse than open l
 pub(crate) struct RunArgs {
     /// G-code program.
     pub(crate) part: PathBuf,
-    /// Built-in machine, or a machine file (.toml).
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
     pub(crate) machine: OsString,
-    /// Controller; `feedwright controllers` lists them.
+    /// Controller that corrects the command; `feedwright controllers` lists them.
     #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BEST)]
     pub(crate) controller: String,
-    /// Controller to compare against.
+    /// What it is compared with.
     #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BASELINE)]
     pub(crate) against: String,
     /// Feedrate in place of every programmed one, with its unit, such as 3000mm/min or 50mm/s.
@@ -49,25 +49,26 @@ pub(crate) struct RunArgs {
     /// Cut in the least time in which the tool stays within --tolerance; feedrates are the ceiling.
     #[arg(long, requires = "tolerance")]
     pub(crate) fastest: bool,
-    /// Write one row per servo period.
+    /// Write a row per servo period: path, command, tool, torque, contour error.
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) trace: Option<PathBuf>,
-    /// Write all results.
+    /// Write all results as JSON.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
     /// Write the corrected command: setpoints per servo period (.csv), or a program for another control (.ngc).
     #[arg(long, value_name = "FILE.csv|FILE.ngc")]
     pub(crate) out: Option<PathBuf>,
-    /// Place of the report [default: PART.report.html beside where you are].
+    /// Place of the report [default: PART.report.html in the current folder].
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,
-    /// Seed of the identifier's training.
+    /// Seed of the recording that the machine is identified from.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Model of the machine for the controller, in place of a training; `feedwright identify` writes one.
+    /// Identified model for the controller, in place of identifying the machine anew; `feedwright identify` writes one.
     #[arg(long, value_name = "FILE.model.toml")]
     pub(crate) model: Option<PathBuf>,
-    /// Log of commanded and actual positions, recorded while a machine cut this program: its contour error is shown beside those predicted.
+    /// Log of commanded and actual positions, recorded while a machine cut this program: the contour error measured is shown beside those
+    /// predicted.
     #[arg(long, value_name = "LOG")]
     pub(crate) log: Option<PathBuf>,
     /// Which column of the log is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,unit=mm,time=ms.

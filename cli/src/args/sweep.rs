@@ -21,7 +21,7 @@ pub(crate) struct SweepArgs {
     /// Set a parameter of the controller, such as knots=10; may be given several times. `feedwright controllers NAME` lists them.
     #[arg(long, value_name = "PARAMETER=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Seed of the controller's training, and of the sample.
+    /// Seed of the recording that machines are identified from, and of the sample.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Threads; all cores where it is left out. The result does not depend on it.
