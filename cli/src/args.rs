@@ -3,8 +3,9 @@
 pub(crate) mod reader;
 mod feed;
 pub(crate) mod sweep;
-pub(crate) mod run;
 pub(crate) mod correct;
+pub(crate) mod advise;
+pub(crate) mod run;
 pub(crate) mod plan;
 pub(crate) mod identify;
 pub(crate) mod excite;
@@ -24,6 +25,7 @@ use std::io::{self, IsTerminal};
 
 use clap::{ColorChoice, Command, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 
+use advise::AdviseArgs;
 use block::BlockArgs;
 use canon::CanonArgs;
 use check::CheckArgs;
@@ -85,6 +87,7 @@ cut a part on a simulated machine, and star.report.html shows how it went. `feed
 pub(crate) enum CommandArgs {
     Run(Box<RunArgs>),
     Correct(CorrectArgs),
+    Advise(AdviseArgs),
     Plan(PlanArgs),
     Check(CheckArgs),
     Identify(IdentifyArgs),

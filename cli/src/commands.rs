@@ -1,5 +1,6 @@
 //! One file per command.
 
+pub(crate) mod advise;
 pub(crate) mod block;
 pub(crate) mod canon;
 pub(crate) mod check;

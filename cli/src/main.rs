@@ -13,6 +13,7 @@ mod table;
 mod files_to_check;
 mod findings;
 mod controllers;
+mod controls;
 mod sweep;
 mod commands;
 
@@ -40,6 +41,7 @@ fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
     match command {
         CommandArgs::Run(args) => commands::run::run(*args, console),
         CommandArgs::Correct(args) => commands::correct::run(&args, console),
+        CommandArgs::Advise(args) => commands::advise::run(&args, console),
         CommandArgs::Plan(args) => commands::plan::run(&args, console),
         CommandArgs::Identify(args) => commands::identify::run(&args, console),
         CommandArgs::Excite(args) => commands::excite::run(&args, console),

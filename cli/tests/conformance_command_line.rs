@@ -11,9 +11,10 @@ use std::process::{Command, Stdio};
 use common::{Folder, Ran, skipped};
 
 /// All commands.
-const COMMANDS: [&str; 17] = [
+const COMMANDS: [&str; 18] = [
     "run",
     "correct",
+    "advise",
     "plan",
     "check",
     "identify",

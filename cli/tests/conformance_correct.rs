@@ -1,4 +1,4 @@
-//! `feedwright correct`: what it writes, tells and refuses.
+//! `feedwright correct`, and `run --out FILE.ngc`: what they write, tell and refuse.
 
 #[path = "common/command.rs"]
 #[expect(dead_code, reason = "every test file uses a part of this")]
@@ -39,6 +39,47 @@ fn a_program_that_is_no_better_is_not_written() {
 }
 
 #[test]
+fn run_writes_the_program_that_correct_writes_and_its_cut_is_the_last() {
+    let folder = Folder::new();
+    folder.run(&["correct", "circle.ngc", "--machine", "tnv40", "--out", "p.ngc"]).succeeded();
+    let run = ["circle.ngc", "--machine", "tnv40", "--out", "r.ngc", "--json", "r.json", "--tolerance", "2"];
+    let ran = folder.run_open_loop(&run).succeeded();
+    assert!(ran.stdout.contains("\nas exported ") && ran.stdout.contains("within tolerance"), "{}", ran.stdout);
+    assert_eq!(folder.text("r.ngc"), folder.text("p.ngc"));
+    let results: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    let (last, exported) = (&results["runs"][1], &results["exported"]);
+    assert_eq!(last["controller"], "as exported");
+    for key in ["rms_um", "max_um", "uncut_um", "time_s"] {
+        assert_eq!(last[key], exported["as_exported"][key], "{key}");
+    }
+    // The largest of all cuts stands in the rows that the page shows.
+    assert_eq!(last["worst"][0]["error_um"].as_f64().map(f64::abs), last["max_um"].as_f64(), "{last}");
+    assert!(exported["original"]["rms_um"].as_f64() > Some(10.0) && exported["control"] == "generic", "{exported}");
+    let text = folder.text("r.ngc");
+    let line = last["worst"][0]["line"].as_u64().unwrap() as usize;
+    assert_eq!(last["worst"][0]["text"].as_str(), text.lines().nth(line - 1), "{last}");
+}
+
+#[test]
+fn run_writes_no_program_that_is_no_better_and_the_exit_code_says_so() {
+    let folder = Folder::new();
+    folder.file("line.ngc", "G21 G90 G64\nG1 X40 F300\nM2\n");
+    let ran = folder.run_open_loop(&["line.ngc", "--machine", "tnv40", "--out", "p.ngc", "--tolerance", "100"]);
+    assert_eq!(ran.code, Some(1));
+    assert!(ran.stdout.contains("no corrected program:") && !ran.stdout.contains("wrote p.ngc"), "{}", ran.stdout);
+    assert!(!folder.path().join("p.ngc").exists() && folder.path().join("line.report.html").exists());
+    for (arguments, told) in [
+        (&["--out", "p.ngc", "--fastest", "--tolerance", "10"][..], &["p.ngc", "--fastest", "setpoints"][..]),
+        (&["--out", "p.ngc", "--reference", "circle.ngc"], &["p.ngc", "--reference", "original"]),
+        (&["--out", "p.ngc", "--for", "grpl"], &["--for", "did you mean 'grbl'?"]),
+        (&["--out", "p.csv", "--for", "grbl"], &["--for", "p.csv", "setpoints"]),
+        (&["--out", "p.ngc", "--for", "linuxcnc"], &["limits of each axis"]),
+    ] {
+        folder.run(&[&["run", "line.ngc", "--machine", "tnv40"], arguments].concat()).refused(told);
+    }
+}
+
+#[test]
 fn what_is_asked_for_wrongly_is_refused_with_a_hint() {
     let folder = Folder::new();
     folder.run(&["correct", "circle.ngc", "--for", "fanuk"]).refused(&["--for", "fanuk", "did you mean 'fanuc'?"]);
@@ -65,4 +106,25 @@ fn a_program_is_measured_to_another_and_half_a_program_does_not_win() {
     let [_, beside_um] = uncut_and_max("beside.ngc");
     assert!(whole_um < 50.0 && half_um > 4000.0, "{whole_um} {half_um}");
     assert!((90.0..120.0).contains(&beside_um), "{beside_um}");
+}
+
+#[test]
+fn feedrates_are_advised_and_files_are_written() {
+    let folder = Folder::new();
+    let files = ["--report", "a.html", "--figure", "a.svg", "--json", "a.json"];
+    let base = ["advise", "circle.ngc", "--machine", "tnv40", "--tolerance"];
+    let ran = folder.run(&[&base[..], &["5"], &files].concat()).succeeded();
+    for told in ["uncorrected", "corrected", "lqg-identified", "mm/min", "wrote a.svg"] {
+        assert!(ran.stdout.contains(told), "{told} in\n{}", ran.stdout);
+    }
+    assert!(ran.stdout.lines().all(|line| line.chars().count() <= 100), "{}", ran.stdout);
+    let results: Value = serde_json::from_slice(&folder.read("a.json")).unwrap();
+    assert_eq!(results["tolerance_um"], 5.0);
+    assert!(results["ways"][0]["whole"]["max_um"].as_f64() <= Some(5.0), "{results}");
+    assert!(folder.text("a.html").contains("</html>") && folder.text("a.svg").starts_with("<svg"));
+    let none = folder.run(&[&base[..], &["0.001"]].concat());
+    assert_eq!(none.code, Some(1), "{}", none.stdout);
+    assert!(none.stdout.contains("at none: "), "{}", none.stdout);
+    folder.run(&["advise", "circle.ngc", "--tolerance", "-1"]).refused(&["--tolerance is -1 um", "above 0"]);
+    folder.run(&["advise", "circle.ngc"]).refused(&["--tolerance"]);
 }

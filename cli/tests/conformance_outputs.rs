@@ -1,4 +1,4 @@
-//! The corrected program, and what an interrupt leaves: nothing.
+//! Machine files that are checked, and what an interrupt leaves: nothing.
 
 #[path = "common/command.rs"]
 #[expect(dead_code, reason = "every test file uses a part of this")]
@@ -8,19 +8,6 @@ use std::process::Stdio;
 use std::time::Duration;
 
 use common::{Folder, Ran};
-
-#[test]
-fn the_corrected_program_reads_back_with_its_events_in_place() {
-    let folder = Folder::new();
-    folder.file("part.ngc", "G21 G90 F1200\nS800 M3\nG0 X2\nG1 X6\nG3 X6 Y4 I0 J2\nG4 P0.1\nG1 X2\nM5\nM2\n");
-    folder.run_open_loop(&["part.ngc", "--out", "out.ngc"]).succeeded();
-    let text = folder.text("out.ngc");
-    let line = |start: &str| text.lines().position(|line| line.starts_with(start));
-    let order = ["(part.ngc)", "G21 G17 G90", "S800", "M3", "G0 X", "G1 X", "G4 P0.1", "M5", "M2"].map(line);
-    assert!(order.iter().all(Option::is_some) && order.is_sorted(), "{order:?} in\n{text}");
-    assert!(text.contains(" F1200\n") && text.ends_with("M5\nM2\n") && text.matches("M2").count() == 1, "{text}");
-    folder.run(&["check", "out.ngc"]).succeeded();
-}
 
 #[test]
 fn check_reads_machine_files_too() {

@@ -71,6 +71,7 @@ fn line(name: &str, machine: &Machine, part: &Path, believed: Option<Machine>) {
         part: part.to_owned(),
         machine: machine.clone(),
         believed,
+        feed_mm_s: None,
         target: &TARGETS[0],
         reader: Settings::default(),
     };
@@ -78,8 +79,8 @@ fn line(name: &str, machine: &Machine, part: &Path, believed: Option<Machine>) {
         Ok(outcome) => outcome,
         Err(error) => return println!("{:<9} {name:<24} {error}", machine.name),
     };
-    let Some(text) = outcome.program else {
-        return println!("{:<9} {name:<24} not written: {}", machine.name, outcome.refusal.unwrap_or_default());
+    let Some(text) = outcome.program() else {
+        return println!("{:<9} {name:<24} not written: {}", machine.name, outcome.refusal.clone().unwrap_or_default());
     };
     let original = steps(part);
     let program: Vec<Step> = {
@@ -103,7 +104,7 @@ fn line(name: &str, machine: &Machine, part: &Path, believed: Option<Machine>) {
         is.time_s / was.time_s,
         was.blocks,
         is.blocks,
-        outcome.stretches[0],
+        outcome.stretches,
     );
 }
 

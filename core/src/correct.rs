@@ -23,13 +23,19 @@
 //! | `stretches.rs` | stretches without a corner, and all else |
 //! | `arc_fit.rs` | points to arcs and lines |
 //! | `exported.rs` | a program as the other control cuts it |
+//! | `slow_end.rs` | slow ways to where the tool would run over |
 //! | `command_update.rs` | a better command from the errors of a cut |
 //! | `stretch_cut.rs` | what each stretch comes to in a cut |
+//! | `budget.rs` | how many blocks and how much time a program may have |
 //! | `rounds.rs` | cut, change, fit, until it gets no better |
 //! | `block_words.rs` | motions and events as blocks |
 //! | `source_line.rs` | a line without its motion |
 //! | `program_text.rs` | the text |
 //! | `verified.rs` | what the text says when it is read again |
+//! | `outcome.rs` | what came of it, and whether it is to be used |
+//! | `advise.rs` | the feedrates at which a tolerance is held |
+//! | `advise/feed_cuts.rs` | a program at other feedrates |
+//! | `advise/page.rs` | its figure and its page |
 
 mod nominal;
 mod loop_lag;
@@ -38,36 +44,33 @@ mod source;
 mod stretches;
 pub(crate) mod arc_fit;
 pub mod exported;
+mod slow_end;
 mod command_update;
 mod stretch_cut;
+mod budget;
 mod rounds;
 mod block_words;
 mod source_line;
 mod program_text;
 mod verified;
+mod outcome;
+pub mod advise;
 
 use std::path::PathBuf;
 
-use crate::gcode::canon::Canon;
 use crate::gcode::{self, Settings};
-use crate::job::{JobError, axes_that_move};
+use crate::job_error::{JobError, axes_that_move};
 use crate::machine::Machine;
-use crate::path::Step;
 use crate::watch::Watch;
-use exported::{ExportedCut, ExportedFigures};
+use exported::ExportedCut;
 pub use nominal::deterministic;
+pub use outcome::CorrectOutcome;
+use outcome::{WrittenProgram, refusal};
 use program_text::TextParts;
 use rounds::{RoundsResult, rounds, steps_of};
 use source::SourceProgram;
 use stretches::{ProgramPart, assembled, parts, stretches};
 pub use target::{TARGETS, TargetControl};
-
-/// An RMS or a largest error that is less by no more than this part is no better.
-const LEAST_GAIN: f64 = 0.02;
-/// The largest error may grow by this, um: it is that of one moment, of cuts that differ by what disturbs them.
-const MAX_SLACK_UM: f64 = 0.5;
-/// The uncut path may grow by this, um: what the end of a program is off while the tool settles.
-const UNCUT_UM: f64 = 5.0;
 
 /// A program, a machine, and a control that the corrected program is for.
 #[derive(Debug, Clone)]
@@ -80,38 +83,10 @@ pub struct CorrectJob {
     pub believed: Option<Machine>,
     /// The control that the corrected program is for.
     pub target: &'static TargetControl,
+    /// Replaces every programmed feedrate, mm/s.
+    pub feed_mm_s: Option<f64>,
     /// Settings of the reader.
     pub reader: Settings,
-}
-
-/// What came of it.
-#[derive(Debug, Clone)]
-pub struct CorrectOutcome {
-    /// The original as the control cuts it.
-    pub original: ExportedFigures,
-    /// The corrected program as the control cuts it, read from its own text.
-    pub corrected: ExportedFigures,
-    /// The text of the corrected program, where it is better.
-    pub program: Option<String>,
-    /// Why there is none.
-    pub refusal: Option<String>,
-    /// Stretches, and those that have another command.
-    pub stretches: [usize; 2],
-    /// Whether loops and subroutines had to be written out.
-    pub expanded: bool,
-    /// Cuts that the correction was found in.
-    pub rounds: u32,
-    /// Longest rest that was put in, s.
-    pub dwell_s: f64,
-    /// What the reader warned of.
-    pub warnings: Vec<gcode::Diagnostic>,
-}
-
-/// A text and the path that it says.
-struct WrittenProgram {
-    text: String,
-    steps: Vec<Step>,
-    expanded: bool,
 }
 
 impl CorrectJob {
@@ -123,15 +98,11 @@ impl CorrectJob {
         watch.begin("reading the program", 1);
         let summary = gcode::check(&self.part, self.reader.clone())?;
         let axes = axes_that_move(&self.part, &summary, &self.machine)?;
-        let source = SourceProgram::read(&self.part, &self.reader)?;
+        let source = SourceProgram::read(&self.part, &self.reader, self.feed_mm_s)?;
         let path_error = |fault| JobError::Path { part: self.part.clone(), fault };
         let original = steps_of(&source.steps).map_err(path_error)?;
         let nominal = deterministic(self.believed.as_ref().unwrap_or(&self.machine));
-        let stages = self.target.stages(&self.machine);
-        if stages.planner.needs_axes && !self.machine.has_axis_limits() {
-            let (control, machine) = (self.target.name, self.machine.name.clone());
-            return Err(JobError::NoAxisLimits { control, machine });
-        }
+        let stages = self.target.suits(&self.machine)?;
         let on = |machine| ExportedCut { machine, stages, original: &original, axes, watch };
         let of_run = |error| JobError::of_run(&self.part, error);
         let parts = parts(&source.steps);
@@ -140,23 +111,24 @@ impl CorrectJob {
         let uncorrected = on(&self.machine).figures(&original).map_err(of_run)?;
         let written = self.written(&source, &parts, &found);
         watch.begin("cutting as exported", 1);
-        let corrected = match &written {
-            Some(written) => on(&self.machine).figures(&written.steps).map_err(of_run)?,
-            None => uncorrected,
-        };
+        let corrected =
+            written.as_ref().map(|written| on(&self.machine).figures(&written.steps).map_err(of_run)).transpose()?;
         let changed = found.commands.iter().flatten().count();
-        let refusal = self.refusal(&uncorrected, &corrected, written.is_some(), changed);
-        let expanded = written.as_ref().is_some_and(|written| written.expanded);
         Ok(CorrectOutcome {
+            control: self.target.name,
+            planner: stages.planner.name,
+            refusal: refusal(&uncorrected, corrected.as_ref(), changed),
             original: uncorrected,
-            corrected,
-            program: written.filter(|_| refusal.is_none()).map(|written| written.text),
-            refusal,
-            stretches: [stretches(&parts).count(), changed],
-            expanded,
+            corrected: corrected.unwrap_or(uncorrected),
+            stretches: stretches(&parts).count(),
+            stretches_changed: changed,
+            expanded: written.as_ref().is_some_and(|written| written.expanded),
             rounds: found.rounds,
             dwell_s: found.dwell_s,
             warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
+            written,
+            original_steps: original,
+            axes,
         })
     }
 
@@ -175,45 +147,12 @@ impl CorrectJob {
             let fits = text
                 .lines()
                 .all(|line| line.len() <= self.target.columns || source.lines.iter().any(|kept| kept == line));
-            let read: Vec<Canon> = verified::read(&text, &self.reader, source.dialect)?;
+            let (read, modes) = verified::read(&text, &self.reader, source.dialect)?;
             let steps = steps_of(&read).ok()?;
-            (fits && verified::same(&read, &wanted, step_mm)).then_some(WrittenProgram { text, steps, expanded })
+            let frames = verified::same_frames(read.iter().zip(&modes), source.steps_and_modes());
+            let same = fits && frames && verified::same(&read, &wanted, step_mm);
+            same.then_some(WrittenProgram { text, steps, expanded })
         };
         try_one(text.kept(), false).or_else(|| try_one(text.expanded(), true))
-    }
-
-    /// Why a program is not to be used.
-    fn refusal(
-        &self,
-        original: &ExportedFigures,
-        corrected: &ExportedFigures,
-        written: bool,
-        changed: usize,
-    ) -> Option<String> {
-        let ExportedFigures { rms_um, max_um, uncut_um, .. } = *corrected;
-        if changed == 0 {
-            return Some("no stretch of the program gets better by another command".to_owned());
-        }
-        if !written {
-            let kept =
-                "axes beside X, Y and Z, threads, probing, splines or lathe modes between loops or compensated motions";
-            return Some(format!("the corrected program cannot be written in blocks of the control: {kept}"));
-        }
-        if !corrected.completed {
-            return Some("the servo loop is unstable".to_owned());
-        }
-        let worse = |what: &str, was: f64, is: f64| {
-            Some(format!("{what} is {is:.2} um as exported, and {was:.2} um of the original"))
-        };
-        if rms_um > (1.0 - LEAST_GAIN) * original.rms_um {
-            return worse("the RMS error", original.rms_um, rms_um);
-        }
-        if max_um > (1.0 + LEAST_GAIN) * original.max_um + MAX_SLACK_UM {
-            return worse("the largest error", original.max_um, max_um);
-        }
-        if uncut_um > original.uncut_um + UNCUT_UM {
-            return worse("the uncut path", original.uncut_um, uncut_um);
-        }
-        None
     }
 }

@@ -5,19 +5,19 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `job/error.rs` | what can go wrong |
 //! | `job/assumed.rs` | what it assumes of its machine |
 //! | `job/files.rs` | the files that it writes, all of them or none |
+//! | `job/exported.rs` | the corrected program for a control without feedback |
 //! | `job/report.rs` | what the page shows |
 //! | `job/stored.rs` | how it is serialised |
 
-mod error;
 mod assumed;
 mod files;
+mod exported;
 mod report;
 mod stored;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::str::FromStr;
 
 use feedwright_control::Controller;
@@ -25,9 +25,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::blend::aligned::AlignedPaths;
 use crate::controllers::{Choices, Entry, Make, NothingIdentified, Setup};
+use crate::correct::{CorrectOutcome, TargetControl};
 use crate::fastest::{FastestError, FastestPlan, fastest, with_tolerance};
 use crate::gcode::canon::{Canon, MotionKind};
 use crate::gcode::{self, ReadError, Reader, Summary};
+pub use crate::job_error::JobError;
+use crate::job_error::axes_that_move;
 use crate::log::columns::Columns;
 use crate::log::{Log, LogFinding};
 use crate::machine::Machine;
@@ -39,7 +42,7 @@ use crate::report::harm::Harm;
 use crate::report::{Report, ReportedRun, RunFacts, Series, Statistics};
 use crate::trace::{Row, Sink};
 use crate::watch::{StageSteps, Watch};
-pub use error::JobError;
+pub use exported::AS_EXPORTED;
 pub use files::Outputs;
 use files::{Files, Timeline};
 
@@ -70,6 +73,9 @@ pub struct Job {
     pub model: Option<Model>,
     /// Largest contour error that is allowed, um.
     pub tolerance_um: Option<f64>,
+    /// The control that a program of `outputs.out` is for.
+    #[serde(with = "stored::target")]
+    pub target: &'static TargetControl,
     /// A program that errors are measured to, in place of the one that is cut.
     #[serde(default)]
     pub reference: Option<PathBuf>,
@@ -109,13 +115,16 @@ pub struct JobOutcome {
     pub without_identification: Vec<NothingIdentified>,
     /// What was guessed or noticed of the log.
     pub log_findings: Vec<LogFinding>,
+    /// The corrected program for another control, where one was asked for; its run is the last.
+    pub exported: Option<CorrectOutcome>,
     /// The plan of least time, where that was asked for.
     pub fastest: Option<FastestPlan>,
     /// In what the correction is worse than open loop; nothing where it is compared with something else.
     pub harm: Vec<Harm>,
     /// Whether the command of the controller was written, where that was asked for: it was cut to its end, and does no harm.
     pub is_of_use: bool,
-    /// Whether the last run was cut to its end and within the tolerance, where one was asked for.
+    /// Whether the last run was cut to its end and within the tolerance, where one was asked for, and a program that was asked for is better
+    /// than the original.
     pub within_tolerance: bool,
 }
 
@@ -172,17 +181,23 @@ impl Job {
             runs.insert(at, run);
             log_findings = findings;
         }
+        let exported = self.exported(watch)?.map(|(outcome, run)| {
+            runs.extend(run);
+            outcome
+        });
         watch.begin("writing", 1);
         let report = self.report(N, summary, runs, &without_identification);
         let (harm, is_of_use) = (self.harm(&report), self.is_of_use(&report));
-        let within_tolerance = self.within_tolerance(&report);
-        files.finish(self, &report, watch)?;
+        let exported_well = exported.as_ref().is_none_or(|outcome| outcome.refusal.is_none());
+        let within_tolerance = self.within_tolerance(&report) && exported_well;
+        files.finish(self, &report, exported.as_ref(), watch)?;
         let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
         Ok(JobOutcome {
             report,
             warnings,
             without_identification,
             log_findings,
+            exported,
             fastest,
             harm,
             is_of_use,
@@ -321,18 +336,6 @@ impl Job {
             }
             step
         }))
-    }
-}
-
-/// Two axes where the program stays in the XY plane and the third would only stand still.
-///
-/// # Errors
-/// A program that moves an axis that the machine does not have.
-pub(crate) fn axes_that_move(part: &Path, summary: &Summary, machine: &Machine) -> Result<usize, JobError> {
-    match (summary.moves[2], machine.axis_count()) {
-        (false, _) => Ok(2),
-        (true, 3..) => Ok(3),
-        (true, _) => Err(JobError::NoZ { part: part.to_owned(), machine: machine.name.clone() }),
     }
 }
 

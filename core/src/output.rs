@@ -8,10 +8,6 @@
 mod error;
 mod part_files;
 
-mod stab;
-mod polyline;
-pub mod gcode_writer;
-
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};

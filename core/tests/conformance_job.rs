@@ -8,6 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use feedwright::controllers::{BASELINE, BEST, CONTROLLERS, Choices, Entry, HORIZON, Make, Setting, Setup};
+use feedwright::correct::TARGETS;
 use feedwright::gcode::{Dialect, Increment, Settings};
 use feedwright::job::{Job, JobError, Outputs};
 use feedwright::machine::{BUILT_IN, Machine};
@@ -30,6 +31,7 @@ fn job(machine: &str, controller: &str) -> Job {
         choices: Choices::default(),
         model: None,
         tolerance_um: None,
+        target: &TARGETS[0],
         reference: None,
         fastest: false,
         reader: Settings::default(),
@@ -60,6 +62,7 @@ fn everything_that_can_be_asked_for_is_read_back() {
     full.feed_mm_s = Some(33.3);
     full.choices = Choices { seed: u64::MAX, set: vec![setting] };
     full.tolerance_um = Some(1.0 / 3.0);
+    full.target = &TARGETS[2];
     full.reader.dialect = Some(Dialect::FanucLathe);
     full.reader.increment = Some(Increment::named("0.0001inch").unwrap());
     full.inputs = vec!["a machine.toml".into()];

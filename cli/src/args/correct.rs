@@ -24,7 +24,7 @@ pub(crate) struct CorrectArgs {
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
     pub(crate) machine: OsString,
     /// Control that the corrected program is for: how it plans the speed, and what its blocks may hold.
-    #[arg(long = "for", value_name = "CONTROL", default_value = feedwright::correct::TARGETS[0].name, long_help = controls())]
+    #[arg(long = "for", value_name = "CONTROL", default_value = feedwright::correct::TARGETS[0].name, long_help = controls("Control that the corrected program is for: how it plans the speed, and what its blocks may hold."))]
     pub(crate) target: String,
     /// Place of the corrected program; it is written only where it is better than the original, else the exit code is 1.
     #[arg(long, value_name = "FILE.ngc")]
@@ -39,9 +39,8 @@ pub(crate) struct CorrectArgs {
     pub(crate) reader: ReaderArgs,
 }
 
-/// The controls of `--for`, one a line.
-fn controls() -> String {
+/// What `--for` is, and its controls, one a line.
+pub(super) fn controls(about: &str) -> String {
     let rows = feedwright::correct::TARGETS.iter().map(|target| format!("\n  {:<10} {}", target.name, target.about));
-    let about = "Control that the corrected program is for: how it plans the speed, and what its blocks may hold.";
     about.to_owned() + &rows.collect::<String>()
 }

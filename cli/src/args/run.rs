@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use super::correct::controls;
 use super::feed::feed_mm_s;
 use super::reader::ReaderArgs;
 
@@ -40,7 +41,7 @@ pub(crate) struct RunArgs {
     /// `feedwright controllers NAME` lists them.
     #[arg(long, value_name = "PARAMETER=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Largest contour error allowed, um: exit code 1 where it is exceeded.
+    /// Largest contour error allowed, um: exit code 1 where it is exceeded. Where --out is a program, that program decides.
     #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
     /// Measure errors and uncut path to this program in place of PART: what another program for the same part comes to.
@@ -55,9 +56,13 @@ pub(crate) struct RunArgs {
     /// Write all results as JSON.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
-    /// Write the corrected command: setpoints per servo period (.csv), or a program for another control (.ngc).
+    /// Write setpoints, the command of the controller's cut per servo period (.csv), or a corrected program for a control without feedback, as
+    /// `feedwright correct` does (.ngc). It is written only where it is better than without, else the exit code is 1.
     #[arg(long, value_name = "FILE.csv|FILE.ngc")]
     pub(crate) out: Option<PathBuf>,
+    /// Control that a program of --out is for [default: generic].
+    #[arg(long = "for", value_name = "CONTROL", requires = "out", long_help = controls("Control that a program of --out is for [default: generic]."))]
+    pub(crate) target: Option<String>,
     /// Place of the report [default: PART.report.html in the current folder].
     #[arg(long, value_name = "FILE.html")]
     pub(crate) report: Option<PathBuf>,

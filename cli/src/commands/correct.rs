@@ -5,22 +5,20 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use feedwright::correct::exported::ExportedFigures;
-use feedwright::correct::{CorrectJob, CorrectOutcome, TARGETS, TargetControl};
+use feedwright::correct::{CorrectJob, CorrectOutcome};
 use feedwright::machine::{Machine, is_path};
 use feedwright::output::{OutputFile, OutputFiles};
-use miette::{IntoDiagnostic, Result, miette};
-use serde_json::json;
+use miette::{IntoDiagnostic, Result};
+use serde_json::{Value, json};
 
 use crate::args::correct::CorrectArgs;
 use crate::console::Console;
+use crate::controls::{check_tolerance, control, print_correction};
 use crate::message::{OUT_OF_TOLERANCE, printed, warn};
 use crate::streams::{check_inputs, tables, tell_written};
 
-/// Largest tolerance that is no slip of the unit, um.
-const MAX_TOLERANCE_UM: f64 = 1e6;
-
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
-    let target = target(&args.target)?;
+    let target = control(&args.target)?;
     check_tolerance(args.tolerance)?;
     let machine_path = Path::new(&args.machine);
     let tools = args.reader.tool_table.as_deref();
@@ -29,12 +27,18 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
         [("the program", Some(args.part.as_path())), ("--machine", Some(machine_path)), ("--tool-table", tools)],
     )?;
     let machine = Machine::load(&args.machine)?;
-    let machine_file = Some(Path::new(&args.machine)).filter(|path| is_path(path));
-    let tool_table = args.reader.tool_table.as_deref();
-    let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tool_table].into_iter().flatten());
+    let machine_file = Some(machine_path).filter(|path| is_path(path));
+    let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tools].into_iter().flatten());
     let mut out = args.out.as_deref().map(|path| files.start(path)).transpose()?;
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
-    let job = CorrectJob { part: args.part.clone(), machine, believed: None, target, reader: args.reader.settings()? };
+    let job = CorrectJob {
+        part: args.part.clone(),
+        machine,
+        believed: None,
+        target,
+        feed_mm_s: None,
+        reader: args.reader.settings()?,
+    };
     let bar = console.bar(0);
     let outcome = job.run(&bar)?;
     bar.clear();
@@ -43,13 +47,14 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     }
     let within = args.tolerance.is_none_or(|tolerance_um| outcome.corrected.max_um <= tolerance_um);
     let mut complete = Vec::new();
-    match (&outcome.program, &mut out) {
+    match (outcome.program(), &mut out) {
         (Some(program), Some(file)) => file.write_all(program.as_bytes()).into_diagnostic()?,
         _ => out = None,
     }
     complete.extend(out);
     if let Some(mut file) = json {
-        serde_json::to_writer_pretty(&mut file, &results(args, &job, &outcome, within)).into_diagnostic()?;
+        serde_json::to_writer_pretty(&mut file, &results(args, &job, &outcome, within).into_diagnostic()?)
+            .into_diagnostic()?;
         writeln!(file).into_diagnostic()?;
         complete.push(file);
     }
@@ -59,70 +64,36 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     printed(print(args, &outcome, within), code)
 }
 
-fn target(name: &str) -> Result<&'static TargetControl> {
-    TargetControl::find(name).ok_or_else(|| {
-        let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
-        let near = feedwright::gcode::suggestion::nearest(name, &names);
-        let hint = near.map_or_else(String::new, |near| format!("did you mean '{near}'? "));
-        miette!(
-            help = format!("{hint}'{}' suits a control that is not listed", names[0]),
-            "--for: no control is called '{name}'; there are {}",
-            names.join(", ")
-        )
-    })
-}
-
-fn check_tolerance(tolerance_um: Option<f64>) -> Result<()> {
-    match tolerance_um {
-        Some(value) if !(value > 0.0 && value <= MAX_TOLERANCE_UM) => Err(miette!(
-            help = "the unit is um: 0.01 mm is --tolerance 10",
-            "--tolerance is {value} um; it must lie above 0 and up to {MAX_TOLERANCE_UM} um"
-        )),
-        _ => Ok(()),
-    }
-}
-
-fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, within: bool) -> serde_json::Value {
-    json!({
+/// The figures of a correction, and what was asked for.
+fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, within: bool) -> serde_json::Result<Value> {
+    let mut results = json!({
         "version": env!("CARGO_PKG_VERSION"),
         "part": args.part.display().to_string(),
         "machine": job.machine.name,
-        "control": job.target.name,
-        "planner": job.target.stages(&job.machine).planner.name,
         "tolerance_um": args.tolerance,
         "within_tolerance": within,
-        "written": outcome.program.is_some() && args.out.is_some(),
-        "refusal": outcome.refusal,
-        "original": outcome.original,
-        "as_exported": outcome.corrected,
-        "stretches": outcome.stretches[0],
-        "stretches_changed": outcome.stretches[1],
-        "expanded": outcome.expanded,
-        "rounds": outcome.rounds,
-        "dwell_s": outcome.dwell_s,
-    })
+        "written": outcome.program().is_some() && args.out.is_some(),
+    });
+    if let (Value::Object(all), Value::Object(figures)) = (&mut results, serde_json::to_value(outcome)?) {
+        all.extend(figures);
+    }
+    Ok(results)
 }
 
 fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io::Result<()> {
     let mut out = tables([args.out.as_deref(), args.json.as_deref()]);
-    let CorrectOutcome { original, corrected, stretches: [all, changed], rounds, .. } = outcome;
+    let CorrectOutcome { original, corrected, .. } = outcome;
     writeln!(out, "{:<18} {:>9} {:>10} {:>10} {:>10} {:>8}", "", "time s", "RMS um", "max um", "uncut um", "blocks")?;
     for (name, figures) in [("original", original), ("as exported", corrected)] {
         let ExportedFigures { rms_um, max_um, uncut_um, time_s, blocks, .. } = figures;
         writeln!(out, "{name:<18} {time_s:>9.3} {rms_um:>10.2} {max_um:>10.2} {uncut_um:>10.2} {blocks:>8}")?;
     }
     writeln!(out, "both cut open loop, as the control plans them; errors are those to the original path")?;
-    writeln!(out, "{changed} of {all} stretches have other blocks, found in {rounds} simulated cuts")?;
-    if outcome.expanded {
-        writeln!(out, "loops and subroutines are written out, in machine coordinates")?;
-    }
-    if let Some(refusal) = &outcome.refusal {
-        writeln!(out, "no corrected program: {refusal}")?;
-    }
+    print_correction(&mut *out, outcome)?;
     if let Some(tolerance_um) = args.tolerance {
         let verdict = if within { "within" } else { "out of" };
         writeln!(out, "{verdict} tolerance: max {:.2} um, allowed {tolerance_um} um", corrected.max_um)?;
     }
-    let written = args.out.as_deref().filter(|_| outcome.program.is_some());
+    let written = args.out.as_deref().filter(|_| outcome.program().is_some());
     tell_written(&mut *out, [written, args.json.as_deref()])
 }

@@ -6,16 +6,18 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright::controllers::Choices;
+use feedwright::correct::{TARGETS, TargetControl};
 use feedwright::fastest::FastestError;
 use feedwright::gcode::input::is_standard_input;
 use feedwright::job::{Job, JobError, LogFile, Outputs};
 use feedwright::machine::{self, Machine};
 use feedwright::model::Model;
-use miette::Result;
+use miette::{Result, miette};
 
 use crate::args::run::RunArgs;
 use crate::console::Console;
 use crate::controllers::{find, settings};
+use crate::controls::control;
 use crate::message::{OUT_OF_TOLERANCE, printed, remark, tell, warn};
 use crate::streams::{check_inputs, tables};
 
@@ -50,7 +52,8 @@ pub(crate) fn run(args: RunArgs, console: &Console) -> Result<ExitCode> {
         warn(remark.into());
     }
     outcome.log_findings.iter().for_each(|finding| remark(&finding.to_string()));
-    let is_good = outcome.within_tolerance && outcome.harm.is_empty();
+    // Where a program for another control was asked for, that program decides.
+    let is_good = outcome.within_tolerance && (outcome.harm.is_empty() || outcome.exported.is_some());
     let code = if is_good { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
     let Outputs { report, json, trace, out } = &job.outputs;
     let mut table = tables([report, json, trace, out].map(Option::as_deref));
@@ -60,6 +63,7 @@ pub(crate) fn run(args: RunArgs, console: &Console) -> Result<ExitCode> {
 fn job(args: RunArgs) -> Result<Job> {
     let report = args.report.unwrap_or_else(|| report_of(&args.part));
     let (controller, against) = (find(&args.controller)?, find(&args.against)?);
+    let target = target(args.target.as_deref(), args.out.as_deref())?;
     let set = settings(&args.set, Some(controller), &[controller, against])?;
     Ok(Job {
         machine: Machine::load(&args.machine)?,
@@ -70,6 +74,7 @@ fn job(args: RunArgs) -> Result<Job> {
         choices: Choices { seed: args.seed, set },
         model: args.model.as_deref().map(Model::read).transpose()?,
         tolerance_um: args.tolerance,
+        target,
         reference: args.reference.clone(),
         fastest: args.fastest,
         log: args.log.clone().map(|path| LogFile { path, columns: args.columns }),
@@ -85,6 +90,20 @@ fn job(args: RunArgs) -> Result<Job> {
         outputs: Outputs { report: Some(report), json: args.json, trace: args.trace, out: args.out },
         part: args.part,
     })
+}
+
+/// The control that a program is for; setpoints are for none.
+fn target(name: Option<&str>, out: Option<&Path>) -> Result<&'static TargetControl> {
+    match (name, out) {
+        (Some(_), Some(out)) if out.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) => {
+            Err(miette!(
+                help = "leave --for out, or write a program: --out FILE.ngc",
+                "--for is the control of a program, and {} is for setpoints",
+                out.display()
+            ))
+        }
+        (name, _) => name.map_or(Ok(&TARGETS[0]), control),
+    }
 }
 
 /// `parts/star.ngc` gives `star.report.html`, in the folder where the user is.

@@ -74,7 +74,7 @@ impl<'a> BlockWords<'a> {
             return Some(String::new());
         }
         if motion.kind == MotionKind::Feed {
-            let feed = number(motion.feed_mm_s * 60.0 / self.unit_mm(), FEED_DECIMALS);
+            let feed = feed_number(motion.feed_mm_s, self.unit_mm());
             if feed != self.feed {
                 let _ = write!(text, " F{feed}");
                 self.feed = feed;
@@ -82,6 +82,11 @@ impl<'a> BlockWords<'a> {
         }
         Some(text)
     }
+}
+
+/// A feedrate in units a minute.
+pub(super) fn feed_number(feed_mm_s: f64, unit_mm: f64) -> String {
+    number(feed_mm_s * 60.0 / unit_mm, FEED_DECIMALS)
 }
 
 /// A rest of so long.

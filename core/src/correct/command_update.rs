@@ -14,6 +14,7 @@ use std::ops::Range;
 use super::arc_fit::FitPoint;
 use super::exported::CutRow;
 use super::loop_lag::LoopLag;
+use super::slow_end::SlowEnd;
 use super::stretches::SmoothStretch;
 use crate::vector::{Vector, add_scaled, distance, norm, sub};
 
@@ -128,34 +129,6 @@ pub(super) fn new_command(
         slow.slow_down(&mut points);
     }
     Some(points)
-}
-
-/// A slow way to the end of a stretch, where the tool would run over it.
-///
-/// A drive with feedforward runs over by `a (T1^2 - T2)` where the command decelerates at `a` until it rests. No geometry takes that back; a last piece
-/// at a speed from which it brakes in a fraction of the loop's time constant does.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct SlowEnd {
-    /// Speed of the last piece, mm/s.
-    pub(super) speed_mm_s: f64,
-    /// Its length, mm.
-    pub(super) length_mm: f64,
-}
-
-impl SlowEnd {
-    fn slow_down(self, points: &mut [FitPoint]) {
-        let mut to_go_mm = 0.0;
-        for n in (0..points.len().saturating_sub(1)).rev() {
-            to_go_mm += distance(points[n].at_mm, points[n + 1].at_mm);
-            points[n].feed_mm_s = points[n].feed_mm_s.min(self.speed_mm_s);
-            if to_go_mm > self.length_mm {
-                break;
-            }
-        }
-        if let [.., before, last] = points {
-            last.feed_mm_s = before.feed_mm_s;
-        }
-    }
 }
 
 /// Points that are not too near to each other, with their tangents.

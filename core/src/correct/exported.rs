@@ -12,6 +12,7 @@ use crate::machine::Machine;
 use crate::path::Step;
 use crate::pipeline::{Run, RunError, Stages};
 use crate::report::Statistics;
+use crate::simulate::RunResult;
 use crate::trace::{Commanded, Outcome, Row, Sink};
 use crate::vector::{Vector, sub};
 use crate::watch::Watch;
@@ -34,6 +35,9 @@ pub struct ExportedFigures {
     pub blocks: u64,
     /// Whether the loop stayed stable.
     pub completed: bool,
+    /// Number of the cut with the largest error.
+    #[serde(skip)]
+    worst_phase: usize,
 }
 
 /// What a servo period of a cut tells of the command and the error.
@@ -42,8 +46,8 @@ pub(super) struct CutRow {
     pub(super) t_s: f64,
     /// Line of the motion under way; 0 in a rest.
     pub(super) line: u32,
-    /// Whether the command is in a feed motion.
-    pub(super) moves: bool,
+    /// What kind of motion the command is in.
+    pub(super) commanded: Commanded,
     /// Whether the tool is where the program cuts.
     pub(super) cutting: bool,
     pub(super) cmd_mm: Vector,
@@ -87,7 +91,7 @@ impl Sink for CutRows<'_> {
         self.rows.push(CutRow {
             t_s: row.t_s,
             line: if row.commanded == Commanded::Rest { 0 } else { row.line },
-            moves: row.commanded == Commanded::Cut,
+            commanded: row.commanded,
             cutting: row.cutting,
             cmd_mm: row.cmd_mm,
             error_mm: if row.cutting { sub(row.foot_mm, row.act_mm) } else { [0.0; 3] },
@@ -96,6 +100,18 @@ impl Sink for CutRows<'_> {
         });
         Ok(())
     }
+}
+
+/// The machine of one cut, and how long it rests before.
+pub(super) struct CutPhase {
+    pub(super) machine: Machine,
+    pub(super) wait_s: f64,
+}
+
+/// A program behind a rest.
+pub(super) fn waited(program: &[Step], wait_s: f64) -> Vec<Step> {
+    let wait = Step::Event(Event { line: 0, kind: EventKind::Dwell { seconds: wait_s } });
+    std::iter::once(wait).chain(program.iter().cloned()).collect()
 }
 
 /// Motions of a path; an arc of more than half a turn counts as it is planned.
@@ -123,25 +139,49 @@ impl ExportedCut<'_> {
     /// # Errors
     /// A machine without sensible limits, or an end from outside.
     pub fn figures(&self, program: &[Step]) -> Result<ExportedFigures, RunError> {
-        let disturbs = self.machine.axes.iter().any(|axis| axis.disturbance_nm > 0.0);
-        let cuts = if disturbs || self.machine.is_noisy() { CUTS } else { 1 };
-        let slowest_hz = self.machine.axes.iter().map(|axis| axis.disturbance_hz).fold(f64::INFINITY, f64::min);
-        let mut figures = ExportedFigures { completed: true, ..ExportedFigures::default() };
-        figures.blocks = pieces(program);
+        let mut figures = ExportedFigures { completed: true, blocks: pieces(program), ..ExportedFigures::default() };
+        let phases = self.phases();
         let mut square_sum_um2 = 0.0;
-        for cut in 0..cuts {
-            let part = f64::from(cut) / f64::from(cuts);
-            let wait_s = if disturbs && slowest_hz > 0.0 { part / slowest_hz } else { 0.0 };
-            let machine = self.machine.with_noise_seed(self.machine.noise.seed.wrapping_add(u64::from(cut)));
-            let now = ExportedCut { machine: &machine, ..*self }.once(program, wait_s)?;
+        for (phase, CutPhase { machine, wait_s }) in phases.iter().enumerate() {
+            let now = ExportedCut { machine, ..*self }.once(program, *wait_s)?;
             square_sum_um2 += now.rms_um * now.rms_um;
-            figures.max_um = figures.max_um.max(now.max_um);
+            if now.max_um > figures.max_um {
+                (figures.max_um, figures.worst_phase) = (now.max_um, phase);
+            }
             figures.uncut_um = figures.uncut_um.max(now.uncut_um);
             figures.completed &= now.completed;
             figures.time_s = now.time_s;
         }
-        figures.rms_um = (square_sum_um2 / f64::from(cuts)).sqrt();
+        figures.rms_um = (square_sum_um2 / phases.len() as f64).sqrt();
         Ok(figures)
+    }
+
+    /// What differs from cut to cut.
+    pub(super) fn phases(&self) -> Vec<CutPhase> {
+        let disturbs = self.machine.axes.iter().any(|axis| axis.disturbance_nm > 0.0);
+        let cuts = if disturbs || self.machine.is_noisy() { CUTS } else { 1 };
+        let slowest_hz = self.machine.axes.iter().map(|axis| axis.disturbance_hz).fold(f64::INFINITY, f64::min);
+        let phase = |cut: u32| {
+            let part = f64::from(cut) / f64::from(cuts);
+            let wait_s = if disturbs && slowest_hz > 0.0 { part / slowest_hz } else { 0.0 };
+            CutPhase { machine: self.machine.with_noise_seed(self.machine.noise.seed.wrapping_add(cut.into())), wait_s }
+        };
+        (0..cuts).map(phase).collect()
+    }
+
+    /// The cut of a program that has the largest error of all that its figures are of.
+    pub(crate) fn worst(
+        &self,
+        program: &[Step],
+        figures: &ExportedFigures,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        match self.phases().get(figures.worst_phase) {
+            Some(CutPhase { machine, wait_s }) => {
+                ExportedCut { machine, ..*self }.cut(&waited(program, *wait_s), sinks)
+            }
+            None => self.cut(program, sinks),
+        }
     }
 
     /// What one cut comes to, after a rest; its time is that without the rest.
@@ -149,10 +189,8 @@ impl ExportedCut<'_> {
     /// # Errors
     /// As [`ExportedCut::figures`].
     pub fn once(&self, program: &[Step], wait_s: f64) -> Result<ExportedFigures, RunError> {
-        let wait = Step::Event(Event { line: 0, kind: EventKind::Dwell { seconds: wait_s } });
-        let waited: Vec<Step> = std::iter::once(wait).chain(program.iter().cloned()).collect();
         let mut statistics = Statistics::new();
-        let run = self.cut(&waited, &mut statistics)?;
+        let run = self.cut(&waited(program, wait_s), &mut [&mut statistics])?;
         Ok(ExportedFigures {
             rms_um: statistics.rms_um(),
             max_um: statistics.max_um(),
@@ -160,16 +198,17 @@ impl ExportedCut<'_> {
             time_s: run.time_s - wait_s,
             blocks: pieces(program),
             completed: run.outcome == Outcome::Completed,
+            worst_phase: 0,
         })
     }
 
-    /// Cuts a program once; the rows go to a sink.
-    pub(super) fn cut(&self, program: &[Step], sink: &mut dyn Sink) -> Result<crate::simulate::RunResult, RunError> {
+    /// Cuts a program once; the rows go to sinks.
+    pub(super) fn cut(&self, program: &[Step], sinks: &mut [&mut dyn Sink]) -> Result<RunResult, RunError> {
         let aligned = AlignedPaths::new(self.original, program);
         let run = Run::on(self.machine).stages(self.stages).watched(self.watch);
         match self.axes {
-            2 => run.cut_aligned::<2>(&aligned, &mut OpenLoop, &mut [sink]),
-            _ => run.cut_aligned::<3>(&aligned, &mut OpenLoop, &mut [sink]),
+            2 => run.cut_aligned::<2>(&aligned, &mut OpenLoop, sinks),
+            _ => run.cut_aligned::<3>(&aligned, &mut OpenLoop, sinks),
         }
     }
 }

@@ -4,11 +4,13 @@
 //! stretch whose command gets no better is left alone. One that is cut within [`GOOD_MM`] from the start stays as it is programmed.
 
 use super::arc_fit::{ArcFit, FitMotion};
-use super::command_update::{SlowEnd, UpdateSettings, new_command};
+use super::budget::{StretchBudget, StretchCost, details_to_give_up};
+use super::command_update::{UpdateSettings, new_command};
 use super::exported::{CutRow, CutRows, ExportedCut};
 use super::loop_lag::{LoopLag, loop_lags};
-use super::stretch_cut::{StretchCut, by_stretch, overshoot_mm};
-use super::stretches::{ProgramPart, SmoothStretch, StretchCommand, assembled, stretches};
+use super::slow_end::{SlowEnd, slow_approach, slow_end};
+use super::stretch_cut::{StretchCut, by_stretch, overshoot_mm, rapid_overshoot_mm};
+use super::stretches::{NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, rest_s, stretches};
 use super::target::TargetControl;
 use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind};
 use crate::machine::Machine;
@@ -26,39 +28,20 @@ const CHECKS: u32 = 4;
 const LEAST_GAIN: f64 = 0.02;
 /// A stretch whose largest error is less stays as it is, mm: what blocks that fit a command miss it by.
 const GOOD_MM: f64 = 1e-3;
-/// A stretch may take longer by this part, and by so many dwells.
-const MORE_TIME: f64 = 0.05;
-const MORE_DWELLS: f64 = 1.5;
 /// Distance of blocks from the command, mm, and whether they may be many: the first at which they are few enough.
 const TOLERANCES_MM: [(f64, bool); 4] = [(1e-3, false), (2e-3, false), (1e-3, true), (4e-3, true)];
-/// A stretch may have more blocks than programmed by this factor, and by so many a second, within these bounds.
-const FEW_BLOCKS: f64 = 1.15;
-const FEW_MORE_1_S: f64 = 16.0;
-const FEW_MORE: [f64; 2] = [4.0, 28.0];
-/// Many blocks are so many times those that are programmed, or so many a second and a few, of a stretch that is no detail: one that takes so
-/// long, s.
-const MANY_BLOCKS: f64 = 10.0;
-const MANY_1_S: f64 = 40.0;
-const MANY_MORE: f64 = 20.0;
-const DETAIL_S: f64 = 0.25;
-/// A program may have more blocks by this factor, by so many, and by so many for each stretch that is no detail.
-const PROGRAM_BLOCKS: f64 = 1.15;
-const PROGRAM_MORE: f64 = 30.0;
-const STRETCH_MORE: f64 = 15.0;
-/// It may take longer by this part, and by so many dwells for each stretch that is no detail.
-const PROGRAM_TIME: f64 = 0.035;
-/// Standard deviations of the Gaussians over errors and over the command, s.
-const SMOOTHING_S: f64 = 0.003;
-const COMMAND_SMOOTHING_S: f64 = 0.009;
+/// Where blocks are few enough so, they are finer: by this part of the RMS error that they are to correct, and no less than this, mm.
+const FIT_SHARE: f64 = 0.1;
+const FINEST_MM: f64 = 2e-4;
+/// Standard deviations of the Gaussians over errors and over the command, time constants of the position loop.
+const SMOOTHING: f64 = 0.15;
+const COMMAND_SMOOTHING: f64 = 0.45;
 /// Time in which a change fades at the ends of a stretch, s.
 const FADE_S: f64 = 0.01;
 /// Least distance of points that blocks are fitted to, mm.
 const LEAST_MM: f64 = 0.01;
-/// A tool that runs over the end of a stretch by more goes there slowly, mm.
+/// A tool that runs over the end of a stretch, or of the rapid to it, by more goes there slowly, mm.
 const OVERSHOOT_MM: f64 = 2e-3;
-/// Time constants of the loop in which it brakes from there, and that the slow way takes.
-const BRAKES_IN: f64 = 0.25;
-const SETTLES_IN: f64 = 3.0;
 /// A dwell is three lags of the loop and five of its time constants, within these bounds, s.
 const DWELL_TIME_CONSTANTS: f64 = 5.0;
 const DWELL_LAGS: f64 = 3.0;
@@ -81,12 +64,15 @@ struct StretchRounds {
     /// Figure and time, s, of the best; those of the programmed command first.
     best_mm: f64,
     best_s: f64,
-    programmed_s: f64,
+    budget: StretchBudget,
     programmed_max_mm: f64,
+    /// Distance of blocks from the command that is small beside what they are to correct, mm.
+    tolerance_mm: f64,
     /// Sum of the squares of its errors, of the programmed command and of the best, mm2.
     square_sums_mm2: [f64; 2],
     since: u32,
     slow_end: Option<SlowEnd>,
+    slow_rapid: Option<SlowEnd>,
     done: bool,
 }
 
@@ -112,9 +98,9 @@ pub(super) fn rounds(
     let settings = settings(cut.machine);
     let mut progress = StageSteps::begin(cut.watch, "correcting");
     let bench = RoundsBench { cut, parts, target, lags, settings, dwell_s, count: stretches(parts).count() };
-    let (cuts, _) = bench.cut(&vec![None; bench.count])?;
-    let begun = |(stretch, cut)| StretchRounds::new(stretch, cut, settings.servo_s);
-    let mut under_way: Vec<StretchRounds> = stretches(parts).zip(&cuts).map(begun).collect();
+    let (cuts, rows) = bench.cut(&vec![None; bench.count])?;
+    let mut under_way: Vec<StretchRounds> =
+        stretches(parts).zip(&cuts).map(|(stretch, cut)| bench.begun(stretch, cut, &rows)).collect();
     let mut round = 1;
     while round <= ROUNDS && under_way.iter().any(|stretch| !stretch.done) {
         let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.current.clone()).collect();
@@ -126,7 +112,7 @@ pub(super) fn rounds(
         round += 1;
         progress.reach(f64::from(round) / f64::from(ROUNDS + CHECKS));
     }
-    give_up_details(&mut under_way, parts, dwell_s);
+    bench.give_up_details(&mut under_way);
     let checks = bench.give_up_what_is_worse(&mut under_way)?;
     let commands = under_way.into_iter().map(|stretch| stretch.best).collect();
     Ok(RoundsResult { commands, dwell_s, rounds: round + checks })
@@ -148,8 +134,37 @@ impl RoundsBench<'_> {
     fn cut(&self, commands: &[StretchCommand]) -> Result<(Vec<StretchCut>, Vec<CutRow>), RunError> {
         let steps = steps_of(&assembled(self.parts, commands, self.dwell_s))?;
         let mut kept = CutRows::new(self.cut.original);
-        self.cut.cut(&steps, &mut kept)?;
+        self.cut.cut(&steps, &mut [&mut kept])?;
         Ok((by_stretch(&kept.rows, self.count), kept.rows))
+    }
+
+    /// From the cut of the program as it is.
+    fn begun(&self, stretch: &SmoothStretch, cut: &StretchCut, rows: &[CutRow]) -> StretchRounds {
+        let servo_s = self.settings.servo_s;
+        let overruns = rapid_overshoot_mm(rows, cut, stretch, servo_s) > OVERSHOOT_MM;
+        let slow_rapid = overruns.then(|| slow_end(self.cut.machine));
+        let approach = slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
+        let done = cut.max_mm < GOOD_MM || cut.rows.is_empty();
+        let time_s = f64::from(cut.periods) * servo_s;
+        let programmed = NewMotions { motions: stretch.motions.clone(), approach, settles: false };
+        StretchRounds {
+            current: (!done).then_some(programmed),
+            best: None,
+            best_mm: cut.figure_mm(),
+            best_s: time_s,
+            budget: StretchBudget {
+                time_s,
+                blocks: stretch.motions.len(),
+                loop_s: 1.0 / self.cut.machine.slowest_kp_1_s(),
+            },
+            programmed_max_mm: cut.max_mm,
+            tolerance_mm: (FIT_SHARE * cut.rms_mm()).clamp(FINEST_MM, TOLERANCES_MM[0].0),
+            square_sums_mm2: [cut.square_sum_mm2; 2],
+            since: 0,
+            slow_end: None,
+            slow_rapid,
+            done,
+        }
     }
 
     /// New commands for those that are not done.
@@ -160,12 +175,16 @@ impl RoundsBench<'_> {
                 continue;
             }
             if overshoot_mm(rows, cut, stretch, settings.servo_s) > OVERSHOOT_MM {
-                state.slow_end = Some(slow_end);
+                state.slow_end = Some(state.slow_end.map_or(slow_end, SlowEnd::slower));
+            }
+            if rapid_overshoot_mm(rows, cut, stretch, settings.servo_s) > OVERSHOOT_MM {
+                state.slow_rapid = Some(state.slow_rapid.map_or(slow_end, SlowEnd::slower));
             }
             let points = new_command(rows, cut.rows.clone(), &self.lags, stretch, settings, state.slow_end);
-            let most = state.most_blocks(stretch);
+            let most = state.budget.most_blocks();
             let fitted = points.and_then(|points| {
-                TOLERANCES_MM.iter().find_map(|&(tolerance_mm, many)| {
+                let finest = [(state.tolerance_mm, false)];
+                finest.iter().chain(&TOLERANCES_MM).find_map(|&(tolerance_mm, many)| {
                     let motions = ArcFit::new(&points, tolerance_mm, self.target.steps_per_mm()).motions();
                     let few_enough = !motions.is_empty() && motions.len() as f64 <= most[usize::from(many)];
                     few_enough.then_some(motions)
@@ -173,11 +192,22 @@ impl RoundsBench<'_> {
             });
             match fitted {
                 Some(motions) => {
-                    state.current =
-                        Some(motions.into_iter().map(|motion| as_motion(motion, stretch, self.target)).collect());
+                    let motions = motions.into_iter().map(|motion| as_motion(motion, stretch, self.target)).collect();
+                    let approach = state.slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
+                    state.current = Some(NewMotions { motions, approach, settles: state.slow_end.is_some() });
                 }
                 None => state.finish(),
             }
+        }
+    }
+
+    /// Takes details back to what they were until the program has few enough blocks and is fast enough.
+    fn give_up_details(&self, under_way: &mut [StretchRounds]) {
+        let dwell_s = self.dwell_s;
+        let kept = |part: &&ProgramPart| matches!(part, ProgramPart::Kept(Canon::Motion(_)));
+        let costs: Vec<StretchCost> = under_way.iter().map(|stretch| stretch.cost(dwell_s)).collect();
+        for k in details_to_give_up(&costs, self.parts.iter().filter(kept).count(), dwell_s) {
+            under_way[k].best = None;
         }
     }
 
@@ -206,17 +236,11 @@ impl RoundsBench<'_> {
     }
 }
 
-/// A way to the end that is so slow that it brakes in a part of the loop's time constant, and as long as that takes to settle.
-fn slow_end(machine: &Machine) -> SlowEnd {
-    let slowest_s = 1.0 / machine.slowest_kp_1_s();
-    let speed_mm_s = machine.limits.tangential_accel_mm_s2 * BRAKES_IN * slowest_s;
-    SlowEnd { speed_mm_s, length_mm: speed_mm_s * SETTLES_IN * slowest_s }
-}
-
 fn settings(machine: &Machine) -> UpdateSettings {
+    let slowest_s = 1.0 / machine.slowest_kp_1_s();
     UpdateSettings {
-        smoothing_s: SMOOTHING_S,
-        command_smoothing_s: COMMAND_SMOOTHING_S,
+        smoothing_s: SMOOTHING * slowest_s,
+        command_smoothing_s: COMMAND_SMOOTHING * slowest_s,
         fade_s: FADE_S,
         least_mm: LEAST_MM,
         most_mm: machine.limits.max_deviation_mm,
@@ -225,20 +249,15 @@ fn settings(machine: &Machine) -> UpdateSettings {
 }
 
 impl StretchRounds {
-    /// From the cut of the program as it is.
-    fn new(stretch: &SmoothStretch, cut: &StretchCut, servo_s: f64) -> Self {
-        let done = cut.max_mm < GOOD_MM || cut.rows.is_empty();
-        Self {
-            current: (!done).then(|| stretch.motions.clone()),
-            best: None,
-            best_mm: cut.figure_mm(),
-            best_s: f64::from(cut.periods) * servo_s,
-            programmed_s: f64::from(cut.periods) * servo_s,
-            programmed_max_mm: cut.max_mm,
-            square_sums_mm2: [cut.square_sum_mm2; 2],
-            since: 0,
-            slow_end: None,
-            done,
+    /// What its best command costs and gains.
+    fn cost(&self, dwell_s: f64) -> StretchCost {
+        let Self { best, budget, .. } = self;
+        let Some(best) = best else { return StretchCost { budget: *budget, blocks: 0.0, time_s: 0.0, gain_mm2: None } };
+        StretchCost {
+            budget: *budget,
+            blocks: best.motions.len() as f64 - budget.blocks as f64 + 1.0,
+            time_s: self.best_s - budget.time_s + rest_s(best.settles, dwell_s),
+            gain_mm2: Some(self.square_sums_mm2[0] - self.square_sums_mm2[1]),
         }
     }
 
@@ -249,7 +268,7 @@ impl StretchRounds {
         }
         let (figure_mm, time_s) = (cut.figure_mm(), f64::from(cut.periods) * servo_s);
         let slow_s = self.slow_end.map_or(0.0, |slow| slow.length_mm / slow.speed_mm_s);
-        let most_s = (1.0 + MORE_TIME) * self.programmed_s + MORE_DWELLS * dwell_s + slow_s;
+        let most_s = self.budget.most_s(dwell_s) + slow_s;
         let better = figure_mm < self.best_mm && time_s < most_s;
         self.since = if better && figure_mm < (1.0 - LEAST_GAIN) * self.best_mm { 0 } else { self.since + 1 };
         if better {
@@ -261,58 +280,9 @@ impl StretchRounds {
         }
     }
 
-    /// How many blocks count as few, and how many it may have at all.
-    fn most_blocks(&self, stretch: &SmoothStretch) -> [f64; 2] {
-        let programmed = stretch.motions.len() as f64;
-        let few = FEW_BLOCKS * programmed + (FEW_MORE_1_S * self.programmed_s).clamp(FEW_MORE[0], FEW_MORE[1]);
-        let many = (MANY_BLOCKS * programmed).max(MANY_1_S * self.programmed_s + MANY_MORE);
-        [few, if self.is_detail() { few } else { few.max(many) }]
-    }
-
-    fn is_detail(&self) -> bool {
-        self.programmed_s < DETAIL_S
-    }
-
     fn finish(&mut self) {
         self.done = true;
         self.current.clone_from(&self.best);
-    }
-}
-
-/// Takes details back to what they were, those with the least gain for a block first, until the program has few enough blocks and is fast enough.
-fn give_up_details(under_way: &mut [StretchRounds], parts: &[ProgramPart], dwell_s: f64) {
-    let programmed: Vec<f64> = stretches(parts).map(|stretch| stretch.motions.len() as f64).collect();
-    let kept = parts.iter().filter(|part| matches!(part, ProgramPart::Kept(Canon::Motion(_)))).count() as f64;
-    let larger = under_way.iter().filter(|stretch| !stretch.is_detail()).count() as f64;
-    let all = kept + programmed.iter().sum::<f64>();
-    let programmed_s: f64 = under_way.iter().map(|stretch| stretch.programmed_s).sum();
-    let mut room = PROGRAM_BLOCKS * all + PROGRAM_MORE + STRETCH_MORE * larger - all;
-    let mut room_s = PROGRAM_TIME * programmed_s + MORE_DWELLS * dwell_s * (1.0 + larger);
-    // What each costs in blocks and time, a dwell included.
-    let costs: Vec<[f64; 2]> = under_way
-        .iter()
-        .zip(&programmed)
-        .map(|(stretch, programmed)| match &stretch.best {
-            Some(best) => [best.len() as f64 - programmed + 1.0, stretch.best_s - stretch.programmed_s + dwell_s],
-            None => [0.0; 2],
-        })
-        .collect();
-    for [blocks, more_s] in &costs {
-        (room, room_s) = (room - blocks, room_s - more_s);
-    }
-    let gain = |stretch: &StretchRounds| stretch.square_sums_mm2[0] - stretch.square_sums_mm2[1];
-    let mut order: Vec<usize> =
-        (0..under_way.len()).filter(|&k| under_way[k].best.is_some() && under_way[k].is_detail()).collect();
-    order.sort_by(|&a, &b| {
-        let worth = |k: usize| gain(&under_way[k]) / costs[k][0].max(1.0);
-        worth(a).total_cmp(&worth(b))
-    });
-    for k in order {
-        if room >= 0.0 && room_s >= 0.0 {
-            break;
-        }
-        (room, room_s) = (room + costs[k][0], room_s + costs[k][1]);
-        under_way[k].best = None;
     }
 }
 

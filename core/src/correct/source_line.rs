@@ -67,6 +67,26 @@ impl PartedLine {
             .any(|(letter, number)| *letter == 'G' && (Self::is_motion(number) || Self::takes_axes(number)))
     }
 
+    /// The words that say what coordinates mean, as text; none where it has none. Offsets and rotations come with all of their words, all else alone.
+    pub(super) fn frame_words(&self) -> Option<String> {
+        let codes = |wanted: fn(f64) -> bool| {
+            let is =
+                move |(letter, number): &&(char, String)| *letter == 'G' && number.parse::<f64>().is_ok_and(wanted);
+            self.words.iter().filter(is).map(|(letter, number)| format!("{letter}{number}")).collect::<Vec<_>>()
+        };
+        let with_axes = codes(|code| [10.0, 52.0, 68.0, 92.0, 92.1, 92.2, 92.3].contains(&code));
+        let alone = codes(|code| (54.0..60.0).contains(&code) || (43.0..50.0).contains(&code) || code == 69.0);
+        let of_code = |(letter, number): &(char, String)| match letter {
+            'G' | 'N' | 'F' | 'S' | 'T' | 'M' => None,
+            'H' => Some(format!("H{number}")),
+            _ if with_axes.is_empty() => None,
+            _ => Some(format!("{letter}{number}")),
+        };
+        let words = self.words.iter().filter_map(of_code);
+        let all: Vec<String> = with_axes.iter().chain(&alone).cloned().chain(words).collect();
+        (!with_axes.is_empty() || !alone.is_empty()).then(|| all.join(" "))
+    }
+
     fn is_motion(number: &str) -> bool {
         number.parse::<f64>().is_ok_and(|code| [0.0, 1.0, 2.0, 3.0].contains(&code))
     }
@@ -79,6 +99,41 @@ impl PartedLine {
                 || (73.0..90.0).contains(&code)
         })
     }
+}
+
+/// A line with one word more behind its words.
+pub(super) fn with_word(line: &str, word: &str) -> String {
+    let words = line.find(['(', ';']).unwrap_or(line.len());
+    let (before, behind) = line.split_at(words);
+    let gap = if behind.is_empty() { "" } else { " " };
+    format!("{} {word}{gap}{behind}", before.trim_end())
+}
+
+/// A line with another F word in place of each; comments stay.
+pub(super) fn with_feed(line: &str, feed: &str) -> String {
+    let (mut text, mut rest) = (String::new(), line);
+    while let Some(first) = rest.chars().next() {
+        let end = match first {
+            '(' => rest.find(')').map_or(rest.len(), |end| end + 1),
+            ';' => rest.len(),
+            'f' | 'F' => {
+                let value = rest[1..].trim_start();
+                let is_number = |c: char| c.is_ascii_digit() || c == '.';
+                let digits = value.find(|c: char| !is_number(c)).unwrap_or(value.len());
+                if digits > 0 {
+                    text.push('F');
+                    text.push_str(feed);
+                    rest = &value[digits..];
+                    continue;
+                }
+                1
+            }
+            _ => first.len_utf8(),
+        };
+        text.push_str(&rest[..end]);
+        rest = &rest[end..];
+    }
+    text
 }
 
 #[cfg(test)]
@@ -95,5 +150,19 @@ mod tests {
         for refused in ["#1=5", "G1 X[1+2]", "/G1 X1", "o100 call", "G1 X#5", "%"] {
             assert_eq!(PartedLine::parse(refused), None, "{refused}");
         }
+    }
+
+    #[test]
+    fn a_feed_is_replaced_and_comments_stay() {
+        assert_eq!(with_feed("N1 G1 X1 F 300.5 (F3) Y2 ; F1", "50.0"), "N1 G1 X1 F50.0 (F3) Y2 ; F1");
+        assert_eq!(with_feed("g1x1f300", "50.0"), "g1x1F50.0");
+        assert_eq!(with_feed("G1 F#1", "50.0"), "G1 F#1");
+        assert_eq!(with_word("G1 X1 (to)", "F50.0"), "G1 X1 F50.0 (to)");
+        assert_eq!(with_word("X1", "F50.0"), "X1 F50.0");
+        let frame = |line: &str| PartedLine::parse(line).unwrap().frame_words();
+        assert_eq!(frame("N5 G0 G55 X1 Y2").as_deref(), Some("G55"));
+        assert_eq!(frame("G43 H2 Z5 M3").as_deref(), Some("G43 H2"));
+        assert_eq!(frame("G10 L2 P1 X5 (here)").as_deref(), Some("G10 L2 P1 X5"));
+        assert_eq!(frame("G1 X5"), None);
     }
 }

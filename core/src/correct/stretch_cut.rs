@@ -4,7 +4,8 @@ use std::ops::Range;
 
 use super::exported::CutRow;
 use super::stretches::SmoothStretch;
-use crate::vector::{dot, norm};
+use crate::trace::Commanded;
+use crate::vector::{dot, norm, sub};
 
 /// Weight of the largest error beside the RMS.
 const MAX_WEIGHT: f64 = 0.3;
@@ -26,10 +27,14 @@ pub(super) struct StretchCut {
 }
 
 impl StretchCut {
+    /// RMS of its errors, mm.
+    pub(super) fn rms_mm(&self) -> f64 {
+        if self.cutting == 0 { 0.0 } else { (self.square_sum_mm2 / f64::from(self.cutting)).sqrt() }
+    }
+
     /// One figure of it, mm.
     pub(super) fn figure_mm(&self) -> f64 {
-        let rms_mm = if self.cutting == 0 { 0.0 } else { (self.square_sum_mm2 / f64::from(self.cutting)).sqrt() };
-        rms_mm + MAX_WEIGHT * self.max_mm
+        self.rms_mm() + MAX_WEIGHT * self.max_mm
     }
 }
 
@@ -42,28 +47,51 @@ pub(super) fn overshoot_mm(rows: &[CutRow], cut: &StretchCut, stretch: &SmoothSt
     near.iter().map(|row| -dot(row.error_mm, direction)).fold(0.0, f64::max)
 }
 
-/// Rows and errors of each stretch; what the tool still does when the command has gone on belongs to it, until the next begins.
+/// How far the tool runs over the end of the rapid that leads to a stretch, mm.
+pub(super) fn rapid_overshoot_mm(rows: &[CutRow], cut: &StretchCut, stretch: &SmoothStretch, servo_s: f64) -> f64 {
+    let Some((_, rapid)) = &stretch.rapid else { return 0.0 };
+    let way = sub(rapid.end_mm, rapid.start_mm);
+    let to = cut.rows.start + (AROUND_END_S / servo_s) as usize;
+    let from = rows[..cut.rows.start].iter().rposition(|row| row.commanded == Commanded::Rapid).unwrap_or(0);
+    let near = &rows[from..to.min(rows.len())];
+    near.iter().map(|row| -dot(row.error_mm, way) / norm(way)).fold(0.0, f64::max)
+}
+
+/// Rows and errors of each stretch. What the tool still does when the command has gone on belongs to it, until the next begins; what it does at
+/// the end of a rapid belongs to the stretch that the rapid leads to.
 pub(super) fn by_stretch(rows: &[CutRow], count: usize) -> Vec<StretchCut> {
     let mut cuts = vec![StretchCut::default(); count];
-    let mut last = None;
+    let (mut last, mut behind_rapid) = (None, None);
     for (n, row) in rows.iter().enumerate() {
-        if row.moves {
-            last = (row.line as usize).checked_sub(1);
-            if let Some(cut) = last.and_then(|last| cuts.get_mut(last)) {
-                let from = if cut.rows.is_empty() { n } else { cut.rows.start };
-                cut.rows = from..n + 1;
+        match row.commanded {
+            Commanded::Cut => {
+                let number = (row.line as usize).checked_sub(1);
+                if let Some(cut) = number.and_then(|number| cuts.get_mut(number)) {
+                    let from = if cut.rows.is_empty() { n } else { cut.rows.start };
+                    cut.rows = from..n + 1;
+                    cut.periods += 1;
+                    behind_rapid.take().into_iter().for_each(|from| rows[from..n].iter().for_each(|row| cut.take(row)));
+                }
+                last = number;
             }
+            Commanded::Rapid => (last, behind_rapid) = (None, Some(n)),
+            Commanded::Rest => {}
         }
-        let Some(cut) = last.and_then(|last| cuts.get_mut(last)) else { continue };
-        if row.moves {
-            cut.periods += 1;
-        }
-        if row.cutting {
-            let error_mm = norm(row.error_mm);
-            cut.square_sum_mm2 += error_mm * error_mm;
-            cut.max_mm = cut.max_mm.max(error_mm);
-            cut.cutting += 1;
+        if let Some(cut) = last.and_then(|last| cuts.get_mut(last)) {
+            cut.take(row);
         }
     }
     cuts
+}
+
+impl StretchCut {
+    /// Takes in the error of a row.
+    fn take(&mut self, row: &CutRow) {
+        if row.cutting {
+            let error_mm = norm(row.error_mm);
+            self.square_sum_mm2 += error_mm * error_mm;
+            self.max_mm = self.max_mm.max(error_mm);
+            self.cutting += 1;
+        }
+    }
 }

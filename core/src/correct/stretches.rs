@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use crate::gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind};
+use crate::gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
 use crate::path::pieces::Pieces;
 use crate::path::{Piece, Step};
 use crate::vector::{Vector, angle};
@@ -15,6 +15,9 @@ use crate::vector::{Vector, angle};
 pub(super) const CORNER_RAD: f64 = 25.0 / 180.0 * PI;
 /// A turn from which G61 stops, as in feed planners.
 const TANGENT_RAD: f64 = 1e-3;
+
+/// Where the tool comes slowly it rests so much of a dwell.
+const SETTLED: f64 = 0.25;
 
 /// Part of a program.
 #[derive(Debug, Clone)]
@@ -36,7 +39,9 @@ pub(super) struct SmoothStretch {
     pub(super) rests: [bool; 2],
     /// Whether the motion before belongs to the stretch before.
     pub(super) follows: bool,
-    ends: [Vector; 2],
+    /// The straight rapid that leads to its start, and its step in the program.
+    pub(super) rapid: Option<(usize, Motion)>,
+    pub(super) ends: [Vector; 2],
 }
 
 /// Direction of travel at both ends of a motion; none of one without length.
@@ -54,6 +59,7 @@ pub(super) fn parts(program: &[Canon]) -> Vec<ProgramPart> {
     let mut parts: Vec<ProgramPart> = Vec::new();
     // Direction at the end of the last motion, and whether nothing has happened since.
     let (mut before, mut adjacent) = (None::<Vector>, false);
+    let mut rapid = None;
     for (index, step) in program.iter().enumerate() {
         let Canon::Motion(motion) = step else {
             parts.push(ProgramPart::Kept(step.clone()));
@@ -89,11 +95,14 @@ pub(super) fn parts(program: &[Canon]) -> Vec<ProgramPart> {
                 steps: [index; 2],
                 rests: [corner, false],
                 follows,
+                rapid: rapid.take(),
                 ends: [starts, ends],
             })
         } else {
             ProgramPart::Kept(step.clone())
         });
+        let leads = motion.kind == MotionKind::Rapid && motion.shape == Shape::Line && motion.others.is_none();
+        rapid = leads.then(|| (index, motion.clone()));
         (before, adjacent) = (Some(ends), true);
     }
     parts
@@ -131,27 +140,42 @@ impl SmoothStretch {
     }
 }
 
-/// Motions in place of those of a stretch; none where it stays as it is.
-pub(super) type StretchCommand = Option<Vec<Motion>>;
+/// Motions in place of those of a stretch.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct NewMotions {
+    /// In place of those of the stretch.
+    pub(super) motions: Vec<Motion>,
+    /// In place of the rapid that leads to it: a rapid most of the way, and a slow feed motion to its end.
+    pub(super) approach: Option<[Motion; 2]>,
+    /// Whether the last of it is so slow that the tool has settled at its end.
+    pub(super) settles: bool,
+}
+
+/// What a stretch becomes; none where it stays as it is.
+pub(super) type StretchCommand = Option<NewMotions>;
 
 /// The program with other motions in place of its stretches, and dwells where the tool has to come to rest.
 ///
 /// The line of a motion is the number of its stretch, from 1, and 0 of all that is kept.
 pub(super) fn assembled(parts: &[ProgramPart], commands: &[StretchCommand], dwell_s: f64) -> Vec<Canon> {
     let (mut program, mut number) = (Vec::new(), 0);
-    let rest = || Canon::Event(Event { line: 0, kind: EventKind::Dwell { seconds: dwell_s } });
+    let rest = |seconds: f64| Canon::Event(Event { line: 0, kind: EventKind::Dwell { seconds } });
     let numbered = |motion: &Motion, line: u32| Canon::Motion(Motion { line, ..motion.clone() });
     for part in parts {
         match part {
             ProgramPart::Kept(Canon::Motion(motion)) => program.push(numbered(motion, 0)),
             ProgramPart::Kept(event) => program.push(event.clone()),
             ProgramPart::Stretch(stretch) => {
-                let [before, behind] = dwells(parts, commands, number);
-                let motions = commands[number].as_ref().unwrap_or(&stretch.motions);
+                let [before, behind] = dwells(parts, commands, number, dwell_s);
+                let command = commands[number].as_ref();
+                let motions = command.map_or(&stretch.motions, |command| &command.motions);
+                if let Some(approach) = command.and_then(|command| command.approach.as_ref()) {
+                    slow_down(&mut program, approach);
+                }
                 number += 1;
-                program.extend(before.then(rest));
+                program.extend(before.map(rest));
                 program.extend(motions.iter().map(|motion| numbered(motion, number as u32)));
-                program.extend(behind.then(rest));
+                program.extend(behind.map(rest));
             }
         }
     }
@@ -159,12 +183,36 @@ pub(super) fn assembled(parts: &[ProgramPart], commands: &[StretchCommand], dwel
     program
 }
 
-/// Whether a dwell is needed before and behind a stretch: where it, or the stretch before, has another command.
-pub(super) fn dwells(parts: &[ProgramPart], commands: &[StretchCommand], number: usize) -> [bool; 2] {
-    let Some(stretch) = stretches(parts).nth(number) else { return [false; 2] };
-    let changed = commands[number].is_some();
-    let before_changed = number > 0 && commands[number - 1].is_some() && stretch.follows;
-    [stretch.rests[0] && (changed || before_changed), stretch.rests[1] && changed]
+/// Puts an approach in the place of the last rapid.
+fn slow_down(program: &mut Vec<Canon>, approach: &[Motion; 2]) {
+    if let Some(at) = program.iter().rposition(|step| matches!(step, Canon::Motion(_))) {
+        let slow = approach.iter().map(|motion| Canon::Motion(Motion { line: 0, ..motion.clone() }));
+        program.splice(at..=at, slow);
+    }
+}
+
+/// How long a dwell is, s, where the tool comes slowly or does not.
+pub(super) fn rest_s(comes_slowly: bool, dwell_s: f64) -> f64 {
+    if comes_slowly { (SETTLED * dwell_s * 1e3).round() / 1e3 } else { dwell_s }
+}
+
+/// How long the tool rests before and behind a stretch, s: where it, or the stretch before, has another command, a dwell, and less where the tool comes
+/// so slowly that it has settled.
+pub(super) fn dwells(
+    parts: &[ProgramPart],
+    commands: &[StretchCommand],
+    number: usize,
+    dwell_s: f64,
+) -> [Option<f64>; 2] {
+    let Some(stretch) = stretches(parts).nth(number) else { return [None; 2] };
+    let command = commands[number].as_ref();
+    let before = if number > 0 && stretch.follows { commands[number - 1].as_ref() } else { None };
+    let comes_slowly = command.is_some_and(|command| command.approach.is_some());
+    let comes_slowly = comes_slowly || before.is_some_and(|before| before.settles);
+    let goes_slowly = command.is_some_and(|command| command.settles);
+    let rests_before = stretch.rests[0] && (command.is_some() || before.is_some());
+    let rests_behind = stretch.rests[1] && command.is_some();
+    [rests_before.then(|| rest_s(comes_slowly, dwell_s)), rests_behind.then(|| rest_s(goes_slowly, dwell_s))]
 }
 
 /// Printed ends need not be those of the program to the last digit: each motion begins where the one before has ended.

@@ -5,11 +5,12 @@
 
 use crate::feed;
 use crate::gcode::canon::Corner;
+use crate::job_error::JobError;
 use crate::machine::Machine;
 use crate::pipeline::Stages;
 
 /// A row of [`TARGETS`].
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TargetControl {
     /// Name, as in `--for`.
     pub name: &'static str,
@@ -72,6 +73,18 @@ impl TargetControl {
         let planner = self.planner.and_then(feed::planner);
         let own = Stages::of(machine);
         Stages { planner: planner.unwrap_or(own.planner), ..own }
+    }
+
+    /// The same, where the machine has what the control plans by.
+    ///
+    /// # Errors
+    /// A control that plans by the limits of each axis, and a machine without.
+    pub fn suits(&self, machine: &Machine) -> Result<Stages, JobError> {
+        let stages = self.stages(machine);
+        if stages.planner.needs_axes && !machine.has_axis_limits() {
+            return Err(JobError::NoAxisLimits { control: self.name, machine: machine.name.clone() });
+        }
+        Ok(stages)
     }
 
     /// Printed steps in a millimetre.

@@ -1,7 +1,7 @@
 //! Whether a text says what it is meant to say: it is read again and compared, step by step.
 
 use crate::gcode::canon::{Canon, EventKind, Motion, MotionKind, Shape};
-use crate::gcode::{Dialect, Reader, Settings};
+use crate::gcode::{Dialect, ModesInForce, Reader, Settings};
 use crate::vector::distance;
 
 /// Feedrates may differ by this part: their printed digits.
@@ -12,10 +12,36 @@ const DWELL_S: f64 = 1e-3;
 const CENTER_STEPS: f64 = 100.0;
 const CENTER_PART: f64 = 1e-3;
 
-/// The steps of a text; none where it has a mistake.
-pub(super) fn read(text: &str, settings: &Settings, dialect: Dialect) -> Option<Vec<Canon>> {
+/// The steps of a text, and the modes behind each; none where it has a mistake.
+pub(super) fn read(text: &str, settings: &Settings, dialect: Dialect) -> Option<(Vec<Canon>, Vec<ModesInForce>)> {
     let settings = Settings { dialect: Some(dialect), ..settings.clone() };
-    Reader::from_text("corrected.ngc", text, settings).ok()?.collect::<Result<Vec<_>, _>>().ok()
+    let mut reader = Reader::from_text("corrected.ngc", text, settings).ok()?;
+    let (mut steps, mut modes) = (Vec::new(), Vec::new());
+    while let Some(step) = reader.next() {
+        steps.push(step.ok()?);
+        modes.push(reader.modes());
+    }
+    Some((steps, modes))
+}
+
+/// Whether the motions of two programs have the same frames, one behind the other: a coordinate system with other offsets on the control than here is
+/// no place in the machine.
+pub(super) fn same_frames<'a>(
+    found: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
+    wanted: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
+) -> bool {
+    let (found, wanted) = (frames(found), frames(wanted));
+    found.len() == wanted.len() && found.iter().zip(&wanted).all(|(found, wanted)| found.same_frame(wanted))
+}
+
+fn frames<'a>(steps: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>) -> Vec<&'a ModesInForce> {
+    let mut frames: Vec<&ModesInForce> = Vec::new();
+    for (_, modes) in steps.filter(|(step, _)| matches!(step, Canon::Motion(_))) {
+        if frames.last().is_none_or(|last| !last.same_frame(modes)) {
+            frames.push(modes);
+        }
+    }
+    frames
 }
 
 /// Whether two programs ask for the same, up to their printed steps, mm; events between two motions may have another order.

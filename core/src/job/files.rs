@@ -1,14 +1,14 @@
 //! The files that a job writes, all of them or none.
 
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::{Job, JobError};
+use crate::correct::CorrectOutcome;
 use crate::feed::TimedEvent;
 use crate::machine::PlcEvent;
-use crate::output::gcode_writer::GcodeWriter;
 use crate::output::{OutputError, OutputFile, OutputFiles, is_standard_output};
 use crate::plc;
 use crate::report::harm::Harm;
@@ -26,7 +26,7 @@ pub struct Outputs {
     pub json: Option<PathBuf>,
     /// One row per servo period of the last run.
     pub trace: Option<PathBuf>,
-    /// The corrected command of the last run: setpoints (`.csv`) or G-code (`.ngc`).
+    /// Setpoints of the controller's cut (`.csv`), or the corrected program for a control without feedback (`.ngc`).
     pub out: Option<PathBuf>,
 }
 
@@ -41,6 +41,11 @@ enum Form {
 }
 
 impl Outputs {
+    /// Whether a program is to be written.
+    pub(super) fn is_program(&self) -> bool {
+        self.out.as_deref().is_some_and(|path| Self::form(path).is_ok_and(|form| form == Form::Gcode))
+    }
+
     fn form(path: &Path) -> Result<Form, JobError> {
         let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
         match ending.as_deref() {
@@ -72,6 +77,14 @@ impl Job {
         if let Some(out) = &self.outputs.out {
             Outputs::form(out)?;
         }
+        if self.outputs.is_program() {
+            self.target.suits(&self.machine)?;
+            let out = self.outputs.out.clone().unwrap_or_default();
+            let other = self.fastest.then_some("--fastest").or_else(|| self.reference.as_ref().map(|_| "--reference"));
+            if let Some(option) = other {
+                return Err(JobError::NoProgramWith { out, option });
+            }
+        }
         Ok(())
     }
 }
@@ -82,7 +95,7 @@ pub(super) struct Files {
     json: Option<OutputFile>,
     trace: Option<TraceWriter<OutputFile>>,
     setpoints: Option<SetpointWriter<OutputFile>>,
-    gcode: Option<GcodeWriter<OutputFile>>,
+    program: Option<OutputFile>,
 }
 
 impl Files {
@@ -93,19 +106,23 @@ impl Files {
         let mut start = |path: Option<&PathBuf>| path.map(|path| files.start(path)).transpose();
         let form = outputs.out.as_deref().map(Outputs::form).transpose()?;
         let out = |wanted: Form| outputs.out.as_ref().filter(|_| form == Some(wanted));
-        let note = format!("corrected by feedwright, controller {}", job.controller.name);
-        let notes = [job.part_name(), format!("for the machine {}", job.machine.name), note];
         Ok(Self {
             report: start(outputs.report.as_ref())?,
             json: start(outputs.json.as_ref())?,
             trace: start(outputs.trace.as_ref())?.map(|output| TraceWriter::new(output, axes)).transpose()?,
             setpoints: start(out(Form::Setpoints))?.map(|output| SetpointWriter::new(output, axes)).transpose()?,
-            gcode: start(out(Form::Gcode))?.map(|output| GcodeWriter::new(output, axes, &notes)).transpose()?,
+            program: start(out(Form::Gcode))?,
         })
     }
 
     /// Writes the rest and moves all files to their places.
-    pub(super) fn finish(self, job: &Job, report: &Report, watch: &dyn Watch) -> Result<(), JobError> {
+    pub(super) fn finish(
+        self,
+        job: &Job,
+        report: &Report,
+        exported: Option<&CorrectOutcome>,
+        watch: &dyn Watch,
+    ) -> Result<(), JobError> {
         let mut complete = Vec::new();
         let named = |path: &Path| {
             let path = path.to_owned();
@@ -116,13 +133,16 @@ impl Files {
             complete.push(output);
         }
         if let Some(mut output) = self.json {
-            write_json(&mut output, job, report).map_err(named(output.path()))?;
+            write_json(&mut output, job, report, exported).map_err(named(output.path()))?;
             complete.push(output);
         }
         complete.extend(self.trace.map(TraceWriter::finish).transpose()?);
         if job.is_of_use(report) {
             complete.extend(self.setpoints.map(SetpointWriter::finish).transpose()?);
-            complete.extend(self.gcode.map(GcodeWriter::finish).transpose()?);
+        }
+        if let (Some(mut output), Some(program)) = (self.program, exported.and_then(CorrectOutcome::program)) {
+            output.write_all(program.as_bytes()).map_err(named(output.path()))?;
+            complete.push(output);
         }
         OutputFile::commit_all(complete, watch)?;
         Ok(())
@@ -132,12 +152,7 @@ impl Files {
 impl Sink for Files {
     fn row(&mut self, row: &Row) -> io::Result<()> {
         self.trace.as_mut().map_or(Ok(()), |sink| sink.row(row))?;
-        self.setpoints.as_mut().map_or(Ok(()), |sink| sink.row(row))?;
-        self.gcode.as_mut().map_or(Ok(()), |sink| sink.row(row))
-    }
-
-    fn event(&mut self, t_s: f64, event: &TimedEvent) -> io::Result<()> {
-        self.gcode.as_mut().map_or(Ok(()), |sink| sink.event(t_s, event))
+        self.setpoints.as_mut().map_or(Ok(()), |sink| sink.row(row))
     }
 }
 
@@ -156,21 +171,24 @@ struct Results<'a> {
     settings: std::collections::BTreeMap<&'a str, &'a str>,
     machine: &'a crate::machine::Machine,
     runs: Vec<&'a RunSummary>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    exported: Option<&'a CorrectOutcome>,
 }
 
-fn write_json(out: &mut impl io::Write, job: &Job, report: &Report) -> io::Result<()> {
+fn write_json(out: &mut impl Write, job: &Job, report: &Report, exported: Option<&CorrectOutcome>) -> io::Result<()> {
     let results = Results {
         version: env!("CARGO_PKG_VERSION"),
         part: &report.part,
         reference: job.reference.as_deref(),
         tolerance_um: job.tolerance_um,
-        within_tolerance: job.within_tolerance(report),
+        within_tolerance: job.within_tolerance(report) && exported.is_none_or(|outcome| outcome.refusal.is_none()),
         simulated: true,
         assumed: &report.assumed,
         worse_than_open_loop: job.harm(report),
         settings: report.settings.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect(),
         machine: &job.machine,
         runs: report.runs.iter().map(|run| &run.summary).collect(),
+        exported,
     };
     serde_json::to_writer_pretty(&mut *out, &results)?;
     out.write_all(b"\n")

@@ -63,6 +63,9 @@ impl Job {
         if let Some(reference) = &self.reference {
             settings.push(value("Errors measured to", reference.display().to_string()));
         }
+        if self.outputs.is_program() {
+            settings.push(value("Corrected program for", format!("{}: {}", self.target.name, self.target.about)));
+        }
         if let Some(feed_mm_s) = self.feed_mm_s {
             settings.push(value("Feedrate, in place of the programmed", format!("{feed_mm_s} mm/s")));
         }

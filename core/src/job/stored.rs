@@ -35,6 +35,27 @@ pub(super) mod model {
     }
 }
 
+/// A row of the table of controls.
+pub(super) mod target {
+    use super::{Deserialize, Deserializer, Error, Serializer};
+    use crate::correct::TargetControl;
+
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
+    pub(in super::super) fn serialize<S: Serializer>(
+        target: &&'static TargetControl,
+        serializer: S,
+    ) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(target.name)
+    }
+
+    pub(in super::super) fn deserialize<'d, D: Deserializer<'d>>(
+        deserializer: D,
+    ) -> Result<&'static TargetControl, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        TargetControl::find(&name).ok_or_else(|| D::Error::custom(format!("no control is called '{name}'")))
+    }
+}
+
 /// A row of the table of controllers.
 pub(super) mod entry {
     use super::{Deserialize, Deserializer, Error, Serializer};

@@ -19,6 +19,7 @@ pub(crate) fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Pa
         choices: Choices::default(),
         model: None,
         tolerance_um: None,
+        target: &feedwright::correct::TARGETS[0],
         reference: None,
         fastest: false,
         reader: feedwright::gcode::Settings::default(),

@@ -40,6 +40,11 @@ impl ModesInForce {
         }
     }
 
+    /// Whether coordinates of the program mean the same places: coordinate system, offsets, rotation and tool length are the same.
+    pub fn same_frame(&self, other: &Self) -> bool {
+        self.frame == other.frame
+    }
+
     /// Coordinates of the program, in mm, of a place of the machine.
     pub fn to_program(&self, machine_mm: [f64; 3]) -> [f64; 3] {
         let [x, y, z] = machine_mm;
@@ -65,5 +70,6 @@ mod tests {
         let second = reader.modes();
         assert!(second.incremental);
         assert!((second.to_program([50.8, 0.0, 0.0])[0] - 25.4).abs() < 1e-12);
+        assert!(first.same_frame(&first) && !first.same_frame(&second));
     }
 }

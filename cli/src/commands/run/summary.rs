@@ -2,10 +2,13 @@
 
 use std::io::{self, Write};
 
+use feedwright::correct::CorrectOutcome;
+use feedwright::correct::exported::ExportedFigures;
 use feedwright::fastest::FastestPlan;
-use feedwright::job::{Job, JobOutcome, MEASURED};
+use feedwright::job::{AS_EXPORTED, Job, JobOutcome, MEASURED};
 use feedwright::report::{Assumptions, LawKnowledge, Outcome as Ending, ReportedRun, RunSummary};
 
+use crate::controls::print_correction;
 use crate::streams::tell_written;
 use crate::table::{ConsoleTable, TableColumn};
 use crate::terminal::wrapped;
@@ -29,6 +32,9 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io:
     }
     if let Some(text) = harm(job, outcome) {
         say(out, &text)?;
+    }
+    if let Some(exported) = &outcome.exported {
+        print_exported(out, exported)?;
     }
     if let (Some(tolerance_um), Some(last)) = (job.tolerance_um, runs.last()) {
         let verdict = if outcome.within_tolerance { "within" } else { "out of" };
@@ -162,6 +168,19 @@ fn harm(job: &Job, outcome: &JobOutcome) -> Option<String> {
     Some(format!("{worse} is worse than {better} for this part on this machine ({figures}): do not use its command"))
 }
 
+/// What the corrected program is, beside the original as its control cuts it.
+fn print_exported(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
+    let ExportedFigures { rms_um, max_um, time_s, .. } = outcome.original;
+    let CorrectOutcome { control, planner, .. } = outcome;
+    let text = format!(
+        "{AS_EXPORTED}: the corrected program, cut open loop as its control plans it ({control}, planner {planner})"
+    );
+    writeln!(out, "{}", wrapped(&text, 2))?;
+    let text = format!("the original, cut in the same way: {time_s:.3} s, RMS {rms_um:.2}, max {max_um:.2} um");
+    writeln!(out, "{}", wrapped(&text, 2))?;
+    print_correction(out, outcome)
+}
+
 fn print_fastest(out: &mut dyn Write, plan: &FastestPlan) -> io::Result<()> {
     let FastestPlan { cycle, largest_um, rounds, machine, .. } = plan;
     let moving_s = cycle.cutting_s + cycle.rapid_s;
@@ -181,20 +200,14 @@ fn print_fastest(out: &mut dyn Write, plan: &FastestPlan) -> io::Result<()> {
 /// Which files there are, and why one is not.
 fn print_written(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io::Result<()> {
     let outputs = &job.outputs;
-    let command = outputs.out.as_deref();
-    let written = command.filter(|_| outcome.is_of_use);
+    let is_good = outcome.exported.as_ref().map_or(outcome.is_of_use, |program| program.refusal.is_none());
+    let written = outputs.out.as_deref().filter(|_| is_good);
     tell_written(out, [outputs.report.as_deref(), outputs.json.as_deref(), outputs.trace.as_deref(), written])?;
-    match (command, outcome.is_of_use) {
-        (Some(path), false) => {
+    match (outputs.out.as_deref(), &outcome.exported) {
+        // Why there is no program is told above.
+        (Some(path), None) if !is_good => {
             let why = if outcome.harm.is_empty() { "the cut did not come to its end" } else { "open loop is better" };
             writeln!(out, "{}", wrapped(&format!("{} was not written: {why}", path.display()), 2))
-        }
-        (Some(path), true) if path.extension().is_some_and(|ending| ending != "csv") => {
-            let text = format!(
-                "{} is the command of this cut, with feedback: `feedwright correct` writes programs for controls that have none",
-                path.display()
-            );
-            writeln!(out, "{}", wrapped(&text, 2))
         }
         _ => Ok(()),
     }

@@ -1,4 +1,4 @@
-//! What can go wrong with a job.
+//! What can go wrong with a job: a program that is cut on a machine.
 
 use std::path::{Path, PathBuf};
 
@@ -7,9 +7,10 @@ use thiserror::Error;
 use crate::constraints::LimitsError;
 use crate::controllers::ModelMisfit;
 use crate::fastest::FastestError;
-use crate::gcode::{self, CheckError, ReadError};
+use crate::gcode::{self, CheckError, ReadError, Summary};
 use crate::log::LogError;
 use crate::log::columns::ColumnsError;
+use crate::machine::Machine;
 use crate::measured::MeasuredError;
 use crate::number::shown;
 use crate::output::OutputError;
@@ -50,6 +51,13 @@ pub enum JobError {
         /// The machine.
         machine: String,
     },
+    /// A program without a feed motion.
+    #[error("{} has no feed motion: there is nothing to cut", part.display())]
+    #[diagnostic(help("G1, G2 and G3 cut; G0 is a rapid"))]
+    NothingToCut {
+        /// The program.
+        part: PathBuf,
+    },
     /// A control plans by limits that the machine file does not have.
     #[error("{control} plans by the limits of each axis, and the machine `{machine}` has none")]
     #[diagnostic(help(
@@ -86,6 +94,19 @@ pub enum JobError {
     Ending {
         /// The place.
         path: PathBuf,
+    },
+    /// A program is asked for of a cut that is none of the program alone.
+    #[error("{}: no corrected program is written with {option}", out.display())]
+    #[diagnostic(help("{}", if *option == "--fastest" {
+        "the plan of least time holds for a cut with feedback: write its setpoints (.csv)"
+    } else {
+        "give the original as PART, without --reference"
+    }))]
+    NoProgramWith {
+        /// The place.
+        out: PathBuf,
+        /// The option.
+        option: &'static str,
     },
     /// The log cannot be read.
     #[error(transparent)]
@@ -173,5 +194,17 @@ impl From<CheckError> for JobError {
                 Self::Faults { part, faults }
             }
         }
+    }
+}
+
+/// Two axes where the program stays in the XY plane and the third would only stand still.
+///
+/// # Errors
+/// A program that moves an axis that the machine does not have.
+pub(crate) fn axes_that_move(part: &Path, summary: &Summary, machine: &Machine) -> Result<usize, JobError> {
+    match (summary.moves[2], machine.axis_count()) {
+        (false, _) => Ok(2),
+        (true, 3..) => Ok(3),
+        (true, _) => Err(JobError::NoZ { part: part.to_owned(), machine: machine.name.clone() }),
     }
 }

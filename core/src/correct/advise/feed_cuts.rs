@@ -1,0 +1,115 @@
+//! A program at other feedrates, cut in one of the ways, stretch by stretch.
+
+use feedwright_control::Controller;
+
+use super::{CutWay, FeedCut, canon_of, with_factors};
+use crate::correct::exported::{CutPhase, CutRow, CutRows, ExportedCut, waited};
+use crate::correct::nominal::deterministic;
+use crate::correct::rounds::{rounds, steps_of};
+use crate::correct::stretch_cut::by_stretch;
+use crate::correct::stretches::{ProgramPart, assembled, stretches};
+use crate::correct::target::TargetControl;
+use crate::machine::Machine;
+use crate::path::Step;
+use crate::pipeline::{Run, RunError};
+use crate::simulate::RunResult;
+use crate::trace::Outcome;
+use crate::vector::norm;
+use crate::watch::Watch;
+
+/// What cuts.
+pub(super) struct FeedBench<'a, const N: usize> {
+    pub(super) machine: &'a Machine,
+    pub(super) target: &'a TargetControl,
+    pub(super) laps: u32,
+    pub(super) parts: &'a [ProgramPart],
+    pub(super) controller: Box<dyn Controller<N>>,
+    pub(super) watch: &'a dyn Watch,
+}
+
+/// What a program comes to, over the cuts.
+#[derive(Debug, Clone)]
+pub(super) struct FeedErrors {
+    pub(super) time_s: f64,
+    rms_um: f64,
+    pub(super) max_um: f64,
+    /// The largest error of each stretch, um, and its time, s.
+    pub(super) stretches: Vec<(f64, f64)>,
+}
+
+impl FeedErrors {
+    pub(super) const fn cut(&self, factor: Option<f64>) -> FeedCut {
+        FeedCut { factor, time_s: self.time_s, rms_um: self.rms_um, max_um: self.max_um }
+    }
+}
+
+/// Tells nothing of its own progress, and ends with the others.
+struct Silent<'a>(&'a dyn Watch);
+
+impl Watch for Silent<'_> {
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}
+
+impl<const N: usize> FeedBench<'_, N> {
+    /// Cuts the program with a factor on the feedrates of each stretch.
+    pub(super) fn cut(&mut self, way: CutWay, factors: &[f64]) -> Result<FeedErrors, RunError> {
+        let parts = with_factors(self.parts, factors, self.machine.limits.max_feed_mm_s);
+        let original = steps_of(&canon_of(&parts))?;
+        let silent = Silent(self.watch);
+        let stages = self.target.stages(self.machine);
+        let nominal = deterministic(self.machine);
+        let on = |machine| ExportedCut { machine, stages, original: &original, axes: N, watch: &silent };
+        let program = match way {
+            CutWay::Corrected => {
+                let found = rounds(&on(&nominal), &parts, self.target)?;
+                steps_of(&assembled(&parts, &found.commands, found.dwell_s))?
+            }
+            CutWay::Uncorrected | CutWay::Controlled => original.clone(),
+        };
+        let count = stretches(&parts).count();
+        let mut all = FeedErrors { time_s: 0.0, rms_um: 0.0, max_um: 0.0, stretches: vec![(0.0, 0.0); count] };
+        let phases = on(self.machine).phases();
+        for CutPhase { machine, wait_s } in &phases {
+            let (program, mut kept) = (waited(&program, *wait_s), CutRows::new(&original));
+            let run = match way {
+                CutWay::Controlled => self.controlled(machine, &program, &mut kept, &silent)?,
+                CutWay::Uncorrected | CutWay::Corrected => on(machine).cut(&program, &mut [&mut kept])?,
+            };
+            all.take(&run, &kept.rows, [*wait_s, machine.period.servo_s], phases.len());
+        }
+        all.rms_um = all.rms_um.sqrt();
+        Ok(all)
+    }
+
+    fn controlled(
+        &mut self,
+        machine: &Machine,
+        program: &[Step],
+        kept: &mut CutRows<'_>,
+        watch: &dyn Watch,
+    ) -> Result<RunResult, RunError> {
+        let steps = || Ok(Box::new(program.iter().cloned().map(Ok)) as _);
+        Run::on(machine).laps(self.laps).watched(watch).cut(steps, &mut *self.controller, &mut [kept])
+    }
+}
+
+impl FeedErrors {
+    /// Takes in a cut of several; the RMS is a mean square until all are in.
+    fn take(&mut self, run: &RunResult, rows: &[CutRow], [wait_s, servo_s]: [f64; 2], cuts: usize) {
+        self.time_s = run.time_s - wait_s;
+        let cutting = || rows.iter().filter(|row| row.cutting).map(|row| 1e3 * norm(row.error_mm));
+        let mean = cutting().map(|um| um * um).sum::<f64>() / (cutting().count().max(1) as f64);
+        self.rms_um += mean / cuts as f64;
+        self.max_um = cutting().fold(self.max_um, f64::max);
+        let by_stretch = by_stretch(rows, self.stretches.len());
+        for ((um, time_s), cut) in self.stretches.iter_mut().zip(by_stretch) {
+            *um = um.max(1e3 * cut.max_mm);
+            *time_s = f64::from(cut.periods) * servo_s;
+        }
+        if run.outcome != Outcome::Completed {
+            self.max_um = f64::INFINITY;
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! The figure and the page of an advice.
+
+use std::io::{self, Write};
+
+use super::{Advice, FeedCut, StretchAdvice, WAYS, WayAdvice};
+use crate::report::figure::{COLORS, Figure, LineStyle, Panel, Polyline, write_foot, write_head};
+use crate::report::text::{escaped, number};
+
+const CSS: &str = include_str!("../../../assets/report/compare.css");
+/// Rows of the table of stretches at the most: those that hold the least feed, uncorrected.
+const ROWS: usize = 200;
+
+impl Advice {
+    /// Largest error over the feedrate, for each way, and the feedrates that hold, stretch by stretch.
+    pub fn figure(&self) -> Figure {
+        let [_, largest_mm_s] = self.programmed_mm_s;
+        let log = |x: f64| x.max(1e-9).log10();
+        let curve = |label: &str, color: &str, line: LineStyle, points: Vec<[f64; 2]>| Polyline {
+            label: label.to_owned(),
+            points,
+            color: color.to_owned(),
+            line,
+        };
+        let mut curves = Vec::new();
+        let mut by_stretch = Vec::new();
+        for (k, way) in self.ways.iter().enumerate() {
+            let at = |cut: &FeedCut| [log(60.0 * largest_mm_s * cut.factor.unwrap_or(1.0)), log(cut.max_um)];
+            let name = way.way.name(self.controller);
+            let line = [LineStyle::Dashed, LineStyle::Solid, LineStyle::Dotted][k];
+            curves.push(curve(name, COLORS[k], line, way.cuts.iter().map(at).collect()));
+            let of_stretch = |(n, stretch): (usize, &StretchAdvice)| {
+                let feed = stretch.holds_mm_s[k].map_or(f64::NAN, |mm_s| 60.0 * mm_s);
+                [[n as f64 + 0.5, feed], [n as f64 + 1.5, feed]]
+            };
+            by_stretch.push(curve(
+                name,
+                COLORS[k],
+                line,
+                self.stretches.iter().enumerate().flat_map(of_stretch).collect(),
+            ));
+        }
+        let ends = |axis: usize| {
+            let all = || curves.iter().flat_map(|curve| &curve.points).map(|point| point[axis]);
+            [all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)]
+        };
+        let tolerance = ends(0).map(|x| [x, log(self.tolerance_um)]).to_vec();
+        curves.push(curve("tolerance", COLORS[4], LineStyle::Thin, tolerance));
+        let panel = |title: &str, x_title: &str, y_title: &str, curves, powers_of_ten| Panel {
+            title: title.to_owned(),
+            x_title: x_title.to_owned(),
+            y_title: y_title.to_owned(),
+            curves,
+            powers_of_ten,
+            ..Panel::default()
+        };
+        let panels = vec![
+            panel("(a) Whole program", "Feedrate [mm/min]", "Largest contour error [µm]", curves, true),
+            panel("(b) Feedrate that holds", "Stretch", "Feedrate [mm/min]", by_stretch, false),
+        ];
+        Figure { panels, columns: 1, aspect: 0.45 }
+    }
+
+    /// Writes the page: the table, the figure, and the stretches.
+    ///
+    /// # Errors
+    /// Where `out` takes no more.
+    pub fn write_page(&self, out: &mut impl Write, part: &str, machine: &str) -> io::Result<()> {
+        let introduction = format!(
+            "Simulated. Feedrates at which the largest contour error stays within {} µm: of the program as it is and of a corrected program, both cut open loop as \
+             the control plans them ({}, planner {}), and with the controller {}. A corrected program is made for its feedrate.",
+            number(self.tolerance_um),
+            self.control,
+            self.planner,
+            self.controller
+        );
+        write_head(out, &format!("{part} within {} µm on {machine}", number(self.tolerance_um)), &introduction, CSS)?;
+        writeln!(
+            out,
+            "<div class=\"wide\"><table><thead><tr><th>cut</th><th>feed, of programmed</th><th>mm/min</th><th>time s</th><th>RMS µm</th><th>max µm</th>\
+             <th>each stretch at its own: time s</th><th>max µm</th></tr></thead><tbody>"
+        )?;
+        self.ways.iter().try_for_each(|way| self.write_way(out, way))?;
+        writeln!(out, "</tbody></table></div>")?;
+        writeln!(
+            out,
+            "<figure>{}<figcaption><b>Largest contour error over the feedrate</b>, the largest of the program; below, the feedrate at which each stretch \
+             holds the tolerance, in the order of the program. Gaps hold it at no feedrate that was cut.</figcaption></figure>",
+            self.figure().to_svg()
+        )?;
+        self.write_stretches(out)?;
+        write_foot(out)
+    }
+
+    fn write_way(&self, out: &mut impl Write, way: &WayAdvice) -> io::Result<()> {
+        let name = escaped(way.way.name(self.controller)).to_string();
+        write!(out, "<tr><td class=\"words\">{name}</td>")?;
+        match &way.whole {
+            Some(FeedCut { factor, time_s, rms_um, max_um }) => {
+                let factor = factor.unwrap_or(1.0);
+                let feed = 60.0 * factor * self.programmed_mm_s[1];
+                write!(
+                    out,
+                    "<td>{:.0} %</td><td>{feed:.0}</td><td>{time_s:.3}</td><td>{}</td><td>{}</td>",
+                    100.0 * factor,
+                    number(*rms_um),
+                    number(*max_um)
+                )?;
+            }
+            None => {
+                let least_um = way.cuts.iter().map(|cut| cut.max_um).fold(f64::INFINITY, f64::min);
+                write!(out, "<td colspan=\"5\" class=\"words\">none; {} µm at the least</td>", number(least_um))?;
+            }
+        }
+        match &way.by_stretch {
+            Some(cut) => writeln!(out, "<td>{:.3}</td><td>{}</td></tr>", cut.time_s, number(cut.max_um)),
+            None => writeln!(out, "<td>-</td><td>-</td></tr>"),
+        }
+    }
+
+    fn write_stretches(&self, out: &mut impl Write) -> io::Result<()> {
+        let shown = self.slowest(ROWS);
+        if shown.len() < self.stretches.len() {
+            writeln!(out, "<p>The {} of {} stretches that hold the least:</p>", shown.len(), self.stretches.len())?;
+        }
+        let names: String = WAYS.iter().map(|way| format!("<th>{}</th>", escaped(way.name(self.controller)))).collect();
+        writeln!(
+            out,
+            "<div class=\"wide\"><table><thead><tr><th>lines</th><th>programmed mm/min</th>{names}</tr></thead><tbody>"
+        )?;
+        for StretchAdvice { lines: [first, last], feed_mm_s, holds_mm_s } in shown {
+            let cells: String = holds_mm_s
+                .iter()
+                .map(|holds| holds.map_or("<td>-</td>".to_owned(), |mm_s| format!("<td>{:.0}</td>", 60.0 * mm_s)))
+                .collect();
+            writeln!(out, "<tr><td>{first} to {last}</td><td>{:.0}</td>{cells}</tr>", 60.0 * feed_mm_s)?;
+        }
+        writeln!(out, "</tbody></table></div>")
+    }
+
+    /// So many stretches at the most, those that hold the smallest part of their feedrate uncorrected, in the order of the program.
+    pub fn slowest(&self, most: usize) -> Vec<&StretchAdvice> {
+        let part = |stretch: &StretchAdvice| stretch.holds_mm_s[0].unwrap_or(0.0) / stretch.feed_mm_s;
+        let mut order: Vec<usize> = (0..self.stretches.len()).collect();
+        order.sort_by(|&a, &b| part(&self.stretches[a]).total_cmp(&part(&self.stretches[b])));
+        order.truncate(most);
+        order.sort_unstable();
+        order.into_iter().map(|k| &self.stretches[k]).collect()
+    }
+}

@@ -1,0 +1,104 @@
+//! How many blocks and how much time a corrected program may have more than the original.
+
+/// A stretch may take longer by this part, and by so many dwells.
+const MORE_TIME: f64 = 0.05;
+const MORE_DWELLS: f64 = 1.5;
+/// It may have more blocks than programmed by this factor, and by so many in a time constant of the position loop, within these bounds.
+const FEW_BLOCKS: f64 = 1.15;
+const FEW_MORE_1: f64 = 0.32;
+const FEW_MORE: [f64; 2] = [4.0, 28.0];
+/// Many blocks are so many times those that are programmed, or so many a second and a few, of a stretch that is no detail: one that takes so many
+/// time constants.
+const MANY_BLOCKS: f64 = 10.0;
+const MANY_1_S: f64 = 40.0;
+const MANY_MORE: f64 = 20.0;
+const DETAIL: f64 = 12.5;
+/// A program may have more blocks by this factor, by so many, and by so many for each stretch that is no detail.
+const PROGRAM_BLOCKS: f64 = 1.15;
+const PROGRAM_MORE: f64 = 30.0;
+const STRETCH_MORE: f64 = 15.0;
+/// It may take longer by this part, and by so many dwells for each stretch that is no detail.
+const PROGRAM_TIME: f64 = 0.035;
+
+/// What a stretch is as programmed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StretchBudget {
+    pub(super) time_s: f64,
+    pub(super) blocks: usize,
+    /// Time constant of the position loop, s.
+    pub(super) loop_s: f64,
+}
+
+impl StretchBudget {
+    /// How many blocks count as few, and how many it may have at all.
+    pub(super) fn most_blocks(&self) -> [f64; 2] {
+        let blocks = self.blocks as f64;
+        let few = FEW_BLOCKS * blocks + (FEW_MORE_1 * self.time_s / self.loop_s).clamp(FEW_MORE[0], FEW_MORE[1]);
+        let many = (MANY_BLOCKS * blocks).max(MANY_1_S * self.time_s + MANY_MORE);
+        [few, if self.is_detail() { few } else { few.max(many) }]
+    }
+
+    /// How long it may take, s.
+    pub(super) fn most_s(&self, dwell_s: f64) -> f64 {
+        (1.0 + MORE_TIME) * self.time_s + MORE_DWELLS * dwell_s
+    }
+
+    /// Whether it is so short that it has to share with the others what there is.
+    pub(super) fn is_detail(&self) -> bool {
+        self.time_s < DETAIL * self.loop_s
+    }
+}
+
+/// What a stretch that has another command costs, and what that gains.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StretchCost {
+    pub(super) budget: StretchBudget,
+    /// Blocks more than programmed, rests included.
+    pub(super) blocks: f64,
+    /// Time more than programmed, rests included, s.
+    pub(super) time_s: f64,
+    /// Squares of errors that are gone, mm2; none where the stretch stays as it is.
+    pub(super) gain_mm2: Option<f64>,
+}
+
+/// The details that are given up, those with the least gain for a block first, until a program with so many other motions has few enough blocks and is
+/// fast enough.
+pub(super) fn details_to_give_up(costs: &[StretchCost], other_motions: usize, dwell_s: f64) -> Vec<usize> {
+    let larger = costs.iter().filter(|cost| !cost.budget.is_detail()).count() as f64;
+    let all = other_motions as f64 + costs.iter().map(|cost| cost.budget.blocks as f64).sum::<f64>();
+    let programmed_s: f64 = costs.iter().map(|cost| cost.budget.time_s).sum();
+    let mut room = PROGRAM_BLOCKS * all + PROGRAM_MORE + STRETCH_MORE * larger - all;
+    let mut room_s = PROGRAM_TIME * programmed_s + MORE_DWELLS * dwell_s * (1.0 + larger);
+    for cost in costs {
+        (room, room_s) = (room - cost.blocks, room_s - cost.time_s);
+    }
+    let worth = |k: usize| costs[k].gain_mm2.unwrap_or(0.0) / costs[k].blocks.max(1.0);
+    let mut order: Vec<usize> =
+        (0..costs.len()).filter(|&k| costs[k].gain_mm2.is_some() && costs[k].budget.is_detail()).collect();
+    order.sort_by(|&a, &b| worth(a).total_cmp(&worth(b)));
+    let mut given_up = Vec::new();
+    for k in order {
+        if room >= 0.0 && room_s >= 0.0 {
+            break;
+        }
+        (room, room_s) = (room + costs[k].blocks, room_s + costs[k].time_s);
+        given_up.push(k);
+    }
+    given_up
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn details_of_the_least_gain_for_a_block_are_given_up_until_there_is_room() {
+        let detail = StretchBudget { time_s: 0.01, blocks: 1, loop_s: 0.02 };
+        let cost = |gain_mm2: f64| StretchCost { budget: detail, blocks: 20.0, time_s: 0.01, gain_mm2: Some(gain_mm2) };
+        // Three details and room for 30 blocks and a little: one of 20 may stay.
+        assert_eq!(details_to_give_up(&[cost(2.0), cost(1.0), cost(3.0)], 0, 0.05), [1, 0]);
+        let larger = StretchBudget { time_s: 1.0, ..detail };
+        let costs = [StretchCost { budget: larger, ..cost(1.0) }, cost(1.0)];
+        assert_eq!(details_to_give_up(&costs, 0, 0.05), [0; 0]);
+    }
+}

@@ -1,0 +1,99 @@
+//! What came of a correction, and why a program is not to be used.
+
+use serde::Serialize;
+
+use super::exported::ExportedFigures;
+use crate::gcode::Diagnostic;
+use crate::path::Step;
+
+/// An RMS or a largest error that is less by no more than this part is no better.
+const LEAST_GAIN: f64 = 0.02;
+/// The largest error may grow by this, um: it is that of one moment, of cuts that differ by what disturbs them.
+const MAX_SLACK_UM: f64 = 0.5;
+/// The uncut path may grow by this, um: what the end of a program is off while the tool settles.
+const UNCUT_UM: f64 = 5.0;
+
+/// What came of it; serialised, its figures.
+#[derive(Debug, Clone, Serialize)]
+pub struct CorrectOutcome {
+    /// Name of the control.
+    pub control: &'static str,
+    /// Name of the planner that stands for it.
+    pub planner: &'static str,
+    /// Why there is no program.
+    pub refusal: Option<String>,
+    /// The original as the control cuts it.
+    pub original: ExportedFigures,
+    /// The corrected program as the control cuts it, read from its own text.
+    #[serde(rename = "as_exported")]
+    pub corrected: ExportedFigures,
+    /// Stretches without a corner.
+    pub stretches: usize,
+    /// Those that have another command.
+    pub stretches_changed: usize,
+    /// Whether loops and subroutines had to be written out.
+    pub expanded: bool,
+    /// Cuts that the correction was found in.
+    pub rounds: u32,
+    /// Longest rest that was put in, s.
+    pub dwell_s: f64,
+    /// What the reader warned of.
+    #[serde(skip)]
+    pub warnings: Vec<Diagnostic>,
+    /// The text that was cut, whether it is to be used or not.
+    #[serde(skip)]
+    pub(crate) written: Option<WrittenProgram>,
+    /// The path of the original.
+    #[serde(skip)]
+    pub(crate) original_steps: Vec<Step>,
+    /// Axes that move.
+    #[serde(skip)]
+    pub(crate) axes: usize,
+}
+
+/// A text and the path that it says.
+#[derive(Debug, Clone)]
+pub(crate) struct WrittenProgram {
+    pub(crate) text: String,
+    pub(crate) steps: Vec<Step>,
+    pub(super) expanded: bool,
+}
+
+impl CorrectOutcome {
+    /// The text of the corrected program, where it is better.
+    pub fn program(&self) -> Option<&str> {
+        self.written.as_ref().filter(|_| self.refusal.is_none()).map(|written| written.text.as_str())
+    }
+}
+
+/// Why a corrected program is not to be used: by the figures of the original and of its text, none where no text could be written.
+pub(super) fn refusal(
+    original: &ExportedFigures,
+    corrected: Option<&ExportedFigures>,
+    changed: usize,
+) -> Option<String> {
+    if changed == 0 {
+        return Some("no stretch of the program gets better by another command".to_owned());
+    }
+    let Some(ExportedFigures { rms_um, max_um, uncut_um, completed, .. }) = corrected else {
+        let kept =
+            "axes beside X, Y and Z, threads, probing, splines or lathe modes between loops or compensated motions";
+        return Some(format!("the corrected program cannot be written in blocks of the control: {kept}"));
+    };
+    if !completed {
+        return Some("the servo loop is unstable".to_owned());
+    }
+    let worse = |what: &str, was: f64, is: f64| {
+        Some(format!("{what} is {is:.2} um as exported, and {was:.2} um of the original"))
+    };
+    if *rms_um > (1.0 - LEAST_GAIN) * original.rms_um {
+        return worse("the RMS error", original.rms_um, *rms_um);
+    }
+    if *max_um > (1.0 + LEAST_GAIN) * original.max_um + MAX_SLACK_UM {
+        return worse("the largest error", original.max_um, *max_um);
+    }
+    if *uncut_um > original.uncut_um + UNCUT_UM {
+        return worse("the uncut path", original.uncut_um, *uncut_um);
+    }
+    None
+}

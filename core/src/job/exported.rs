@@ -1,0 +1,69 @@
+//! `--out FILE.ngc`: the corrected program for a control that gets no feedback, and its cut beside the others.
+
+use super::{Job, JobError, Timeline};
+use crate::correct::exported::ExportedCut;
+use crate::correct::{CorrectJob, CorrectOutcome};
+use crate::report::{ReportedRun, RunFacts, RunSummary, Series, Statistics};
+use crate::watch::Watch;
+
+/// What stands for a controller in the run of the corrected program.
+pub const AS_EXPORTED: &str = "as exported";
+
+impl Job {
+    /// The corrected program, where one is asked for, and its run; no run where no text could be written.
+    pub(super) fn exported(
+        &self,
+        watch: &dyn Watch,
+    ) -> Result<Option<(CorrectOutcome, Option<ReportedRun>)>, JobError> {
+        if !self.outputs.is_program() {
+            return Ok(None);
+        }
+        let job = CorrectJob {
+            part: self.part.clone(),
+            machine: self.machine.clone(),
+            believed: None,
+            target: self.target,
+            feed_mm_s: self.feed_mm_s,
+            reader: self.reader.clone(),
+        };
+        let outcome = job.run(watch)?;
+        let run = self.exported_run(&outcome, watch)?;
+        Ok(Some((outcome, run)))
+    }
+
+    /// The run of the text: the figures of all its cuts, and the rows of the one with the largest error.
+    fn exported_run(&self, outcome: &CorrectOutcome, watch: &dyn Watch) -> Result<Option<ReportedRun>, JobError> {
+        let Some(written) = &outcome.written else { return Ok(None) };
+        let (mut statistics, mut series, mut timeline) =
+            (Statistics::new(), Series::new(), Timeline::new(&self.machine.plc_events));
+        let stages = self.target.stages(&self.machine);
+        let cut = ExportedCut {
+            machine: &self.machine,
+            stages,
+            original: &outcome.original_steps,
+            axes: outcome.axes,
+            watch,
+        };
+        let run = cut
+            .worst(&written.steps, &outcome.corrected, &mut [&mut statistics, &mut series, &mut timeline])
+            .map_err(|error| JobError::of_run(&self.part, error))?;
+        let facts = RunFacts {
+            controller: AS_EXPORTED.to_owned(),
+            machine: self.machine.name.clone(),
+            part: self.part_name(),
+            axes: outcome.axes,
+            run,
+        };
+        let lines: Vec<&str> = written.text.lines().collect();
+        let text = |line: u32| lines.get((line as usize).wrapping_sub(1)).copied().unwrap_or_default().to_owned();
+        let figures = outcome.corrected;
+        let summary = RunSummary {
+            time_s: figures.time_s,
+            rms_um: figures.rms_um,
+            max_um: figures.max_um,
+            uncut_um: figures.uncut_um,
+            ..statistics.summary(facts, text)
+        };
+        Ok(Some(ReportedRun { summary, series, events: timeline.events }))
+    }
+}
