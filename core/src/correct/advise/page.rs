@@ -132,7 +132,8 @@ impl Advice {
                 .iter()
                 .map(|holds| holds.map_or("<td>-</td>".to_owned(), |mm_s| format!("<td>{:.0}</td>", 60.0 * mm_s)))
                 .collect();
-            writeln!(out, "<tr><td>{first} to {last}</td><td>{:.0}</td>{cells}</tr>", 60.0 * feed_mm_s)?;
+            let lines = if first == last { first.to_string() } else { format!("{first} to {last}") };
+            writeln!(out, "<tr><td>{lines}</td><td>{:.0}</td>{cells}</tr>", 60.0 * feed_mm_s)?;
         }
         writeln!(out, "</tbody></table></div>")
     }
