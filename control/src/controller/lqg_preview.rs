@@ -29,7 +29,6 @@
 //! | `lqg_preview/estimate.rs` | the filter |
 //! | `lqg_preview/proof.rs` | what a law that was wrong has to hold through |
 //! | `lqg_preview/validity.rs` | whether the law is that of the axis |
-//! | `lqg_preview/lag.rs` | how far behind the plan it begins |
 //! | `lqg_preview/regulated_axis.rs` | an axis: filter, regulator and inverse |
 //!
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),
@@ -49,17 +48,15 @@ mod whiteness;
 mod estimate;
 mod proof;
 mod validity;
-mod lag;
 mod regulated_axis;
 
 use super::feedforward::preview;
 use super::{Command, Controller, Measured, Schedule};
 use crate::axis::knowledge::AxisKnowledge;
-use crate::vector::{add_scaled, dot, norm, scale, sub};
+use crate::vector::{add_scaled, norm, scale, sub};
 use crate::window::Window;
 use approach::Trusted;
 use feasible::Feasibility;
-use lag::Lag;
 use one_step::OneStep;
 use regulated_axis::AxisLqg;
 use validity::{Shown, Validity};
@@ -73,18 +70,12 @@ const DIFFERENCES: f64 = 3.0;
 /// An offset that differs by less from what was asked for is that, mm.
 const FOLLOWED_MM: f64 = 1e-4;
 
-/// Below this feedrate nobody can say how far behind the plan a tool is, mm/s.
-const SLOWEST_MM_S: f64 = 1.0;
-
 /// Linear-quadratic-Gaussian control with preview.
 #[derive(Debug, Clone)]
 pub struct LqgPreview<const N: usize> {
     axes: [AxisLqg; N],
-    /// By how much the tool is to be behind the plan.
-    lag: Lag,
-    begins_where_it_is: bool,
-    /// Whether it began at rest: behind a lost position nobody knows yet how the tool moves.
-    began_at_rest: bool,
+    /// By how much the tool is to be behind the plan, s.
+    lag_s: f64,
     preview: u32,
     /// Where the law may be wrong.
     validity: Option<Validity<N>>,
@@ -101,9 +92,7 @@ impl<const N: usize> LqgPreview<N> {
         let longest = axes.iter().map(preview_knots).max().unwrap_or(0);
         let lag_s = axes.iter().map(AxisLqg::lag_s).fold(0.0, f64::max);
         Self {
-            lag: Lag::usual(lag_s),
-            begins_where_it_is: settings.begins_where_it_is,
-            began_at_rest: false,
+            lag_s,
             preview: longest + DIFFERENCES as u32,
             validity: settings.learns.then(|| Validity::unknown(axes.iter().map(AxisLqg::unforeseen_mm2).sum())),
             feasibility: Feasibility::FOLLOWED,
@@ -131,13 +120,12 @@ impl<const N: usize> LqgPreview<N> {
             let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
             feasible::is_beyond(axis.law(), knots_mm.map(of_axis))
         });
-        self.feasibility.take_in(beyond, end_s + self.lag.usual_s(), servo_s);
+        self.feasibility.take_in(beyond, end_s + self.lag_s, servo_s);
     }
 
     /// Speed of the machine on the path, so far behind it, mm/s.
     fn lagging_mm_s(&self, window: &Window<'_, N>) -> [f64; N] {
-        let lag_s = self.lag.usual_s();
-        let behind_mm = [-lag_s, -lag_s - window.servo_s()].map(|after_s| window.at(after_s).position_mm);
+        let behind_mm = [-self.lag_s, -self.lag_s - window.servo_s()].map(|after_s| window.at(after_s).position_mm);
         scale(1.0 / window.servo_s(), sub(behind_mm[0], behind_mm[1]))
     }
 }
@@ -154,7 +142,6 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
     fn reset(&mut self) {
         self.axes.iter_mut().for_each(AxisLqg::forget);
         self.validity.iter_mut().for_each(Validity::forget);
-        self.lag.forget();
         (self.feasibility, self.asked_mm) = (Feasibility::FOLLOWED, [0.0; N]);
     }
 
@@ -166,9 +153,6 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             return;
         };
         let begins = self.axes.iter().any(AxisLqg::begins);
-        if begins {
-            self.began_at_rest = window.now().feed_mm_s < SLOWEST_MM_S;
-        }
         let speed_mm_s = if begins { self.lagging_mm_s(window) } else { [0.0; N] };
         let measured_axes = window.offset_mm.into_iter().zip(position_mm).zip(speed_mm_s);
         for (axis, ((offset_mm, position_mm), speed_mm_s)) in self.axes.iter_mut().zip(measured_axes) {
@@ -182,11 +166,6 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             let followed = norm(sub(window.offset_mm, self.asked_mm)) <= FOLLOWED_MM;
             validity.take_in_step(OneStep::sum(self.axes.iter().map(AxisLqg::step)), window.feed_period_s);
             validity.take_in(&shown, followed, window.feed_period_s);
-            if self.begins_where_it_is && self.began_at_rest {
-                let comes_in = validity.taken_up() < 1.0;
-                let tool_s = measured.filter(|_| comes_in).and_then(|measured| behind_s(window, measured));
-                self.lag.take_in(tool_s, window.feed_period_s);
-            }
         }
     }
 
@@ -204,7 +183,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let here_mm = window.now().position_mm;
-        let (mut offset_mm, lag) = ([0.0; N], self.lag);
+        let (mut offset_mm, lag_s) = ([0.0; N], self.lag_s);
         let (taken_up, trusted) =
             self.validity.as_ref().map_or((1.0, Trusted::FULLY), |validity| (validity.taken_up(), validity.trusted()));
         self.look_ahead(window);
@@ -212,18 +191,10 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         for (i, (axis, offset_mm)) in self.axes.iter_mut().zip(&mut offset_mm).enumerate() {
             // There is an i-th axis; the compiler is not to leave a panic for where there is none.
             let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
-            let at_mm = |after_s: f64| of_axis(window.at(after_s - lag.after_s(after_s)).position_mm);
+            let at_mm = |after_s: f64| of_axis(window.at(after_s - lag_s).position_mm);
             *offset_mm = axis.offset_mm(of_axis(here_mm), trusted, open, at_mm);
         }
         self.asked_mm = offset_mm;
         Command::straight(1.0, scale(taken_up, offset_mm))
     }
-}
-
-/// By how much the tool is behind the plan, s, where both move.
-fn behind_s<const N: usize>(window: &Window<'_, N>, measured: &Measured<N>) -> Option<f64> {
-    let knot = window.knot(measured.contour.index);
-    let along_mm = dot(sub(measured.position_mm, knot.position_mm), knot.tangent);
-    let moves = knot.feed_mm_s.min(window.now().feed_mm_s) > SLOWEST_MM_S;
-    moves.then(|| -(f64::from(measured.contour.index) * window.servo_s() + along_mm / knot.feed_mm_s))
 }

@@ -218,7 +218,6 @@ pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values
         price_s2: values.number("price_s2"),
         bounds: offset_bounds(&setup.known),
         learns: false,
-        begins_where_it_is: false,
     };
     Box::new(LqgPreview::new(setup.truth::<N>(), settings))
 }

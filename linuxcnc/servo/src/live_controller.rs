@@ -57,10 +57,7 @@ impl<const N: usize> LiveController<N> {
     pub fn new(model: &LinkModel<N>, servo_s: f64) -> Self {
         match model {
             LinkModel::Axes(identified) => {
-                let settings = Settings {
-                    begins_where_it_is: true,
-                    ..Settings::identified(IDENTIFIED_PRICE, servo_s, OffsetBounds::NONE)
-                };
+                let settings = Settings::identified(IDENTIFIED_PRICE, servo_s, OffsetBounds::NONE);
                 Self::Regulator(LqgPreview::new(identified.axes, settings))
             }
             LinkModel::Contour(contour) => Self::Inversion(Inversion::new(contour)),

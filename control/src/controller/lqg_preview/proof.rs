@@ -55,8 +55,7 @@ impl ProofTrial {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Proof<const N: usize> {
     path_mm: Option<[f64; N]>,
-    /// Where it begins in motion, the speed there.
-    mean_mm_s: Option<[f64; N]>,
+    mean_mm_s: [f64; N],
     /// The largest c lately, and when the law was wrong.
     lately_mm_s: f64,
     wrong_mm_s: f64,
@@ -70,7 +69,7 @@ impl<const N: usize> Proof<N> {
     /// Of a law that was never wrong.
     pub(super) const NOT_NEEDED: Self = Self {
         path_mm: None,
-        mean_mm_s: None,
+        mean_mm_s: [0.0; N],
         lately_mm_s: 0.0,
         wrong_mm_s: 0.0,
         needed: false,
@@ -80,14 +79,10 @@ impl<const N: usize> Proof<N> {
 
     /// A servo period in which the law is wrong, or holds.
     pub(super) fn take_in(&mut self, path_mm: [f64; N], wrong: bool, servo_s: f64) {
+        let last_mm = self.path_mm.replace(path_mm).unwrap_or(path_mm);
+        let off_mm_s = sub(sub(path_mm, last_mm).map(|mm| mm / servo_s), self.mean_mm_s);
         let part = (servo_s / MEAN_S).min(1.0);
-        let off_mm_s = self.path_mm.replace(path_mm).map_or([0.0; N], |last_mm| {
-            let speed_mm_s = sub(path_mm, last_mm).map(|mm| mm / servo_s);
-            let mean_mm_s = self.mean_mm_s.unwrap_or(speed_mm_s);
-            let off_mm_s = sub(speed_mm_s, mean_mm_s);
-            self.mean_mm_s = Some(add_scaled(mean_mm_s, part, off_mm_s));
-            off_mm_s
-        });
+        self.mean_mm_s = add_scaled(self.mean_mm_s, part, off_mm_s);
         let change_mm_s = norm(off_mm_s);
         self.lately_mm_s = change_mm_s.max((1.0 - part) * self.lately_mm_s);
         if wrong {

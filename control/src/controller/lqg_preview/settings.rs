@@ -25,8 +25,6 @@ pub struct Settings {
     pub bounds: OffsetBounds,
     /// Whether law and statistics may be wrong: statistics are learnt, and a wrong law is not followed. Else both are exact.
     pub learns: bool,
-    /// Whether it begins as far behind the plan as the tool is where the correction comes in, and not where it would be at constant speed.
-    pub begins_where_it_is: bool,
 }
 
 /// Price that serves by an identified model, in squares of the servo period. With 1 there is half as much again left on workshop; as long as the law is
@@ -38,12 +36,11 @@ const SCREW_RAD: f64 = 2.0;
 
 impl Settings {
     /// A tenth of the travel of a servo period, squared.
-    pub const DEFAULT: Self =
-        Self { price_s2: 1e-8, bounds: OffsetBounds::NONE, learns: false, begins_where_it_is: false };
+    pub const DEFAULT: Self = Self { price_s2: 1e-8, bounds: OffsetBounds::NONE, learns: false };
 
     /// For an identified model: a price in squares of a servo period of `servo_s`.
     pub fn identified(price: f64, servo_s: f64, bounds: OffsetBounds) -> Self {
-        Self { price_s2: price * servo_s * servo_s, bounds, learns: true, begins_where_it_is: false }
+        Self { price_s2: price * servo_s * servo_s, bounds, learns: true }
     }
 
     /// Near the reference, for an axis with this screw.
