@@ -5,6 +5,7 @@
 
 mod curves;
 pub mod figures;
+pub mod page;
 
 use feedwright_control::Controller;
 use feedwright_control::controller::magnitude_only::MagnitudeOnly;

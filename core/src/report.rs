@@ -7,6 +7,7 @@
 //! Only rows that cut count for the contour error; rapids and dwells are recorded and drawn, but not judged.
 
 pub(crate) mod text;
+pub(crate) mod plain_page;
 pub mod figure;
 mod outline;
 mod series;

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 
 use feedwright::machine::Machine;
 use feedwright::output::{OutputFile, OutputFiles};
-use feedwright::paper::{self, Paper, figures::figures};
-use feedwright::report::figure::{CaptionedFigure, write_page};
+use feedwright::paper::{self, Paper, figures::figures, page};
+use feedwright::report::figure::CaptionedFigure;
 use feedwright::watch::Watch;
 use miette::{IntoDiagnostic, Result};
 
@@ -16,11 +16,6 @@ use crate::console::Console;
 use crate::message::printed;
 use crate::streams::make_folder;
 use crate::terminal::wrapped;
-
-/// Introduction of the page.
-const INTRODUCTION: &str = "The experiments of S. S. Lee, J. H. Cho and G. J. Jeon, \"Two dimensional feedrate control for \
-    high performance CNC machine tools\" (IFAC 2005), section 4: a circle of 10 mm radius at 50 mm/s on a model of the \
-    TNV-40, repeated with feedwright.";
 
 pub(crate) fn run(args: &PaperArgs, console: &Console) -> Result<ExitCode> {
     let machine = Machine::load(&args.machine)?;
@@ -52,7 +47,7 @@ fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure], watch: &dyn 
         let name = figure.number.to_lowercase().replace(' ', "_") + ".svg";
         start(&name, &|file| file.write_all(figure.figure.to_svg().as_bytes()))?;
     }
-    start("paper.html", &|file| write_page(file, "Two-dimensional feedrate control", INTRODUCTION, figures))?;
+    start("paper.html", &|file| page::write(file, paper, figures))?;
     OutputFile::commit_all(complete, watch)?;
     Ok(())
 }

@@ -8,11 +8,11 @@ use std::ops::Range;
 use super::{LogIdentified, digits};
 use crate::identify::grey_box::found_axis::FoundAxis;
 use crate::identify::grey_box::free_run_scores::FreeRunErrors;
-use crate::report::figure::{COLORS, Figure, LineStyle, Panel, Polyline, write_foot, write_head};
+use crate::report::figure::{COLORS, Figure, LineStyle, Panel, Polyline};
+use crate::report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
 use crate::report::text::{escaped, number};
 use crate::spectrum::Spectrum;
 
-const CSS: &str = include_str!("../../assets/report/compare.css");
 /// Points of a curve: two for each pixel.
 const POINTS: usize = 1500;
 /// Segment of a spectrum, samples, at the most.
@@ -32,49 +32,74 @@ pub fn write(out: &mut impl Write, identified: &LogIdentified) -> io::Result<()>
         log.time_s.len(),
         digits(1e3 * log.sample_time_s),
     );
-    write_head(out, &format!("Identification from {}", identified.job.name), &introduction, CSS)?;
-    for (i, axis) in identified.machine.axes.iter().enumerate() {
-        write_axis(out, identified, i, axis)?;
+    let axes = identified.machine.axes.iter().enumerate();
+    let axis_parts: Vec<PagePart> =
+        axes.clone().map(|(i, axis)| PagePart::new(&format!("axis-{i}"), format!("Axis {}", axis.name))).collect();
+    let lists = lists(identified);
+    let list_parts = (0..).zip(&lists).map(|(i, (title, _))| PagePart::new(&format!("list-{i}"), *title));
+    let contour_part = contour_title(identified).map(|title| PagePart::new("contour", title));
+    let parts: Vec<PagePart> =
+        axis_parts.iter().cloned().chain(contour_part.clone()).chain(list_parts.clone()).collect();
+    write_head(out, "tables", &format!("Identification from {}", identified.job.name), &introduction, &parts)?;
+    for ((i, axis), part) in axes.zip(&axis_parts) {
+        write_axis(out, identified, i, axis, part)?;
     }
-    if let Some(contour) = &identified.machine.contour {
-        let [a, b] = contour.plane.map(|i| escaped(&identified.machine.axes[i].name).to_string());
+    if let (Some(contour), Some(part)) = (&identified.machine.contour, contour_part) {
+        part.begin(out)?;
         writeln!(
             out,
-            "<h2>Contour error of {a} and {b}</h2>\n<p>Where both move it is {} µm RMS; the free runs miss {} µm of it, those of the best ARX {} µm.</p>",
+            "<p>Where both move it is {} µm RMS; the free runs miss {} µm of it, those of the best ARX {} µm.</p>",
             number(contour.measured_um),
             number(contour.grey_box_um),
             number(contour.arx_um)
         )?;
+        PagePart::end(out)?;
     }
-    let lists = [
-        ("What was noticed", log.findings.iter().map(ToString::to_string).collect()),
-        ("What other settings would bring", identified.improvements()),
-        ("What to record", identified.advice()),
-    ];
-    for (title, lines) in lists {
-        let lines: Vec<String> = lines;
-        if !lines.is_empty() {
-            writeln!(out, "<h2>{title}</h2>\n<ul>")?;
-            lines.iter().try_for_each(|line| writeln!(out, "<li>{}</li>", escaped(line)))?;
-            writeln!(out, "</ul>")?;
-        }
+    for (part, (_, lines)) in list_parts.zip(&lists) {
+        part.begin(out)?;
+        writeln!(out, "<ul>")?;
+        lines.iter().try_for_each(|line| writeln!(out, "<li>{}</li>", escaped(line)))?;
+        writeln!(out, "</ul>")?;
+        PagePart::end(out)?;
     }
     write_foot(out)
 }
 
-fn write_axis(out: &mut impl Write, identified: &LogIdentified, i: usize, axis: &FoundAxis) -> io::Result<()> {
+fn contour_title(identified: &LogIdentified) -> Option<String> {
+    let contour = identified.machine.contour.as_ref()?;
+    let [a, b] = contour.plane.map(|i| identified.machine.axes[i].name.clone());
+    Some(format!("Contour error of {a} and {b}"))
+}
+
+/// Lists of sentences that have any, with their headings.
+fn lists(identified: &LogIdentified) -> Vec<(&'static str, Vec<String>)> {
+    let noticed = identified.log.findings.iter().map(ToString::to_string).collect();
+    let mut lists = vec![
+        ("What was noticed", noticed),
+        ("What other settings would bring", identified.improvements()),
+        ("What to record", identified.advice()),
+    ];
+    lists.retain(|(_, lines): &(_, Vec<String>)| !lines.is_empty());
+    lists
+}
+
+fn write_axis(
+    out: &mut impl Write,
+    identified: &LogIdentified,
+    i: usize,
+    axis: &FoundAxis,
+    part: &PagePart,
+) -> io::Result<()> {
     let name = escaped(&axis.name).to_string();
-    writeln!(out, "<section><h2>Axis {name}</h2>\n<p><b>{}</b></p>", escaped(&sentence(&identified.verdict(i))))?;
+    part.begin(out)?;
+    writeln!(out, "<p><b>{}</b></p>", escaped(&sentence(&identified.verdict(i))))?;
     writeln!(
         out,
         "<figure>{}<figcaption><b>Following error of axis {name}.</b> Measured, and as free runs over the scored samples have it; below, what they leave. \
          Gaps are samples that were fitted.</figcaption></figure>",
         following(identified, i, f64::NEG_INFINITY..f64::INFINITY).to_svg()
     )?;
-    writeln!(
-        out,
-        "<div class=\"wide\"><table><thead><tr><th>number</th><th>value</th><th>interval</th><th>unit</th><th></th></tr></thead><tbody>"
-    )?;
+    write_table_head(out, ["number", "value", "interval", "unit", ""])?;
     for number in axis.numbers() {
         let interval =
             number.interval.map_or(String::new(), |[low, high]| format!("{} to {}", digits(low), digits(high)));
@@ -87,15 +112,16 @@ fn write_axis(out: &mut impl Write, identified: &LogIdentified, i: usize, axis: 
             number.source.word()
         )?;
     }
-    writeln!(out, "</tbody></table></div>")?;
+    write_table_end(out)?;
     write_errors(out, axis)?;
     writeln!(
         out,
-        "<figure>{}<figcaption><b>Spectrum of what the free run of axis {name} leaves.</b> RMS in a band of a hertz. Correlation from sample to sample: {:.2} of what is left, {:.2} one step ahead.</figcaption></figure></section>",
+        "<figure>{}<figcaption><b>Spectrum of what the free run of axis {name} leaves.</b> RMS in a band of a hertz. Correlation from sample to sample: {:.2} of what is left, {:.2} one step ahead.</figcaption></figure>",
         spectrum(identified, i, axis).to_svg(),
         axis.scores.residual_correlation,
         axis.scores.innovation_correlation
-    )
+    )?;
+    PagePart::end(out)
 }
 
 fn sentence(words: &str) -> String {
@@ -109,10 +135,7 @@ fn write_errors(out: &mut impl Write, axis: &FoundAxis) -> io::Result<()> {
         "<p>RMS of what predictions miss, µm, of a following error of {} µm:</p>",
         number(axis.scores.following_um)
     )?;
-    writeln!(
-        out,
-        "<div class=\"wide\"><table><thead><tr><th>model</th><th>20 ms</th><th>50 ms</th><th>100 ms</th><th>whole run</th><th>one step</th></tr></thead><tbody>"
-    )?;
+    write_table_head(out, ["model", "20 ms", "50 ms", "100 ms", "whole run", "one step"])?;
     let mut row = |class: &str, name: &str, errors: &FreeRunErrors| {
         let [a, b, c] = errors.at_um.map(micrometres);
         let [whole, step] = [errors.whole_um, errors.one_step_um].map(micrometres);
@@ -126,7 +149,7 @@ fn write_errors(out: &mut impl Write, axis: &FoundAxis) -> io::Result<()> {
         row("", &format!("ARX, {}", arx.words()), errors)?;
     }
     row("", "the error stays", &axis.scores.stays)?;
-    writeln!(out, "</tbody></table></div>")?;
+    write_table_end(out)?;
     if let Some((um, share)) = axis.scores.beyond {
         writeln!(
             out,

@@ -8,6 +8,7 @@ mod svg;
 
 use std::io::{self, Write};
 
+use super::plain_page::{PagePart, write_foot, write_head};
 use super::text::escaped;
 
 /// Panels side by side or in rows, with one legend for all.
@@ -101,37 +102,24 @@ pub fn write_page(
     introduction: &str,
     figures: &[CaptionedFigure],
 ) -> io::Result<()> {
-    write_head(out, title, introduction, "")?;
-    for entry in figures {
-        write!(
-            out,
-            "<figure>\n{}<figcaption><b>{}.</b> {}</figcaption>\n</figure>\n",
-            entry.figure.to_svg(),
-            escaped(&entry.number),
-            escaped(&entry.caption)
-        )?;
-    }
+    let parts: Vec<PagePart> = figure_parts(figures).collect();
+    write_head(out, "figures", title, introduction, &parts)?;
+    parts.iter().zip(figures).try_for_each(|(part, entry)| write_figure_part(out, part, entry))?;
     write_foot(out)
 }
 
-/// The beginning of a self-contained page in the style of the figures; `more_css` is added to it.
-pub(crate) fn write_head(out: &mut impl Write, title: &str, introduction: &str, more_css: &str) -> io::Result<()> {
-    let (title, introduction) = (escaped(title), escaped(introduction));
-    write!(
-        out,
-        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
-         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; img-src data:\">\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<link rel=\"icon\" href=\"data:,\">\n\
-         <title>{title}</title>\n<style>\n{PAGE_CSS}{more_css}</style>\n</head>\n<body>\n<main>\n<h1>{title}</h1>\n<p>{introduction}</p>\n"
-    )
+/// The parts of a page that figures are.
+pub(crate) fn figure_parts(figures: &[CaptionedFigure]) -> impl Iterator<Item = PagePart> {
+    figures.iter().enumerate().map(|(i, entry)| PagePart::new(&format!("figure-{}", i + 1), entry.number.as_str()))
 }
 
-/// The end of such a page.
-pub(crate) fn write_foot(out: &mut impl Write) -> io::Result<()> {
-    out.write_all(b"</main>\n</body>\n</html>\n")
+/// One of them.
+pub(crate) fn write_figure_part(out: &mut impl Write, part: &PagePart, entry: &CaptionedFigure) -> io::Result<()> {
+    part.begin(out)?;
+    let (svg, number, caption) = (entry.figure.to_svg(), escaped(&entry.number), escaped(&entry.caption));
+    writeln!(out, "<figure>\n{svg}<figcaption><b>{number}.</b> {caption}</figcaption>\n</figure>")?;
+    PagePart::end(out)
 }
-
-const PAGE_CSS: &str = include_str!("../../assets/report/figures.css");
 
 #[cfg(test)]
 mod tests {
