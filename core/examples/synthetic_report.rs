@@ -83,6 +83,7 @@ fn run(job: &Job, name: &str, lag_s: [f64; 3]) -> io::Result<ReportedRun> {
         machine: "made-up lag".to_owned(),
         part: job.name.to_owned(),
         axes: job.axes,
+        measured: false,
         run: feedwright::simulate::RunResult { time_s, ..Default::default() },
     };
     let text = |line: u32| format!("N{line} G1 X1 Y2 (</script><img src=x onerror=alert(1)> & \"quoted\")");
@@ -99,7 +100,8 @@ fn run(job: &Job, name: &str, lag_s: [f64; 3]) -> io::Result<ReportedRun> {
         event(0.6 * time_s, 0.05 * time_s, "dwell", "dwell"),
         event(time_s, 0.0, "stop", "end of program"),
     ];
-    Ok(ReportedRun { summary: statistics.summary(facts, text), series, events })
+    let (spectrum, roundness) = (Vec::new(), Vec::new());
+    Ok(ReportedRun { summary: statistics.summary(facts, text), series, spectrum, roundness, events })
 }
 
 /// Arc length of the path point nearest to `point`, from a little behind `before_mm` up to `newest_mm`.
@@ -167,6 +169,9 @@ fn main() -> io::Result<()> {
             part: format!("{}.ngc", job.name),
             machine: vec![("axes".to_owned(), job.axes.to_string()), ("servo period".to_owned(), "1 ms".to_owned())],
             settings: vec![("controllers".to_owned(), "open loop, less lag".to_owned())],
+            simulated: vec!["a lag that was made up".to_owned()],
+            program: Vec::new(),
+            circles: Vec::new(),
             tolerance_um: Some(20.0),
             runs: vec![run(job, "open loop", [0.012, 0.015, 0.012])?, run(job, "less lag", [0.006, 0.0065, 0.006])?],
         };

@@ -9,12 +9,18 @@
 //! | `job/files.rs` | the files that it writes, all of them or none |
 //! | `job/exported.rs` | the corrected program for a control without feedback |
 //! | `job/report.rs` | what the page shows |
+//! | `job/simulated.rs` | the machine in sentences for it |
+//! | `job/listing.rs` | lines of the program for it |
+//! | `job/record.rs` | what it keeps of the rows of a run |
 //! | `job/stored.rs` | how it is serialised |
 
 mod assumed;
 mod files;
 mod exported;
 mod report;
+mod listing;
+mod simulated;
+mod record;
 mod stored;
 
 use std::path::PathBuf;
@@ -39,12 +45,13 @@ use crate::model::Model;
 use crate::path::{Step, Steps};
 use crate::pipeline::{Run, RunError, Stages, pieces};
 use crate::report::harm::Harm;
-use crate::report::{Report, ReportedRun, RunFacts, Series, Statistics};
+use crate::report::{FullCircle, Report, ReportedRun, full_circles};
 use crate::trace::{Row, Sink};
 use crate::watch::{StageSteps, Watch};
 pub use exported::AS_EXPORTED;
 pub use files::Outputs;
 use files::{Files, Timeline};
+use record::RunRecord;
 
 /// A part, a machine, two controllers, and what to write. Serialised, the machine and the model are the texts of their files, and
 /// the controllers their names.
@@ -155,6 +162,7 @@ impl Job {
         let mut files = Files::create(self, N)?;
         let aligned = self.aligned()?;
         let fastest = self.fastest_plan::<N>(watch)?;
+        let circles = self.circles()?;
         let (mut runs, mut without_identification) = (Vec::new(), Vec::new());
         for entry in self.controllers() {
             watch.check()?;
@@ -171,22 +179,22 @@ impl Job {
                 }
             };
             let written = judged.then_some(&mut files);
-            let plan = (fastest.as_ref(), aligned.as_ref());
+            let plan = PlannedCut { fastest: fastest.as_ref(), aligned: aligned.as_ref(), circles: &circles };
             runs.push(self.cut_once(summary, entry, &mut *controller, plan, written, watch)?);
         }
         let mut log_findings = Vec::new();
         if let Some(log) = &self.log {
             let at = runs.len() - 1;
-            let (run, findings) = self.measured(log, N, watch)?;
+            let (run, findings) = self.measured(log, N, &circles, watch)?;
             runs.insert(at, run);
             log_findings = findings;
         }
-        let exported = self.exported(watch)?.map(|(outcome, run)| {
+        let exported = self.exported(&circles, watch)?.map(|(outcome, run)| {
             runs.extend(run);
             outcome
         });
         watch.begin("writing", 1);
-        let report = self.report(N, summary, runs, &without_identification);
+        let report = self.report(N, summary, circles, runs, &without_identification)?;
         let (harm, is_of_use) = (self.harm(&report), self.is_of_use(&report));
         let exported_well = exported.as_ref().is_none_or(|outcome| outcome.refusal.is_none());
         let within_tolerance = self.within_tolerance(&report) && exported_well;
@@ -210,6 +218,7 @@ impl Job {
         &self,
         file: &LogFile,
         axes: usize,
+        circles: &[FullCircle],
         watch: &dyn Watch,
     ) -> Result<(ReportedRun, Vec<LogFinding>), JobError> {
         let columns = match &file.columns {
@@ -222,20 +231,10 @@ impl Job {
         let steps = pieces(self.program()?);
         let limits = |error| JobError::of_run(&self.part, RunError::Limits(error));
         let mut reference = Stages::of(&self.machine).reference(steps, &self.machine).map_err(limits)?;
-        let (mut statistics, mut series) = (Statistics::new(), Series::new());
+        let mut record = RunRecord::new(axes, log.sample_time_s, circles);
         let MeasuredRun { run, findings: of_axes } =
-            measured(&log, &self.machine, axes, &mut reference, &mut [&mut statistics, &mut series], watch)
-                .map_err(of_log)?;
-        let facts = RunFacts {
-            controller: MEASURED.to_owned(),
-            machine: self.machine.name.clone(),
-            part: self.part_name(),
-            axes,
-            run,
-        };
-        let mut summary = statistics.summary(facts, |_| String::new());
-        self.fill_in_texts(&mut summary.worst)?;
-        Ok((ReportedRun { summary, series, events: Vec::new() }, [log.findings, of_axes].concat()))
+            measured(&log, &self.machine, axes, &mut reference, &mut record.sinks(), watch).map_err(of_log)?;
+        Ok((self.reported(record, MEASURED, run)?, [log.findings, of_axes].concat()))
     }
 
     /// The plan of least time, found with a controller of its own.
@@ -265,16 +264,17 @@ impl Job {
         summary: &Summary,
         entry: &Entry,
         controller: &mut dyn Controller<N>,
-        (fastest, aligned): (Option<&FastestPlan>, Option<&AlignedPaths>),
+        PlannedCut { fastest, aligned, circles }: PlannedCut<'_>,
         files: Option<&mut Files>,
         watch: &dyn Watch,
     ) -> Result<ReportedRun, JobError> {
-        let (mut statistics, mut series, mut timeline) =
-            (Statistics::new(), Series::new(), Timeline::new(&self.machine.plc_events));
+        let mut record = RunRecord::new(N, self.machine.period.servo_s, circles);
+        let mut timeline = Timeline::new(&self.machine.plc_events);
         let steps = StageSteps::begin(watch, &format!("cutting, {}", entry.name));
         let mut cut = CutProgress { steps, length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
-        let mut sinks: Vec<&mut dyn Sink> = vec![&mut statistics, &mut series, &mut timeline, &mut cut];
-        sinks.extend(files.map(|files| files as &mut dyn Sink));
+        let others: [&mut dyn Sink; 2] = [&mut timeline, &mut cut];
+        let files = files.map(|files| files as &mut dyn Sink);
+        let mut sinks: Vec<&mut dyn Sink> = record.sinks().into_iter().chain(others).chain(files).collect();
         let machine = fastest.map_or(&self.machine, |plan| &plan.machine);
         let steps = || {
             let steps = pieces(self.program()?);
@@ -289,16 +289,19 @@ impl Job {
             None => run.cut(steps, controller, &mut sinks),
         };
         let run = run.map_err(|error| JobError::of_run(&self.part, error))?;
-        let facts = RunFacts {
-            controller: entry.name.to_owned(),
-            machine: self.machine.name.clone(),
-            part: self.part_name(),
-            axes: N,
-            run,
-        };
-        let mut summary = statistics.summary(facts, |_| String::new());
-        self.fill_in_texts(&mut summary.worst)?;
-        Ok(ReportedRun { summary, series, events: timeline.events })
+        drop(sinks);
+        Ok(ReportedRun { events: timeline.events, ..self.reported(record, entry.name, run)? })
+    }
+
+    /// The full circles of the program that errors are measured to.
+    fn circles(&self) -> Result<Vec<FullCircle>, JobError> {
+        Ok(match &self.reference {
+            None => full_circles(pieces(self.program()?).map_while(Result::ok)),
+            Some(reference) => {
+                let steps = Reader::open(reference, self.reader.clone())?.map_while(Result::ok);
+                full_circles(pieces(steps).map_while(Result::ok))
+            }
+        })
     }
 
     /// The path that is cut beside the one that errors are measured to, where that is another.
@@ -339,6 +342,13 @@ impl Job {
     }
 }
 
+/// What a cut is made by, besides machine and controller.
+#[derive(Clone, Copy)]
+struct PlannedCut<'a> {
+    fastest: Option<&'a FastestPlan>,
+    aligned: Option<&'a AlignedPaths>,
+    circles: &'a [FullCircle],
+}
 /// Tells the progress of a cut by its arc length.
 struct CutProgress<'a> {
     steps: StageSteps<'a>,

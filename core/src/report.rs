@@ -15,12 +15,16 @@ mod embedded_data;
 mod html;
 mod worst;
 mod histogram;
+mod error_spectrum;
+mod circles;
 mod summary;
 mod statistics;
 pub mod harm;
 mod assumptions;
 
 pub use assumptions::{Assumptions, LawKnowledge};
+pub use circles::{FullCircle, RadialDeviations, Roundness, full_circles};
+pub use error_spectrum::{ErrorSpectrum, SpectrumBand};
 pub use histogram::Histogram;
 pub use html::write_html;
 pub use series::{Series, SeriesPoint};
@@ -43,6 +47,12 @@ pub struct Report {
     pub settings: Vec<(String, String)>,
     /// What the figures rest on.
     pub assumed: Assumptions,
+    /// What is simulated of the machine, what is not, and what the controller was given of it, a sentence each.
+    pub simulated: Vec<String>,
+    /// Lines of the program, in their order; not all of a long one.
+    pub program: Vec<ProgramLine>,
+    /// The full circles of the program.
+    pub circles: Vec<FullCircle>,
     /// Largest contour error that the part allows, µm, where one was asked for.
     pub tolerance_um: Option<f64>,
     /// One for each controller. The first is what the others are compared with; the last is the one that is judged.
@@ -56,8 +66,28 @@ pub struct ReportedRun {
     pub summary: RunSummary,
     /// Its record.
     pub series: Series,
+    /// The spectrum of its contour error; empty where too little was cut.
+    pub spectrum: Vec<SpectrumBand>,
+    /// How round it cut each of the circles; none where that cannot be told.
+    pub roundness: Vec<Option<Roundness>>,
     /// Events of the program in the time of this run; may be empty.
     pub events: Vec<TimelineEvent>,
+}
+
+impl ReportedRun {
+    /// How round it cut a circle of the program.
+    fn roundness_of(&self, circle: usize) -> Option<&Roundness> {
+        self.roundness.get(circle)?.as_ref()
+    }
+}
+
+/// A line of the program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ProgramLine {
+    /// Its number, from 1.
+    pub line: u32,
+    /// Its text.
+    pub text: String,
 }
 
 /// A tool change, dwell or other event of the program at the time at which the run came to it.

@@ -103,32 +103,63 @@ const WINDOW_DEVIATIONS: f64 = 4.0;
 /// Segments follow each other by so many parts of one: the windows then overlap at 0.6 of their height.
 const SEGMENT_PARTS: usize = 4;
 
+/// Segments of a sequence as they come, and the spectrum of those so far.
+#[derive(Debug, Clone)]
+pub(crate) struct SpectrumSegments {
+    window: Vec<f64>,
+    /// Standard deviation of the window, samples.
+    deviation: f64,
+    sum: Vec<f64>,
+    weight: f64,
+}
+
+impl SpectrumSegments {
+    /// None yet; `length` of each is a power of two.
+    pub(crate) fn new(length: usize) -> Self {
+        let middle = 0.5 * length as f64;
+        let deviation = middle / WINDOW_DEVIATIONS;
+        let gauss = |k: usize| (-0.5 * ((k as f64 + 0.5 - middle) / deviation).powi(2)).exp();
+        Self { window: (0..length).map(gauss).collect(), deviation, sum: vec![0.0; length / 2 + 1], weight: 0.0 }
+    }
+
+    /// By how much the beginnings of two segments are apart, samples.
+    pub(crate) fn step(&self) -> usize {
+        self.window.len() / SEGMENT_PARTS
+    }
+
+    /// Adds a segment.
+    pub(crate) fn add(&mut self, values: &[f64], counts: &[bool]) {
+        let mut segment: Vec<Phasor> = values
+            .iter()
+            .zip(counts)
+            .zip(&self.window)
+            .map(|((value, &counts), g)| if counts { [value * g, 0.0] } else { [0.0; 2] })
+            .collect();
+        self.weight += counts.iter().zip(&self.window).filter(|&(&counts, _)| counts).map(|(_, g)| g * g).sum::<f64>();
+        transform(&mut segment);
+        self.sum.iter_mut().zip(&segment).for_each(|(sum, value)| *sum += power(*value));
+    }
+
+    /// The spectrum, of a sequence in which `seen` values count.
+    pub(crate) fn spectrum(&self, seen: usize) -> Spectrum {
+        Spectrum {
+            power: self.sum.iter().map(|p| p / self.weight.max(f64::MIN_POSITIVE)).collect(),
+            weight_of_value: seen as f64 / self.window.len() as f64,
+            width: 1.0 / (2.0 * PI * self.deviation * 2.0_f64.sqrt()),
+        }
+    }
+}
+
 impl Spectrum {
     /// Of what counts, in segments of a length that is a power of two.
     pub(crate) fn new(values: &[f64], counts: &[bool], length: usize) -> Self {
-        let middle = 0.5 * length as f64;
-        let deviation = middle / WINDOW_DEVIATIONS;
-        let window: Vec<f64> =
-            (0..length).map(|k| (-0.5 * ((k as f64 + 0.5 - middle) / deviation).powi(2)).exp()).collect();
-        let (mut sum, mut weight) = (vec![0.0; length / 2 + 1], 0.0);
+        let mut segments = SpectrumSegments::new(length);
         let mut start = 0;
         while start + length <= values.len() {
-            let seen = counts[start..start + length].iter();
-            let mut segment: Vec<Phasor> = values[start..start + length]
-                .iter()
-                .zip(seen.clone())
-                .zip(&window)
-                .map(|((value, &counts), g)| if counts { [value * g, 0.0] } else { [0.0; 2] })
-                .collect();
-            weight += seen.zip(&window).filter(|&(&counts, _)| counts).map(|(_, g)| g * g).sum::<f64>();
-            transform(&mut segment);
-            sum.iter_mut().zip(&segment).for_each(|(sum, value)| *sum += power(*value));
-            start += length / SEGMENT_PARTS;
+            segments.add(&values[start..start + length], &counts[start..start + length]);
+            start += segments.step();
         }
-        let width = 1.0 / (2.0 * PI * deviation * 2.0_f64.sqrt());
-        let seen = counts.iter().filter(|&&counts| counts).count() as f64;
-        let weight_of_value = seen / length as f64;
-        Self { power: sum.iter().map(|p| p / weight.max(f64::MIN_POSITIVE)).collect(), weight_of_value, width }
+        segments.spectrum(counts.iter().filter(|&&counts| counts).count())
     }
 
     /// Frequency of a value, turns a sample.

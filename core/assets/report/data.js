@@ -19,25 +19,31 @@ function readModel(raw) {
     const meta = raw.meta.runs[i], n = columns.t.length;
     const axisColumns = (prefix, unit) =>
       AXIS_NAMES.map((a) => (columns[prefix + a] ? decode(columns[prefix + a], unit) : zeros(n)));
-    const error_um = decode(columns.e, u.error_mm * 1e3);
+    const error_um = decode(columns.e, meta.error_mm * 1e3);
     return {
-      index: i, n, name: meta.controller, worst: meta.worst, histogram: meta.histogram,
+      index: i, n, name: meta.controller, worst: meta.worst, spectrum: meta.spectrum, histogram: meta.histogram,
       max_um: meta.max_um, thinned: meta.rows_per_point > 1,
       t: decode(columns.t, u.time_s), s: decode(columns.s, u.length_mm),
       error_um,
-      low_um: columns.lo ? decode(columns.lo, u.error_mm * 1e3) : error_um,
-      high_um: columns.hi ? decode(columns.hi, u.error_mm * 1e3) : error_um,
+      low_um: columns.lo ? decode(columns.lo, meta.error_mm * 1e3) : error_um,
+      high_um: columns.hi ? decode(columns.hi, meta.error_mm * 1e3) : error_um,
       plan: decode(columns.plan, u.feed_mm_s * 60), feed: decode(columns.feed, u.feed_mm_s * 60),
       line: decode(columns.line, 1), cutting: decode(columns.cutting, 1),
-      foot: axisColumns("f", u.point_mm), deviation: axisColumns("d", u.error_mm),
-      torque: axisColumns("torque_", u.torque_nm).slice(0, axes),
+      foot: axisColumns("f", u.point_mm), deviation: axisColumns("d", meta.error_mm),
+      torque: columns.torque_x ? axisColumns("torque_", u.torque_nm).slice(0, axes) : null,
     };
   });
   const outline = raw.outline && {
     points: AXIS_NAMES.map((a) => raw.outline[a] ? decode(raw.outline[a], u.point_mm) : zeros(raw.outline.x.length)),
     cutting: decode(raw.outline.cutting, 1),
   };
-  return { axes, runs, outline, tolerance_um: raw.meta.tolerance_um };
+  const circles = raw.meta.circles.map((circle) => ({
+    ...circle,
+    runs: circle.runs.map((run, i) => run && {
+      g_um: run.g_um, radial_um: run.radial.map((v) => (v === null ? null : v * raw.meta.runs[i].error_mm * 1e3)),
+    }),
+  }));
+  return { axes, runs, outline, circles, listing: raw.meta.program, tolerance_um: raw.meta.tolerance_um };
 }
 
 // Index of the value nearest to x in an increasing array.
@@ -54,6 +60,13 @@ function formatNumber(x) {
   const size = Math.abs(x), digits = size >= 99.95 ? 0 : size >= 9.995 ? 1 : 2;
   const text = size.toFixed(digits);
   return (x < 0 && Number(text) !== 0 ? "\u2212" : "") + text;
+}
+
+// As formatNumber, with two digits of what is smaller than a tenth.
+function formatError(x) {
+  if (Math.abs(x) >= 0.0995 || x === 0) return formatNumber(x);
+  const digits = Math.min(5, 1 - Math.floor(Math.log10(Math.abs(x))));
+  return x.toFixed(digits).replace("-", "\u2212");
 }
 
 // 1, 2 or 5 times a power of ten, at most x.

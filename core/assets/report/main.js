@@ -11,65 +11,30 @@ else document.querySelector(".cockpit").hidden = true;
 function start() {
   const [low, high] = extent(model);
   const threeD = model.axes === 3 && high[2] - low[2] > 1e-6;
-  const state = {
-    camera: new Camera(model.outline ? model.outline.points : model.runs[0].foot, threeD ? "3d" : "xy"),
-    gain: defaultGain(model, low, high),
-    scale_um: Math.max(1e-3, ...model.runs.map((r) => r.max_um)),
-    focus: null, shown: [model.runs.length - 1], views: [], pinned: false,
-  };
-  let waiting = false;
-  const actions = {
-    redraw() {
-      if (waiting) return;
-      waiting = true;
-      requestAnimationFrame(() => { waiting = false; state.views.forEach((v) => v.draw()); });
-    },
-    reset() { state.camera.fit(); actions.redraw(); },
-    // `kind` is "t" or "s"; a run and index may be given where the place is one of its points.
-    focus(kind, value, run, index) {
-      const indices = model.runs.map((r) => nearestIndex(r[kind], value));
-      if (run !== undefined) indices[run] = index;
-      const lead = run ?? state.shown[state.shown.length - 1], i = indices[lead];
-      state.focus = { indices, at: { t: model.runs[lead].t[i], s: model.runs[lead].s[i] } };
-      state.focus.at[kind] = value;
-      showFocus(lead, i);
-    },
-    unfocus() {
-      state.focus = state.pinned || null;
-      if (state.pinned) return showFocus(state.pinned.lead, state.pinned.indices[state.pinned.lead]);
-      plots.showFocus(null);
-      $("readout").textContent = "";
-      state.views.forEach((v) => v.drawMark());
-    },
-  };
-  const plots = new Plots(model, $("plots"), document.querySelector(".path-panel"), actions);
-
-  function showFocus(lead, i) {
-    plots.showFocus(state.focus);
-    const run = model.runs[lead];
-    const errors = model.runs.map((r) => {
-      const k = state.focus.indices[r.index];
-      return `${r.name} ${r.cutting[k] ? `${formatNumber(r.error_um[k])} \u00b5m` : "rapid"}`;
-    });
-    $("readout").textContent =
-      [`line ${run.line[i]}`, `t ${run.t[i].toFixed(3)} s`, `s ${run.s[i].toFixed(2)} mm`, ...errors].join("  \u00b7  ");
-    state.views.forEach((v) => v.drawMark());
-  }
+  const size_mm = Math.hypot(...high.map((v, k) => v - low[k]));
+  const state = new ViewState(model, size_mm, threeD);
+  const actions = new Actions(state);
+  const plots = new Plots(model, state, $("plots"), $("others"), actions);
+  const circularity = model.circles.length && $("circularity") ? new CircularityPlots(model, state) : null;
+  const player = new Player(model, state, actions);
+  Object.assign(actions, { plots, player });
 
   function layOut() {
-    const both = state.shown.length > 1;
-    $("views").className = both ? "side" : "";
+    $("views").className = state.shown.length > 1 ? "side" : "";
     state.views = state.shown.map((r) => new PathView(model, model.runs[r], state, actions));
     $("views").replaceChildren(...state.views.map((v) => v.element));
     state.camera.fitted = false;
     state.views.forEach((v) => v.resize());
-    actions.redraw();
+    setGain(state.gain);
+    drawLegends(state);
   }
 
   const choices = model.runs.map((r) => [String(r.index), r.name, [swatch(r.index), r.name]]);
   if (model.runs.length > 1) choices.push(["side", "side by side", ["side by side"]]);
   const showChoice = segments($("show"), choices, String(state.shown[0]), (name) => {
+    const before = state.lead();
     state.shown = name === "side" ? model.runs.map((r) => r.index) : [Number(name)];
+    if (state.own) state.gain *= state.defaults[state.lead().index] / state.defaults[before.index];
     layOut();
   });
   $("show").hidden = model.runs.length < 2;
@@ -81,37 +46,55 @@ function start() {
   });
   $("view").hidden = !threeD;
 
-  const setGain = (gain) => {
-    state.gain = Math.min(1000, Math.max(1, gain));
+  function setGain(gain) {
+    state.gain = Math.min(MOST_GAIN, Math.max(1, gain));
+    const text = state.shown.map((r) => `${+state.gainOf(model.runs[r]).toPrecision(2)}\u00d7`);
     $("gain").value = Math.round(100 * Math.log10(state.gain));
-    $("gain-value").textContent = `${+state.gain.toPrecision(2)}\u00d7`;
-    $("gain").setAttribute("aria-valuetext", `${+state.gain.toPrecision(2)} times`);
+    $("gain-value").textContent = [...new Set(text)].join(", ");
+    $("gain").setAttribute("aria-valuetext", $("gain-value").textContent);
     actions.redraw();
-  };
+  }
   $("gain").addEventListener("input", () => setGain(10 ** ($("gain").value / 100)));
+  const scaleChoice = segments($("scale"), [["own", "Scale per controller", ["scale per controller"]], ["common", "Common scale", ["common"]]],
+    state.own ? "own" : "common", (name) => {
+      state.own = name === "own";
+      state.gain = state.own ? state.defaults[state.lead().index] : Math.min(...state.defaults);
+      setGain(state.gain);
+      drawLegends(state);
+      circularity?.draw();
+    });
+  $("scale").hidden = model.runs.length < 2;
+  const axisChoice = segments($("error-axis"), [["linear", "Linear axis of the error", ["linear"]], ["log", "Logarithmic axis of the error", ["logarithmic"]]],
+    state.log ? "log" : "linear", (name) => {
+      state.log = name === "log";
+      plots.build();
+      actions.refresh();
+    });
 
   function repaint() {
-    drawLegend(state.scale_um);
+    drawLegends(state);
     plots.build();
+    circularity?.draw();
     actions.redraw();
+    actions.refresh();
   }
   const setTheme = setUpTheme($("theme"), repaint);
-
-  $("key").append(...model.runs.flatMap((r) => [swatch(r.index), `${r.name}  `]));
-  if (model.tolerance_um) {
-    const dash = document.createElement("span");
-    dash.className = "dash";
-    $("key").append(dash, `tolerance ${formatNumber(model.tolerance_um)} \u00b5m`);
-  }
+  drawKey(state, () => {
+    plots.build();
+    circularity?.draw();
+    actions.refresh();
+  });
+  connectZoom(state, actions);
   connectPlaces(state, actions, showChoice);
   new ResizeObserver(() => { state.views.forEach((v) => v.resize()); actions.redraw(); }).observe($("views"));
 
   if (options.get("theme")) setTheme(options.get("theme"));
   if (options.get("view") && threeD) viewChoice(options.get("view"));
+  if (options.get("scale")) scaleChoice(options.get("scale"));
+  if (options.get("error")) axisChoice(options.get("error"));
   const roomy = innerWidth >= 700 && model.runs.length === 2;
   showChoice(options.get("show") || (roomy ? "side" : String(state.shown[0])));
-  setGain(Number(options.get("gain")) || state.gain);
-  drawLegend(state.scale_um);
+  if (Number(options.get("gain"))) setGain(Number(options.get("gain")));
   root.dataset.ready = "";
 }
 
@@ -152,9 +135,8 @@ function connectPlaces(state, actions, showChoice) {
       const before = camera.scale, { foot, deviation } = model.runs[run];
       camera.fit();
       camera.scale = Math.max(before, camera.scale * 4);
-      camera.center = foot.map((c, k) => c[i] + state.gain / 2 * deviation[k][i]);
-      actions.focus("t", model.runs[run].t[i], run, i);
-      state.pinned = { ...state.focus, lead: run };
+      camera.center = foot.map((c, k) => c[i] + state.gainOf(model.runs[run]) / 2 * deviation[k][i]);
+      actions.stay(model.runs[run].t[i], run, i);
       actions.redraw();
       document.querySelector(".path-panel").scrollIntoView({ block: "nearest", behavior: "smooth" });
     };
@@ -162,13 +144,64 @@ function connectPlaces(state, actions, showChoice) {
   }
 }
 
-function drawLegend(scale_um) {
-  const g = $("legend-bar").getContext("2d");
-  for (let x = 0; x < 256; x++) {
-    g.fillStyle = errorColor(x / 255);
-    g.fillRect(x, 0, 1, 1);
+// The runs by their colours: buttons that switch them off in the curves.
+function drawKey(state, changed) {
+  for (const run of model.runs) {
+    const button = $("key").appendChild(document.createElement("button"));
+    button.type = "button";
+    button.append(swatch(run.index), run.name);
+    button.setAttribute("aria-pressed", "true");
+    button.disabled = model.runs.length < 2;
+    button.addEventListener("click", () => {
+      if (!state.hidden.delete(run.index) && state.hidden.size < model.runs.length - 1) state.hidden.add(run.index);
+      button.setAttribute("aria-pressed", String(!state.hidden.has(run.index)));
+      changed();
+    });
   }
-  $("legend-high").textContent = `${formatNumber(scale_um)} \u00b5m contour error`;
+  if (model.tolerance_um) {
+    const dash = document.createElement("span");
+    dash.className = "dash";
+    $("key").append(dash, `tolerance ${formatNumber(model.tolerance_um)} \u00b5m`);
+  }
+}
+
+function connectZoom(state, actions) {
+  const zoom = (factor) => () => {
+    const { camera } = state;
+    camera.zoom(factor, camera.width / 2, camera.height / 2);
+    actions.redraw();
+  };
+  $("zoom-in").addEventListener("click", zoom(1.5));
+  $("zoom-out").addEventListener("click", zoom(1 / 1.5));
+  $("zoom-all").addEventListener("click", () => actions.reset());
+  $("touch-moves").addEventListener("click", () => {
+    state.touchMoves = !state.touchMoves;
+    $("touch-moves").setAttribute("aria-pressed", String(state.touchMoves));
+    $("views").classList.toggle("touch-moves", state.touchMoves);
+  });
+}
+
+// A colour scale for each run that is shown, or one for all.
+function drawLegends(state) {
+  const runs = state.own ? state.shown.map((r) => model.runs[r]) : [null];
+  $("legends").replaceChildren(...runs.map((run) => {
+    const legend = document.createElement("div"), bar = document.createElement("canvas");
+    legend.className = "legend";
+    bar.width = 256;
+    bar.height = 1;
+    bar.setAttribute("role", "img");
+    bar.setAttribute("aria-label", "Colour scale of the contour error");
+    const g = bar.getContext("2d");
+    for (let x = 0; x < 256; x++) {
+      g.fillStyle = errorColor(x / 255);
+      g.fillRect(x, 0, 1, 1);
+    }
+    const scale_um = state.scaleOf(run ?? state.lead()), end = document.createElement("span");
+    end.append(`${formatNumber(scale_um)} \u00b5m contour error`);
+    if (run && runs.length > 1) end.append(" ", swatch(run.index), run.name);
+    legend.append("0", bar, end);
+    return legend;
+  }));
 }
 
 // Box around the path and all runs.
@@ -183,11 +216,4 @@ function extent(model) {
   if (model.outline) take(model.outline.points);
   model.runs.forEach((r) => take(r.foot));
   return [low, high];
-}
-
-// The largest deviation of the first run is then about a twelfth of the part.
-function defaultGain(model, low, high) {
-  const size = Math.hypot(...high.map((v, k) => v - low[k]));
-  const largest_mm = Math.max(...model.runs.map((r) => r.max_um)) * 1e-3;
-  return largest_mm > 0 ? roundStep(Math.min(1000, Math.max(1, size / 12 / largest_mm))) : 1;
 }

@@ -38,7 +38,7 @@ function setUpParts() {
 // The number that a cell begins with, or its text. Cells without either come last.
 function sortKey(cell) {
   const text = cell ? cell.textContent.trim().replace(/\u2212/g, "-") : "", number = parseFloat(text);
-  return Number.isNaN(number) ? { text } : { number };
+  return Number.isFinite(number) ? { number } : { text };
 }
 
 function compareKeys(a, b) {

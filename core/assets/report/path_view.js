@@ -13,9 +13,12 @@ class PathView {
     this.overlay.tabIndex = 0;
     this.overlay.setAttribute("role", "img");
     this.overlay.setAttribute("aria-label",
-      `Path of ${run.name}, coloured by contour error. Arrows move, plus and minus zoom, 0 shows all.`);
+      `Path of ${run.name}, coloured by contour error. Arrows move, plus and minus zoom, 0 shows all, Enter plays.`);
     const caption = this.element.appendChild(document.createElement("figcaption"));
     caption.append(swatch(run.index), run.name);
+    this.note = this.element.appendChild(document.createElement("p"));
+    this.note.className = "folds";
+    this.note.textContent = "dotted: folded by the enlargement, not by the tool";
     this.screen = new Float32Array(2 * run.n);
     listenToPointer(this);
     listenToKeys(this);
@@ -39,7 +42,7 @@ class PathView {
     if (camera.view === "3d") drawTriad(g, camera); else drawGrid(g, camera);
     this.drawOutline(g);
     this.drawTool(g);
-    drawScaleBars(g, camera, this.state.gain);
+    drawScaleBars(g, camera, this.state.gainOf(this.run));
     this.drawMark();
   }
 
@@ -65,9 +68,10 @@ class PathView {
   }
 
   drawTool(g) {
-    const { run, screen } = this, { camera, gain, scale_um } = this.state;
+    const { run, screen } = this, { camera } = this.state;
+    const gain = this.state.gainOf(run), scale_um = this.state.scaleOf(run);
     const [fx, fy, fz] = run.foot, [dx, dy, dz] = run.deviation;
-    const byColor = Array.from({ length: COLOR_STEPS }, () => []);
+    const byColor = Array.from({ length: COLOR_STEPS + 1 }, () => []);
     for (let i = 0; i < run.n; i++) {
       const k = run.cutting[i] ? gain : 1;
       const p = [fx[i] + k * dx[i], fy[i] + k * dy[i], fz[i] + k * dz[i]];
@@ -75,12 +79,16 @@ class PathView {
       screen[2 * i + 1] = camera.y(...p);
       if (i > 0 && run.cutting[i] && run.cutting[i - 1]) {
         const size = Math.max(Math.abs(run.error_um[i]), Math.abs(run.error_um[i - 1]));
-        byColor[Math.min(COLOR_STEPS - 1, Math.floor(size / scale_um * COLOR_STEPS))].push(i);
+        const shade = Math.min(COLOR_STEPS - 1, Math.floor(size / scale_um * COLOR_STEPS));
+        byColor[isFolded(run, i, gain) ? COLOR_STEPS : shade].push(i);
       }
     }
-    g.lineWidth = 2;
+    this.note.hidden = !byColor[COLOR_STEPS].length;
     byColor.forEach((indices, c) => {
       if (!indices.length) return;
+      const folded = c === COLOR_STEPS;
+      g.lineWidth = folded ? 1.25 : 2;
+      g.setLineDash(folded ? [1, 3] : []);
       g.beginPath();
       let end = -1;
       for (const i of indices) {
@@ -88,9 +96,10 @@ class PathView {
         g.lineTo(screen[2 * i], screen[2 * i + 1]);
         end = i;
       }
-      g.strokeStyle = errorColor((c + 0.5) / COLOR_STEPS);
+      g.strokeStyle = folded ? color("--ink-3") : errorColor((c + 0.5) / COLOR_STEPS);
       g.stroke();
     });
+    g.setLineDash([]);
   }
 
   drawMark() {
@@ -126,6 +135,18 @@ class PathView {
     }
     return best;
   }
+}
+
+// Whether the curve, enlarged, runs backwards between two points where the tool itself runs forwards: where the path bends more
+// sharply than the enlarged deviation is long, enlarging makes loops that nobody cut.
+function isFolded(run, i, gain) {
+  let drawn = 0, cut = 0;
+  for (let k = 0; k < 3; k++) {
+    const along = run.foot[k][i] - run.foot[k][i - 1], aside = run.deviation[k][i] - run.deviation[k][i - 1];
+    drawn += along * (along + gain * aside);
+    cut += along * (along + aside);
+  }
+  return drawn < 0 && cut >= 0;
 }
 
 function swatch(i) {
@@ -216,62 +237,4 @@ function drawScaleBars(g, camera, gain) {
   g.textAlign = "right";
   g.fillText(`part ${size(length)}`, right, y - 8);
   g.fillText(`deviation ${size(length / gain)}`, right, y + 17);
-}
-
-function listenToPointer(view) {
-  const target = view.overlay, pointers = new Map();
-  const place = (event) => {
-    const box = target.getBoundingClientRect();
-    return [event.clientX - box.left, event.clientY - box.top];
-  };
-  target.addEventListener("wheel", (event) => {
-    event.preventDefault();
-    const step = event.deltaMode === 1 ? event.deltaY * 16 : event.deltaY;
-    view.state.camera.zoom(Math.exp(-0.0015 * step), ...place(event));
-    view.actions.redraw();
-  }, { passive: false });
-  target.addEventListener("dblclick", () => view.actions.reset());
-  target.addEventListener("pointerdown", (event) => {
-    target.setPointerCapture(event.pointerId);
-    pointers.set(event.pointerId, place(event));
-  });
-  for (const kind of ["pointerup", "pointercancel"]) {
-    target.addEventListener(kind, (event) => pointers.delete(event.pointerId));
-  }
-  target.addEventListener("pointerleave", () => pointers.size || view.actions.unfocus());
-  target.addEventListener("pointermove", (event) => {
-    const now = place(event), before = pointers.get(event.pointerId), camera = view.state.camera;
-    if (!before) {
-      const i = view.pick(...now);
-      if (i >= 0) view.actions.focus("s", view.run.s[i], view.run.index, i);
-      return;
-    }
-    const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
-    const other = [...pointers].find(([id]) => id !== event.pointerId);
-    if (other) {
-      const reach = (p) => Math.hypot(p[0] - other[1][0], p[1] - other[1][1]);
-      camera.zoom(reach(now) / Math.max(1, reach(before)), ...other[1]);
-    } else if (camera.view === "3d" && !event.shiftKey && event.buttons !== 2) {
-      camera.turn(dx * 0.008, dy * 0.008);
-    } else {
-      camera.pan(dx, dy);
-    }
-    pointers.set(event.pointerId, now);
-    view.actions.redraw();
-  });
-}
-
-function listenToKeys(view) {
-  const moves = { ArrowLeft: [1, 0], ArrowRight: [-1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
-  view.overlay.addEventListener("keydown", (event) => {
-    const camera = view.state.camera, move = moves[event.key];
-    if (move && camera.view === "3d" && !event.shiftKey) camera.turn(-0.1 * move[0], -0.1 * move[1]);
-    else if (move) camera.pan(40 * move[0], 40 * move[1]);
-    else if (event.key === "+" || event.key === "=") camera.zoom(1.25, camera.width / 2, camera.height / 2);
-    else if (event.key === "-") camera.zoom(0.8, camera.width / 2, camera.height / 2);
-    else if (event.key === "0") camera.fit();
-    else return;
-    event.preventDefault();
-    view.actions.redraw();
-  });
 }

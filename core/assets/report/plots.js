@@ -1,23 +1,26 @@
-// The curves, drawn by uPlot: every plot has all runs, plots over the same quantity share cursor and range.
+// The curves, drawn by uPlot: every plot has all runs that are shown, plots over the same quantity share cursor and range.
 
 const PLOT_HEIGHT = 180;
 
-// Shares below this many per cent are not drawn: logarithms need an end.
-const LEAST_SHARE = 0.01;
-
 class Plots {
   // `beside` takes the plot that has no place along the path.
-  constructor(model, container, beside, actions) {
-    Object.assign(this, { model, actions, busy: false });
-    this.plots = definitions(model).map((definition) => {
-      const figure = (definition.kind === "bins" ? beside : container).appendChild(document.createElement("figure"));
+  constructor(model, state, container, beside, actions) {
+    Object.assign(this, { model, state, actions, busy: false });
+    this.plots = definitions(model, state).map((definition) => {
+      const alone = definition.kind !== "t" && definition.kind !== "s";
+      const figure = (alone ? beside : container).appendChild(document.createElement("figure"));
       figure.className = "plot";
       const caption = figure.appendChild(document.createElement("figcaption"));
       const title = caption.appendChild(document.createElement("b"));
-      title.textContent = definition.title;
       const live = caption.appendChild(document.createElement("span"));
       live.className = "live";
-      return { definition, live, body: figure.appendChild(document.createElement("div")), u: null };
+      const body = figure.appendChild(document.createElement("div"));
+      body.className = "plot-body";
+      body.tabIndex = 0;
+      body.setAttribute("role", "img");
+      const plot = { definition, title, live, body, u: null };
+      body.addEventListener("keydown", (event) => this.key(plot, event));
+      return plot;
     });
     this.build();
     const observer = new ResizeObserver(() => this.resize());
@@ -25,14 +28,38 @@ class Plots {
     observer.observe(beside);
   }
 
-  // Makes the charts anew, in the colours of the theme.
+  // Makes the charts anew, in the colours of the theme, with the runs and the error axis that are chosen.
   build() {
-    for (const plot of this.plots) {
+    const anew = definitions(this.model, this.state);
+    this.plots.forEach((plot, k) => {
+      plot.definition = anew[k];
+      plot.title.textContent = plot.definition.title;
+      plot.body.setAttribute("aria-label",
+        `${plot.definition.title}. Arrows move the place, plus and minus zoom, with Shift upwards, 0 shows all.`);
       const range = plot.u && [plot.u.scales.x.min, plot.u.scales.x.max];
       if (plot.u) plot.u.destroy();
       plot.u = new uPlot(this.options(plot), plot.definition.data, plot.body);
-      if (range) this.quietly(() => plot.u.setScale("x", { min: range[0], max: range[1] }));
-    }
+      if (range && this.places(plot) && Number.isFinite(range[0])) this.quietly(() => plot.u.setScale("x", { min: range[0], max: range[1] }));
+    });
+  }
+
+  // Arrows move the place that all drawings show, plus and minus zoom about it, with Shift across.
+  key(plot, event) {
+    const { u } = plot, zoom = { "+": 0.8, "=": 0.8, "*": 0.8, "-": 1.25, _: 1.25 }[event.key];
+    const way = { ArrowLeft: -1, ArrowRight: 1 }[event.key], { min, max } = u.scales.x;
+    const middle = u.cursor.left > 0 ? u.posToVal(u.cursor.left, "x") : (min + max) / 2;
+    if (event.key === "0") u.setData(u.data, true);
+    else if (zoom && event.shiftKey) zoomAbout(u, "y", zoom, (u.scales.y.min + u.scales.y.max) / 2);
+    else if (zoom) zoomAbout(u, "x", zoom, middle);
+    else if (way && this.places(plot)) this.actions.focus(plot.definition.kind, middle + way * (max - min) / 100);
+    else if (way) u.setCursor({ left: u.cursor.left < 0 ? 0 : u.cursor.left + 5 * way, top: 20 });
+    else return;
+    event.preventDefault();
+    event.stopPropagation();
+  }
+
+  places(plot) {
+    return plot.definition.kind === "t" || plot.definition.kind === "s";
   }
 
   resize() {
@@ -57,22 +84,25 @@ class Plots {
     };
     const values = (u, splits) => splits.map((v) => (v === null ? "" : tickText(v)));
     return {
-      width: Math.max(200, plot.body.clientWidth), height: PLOT_HEIGHT, padding: [10, 8, 0, 0],
+      width: Math.max(200, plot.body.clientWidth), height: PLOT_HEIGHT, padding: [10, 16, 0, 0],
       legend: { show: false },
-      scales: { x: { time: false }, y: { range: definition.range, distr: definition.logarithmic ? 3 : 1 } },
+      scales: {
+        x: { time: false, distr: definition.logarithmicX ? 3 : 1 },
+        y: { range: definition.range, distr: definition.logarithmic ? 3 : 1 },
+      },
       axes: [
-        { ...axis, label: definition.x, size: 26, values, space: 60 },
+        { ...axis, label: definition.x, size: 26, values, space: 60, filter: definition.logarithmicX ? decades : undefined },
         { ...axis, size: 50, values, space: 28, filter: definition.logarithmic ? decades : undefined },
       ],
       series: [{}, ...definition.series.map((s) => ({
         stroke: s.run === undefined ? "transparent" : runColor(s.run) , width: s.width ?? 1.5, dash: s.dash,
-        alpha: s.alpha ?? 1, points: { show: false }, paths: definition.paths,
-        fill: s.fill ? withAlpha(runColor(s.run), 0.18) : undefined, show: true,
+        alpha: s.alpha ?? 1, points: { show: false }, paths: definition.paths, spanGaps: s.spanGaps,
+        fill: s.fill ? withAlpha(runColor(s.run), 0.18) : undefined, show: !this.state.hidden.has(s.run),
         ...(s.edge ? { stroke: "transparent", width: 0 } : {}),
       }))],
-      bands: definition.bands?.map((b) => ({ series: b.series, fill: withAlpha(runColor(b.run), 0.28) })),
+      bands: definition.bands?.filter((b) => !this.state.hidden.has(b.run)).map((b) => ({ series: b.series, fill: withAlpha(runColor(b.run), 0.28) })),
       cursor: {
-        y: false, drag: { x: true, y: false, setScale: true },
+        y: false, drag: { x: true, y: true, uni: 24, dist: 5, setScale: true },
         points: { size: 7, fill: color("--panel"), width: 2, show: (u, i) => definition.series[i - 1].edge ? false : undefined },
       },
       hooks: {
@@ -107,13 +137,17 @@ class Plots {
     const { kind } = plot.definition, left = u.cursor.left;
     if (left === null || left < 0) {
       plot.live.replaceChildren();
-      return kind === "bins" ? undefined : this.actions.unfocus();
+      return this.places(plot) ? this.actions.unfocus() : undefined;
     }
-    if (kind !== "bins") return this.actions.focus(kind, u.posToVal(left, "x"));
+    if (this.places(plot)) return this.actions.focus(kind, u.posToVal(left, "x"));
     const i = u.cursor.idx;
     if (i === null || i === undefined) return;
-    plot.live.replaceChildren(...this.model.runs.flatMap((run, r) =>
-      [swatch(run.index), ` ${formatNumber(u.data[r + 1][i] < LEAST_SHARE ? 0 : u.data[r + 1][i])} % `]), `at ${formatNumber(u.data[0][i])} \u00b5m`);
+    plot.live.replaceChildren(...this.shown().flatMap((run) =>
+      [swatch(run.index), ` ${plot.definition.read(u.data[run.index + 1][i])} `]), plot.definition.place(u.data[0][i]));
+  }
+
+  shown() {
+    return this.model.runs.filter((run) => !this.state.hidden.has(run.index));
   }
 
   ranged(plot, u) {
@@ -130,14 +164,14 @@ class Plots {
   showFocus(focus) {
     this.quietly(() => {
       for (const { definition, live, u } of this.plots) {
-        if (definition.kind === "bins") continue;
+        if (definition.kind !== "t" && definition.kind !== "s") continue;
         if (!focus) {
           u.setCursor({ left: -10, top: -10 });
           live.replaceChildren();
           continue;
         }
         u.setCursor({ left: u.valToPos(focus.at[definition.kind], "x"), top: 20 });
-        live.replaceChildren(...this.model.runs.flatMap((run) => {
+        live.replaceChildren(...this.shown().flatMap((run) => {
           const i = focus.indices[run.index];
           return [swatch(run.index), ` ${definition.read(run, i)} `];
         }), definition.unit);
@@ -151,100 +185,15 @@ function decades(u, splits) {
   return splits.map((v) => (Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9 ? v : null));
 }
 
+function zoomAbout(u, key, factor, middle) {
+  const { min, max } = u.scales[key];
+  u.setScale(key, { min: middle + (min - middle) * factor, max: middle + (max - middle) * factor });
+}
+
 function tickText(v) {
   return (v < 0 ? "\u2212" : "") + String(+Math.abs(v).toPrecision(6));
 }
 
 function withAlpha(rgb, alpha) {
   return rgb.replace(/^rgb\(/, "rgba(").replace(/\)$/, `, ${alpha})`);
-}
-
-function definitions(model) {
-  const all = [
-    errorPlot(model, "t", "Contour error over time, \u00b5m", "Time, s"),
-    errorPlot(model, "s", "Contour error over arc length, \u00b5m", "Arc length, mm"),
-    {
-      kind: "t", title: "Feed, mm/min", x: "Time, s", unit: "mm/min",
-      data: uPlot.join(model.runs.map((r) => [r.t, r.feed, r.plan])),
-      series: model.runs.flatMap((r) => [{ run: r.index }, { run: r.index, width: 1.25, dash: [5, 4], alpha: 0.75 }]),
-      read: (r, i) => `${Math.round(r.feed[i])} (plan ${Math.round(r.plan[i])})`,
-      range: (u, low, high) => uPlot.rangeNum(Math.min(0, low ?? 0), high ?? 1, 0.1, true),
-    },
-  ];
-  for (let k = 0; k < model.axes; k++) {
-    all.push({
-      kind: "t", title: `Torque ${"XYZ"[k]}, N m`, x: "Time, s", unit: "N m",
-      data: uPlot.join(model.runs.map((r) => [r.t, r.torque[k]])),
-      series: model.runs.map((r) => ({ run: r.index, width: 1.25 })),
-      levels: [{ value: 0 }], read: (r, i) => formatNumber(r.torque[k][i]),
-    });
-  }
-  const histogram = histogramPlot(model);
-  return histogram ? [...all, histogram] : all;
-}
-
-function errorPlot(model, kind, title, x) {
-  const tables = [], series = [], bands = [];
-  for (const run of model.runs) {
-    const [xs, columns] = errorColumns(run, run[kind]);
-    tables.push([xs, ...columns]);
-    if (columns.length > 1) {
-      const first = series.length + 1;
-      bands.push({ series: [first + 1, first], run: run.index });
-      series.push({ run: run.index, edge: true }, { run: run.index, edge: true });
-    }
-    series.push({ run: run.index });
-  }
-  const tolerance = model.tolerance_um;
-  const levels = [{ value: 0 }];
-  if (tolerance) levels.push({ value: tolerance, dash: true });
-  if (tolerance && model.axes === 2) levels.push({ value: -tolerance, dash: true });
-  return {
-    kind, title, x, unit: "\u00b5m", data: uPlot.join(tables), series, bands, levels,
-    read: (r, i) => (r.cutting[i] ? formatNumber(r.error_um[i]) : "rapid"),
-  };
-}
-
-// The error where the tool cuts and gaps elsewhere; for thinned runs with the least and the largest. One value for each
-// place on the x axis: over arc length a dwell has many, of which the largest error stays.
-function errorColumns(run, places) {
-  const xs = [], columns = run.thinned ? [[], [], []] : [[]], last = columns.length - 1;
-  for (let i = 0; i < run.n; i++) {
-    const cutting = run.cutting[i] > 0;
-    const values = (run.thinned ? [run.low_um[i], run.high_um[i], run.error_um[i]] : [run.error_um[i]]);
-    const end = xs.length - 1;
-    if (end >= 0 && places[i] <= xs[end]) {
-      const kept = columns[last][end];
-      if (!cutting || (kept !== null && Math.abs(kept) >= Math.abs(run.error_um[i]))) continue;
-      values.forEach((v, c) => { columns[c][end] = v; });
-      continue;
-    }
-    xs.push(places[i]);
-    values.forEach((v, c) => columns[c].push(cutting ? v : null));
-  }
-  return [xs, columns];
-}
-
-// Shares of the cutting time in bins that all runs have in common.
-function histogramPlot(model) {
-  const histograms = model.runs.map((r) => r.histogram).filter((h) => h.counts.length);
-  if (histograms.length !== model.runs.length) return null;
-  const width = Math.max(...histograms.map((h) => h.bin_um));
-  const binned = histograms.map((h) => {
-    const factor = Math.round(width / h.bin_um), total = h.counts.reduce((a, b) => a + b, 0), bins = new Map();
-    h.counts.forEach((count, i) => {
-      const bin = Math.floor((h.first_bin + i) / factor);
-      bins.set(bin, (bins.get(bin) || 0) + 100 * count / total);
-    });
-    return bins;
-  });
-  const keys = binned.flatMap((b) => [...b.keys()]);
-  const first = Math.min(...keys) - 1, last = Math.max(...keys) + 1, numbers = [];
-  for (let b = first; b <= last; b++) numbers.push(b);
-  return {
-    kind: "bins", title: "Distribution of the contour error, % of cutting time, logarithmic", x: "Contour error, \u00b5m",
-    data: [numbers.map((b) => b * width), ...binned.map((bins) => numbers.map((b) => Math.max(bins.get(b) || 0, LEAST_SHARE / 2)))],
-    series: model.runs.map((r) => ({ run: r.index, fill: true })), paths: uPlot.paths.stepped({ align: 1 }),
-    logarithmic: true, range: () => [LEAST_SHARE, 100],
-  };
 }

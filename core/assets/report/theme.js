@@ -20,8 +20,8 @@ function isDark() {
 
 // Colours from no error to the largest. Their lightness leaves that of the background evenly, so that the scale also
 // reads in grey and with colour blindness: blue to dark purple on light, blue through green to yellow on dark.
-const ON_LIGHT = [[138, 176, 222], [127, 143, 208], [138, 104, 186], [141, 63, 159], [124, 18, 119], [62, 0, 66]];
-const ON_DARK = [[62, 98, 170], [44, 128, 160], [38, 158, 140], [74, 190, 110], [160, 218, 57], [253, 231, 37]];
+const ON_LIGHT = [[104, 148, 205], [127, 143, 208], [138, 104, 186], [141, 63, 159], [124, 18, 119], [62, 0, 66]];
+const ON_DARK = [[74, 110, 184], [44, 128, 160], [38, 158, 140], [74, 190, 110], [160, 218, 57], [253, 231, 37]];
 
 function errorColor(fraction) {
   const f = Math.min(1, Math.max(0, fraction));

@@ -47,7 +47,7 @@ pub(super) fn cut(
 }
 
 impl CutNumbers {
-    fn of(Cut { statistics, run }: &Cut, acceleration: &Acceleration) -> Self {
+    fn of(Cut { statistics, run }: &Cut) -> Self {
         Self {
             time_s: run.time_s,
             rms_um: statistics.rms_um(),
@@ -55,7 +55,7 @@ impl CutNumbers {
             joint_um: run.joint_error.map(|joints| [joints.rms_mm, joints.max_mm].map(|mm| mm * 1e3)),
             uncut_um: run.uncut_mm * 1e3,
             max_deviation_um: statistics.max_deviation_um(),
-            accel_mm_s2: acceleration.largest_mm_s2,
+            accel_mm_s2: statistics.max_command_accel_mm_s2(),
             peak_torque_nm: statistics.peak_torque_nm().into_iter().fold(0.0, f64::max),
             completed: run.outcome == Outcome::Completed,
             faded_out: run.faded_out.map(|faded| faded.cause),
@@ -77,13 +77,9 @@ pub(super) fn row(
     for (k, &seed) in seeds.iter().enumerate() {
         let machine = machine.with_noise_seed(seed);
         let run = Run::on(&machine).laps(competitor.entry.laps).watched(watch);
-        let mut acceleration = Acceleration::new(machine.period.servo_s);
-        let mut sinks: Vec<&mut dyn Sink> = vec![&mut acceleration];
-        if k == 0 {
-            sinks.push(&mut errors);
-        }
-        let cut = cut(workpiece, controller, run, &mut sinks)?;
-        measured.push(CutNumbers::of(&cut, &acceleration));
+        let plotted: &mut [&mut dyn Sink] = if k == 0 { &mut [&mut errors] } else { &mut [] };
+        let cut = cut(workpiece, controller, run, plotted)?;
+        measured.push(CutNumbers::of(&cut));
     }
     Ok(ComparisonRow::new(workpiece, machine, competitor, &measured, errors.thinned()))
 }
@@ -91,38 +87,6 @@ pub(super) fn row(
 /// The noise seeds of a machine.
 pub(super) fn seeds(machine: &Machine, options: &ComparisonOptions) -> Vec<u64> {
     noise::reported(machine, options.seed, options.noise_seeds)
-}
-
-/// The largest acceleration of the command of an axis: the second difference over three servo periods that follow on each other.
-struct Acceleration {
-    servo_s: f64,
-    /// Time and command of the last two rows.
-    before: [Option<(f64, [f64; 3])>; 2],
-    largest_mm_s2: f64,
-}
-
-/// Rows that are further apart than this many servo periods do not follow on each other: a rest was left out.
-const NEXT_PERIODS: f64 = 1.5;
-
-impl Acceleration {
-    const fn new(servo_s: f64) -> Self {
-        Self { servo_s, before: [None; 2], largest_mm_s2: 0.0 }
-    }
-}
-
-impl Sink for Acceleration {
-    fn row(&mut self, row: &Row) -> std::io::Result<()> {
-        if let [Some((t0_s, first)), Some((_, second))] = self.before
-            && row.t_s - t0_s < (1.0 + NEXT_PERIODS) * self.servo_s
-        {
-            for k in 0..3 {
-                let accel_mm_s2 = (row.cmd_mm[k] - 2.0 * second[k] + first[k]) / (self.servo_s * self.servo_s);
-                self.largest_mm_s2 = self.largest_mm_s2.max(accel_mm_s2.abs());
-            }
-        }
-        self.before = [self.before[1], Some((row.t_s, row.cmd_mm))];
-        Ok(())
-    }
 }
 
 /// Points of an error plot.
@@ -146,22 +110,5 @@ impl Errors {
         let largest_of =
             |part: &[f32]| part.iter().copied().fold(0.0, |a: f32, b| if b.abs() > a.abs() { b } else { a });
         self.0.chunks(stretch).map(largest_of).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::trace::tests::row;
-
-    #[test]
-    fn the_acceleration_of_a_parabola_is_its_own_and_none_is_seen_across_a_rest() {
-        let mut seen = Acceleration::new(1e-3);
-        let at = |t_s: f64| Row { cmd_mm: [0.0, -400.0 * t_s * t_s, 0.0], ..row(t_s) };
-        (0..10).for_each(|n| seen.row(&at(f64::from(n) * 1e-3)).unwrap());
-        assert!((seen.largest_mm_s2 - 800.0).abs() < 1e-6, "{}", seen.largest_mm_s2);
-        // A second later it is somewhere else.
-        (1000..1002).for_each(|n| seen.row(&at(f64::from(n) * 1e-3)).unwrap());
-        assert!((seen.largest_mm_s2 - 800.0).abs() < 1e-6, "{}", seen.largest_mm_s2);
     }
 }

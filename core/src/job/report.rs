@@ -8,7 +8,7 @@ use crate::gcode::{Summary, input};
 use crate::machine::Machine;
 use crate::model::Model;
 use crate::report::harm::{Harm, harm};
-use crate::report::{Outcome, Report, ReportedRun, WorstPlace};
+use crate::report::{FullCircle, Outcome, Report, ReportedRun, WorstPlace};
 
 impl Job {
     /// The part as the report calls it: the file's name.
@@ -42,9 +42,10 @@ impl Job {
         &self,
         axes: usize,
         summary: &Summary,
+        circles: Vec<FullCircle>,
         runs: Vec<ReportedRun>,
         unidentified: &[NothingIdentified],
-    ) -> Report {
+    ) -> Result<Report, JobError> {
         let value = |name: &str, value: String| (name.to_owned(), value);
         let mut settings = vec![
             value("Compared against", self.against.name.to_owned()),
@@ -69,15 +70,18 @@ impl Job {
         if let Some(feed_mm_s) = self.feed_mm_s {
             settings.push(value("Feedrate, in place of the programmed", format!("{feed_mm_s} mm/s")));
         }
-        Report {
+        Ok(Report {
             title: format!("{} on {}", self.part_name(), self.machine.name),
             part: self.part_name(),
             machine: describe(&self.machine),
             settings,
             assumed: self.assumptions(unidentified),
+            simulated: self.simulated(axes),
+            program: self.listing(&runs)?,
+            circles,
             tolerance_um: self.tolerance_um,
             runs,
-        }
+        })
     }
 
     /// In what the controller that is asked for is worse than open loop; nothing where it is compared with something else.

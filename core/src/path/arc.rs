@@ -10,7 +10,7 @@
 
 use super::{Derivatives, Point};
 use crate::gcode::canon::Plane;
-use crate::vector::{Vector, add_scaled, distance, dot, scale, sub};
+use crate::vector::{Vector, add_scaled, cross, distance, dot, scale, sub};
 use std::f64::consts::{PI, TAU};
 
 /// Newton steps for the nearest point of a helix; the iteration is monotone and quadratic, it needs about six.
@@ -77,6 +77,26 @@ impl Arc {
     /// Radius of the circle, mm.
     pub const fn radius_mm(&self) -> f64 {
         self.radius_mm
+    }
+
+    /// Centre of the circle; of a helix at the height of its start.
+    pub fn center_mm(&self) -> Vector {
+        add_scaled(self.start_mm, self.radius_mm, self.normal0)
+    }
+
+    /// Unit normal of the circle's plane, about which it turns counter-clockwise.
+    pub fn axis(&self) -> Vector {
+        cross(self.tangent0, self.normal0)
+    }
+
+    /// Angle that it turns by, rad.
+    pub fn sweep_rad(&self) -> f64 {
+        self.turn_rad_mm * self.length_mm
+    }
+
+    /// Whether it stays in the plane of the circle.
+    pub fn is_flat(&self) -> bool {
+        self.rise == [0.0; 3]
     }
 
     /// Curvature, 1/mm: `cos(gamma)^2 / R`.

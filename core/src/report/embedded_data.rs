@@ -8,7 +8,7 @@ use std::io::{self, Write};
 use serde_json::json;
 
 use super::series::SeriesPoint;
-use super::{Report, ReportedRun};
+use super::{FullCircle, ProgramLine, Report, ReportedRun, RunSummary};
 
 /// What one count of a column stands for.
 mod units {
@@ -16,6 +16,7 @@ mod units {
     pub(super) const LENGTH_MM: f64 = 1e-3;
     /// Coordinates of the path: a tenth of the smallest contour error worth drawing.
     pub(super) const POINT_MM: f64 = 1e-4;
+    /// Contour errors and deviations, at the most: see [`super::error_unit_mm`].
     pub(super) const ERROR_MM: f64 = 1e-5;
     pub(super) const FEED_MM_S: f64 = 1e-2;
     pub(super) const TORQUE_NM: f64 = 1e-4;
@@ -62,10 +63,18 @@ fn meta(report: &Report) -> serde_json::Value {
         "tolerance_um": report.tolerance_um,
         "units": {
             "time_s": units::TIME_S, "length_mm": units::LENGTH_MM, "point_mm": units::POINT_MM,
-            "error_mm": units::ERROR_MM, "feed_mm_s": units::FEED_MM_S, "torque_nm": units::TORQUE_NM,
+            "feed_mm_s": units::FEED_MM_S, "torque_nm": units::TORQUE_NM,
         },
         "runs": runs,
+        "circles": report.circles.iter().enumerate().map(|(i, circle)| circle_meta(report, i, circle)).collect::<Vec<_>>(),
+        "program": listing(report),
     })
+}
+
+/// What a count of an error stands for, mm: a thousandth to a ten-thousandth of the largest, so that the drawing of a small one has no steps.
+fn error_unit_mm(summary: &RunSummary) -> f64 {
+    let largest_mm = (1e-3 * summary.max_um).clamp(1e-6, 1.0);
+    10_f64.powi(largest_mm.log10().floor() as i32 - 3).min(units::ERROR_MM)
 }
 
 fn run_meta(run: &ReportedRun) -> serde_json::Value {
@@ -78,10 +87,48 @@ fn run_meta(run: &ReportedRun) -> serde_json::Value {
     json!({
         "controller": summary.controller,
         "max_um": summary.max_um,
+        "error_mm": error_unit_mm(summary),
         "rows_per_point": run.series.rows_per_point(),
         "histogram": summary.histogram,
         "worst": worst,
+        "measured": summary.measured,
+        "spectrum": run.spectrum.iter().map(|band| [band.from_hz, band.to_hz, band.rms_um].map(digits)).collect::<Vec<_>>(),
     })
+}
+
+/// A circle, and the radial deviation of each run from it in counts of [`error_unit_mm`].
+fn circle_meta(report: &Report, index: usize, circle: &FullCircle) -> serde_json::Value {
+    let run = |run: &ReportedRun| {
+        let (roundness, unit_mm) = (run.roundness_of(index)?, error_unit_mm(&run.summary));
+        let counts = |um: &Option<f64>| um.map(|um| (um * 1e-3 / unit_mm).round() as i64);
+        Some(json!({
+            "g_um": digits(roundness.circular_deviation_um),
+            "radial": roundness.radial_um.iter().map(counts).collect::<Vec<_>>(),
+        }))
+    };
+    json!({
+        "plane": circle.plane, "radius_mm": circle.radius_mm, "line": circle.line,
+        "runs": report.runs.iter().map(run).collect::<Vec<_>>(),
+    })
+}
+
+/// Lines that follow on each other as one text behind the number of the first.
+fn listing(report: &Report) -> serde_json::Value {
+    let pieces = report.program.chunk_by(|a, b| a.line + 1 == b.line);
+    let piece = |lines: &[ProgramLine]| {
+        let texts: Vec<&str> = lines.iter().map(|line| line.text.as_str()).collect();
+        json!([lines[0].line, texts.join("\n")])
+    };
+    pieces.map(piece).collect()
+}
+
+/// Four significant digits: more are not drawn.
+fn digits(value: f64) -> f64 {
+    if value == 0.0 || !value.is_finite() {
+        return 0.0;
+    }
+    let unit = 10_f64.powi(3 - value.abs().log10().floor() as i32);
+    (value * unit).round() / unit
 }
 
 fn write_outline(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
@@ -97,13 +144,14 @@ fn write_outline(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
 fn write_run(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
     let points: Vec<SeriesPoint> = run.series.points().collect();
     let column = |value: fn(&SeriesPoint) -> f64| points.iter().map(value);
+    let error_mm = error_unit_mm(&run.summary);
     let mut object = Object::begin(out)?;
     object.column("t", units::TIME_S, column(|p| p.t_s))?;
     object.column("s", units::LENGTH_MM, column(|p| p.s_mm))?;
-    object.column("e", units::ERROR_MM, column(|p| p.error_mm))?;
+    object.column("e", error_mm, column(|p| p.error_mm))?;
     if run.series.rows_per_point() > 1 {
-        object.column("lo", units::ERROR_MM, column(|p| p.error_min_mm))?;
-        object.column("hi", units::ERROR_MM, column(|p| p.error_max_mm))?;
+        object.column("lo", error_mm, column(|p| p.error_min_mm))?;
+        object.column("hi", error_mm, column(|p| p.error_max_mm))?;
     }
     object.column("plan", units::FEED_MM_S, column(|p| p.feed_plan_mm_s))?;
     object.column("feed", units::FEED_MM_S, column(|p| p.feed_act_mm_s))?;
@@ -111,8 +159,10 @@ fn write_run(out: &mut impl Write, run: &ReportedRun) -> io::Result<()> {
     object.column("cutting", 1.0, column(|p| f64::from(u8::from(p.cutting))))?;
     for (k, axis) in ["x", "y", "z"].into_iter().enumerate().take(run.summary.axes) {
         object.column(&format!("f{axis}"), units::POINT_MM, points.iter().map(|p| p.foot_mm[k]))?;
-        object.column(&format!("d{axis}"), units::ERROR_MM, points.iter().map(|p| p.deviation_mm[k]))?;
-        object.column(&format!("torque_{axis}"), units::TORQUE_NM, points.iter().map(|p| p.torque_nm[k]))?;
+        object.column(&format!("d{axis}"), error_mm, points.iter().map(|p| p.deviation_mm[k]))?;
+        if run.summary.peak_torque_nm.is_some() {
+            object.column(&format!("torque_{axis}"), units::TORQUE_NM, points.iter().map(|p| p.torque_nm[k]))?;
+        }
     }
     object.end()
 }

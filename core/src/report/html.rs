@@ -11,6 +11,7 @@ use super::embedded_data;
 use super::text::escaped;
 
 mod tables;
+mod circularity;
 mod verdict;
 
 const PAGE_CSS: &str = include_str!("../../assets/report/page.css");
@@ -18,12 +19,17 @@ const UPLOT_CSS: &str = include_str!("../../assets/vendor/uplot/uPlot.min.css");
 const UPLOT_JS: &str = include_str!("../../assets/vendor/uplot/uPlot.iife.min.js");
 
 /// The page's scripts in the order in which they build on each other; they share one function scope.
-const SCRIPTS: [&str; 6] = [
+const SCRIPTS: [&str; 11] = [
     include_str!("../../assets/report/data.js"),
     include_str!("../../assets/report/theme.js"),
     include_str!("../../assets/report/camera.js"),
     include_str!("../../assets/report/path_view.js"),
+    include_str!("../../assets/report/path_input.js"),
+    include_str!("../../assets/report/plot_definitions.js"),
     include_str!("../../assets/report/plots.js"),
+    include_str!("../../assets/report/circularity.js"),
+    include_str!("../../assets/report/player.js"),
+    include_str!("../../assets/report/view_state.js"),
     include_str!("../../assets/report/main.js"),
 ];
 
@@ -38,6 +44,7 @@ pub fn write_html(out: &mut impl Write, report: &Report) -> io::Result<()> {
     out.write_all(b"<main>\n")?;
     tables::write_summary(out, report)?;
     out.write_all(DRAWINGS.as_bytes())?;
+    circularity::write_circularity(out, report)?;
     tables::write_worst(out, report)?;
     tables::write_notes(out, report)?;
     out.write_all(b"</main>\n<footer>Simulated and written by feedwright. Charts: uPlot (MIT).</footer>\n")?;
@@ -74,21 +81,33 @@ fn write_head(out: &mut impl Write, report: &Report) -> io::Result<()> {
 
 fn write_header(out: &mut impl Write, report: &Report) -> io::Result<()> {
     let machine = report.runs.first().map_or("", |run| &run.summary.machine);
+    let measured = report.runs.iter().any(|run| run.summary.measured);
     write!(
         out,
         r#"<header>
 <div class="top"><p class="brand">feedwright <span>contour report</span></p>
 <button type="button" id="theme" class="quiet needs-script">Theme: auto</button></div>
-<h1>{title}</h1>
+<h1>{title} <span class="badge">{how}</span></h1>
 <p class="subject"><span>Part <b>{part}</b></span> <span>Machine <b>{machine}</b></span></p>
 <p class="verdict">{verdict}</p>
-</header>
+{assumed}</header>
 "#,
         title = escaped(&report.title),
         part = escaped(&report.part),
         machine = escaped(machine),
+        how = if measured { "simulated, beside a log" } else { "simulated" },
         verdict = verdict::verdict(report),
+        assumed = assumed(report),
     )
+}
+
+/// What was assumed, in one paragraph.
+fn assumed(report: &Report) -> String {
+    let sentences: Vec<String> = report.simulated.iter().map(|sentence| format!("{}.", escaped(sentence))).collect();
+    if sentences.is_empty() {
+        return String::new();
+    }
+    format!("<p class=\"assumed\"><b>Assumed of the machine</b> {}</p>\n", sentences.join(" "))
 }
 
 /// The places that the scripts fill.

@@ -72,6 +72,7 @@ impl Statistics {
             machine: facts.machine,
             part: facts.part,
             axes: facts.axes,
+            measured: facts.measured,
             outcome: facts.run.outcome,
             faded_out: facts.run.faded_out,
             engaged_share: facts.run.engaged_share,
@@ -84,7 +85,7 @@ impl Statistics {
             uncut_um: facts.run.uncut_mm * 1e3,
             max_deviation_um: self.max_deviation_mm * 1e3,
             max_command_accel_mm_s2: self.max_command_accel_mm_s2,
-            peak_torque_nm: self.peak_torque_nm,
+            peak_torque_nm: (!facts.measured).then_some(self.peak_torque_nm),
             cutting_length_mm: self.cutting_length_mm,
             cutting_time_s: self.cutting_time_s,
             rows: self.rows,
@@ -105,6 +106,11 @@ impl Statistics {
     /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.
     pub fn max_deviation_um(&self) -> f64 {
         self.max_deviation_mm * 1e3
+    }
+
+    /// Largest acceleration of the command of any axis, mm/s2.
+    pub fn max_command_accel_mm_s2(&self) -> f64 {
+        self.max_command_accel_mm_s2
     }
 
     /// Largest torque of each axis, N m.
@@ -216,7 +222,7 @@ mod tests {
         let facts = RunFacts { axes: 2, ..RunFacts::default() };
         let summary = statistics.summary(facts, |_| String::new());
         assert!((summary.rms_um - 1.0).abs() < 1e-12 && (summary.max_um - 1.0).abs() < 1e-12);
-        assert_eq!(summary.peak_torque_nm, [0.0, 2.0, 0.0]);
+        assert_eq!(summary.peak_torque_nm, Some([0.0, 2.0, 0.0]));
         assert!((summary.cutting_time_s - 1e-3).abs() < 1e-15, "{}", summary.cutting_time_s);
     }
 }

@@ -18,6 +18,8 @@ pub struct RunFacts {
     pub part: String,
     /// Axes of the machine, 2 or 3.
     pub axes: usize,
+    /// Whether the rows are those of a log, not of a simulation.
+    pub measured: bool,
     /// What the loop says about the run.
     pub run: RunResult,
 }
@@ -33,6 +35,8 @@ pub struct RunSummary {
     pub part: String,
     /// Axes of the machine, 2 or 3.
     pub axes: usize,
+    /// Whether it was measured on a machine; simulated where not.
+    pub measured: bool,
     /// How the run ended.
     pub outcome: Outcome,
     /// When and why the safety layer took the controller out of the loop last.
@@ -60,8 +64,9 @@ pub struct RunSummary {
     pub max_deviation_um: f64,
     /// Largest acceleration of the command from one servo period to the next, mm/s2.
     pub max_command_accel_mm_s2: f64,
-    /// Largest torque of each axis, N m.
-    pub peak_torque_nm: [f64; 3],
+    /// Largest torque of each axis, N m; none of a log: torques of logs are not read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_torque_nm: Option<[f64; 3]>,
     /// Arc length that was cut, mm.
     pub cutting_length_mm: f64,
     /// Time during which the tool cut, s.

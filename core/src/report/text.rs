@@ -68,13 +68,15 @@ pub(super) fn duration(seconds: f64) -> String {
 }
 
 /// Change from `before` to `after` in per cent: "−87 %"; nothing where `before` is zero. Near −100 % it is what is left that
-/// tells.
+/// tells, and beyond ten times it is the factor.
 pub(super) fn change(before: f64, after: f64) -> Option<String> {
     let percent = (after / before - 1.0) * 100.0;
     if before == 0.0 || !percent.is_finite() {
         return None;
     }
-    Some(if percent.abs() < 0.05 {
+    Some(if after >= 10.0 * before {
+        format!("× {}", number(after / before))
+    } else if percent.abs() < 0.05 {
         "±0 %".to_owned()
     } else if after > 0.0 && percent < -99.9 {
         format!("{} %", signed(percent, 2))
@@ -113,6 +115,7 @@ mod tests {
         assert_eq!(change(18.0, 0.0).as_deref(), Some("−100 %"));
         assert_eq!(change(1.76, 1.69).as_deref(), Some("−4.0 %"));
         assert_eq!(change(2.0, 2.0).as_deref(), Some("±0 %"));
+        assert_eq!(change(0.1, 7.3).as_deref(), Some("× 73.0"));
         assert_eq!(change(0.0, 1.0), None);
     }
 

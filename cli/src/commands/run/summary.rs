@@ -52,7 +52,7 @@ fn run_of<'a>(runs: &'a [ReportedRun], controller: &str) -> Option<&'a RunSummar
 
 /// The largest torque of all axes, N m.
 fn peak_torque_nm(run: &RunSummary) -> f64 {
-    run.peak_torque_nm.into_iter().fold(0.0, f64::max)
+    run.peak_torque_nm.into_iter().flatten().fold(0.0, f64::max)
 }
 
 /// Gain and cost in one sentence.

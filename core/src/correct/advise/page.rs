@@ -3,12 +3,22 @@
 use std::io::{self, Write};
 
 use super::{Advice, FeedCut, StretchAdvice, WAYS, WayAdvice};
-use crate::report::figure::{COLORS, Figure, LineStyle, Panel, Polyline, write_foot, write_head};
+use crate::report::figure::{COLORS, Figure, LineStyle, Panel, Polyline};
+use crate::report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
 use crate::report::text::{escaped, number};
 
-const CSS: &str = include_str!("../../../assets/report/compare.css");
 /// Rows of the table of stretches at the most: those that hold the least feed, uncorrected.
 const ROWS: usize = 200;
+const WAY_HEADS: [&str; 8] = [
+    "cut",
+    "feed, of programmed",
+    "mm/min",
+    "time s",
+    "RMS µm",
+    "max µm",
+    "each stretch at its own: time s",
+    "its max µm",
+];
 
 impl Advice {
     /// Largest error over the feedrate, for each way, and the feedrates that hold, stretch by stretch.
@@ -73,21 +83,30 @@ impl Advice {
             self.planner,
             self.controller
         );
-        write_head(out, &format!("{part} within {} µm on {machine}", number(self.tolerance_um)), &introduction, CSS)?;
-        writeln!(
-            out,
-            "<div class=\"wide\"><table><thead><tr><th>cut</th><th>feed, of programmed</th><th>mm/min</th><th>time s</th><th>RMS µm</th><th>max µm</th>\
-             <th>each stretch at its own: time s</th><th>max µm</th></tr></thead><tbody>"
-        )?;
+        let parts = [
+            PagePart::new("program", "The whole program"),
+            PagePart::new("feedrates", "Errors and feedrates"),
+            PagePart::new("stretches", "Stretch by stretch"),
+        ];
+        let [program, feedrates, stretches] = &parts;
+        let title = format!("{part} within {} µm on {machine}", number(self.tolerance_um));
+        write_head(out, "tables", &title, &introduction, &parts)?;
+        program.begin(out)?;
+        write_table_head(out, WAY_HEADS)?;
         self.ways.iter().try_for_each(|way| self.write_way(out, way))?;
-        writeln!(out, "</tbody></table></div>")?;
+        write_table_end(out)?;
+        PagePart::end(out)?;
+        feedrates.begin(out)?;
         writeln!(
             out,
             "<figure>{}<figcaption><b>Largest contour error over the feedrate</b>, the largest of the program; below, the feedrate at which each stretch \
              holds the tolerance, in the order of the program. Gaps hold it at no feedrate that was cut.</figcaption></figure>",
             self.figure().to_svg()
         )?;
+        PagePart::end(out)?;
+        stretches.begin(out)?;
         self.write_stretches(out)?;
+        PagePart::end(out)?;
         write_foot(out)
     }
 
@@ -122,11 +141,8 @@ impl Advice {
         if shown.len() < self.stretches.len() {
             writeln!(out, "<p>The {} of {} stretches that hold the least:</p>", shown.len(), self.stretches.len())?;
         }
-        let names: String = WAYS.iter().map(|way| format!("<th>{}</th>", escaped(way.name(self.controller)))).collect();
-        writeln!(
-            out,
-            "<div class=\"wide\"><table><thead><tr><th>lines</th><th>programmed mm/min</th>{names}</tr></thead><tbody>"
-        )?;
+        let names = WAYS.iter().map(|way| way.name(self.controller));
+        write_table_head(out, ["lines", "programmed mm/min"].into_iter().chain(names))?;
         for StretchAdvice { lines: [first, last], feed_mm_s, holds_mm_s } in shown {
             let cells: String = holds_mm_s
                 .iter()
@@ -135,7 +151,7 @@ impl Advice {
             let lines = if first == last { first.to_string() } else { format!("{first} to {last}") };
             writeln!(out, "<tr><td>{lines}</td><td>{:.0}</td>{cells}</tr>", 60.0 * feed_mm_s)?;
         }
-        writeln!(out, "</tbody></table></div>")
+        write_table_end(out)
     }
 
     /// So many stretches at the most, those that hold the smallest part of their feedrate uncorrected, in the order of the program.

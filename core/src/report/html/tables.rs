@@ -18,7 +18,8 @@ pub(super) fn write_summary(out: &mut impl Write, report: &Report) -> io::Result
           <thead role=\"rowgroup\"><tr role=\"row\"><th scope=\"col\">Controller</th><th scope=\"col\">RMS error<i>\xc2\xb5m</i></th>\
           <th scope=\"col\">Largest error<i>\xc2\xb5m</i></th><th scope=\"col\">Uncut path<i>\xc2\xb5m</i></th>\
           <th scope=\"col\">Machining time</th>\
-          <th scope=\"col\">Command deviation<i>\xc2\xb5m</i></th>",
+          <th scope=\"col\">Command deviation<i>\xc2\xb5m</i></th>\
+          <th scope=\"col\">Command acceleration<i>m/s\xc2\xb2</i></th>",
     )?;
     for axis in &AXES[..axes] {
         write!(out, "<th scope=\"col\">Peak torque {axis}<i>N m</i></th>")?;
@@ -61,6 +62,7 @@ fn write_summary_row(
     )?;
     let joints = |um: Option<f64>| um.map_or(String::new(), |um| format!("<small>{} by encoders</small>", number(um)));
     let mut cell = |label: &str, text: String, value: fn(&RunSummary, usize) -> f64, k: usize| {
+        // A value that a run does not have is no number, and has no ratio.
         let ratio = first.and_then(|f| change(value(f, k), value(run, k)));
         let ratio = ratio.map_or(String::new(), |r| format!("<small>{r}</small>"));
         write!(out, "<td role=\"cell\" data-label=\"{label}\">{text}{ratio}</td>")
@@ -72,14 +74,17 @@ fn write_summary_row(
     cell("Uncut path, µm", number(run.uncut_um), |r, _| r.uncut_um, 0)?;
     cell("Machining time", duration(run.time_s), |r, _| r.time_s, 0)?;
     cell("Command deviation, µm", number(run.max_deviation_um), |r, _| r.max_deviation_um, 0)?;
+    let accel_m_s2 = |r: &RunSummary, _: usize| if r.measured { f64::NAN } else { r.max_command_accel_mm_s2 * 1e-3 };
+    cell("Command acceleration, m/s²", number(accel_m_s2(run, 0)), accel_m_s2, 0)?;
     for (k, axis) in AXES.iter().enumerate().take(axes) {
         let label = format!("Peak torque {axis}, N m");
-        cell(&label, fixed(run.peak_torque_nm[k], 3), |r, k| r.peak_torque_nm[k], k)?;
+        let torque_nm = |r: &RunSummary, k: usize| r.peak_torque_nm.map_or(f64::NAN, |peaks| peaks[k]);
+        cell(&label, fixed(torque_nm(run, k), 3), torque_nm, k)?;
     }
     out.write_all(b"</tr>\n")
 }
 
-fn swatch(index: usize) -> String {
+pub(super) fn swatch(index: usize) -> String {
     format!("<span class=\"swatch\" style=\"--run: var(--run-{})\"></span>", index % 6)
 }
 

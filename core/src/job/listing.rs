@@ -1,0 +1,42 @@
+//! The lines of the program that the page shows beside the tool.
+
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+
+use super::{Job, JobError};
+use crate::report::{ProgramLine, ReportedRun};
+
+/// A program of up to so many bytes is there as a whole; of a longer one the lines that drawn points belong to.
+const WHOLE_BYTES: u64 = 128 << 10;
+/// Text that is kept, bytes: a page of a long program is some megabytes anyway.
+const MOST_BYTES: usize = 512 << 10;
+/// A line is cut off behind so many characters.
+const MOST_CHARACTERS: usize = 160;
+
+impl Job {
+    /// The lines in their order.
+    pub(super) fn listing(&self, runs: &[ReportedRun]) -> Result<Vec<ProgramLine>, JobError> {
+        let reread = |cause| JobError::Reread { part: self.part.clone(), cause };
+        let file = File::open(&self.part).map_err(reread)?;
+        let whole = file.metadata().map_err(reread)?.len() <= WHOLE_BYTES;
+        let drawn: BTreeSet<u32> = match whole {
+            true => BTreeSet::new(),
+            false => runs.iter().flat_map(|run| run.series.points().map(|point| point.line)).collect(),
+        };
+        let (mut listing, mut bytes) = (Vec::new(), 0);
+        let (mut file, mut text) = (BufReader::new(file), Vec::new());
+        for line in 1.. {
+            text.clear();
+            if file.read_until(b'\n', &mut text).map_err(reread)? == 0 || bytes > MOST_BYTES {
+                break;
+            }
+            if whole || drawn.contains(&line) {
+                let text: String = String::from_utf8_lossy(&text).trim_end().chars().take(MOST_CHARACTERS).collect();
+                bytes += text.len();
+                listing.push(ProgramLine { line, text });
+            }
+        }
+        Ok(listing)
+    }
+}
