@@ -128,6 +128,11 @@ fn play(browser: &mut Browser) {
     browser.press("ArrowLeft", 37);
     let back = text(browser, "#readout");
     assert_eq!(back.split_once('·').unwrap().0, before.split_once('·').unwrap().0);
+    // What is drawn anew shows the same place.
+    browser.click("#error-axis button:nth-of-type(2)");
+    browser.click("#error-axis button:nth-of-type(1)");
+    browser.frames();
+    assert_eq!(text(browser, "#readout"), back);
 }
 
 /// Keys zoom the path and a curve, and show all again.

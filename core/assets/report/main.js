@@ -68,7 +68,6 @@ function start() {
     state.log ? "log" : "linear", (name) => {
       state.log = name === "log";
       plots.build();
-      actions.refresh();
     });
 
   function repaint() {
@@ -76,13 +75,11 @@ function start() {
     plots.build();
     circularity?.draw();
     actions.redraw();
-    actions.refresh();
   }
   const setTheme = setUpTheme($("theme"), repaint);
   drawKey(state, () => {
     plots.build();
     circularity?.draw();
-    actions.refresh();
   });
   connectZoom(state, actions);
   connectPlaces(state, actions, showChoice);

@@ -3,7 +3,7 @@
 // Lines shown before and behind the one that is being cut.
 const LINES_AROUND = 3;
 // Seconds of the page in a second of the cut.
-const SPEEDS = [0.01, 0.05, 0.1, 0.25, 0.5, 1, 2, 5, 20, 100];
+const SPEEDS = [0.01, 0.05, 0.1, 0.25, 0.5, 1, 2, 5, 20, 100, 500, 2000];
 // Part of the run that an arrow key goes on by, and a small one with Shift.
 const STEP = 0.01;
 const SMALL_STEP = 0.001;

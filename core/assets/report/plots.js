@@ -41,6 +41,7 @@ class Plots {
       plot.u = new uPlot(this.options(plot), plot.definition.data, plot.body);
       if (range && this.places(plot) && Number.isFinite(range[0])) this.quietly(() => plot.u.setScale("x", { min: range[0], max: range[1] }));
     });
+    this.settle();
   }
 
   // Arrows move the place that all drawings show, plus and minus zoom about it, with Shift across.
@@ -65,8 +66,20 @@ class Plots {
   resize() {
     for (const plot of this.plots) {
       const width = plot.body.clientWidth;
-      if (width > 0 && width !== plot.u.width) plot.u.setSize({ width, height: PLOT_HEIGHT });
+      if (width <= 0 || width === plot.u.width) continue;
+      plot.u.setSize({ width, height: PLOT_HEIGHT });
+      this.settle();
     }
+  }
+
+  // Charts that were made or resized are drawn in the next frame; what they report until then is no place that anybody chose.
+  settle() {
+    this.busy = true;
+    cancelAnimationFrame(this.settling);
+    this.settling = requestAnimationFrame(() => {
+      this.busy = false;
+      this.actions.refresh();
+    });
   }
 
   // Runs `work` without answering to what the charts report meanwhile.

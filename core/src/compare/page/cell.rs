@@ -72,6 +72,13 @@ fn spread(row: &ComparisonRow, [low, high]: [f64; 2]) -> String {
     if row.seeds > 1 { format!("<small>{} to {}</small>", number(low), number(high)) } else { String::new() }
 }
 
+/// A range from minus to plus one, two or five times a power of ten: its ends have ticks.
+fn rounded_up(most: f64) -> [f64; 2] {
+    let power = 10_f64.powf(most.log10().floor());
+    let end = [1.0, 2.0, 5.0, 10.0].map(|lead| lead * power).into_iter().find(|&end| end >= most).unwrap_or(most);
+    [-end, end]
+}
+
 /// Error over the cut: open loop, the best peer that knows no model, and the default, each on its own scale.
 fn errors(rows: &[ComparisonRow]) -> Figure {
     let peers = rows.iter().filter(|row| {
@@ -90,7 +97,7 @@ fn errors(rows: &[ComparisonRow]) -> Figure {
             x_title: "Time [s]".to_owned(),
             y_title: "Contour error [µm]".to_owned(),
             curves: vec![Polyline { points: points.collect(), color: color.to_owned(), ..Polyline::default() }],
-            y_range: Some(row.max_spread_um[1]).filter(|&most| row.completed && most > 0.0).map(|most| [-most, most]),
+            y_range: Some(row.max_spread_um[1]).filter(|&most| row.completed && most > 0.0).map(rounded_up),
             ..Panel::default()
         }
     };
