@@ -6,7 +6,7 @@
 //! there. What of a window was not committed is kept: where the next window comes to no solution, or its solution leaves the tube, the motion goes
 //! on along it, and so at worst comes to rest on the path; from there it goes on straight from rest to rest.
 //!
-//! Look-ahead: the time in which the slowest axis stops, and 0.25 s.
+//! Look-ahead: the time in which the slowest axis stops, and 0.5 s.
 //!
 //! | File | What |
 //! |---|---|
@@ -17,6 +17,7 @@
 //! | `riccati.rs` | its Newton steps |
 //! | `barrier.rs` | its bounds |
 //! | `interior_point.rs` | its solution |
+//! | `settle.rs` | axes that the path leaves where they are |
 //! | `solved.rs` | from a mesh to a window, and from its solution to steps |
 //! | `tube.rs` | what nodes do not bound |
 //! | `rest_to_rest.rs` | straight, in closed form |
@@ -28,6 +29,7 @@ mod window;
 mod riccati;
 mod barrier;
 mod interior_point;
+mod settle;
 mod solved;
 mod tube;
 mod rest_to_rest;
@@ -46,10 +48,10 @@ use steps::{AxisCaps, PlannedStep, place_after, place_powers, time_of_place};
 use track::Track;
 
 /// Look-ahead beyond the time to stop, s.
-const BEYOND_S: f64 = 0.25;
+const BEYOND_S: f64 = 0.5;
 
 /// Part of a window that is committed.
-const COMMITTED: f64 = 0.4;
+const COMMITTED: f64 = 0.6;
 
 /// Step of time, in times `(tolerance / jerk)^(1/3)`: within it jerk leads away from a chord by less than a hundredth of the tolerance.
 const STEP: f64 = 0.35;

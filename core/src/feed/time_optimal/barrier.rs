@@ -37,6 +37,12 @@ pub(super) struct StepMultipliers<const D: usize> {
     pub(super) feed: f64,
 }
 
+/// The larger one; without the care of `f64::max` for what is not a number, which takes four times as long.
+#[inline]
+pub(super) fn larger(a: f64, b: f64) -> f64 {
+    if b > a { b } else { a }
+}
+
 /// `1 - sum w c^2`.
 #[inline]
 pub(super) fn feed_slack<const D: usize>(w: &[f64; D], c: &[f64; D]) -> f64 {
@@ -256,7 +262,8 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
         let mu = self.mu;
         let update = |z: &mut f64, slack: f64, change: f64, next_slack: f64| {
             *z += dual * ((mu - *z * change) / slack - *z);
-            *z = z.max(mu / (MULTIPLIER_FACTOR * next_slack)).min(MULTIPLIER_FACTOR * mu / next_slack);
+            let least = larger(*z, mu / (MULTIPLIER_FACTOR * next_slack));
+            *z = -larger(-least, -MULTIPLIER_FACTOR * mu / next_slack);
         };
         let both = |z: &mut [f64; 2], value: f64, change: f64, next: f64| {
             update(&mut z[0], 1.0 + value, change, 1.0 + next);
@@ -305,16 +312,18 @@ struct Longest {
 impl Longest {
     #[inline]
     fn bound(&mut self, slack: f64, change: f64, z: f64) {
-        if change < 0.0 {
-            self.unknowns = self.unknowns.min(-self.tau * slack / change);
+        // Divided only where it is the shortest so far.
+        if self.unknowns * change < -self.tau * slack {
+            self.unknowns = -self.tau * slack / change;
         }
-        self.multiplier((self.mu - z * change) / slack - z, z);
+        self.multiplier(self.mu - z * (change + slack), z * slack);
     }
 
+    /// The multiplier and its change, both times the slack.
     #[inline]
     fn multiplier(&mut self, change: f64, z: f64) {
-        if change < 0.0 {
-            self.multipliers = self.multipliers.min(-self.tau * z / change);
+        if self.multipliers * change < -self.tau * z {
+            self.multipliers = -self.tau * z / change;
         }
     }
 
@@ -337,7 +346,7 @@ impl Longest {
             }
             self.unknowns = lo;
         }
-        self.multiplier((self.mu - z * slope) / now - z, z);
+        self.multiplier(self.mu - z * (slope + now), z * now);
     }
 
     /// A slack that falls by `2 along t + square t^2`.
@@ -349,6 +358,6 @@ impl Longest {
             let t = if along > 0.0 { most / (along + root) } else { (root - along) / square };
             self.unknowns = self.unknowns.min(t);
         }
-        self.multiplier((self.mu + 2.0 * z * along) / slack - z, z);
+        self.multiplier(self.mu + z * (2.0 * along - slack), z * slack);
     }
 }

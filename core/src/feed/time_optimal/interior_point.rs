@@ -5,7 +5,7 @@
 //! "On the implementation of an interior-point filter line-search algorithm for large-scale nonlinear programming", sections 2 and 3,
 //! without its restoration and its second-order correction: a search that fails ends in a short step, and too many of them in `None`.
 
-use super::barrier::{LEAST_STEP, WindowIterate, control, feed_slack, tube_slack};
+use super::barrier::{LEAST_STEP, WindowIterate, control, feed_slack, larger, tube_slack};
 use super::riccati::{NewtonStep, Stage};
 use super::window::{StepOfAxis, WindowProblem, WindowUnknowns};
 
@@ -13,7 +13,7 @@ use super::window::{StepOfAxis, WindowProblem, WindowUnknowns};
 /// iterations.
 const GIVEN: f64 = 1e-7;
 
-/// The barrier falls when the error is this many times `mu`.
+/// The barrier falls when no defect is more than `mu`, and the error no more than this many times.
 const KAPPA: f64 = 10.0;
 
 /// Largest defect of a solution, in units: rolling out takes it away, and moves no node by more than a nanometre.
@@ -23,6 +23,9 @@ const LARGEST_DEFECT: f64 = 1e-7;
 /// several motions of the same time is taken.
 const PATIENCE: u32 = 8;
 const PATIENT_DEFECT: f64 = 1e-3;
+
+/// With the last barrier, a Newton step that would lower the cost by no more than this part of it is not worth taking.
+const STATIONARY: f64 = 1e-5;
 
 /// With no iterations left, a solution with a barrier up to this is better than none.
 const LAST_RESORT_MU: f64 = 1e-3;
@@ -40,7 +43,7 @@ const LARGEST_SHIFT: f64 = 1e8;
 const LEAST_SHIFT: f64 = 1e-7;
 const SHIFT_GROWS: f64 = 8.0;
 const SHIFT_FALLS: f64 = 1.0 / 3.0;
-const SHORT: f64 = 0.03;
+const SHORT: f64 = 0.1;
 const SHIFT_AFTER_SHORT: f64 = 9.0;
 
 /// How far a window is to be solved.
@@ -111,7 +114,7 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
             let mut error = self.assemble().max(merit.largest);
             waited += 1;
             let kappa = if solved.is_some() { 1.0 } else { KAPPA };
-            while error <= kappa * self.iterate.mu
+            while (error <= kappa * self.iterate.mu && merit.largest <= self.iterate.mu)
                 || (solved.is_none() && waited > PATIENCE && merit.largest < PATIENT_DEFECT)
             {
                 if self.iterate.mu <= settings.last_mu {
@@ -134,25 +137,23 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
                 merit = self.merit(&self.iterate.at);
             }
             let Some(slope) = self.newton_step() else { return solved };
+            if solved.is_none() && self.is_stationary(merit, slope, settings.last_mu) {
+                return Some((self.iterate.at, iteration));
+            }
             let tau = (1.0 - self.iterate.mu).max(0.99);
             let (longest, dual) = self.iterate.longest(&self.newton, tau);
-            let step = self.search(merit, slope, longest, first_theta).unwrap_or_else(|| {
-                failures += 1;
-                self.careful(longest)
-            });
-            if failures > MOST_FAILURES {
+            let found = self.search(merit, slope, longest, first_theta);
+            failures += u32::from(found.is_none());
+            let step;
+            (step, merit) = found.unwrap_or_else(|| self.careful(longest));
+            if failures > MOST_FAILURES || !merit.phi.is_finite() {
                 return solved;
             }
-            // So short a step comes of a Hessian that is barely convex: the next one is to be more so.
-            if step < SHORT && self.shift > 0.0 {
-                self.shift *= SHIFT_AFTER_SHORT;
+            // So short a step comes of a Hessian that is barely convex, or nearly singular: the next one is to be more so.
+            if step < SHORT {
+                self.shift = (self.shift * SHIFT_AFTER_SHORT).max(FIRST_SHIFT);
             }
-            self.try_step(step);
             self.iterate.go(&mut self.trial, &self.newton, step, dual);
-            merit = self.merit(&self.iterate.at);
-            if !merit.phi.is_finite() {
-                return solved;
-            }
         }
         let serves = self.iterate.mu <= LAST_RESORT_MU && merit.largest < LARGEST_DEFECT;
         solved.or_else(|| serves.then_some((self.iterate.at, settings.most_iterations)))
@@ -174,10 +175,20 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
     }
 
     /// A short step whatever it gives, and a more careful one next.
-    fn careful(&mut self, longest: f64) -> f64 {
+    fn careful(&mut self, longest: f64) -> (f64, Merit) {
         self.filter.clear();
         self.shift = (self.shift * 10.0).max(1e-2);
-        0.05 * longest
+        let step = 0.05 * longest;
+        self.try_step(step);
+        (step, self.merit(&self.trial))
+    }
+
+    /// Whether another Newton step would be in vain.
+    fn is_stationary(&self, merit: Merit, slope: f64, last_mu: f64) -> bool {
+        self.iterate.mu <= last_mu
+            && merit.largest < LARGEST_DEFECT
+            && slope.abs() <= STATIONARY * merit.phi
+            && !self.iterate.is_at_feed()
     }
 
     /// The Newton step; answers the slope of the cost along it.
@@ -208,8 +219,8 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         slope.is_finite().then_some(slope)
     }
 
-    /// A part of the Newton step that the filter takes.
-    fn search(&mut self, merit: Merit, slope: f64, longest: f64, first_theta: f64) -> Option<f64> {
+    /// A part of the Newton step that the filter takes; the trial is there then, with its merit.
+    fn search(&mut self, merit: Merit, slope: f64, longest: f64, first_theta: f64) -> Option<(f64, Merit)> {
         let rounding = 1e-13 * merit.phi.abs();
         let mut step = longest;
         for _ in 0..12 {
@@ -227,7 +238,7 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
                 if !descends {
                     self.filter.push(((1.0 - 1e-5) * merit.theta, merit.phi - 1e-5 * merit.theta));
                 }
-                return Some(step);
+                return Some((step, trial));
             }
             step *= 0.5;
         }
@@ -249,7 +260,7 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         let (mut theta, mut largest, mut cost) = (0.0, 0.0_f64, 0.0);
         let mut add = |defect: f64| {
             theta += defect.abs();
-            largest = largest.max(defect.abs());
+            largest = larger(largest, defect.abs());
         };
         for (i, u) in at.u.iter().enumerate() {
             let end = problem.end(&self.steps, i, &at.x[i], u);
@@ -269,10 +280,10 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
             let mut stage = Stage::ZERO;
             let mut residual = [0.0; N];
             if i > 0 {
-                error = error.max(self.node(i, &mut stage, &mut residual));
+                error = larger(error, self.node(i, &mut stage, &mut residual));
             }
             if i < n {
-                error = error.max(self.step(i, &mut stage, &mut residual));
+                error = larger(error, self.step(i, &mut stage, &mut residual));
             } else {
                 for s in 0..N {
                     if self.iterate.problem.is_given(s) {
@@ -283,7 +294,7 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
                 }
             }
             if i > 0 {
-                error = residual.iter().fold(error, |error, r| error.max(r.abs()));
+                error = residual.iter().fold(error, |error, r| larger(error, r.abs()));
             }
             self.stages[i] = stage;
         }
@@ -303,13 +314,13 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
                     stage.q[row][row] += z[0] / below + z[1] / above;
                     stage.gx[row] += mu / above - mu / below;
                     residual[row] += z[1] - z[0];
-                    error = error.max((z[0] * below - mu).abs()).max((z[1] * above - mu).abs());
+                    error = larger(larger(error, (z[0] * below - mu).abs()), (z[1] * above - mu).abs());
                 }
             }
         }
         if offset {
             let slack = tube_slack(problem.radius[i], x);
-            error = error.max((z.tube * slack - mu).abs());
+            error = larger(error, (z.tube * slack - mu).abs());
             for k in 0..D {
                 let row = 3 * k;
                 stage.q[row][row] += 2.0 * z.tube;
@@ -390,10 +401,10 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
             let (below, above) = (1.0 + j, 1.0 - j);
             stage.r[k][k] += z.j[k][0] / below + z.j[k][1] / above + self.shift;
             stage.gu[k] += mu / above - mu / below;
-            error = error.max((z.j[k][0] * below - mu).abs()).max((z.j[k][1] * above - mu).abs());
+            error = larger(larger(error, (z.j[k][0] * below - mu).abs()), (z.j[k][1] * above - mu).abs());
             let (bj, bh, along) = (stage.bj[k], stage.bh[k], stage.a[k]);
             let of_j = z.j[k][1] - z.j[k][0] + lo * bj[0] + lv * bj[1] + la * bj[2];
-            error = error.max(of_j.abs());
+            error = larger(error, of_j.abs());
             of_h += lo * bh[0] + lv * bh[1] + la * bh[2];
             residual[3 * k] += lo;
             residual[3 * k + 1] += lo * along[0] + lv;

@@ -21,9 +21,6 @@ pub(super) struct Stage<const N: usize, const M: usize> {
     pub(super) d: [f64; N],
 }
 
-/// A stage with the cost of what follows it.
-type Condensed<const N: usize, const M: usize> = ([[f64; N]; N], [[f64; N]; M], [[f64; M]; M]);
-
 impl<const N: usize, const M: usize> Stage<N, M> {
     pub(super) const ZERO: Self = Self {
         q: [[0.0; N]; N],
@@ -64,36 +61,38 @@ impl<const N: usize, const M: usize> Stage<N, M> {
         out
     }
 
-    /// `Q + A'PA`, `S + B'PA`, `R + B'PB`.
+    /// `Q + A'PA`, `S + B'PA`, `R + B'PB`: of the symmetric ones the lower triangles.
     #[inline]
-    fn condensed(&self, p: &[[f64; N]; N]) -> Condensed<N, M> {
+    fn condensed(&self, p: &[[f64; N]; N], q: &mut [[f64; N]; N], s: &mut [[f64; N]; M], r: &mut [[f64; M]; M]) {
         let mut pa = [[0.0; N]; N];
         let mut pb = [[0.0; M]; N];
         for row in 0..N {
             pa[row] = self.at(&p[row]);
             pb[row] = self.bt(&p[row]);
         }
-        let (mut q, mut s, mut r) = (self.q, self.s, self.r);
+        (*q, *s, *r) = (self.q, self.s, self.r);
         for k in 0..N / 3 {
             let a = &self.a[k];
             let (o, v, c) = (3 * k, 3 * k + 1, 3 * k + 2);
+            for column in 0..3 * (k + 1) {
+                let (po, pv, pc) = (pa[o][column], pa[v][column], pa[c][column]);
+                q[o][column] += po;
+                q[v][column] += a[0] * po + pv;
+                q[c][column] += a[1] * po + a[2] * pv + pc;
+            }
+            let (bj, bh) = (&self.bj[k], &self.bh[k]);
             for column in 0..N {
-                q[o][column] += pa[o][column];
-                q[v][column] += a[0] * pa[o][column] + pa[v][column];
-                q[c][column] += a[1] * pa[o][column] + a[2] * pa[v][column] + pa[c][column];
-                for t in 0..3 {
-                    s[k][column] += self.bj[k][t] * pa[3 * k + t][column];
-                    s[M - 1][column] += self.bh[k][t] * pa[3 * k + t][column];
-                }
+                let (po, pv, pc) = (pa[o][column], pa[v][column], pa[c][column]);
+                s[k][column] += bj[0] * po + bj[1] * pv + bj[2] * pc;
+                s[M - 1][column] += bh[0] * po + bh[1] * pv + bh[2] * pc;
+            }
+            for column in 0..=k {
+                r[k][column] += bj[0] * pb[o][column] + bj[1] * pb[v][column] + bj[2] * pb[c][column];
             }
             for column in 0..M {
-                for t in 0..3 {
-                    r[k][column] += self.bj[k][t] * pb[3 * k + t][column];
-                    r[M - 1][column] += self.bh[k][t] * pb[3 * k + t][column];
-                }
+                r[M - 1][column] += bh[0] * pb[o][column] + bh[1] * pb[v][column] + bh[2] * pb[c][column];
             }
         }
-        (q, s, r)
     }
 }
 
@@ -135,7 +134,8 @@ impl<const N: usize, const M: usize> NewtonStep<N, M> {
             for row in 0..N {
                 pd[row] += (0..N).map(|column| p[row][column] * stage.d[column]).sum::<f64>();
             }
-            let (mut q, mut y, r) = stage.condensed(p);
+            let (mut q, mut y, mut r) = ([[0.0; N]; N], [[0.0; N]; M], [[0.0; M]; M]);
+            stage.condensed(p, &mut q, &mut y, &mut r);
             let (mut gx, mut yk) = (stage.at(&pd), stage.bt(&pd));
             (0..N).for_each(|t| gx[t] += stage.gx[t]);
             (0..M).for_each(|t| yk[t] += stage.gu[t]);
@@ -146,16 +146,13 @@ impl<const N: usize, const M: usize> NewtonStep<N, M> {
             for row in 0..N {
                 for t in 0..M {
                     let f = y[t][row];
-                    (0..N).for_each(|column| q[row][column] -= f * y[t][column]);
+                    (0..=row).for_each(|column| q[row][column] -= f * y[t][column]);
                     gx[row] -= f * yk[t];
                 }
             }
             divide_by_upper(&l, &mut y, &mut yk);
             for row in 0..N {
-                for column in 0..row {
-                    let mean = 0.5 * (q[row][column] + q[column][row]);
-                    (q[row][column], q[column][row]) = (mean, mean);
-                }
+                (0..row).for_each(|column| q[column][row] = q[row][column]);
             }
             (self.p[i], self.pv[i], self.gain[i], self.k[i]) = (q, gx, y, yk);
         }

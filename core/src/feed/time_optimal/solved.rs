@@ -2,6 +2,7 @@
 
 use super::interior_point::{SolverSettings, solve};
 use super::mesh::MeshNode;
+use super::settle::settle;
 use super::steps::{AxisCaps, PlannedStep};
 use super::track::Track;
 use super::window::{WindowProblem, WindowUnits, WindowUnknowns};
@@ -109,6 +110,7 @@ impl MeshProblem<'_> {
         };
         let (mut solution, iterations) = solve(&problem, WindowUnknowns { x, u }, self.settings)?;
         problem.roll_out(&mut solution);
+        settle(&problem, &mut solution);
         Some((self.steps_of(&problem, &solution, axes, centers), iterations))
     }
 

@@ -42,6 +42,9 @@ pub(super) struct PlannedStep {
     pub(super) motion: AxisMotion,
 }
 
+/// As many as halving alone would take.
+const MOST_NEWTON: u32 = 52;
+
 /// Place on the programmed path over the time of a step: `s, s', s'' / 2, s''' / 6`.
 pub(super) type PlacePowers = [f64; 4];
 
@@ -66,16 +69,24 @@ pub(super) fn place_after(powers: &PlacePowers, t: f64) -> f64 {
     powers[0] + t * (powers[1] + t * (powers[2] + t * powers[3]))
 }
 
-/// When a place is reached, by halving.
+/// When a place is reached: by Newton's method, and by halving where that leads out of what is known.
 pub(super) fn time_of_place(powers: &PlacePowers, place_mm: f64, duration_s: f64) -> f64 {
     let (mut lo, mut hi) = (0.0, duration_s);
-    for _ in 0..52 {
-        let middle = 0.5 * (lo + hi);
-        if place_after(powers, middle) < place_mm {
-            lo = middle;
+    let mut t = 0.5 * duration_s;
+    for _ in 0..MOST_NEWTON {
+        let missed_mm = place_after(powers, t) - place_mm;
+        if missed_mm < 0.0 {
+            lo = t
         } else {
-            hi = middle;
+            hi = t
         }
+        let speed_mm_s = powers[1] + t * (2.0 * powers[2] + t * 3.0 * powers[3]);
+        let next = t - missed_mm / speed_mm_s;
+        let next = if next > lo && next < hi { next } else { 0.5 * (lo + hi) };
+        if (next - t).abs() <= f64::EPSILON * duration_s {
+            return next;
+        }
+        t = next;
     }
-    hi
+    t
 }

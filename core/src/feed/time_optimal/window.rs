@@ -112,43 +112,60 @@ impl<const D: usize, const N: usize> WindowProblem<D, N> {
     }
 
     /// The states that the jerks and durations lead to from the first state, without any defect; what that misses the last state by is
-    /// made up by the jerks, by as little as possible. With durations given, the end of an axis is linear in its jerks.
+    /// made up by the jerks.
     pub(super) fn roll_out<const M: usize>(&self, unknowns: &mut WindowUnknowns<N, M>) {
-        let steps = self.steps();
         let n = self.way.len();
         let mut target = unknowns.x[n];
         (0..N).filter(|&s| self.is_given(s)).for_each(|s| target[s] = 0.0);
-        self.roll(&steps, unknowns);
-        for (k, step) in steps.iter().enumerate() {
-            let missed: [f64; 3] = std::array::from_fn(|t| unknowns.x[n][3 * k + t] - target[3 * k + t]);
-            // How the end follows from the jerk of each step, from the last to the first.
-            let mut to_end = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
-            let mut by_jerk = vec![[0.0; 3]; n];
-            for i in (0..n).rev() {
-                let h = unknowns.u[i][D];
-                let b = [step.c3 * h * h * h / 6.0, 0.5 * step.d2 * h * h, step.e1 * h];
-                by_jerk[i] = to_end.map(|row| row[0] * b[0] + row[1] * b[1] + row[2] * b[2]);
-                let (ov, oa, va) = (step.c1 * h, 0.5 * step.c2 * h * h, step.d1 * h);
-                to_end = to_end.map(|[o, v, a]| [o, v + o * ov, a + o * oa + v * va]);
-            }
-            let mut gram = [[0.0; 3]; 3];
-            for g in &by_jerk {
-                (0..9).for_each(|t| gram[t / 3][t % 3] += g[t / 3] * g[t % 3]);
-            }
-            let Some(weights) = solved(gram, missed) else {
-                continue;
-            };
-            for (u, g) in unknowns.u.iter_mut().zip(&by_jerk) {
-                u[k] -= weights[0] * g[0] + weights[1] * g[1] + weights[2] * g[2];
-            }
+        unknowns.x[0] = self.first;
+        for k in 0..D {
+            self.roll(k, [0, n], unknowns);
+            self.steer(unknowns, k, [0, n], [target[3 * k], target[3 * k + 1], target[3 * k + 2]]);
         }
-        self.roll(&steps, unknowns);
     }
 
-    fn roll<const M: usize>(&self, steps: &[StepOfAxis; D], unknowns: &mut WindowUnknowns<N, M>) {
-        unknowns.x[0] = self.first;
-        for i in 0..self.way.len() {
-            unknowns.x[i + 1] = self.end(steps, i, &unknowns.x[i], &unknowns.u[i]);
+    /// Changes the jerks of an axis between two nodes by as little as possible so that it comes to a state at the second one. With
+    /// durations given, that is linear in the jerks.
+    pub(super) fn steer<const M: usize>(
+        &self,
+        unknowns: &mut WindowUnknowns<N, M>,
+        k: usize,
+        [from, to]: [usize; 2],
+        target: [f64; 3],
+    ) {
+        let step = StepOfAxis::of(&self.units, k);
+        let missed: [f64; 3] = std::array::from_fn(|t| unknowns.x[to][3 * k + t] - target[t]);
+        // How the end follows from the jerk of each step, from the last to the first.
+        let mut to_end = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let mut by_jerk = vec![[0.0; 3]; to - from];
+        for i in (from..to).rev() {
+            let h = unknowns.u[i][D];
+            let b = [step.c3 * h * h * h / 6.0, 0.5 * step.d2 * h * h, step.e1 * h];
+            by_jerk[i - from] = to_end.map(|row| row[0] * b[0] + row[1] * b[1] + row[2] * b[2]);
+            let (ov, oa, va) = (step.c1 * h, 0.5 * step.c2 * h * h, step.d1 * h);
+            to_end = to_end.map(|[o, v, a]| [o, v + o * ov, a + o * oa + v * va]);
+        }
+        let mut gram = [[0.0; 3]; 3];
+        for g in &by_jerk {
+            (0..9).for_each(|t| gram[t / 3][t % 3] += g[t / 3] * g[t % 3]);
+        }
+        let Some(weights) = solved(gram, missed) else {
+            return;
+        };
+        for (u, g) in unknowns.u[from..to].iter_mut().zip(&by_jerk) {
+            u[k] -= weights[0] * g[0] + weights[1] * g[1] + weights[2] * g[2];
+        }
+        self.roll(k, [from, to], unknowns);
+    }
+
+    /// The states of an axis from one node to another that its jerks and the durations lead to.
+    pub(super) fn roll<const M: usize>(&self, k: usize, [from, to]: [usize; 2], unknowns: &mut WindowUnknowns<N, M>) {
+        let step = StepOfAxis::of(&self.units, k);
+        for i in from..to {
+            let (x, u) = (&unknowns.x[i], &unknowns.u[i]);
+            let [o, v, a] = step.end([x[3 * k], x[3 * k + 1], x[3 * k + 2]], u[k], u[D]);
+            let next = &mut unknowns.x[i + 1];
+            (next[3 * k], next[3 * k + 1], next[3 * k + 2]) = (o - self.way[i][k], v, a);
         }
     }
 }
