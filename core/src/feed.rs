@@ -17,6 +17,7 @@
 //! | `unlimited.rs` | null member: every section at its bound |
 //! | `time_optimal.rs` | member: speed and path within the tolerance, axis by axis, with jerk |
 //! | `linuxcnc.rs` | member: what LinuxCNC's own planner makes of the path |
+//! | `time_scaling.rs` | feed override and feed hold on a published plan |
 //! | `plan.rs` | pieces, spans and events on the clock |
 
 pub mod joint;
@@ -26,6 +27,7 @@ pub mod trapezoid;
 pub mod unlimited;
 pub mod time_optimal;
 pub mod linuxcnc;
+pub mod time_scaling;
 
 use crate::constraints::{Constraints, PathLimits};
 use crate::gcode::canon::Event;

@@ -31,6 +31,7 @@ pub mod excite;
 pub mod log;
 pub mod measured;
 pub mod cycle_time;
+pub mod override_time;
 pub mod fastest;
 pub mod identify;
 pub mod model;

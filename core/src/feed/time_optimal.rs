@@ -53,6 +53,9 @@ const BEYOND_S: f64 = 0.5;
 /// Part of a window that is committed.
 const COMMITTED: f64 = 0.6;
 
+/// Where a window comes to no solution, so much of that goes on along the one before: the next one begins elsewhere, and still at speed.
+const GOING_ON: f64 = 0.25;
+
 /// Step of time, in times `(tolerance / jerk)^(1/3)`: within it jerk leads away from a chord by less than a hundredth of the tolerance.
 const STEP: f64 = 0.35;
 
@@ -139,6 +142,8 @@ pub struct TimeOptimal {
     counts: PlanCounts,
     /// Windows reach from rest to rest.
     whole: bool,
+    /// The tolerance is held at nodes only.
+    at_nodes: bool,
 }
 
 impl TimeOptimal {
@@ -159,12 +164,18 @@ impl TimeOptimal {
             ready: VecDeque::new(),
             counts: PlanCounts::default(),
             whole: false,
+            at_nodes: false,
         }
     }
 
-    /// The bound that streaming is measured by: the whole path from rest to rest as one window, with the tolerance held at its nodes
+    /// The bound that plans are measured by: the whole path from rest to rest as one window, with the tolerance held at its nodes
     /// only. Memory and latency grow with the program.
     pub fn whole(constraints: &Constraints) -> Self {
+        Self { at_nodes: true, ..Self::whole_within(constraints) }
+    }
+
+    /// The same within the tolerance everywhere, as far as that comes to a solution: what streaming costs shows beside it.
+    pub fn whole_within(constraints: &Constraints) -> Self {
         Self { whole: true, ..Self::new(constraints) }
     }
 
@@ -228,12 +239,12 @@ impl TimeOptimal {
         if let Some((steps, ends)) = self.solve_window() {
             self.counts.windows += 1;
             self.tail = steps;
-            self.commit(ends);
+            self.commit(1.0, ends);
         } else if rests {
             self.go_straight();
         } else {
             self.counts.went_on += 1;
-            self.commit(false);
+            self.commit(GOING_ON, false);
         }
     }
 
@@ -260,7 +271,7 @@ impl TimeOptimal {
     fn mesh(&self, known: &[PlannedStep], step_s: f64) -> (Vec<MeshNode>, bool) {
         let most = self.window();
         let most = if self.track.ended { most + most / 4 } else { most };
-        let radius_part = if self.whole { 1.0 } else { RADIUS_PART };
+        let radius_part = if self.at_nodes { 1.0 } else { RADIUS_PART };
         let mut mesh = Mesh::new(&self.track, &self.caps, step_s, most, radius_part, self.from);
         let time_s: f64 = known.iter().map(|step| step.duration_s).sum();
         let ends = self.track.ended && known.last().is_some_and(|step| step.to_mm >= self.track.end_mm);
@@ -278,7 +289,7 @@ impl TimeOptimal {
         for round in 0..ROUNDS {
             let guesses = if round == 0 { &GUESSES[1..] } else { &GUESSES[..] };
             let steps = self.solution(&nodes, &feed_parts, ends, step_s, guesses)?;
-            if self.whole {
+            if self.at_nodes {
                 return Some((steps, ends));
             }
             let soon = if ends { steps.len() } else { self.soon(&steps) };
@@ -337,9 +348,9 @@ impl TimeOptimal {
         if self.whole { 600 } else { 200 }
     }
 
-    /// Hands out the first part of the tail, or all of it.
-    fn commit(&mut self, all: bool) {
-        let until_s = self.committed_s(&self.tail).max(self.step_s());
+    /// Hands out a part of what a window commits, or all of the tail.
+    fn commit(&mut self, part: f64, all: bool) {
+        let until_s = (part * self.committed_s(&self.tail)).max(self.step_s());
         let mut count = 0;
         let mut time_s = 0.0;
         while count < self.tail.len() && (all || time_s < until_s) {

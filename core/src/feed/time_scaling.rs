@@ -1,0 +1,234 @@
+//! Feed override and feed hold on a published plan: they change how fast plan time runs, never the path.
+//!
+//! A plan says where the axes are at plan time `tau`: `p(tau)`. With the rate `r = dtau/dt` the axes have
+//!
+//! `v = p' r`, `a = p'' r^2 + p' r'`, `j = p''' r^3 + 3 p'' r r' + p' r''`,
+//!
+//! and with a rate that stays as it is, at 1 or below, everything is within the limits that the plan keeps. In each period `r''` is chosen:
+//! the one that leads to the override the fastest, of those from which a way is known to a rate that can stay. Its first period is always
+//! a choice, so that the axes are never led to where a limit cannot be kept. A plan in least time has a limit at its end at any moment: how
+//! soon the rate can fall depends on which.
+//!
+//! | File | What |
+//! |---|---|
+//! | `published.rs` | a plan over its time |
+//! | `landing.rs` | ways to a rate that can stay |
+//! | `braking.rs` | the shortest way in which an axis stops |
+
+mod published;
+mod landing;
+mod braking;
+
+pub use braking::shortest_stop_mm;
+pub use published::{PublishedPlan, PublishedSpan};
+
+use super::AxisMotion;
+use crate::constraints::AxisLimits;
+use crate::vector::norm;
+use landing::{Landing, bounded, keeps, landing, landing_anywhere, step};
+
+/// Largest override.
+pub const MOST_OVERRIDE: f64 = 2.0;
+
+/// More than any change of the slope, 1/s2.
+const MOST_BEND_1_S2: f64 = 1e12;
+
+/// A velocity and an acceleration that are none.
+const STILL_MM_S: f64 = 1e-9;
+const STILL_MM_S2: f64 = 1e-3;
+
+/// Rates are the same up to this.
+const ROUNDING: f64 = 1e-9;
+
+/// So often the interval between a choice that can be taken and one that cannot is halved.
+const HALVINGS: u32 = 6;
+
+/// Limits, and the period in which the rate changes.
+#[derive(Debug, Clone, Copy)]
+pub struct ScalingLimits {
+    /// Of each axis.
+    pub axes: [AxisLimits; 3],
+    /// Largest speed along the path, mm/s.
+    pub speed_mm_s: f64,
+    /// Period, s.
+    pub period_s: f64,
+}
+
+/// Where plan time is, and how it runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ScaledTime {
+    /// Plan time, s.
+    pub tau_s: f64,
+    /// Rate, plan time by time.
+    pub rate: f64,
+    /// Change of the rate, 1/s.
+    pub slope_1_s: f64,
+}
+
+impl ScaledTime {
+    /// After a time at a constant change of the slope, 1/s2.
+    #[inline]
+    pub fn after(&self, t: f64, bend_1_s2: f64) -> Self {
+        let Self { tau_s, rate, slope_1_s } = *self;
+        Self {
+            tau_s: tau_s + t * (rate + t * (0.5 * slope_1_s + t * bend_1_s2 / 6.0)),
+            rate: rate + t * (slope_1_s + 0.5 * t * bend_1_s2),
+            slope_1_s: slope_1_s + t * bend_1_s2,
+        }
+    }
+
+    /// What the axes do where the plan has them do `planned`.
+    #[inline]
+    pub fn motion(&self, planned: &AxisMotion, bend_1_s2: f64) -> AxisMotion {
+        let (r, s) = (self.rate, self.slope_1_s);
+        let AxisMotion { position_mm, velocity_mm_s: v, accel_mm_s2: a, jerk_mm_s3: j } = *planned;
+        AxisMotion {
+            position_mm,
+            velocity_mm_s: std::array::from_fn(|k| v[k] * r),
+            accel_mm_s2: std::array::from_fn(|k| a[k] * r * r + v[k] * s),
+            jerk_mm_s3: std::array::from_fn(|k| j[k] * r * r * r + 3.0 * a[k] * r * s + v[k] * bend_1_s2),
+        }
+    }
+}
+
+/// A time in which the slope changes evenly, within one span of the plan.
+#[derive(Debug, Clone, Copy)]
+pub struct ScaledStep {
+    /// Where it begins.
+    pub from: ScaledTime,
+    /// Change of the slope, 1/s2.
+    pub bend_1_s2: f64,
+    /// How long it takes, s: a period or less.
+    pub duration_s: f64,
+    /// Number of the span.
+    span: usize,
+}
+
+impl ScaledStep {
+    /// After a time.
+    #[inline]
+    pub fn after(&self, t: f64) -> ScaledTime {
+        self.from.after(t, self.bend_1_s2)
+    }
+
+    /// What the axes do after a time.
+    pub fn motion(&self, plan: &PublishedPlan, t: f64) -> AxisMotion {
+        let now = self.after(t);
+        now.motion(&plan.in_span(self.span, now.tau_s), self.bend_1_s2)
+    }
+}
+
+/// A plan that is being moved along.
+#[derive(Debug)]
+pub struct TimeScaling<'a> {
+    plan: &'a PublishedPlan,
+    limits: ScalingLimits,
+    now: ScaledTime,
+    /// The way to a rate that can stay, from now on.
+    safe: Landing,
+}
+
+impl<'a> TimeScaling<'a> {
+    /// At the beginning of a plan, at rest.
+    pub fn new(plan: &'a PublishedPlan, limits: ScalingLimits) -> Self {
+        let now = ScaledTime { tau_s: 0.0, rate: 0.0, slope_1_s: 0.0 };
+        Self { plan, limits, now, safe: Landing::default() }
+    }
+
+    /// From a moment of the plan on, at the rate 1.
+    pub fn from_moment(plan: &'a PublishedPlan, limits: ScalingLimits, tau_s: f64) -> Self {
+        let now = ScaledTime { tau_s, rate: 1.0, slope_1_s: 0.0 };
+        Self { now, ..Self::new(plan, limits) }
+    }
+
+    /// Where plan time is.
+    pub const fn now(&self) -> ScaledTime {
+        self.now
+    }
+
+    /// Whether the plan rests here, whatever the rate.
+    pub fn rests(&self) -> bool {
+        let AxisMotion { velocity_mm_s, accel_mm_s2, .. } = self.plan.at(self.now.tau_s);
+        norm(velocity_mm_s) < STILL_MM_S && norm(accel_mm_s2) < STILL_MM_S2
+    }
+
+    /// Whether the plan has come to its end.
+    pub fn has_ended(&self) -> bool {
+        self.now.tau_s >= self.plan.end_s()
+    }
+
+    /// Goes on for a step towards an override of feeds, 0 to [`MOST_OVERRIDE`]; a hold is one of 0 that holds for rapids too.
+    pub fn step(&mut self, override_of_feeds: f64, hold: bool) -> ScaledStep {
+        let span = self.plan.span_at(self.now.tau_s);
+        let wanted = if hold {
+            0.0
+        } else if span.cutting {
+            override_of_feeds.clamp(0.0, MOST_OVERRIDE)
+        } else {
+            1.0
+        };
+        if span.is_rest || self.rests() {
+            // At rest nothing keeps the rate from being any.
+            let rate = if span.is_rest && !hold { 1.0 } else { wanted.min(1.0) };
+            self.now = ScaledTime { rate, slope_1_s: 0.0, ..self.now };
+            self.safe = Landing::default();
+        }
+        let next = self.choice(if span.is_rest && !hold { 1.0 } else { wanted });
+        self.now = next.after(next.duration_s);
+        if self.safe.is_over() {
+            // What is left of a way is rounding.
+            self.now = ScaledTime { rate: self.safe.rate(self.now.rate), slope_1_s: 0.0, ..self.now };
+        }
+        next
+    }
+
+    /// The next step; the way behind it is kept.
+    fn choice(&mut self, wanted: f64) -> ScaledStep {
+        let way = wanted - self.now.rate;
+        if way == 0.0 && self.now.slope_1_s == 0.0 && self.now.rate <= 1.0 {
+            self.safe = Landing::default();
+            return step(self.plan, &self.limits, &self.now, 0.0);
+        }
+        let towards = if way < 0.0 || (way == 0.0 && self.now.slope_1_s > 0.0) { -1.0 } else { 1.0 };
+        if self.safe.is_over() && self.now.rate <= 1.0 && wanted <= 1.0 {
+            // Where nothing faster is found, straight to what is wanted.
+            self.safe = landing(self.plan, &self.limits, &self.now, wanted, 1.0 + ROUNDING).unwrap_or_default();
+        }
+        let safe = self.safe.steps.pop_front();
+        let mut good = safe.unwrap_or_else(|| step(self.plan, &self.limits, &self.now, 0.0));
+        let most = towards * MOST_BEND_1_S2;
+        let mut bad = bounded(self.plan, &self.limits, &self.now, most, good.bend_1_s2);
+        if (bad - good.bend_1_s2) * towards > 0.0 {
+            let mut bend = bad;
+            for _ in 0..HALVINGS {
+                let tried = step(self.plan, &self.limits, &self.now, bend);
+                if let Some(found) = self.way_behind(&tried, wanted, towards) {
+                    (good, self.safe) = (tried, found);
+                } else {
+                    bad = bend;
+                }
+                bend = 0.5 * (good.bend_1_s2 + bad);
+            }
+        }
+        good
+    }
+
+    /// The way from behind a step to a rate that can stay, that does not pass the one that is wanted.
+    fn way_behind(&self, tried: &ScaledStep, wanted: f64, towards: f64) -> Option<Landing> {
+        if !keeps(self.plan, &self.limits, tried) {
+            return None;
+        }
+        let next = tried.after(tried.duration_s);
+        if next.rate < 0.0 || (wanted - next.rate) * towards < 0.0 {
+            return None;
+        }
+        // Where the override was lowered on the way up, the rate is above it for a while.
+        let most = if next.rate > wanted.max(1.0) { f64::INFINITY } else { wanted.max(1.0) + ROUNDING };
+        if wanted <= 1.0 {
+            let found = landing_anywhere(self.plan, &self.limits, &next, wanted, towards);
+            return found.or_else(|| landing(self.plan, &self.limits, &next, wanted, most));
+        }
+        // Above 1 no rate can stay but 1.
+        landing(self.plan, &self.limits, &next, 1.0, most)
+    }
+}
