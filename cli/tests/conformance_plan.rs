@@ -83,3 +83,26 @@ fn a_planner_is_taken_by_name() {
     let without = ["plan", "two.ngc", "--machine", "tnv40", "--planner", "linuxcnc"];
     folder.run(&without).refused(&["max_velocity_mm_s"]);
 }
+
+#[test]
+fn an_override_and_a_hold_change_the_time_of_the_plan() {
+    let folder = folder();
+    let operated = |arguments: &[&str]| {
+        let all: Vec<&str> = ["--machine", "m.toml"].iter().chain(arguments).copied().collect();
+        planned(&folder, &all)["override"].clone()
+    };
+    let half = operated(&["--override", "50"]);
+    let number = |value: &Value, key: &str| value[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", value[key]));
+    assert!(number(&half, "time_s") > 1.1 * number(&half, "plan_s"), "{half}");
+    assert!(number(&half, "largest_violation") <= 1.001 && half["hold"].is_null(), "{half}");
+    let held = operated(&["--hold-at", "0.5"]);
+    let hold = &held["hold"];
+    assert!((number(hold, "at_s") - 0.5).abs() < 2e-3 && number(hold, "stops_in_s") < 0.3, "{held}");
+    assert!(number(hold, "way_mm") >= 0.99 * number(hold, "least_mm"), "{held}");
+    for (wrong, told) in [("-1", "-1"), ("201", "200"), ("NaN", "NaN")] {
+        folder.run(&["plan", "two.ngc", "--machine", "m.toml", "--override", wrong]).refused(&["--override", told]);
+    }
+    folder.run(&["plan", "two.ngc", "--machine", "m.toml", "--hold-at", "-1"]).refused(&["--hold-at", "-1"]);
+    let without = ["plan", "two.ngc", "--machine", "tnv40", "--override", "50"];
+    folder.run(&without).refused(&["trapezoid", "max_jerk_mm_s3"]);
+}

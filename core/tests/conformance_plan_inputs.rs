@@ -2,10 +2,15 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use feedwright::cycle_time::{CycleTime, cycle_time};
+use feedwright::constraints::Constraints;
+use feedwright::cycle_time::{CycleTime, cycle_time, cycle_time_by};
+use feedwright::feed::planner;
 use feedwright::gcode::{Reader, Settings};
 use feedwright::machine::Machine;
-use feedwright::pipeline::pieces;
+use feedwright::pipeline::{Stages, pieces};
+
+/// Blocks of 1 um: a twentieth of a million, in a few seconds.
+const MICROMETRES: u32 = 50_000;
 
 fn machine() -> Machine {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();
@@ -26,6 +31,14 @@ fn planned(machine: &Machine, program: &str) -> CycleTime {
     assert!(found.time_s.is_finite() && found.time_s >= 0.0, "{found:?}");
     assert!(found.largest_violation.unwrap_or(0.0) <= 1.0 + 1e-6, "{found:?}");
     assert!(found.largest_deviation_um <= 10.1, "{found:?}");
+    found
+}
+
+/// The same with any tolerance.
+fn planned_within(machine: &Machine, program: &str) -> CycleTime {
+    let steps = || Ok(pieces(Reader::from_text("program", program, Settings::default())?.map_while(Result::ok)));
+    let found = cycle_time(machine, false, steps, &()).unwrap();
+    assert!(found.largest_violation.unwrap_or(0.0) <= 1.0 + 1e-6, "{found:?}");
     found
 }
 
@@ -65,12 +78,12 @@ fn very_many_blocks_of_a_micrometre_take_the_time_of_one() {
     use std::fmt::Write;
     let machine = machine();
     let mut program = "G21 G90 G64 P0.01 F6000\n".to_owned();
-    for i in 1..=20_000 {
+    for i in 1..=MICROMETRES {
         writeln!(program, "G1 X{:.3}", f64::from(i) * 1e-3).unwrap();
     }
     let short = planned(&machine, &program);
-    let one = planned(&machine, "G21 G90 G64 P0.01 F6000\nG1 X20\n");
-    assert_eq!((short.blocks, one.blocks), (20_000, 1));
+    let one = planned(&machine, &format!("G21 G90 G64 P0.01 F6000\nG1 X{}\n", MICROMETRES / 1000));
+    assert_eq!((short.blocks, one.blocks), (u64::from(MICROMETRES), 1));
     assert!((short.time_s / one.time_s - 1.0).abs() < 2e-3, "{} {}", short.time_s, one.time_s);
 }
 
@@ -79,4 +92,54 @@ fn a_negative_tolerance_is_refused_with_its_place() {
     let program = "G21 G90 G64 P-0.01 F6000\nG1 X20\n";
     let fault = Reader::from_text("program", program, Settings::default()).unwrap().find_map(Result::err).unwrap();
     assert!(fault.to_string().contains("tolerance P of G64 is negative"), "{fault}");
+}
+
+#[test]
+fn limits_that_are_none_are_refused_by_name() {
+    let wrong = [0.0, -1.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e-9, 1e15];
+    type Set = fn(&mut Machine, f64);
+    let keys: [(&str, Set); 4] = [
+        ("max_velocity_mm_s", |machine, value| machine.axes[1].max_velocity_mm_s = Some(value)),
+        ("max_accel_mm_s2", |machine, value| machine.axes[1].max_accel_mm_s2 = Some(value)),
+        ("max_jerk_mm_s3", |machine, value| machine.axes[1].max_jerk_mm_s3 = Some(value)),
+        ("path_tolerance_um", |machine, value| machine.limits.path_tolerance_um = Some(value)),
+    ];
+    for (name, set) in keys {
+        for value in wrong {
+            let mut machine = machine();
+            set(&mut machine, value);
+            let steps = || {
+                Ok(pieces(Reader::from_text("program", "G1 F600 X1\nM2\n", Settings::default())?.map_while(Result::ok)))
+            };
+            let stages = Stages { planner: planner("time-optimal").unwrap(), ..Stages::default() };
+            let constraints = Constraints::from(&machine);
+            let refused = cycle_time_by(stages, &machine, &constraints, false, steps, &()).unwrap_err().to_string();
+            assert!(refused.contains(name), "{name} = {value}: {refused}");
+        }
+    }
+}
+
+#[test]
+fn helices_and_arcs_of_all_planes_and_full_reversals_are_planned() {
+    let machine = machine();
+    let program = "G21 G90 G64 P0.01 F6000\nG1 X10\nG2 X20 Y0 Z5 I5 J0 P3\nG18 G3 X30 Z5 I5 K0\nG19 G2 Y10 Z5 J5 K0\nG17 G1 X40\nX20\nX40\nM2\n";
+    let found = planned(&machine, program);
+    assert!(found.blocks >= 7 && found.cutting_s > 1.0, "{found:?}");
+}
+
+#[test]
+fn g64_is_not_slower_than_stopping_at_every_end_and_a_larger_p_not_slower_than_a_smaller() {
+    let machine = machine();
+    let program = |mode: &str| format!("G21 G90 {mode} F12000\nG1 X20\nY20\nX11 Y11\nX0 Y20\nG2 X0 Y0 I0 J-10\nM2\n");
+    let time_s = |mode: &str| {
+        let found = planned_within(&machine, &program(mode));
+        found.cutting_s
+    };
+    let [stops, path] = ["G61.1", "G61"].map(time_s);
+    let times = ["G64 P0.001", "G64 P0.003", "G64 P0.01", "G64 P0.03", "G64 P0.1"].map(time_s);
+    assert!(path <= 1.001 * stops && times[0] <= 1.001 * stops, "{stops} {path} {times:?}");
+    assert!(times.windows(2).all(|pair| pair[1] <= 1.001 * pair[0]), "{times:?}");
+    // Bare G64 has the tolerance of the machine, and so does P of the same.
+    assert!((time_s("G64") / times[2] - 1.0).abs() < 1e-9);
+    assert!((time_s("G64 P0.01 Q0.01") / times[2] - 1.0).abs() < 1e-9);
 }

@@ -30,6 +30,12 @@ pub(crate) struct PlanArgs {
     /// Plan each path from rest to rest as a whole too, and tell its time: what no plan can be faster than by much.
     #[arg(long)]
     pub(crate) bound: bool,
+    /// Tell how long it takes with this override of feeds, 0 to 200 %, while it is cut: the path stays as planned.
+    #[arg(long = "override", value_name = "PERCENT", allow_negative_numbers = true)]
+    pub(crate) override_percent: Option<f64>,
+    /// Tell where the tool rests when feed hold is pressed so long after the start, s.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) hold_at: Option<f64>,
     /// Write all results as JSON.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,

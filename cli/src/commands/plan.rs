@@ -8,12 +8,14 @@ use std::time::Instant;
 use feedwright::constraints::Constraints;
 use feedwright::cycle_time::{CycleTime, cycle_time_by};
 use feedwright::feed;
+use feedwright::feed::time_scaling::MOST_OVERRIDE;
 use feedwright::gcode::suggestion::nearest;
 use feedwright::gcode::{self, Reader};
 use feedwright::job::JobError;
 use feedwright::machine::{Machine, is_path};
 use feedwright::number::shown;
 use feedwright::output::{OutputFile, OutputFiles};
+use feedwright::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
 use feedwright::pipeline::{Stages, pieces};
 use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
@@ -32,6 +34,7 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     )?;
     let machine = machine(args)?;
     let stages = stages(args, &machine)?;
+    let request = request(args, stages)?;
     let machine_file = Some(machine_path).filter(|path| is_path(path));
     let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tools].into_iter().flatten());
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
@@ -55,6 +58,10 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     } else {
         found
     };
+    let operated = match request {
+        Some(request) => override_time(&machine, stages, steps()?, request, &bar)?,
+        None => None,
+    };
     bar.clear();
     if let Some(mut file) = json {
         let mut value = serde_json::to_value(&found).into_diagnostic()?;
@@ -62,11 +69,14 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
         value["machine"] = json!(machine.name);
         value["path_tolerance_um"] = json!(machine.limits.path_tolerance_um);
         value["blocks_per_s"] = json!(found.blocks as f64 / took_s);
+        if let Some(operated) = &operated {
+            value["override"] = json!(operated);
+        }
         serde_json::to_writer_pretty(&mut file, &value).into_diagnostic()?;
         writeln!(file).into_diagnostic()?;
         OutputFile::commit_all(vec![file], &bar)?;
     }
-    printed(print(args, &found, took_s), ExitCode::SUCCESS)
+    printed(print(args, &found, operated.as_ref(), took_s), ExitCode::SUCCESS)
 }
 
 /// The machine, with the tolerance of the arguments.
@@ -113,11 +123,41 @@ fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
     Ok(Stages { planner, ..stages })
 }
 
+/// What the operator does, by the arguments.
+fn request(args: &PlanArgs, stages: Stages) -> Result<Option<OperatorRequest>> {
+    if args.override_percent.is_none() && args.hold_at.is_none() {
+        return Ok(None);
+    }
+    let percent = args.override_percent.unwrap_or(100.0);
+    let most = 100.0 * MOST_OVERRIDE;
+    if !(0.0..=most).contains(&percent) {
+        return Err(miette!(
+            help = "it is in percent of the programmed feedrate: 50 is half of it",
+            "--override is {percent} %; it must be from 0 to {most} %"
+        ));
+    }
+    if let Some(at_s) = args.hold_at.filter(|at_s| !(0.0..=MOST_HOLD_S).contains(at_s)) {
+        return Err(miette!("--hold-at is {at_s} s; it must be from 0 to {MOST_HOLD_S} s"));
+    }
+    if !stages.planner.limits_jerk {
+        return Err(miette!(
+            help =
+                "give its axes max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3, and [limits] path_tolerance_um",
+            "--override and --hold-at need a plan with limits of the jerk of each axis; {} plans without",
+            stages.planner.name
+        ));
+    }
+    Ok(Some(OperatorRequest { override_of_feeds: 0.01 * percent, hold_at_s: args.hold_at }))
+}
+
+/// A year.
+const MOST_HOLD_S: f64 = 3.2e7;
+
 /// As in a machine file.
 const LEAST_UM: f64 = 0.01;
 const MOST_UM: f64 = 1e4;
 
-fn print(args: &PlanArgs, found: &CycleTime, took_s: f64) -> std::io::Result<()> {
+fn print(args: &PlanArgs, found: &CycleTime, operated: Option<&OverrideTime>, took_s: f64) -> std::io::Result<()> {
     let json = args.json.as_deref();
     let mut out = tables([json]);
     let CycleTime { time_s, cutting_s, rapid_s, waiting_s, blocks, .. } = found;
@@ -147,5 +187,26 @@ fn print(args: &PlanArgs, found: &CycleTime, took_s: f64) -> std::io::Result<()>
         writeln!(out, "  {:<26} {:>12.1} % of the motion", binding.limit, 100.0 * binding.share)?;
     }
     writeln!(out, "{:<28} {:>12.0} blocks/s", "planned", *blocks as f64 / took_s)?;
+    if let Some(operated) = operated {
+        print_operated(args, operated, &mut *out)?;
+    }
     tell_written(&mut *out, [json])
+}
+
+fn print_operated(args: &PlanArgs, operated: &OverrideTime, out: &mut dyn Write) -> std::io::Result<()> {
+    let percent = args.override_percent.unwrap_or(100.0);
+    let OverrideTime { time_s, plan_s, largest_violation, hold } = operated;
+    let name = format!("override of {percent} %");
+    if let Some(HoldStop { at_s, stops_in_s, way_mm, least_mm, position_mm: [x, y, z] }) = hold {
+        writeln!(out, "{name:<28} {time_s:>12.3} s, at rest by feed hold")?;
+        writeln!(out, "  {:<26} {at_s:>12.3} s", "feed hold pressed after")?;
+        writeln!(out, "  {:<26} {stops_in_s:>12.3} s, {way_mm:.3} mm", "stops within")?;
+        writeln!(out, "  {:<26} {least_mm:>12.3} mm, each axis for itself", "at least")?;
+        writeln!(out, "  {:<26} X{x:.3} Y{y:.3} Z{z:.3}", "rests at")?;
+    } else if time_s.is_finite() {
+        writeln!(out, "{name:<28} {time_s:>12.3} s, {:.3} times the plan", time_s / plan_s)?;
+    } else {
+        writeln!(out, "{name:<28} never ends: feeds stand still")?;
+    }
+    writeln!(out, "  {:<26} {largest_violation:>12.6} of its limit", "largest use of a limit")
 }
