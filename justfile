@@ -23,6 +23,10 @@ bench:
 bench-plan *programs:
     cargo run --release -p feedwright --example bench_plan -- {{ programs }}
 
+# Least times in which the tool stays within 10 um, open loop on a linear servo and with two controllers on tnv40: some ten minutes.
+least-time *contours:
+    cargo run --release -p feedwright --example least_time -- {{ contours }}
+
 # Every controller on every contour, on machines without noise: the tables of examples/02_horizon.
 compare out="target/compare":
     cargo run --release -- compare --only tnv40,heavy,sticky,rough,soft,coarse --knowledge own,unseen --at-tolerance --json {{ out }}.json --html {{ out }}.html

@@ -65,8 +65,12 @@ fn job(args: RunArgs) -> Result<Job> {
     let (controller, against) = (find(&args.controller)?, find(&args.against)?);
     let target = target(args.target.as_deref(), args.out.as_deref())?;
     let set = settings(&args.set, Some(controller), &[controller, against])?;
+    let mut machine = Machine::load(&args.machine)?;
+    if args.fastest && machine.limits.path_tolerance_um.is_none() {
+        machine.limits.path_tolerance_um = args.tolerance;
+    }
     Ok(Job {
-        machine: Machine::load(&args.machine)?,
+        machine,
         machine_file: Some(PathBuf::from(&args.machine)).filter(|path| machine::is_path(path)),
         controller,
         against,

@@ -184,9 +184,10 @@ fn print_exported(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<(
 fn print_fastest(out: &mut dyn Write, plan: &FastestPlan) -> io::Result<()> {
     let FastestPlan { cycle, largest_um, rounds, machine, .. } = plan;
     let moving_s = cycle.cutting_s + cycle.rapid_s;
-    writeln!(out, "least time: {moving_s:.3} s of motion, largest error {largest_um:.2} um, found in {rounds} cuts")?;
+    let cuts = if *rounds == 1 { "1 cut".to_owned() } else { format!("{rounds} cuts") };
+    writeln!(out, "least time: {moving_s:.3} s of motion, largest error {largest_um:.2} um, found in {cuts}")?;
     if let Some(bound_s) = cycle.bound_s {
-        writeln!(out, "  bound of the path alone {bound_s:.3} s, motion {:.4} times that", moving_s / bound_s)?;
+        writeln!(out, "  {bound_s:.3} s for a tool without error, motion {:.4} times that", moving_s / bound_s)?;
     }
     if let Some(path_um) = machine.limits.path_tolerance_um {
         writeln!(out, "  of the tolerance, {path_um:.2} um are the path's")?;
