@@ -23,6 +23,10 @@ bench:
 bench-plan *programs:
     cargo run --release -p feedwright --example bench_plan -- {{ programs }}
 
+# A corner as the time-optimal planner has it: the figure of examples/04_planner.
+corner-figure out="examples/04_planner/corner.svg":
+    cargo run --release -p feedwright --example corner_figure -- {{ out }}
+
 # Least times in which the tool stays within 10 um, open loop on a linear servo and with two controllers on tnv40: some ten minutes.
 least-time *contours:
     cargo run --release -p feedwright --example least_time -- {{ contours }}

@@ -1,7 +1,9 @@
 //! Cycle time of a program on a machine: how long its plan takes, with which tool and in which kind of motion, what binds it, and
 //! whether it keeps what it has to.
 //!
-//! The plan is looked at as it comes out, every 0.1 ms; memory does not grow with the program.
+//! The plan is looked at as it comes out, every 0.1 ms; memory does not grow with the program. `cycle_time/along.rs` keeps what binds where.
+
+pub mod along;
 
 use std::collections::VecDeque;
 
@@ -18,6 +20,7 @@ use crate::pipeline::{RunError, Stages};
 use crate::plc::Plc;
 use crate::vector::{distance, norm};
 use crate::watch::Watch;
+use along::{BindingAlong, BindingStretch, LIMITS};
 
 /// Time between two looks, s.
 const SAMPLE_S: f64 = 1e-4;
@@ -78,10 +81,13 @@ pub struct CycleTime {
     pub tools: Vec<ToolTime>,
     /// What binds, the most frequent first; nothing that never does.
     pub binding: Vec<BindingShare>,
+    /// What binds where.
+    #[serde(skip)]
+    pub along: BindingAlong,
 }
 
-/// Names of limits, in the order of [`Sampler::bound_s`].
-fn limit_names() -> Vec<String> {
+/// Names of limits, in the order in which they are counted everywhere.
+pub fn limit_names() -> Vec<String> {
     let of_axis = |name: &str| ["velocity", "acceleration", "jerk"].map(|limit| format!("{name} {limit}"));
     let axes = AXIS_NAMES.iter().flat_map(|name| of_axis(name));
     ["feedrate", "tolerance"].map(str::to_owned).into_iter().chain(axes).collect()
@@ -151,6 +157,17 @@ pub fn cycle_time_by<'p>(
     Ok(result)
 }
 
+/// What holds on a piece.
+#[derive(Clone, Copy)]
+struct PiecePlace {
+    /// Its index among those that are kept.
+    index: usize,
+    s_mm: f64,
+    line: u32,
+    feed_mm_s: f64,
+    tolerance_mm: f64,
+}
+
 /// Looks at a plan as it comes out.
 struct Sampler<'a> {
     constraints: &'a Constraints,
@@ -161,7 +178,9 @@ struct Sampler<'a> {
     /// The tool that the next M6 loads.
     selected: u32,
     /// Time in which each limit binds, in the order of [`limit_names`].
-    bound_s: Vec<f64>,
+    bound_s: [f64; LIMITS],
+    /// The sample under way.
+    sample: BindingStretch,
 }
 
 impl<'a> Sampler<'a> {
@@ -171,8 +190,15 @@ impl<'a> Sampler<'a> {
             tools: vec![ToolTime { tool: 0, time_s: 0.0 }],
             ..CycleTime::default()
         };
-        let bound_s = vec![0.0; limit_names().len()];
-        Self { constraints, result, pieces: VecDeque::new(), first: 0, selected: 0, bound_s }
+        Self {
+            constraints,
+            result,
+            pieces: VecDeque::new(),
+            first: 0,
+            selected: 0,
+            bound_s: [0.0; LIMITS],
+            sample: BindingStretch::default(),
+        }
     }
 
     fn take(&mut self, planned: Planned) {
@@ -216,35 +242,45 @@ impl<'a> Sampler<'a> {
         } else {
             self.result.rapid_s += duration_s;
         }
-        let feed_mm_s = feed::feed_mm_s(piece, self.constraints);
-        let tolerance_mm = self.tolerance_mm(piece);
-        let piece_mm = piece.s_mm;
+        let at = PiecePlace {
+            index,
+            s_mm: piece.s_mm,
+            line: piece.line,
+            feed_mm_s: feed::feed_mm_s(piece, self.constraints),
+            tolerance_mm: self.tolerance_mm(piece),
+        };
         let count = (duration_s / SAMPLE_S).ceil().max(1.0);
         for i in 0..count as u32 {
-            let t = duration_s * (f64::from(i) + 0.5) / count;
-            let Some(motion) = phase.motion.map(|motion| motion.after(t)) else {
-                self.binds(0, phase.speed_mm_s(t) / feed_mm_s, BINDS, duration_s / count);
-                continue;
-            };
-            self.axes(&motion, duration_s / count);
-            self.violated(norm(motion.velocity_mm_s) / feed_mm_s);
-            self.binds(0, norm(motion.velocity_mm_s) / feed_mm_s, BINDS, duration_s / count);
-            let away_mm = self.distance_mm(index, motion.position_mm, tolerance_mm);
-            self.result.largest_deviation_um = self.result.largest_deviation_um.max(1e3 * away_mm);
-            let cap_mm_s = self
-                .constraints
-                .speed_caps
-                .as_ref()
-                .map_or(f64::INFINITY, |caps| caps.at(piece_mm + phase.place_mm(t)));
-            // Where the speed is held down for the tool to stay within the tolerance, it is the tolerance that binds.
-            let capped = norm(motion.velocity_mm_s) >= CAP_BINDS * cap_mm_s;
-            let used = if capped { 1.0 } else { away_mm / tolerance_mm };
-            self.binds(1, used, TOLERANCE_BINDS, duration_s / count);
+            self.look_at(phase, at, duration_s * (f64::from(i) + 0.5) / count, duration_s / count);
         }
         // Acceleration is straight over a phase: its ends are its extremes.
         for motion in phase.motion.into_iter().flat_map(|motion| [motion, motion.after(duration_s)]) {
             self.axes(&motion, 0.0);
         }
+    }
+
+    /// Looks at a moment of a phase, which stands for so much time.
+    fn look_at(&mut self, phase: &Phase, at: PiecePlace, t: f64, time_s: f64) {
+        let PiecePlace { index, s_mm, line, feed_mm_s, tolerance_mm } = at;
+        let to_mm = s_mm + phase.place_mm(t);
+        let way_mm = phase.speed_mm_s(t) * time_s;
+        self.sample = BindingStretch { duration_s: time_s, to_mm, way_mm, lines: [line, line], ..Default::default() };
+        if let Some(motion) = phase.motion.map(|motion| motion.after(t)) {
+            let speed_mm_s = norm(motion.velocity_mm_s);
+            self.sample.way_mm = speed_mm_s * time_s;
+            self.axes(&motion, time_s);
+            self.violated(speed_mm_s / feed_mm_s);
+            self.binds(0, speed_mm_s / feed_mm_s, BINDS, time_s);
+            let away_mm = self.distance_mm(index, motion.position_mm, tolerance_mm);
+            self.result.largest_deviation_um = self.result.largest_deviation_um.max(1e3 * away_mm);
+            let cap_mm_s = self.constraints.speed_caps.as_ref().map_or(f64::INFINITY, |caps| caps.at(to_mm));
+            // Where the speed is held down for the tool to stay within the tolerance, it is the tolerance that binds.
+            let used = if speed_mm_s >= CAP_BINDS * cap_mm_s { 1.0 } else { away_mm / tolerance_mm };
+            self.binds(1, used, TOLERANCE_BINDS, time_s);
+        } else {
+            self.binds(0, phase.speed_mm_s(t) / feed_mm_s, BINDS, time_s);
+        }
+        self.result.along.push(&self.sample);
     }
 
     fn tolerance_mm(&self, piece: &Piece) -> f64 {
@@ -262,6 +298,7 @@ impl<'a> Sampler<'a> {
     fn binds(&mut self, limit: usize, ratio: f64, least: f64, time_s: f64) {
         if ratio >= least {
             self.bound_s[limit] += time_s;
+            self.sample.bound_s[limit] += time_s;
         }
     }
 

@@ -193,8 +193,9 @@ impl Job {
             runs.extend(run);
             outcome
         });
+        let limits = self.limit_band(fastest.as_ref(), watch)?;
         watch.begin("writing", 1);
-        let report = self.report(N, summary, circles, runs, &without_identification)?;
+        let report = Report { limits, ..self.report(N, summary, circles, runs, &without_identification)? };
         let (harm, is_of_use) = (self.harm(&report), self.is_of_use(&report));
         let exported_well = exported.as_ref().is_none_or(|outcome| outcome.refusal.is_none());
         let within_tolerance = self.within_tolerance(&report) && exported_well;

@@ -12,6 +12,7 @@ pub mod figure;
 mod outline;
 mod series;
 mod embedded_data;
+mod limit_band;
 mod html;
 mod worst;
 mod histogram;
@@ -27,6 +28,7 @@ pub use circles::{FullCircle, RadialDeviations, Roundness, full_circles};
 pub use error_spectrum::{ErrorSpectrum, SpectrumBand};
 pub use histogram::Histogram;
 pub use html::write_html;
+pub use limit_band::LimitBand;
 pub use series::{Series, SeriesPoint};
 pub use statistics::Statistics;
 pub use summary::{RunFacts, RunSummary};
@@ -55,6 +57,8 @@ pub struct Report {
     pub circles: Vec<FullCircle>,
     /// Largest contour error that the part allows, µm, where one was asked for.
     pub tolerance_um: Option<f64>,
+    /// What binds the plan along the path, where it is planned axis by axis.
+    pub limits: Option<LimitBand>,
     /// One for each controller. The first is what the others are compared with; the last is the one that is judged.
     pub runs: Vec<ReportedRun>,
 }

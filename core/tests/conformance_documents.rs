@@ -6,8 +6,15 @@
 use std::path::{Path, PathBuf};
 
 /// Folders with documents; not searched deeper.
-const FOLDERS: [&str; 6] =
-    ["", "docs", "examples/01_paper_circle", "examples/02_horizon", "examples/03_realism", "examples/05_noise"];
+const FOLDERS: [&str; 7] = [
+    "",
+    "docs",
+    "examples/01_paper_circle",
+    "examples/02_horizon",
+    "examples/03_realism",
+    "examples/04_planner",
+    "examples/05_noise",
+];
 
 fn root() -> PathBuf {
     PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))

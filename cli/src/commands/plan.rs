@@ -6,7 +6,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use feedwright::constraints::Constraints;
-use feedwright::cycle_time::{CycleTime, cycle_time_by};
+use feedwright::cycle_time::along::BindingStretch;
+use feedwright::cycle_time::{CycleTime, cycle_time_by, limit_names};
 use feedwright::feed;
 use feedwright::feed::time_scaling::MOST_OVERRIDE;
 use feedwright::gcode::suggestion::nearest;
@@ -72,11 +73,47 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
         if let Some(operated) = &operated {
             value["override"] = json!(operated);
         }
+        value["along"] = along(&found);
         serde_json::to_writer_pretty(&mut file, &value).into_diagnostic()?;
         writeln!(file).into_diagnostic()?;
         OutputFile::commit_all(vec![file], &bar)?;
     }
     printed(print(args, &found, operated.as_ref(), took_s), ExitCode::SUCCESS)
+}
+
+/// Stretches of the motion that are written, and that are shown.
+const WRITTEN: usize = 500;
+const SHOWN: usize = 10;
+
+/// What binds where, as JSON.
+fn along(found: &CycleTime) -> serde_json::Value {
+    let names = limit_names();
+    let stretch = |stretch: &BindingStretch| {
+        let bound = names.iter().zip(stretch.bound_s).filter(|(_, bound_s)| *bound_s > 0.0);
+        let binding: serde_json::Map<_, _> =
+            bound.map(|(name, bound_s)| (name.clone(), json!(bound_s / stretch.duration_s))).collect();
+        json!({
+            "duration_s": stretch.duration_s, "to_mm": stretch.to_mm, "way_mm": stretch.way_mm, "lines": stretch.lines, "binding": binding,
+        })
+    };
+    found.along.in_parts(WRITTEN).iter().map(stretch).collect()
+}
+
+/// The motion in a few stretches of equal time: lines, feedrate, and the limit that binds there for most of the time.
+fn print_along(out: &mut impl Write, found: &CycleTime) -> std::io::Result<()> {
+    let names = limit_names();
+    writeln!(out, "the motion in stretches of equal time, and what binds longest in each")?;
+    for stretch in found.along.in_parts(SHOWN) {
+        let [first, last] = stretch.lines;
+        let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
+        let feed_mm_min = 60.0 * stretch.way_mm / stretch.duration_s;
+        let mostly = stretch.longest();
+        let binds = mostly.map_or("no limit binds".to_owned(), |limit| {
+            format!("{} {:.0} %", names[limit], 100.0 * stretch.bound_s[limit] / stretch.duration_s)
+        });
+        writeln!(out, "  {lines:<26} {:>12.3} s, {feed_mm_min:.0} mm/min, {binds}", stretch.duration_s)?;
+    }
+    Ok(())
 }
 
 /// The machine, with the tolerance of the arguments.
@@ -186,6 +223,7 @@ fn print(args: &PlanArgs, found: &CycleTime, operated: Option<&OverrideTime>, to
     for binding in &found.binding {
         writeln!(out, "  {:<26} {:>12.1} % of the motion", binding.limit, 100.0 * binding.share)?;
     }
+    print_along(&mut out, found)?;
     writeln!(out, "{:<28} {:>12.0} blocks/s", "planned", *blocks as f64 / took_s)?;
     if let Some(operated) = operated {
         print_operated(args, operated, &mut *out)?;

@@ -4,11 +4,15 @@ use std::io::BufRead;
 
 use super::{Job, JobError};
 use crate::controllers::{BASELINE, NothingIdentified};
+use crate::cycle_time::{self, cycle_time};
+use crate::fastest::FastestPlan;
 use crate::gcode::{Summary, input};
 use crate::machine::Machine;
 use crate::model::Model;
+use crate::pipeline::{Stages, pieces};
 use crate::report::harm::{Harm, harm};
-use crate::report::{FullCircle, Outcome, Report, ReportedRun, WorstPlace};
+use crate::report::{FullCircle, LimitBand, Outcome, Report, ReportedRun, WorstPlace};
+use crate::watch::Watch;
 
 impl Job {
     /// The part as the report calls it: the file's name.
@@ -80,6 +84,7 @@ impl Job {
             program: self.listing(&runs)?,
             circles,
             tolerance_um: self.tolerance_um,
+            limits: None,
             runs,
         })
     }
@@ -98,6 +103,27 @@ impl Job {
         let mut runs = report.runs.iter().map(|run| &run.summary);
         let cut = runs.any(|run| run.controller == self.controller.name && run.outcome == Outcome::Completed);
         cut && self.harm(report).is_empty()
+    }
+
+    /// What binds along the path, where the page shows it: on machines that are planned axis by axis. The plan of least time knows it already, any
+    /// other is made once more.
+    pub(super) fn limit_band(
+        &self,
+        fastest: Option<&FastestPlan>,
+        watch: &dyn Watch,
+    ) -> Result<Option<LimitBand>, JobError> {
+        if self.outputs.report.is_none() || !Stages::of(&self.machine).planner.needs_axes {
+            return Ok(None);
+        }
+        let along = match fastest {
+            Some(plan) => plan.cycle.along.clone(),
+            None => {
+                watch.begin("looking at what binds", 1);
+                let found = cycle_time(&self.machine, false, || Ok(pieces(self.program()?)), watch);
+                found.map_err(|error| JobError::of_run(&self.part, error))?.along
+            }
+        };
+        Ok(Some(LimitBand { names: cycle_time::limit_names(), along }))
     }
 
     /// Whether the run that was asked for is one to be content with.

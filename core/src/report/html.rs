@@ -8,6 +8,7 @@ use std::io::{self, Write};
 
 use super::Report;
 use super::embedded_data;
+use super::limit_band;
 use super::text::escaped;
 
 mod tables;
@@ -44,6 +45,7 @@ pub fn write_html(out: &mut impl Write, report: &Report) -> io::Result<()> {
     out.write_all(b"<main>\n")?;
     tables::write_summary(out, report)?;
     out.write_all(DRAWINGS.as_bytes())?;
+    limit_band::write(out, report.limits.as_ref())?;
     circularity::write_circularity(out, report)?;
     tables::write_worst(out, report)?;
     tables::write_notes(out, report)?;

@@ -91,6 +91,7 @@ pub(crate) fn report(axes: usize, rows: usize) -> Report {
             s_mm: [0.0, 251.0],
         }],
         tolerance_um: Some(10.0),
+        limits: None,
         runs: vec![made_up_run(HOSTILE, axes, rows, 0.03), made_up_run("corrected", axes, rows, 0.005)],
     }
 }

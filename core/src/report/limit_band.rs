@@ -1,0 +1,205 @@
+//! Which limit binds where along the path: a row for each limit over the time of the plan, below its feedrate.
+//!
+//! An SVG in the page, drawn here, so that it is there without scripts; each stretch says its place and lines where the pointer rests on it.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+use super::text::escaped;
+use crate::cycle_time::along::{BindingAlong, BindingStretch, LIMITS};
+
+/// Size of the drawing: width, height of the feedrate, of a row, and of the numbers below; left of them stand the names.
+const WIDTH: f64 = 1200.0;
+const FEED: f64 = 120.0;
+const ROW: f64 = 18.0;
+const BELOW: f64 = 34.0;
+const LEFT: f64 = 150.0;
+const RIGHT: f64 = 12.0;
+const ABOVE: f64 = 14.0;
+
+/// Stretches that are drawn at the most: about one for two pixels.
+const DRAWN: usize = 600;
+
+/// A stretch is coloured where a limit binds for this part of it, in so many steps.
+const LEAST: f64 = 0.02;
+const LEVELS: u32 = 4;
+
+/// What binds along the path of a plan, for the page.
+#[derive(Debug, Clone, Default)]
+pub struct LimitBand {
+    /// Names of the limits.
+    pub names: Vec<String>,
+    /// The plan.
+    pub along: BindingAlong,
+}
+
+/// Colour of a limit by its kind, of those that stay apart for the colour-blind.
+fn color(name: &str) -> &'static str {
+    match name {
+        "feedrate" => "#00805f",
+        "tolerance" => "#a8568a",
+        name if name.ends_with("velocity") => "#0067a8",
+        name if name.ends_with("acceleration") => "#c8500a",
+        _ => "#c98a00",
+    }
+}
+
+/// The section, where there is something to show.
+pub(super) fn write(out: &mut impl Write, band: Option<&LimitBand>) -> io::Result<()> {
+    let Some(band) = band.filter(|band| !band.along.stretches().is_empty()) else {
+        return Ok(());
+    };
+    out.write_all(
+        b"<section aria-labelledby=\"h-limits\">\n<h2 id=\"h-limits\">What binds along the path</h2>\n\
+          <p>Feedrate of the plan over its time, rests left out, and which limit holds it down where. Several bind at once; a pale stretch is one in which a limit \
+          binds for a part of the time.</p>\n",
+    )?;
+    out.write_all(drawing(band).as_bytes())?;
+    out.write_all(b"</section>\n")
+}
+
+fn drawing(band: &LimitBand) -> String {
+    let stretches = band.along.in_parts(DRAWN);
+    let total_s: f64 = stretches.iter().map(|stretch| stretch.duration_s).sum();
+    let rows: Vec<usize> = (0..LIMITS).filter(|&limit| stretches.iter().any(|s| s.bound_s[limit] > 0.0)).collect();
+    let height = ABOVE + FEED + ROW * rows.len() as f64 + BELOW;
+    let mut svg = format!(
+        "<svg viewBox=\"0 0 {WIDTH} {height}\" width=\"100%\" role=\"img\" aria-label=\"Which limit binds where\" \
+         font-size=\"12\" fill=\"currentColor\">\n"
+    );
+    let scale = (WIDTH - LEFT - RIGHT) / total_s.max(f64::MIN_POSITIVE);
+    write_feed(&mut svg, &stretches, scale);
+    for (row, &limit) in rows.iter().enumerate() {
+        write_row(&mut svg, band, &stretches, [row, limit], scale);
+    }
+    write_times(&mut svg, total_s, scale, height);
+    svg.push_str("</svg>\n");
+    svg
+}
+
+/// Mean feedrate of each stretch, mm/min as programs have it.
+fn write_feed(svg: &mut String, stretches: &[BindingStretch], scale: f64) {
+    let feed = |stretch: &BindingStretch| 60.0 * stretch.way_mm / stretch.duration_s.max(f64::MIN_POSITIVE);
+    let most = stretches.iter().map(feed).fold(1.0, f64::max);
+    let (mut points, mut x) = (String::new(), LEFT);
+    for stretch in stretches {
+        let middle = x + 0.5 * scale * stretch.duration_s;
+        x += scale * stretch.duration_s;
+        let y = ABOVE + FEED * (1.0 - feed(stretch) / most);
+        let _ = write!(points, "{middle:.1},{y:.1} ");
+    }
+    let (end, bottom, text) = (WIDTH - RIGHT, ABOVE + FEED, LEFT - 8.0);
+    let _ = write!(
+        svg,
+        "<path d=\"M{LEFT} {ABOVE}V{bottom}H{end}\" fill=\"none\" stroke=\"currentColor\" opacity=\"0.4\"/>\n\
+         <text x=\"{text}\" y=\"{top:.0}\" text-anchor=\"end\">{most:.0} mm/min</text>\n\
+         <text x=\"{text}\" y=\"{bottom}\" text-anchor=\"end\">0</text>\n\
+         <polyline points=\"{}\" fill=\"none\" stroke=\"currentColor\" stroke-width=\"1.5\"/>\n",
+        points.trim_end(),
+        top = ABOVE + 10.0,
+    );
+}
+
+/// A row of one limit, with its name and its part of the time.
+fn write_row(svg: &mut String, band: &LimitBand, stretches: &[BindingStretch], [row, limit]: [usize; 2], scale: f64) {
+    let name = band.names.get(limit).map_or("", String::as_str);
+    let total_s: f64 = stretches.iter().map(|stretch| stretch.duration_s).sum();
+    let bound_s: f64 = stretches.iter().map(|stretch| stretch.bound_s[limit]).sum();
+    let y = ABOVE + FEED + 8.0 + ROW * row as f64;
+    let _ = writeln!(
+        svg,
+        "<text x=\"{:.0}\" y=\"{:.0}\" text-anchor=\"end\">{} {:.0} %</text>",
+        LEFT - 8.0,
+        y + 11.0,
+        escaped(name),
+        100.0 * bound_s / total_s.max(f64::MIN_POSITIVE)
+    );
+    let _ =
+        writeln!(svg, "<g fill=\"{}\" shape-rendering=\"crispEdges\" transform=\"translate(0 {y:.0})\">", color(name));
+    let (mut x, mut run): (f64, Option<(f64, u32, BindingStretch)>) = (LEFT, None);
+    for stretch in stretches {
+        let level = level(stretch, limit);
+        run = match run {
+            Some((from, same, before)) if same == level => Some((from, same, before.merged(stretch))),
+            other => {
+                write_run(svg, name, limit, other, scale);
+                Some((x, level, *stretch))
+            }
+        };
+        x += scale * stretch.duration_s;
+    }
+    write_run(svg, name, limit, run, scale);
+    svg.push_str("</g>\n");
+}
+
+/// How much of a stretch a limit binds, in steps; 0 where it hardly does.
+fn level(stretch: &BindingStretch, limit: usize) -> u32 {
+    let part = stretch.bound_s[limit] / stretch.duration_s.max(f64::MIN_POSITIVE);
+    if part > LEAST { (part * f64::from(LEVELS)).ceil().clamp(1.0, f64::from(LEVELS)) as u32 } else { 0 }
+}
+
+/// Neighbours of one colour: where they begin, their step, and all of them together.
+fn write_run(svg: &mut String, name: &str, limit: usize, run: Option<(f64, u32, BindingStretch)>, scale: f64) {
+    let Some((x, level, stretch)) = run.filter(|(_, level, _)| *level > 0) else {
+        return;
+    };
+    let [first, last] = stretch.lines;
+    let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
+    let _ = writeln!(
+        svg,
+        "<rect x=\"{x:.1}\" y=\"0\" width=\"{:.1}\" height=\"{:.0}\" opacity=\"{:.2}\"><title>{}, {lines}, up to {:.2} mm: {:.0} %</title></rect>",
+        scale * stretch.duration_s,
+        ROW - 5.0,
+        f64::from(level) / f64::from(LEVELS),
+        escaped(name),
+        stretch.to_mm,
+        100.0 * stretch.bound_s[limit] / stretch.duration_s.max(f64::MIN_POSITIVE)
+    );
+}
+
+/// Times below.
+fn write_times(svg: &mut String, total_s: f64, scale: f64, height: f64) {
+    const TICKS: u32 = 5;
+    for tick in 0..=TICKS {
+        let t_s = total_s * f64::from(tick) / f64::from(TICKS);
+        let (x, y) = (LEFT + scale * t_s, height - 8.0);
+        let anchor = if tick == TICKS { "end" } else { "middle" };
+        let unit = if tick == TICKS { " s" } else { "" };
+        let _ = writeln!(svg, "<text x=\"{x:.0}\" y=\"{y:.0}\" text-anchor=\"{anchor}\">{t_s:.2}{unit}</text>");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn neighbours_of_one_colour_are_one_bar_with_its_place() {
+        let stretch = |bound: f64, line: u32| {
+            let mut stretch = BindingStretch {
+                duration_s: 0.1,
+                to_mm: f64::from(line),
+                way_mm: 1.0,
+                lines: [line; 2],
+                bound_s: [0.0; LIMITS],
+            };
+            stretch.bound_s[0] = 0.1 * bound;
+            stretch
+        };
+        let mut svg = String::new();
+        let band = LimitBand { names: vec!["feed<rate".to_owned()], along: BindingAlong::default() };
+        write_row(
+            &mut svg,
+            &band,
+            &[stretch(1.0, 1), stretch(1.0, 2), stretch(0.0, 3), stretch(0.3, 4)],
+            [0, 0],
+            100.0,
+        );
+        assert_eq!(svg.matches("<rect").count(), 2, "{svg}");
+        assert!(
+            svg.contains("lines 1 to 2, up to 2.00 mm: 100 %") && svg.contains("line 4, up to 4.00 mm: 30 %"),
+            "{svg}"
+        );
+        assert!(svg.contains("feed&lt;rate 58 %") && !svg.contains("feed<rate"), "{svg}");
+    }
+}
