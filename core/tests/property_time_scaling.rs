@@ -3,7 +3,6 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[expect(dead_code, reason = "each test uses its own part")]
 #[path = "common/programs.rs"]
 mod common;
 
@@ -170,7 +169,7 @@ fn after_a_hold_the_motion_goes_on_to_the_end() {
     while !scaling.has_ended() {
         // Override up and down, and a hold of a tenth of a second now and then.
         let hold = (0.3..0.7).contains(&time_s) || (0.9..1.1).contains(&time_s);
-        let override_of_feeds = if (time_s * 4.0) as u32 % 2 == 0 { 0.6 } else { 1.6 };
+        let override_of_feeds = if ((time_s * 4.0) as u32).is_multiple_of(2) { 0.6 } else { 1.6 };
         let step = scaling.step(override_of_feeds, hold);
         check("up and down", &plan, &step, 60.0 * 1.6);
         time_s += step.duration_s;

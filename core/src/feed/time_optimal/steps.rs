@@ -76,9 +76,9 @@ pub(super) fn time_of_place(powers: &PlacePowers, place_mm: f64, duration_s: f64
     for _ in 0..MOST_NEWTON {
         let missed_mm = place_after(powers, t) - place_mm;
         if missed_mm < 0.0 {
-            lo = t
+            lo = t;
         } else {
-            hi = t
+            hi = t;
         }
         let speed_mm_s = powers[1] + t * (2.0 * powers[2] + t * 3.0 * powers[3]);
         let next = t - missed_mm / speed_mm_s;
