@@ -57,6 +57,7 @@ fn the_programmed_feedrate_is_the_ceiling_and_feed_raises_it() {
 }
 
 #[test]
+#[ignore = "the search goes down to 0.2 mm/s before it gives up, which takes minutes"]
 fn what_no_speed_brings_within_the_tolerance_is_told_with_its_line_and_nothing_is_written() {
     let folder = folder("encoder_noise_um = 20\n");
     let before = folder.content();
