@@ -1,6 +1,6 @@
 //! What binds where: a record of bounded size of the motion along its path.
 //!
-//! Samples are gathered in stretches of equal time. When 4096 of them are full, neighbours merge in pairs and each takes twice the time.
+//! Samples are gathered in stretches of equal time. When 2000 of them are full, neighbours merge in pairs and each takes twice the time.
 
 use serde::Serialize;
 
