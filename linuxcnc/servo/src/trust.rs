@@ -18,7 +18,8 @@ use feedwright_control::{Measured, Window};
 
 use crate::plant::SimulatedMachine;
 
-/// Time over which errors are compared, and after which it begins where a correction has come in, s: twice the lag of a usual loop.
+/// Time over which errors are compared, and time of motion after which that begins where a correction has come in, s: over the first way the law has to
+/// prove itself, and the correction comes in from where the axes are by then. Twice the lag of a usual loop.
 const MEMORY_S: f64 = 0.1;
 const SETTLED_S: f64 = 0.05;
 /// Part of the error without it from which on a correction is worth nothing, beside this, mm^2 (2.5 um), and for so many servo periods.
@@ -35,7 +36,7 @@ const WAIT_S: f64 = 1.0;
 pub struct Trust<const N: usize> {
     nominal: SimulatedMachine<N>,
     begun: bool,
-    /// For how long it has been in the loop, s.
+    /// For how long it has been in the loop and the command has moved, s.
     in_loop_s: f64,
     square_mm2: f64,
     nominal_mm2: f64,
@@ -92,7 +93,9 @@ impl<const N: usize> Trust<N> {
             self.forget();
             return;
         };
-        self.in_loop_s += period_s;
+        if window.now().feed_mm_s > 0.0 {
+            self.in_loop_s += period_s;
+        }
         if self.in_loop_s > SETTLED_S {
             let part = (period_s / MEMORY_S).min(1.0);
             let square = |vector_mm: [f64; N]| dot(vector_mm, vector_mm);
