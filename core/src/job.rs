@@ -7,20 +7,20 @@
 //! |---|---|
 //! | `job/assumed.rs` | what it assumes of its machine |
 //! | `job/files.rs` | the files that it writes, all of them or none |
+//! | `job/record.rs` | what it keeps of the rows of a run |
 //! | `job/exported.rs` | the corrected program for a control without feedback |
 //! | `job/report.rs` | what the page shows |
 //! | `job/simulated.rs` | the machine in sentences for it |
 //! | `job/listing.rs` | lines of the program for it |
-//! | `job/record.rs` | what it keeps of the rows of a run |
 //! | `job/stored.rs` | how it is serialised |
 
 mod assumed;
 mod files;
+mod record;
 mod exported;
 mod report;
 mod listing;
 mod simulated;
-mod record;
 mod stored;
 
 use std::path::PathBuf;

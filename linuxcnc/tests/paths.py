@@ -14,6 +14,8 @@ import headless
 # Axes of a plane, and that across it.
 PLANES = {"xy": (0, 1, 2), "zx": (2, 0, 1), "yz": (1, 2, 0)}
 CHORDS = 1000
+# Pieces to either side that are always looked at.
+NEIGHBOURS = 2
 
 
 @dataclasses.dataclass
@@ -144,7 +146,8 @@ class Distance:
         best, at = math.inf, self.last
         for step in (1, -1):
             gone, i = 0.0, self.last
-            while 0 <= i < len(self.path) and gone <= self.reach_mm:
+            # Where it goes back the way that it came, the piece before is as near.
+            while 0 <= i < len(self.path) and (gone <= self.reach_mm or abs(i - self.last) <= NEIGHBOURS):
                 distance = self.path[i].nearest(point)
                 if distance < best:
                     best, at = distance, i
