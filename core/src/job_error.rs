@@ -135,7 +135,6 @@ pub enum JobError {
         /// The program.
         part: PathBuf,
         /// Why.
-        #[diagnostic_source]
         error: FastestError,
     },
     /// The cut did not come to its end.

@@ -1,8 +1,7 @@
 //! The lines of the program that the page shows beside the tool.
 
 use std::collections::BTreeSet;
-use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 
 use super::{Job, JobError};
 use crate::report::{ProgramLine, ReportedRun};
@@ -17,18 +16,17 @@ const MOST_CHARACTERS: usize = 160;
 impl Job {
     /// The lines in their order.
     pub(super) fn listing(&self, runs: &[ReportedRun]) -> Result<Vec<ProgramLine>, JobError> {
-        let reread = |cause| JobError::Reread { part: self.part.clone(), cause };
-        let file = File::open(&self.part).map_err(reread)?;
-        let whole = file.metadata().map_err(reread)?.len() <= WHOLE_BYTES;
+        let (mut file, size_bytes) = self.program_text()?;
+        let whole = size_bytes <= WHOLE_BYTES;
         let drawn: BTreeSet<u32> = match whole {
             true => BTreeSet::new(),
             false => runs.iter().flat_map(|run| run.series.points().map(|point| point.line)).collect(),
         };
         let (mut listing, mut bytes) = (Vec::new(), 0);
-        let (mut file, mut text) = (BufReader::new(file), Vec::new());
+        let mut text = Vec::new();
         for line in 1.. {
             text.clear();
-            if file.read_until(b'\n', &mut text).map_err(reread)? == 0 || bytes > MOST_BYTES {
+            if file.read_until(b'\n', &mut text).map_err(|cause| self.reread(cause))? == 0 || bytes > MOST_BYTES {
                 break;
             }
             if whole || drawn.contains(&line) {

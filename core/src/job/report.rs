@@ -21,19 +21,31 @@ impl Job {
         name.file_name().unwrap_or(name.as_os_str()).to_string_lossy().into_owned()
     }
 
+    /// That the program could not be read once more.
+    pub(super) fn reread(&self, cause: std::io::Error) -> JobError {
+        JobError::Reread { part: self.part.clone(), cause }
+    }
+
+    /// The text of the program, and its size in bytes.
+    pub(super) fn program_text(&self) -> Result<(Box<dyn BufRead>, u64), JobError> {
+        let reread = |cause| self.reread(cause);
+        if input::is_standard_input(&self.part) {
+            let text = input::standard_input().map_err(reread)?;
+            return Ok((Box::new(text), text.len() as u64));
+        }
+        let file = std::fs::File::open(&self.part).map_err(reread)?;
+        let bytes = file.metadata().map_err(reread)?.len();
+        Ok((Box::new(std::io::BufReader::new(file)), bytes))
+    }
+
     /// Looks up the texts of the worst places' lines, in one pass over the program.
     pub(super) fn fill_in_texts(&self, worst: &mut [WorstPlace]) -> Result<(), JobError> {
-        let reread = |cause| JobError::Reread { part: self.part.clone(), cause };
         let last = worst.iter().map(|place| place.line).max().unwrap_or(0);
-        let mut file: Box<dyn BufRead> = if input::is_standard_input(&self.part) {
-            Box::new(input::standard_input().map_err(reread)?)
-        } else {
-            Box::new(std::io::BufReader::new(std::fs::File::open(&self.part).map_err(reread)?))
-        };
+        let (mut file, _) = self.program_text()?;
         let mut text = Vec::new();
         for line in 1..=last {
             text.clear();
-            file.read_until(b'\n', &mut text).map_err(reread)?;
+            file.read_until(b'\n', &mut text).map_err(|cause| self.reread(cause))?;
             for place in worst.iter_mut().filter(|place| place.line == line) {
                 place.text = String::from_utf8_lossy(&text).trim_end().to_owned();
             }
