@@ -149,6 +149,25 @@ fn zoom(browser: &mut Browser) {
     }
 }
 
+/// Where the page has come to once it scrolls no more: it goes on for a while behind a finger.
+fn at_rest(browser: &mut Browser) -> f64 {
+    let (mut place, mut still) = (f64::NAN, 0);
+    for _ in 0..MOST_FRAMES {
+        browser.frames();
+        let now = browser.value("scrollY").as_f64().unwrap();
+        still = if now == place { still + 1 } else { 0 };
+        place = now;
+        if still == STILL_FRAMES {
+            break;
+        }
+    }
+    place
+}
+
+/// Frames in which nothing moves, and that are waited for at the most.
+const STILL_FRAMES: u32 = 10;
+const MOST_FRAMES: u32 = 600;
+
 /// A finger on the path scrolls the page, and moves the part where that was asked for; nothing is wider than the screen.
 #[test]
 fn the_report_scrolls_on_a_phone() {
@@ -160,10 +179,9 @@ fn the_report_scrolls_on_a_phone() {
     assert_eq!(browser.value(WITHIN_THE_SCREEN), true);
     let swipe = |browser: &mut Browser| {
         browser.value("document.querySelector('.path-view').scrollIntoView({ block: 'center' })");
-        browser.frames();
-        let before = browser.value("scrollY").as_f64().unwrap();
+        let before = at_rest(browser);
         browser.swipe_up(195.0, 520.0, 300.0);
-        browser.value("scrollY").as_f64().unwrap() - before
+        at_rest(browser) - before
     };
     assert!(swipe(&mut browser) > 100.0);
     browser.click("#touch-moves");
