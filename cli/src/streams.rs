@@ -1,12 +1,15 @@
 //! `-` in place of a file: the standard input, or the standard output.
 
+use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
 use feedwright::gcode::input::is_standard_input;
-use feedwright::output::is_standard_output;
+use feedwright::machine::is_path;
+use feedwright::output::{OutputFiles, is_standard_output};
 use miette::{Result, miette};
 
+use crate::args::reader::ReaderArgs;
 use crate::console::Console;
 
 /// Refuses the standard input for two things at once, and says so where a person has to type it. `inputs` are options and files.
@@ -27,6 +30,32 @@ pub(crate) fn check_inputs<'a>(
         eprintln!("{name} is read from the terminal: Ctrl-D ends it");
     }
     Ok(())
+}
+
+/// The files that a command reads beside its options: program, machine and tool table.
+pub(crate) struct ProgramInputs<'a> {
+    part: &'a Path,
+    machine: &'a Path,
+    tools: Option<&'a Path>,
+}
+
+impl<'a> ProgramInputs<'a> {
+    /// Those that these arguments name.
+    pub(crate) fn of(part: &'a Path, machine: &'a (impl AsRef<OsStr> + ?Sized), reader: &'a ReaderArgs) -> Self {
+        Self { part, machine: Path::new(machine), tools: reader.tool_table.as_deref() }
+    }
+
+    /// As [`check_inputs`].
+    pub(crate) fn check(&self, console: &Console) -> Result<()> {
+        let named = [("the program", Some(self.part)), ("--machine", Some(self.machine)), ("--tool-table", self.tools)];
+        check_inputs(console, named)
+    }
+
+    /// Outputs that are none of these files.
+    pub(crate) fn outputs(&self) -> OutputFiles {
+        let machine = Some(self.machine).filter(|path| is_path(path));
+        OutputFiles::new([Some(self.part), machine, self.tools].into_iter().flatten())
+    }
 }
 
 /// Makes a folder for results, where it is not there.

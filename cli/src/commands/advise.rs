@@ -1,13 +1,12 @@
 //! `feedwright advise`: the feedrates at which a tolerance is held.
 
 use std::io::Write;
-use std::path::Path;
 use std::process::ExitCode;
 
 use feedwright::controllers::Choices;
 use feedwright::correct::advise::{Advice, AdviseJob, FeedCut, StretchAdvice, WayAdvice};
-use feedwright::machine::{Machine, is_path};
-use feedwright::output::{OutputFile, OutputFiles};
+use feedwright::machine::Machine;
+use feedwright::output::OutputFile;
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
 
@@ -16,7 +15,7 @@ use crate::console::Console;
 use crate::controllers::find;
 use crate::controls::{check_tolerance, control};
 use crate::message::{OUT_OF_TOLERANCE, printed, warn};
-use crate::streams::{check_inputs, tables, tell_written};
+use crate::streams::{ProgramInputs, tables, tell_written};
 
 /// Stretches that are listed.
 const LISTED: usize = 12;
@@ -24,16 +23,10 @@ const LISTED: usize = 12;
 pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
     check_tolerance(Some(args.tolerance))?;
-    let machine_path = Path::new(&args.machine);
-    let tools = args.reader.tool_table.as_deref();
-    check_inputs(
-        console,
-        [("the program", Some(args.part.as_path())), ("--machine", Some(machine_path)), ("--tool-table", tools)],
-    )?;
+    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
+    inputs.check(console)?;
     let machine = Machine::load(&args.machine)?;
-    let machine_file = Some(Path::new(&args.machine)).filter(|path| is_path(path));
-    let tool_table = args.reader.tool_table.as_deref();
-    let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tool_table].into_iter().flatten());
+    let mut files = inputs.outputs();
     let report = args.report.as_deref().map(|path| files.start(path)).transpose()?;
     let figure = args.figure.as_deref().map(|path| files.start(path)).transpose()?;
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;

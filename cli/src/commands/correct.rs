@@ -1,13 +1,12 @@
 //! `feedwright correct`: a corrected program for a control that gets no feedback from us.
 
 use std::io::Write;
-use std::path::Path;
 use std::process::ExitCode;
 
 use feedwright::correct::exported::ExportedFigures;
 use feedwright::correct::{CorrectJob, CorrectOutcome};
-use feedwright::machine::{Machine, is_path};
-use feedwright::output::{OutputFile, OutputFiles};
+use feedwright::machine::Machine;
+use feedwright::output::OutputFile;
 use miette::{IntoDiagnostic, Result};
 use serde_json::{Value, json};
 
@@ -15,20 +14,15 @@ use crate::args::correct::CorrectArgs;
 use crate::console::Console;
 use crate::controls::{check_tolerance, control, print_correction};
 use crate::message::{OUT_OF_TOLERANCE, printed, warn};
-use crate::streams::{check_inputs, tables, tell_written};
+use crate::streams::{ProgramInputs, tables, tell_written};
 
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
     check_tolerance(args.tolerance)?;
-    let machine_path = Path::new(&args.machine);
-    let tools = args.reader.tool_table.as_deref();
-    check_inputs(
-        console,
-        [("the program", Some(args.part.as_path())), ("--machine", Some(machine_path)), ("--tool-table", tools)],
-    )?;
+    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
+    inputs.check(console)?;
     let machine = Machine::load(&args.machine)?;
-    let machine_file = Some(machine_path).filter(|path| is_path(path));
-    let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tools].into_iter().flatten());
+    let mut files = inputs.outputs();
     let mut out = args.out.as_deref().map(|path| files.start(path)).transpose()?;
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
     let job = CorrectJob {

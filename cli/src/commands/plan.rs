@@ -1,7 +1,6 @@
 //! `feedwright plan`: the cycle time of a program, and what binds it.
 
 use std::io::Write;
-use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -13,9 +12,9 @@ use feedwright::feed::time_scaling::MOST_OVERRIDE;
 use feedwright::gcode::suggestion::nearest;
 use feedwright::gcode::{self, Reader};
 use feedwright::job::JobError;
-use feedwright::machine::{Machine, is_path};
+use feedwright::machine::Machine;
 use feedwright::number::shown;
-use feedwright::output::{OutputFile, OutputFiles};
+use feedwright::output::OutputFile;
 use feedwright::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
 use feedwright::pipeline::{Stages, pieces};
 use miette::{IntoDiagnostic, Result, miette};
@@ -24,20 +23,15 @@ use serde_json::json;
 use crate::args::plan::PlanArgs;
 use crate::console::Console;
 use crate::message::{printed, warn};
-use crate::streams::{check_inputs, tables, tell_written};
+use crate::streams::{ProgramInputs, tables, tell_written};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
-    let machine_path = Path::new(&args.machine);
-    let tools = args.reader.tool_table.as_deref();
-    check_inputs(
-        console,
-        [("the program", Some(args.part.as_path())), ("--machine", Some(machine_path)), ("--tool-table", tools)],
-    )?;
+    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
+    inputs.check(console)?;
     let machine = machine(args)?;
     let stages = stages(args, &machine)?;
     let request = request(args, stages)?;
-    let machine_file = Some(machine_path).filter(|path| is_path(path));
-    let mut files = OutputFiles::new([Some(args.part.as_path()), machine_file, tools].into_iter().flatten());
+    let mut files = inputs.outputs();
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
     let settings = args.reader.settings()?;
     let summary = gcode::check(&args.part, settings.clone()).map_err(JobError::from)?;
