@@ -4,9 +4,10 @@ use crate::vector::{norm, sub};
 
 /// A position that has not changed at all for so long while the command moved is frozen, s.
 const FROZEN_S: f64 = 0.012;
-/// The command moves where it has moved by this since the position has changed last, mm: what comes before breaks loose no tool.
+/// The command moves where it is so far from where it was when the position changed last, mm: what comes before breaks loose no tool. Its way does not
+/// count, but where it leads to: a correction that holds a tool back goes to and fro.
 const STIRRED_MM: f64 = 0.02;
-/// So far has the command moved by then, mm: the loop of a machine that follows at all has broken its tool loose, and moved it
+/// So far has the command come by then, mm: the loop of a machine that follows at all has broken its tool loose, and moved it
 /// by more than an encoder step of a few micrometres.
 const FROZEN_MM: f64 = 0.12;
 /// No tool moves faster than this many times the highest speed.
@@ -18,23 +19,19 @@ pub(crate) struct Feedback<const N: usize> {
     /// The last position that can be true, mm, and how many servo periods ago that was.
     last_mm: Option<[f64; N]>,
     since: u32,
-    /// How long it has not changed, s, and how far the command has moved since, mm.
+    /// How long it has not changed, s, and where the command was when it did, mm.
     still_s: f64,
-    commanded_mm: f64,
-    /// Position of the command in the servo period before, mm.
-    command_mm: Option<[f64; N]>,
+    commanded_mm: Option<[f64; N]>,
     /// Whether a servo period since the last decision had no true position.
     lost: bool,
 }
 
 impl<const N: usize> Feedback<N> {
-    pub(crate) const NONE: Self =
-        Self { last_mm: None, since: 0, still_s: 0.0, commanded_mm: 0.0, command_mm: None, lost: false };
+    pub(crate) const NONE: Self = Self { last_mm: None, since: 0, still_s: 0.0, commanded_mm: None, lost: false };
 
     /// Takes in the position at the start of a servo period of `servo_s`, at which the command was at `command_mm`.
     #[inline]
     pub(crate) fn take_in(&mut self, position_mm: [f64; N], command_mm: [f64; N], servo_s: f64, most_mm_s: f64) {
-        let before_mm = self.command_mm.replace(command_mm).unwrap_or(command_mm);
         let moved_mm = self.last_mm.map_or(0.0, |last_mm| norm(sub(position_mm, last_mm)));
         self.since = self.since.saturating_add(1);
         let can_mm = LEAP * most_mm_s * servo_s * f64::from(self.since);
@@ -44,12 +41,13 @@ impl<const N: usize> Feedback<N> {
             self.last_mm = Some(position_mm);
         }
         if there && moved_mm > 0.0 {
-            (self.still_s, self.commanded_mm) = (0.0, 0.0);
-        } else {
-            self.commanded_mm += norm(sub(command_mm, before_mm));
-            self.still_s += if self.commanded_mm > STIRRED_MM { servo_s } else { 0.0 };
+            (self.still_s, self.commanded_mm) = (0.0, None);
         }
-        self.lost |= !there || (self.still_s > FROZEN_S && self.commanded_mm > FROZEN_MM);
+        // One that comes to where the tool rests goes no further.
+        let since_mm = norm(sub(command_mm, *self.commanded_mm.get_or_insert(command_mm)));
+        let way_mm = since_mm.min(norm(sub(command_mm, position_mm)));
+        self.still_s += if way_mm > STIRRED_MM { servo_s } else { 0.0 };
+        self.lost |= !there || (self.still_s > FROZEN_S && way_mm > FROZEN_MM);
     }
 
     /// Whether the position was lost since the last decision.
@@ -90,6 +88,17 @@ mod tests {
         let mut feedback = Feedback::<1>::NONE;
         for n in 0..16 {
             feedback.take_in([0.0], [8e-4 * f64::from(n * n)], 0.001, 400.0);
+            assert!(!feedback.take_lost(), "{n}");
+        }
+        // A correction goes to and fro to hold the tool back while the path begins.
+        let mut feedback = Feedback::<1>::NONE;
+        for n in 0..40 {
+            feedback.take_in([0.0], [if n % 4 < 2 { 0.015 } else { -0.015 }], 0.001, 400.0);
+            assert!(!feedback.take_lost(), "{n}");
+        }
+        // The command comes to rest where the tool is, from behind it.
+        for n in 0..60 {
+            feedback.take_in([0.2], [if n < 2 { 0.0 } else { 0.2 }], 0.001, 400.0);
             assert!(!feedback.take_lost(), "{n}");
         }
         // Steps of 1 um.
