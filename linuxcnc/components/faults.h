@@ -26,6 +26,7 @@ static inline const char *feedwright_fault(uint32_t fault)
         "the correction made the contour error larger",
         "the command was not a number",
         "the component failed inside and passes commands on",
+        "the machine does not move as the model says: identify it anew",
     };
     return fault < sizeof words / sizeof words[0] ? words[fault] : "unknown";
 }

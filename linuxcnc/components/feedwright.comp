@@ -16,8 +16,11 @@ wherever \\fBdirect\\fR is set. The delay is taken up and given up where the com
 
 While \\fBpowered\\fR is off, drives and LinuxCNC get the actual position.
 
+Before anything is corrected by a model of axes, its law has to prove itself: 20 ms of motion that changes its speed do where it is right, such as the
+rapid before a cut. By one that is not (loops, inertia or delays that are more than some 10 % off) nothing is corrected, and \\fBcause\\fR is 15.
+
 A correction that fails is faded out, and comes back when its predictions have held for a while: the machine then cuts as without it.
-\\fBenable\\fR fades it in and out within 0.3 s, in motion as well.
+\\fBenable\\fR fades it in within 0.06 s and out within 0.3 s, in motion as well.
 
 .B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
 
@@ -69,7 +72,7 @@ pin out bit saturated "A limit holds the correction";
 pin out u32 state "0 amplifiers off, 1 without delay, 2 delayed, without correction, 3 the correction fades, 4 it is in the loop";
 pin out bit fault "There is no correction, for the reason in \\fBcause\\fR; it clears itself";
 pin out u32 cause """Why there was no correction last: 1 to 7 model file, 8 servo period, 9 the correction was not a number, 10 actual position
-lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside""";
+lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside, 15 the machine does not move as the model says""";
 pin out u32 faults "How often there was a fault";
 pin out u32 delay-periods "Servo periods of delay now";
 pin out bit heartbeat "Changes in each servo period";

@@ -28,7 +28,7 @@ SAME_UM = 1.0
 NO_WORSE_UM = measure.NO_WORSE_UM
 ZERO_VECTOR = (0.0, 0.0, 0.0)
 
-QUICK = ("enabled_in_mid_cut", "emergency_stop", "feedback_wire_pulled", "feedback_not_a_number", "model_damaged", "probing")
+QUICK = ("enabled_in_mid_cut", "emergency_stop", "feedback_wire_pulled", "feedback_not_a_number", "model_damaged", "machine_of_another_inertia", "probing")
 
 PROBE = """loadrt comp names=probed
 addf probed servo-thread
@@ -153,6 +153,12 @@ class Cases:
         worse = rms[1] > rms[0] + NO_WORSE_UM[0] or worst[1] > worst[0] + NO_WORSE_UM[1]
         assert told or not worse, (rms, worst, faults(on.rows))
         return f"RMS {rms[0]:.1f} um without, {rms[1]:.1f} um with; largest {worst[0]:.1f}, {worst[1]:.1f}; faults {faults(on.rows)}"
+
+    def case_machine_of_another_inertia(self):
+        recording = self.run("cut", {"program": scenarios.LONG, "params": {"feedwright-plant.inertia": 3}})
+        assert 15 in faults(recording.rows) and recording.rows[-1].fault, faults(recording.rows)
+        assert measure.is_uncorrected(recording), "it was corrected by a law that is not the machine's"
+        return f"nothing corrected, faults {faults(recording.rows)}; {self.quiet(recording)}"
 
     def refused(self, name, model, cause):
         file = self.folder / f"{name}.fwmodel"

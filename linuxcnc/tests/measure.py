@@ -88,9 +88,14 @@ def is_same_time(off, on):
     return abs(on.time_s - off.time_s) < SAME_TIME * off.time_s
 
 
-def verdict(off, on, targets, never_worse):
+def is_uncorrected(recording):
+    """Whether the drives got the commands alone. Two such cuts differ by where in its cycle the disturbance begins, up to 0.3 um RMS on tnv40."""
+    return not any(any(row.correction) for row in recording.rows)
+
+
+def verdict(off, on, targets, never_worse, uncorrected):
     """What is missed, in words."""
-    harmless = not any(on.commanded[i] > off.commanded[i] + NO_WORSE_UM[i] for i in range(2))
+    harmless = uncorrected or not any(on.commanded[i] > off.commanded[i] + NO_WORSE_UM[i] for i in range(2))
     reached = all(on.commanded[i] <= max(targets[i] * off.commanded[i], NO_WORSE_UM[i]) for i in range(2))
     # What is corrected to is the command: the planner's own deviation from the program comes on top.
     explained = all(on.programmed[i] <= on.commanded[i] + on.planned[i] + NO_WORSE_UM[i] for i in range(2))
@@ -126,11 +131,13 @@ def table(machine, params, cut, only="", never_worse=False):
         if not name.startswith(only):
             continue
         off, on, recording = measure(name, program, machine, params)
-        ticks = sorted(row.tick_ns for row in recording.rows if row.state == 4)
+        ticks = sorted(row.tick_ns for row in recording.rows if row.state >= 2)
         p999 = ticks[int(0.999 * (len(ticks) - 1))] * 1e-3 if ticks else math.nan
         cells = [f"{rms:8.2f} / {most:7.2f}" for rms, most in (off.programmed, on.programmed, off.commanded, on.commanded, on.planned)]
-        said = verdict(off, on, CORNERS if corners else SMOOTH, never_worse)
+        uncorrected = is_uncorrected(recording)
+        said = verdict(off, on, CORNERS if corners else SMOOTH, never_worse, uncorrected)
         missed += bool(said)
+        said = said or ("nothing corrected" if uncorrected else "")
         print(f"{name:28} {cells[0]:>18} {cells[1]:>18} {cells[2]:>18} {cells[3]:>18} {cells[4]:>18}  {on.time_s:7.3f}  {faults_of(recording):>6}"
               f"  {p999:6.1f}  {said}", flush=True)
     return missed

@@ -101,6 +101,16 @@ impl<const N: usize> LqgPreview<N> {
         }
     }
 
+    /// By how much the axes, as they are measured, are behind the plan at constant speed, s.
+    pub fn measured_lag_s(&self) -> f64 {
+        self.axes.iter().map(|axis| axis.lag_s() + axis.measured_late_s()).fold(0.0, f64::max)
+    }
+
+    /// What noise and loads that nobody foresees make of a position, mm^2.
+    pub fn unforeseen_mm2(&self) -> f64 {
+        self.axes.iter().map(AxisLqg::unforeseen_mm2).sum()
+    }
+
     /// Holds offsets to other bounds from now on.
     pub fn hold_to(&mut self, bounds: OffsetBounds) {
         self.axes.iter_mut().for_each(|axis| axis.hold_to(bounds));

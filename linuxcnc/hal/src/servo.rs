@@ -197,5 +197,6 @@ fn number(fault: LinkFault) -> u32 {
         LinkFault::Faded(Cause::WrongPredictions) => 11,
         LinkFault::Faded(Cause::Harmful) => 12,
         LinkFault::Command => 13,
+        LinkFault::Unproven => 15,
     }
 }

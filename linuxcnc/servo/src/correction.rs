@@ -11,7 +11,9 @@ use feedwright_control::safety::Bounds;
 use feedwright_control::vector::{norm, scale, smooth_step, sub};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
-/// Time in which the correction comes in or goes, s.
+/// Time in which the correction comes in, and in which it goes, s. A machine that begins to cut where it stands has some 0.1 s until the path bends: with
+/// 0.1 s to come in an eight that begins so is cut within 6.6 um, with 0.06 s within 5.2, and with 0.03 s within 17, since the tool is ahead then.
+const IN_S: f64 = 0.06;
 const FADE_S: f64 = 0.3;
 /// Time in which one goes that is worth nothing, s.
 const OUT_S: f64 = 0.1;
@@ -35,19 +37,14 @@ pub struct Correction<const N: usize> {
 impl<const N: usize> Correction<N> {
     /// By a model, with a servo period of `servo_s`.
     pub fn new(model: &LinkModel<N>, servo_s: f64) -> Self {
-        let trust = match model {
-            LinkModel::Axes(identified) => Some(Trust::new(identified)),
-            LinkModel::Contour(_) => None,
+        let controller = LiveController::new(model, servo_s);
+        let trust = match (model, &controller) {
+            (LinkModel::Axes(identified), LiveController::Regulator(regulator)) => {
+                Some(Trust::new(identified, regulator))
+            }
+            _ => None,
         };
-        Self {
-            controller: LiveController::new(model, servo_s),
-            share: 0.0,
-            followed: true,
-            wanted_mm: [0.0; N],
-            without_mm: 0.0,
-            rate: 1.0,
-            trust,
-        }
+        Self { controller, share: 0.0, followed: true, wanted_mm: [0.0; N], without_mm: 0.0, rate: 1.0, trust }
     }
 
     /// Holds the offset to these bounds; `speed_alone` leaves the geometry of the paper's controllers on the path.
@@ -77,6 +74,20 @@ impl<const N: usize> Correction<N> {
         self.trust.as_ref().is_some_and(Trust::is_lost)
     }
 
+    /// Whether it is to stay out of the loop for what its model is worth.
+    pub fn is_out(&self) -> bool {
+        self.is_lost() || !self.is_proven()
+    }
+
+    fn is_proven(&self) -> bool {
+        self.trust.as_ref().is_none_or(Trust::is_proven)
+    }
+
+    /// Whether it waits because the machine does not move as its model says.
+    pub fn is_refuted(&self) -> bool {
+        self.trust.as_ref().is_some_and(Trust::is_refuted)
+    }
+
     /// Another machine may be there.
     pub fn forgive(&mut self) {
         if let Some(trust) = &mut self.trust {
@@ -92,9 +103,9 @@ impl<const N: usize> Correction<N> {
         if !followed {
             self.share = 0.0;
         }
-        let step = match (enabled, self.is_lost()) {
+        let step = match (enabled && self.is_proven(), self.is_lost()) {
             (_, true) => -servo_s / OUT_S,
-            (true, _) => servo_s / FADE_S,
+            (true, _) => servo_s / IN_S,
             (false, _) => -servo_s / FADE_S,
         };
         self.share = (self.share + step).clamp(0.0, 1.0);

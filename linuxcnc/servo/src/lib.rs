@@ -8,6 +8,7 @@
 pub mod history;
 pub mod plant;
 pub mod machine;
+mod law_proof;
 pub mod trust;
 pub mod live_controller;
 pub mod correction;

@@ -99,6 +99,8 @@ pub enum LinkFault {
     Model(Refused),
     /// The safety layer took it out of the loop.
     Faded(Cause),
+    /// The machine does not move as the model says: the law has not proven itself.
+    Unproven,
     /// The command was not a number; the last that was one is held.
     Command,
 }
@@ -340,12 +342,16 @@ impl<const N: usize> Servo<N> {
         let state = self.tick.state();
         let held = norm(sub(correction.wanted_mm(), offset_mm)) > SAME_MM;
         let state = match state {
-            State::Engaged if correction.is_lost() && norm(offset_mm) > 0.0 => State::Fading,
-            State::Engaged if correction.is_lost() => State::Shadow,
+            State::Engaged if correction.is_out() && norm(offset_mm) > 0.0 => State::Fading,
+            State::Engaged if correction.is_out() => State::Shadow,
             state => state,
         };
         let faded = self.tick.fade().filter(|_| self.tick.state() != State::Engaged).map(|fade| fade.cause);
-        let fault = faded.or(correction.is_lost().then_some(Cause::Harmful));
+        let faded = faded.or(correction.is_lost().then_some(Cause::Harmful));
+        let fault = match faded {
+            None | Some(Cause::WrongPredictions | Cause::Harmful) if correction.is_refuted() => LinkFault::Unproven,
+            faded => faded.map_or(LinkFault::None, LinkFault::Faded),
+        };
         LinkOutputs {
             drive_mm: add_scaled(setpoint.command_mm, 1.0, self.residual_mm),
             feedback_mm: add_scaled(self.command_mm, 1.0, sub(self.actual_mm, path_mm)),
@@ -356,7 +362,7 @@ impl<const N: usize> Servo<N> {
             link: Link::Delayed,
             state,
             saturated: held && state == State::Engaged,
-            fault: fault.map_or(LinkFault::None, LinkFault::Faded),
+            fault,
             delay_periods: self.delay,
         }
     }

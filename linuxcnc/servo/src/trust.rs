@@ -9,13 +9,16 @@
 //! A model that holds leaves a small part of E0. The safety layer compares the tool with what the model says of it now, loads that the filter has
 //! found included: where the model is wrong enough to make the loop swing, those swing too, and the tool would seem to be as far off without. E0
 //! knows nothing of the measured position. Both have to say so: under a load that nobody foresees, E is beyond E0 on a straight line. A correction that is worth nothing is faded out by its share: the offset of one that swings would lead the
-//! tool away where it was held and taken back slowly. Found wrong twice, a model is not tried again until the amplifiers were off.
+//! tool away where it was held and taken back slowly. Found wrong twice, a model is not tried again until the amplifiers were off. Before all this,
+//! and each time that it was found wrong, its law has to prove itself in motion without a correction (`law_proof.rs`).
 
 use feedwright_control::contour_error::locate;
+use feedwright_control::controller::lqg_preview::LqgPreview;
 use feedwright_control::model::IdentifiedAxes;
-use feedwright_control::vector::dot;
+use feedwright_control::vector::{dot, norm, sub};
 use feedwright_control::{Measured, Window};
 
+use crate::law_proof::LawProof;
 use crate::plant::SimulatedMachine;
 
 /// Time over which errors are compared, and time of motion after which that begins where a correction has come in, s: over the first way the law has to
@@ -35,6 +38,9 @@ const WAIT_S: f64 = 1.0;
 #[derive(Debug, Clone)]
 pub struct Trust<const N: usize> {
     nominal: SimulatedMachine<N>,
+    proof: LawProof,
+    /// By how much the axes, as they are measured, are behind the path at constant speed, s.
+    lag_s: f64,
     begun: bool,
     /// For how long it has been in the loop and the command has moved, s.
     in_loop_s: f64,
@@ -49,11 +55,13 @@ pub struct Trust<const N: usize> {
 }
 
 impl<const N: usize> Trust<N> {
-    /// In a model.
-    pub fn new(identified: &IdentifiedAxes<N>) -> Self {
+    /// In a model, and the regulator by it.
+    pub fn new(identified: &IdentifiedAxes<N>, regulator: &LqgPreview<N>) -> Self {
         let nominal = SimulatedMachine::without_noise(identified);
         Self {
             nominal,
+            proof: LawProof::new(regulator.unforeseen_mm2()),
+            lag_s: regulator.measured_lag_s(),
             begun: false,
             in_loop_s: 0.0,
             worthless: 0,
@@ -88,17 +96,22 @@ impl<const N: usize> Trust<N> {
         let period_s = window.feed_period_s;
         let (index, reach) = (measured.contour.index, measured.contour.index.saturating_neg());
         let nominal = locate(window, self.nominal.position_mm(), index, reach);
+        let moves = window.now().feed_mm_s > 0.0;
+        if moves && norm(window.offset_mm) == 0.0 {
+            let missed_mm = sub(measured.position_mm, self.nominal.measured_mm());
+            let distance_mm = sub(measured.position_mm, window.at(-self.lag_s).position_mm);
+            self.proof.take_in(square(missed_mm), square(distance_mm), period_s);
+        }
         self.nominal.step(path_mm, true, 1.0);
         let Some(share) = share.filter(|_| window.knot(index).cutting) else {
             self.forget();
             return;
         };
-        if window.now().feed_mm_s > 0.0 {
+        if moves {
             self.in_loop_s += period_s;
         }
         if self.in_loop_s > SETTLED_S {
             let part = (period_s / MEMORY_S).min(1.0);
-            let square = |vector_mm: [f64; N]| dot(vector_mm, vector_mm);
             // What a share leaves is between all of it and what is worth nothing.
             let left = (1.0 - (1.0 - WORTH_NOTHING) * share) / WORTH_NOTHING;
             self.square_mm2 += part * (square(measured.contour.vector_mm) - self.square_mm2);
@@ -110,8 +123,19 @@ impl<const N: usize> Trust<N> {
         self.worthless = if is_worthless { self.worthless + 1 } else { 0 };
         if self.worthless == WORTHLESS_PERIODS {
             self.found = self.found.saturating_add(1);
+            self.proof.forget();
             self.waits_s = WAIT_S;
         }
+    }
+
+    /// Whether the law has proven itself, so that anything may be corrected by it.
+    pub fn is_proven(&self) -> bool {
+        self.proof.is_proven()
+    }
+
+    /// Whether the machine does not move as the law says.
+    pub fn is_refuted(&self) -> bool {
+        self.proof.is_refuted()
     }
 
     /// Goes on by a servo period in which nothing of the correction is left; it is tried again after a while.
@@ -127,7 +151,12 @@ impl<const N: usize> Trust<N> {
     /// Another machine may be there.
     pub fn forgive(&mut self) {
         (self.found, self.waits_s) = (0, 0.0);
+        self.proof.forget();
     }
+}
+
+fn square<const N: usize>(vector: [f64; N]) -> f64 {
+    dot(vector, vector)
 }
 
 /// What a correction may leave of a mean square, mm^2.

@@ -171,6 +171,11 @@ impl AxisLqg {
         (1.0 + friction - drive.velocity_feedforward) / parameters.kp_1_s - delays.measurement_s
     }
 
+    /// By how much later its position is there, s.
+    pub(super) fn measured_late_s(&self) -> f64 {
+        self.known.delays.measurement_s
+    }
+
     /// What was commanded in the last servo period, as an offset from the path, has led to this position. Where it begins it has about this speed.
     pub(super) fn observe(&mut self, offset_mm: f64, position_mm: f64, speed_mm_s: f64) {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
