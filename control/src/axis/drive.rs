@@ -65,7 +65,7 @@ pub struct DriveReference {
 pub struct DriveState {
     /// The last command, rad; none before the first.
     commanded_rad: Option<f64>,
-    /// Its speed, rad/s.
+    /// Its speed, rad/s; that of the first where there was none.
     commanded_rad_s: f64,
     /// Integral part of the speed loop, N m.
     integral_nm: f64,
@@ -123,6 +123,16 @@ impl DriveLaw {
         }
     }
 
+    /// What the drive remembers, and what it was sent, where the axis has gone at a speed for long, which takes this torque.
+    pub fn moving(&self, law: &AxisLaw, speed_rad_s: f64, torque_nm: f64) -> (DriveState, DriveReference) {
+        let integrates = self.integral_gain > 0.0;
+        let integral_nm = if integrates { torque_nm } else { 0.0 };
+        let missing_rad_s = (torque_nm - integral_nm) / law.parameters.kv_nm_s_per_rad;
+        let state =
+            DriveState { commanded_rad: None, commanded_rad_s: speed_rad_s, integral_nm, filtered_nm: torque_nm };
+        (state, DriveReference { speed_rad_s: speed_rad_s + missing_rad_s, torque_nm: 0.0 })
+    }
+
     /// The position loop with its feedforward takes in a command and the position, rad.
     #[inline]
     pub fn position_loop(
@@ -137,8 +147,8 @@ impl DriveLaw {
         if self.plain {
             return DriveReference { speed_rad_s, torque_nm: 0.0 };
         }
-        let moved_rad = state.commanded_rad.map_or(0.0, |before_rad| command_rad - before_rad);
-        let commanded_rad_s = moved_rad / law.periods.servo_s;
+        let since = |before_rad: f64| (command_rad - before_rad) / law.periods.servo_s;
+        let commanded_rad_s = state.commanded_rad.map_or(state.commanded_rad_s, since);
         let change_rad_s = commanded_rad_s - state.commanded_rad_s;
         (state.commanded_rad, state.commanded_rad_s) = (Some(command_rad), commanded_rad_s);
         DriveReference {
@@ -287,6 +297,29 @@ mod tests {
             let reference = DriveReference { speed_rad_s, torque_nm: 0.0 };
             let torque_nm = drive.torque_nm(&law, reference, 0.3, &mut state);
             assert_eq!(torque_nm.to_bits(), law.torque_nm(speed_rad_s, 0.3).to_bits());
+        }
+    }
+
+    #[test]
+    fn a_drive_that_has_moved_for_long_goes_on_as_it_is() {
+        for parameters in [
+            DriveParameters::default(),
+            DriveParameters {
+                speed_integral_s: 0.01,
+                torque_filter_hz: 400.0,
+                velocity_feedforward: 0.9,
+                ..Default::default()
+            },
+        ] {
+            let (law, drive) = (law(), DriveLaw::new(&law(), parameters));
+            let (mut state, sent) = drive.moving(&law, 30.0, 0.4);
+            for _ in 0..10_000 {
+                assert!((drive.torque_nm(&law, sent, 30.0, &mut state) - 0.4).abs() < 1e-9);
+            }
+            // Its first command is one of that speed.
+            let (mut axis, mut first) = (AxisState::default(), state);
+            let reference = drive.position_loop(&law, 0.6, 0.6, &mut axis, &mut first);
+            assert_eq!(reference.speed_rad_s, 30.0 * parameters.velocity_feedforward);
         }
     }
 }

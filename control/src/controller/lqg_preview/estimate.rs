@@ -10,11 +10,11 @@
 //!
 //! Source: Gelb (1974), Applied Optimal Estimation, section 6.1, the extended filter; its gain is that of the linear part, constant.
 
-use crate::axis::AxisLaw;
 use crate::axis::drive::{DriveLaw, DriveReference, DriveState};
 use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::mechanics::{MechanicsLaw, MechanicsState};
 use crate::axis::statistics::AxisStatistics;
+use crate::axis::{self, AxisLaw};
 use crate::sine::sin;
 
 use super::linear::{LinearAxis, STATES, measured_rad2};
@@ -115,8 +115,6 @@ impl Innovation {
 
 /// What was sent to the drive, the newest first.
 pub(super) type Sent = [DriveReference; KEPT_PERIODS];
-/// Nothing was sent.
-pub(super) const NOTHING_SENT: Sent = [DriveReference { speed_rad_s: 0.0, torque_nm: 0.0 }; KEPT_PERIODS];
 
 impl AxisModel {
     /// Of an axis; where it `learns`, with gains for other statistics, too.
@@ -156,10 +154,12 @@ impl AxisModel {
         Whiteness::GIVEN.gains(&self.gains)
     }
 
-    /// At an angle and a speed, with nothing that is known to act.
-    pub(super) fn moving(angle_rad: f64, speed_rad_s: f64) -> Estimate {
+    /// At an angle, at a speed at which it has gone for long, with nothing that is known to act; and what was sent to the drive for it.
+    pub(super) fn moving(&self, angle_rad: f64, speed_rad_s: f64) -> (Estimate, Sent) {
+        let [sign] = axis::signs(&[self.law], [speed_rad_s]);
+        let (drive, sent) = self.drive.moving(&self.law, speed_rad_s, self.law.friction_nm(speed_rad_s, sign));
         let masses = MechanicsState::moving(angle_rad, speed_rad_s);
-        Estimate { masses, drive: DriveState::default(), acting_nm: [0.0; 4] }
+        (Estimate { masses, drive, acting_nm: [0.0; 4] }, [sent; KEPT_PERIODS])
     }
 
     /// Torque of the motor beside the drive's at an angle, N m.

@@ -55,7 +55,8 @@ impl ProofTrial {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Proof<const N: usize> {
     path_mm: Option<[f64; N]>,
-    mean_mm_s: [f64; N],
+    /// None until the speed is known.
+    mean_mm_s: Option<[f64; N]>,
     /// The largest c lately, and when the law was wrong.
     lately_mm_s: f64,
     wrong_mm_s: f64,
@@ -69,7 +70,7 @@ impl<const N: usize> Proof<N> {
     /// Of a law that was never wrong.
     pub(super) const NOT_NEEDED: Self = Self {
         path_mm: None,
-        mean_mm_s: [0.0; N],
+        mean_mm_s: None,
         lately_mm_s: 0.0,
         wrong_mm_s: 0.0,
         needed: false,
@@ -79,11 +80,16 @@ impl<const N: usize> Proof<N> {
 
     /// A servo period in which the law is wrong, or holds.
     pub(super) fn take_in(&mut self, path_mm: [f64; N], wrong: bool, servo_s: f64) {
-        let last_mm = self.path_mm.replace(path_mm).unwrap_or(path_mm);
-        let off_mm_s = sub(sub(path_mm, last_mm).map(|mm| mm / servo_s), self.mean_mm_s);
         let part = (servo_s / MEAN_S).min(1.0);
-        self.mean_mm_s = add_scaled(self.mean_mm_s, part, off_mm_s);
-        let change_mm_s = norm(off_mm_s);
+        let mut change_mm_s = 0.0;
+        if let Some(last_mm) = self.path_mm.replace(path_mm) {
+            let speed_mm_s = sub(path_mm, last_mm).map(|mm| mm / servo_s);
+            // One that begins in motion has changed nothing yet.
+            let mean_mm_s = self.mean_mm_s.unwrap_or(speed_mm_s);
+            let off_mm_s = sub(speed_mm_s, mean_mm_s);
+            self.mean_mm_s = Some(add_scaled(mean_mm_s, part, off_mm_s));
+            change_mm_s = norm(off_mm_s);
+        }
         self.lately_mm_s = change_mm_s.max((1.0 - part) * self.lately_mm_s);
         if wrong {
             (self.needed, self.trial) = (true, ProofTrial::BEGUN);
@@ -146,6 +152,13 @@ mod tests {
             let held_s = holds_for();
             assert!((held_s - expected_s).abs() < 3.0 * SERVO_S, "{held_s} {expected_s}");
         }
+    }
+
+    #[test]
+    fn one_that_begins_in_motion_has_changed_nothing() {
+        let mut proof = Proof::NOT_NEEDED;
+        (0..100_u32).for_each(|n| proof.take_in([0.05 * f64::from(n)], n < 20, SERVO_S));
+        assert!(!proof.is_needed(), "a straight line is proof enough");
     }
 
     #[test]

@@ -7,7 +7,7 @@ use crate::axis::mechanics::MechanicsState;
 use crate::axis::{AxisLaw, AxisState, Parameters};
 
 use super::approach::{self, PricedGains, Room, Trusted};
-use super::estimate::{AxisModel, Estimate, KEPT_PERIODS, Learnt, NOTHING_SENT, Sent};
+use super::estimate::{AxisModel, Estimate, KEPT_PERIODS, Learnt, Sent};
 use super::linear::{self, LinearAxis};
 use super::one_step::OneStep;
 use super::riccati;
@@ -54,8 +54,8 @@ struct Running {
 
 impl Running {
     /// Where nothing is known yet but an angle and a speed.
-    fn at(angle_rad: f64, speed_rad_s: f64) -> Self {
-        let moving = Tracked::moving(angle_rad, speed_rad_s);
+    fn at(model: &AxisModel, angle_rad: f64, speed_rad_s: f64) -> Self {
+        let moving = Tracked::moving(model, angle_rad, speed_rad_s);
         Self {
             real: moving,
             open: moving,
@@ -80,13 +80,9 @@ struct Tracked {
 }
 
 impl Tracked {
-    fn moving(measured_rad: f64, speed_rad_s: f64) -> Self {
-        Self {
-            estimate: AxisModel::moving(measured_rad, speed_rad_s),
-            sent: NOTHING_SENT,
-            position_loop: (AxisState::default(), DriveState::AT_REST),
-            measured_rad,
-        }
+    fn moving(model: &AxisModel, measured_rad: f64, speed_rad_s: f64) -> Self {
+        let (estimate, sent) = model.moving(measured_rad, speed_rad_s);
+        Self { position_loop: (AxisState::default(), estimate.drive), estimate, sent, measured_rad }
     }
 
     /// The reference speed that the position loop makes of a command; torque beside it counts as that.
@@ -180,7 +176,7 @@ impl AxisLqg {
     pub(super) fn observe(&mut self, offset_mm: f64, position_mm: f64, speed_mm_s: f64) {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let measured_rad = position_mm * rad_per_mm;
-        let running = self.state.get_or_insert_with(|| Running::at(measured_rad, speed_mm_s * rad_per_mm));
+        let running = self.state.get_or_insert_with(|| Running::at(&self.model, measured_rad, speed_mm_s * rad_per_mm));
         let Running { real, open, path_mm, missed_rad, step, learnt, trial } = running;
         let Some(path_mm) = *path_mm else {
             real.measured_rad = measured_rad;
