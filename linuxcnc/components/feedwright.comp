@@ -20,7 +20,7 @@ Before anything is corrected by a model of axes, its law has to prove itself: 20
 rapid before a cut. By one that is not (loops, inertia or delays that are more than some 10 % off) nothing is corrected, and \\fBcause\\fR is 15.
 
 A correction that fails is faded out, and comes back when its predictions have held for a while: the machine then cuts as without it.
-\\fBenable\\fR fades it in within 0.06 s and out within 0.3 s, in motion as well.
+\\fBenable\\fR fades it in within 0.07 s and out within 0.3 s, in motion as well.
 
 .B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
 

@@ -231,3 +231,20 @@ fn the_simulated_axis_lags_as_its_loops_say() {
     let measured_mm = v * SERVO_S * 1000.0 - plant.measured_mm()[0];
     assert!((measured_mm - error_mm).abs() < 1e-9, "{measured_mm} {error_mm}");
 }
+
+#[test]
+fn behind_a_short_loss_of_the_position_drives_with_an_integral_part_are_known_again() {
+    let mut machine = machine();
+    machine.axes.iter_mut().for_each(|axis| axis.drive.speed_integral_s = 0.02);
+    for from in [700, 900, 1100] {
+        let lost = from..from + 4;
+        let periods = turn_on(&machine, Ok(machine.clone()), &LIMITS, |n, inputs| {
+            if lost.contains(&n) {
+                inputs.actual_mm[1] = f64::NAN;
+            }
+        });
+        let told = |n: usize| periods[n].outputs.fault;
+        assert_eq!(told(from + 100), LinkFault::Faded(Cause::LostFeedback), "{from}");
+        assert_eq!(told(from + 500), LinkFault::None, "{from}");
+    }
+}
