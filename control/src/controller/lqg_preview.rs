@@ -70,6 +70,10 @@ const DIFFERENCES: f64 = 3.0;
 /// An offset that differs by less from what was asked for is that, mm.
 const FOLLOWED_MM: f64 = 1e-4;
 
+/// For so long a lost position is taken to be as the law says, s: a free run of it. Where it is there again and further from that, mm, everything begins anew.
+const FORESEEN_S: f64 = 0.03;
+const FORESEEN_MM: f64 = 0.05;
+
 /// Linear-quadratic-Gaussian control with preview.
 #[derive(Debug, Clone)]
 pub struct LqgPreview<const N: usize> {
@@ -82,6 +86,8 @@ pub struct LqgPreview<const N: usize> {
     feasibility: Feasibility,
     /// The offset that was asked for last, mm.
     asked_mm: [f64; N],
+    /// For how long the position has been lost, s.
+    lost_s: f64,
 }
 
 impl<const N: usize> LqgPreview<N> {
@@ -97,6 +103,7 @@ impl<const N: usize> LqgPreview<N> {
             validity: settings.learns.then(|| Validity::unknown(axes.iter().map(AxisLqg::unforeseen_mm2).sum())),
             feasibility: Feasibility::FOLLOWED,
             asked_mm: [0.0; N],
+            lost_s: 0.0,
             axes,
         }
     }
@@ -119,6 +126,25 @@ impl<const N: usize> LqgPreview<N> {
     /// Of each axis, near the reference.
     pub fn gains(&self) -> [LqgGains; N] {
         self.axes.each_ref().map(AxisLqg::gains)
+    }
+
+    /// A servo period without a position.
+    fn foresee(&mut self, window: &Window<'_, N>) {
+        self.lost_s += window.feed_period_s;
+        if self.lost_s > FORESEEN_S {
+            self.reset();
+            return;
+        }
+        let here_mm = window.now().position_mm;
+        for (axis, (offset_mm, here_mm)) in self.axes.iter_mut().zip(window.offset_mm.into_iter().zip(here_mm)) {
+            axis.foresee(offset_mm, here_mm);
+        }
+        self.asked_mm = [0.0; N];
+    }
+
+    /// By how much the last position was not expected, mm.
+    fn missed_mm(&self) -> f64 {
+        norm(self.axes.each_ref().map(|axis| axis.moved_and_missed_mm()[1]))
     }
 
     /// Takes in what comes to be known of the reference.
@@ -152,14 +178,14 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
     fn reset(&mut self) {
         self.axes.iter_mut().for_each(AxisLqg::forget);
         self.validity.iter_mut().for_each(Validity::forget);
-        (self.feasibility, self.asked_mm) = (Feasibility::FOLLOWED, [0.0; N]);
+        (self.feasibility, self.asked_mm, self.lost_s) = (Feasibility::FOLLOWED, [0.0; N], 0.0);
     }
 
-    /// Without a position it begins anew: what the tool does meanwhile nobody knows.
+    /// Without a position for longer than it can be foreseen it begins anew: what the tool does meanwhile nobody knows.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let position_mm = measured.map(|measured| measured.position_mm).filter(|mm| norm(*mm).is_finite());
         let Some(position_mm) = position_mm else {
-            self.reset();
+            self.foresee(window);
             return;
         };
         let begins = self.axes.iter().any(AxisLqg::begins);
@@ -167,6 +193,10 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         let measured_axes = window.offset_mm.into_iter().zip(position_mm).zip(speed_mm_s);
         for (axis, ((offset_mm, position_mm), speed_mm_s)) in self.axes.iter_mut().zip(measured_axes) {
             axis.observe(offset_mm, position_mm, speed_mm_s);
+        }
+        if core::mem::replace(&mut self.lost_s, 0.0) > 0.0 && self.missed_mm() > FORESEEN_MM {
+            self.reset();
+            return;
         }
         if let Some(validity) = &mut self.validity {
             let missed_mm = self.axes.each_ref().map(AxisLqg::law_missed_mm);
@@ -184,7 +214,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         if self.validity.as_ref().is_some_and(Validity::is_wrong) {
             return f64::INFINITY;
         }
-        norm(self.axes.each_ref().map(|axis| axis.moved_and_missed_mm()[1]))
+        self.missed_mm()
     }
 
     fn moved_mm(&self) -> Option<[f64; N]> {

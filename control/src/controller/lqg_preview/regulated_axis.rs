@@ -93,6 +93,13 @@ impl Tracked {
         speed_rad_s + torque_nm / model.law.parameters.kv_nm_s_per_rad
     }
 
+    /// A servo period by a command and the law alone.
+    fn foresee(&mut self, model: &AxisModel, command_rad: f64) {
+        self.send(model, command_rad);
+        model.predict(&mut self.estimate, &self.sent);
+        self.measured_rad = self.estimate.masses.motor.angle_rad;
+    }
+
     /// What the position loop makes of a command goes to the drive.
     fn send(&mut self, model: &AxisModel, command_rad: f64) {
         let (axis, drive) = &mut self.position_loop;
@@ -189,10 +196,20 @@ impl AxisLqg {
         trial.go_on(&self.model, &real.sent, measured_rad, &real.estimate);
         let possible = self.model.is_possible(&real.estimate);
         *missed_rad = if possible { told.missed_rad } else { f64::INFINITY };
-        open.send(&self.model, path_mm * rad_per_mm);
         open.estimate.acting_nm = real.estimate.acting_nm;
-        self.model.predict(&mut open.estimate, &open.sent);
-        open.measured_rad = open.estimate.masses.motor.angle_rad;
+        open.foresee(&self.model, path_mm * rad_per_mm);
+    }
+
+    /// What was commanded in the last servo period, as an offset from the path, which is at a place now, has led to where the law says.
+    pub(super) fn foresee(&mut self, offset_mm: f64, here_mm: f64) {
+        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let Some(running) = &mut self.state else { return };
+        let Running { real, open, path_mm, missed_rad, step, trial, .. } = running;
+        let before_mm = path_mm.replace(here_mm).unwrap_or(here_mm);
+        real.foresee(&self.model, (before_mm + offset_mm) * rad_per_mm);
+        open.estimate.acting_nm = real.estimate.acting_nm;
+        open.foresee(&self.model, before_mm * rad_per_mm);
+        (*missed_rad, *step, *trial) = (0.0, OneStep::NONE, LawTrial::from(&real.estimate));
     }
 
     /// By how much the offset has moved it, and what was measured beyond what was expected, mm.
