@@ -238,7 +238,7 @@ fn behind_a_short_loss_of_the_position_drives_with_an_integral_part_are_known_ag
     machine.axes.iter_mut().for_each(|axis| axis.drive.speed_integral_s = 0.02);
     for from in [700, 900, 1100] {
         let lost = from..from + 4;
-        let periods = turn_on(&machine, Ok(machine.clone()), &LIMITS, |n, inputs| {
+        let periods = turn_on(&machine, Ok(machine), &LIMITS, |n, inputs| {
             if lost.contains(&n) {
                 inputs.actual_mm[1] = f64::NAN;
             }
