@@ -56,13 +56,14 @@ fn the_programmed_feedrate_is_the_ceiling_and_feed_raises_it() {
     assert!(tight_s > 1.05 * raised_s, "{tight_s} {raised_s}");
 }
 
+/// With 20 um of encoder noise the tool is some 12 um away at any speed: that is seen before it is slow.
 #[test]
-#[ignore = "the search goes down to 0.2 mm/s before it gives up, which takes minutes"]
 fn what_no_speed_brings_within_the_tolerance_is_told_with_its_line_and_nothing_is_written() {
     let folder = folder("encoder_noise_um = 20\n");
+    folder.file("small.ngc", "G21 G90 G64\nG0 X0 Y0\nG2 X0 Y0 I1 J0 F3000\nM2\n");
     let before = folder.content();
-    let ran = fastest(&folder, &["--tolerance", "0.5"]);
-    ran.faulty(&["circle.ngc", "line 3", "0.5 um are allowed", "no matter of speed"]);
+    let ran = folder.run_open_loop(&["small.ngc", "--machine", "m.toml", "--fastest", "--tolerance", "5"]);
+    ran.faulty(&["small.ngc", "line 3", "5 um are allowed", "no matter of speed"]);
     assert_eq!(folder.content(), before);
 }
 

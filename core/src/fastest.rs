@@ -12,12 +12,14 @@
 //! | `fastest/error_model.rs` | how errors answer to speeds |
 //! | `fastest/speed_profile.rs` | speeds of least time by that model |
 //! | `fastest/tightening.rs` | bounds for the next cut |
+//! | `fastest/remaining_error.rs` | whether lower speeds help |
 
 mod path_grid;
 mod cut_places;
 mod error_model;
 mod speed_profile;
 mod tightening;
+mod remaining_error;
 
 use std::sync::Arc;
 
@@ -36,6 +38,7 @@ use crate::trace::Outcome;
 use crate::watch::Watch;
 use cut_places::CutPlaces;
 use path_grid::PathGrid;
+use remaining_error::RemainingError;
 use tightening::{LOWEST_MM_S, Tightening};
 
 /// Distance of bounds along the path, mm.
@@ -165,6 +168,8 @@ struct Search<'a> {
     best: Option<FastestCut>,
     rounds: u32,
     diverged: bool,
+    /// The error stays, however slow the tool is.
+    hopeless: bool,
     /// Time of the last cut, s, its largest error, um, and the line of that.
     time_s: f64,
     worst: (f64, u32),
@@ -182,6 +187,7 @@ impl<'a> Search<'a> {
             best: None,
             rounds: 0,
             diverged: false,
+            hopeless: false,
             time_s: 0.0,
             worst: (0.0, 0),
         }
@@ -240,6 +246,9 @@ impl<'a> Search<'a> {
             return self.over([needed, FIRST_SHARE], cut);
         }
         self.descend(MUCH_SHARES[0], TRIED, cut)?;
+        if self.hopeless {
+            return Ok(());
+        }
         if self.held_part < HELD_PART { self.over([LITTLE_SHARE], cut) } else { self.over(MUCH_SHARES, cut) }
     }
 
@@ -252,7 +261,8 @@ impl<'a> Search<'a> {
         for share in shares {
             let before_s = self.best_s();
             self.descend(share, ROUNDS, cut)?;
-            if self.diverged || (before_s.is_finite() && self.best_s() > (1.0 - LEAST_GAIN) * before_s) {
+            if self.diverged || self.hopeless || (before_s.is_finite() && self.best_s() > (1.0 - LEAST_GAIN) * before_s)
+            {
                 break;
             }
         }
@@ -268,6 +278,7 @@ impl<'a> Search<'a> {
     ) -> Result<(), FastestError> {
         let known_s = self.best_s();
         let (mut since, mut nearest_um, mut no_nearer) = (0, f64::INFINITY, 0);
+        let mut remaining = RemainingError::default();
         for _ in 0..rounds {
             let before_s = self.best_s();
             let places = cut(self, share)?;
@@ -278,8 +289,9 @@ impl<'a> Search<'a> {
             let near = error_um < BEYOND * self.tolerance_um || error_um < (1.0 - NEARER) * nearest_um;
             no_nearer = if near || !lowers { 0 } else { no_nearer + 1 };
             nearest_um = nearest_um.min(error_um);
+            self.hopeless = self.best.is_none() && remaining.take_in(&places, 1e-3 * self.tolerance_um);
             let slower = lowers && self.time_s > known_s;
-            if self.diverged || slower || since >= NO_GAIN || no_nearer >= NO_NEARER {
+            if self.diverged || self.hopeless || slower || since >= NO_GAIN || no_nearer >= NO_NEARER {
                 break;
             }
             if lowers {
@@ -300,7 +312,7 @@ impl<'a> Search<'a> {
         let (error_um, line) = self.worst;
         let reason = if self.diverged {
             "the servo loop is unstable"
-        } else if self.caps.caps_mm_s.iter().any(|&cap| cap <= LOWEST_MM_S) {
+        } else if self.hopeless || self.caps.caps_mm_s.iter().any(|&cap| cap <= LOWEST_MM_S) {
             "that is no matter of speed: noise, friction or geometry takes it there"
         } else {
             "lower speeds brought it no nearer"

@@ -24,7 +24,7 @@ pub(super) struct CutPlace {
 /// Sorts what rows say by places.
 #[derive(Debug)]
 pub(super) struct CutPlaces {
-    spacing_mm: f64,
+    pub(super) spacing_mm: f64,
     pub(super) places: Vec<CutPlace>,
     /// Places of the command that the tool may still be at.
     behind: VecDeque<(f64, [f64; 3])>,
