@@ -9,13 +9,15 @@
 //! |---|---|
 //! | `fastest/path_grid.rs` | the path at even places |
 //! | `fastest/cut_places.rs` | what a cut was like there |
-//! | `fastest/error_model.rs` | how errors answer to speeds |
+//! | `fastest/steepness.rs` | how steeply errors answer to speeds |
+//! | `fastest/error_model.rs` | what they would be at other speeds |
 //! | `fastest/speed_profile.rs` | speeds of least time by that model |
 //! | `fastest/tightening.rs` | bounds for the next cut |
 //! | `fastest/remaining_error.rs` | whether lower speeds help |
 
 mod path_grid;
 mod cut_places;
+mod steepness;
 mod error_model;
 mod speed_profile;
 mod tightening;
@@ -246,10 +248,39 @@ impl<'a> Search<'a> {
             return self.over([needed, FIRST_SHARE], cut);
         }
         self.descend(MUCH_SHARES[0], TRIED, cut)?;
-        if self.hopeless {
-            return Ok(());
+        match self.held_part {
+            _ if self.hopeless => Ok(()),
+            held_part if held_part < HELD_PART => self.over([LITTLE_SHARE], cut),
+            _ => self.over_much_shares(cut),
         }
-        if self.held_part < HELD_PART { self.over([LITTLE_SHARE], cut) } else { self.over(MUCH_SHARES, cut) }
+    }
+
+    /// Gives the path more and more, as long as that gains time.
+    fn over_much_shares(
+        &mut self,
+        cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
+    ) -> Result<(), FastestError> {
+        let mut next = Some(MUCH_SHARES[0]);
+        while let Some(share) = next {
+            let before_s = if share > MUCH_SHARES[0] { self.best_s() } else { f64::INFINITY };
+            self.descend(share, ROUNDS, cut)?;
+            if self.ends() || (before_s.is_finite() && self.best_s() > (1.0 - LEAST_GAIN) * before_s) {
+                break;
+            }
+            next = self.larger_share(share);
+        }
+        Ok(())
+    }
+
+    /// The next share of the path: what the tool has left of the tolerance, where that is less than the next one that is tried anyway.
+    fn larger_share(&self, share: f64) -> Option<f64> {
+        let next = MUCH_SHARES.into_iter().find(|&next| next > share)?;
+        let left = self.best.as_ref().map_or(0.0, |best| 1.0 - best.error_um / self.tolerance_um);
+        Some(if left > LITTLE_SHARE { next.min(share + left) } else { next })
+    }
+
+    const fn ends(&self) -> bool {
+        self.diverged || self.hopeless
     }
 
     /// Looks for it with one share after the other, as long as that gains time.
@@ -261,8 +292,7 @@ impl<'a> Search<'a> {
         for share in shares {
             let before_s = self.best_s();
             self.descend(share, ROUNDS, cut)?;
-            if self.diverged || self.hopeless || (before_s.is_finite() && self.best_s() > (1.0 - LEAST_GAIN) * before_s)
-            {
+            if self.ends() || (before_s.is_finite() && self.best_s() > (1.0 - LEAST_GAIN) * before_s) {
                 break;
             }
         }
@@ -291,7 +321,7 @@ impl<'a> Search<'a> {
             nearest_um = nearest_um.min(error_um);
             self.hopeless = self.best.is_none() && remaining.take_in(&places, 1e-3 * self.tolerance_um);
             let slower = lowers && self.time_s > known_s;
-            if self.diverged || self.hopeless || slower || since >= NO_GAIN || no_nearer >= NO_NEARER {
+            if self.ends() || slower || since >= NO_GAIN || no_nearer >= NO_NEARER {
                 break;
             }
             if lowers {

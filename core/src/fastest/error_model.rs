@@ -31,8 +31,8 @@ pub(super) struct ErrorModel {
 }
 
 impl ErrorModel {
-    /// Fitted to a cut.
-    pub(super) fn of(grid: &PathGrid, places: &[CutPlace]) -> Self {
+    /// Fitted to a cut, with errors that answer as steeply ([`super::steepness`]).
+    pub(super) fn of(grid: &PathGrid, places: &[CutPlace], steepness: f64) -> Self {
         let squares: Vec<f64> = places.iter().map(|place| place.speed_mm_s * place.speed_mm_s).collect();
         let lag_s2 = lag_of_axes(grid, places, &squares);
         let mut changes = Vec::with_capacity(places.len());
@@ -41,7 +41,7 @@ impl ErrorModel {
             let modelled_mm = at(&parts, i, &squares);
             let mut change = parts;
             change[1] += (place.error_mm - modelled_mm) / squares[i].max(LEAST_SQUARE);
-            changes.push(change);
+            changes.push(change.map(|part| steepness * part));
         }
         Self { errors_mm: places.iter().map(|place| place.error_mm).collect(), changes }
     }

@@ -1,9 +1,10 @@
 //! Bounds on the speed for the next cut, from what the last one was like.
 
-use super::cut_places::CutPlaces;
+use super::cut_places::{CutPlace, CutPlaces};
 use super::error_model::ErrorModel;
 use super::path_grid::PathGrid;
 use super::speed_profile::SpeedProfile;
+use super::steepness::steepness;
 use crate::constraints::speed_caps::SpeedCaps;
 
 /// Part of the tolerance that is aimed at.
@@ -44,12 +45,15 @@ pub(super) struct NextCaps {
 pub(super) struct Tightening {
     tolerance_mm: f64,
     aims_mm: Vec<f64>,
+    /// What the last cut was like.
+    last: Vec<CutPlace>,
+    steepness: f64,
 }
 
 impl Tightening {
     /// The same everywhere.
     pub(super) fn new(tolerance_mm: f64, count: usize) -> Self {
-        Self { tolerance_mm, aims_mm: vec![AIM * tolerance_mm; count] }
+        Self { tolerance_mm, aims_mm: vec![AIM * tolerance_mm; count], last: Vec::new(), steepness: 1.0 }
     }
 
     /// Where errors are beyond the tolerance although the speed was chosen for what is aimed at, less is aimed at.
@@ -69,12 +73,16 @@ impl Tightening {
     }
 
     /// The next bounds, behind a cut within others that was one of so many.
-    pub(super) fn caps(&self, grid: &PathGrid, cut: &CutPlaces, caps: &SpeedCaps, cuts: u32) -> NextCaps {
+    pub(super) fn caps(&mut self, grid: &PathGrid, cut: &CutPlaces, caps: &SpeedCaps, cuts: u32) -> NextCaps {
         let squares: Vec<f64> = cut.places.iter().map(|place| place.speed_mm_s * place.speed_mm_s).collect();
         let cap_of = |i: usize| caps.caps_mm_s.get(i).copied().unwrap_or(f64::INFINITY);
         let held: Vec<bool> =
             cut.places.iter().enumerate().map(|(i, place)| place.speed_mm_s < HOLDS * cap_of(i)).collect();
-        let model = ErrorModel::of(grid, &cut.places);
+        if let Some(steepness) = steepness(&self.last, &cut.places, self.tolerance_mm) {
+            self.steepness = (self.steepness * steepness).sqrt();
+        }
+        self.last.clone_from(&cut.places);
+        let model = ErrorModel::of(grid, &cut.places, self.steepness);
         let profile = SpeedProfile {
             spacing_mm: grid.spacing_mm,
             squares: &squares,
