@@ -6,11 +6,12 @@
 pub mod along;
 
 use std::collections::VecDeque;
+use std::sync::{Mutex, PoisonError};
 
 use serde::Serialize;
 
 use crate::constraints::{AxisLimits, Constraints};
-use crate::feed::plan::{Plan, Planned};
+use crate::feed::plan::{Plan, PlanSink, Planned};
 use crate::feed::{self, AxisMotion, Phase};
 use crate::gcode::ReadError;
 use crate::gcode::canon::{Corner, EventKind};
@@ -137,7 +138,7 @@ pub fn cycle_time_by<'p>(
     let mut sampler = Sampler::new(constraints, stages.planner.name);
     for planned in plan.by_ref() {
         watch.check()?;
-        sampler.take(planned);
+        sampler.take(&planned);
     }
     if let Some(fault) = plan.fault() {
         return Err(fault.clone().into());
@@ -157,6 +158,28 @@ pub fn cycle_time_by<'p>(
     Ok(result)
 }
 
+/// The same of a plan that is made in any case, for a cut: it is told of it.
+#[derive(Debug)]
+pub struct CycleTimeOfCut<'a>(Mutex<Sampler<'a>>);
+
+impl<'a> CycleTimeOfCut<'a> {
+    /// Of a plan within constraints, by a planner with this name.
+    pub fn new(constraints: &'a Constraints, planner: &str) -> Self {
+        Self(Mutex::new(Sampler::new(constraints, planner)))
+    }
+
+    /// What the plan came to, where it was handed out to its end.
+    pub fn finish(self) -> CycleTime {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner).finish()
+    }
+}
+
+impl PlanSink for CycleTimeOfCut<'_> {
+    fn planned(&self, planned: &Planned) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take(planned);
+    }
+}
+
 /// What holds on a piece.
 #[derive(Clone, Copy)]
 struct PiecePlace {
@@ -169,6 +192,7 @@ struct PiecePlace {
 }
 
 /// Looks at a plan as it comes out.
+#[derive(Debug)]
 struct Sampler<'a> {
     constraints: &'a Constraints,
     result: CycleTime,
@@ -201,21 +225,21 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    fn take(&mut self, planned: Planned) {
+    fn take(&mut self, planned: &Planned) {
         match planned {
             Planned::Programmed(piece) => {
                 self.result.blocks += 1;
-                self.pieces.push_back(piece);
+                self.pieces.push_back(piece.clone());
             }
             Planned::Piece(_) => {}
-            Planned::Event(event) => match event.event.kind {
-                EventKind::ToolSelect { tool } => self.selected = tool,
+            Planned::Event(event) => match &event.event.kind {
+                EventKind::ToolSelect { tool } => self.selected = *tool,
                 EventKind::MCode { code: 6, .. } => {
                     self.result.tools.push(ToolTime { tool: self.selected, time_s: 0.0 });
                 }
                 _ => {}
             },
-            Planned::Phase(phase) => self.phase(&phase),
+            Planned::Phase(phase) => self.phase(phase),
         }
     }
 

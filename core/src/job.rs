@@ -30,9 +30,12 @@ use feedwright_control::Controller;
 use serde::{Deserialize, Serialize};
 
 use crate::blend::aligned::AlignedPaths;
+use crate::constraints::Constraints;
 use crate::controllers::{Choices, Entry, Make, NothingIdentified, Setup};
 use crate::correct::{CorrectOutcome, TargetControl};
+use crate::cycle_time::CycleTimeOfCut;
 use crate::fastest::{FastestError, FastestPlan, fastest, with_tolerance};
+use crate::feed::plan::PlanSink;
 use crate::gcode::canon::{Canon, MotionKind};
 use crate::gcode::{self, ReadError, Reader, Summary};
 pub use crate::job_error::JobError;
@@ -46,7 +49,7 @@ use crate::path::{Step, Steps};
 use crate::pipeline::{Run, RunError, Stages, pieces};
 use crate::report::harm::Harm;
 use crate::report::{FullCircle, Report, ReportedRun, full_circles};
-use crate::trace::{Row, Sink};
+use crate::trace::{Outcome, Row, Sink};
 use crate::watch::{StageSteps, Watch};
 pub use exported::AS_EXPORTED;
 pub use files::Outputs;
@@ -163,25 +166,16 @@ impl Job {
         let aligned = self.aligned()?;
         let fastest = self.fastest_plan::<N>(watch)?;
         let circles = self.circles()?;
-        let (mut runs, mut without_identification) = (Vec::new(), Vec::new());
-        for entry in self.controllers() {
-            watch.check()?;
-            let mut steps = StageSteps::begin(watch, &format!("identifying for {}", entry.name));
-            let mut progress = |part: f64| steps.reach(part);
-            let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
-            let judged = entry.name == self.controller.name;
-            let mut controller = match self.model.as_ref().filter(|_| judged) {
-                Some(model) => entry.make_with::<N>(setup, model)?,
-                None => {
-                    let controller = Make::<N>::make(entry, &mut setup);
-                    without_identification.extend(setup.remark(entry));
-                    controller
-                }
-            };
-            let written = judged.then_some(&mut files);
-            let plan = PlannedCut { fastest: fastest.as_ref(), aligned: aligned.as_ref(), circles: &circles };
-            runs.push(self.cut_once(summary, entry, &mut *controller, plan, written, watch)?);
-        }
+        let constraints = Constraints::from(&self.machine);
+        let looked_at = self.looks_at_cut(fastest.as_ref(), aligned.as_ref(), &constraints);
+        let (mut runs, without_identification) = {
+            let looked_at = looked_at.as_ref().map(|cycle| cycle as &dyn PlanSink);
+            let plan =
+                PlannedCut { fastest: fastest.as_ref(), aligned: aligned.as_ref(), circles: &circles, looked_at };
+            self.cut_with_each::<N>(summary, plan, &mut files, watch)?
+        };
+        let completed = runs.last().is_some_and(|run| run.summary.outcome == Outcome::Completed);
+        let looked_at = looked_at.filter(|_| completed).map(CycleTimeOfCut::finish);
         let mut log_findings = Vec::new();
         if let Some(log) = &self.log {
             let at = runs.len() - 1;
@@ -193,7 +187,7 @@ impl Job {
             runs.extend(run);
             outcome
         });
-        let limits = self.limit_band(fastest.as_ref(), watch)?;
+        let limits = self.limit_band(fastest.as_ref().map(|plan| &plan.cycle).or(looked_at.as_ref()), watch)?;
         watch.begin("writing", 1);
         let report = Report { limits, ..self.report(N, summary, circles, runs, &without_identification)? };
         let (harm, is_of_use) = (self.harm(&report), self.is_of_use(&report));
@@ -260,12 +254,45 @@ impl Job {
         })
     }
 
+    /// One run for each controller, and for which of them nothing was identified.
+    fn cut_with_each<const N: usize>(
+        &self,
+        summary: &Summary,
+        plan: PlannedCut<'_>,
+        files: &mut Files,
+        watch: &dyn Watch,
+    ) -> Result<(Vec<ReportedRun>, Vec<NothingIdentified>), JobError>
+    where
+        Entry: Make<N>,
+    {
+        let (mut runs, mut without_identification) = (Vec::new(), Vec::new());
+        for entry in self.controllers() {
+            watch.check()?;
+            let mut steps = StageSteps::begin(watch, &format!("identifying for {}", entry.name));
+            let mut progress = |part: f64| steps.reach(part);
+            let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
+            let judged = entry.name == self.controller.name;
+            let mut controller = match self.model.as_ref().filter(|_| judged) {
+                Some(model) => entry.make_with::<N>(setup, model)?,
+                None => {
+                    let controller = Make::<N>::make(entry, &mut setup);
+                    without_identification.extend(setup.remark(entry));
+                    controller
+                }
+            };
+            let written = judged.then_some(&mut *files);
+            let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), ..plan };
+            runs.push(self.cut_once(summary, entry, &mut *controller, plan, written, watch)?);
+        }
+        Ok((runs, without_identification))
+    }
+
     fn cut_once<const N: usize>(
         &self,
         summary: &Summary,
         entry: &Entry,
         controller: &mut dyn Controller<N>,
-        PlannedCut { fastest, aligned, circles }: PlannedCut<'_>,
+        PlannedCut { fastest, aligned, circles, looked_at }: PlannedCut<'_>,
         files: Option<&mut Files>,
         watch: &dyn Watch,
     ) -> Result<ReportedRun, JobError> {
@@ -285,6 +312,7 @@ impl Job {
             })
         };
         let run = Run::on(machine).capped(fastest.map(|plan| &plan.caps)).laps(entry.laps).watched(watch);
+        let run = run.planned_to(looked_at);
         let run = match aligned {
             Some(aligned) => run.cut_aligned(aligned, controller, &mut sinks),
             None => run.cut(steps, controller, &mut sinks),
@@ -349,6 +377,8 @@ struct PlannedCut<'a> {
     fastest: Option<&'a FastestPlan>,
     aligned: Option<&'a AlignedPaths>,
     circles: &'a [FullCircle],
+    /// Who is told of the plan.
+    looked_at: Option<&'a dyn PlanSink>,
 }
 /// Tells the progress of a cut by its arc length.
 struct CutProgress<'a> {

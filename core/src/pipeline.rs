@@ -16,7 +16,7 @@ use crate::blend::aligned::AlignedPaths;
 use crate::blend::{self, BlendMember, BlendedSteps};
 use crate::constraints::speed_caps::SpeedCaps;
 use crate::constraints::{Constraints, LimitsError};
-use crate::feed::plan::Plan;
+use crate::feed::plan::{Plan, PlanSink};
 use crate::feed::{self, Member};
 use crate::gcode::ReadError;
 use crate::gcode::canon::Canon;
@@ -70,7 +70,7 @@ impl Stages {
         machine: &Machine,
         constraints: &Constraints,
     ) -> Result<Reference<'p>, LimitsError> {
-        self.reference_of(self.blended(steps, constraints), machine, constraints)
+        self.reference_of(self.blended(steps, constraints), machine, constraints, None)
     }
 
     /// The planned path beside the programmed one.
@@ -84,8 +84,9 @@ impl Stages {
         blended: BlendedSteps<'p>,
         machine: &Machine,
         constraints: &Constraints,
+        sink: Option<&'p dyn PlanSink>,
     ) -> Result<Reference<'p>, LimitsError> {
-        Ok(Reference::new(Plan::new(blended, constraints, self.planner, Plc::of(machine))?))
+        Ok(Reference::new(Plan::new(blended, constraints, self.planner, Plc::of(machine))?.told_to(sink)))
     }
 }
 
@@ -105,6 +106,7 @@ pub struct Run<'a> {
     caps: Option<&'a Arc<SpeedCaps>>,
     stages: Stages,
     laps: u32,
+    plan_sink: Option<&'a dyn PlanSink>,
     watch: &'a dyn Watch,
 }
 
@@ -144,7 +146,7 @@ impl From<Stopped> for RunError {
 impl<'a> Run<'a> {
     /// One lap on a machine, by the stages that suit it.
     pub fn on(machine: &'a Machine) -> Self {
-        Self { machine, caps: None, stages: Stages::of(machine), laps: 1, watch: &() }
+        Self { machine, caps: None, stages: Stages::of(machine), laps: 1, plan_sink: None, watch: &() }
     }
 
     /// With laps of practice: the last of so many counts.
@@ -163,6 +165,12 @@ impl<'a> Run<'a> {
     #[must_use]
     pub const fn stages(self, stages: Stages) -> Self {
         Self { stages, ..self }
+    }
+
+    /// With one who is told of the plan of the last lap.
+    #[must_use]
+    pub const fn planned_to(self, plan_sink: Option<&'a dyn PlanSink>) -> Self {
+        Self { plan_sink, ..self }
     }
 
     /// Ended by this one.
@@ -209,7 +217,7 @@ impl<'a> Run<'a> {
             // Noise does not repeat itself from lap to lap: what is learned of it is of no use.
             let seed = self.machine.noise.seed.wrapping_add(u64::from(lap) << LAP_SEED_SHIFT);
             let practice = self.machine.with_noise_seed(seed);
-            let practising = Run { machine: &practice, ..*self };
+            let practising = Run { machine: &practice, plan_sink: None, ..*self };
             practising.lap(blended(&practising)?, controller, &mut [])?;
             controller.next_lap();
         }
@@ -245,7 +253,7 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        let mut reference = self.stages.reference_of(blended, self.machine, &self.constraints())?;
+        let mut reference = self.stages.reference_of(blended, self.machine, &self.constraints(), self.plan_sink)?;
         let result = simulate(self.machine, &mut reference, controller, sinks, self.watch)?;
         match reference.fault() {
             Some(fault) => Err(fault.clone().into()),

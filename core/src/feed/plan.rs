@@ -26,6 +26,12 @@ pub enum Planned {
     Event(TimedEvent),
 }
 
+/// Is told of all that a plan hands out, in order.
+pub trait PlanSink: Sync {
+    /// The next of it.
+    fn planned(&self, planned: &Planned);
+}
+
 /// The plan of a path, made as it is read; `None` when all has been handed out.
 pub struct Plan<'p> {
     steps: BlendedSteps<'p>,
@@ -43,6 +49,7 @@ pub struct Plan<'p> {
     ready: VecDeque<Planned>,
     fault: Option<PathError>,
     finished: bool,
+    sink: Option<&'p dyn PlanSink>,
 }
 
 /// Something between two pieces.
@@ -86,7 +93,14 @@ impl<'p> Plan<'p> {
             ready: VecDeque::new(),
             fault: None,
             finished: false,
+            sink: None,
         })
+    }
+
+    /// With one who is told of what it hands out.
+    #[must_use]
+    pub fn told_to(self, sink: Option<&'p dyn PlanSink>) -> Self {
+        Self { sink, ..self }
     }
 
     /// Why the path ends early, if it does; known once the plan has ended.
@@ -203,6 +217,9 @@ impl Iterator for Plan<'_> {
     fn next(&mut self) -> Option<Planned> {
         loop {
             if let Some(planned) = self.ready.pop_front() {
+                if let Some(sink) = self.sink {
+                    sink.planned(&planned);
+                }
                 return Some(planned);
             }
             if self.finished {

@@ -3,8 +3,10 @@
 use std::io::BufRead;
 
 use super::{Job, JobError};
+use crate::blend::aligned::AlignedPaths;
+use crate::constraints::Constraints;
 use crate::controllers::{BASELINE, NothingIdentified};
-use crate::cycle_time::{self, cycle_time};
+use crate::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 use crate::fastest::FastestPlan;
 use crate::gcode::{Summary, input};
 use crate::machine::Machine;
@@ -117,18 +119,34 @@ impl Job {
         cut && self.harm(report).is_empty()
     }
 
-    /// What binds along the path, where the page shows it: on machines that are planned axis by axis. The plan of least time knows it already, any
-    /// other is made once more.
-    pub(super) fn limit_band(
+    /// Whether the page shows what binds along the path: on machines that are planned axis by axis.
+    fn shows_limits(&self) -> bool {
+        self.outputs.report.is_some() && Stages::of(&self.machine).planner.needs_axes
+    }
+
+    /// Looks at the plan of a cut for the page, where that is the plan of the program.
+    pub(super) fn looks_at_cut<'a>(
         &self,
         fastest: Option<&FastestPlan>,
+        aligned: Option<&AlignedPaths>,
+        constraints: &'a Constraints,
+    ) -> Option<CycleTimeOfCut<'a>> {
+        let cut = self.shows_limits() && fastest.is_none() && aligned.is_none();
+        cut.then(|| CycleTimeOfCut::new(constraints, Stages::of(&self.machine).planner.name))
+    }
+
+    /// What binds along the path, where the page shows it. A plan that was looked at already tells it; where there is none, since the cut did not come
+    /// to its end or went along another path, one is made.
+    pub(super) fn limit_band(
+        &self,
+        known: Option<&CycleTime>,
         watch: &dyn Watch,
     ) -> Result<Option<LimitBand>, JobError> {
-        if self.outputs.report.is_none() || !Stages::of(&self.machine).planner.needs_axes {
+        if !self.shows_limits() {
             return Ok(None);
         }
-        let along = match fastest {
-            Some(plan) => plan.cycle.along.clone(),
+        let along = match known {
+            Some(cycle) => cycle.along.clone(),
             None => {
                 watch.begin("looking at what binds", 1);
                 let found = cycle_time(&self.machine, false, || Ok(pieces(self.program()?)), watch);
