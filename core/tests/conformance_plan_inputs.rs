@@ -9,8 +9,9 @@ use feedwright::gcode::{Reader, Settings};
 use feedwright::machine::Machine;
 use feedwright::pipeline::{Stages, pieces};
 
-/// Blocks of 1 um: a twentieth of a million, in a few seconds.
+/// Blocks of 1 um: a twentieth of a million, in a few seconds, and a million.
 const MICROMETRES: u32 = 50_000;
+const MILLION: u32 = 1_000_000;
 
 fn machine() -> Machine {
     let mut machine = Machine::load("tnv40".as_ref()).unwrap();
@@ -73,18 +74,47 @@ fn a_truncated_program_ends_at_rest_where_it_ends() {
     }
 }
 
-#[test]
-fn very_many_blocks_of_a_micrometre_take_the_time_of_one() {
+/// A straight line in blocks of 1 um at 100 mm/s takes what it takes in one block.
+fn take_the_time_of_one(micrometres: u32) {
     use std::fmt::Write;
     let machine = machine();
     let mut program = "G21 G90 G64 P0.01 F6000\n".to_owned();
-    for i in 1..=MICROMETRES {
+    for i in 1..=micrometres {
         writeln!(program, "G1 X{:.3}", f64::from(i) * 1e-3).unwrap();
     }
     let short = planned(&machine, &program);
-    let one = planned(&machine, &format!("G21 G90 G64 P0.01 F6000\nG1 X{}\n", MICROMETRES / 1000));
-    assert_eq!((short.blocks, one.blocks), (u64::from(MICROMETRES), 1));
+    let one = planned(&machine, &format!("G21 G90 G64 P0.01 F6000\nG1 X{}\n", micrometres / 1000));
+    assert_eq!((short.blocks, one.blocks), (u64::from(micrometres), 1));
     assert!((short.time_s / one.time_s - 1.0).abs() < 2e-3, "{} {}", short.time_s, one.time_s);
+}
+
+#[test]
+fn very_many_blocks_of_a_micrometre_take_the_time_of_one() {
+    take_the_time_of_one(MICROMETRES);
+}
+
+#[test]
+#[ignore = "half a minute: cargo test --release --test conformance_plan_inputs -- --ignored"]
+fn a_million_blocks_of_a_micrometre_take_the_time_of_one() {
+    take_the_time_of_one(MILLION);
+}
+
+#[test]
+fn memory_does_not_grow_with_the_number_of_blocks() {
+    let machine = machine();
+    // Blocks of 1 um in a loop, so that the text does not grow either; at 20 mm/s the look-ahead holds some 12,000 of them.
+    let memory = |blocks: u32| {
+        let program = format!("G21 G91 G64 P0.01 F1200\no1 repeat [{blocks}]\nG1 X0.001\no1 endrepeat\nM2\n");
+        let settings = || Settings { max_motions: u64::from(MILLION), ..Settings::default() };
+        let steps = || Ok(pieces(Reader::from_text("program", program.as_str(), settings())?.map_while(Result::ok)));
+        let measured = allocation_counter::measure(|| {
+            let found = cycle_time(&machine, false, steps, &()).unwrap();
+            assert_eq!(found.blocks, u64::from(blocks));
+        });
+        measured.bytes_max
+    };
+    let [short, long] = [MICROMETRES, 3 * MICROMETRES].map(memory);
+    assert!(long as f64 <= 1.05 * short as f64, "{short} {long} bytes");
 }
 
 #[test]

@@ -104,6 +104,17 @@ const CORNER_RAD: f64 = 1e-3;
 const DEFAULT_MM: f64 = 0.01;
 const LEAST_MM: f64 = 1e-5;
 
+/// How far a window's first guess follows what is known. Up to where that brakes for its rest, an estimate goes on at speed; where that comes to no
+/// solution, as with tolerances of 1 um, what is known is followed down to the last of its speed: a guess that is possible.
+#[derive(Debug, Clone, Copy)]
+enum Followed {
+    UntilBraking,
+    AlmostToRest,
+}
+
+/// Steps before a rest that are not followed: they come nowhere.
+const NEARLY_AT_REST: f64 = 20.0;
+
 /// What has been done, for benches and tests.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct PlanCounts {
@@ -251,24 +262,26 @@ impl TimeOptimal {
     /// The steps of the next window, and whether they lead to the end of the track.
     fn solve_window(&mut self) -> Option<(Vec<PlannedStep>, bool)> {
         if !self.tail.is_empty() {
-            return self.solve_behind(&self.tail.clone(), self.step_s());
+            let (tail, step_s) = (self.tail.clone(), self.step_s());
+            let found = self.solve_behind(&tail, step_s, Followed::UntilBraking);
+            return found.or_else(|| self.solve_behind(&tail, step_s, Followed::AlmostToRest));
         }
         // From rest nothing is known of the times of nodes but an estimate: the solution for it gives better ones.
-        let (nodes, _) = self.mesh(&[], self.step_s());
+        let (nodes, _) = self.mesh(&[], self.step_s(), Followed::UntilBraking);
         let mut step_s = self.step_s();
         if nodes.len() <= FEWEST {
             step_s *= nodes.len() as f64 / (2 * FEWEST) as f64;
         }
-        let (nodes, ends) = self.mesh(&[], step_s);
+        let (nodes, ends) = self.mesh(&[], step_s, Followed::UntilBraking);
         let first = self.solution(&nodes, &vec![1.0; nodes.len() - 1], ends, step_s, &GUESSES[1..])?;
         let time_s: f64 = first.iter().map(|step| step.duration_s).sum();
         if ends {
             step_s = step_s.min(time_s / FEWEST as f64);
         }
-        self.solve_behind(&first, step_s)
+        self.solve_behind(&first, step_s, Followed::UntilBraking)
     }
 
-    fn mesh(&self, known: &[PlannedStep], step_s: f64) -> (Vec<MeshNode>, bool) {
+    fn mesh(&self, known: &[PlannedStep], step_s: f64, followed: Followed) -> (Vec<MeshNode>, bool) {
         let most = self.window();
         let most = if self.track.ended { most + most / 4 } else { most };
         let radius_part = if self.at_nodes { 1.0 } else { RADIUS_PART };
@@ -276,15 +289,24 @@ impl TimeOptimal {
         let time_s: f64 = known.iter().map(|step| step.duration_s).sum();
         let ends = self.track.ended && known.last().is_some_and(|step| step.to_mm >= self.track.end_mm);
         let fastest = known.iter().map(|step| norm(step.motion.velocity_mm_s)).fold(0.0, f64::max);
-        let until_s = if ends { time_s - 2.0 * step_s } else { time_s - 1.2 * self.caps.stop_s(fastest) };
+        let until_s = match followed {
+            _ if ends => time_s - 2.0 * step_s,
+            Followed::UntilBraking => time_s - 1.2 * self.caps.stop_s(fastest),
+            Followed::AlmostToRest => time_s - NEARLY_AT_REST * step_s,
+        };
         mesh.follow(known, until_s);
         let ends = mesh.estimate();
         (mesh.nodes, ends)
     }
 
     /// With nodes in times of what is known, solved until nothing is exceeded.
-    fn solve_behind(&mut self, known: &[PlannedStep], step_s: f64) -> Option<(Vec<PlannedStep>, bool)> {
-        let (mut nodes, ends) = self.mesh(known, step_s);
+    fn solve_behind(
+        &mut self,
+        known: &[PlannedStep],
+        step_s: f64,
+        followed: Followed,
+    ) -> Option<(Vec<PlannedStep>, bool)> {
+        let (mut nodes, ends) = self.mesh(known, step_s, followed);
         let mut feed_parts = vec![1.0 - FEED_MARGIN; nodes.len() - 1];
         for round in 0..ROUNDS {
             let guesses = if round == 0 { &GUESSES[1..] } else { &GUESSES[..] };
