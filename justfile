@@ -22,6 +22,7 @@ bench:
 # Time-optimal planner against the bound, program by program: ratios, violations, blocks/s. Foreign programs where they are.
 bench-plan *programs:
     cargo run --release -p feedwright --example bench_plan -- {{ programs }}
+    cargo run --release -p feedwright --example fixed_path_peer
 
 # A corner as the time-optimal planner has it: the figure of examples/04_planner.
 corner-figure out="examples/04_planner/corner.svg":
