@@ -14,8 +14,10 @@ use crate::pipeline::{RunError, Stages};
 use crate::plc::Plc;
 use crate::watch::Watch;
 
-/// The rate changes every so often, s.
-const PERIOD_S: f64 = 1e-3;
+/// The rate changes every so often, s. At a low speed that rises, a change of the slope that stays for a millisecond uses little of the jerk at its begin;
+/// above the override 1 ways to a rate that can stay have to reach further ahead than so many short periods do.
+const PERIOD_S: f64 = 2.5e-4;
+const PERIOD_ABOVE_S: f64 = 1e-3;
 
 /// Moments of a step at which limits are looked at.
 const MOMENTS: u32 = 8;
@@ -97,7 +99,7 @@ pub fn override_time(
     let limits = ScalingLimits {
         axes: [limits(0), limits(1), limits(2)],
         speed_mm_s: constraints.path.max_feed_mm_s,
-        period_s: PERIOD_S,
+        period_s: if request.override_of_feeds > 1.0 { PERIOD_ABOVE_S } else { PERIOD_S },
     };
     moved_along(&published, limits, request, watch).map(Some)
 }
