@@ -143,7 +143,7 @@ fn a_hold_at_the_feedrate_on_a_circle_is_within_five_per_cent_of_the_least_way()
 
 /// From rest on a line at constant jerk j the least way is that of -j for twice the time and j again.
 #[test]
-fn a_hold_while_the_speed_rises_is_within_five_per_cent_or_four_micrometres_of_the_least_way() {
+fn a_hold_while_the_speed_rises_is_within_five_per_cent_or_six_micrometres_of_the_least_way() {
     let plan = published(polyline(&[[0.0; 3], [60.0, 0.0, 0.0]], 200.0, BLEND));
     for t in [0.001, 0.002, 0.005, 0.008, 0.009, 0.01, 0.012, 0.02, 0.03, 0.05] {
         let mut scaling = TimeScaling::from_moment(&plan, ScalingLimits { period_s: 2.5e-4, ..limits() }, t);
@@ -157,7 +157,7 @@ fn a_hold_while_the_speed_rises_is_within_five_per_cent_or_four_micrometres_of_t
             let closed_mm = AXIS.jerk_mm_s3 * t.powi(3) * (2.0 - 1.0 / 6.0);
             assert!((least_mm / closed_mm - 1.0).abs() < 0.1, "{t}: {least_mm} {closed_mm}");
         }
-        assert!(way_mm < 1.05 * least_mm || way_mm < least_mm + 0.004, "{t}: {way_mm} {least_mm}");
+        assert!(way_mm < 1.05 * least_mm || way_mm < least_mm + 0.006, "{t}: {way_mm} {least_mm}");
     }
 }
 
