@@ -3,7 +3,8 @@
 //! Each program is corrected for `generic` on each machine, and original and corrected text are cut open loop on it with the disturbance, over [`CUTS`] of its
 //! phases and seeds of the noise. Printed are the means, and corrected over original of the part above what nobody can take away by a program:
 //! the errors of a cut of the corrected program on the same machine, less those on the machine without disturbance, noise and geometry (as
-//! squares for the RMS). With `--wrong` the correction believes inertia, friction and feedforward 20 % off, each up or down.
+//! squares for the RMS). With `--wrong` the correction believes inertia, friction and gain of the speed loop 20 % off, each up
+//! or down; with `--one-wrong`, one of them alone.
 
 use std::path::{Path, PathBuf};
 
@@ -44,9 +45,9 @@ fn mean(machine: &Machine, original: &[Step], program: &[Step], axes: usize) -> 
     sum
 }
 
-/// The machine with inertia, friction and feedforward 20 % off, one of 8 ways; loop gains and delays stay.
-fn wrong(machine: &Machine, way: usize) -> Machine {
-    let factor = |bit: usize| if way >> bit & 1 == 1 { 1.2 } else { 0.8 };
+/// The machine with inertia, friction and gain of the speed loop times these factors; gains of the position loop, feedforward and delays stay.
+fn wrong(machine: &Machine, factors: [f64; 3]) -> Machine {
+    let factor = |which: usize| factors[which];
     let axis = |axis: &Axis| Axis {
         inertia_kg_m2: axis.inertia_kg_m2 * factor(0),
         coulomb_friction_nm: axis.coulomb_friction_nm * factor(1),
@@ -56,6 +57,17 @@ fn wrong(machine: &Machine, way: usize) -> Machine {
         ..*axis
     };
     Machine { axes: machine.axes.iter().map(axis).collect(), ..machine.clone() }
+}
+
+/// Every one of the three 20 % off, up or down.
+fn all_wrong() -> Vec<[f64; 3]> {
+    (0..8).map(|way| [0, 1, 2].map(|bit: usize| if way >> bit & 1 == 1 { 1.2 } else { 0.8 })).collect()
+}
+
+/// One of the three 20 % off, up or down.
+fn one_wrong() -> Vec<[f64; 3]> {
+    let one = |which: usize, factor: f64| std::array::from_fn(|k| if k == which { factor } else { 1.0 });
+    (0..3).flat_map(|which| [one(which, 0.8), one(which, 1.2)]).collect()
 }
 
 /// Part of an error that a program can take away, over that of the original.
@@ -133,11 +145,18 @@ fn main() {
     for machine in machines.split(',') {
         let machine = Machine::load(machine.as_ref()).expect("a machine");
         for (name, path) in &programs {
-            if options.iter().any(|option| option == "--wrong") {
-                for way in 0..8 {
-                    line(&format!("{name}, 20 % off, way {way}"), &machine, path, Some(wrong(&machine, way)));
-                }
-            } else {
+            let given = |wanted: &str| options.iter().any(|option| option == wanted);
+            let beliefs = match (given("--wrong"), given("--one-wrong")) {
+                (true, _) => all_wrong(),
+                (_, true) => one_wrong(),
+                _ => Vec::new(),
+            };
+            for factors in &beliefs {
+                let [inertia, friction, gain] = factors.map(|factor| (100.0 * (factor - 1.0)).round());
+                let name = format!("{name} {inertia:+} {friction:+} {gain:+} %");
+                line(&name, &machine, path, Some(wrong(&machine, *factors)));
+            }
+            if beliefs.is_empty() {
                 line(name, &machine, path, None);
             }
         }

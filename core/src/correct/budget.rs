@@ -7,6 +7,8 @@ const MORE_DWELLS: f64 = 1.5;
 const FEW_BLOCKS: f64 = 1.15;
 const FEW_MORE_1: f64 = 0.32;
 const FEW_MORE: [f64; 2] = [4.0, 28.0];
+/// A stretch of more straight blocks than this, most of it, is a curve as chords: arcs in their place are no more than they are.
+const CHORDS: usize = 40;
 /// Many blocks are so many times those that are programmed, or so many a second and a few, of a stretch that is no detail: one that takes so many
 /// time constants.
 const MANY_BLOCKS: f64 = 10.0;
@@ -25,6 +27,8 @@ const PROGRAM_TIME: f64 = 0.035;
 pub(super) struct StretchBudget {
     pub(super) time_s: f64,
     pub(super) blocks: usize,
+    /// Those of them that are straight.
+    pub(super) lines: usize,
     /// Time constant of the position loop, s.
     pub(super) loop_s: f64,
 }
@@ -36,6 +40,12 @@ impl StretchBudget {
         let few = FEW_BLOCKS * blocks + (FEW_MORE_1 * self.time_s / self.loop_s).clamp(FEW_MORE[0], FEW_MORE[1]);
         let many = (MANY_BLOCKS * blocks).max(MANY_1_S * self.time_s + MANY_MORE);
         [few, if self.is_detail() { few } else { few.max(many) }]
+    }
+
+    /// How many it may have where fewer would do.
+    pub(super) fn most_fine_blocks(&self) -> f64 {
+        let chords = self.lines > CHORDS && 2 * self.lines > self.blocks;
+        if chords { self.blocks as f64 } else { self.most_blocks()[0] }
     }
 
     /// How long it may take, s.
@@ -93,7 +103,7 @@ mod tests {
 
     #[test]
     fn details_of_the_least_gain_for_a_block_are_given_up_until_there_is_room() {
-        let detail = StretchBudget { time_s: 0.01, blocks: 1, loop_s: 0.02 };
+        let detail = StretchBudget { time_s: 0.01, blocks: 1, lines: 1, loop_s: 0.02 };
         let cost = |gain_mm2: f64| StretchCost { budget: detail, blocks: 20.0, time_s: 0.01, gain_mm2: Some(gain_mm2) };
         // Three details and room for 30 blocks and a little: one of 20 may stay.
         assert_eq!(details_to_give_up(&[cost(2.0), cost(1.0), cost(3.0)], 0, 0.05), [1, 0]);

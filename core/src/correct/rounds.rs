@@ -3,16 +3,18 @@
 //! Each stretch is judged by itself: the tool rests at its ends, so that it does not see the others. The best command of each is kept, and a
 //! stretch whose command gets no better is left alone. One that is cut within [`GOOD_MM`] from the start stays as it is programmed.
 
-use super::arc_fit::{ArcFit, FitMotion};
+use std::iter;
+
+use super::arc_fit::{ArcFit, FitMotion, FitPoint};
 use super::budget::{StretchBudget, StretchCost, details_to_give_up};
 use super::command_update::{UpdateSettings, new_command};
 use super::exported::{CutRow, CutRows, ExportedCut};
 use super::loop_lag::{LoopLag, loop_lags};
-use super::slow_end::{SlowEnd, slow_approach, slow_end};
+use super::slow_end::{SlowEnd, slow_approach, slow_end, slow_last};
 use super::stretch_cut::{StretchCut, by_stretch, overshoot_mm, rapid_overshoot_mm};
 use super::stretches::{NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, rest_s, stretches};
 use super::target::TargetControl;
-use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind};
+use crate::gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Shape};
 use crate::machine::Machine;
 use crate::path::pieces::Pieces;
 use crate::path::{PathError, Step};
@@ -28,18 +30,20 @@ const CHECKS: u32 = 4;
 const LEAST_GAIN: f64 = 0.02;
 /// A stretch whose largest error is less stays as it is, mm: what blocks that fit a command miss it by.
 const GOOD_MM: f64 = 1e-3;
-/// Distance of blocks from the command, mm, and whether they may be many: the first at which they are few enough.
+/// Distance of blocks from the command, mm: the finest at which they are few enough, from this part of the RMS error that they are to correct and
+/// no less than this and a printed step, in steps of this factor.
+const FIT_SHARE: f64 = 0.04;
+const FINEST_MM: f64 = 1e-4;
+const COARSER: f64 = 1.25;
+/// Where no such distance is left, mm, and whether blocks may be many.
 const TOLERANCES_MM: [(f64, bool); 4] = [(1e-3, false), (2e-3, false), (1e-3, true), (4e-3, true)];
-/// Where blocks are few enough so, they are finer: by this part of the RMS error that they are to correct, and no less than this, mm.
-const FIT_SHARE: f64 = 0.1;
-const FINEST_MM: f64 = 2e-4;
 /// Standard deviations of the Gaussians over errors and over the command, time constants of the position loop.
 const SMOOTHING: f64 = 0.15;
-const COMMAND_SMOOTHING: f64 = 0.45;
+const COMMAND_SMOOTHING: f64 = 0.4;
 /// Time in which a change fades at the ends of a stretch, s.
 const FADE_S: f64 = 0.01;
 /// Least distance of points that blocks are fitted to, mm.
-const LEAST_MM: f64 = 0.01;
+const LEAST_MM: f64 = 0.005;
 /// A tool that runs over the end of a stretch, or of the rapid to it, by more goes there slowly, mm.
 const OVERSHOOT_MM: f64 = 2e-3;
 /// A dwell is three lags of the loop and five of its time constants, within these bounds, s.
@@ -146,6 +150,7 @@ impl RoundsBench<'_> {
         let approach = slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
         let done = cut.max_mm < GOOD_MM || cut.rows.is_empty();
         let time_s = f64::from(cut.periods) * servo_s;
+        let finest_mm = (1.0 / self.target.steps_per_mm()).clamp(FINEST_MM, TOLERANCES_MM[0].0);
         let programmed = NewMotions { motions: stretch.motions.clone(), approach, settles: false };
         StretchRounds {
             current: (!done).then_some(programmed),
@@ -155,10 +160,11 @@ impl RoundsBench<'_> {
             budget: StretchBudget {
                 time_s,
                 blocks: stretch.motions.len(),
+                lines: stretch.motions.iter().filter(|motion| motion.shape == Shape::Line).count(),
                 loop_s: 1.0 / self.cut.machine.slowest_kp_1_s(),
             },
             programmed_max_mm: cut.max_mm,
-            tolerance_mm: (FIT_SHARE * cut.rms_mm()).clamp(FINEST_MM, TOLERANCES_MM[0].0),
+            tolerance_mm: (FIT_SHARE * cut.rms_mm()).clamp(finest_mm, TOLERANCES_MM[0].0),
             square_sums_mm2: [cut.square_sum_mm2; 2],
             since: 0,
             slow_end: None,
@@ -181,18 +187,12 @@ impl RoundsBench<'_> {
                 state.slow_rapid = Some(state.slow_rapid.map_or(slow_end, SlowEnd::slower));
             }
             let points = new_command(rows, cut.rows.clone(), &self.lags, stretch, settings, state.slow_end);
-            let most = state.budget.most_blocks();
-            let fitted = points.and_then(|points| {
-                let finest = [(state.tolerance_mm, false)];
-                finest.iter().chain(&TOLERANCES_MM).find_map(|&(tolerance_mm, many)| {
-                    let motions = ArcFit::new(&points, tolerance_mm, self.target.steps_per_mm()).motions();
-                    let few_enough = !motions.is_empty() && motions.len() as f64 <= most[usize::from(many)];
-                    few_enough.then_some(motions)
-                })
-            });
+            let fitted = points.and_then(|points| state.fitted(&points, self.target.steps_per_mm()));
+            let fitted: Option<Vec<Motion>> = fitted
+                .map(|motions| motions.into_iter().map(|motion| as_motion(motion, stretch, self.target)).collect())
+                .or_else(|| slow_last(&stretch.motions, state.slow_end?, self.target));
             match fitted {
                 Some(motions) => {
-                    let motions = motions.into_iter().map(|motion| as_motion(motion, stretch, self.target)).collect();
                     let approach = state.slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
                     state.current = Some(NewMotions { motions, approach, settles: state.slow_end.is_some() });
                 }
@@ -278,6 +278,18 @@ impl StretchRounds {
         if self.since >= NO_GAIN {
             self.finish();
         }
+    }
+
+    /// Blocks along the points of a command, as fine as they may be; none where they would be too many.
+    fn fitted(&self, points: &[FitPoint], steps_per_mm: f64) -> Option<Vec<FitMotion>> {
+        let fine = iter::successors(Some(self.tolerance_mm), |mm| Some(COARSER * mm));
+        let fine = fine.take_while(|&mm| mm < TOLERANCES_MM[0].0).map(|mm| (mm, self.budget.most_fine_blocks()));
+        let [few, most] = self.budget.most_blocks();
+        let coarse = TOLERANCES_MM.map(|(mm, many)| (mm, if many { most } else { few }));
+        fine.chain(coarse).find_map(|(tolerance_mm, most)| {
+            let motions = ArcFit::new(points, tolerance_mm, steps_per_mm).motions();
+            (!motions.is_empty() && motions.len() as f64 <= most).then_some(motions)
+        })
     }
 
     fn finish(&mut self) {

@@ -6,15 +6,15 @@
 use super::arc_fit::FitPoint;
 use super::stretches::SmoothStretch;
 use super::target::TargetControl;
-use crate::gcode::canon::{Motion, MotionKind};
+use crate::gcode::canon::{Motion, MotionKind, Shape};
 use crate::machine::Machine;
 use crate::vector::{add_scaled, distance, norm, sub};
 
-/// A rapid is slowed down before its end where it is longer than what is slow by this factor.
-const LEAST_RAPID: f64 = 4.0;
+/// A straight motion is slowed down before its end where it is longer than what is slow by this factor.
+const LEAST_WAY: f64 = 4.0;
 /// Time constants of the loop in which it brakes from there, and that the slow way takes.
 const BRAKES_IN: f64 = 0.25;
-const SETTLES_IN: f64 = 3.0;
+const SETTLES_IN: f64 = 2.0;
 
 /// A slow way to an end that the tool would run over.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,14 +57,29 @@ pub(super) fn slow_end(machine: &Machine) -> SlowEnd {
 /// The rapid to a stretch, the last of it at the slow end's speed; none where it is not much longer.
 pub(super) fn slow_approach(stretch: &SmoothStretch, slow: SlowEnd, target: &TargetControl) -> Option<[Motion; 2]> {
     let (_, rapid) = stretch.rapid.as_ref()?;
-    let way = sub(rapid.end_mm, rapid.start_mm);
-    let length_mm = norm(way);
-    if length_mm < LEAST_RAPID * slow.length_mm {
-        return None;
+    slow.parted(rapid, target)
+}
+
+/// Programmed motions, the last of them slow at its end; none where that is no straight line, or not much longer.
+pub(super) fn slow_last(motions: &[Motion], slow: SlowEnd, target: &TargetControl) -> Option<Vec<Motion>> {
+    let (last, others) = motions.split_last().filter(|(last, _)| matches!(last.shape, Shape::Line))?;
+    Some(others.iter().cloned().chain(slow.parted(last, target)?).collect())
+}
+
+impl SlowEnd {
+    /// A straight motion in two, the second of them slow.
+    fn parted(self, motion: &Motion, target: &TargetControl) -> Option<[Motion; 2]> {
+        let way = sub(motion.end_mm, motion.start_mm);
+        let length_mm = norm(way);
+        if length_mm < LEAST_WAY * self.length_mm {
+            return None;
+        }
+        let steps_per_mm = target.steps_per_mm();
+        let printed = |value: f64| (value * steps_per_mm).round() / steps_per_mm;
+        let middle_mm = add_scaled(motion.end_mm, -self.length_mm / length_mm, way).map(printed);
+        let feed_mm_s =
+            if motion.kind == MotionKind::Feed { motion.feed_mm_s.min(self.speed_mm_s) } else { self.speed_mm_s };
+        let last = Motion { kind: MotionKind::Feed, start_mm: middle_mm, feed_mm_s, ..motion.clone() };
+        Some([Motion { end_mm: middle_mm, ..motion.clone() }, last])
     }
-    let steps_per_mm = target.steps_per_mm();
-    let printed = |value: f64| (value * steps_per_mm).round() / steps_per_mm;
-    let middle_mm = add_scaled(rapid.end_mm, -slow.length_mm / length_mm, way).map(printed);
-    let last = Motion { kind: MotionKind::Feed, start_mm: middle_mm, feed_mm_s: slow.speed_mm_s, ..rapid.clone() };
-    Some([Motion { end_mm: middle_mm, ..rapid.clone() }, last])
 }
