@@ -6,6 +6,8 @@ use feedwright::correct::{CorrectOutcome, TARGETS, TargetControl};
 use feedwright::gcode::suggestion::nearest;
 use miette::{Result, miette};
 
+use crate::terminal::wrapped;
+
 /// Largest tolerance that is no slip of the unit, um.
 const MAX_TOLERANCE_UM: f64 = 1e6;
 
@@ -41,7 +43,11 @@ pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) ->
         writeln!(out, "loops and subroutines are written out")?;
     }
     match &outcome.refusal {
-        Some(refusal) => writeln!(out, "no corrected program: {refusal}"),
+        Some(refusal) => writeln!(out, "{}", wrapped(&format!("no corrected program: {refusal}"), 2))?,
+        None => return Ok(()),
+    }
+    match &outcome.hint {
+        Some(hint) => writeln!(out, "{}", wrapped(&format!("  hint: {hint}"), 8)),
         None => Ok(()),
     }
 }

@@ -31,6 +31,7 @@
 //! | `block_words.rs` | motions and events as blocks |
 //! | `source_line.rs` | a line without its motion |
 //! | `program_text.rs` | the text |
+//! | `expanded_text.rs` | that of a program whose loops, subroutines and jumps are written out |
 //! | `verified.rs` | what the text says when it is read again |
 //! | `outcome.rs` | what came of it, and whether it is to be used |
 //! | `advise.rs` | the feedrates at which a tolerance is held |
@@ -52,6 +53,7 @@ mod rounds;
 mod block_words;
 mod source_line;
 mod program_text;
+mod expanded_text;
 mod verified;
 mod outcome;
 pub mod advise;
@@ -65,12 +67,12 @@ use crate::watch::Watch;
 use exported::ExportedCut;
 pub use nominal::deterministic;
 pub use outcome::CorrectOutcome;
-use outcome::{WrittenProgram, refusal};
+use outcome::{UnwrittenProgram, WrittenProgram, refusal};
 use program_text::TextParts;
 use rounds::{RoundsResult, rounds, steps_of};
 use source::SourceProgram;
 use stretches::{ProgramPart, assembled, parts, stretches};
-pub use target::{TARGETS, TargetControl};
+pub use target::{MacroLanguage, TARGETS, TargetControl};
 
 /// A program, a machine, and a control that the corrected program is for.
 #[derive(Debug, Clone)]
@@ -110,6 +112,10 @@ impl CorrectJob {
         watch.begin("cutting the original", 1);
         let uncorrected = on(&self.machine).figures(&original).map_err(of_run)?;
         let written = self.written(&source, &parts, &found);
+        let (written, unwritten) = match written {
+            Ok(written) => (Some(written), None),
+            Err(fault) => (None, Some(fault)),
+        };
         watch.begin("cutting as exported", 1);
         let corrected =
             written.as_ref().map(|written| on(&self.machine).figures(&written.steps).map_err(of_run)).transpose()?;
@@ -117,7 +123,8 @@ impl CorrectJob {
         Ok(CorrectOutcome {
             control: self.target.name,
             planner: stages.planner.name,
-            refusal: refusal(&uncorrected, corrected.as_ref(), changed),
+            refusal: refusal(&uncorrected, corrected.as_ref(), changed, unwritten.as_ref()),
+            hint: unwritten.and_then(|fault| fault.hint()),
             original: uncorrected,
             corrected: corrected.unwrap_or(uncorrected),
             stretches: stretches(&parts).count(),
@@ -132,8 +139,13 @@ impl CorrectJob {
         })
     }
 
-    /// A text that says what was found, with as many lines of the original as can be; none where no text does.
-    fn written(&self, source: &SourceProgram, parts: &[ProgramPart], found: &RoundsResult) -> Option<WrittenProgram> {
+    /// A text that says what was found, with as many lines of the original as can be.
+    fn written(
+        &self,
+        source: &SourceProgram,
+        parts: &[ProgramPart],
+        found: &RoundsResult,
+    ) -> Result<WrittenProgram, UnwrittenProgram> {
         let RoundsResult { commands, dwell_s, .. } = found;
         let notes = [
             format!("corrected by feedwright for the machine {}, control {}", self.machine.name, self.target.name),
@@ -142,17 +154,21 @@ impl CorrectJob {
         let text = TextParts { source, parts, commands, dwell_s: *dwell_s, target: self.target, notes: &notes };
         let wanted = assembled(parts, commands, *dwell_s);
         let step_mm = 1.0 / self.target.steps_per_mm();
-        let try_one = |text: Option<String>, expanded: bool| {
-            let text = text?;
-            let fits = text
-                .lines()
-                .all(|line| line.len() <= self.target.columns || source.lines.iter().any(|kept| kept == line));
-            let (read, modes) = verified::read(&text, &self.reader, source.dialect)?;
-            let steps = steps_of(&read).ok()?;
+        let checked = |text: String, expanded: bool| {
+            let is_own = |line: &str| source.lines.iter().any(|kept| kept == line);
+            if text.lines().any(|line| line.len() > self.target.columns && !is_own(line)) {
+                return Err(UnwrittenProgram::Columns(self.target.columns));
+            }
+            let (read, modes) =
+                verified::read(&text, &self.reader, source.dialect).ok_or(UnwrittenProgram::ReadOtherwise)?;
+            let steps = steps_of(&read).map_err(|_| UnwrittenProgram::ReadOtherwise)?;
             let frames = verified::same_frames(read.iter().zip(&modes), source.steps_and_modes());
-            let same = fits && frames && verified::same(&read, &wanted, step_mm);
-            same.then_some(WrittenProgram { text, steps, expanded })
+            let same = frames && verified::same(&read, &wanted, step_mm);
+            if same { Ok(WrittenProgram { text, steps, expanded }) } else { Err(UnwrittenProgram::ReadOtherwise) }
         };
-        try_one(text.kept(), false).or_else(|| try_one(text.expanded(), true))
+        if let Some(Ok(written)) = text.kept().map(|text| checked(text, false)) {
+            return Ok(written);
+        }
+        checked(text.expanded().map_err(UnwrittenProgram::Line)?, true)
     }
 }

@@ -56,7 +56,7 @@ fn a_circle_is_cut_open_loop_with_a_twentieth_of_its_error_for_every_control() {
         // Steps of 1 um are as large as what is left.
         let part = if target.decimals > 3 { 0.05 } else { 0.1 };
         assert!(is.rms_um < part * was.rms_um && is.max_um < 2.0 * part * was.max_um, "{name}: {is:?} {was:?}");
-        assert!(is.time_s < 1.04 * was.time_s && is.blocks < 31, "{name}: {is:?} {was:?}");
+        assert!(is.time_s < 1.04 * was.time_s && is.blocks <= 31, "{name}: {is:?} {was:?}");
         assert!(outcome.program().unwrap().lines().all(|line| line.len() <= target.columns));
     }
 }
@@ -134,6 +134,47 @@ fn a_program_that_is_written_out_stays_in_the_coordinates_of_its_places() {
     let hidden = "G21 G90 G64 F2400\n#1=0\no1 while [#1 LT 2]\nG92 X#1\nG2 X#1 Y0 I6 J0\n#1=[#1+1]\no1 endwhile\nM2\n";
     let outcome = corrected(hidden, &TARGETS[0]);
     assert!(outcome.program().is_none() && outcome.refusal.unwrap().contains("cannot be written"));
+}
+
+#[test]
+fn a_subroutine_is_written_out_behind_the_offsets_of_its_call_wherever_it_stands() {
+    let head = "G21 G90 G64 F2400\nG55\nT1 M6\n";
+    let subroutine = "o100 sub\nG91\nG1 X10\nG3 X10 Y10 J10\nG90\no100 endsub\n";
+    let calls = "G0 X0 Y0\nG43 H1\no100 call\nG0 X0 Y30\nG49\no100 call\n";
+    let grbl = TargetControl::find("grbl").unwrap();
+    for text in [
+        format!("{subroutine}{head}{calls}M2\n"),
+        format!("{head}{subroutine}{calls}M2\n"),
+        format!("{head}{calls}M2\n{subroutine}"),
+    ] {
+        let outcome = corrected(&text, grbl);
+        let program = outcome.program().unwrap();
+        assert!(outcome.expanded && !program.contains("o100"), "{program}");
+        // The length of the tool is the control's: here it is 0.
+        let places =
+            ["\nG55\n", "\nT1\n", "\nM6\n", "\nG43 H1\n", "\nG49\n", "\nM2\n"].map(|words| program.find(words));
+        assert!(places.iter().all(Option::is_some) && places.is_sorted(), "{places:?}\n{program}");
+        assert_eq!(end(program), end(&text));
+    }
+    // Where it is called once, LinuxCNC may keep it, and grbl has no subroutines.
+    let once = format!("{subroutine}G21 G90 G64 F2400\nG55\no100 call\nM2\n");
+    assert!(corrected(&once, &TARGETS[0]).program().unwrap().contains("o100 call"));
+    assert!(!corrected(&once, grbl).program().unwrap().contains("o100"));
+}
+
+#[test]
+fn a_line_that_cannot_be_written_out_is_named_with_a_remedy() {
+    let text =
+        "G21 G90 G64 F2400\n#1=0\no1 while [#1 LT 2]\nG0 X0 Y0\nG92 X#1\nG2 X#1 Y0 I6 J0\n#1=[#1+1]\no1 endwhile\nM2\n";
+    let outcome = corrected(text, &TARGETS[0]);
+    assert!(outcome.refusal.unwrap().contains("line 6 has offsets that are no plain numbers"));
+    assert!(outcome.hint.unwrap().contains("with numbers in place of parameters"));
+    // What a cut is in the middle of keeps its offsets.
+    let within = "G21 G90 G64 F2400\nG0 X0 Y0\nG2 X0 Y0 I6 J0\nG43 H1\nG2 X0 Y0 I6 J0\nM2\n";
+    let outcome = corrected(within, &TARGETS[0]);
+    assert!(
+        outcome.program().is_none() && outcome.refusal.unwrap().contains("line 3 has a cut in which offsets change")
+    );
 }
 
 #[test]

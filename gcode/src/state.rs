@@ -52,6 +52,10 @@ pub(crate) struct Output {
     pub(crate) motions: u64,
     /// Warnings of the line under way.
     pub(crate) warnings: Vec<LineFault>,
+    /// Whether the line under way writes offsets or puts others in force.
+    pub(crate) line_sets_offsets: bool,
+    /// Text of the lines that did, since the last step was fetched.
+    pub(crate) offset_lines: Vec<String>,
 }
 
 /// What the lines so far have left; `motion`, `dialects` and `flow` carry blocks out on it.
@@ -137,6 +141,7 @@ impl Interpreter {
     /// Finds the programmed position again after offsets have changed: the machine has not moved.
     pub(crate) fn offsets_changed(&mut self) {
         self.at = self.frame.to_program(&self.here);
+        self.output.line_sets_offsets = true;
     }
 
     /// Programmed position in the unit of the program.

@@ -1,7 +1,10 @@
 //! What came of a correction, and why a program is not to be used.
 
+use std::fmt;
+
 use serde::Serialize;
 
+use super::expanded_text::UnwritableLine;
 use super::exported::ExportedFigures;
 use crate::gcode::Diagnostic;
 use crate::path::Step;
@@ -22,6 +25,9 @@ pub struct CorrectOutcome {
     pub planner: &'static str,
     /// Why there is no program.
     pub refusal: Option<String>,
+    /// A remedy, where there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hint: Option<String>,
     /// The original as the control cuts it.
     pub original: ExportedFigures,
     /// The corrected program as the control cuts it, read from its own text.
@@ -59,6 +65,43 @@ pub(crate) struct WrittenProgram {
     pub(super) expanded: bool,
 }
 
+/// Why there is no text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) enum UnwrittenProgram {
+    /// A line of the original.
+    Line(UnwritableLine),
+    /// Longer lines than the control takes.
+    Columns(usize),
+    /// What was written does not mean the same when it is read again.
+    ReadOtherwise,
+}
+
+impl UnwrittenProgram {
+    /// A remedy, where there is one.
+    pub(super) fn hint(&self) -> Option<String> {
+        match self {
+            Self::Line(UnwritableLine { hint, .. }) => Some((*hint).to_owned()),
+            Self::Columns(_) | Self::ReadOtherwise => None,
+        }
+    }
+}
+
+impl fmt::Display for UnwrittenProgram {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Line(UnwritableLine { line, what, .. }) => {
+                write!(f, "line {line} has {what}, which a program without loops and subroutines cannot say here")
+            }
+            Self::Columns(columns) => write!(f, "blocks of it are longer than {columns} characters"),
+            Self::ReadOtherwise => write!(
+                f,
+                "what was written does not mean the same when it is read again: lathe modes, cutter compensation or feeds other than G94 between the \
+                 corrected motions"
+            ),
+        }
+    }
+}
+
 impl CorrectOutcome {
     /// The text of the corrected program, where it is better.
     pub fn program(&self) -> Option<&str> {
@@ -66,20 +109,20 @@ impl CorrectOutcome {
     }
 }
 
-/// Why a corrected program is not to be used: by the figures of the original and of its text, none where no text could be written.
+/// Why a corrected program is not to be used: by the figures of the original and of its text, or by what keeps it from being written.
 pub(super) fn refusal(
     original: &ExportedFigures,
     corrected: Option<&ExportedFigures>,
     changed: usize,
+    unwritten: Option<&UnwrittenProgram>,
 ) -> Option<String> {
     if changed == 0 {
         return Some("no stretch of the program gets better by another command".to_owned());
     }
-    let Some(ExportedFigures { rms_um, max_um, uncut_um, completed, .. }) = corrected else {
-        let kept =
-            "axes beside X, Y and Z, threads, probing, splines or lathe modes between loops or compensated motions";
-        return Some(format!("the corrected program cannot be written in blocks of the control: {kept}"));
-    };
+    if let Some(fault) = unwritten {
+        return Some(format!("the corrected program cannot be written: {fault}"));
+    }
+    let ExportedFigures { rms_um, max_um, uncut_um, completed, .. } = corrected?;
     if !completed {
         return Some("the servo loop is unstable".to_owned());
     }

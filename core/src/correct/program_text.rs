@@ -2,18 +2,18 @@
 //!
 //! Where every line of the original is carried out once and in its order, all lines stay but those of the stretches that have another
 //! command: comments, cycles, rapids, tool changes and line numbers are the original's, and new blocks are written in the coordinates,
-//! the unit and the modes of their place. Otherwise (loops, subroutines, jumps) the program is expanded: each motion and event is
-//! written as it is carried out, in the coordinates of its place, with a comment that says so. What is written is read again by [`super::verified`].
+//! the unit and the modes of their place. Otherwise (loops, subroutines, jumps) the program is [expanded](super::expanded_text). What is written is
+//! read again by [`super::verified`].
 
 use std::collections::BTreeMap;
 
-use super::block_words::{BlockWords, dwell, event, feed_number};
+use super::block_words::{BlockWords, dwell, feed_number};
 use super::source::SourceProgram;
-use super::source_line::{PartedLine, with_feed, with_word};
+use super::source_line::{PartedLine, has_macros, with_feed, with_word};
 use super::stretches::{ProgramPart, StretchCommand, dwells, stretches};
 use super::target::TargetControl;
 use crate::gcode::ModesInForce;
-use crate::gcode::canon::{Canon, Corner, EventKind, Motion, MotionKind, Plane, Shape};
+use crate::gcode::canon::{Canon, Corner, Motion, MotionKind, Plane, Shape};
 
 /// What the text is made of.
 pub(super) struct TextParts<'a> {
@@ -34,13 +34,6 @@ struct LineEdit {
     text: Vec<String>,
 }
 
-/// What an expanded program has put in force.
-#[derive(Debug)]
-struct PlaceWords {
-    unit_mm: f64,
-    corner: Option<Corner>,
-}
-
 /// Words that the next line that moves has to say itself, since a line that said them has been replaced.
 #[derive(Debug, Default)]
 struct NeededWords {
@@ -48,7 +41,7 @@ struct NeededWords {
     feed: bool,
 }
 
-fn line_of(step: &Canon) -> usize {
+pub(super) fn line_of(step: &Canon) -> usize {
     match step {
         Canon::Motion(motion) => motion.line as usize,
         Canon::Event(event) => event.line as usize,
@@ -56,11 +49,13 @@ fn line_of(step: &Canon) -> usize {
 }
 
 impl TextParts<'_> {
-    /// The original with new blocks in place of those that have another command; none where its lines are not carried out in their order, or
-    /// a line that is to be replaced cannot be taken apart.
+    /// The original with new blocks in place of those that have another command; none where its lines are not carried out in their order, the control
+    /// does not run its macros, or a line that is to be replaced cannot be taken apart.
     pub(super) fn kept(&self) -> Option<String> {
         let steps = &self.source.steps;
-        if !steps.is_sorted_by_key(line_of) {
+        let runs =
+            self.target.runs_macros_of(self.source.dialect) || !self.source.lines.iter().any(|line| has_macros(line));
+        if !runs || !steps.is_sorted_by_key(line_of) {
             return None;
         }
         let mut edits: BTreeMap<usize, LineEdit> = BTreeMap::new();
@@ -169,7 +164,8 @@ impl TextParts<'_> {
         let steps = &self.source.steps;
         let (from, to) = (line_of(&steps[first]), line_of(&steps[last]));
         let (modes, at_end) = (self.source.modes(first), self.source.modes(last));
-        if modes != at_end || modes.changes_coordinates || !modes.feed_per_minute {
+        let as_first = modes == at_end && !self.source.sets_offsets_within([first, last]);
+        if !as_first || modes.changes_coordinates || !modes.feed_per_minute {
             return None;
         }
         let (mut before, mut behind) = (Vec::new(), Vec::new());
@@ -205,99 +201,8 @@ impl TextParts<'_> {
         Some(LineEdit { to, text })
     }
 
-    /// Every motion and event as it is carried out, in the unit and the coordinates of its place; none where one of them cannot be said.
-    pub(super) fn expanded(&self) -> Option<String> {
-        let mut text = vec!["(expanded: loops, subroutines and jumps are written out)".to_owned()];
-        text.push("G17 G90 G94".to_owned());
-        let mut places = PlaceWords { unit_mm: 0.0, corner: None };
-        let mut next = 0;
-        let mut number = 0;
-        let mut ends = false;
-        for part in self.parts {
-            let step = next;
-            match part {
-                ProgramPart::Kept(Canon::Event(kind)) => {
-                    next += 1;
-                    text.extend(self.place(step, &mut places)?);
-                    text.push(event(&kind.kind, self.source.dialect)?);
-                    ends |= kind.kind == EventKind::ProgramEnd;
-                }
-                ProgramPart::Kept(Canon::Motion(motion)) => {
-                    next += 1;
-                    text.extend(self.place(step, &mut places)?);
-                    self.put_motions(step, std::slice::from_ref(motion), &mut places, &mut text)?;
-                }
-                ProgramPart::Stretch(stretch) => {
-                    next += stretch.motions.len();
-                    let [before, behind] = dwells(self.parts, self.commands, number, self.dwell_s);
-                    let command = self.commands[number].as_ref();
-                    number += 1;
-                    text.extend(self.place(step, &mut places)?);
-                    if let Some(approach) = command.and_then(|command| command.approach.as_ref()) {
-                        // What stands behind the rapid stays behind it.
-                        let at = text.iter().rposition(|line| line.starts_with("G0 "))?;
-                        let behind = text.split_off(at + 1);
-                        text.pop();
-                        self.put_motions(step, approach, &mut places, &mut text)?;
-                        text.extend(behind);
-                    }
-                    text.extend(before.map(|seconds| dwell(seconds, self.source.dialect)));
-                    let motions = command.map_or(&stretch.motions, |command| &command.motions);
-                    self.put_motions(step, motions, &mut places, &mut text)?;
-                    text.extend(behind.map(|seconds| dwell(seconds, self.source.dialect)));
-                }
-            }
-        }
-        text.extend((!ends).then(|| "M2".to_owned()));
-        text.retain(|line| !line.is_empty());
-        self.put_notes(&mut text);
-        Some(joined(&text))
-    }
-
-    /// Blocks of motions in the modes of a step.
-    fn put_motions(
-        &self,
-        step: usize,
-        motions: &[Motion],
-        places: &mut PlaceWords,
-        text: &mut Vec<String>,
-    ) -> Option<()> {
-        let mut words = BlockWords::new(self.target, Some(self.source.modes(step)));
-        for motion in motions {
-            if motion.kind == MotionKind::Feed && places.corner != Some(motion.corner) {
-                text.push(corner_words(motion.corner));
-                places.corner = Some(motion.corner);
-            }
-            text.push(words.motion(motion)?);
-        }
-        Some(())
-    }
-
-    /// The unit of a step, and the words that put its coordinates in force, where they are not those of the step before; none where no line between says
-    /// them in plain words.
-    fn place(&self, step: usize, places: &mut PlaceWords) -> Option<Vec<String>> {
-        let (modes, before) = (self.source.modes(step), self.source.modes_before(step));
-        let mut text = Vec::new();
-        if places.unit_mm != modes.unit_mm {
-            places.unit_mm = modes.unit_mm;
-            text.push(if modes.unit_mm > 1.0 { "G20" } else { "G21" }.to_owned());
-        }
-        if !modes.same_frame(before) {
-            let to = line_of(&self.source.steps[step]);
-            let from = step.checked_sub(1).map_or(0, |before| line_of(&self.source.steps[before]));
-            let lines = if from < to { from + 1..to + 1 } else { to..to + 1 };
-            let words = lines.filter_map(|line| PartedLine::parse(self.source.lines.get(line - 1)?)?.frame_words());
-            let words: Vec<String> = words.collect();
-            if words.is_empty() {
-                return None;
-            }
-            text.extend(words);
-        }
-        Some(text)
-    }
-
     /// Notes as comments behind `%` and the program's number.
-    fn put_notes(&self, text: &mut Vec<String>) {
+    pub(super) fn put_notes(&self, text: &mut Vec<String>) {
         let head = |line: &&String| {
             let line = line.trim_start();
             line.is_empty() || line.starts_with('%') || line.starts_with(['O', 'o']) && !line.contains(' ')
@@ -308,11 +213,11 @@ impl TextParts<'_> {
     }
 }
 
-fn joined(lines: &[String]) -> String {
+pub(super) fn joined(lines: &[String]) -> String {
     lines.iter().map(|line| format!("{line}\n")).collect()
 }
 
-fn corner_words(corner: Corner) -> String {
+pub(super) fn corner_words(corner: Corner) -> String {
     match corner {
         Corner::ExactStop => "G61.1".to_owned(),
         Corner::ExactPath => "G61".to_owned(),

@@ -1,5 +1,6 @@
 //! A program with its text, and the modes in force behind each step.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use crate::gcode::canon::{Canon, MotionKind};
@@ -21,6 +22,8 @@ pub(super) struct SourceProgram {
     modes: Vec<ModesInForce>,
     /// Which of them are in force behind each step.
     in_force: Vec<usize>,
+    /// Text of the lines before a step that set offsets, for those steps that have any.
+    offset_lines: BTreeMap<usize, Vec<String>>,
 }
 
 impl SourceProgram {
@@ -30,7 +33,11 @@ impl SourceProgram {
         let mut reader = Reader::open(part, settings.clone())?;
         let (dialect, start) = (reader.dialect().0, reader.modes());
         let (mut steps, mut modes, mut in_force) = (Vec::new(), Vec::<ModesInForce>::new(), Vec::new());
+        let mut offset_lines = BTreeMap::new();
         while let Some(Ok(mut step)) = reader.next() {
+            if !reader.offset_lines().is_empty() {
+                offset_lines.insert(steps.len(), reader.offset_lines().to_vec());
+            }
             if let (Canon::Motion(motion), Some(feed_mm_s)) = (&mut step, feed_mm_s)
                 && motion.kind == MotionKind::Feed
             {
@@ -44,12 +51,22 @@ impl SourceProgram {
             steps.push(step);
         }
         let lines = String::from_utf8_lossy(&bytes).lines().map(str::to_owned).collect();
-        Ok(Self { lines, steps, dialect, feed_mm_s, start, modes, in_force })
+        Ok(Self { lines, steps, dialect, feed_mm_s, start, modes, in_force, offset_lines })
     }
 
     /// The steps, each with the modes behind it.
     pub(super) fn steps_and_modes(&self) -> impl Iterator<Item = (&Canon, &ModesInForce)> {
         self.steps.iter().zip(self.in_force.iter().map(|&modes| &self.modes[modes]))
+    }
+
+    /// The lines, carried out between the step before and this one, that write offsets or put others in force.
+    pub(super) fn offset_lines(&self, step: usize) -> &[String] {
+        self.offset_lines.get(&step).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether offsets are written or put in force behind the first of some steps and before the last.
+    pub(super) fn sets_offsets_within(&self, [first, last]: [usize; 2]) -> bool {
+        self.offset_lines.range(first + 1..).next().is_some_and(|(&step, _)| step <= last)
     }
 
     /// Modes before a step.

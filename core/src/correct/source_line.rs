@@ -101,6 +101,39 @@ impl PartedLine {
     }
 }
 
+/// Whether a line has words of a macro language: O-words, statements, parameters or expressions. `O1000` alone is a program's number.
+pub(super) fn has_macros(line: &str) -> bool {
+    let words = line.split([';']).next().unwrap_or_default();
+    let mut depth = 0;
+    let bare: String = words
+        .chars()
+        .filter(|&c| {
+            depth += i32::from(c == '(');
+            let shown = depth == 0;
+            depth -= i32::from(c == ')');
+            shown
+        })
+        .collect();
+    let bare = bare.trim().to_ascii_lowercase();
+    let bare = bare.trim_start_matches('/').trim_start();
+    let is_number = |text: &str| text.trim().chars().all(|c| c.is_ascii_digit());
+    let words =
+        bare.strip_prefix('n').map_or(bare, |rest| rest.trim_start_matches(|c: char| c.is_ascii_digit() || c == ' '));
+    let has_o_word = words.strip_prefix('o').is_some_and(|rest| !is_number(rest));
+    has_o_word || bare.contains(['#', '[']) || calls_or_jumps(words)
+}
+
+/// M97 to M99, G65 and GOTO.
+fn calls_or_jumps(words: &str) -> bool {
+    let compact: String = words.chars().filter(|c| !c.is_whitespace()).collect();
+    let has_code = |code: &str| {
+        compact
+            .match_indices(code)
+            .any(|(at, _)| !compact[at + code.len()..].starts_with(|c: char| c.is_ascii_digit() || c == '.'))
+    };
+    ["m97", "m98", "m99", "g65"].iter().any(|code| has_code(code)) || compact.contains("goto")
+}
+
 /// A line with one word more behind its words.
 pub(super) fn with_word(line: &str, word: &str) -> String {
     let words = line.find(['(', ';']).unwrap_or(line.len());
@@ -149,6 +182,25 @@ mod tests {
         assert!(PartedLine::parse("G28 Z0").unwrap().has_code());
         for refused in ["#1=5", "G1 X[1+2]", "/G1 X1", "o100 call", "G1 X#5", "%"] {
             assert_eq!(PartedLine::parse(refused), None, "{refused}");
+        }
+    }
+
+    #[test]
+    fn words_of_a_macro_language_are_seen_and_comments_are_not() {
+        for line in [
+            "o100 sub",
+            "N5 o<part> call",
+            "#1=5",
+            "G1 X[1+2]",
+            "M98 P100",
+            "n10 g65 p9000",
+            "M99",
+            "IF [#1 GT 2] GOTO 5",
+        ] {
+            assert!(has_macros(line), "{line}");
+        }
+        for line in ["O1000", "G1 X5 (o100 call #1)", "M9", "G1 X1 ; [", "%", "", "N10 G54 M8"] {
+            assert!(!has_macros(line), "{line}");
         }
     }
 

@@ -4,6 +4,7 @@
 //! a control is one row.
 
 use crate::feed;
+use crate::gcode::Dialect;
 use crate::gcode::canon::Corner;
 use crate::job_error::JobError;
 use crate::machine::Machine;
@@ -24,6 +25,21 @@ pub struct TargetControl {
     pub columns: usize,
     /// Decimals of a coordinate in mm.
     pub decimals: u32,
+    /// Loops, subroutines and parameters that it runs.
+    pub macros: MacroLanguage,
+}
+
+/// In which words a control takes loops, subroutines and parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MacroLanguage {
+    /// In those of the program: it is the control that the program was written for.
+    OfProgram,
+    /// O-words, as LinuxCNC.
+    OWords,
+    /// Custom macro B, M98 and M99.
+    Fanuc,
+    /// In none.
+    None,
 }
 
 /// All of them; the first is the one to take when nobody chooses.
@@ -35,6 +51,7 @@ pub const TARGETS: &[TargetControl] = &[
         corner: None,
         columns: 120,
         decimals: 5,
+        macros: MacroLanguage::OfProgram,
     },
     TargetControl {
         name: "linuxcnc",
@@ -43,6 +60,7 @@ pub const TARGETS: &[TargetControl] = &[
         corner: Some(Corner::Continuous { tolerance_mm: Some(0.001), merge_mm: Some(0.0) }),
         columns: 120,
         decimals: 5,
+        macros: MacroLanguage::OWords,
     },
     TargetControl {
         name: "grbl",
@@ -51,6 +69,7 @@ pub const TARGETS: &[TargetControl] = &[
         corner: None,
         columns: 80,
         decimals: 4,
+        macros: MacroLanguage::None,
     },
     TargetControl {
         name: "fanuc",
@@ -59,6 +78,7 @@ pub const TARGETS: &[TargetControl] = &[
         corner: None,
         columns: 120,
         decimals: 3,
+        macros: MacroLanguage::Fanuc,
     },
 ];
 
@@ -85,6 +105,16 @@ impl TargetControl {
             return Err(JobError::NoAxisLimits { control: self.name, machine: machine.name.clone() });
         }
         Ok(stages)
+    }
+
+    /// Whether it runs loops, subroutines and parameters as a program of a dialect has them.
+    pub(super) const fn runs_macros_of(&self, dialect: Dialect) -> bool {
+        match self.macros {
+            MacroLanguage::OfProgram => true,
+            MacroLanguage::OWords => !dialect.is_fanuc(),
+            MacroLanguage::Fanuc => dialect.is_fanuc(),
+            MacroLanguage::None => false,
+        }
     }
 
     /// Printed steps in a millimetre.

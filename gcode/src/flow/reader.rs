@@ -132,6 +132,12 @@ impl Reader {
         ModesInForce::of(&self.interpreter)
     }
 
+    /// Text of the lines that were carried out between the step before the last and the last, and that write offsets or put others in force: G10, G43,
+    /// G54, G92 and the like, whatever their values.
+    pub fn offset_lines(&self) -> &[String] {
+        &self.interpreter.output.offset_lines
+    }
+
     /// Warnings so far, at most as many as [`Settings::max_errors`].
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.warnings
@@ -279,7 +285,11 @@ impl Reader {
         if block.code(Group::NonModal).is_some_and(|word| word.number == OWN + 650) {
             return flow.call_macro(block, interpreter);
         }
+        interpreter.output.line_sets_offsets = block.names_offsets();
         interpreter.execute(block)?;
+        if interpreter.output.line_sets_offsets {
+            interpreter.output.offset_lines.push(String::from_utf8_lossy(bytes).into_owned());
+        }
         if let Some(wanted) = interpreter.fanuc.wanted.take() {
             flow.begin_own_profile(*wanted, interpreter)?;
         }
@@ -412,6 +422,7 @@ impl Iterator for Reader {
 
     #[inline]
     fn next(&mut self) -> Option<Self::Item> {
+        self.interpreter.output.offset_lines.clear();
         loop {
             if let Some(canon) = self.interpreter.output.steps.pop_front() {
                 return Some(Ok(canon));

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use crate::text::block::corner::CornerWord;
 use crate::text::characters::not_ascii;
-use crate::text::codes::fanuc::{CodeSet, LATHE_OWN, SYSTEM_A};
+use crate::text::codes::fanuc::{CodeSet, LATHE_OWN, OWN, SYSTEM_A};
 use crate::text::codes::{self, AXES, GROUPS, Group, bit, letter, slot};
 use crate::text::diagnostic::{LineFault, Read, Short};
 use crate::text::expression::{Evaluator, INTEGER_WITHIN, ParameterSource, Target};
@@ -170,6 +170,12 @@ impl Block {
     #[inline]
     pub(crate) const fn code(&self, group: Group) -> Option<Word> {
         self.group[group as usize]
+    }
+
+    /// Whether it has G10, or a code that puts a coordinate system or the length of a tool in force.
+    pub(crate) fn names_offsets(&self) -> bool {
+        let writes = self.code(Group::NonModal).is_some_and(|word| word.number % OWN == 100);
+        writes || self.code(Group::Coordinates).is_some() || self.code(Group::ToolLength).is_some()
     }
 
     /// Reads the words from the cursor to the end of the line.
