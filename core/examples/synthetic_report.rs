@@ -9,7 +9,7 @@ use std::io::{self, BufWriter};
 use std::path::Path;
 
 use feedwright::path::signed_distance_mm;
-use feedwright::report::{Report, ReportedRun, RunFacts, Series, Statistics, TimelineEvent, write_html};
+use feedwright::report::{Assumptions, Report, ReportedRun, RunFacts, Series, Statistics, TimelineEvent, write_html};
 use feedwright::trace::{Commanded, Row, Sink};
 
 const DT_S: f64 = 1e-3;
@@ -164,12 +164,11 @@ fn main() -> io::Result<()> {
     ];
     for job in &jobs {
         let report = Report {
-            assumed: feedwright::report::Assumptions::default(),
+            assumed: Assumptions { machine: "a lag that was made up".to_owned(), ..Assumptions::default() },
             title: format!("{} <b>&</b>", job.name),
             part: format!("{}.ngc", job.name),
             machine: vec![("axes".to_owned(), job.axes.to_string()), ("servo period".to_owned(), "1 ms".to_owned())],
             settings: vec![("controllers".to_owned(), "open loop, less lag".to_owned())],
-            simulated: vec!["a lag that was made up".to_owned()],
             program: Vec::new(),
             circles: Vec::new(),
             tolerance_um: Some(20.0),

@@ -36,6 +36,7 @@
 //! | `outcome.rs` | what came of it, and whether it is to be used |
 //! | `advise.rs` | the feedrates at which a tolerance is held |
 //! | `advise/feed_cuts.rs` | a program at other feedrates |
+//! | `advise/feed_search.rs` | the search of the feedrates that hold |
 //! | `advise/page.rs` | its figure and its page |
 
 mod nominal;

@@ -10,7 +10,6 @@
 //! | `job/record.rs` | what it keeps of the rows of a run |
 //! | `job/exported.rs` | the corrected program for a control without feedback |
 //! | `job/report.rs` | what the page shows |
-//! | `job/simulated.rs` | the machine in sentences for it |
 //! | `job/listing.rs` | lines of the program for it |
 //! | `job/stored.rs` | how it is serialised |
 
@@ -20,7 +19,6 @@ mod record;
 mod exported;
 mod report;
 mod listing;
-mod simulated;
 mod stored;
 
 use std::path::PathBuf;

@@ -49,8 +49,6 @@ pub struct Report {
     pub settings: Vec<(String, String)>,
     /// What the figures rest on.
     pub assumed: Assumptions,
-    /// What is simulated of the machine, what is not, and what the controller was given of it, a sentence each.
-    pub simulated: Vec<String>,
     /// Lines of the program, in their order; not all of a long one.
     pub program: Vec<ProgramLine>,
     /// The full circles of the program.

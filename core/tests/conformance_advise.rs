@@ -6,7 +6,7 @@ use std::path::Path;
 
 use feedwright::controllers::{BEST, Choices, Entry};
 use feedwright::correct::TARGETS;
-use feedwright::correct::advise::{Advice, AdviseJob, CutWay};
+use feedwright::correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
 use feedwright::gcode::Settings;
 use feedwright::job::JobError;
 use feedwright::machine::Machine;
@@ -70,6 +70,18 @@ fn what_is_advised_holds_and_the_page_says_so() {
 fn what_no_feedrate_holds_is_said_and_a_program_that_cuts_nothing_is_refused() {
     let out_of_reach = advice("G21 G90 G64\nG2 X0 Y0 I1 J0 F1800\nM2\n", 0.001).unwrap();
     assert!(!out_of_reach.holds() && out_of_reach.stretches[0].holds_mm_s == [None; 3], "{out_of_reach:?}");
+    // A machine with feedforward runs over the end of a rapid whatever the feed is: the feed that holds on the way is told beside.
+    let folder = tempfile::tempdir().unwrap();
+    let part = folder.path().join("part.ngc");
+    std::fs::write(&part, "G21 G90 G64\nG0 X30\nG3 X30 Y0 I-8 J0 F3000\nM2\n").unwrap();
+    let machine = Machine::load("stiff".as_ref()).unwrap();
+    let overrun = AdviseJob { machine, controller: Entry::find("feedforward").unwrap(), ..job(&part, TOLERANCE_UM) }.run(&()).unwrap();
+    let nearest = overrun.ways[0].nearest.unwrap();
+    assert_eq!((overrun.ways[0].whole, nearest.lines, nearest.place), (None, [3, 3], ErrorPlace::Start));
+    let sentence = nearest.sentence("um", overrun.programmed_mm_s[1]);
+    assert!(sentence.contains("where line 3 begins; beside the ends of stretches at"), "{sentence}");
+    assert!(overrun.stretches[0].cell(0).starts_with('(') && overrun.ways[1].whole.is_some(), "{overrun:?}");
+    assert!(overrun.stretches[0].remark("um").unwrap().ends_with("um, start"), "{overrun:?}");
     let error = advice("G21 G0 X5\nM2\n", 10.0).unwrap_err();
     assert!(error.to_string().ends_with("has no feed motion: there is nothing to cut"), "{error}");
 }

@@ -97,7 +97,7 @@ fn the_headline_tells_the_cost_and_a_log_has_no_torque() {
     {
         assert!(simulated.contains(text), "{text}");
     }
-    assert!(simulated.contains("Assumed of the machine"));
+    assert!(simulated.contains("<b>Assumed</b> the machine is"));
     let report = report_with_log(2, 2000);
     let with_log = page(&report);
     assert!(with_log.contains("simulated, beside a log") && with_log.contains("Measured on the machine"));

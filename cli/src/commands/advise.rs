@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use feedwright::controllers::Choices;
-use feedwright::correct::advise::{Advice, AdviseJob, FeedCut, StretchAdvice, WayAdvice};
+use feedwright::correct::advise::{Advice, AdviseJob, FeedCut, STRETCH_LEGEND, WayAdvice};
 use feedwright::machine::Machine;
 use feedwright::output::OutputFile;
 use miette::{IntoDiagnostic, Result};
@@ -16,6 +16,8 @@ use crate::controllers::find;
 use crate::controls::{check_tolerance, control};
 use crate::message::{OUT_OF_TOLERANCE, printed, warn};
 use crate::streams::{ProgramInputs, tables, tell_written};
+use crate::table::{ConsoleTable, TableColumn};
+use crate::terminal::wrapped;
 
 /// Stretches that are listed.
 const LISTED: usize = 12;
@@ -74,42 +76,43 @@ fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result
     let out = &mut *tables(files());
     let Advice { tolerance_um, control, planner, programmed_mm_s: [_, largest_mm_s], .. } = advice;
     writeln!(out, "within {tolerance_um} um on {}: feed of the whole program, or of each stretch", job.machine.name)?;
-    writeln!(
-        out,
-        "{:<18} {:>6} {:>8} {:>9} {:>7} {:>7} {:>13} {:>7}",
-        "", "feed", "mm/min", "time s", "RMS um", "max um", "each: time s", "max um"
-    )?;
-    for WayAdvice { way, cuts, whole, by_stretch } in &advice.ways {
-        write!(out, "{:<18}", way.name(advice.controller))?;
+    let mut table = ConsoleTable::new(vec![
+        TableColumn::new(""),
+        TableColumn::new("feed"),
+        TableColumn::new("mm/min"),
+        TableColumn::new("time s"),
+        TableColumn::optional("RMS um", 3),
+        TableColumn::new("max um"),
+        TableColumn::optional("each: time s", 1),
+        TableColumn::optional("max um", 2),
+    ]);
+    for WayAdvice { way, whole, by_stretch, nearest, .. } in &advice.ways {
+        let mut cells = vec![way.name(advice.controller).to_owned()];
         match whole {
             Some(FeedCut { factor, time_s, rms_um, max_um }) => {
-                let factor = factor.unwrap_or(1.0);
-                let feed_mm_min = 60.0 * factor * largest_mm_s;
-                let percent = 100.0 * factor;
-                write!(out, " {percent:>4.0} % {feed_mm_min:>8.0} {time_s:>9.3} {rms_um:>7.2} {max_um:>7.2}")?;
+                let percent = 100.0 * factor.unwrap_or(1.0);
+                cells.extend([format!("{percent:.0} %"), format!("{:.0}", 0.6 * percent * largest_mm_s)]);
+                cells.extend([format!("{time_s:.3}"), format!("{rms_um:.2}"), format!("{max_um:.2}")]);
             }
-            None => write!(out, " {:<41}", least(cuts))?,
+            None => cells.extend(["none", "-", "-", "-", "-"].map(str::to_owned)),
         }
         match by_stretch {
-            Some(cut) => writeln!(out, " {:>13.3} {:>7.2}", cut.time_s, cut.max_um)?,
-            None => writeln!(out, " {:>13} {:>7}", "-", "-")?,
+            Some(cut) => cells.extend([format!("{:.3}", cut.time_s), format!("{:.2}", cut.max_um)]),
+            None => cells.extend(["-", "-"].map(str::to_owned)),
+        }
+        table.row(cells);
+        if let Some(nearest) = nearest {
+            table.remark(nearest.sentence("um", *largest_mm_s));
         }
     }
-    writeln!(out, "feed: of the programmed; mm/min: where F is the largest of the program")?;
-    writeln!(
-        out,
-        "uncorrected, corrected: cut open loop as {control} plans (planner {planner}); corrected: for that feed"
-    )?;
+    table.print(out)?;
+    let notes = [
+        "feed: of the programmed; mm/min: where F is the largest of the program; each: each stretch at the feed that it holds".to_owned(),
+        format!("uncorrected, corrected: cut open loop as {control} plans (planner {planner}); corrected: for that feed"),
+    ];
+    notes.iter().try_for_each(|note| writeln!(out, "{}", wrapped(note, 2)))?;
     print_stretches(out, advice)?;
     tell_written(out, files())
-}
-
-/// Where no feed holds: how near it comes.
-fn least(cuts: &[FeedCut]) -> String {
-    let nearest = cuts.iter().min_by(|a, b| a.max_um.total_cmp(&b.max_um));
-    nearest.map_or_else(String::new, |cut| {
-        format!("at none: {:.1} um at {:.0} %", cut.max_um, 100.0 * cut.factor.unwrap_or(1.0))
-    })
 }
 
 /// The stretches that hold the smallest part of their feedrate.
@@ -118,14 +121,26 @@ fn print_stretches(out: &mut dyn Write, advice: &Advice) -> std::io::Result<()> 
     if advice.stretches.len() < 2 {
         return Ok(());
     }
-    let most = if listed.len() < advice.stretches.len() { ", those that hold the least" } else { "" };
-    writeln!(out, "\n{:<18} {:>10}   holds, mm/min{most}", "lines", "mm/min")?;
-    writeln!(out, "{:<18} {:>10} {:>12} {:>12} {:>14}", "", "", "uncorrected", "corrected", advice.controller)?;
-    for StretchAdvice { lines: [first, last], feed_mm_s, holds_mm_s } in listed {
-        let [a, b, c] =
-            holds_mm_s.map(|holds| holds.map_or_else(|| "-".to_owned(), |mm_s| format!("{:.0}", 60.0 * mm_s)));
+    let most = if listed.len() < advice.stretches.len() { ": those that hold the least" } else { "" };
+    writeln!(out, "\nfeed in mm/min that each stretch without a corner holds{most}")?;
+    let mut table = ConsoleTable::new(vec![
+        TableColumn::new("lines"),
+        TableColumn::new("programmed"),
+        TableColumn::new("uncorrected"),
+        TableColumn::new("corrected"),
+        TableColumn::new(advice.controller),
+        TableColumn::optional("left", 1),
+    ]);
+    for stretch in &listed {
+        let [first, last] = stretch.lines;
         let lines = if first == last { first.to_string() } else { format!("{first} to {last}") };
-        writeln!(out, "{lines:<18} {:>10.0} {a:>12} {b:>12} {c:>14}", 60.0 * feed_mm_s)?;
+        let [a, b, c] = [0, 1, 2].map(|way| stretch.cell(way));
+        let remark = stretch.remark("um").unwrap_or_default();
+        table.row(vec![lines, format!("{:.0}", 60.0 * stretch.feed_mm_s), a, b, c, remark]);
+    }
+    table.print(out)?;
+    if listed.iter().any(|stretch| stretch.nearest.iter().any(Option::is_some)) {
+        writeln!(out, "{}", wrapped(STRETCH_LEGEND, 2))?;
     }
     Ok(())
 }

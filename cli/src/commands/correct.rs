@@ -15,6 +15,8 @@ use crate::console::Console;
 use crate::controls::{check_tolerance, control, print_correction};
 use crate::message::{OUT_OF_TOLERANCE, printed, warn};
 use crate::streams::{ProgramInputs, tables, tell_written};
+use crate::table::{ConsoleTable, TableColumn};
+use crate::terminal::wrapped;
 
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
@@ -77,12 +79,23 @@ fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, withi
 fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io::Result<()> {
     let mut out = tables([args.out.as_deref(), args.json.as_deref()]);
     let CorrectOutcome { original, corrected, .. } = outcome;
-    writeln!(out, "{:<18} {:>9} {:>10} {:>10} {:>10} {:>8}", "", "time s", "RMS um", "max um", "uncut um", "blocks")?;
+    let mut table = ConsoleTable::new(vec![
+        TableColumn::new(""),
+        TableColumn::new("time s"),
+        TableColumn::new("RMS um"),
+        TableColumn::new("max um"),
+        TableColumn::optional("uncut um", 1),
+        TableColumn::optional("blocks", 2),
+    ]);
     for (name, figures) in [("original", original), ("as exported", corrected)] {
         let ExportedFigures { rms_um, max_um, uncut_um, time_s, blocks, .. } = figures;
-        writeln!(out, "{name:<18} {time_s:>9.3} {rms_um:>10.2} {max_um:>10.2} {uncut_um:>10.2} {blocks:>8}")?;
+        let errors = [rms_um, max_um, uncut_um].map(|um| format!("{um:.2}"));
+        let cells = std::iter::once(format!("{time_s:.3}")).chain(errors).chain([blocks.to_string()]);
+        table.row(std::iter::once(name.to_owned()).chain(cells).collect());
     }
-    writeln!(out, "both cut open loop, as the control plans them; errors are those to the original path")?;
+    table.print(&mut *out)?;
+    let note = "both cut open loop, as the control plans them; errors are those to the original path";
+    writeln!(out, "{}", wrapped(note, 2))?;
     print_correction(&mut *out, outcome)?;
     if let Some(tolerance_um) = args.tolerance {
         let verdict = if within { "within" } else { "out of" };

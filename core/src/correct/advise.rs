@@ -5,6 +5,7 @@
 //! stretch by stretch, give each stretch a factor of its own, and a cut with all of them shows that they hold together.
 
 mod feed_cuts;
+mod feed_search;
 pub mod page;
 
 use std::path::PathBuf;
@@ -19,21 +20,10 @@ use crate::gcode::canon::{Canon, Motion};
 use crate::gcode::{self, Diagnostic, Settings};
 use crate::job_error::{JobError, axes_that_move};
 use crate::machine::Machine;
-use crate::pipeline::RunError;
 use crate::watch::{StageSteps, Watch};
-use feed_cuts::{FeedBench, FeedErrors};
-
-/// Steps between factors, and the least and the largest factor.
-const STEP: f64 = std::f64::consts::SQRT_2;
-const LEAST: f64 = 0.125;
-const LARGEST: f64 = 4.0;
-/// Cuts at the most in which a factor is lowered until it holds, and by how much at the least and at the most.
-const TRIES: u32 = 8;
-const LOWER: [f64; 2] = [0.7, 0.96];
-/// A cut that takes longer by no more than this factor is as fast.
-const AS_FAST: f64 = 1.001;
-/// Cuts of a way that are expected, for the progress.
-const EXPECTED: f64 = 20.0;
+pub use feed_cuts::ErrorPlace;
+use feed_cuts::FeedBench;
+use feed_search::{FeedSearch, LARGEST};
 
 /// A program, a machine, and a tolerance that is to be held.
 #[derive(Debug, Clone)]
@@ -94,6 +84,23 @@ pub struct WayAdvice {
     pub whole: Option<FeedCut>,
     /// Each stretch at its own feed; none where one of them holds at none.
     pub by_stretch: Option<FeedCut>,
+    /// Where no factor on the whole program holds: what comes nearest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest: Option<NearestCut>,
+}
+
+/// The cut that comes nearest to a tolerance that is not held.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NearestCut {
+    /// What it comes to.
+    pub cut: FeedCut,
+    /// First and last line of the stretch with the largest error.
+    pub lines: [u32; 2],
+    /// Where on that stretch it is.
+    pub place: ErrorPlace,
+    /// The fastest factor that holds beside the ends of the stretches, where the tool comes from rest or goes there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beside_ends: Option<FeedCut>,
 }
 
 /// A stretch without a corner, and the feedrates at which it holds the tolerance.
@@ -105,6 +112,19 @@ pub struct StretchAdvice {
     pub feed_mm_s: f64,
     /// Largest feedrate that holds, mm/s, in each of [`WAYS`]; none where the least that was cut does not.
     pub holds_mm_s: [Option<f64>; 3],
+    /// Where none does: what comes nearest.
+    pub nearest: [Option<NearestFeed>; 3],
+}
+
+/// What comes nearest where no feedrate of a stretch holds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NearestFeed {
+    /// Least of its largest errors, um.
+    pub max_um: f64,
+    /// Where that is.
+    pub place: ErrorPlace,
+    /// Largest feedrate that holds beside its ends, mm/s.
+    pub beside_ends_mm_s: Option<f64>,
 }
 
 /// What holds the tolerance.
@@ -178,20 +198,21 @@ impl AdviseJob {
             watch,
         };
         let most = (self.machine.limits.max_feed_mm_s / largest_mm_s).min(LARGEST);
-        let (mut ways, mut holds) = (Vec::new(), Vec::new());
+        let (mut ways, mut found) = (Vec::new(), Vec::new());
         for way in WAYS {
             let of_way = format!("cutting, {}", way.name(self.controller.name));
             let mut search =
                 FeedSearch { bench: &mut bench, way, progress: StageSteps::begin(watch, &of_way), done: 0.0 };
-            let (advice, factors) =
+            let (advice, of_stretches) =
                 search.advice(most, self.tolerance_um).map_err(|error| JobError::of_run(&self.part, error))?;
             ways.push(advice);
-            holds.push(factors);
+            found.push(of_stretches);
         }
         let of_stretch = |(k, stretch): (usize, &SmoothStretch)| StretchAdvice {
-            lines: [0, stretch.motions.len() - 1].map(|n| stretch.motions[n].line),
+            lines: lines_of(stretch),
             feed_mm_s: feeds[k],
-            holds_mm_s: [0, 1, 2].map(|way: usize| holds[way][k].map(|factor| factor * feeds[k])),
+            holds_mm_s: [0, 1, 2].map(|way: usize| found[way][k].holds.map(|factor| factor * feeds[k])),
+            nearest: [0, 1, 2].map(|way: usize| found[way][k].nearest(feeds[k])),
         };
         let least_mm_s = stretches(&parts).flat_map(|stretch| &stretch.motions).map(|motion| motion.feed_mm_s);
         Ok(Advice {
@@ -223,100 +244,63 @@ fn feed_mm_s(stretch: &SmoothStretch) -> f64 {
     stretch.motions.iter().map(|motion| motion.feed_mm_s).fold(0.0, f64::max)
 }
 
-/// The search of one way.
-struct FeedSearch<'b, 'a, const N: usize> {
-    bench: &'b mut FeedBench<'a, N>,
-    way: CutWay,
-    progress: StageSteps<'b>,
-    done: f64,
-}
-
-impl<const N: usize> FeedSearch<'_, '_, N> {
-    fn cut(&mut self, factors: &[f64]) -> Result<FeedErrors, RunError> {
-        let errors = self.bench.cut(self.way, factors)?;
-        self.done += 1.0 / EXPECTED;
-        self.progress.reach(self.done);
-        Ok(errors)
-    }
-
-    /// What holds, and the factors of the stretches.
-    fn advice(&mut self, most: f64, tolerance_um: f64) -> Result<(WayAdvice, Vec<Option<f64>>), RunError> {
-        let count = stretches(self.bench.parts).count();
-        let mut cuts: Vec<(f64, FeedErrors)> = Vec::new();
-        let first = most.min(1.0);
-        cuts.push((first, self.cut(&vec![first; count])?));
-        while cuts[0].1.max_um > tolerance_um && cuts[0].0 > 1.01 * LEAST {
-            let factor = (cuts[0].0 / STEP).max(LEAST);
-            cuts.insert(0, (factor, self.cut(&vec![factor; count])?));
-        }
-        while cuts[cuts.len() - 1].0 < most
-            && cuts[cuts.len() - 1].1.stretches.iter().any(|(um, _)| *um <= tolerance_um)
-        {
-            let factor = (cuts[cuts.len() - 1].0 * STEP).min(most);
-            cuts.push((factor, self.cut(&vec![factor; count])?));
-        }
-        let curve = |of: &dyn Fn(&FeedErrors) -> (f64, f64)| -> Option<f64> {
-            let point = |(factor, errors): &(f64, FeedErrors)| {
-                let (error_um, time_s) = of(errors);
-                FactorPoint { factor: *factor, error_um, time_s }
-            };
-            held(&cuts.iter().map(point).collect::<Vec<_>>(), tolerance_um)
+impl NearestCut {
+    /// In words, with a sign for micrometres; `largest_mm_s` is the largest programmed feedrate.
+    pub fn sentence(&self, um: &str, largest_mm_s: f64) -> String {
+        let [first, last] = self.lines;
+        let place = match self.place {
+            ErrorPlace::Start => format!("where line {first} begins"),
+            ErrorPlace::End => format!("where line {last} ends"),
+            ErrorPlace::Way if first == last => format!("on line {first}"),
+            ErrorPlace::Way => format!("on lines {first} to {last}"),
         };
-        let whole = curve(&|errors| (errors.max_um, errors.time_s));
-        let by_stretch: Vec<Option<f64>> = (0..count).map(|k| curve(&|errors| errors.stretches[k])).collect();
-        let whole = whole.map_or(Ok(None), |factor| self.verified(vec![factor; count], true, tolerance_um))?;
-        let all: Option<Vec<f64>> = by_stretch.iter().copied().collect();
-        let each = all.map_or(Ok(None), |factors| self.verified(factors, false, tolerance_um))?;
-        let factors = each.as_ref().map_or(by_stretch, |(factors, _)| factors.iter().copied().map(Some).collect());
-        let advice = WayAdvice {
-            way: self.way,
-            cuts: cuts.iter().map(|(factor, errors)| errors.cut(Some(*factor))).collect(),
-            whole: whole.map(|(factors, errors)| errors.cut(factors.first().copied())),
-            by_stretch: each.map(|(_, errors)| errors.cut(None)),
-        };
-        Ok((advice, factors))
-    }
-
-    /// Factors that hold, lowered from those that are to hold, all by as much or each by itself; none where they do not.
-    fn verified(
-        &mut self,
-        mut factors: Vec<f64>,
-        together: bool,
-        tolerance_um: f64,
-    ) -> Result<Option<(Vec<f64>, FeedErrors)>, RunError> {
-        for _ in 0..TRIES {
-            let errors = self.cut(&factors)?;
-            if errors.max_um <= tolerance_um {
-                return Ok(Some((factors, errors)));
+        let percent = |cut: &FeedCut| 100.0 * cut.factor.unwrap_or(1.0);
+        let nearest = format!("at no feed: {:.1} {um} at {:.0} %, {place}", self.cut.max_um, percent(&self.cut));
+        match &self.beside_ends {
+            Some(cut) => {
+                let mm_min = 0.6 * percent(cut) * largest_mm_s;
+                format!(
+                    "{nearest}; beside the ends of stretches at {:.0} %, {mm_min:.0} mm/min, in {:.3} s",
+                    percent(cut),
+                    cut.time_s
+                )
             }
-            let lower =
-                |um: f64| if um > tolerance_um { (tolerance_um / um).sqrt().clamp(LOWER[0], LOWER[1]) } else { 1.0 };
-            let of_stretch = |k: usize| if together { errors.max_um } else { errors.stretches[k].0 };
-            factors = factors.iter().enumerate().map(|(k, factor)| factor * lower(of_stretch(k))).collect();
+            None => nearest,
         }
-        Ok(None)
     }
 }
 
-/// What a program or a stretch comes to at a factor on its feedrates.
-#[derive(Debug, Clone, Copy)]
-struct FactorPoint {
-    factor: f64,
-    error_um: f64,
-    time_s: f64,
+impl StretchAdvice {
+    /// The feedrate that holds in one of [`WAYS`], mm/min: in brackets where it holds beside the ends of the stretch only.
+    pub fn cell(&self, way: usize) -> String {
+        let beside_ends = self.nearest[way].and_then(|nearest| nearest.beside_ends_mm_s);
+        match (self.holds_mm_s[way], beside_ends) {
+            (Some(mm_s), _) => format!("{:.0}", 60.0 * mm_s),
+            (None, Some(mm_s)) => format!("({:.0})", 60.0 * mm_s),
+            (None, None) => "-".to_owned(),
+        }
+    }
+
+    /// The error that no feedrate takes back, and where it is, with a sign for micrometres; none where each way holds at some feedrate.
+    pub fn remark(&self, um: &str) -> Option<String> {
+        let largest = self.nearest.iter().flatten().max_by(|a, b| a.max_um.total_cmp(&b.max_um))?;
+        let place = match largest.place {
+            ErrorPlace::Start => "start",
+            ErrorPlace::End => "end",
+            ErrorPlace::Way => "way",
+        };
+        Some(format!("{:.1} {um}, {place}", largest.max_um))
+    }
 }
 
-/// The factor up to which errors, by rising factor, are within a tolerance; between two of them by logarithms. Where all are, the least that is as fast
-/// as the last.
-fn held(points: &[FactorPoint], tolerance_um: f64) -> Option<f64> {
-    let Some(beyond) = points.iter().position(|point| point.error_um > tolerance_um) else {
-        let last = points.last()?;
-        return points.iter().find(|point| point.time_s <= AS_FAST * last.time_s).map(|point| point.factor);
-    };
-    let (from, to) = (points.get(beyond.checked_sub(1)?)?, points.get(beyond)?);
-    let part = (tolerance_um / from.error_um).ln() / (to.error_um / from.error_um).ln();
-    // An error that is no number, or none, has no place between.
-    Some(if part.is_finite() { from.factor * (to.factor / from.factor).powf(part) } else { from.factor })
+/// What brackets, dashes and the last column in the table of stretches mean.
+pub const STRETCH_LEGEND: &str = "in brackets: holds beside the ends of the stretch, where the tool comes from rest or goes there and is off by more at every feed that was cut (a \
+                                  corrected program goes there slowly); -: holds at no feed that was cut; left: the error that no feed takes back, at its start, \
+                                  its end, or on its way";
+
+/// First and last line of a stretch.
+fn lines_of(stretch: &SmoothStretch) -> [u32; 2] {
+    [0, stretch.motions.len() - 1].map(|n| stretch.motions[n].line)
 }
 
 /// The parts of a program with other feedrates in its stretches, up to what the machine can.
@@ -340,21 +324,4 @@ fn with_factors(program: &[ProgramPart], factors: &[f64], most_mm_s: f64) -> Vec
 /// The steps of parts as they are, each motion by the number of its stretch.
 fn canon_of(parts: &[ProgramPart]) -> Vec<Canon> {
     super::stretches::assembled(parts, &vec![None; stretches(parts).count()], 0.0)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn between_two_factors_the_error_is_a_power_of_the_feed() {
-        let point =
-            |factor: f64| FactorPoint { factor, error_um: 4.0 * factor * factor, time_s: 1.0 / factor.min(1.0) };
-        let points: Vec<FactorPoint> = [0.5, 1.0, 2.0].map(point).to_vec();
-        assert!((held(&points, 6.0).unwrap() - 1.5_f64.sqrt()).abs() < 1e-12);
-        // Beyond a factor of 1 nothing is faster.
-        assert_eq!((held(&points, 0.5), held(&points, 20.0)), (None, Some(1.0)));
-        let lost = FactorPoint { error_um: f64::INFINITY, ..points[2] };
-        assert_eq!(held(&[points[1], lost], 5.0), Some(1.0));
-    }
 }

@@ -20,6 +20,8 @@ pub(super) struct StretchCut {
     /// Errors of those rows, and of those behind until the next stretch begins.
     pub(super) square_sum_mm2: f64,
     pub(super) max_mm: f64,
+    /// The row with the largest error.
+    pub(super) max_row: usize,
     /// Rows that cut.
     pub(super) cutting: u32,
     /// Servo periods of the command.
@@ -70,7 +72,9 @@ pub(super) fn by_stretch(rows: &[CutRow], count: usize) -> Vec<StretchCut> {
                     let from = if cut.rows.is_empty() { n } else { cut.rows.start };
                     cut.rows = from..n + 1;
                     cut.periods += 1;
-                    behind_rapid.take().into_iter().for_each(|from| rows[from..n].iter().for_each(|row| cut.take(row)));
+                    if let Some(from) = behind_rapid.take() {
+                        (from..n).for_each(|n| cut.take(n, &rows[n]));
+                    }
                 }
                 last = number;
             }
@@ -78,7 +82,7 @@ pub(super) fn by_stretch(rows: &[CutRow], count: usize) -> Vec<StretchCut> {
             Commanded::Rest => {}
         }
         if let Some(cut) = last.and_then(|last| cuts.get_mut(last)) {
-            cut.take(row);
+            cut.take(n, row);
         }
     }
     cuts
@@ -86,11 +90,13 @@ pub(super) fn by_stretch(rows: &[CutRow], count: usize) -> Vec<StretchCut> {
 
 impl StretchCut {
     /// Takes in the error of a row.
-    fn take(&mut self, row: &CutRow) {
+    fn take(&mut self, n: usize, row: &CutRow) {
         if row.cutting {
             let error_mm = norm(row.error_mm);
             self.square_sum_mm2 += error_mm * error_mm;
-            self.max_mm = self.max_mm.max(error_mm);
+            if error_mm > self.max_mm {
+                (self.max_mm, self.max_row) = (error_mm, n);
+            }
             self.cutting += 1;
         }
     }

@@ -3,14 +3,14 @@
 use super::Job;
 use crate::controllers::{Knows, NothingIdentified};
 use crate::gcode::input;
-use crate::machine::{Axis, Machine};
+use crate::machine::Axis;
 use crate::report::{Assumptions, LawKnowledge};
 
-/// Whether something disturbs an axis.
-type Disturbs = fn(&Axis) -> bool;
+/// Whether an axis has something.
+type Has = fn(&Axis) -> bool;
 
 /// What can disturb an axis, and whether it does.
-const DISTURBANCES: [(&str, Disturbs); 8] = [
+const DISTURBANCES: [(&str, Has); 8] = [
     ("encoder noise", |axis| axis.encoder_noise_um > 0.0),
     ("encoder steps", |axis| axis.encoder_step_um > 0.0),
     ("interpolation error", |axis| axis.interpolation_error_um > 0.0),
@@ -21,15 +21,34 @@ const DISTURBANCES: [(&str, Disturbs); 8] = [
     ("late references", |axis| axis.jitter_s > 0.0),
 ];
 
+/// What an axis may have besides loops, inertia, viscous and Coulomb friction, and whether it has it.
+const IMPERFECTIONS: [(&str, Has); 4] = [
+    ("friction that sticks", |axis| axis.stribeck_nm > 0.0 || axis.presliding_um > 0.0),
+    ("late drives", |axis| axis.drive_delay_s > 0.0 || axis.measurement_delay_s > 0.0),
+    ("a ball screw that gives", |axis| axis.transmission.is_some()),
+    ("errors of scale and pitch", |axis| axis.scale_um_m != 0.0 || axis.pitch_error_um > 0.0),
+];
+
 impl Job {
-    /// What the figures of its runs rest on; `unidentified` are the controllers that nothing was identified for.
-    pub(super) fn assumptions(&self, unidentified: &[NothingIdentified]) -> Assumptions {
+    /// What the figures of its runs rest on; `axes` of the machine were simulated, `unidentified` are the controllers that nothing was identified for.
+    pub(super) fn assumptions(&self, axes: usize, unidentified: &[NothingIdentified]) -> Assumptions {
         let (law, law_from) = self.law(unidentified);
+        let simulated = &self.machine.axes[..axes.min(self.machine.axes.len())];
+        let named = |table: &[(&'static str, Has)], there: bool| -> Vec<&'static str> {
+            table.iter().filter(|(_, has)| simulated.iter().any(has) == there).map(|(name, _)| *name).collect()
+        };
+        let gain = |(name, axis): (&str, &Axis)| format!("{name} {}", axis.kp_1_s);
         Assumptions {
+            machine: self.machine.name.clone(),
+            description: self.machine.description.clone(),
             machine_file: self.machine_file.as_deref().map(input::name),
             machine_source: self.machine.source.clone(),
-            disturbed_by: disturbances(&self.machine),
+            position_gains_1_s: ["X", "Y", "Z"].into_iter().zip(simulated).map(gain).collect(),
+            disturbed_by: named(&DISTURBANCES, true),
+            with: named(&IMPERFECTIONS, true),
+            without: named(&IMPERFECTIONS, false).into_iter().chain(named(&DISTURBANCES, false)).collect(),
             noise_seed: self.machine.noise.seed,
+            controller: self.controller.name,
             law,
             law_from,
         }
@@ -56,9 +75,4 @@ impl Job {
             Knows::EarlierLaps => (LawKnowledge::Learned, "earlier laps of the same part".to_owned()),
         }
     }
-}
-
-fn disturbances(machine: &Machine) -> Vec<&'static str> {
-    let acts = |(_, is_there): &&(&str, Disturbs)| machine.axes.iter().any(is_there);
-    DISTURBANCES.iter().filter(acts).map(|(name, _)| *name).collect()
 }

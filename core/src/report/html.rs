@@ -105,11 +105,13 @@ fn write_header(out: &mut impl Write, report: &Report) -> io::Result<()> {
 
 /// What was assumed, in one paragraph.
 fn assumed(report: &Report) -> String {
-    let sentences: Vec<String> = report.simulated.iter().map(|sentence| format!("{}.", escaped(sentence))).collect();
-    if sentences.is_empty() {
+    let assumed = &report.assumed;
+    if assumed.machine.is_empty() {
         return String::new();
     }
-    format!("<p class=\"assumed\"><b>Assumed of the machine</b> {}</p>\n", sentences.join(" "))
+    let machine = format!("{}: {}", assumed.machine_sentence(), assumed.description);
+    let sentences = [machine, assumed.simulation_sentence(), assumed.law_sentence()];
+    format!("<p class=\"assumed\"><b>Assumed</b> {}. Nothing was cut.</p>\n", escaped(&sentences.join("; ")))
 }
 
 /// The places that the scripts fill.

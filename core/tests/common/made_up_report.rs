@@ -2,7 +2,7 @@
 
 use feedwright::job::MEASURED;
 use feedwright::report::{
-    ErrorSpectrum, FullCircle, ProgramLine, Report, ReportedRun, Roundness, RunFacts, Series, Statistics,
+    Assumptions, ErrorSpectrum, FullCircle, ProgramLine, Report, ReportedRun, Roundness, RunFacts, Series, Statistics,
     TimelineEvent, write_html,
 };
 use feedwright::trace::{Commanded, Row, Sink};
@@ -79,8 +79,13 @@ pub(crate) fn report(axes: usize, rows: usize) -> Report {
         part: HOSTILE.to_owned(),
         machine: vec![(HOSTILE.to_owned(), HOSTILE.to_owned())],
         settings: vec![(HOSTILE.to_owned(), HOSTILE.to_owned())],
-        assumed: feedwright::report::Assumptions::default(),
-        simulated: vec![HOSTILE.to_owned()],
+        assumed: Assumptions {
+            machine: HOSTILE.to_owned(),
+            description: HOSTILE.to_owned(),
+            machine_source: HOSTILE.to_owned(),
+            law_from: HOSTILE.to_owned(),
+            ..Assumptions::default()
+        },
         program: (1..30).map(|line| ProgramLine { line, text: HOSTILE.to_owned() }).collect(),
         circles: vec![FullCircle {
             line: 12,

@@ -6,7 +6,7 @@ use feedwright::correct::CorrectOutcome;
 use feedwright::correct::exported::ExportedFigures;
 use feedwright::fastest::FastestPlan;
 use feedwright::job::{AS_EXPORTED, Job, JobOutcome, MEASURED};
-use feedwright::report::{Assumptions, LawKnowledge, Outcome as Ending, ReportedRun, RunSummary};
+use feedwright::report::{Assumptions, Outcome as Ending, ReportedRun, RunSummary};
 
 use crate::controls::print_correction;
 use crate::streams::tell_written;
@@ -26,7 +26,7 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io:
         "N m: peak torque; off: how far the command leaves the path at most; mm/s2: largest acceleration of the command",
     )?;
     writeln!(out)?;
-    say(out, &assumed(&job.machine.name, &outcome.report.assumed))?;
+    say(out, &assumed(&outcome.report.assumed))?;
     if let Some(reference) = &job.reference {
         say(out, &format!("errors and uncut path are those to {}", reference.display()))?;
     }
@@ -135,25 +135,9 @@ fn table(runs: &[ReportedRun]) -> ConsoleTable {
 }
 
 /// What the figures rest on.
-fn assumed(machine: &str, assumed: &Assumptions) -> String {
-    let Assumptions { machine_file, machine_source, disturbed_by, noise_seed, law, law_from } = assumed;
-    let file = machine_file.as_ref().map_or_else(|| "built in".to_owned(), |file| format!("file {file}"));
-    let disturbed = if disturbed_by.is_empty() {
-        "nothing disturbs it".to_owned()
-    } else {
-        format!("it has {} (seed {noise_seed})", disturbed_by.join(", "))
-    };
-    let law = match law {
-        LawKnowledge::None => format!("the controller goes by no law of the axes ({law_from})"),
-        LawKnowledge::Identified => format!("the law of the axes was identified from {law_from}"),
-        LawKnowledge::Exact => {
-            format!("the law of the axes is known exactly, as nobody knows that of a real machine: {law_from}")
-        }
-        LawKnowledge::Learned => format!("the controller learned from {law_from}"),
-    };
-    format!(
-        "assumed: the machine is {machine} ({file}; values: {machine_source}); {disturbed}; {law}. Nothing was cut."
-    )
+fn assumed(assumed: &Assumptions) -> String {
+    let sentences = [assumed.machine_sentence(), assumed.disturbance_sentence(), assumed.law_sentence()];
+    format!("assumed: {}. Nothing was cut.", sentences.join("; "))
 }
 
 /// Says so where the correction is worse than none.

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use super::{Advice, FeedCut, StretchAdvice, WAYS, WayAdvice};
+use super::{Advice, FeedCut, STRETCH_LEGEND, StretchAdvice, WAYS, WayAdvice};
 use crate::report::figure::{COLORS, Figure, LineStyle, Panel, Polyline};
 use crate::report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
 use crate::report::text::{escaped, number};
@@ -126,8 +126,9 @@ impl Advice {
                 )?;
             }
             None => {
-                let least_um = way.cuts.iter().map(|cut| cut.max_um).fold(f64::INFINITY, f64::min);
-                write!(out, "<td colspan=\"5\" class=\"words\">none; {} µm at the least</td>", number(least_um))?;
+                let nearest =
+                    way.nearest.map_or_else(|| "-".to_owned(), |cut| cut.sentence("µm", self.programmed_mm_s[1]));
+                write!(out, "<td colspan=\"5\" class=\"words\">{nearest}</td>")?;
             }
         }
         match &way.by_stretch {
@@ -142,16 +143,18 @@ impl Advice {
             writeln!(out, "<p>The {} of {} stretches that hold the least:</p>", shown.len(), self.stretches.len())?;
         }
         let names = WAYS.iter().map(|way| way.name(self.controller));
-        write_table_head(out, ["lines", "programmed mm/min"].into_iter().chain(names))?;
-        for StretchAdvice { lines: [first, last], feed_mm_s, holds_mm_s } in shown {
-            let cells: String = holds_mm_s
-                .iter()
-                .map(|holds| holds.map_or("<td>-</td>".to_owned(), |mm_s| format!("<td>{:.0}</td>", 60.0 * mm_s)))
-                .collect();
+        write_table_head(out, ["lines", "programmed mm/min"].into_iter().chain(names).chain(["left"]))?;
+        for stretch in &shown {
+            let [first, last] = stretch.lines;
+            let cells: String = (0..WAYS.len()).map(|way| format!("<td>{}</td>", stretch.cell(way))).collect();
             let lines = if first == last { first.to_string() } else { format!("{first} to {last}") };
-            writeln!(out, "<tr><td>{lines}</td><td>{:.0}</td>{cells}</tr>", 60.0 * feed_mm_s)?;
+            let remark = stretch.remark("µm").unwrap_or_default();
+            let feed = 60.0 * stretch.feed_mm_s;
+            writeln!(out, "<tr><td>{lines}</td><td>{feed:.0}</td>{cells}<td class=\"words\">{remark}</td></tr>")?;
         }
-        write_table_end(out)
+        write_table_end(out)?;
+        let remarks = shown.iter().any(|stretch| stretch.nearest.iter().any(Option::is_some));
+        if remarks { writeln!(out, "<p>{}</p>", escaped(STRETCH_LEGEND)) } else { Ok(()) }
     }
 
     /// So many stretches at the most, those that hold the smallest part of their feedrate uncorrected, in the order of the program.
