@@ -167,7 +167,7 @@ impl JobError {
             RunError::Path(fault) => Self::Path { part: part.to_owned(), fault },
             RunError::Write(error) => error.into(),
             RunError::Cancelled(cancelled) => Self::Cancelled(cancelled),
-            RunError::Limits(_) => Self::Run(error),
+            RunError::Limits(_) | RunError::TooLong { .. } => Self::Run(error),
         }
     }
 }

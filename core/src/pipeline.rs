@@ -128,6 +128,15 @@ pub enum RunError {
     /// A sink takes no more rows.
     #[error("cannot write the rows: {0}")]
     Write(std::io::Error),
+    /// A correction keeps each servo period of a cut in memory.
+    #[error("the program takes more than {:.1} h, {most_periods} servo periods: a correction keeps all of them in memory", most_s / 3600.0)]
+    #[diagnostic(help("split the program and correct its parts one by one"))]
+    TooLong {
+        /// Servo periods that it may have.
+        most_periods: usize,
+        /// How long they take, s.
+        most_s: f64,
+    },
     /// Ended from outside.
     #[error(transparent)]
     #[diagnostic(transparent)]

@@ -75,7 +75,9 @@ fn what_no_feedrate_holds_is_said_and_a_program_that_cuts_nothing_is_refused() {
     let part = folder.path().join("part.ngc");
     std::fs::write(&part, "G21 G90 G64\nG0 X30\nG3 X30 Y0 I-8 J0 F3000\nM2\n").unwrap();
     let machine = Machine::load("stiff".as_ref()).unwrap();
-    let overrun = AdviseJob { machine, controller: Entry::find("feedforward").unwrap(), ..job(&part, TOLERANCE_UM) }.run(&()).unwrap();
+    let overrun = AdviseJob { machine, controller: Entry::find("feedforward").unwrap(), ..job(&part, TOLERANCE_UM) }
+        .run(&())
+        .unwrap();
     let nearest = overrun.ways[0].nearest.unwrap();
     assert_eq!((overrun.ways[0].whole, nearest.lines, nearest.place), (None, [3, 3], ErrorPlace::Start));
     let sentence = nearest.sentence("um", overrun.programmed_mm_s[1]);

@@ -59,6 +59,9 @@ pub(super) struct CutRow {
     pub(super) feed_mm_s: f64,
 }
 
+/// Rows that are kept of a cut, at the most: some 2 GB.
+const MOST_ROWS: usize = 10_000_000;
+
 /// Keeps the rows of a cut.
 pub(super) struct CutRows<'a> {
     pub(super) rows: Vec<CutRow>,
@@ -68,6 +71,14 @@ pub(super) struct CutRows<'a> {
 impl<'a> CutRows<'a> {
     pub(super) const fn new(original: &'a [Step]) -> Self {
         Self { rows: Vec::new(), original }
+    }
+
+    /// What is wrong with a cut that could not be kept.
+    pub(super) fn fault(&self, error: RunError, servo_s: f64) -> RunError {
+        if self.rows.len() < MOST_ROWS {
+            return error;
+        }
+        RunError::TooLong { most_periods: MOST_ROWS, most_s: MOST_ROWS as f64 * servo_s }
     }
 
     /// Feedrate of the original at an arc length, where it cuts.
@@ -87,6 +98,9 @@ impl<'a> CutRows<'a> {
 
 impl Sink for CutRows<'_> {
     fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        if self.rows.len() >= MOST_ROWS {
+            return Err(std::io::ErrorKind::OutOfMemory.into());
+        }
         let feed_mm_s = self.feed_mm_s(row.s_mm).or_else(|| self.rows.last().map(|last| last.feed_mm_s));
         self.rows.push(CutRow {
             t_s: row.t_s,

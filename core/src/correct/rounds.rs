@@ -138,7 +138,8 @@ impl RoundsBench<'_> {
     fn cut(&self, commands: &[StretchCommand]) -> Result<(Vec<StretchCut>, Vec<CutRow>), RunError> {
         let steps = steps_of(&assembled(self.parts, commands, self.dwell_s))?;
         let mut kept = CutRows::new(self.cut.original);
-        self.cut.cut(&steps, &mut [&mut kept])?;
+        let cut = self.cut.cut(&steps, &mut [&mut kept]).map(|_| ());
+        cut.map_err(|error| kept.fault(error, self.settings.servo_s))?;
         Ok((by_stretch(&kept.rows, self.count), kept.rows))
     }
 

@@ -47,6 +47,11 @@ pub enum LawKnowledge {
 }
 
 impl Assumptions {
+    /// What was cut, with or without a run that was measured.
+    pub const fn cut_sentence(measured: bool) -> &'static str {
+        if measured { "Nothing was cut but what the log shows." } else { "Nothing was cut." }
+    }
+
     /// Which machine it is, and where its values come from.
     pub fn machine_sentence(&self) -> String {
         let file = self.machine_file.as_ref().map_or_else(|| "built in".to_owned(), |file| format!("file {file}"));

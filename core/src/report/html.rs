@@ -6,10 +6,10 @@
 
 use std::io::{self, Write};
 
-use super::Report;
 use super::embedded_data;
 use super::limit_band;
 use super::text::escaped;
+use super::{Assumptions, Report};
 
 mod tables;
 mod circularity;
@@ -111,7 +111,8 @@ fn assumed(report: &Report) -> String {
     }
     let machine = format!("{}: {}", assumed.machine_sentence(), assumed.description);
     let sentences = [machine, assumed.simulation_sentence(), assumed.law_sentence()];
-    format!("<p class=\"assumed\"><b>Assumed</b> {}. Nothing was cut.</p>\n", escaped(&sentences.join("; ")))
+    let cut = Assumptions::cut_sentence(report.runs.iter().any(|run| run.summary.measured));
+    format!("<p class=\"assumed\"><b>Assumed</b> {}. {cut}</p>\n", escaped(&sentences.join("; ")))
 }
 
 /// The places that the scripts fill.

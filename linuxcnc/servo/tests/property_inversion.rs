@@ -1,14 +1,16 @@
 //! The paper's controllers in the link: what they ask of feedrate and geometry, whatever the identifier has learnt.
 
+#[path = "common/inputs.rs"]
+mod common;
+
 use feedwright_control::identifier::Identifier;
 use feedwright_control::identifier::contour::ContourIdentifier;
 use feedwright_servo::machine::{LinkModel, TrainedContour};
 use feedwright_servo::servo::{Link, LinkInputs, LinkLimits, LinkOutputs, Servo};
 
-const SERVO_S: f64 = 0.001;
+use common::{LIMITS, SERVO_S, cutting};
+
 const FEED_PERIOD_S: f64 = 0.01;
-const LIMITS: LinkLimits =
-    LinkLimits { delay_s: 0.010, deviation_mm: 0.5, speed_mm_s: 400.0, correction_mm_s2: 400.0, speed_alone: false };
 /// Servo periods of rest before and behind a turn, and of the turn.
 const REST: usize = 100;
 const TURN: usize = 1257;
@@ -48,15 +50,7 @@ fn turn(model: LinkModel<2>, limits: &LinkLimits, change: impl Fn(usize, &mut Li
     servo.runs_at(SERVO_S);
     (0..TURN + 3 * REST)
         .map(|n| {
-            let mut inputs = LinkInputs {
-                command_mm: command_mm(n),
-                actual_mm,
-                powered: true,
-                enabled: true,
-                direct: false,
-                spindle: false,
-                cutting: true,
-            };
+            let mut inputs = cutting(command_mm(n), actual_mm);
             change(n, &mut inputs);
             let outputs = servo.step(&inputs, limits);
             for (actual, drive) in actual_mm.iter_mut().zip(outputs.drive_mm) {

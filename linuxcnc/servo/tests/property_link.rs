@@ -1,5 +1,8 @@
 //! The link in a closed loop with the simulated machine: what it does to the contour error, and what it never does.
 
+#[path = "common/inputs.rs"]
+mod common;
+
 use std::f64::consts::TAU;
 
 use feedwright_control::axis::inverse::LoopDelays;
@@ -11,9 +14,8 @@ use feedwright_servo::machine::{LinkModel, Refused};
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkLimits, LinkOutputs, Servo};
 
-const SERVO_S: f64 = 0.001;
-const LIMITS: LinkLimits =
-    LinkLimits { delay_s: 0.010, deviation_mm: 0.5, speed_mm_s: 400.0, correction_mm_s2: 400.0, speed_alone: false };
+use common::{LIMITS, SERVO_S, cutting};
+
 /// Servo periods until the link has settled, and of a turn of the circle.
 const SETTLE: usize = 400;
 const TURN: usize = 1257;
@@ -81,15 +83,7 @@ fn turn_on(
     assert!(matches!(servo.runs_at(SERVO_S), LinkFault::None | LinkFault::Model(_)));
     let mut periods = Vec::new();
     for n in 0..SETTLE + 2 * TURN {
-        let mut inputs = LinkInputs {
-            command_mm: command_mm(n),
-            actual_mm: plant.measured_mm(),
-            powered: true,
-            enabled: true,
-            direct: false,
-            spindle: false,
-            cutting: true,
-        };
+        let mut inputs = cutting(command_mm(n), plant.measured_mm());
         change(n, &mut inputs);
         let outputs = servo.step(&inputs, limits);
         plant.step(outputs.drive_mm, inputs.powered, 1.0);

@@ -25,8 +25,15 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io:
         out,
         "N m: peak torque; off: how far the command leaves the path at most; mm/s2: largest acceleration of the command",
     )?;
+    if runs.iter().any(|run| run.summary.measured) {
+        say(
+            out,
+            "measured: from the first cut on, so its time is without the way there; a log has no torque, and digits that make accelerations of it too large",
+        )?;
+    }
     writeln!(out)?;
-    say(out, &assumed(&outcome.report.assumed))?;
+    let measured = runs.iter().any(|run| run.summary.measured);
+    say(out, &assumed(&outcome.report.assumed, measured))?;
     if let Some(reference) = &job.reference {
         say(out, &format!("errors and uncut path are those to {}", reference.display()))?;
     }
@@ -114,7 +121,7 @@ fn table(runs: &[ReportedRun]) -> ConsoleTable {
             format!("{:.2}", now.uncut_um),
             if is_measured { "-".to_owned() } else { format!("{:.2}", peak_torque_nm(now)) },
             format!("{:.1}", now.max_deviation_um),
-            format!("{:.0}", now.max_command_accel_mm_s2),
+            if is_measured { "-".to_owned() } else { format!("{:.0}", now.max_command_accel_mm_s2) },
         ]);
         if let (Some(rms_um), Some(max_um)) = (now.joint_rms_um, now.joint_max_um) {
             table.remark(format!("without the geometry that no encoder sees: RMS {rms_um:.2}, max {max_um:.2} um"));
@@ -135,9 +142,9 @@ fn table(runs: &[ReportedRun]) -> ConsoleTable {
 }
 
 /// What the figures rest on.
-fn assumed(assumed: &Assumptions) -> String {
+fn assumed(assumed: &Assumptions, measured: bool) -> String {
     let sentences = [assumed.machine_sentence(), assumed.disturbance_sentence(), assumed.law_sentence()];
-    format!("assumed: {}. Nothing was cut.", sentences.join("; "))
+    format!("assumed: {}. {}", sentences.join("; "), Assumptions::cut_sentence(measured))
 }
 
 /// Says so where the correction is worse than none.

@@ -102,9 +102,10 @@ impl<const N: usize> FeedBench<'_, N> {
         for CutPhase { machine, wait_s } in &phases {
             let (program, mut kept) = (waited(&program, *wait_s), CutRows::new(&original));
             let run = match way {
-                CutWay::Controlled => self.controlled(machine, &program, &mut kept, &silent)?,
-                CutWay::Uncorrected | CutWay::Corrected => on(machine).cut(&program, &mut [&mut kept])?,
+                CutWay::Controlled => self.controlled(machine, &program, &mut kept, &silent),
+                CutWay::Uncorrected | CutWay::Corrected => on(machine).cut(&program, &mut [&mut kept]),
             };
+            let run = run.map_err(|error| kept.fault(error, machine.period.servo_s))?;
             all.take(&run, &kept.rows, machine, *wait_s);
             all.rms_um += mean_square_um2(&kept.rows) / phases.len() as f64;
         }

@@ -205,14 +205,17 @@ struct FactorPoint {
     time_s: f64,
 }
 
-/// The factor up to which errors, by rising factor, are within a tolerance; between two of them by logarithms. Where all are, the least that is as fast
-/// as the last.
+/// The largest factor at which an error, by rising factor, is within a tolerance; between it and the next by logarithms. Where the largest that was cut is, the least
+/// that is as fast as it, without one beyond between them.
 fn held(points: &[FactorPoint], tolerance_um: f64) -> Option<f64> {
-    let Some(beyond) = points.iter().position(|point| point.error_um > tolerance_um) else {
-        let last = points.last()?;
-        return points.iter().find(|point| point.time_s <= AS_FAST * last.time_s).map(|point| point.factor);
+    let within = |point: &FactorPoint| point.error_um <= tolerance_um;
+    let at = points.iter().rposition(within)?;
+    let Some(to) = points.get(at + 1) else {
+        let beyond = points.iter().rposition(|point| !within(point)).map_or(0, |beyond| beyond + 1);
+        let as_fast = |point: &&FactorPoint| point.time_s <= AS_FAST * points[at].time_s;
+        return points[beyond..].iter().find(as_fast).map(|point| point.factor);
     };
-    let (from, to) = (points.get(beyond.checked_sub(1)?)?, points.get(beyond)?);
+    let from = &points[at];
     let part = (tolerance_um / from.error_um).ln() / (to.error_um / from.error_um).ln();
     // An error that is no number, or none, has no place between.
     Some(if part.is_finite() { from.factor * (to.factor / from.factor).powf(part) } else { from.factor })
@@ -232,5 +235,7 @@ mod tests {
         assert_eq!((held(&points, 0.5), held(&points, 20.0)), (None, Some(1.0)));
         let lost = FactorPoint { error_um: f64::INFINITY, ..points[2] };
         assert_eq!(held(&[points[1], lost], 5.0), Some(1.0));
+        // What disturbs makes an error larger at a lower feed now and then.
+        assert_eq!(held(&[FactorPoint { error_um: 5.5, ..points[0] }, points[1], lost], 5.0), Some(1.0));
     }
 }
