@@ -38,8 +38,9 @@ pub(crate) fn check_tolerance(tolerance_um: Option<f64>) -> Result<()> {
 /// What was changed, and why nothing is written.
 pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
     let CorrectOutcome { stretches, stretches_changed, rounds, .. } = outcome;
-    let changed =
-        format!("{stretches_changed} of {stretches} stretches have other blocks, found in {rounds} simulated cuts");
+    let changed = format!(
+        "{stretches_changed} of {stretches} stretches between corners were changed, found in {rounds} simulated cuts"
+    );
     writeln!(out, "{}", wrapped(&changed, 2))?;
     if outcome.expanded {
         writeln!(out, "loops and subroutines are written out")?;

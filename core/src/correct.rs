@@ -150,7 +150,11 @@ impl CorrectJob {
         let RoundsResult { commands, dwell_s, .. } = found;
         let notes = [
             format!("corrected by feedwright for the machine {}, control {}", self.machine.name, self.target.name),
-            format!("{} of {} stretches have other blocks", commands.iter().flatten().count(), commands.len()),
+            format!(
+                "{} of {} stretches between corners were changed",
+                commands.iter().flatten().count(),
+                commands.len()
+            ),
         ];
         let text = TextParts { source, parts, commands, dwell_s: *dwell_s, target: self.target, notes: &notes };
         let wanted = assembled(parts, commands, *dwell_s);

@@ -10,15 +10,18 @@ use super::reader::ReaderArgs;
 
 /// Tell the feedrates at which a program holds a tolerance
 ///
-/// As it is, corrected, and with a controller: for the whole program, and for each stretch.
+/// For the program as it is, corrected, and cut with a controller that sees the tool: for all of it, and for each stretch between corners and stops. Where no feed
+/// holds, the table tells which error stays, and where.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Example:
-  feedwright advise part.ngc --machine mine.toml --tolerance 10 --report advice.html")]
+  feedwright advise part.ngc --machine mine.toml --tolerance 10 --report advice.html
+
+Exit codes: 0 done; 1 where no feed holds, in any way of cutting; 2 an error.")]
 pub(crate) struct AdviseArgs {
     /// G-code program.
     pub(crate) part: PathBuf,
-    /// Built-in machine, or a machine file (.toml).
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright::machine::DEFAULT)]
     pub(crate) machine: OsString,
     /// Largest contour error, um.
@@ -30,7 +33,7 @@ pub(crate) struct AdviseArgs {
     /// Controller of the cut with feedback; `feedwright controllers` lists them.
     #[arg(long, value_name = "NAME", default_value = feedwright::controllers::BEST)]
     pub(crate) controller: String,
-    /// Seed of the identifier's training.
+    /// Seed of the recording that the machine is identified from.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
     /// Write a page: table, figure, and the feedrates of each stretch.
@@ -39,7 +42,7 @@ pub(crate) struct AdviseArgs {
     /// Write the figure: error over feedrate, and the feedrate that each stretch holds.
     #[arg(long, value_name = "FILE.svg")]
     pub(crate) figure: Option<PathBuf>,
-    /// Write all results.
+    /// Write all results as JSON, those of every feed that was cut too.
     #[arg(long, value_name = "FILE.json")]
     pub(crate) json: Option<PathBuf>,
     #[command(flatten)]

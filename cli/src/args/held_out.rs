@@ -6,7 +6,7 @@ use clap::Args;
 
 use super::sweep::{SweepArgs, at_least_one};
 
-/// The same with random programs on random machines
+/// Look for such harm with random programs on random machines
 ///
 /// With --failures the smallest case of what fails is written.
 #[derive(Debug, Args)]
