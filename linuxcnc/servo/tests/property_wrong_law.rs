@@ -1,6 +1,9 @@
 //! By the law of another machine the link is never worse than without a correction, and by the right one far better: on paths that begin where the machine
 //! stands, without any motion before in which a law could prove itself.
 
+#[path = "common/inputs.rs"]
+mod common;
+
 use std::f64::consts::TAU;
 
 use feedwright_control::axis::inverse::LoopDelays;
@@ -9,11 +12,10 @@ use feedwright_control::axis::{Parameters, Periods};
 use feedwright_control::model::IdentifiedAxes;
 use feedwright_servo::machine::LinkModel;
 use feedwright_servo::plant::SimulatedMachine;
-use feedwright_servo::servo::{LinkFault, LinkInputs, LinkLimits, Servo};
+use feedwright_servo::servo::{LinkFault, LinkInputs, Servo};
 
-const SERVO_S: f64 = 0.001;
-const LIMITS: LinkLimits =
-    LinkLimits { delay_s: 0.010, deviation_mm: 0.5, speed_mm_s: 400.0, correction_mm_s2: 400.0, speed_alone: false };
+use common::{LIMITS, SERVO_S, cutting};
+
 /// Feedrate and acceleration of the programs.
 const FEED_MM_S: f64 = 50.0;
 const ACCELERATION_MM_S2: f64 = 2000.0;
@@ -127,15 +129,7 @@ fn cut(real: &Machine, inertia: f64, points: &[[f64; 2]], enabled: bool) -> Cut 
     let (mut near, mut squares, mut largest, mut corrected, mut told) = (0, Vec::new(), 0.0_f64, false, Vec::new());
     let commands = commands(points);
     for (n, command_mm) in commands.iter().enumerate() {
-        let inputs = LinkInputs {
-            command_mm: *command_mm,
-            actual_mm: plant.measured_mm(),
-            powered: true,
-            enabled,
-            direct: false,
-            spindle: false,
-            cutting: true,
-        };
+        let inputs = LinkInputs { enabled, ..cutting(*command_mm, plant.measured_mm()) };
         let outputs = servo.step(&inputs, &LIMITS);
         plant.step(outputs.drive_mm, true, inertia);
         corrected |= outputs.correction_mm != [0.0; 2];
