@@ -110,7 +110,7 @@ impl<const N: usize> LqgPreview<N> {
 
     /// By how much the axes, as they are measured, are behind the plan at constant speed, s.
     pub fn measured_lag_s(&self) -> f64 {
-        self.axes.iter().map(|axis| axis.lag_s() + axis.measured_late_s()).fold(0.0, f64::max)
+        self.axes.iter().map(AxisLqg::measured_lag_s).fold(0.0, f64::max)
     }
 
     /// What noise and loads that nobody foresees make of a position, mm^2.

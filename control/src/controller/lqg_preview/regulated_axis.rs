@@ -165,18 +165,18 @@ impl AxisLqg {
 
     /// How far the axis is behind the command at constant speed where nothing is added to it, s.
     pub(super) fn lag_s(&self) -> f64 {
-        let (parameters, AxisKnowledge { drive, delays, .. }) = (self.model.law.parameters, self.known);
+        self.measured_lag_s() - self.known.delays.measurement_s
+    }
+
+    /// The same of its position as it is measured, s.
+    pub(super) fn measured_lag_s(&self) -> f64 {
+        let (parameters, AxisKnowledge { drive, .. }) = (self.model.law.parameters, self.known);
         let friction = if drive.speed_integral_s > 0.0 {
             0.0
         } else {
             parameters.viscous_friction_nm_s / parameters.kv_nm_s_per_rad
         };
-        (1.0 + friction - drive.velocity_feedforward) / parameters.kp_1_s - delays.measurement_s
-    }
-
-    /// By how much later its position is there, s.
-    pub(super) fn measured_late_s(&self) -> f64 {
-        self.known.delays.measurement_s
+        (1.0 + friction - drive.velocity_feedforward) / parameters.kp_1_s
     }
 
     /// What was commanded in the last servo period, as an offset from the path, has led to this position. Where it begins it has about this speed.
