@@ -1,19 +1,19 @@
 //! The link in a closed loop with the simulated machine: what it does to the contour error, and what it never does.
 
+#[path = "common/axis.rs"]
+mod axis;
 #[path = "common/inputs.rs"]
 mod common;
 
 use std::f64::consts::TAU;
 
-use feedwright_control::axis::inverse::LoopDelays;
-use feedwright_control::axis::knowledge::AxisKnowledge;
-use feedwright_control::axis::{Parameters, Periods};
 use feedwright_control::model::{BlockError, IdentifiedAxes};
 use feedwright_control::safety::engagement::Cause;
 use feedwright_servo::machine::{LinkModel, Refused};
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkLimits, LinkOutputs, Servo};
 
+use axis::axis;
 use common::{LIMITS, SERVO_S, cutting};
 
 /// Servo periods until the link has settled, and of a turn of the circle.
@@ -24,24 +24,10 @@ const LEFT: f64 = 0.05;
 
 /// Two axes alike, with the numbers of the machine of Lee, Cho and Jeon (2005).
 fn machine() -> IdentifiedAxes<2> {
-    let parameters = Parameters {
-        rad_per_mm: TAU / 10.0,
-        kp_1_s: 50.0,
-        kd: 0.0,
-        kv_nm_s_per_rad: 2.0,
-        torque_limit_nm: 30.0,
-        inertia_kg_m2: 0.0103,
-        viscous_friction_nm_s: 0.0336,
-        coulomb_friction_nm: 0.2,
-        coulomb_smoothing_rad_s: 0.05,
-    };
-    let periods = Periods { servo_s: SERVO_S, mechanics_s: 0.0001, mechanics_per_servo: 10 };
-    let delays = LoopDelays { drive_s: 0.001, measurement_s: 0.0005 };
-    let mut slower = parameters;
-    slower.inertia_kg_m2 = 0.012;
-    slower.coulomb_friction_nm = 0.3;
-    let axis = |parameters| AxisKnowledge { parameters, periods, delays, ..AxisKnowledge::NOTHING };
-    IdentifiedAxes { mechanics_s: periods.mechanics_s, axes: [axis(parameters), axis(slower)] }
+    let (axis, mut slower) = (axis(), axis());
+    slower.parameters.inertia_kg_m2 = 0.012;
+    slower.parameters.coulomb_friction_nm = 0.3;
+    IdentifiedAxes { mechanics_s: axis.periods.mechanics_s, axes: [axis, slower] }
 }
 
 /// Rest, a turn of a circle of 10 mm at 50 mm/s with soft ends, rest.

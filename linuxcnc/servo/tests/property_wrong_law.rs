@@ -1,19 +1,20 @@
 //! By the law of another machine the link is never worse than without a correction, and by the right one far better: on paths that begin where the machine
 //! stands, without any motion before in which a law could prove itself.
 
+#[path = "common/axis.rs"]
+mod axis;
 #[path = "common/inputs.rs"]
 mod common;
 
 use std::f64::consts::TAU;
 
-use feedwright_control::axis::inverse::LoopDelays;
 use feedwright_control::axis::knowledge::AxisKnowledge;
-use feedwright_control::axis::{Parameters, Periods};
 use feedwright_control::model::IdentifiedAxes;
 use feedwright_servo::machine::LinkModel;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{LinkFault, LinkInputs, Servo};
 
+use axis::axis;
 use common::{LIMITS, SERVO_S, cutting};
 
 /// Feedrate and acceleration of the programs.
@@ -32,21 +33,8 @@ type Change = fn(&mut AxisKnowledge);
 
 /// Two axes alike, with the numbers of the machine of Lee, Cho and Jeon (2005).
 fn machine() -> Machine {
-    let parameters = Parameters {
-        rad_per_mm: TAU / 10.0,
-        kp_1_s: 50.0,
-        kd: 0.0,
-        kv_nm_s_per_rad: 2.0,
-        torque_limit_nm: 30.0,
-        inertia_kg_m2: 0.0103,
-        viscous_friction_nm_s: 0.0336,
-        coulomb_friction_nm: 0.2,
-        coulomb_smoothing_rad_s: 0.05,
-    };
-    let periods = Periods { servo_s: SERVO_S, mechanics_s: 0.0001, mechanics_per_servo: 10 };
-    let delays = LoopDelays { drive_s: 0.001, measurement_s: 0.0005 };
-    let axis = AxisKnowledge { parameters, periods, delays, ..AxisKnowledge::NOTHING };
-    IdentifiedAxes { mechanics_s: periods.mechanics_s, axes: [axis; 2] }
+    let axis = axis();
+    IdentifiedAxes { mechanics_s: axis.periods.mechanics_s, axes: [axis; 2] }
 }
 
 fn changed(change: Change) -> Machine {

@@ -1,0 +1,25 @@
+//! The axis of the tests' machines.
+
+use std::f64::consts::TAU;
+
+use feedwright_control::axis::inverse::LoopDelays;
+use feedwright_control::axis::knowledge::AxisKnowledge;
+use feedwright_control::axis::{Parameters, Periods};
+
+/// With the numbers of the machine of Lee, Cho and Jeon (2005), in a servo period of 1 ms.
+pub(crate) fn axis() -> AxisKnowledge {
+    let parameters = Parameters {
+        rad_per_mm: TAU / 10.0,
+        kp_1_s: 50.0,
+        kd: 0.0,
+        kv_nm_s_per_rad: 2.0,
+        torque_limit_nm: 30.0,
+        inertia_kg_m2: 0.0103,
+        viscous_friction_nm_s: 0.0336,
+        coulomb_friction_nm: 0.2,
+        coulomb_smoothing_rad_s: 0.05,
+    };
+    let periods = Periods { servo_s: 0.001, mechanics_s: 0.0001, mechanics_per_servo: 10 };
+    let delays = LoopDelays { drive_s: 0.001, measurement_s: 0.0005 };
+    AxisKnowledge { parameters, periods, delays, ..AxisKnowledge::NOTHING }
+}
