@@ -263,8 +263,7 @@ impl<'a> Search<'a> {
         let mut next = Some(MUCH_SHARES[0]);
         while let Some(share) = next {
             let before_s = if share > MUCH_SHARES[0] { self.best_s() } else { f64::INFINITY };
-            self.descend(share, ROUNDS, cut)?;
-            if self.ends() || (before_s.is_finite() && self.best_s() > (1.0 - LEAST_GAIN) * before_s) {
+            if !self.gains(share, before_s, cut)? {
                 break;
             }
             next = self.larger_share(share);
@@ -290,13 +289,23 @@ impl<'a> Search<'a> {
         cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
     ) -> Result<(), FastestError> {
         for share in shares {
-            let before_s = self.best_s();
-            self.descend(share, ROUNDS, cut)?;
-            if self.ends() || (before_s.is_finite() && self.best_s() > (1.0 - LEAST_GAIN) * before_s) {
+            if !self.gains(share, self.best_s(), cut)? {
                 break;
             }
         }
         Ok(())
+    }
+
+    /// Looks for it with a share; whether that has gained time beside what was known before, s, and another may gain more.
+    fn gains(
+        &mut self,
+        share: f64,
+        before_s: f64,
+        cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
+    ) -> Result<bool, FastestError> {
+        self.descend(share, ROUNDS, cut)?;
+        let gained = !before_s.is_finite() || self.best_s() <= (1.0 - LEAST_GAIN) * before_s;
+        Ok(gained && !self.ends())
     }
 
     /// Cuts with a share of the path until that gains no more, or so many times.
