@@ -15,6 +15,7 @@ use crate::terminal::wrapped;
 
 pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io::Result<()> {
     let runs = &outcome.report.runs;
+    let measured = runs.iter().any(|run| run.summary.measured);
     let say = |out: &mut dyn Write, text: &str| writeln!(out, "{}", wrapped(text, 2));
     if let (Some(first), Some(last)) = (runs.first(), run_of(runs, job.controller.name)) {
         say(out, &headline(&first.summary, last))?;
@@ -25,14 +26,13 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io:
         out,
         "N m: peak torque; off: how far the command leaves the path at most; mm/s2: largest acceleration of the command",
     )?;
-    if runs.iter().any(|run| run.summary.measured) {
+    if measured {
         say(
             out,
             "measured: from the first cut on, so its time is without the way there; a log has no torque, and digits that make accelerations of it too large",
         )?;
     }
     writeln!(out)?;
-    let measured = runs.iter().any(|run| run.summary.measured);
     say(out, &assumed(&outcome.report.assumed, measured))?;
     if let Some(reference) = &job.reference {
         say(out, &format!("errors and uncut path are those to {}", reference.display()))?;

@@ -5,7 +5,7 @@
 //! settles: what no feed takes back is told apart, as the error at the ends of the stretches.
 
 use super::feed_cuts::{ErrorPlace, FeedBench, FeedErrors, StretchErrors};
-use super::{CutWay, NearestCut, NearestFeed, WayAdvice, lines_of};
+use super::{CutWay, FeedCut, NearestCut, NearestFeed, WayAdvice, lines_of};
 use crate::correct::stretches::stretches;
 use crate::pipeline::RunError;
 use crate::watch::StageSteps;
@@ -94,10 +94,7 @@ impl<const N: usize> FeedSearch<'_, '_, N> {
         let count = stretches(self.bench.parts).count();
         let cuts = self.cuts(most, tolerance_um)?;
         let mut found: Vec<StretchFactors> = (0..count).map(|k| of_stretch(&cuts, k, tolerance_um)).collect();
-        let whole = match held_by(&cuts, tolerance_um, &|errors| (errors.max_um, errors.time_s)) {
-            Some(factor) => self.verified(vec![factor; count], true, tolerance_um, ErrorFigure::All)?,
-            None => None,
-        };
+        let whole = self.whole(&cuts, tolerance_um, ErrorFigure::All)?;
         let all: Option<Vec<f64>> = found.iter().map(|stretch| stretch.holds).collect();
         let each = match all {
             Some(factors) => self.verified(factors, false, tolerance_um, ErrorFigure::All)?,
@@ -110,7 +107,7 @@ impl<const N: usize> FeedSearch<'_, '_, N> {
             way: self.way,
             cuts: cuts.iter().map(|(factor, errors)| errors.cut(Some(*factor))).collect(),
             nearest: if whole.is_none() { self.nearest(&cuts, tolerance_um)? } else { None },
-            whole: whole.map(|(factors, errors)| errors.cut(factors.first().copied())),
+            whole,
             by_stretch: each.map(|(_, errors)| errors.cut(None)),
         };
         Ok((advice, found))
@@ -135,20 +132,29 @@ impl<const N: usize> FeedSearch<'_, '_, N> {
 
     /// What comes nearest where no factor holds, and the factor that holds beside the ends of the stretches.
     fn nearest(&mut self, cuts: &[(f64, FeedErrors)], tolerance_um: f64) -> Result<Option<NearestCut>, RunError> {
-        let count = stretches(self.bench.parts).count();
         let Some((factor, errors)) = cuts.iter().min_by(|a, b| a.1.max_um.total_cmp(&b.1.max_um)) else {
             return Ok(None);
         };
         let all = stretches(self.bench.parts).zip(&errors.stretches);
         let Some((stretch, worst)) = all.max_by(|a, b| a.1.max_um.total_cmp(&b.1.max_um)) else { return Ok(None) };
         let (lines, place) = (lines_of(stretch), worst.place);
-        let beside_ends = ErrorFigure::BesideEnds;
-        let beside_ends = match held_by(cuts, tolerance_um, &|errors| (beside_ends.of_program(errors), errors.time_s)) {
-            Some(factor) => self.verified(vec![factor; count], true, tolerance_um, ErrorFigure::BesideEnds)?,
-            None => None,
-        };
-        let beside_ends = beside_ends.map(|(factors, errors)| errors.cut(factors.first().copied()));
+        let beside_ends = self.whole(cuts, tolerance_um, ErrorFigure::BesideEnds)?;
         Ok(Some(NearestCut { cut: errors.cut(Some(*factor)), lines, place, beside_ends }))
+    }
+
+    /// The cut of the largest factor on the whole program by which `figure` is within the tolerance.
+    fn whole(
+        &mut self,
+        cuts: &[(f64, FeedErrors)],
+        tolerance_um: f64,
+        figure: ErrorFigure,
+    ) -> Result<Option<FeedCut>, RunError> {
+        let Some(factor) = held_by(cuts, tolerance_um, &|errors| (figure.of_program(errors), errors.time_s)) else {
+            return Ok(None);
+        };
+        let count = stretches(self.bench.parts).count();
+        let verified = self.verified(vec![factor; count], true, tolerance_um, figure)?;
+        Ok(verified.map(|(factors, errors)| errors.cut(factors.first().copied())))
     }
 
     /// Factors by which `figure` is within the tolerance, lowered from those that are to hold, all by as much or each by itself; none where it is not.
