@@ -3,8 +3,8 @@
 
     planner.py [--record] [PROGRAM.ngc ...]
 
-Without programs: those of core/tests/oracle_data/linuxcnc_planner. `--record` writes beside each program what LinuxCNC did: the number of servo
-periods and every 20th command, which oracle_linuxcnc_planner tests without LinuxCNC. Build first: cargo build -p feedwright --example linuxcnc_planner.
+Without programs: those of crates/sim/tests/oracle_data/linuxcnc_planner. `--record` writes beside each program what LinuxCNC did: the number of servo
+periods and every 20th command, which oracle_linuxcnc_planner tests without LinuxCNC. Build first: cargo build -p feedwright-lab --example linuxcnc_planner.
 Columns: servo periods of both, their ratio, the largest distance of commands of the same servo period, and of either path from the other, um. Exit
 code 1 where a time is off by 2 %, or a path by 2 um.
 """
@@ -126,7 +126,7 @@ def model(program):
     found = [target / profile / "examples" / "linuxcnc_planner" for profile in ("release", "debug")]
     tool = next((file for file in found if file.exists()), None)
     if tool is None:
-        raise headless.Failed("cargo build -p feedwright --example linuxcnc_planner comes first")
+        raise headless.Failed("cargo build -p feedwright-lab --example linuxcnc_planner comes first")
     done = subprocess.run([tool, program], capture_output=True, text=True, check=True)
     return moving([tuple(map(float, line.split(","))) for line in done.stdout.splitlines()])
 

@@ -1,8 +1,6 @@
 //! The link between command and drive.
 
-use feedwright_control::model::BlockError;
-use feedwright_control::safety::State;
-use feedwright_control::safety::engagement::Cause;
+use feedwright_control::{BlockError, Cause, State};
 use feedwright_servo::machine::{Refused, model_of};
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkLimits, LinkOutputs, Servo};
 

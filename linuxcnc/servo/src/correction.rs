@@ -5,10 +5,8 @@
 use crate::live_controller::LiveController;
 use crate::machine::LinkModel;
 use crate::trust::Trust;
-use feedwright_control::contour_error::locate;
-use feedwright_control::controller::lqg_preview::OffsetBounds;
-use feedwright_control::safety::Bounds;
 use feedwright_control::vector::{norm, scale, sub};
+use feedwright_control::{Bounds, OffsetBounds, locate};
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 
 /// Time in which the correction comes in, and in which it goes, s. A machine that begins to cut where it stands has some 0.1 s until the path bends. With 0.065 s

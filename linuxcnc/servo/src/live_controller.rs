@@ -1,10 +1,9 @@
 //! The controllers that can stand in the link, by the kind of the model: the regulator of identified axes, or the paper's two.
 
-use feedwright_control::controller::inverting;
-use feedwright_control::controller::lqg_preview::{IDENTIFIED_PRICE, LqgPreview, OffsetBounds, Settings};
-use feedwright_control::controller::magnitude_only::MagnitudeOnly;
-use feedwright_control::controller::two_dimensional::TwoDimensional;
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
+use feedwright_control::{
+    IDENTIFIED_PRICE, InvertingSettings, LqgPreview, LqgSettings, MagnitudeOnly, OffsetBounds, TwoDimensional,
+};
 
 use crate::machine::{LinkModel, TrainedContour};
 
@@ -27,11 +26,11 @@ pub struct Inversion<const N: usize> {
 
 impl<const N: usize> Inversion<N> {
     fn new(contour: &TrainedContour<N>) -> Self {
-        let settings = inverting::Settings {
+        let settings = InvertingSettings {
             // A float that is not a number, or below zero, saturates to 0.
             servo_periods: (libm::round(contour.feed_period_s / contour.servo_s) as u32).clamp(1, MOST_PERIODS),
             is_planned_elsewhere: true,
-            ..inverting::Settings::DEFAULT
+            ..InvertingSettings::DEFAULT
         };
         Self {
             both: TwoDimensional::new(contour.identifier.clone(), settings),
@@ -57,7 +56,7 @@ impl<const N: usize> LiveController<N> {
     pub fn new(model: &LinkModel<N>, servo_s: f64) -> Self {
         match model {
             LinkModel::Axes(identified) => {
-                let settings = Settings::identified(IDENTIFIED_PRICE, servo_s, OffsetBounds::NONE);
+                let settings = LqgSettings::identified(IDENTIFIED_PRICE, servo_s, OffsetBounds::NONE);
                 Self::Regulator(LqgPreview::new(identified.axes, settings))
             }
             LinkModel::Contour(contour) => Self::Inversion(Inversion::new(contour)),

@@ -1,7 +1,6 @@
 //! What is read from a model file.
 
-use feedwright_control::identifier::contour::ContourIdentifier;
-use feedwright_control::model::{BlockError, IdentifiedAxes, ModelBlock, Trained};
+use feedwright_control::{BlockError, ContourIdentifier, IdentifiedAxes, ModelBlock, Trained};
 
 /// Why a model cannot be used here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,4 +1,4 @@
-//! A simulated machine: the servo axes of [`feedwright_control::axis`], each with what a model file has of it.
+//! A simulated machine: the servo axes of [`feedwright_control::AxisLaw`], each with what a model file has of it.
 //!
 //! Loops, inertia, friction, delays, the drive's feedforward and filter, the disturbance, cogging, broadband torque, and the encoder's noise
 //! and step are those of the file. Two masses, geometry and jitter are not in a model file, and not here.
@@ -13,13 +13,10 @@
 
 use core::f64::consts::TAU;
 
-use feedwright_control::axis::drive::{DriveLaw, DriveReference, DriveState};
-use feedwright_control::axis::friction::{FrictionLaw, FrictionParameters};
-use feedwright_control::axis::knowledge::AxisKnowledge;
-use feedwright_control::axis::statistics::AxisStatistics;
-use feedwright_control::axis::{self, AxisLaw, AxisState};
-use feedwright_control::model::IdentifiedAxes;
-use feedwright_control::sine::sin;
+use feedwright_control::{
+    AxisKnowledge, AxisLaw, AxisState, AxisStatistics, DriveLaw, DriveReference, DriveState, FrictionLaw,
+    FrictionParameters, IdentifiedAxes, friction_signs, sin,
+};
 
 /// References and positions that are kept, servo periods: 20 ms each way at 1 ms, and some.
 const KEPT: usize = 128;
@@ -219,7 +216,7 @@ impl SimulatedAxis {
                 self.state.angle_rad += law.periods.mechanics_s * self.state.speed_rad_s;
             }
             None => {
-                let [sign] = axis::signs(&[*law], [w]);
+                let [sign] = friction_signs(&[*law], [w]);
                 law.accelerate(forces_nm - law.friction_nm(w, sign), &mut self.state);
             }
         }

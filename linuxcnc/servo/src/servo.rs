@@ -15,9 +15,8 @@
 //! | [`Link::Direct`] | the command, and what is left of an offset while it fades |
 //! | [`Link::Delayed`] | the command late, and the offset that the safety layer lets through |
 
-use feedwright_control::safety::engagement::Cause;
-use feedwright_control::safety::{Bounds, State};
 use feedwright_control::vector::{add_scaled, norm, scale, sub};
+use feedwright_control::{Bounds, Cause, State};
 use feedwright_control::{Schedule, Tick};
 
 use crate::correction::Correction;

@@ -12,10 +12,8 @@
 //! tool away where it was held and taken back slowly. Found wrong twice, a model is not tried again until the amplifiers were off. Before all this,
 //! and each time that it was found wrong, its law has to prove itself in motion without a correction (`law_proof.rs`).
 
-use feedwright_control::contour_error::locate;
-use feedwright_control::controller::lqg_preview::LqgPreview;
-use feedwright_control::model::IdentifiedAxes;
 use feedwright_control::vector::{dot, norm, sub};
+use feedwright_control::{IdentifiedAxes, LqgPreview, locate};
 use feedwright_control::{Measured, Window};
 
 use crate::law_proof::LawProof;

@@ -3,8 +3,7 @@
 #[path = "common/inputs.rs"]
 mod common;
 
-use feedwright_control::identifier::Identifier;
-use feedwright_control::identifier::contour::ContourIdentifier;
+use feedwright_control::{ContourIdentifier, Identifier};
 use feedwright_servo::machine::{LinkModel, TrainedContour};
 use feedwright_servo::servo::{Link, LinkInputs, LinkLimits, LinkOutputs, Servo};
 

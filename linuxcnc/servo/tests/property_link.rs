@@ -7,8 +7,7 @@ mod common;
 
 use std::f64::consts::TAU;
 
-use feedwright_control::model::{BlockError, IdentifiedAxes};
-use feedwright_control::safety::engagement::Cause;
+use feedwright_control::{BlockError, Cause, IdentifiedAxes};
 use feedwright_servo::machine::{LinkModel, Refused};
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkLimits, LinkOutputs, Servo};

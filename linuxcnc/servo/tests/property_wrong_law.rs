@@ -8,8 +8,7 @@ mod common;
 
 use std::f64::consts::TAU;
 
-use feedwright_control::axis::knowledge::AxisKnowledge;
-use feedwright_control::model::IdentifiedAxes;
+use feedwright_control::{AxisKnowledge, IdentifiedAxes};
 use feedwright_servo::machine::LinkModel;
 use feedwright_servo::plant::SimulatedMachine;
 use feedwright_servo::servo::{LinkFault, LinkInputs, Servo};

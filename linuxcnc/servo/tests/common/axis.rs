@@ -2,9 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use feedwright_control::axis::inverse::LoopDelays;
-use feedwright_control::axis::knowledge::AxisKnowledge;
-use feedwright_control::axis::{Parameters, Periods};
+use feedwright_control::{AxisKnowledge, LoopDelays, Parameters, Periods};
 
 /// With the numbers of the machine of Lee, Cho and Jeon (2005), in a servo period of 1 ms.
 pub(crate) fn axis() -> AxisKnowledge {

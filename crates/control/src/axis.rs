@@ -1,0 +1,218 @@
+//! The law of a servo axis: position loop, speed loop with saturation, inertia and friction.
+//!
+//! ```text
+//! w_ref = Kp e + Kd (e - e_prev) / Ts            PD position loop, once a servo period Ts
+//! u     = Kv (w_ref - w) within -Tmax, Tmax      P speed loop with saturation, every mechanics period dt
+//! J dw/dt = u - B w - Fc tanh(w / w_s) - load
+//! ```
+//!
+//! at the motor shaft, integrated by semi-implicit Euler: w first, then the angle with the new w. What simulates a machine, what
+//! predicts one and what inverts one use these lines and no others.
+//!
+//! | File | What a machine may have beside it |
+//! |---|---|
+//! | `axis/drive.rs` | integral of the speed loop, feedforward, speed limit, torque filter |
+//! | `axis/friction.rs` | asymmetry, Stribeck's curve, presliding |
+//! | `axis/transmission.rs` | motor and table as two masses: stiffness, damping, backlash of the ball screw |
+//!
+//! `axis/mechanics.rs` steps motor, table and friction under given torques, `axis/inverse.rs` solves the law for the command, all of this included.
+//!
+//! Symbols: e error of the position at the motor, rad; w speed of the motor, rad/s; u torque, N m; Kp, Kd gains of the position
+//! loop, 1/s and none; Kv gain of the speed loop, N m s/rad; J inertia, kg m^2; B viscous friction, N m s/rad; Fc Coulomb friction,
+//! N m, which turns its sign over w_s, rad/s.
+//!
+//! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6, which name the parts; the laws are written out as usual for
+//! such a loop.
+
+pub(crate) mod drive;
+pub(crate) mod friction;
+pub(crate) mod transmission;
+pub(crate) mod mechanics;
+pub(crate) mod inverse;
+pub(crate) mod statistics;
+pub(crate) mod knowledge;
+
+use crate::activation::tanh;
+
+/// Parameters of an axis at the motor shaft.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameters {
+    /// Turn of the motor for a travel of the table, rad/mm.
+    pub rad_per_mm: f64,
+    /// Proportional gain of the position loop, 1/s.
+    pub kp_1_s: f64,
+    /// Its derivative gain, dimensionless.
+    pub kd: f64,
+    /// Gain of the speed loop, N m s/rad.
+    pub kv_nm_s_per_rad: f64,
+    /// Torque at which the drive saturates, N m.
+    pub torque_limit_nm: f64,
+    /// Inertia, kg m2.
+    pub inertia_kg_m2: f64,
+    /// Viscous friction, N m s/rad.
+    pub viscous_friction_nm_s: f64,
+    /// Coulomb friction, N m.
+    pub coulomb_friction_nm: f64,
+    /// Speed over which it turns its sign, rad/s.
+    pub coulomb_smoothing_rad_s: f64,
+}
+
+/// Periods of the loops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Periods {
+    /// Of the position loop, s.
+    pub servo_s: f64,
+    /// Of the speed loop and of the integration of the mechanics, s.
+    pub mechanics_s: f64,
+    /// Mechanics periods in a servo period.
+    pub mechanics_per_servo: u32,
+}
+
+/// Where the motor of an axis is and how fast, and the error that its position loop saw last.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct AxisState {
+    /// Angle of the motor, rad.
+    pub angle_rad: f64,
+    /// Its speed, rad/s.
+    pub speed_rad_s: f64,
+    /// Error of the position at the last servo period, rad.
+    pub error_rad: f64,
+}
+
+/// An axis, ready to be integrated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct AxisLaw {
+    /// Its parameters.
+    pub parameters: Parameters,
+    /// Periods of its loops.
+    pub periods: Periods,
+    inverse_inertia: f64,
+    inverse_smoothing_s: f64,
+}
+
+impl AxisLaw {
+    /// With these parameters and periods.
+    pub fn new(parameters: Parameters, periods: Periods) -> Self {
+        Self {
+            parameters,
+            periods,
+            inverse_inertia: 1.0 / parameters.inertia_kg_m2,
+            inverse_smoothing_s: 1.0 / parameters.coulomb_smoothing_rad_s,
+        }
+    }
+
+    /// The PD position loop takes in an error of the position, rad; the speed that it asks for, rad/s. It is linear: what it makes
+    /// of a derivative of the error is the derivative of that speed.
+    #[inline]
+    pub fn position_loop(&self, error_rad: f64, state: &mut AxisState) -> f64 {
+        let rate_rad_s = (error_rad - state.error_rad) / self.periods.servo_s;
+        state.error_rad = error_rad;
+        self.parameters.kp_1_s * error_rad + self.parameters.kd * rate_rad_s
+    }
+
+    /// The torque of the speed loop, N m. Not a number stays none.
+    #[inline]
+    pub fn torque_nm(&self, reference_rad_s: f64, speed_rad_s: f64) -> f64 {
+        let wanted = self.parameters.kv_nm_s_per_rad * (reference_rad_s - speed_rad_s);
+        within(wanted, self.parameters.torque_limit_nm)
+    }
+
+    /// Friction torque at a speed at which the Coulomb part has so much of its full size and this sign (`signs`), N m.
+    #[inline]
+    pub fn friction_nm(&self, speed_rad_s: f64, sign: f64) -> f64 {
+        self.parameters.viscous_friction_nm_s * speed_rad_s + self.parameters.coulomb_friction_nm * sign
+    }
+
+    /// One mechanics period under a torque, N m.
+    #[inline]
+    pub fn accelerate(&self, torque_nm: f64, state: &mut AxisState) {
+        state.speed_rad_s += self.periods.mechanics_s * self.inverse_inertia * torque_nm;
+        state.angle_rad += self.periods.mechanics_s * state.speed_rad_s;
+    }
+
+    /// Derivatives of the torque that is left for the inertia: to the speed that is asked for, and, against it, to the speed, N m
+    /// s/rad. `torque_nm` is that of the speed loop.
+    #[inline]
+    pub fn slopes_nm_s(&self, torque_nm: f64, sign: f64) -> [f64; 2] {
+        let Parameters { kv_nm_s_per_rad, torque_limit_nm, viscous_friction_nm_s, coulomb_friction_nm, .. } =
+            self.parameters;
+        let gain = if torque_nm.abs() < torque_limit_nm { kv_nm_s_per_rad } else { 0.0 };
+        let coulomb = coulomb_friction_nm * (1.0 - sign * sign) * self.inverse_smoothing_s;
+        [gain, gain + (viscous_friction_nm_s + coulomb)]
+    }
+}
+
+/// The value, or the end of -most to most that it is beyond. Not a number stays none.
+#[inline]
+fn within(value: f64, most: f64) -> f64 {
+    if value > most {
+        most
+    } else if value < -most {
+        -most
+    } else {
+        value
+    }
+}
+
+/// tanh(w / w_s) of each axis: all at once, which is faster.
+#[inline]
+pub fn friction_signs<const N: usize>(axes: &[AxisLaw; N], speeds_rad_s: [f64; N]) -> [f64; N] {
+    tanh(core::array::from_fn::<_, N, _>(|i| speeds_rad_s[i] * axes[i].inverse_smoothing_s))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis() -> AxisLaw {
+        let parameters = Parameters {
+            rad_per_mm: 0.6,
+            kp_1_s: 50.0,
+            kd: 0.1,
+            kv_nm_s_per_rad: 2.0,
+            torque_limit_nm: 30.0,
+            inertia_kg_m2: 0.01,
+            viscous_friction_nm_s: 0.03,
+            coulomb_friction_nm: 0.2,
+            coulomb_smoothing_rad_s: 0.5,
+        };
+        AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 0.0001, mechanics_per_servo: 10 })
+    }
+
+    /// Torque left for the inertia.
+    fn left_nm(axis: &AxisLaw, reference_rad_s: f64, speed_rad_s: f64) -> f64 {
+        let [sign] = friction_signs(&[*axis], [speed_rad_s]);
+        axis.torque_nm(reference_rad_s, speed_rad_s) - axis.friction_nm(speed_rad_s, sign)
+    }
+
+    #[test]
+    fn the_slopes_are_the_difference_quotients_of_the_torque() {
+        let (axis, h) = (axis(), 1e-5);
+        for (reference, speed) in [(1.0, 0.9), (0.1, -0.2), (3.0, 0.0), (100.0, 1.0)] {
+            let [sign] = friction_signs(&[axis], [speed]);
+            let [gain, damping] = axis.slopes_nm_s(axis.torque_nm(reference, speed), sign);
+            let to_reference =
+                (left_nm(&axis, reference + h, speed) - left_nm(&axis, reference - h, speed)) / (2.0 * h);
+            let to_speed = (left_nm(&axis, reference, speed + h) - left_nm(&axis, reference, speed - h)) / (2.0 * h);
+            assert!((gain - to_reference).abs() < 1e-6 && (damping + to_speed).abs() < 1e-6, "{reference} {speed}");
+        }
+    }
+
+    #[test]
+    fn the_torque_is_within_its_limit_and_what_is_no_number_stays_none() {
+        let axis = axis();
+        assert_eq!([1e9, -1e9, f64::INFINITY].map(|w| axis.torque_nm(w, 0.0)), [30.0, -30.0, 30.0]);
+        assert!(axis.torque_nm(f64::NAN, 0.0).is_nan());
+    }
+
+    #[test]
+    fn a_step_of_the_speed_is_taken_within_the_time_constant_of_the_loop() {
+        // J dw/dt = Kv (1 - w) without friction: w = 1 - exp(-t Kv / J), 5 ms.
+        let parameters = Parameters { viscous_friction_nm_s: 0.0, coulomb_friction_nm: 0.0, ..axis().parameters };
+        let axis = AxisLaw::new(parameters, Periods { mechanics_s: 1e-6, ..axis().periods });
+        let mut state = AxisState::default();
+        (0..5000).for_each(|_| axis.accelerate(axis.torque_nm(1.0, state.speed_rad_s), &mut state));
+        assert!((state.speed_rad_s - (1.0 - libm::exp(-1.0))).abs() < 1e-4, "{}", state.speed_rad_s);
+        assert!((state.angle_rad - 0.005 * libm::exp(-1.0)).abs() < 1e-6, "{}", state.angle_rad);
+    }
+}

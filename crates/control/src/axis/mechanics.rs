@@ -1,0 +1,153 @@
+//! A mechanics period of an axis under given torques: motor, table where the ball screw gives, friction.
+//!
+//! What simulates a machine, what estimates one and what runs freely to identify one step their masses by this and nothing else.
+
+use super::friction::{FrictionLaw, FrictionParameters};
+use super::transmission::{TableState, TransmissionLaw, TransmissionParameters};
+use super::{AxisLaw, AxisState, friction_signs};
+
+/// Masses and friction of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MechanicsLaw {
+    law: AxisLaw,
+    /// What friction has beside smoothed Coulomb friction.
+    friction: Option<FrictionLaw>,
+    transmission: Option<TransmissionLaw>,
+    inverse_inertia: f64,
+}
+
+/// What moves.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct MechanicsState {
+    /// The motor, with what its position loop saw last.
+    pub motor: AxisState,
+    /// The table: the motor's angle and speed where the screw is rigid.
+    pub table: TableState,
+    /// Friction of the presliding spring, N m.
+    pub presliding_nm: f64,
+}
+
+impl MechanicsState {
+    /// At rest at an angle, in the middle of the backlash.
+    pub fn at_rest(angle_rad: f64) -> Self {
+        Self::moving(angle_rad, 0.0)
+    }
+
+    /// At a speed, motor and table alike.
+    pub fn moving(angle_rad: f64, speed_rad_s: f64) -> Self {
+        Self {
+            motor: AxisState { angle_rad, speed_rad_s, ..AxisState::default() },
+            table: TableState { angle_rad, speed_rad_s },
+            presliding_nm: 0.0,
+        }
+    }
+}
+
+impl MechanicsLaw {
+    /// Of an axis with this friction and this screw.
+    pub fn new(law: &AxisLaw, friction: FrictionParameters, transmission: TransmissionParameters) -> Self {
+        Self {
+            law: *law,
+            friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(law, friction)),
+            transmission: TransmissionLaw::new(law.parameters.inertia_kg_m2, law.periods.mechanics_s, transmission),
+            inverse_inertia: 1.0 / law.parameters.inertia_kg_m2,
+        }
+    }
+
+    /// The screw, where it gives.
+    pub fn transmission(&self) -> Option<&TransmissionLaw> {
+        self.transmission.as_ref()
+    }
+
+    /// One mechanics period under a torque of the motor and a load on the table, N m.
+    #[inline]
+    pub fn advance(&self, state: &mut MechanicsState, motor_nm: f64, load_nm: f64) {
+        let dt_s = self.law.periods.mechanics_s;
+        let MechanicsState { motor, table, presliding_nm } = state;
+        let Some(screw) = &self.transmission else {
+            match &self.friction {
+                Some(friction) => {
+                    let forces_nm = motor_nm - load_nm;
+                    motor.speed_rad_s =
+                        friction.speed_after_rad_s(forces_nm, self.inverse_inertia, motor.speed_rad_s, presliding_nm);
+                    motor.angle_rad += dt_s * motor.speed_rad_s;
+                }
+                None => self.law.accelerate(motor_nm - (self.friction_nm(motor.speed_rad_s) + load_nm), motor),
+            }
+            *table = TableState { angle_rad: motor.angle_rad, speed_rad_s: motor.speed_rad_s };
+            return;
+        };
+        let through_nm = screw.torque_nm(motor.angle_rad - table.angle_rad, motor.speed_rad_s - table.speed_rad_s);
+        motor.speed_rad_s += dt_s * screw.inverse_motor_inertia * (motor_nm - through_nm);
+        match &self.friction {
+            Some(friction) => {
+                let (forces_nm, inverse) = (through_nm - load_nm, screw.inverse_table_inertia);
+                table.speed_rad_s = friction.speed_after_rad_s(forces_nm, inverse, table.speed_rad_s, presliding_nm);
+            }
+            None => {
+                let load_nm = self.friction_nm(table.speed_rad_s) + load_nm;
+                table.speed_rad_s += dt_s * screw.inverse_table_inertia * (through_nm - load_nm);
+            }
+        }
+        motor.angle_rad += dt_s * motor.speed_rad_s;
+        table.angle_rad += dt_s * table.speed_rad_s;
+    }
+
+    /// Viscous and Coulomb friction alone, N m.
+    #[inline]
+    fn friction_nm(&self, speed_rad_s: f64) -> f64 {
+        let [sign] = friction_signs(&[self.law], [speed_rad_s]);
+        self.law.friction_nm(speed_rad_s, sign)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Parameters, Periods};
+    use super::*;
+
+    fn law(coulomb_friction_nm: f64) -> AxisLaw {
+        let parameters = Parameters {
+            rad_per_mm: 0.6,
+            kp_1_s: 50.0,
+            kd: 0.0,
+            kv_nm_s_per_rad: 2.0,
+            torque_limit_nm: 30.0,
+            inertia_kg_m2: 0.01,
+            viscous_friction_nm_s: 0.0,
+            coulomb_friction_nm,
+            coulomb_smoothing_rad_s: 0.5,
+        };
+        AxisLaw::new(parameters, Periods { servo_s: 0.001, mechanics_s: 1e-5, mechanics_per_servo: 100 })
+    }
+
+    fn screw(resonance_rad_s: f64) -> TransmissionParameters {
+        TransmissionParameters { table_share: 0.4, resonance_rad_s, damping_ratio: 0.05, backlash_rad: 0.0 }
+    }
+
+    /// After a tenth of a second under 1 N m at the motor and 0.3 N m against the table.
+    fn driven(mechanics: &MechanicsLaw) -> MechanicsState {
+        let mut state = MechanicsState::at_rest(0.0);
+        (0..10_000).for_each(|_| mechanics.advance(&mut state, 1.0, 0.3));
+        state
+    }
+
+    #[test]
+    fn a_stiff_screw_is_as_a_rigid_one() {
+        for coulomb_nm in [0.0, 0.2] {
+            let law = law(coulomb_nm);
+            let rigid = driven(&MechanicsLaw::new(&law, FrictionParameters::default(), TransmissionParameters::RIGID));
+            let stiff = driven(&MechanicsLaw::new(&law, FrictionParameters::default(), screw(5e3)));
+            let (a, b) = (rigid.motor.speed_rad_s, stiff.motor.speed_rad_s);
+            assert!((a - b).abs() < 2e-3 * a, "{a} {b}");
+            assert_eq!([rigid.table.angle_rad, rigid.table.speed_rad_s], [rigid.motor.angle_rad, a]);
+        }
+    }
+
+    #[test]
+    fn both_masses_together_have_the_momentum_that_the_torques_gave() {
+        let state = driven(&MechanicsLaw::new(&law(0.0), FrictionParameters::default(), screw(300.0)));
+        let momentum = 0.006 * state.motor.speed_rad_s + 0.004 * state.table.speed_rad_s;
+        assert!((momentum - 0.7 * 0.1).abs() < 1e-9, "{momentum}");
+    }
+}

@@ -1,0 +1,251 @@
+//! What the controllers that invert the paper's identifier share: learn, invert, and turn the result into a command.
+//!
+//! ```text
+//! F(0)(k)   = (P*(tau + T) - P*(tau)) / T
+//! F(k)      = F(0)(k) after at most five inversion steps, eqs 7 to 10
+//! P'(k+1)   = P'(k) + F(k) T
+//! ```
+//!
+//! Source: Lee, Cho and Jeon (2005), section 3 and Fig. 5. The anchoring of F(0) to the original path keeps P' from
+//! drifting: the part of F - F(0) along F(0) changes the speed, the part across it the offset P' - P*, and nothing else
+//! moves either. Over a horizon, [`InvertingSettings::knots`], each knot has its F(0) from the preview, all F are inverted together
+//! and the first is commanded.
+//!
+//! Departures: between two knots the command follows the path instead of its chord (at 50 mm/s, 10 ms and a radius of
+//! 10 mm the chord alone misses the path by 3 um); rates and offsets are limited; offsets that lie along the path, or
+//! where the tool rests, leak away.
+
+use core::marker::PhantomData;
+
+use super::{Command, Controller, Measured, Schedule};
+use crate::identifier::contour::ContourIdentifier;
+use crate::identifier::{ContourModel, Delays, FEED_SCALE_MM_S, Inputs, seen_feed};
+use crate::inversion::{self, Gradient, MAX_KNOTS};
+use crate::vector::{add_scaled, bounded, dot, norm, scale, sub};
+use crate::window::{PREVIEW_KNOTS, Window};
+
+/// The paper's feed period, s.
+pub const INVERTING_FEED_PERIOD_S: f64 = 0.01;
+
+/// Settings of the controllers that invert the identifier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InvertingSettings {
+    /// Servo periods in a feed period; 1 to 100.
+    pub servo_periods: u32,
+    /// Knots that are inverted together; 1 to `MAX_KNOTS`, 1 is the paper's.
+    pub knots: usize,
+    /// The inversion.
+    pub inversion: inversion::InversionSettings,
+    /// Step of back-propagation while cutting, scaled units; 0 (frozen) to 0.5.
+    pub learning_step: f64,
+    /// Slowest and fastest the controller may run, as a multiple of the planned feedrate.
+    pub rate_range: [f64; 2],
+    /// Whether another planner is told the rate and goes by it later: the path ahead is then what will be commanded, and the rate is no
+    /// part of this feed period.
+    pub is_planned_elsewhere: bool,
+}
+
+impl InvertingSettings {
+    /// The paper's setting where it names one, the prototype's otherwise.
+    pub const DEFAULT: Self = Self {
+        servo_periods: 10,
+        knots: 1,
+        inversion: inversion::InversionSettings {
+            rho: 0.001,
+            eta: 0.3,
+            steps: 5,
+            step_limit: 0.1,
+            gradient: Gradient::Printed,
+        },
+        learning_step: 0.003,
+        rate_range: [0.5, 1.2],
+        is_planned_elsewhere: false,
+    };
+}
+
+/// Below this planned feedrate, mm/s, the machine is held to the plan: at rest there is no direction to correct in.
+const MIN_FEED_MM_S: f64 = 0.05;
+
+/// Part of the offset along the path that is taken back in each feed period. Offsets are made across the path; where the
+/// path has turned since, what is left of them along it corrects nothing, and without this the tool would end a circle
+/// of 10 mm radius a tenth of a millimetre short.
+const TANGENTIAL_LEAK: f64 = 0.05;
+/// Part of the offset that is taken back in each feed period at rest: a tool at rest has no error to correct.
+const REST_LEAK: f64 = 0.3;
+
+/// How a controller inverts: the only thing in which the members differ.
+pub trait Invert {
+    /// Improves the F(0) of one or more knots, scaled, in place. `inputs` are those of the first.
+    fn invert<const N: usize, D: ContourModel<N>>(
+        net: &D,
+        inputs: &Inputs<N>,
+        feeds: &mut [[f64; N]],
+        settings: &inversion::InversionSettings,
+    );
+}
+
+/// A controller that inverts an identifier of the contour error, usually the paper's. Between ticks it keeps the identifier, the delays, and what was asked
+/// for last.
+#[derive(Debug, Clone)]
+pub struct Inverting<const N: usize, I, D = ContourIdentifier<N>> {
+    trained: D,
+    net: D,
+    delays: Delays<N>,
+    last: Option<Inputs<N>>,
+    prediction_error_mm: f64,
+    settings: InvertingSettings,
+    how: PhantomData<I>,
+}
+
+impl<const N: usize, I, D: ContourModel<N>> Inverting<N, I, D> {
+    /// With an identifier that is trained on the machine.
+    pub fn new(trained: D, settings: InvertingSettings) -> Self {
+        Self {
+            net: trained.clone(),
+            trained,
+            delays: Delays::REST,
+            last: None,
+            prediction_error_mm: 0.0,
+            settings,
+            how: PhantomData,
+        }
+    }
+
+    /// Knots that are inverted together; all of them within the preview.
+    fn knots(&self) -> usize {
+        let seen = PREVIEW_KNOTS / self.settings.servo_periods.max(1) as usize;
+        self.settings.knots.min(seen).clamp(1, MAX_KNOTS)
+    }
+}
+
+impl<const N: usize, I: Invert, D: ContourModel<N>> Controller<N> for Inverting<N, I, D> {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: self.settings.servo_periods, preview: self.knots() as u32 }
+    }
+
+    fn reset(&mut self) {
+        self.net.clone_from(&self.trained);
+        self.delays = Delays::REST;
+        self.last = None;
+        self.prediction_error_mm = 0.0;
+    }
+
+    /// One step of back-propagation on the last command and its outcome, then both move into the delays.
+    fn observe(&mut self, _: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        let Some(measured) = measured else { return };
+        let error_mm = measured.contour.vector_mm;
+        if !norm(error_mm).is_finite() {
+            return;
+        }
+        if let Some(inputs) = self.last {
+            let error = error_mm.map(|e| e / D::ERROR_SCALE_MM);
+            let cost = self.net.learn(&inputs, error, self.settings.learning_step);
+            self.prediction_error_mm = D::ERROR_SCALE_MM * libm::sqrt(2.0 * cost);
+            // As every feedrate, this one comes in mm/s: the delays then hold what a recording of it would give.
+            let feed_mm_s = inputs.map(|axis| axis[0] * FEED_SCALE_MM_S);
+            self.delays.push(seen_feed(feed_mm_s), error);
+        }
+    }
+
+    fn prediction_error_mm(&self) -> f64 {
+        self.prediction_error_mm
+    }
+
+    /// Inverts from the planned feedrate and turns the result into a rate and a new offset.
+    fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
+        let period_s = window.feed_period_s;
+        let planned = scale(1.0 / period_s, sub(window.ahead(1).position_mm, window.now().position_mm));
+        let planned_feed = norm(planned);
+        let inputs = self.delays.inputs(seen_feed(planned));
+        if planned_feed < MIN_FEED_MM_S {
+            self.last = Some(inputs);
+            return Command::straight(1.0, scale(1.0 - REST_LEAK, window.offset_mm));
+        }
+        let mut feeds = [inputs.map(|axis| axis[0]); MAX_KNOTS];
+        let feeds = &mut feeds[..self.knots()];
+        for (knot, feed) in feeds.iter_mut().enumerate().skip(1) {
+            let stretch_mm = sub(window.ahead(knot + 1).position_mm, window.ahead(knot).position_mm);
+            *feed = scale(1.0 / (period_s * FEED_SCALE_MM_S), stretch_mm);
+        }
+        I::invert(&self.net, &inputs, feeds, &self.settings.inversion);
+        let direction = scale(1.0 / planned_feed, planned);
+        let change = sub(feeds[0].map(|feed| feed * FEED_SCALE_MM_S), planned);
+        let along = dot(change, direction);
+        let across = add_scaled(change, -along, direction);
+        let [slowest, fastest] = self.settings.rate_range;
+        let rate = bounded(1.0 + along / planned_feed, slowest, fastest);
+        let commanded = if self.settings.is_planned_elsewhere { 1.0 } else { rate };
+        let feed = add_scaled(across, commanded, planned);
+        self.last = Some(self.delays.inputs(seen_feed(feed)));
+        let stale = TANGENTIAL_LEAK * dot(window.offset_mm, direction);
+        Command::straight(rate, add_scaled(add_scaled(window.offset_mm, period_s, across), -stale, direction))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contour_error::ContourError;
+    use crate::controller::two_dimensional::TwoDimensional;
+    use crate::identifier::contour::tests::sample;
+    use crate::window::{Knot, KnotSource, Preview, Register};
+
+    /// The circle of eq. 11 at 50 mm/s.
+    struct Circle;
+
+    impl KnotSource<2> for Circle {
+        fn knot(&mut self, tau_s: f64) -> Knot<2> {
+            let (sin, cos) = (libm::sin(5.0 * tau_s), libm::cos(5.0 * tau_s));
+            Knot { position_mm: [10.0 - 10.0 * cos, 10.0 * sin], tangent: [sin, cos], feed_mm_s: 50.0, cutting: true }
+        }
+    }
+
+    /// Twenty commands on a circle, each with an error after it.
+    fn commands(knots: usize, gradient: Gradient) -> [Command<2>; 20] {
+        let mut settings = InvertingSettings { knots, ..InvertingSettings::DEFAULT };
+        settings.inversion.gradient = gradient;
+        let mut controller = TwoDimensional::new(sample().0, settings);
+        let (mut register, mut preview) = (Register::default(), Preview::new(0.001));
+        let mut offset_mm = [0.0; 2];
+        core::array::from_fn(|k| {
+            let tau_s = 0.01 * k as f64;
+            register.push(Circle.knot(tau_s));
+            preview.fill(&mut Circle, tau_s, 0.01 * f64::from(controller.schedule().preview));
+            let window = Window {
+                register: &register,
+                preview: &preview,
+                tau_s,
+                feed_period_s: INVERTING_FEED_PERIOD_S,
+                offset_mm,
+                offset_mm_s: [0.0; 2],
+            };
+            let vector_mm = [0.02 * libm::sin(tau_s), 0.03];
+            let measured = Measured {
+                position_mm: sub(window.now().position_mm, vector_mm),
+                contour: ContourError { vector_mm, ..ContourError::NONE },
+            };
+            controller.observe(&window, Some(&measured));
+            let command = controller.command(&window, &measured);
+            offset_mm = command.offset_mm;
+            command
+        })
+    }
+
+    #[test]
+    fn with_the_printed_gradient_further_knots_change_nothing_and_with_the_exact_one_they_do() {
+        assert_eq!(commands(1, Gradient::Printed), commands(5, Gradient::Printed));
+        let (one, five) = (commands(1, Gradient::Exact), commands(5, Gradient::Exact));
+        assert!(one.iter().zip(&five).all(|(one, five)| one.offset_mm != five.offset_mm));
+    }
+
+    #[test]
+    fn asks_for_the_preview_of_its_knots_and_for_none_beyond_what_there_is() {
+        let schedule = |servo_periods, knots| {
+            TwoDimensional::new(sample().0, InvertingSettings { servo_periods, knots, ..InvertingSettings::DEFAULT })
+                .schedule()
+                .preview
+        };
+        assert_eq!([schedule(10, 1), schedule(10, 5), schedule(10, 99)], [1, 5, 20]);
+        assert_eq!([schedule(100, 20), schedule(10, 0), schedule(0, 3)], [2, 1, 3]);
+    }
+}

@@ -1,0 +1,240 @@
+//! The limit: linear-quadratic-Gaussian control with preview, by everything that can be known of the machine.
+//!
+//! ```text
+//! v = v_r - G (x - x_r)        x by a Kalman filter, G of a linear-quadratic regulator, v_r the exact inverse along the reference ahead
+//! ```
+//!
+//! It knows what the peers know, and the statistics of the noise, the amplitude, the frequency and the wandering of the disturbance,
+//! cogging and interpolation error with their phases; the random numbers, and the phase of the disturbance, it does not. It decides in
+//! every servo period, within it. Nobody has all this: it says how much of an error nobody can take away.
+//!
+//! What acts at the motor is the reference speed v of the speed loop: the command is solved for it, with the position that is measured,
+//! so that noise goes through the position loop only as far as the filter lets it. v_r carries friction (stepped from where it is
+//! estimated to be), cogging, the integral of the speed loop, and what the reference needs, [`reference_mm_s`](crate::axis::inverse::AxisInverse::reference_mm_s). The regulator
+//! is that of the axis without integral and filter; the loads that the filter finds are among its states. Ripple is in the estimate
+//! and not in v_r. Where the ball screw gives, it is the table that is held on the reference: the motor's is ahead by the twist, and both masses
+//! are states.
+//!
+//! | File | What |
+//! |---|---|
+//! | `lqg_preview/settings.rs` | price and bounds |
+//! | `lqg_preview/riccati.rs` | the gains |
+//! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
+//! | `lqg_preview/screw.rs` | where the motor has to be behind a ball screw that gives |
+//! | `lqg_preview/approach.rs` | the way back of a tool that is far off, with no more than there is for it |
+//! | `lqg_preview/feasible.rs` | whether there is torque for the reference ahead |
+//! | `lqg_preview/one_step.rs` | whether a servo period went as the law said |
+//! | `lqg_preview/outliers.rs` | measurements that cannot be true |
+//! | `lqg_preview/whiteness.rs` | how much of what is measured the filter believes |
+//! | `lqg_preview/estimate.rs` | the filter |
+//! | `lqg_preview/proof.rs` | what a law that was wrong has to hold through |
+//! | `lqg_preview/validity.rs` | whether the law is that of the axis |
+//! | `lqg_preview/regulated_axis.rs` | an axis: filter, regulator and inverse |
+//!
+//! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),
+//! "On the optimal digital state vector feedback controller with integral and preview actions".
+//!
+//! Departures: the part of the preview is the inverse of the known law, with which a reference is followed at no cost.
+
+mod settings;
+mod riccati;
+mod linear;
+mod screw;
+mod approach;
+mod feasible;
+mod one_step;
+mod outliers;
+mod whiteness;
+mod estimate;
+mod proof;
+mod validity;
+mod regulated_axis;
+
+use super::feedforward::preview;
+use super::{Command, Controller, Measured, Schedule};
+use crate::axis::knowledge::AxisKnowledge;
+use crate::vector::{add_scaled, norm, scale, sub};
+use crate::window::Window;
+use approach::Trusted;
+use feasible::Feasibility;
+use one_step::OneStep;
+use regulated_axis::AxisLqg;
+use validity::{Shown, Validity};
+
+pub use regulated_axis::LqgGains;
+pub use settings::{IDENTIFIED_PRICE, LqgSettings, OffsetBounds};
+
+/// Servo periods beyond the command that the inverse looks at.
+const DIFFERENCES: f64 = 3.0;
+
+/// An offset that differs by less from what was asked for is that, mm.
+const FOLLOWED_MM: f64 = 1e-4;
+
+/// For so long a lost position is taken to be as the law says, s: a free run of it. Where it is there again and further from that, mm, everything begins anew.
+const FORESEEN_S: f64 = 0.03;
+const FORESEEN_MM: f64 = 0.05;
+
+/// Linear-quadratic-Gaussian control with preview.
+#[derive(Debug, Clone)]
+pub struct LqgPreview<const N: usize> {
+    axes: [AxisLqg; N],
+    /// By how much the tool is to be behind the plan, s.
+    lag_s: f64,
+    preview: u32,
+    /// Where the law may be wrong.
+    validity: Option<Validity<N>>,
+    feasibility: Feasibility,
+    /// The offset that was asked for last, mm.
+    asked_mm: [f64; N],
+    /// For how long the position has been lost, s.
+    lost_s: f64,
+}
+
+impl<const N: usize> LqgPreview<N> {
+    /// For a machine of which all this is known.
+    pub fn new(known: [AxisKnowledge; N], settings: LqgSettings) -> Self {
+        let axes = known.map(|axis| AxisLqg::new(axis, settings));
+        let preview_knots = |axis: &AxisLqg| preview(axis.ahead_s(), axis.law().periods.servo_s);
+        let longest = axes.iter().map(preview_knots).max().unwrap_or(0);
+        let lag_s = axes.iter().map(AxisLqg::lag_s).fold(0.0, f64::max);
+        Self {
+            lag_s,
+            preview: longest + DIFFERENCES as u32,
+            validity: settings.learns.then(|| Validity::unknown(axes.iter().map(AxisLqg::unforeseen_mm2).sum())),
+            feasibility: Feasibility::FOLLOWED,
+            asked_mm: [0.0; N],
+            lost_s: 0.0,
+            axes,
+        }
+    }
+
+    /// By how much the axes, as they are measured, are behind the plan at constant speed, s.
+    pub fn measured_lag_s(&self) -> f64 {
+        self.axes.iter().map(AxisLqg::measured_lag_s).fold(0.0, f64::max)
+    }
+
+    /// What noise and loads that nobody foresees make of a position, mm^2.
+    pub fn unforeseen_mm2(&self) -> f64 {
+        self.axes.iter().map(AxisLqg::unforeseen_mm2).sum()
+    }
+
+    /// Holds offsets to other bounds from now on.
+    pub fn hold_to(&mut self, bounds: OffsetBounds) {
+        self.axes.iter_mut().for_each(|axis| axis.hold_to(bounds));
+    }
+
+    /// Of each axis, near the reference.
+    pub fn gains(&self) -> [LqgGains; N] {
+        self.axes.each_ref().map(AxisLqg::gains)
+    }
+
+    /// A servo period without a position.
+    fn foresee(&mut self, window: &Window<'_, N>) {
+        self.lost_s += window.feed_period_s;
+        if self.lost_s > FORESEEN_S {
+            self.reset();
+            return;
+        }
+        let here_mm = window.now().position_mm;
+        for (axis, (offset_mm, here_mm)) in self.axes.iter_mut().zip(window.offset_mm.into_iter().zip(here_mm)) {
+            axis.foresee(offset_mm, here_mm);
+        }
+        self.asked_mm = [0.0; N];
+    }
+
+    /// By how much the last position was not expected, mm.
+    fn missed_mm(&self) -> f64 {
+        norm(self.axes.each_ref().map(|axis| axis.moved_and_missed_mm()[1]))
+    }
+
+    /// Takes in what comes to be known of the reference.
+    fn look_ahead(&mut self, window: &Window<'_, N>) {
+        let servo_s = window.servo_s();
+        let end_s = f64::from(self.preview) * servo_s;
+        let knots_mm = feasible::BEFORE_END_S.map(|before_s| window.at(end_s - before_s).position_mm);
+        let beyond = self.axes.iter().enumerate().any(|(i, axis)| {
+            let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
+            feasible::is_beyond(axis.law(), knots_mm.map(of_axis))
+        });
+        self.feasibility.take_in(beyond, end_s + self.lag_s, servo_s);
+    }
+
+    /// Speed of the machine on the path, so far behind it, mm/s.
+    fn lagging_mm_s(&self, window: &Window<'_, N>) -> [f64; N] {
+        let behind_mm = [-self.lag_s, -self.lag_s - window.servo_s()].map(|after_s| window.at(after_s).position_mm);
+        scale(1.0 / window.servo_s(), sub(behind_mm[0], behind_mm[1]))
+    }
+}
+
+impl<const N: usize> Controller<N> for LqgPreview<N> {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: 1, preview: self.preview }
+    }
+
+    fn acts_at_once(&self) -> bool {
+        true
+    }
+
+    fn reset(&mut self) {
+        self.axes.iter_mut().for_each(AxisLqg::forget);
+        self.validity.iter_mut().for_each(Validity::forget);
+        (self.feasibility, self.asked_mm, self.lost_s) = (Feasibility::FOLLOWED, [0.0; N], 0.0);
+    }
+
+    /// Without a position for longer than it can be foreseen it begins anew: what the tool does meanwhile nobody knows.
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        let position_mm = measured.map(|measured| measured.position_mm).filter(|mm| norm(*mm).is_finite());
+        let Some(position_mm) = position_mm else {
+            self.foresee(window);
+            return;
+        };
+        let begins = self.axes.iter().any(AxisLqg::begins);
+        let speed_mm_s = if begins { self.lagging_mm_s(window) } else { [0.0; N] };
+        let measured_axes = window.offset_mm.into_iter().zip(position_mm).zip(speed_mm_s);
+        for (axis, ((offset_mm, position_mm), speed_mm_s)) in self.axes.iter_mut().zip(measured_axes) {
+            axis.observe(offset_mm, position_mm, speed_mm_s);
+        }
+        if core::mem::replace(&mut self.lost_s, 0.0) > 0.0 && self.missed_mm() > FORESEEN_MM {
+            self.reset();
+            return;
+        }
+        if let Some(validity) = &mut self.validity {
+            let missed_mm = self.axes.each_ref().map(AxisLqg::law_missed_mm);
+            let path_mm = window.now().position_mm;
+            let following_mm = sub(add_scaled(path_mm, 1.0, window.offset_mm), position_mm);
+            let shown = Shown { missed_mm, following_mm, position_mm, path_mm };
+            let followed = norm(sub(window.offset_mm, self.asked_mm)) <= FOLLOWED_MM;
+            validity.take_in_step(OneStep::sum(self.axes.iter().map(AxisLqg::step)), window.feed_period_s);
+            validity.take_in(&shown, followed, window.feed_period_s);
+        }
+    }
+
+    /// Infinite where the law is wrong.
+    fn prediction_error_mm(&self) -> f64 {
+        if self.validity.as_ref().is_some_and(Validity::is_wrong) {
+            return f64::INFINITY;
+        }
+        self.missed_mm()
+    }
+
+    fn moved_mm(&self) -> Option<[f64; N]> {
+        Some(self.axes.each_ref().map(|axis| axis.moved_and_missed_mm()[0]))
+    }
+
+    fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
+        let here_mm = window.now().position_mm;
+        let (mut offset_mm, lag_s) = ([0.0; N], self.lag_s);
+        let (taken_up, trusted) =
+            self.validity.as_ref().map_or((1.0, Trusted::FULLY), |validity| (validity.taken_up(), validity.trusted()));
+        self.look_ahead(window);
+        let open = self.feasibility.open();
+        for (i, (axis, offset_mm)) in self.axes.iter_mut().zip(&mut offset_mm).enumerate() {
+            // There is an i-th axis; the compiler is not to leave a panic for where there is none.
+            let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
+            let at_mm = |after_s: f64| of_axis(window.at(after_s - lag_s).position_mm);
+            *offset_mm = axis.offset_mm(of_axis(here_mm), trusted, open, at_mm);
+        }
+        self.asked_mm = offset_mm;
+        Command::straight(1.0, scale(taken_up, offset_mm))
+    }
+}

@@ -1,0 +1,339 @@
+//! An axis: its filter, its regulator and its inverse, and the command that asks its drive for what they want.
+
+use crate::axis::drive::{DriveParameters, DriveReference, DriveState};
+use crate::axis::inverse::AxisInverse;
+use crate::axis::knowledge::AxisKnowledge;
+use crate::axis::mechanics::MechanicsState;
+use crate::axis::{AxisLaw, AxisState, Parameters};
+
+use super::approach::{self, PricedGains, Room, Trusted};
+use super::estimate::{AxisModel, Estimate, KEPT_PERIODS, Learnt, Sent};
+use super::linear::{self, LinearAxis};
+use super::one_step::OneStep;
+use super::riccati;
+use super::screw::{ScrewTwist, TwistCourse};
+use super::settings::{LqgSettings, OffsetBounds};
+use super::validity::{self, LawTrial};
+
+/// Stationary gains of an axis: by state, as in `lqg_preview/linear.rs`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LqgGains {
+    /// How much of what is measured beyond the prediction, rad, is added to each state.
+    pub filter: [f64; linear::STATES],
+    /// By how much the reference speed, rad/s, is less for a unit of each state.
+    pub regulator: [f64; linear::STATES],
+}
+
+/// An axis, its gains, and what it remembers.
+#[derive(Debug, Clone)]
+pub(super) struct AxisLqg {
+    model: AxisModel,
+    inverse: AxisInverse,
+    twist: Option<ScrewTwist>,
+    regulator: PricedGains,
+    bounds: OffsetBounds,
+    known: AxisKnowledge,
+    state: Option<Running>,
+}
+
+/// What an axis remembers while it runs.
+#[derive(Debug, Clone, Copy)]
+struct Running {
+    /// As it is, and as it would be without any offset, under the same load.
+    real: Tracked,
+    open: Tracked,
+    /// Where the path was at the last decision, mm; the command was an offset beside it.
+    path_mm: Option<f64>,
+    /// What was measured beyond what was expected, rad.
+    missed_rad: f64,
+    /// How the last servo period went.
+    step: OneStep,
+    learnt: Learnt,
+    trial: LawTrial,
+}
+
+impl Running {
+    /// Where nothing is known yet but an angle and a speed.
+    fn at(model: &AxisModel, angle_rad: f64, speed_rad_s: f64) -> Self {
+        let moving = Tracked::moving(model, angle_rad, speed_rad_s);
+        Self {
+            real: moving,
+            open: moving,
+            path_mm: None,
+            missed_rad: 0.0,
+            step: OneStep::NONE,
+            learnt: Learnt::NOTHING,
+            trial: LawTrial::from(&moving.estimate),
+        }
+    }
+}
+
+/// An axis behind its position loop.
+#[derive(Debug, Clone, Copy)]
+struct Tracked {
+    estimate: Estimate,
+    sent: Sent,
+    /// The position loop as it is in the control.
+    position_loop: (AxisState, DriveState),
+    /// What is measured now, rad.
+    measured_rad: f64,
+}
+
+impl Tracked {
+    fn moving(model: &AxisModel, measured_rad: f64, speed_rad_s: f64) -> Self {
+        let (estimate, sent) = model.moving(measured_rad, speed_rad_s);
+        Self { position_loop: (AxisState::default(), estimate.drive), estimate, sent, measured_rad }
+    }
+
+    /// The reference speed that the position loop makes of a command; torque beside it counts as that.
+    fn asked_rad_s(&self, model: &AxisModel, command_rad: f64) -> f64 {
+        let (mut axis, mut drive) = self.position_loop;
+        let DriveReference { speed_rad_s, torque_nm } =
+            model.drive.position_loop(&model.law, command_rad, self.measured_rad, &mut axis, &mut drive);
+        speed_rad_s + torque_nm / model.law.parameters.kv_nm_s_per_rad
+    }
+
+    /// A servo period by a command and the law alone.
+    fn foresee(&mut self, model: &AxisModel, command_rad: f64) {
+        self.send(model, command_rad);
+        model.predict(&mut self.estimate, &self.sent);
+        self.measured_rad = self.estimate.masses.motor.angle_rad;
+    }
+
+    /// What the position loop makes of a command goes to the drive.
+    fn send(&mut self, model: &AxisModel, command_rad: f64) {
+        let (axis, drive) = &mut self.position_loop;
+        axis.angle_rad = self.measured_rad;
+        let reference = model.drive.position_loop(&model.law, command_rad, self.measured_rad, axis, drive);
+        self.sent.copy_within(..KEPT_PERIODS - 1, 1);
+        self.sent[0] = reference;
+    }
+}
+
+impl AxisLqg {
+    /// Of an axis of which this is known.
+    pub(super) fn new(known: AxisKnowledge, settings: LqgSettings) -> Self {
+        let AxisKnowledge { drive, friction, transmission, delays, statistics, .. } = known;
+        let law = known.law();
+        let model = AxisModel::new(&known, settings.learns);
+        let screw = model.mechanics.transmission();
+        let regulated = LinearAxis::new(&law, &DriveParameters::default(), screw, &statistics);
+        let lowest_s2 = settings.lowest_price_s2(&transmission);
+        let (states, input, _) = regulated.sampled();
+        Self {
+            inverse: AxisInverse::new(law, drive, friction, delays),
+            twist: screw.map(|screw| ScrewTwist::new(&law, screw)),
+            regulator: PricedGains::new(lowest_s2, |price_s2| {
+                riccati::regulator(&states, &input, &regulated.cost(price_s2))
+            }),
+            bounds: settings.bounds,
+            known,
+            state: None,
+            model,
+        }
+    }
+
+    pub(super) fn law(&self) -> &AxisLaw {
+        &self.model.law
+    }
+
+    /// Near the reference.
+    pub(super) fn gains(&self) -> LqgGains {
+        LqgGains { filter: self.model.gains_as_given(), regulator: self.regulator.near() }
+    }
+
+    /// How far ahead the inverse looks, s.
+    pub(super) fn ahead_s(&self) -> f64 {
+        let twist_s = self.twist.map_or(0.0, |twist| twist.ahead_s());
+        self.inverse.lag_s() + self.inverse.ahead_s() + twist_s
+    }
+
+    /// Holds offsets to other bounds from now on.
+    pub(super) fn hold_to(&mut self, bounds: OffsetBounds) {
+        self.bounds = bounds;
+    }
+
+    /// Forgets all that came.
+    pub(super) fn forget(&mut self) {
+        self.state = None;
+    }
+
+    /// Whether nothing has come yet.
+    pub(super) fn begins(&self) -> bool {
+        self.state.is_none()
+    }
+
+    /// How far the axis is behind the command at constant speed where nothing is added to it, s.
+    pub(super) fn lag_s(&self) -> f64 {
+        self.measured_lag_s() - self.known.delays.measurement_s
+    }
+
+    /// The same of its position as it is measured, s.
+    pub(super) fn measured_lag_s(&self) -> f64 {
+        let (parameters, AxisKnowledge { drive, .. }) = (self.model.law.parameters, self.known);
+        let friction = if drive.speed_integral_s > 0.0 {
+            0.0
+        } else {
+            parameters.viscous_friction_nm_s / parameters.kv_nm_s_per_rad
+        };
+        (1.0 + friction - drive.velocity_feedforward) / parameters.kp_1_s
+    }
+
+    /// What was commanded in the last servo period, as an offset from the path, has led to this position. Where it begins it has about this speed.
+    pub(super) fn observe(&mut self, offset_mm: f64, position_mm: f64, speed_mm_s: f64) {
+        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let measured_rad = position_mm * rad_per_mm;
+        let running = self.state.get_or_insert_with(|| Running::at(&self.model, measured_rad, speed_mm_s * rad_per_mm));
+        let Running { real, open, path_mm, missed_rad, step, learnt, trial } = running;
+        let Some(path_mm) = *path_mm else {
+            real.measured_rad = measured_rad;
+            return;
+        };
+        real.send(&self.model, (path_mm + offset_mm) * rad_per_mm);
+        let told = self.model.correct(&mut real.estimate, &real.sent, measured_rad, learnt);
+        *step = told.step(1.0 / rad_per_mm);
+        real.measured_rad = told.measured_rad;
+        trial.go_on(&self.model, &real.sent, measured_rad, &real.estimate);
+        let possible = self.model.is_possible(&real.estimate);
+        *missed_rad = if possible { told.missed_rad } else { f64::INFINITY };
+        open.estimate.acting_nm = real.estimate.acting_nm;
+        open.foresee(&self.model, path_mm * rad_per_mm);
+    }
+
+    /// What was commanded in the last servo period, as an offset from the path, which is at a place now, has led to where the law says.
+    pub(super) fn foresee(&mut self, offset_mm: f64, here_mm: f64) {
+        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let Some(running) = &mut self.state else { return };
+        let Running { real, open, path_mm, missed_rad, step, trial, .. } = running;
+        let before_mm = path_mm.replace(here_mm).unwrap_or(here_mm);
+        real.foresee(&self.model, (before_mm + offset_mm) * rad_per_mm);
+        open.estimate.acting_nm = real.estimate.acting_nm;
+        open.foresee(&self.model, before_mm * rad_per_mm);
+        (*missed_rad, *step, *trial) = (0.0, OneStep::NONE, LawTrial::from(&real.estimate));
+    }
+
+    /// By how much the offset has moved it, and what was measured beyond what was expected, mm.
+    pub(super) fn moved_and_missed_mm(&self) -> [f64; 2] {
+        let mm = 1.0 / self.model.law.parameters.rad_per_mm;
+        self.state.as_ref().map_or([0.0; 2], |Running { real, open, missed_rad, .. }| {
+            let [with_rad, without_rad] = [real, open].map(|tracked| tracked.estimate.masses.table.angle_rad);
+            [with_rad - without_rad, *missed_rad].map(|rad| rad * mm)
+        })
+    }
+
+    /// By how much the law has missed what was measured, mm.
+    pub(super) fn law_missed_mm(&self) -> f64 {
+        self.state.as_ref().map_or(0.0, |running| running.trial.missed_rad() / self.model.law.parameters.rad_per_mm)
+    }
+
+    /// How the last servo period went.
+    pub(super) fn step(&self) -> OneStep {
+        self.state.as_ref().map_or(OneStep::NONE, |running| running.step)
+    }
+
+    /// What noise and loads that nobody foresees make it miss, mm^2.
+    pub(super) fn unforeseen_mm2(&self) -> f64 {
+        let Parameters { rad_per_mm, .. } = self.model.law.parameters;
+        self.model.unforeseen_rad2(validity::run_periods(self.model.law.periods.servo_s)) / (rad_per_mm * rad_per_mm)
+    }
+
+    /// The offset of the command in this servo period, by a law that is `trusted` so far; `at_mm` is the reference so many seconds from its start, in whose
+    /// place the `open` loop is followed in part.
+    pub(super) fn offset_mm(&mut self, here_mm: f64, trusted: Trusted, open: f64, at_mm: impl Fn(f64) -> f64) -> f64 {
+        let Some(running) = &mut self.state else { return 0.0 };
+        running.path_mm = Some(here_mm);
+        let ahead = self.model.ahead(&running.real.estimate, &running.real.sent);
+        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let inner = [ahead.drive.integral_nm(), ahead.masses.presliding_nm];
+        let acts_s = self.known.delays.drive_s;
+        let twist = self.twist.map_or(TwistCourse::NONE, |twist| twist.course(&at_mm, acts_s));
+        let load_mm_s = self.cogging_mm_s(&at_mm) - twist.spared_mm_s();
+        let motor_mm = |after_s: f64| at_mm(after_s) + twist.mm(after_s);
+        let reference_mm_s = self.inverse.reference_mm_s(motor_mm, inner, load_mm_s);
+        let mut reference_rad_s = reference_mm_s * rad_per_mm;
+        let mut off = self.off(&ahead, &at_mm, &motor_mm);
+        if open > 0.0 {
+            let (open_rad_s, open_off) = self.beside_open(here_mm, &ahead);
+            reference_rad_s += open * (open_rad_s - reference_rad_s);
+            off.iter_mut().zip(open_off).for_each(|(off, of_open)| *off += open * (of_open - *off));
+        }
+        let Parameters { kv_nm_s_per_rad, .. } = self.model.law.parameters;
+        let [_, off_rad_s, ..] = off;
+        let reference_nm = kv_nm_s_per_rad * (reference_rad_s - (ahead.masses.motor.speed_rad_s - off_rad_s));
+        let asked_rad_s = self.asked_rad_s(reference_nm, &off, trusted);
+        self.solved_mm(here_mm, reference_rad_s - asked_rad_s)
+    }
+
+    /// The reference speed of the axis by itself, without any offset, and by how much the axis is off it.
+    fn beside_open(&self, here_mm: f64, ahead: &Estimate) -> (f64, [f64; linear::STATES]) {
+        let Some(Running { open, .. }) = &self.state else { return (0.0, [0.0; linear::STATES]) };
+        let beside = self.model.ahead(&open.estimate, &open.sent);
+        let Parameters { kv_nm_s_per_rad, rad_per_mm, .. } = self.model.law.parameters;
+        let integral_rad_s = (beside.drive.integral_nm() - ahead.drive.integral_nm()) / kv_nm_s_per_rad;
+        let reference_rad_s = open.asked_rad_s(&self.model, here_mm * rad_per_mm) + integral_rad_s;
+        let [real, open] = [ahead, &beside].map(|estimate| estimate.masses);
+        let x = real.motor.angle_rad - open.motor.angle_rad;
+        let w = real.motor.speed_rad_s - open.motor.speed_rad_s;
+        let xt = real.table.angle_rad - open.table.angle_rad;
+        let wt = real.table.speed_rad_s - open.table.speed_rad_s;
+        (reference_rad_s, [x, w, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, xt, wt])
+    }
+
+    /// By how much the regulator asks for less speed than the reference has, which takes this torque.
+    fn asked_rad_s(&self, reference_nm: f64, off: &[f64; linear::STATES], trusted: Trusted) -> f64 {
+        let Parameters { torque_limit_nm, kp_1_s, kv_nm_s_per_rad, rad_per_mm, .. } = self.model.law.parameters;
+        let by_torque_rad_s = approach::left_nm(torque_limit_nm, reference_nm) / kv_nm_s_per_rad;
+        let of_offset = kp_1_s * rad_per_mm;
+        let room = Room {
+            most_rad_s: by_torque_rad_s.min(of_offset * self.bounds.largest_mm),
+            change_rad_s2: of_offset * self.bounds.fastest_mm_s,
+        };
+        self.regulator.asked_rad_s(off, room, trusted)
+    }
+
+    /// By how much the axis is off the reference when what is sent now begins to act, and what acts on it.
+    fn off(
+        &self,
+        ahead: &Estimate,
+        table_mm: &impl Fn(f64) -> f64,
+        motor_mm: &impl Fn(f64) -> f64,
+    ) -> [f64; linear::STATES] {
+        let MechanicsState { motor, table, .. } = ahead.masses;
+        let [x, w] = self.off_reference([motor.angle_rad, motor.speed_rad_s], motor_mm);
+        let [xt, wt] = self.off_reference([table.angle_rad, table.speed_rad_s], table_mm);
+        let [broadband, disturbance, quadrature, drift] = ahead.acting_nm;
+        [x, w, 0.0, 0.0, broadband, disturbance, quadrature, drift, xt, wt]
+    }
+
+    /// By how much an angle, rad, and its speed, rad/s, are off theirs.
+    fn off_reference(&self, [angle_rad, speed_rad_s]: [f64; 2], at_mm: &impl Fn(f64) -> f64) -> [f64; 2] {
+        let (rad_per_mm, periods) = (self.model.law.parameters.rad_per_mm, self.model.law.periods);
+        let servo_s = periods.servo_s;
+        let [before_mm, there_mm, after_mm] =
+            [-1.0, 0.0, 1.0].map(|n: f64| at_mm(self.known.delays.drive_s + n * servo_s));
+        // The speed of the law is that of the mechanics period that has ended: half of one ago.
+        let change_mm = (after_mm - there_mm) - (there_mm - before_mm);
+        let late_mm_s = 0.5 * periods.mechanics_s * change_mm / (servo_s * servo_s);
+        let there_mm_s = (after_mm - before_mm) / (2.0 * servo_s) - late_mm_s;
+        [angle_rad - there_mm * rad_per_mm, speed_rad_s - there_mm_s * rad_per_mm]
+    }
+
+    /// What cogging takes along the reference in the period in which what is sent now acts, mm/s of reference speed; by Simpson's rule.
+    fn cogging_mm_s(&self, at_mm: &impl Fn(f64) -> f64) -> f64 {
+        let (parameters, servo_s) = (self.model.law.parameters, self.model.law.periods.servo_s);
+        let cogging_nm =
+            |n: f64| self.model.cogging_nm(at_mm(self.known.delays.drive_s + n * servo_s) * parameters.rad_per_mm);
+        let mean_nm = (cogging_nm(0.0) + 4.0 * cogging_nm(0.5) + cogging_nm(1.0)) / 6.0;
+        -mean_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm)
+    }
+
+    /// The offset with which the position loop asks for a reference speed.
+    fn solved_mm(&self, here_mm: f64, wanted_rad_s: f64) -> f64 {
+        let Some(running) = &self.state else { return 0.0 };
+        let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        let asked = |command_mm: f64| running.real.asked_rad_s(&self.model, command_mm * rad_per_mm);
+        // It is linear.
+        let (here, beyond) = (asked(here_mm), asked(here_mm + 1.0));
+        (wanted_rad_s - here) / (beyond - here)
+    }
+}

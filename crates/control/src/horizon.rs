@@ -1,0 +1,421 @@
+//! The receding-horizon inversion: one Gauss-Newton step on the accelerations of the offset in all knots of the horizon.
+//!
+//! The command is the path and an offset o from it. With the accelerations a_j of the offset in each knot as the unknowns, in
+//! all axes, the plan is rolled out through a [`Predictor`] of the machine (the servo identifier). Each predicted tool position p_i
+//! is referred to the point of the path of *its own plan time less the lag of the machine*,
+//!
+//! ```text
+//! r_i = P*(tau_i - lag)     eps_i = (1 - t_i t_i')(p_i - r_i)     theta_i = t_i'(p_i - r_i)
+//!
+//! J(a) = 1/2 sum_i (|eps_i|^2 + h^2 theta_i^2) + q/2 sum_j |o_j|^2 + w/2 sum_j |v_j|^2 + d/2 sum_j |v_j - v_{j-1}|^2
+//!        + e/2 |o_last + lag v_last|^2
+//! v_j = v_0 + T sum_{m<=j} a_m     |a_j| <= A in each axis
+//! ```
+//!
+//! and J is made smaller by a [`Solver`], from last tick's plan, shifted. Where the tool lags behind its time, or leads, nothing
+//! is cut wrong, and theta counts little (h is small); but it counts, so that no tool stays on a stretch of the path that is
+//! over: a nearest point would let it.
+//!
+//! What holds the plan back from doing harm:
+//!
+//! - q, the price of the offset itself, where it cannot undo all that is wrong, at the start, where drives are at their limit
+//!   ([`restraint`]), and where the model is not to be trusted ([`missed`]): then the plan asks for a part of it.
+//! - Where much is left across the path, and about points where the path turns back, a tool that is further from its time than
+//!   without the offset ([`restraint`], [`problem`]).
+//! - e, at the end of the horizon: behind it nothing is foreseen, and the offset is to be on its way back.
+//!
+//! The limits of the plan are those of the machine file: what the plan asks for is carried out as it is. Speed and deviation of
+//! the offset, and what the drives can accelerate, cost much beyond their limits ([`problem`]).
+//!
+//! On a rapid motion nothing is cut: there the offset is to move the tool as little as the cuts about it allow.
+//!
+//! A knot of the plan is one feed period long, or several on a machine that lags far behind: the horizon has to reach
+//! beyond the lag, whatever the machine, and takes no more unknowns for it.
+//!
+//! Source: the performance index is Lee, Cho and Jeon (2005), eq. 7, summed over a horizon; receding horizon as in Richalet
+//! et al. (1978), contour and lag error with weights of their own as in Lam, Manzie and Good (2010), knots of several periods
+//! as in move blocking (Cagienard et al. 2007).
+//!
+//! Everything is of fixed size: at most [`MAX_KNOTS`] knots, N unknowns each.
+
+pub(crate) mod missed;
+pub(crate) mod restraint;
+pub(crate) mod problem;
+pub(crate) mod interior_point;
+pub(crate) mod gauss_newton;
+
+use crate::vector::{add_scaled, bounded, fourth_power, scale, sub};
+use crate::window::Window;
+use gauss_newton::GaussNewton;
+use problem::HorizonProblem;
+use restraint::Restraint;
+
+/// Most knots of a horizon.
+pub const MAX_KNOTS: usize = 20;
+/// Most feed periods of a knot.
+pub(crate) const MAX_PERIODS: usize = 4;
+/// Most axes; fewer than two have no path to leave. [`HorizonProblem::new`] does not compile for others: the normals of the path are those
+/// of a plane or of space, and there is no room for more unknowns.
+pub(crate) const MAX_AXES: usize = 3;
+/// Most unknowns.
+pub(crate) const MAX_UNKNOWNS: usize = MAX_KNOTS * MAX_AXES;
+
+/// Where the path runs this slowly, mm/s, an error along it is on its way to be one across it: at rest it leads beyond the end.
+const RESTING_MM_S: f64 = 0.5;
+
+/// How many times the lag of the machine the horizon reaches ahead, or more: what is commanded later hardly moves the tool that is
+/// foreseen now.
+pub(crate) const LAGS_AHEAD: f64 = 3.6;
+
+/// Knots at the end of the horizon by which the tool has to be back at its time. Behind the horizon nothing is foreseen: a tool
+/// that is late or fast there when the path turns swings from one side of it to the other.
+const LAST_KNOTS: usize = 5;
+
+/// Settings of the inversion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HorizonSettings<const N: usize> {
+    /// Knots of the horizon; 1 to [`MAX_KNOTS`].
+    pub knots: usize,
+    /// w: weight of the speed of the offset, s^2. Smaller is sharper; below 1e-10 the plan rings from knot to knot, above
+    /// 1e-4 nothing is corrected.
+    pub rate_weight: f64,
+    /// d: weight of the change of that speed from knot to knot, s^2.
+    pub change_weight: f64,
+    /// q_0: weight of the offset. 0 is sharpest, 10 leaves hardly any correction.
+    pub offset_weight: f64,
+    /// h: weight of an error along the path against one across it: small, it leaves room at a corner, large, it keeps the
+    /// tool from staying behind. 0.001 to 1.
+    pub tangential_weight: f64,
+    /// h of the last knots at the least.
+    pub last_weight: f64,
+    /// Weight of a tool that is further from its time than without the offset; about points where the path turns back, more.
+    pub late_weight: f64,
+    /// Whether rapid motions are corrected as cuts are.
+    pub on_rapids: bool,
+    /// What the plan keeps to.
+    pub limits: CorrectionLimits<N>,
+}
+
+/// Limits of the correction, that is of the offset of the command from the path.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CorrectionLimits<const N: usize> {
+    /// A: acceleration of the offset of each axis, mm/s^2. Never exceeded.
+    pub acceleration_mm_s2: [f64; N],
+    /// Speed of the offset of an axis, mm/s.
+    pub speed_mm_s: f64,
+    /// Length of the offset, mm.
+    pub deviation_mm: f64,
+    /// Acceleration of the tool in each axis at the torque limit of its drive, mm/s^2.
+    pub drive_mm_s2: [f64; N],
+}
+
+impl<const N: usize> CorrectionLimits<N> {
+    /// None.
+    pub const NONE: Self = Self {
+        acceleration_mm_s2: [f64::INFINITY; N],
+        speed_mm_s: f64::INFINITY,
+        deviation_mm: f64::INFINITY,
+        drive_mm_s2: [f64::INFINITY; N],
+    };
+}
+
+/// The accelerations of a plan, knot by knot, mm/s^2.
+pub type Accelerations<const N: usize> = [[f64; N]; MAX_KNOTS];
+
+/// What the tool feels at the end of a knot: its displacement in each axis, mm, for an acceleration of the offset of 1 mm/s^2 in
+/// that axis in each of the knots so far, s^2.
+pub type Sensitivity<const N: usize> = [[f64; N]; MAX_KNOTS];
+
+/// What predicts the tool: a model of the machine, with its state at the current knot.
+pub trait Predictor<const N: usize>: Clone {
+    /// How far the tool is behind the command in the long run, s.
+    fn lag_s(&self) -> f64;
+
+    /// How long the tool takes to follow an offset, s: its lag, but where a drive feeds forward of the path what it does not lag by.
+    fn response_s(&self) -> f64 {
+        self.lag_s()
+    }
+    /// Moves on by one feed period; the tool at its end, mm. `felt` takes the derivative to the accelerations of the knots so
+    /// far, axis by axis: what one axis feels of another is left out.
+    fn advance(
+        &mut self,
+        window: &Window<'_, N>,
+        stretch: &CommandedPeriod<N>,
+        sensitivity: &mut Sensitivity<N>,
+    ) -> [f64; N];
+    /// By how much the offset, past and planned, has moved that tool, mm.
+    fn moved_mm(&self) -> [f64; N] {
+        [0.0; N]
+    }
+}
+
+/// What is commanded in a feed period of the horizon.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CommandedPeriod<const N: usize> {
+    /// Its number, from 0.
+    pub period: usize,
+    /// Feed periods of a knot.
+    pub periods_per_knot: usize,
+    /// Its length, s.
+    pub period_s: f64,
+    /// Command at its start and end, mm.
+    pub command_mm: [[f64; N]; 2],
+    /// Offset from the path at its start and end, mm.
+    pub offset_mm: [[f64; N]; 2],
+    /// Speed of the offset at its start and end, mm/s.
+    pub offset_mm_s: [[f64; N]; 2],
+}
+
+impl<const N: usize> CommandedPeriod<N> {
+    /// Before the first feed period: where the command is now.
+    pub fn now(window: &Window<'_, N>, periods_per_knot: usize) -> Self {
+        Self {
+            period: usize::MAX,
+            periods_per_knot,
+            period_s: window.feed_period_s,
+            command_mm: [add_scaled(window.now().position_mm, 1.0, window.offset_mm); 2],
+            offset_mm: [window.offset_mm; 2],
+            offset_mm_s: [window.offset_mm_s; 2],
+        }
+    }
+
+    /// Goes on by one feed period in which the offset accelerates by so much.
+    #[inline]
+    pub fn go_on(&mut self, window: &Window<'_, N>, acceleration_mm_s2: [f64; N]) {
+        let period_s = self.period_s;
+        self.period = self.period.wrapping_add(1);
+        let [_, from_mm] = self.offset_mm;
+        let [_, from_mm_s] = self.offset_mm_s;
+        let to_mm_s = add_scaled(from_mm_s, period_s, acceleration_mm_s2);
+        let to_mm = add_scaled(add_scaled(from_mm, 0.5 * period_s, from_mm_s), 0.5 * period_s, to_mm_s);
+        self.offset_mm = [from_mm, to_mm];
+        self.offset_mm_s = [from_mm_s, to_mm_s];
+        let path_mm = window.ahead(self.period + 1).position_mm;
+        self.command_mm = [self.command_mm[1], add_scaled(path_mm, 1.0, to_mm)];
+    }
+
+    /// How far the way of the offset is bent, mm: see [`crate::Command`].
+    #[inline]
+    pub fn bend_mm(&self) -> [f64; N] {
+        scale(0.5 * self.period_s, sub(self.offset_mm_s[1], self.offset_mm_s[0]))
+    }
+
+    /// The knot that this feed period is in.
+    #[inline]
+    pub fn knot(&self) -> usize {
+        self.period / self.periods_per_knot
+    }
+
+    /// How fast an acceleration of 1 mm/s^2 in a knot makes the offset on the mean of the feed period `back` before this one,
+    /// s.
+    #[inline]
+    pub fn gained_s(&self, knot: usize, back: usize) -> f64 {
+        let before = knot * self.periods_per_knot + back;
+        if self.period < before {
+            return 0.0;
+        }
+        let elapsed = self.period - before;
+        if elapsed < self.periods_per_knot {
+            (elapsed as f64 + 0.5) * self.period_s
+        } else {
+            self.periods_per_knot as f64 * self.period_s
+        }
+    }
+
+    /// How far an acceleration of 1 mm/s^2 in a knot has moved the offset after `part` of this feed period, s^2.
+    #[inline]
+    pub fn moved_s2(&self, knot: usize, part: f64) -> f64 {
+        let since = self.period as f64 + part - (knot * self.periods_per_knot) as f64;
+        let within = bounded(since, 0.0, self.periods_per_knot as f64);
+        within * (since.max(0.0) - 0.5 * within) * self.period_s * self.period_s
+    }
+}
+
+/// What makes J smaller. It keeps nothing from tick to tick that the next depends on.
+pub trait Solver<const N: usize>: Default {
+    /// Changes the accelerations of a plan whose problem is this, within the limits. They are within them before.
+    fn improve(&mut self, problem: &HorizonProblem<N>, accelerations_mm_s2: &mut Accelerations<N>);
+}
+
+/// A plan: the acceleration of the offset in each knot of the horizon, mm/s^2.
+#[derive(Debug, Clone)]
+pub struct OffsetPlan<const N: usize, S = GaussNewton> {
+    accelerations_mm_s2: Accelerations<N>,
+    periods: usize,
+    restraint: Restraint,
+    solver: S,
+}
+
+/// The first step of a plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlanStep<const N: usize> {
+    /// Acceleration of the offset in the next feed period, mm/s^2.
+    pub acceleration_mm_s2: [f64; N],
+    /// Largest change of an acceleration by the solver, mm/s^2.
+    pub change_mm_s2: f64,
+    /// Mean squares of the contour error over the horizon, mm^2: of the plan before this step, and without any offset.
+    pub contour_mm2: [f64; 2],
+    /// Largest contour error over the horizon without any offset, mm.
+    pub open_error_mm: f64,
+    /// Where the tool would be without the offset [`missed::AHEAD_KNOTS`] knots from now, mm.
+    pub open_mm: [f64; N],
+}
+
+impl<const N: usize, S: Solver<N>> Default for OffsetPlan<N, S> {
+    fn default() -> Self {
+        Self {
+            accelerations_mm_s2: [[0.0; N]; MAX_KNOTS],
+            periods: 1,
+            restraint: Restraint::START,
+            solver: S::default(),
+        }
+    }
+}
+
+impl<const N: usize, S: Solver<N>> OffsetPlan<N, S> {
+    /// Forgets the plan.
+    pub fn reset(&mut self) {
+        self.accelerations_mm_s2 = [[0.0; N]; MAX_KNOTS];
+        self.periods = 1;
+        self.restraint = Restraint::START;
+    }
+
+    /// Goes over to the next tick: what was planned for it comes first. From here on a knot has `periods` feed periods, 1
+    /// to `MAX_PERIODS`.
+    pub fn shift(&mut self, periods: usize, settings: &HorizonSettings<N>) {
+        let knots = settings.knots();
+        let planned = self.accelerations_mm_s2;
+        let last = self.periods.max(1);
+        self.periods = periods.clamp(1, MAX_PERIODS);
+        for (knot, acceleration) in self.accelerations_mm_s2.iter_mut().enumerate() {
+            // The mean of what was planned for its feed periods; beyond the horizon nothing was.
+            let mut sum = [0.0; N];
+            for period in knot * self.periods..(knot + 1) * self.periods {
+                let before = (period + 1) / last;
+                if before < knots {
+                    sum = add_scaled(sum, 1.0 / self.periods as f64, planned[before]);
+                }
+            }
+            let limits = &settings.limits.acceleration_mm_s2;
+            *acceleration = core::array::from_fn(|axis| bounded(sum[axis], -limits[axis], limits[axis]));
+        }
+    }
+
+    /// Improves the plan by one step of the solver and returns what comes first.
+    pub fn improve<M: Predictor<N>>(
+        &mut self,
+        model: &M,
+        window: &Window<'_, N>,
+        settings: &HorizonSettings<N>,
+    ) -> PlanStep<N> {
+        let horizon_s = (settings.knots() * self.periods) as f64 * window.feed_period_s;
+        let settings = self.restraint.on(settings, model.response_s().max(horizon_s / LAGS_AHEAD));
+        let problem = HorizonProblem::new(model, window, &self.accelerations_mm_s2, self.periods, &settings);
+        let [need_mm, open_error_mm] = problem.open_errors_mm();
+        let contour_mm2 = problem.contour_mm2();
+        self.restraint.take_in(need_mm, contour_mm2, problem.open_drive_share());
+        let before = self.accelerations_mm_s2;
+        self.solver.improve(&problem, &mut self.accelerations_mm_s2);
+        let mut change_mm_s2 = 0.0_f64;
+        let finite = self.accelerations_mm_s2.as_flattened().iter().all(|a| a.is_finite());
+        if !finite {
+            self.accelerations_mm_s2 = [[0.0; N]; MAX_KNOTS];
+        }
+        for (now, before) in self.accelerations_mm_s2.iter().zip(&before) {
+            for change in sub(*now, *before) {
+                change_mm_s2 = change_mm_s2.max(change.abs());
+            }
+        }
+        PlanStep {
+            acceleration_mm_s2: self.accelerations_mm_s2[0],
+            change_mm_s2,
+            contour_mm2,
+            open_error_mm,
+            open_mm: problem.open_mm(missed::AHEAD_KNOTS - 1),
+        }
+    }
+}
+
+impl<const N: usize> HorizonSettings<N> {
+    /// For tests.
+    #[cfg(test)]
+    pub(crate) const EXAMPLE: Self = Self {
+        knots: 4,
+        rate_weight: 1e-9,
+        change_weight: 0.0,
+        offset_weight: 0.0,
+        tangential_weight: 0.1,
+        last_weight: 0.3,
+        late_weight: 0.0,
+        on_rapids: false,
+        limits: CorrectionLimits::NONE,
+    };
+
+    /// h at the end of a knot, where the path runs at `feed_mm_s`.
+    #[inline]
+    pub fn weight_along(&self, knot: usize, feed_mm_s: f64) -> f64 {
+        let running = self.tangential_weight;
+        let weight = running + (1.0 - running) / (1.0 + fourth_power(feed_mm_s / RESTING_MM_S));
+        if knot + LAST_KNOTS >= self.knots() { weight.max(self.last_weight) } else { weight }
+    }
+
+    /// Knots of the horizon, within what there is room for.
+    #[inline]
+    pub fn knots(&self) -> usize {
+        self.knots.clamp(1, MAX_KNOTS)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plan(accelerations: [f64; 4]) -> OffsetPlan<1> {
+        let mut plan = OffsetPlan::default();
+        for (knot, acceleration) in accelerations.into_iter().enumerate() {
+            plan.accelerations_mm_s2[knot] = [acceleration];
+        }
+        plan
+    }
+
+    fn accelerations(plan: &OffsetPlan<1>) -> [f64; 4] {
+        core::array::from_fn(|knot| plan.accelerations_mm_s2[knot][0])
+    }
+
+    #[test]
+    fn a_shifted_plan_begins_with_its_second_knot() {
+        let mut plan = plan([1.0, 2.0, 3.0, 4.0]);
+        plan.shift(1, &HorizonSettings::EXAMPLE);
+        assert_eq!(accelerations(&plan), [2.0, 3.0, 4.0, 0.0]);
+    }
+
+    #[test]
+    fn longer_knots_take_the_mean_of_what_was_planned_for_them_and_go_on_by_a_part() {
+        let mut plan = plan([1.0, 2.0, 3.0, 4.0]);
+        plan.shift(2, &HorizonSettings::EXAMPLE);
+        assert_eq!(accelerations(&plan), [2.5, 2.0, 0.0, 0.0]);
+        plan.shift(2, &HorizonSettings::EXAMPLE);
+        assert_eq!(accelerations(&plan), [2.25, 1.0, 0.0, 0.0]);
+        plan.shift(1, &HorizonSettings::EXAMPLE);
+        assert_eq!(accelerations(&plan), [2.25, 1.0, 1.0, 0.0]);
+    }
+
+    #[test]
+    fn an_acceleration_moves_the_offset_by_its_closed_form() {
+        let stretch = CommandedPeriod::<1> {
+            period: 5,
+            periods_per_knot: 2,
+            period_s: 0.003,
+            command_mm: [[0.0]; 2],
+            offset_mm: [[0.0]; 2],
+            offset_mm_s: [[0.0]; 2],
+        };
+        // In the second knot, from 6 ms to 12 ms; now it is 16.5 ms.
+        let moved = 0.006 * (0.006 / 2.0 + 0.0045);
+        assert!((stretch.moved_s2(1, 0.5) - moved).abs() < 1e-15);
+        assert!((stretch.gained_s(1, 0) - 0.006).abs() < 1e-15);
+        assert!((stretch.gained_s(2, 0) - 0.0045).abs() < 1e-15);
+        assert!((stretch.gained_s(2, 1) - 0.0015).abs() < 1e-15);
+        assert_eq!((stretch.gained_s(2, 2), stretch.moved_s2(3, 0.5)), (0.0, 0.0));
+    }
+}

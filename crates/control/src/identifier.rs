@@ -1,0 +1,135 @@
+//! The family of identifiers: small networks, 5N inputs, 12 hidden nodes, N outputs, that know the machine from its data.
+//!
+//! | Kind | What it predicts | Contract | Used by |
+//! |---|---|---|---|
+//! | contour | the contour error, as the paper does | [`ContourModel`] | [`crate::inversion`] |
+//! | servo | how the following error grows; the contour error is left to geometry | [`ServoModel`] | [`crate::horizon`] |
+//! | axes | the motion of each axis, by its law | [`crate::axis::knowledge::AxisKnowledge`] | [`crate::controller::lqg_preview`] |
+//!
+//! All see the same inputs of each axis, from a shift register ([`Delays`]): F(k), F(k-1), F(k-2) and two delays of the error,
+//! where F(k) is the feedrate from knot k to knot k + 1. A controller takes any identifier of its kind; [`contour`] and [`servo`]
+//! hold the members there are. The null member of each, [`Identifier::NULL`], predicts nothing.
+//!
+//! What repeats with the place on the machine is no matter of an identifier, which does not see the place: it adds to the
+//! prediction where the window is at hand, in [`crate::horizon::Predictor::advance`].
+
+pub(crate) mod contour;
+pub(crate) mod servo;
+pub(crate) mod residual;
+pub(crate) mod adaptation;
+
+/// Hidden nodes.
+pub const HIDDEN: usize = 12;
+/// Inputs of each axis.
+pub const INPUTS: usize = 5;
+/// What adaptation changes of an axis: its part of the linear connection, and the factor on its hidden nodes less 1.
+pub const UNKNOWNS: usize = INPUTS + 1;
+/// The feedrate that the network sees as 1: the paper's reference feedrate.
+pub const FEED_SCALE_MM_S: f64 = 50.0;
+/// The contour error that the network sees as 1. Much larger, and the error drowns in the rounding of the weights; much
+/// smaller, and the output saturates.
+pub const ERROR_SCALE_MM: f64 = 0.1;
+/// Feed periods that a machine can have, s: of the fastest servo period, and twelve of the slowest.
+pub const FEED_PERIODS_S: [f64; 2] = [1e-5, 1.2];
+
+/// What the network sees, indexed by axis and F(k), F(k-1), F(k-2), eps(k-1), eps(k-2); scaled.
+pub type Inputs<const N: usize> = [[f64; INPUTS]; N];
+
+/// What an identifier predicts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum IdentifierKind {
+    /// The contour error.
+    Contour,
+    /// The growth of the following error.
+    Servo,
+    /// Where each axis goes, from its law and the statistics of its noise (`knowledge`).
+    Axes,
+}
+
+/// What all identifiers have in common.
+pub trait Identifier<const N: usize>: Clone {
+    /// What it predicts.
+    const KIND: IdentifierKind;
+    /// The error that it sees as 1, mm.
+    const ERROR_SCALE_MM: f64;
+    /// Predicts no error, whatever the inputs.
+    const NULL: Self;
+
+    /// Hands over its weights, group by group in a fixed order, each with its name: what is stored of it.
+    fn weights(&mut self, each: &mut impl FnMut(&'static str, &mut [f64]));
+}
+
+/// An identifier that predicts the contour error of each axis, scaled by [`Identifier::ERROR_SCALE_MM`].
+pub trait ContourModel<const N: usize>: Identifier<N> {
+    /// What a prediction leaves for its derivative.
+    type Forward: Copy;
+    /// What [`Self::Forward`] is before the first prediction.
+    const AT_REST: Self::Forward;
+
+    /// Predicts.
+    fn forward(&self, inputs: &Inputs<N>) -> Self::Forward;
+    /// The contour error that was predicted, scaled.
+    fn error(forward: &Self::Forward) -> [f64; N];
+    /// Derivative of that error to one of the inputs of each axis, indexed by output and axis.
+    fn slopes(&self, forward: &Self::Forward, input: usize) -> [[f64; N]; N];
+    /// Learns that these inputs led to this error, scaled, in a step of this size; 0 is frozen. Returns half the square of what it
+    /// missed before.
+    fn learn(&mut self, inputs: &Inputs<N>, error: [f64; N], step: f64) -> f64;
+}
+
+/// An identifier that predicts by how much the following error of each axis grows in a knot, mm: a linear part, and a rest.
+pub trait ServoModel<const N: usize>: Identifier<N> {
+    /// How far the tool is behind the command at constant feedrate, s.
+    fn lag_s(&self) -> f64;
+    /// The linear part, mm.
+    fn predict_linear(&self, inputs: &Inputs<N>) -> [f64; N];
+    /// The rest, mm.
+    fn predict_rest(&self, inputs: &Inputs<N>) -> [f64; N];
+    /// Their sum, mm.
+    fn predict(&self, inputs: &Inputs<N>) -> [f64; N];
+    /// Their sum, mm, and its derivative in each axis to the inputs of that axis, mm for an input of 1.
+    fn predict_with_slopes(&self, inputs: &Inputs<N>) -> ([f64; N], Inputs<N>);
+    /// The linear part of an axis, of its own inputs, mm for an input of 1.
+    fn own_linear(&self, axis: usize) -> &[f64; INPUTS];
+    /// Becomes in an axis what was trained, changed by this: see `adaptation`.
+    fn change(&mut self, trained: &Self, axis: usize, change: &[f64; UNKNOWNS]);
+}
+
+/// A feedrate as the network sees it.
+#[inline]
+pub fn seen_feed<const N: usize>(feed_mm_s: [f64; N]) -> [f64; N] {
+    feed_mm_s.map(|feed| feed / FEED_SCALE_MM_S)
+}
+
+/// The shift register of the feedrates and errors of the last knots, scaled: what turns a sequence into [`Inputs`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Delays<const N: usize> {
+    /// F(k-1), F(k-2).
+    pub feed: [[f64; N]; 2],
+    /// The last error, and the one before.
+    pub error: [[f64; N]; 2],
+}
+
+impl<const N: usize> Default for Delays<N> {
+    fn default() -> Self {
+        Self::REST
+    }
+}
+
+impl<const N: usize> Delays<N> {
+    /// At rest.
+    pub const REST: Self = Self { feed: [[0.0; N]; 2], error: [[0.0; N]; 2] };
+
+    /// The inputs for F(k), scaled.
+    #[inline]
+    pub fn inputs(&self, feed: [f64; N]) -> Inputs<N> {
+        core::array::from_fn(|a| [feed[a], self.feed[0][a], self.feed[1][a], self.error[0][a], self.error[1][a]])
+    }
+
+    /// Moves on by one knot: F(k) was commanded, and this error, scaled, came of it or is predicted to.
+    #[inline]
+    pub fn push(&mut self, feed: [f64; N], error: [f64; N]) {
+        self.feed = [feed, self.feed[0]];
+        self.error = [error, self.error[0]];
+    }
+}

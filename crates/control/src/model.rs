@@ -1,0 +1,534 @@
+//! A trained model as a block of bytes: what a component in a servo thread is given, and checks before it believes it.
+//!
+//! | Offset | Bytes | What |
+//! |---|---|---|
+//! | 0 | 8 | `FWMODEL` and a zero byte |
+//! | 8 | 4 | format: [`BLOCK_FORMAT`] |
+//! | 12 | 4 | kind of the identifier: 1 contour, 2 servo, 3 axes |
+//! | 16 | 4 | N, number of axes |
+//! | 20 | 4 | n, number of numbers that follow the periods |
+//! | 24 | 8 | servo period, s |
+//! | 32 | 8 | feed period, s: time between knots |
+//! | 40 | 8 n | weights, group by group as [`Identifier::weights`] hands them over; of a servo the spread behind them, axis by axis, row by row; of axes the mechanics period, s, and axis by axis [`AxisKnowledge::NUMBERS`] |
+//! | 40 + 8 n | 4 | CRC-32 of all before: that of IEEE 802.3, reflected, of polynomial 0x04C11DB7 |
+//!
+//! Whole numbers are unsigned, numbers are IEEE 754 of double precision; all little-endian. [`ModelBlock::from_bytes`] needs no memory but
+//! its result, does not panic, whatever the bytes are, and refuses what is not exactly this.
+
+use core::{fmt, slice};
+
+use crate::axis::Periods;
+use crate::axis::knowledge::{AxisKnowledge, Number};
+use crate::identifier::UNKNOWNS;
+use crate::identifier::adaptation::Spread;
+use crate::identifier::contour::ContourIdentifier;
+use crate::identifier::servo::ServoIdentifier;
+use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
+
+/// What a block begins with.
+pub(crate) const MAGIC: [u8; 8] = *b"FWMODEL\0";
+/// The format that is read and written. It is raised whenever the layout or the meaning of a number changes.
+pub const BLOCK_FORMAT: u32 = 1;
+/// Servo periods that a machine can have, s: as a machine file bounds them.
+pub const SERVO_PERIODS_S: [f64; 2] = [1e-5, 0.1];
+/// Periods of the speed loop that it can have, s.
+pub const MECHANICS_PERIODS_S: [f64; 2] = [1e-7, 0.1];
+/// Most of them in a servo period: with more a tick takes longer than that.
+pub const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
+/// Relative distance from a whole number below which the servo period counts as a whole multiple: rounding of decimal numbers.
+const WHOLE_RATIO_TOLERANCE: f64 = 1e-9;
+/// Largest size of a weight. A hidden node that turns its sign within 0.25 mm/s has weights of 400.
+pub const MAX_WEIGHT: f64 = 1e6;
+/// Largest size of an entry of the spread: the square of what a linear weight may differ by.
+pub const MAX_SPREAD: f64 = 1e6;
+/// An entry of the spread may be beyond what its diagonal allows by this part: rounding.
+const SPREAD_ROUNDING: f64 = 1e-9;
+
+/// A trained identifier and the periods that it was trained for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelBlock<const N: usize> {
+    /// Servo period of the machine, s.
+    pub servo_s: f64,
+    /// Time between knots, s.
+    pub feed_period_s: f64,
+    /// What was trained.
+    pub trained: Trained<N>,
+}
+
+/// Identified axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct IdentifiedAxes<const N: usize> {
+    /// Period of the speed loop and of the integration, s.
+    pub mechanics_s: f64,
+    /// What was found of each, with what its drive is set to.
+    pub axes: [AxisKnowledge; N],
+}
+
+impl<const N: usize> IdentifiedAxes<N> {
+    /// All zero.
+    pub const NULL: Self = Self { mechanics_s: 0.0, axes: [AxisKnowledge::NOTHING; N] };
+
+    /// Its numbers in the order of the block, each with what it is bound by.
+    fn numbers(&mut self, each: &mut impl FnMut(&NumberBounds, &mut [f64])) {
+        let [least, most] = MECHANICS_PERIODS_S;
+        each(&NumberBounds::Within(least, most), slice::from_mut(&mut self.mechanics_s));
+        for axis in &mut self.axes {
+            for number in AxisKnowledge::NUMBERS {
+                each(&NumberBounds::Of(number), slice::from_mut((number.of)(axis)));
+            }
+        }
+    }
+
+    /// With the periods that follow; none where the servo period is no whole multiple of the mechanics period, or of too many.
+    #[must_use]
+    pub fn with_periods(mut self, servo_s: f64) -> Option<Self> {
+        let ratio = servo_s / self.mechanics_s;
+        let whole = libm::round(ratio);
+        // What is not a number is no whole one.
+        let is_whole = libm::fabs(ratio - whole) <= WHOLE_RATIO_TOLERANCE * ratio;
+        if !(is_whole && (1.0..=MAX_MECHANICS_PER_SERVO).contains(&whole)) {
+            return None;
+        }
+        let periods = Periods { servo_s, mechanics_s: self.mechanics_s, mechanics_per_servo: whole as u32 };
+        self.axes.iter_mut().for_each(|axis| axis.periods = periods);
+        Some(self)
+    }
+
+    /// Whether all of its numbers are within their ranges, with this servo period.
+    pub fn are_possible(&self, servo_s: f64) -> bool {
+        let [least, most] = MECHANICS_PERIODS_S;
+        let is_possible = self.mechanics_s >= least && self.mechanics_s <= most;
+        is_possible && self.with_periods(servo_s).is_some() && self.axes.iter().all(|axis| axis.is_possible())
+    }
+}
+
+/// What was trained.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Trained<const N: usize> {
+    /// An identifier of the contour error.
+    Contour(ContourIdentifier<N>),
+    /// An identifier of the servo, and how others of its kind differ.
+    Servo(ServoIdentifier<N>, Spread<N>),
+    /// The axes.
+    Axes(IdentifiedAxes<N>),
+}
+
+/// Why a block is no model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BlockError {
+    /// It does not begin as a block does.
+    NoModel,
+    /// It is of this format.
+    Format(u32),
+    /// Its identifier is of a kind that is not known.
+    Kind(u32),
+    /// It is for so many axes, and others were asked for.
+    Axes(u32),
+    /// It is longer or shorter than its kind and axes make it.
+    Length,
+    /// The checksum is that of other bytes.
+    Checksum,
+    /// This number, counted from the servo period as 0, is none or out of its bounds.
+    Number(usize),
+}
+
+impl fmt::Display for BlockError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoModel => f.write_str("these bytes are no model"),
+            Self::Format(format) => write!(f, "the model is of format {format}, and format {BLOCK_FORMAT} is read"),
+            Self::Kind(kind) => write!(f, "no identifier is of kind {kind}"),
+            Self::Axes(axes) => write!(f, "the model is for {axes} axes"),
+            Self::Length => f.write_str("the model is cut off, or has something behind it"),
+            Self::Checksum => f.write_str("the model is damaged: its checksum does not fit"),
+            Self::Number(index) => write!(f, "number {index} of the model is out of its bounds"),
+        }
+    }
+}
+
+impl core::error::Error for BlockError {}
+
+impl<const N: usize> ModelBlock<N> {
+    /// Reads a block.
+    ///
+    /// # Errors
+    /// The first thing that is wrong with it.
+    pub fn from_bytes(bytes: &[u8]) -> Result<Self, BlockError> {
+        let mut rest = Bytes { rest: bytes, number: 0 };
+        if rest.take::<8>() != Some(MAGIC) {
+            return Err(BlockError::NoModel);
+        }
+        let mut whole = || rest.take().map(u32::from_le_bytes).ok_or(BlockError::Length);
+        let (format, kind, axes, numbers) = (whole()?, whole()?, whole()?, whole()?);
+        if format != BLOCK_FORMAT {
+            return Err(BlockError::Format(format));
+        }
+        let mut trained = match kind {
+            CONTOUR => Trained::Contour(ContourIdentifier::NULL),
+            SERVO => Trained::Servo(ServoIdentifier::NULL, [[[0.0; UNKNOWNS]; UNKNOWNS]; N]),
+            AXES => Trained::Axes(IdentifiedAxes::NULL),
+            kind => return Err(BlockError::Kind(kind)),
+        };
+        if axes as usize != N {
+            return Err(BlockError::Axes(axes));
+        }
+        let mut expected = 0_usize;
+        trained.numbers(&mut |_, group| expected += group.len());
+        let (content, checksum) = bytes.split_last_chunk().ok_or(BlockError::Length)?;
+        // The periods are two numbers more.
+        if numbers as usize != expected || rest.rest.len() != 8 * (expected + 2) + 4 {
+            return Err(BlockError::Length);
+        }
+        if crc_32(content) != u32::from_le_bytes(*checksum) {
+            return Err(BlockError::Checksum);
+        }
+        let servo_s = rest.number(&NumberBounds::within(SERVO_PERIODS_S))?;
+        let feed_period_s = rest.number(&NumberBounds::within(FEED_PERIODS_S))?;
+        let mut fault = None;
+        trained.numbers(&mut |bounds, group| {
+            for value in group {
+                match rest.number(bounds) {
+                    Ok(number) => *value = number,
+                    Err(error) => fault = fault.or(Some(error)),
+                }
+            }
+        });
+        fault.map_or(Ok(()), Err)?;
+        if !trained.has_a_spread() {
+            return Err(BlockError::Number(rest.number));
+        }
+        if let Trained::Axes(axes) = &mut trained {
+            // The mechanics period is the first number behind the two others.
+            *axes = axes.with_periods(servo_s).ok_or(BlockError::Number(2))?;
+        }
+        Ok(Self { servo_s, feed_period_s, trained })
+    }
+
+    /// Hands over the block that reads as this model, piece by piece.
+    pub fn to_bytes(&self, mut put: impl FnMut(&[u8])) {
+        let mut trained = self.trained.clone();
+        let mut numbers = 0_u32;
+        trained.numbers(&mut |_, group| numbers += group.len() as u32);
+        let kind = match self.trained.kind() {
+            IdentifierKind::Contour => CONTOUR,
+            IdentifierKind::Servo => SERVO,
+            IdentifierKind::Axes => AXES,
+        };
+        let mut crc = CRC_START;
+        let mut put_counted = |bytes: &[u8]| {
+            crc = crc_on(crc, bytes);
+            put(bytes);
+        };
+        put_counted(&MAGIC);
+        for whole in [BLOCK_FORMAT, kind, N as u32, numbers] {
+            put_counted(&whole.to_le_bytes());
+        }
+        for period_s in [self.servo_s, self.feed_period_s] {
+            put_counted(&period_s.to_le_bytes());
+        }
+        trained.numbers(&mut |_, group| group.iter().for_each(|number| put_counted(&number.to_le_bytes())));
+        put(&(!crc).to_le_bytes());
+    }
+}
+
+/// The kinds in a block.
+const CONTOUR: u32 = 1;
+const SERVO: u32 = 2;
+const AXES: u32 = 3;
+
+impl<const N: usize> Trained<N> {
+    /// What it predicts.
+    pub fn kind(&self) -> IdentifierKind {
+        match self {
+            Self::Contour(_) => IdentifierKind::Contour,
+            Self::Servo(..) => IdentifierKind::Servo,
+            Self::Axes(_) => IdentifierKind::Axes,
+        }
+    }
+
+    /// All numbers in the order of the block, group by group, with what they are bound by.
+    fn numbers(&mut self, each: &mut impl FnMut(&NumberBounds, &mut [f64])) {
+        let weight = NumberBounds::Within(-MAX_WEIGHT, MAX_WEIGHT);
+        match self {
+            Self::Contour(net) => net.weights(&mut |_, group| each(&weight, group)),
+            Self::Servo(net, spread) => {
+                net.weights(&mut |_, group| each(&weight, group));
+                each(&NumberBounds::Within(-MAX_SPREAD, MAX_SPREAD), spread.as_flattened_mut().as_flattened_mut());
+            }
+            Self::Axes(axes) => axes.numbers(each),
+        }
+    }
+
+    /// Whether its spread, where it has one, can be mean squares and products: no product is beyond what its squares allow.
+    fn has_a_spread(&self) -> bool {
+        let Self::Servo(_, spread) = self else { return true };
+        spread.iter().all(|products| {
+            let square = |i: usize| products.get(i).and_then(|row| row.get(i)).copied().unwrap_or(0.0);
+            let entries = products.iter().enumerate().flat_map(|(i, row)| row.iter().enumerate().map(move |e| (i, e)));
+            (0..UNKNOWNS).all(|i| square(i) >= 0.0)
+                && entries.into_iter().all(|(i, (j, p))| p * p <= (1.0 + SPREAD_ROUNDING) * square(i) * square(j))
+        })
+    }
+}
+
+/// What a number is bound by.
+enum NumberBounds {
+    /// Least and most.
+    Within(f64, f64),
+    /// The range of a number of an axis.
+    Of(&'static Number),
+}
+
+impl NumberBounds {
+    fn within([least, most]: [f64; 2]) -> Self {
+        Self::Within(least, most)
+    }
+
+    fn hold(&self, value: f64) -> bool {
+        match self {
+            // Not a number is not within.
+            Self::Within(least, most) => value >= *least && value <= *most,
+            Self::Of(number) => number.holds(value),
+        }
+    }
+}
+
+/// Bytes under reading.
+struct Bytes<'a> {
+    rest: &'a [u8],
+    /// Numbers read so far.
+    number: usize,
+}
+
+impl Bytes<'_> {
+    fn take<const M: usize>(&mut self) -> Option<[u8; M]> {
+        let (first, rest) = self.rest.split_first_chunk()?;
+        self.rest = rest;
+        Some(*first)
+    }
+
+    /// The next number, which these are to hold.
+    fn number(&mut self, bounds: &NumberBounds) -> Result<f64, BlockError> {
+        let index = self.number;
+        self.number += 1;
+        let number = f64::from_le_bytes(self.take().ok_or(BlockError::Length)?);
+        if bounds.hold(number) { Ok(number) } else { Err(BlockError::Number(index)) }
+    }
+}
+
+const CRC_START: u32 = !0;
+
+/// The CRC-32 goes on over more bytes: bit by bit, as in the standard; a model is read once.
+fn crc_on(mut crc: u32, bytes: &[u8]) -> u32 {
+    for byte in bytes {
+        crc ^= u32::from(*byte);
+        for _ in 0..8 {
+            crc = if crc & 1 == 1 { (crc >> 1) ^ 0xEDB8_8320 } else { crc >> 1 };
+        }
+    }
+    crc
+}
+
+fn crc_32(bytes: &[u8]) -> u32 {
+    !crc_on(CRC_START, bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use std::vec::Vec;
+
+    use super::*;
+    use crate::identifier::contour::tests::sequence;
+
+    fn servo<const N: usize>() -> ModelBlock<N> {
+        let mut next = sequence();
+        let mut net = ServoIdentifier::NULL;
+        net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = next()));
+        let factors: [f64; UNKNOWNS] = core::array::from_fn(|_| next());
+        let spread = [core::array::from_fn(|i| core::array::from_fn(|j| 0.1 * factors[i] * factors[j])); N];
+        ModelBlock { servo_s: 0.001, feed_period_s: 0.003, trained: Trained::Servo(net, spread) }
+    }
+
+    fn contour<const N: usize>() -> ModelBlock<N> {
+        let mut next = sequence();
+        let mut net = ContourIdentifier::NULL;
+        net.weights(&mut |_, group| group.iter_mut().for_each(|weight| *weight = 3.0 * next()));
+        ModelBlock { servo_s: 0.001, feed_period_s: 0.01, trained: Trained::Contour(net) }
+    }
+
+    /// Each number within its range, and all different.
+    fn axes<const N: usize>() -> ModelBlock<N> {
+        let mut next = sequence();
+        let mut axes = IdentifiedAxes { mechanics_s: 1e-4, axes: [AxisKnowledge::NOTHING; N] };
+        for axis in &mut axes.axes {
+            for number in AxisKnowledge::NUMBERS {
+                let [least, most] = number.range;
+                *(number.of)(axis) = least + (0.1 + 0.05 * next()) * (most.min(1.0) - least);
+            }
+        }
+        let trained = Trained::Axes(axes.with_periods(0.001).unwrap());
+        ModelBlock { servo_s: 0.001, feed_period_s: 0.001, trained }
+    }
+
+    fn block<const N: usize>(model: &ModelBlock<N>) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        model.to_bytes(|more| bytes.extend_from_slice(more));
+        bytes
+    }
+
+    /// A block with the checksum that belongs to it.
+    fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+        let end = bytes.len() - 4;
+        let crc = crc_32(&bytes[..end]);
+        bytes[end..].copy_from_slice(&crc.to_le_bytes());
+        bytes
+    }
+
+    fn with_number(mut bytes: Vec<u8>, index: usize, number: f64) -> Vec<u8> {
+        bytes[24 + 8 * index..][..8].copy_from_slice(&number.to_le_bytes());
+        sealed(bytes)
+    }
+
+    #[test]
+    fn the_checksum_is_that_of_the_standard() {
+        // The check value of CRC-32/ISO-HDLC in every catalogue.
+        assert_eq!(crc_32(b"123456789"), 0xCBF4_3926);
+    }
+
+    #[test]
+    fn a_model_comes_back_to_the_bit() {
+        assert_eq!(ModelBlock::from_bytes(&block(&servo::<2>())), Ok(servo::<2>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&servo::<3>())), Ok(servo::<3>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&contour::<2>())), Ok(contour::<2>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&contour::<3>())), Ok(contour::<3>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&axes::<2>())), Ok(axes::<2>()));
+        assert_eq!(ModelBlock::from_bytes(&block(&axes::<3>())), Ok(axes::<3>()));
+    }
+
+    #[test]
+    fn the_layout_is_what_the_table_says() {
+        let bytes = block(&servo::<2>());
+        assert_eq!(bytes[..24], *b"FWMODEL\0\x01\0\0\0\x02\0\0\0\x02\0\0\0\xec\0\0\0");
+        assert_eq!(bytes[24..32], 0.001_f64.to_le_bytes());
+        assert_eq!(bytes[32..40], 0.003_f64.to_le_bytes());
+        let Trained::Servo(net, spread) = servo::<2>().trained else { panic!("a servo") };
+        assert_eq!(bytes[40..48], net.linear[0][0][0].to_le_bytes());
+        let n = 2 * (2 * 5 + 5 * 12 + 12) + 2 * 6 * 6;
+        assert_eq!(bytes[40 + 8 * (n - 1)..][..8], spread[1][5][5].to_le_bytes());
+        assert_eq!((n, bytes.len()), (0xec, 40 + 8 * n + 4));
+        let bytes = block(&axes::<3>());
+        let Trained::Axes(identified) = axes::<3>().trained else { panic!("axes") };
+        let at = |index: usize| f64::from_le_bytes(bytes[40 + 8 * index..][..8].try_into().unwrap());
+        let count = AxisKnowledge::NUMBERS.len();
+        assert_eq!((bytes[12], at(0), bytes.len()), (3, 1e-4, 40 + 8 * (1 + 3 * count) + 4));
+        assert_eq!(at(1), identified.axes[0].parameters.rad_per_mm);
+        assert_eq!(at(1 + count + 12), identified.axes[1].parameters.inertia_kg_m2);
+        assert_eq!(at(3 * count), identified.axes[2].statistics.cogging_per_rev);
+    }
+
+    #[test]
+    fn any_changed_byte_is_refused() {
+        for bytes in [block(&servo::<2>()), block(&axes::<2>())] {
+            for at in 0..bytes.len() {
+                for change in [0x01, 0x80, 0xff] {
+                    let mut changed = bytes.clone();
+                    changed[at] ^= change;
+                    assert!(ModelBlock::<2>::from_bytes(&changed).is_err(), "byte {at} by {change:#x}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn any_other_length_is_refused() {
+        of_any_other_length_are_refused(block(&contour::<2>()));
+        of_any_other_length_are_refused(block(&axes::<2>()));
+    }
+
+    fn of_any_other_length_are_refused(bytes: Vec<u8>) {
+        for length in 0..bytes.len() {
+            assert!(ModelBlock::<2>::from_bytes(&bytes[..length]).is_err(), "{length}");
+            let mut cut = bytes[..length].to_vec();
+            if length >= 28 {
+                cut = sealed(cut);
+                assert_eq!(ModelBlock::<2>::from_bytes(&cut), Err(BlockError::Length), "{length}");
+            }
+        }
+        let mut longer = bytes;
+        longer.extend_from_slice(&[0; 8]);
+        assert_eq!(ModelBlock::<2>::from_bytes(&sealed(longer)), Err(BlockError::Length));
+    }
+
+    #[test]
+    fn what_is_no_model_is_told_by_what_is_wrong() {
+        let with_whole = |at: usize, whole: u32| {
+            let mut bytes = block(&servo::<2>());
+            bytes[at..at + 4].copy_from_slice(&whole.to_le_bytes());
+            ModelBlock::<2>::from_bytes(&sealed(bytes))
+        };
+        assert_eq!(with_whole(8, 2), Err(BlockError::Format(2)));
+        assert_eq!(with_whole(12, 4), Err(BlockError::Kind(4)));
+        assert_eq!(with_whole(12, 3), Err(BlockError::Length));
+        assert_eq!(with_whole(16, 3), Err(BlockError::Axes(3)));
+        assert_eq!(with_whole(20, u32::MAX), Err(BlockError::Length));
+        assert_eq!(ModelBlock::<3>::from_bytes(&block(&servo::<2>())), Err(BlockError::Axes(2)));
+        assert_eq!(ModelBlock::<2>::from_bytes(&[0; 4096]), Err(BlockError::NoModel));
+    }
+
+    #[test]
+    fn every_number_has_bounds() {
+        let bytes = block(&servo::<2>());
+        let numbers = (bytes.len() - 28) / 8;
+        for index in 0..numbers {
+            for number in [f64::NAN, f64::INFINITY, -f64::INFINITY, 1e7, -1e7] {
+                let refused = ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number));
+                assert_eq!(refused, Err(BlockError::Number(index)), "{number}");
+            }
+        }
+        let refused = |index, number| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number)).is_err();
+        assert!(refused(0, 0.0) && refused(1, 0.0) && refused(1, 2.0));
+        // A mean square below zero, and a product beyond what the squares allow.
+        assert!(refused(numbers - 1, -1e-3) && refused(numbers - 2, 0.9));
+    }
+
+    #[test]
+    fn every_number_of_an_axis_has_its_own_bounds() {
+        let bytes = block(&axes::<2>());
+        let read = |index, number| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), index, number));
+        for axis in 0..2 {
+            for (i, number) in AxisKnowledge::NUMBERS.iter().enumerate() {
+                let index = 3 + axis * AxisKnowledge::NUMBERS.len() + i;
+                let [least, most] = number.range;
+                for value in [f64::NAN, f64::INFINITY, -f64::INFINITY, least - 1.0, 1.001 * most] {
+                    assert_eq!(read(index, value), Err(BlockError::Number(index)), "{} {value}", number.name);
+                }
+                assert!(read(index, least).is_ok() && read(index, most).is_ok(), "{}", number.name);
+                // What is divided by is zero or no less than its least.
+                let divides = number.or_none || least > 0.0;
+                assert_eq!(read(index, 1e-300).is_err(), divides, "{}", number.name);
+                assert_eq!(read(index, 0.0).is_err(), least > 0.0 && !number.or_none, "{}", number.name);
+            }
+        }
+    }
+
+    #[test]
+    fn axes_have_whole_mechanics_periods_in_a_servo_period() {
+        let bytes = block(&axes::<2>());
+        let read = |mechanics_s| ModelBlock::<2>::from_bytes(&with_number(bytes.clone(), 2, mechanics_s));
+        for hostile_s in [0.0, -0.0, -1e-4, f64::NAN, f64::INFINITY, 1e-300, 9e-8, 0.0003, 0.002, 0.1, 1e7] {
+            assert_eq!(read(hostile_s), Err(BlockError::Number(2)), "{hostile_s}");
+        }
+        for (fine_s, periods) in [(1e-7, 10_000), (1e-4, 10), (0.0005, 2), (0.001, 1)] {
+            let Ok(ModelBlock { trained: Trained::Axes(axes), .. }) = read(fine_s) else { panic!("{fine_s}") };
+            assert!(axes.axes.iter().all(|axis| axis.periods.mechanics_per_servo == periods), "{fine_s}");
+        }
+        // The longest servo period has a million of the shortest.
+        let longest = with_number(with_number(bytes.clone(), 0, 0.1), 2, 1e-7);
+        assert_eq!(ModelBlock::<2>::from_bytes(&longest), Err(BlockError::Number(2)));
+        let Trained::Axes(identified) = axes::<2>().trained else { panic!("axes") };
+        assert!(identified.are_possible(0.001) && !identified.are_possible(0.00015));
+        assert!(!IdentifiedAxes::<2>::NULL.are_possible(0.001));
+    }
+}

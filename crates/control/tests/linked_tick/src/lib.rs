@@ -1,0 +1,96 @@
+//! The servo period of every controller in two and three axes, and the reading of a model, linked without the standard library.
+//!
+//! The panic handler calls a function that does not exist. Where no panic is left in what is exported, the linker drops the
+//! handler with all that it needs; otherwise it has to name that function.
+
+#![no_std]
+
+use core::panic::PanicInfo;
+use feedwright_control::{Feedforward, Knot, KnotSource, LqgPreview, MagnitudeOnly, ModelBlock, OpenLoop, RecedingHorizon, Tick, TwoDimensional};
+
+unsafe extern "C" {
+    fn a_panic_is_left_in_the_tick() -> !;
+}
+
+#[panic_handler]
+fn panic(_: &PanicInfo<'_>) -> ! {
+    // SAFETY: there is nothing to call: the linker refuses.
+    unsafe { a_panic_is_left_in_the_tick() }
+}
+
+/// The planned path comes from outside, of which the compiler knows nothing.
+struct Foreign<const N: usize>(extern "C" fn(f64, &mut Knot<N>));
+
+impl<const N: usize> KnotSource<N> for Foreign<N> {
+    fn knot(&mut self, tau_s: f64) -> Knot<N> {
+        let mut knot = Knot { position_mm: [0.0; N], tangent: [0.0; N], feed_mm_s: 0.0, cutting: true };
+        (self.0)(tau_s, &mut knot);
+        knot
+    }
+}
+
+macro_rules! servo_periods {
+    ($($name:ident: $controller:ty, $axes:literal;)*) => {
+        $(
+            /// A servo period.
+            #[unsafe(no_mangle)]
+            pub extern "C" fn $name(
+                tick: &mut Tick<$axes>,
+                controller: &mut $controller,
+                reference: extern "C" fn(f64, &mut Knot<$axes>),
+                position_mm: &[f64; $axes],
+                command_mm: &mut [f64; $axes],
+            ) {
+                *command_mm = tick.step(&mut Foreign(reference), controller, *position_mm).command_mm;
+            }
+        )*
+    };
+}
+
+servo_periods! {
+    open_loop_2: OpenLoop, 2;
+    open_loop_3: OpenLoop, 3;
+    receding_horizon_2: RecedingHorizon<2>, 2;
+    receding_horizon_3: RecedingHorizon<3>, 3;
+    lqg_preview_2: LqgPreview<2>, 2;
+    lqg_preview_3: LqgPreview<3>, 3;
+    magnitude_only_2: MagnitudeOnly<2>, 2;
+    magnitude_only_3: MagnitudeOnly<3>, 3;
+    two_dimensional_2: TwoDimensional<2>, 2;
+    two_dimensional_3: TwoDimensional<3>, 3;
+    feedforward_2: Feedforward<2>, 2;
+    feedforward_3: Feedforward<3>, 3;
+}
+
+macro_rules! models {
+    ($($name:ident: $axes:literal;)*) => {
+        $(
+            /// Reads a model from as many bytes as there are.
+            ///
+            /// # Safety
+            /// There are so many bytes.
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn $name(bytes: *const u8, length: usize, model: &mut ModelBlock<$axes>) -> bool {
+                // SAFETY: as the caller promises.
+                let bytes = unsafe { core::slice::from_raw_parts(bytes, length) };
+                match ModelBlock::from_bytes(bytes) {
+                    Ok(read) => *model = read,
+                    Err(_) => return false,
+                }
+                true
+            }
+        )*
+    };
+}
+
+models! {
+    model_2: 2;
+    model_3: 3;
+}
+
+/// What does panic.
+#[cfg(feature = "one-panic")]
+#[unsafe(no_mangle)]
+pub extern "C" fn one_panic(values: &[f64; 4], i: usize) -> f64 {
+    values[i]
+}

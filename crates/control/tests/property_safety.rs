@@ -1,0 +1,243 @@
+//! The safety layer around controllers that are wild, broken, blind, wrong or harmful.
+
+use feedwright_control::vector::{norm, sub};
+use feedwright_control::{Bounds, Cause, Command, Controller, Measured, Schedule, State, Window};
+use feedwright_control::{Knot, KnotSource, Tick};
+use proptest::prelude::*;
+
+const SERVO_S: f64 = 0.001;
+const SERVO_PERIODS: u32 = 5;
+const FEED_PERIOD_S: f64 = 0.005;
+const RADIUS_MM: f64 = 10.0;
+const FEED_MM_S: f64 = 50.0;
+const BOUNDS: Bounds =
+    Bounds { deviation_mm: 0.2, speed_mm_s: 200.0, acceleration_mm_s2: 5000.0, fade_mm_s2: FADE_MM_S2 };
+/// Acceleration of a fade, mm/s2.
+const FADE_MM_S2: f64 = 400.0;
+/// The layer knows the path as chords between knots, behind at up to three times the planned spacing, and expects the next
+/// knot on such a chord: (s^2 + (3 s)^2) / 8 R, and rounding.
+const SAGITTA_MM: f64 = 3.2e-4;
+/// Lag of the simulated tool, s.
+const LAG_S: f64 = 0.02;
+
+/// The circle of eq. 11.
+struct Circle;
+
+impl KnotSource<2> for Circle {
+    fn knot(&mut self, tau_s: f64) -> Knot<2> {
+        let (sin, cos) = (FEED_MM_S / RADIUS_MM * tau_s).sin_cos();
+        Knot {
+            position_mm: [RADIUS_MM * (1.0 - cos), RADIUS_MM * sin],
+            tangent: [sin, cos],
+            feed_mm_s: FEED_MM_S,
+            cutting: true,
+        }
+    }
+}
+
+/// Asks for what it is told to, decision by decision, and misses by as much as it is told to.
+struct Script<C, M> {
+    command: C,
+    prediction_error_mm: M,
+    decision: u32,
+}
+
+impl<C: Fn(u32) -> Command<2>, M: Fn(u32) -> f64> Controller<2> for Script<C, M> {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: SERVO_PERIODS, preview: 10 }
+    }
+
+    fn reset(&mut self) {
+        self.decision = 0;
+    }
+
+    fn prediction_error_mm(&self) -> f64 {
+        (self.prediction_error_mm)(self.decision)
+    }
+
+    fn command(&mut self, _: &Window<'_, 2>, _: &Measured<2>) -> Command<2> {
+        self.decision += 1;
+        (self.command)(self.decision)
+    }
+}
+
+/// One decision of a run.
+struct Knots {
+    path_mm: [f64; 2],
+    command_mm: [f64; 2],
+}
+
+struct Ran {
+    knots: Vec<Knots>,
+    fade: Option<feedwright_control::Fade>,
+    /// State at the end of each servo period.
+    states: Vec<State>,
+}
+
+/// A tool that follows the command with a lag of first order, and is seen as `seen` says.
+fn run(
+    periods: u32,
+    seen: impl Fn(u32, [f64; 2]) -> [f64; 2],
+    command: impl Fn(u32) -> Command<2>,
+    prediction_error_mm: impl Fn(u32) -> f64,
+) -> Ran {
+    let mut controller = Script { command, prediction_error_mm, decision: 0 };
+    let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS);
+    let mut tool = [0.0; 2];
+    let (mut knots, mut states) = (Vec::new(), Vec::new());
+    for n in 0..periods {
+        let setpoint = tick.step(&mut Circle, &mut controller, seen(n, tool));
+        if setpoint.decided {
+            knots.push(Knots { path_mm: setpoint.path.position_mm, command_mm: setpoint.command_mm });
+        }
+        states.push(tick.state());
+        for axis in 0..2 {
+            tool[axis] += SERVO_S / LAG_S * (setpoint.command_mm[axis] - tool[axis]);
+        }
+    }
+    Ran { knots, fade: tick.fade(), states }
+}
+
+fn as_it_is(_: u32, tool: [f64; 2]) -> [f64; 2] {
+    tool
+}
+
+fn beside(command_mm: [f64; 2]) -> f64 {
+    ((command_mm[0] - RADIUS_MM).hypot(command_mm[1]) - RADIUS_MM).abs()
+}
+
+/// A number that a broken controller may come up with.
+fn anything() -> impl Strategy<Value = f64> {
+    prop_oneof![4 => -1.0..1.0, 2 => -1e3..1e3, 1 => any::<f64>()]
+}
+
+proptest! {
+    #[test]
+    fn no_command_leaves_the_path_by_more_than_it_may_or_leaps(
+        script in prop::collection::vec((anything(), anything(), anything()), 200)
+    ) {
+        let command = |k: u32| {
+            let (rate, x, y) = script[k as usize % script.len()];
+            Command::straight(rate, [x, y])
+        };
+        let ran = run(1000, as_it_is, command, |_| 0.0);
+        let mut last: Option<(&Knots, [f64; 2])> = None;
+        for (k, knot) in ran.knots.iter().enumerate() {
+            prop_assert!(beside(knot.command_mm) <= BOUNDS.deviation_mm + SAGITTA_MM, "{k}: {:?}", knot.command_mm);
+            let offset = sub(knot.command_mm, knot.path_mm);
+            if let Some((_, before)) = last {
+                let speed = norm(sub(offset, before)) / FEED_PERIOD_S;
+                // The deviation goes before: where it binds, the command is taken back on top, across its motion.
+                let binds = norm(offset) > BOUNDS.deviation_mm - 1e-9;
+                let bound = if binds { 2.0 } else { 1.0 } * BOUNDS.speed_mm_s;
+                prop_assert!(speed <= bound + 1e-6, "{k}: {speed} mm/s");
+            }
+            last = Some((knot, offset));
+        }
+    }
+
+    #[test]
+    fn what_is_not_a_number_takes_the_controller_out_and_fades_to_the_path(
+        at in 3_u32..150, bad in prop_oneof![Just(f64::NAN), Just(f64::INFINITY), Just(f64::NEG_INFINITY)], which in 0..3
+    ) {
+        let command = move |k: u32| {
+            let mut command = Command::straight(0.9, [0.005, -0.005]);
+            if k == at {
+                match which {
+                    0 => command.rate = bad,
+                    1 => command.offset_mm[0] = bad,
+                    _ => command.offset_mm[1] = bad,
+                }
+            }
+            command
+        };
+        let ran = run(1000, as_it_is, command, |_| 0.0);
+        let fade = ran.fade.expect("the controller goes on");
+        prop_assert_eq!((fade.cause, fade.decision), (Cause::NotANumber, u64::from(at) - 1));
+        // Out of the loop for 0.2 s: within 0.15 s the offset has come down to a twentieth.
+        let from = fade.decision as usize;
+        let left = &ran.knots[from + 30..from + 38];
+        prop_assert!(left.iter().all(|knot| norm(sub(knot.command_mm, knot.path_mm)) < 4e-4));
+        prop_assert!(ran.knots.iter().all(|knot| norm(knot.command_mm).is_finite()));
+    }
+}
+
+/// A correction that is as it should be.
+fn good(_: u32) -> Command<2> {
+    Command::straight(1.0, [0.01, 0.01])
+}
+
+#[test]
+fn a_controller_that_does_well_stays() {
+    assert_eq!(run(3000, as_it_is, good, |_| 0.01).fade, None);
+}
+
+/// Servo periods from a fault on until the controller has left the loop, and from its end until it is back.
+fn left_and_back(states: &[State], from: usize, to: usize) -> (Option<usize>, Option<usize>) {
+    let left = states[from..].iter().position(|state| *state != State::Engaged);
+    let back = states[to..].iter().position(|state| *state == State::Engaged);
+    (left, back)
+}
+
+#[test]
+fn after_lost_leaping_and_frozen_feedback_the_controller_comes_back() {
+    const FROM: u32 = 500;
+    let lost = |n: u32, tool: [f64; 2]| if (FROM..FROM + 50).contains(&n) { [f64::NAN; 2] } else { tool };
+    let once = |n: u32, tool: [f64; 2]| if n == FROM { [f64::NAN, 0.0] } else { tool };
+    let leapt = |n: u32, tool: [f64; 2]| if (FROM..FROM + 50).contains(&n) { [tool[0] + 1.0, tool[1]] } else { tool };
+    let held = std::cell::Cell::new([0.0; 2]);
+    let frozen = |n: u32, tool: [f64; 2]| {
+        if !(FROM..FROM + 100).contains(&n) {
+            held.set(tool);
+        }
+        held.get()
+    };
+    let ran = [
+        (run(3000, lost, good, |_| 0.0), 50),
+        (run(3000, once, good, |_| 0.0), 1),
+        (run(3000, leapt, good, |_| 0.0), 50),
+        (run(3000, frozen, good, |_| 0.0), 100),
+    ];
+    for (kind, (ran, lasts)) in ran.into_iter().enumerate() {
+        assert_eq!(ran.fade.map(|fade| fade.cause), Some(Cause::LostFeedback), "{kind}");
+        let (left, back) = left_and_back(&ran.states, FROM as usize, FROM as usize + lasts);
+        assert!(left.is_some_and(|left| left <= 20), "{kind}: leaves after {left:?} ms");
+        assert!(back.is_some_and(|back| back <= 1000), "{kind}: back after {back:?} ms");
+    }
+}
+
+#[test]
+fn a_fade_keeps_its_acceleration() {
+    let lost = |n: u32, tool: [f64; 2]| if n >= 500 { [f64::NAN; 2] } else { tool };
+    let ran = run(1000, lost, |_| Command::straight(1.0, [0.1, -0.1]), |_| 0.0);
+    let offsets: Vec<[f64; 2]> = ran.knots.iter().map(|knot| sub(knot.command_mm, knot.path_mm)).collect();
+    for k in 102..offsets.len() {
+        for axis in 0..2 {
+            let second = offsets[k][axis] - 2.0 * offsets[k - 1][axis] + offsets[k - 2][axis];
+            assert!(second.abs() <= FADE_MM_S2 * FEED_PERIOD_S * FEED_PERIOD_S * (1.0 + 1e-9), "{k}: {second}");
+        }
+    }
+    assert!(norm(*offsets.last().unwrap()) < 1e-6);
+}
+
+#[test]
+fn predictions_that_are_wrong_several_times_in_a_row_take_the_controller_out() {
+    let now_and_then = |k: u32| if k.is_multiple_of(3) { 1.0 } else { 0.0 };
+    assert_eq!(run(2000, as_it_is, good, now_and_then).fade, None);
+    let from_100_on = |k: u32| if k > 100 { 1.0 } else { 0.0 };
+    let fade = run(2000, as_it_is, good, from_100_on).fade;
+    assert_eq!(fade.map(|fade| (fade.cause, fade.decision)), Some((Cause::WrongPredictions, 103)));
+}
+
+#[test]
+fn a_correction_that_makes_it_worse_leaves_the_loop() {
+    // Steady, and swinging at 10 Hz.
+    let steady = |_: u32| Command::straight(1.0, [0.15, 0.0]);
+    let swinging = |k: u32| {
+        let swing = 0.15 * (std::f64::consts::TAU * 10.0 * FEED_PERIOD_S * f64::from(k)).sin();
+        Command::straight(1.0, [swing, swing])
+    };
+    for fade in [run(3000, as_it_is, steady, |_| 0.0).fade, run(3000, as_it_is, swinging, |_| 0.0).fade] {
+        assert_eq!(fade.map(|fade| fade.cause), Some(Cause::Harmful));
+    }
+}

@@ -1,0 +1,158 @@
+//! The command line: a file of options for each command.
+
+pub(crate) mod reader;
+pub(crate) mod feed;
+pub(crate) mod correct;
+pub(crate) mod advise;
+pub(crate) mod run;
+pub(crate) mod plan;
+pub(crate) mod identify;
+pub(crate) mod lab;
+pub(crate) mod excite;
+pub(crate) mod block;
+pub(crate) mod check;
+pub(crate) mod canon;
+pub(crate) mod completions;
+pub(crate) mod man;
+
+use std::ffi::OsString;
+use std::io::{self, IsTerminal};
+
+use clap::{ColorChoice, Command, CommandFactory, Parser, Subcommand, ValueEnum};
+
+use advise::AdviseArgs;
+use block::BlockArgs;
+use canon::CanonArgs;
+use check::CheckArgs;
+use completions::CompletionsArgs;
+use correct::CorrectArgs;
+use excite::ExciteArgs;
+use identify::IdentifyArgs;
+use lab::LabArgs;
+use man::ManArgs;
+use plan::PlanArgs;
+use run::RunArgs;
+
+use crate::command::terminal::{ColorWhen, columns, is_dumb, set_color};
+
+/// Predict the contour error of a CNC program on a machine, and correct it
+///
+/// feedwright reads a G-code program and a machine file, simulates the cut servo period by servo period, and shows how far the tool
+/// leaves the programmed path, and where. Then it corrects the command.
+#[derive(Debug, Parser)]
+#[command(name = "feedwright", version, propagate_version = true, max_term_width = COLUMNS, after_long_help = AFTER)]
+pub(crate) struct Cli {
+    /// Print results and errors only: no progress, no remarks.
+    #[arg(short, long, global = true, help_heading = EVERYWHERE)]
+    pub(crate) quiet: bool,
+    /// When messages are coloured.
+    ///
+    /// auto colours on a terminal, unless NO_COLOR is set or TERM is dumb.
+    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE)]
+    pub(crate) color: ColorWhen,
+    #[command(subcommand)]
+    pub(crate) command: CommandArgs,
+}
+
+/// Heading of the options of every command.
+pub const EVERYWHERE: &str = "Options of every command";
+
+/// Longer lines are hard to read.
+pub const COLUMNS: usize = 100;
+
+const AFTER: &str = "\
+Files: wherever a file is read, - is the standard input, and wherever one is written, - is the standard output; tables and remarks go to \
+the standard error then. ./- is a file of that name. A file is written when everything has gone well, and as a whole.
+
+Exit codes: 0 done, and within tolerance; 1 out of tolerance, worse than without a correction, or mistakes in a file that was checked; \
+2 an error, nothing was written; 130 interrupted.
+
+Environment: FEEDWRIGHT_CACHE is the folder of what is kept between runs, empty for none; NO_COLOR and TERM=dumb turn colours off, \
+TERM=dumb progress too; COLUMNS is the width of tables and messages where it is not that of the terminal.
+
+First steps:
+  feedwright run parts/star.ngc
+cuts a part on a simulated machine, and star.report.html shows how it went. `feedwright COMMAND --help` has examples of each command.";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum CommandArgs {
+    Run(Box<RunArgs>),
+    Correct(CorrectArgs),
+    Advise(AdviseArgs),
+    Plan(PlanArgs),
+    Check(CheckArgs),
+    Identify(IdentifyArgs),
+    Excite(ExciteArgs),
+    /// List the built-in machines
+    Machines,
+    /// List the controllers, or the parameters of one
+    Controllers {
+        /// Its name.
+        name: Option<String>,
+    },
+    Canon(CanonArgs),
+    /// Start the laboratory: comparison, held-out work, the experiments of the paper
+    ///
+    /// The laboratory is a command of its own, `feedwright-lab`, which is installed beside this one or on the PATH.
+    #[command(disable_help_flag = true)]
+    Lab(LabArgs),
+    Block(BlockArgs),
+    Completions(CompletionsArgs),
+    Man(ManArgs),
+}
+
+impl CommandArgs {
+    /// Whether it writes files, which an interrupt must not leave half-written.
+    pub(crate) const fn writes_files(&self) -> bool {
+        !matches!(self, Self::Check(_) | Self::Canon(_) | Self::Machines | Self::Controllers { .. })
+    }
+}
+
+/// Reads a command line; help, version and mistakes of it end the process.
+pub fn parse<T: Parser>() -> T {
+    let color = color_said(std::env::args_os());
+    set_color(color);
+    let matches = command::<T>(color).get_matches();
+    T::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+}
+
+/// The command with its help as the terminal shows it.
+fn command<T: CommandFactory>(color: ColorWhen) -> Command {
+    let color = match color {
+        ColorWhen::Always => ColorChoice::Always,
+        ColorWhen::Never => ColorChoice::Never,
+        ColorWhen::Auto if is_dumb() => ColorChoice::Never,
+        ColorWhen::Auto => ColorChoice::Auto,
+    };
+    let command = T::command().color(color);
+    if io::stdout().is_terminal() { command } else { command.term_width(columns().min(COLUMNS)) }
+}
+
+/// What `--color` says, before the command line is read: its mistakes are coloured, too.
+fn color_said(arguments: impl Iterator<Item = OsString>) -> ColorWhen {
+    let arguments: Vec<String> = arguments.map(|argument| argument.to_string_lossy().into_owned()).collect();
+    let of_option = |(at, argument): (usize, &String)| match argument.as_str() {
+        "--color" => arguments.get(at + 1).cloned(),
+        argument => argument.strip_prefix("--color=").map(str::to_owned),
+    };
+    let said = arguments.iter().take_while(|argument| *argument != "--").enumerate().find_map(of_option);
+    said.and_then(|said| ColorWhen::from_str(&said, false).ok()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_holds_together() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn color_is_known_before_the_rest_is_read() {
+        let said = |words: &str| color_said(words.split(' ').map(OsString::from));
+        assert_eq!(said("feedwright run --color always x"), ColorWhen::Always);
+        assert_eq!(said("feedwright --color=never"), ColorWhen::Never);
+        assert_eq!([said("feedwright -- --color=never"), said("feedwright --color pink")], [ColorWhen::Auto; 2]);
+    }
+}

@@ -1,0 +1,50 @@
+//! Options of `feedwright advise`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::correct::controls;
+use super::reader::ReaderArgs;
+
+/// Tell the feedrates at which a program holds a tolerance
+///
+/// For the program as it is, corrected, and cut with a controller that sees the tool: for all of it, and for each stretch between corners and stops. Where no feed
+/// holds, the table tells which error stays, and where.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright advise part.ngc --machine mine.toml --tolerance 10 --report advice.html
+
+Exit codes: 0 done; 1 where no feed holds, in any way of cutting; 2 an error.")]
+pub(crate) struct AdviseArgs {
+    /// G-code program.
+    pub(crate) part: PathBuf,
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
+    pub(crate) machine: OsString,
+    /// Largest contour error, um.
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    pub(crate) tolerance: f64,
+    /// Control that cuts the program without feedback, as it is and corrected.
+    #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that cuts the program without feedback, as it is and corrected."))]
+    pub(crate) target: String,
+    /// Controller of the cut with feedback; `feedwright controllers` lists them.
+    #[arg(long, value_name = "NAME", default_value = crate::controllers::BEST)]
+    pub(crate) controller: String,
+    /// Seed of the recording that the machine is identified from.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Write a page: table, figure, and the feedrates of each stretch.
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) report: Option<PathBuf>,
+    /// Write the figure: error over feedrate, and the feedrate that each stretch holds.
+    #[arg(long, value_name = "FILE.svg")]
+    pub(crate) figure: Option<PathBuf>,
+    /// Write all results as JSON, those of every feed that was cut too.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}

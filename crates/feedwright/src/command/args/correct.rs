@@ -1,0 +1,46 @@
+//! Options of `feedwright correct`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::reader::ReaderArgs;
+
+/// Write a corrected program for a control without feedback
+///
+/// The correction is computed for the control that is named with --for: its planner, its arcs, its decimals. The new program is read
+/// again, planned as that control would, cut in simulation and compared with the original before it is written.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright correct part.ngc --machine mine.toml --for linuxcnc --out corrected.ngc
+
+Exit codes: 0 done; 1 out of --tolerance, or no better than the original: nothing is written then; 2 an error.")]
+pub(crate) struct CorrectArgs {
+    /// G-code program.
+    pub(crate) part: PathBuf,
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
+    pub(crate) machine: OsString,
+    /// Control that the corrected program is for: how it plans the speed, and what its blocks may hold.
+    #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that the corrected program is for: how it plans the speed, and what its blocks may hold."))]
+    pub(crate) target: String,
+    /// Place of the corrected program; it is written only where it is better than the original, else the exit code is 1.
+    #[arg(long, value_name = "FILE.ngc")]
+    pub(crate) out: Option<PathBuf>,
+    /// Largest contour error allowed of the corrected program as the control cuts it, um: exit code 1 where it is exceeded.
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Write all results as JSON.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}
+
+/// What `--for` is, and its controls, one a line.
+pub(super) fn controls(about: &str) -> String {
+    let rows = crate::correct::TARGETS.iter().map(|target| format!("\n  {:<10} {}", target.name, target.about));
+    about.to_owned() + &rows.collect::<String>()
+}

@@ -1,0 +1,111 @@
+//! Options of `feedwright identify`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+
+/// Identify a machine from its log, and write its machine file
+///
+/// The log has commanded and actual positions of the axes at the servo period. Without a log a simulated machine is identified, and
+/// the model is written that `feedwright run --model` takes.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  feedwright identify cut.csv --out mine.toml --report mine.html
+  feedwright identify today.csv --update mine.toml
+  feedwright identify --machine workshop --out workshop.model.toml")]
+pub(crate) struct IdentifyArgs {
+    /// Log of commanded and actual positions of a real machine: halsampler, halscope, MATLAB v5, Sinumerik Edge, or a table of text.
+    /// Several are of one machine, with the same axes.
+    #[arg(value_name = "LOG", conflicts_with_all = ["machine", "controller", "axes", "set", "seed"])]
+    pub(crate) log: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) of_log: LogArgs,
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
+    pub(crate) machine: OsString,
+    /// Controller that the model is for; `feedwright controllers` lists them.
+    #[arg(long, value_name = "NAME", default_value = crate::controllers::BEST)]
+    pub(crate) controller: String,
+    /// Axes of the model: 2 for programs that stay in the XY plane, 3 for others.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = clap::value_parser!(u8).range(2..=3))]
+    pub(crate) axes: u8,
+    /// Set a parameter of the controller; feed_period_s is the one that the model depends on.
+    #[arg(long, value_name = "PARAMETER=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Seed of the recording that a simulated machine is identified from.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Place of the machine file; of a simulated machine, of its model.
+    #[arg(long, value_name = "FILE.toml", required_unless_present = "update")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// What is said of a log.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Options of a LOG")]
+pub(crate) struct LogArgs {
+    /// Which column is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,x.torque=5,unit=mm,time=ms.
+    #[arg(long, value_name = "COLUMNS", requires = "log")]
+    pub(crate) columns: Option<feedwright_ident::Columns>,
+    /// Machine file that is updated: what the logs do not tell stays as it is. It is written to --out, without that in its place.
+    #[arg(long, value_name = "FILE.toml", requires = "log")]
+    pub(crate) update: Option<PathBuf>,
+    /// Identify from this part of the log, s; --score says by which to judge. Without both, blocks of motion take turns.
+    #[arg(long, value_name = "FROM:TO", requires = "score", requires = "log")]
+    pub(crate) fit: Option<Times>,
+    /// Judge by this part of the log, s.
+    #[arg(long, value_name = "FROM:TO", requires = "fit", requires = "log")]
+    pub(crate) score: Option<Times>,
+    /// Travel for a turn of the motor, mm; without it an axis counts as linear: kg, N s/m, N.
+    #[arg(long, value_name = "MM_PER_REV", requires = "log", value_parser = positive)]
+    pub(crate) lead: Option<f64>,
+    /// Inertia at the motor, kg m2; without --lead the mass, kg. Positions do not tell it.
+    #[arg(long, value_name = "KG_M2|KG", requires = "log", value_parser = positive)]
+    pub(crate) inertia: Option<f64>,
+    /// Viscous friction at the motor, N m s/rad; without --lead N s/m.
+    #[arg(long, value_name = "N_M_S|N_S_PER_M", requires = "log", value_parser = positive)]
+    pub(crate) viscous: Option<f64>,
+    /// Torque, N m, for a unit of the torque column; without --lead force, N.
+    #[arg(long, value_name = "N_M|N", requires = "log", value_parser = positive)]
+    pub(crate) torque_gain: Option<f64>,
+    /// Time over which the drive takes the speed from positions, s, of one that closes its loops at the rate of the log and recorded it
+    /// itself: two samples are 0.002 at 1 kHz. Positions do not tell it.
+    #[arg(long, value_name = "S", requires = "log", value_parser = positive)]
+    pub(crate) speed_window: Option<f64>,
+    /// By how much the log has the actual position later than the command, s: 0 where both were sampled at the same moment, as by
+    /// halsampler. Without it a delay of the drive counts as one of the record.
+    #[arg(long, value_name = "S", requires = "log", allow_negative_numbers = true)]
+    pub(crate) record_delay: Option<f64>,
+    /// Write a page: numbers, measured against predicted, what is left.
+    #[arg(long, value_name = "FILE.html", requires = "log")]
+    pub(crate) report: Option<PathBuf>,
+    /// Write all results as JSON.
+    #[arg(long, value_name = "FILE.json", requires = "log")]
+    pub(crate) json: Option<PathBuf>,
+}
+
+/// A number above zero.
+fn positive(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
+        _ => Err("it must be a number above 0".to_owned()),
+    }
+}
+
+/// A part of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Times(pub(crate) std::ops::Range<f64>);
+
+impl std::str::FromStr for Times {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let ends = text.split_once(':').and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
+        match ends {
+            Some((from, to)) if from < to => Ok(Self(from..to)),
+            _ => Err("write two times in s, the earlier first, as in 0:12.5".to_owned()),
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Options of `feedwright plan`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::reader::ReaderArgs;
+
+/// Tell the cycle time of a program, and what limits it
+///
+/// By tool, by kind of motion, and by the limit that binds: feedrate, acceleration or jerk of an axis.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright plan part.ngc --machine mine.toml --planner linuxcnc")]
+pub(crate) struct PlanArgs {
+    /// G-code program.
+    pub(crate) part: PathBuf,
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
+    pub(crate) machine: OsString,
+    /// Distance of the planned path from the programmed one where the program says none, um, in place of the machine's
+    /// path_tolerance_um.
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Planner in place of the one that suits the machine: trapezoid, time-optimal, unlimited, or linuxcnc, which plans as LinuxCNC 2.9 does.
+    #[arg(long, value_name = "NAME")]
+    pub(crate) planner: Option<String>,
+    /// Plan each path from rest to rest as a whole too, and tell its time: what no plan can be faster than by much.
+    #[arg(long)]
+    pub(crate) bound: bool,
+    /// Tell how long it takes with this override of feeds, 0 to 200 %, while it is cut: the path stays as planned.
+    #[arg(long = "override", value_name = "PERCENT", allow_negative_numbers = true)]
+    pub(crate) override_percent: Option<f64>,
+    /// Tell where the tool rests when feed hold is pressed so long after the start, s.
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) hold_at: Option<f64>,
+    /// Write all results as JSON.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}

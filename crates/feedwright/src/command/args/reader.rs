@@ -1,0 +1,69 @@
+//! How programs are read: the same options for all commands that read one.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use feedwright_gcode::{AUTO, Dialect, INCH_MM, Increment, Settings, ToolTable};
+use miette::{Result, miette};
+
+/// How programs are read; the same for all commands that read one.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Reading the program")]
+pub struct ReaderArgs {
+    /// Whose G-code it is: auto, linuxcnc, fanuc, haas, grbl, marlin or klipper; fanuc-mill, fanuc-lathe, haas-mill and haas-lathe where the
+    /// program does not show the machine. auto looks at the beginning.
+    #[arg(long, value_name = "NAME", default_value = AUTO)]
+    pub dialect: String,
+    /// What a length without a decimal point counts on a Fanuc or Haas: 0.01mm, 0.001mm or 0.0001mm [default: whole units].
+    #[arg(long, value_name = "LENGTH", value_parser = Increment::named)]
+    pub increment: Option<Increment>,
+    /// Motions after which a program counts as endless.
+    #[arg(long, value_name = "N", default_value_t = Settings::default().max_motions, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    pub max_motions: u64,
+    /// Lines without a motion in a row after which a loop counts as endless.
+    #[arg(long, value_name = "N", default_value_t = Settings::default().max_idle_lines, value_parser = clap::value_parser!(u64).range(1..), allow_negative_numbers = true)]
+    pub max_idle_lines: u64,
+    /// Tools, as LinuxCNC keeps them: one `T1 P1 Z25.4 D6` a line.
+    #[arg(long, value_name = "FILE.tbl")]
+    pub tool_table: Option<PathBuf>,
+    /// Unit of the lengths in the tool table.
+    #[arg(long, value_name = "UNIT", value_enum, default_value_t = Unit::Mm, requires = "tool_table")]
+    pub tool_unit: Unit,
+    /// Folder of subroutines, each in a file of its name (.ngc); may be given several times. The program's own folder comes first.
+    #[arg(long, value_name = "FOLDER")]
+    pub subroutines: Vec<PathBuf>,
+}
+
+/// Unit of lengths.
+#[derive(Debug, Clone, Copy, ValueEnum)]
+pub enum Unit {
+    Mm,
+    Inch,
+}
+
+impl ReaderArgs {
+    /// What the reader has to know.
+    pub fn settings(&self) -> Result<Settings> {
+        let unit_mm = match self.tool_unit {
+            Unit::Mm => 1.0,
+            Unit::Inch => INCH_MM,
+        };
+        if let Some(folder) = self.subroutines.iter().find(|folder| !folder.is_dir()) {
+            return Err(miette!(
+                help = "name the folder that holds the files of the subroutines",
+                "--subroutines {}: this is no folder",
+                folder.display()
+            ));
+        }
+        let tools = self.tool_table.as_deref().map(|table| ToolTable::read(table, unit_mm)).transpose()?;
+        Ok(Settings {
+            dialect: Dialect::named(&self.dialect)?,
+            increment: self.increment,
+            max_motions: self.max_motions,
+            max_idle_lines: self.max_idle_lines,
+            tools: tools.unwrap_or_default(),
+            subroutine_paths: self.subroutines.clone(),
+            ..Settings::default()
+        })
+    }
+}

@@ -1,0 +1,84 @@
+//! Options of `feedwright run`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::correct::controls;
+use super::feed::feed_mm_s;
+use super::reader::ReaderArgs;
+
+/// Cut a part on a simulated machine, and show its contour error
+///
+/// The program is cut twice, open loop and with a controller that corrects the command, and both are written into a report
+/// (PART.report.html, one file that any browser shows). Nothing moves: all figures are those of a simulation of the machine file.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  feedwright run part.ngc
+  feedwright run part.ngc --machine mine.toml --tolerance 10 --out setpoints.csv
+  feedwright run part.ngc --machine mine.toml --log cut.csv
+  cat part.ngc | feedwright run - --json - | jq '.runs[].max_um'
+
+Exit codes: 0 done; 1 out of --tolerance, or the correction is worse than open loop: --out is not written then; 2 an error.")]
+pub struct RunArgs {
+    /// G-code program.
+    pub(crate) part: PathBuf,
+    /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
+    #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
+    pub(crate) machine: OsString,
+    /// Controller that corrects the command; `feedwright controllers` lists them.
+    #[arg(long, value_name = "NAME", default_value = crate::controllers::BEST)]
+    pub(crate) controller: String,
+    /// What it is compared with.
+    #[arg(long, value_name = "NAME", default_value = crate::controllers::BASELINE)]
+    pub(crate) against: String,
+    /// Feedrate in place of every programmed one, with its unit, such as 3000mm/min or 50mm/s.
+    #[arg(long, value_name = "FEED", value_parser = feed_mm_s, allow_hyphen_values = true)]
+    pub(crate) feed: Option<f64>,
+    /// Set a parameter of the controller, such as knots=10; of the other as NAME.knots=10. May be given several times;
+    /// `feedwright controllers NAME` lists them.
+    #[arg(long, value_name = "PARAMETER=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Largest contour error allowed, um: exit code 1 where it is exceeded. Where --out is a program, that program decides.
+    #[arg(long, value_name = "UM", allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Measure errors and uncut path to this program in place of PART: what another program for the same part comes to.
+    #[arg(long, value_name = "ORIGINAL.ngc", conflicts_with = "fastest")]
+    pub(crate) reference: Option<PathBuf>,
+    /// Cut in the least time in which the tool stays within --tolerance; feedrates are the ceiling.
+    #[arg(long, requires = "tolerance")]
+    pub(crate) fastest: bool,
+    /// Write a row per servo period: path, command, tool, torque, contour error.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) trace: Option<PathBuf>,
+    /// Write all results as JSON.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+    /// Write setpoints, the command of the controller's cut per servo period (.csv), or a corrected program for a control without feedback, as
+    /// `feedwright correct` does (.ngc). It is written only where it is better than without, else the exit code is 1.
+    #[arg(long, value_name = "FILE.csv|FILE.ngc")]
+    pub(crate) out: Option<PathBuf>,
+    /// Control that a program of --out is for [default: generic].
+    #[arg(long = "for", value_name = "CONTROL", requires = "out", long_help = controls("Control that a program of --out is for [default: generic]."))]
+    pub(crate) target: Option<String>,
+    /// Place of the report [default: PART.report.html in the current folder].
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) report: Option<PathBuf>,
+    /// Seed of the recording that the machine is identified from.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Identified model for the controller, in place of identifying the machine anew; `feedwright identify` writes one.
+    #[arg(long, value_name = "FILE.model.toml")]
+    pub(crate) model: Option<PathBuf>,
+    /// Log of commanded and actual positions, recorded while a machine cut this program: the contour error measured is shown beside those
+    /// predicted.
+    #[arg(long, value_name = "LOG")]
+    pub(crate) log: Option<PathBuf>,
+    /// Which column of the log is what, by number from 0 or by name, and units: t=0,x.cmd=1,x.act=3,unit=mm,time=ms.
+    #[arg(long, value_name = "COLUMNS", requires = "log")]
+    pub(crate) columns: Option<String>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}

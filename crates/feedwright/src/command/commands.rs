@@ -1,0 +1,15 @@
+//! One file per command.
+
+pub(crate) mod advise;
+pub(crate) mod block;
+pub(crate) mod canon;
+pub(crate) mod check;
+pub(crate) mod completions;
+pub(crate) mod correct;
+pub(crate) mod excite;
+pub(crate) mod identify;
+pub(crate) mod lab;
+pub(crate) mod list;
+pub(crate) mod man;
+pub(crate) mod plan;
+pub(crate) mod run;

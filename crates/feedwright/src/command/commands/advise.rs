@@ -1,0 +1,146 @@
+//! `feedwright advise`: the feedrates at which a tolerance is held.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use crate::controllers::{CONTROLLERS, Choices};
+use crate::correct::advise::{Advice, AdviseJob, FeedCut, STRETCH_LEGEND, WayAdvice};
+use crate::output::OutputFile;
+use feedwright_sim::Machine;
+use miette::{IntoDiagnostic, Result};
+use serde_json::json;
+
+use crate::command::args::advise::AdviseArgs;
+use crate::command::console::Console;
+use crate::command::controllers::find;
+use crate::command::controls::{check_tolerance, control};
+use crate::command::message::{OUT_OF_TOLERANCE, printed, warn};
+use crate::command::streams::{ProgramInputs, tables, tell_written};
+use crate::command::table::{ConsoleTable, TableColumn};
+use crate::command::terminal::wrapped;
+
+/// Stretches that are listed.
+const LISTED: usize = 12;
+
+pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
+    let target = control(&args.target)?;
+    check_tolerance(Some(args.tolerance))?;
+    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
+    inputs.check(console)?;
+    let machine = Machine::load(&args.machine)?;
+    let mut files = inputs.outputs();
+    let report = args.report.as_deref().map(|path| files.start(path)).transpose()?;
+    let figure = args.figure.as_deref().map(|path| files.start(path)).transpose()?;
+    let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
+    let job = AdviseJob {
+        part: args.part.clone(),
+        machine,
+        target,
+        controller: find(&args.controller, CONTROLLERS)?,
+        choices: Choices { seed: args.seed, ..Choices::default() },
+        tolerance_um: args.tolerance,
+        reader: args.reader.settings()?,
+    };
+    let bar = console.bar(0);
+    let advice = job.run(&bar)?;
+    bar.clear();
+    for warning in advice.warnings.iter().cloned() {
+        warn(warning.into());
+    }
+    let part = args.part.file_name().unwrap_or(args.part.as_os_str()).to_string_lossy();
+    let mut complete = Vec::new();
+    if let Some(mut file) = report {
+        advice.write_page(&mut file, &part, &job.machine.name).into_diagnostic()?;
+        complete.push(file);
+    }
+    if let Some(mut file) = figure {
+        file.write_all(advice.figure().to_svg().as_bytes()).into_diagnostic()?;
+        complete.push(file);
+    }
+    if let Some(mut file) = json {
+        let mut value = serde_json::to_value(&advice).into_diagnostic()?;
+        value["version"] = json!(env!("CARGO_PKG_VERSION"));
+        value["part"] = json!(args.part.display().to_string());
+        value["machine"] = json!(job.machine.name);
+        serde_json::to_writer_pretty(&mut file, &value).into_diagnostic()?;
+        writeln!(file).into_diagnostic()?;
+        complete.push(file);
+    }
+    OutputFile::commit_all(complete, &bar)?;
+    let code = if advice.holds() { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
+    printed(print(args, &job, &advice), code)
+}
+
+fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result<()> {
+    let files = || [args.report.as_deref(), args.figure.as_deref(), args.json.as_deref()];
+    let out = &mut *tables(files());
+    let Advice { tolerance_um, control, planner, programmed_mm_s: [_, largest_mm_s], .. } = advice;
+    writeln!(out, "within {tolerance_um} um on {}: feed of the whole program, or of each stretch", job.machine.name)?;
+    let mut table = ConsoleTable::new(vec![
+        TableColumn::new(""),
+        TableColumn::new("feed"),
+        TableColumn::new("mm/min"),
+        TableColumn::new("time s"),
+        TableColumn::optional("RMS um", 3),
+        TableColumn::new("max um"),
+        TableColumn::optional("each: time s", 1),
+        TableColumn::optional("max um", 2),
+    ]);
+    for WayAdvice { way, whole, by_stretch, nearest, .. } in &advice.ways {
+        let mut cells = vec![way.name(advice.controller).to_owned()];
+        match whole {
+            Some(FeedCut { factor, time_s, rms_um, max_um }) => {
+                let percent = 100.0 * factor.unwrap_or(1.0);
+                cells.extend([format!("{percent:.0} %"), format!("{:.0}", 0.6 * percent * largest_mm_s)]);
+                cells.extend([format!("{time_s:.3}"), format!("{rms_um:.2}"), format!("{max_um:.2}")]);
+            }
+            None => cells.extend(["none", "-", "-", "-", "-"].map(str::to_owned)),
+        }
+        match by_stretch {
+            Some(cut) => cells.extend([format!("{:.3}", cut.time_s), format!("{:.2}", cut.max_um)]),
+            None => cells.extend(["-", "-"].map(str::to_owned)),
+        }
+        table.row(cells);
+        if let Some(nearest) = nearest {
+            table.remark(nearest.sentence("um", *largest_mm_s));
+        }
+    }
+    table.print(out)?;
+    let notes = [
+        "feed: of the programmed; mm/min: where F is the largest of the program; each: each stretch at the feed that it holds".to_owned(),
+        format!("uncorrected, corrected: cut open loop as {control} plans (planner {planner}); corrected: for that feed"),
+    ];
+    notes.iter().try_for_each(|note| writeln!(out, "{}", wrapped(note, 2)))?;
+    print_stretches(out, advice)?;
+    tell_written(out, files())
+}
+
+/// The stretches that hold the smallest part of their feedrate.
+fn print_stretches(out: &mut dyn Write, advice: &Advice) -> std::io::Result<()> {
+    let listed = advice.slowest(LISTED);
+    if advice.stretches.len() < 2 {
+        return Ok(());
+    }
+    let most = if listed.len() < advice.stretches.len() { ": those that hold the least" } else { "" };
+    writeln!(out, "\nfeed in mm/min that each stretch without a corner holds{most}")?;
+    let mut table = ConsoleTable::new(vec![
+        TableColumn::new("lines"),
+        TableColumn::new("programmed"),
+        TableColumn::new("uncorrected"),
+        TableColumn::new("corrected"),
+        TableColumn::new(advice.controller),
+        TableColumn::optional("left", 1),
+    ]);
+    for stretch in &listed {
+        let [first, last] = stretch.lines;
+        let lines = if first == last { first.to_string() } else { format!("{first} to {last}") };
+        let [a, b, c] = [0, 1, 2].map(|way| stretch.cell(way));
+        let remark = stretch.remark("um").unwrap_or_default();
+        table.row(vec![lines, format!("{:.0}", 60.0 * stretch.feed_mm_s), a, b, c, remark]);
+    }
+    table.print(out)?;
+    if listed.iter().any(|stretch| stretch.nearest.iter().any(Option::is_some)) {
+        writeln!(out, "{}", wrapped(STRETCH_LEGEND, 2))?;
+    }
+    Ok(())
+}

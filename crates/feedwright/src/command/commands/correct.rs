@@ -1,0 +1,106 @@
+//! `feedwright correct`: a corrected program for a control that gets no feedback from us.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use crate::correct::exported::ExportedFigures;
+use crate::correct::{CorrectJob, CorrectOutcome};
+use crate::output::OutputFile;
+use feedwright_sim::Machine;
+use miette::{IntoDiagnostic, Result};
+use serde_json::{Value, json};
+
+use crate::command::args::correct::CorrectArgs;
+use crate::command::console::Console;
+use crate::command::controls::{check_tolerance, control, print_correction};
+use crate::command::message::{OUT_OF_TOLERANCE, printed, warn};
+use crate::command::streams::{ProgramInputs, tables, tell_written};
+use crate::command::table::{ConsoleTable, TableColumn};
+use crate::command::terminal::wrapped;
+
+pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
+    let target = control(&args.target)?;
+    check_tolerance(args.tolerance)?;
+    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
+    inputs.check(console)?;
+    let machine = Machine::load(&args.machine)?;
+    let mut files = inputs.outputs();
+    let mut out = args.out.as_deref().map(|path| files.start(path)).transpose()?;
+    let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
+    let job = CorrectJob {
+        part: args.part.clone(),
+        machine,
+        believed: None,
+        target,
+        feed_mm_s: None,
+        reader: args.reader.settings()?,
+    };
+    let bar = console.bar(0);
+    let outcome = job.run(&bar)?;
+    bar.clear();
+    for warning in outcome.warnings.iter().cloned() {
+        warn(warning.into());
+    }
+    let within = args.tolerance.is_none_or(|tolerance_um| outcome.corrected.max_um <= tolerance_um);
+    let mut complete = Vec::new();
+    match (outcome.program(), &mut out) {
+        (Some(program), Some(file)) => file.write_all(program.as_bytes()).into_diagnostic()?,
+        _ => out = None,
+    }
+    complete.extend(out);
+    if let Some(mut file) = json {
+        serde_json::to_writer_pretty(&mut file, &results(args, &job, &outcome, within).into_diagnostic()?)
+            .into_diagnostic()?;
+        writeln!(file).into_diagnostic()?;
+        complete.push(file);
+    }
+    OutputFile::commit_all(complete, &bar)?;
+    let good = within && outcome.refusal.is_none();
+    let code = if good { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
+    printed(print(args, &outcome, within), code)
+}
+
+/// The figures of a correction, and what was asked for.
+fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, within: bool) -> serde_json::Result<Value> {
+    let mut results = json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "part": args.part.display().to_string(),
+        "machine": job.machine.name,
+        "tolerance_um": args.tolerance,
+        "within_tolerance": within,
+        "written": outcome.program().is_some() && args.out.is_some(),
+    });
+    if let (Value::Object(all), Value::Object(figures)) = (&mut results, serde_json::to_value(outcome)?) {
+        all.extend(figures);
+    }
+    Ok(results)
+}
+
+fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io::Result<()> {
+    let mut out = tables([args.out.as_deref(), args.json.as_deref()]);
+    let CorrectOutcome { original, corrected, .. } = outcome;
+    let mut table = ConsoleTable::new(vec![
+        TableColumn::new(""),
+        TableColumn::new("time s"),
+        TableColumn::new("RMS um"),
+        TableColumn::new("max um"),
+        TableColumn::optional("uncut um", 1),
+        TableColumn::optional("blocks", 2),
+    ]);
+    for (name, figures) in [("original", original), ("as exported", corrected)] {
+        let ExportedFigures { rms_um, max_um, uncut_um, time_s, blocks, .. } = figures;
+        let errors = [rms_um, max_um, uncut_um].map(|um| format!("{um:.2}"));
+        let cells = std::iter::once(format!("{time_s:.3}")).chain(errors).chain([blocks.to_string()]);
+        table.row(std::iter::once(name.to_owned()).chain(cells).collect());
+    }
+    table.print(&mut *out)?;
+    let note = "both cut open loop, as the control plans them; errors are those to the original path";
+    writeln!(out, "{}", wrapped(note, 2))?;
+    print_correction(&mut *out, outcome)?;
+    if let Some(tolerance_um) = args.tolerance {
+        let verdict = if within { "within" } else { "out of" };
+        writeln!(out, "{verdict} tolerance: max {:.2} um, allowed {tolerance_um} um", corrected.max_um)?;
+    }
+    let written = args.out.as_deref().filter(|_| outcome.program().is_some());
+    tell_written(&mut *out, [written, args.json.as_deref()])
+}

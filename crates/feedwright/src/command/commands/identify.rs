@@ -1,0 +1,112 @@
+//! `feedwright identify`: a model of a machine, trained and written.
+
+mod from_log;
+
+use std::f64::consts::TAU;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use crate::controllers::{CONTROLLERS, Choices, Setup};
+use crate::output::{OutputError, OutputFile, OutputFiles};
+use feedwright_ident::{AxisEstimate, AxisParameters, Model, identifier_name, today};
+use feedwright_sim::{Machine, StageSteps, is_machine_path};
+use miette::Result;
+
+use crate::command::args::identify::IdentifyArgs;
+use crate::command::console::Console;
+use crate::command::controllers::{find, settings};
+use crate::command::message::printed;
+use crate::command::streams::{tables, tell_written};
+use crate::command::table::{ConsoleTable, TableColumn};
+
+pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
+    // Without --out there is --update, which belongs to a log.
+    let Some(out) = args.out.as_deref().filter(|_| args.log.is_empty()) else {
+        return from_log::run(&args.log, args, console);
+    };
+    let controller = find(&args.controller, CONTROLLERS)?;
+    let set = settings(&args.set, CONTROLLERS, Some(controller), &[controller])?;
+    let choices = Choices { seed: args.seed, set };
+    let machine = Machine::load(&args.machine)?;
+    let input = PathBuf::from(&args.machine);
+    let input = Some(input.as_path()).filter(|path| is_machine_path(path));
+    let mut file = OutputFiles::new(input).start(out)?;
+    let date = today()?;
+    let bar = console.bar(0);
+    let mut steps = StageSteps::begin(&bar, &format!("identifying for {}", controller.name));
+    let mut progress = |part: f64| steps.reach(part);
+    let mut setup = Setup::new(&machine, &choices).telling(&mut progress);
+    let trained = setup.train(controller, usize::from(args.axes), date);
+    let found = setup.found().and_then(|found| found.as_ref().ok()).cloned().unwrap_or_default();
+    bar.clear();
+    let model = trained?;
+    file.write_all(model.text().as_bytes()).map_err(|error| OutputError::from_io(error, out))?;
+    OutputFile::commit_all(vec![file], &bar)?;
+    printed(print(&model, &found, &machine, out), ExitCode::SUCCESS)
+}
+
+fn print(model: &Model, found: &[AxisEstimate], machine: &Machine, place: &Path) -> std::io::Result<()> {
+    let mut out = tables([Some(place)]);
+    let (kind, axes, fit) = (identifier_name(model.kind()), model.axes(), model.fit());
+    writeln!(out, "{kind} identifier of {axes} axes, from {} samples: fits to {:.3} um RMS", fit.samples, fit.fit_um)?;
+    if !found.is_empty() {
+        print_axes(&mut *out, found, machine)?;
+    }
+    tell_written(&mut *out, [Some(place)])
+}
+
+/// What was found of each axis, with standard errors.
+fn print_axes(out: &mut dyn Write, found: &[AxisEstimate], machine: &Machine) -> std::io::Result<()> {
+    let names = ["x", "y", "z"].into_iter().take(found.len()).map(TableColumn::new);
+    let mut table = ConsoleTable::new(std::iter::once(TableColumn::new("")).chain(names).collect());
+    let um_per_rad = |i: usize| machine.axes[i].lead_mm_per_rev * 1e3 / TAU;
+    type Value = fn(&AxisParameters, f64) -> f64;
+    let rows: [(&str, Value); 9] = [
+        ("inertia, kg m2", |p, _| p.inertia_kg_m2),
+        ("viscous, N m s/rad", |p, _| p.viscous_friction_nm_s),
+        ("Coulomb, N m", |p, _| p.coulomb_friction_nm),
+        ("asymmetry, N m", |p, _| p.coulomb_asymmetry_nm),
+        ("presliding, um", |p, um_per_rad| p.presliding_rad * um_per_rad),
+        ("resonance, Hz", |p, _| p.transmission.resonance_rad_s / TAU),
+        ("its damping ratio", |p, _| p.transmission.damping_ratio),
+        ("share of the table", |p, _| p.transmission.table_share),
+        ("backlash, um", |p, um_per_rad| p.transmission.backlash_rad * um_per_rad),
+    ];
+    let of_screw = |label: &str| rows[5..].iter().any(|(of_screw, _)| *of_screw == label);
+    let gives = found.iter().any(|axis| axis.parameters.has_screw());
+    for (label, value) in rows.into_iter().filter(|(label, _)| gives || !of_screw(label)) {
+        let cell = |(i, axis): (usize, &AxisEstimate)| {
+            let [found, error] = [&axis.parameters, &axis.standard_errors].map(|of| value(of, um_per_rad(i)));
+            format!("{} +- {}", three_digits(found), three_digits(error))
+        };
+        table.row(std::iter::once(label.to_owned()).chain(found.iter().enumerate().map(cell)).collect());
+    }
+    let left = found.iter().map(|axis| three_digits(axis.left_um));
+    table.row(std::iter::once("left, um RMS".to_owned()).chain(left).collect());
+    table.print(out)?;
+    writeln!(out, "left: what the law found leaves of the measured position")
+}
+
+/// With three digits, whatever its size.
+fn three_digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let before_the_point = value.abs().log10().floor() as i32;
+    match before_the_point {
+        -4..=2 => format!("{value:.*}", (2 - before_the_point) as usize),
+        _ => format!("{value:.2e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::three_digits;
+
+    #[test]
+    fn numbers_have_three_digits() {
+        let shown = [0.0, 1.0, 0.0123456, -0.000123456, 123.4, 1234.0, 9.87654e-7, f64::NAN].map(three_digits);
+        assert_eq!(shown, ["0", "1.00", "0.0123", "-0.000123", "123", "1.23e3", "9.88e-7", "NaN"]);
+    }
+}

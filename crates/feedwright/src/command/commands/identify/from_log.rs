@@ -1,0 +1,107 @@
+//! `feedwright identify LOG`: the machine file of a real machine.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use crate::log_job::{LogIdentified, LogJob, machine_text, updated_text, write_json, write_page};
+use crate::output::{OutputError, OutputFile, OutputFiles};
+use feedwright_gcode::input;
+use feedwright_ident::{AxisFacts, Log, LogError};
+use feedwright_sim::{Machine, Watch};
+use miette::{IntoDiagnostic, Result};
+
+use crate::command::args::identify::{IdentifyArgs, LogArgs};
+use crate::command::console::Console;
+use crate::command::message::{printed, remark};
+use crate::command::streams::{check_inputs, tables, tell_written};
+use crate::command::terminal::wrapped;
+
+pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
+    let of_log = &args.of_log;
+    let logs = paths.iter().map(|path| ("the log", Some(path.as_path())));
+    check_inputs(console, logs.chain([("--update", of_log.update.as_deref())]))?;
+    let before = of_log.update.as_deref().map(before).transpose()?;
+    // Clap asks for one of both.
+    let out = args.out.as_deref().or(of_log.update.as_deref()).unwrap_or(Path::new("mine.toml"));
+    let mut files = OutputFiles::new(paths.iter().map(PathBuf::as_path));
+    let start = |files: &mut OutputFiles, path: &Path| files.start(path);
+    let mut machine = start(&mut files, out)?;
+    let mut json = of_log.json.as_deref().map(|path| start(&mut files, path)).transpose()?;
+    let mut page = of_log.report.as_deref().map(|path| start(&mut files, path)).transpose()?;
+    let bar = console.bar(0);
+    let log = read(paths, of_log, &bar)?;
+    if !console.is_quiet() {
+        bar.aside(|| log.findings.iter().for_each(|finding| remark(&finding.to_string())));
+    }
+    let name = paths.iter().map(|path| file_name(path)).collect::<Vec<_>>().join(", ");
+    let (text_before, machine_before) = before.unzip();
+    let identified = LogJob { before: machine_before, ..job(name, of_log) }.run(log, &bar)?;
+    let text = match &text_before {
+        Some(before) => updated_text(&identified, before)?,
+        None => machine_text(&identified, &stem(out)),
+    };
+    // Whatever was found, the file is one that reads back.
+    Machine::parse(&out.display().to_string(), &text)?;
+    let written = |error, file: &OutputFile| OutputError::from_io(error, file.path());
+    machine.write_all(text.as_bytes()).map_err(|error| written(error, &machine))?;
+    if let Some(file) = &mut json {
+        write_json(file, &identified).map_err(|error| written(error, file))?;
+    }
+    if let Some(file) = &mut page {
+        write_page(file, &identified).map_err(|error| written(error, file))?;
+    }
+    let all: Vec<OutputFile> = [Some(machine), json, page].into_iter().flatten().collect();
+    let places: Vec<PathBuf> = all.iter().map(|file| file.path().to_owned()).collect();
+    bar.clear();
+    OutputFile::commit_all(all, &bar)?;
+    printed(print(&identified, &places), ExitCode::SUCCESS)
+}
+
+/// The logs, one behind the other.
+fn read(paths: &[PathBuf], of_log: &LogArgs, watch: &dyn Watch) -> Result<Log, LogError> {
+    let columns = of_log.columns.clone().unwrap_or_default();
+    let read = |path: &PathBuf| Ok((path.clone(), Log::read_watched(path, &columns, watch)?));
+    Log::joined(paths.iter().map(read).collect::<Result<_, LogError>>()?)
+}
+
+/// A machine file that is updated.
+fn before(path: &Path) -> Result<(String, Machine)> {
+    let machine = Machine::load(path.as_os_str())?;
+    let text = String::from_utf8_lossy(&input::read(path).into_diagnostic()?).into_owned();
+    Ok((text, machine))
+}
+
+fn file_name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+fn job(name: String, args: &LogArgs) -> LogJob {
+    let times_s = args.fit.clone().zip(args.score.clone()).map(|(fit, score)| [fit.0, score.0]);
+    let LogArgs { inertia, viscous, lead, torque_gain, speed_window, record_delay, .. } = *args;
+    let facts = AxisFacts {
+        inertia,
+        viscous,
+        lead_mm_per_rev: lead,
+        torque_gain,
+        speed_window_s: speed_window,
+        record_delay_s: record_delay.filter(|late_s| late_s.is_finite()),
+        before: None,
+    };
+    LogJob { name, times_s, facts, before: None }
+}
+
+/// What the machine is called: as its file.
+fn stem(path: &Path) -> String {
+    path.file_stem().map_or_else(|| "mine".to_owned(), |stem| stem.to_string_lossy().into_owned())
+}
+
+fn print(identified: &LogIdentified, places: &[PathBuf]) -> std::io::Result<()> {
+    let places = || places.iter().map(|path| Some(path.as_path()));
+    let mut out = tables(places());
+    write!(out, "{}", identified.table())?;
+    for line in identified.improvements().into_iter().chain(identified.advice()) {
+        writeln!(out, "{}", wrapped(&line, 2))?;
+    }
+    tell_written(&mut *out, places())
+}

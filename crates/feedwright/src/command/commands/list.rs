@@ -1,0 +1,67 @@
+//! `feedwright machines` and `feedwright controllers`.
+
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+use crate::controllers::{BEST, Controllers, Knows};
+use feedwright_sim::{BUILT_IN_MACHINES, Machine, shown};
+use miette::Result;
+
+use crate::command::controllers::find;
+use crate::command::message::printed;
+use crate::command::terminal::wrapped;
+
+pub(crate) fn machines() -> Result<ExitCode> {
+    let mut lines = String::new();
+    for (name, text) in BUILT_IN_MACHINES {
+        let machine = Machine::parse(&format!("{name}.toml"), text)?;
+        let line = format!("{name:<10} {} axes  {}", machine.axis_count(), machine.description);
+        lines += &(wrapped(&line, 19) + "\n");
+    }
+    print(&lines)
+}
+
+/// Lists the controllers of a table.
+pub fn controllers(table: Controllers) -> Result<ExitCode> {
+    let mut lines = String::new();
+    for entry in table {
+        let best = if entry.name == BEST { " (default)" } else { "" };
+        let line = format!("{:<26} {}; {}{best}", entry.name, entry.summary, entry.source);
+        lines += &(wrapped(&line, 27) + "\n");
+    }
+    print(&lines)
+}
+
+/// Lists what a controller of a table is, and its parameters.
+pub fn controller(name: &str, table: Controllers) -> Result<ExitCode> {
+    let entry = find(name, table)?;
+    let knows = match entry.knows {
+        Knows::Nothing => "nothing",
+        Knows::Identified => "what was identified from a recording",
+        Knows::ExactModel => "the parameters of its model",
+        Knows::Everything => "its parameters, and the statistics of everything that disturbs it",
+        Knows::EarlierLaps => "what went wrong in earlier laps of the same part",
+    };
+    let head = [
+        format!("{}: {}", entry.name, entry.summary),
+        format!("source: {}", entry.source),
+        format!("knows of the machine: {knows}"),
+    ];
+    let mut lines: String = head.iter().map(|line| wrapped(line, 2) + "\n").collect();
+    if entry.laps > 1 {
+        lines += &format!("laps of the part: {}, all but the last are practice\n", entry.laps);
+    }
+    if !entry.parameters.is_empty() {
+        lines += "\nparameters, for --set NAME=VALUE:\n";
+    }
+    for parameter in entry.parameters {
+        let default = shown(parameter.default);
+        let reason = wrapped(&format!("    {}", parameter.reason), 4);
+        lines += &format!("\n{} = {default}, allowed {}\n{reason}\n", parameter.name, parameter.range());
+    }
+    print(&lines)
+}
+
+fn print(lines: &str) -> Result<ExitCode> {
+    printed(io::stdout().write_all(lines.as_bytes()), ExitCode::SUCCESS)
+}

@@ -1,0 +1,240 @@
+//! `feedwright plan`: the cycle time of a program, and what binds it.
+
+use std::io::Write;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use crate::cycle_time::along::BindingStretch;
+use crate::cycle_time::{CycleTime, cycle_time_by, limit_names};
+use crate::job::JobError;
+use crate::output::OutputFile;
+use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
+use feedwright_gcode::suggestion::nearest;
+use feedwright_gcode::{self, Reader};
+use feedwright_plan::{Constraints, FEED_PLANNERS, MOST_OVERRIDE, feed_planner};
+use feedwright_sim::{Machine, Stages, path_steps, shown};
+use miette::{IntoDiagnostic, Result, miette};
+use serde_json::json;
+
+use crate::command::args::plan::PlanArgs;
+use crate::command::console::Console;
+use crate::command::message::{printed, warn};
+use crate::command::streams::{ProgramInputs, tables, tell_written};
+
+pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
+    let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
+    inputs.check(console)?;
+    let machine = machine(args)?;
+    let stages = stages(args, &machine)?;
+    let request = request(args, stages)?;
+    let mut files = inputs.outputs();
+    let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
+    let settings = args.reader.settings()?;
+    let summary = feedwright_gcode::check(&args.part, settings.clone()).map_err(JobError::from)?;
+    for warning in summary.warnings {
+        warn(warning.into());
+    }
+    let bar = console.bar(0);
+    let begun = Instant::now();
+    // The program was checked from end to end before: a mistake here means that the file changed, and ends it.
+    let steps = || Ok(path_steps(Reader::open(&args.part, settings.clone())?.map_while(std::result::Result::ok)));
+    let constraints = Constraints::from(&machine);
+    let plan = |bound: bool| cycle_time_by(stages, &machine, &constraints, bound, steps, &bar);
+    let found = plan(false)?;
+    let took_s = begun.elapsed().as_secs_f64();
+    // The bound is no part of what planning takes.
+    let found = if args.bound {
+        let bound_s = plan(true)?.bound_s;
+        CycleTime { bound_s, ..found }
+    } else {
+        found
+    };
+    let operated = match request {
+        Some(request) => override_time(&machine, stages, steps()?, request, &bar)?,
+        None => None,
+    };
+    bar.clear();
+    if let Some(mut file) = json {
+        let mut value = serde_json::to_value(&found).into_diagnostic()?;
+        value["part"] = json!(args.part.display().to_string());
+        value["machine"] = json!(machine.name);
+        value["path_tolerance_um"] = json!(machine.limits.path_tolerance_um);
+        value["blocks_per_s"] = json!(found.blocks as f64 / took_s);
+        if let Some(operated) = &operated {
+            value["override"] = json!(operated);
+        }
+        value["along"] = along(&found);
+        serde_json::to_writer_pretty(&mut file, &value).into_diagnostic()?;
+        writeln!(file).into_diagnostic()?;
+        OutputFile::commit_all(vec![file], &bar)?;
+    }
+    printed(print(args, &found, operated.as_ref(), took_s), ExitCode::SUCCESS)
+}
+
+/// Stretches of the motion that are written, and that are shown.
+const WRITTEN: usize = 500;
+const SHOWN: usize = 10;
+
+/// What binds where, as JSON.
+fn along(found: &CycleTime) -> serde_json::Value {
+    let names = limit_names();
+    let stretch = |stretch: &BindingStretch| {
+        let bound = names.iter().zip(stretch.bound_s).filter(|(_, bound_s)| *bound_s > 0.0);
+        let binding: serde_json::Map<_, _> =
+            bound.map(|(name, bound_s)| (name.clone(), json!(bound_s / stretch.duration_s))).collect();
+        json!({
+            "duration_s": stretch.duration_s, "to_mm": stretch.to_mm, "way_mm": stretch.way_mm, "lines": stretch.lines, "binding": binding,
+        })
+    };
+    found.along.in_parts(WRITTEN).iter().map(stretch).collect()
+}
+
+/// The motion in a few stretches of equal time: lines, feedrate, and the limit that binds there for most of the time.
+fn print_along(out: &mut impl Write, found: &CycleTime) -> std::io::Result<()> {
+    let names = limit_names();
+    writeln!(out, "the motion in stretches of equal time, and what binds longest in each")?;
+    for stretch in found.along.in_parts(SHOWN) {
+        let [first, last] = stretch.lines;
+        let lines = if first == last { format!("line {first}") } else { format!("lines {first} to {last}") };
+        let feed_mm_min = 60.0 * stretch.way_mm / stretch.duration_s;
+        let mostly = stretch.longest();
+        let binds = mostly.map_or("no limit binds".to_owned(), |limit| {
+            format!("{} {:.0} %", names[limit], 100.0 * stretch.bound_s[limit] / stretch.duration_s)
+        });
+        writeln!(out, "  {lines:<26} {:>12.3} s, {feed_mm_min:.0} mm/min, {binds}", stretch.duration_s)?;
+    }
+    Ok(())
+}
+
+/// The machine, with the tolerance of the arguments.
+fn machine(args: &PlanArgs) -> Result<Machine> {
+    let mut machine = Machine::load(&args.machine)?;
+    let Some(tolerance_um) = args.tolerance else {
+        return Ok(machine);
+    };
+    if !(LEAST_UM..=MOST_UM).contains(&tolerance_um) {
+        let help = "the unit is um: 0.01 mm is --tolerance 10";
+        let tolerance_um = shown(tolerance_um);
+        return Err(miette!(
+            help = help,
+            "--tolerance is {tolerance_um} um; it must be from {LEAST_UM} to {MOST_UM} um"
+        ));
+    }
+    if !machine.has_axis_limits() {
+        return Err(miette!(
+            help =
+                "give its axes max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3, and [limits] path_tolerance_um",
+            "--tolerance {tolerance_um} um: {} has no limits of its axes, and is planned on the programmed path",
+            machine.name
+        ));
+    }
+    machine.limits.path_tolerance_um = Some(tolerance_um);
+    Ok(machine)
+}
+
+/// The stages that suit the machine, with the planner of the arguments.
+fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
+    let stages = Stages::of(machine);
+    let Some(name) = &args.planner else {
+        return Ok(stages);
+    };
+    let planner = feed_planner(name).ok_or_else(|| {
+        let names: Vec<&str> = FEED_PLANNERS.iter().map(|member| member.name).collect();
+        let near = nearest(name, &names).map_or_else(String::new, |near| format!("did you mean '{near}'? "));
+        miette!(
+            help = format!("{near}leave --planner out for the one that suits the machine"),
+            "no planner is called '{name}'; there are {}",
+            names.join(", ")
+        )
+    })?;
+    Ok(Stages { planner, ..stages })
+}
+
+/// What the operator does, by the arguments.
+fn request(args: &PlanArgs, stages: Stages) -> Result<Option<OperatorRequest>> {
+    if args.override_percent.is_none() && args.hold_at.is_none() {
+        return Ok(None);
+    }
+    let percent = args.override_percent.unwrap_or(100.0);
+    let most = 100.0 * MOST_OVERRIDE;
+    if !(0.0..=most).contains(&percent) {
+        return Err(miette!(
+            help = "it is in percent of the programmed feedrate: 50 is half of it",
+            "--override is {percent} %; it must be from 0 to {most} %"
+        ));
+    }
+    if let Some(at_s) = args.hold_at.filter(|at_s| !(0.0..=MOST_HOLD_S).contains(at_s)) {
+        return Err(miette!("--hold-at is {at_s} s; it must be from 0 to {MOST_HOLD_S} s"));
+    }
+    if !stages.planner.limits_jerk {
+        return Err(miette!(
+            help =
+                "give its axes max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3, and [limits] path_tolerance_um",
+            "--override and --hold-at need a plan with limits of the jerk of each axis; {} plans without",
+            stages.planner.name
+        ));
+    }
+    Ok(Some(OperatorRequest { override_of_feeds: 0.01 * percent, hold_at_s: args.hold_at }))
+}
+
+/// A year.
+const MOST_HOLD_S: f64 = 3.2e7;
+
+/// As in a machine file.
+const LEAST_UM: f64 = 0.01;
+const MOST_UM: f64 = 1e4;
+
+fn print(args: &PlanArgs, found: &CycleTime, operated: Option<&OverrideTime>, took_s: f64) -> std::io::Result<()> {
+    let json = args.json.as_deref();
+    let mut out = tables([json]);
+    let CycleTime { time_s, cutting_s, rapid_s, waiting_s, blocks, .. } = found;
+    writeln!(out, "{:<28} {time_s:>12.3} s, planned by {}", "cycle time", found.planner)?;
+    for (name, part_s) in [("cutting", cutting_s), ("rapids", rapid_s), ("waiting", waiting_s)] {
+        writeln!(out, "  {name:<26} {part_s:>12.3} s")?;
+    }
+    for tool in found.tools.iter().filter(|_| found.tools.len() > 1) {
+        writeln!(out, "  {:<26} {:>12.3} s", format!("tool {}", tool.tool), tool.time_s)?;
+    }
+    if let Some(bound_s) = found.bound_s {
+        writeln!(
+            out,
+            "{:<28} {bound_s:>12.3} s, motion {:.4} times that",
+            "bound of motion",
+            (cutting_s + rapid_s) / bound_s
+        )?;
+    }
+    if let Some(violation) = found.largest_violation {
+        writeln!(out, "{:<28} {violation:>12.6} of its limit", "largest use of a limit")?;
+        writeln!(out, "{:<28} {:>12.3} um", "largest deviation", found.largest_deviation_um)?;
+    }
+    if !found.binding.is_empty() {
+        writeln!(out, "what limits the speed")?;
+    }
+    for binding in &found.binding {
+        writeln!(out, "  {:<26} {:>12.1} % of the motion", binding.limit, 100.0 * binding.share)?;
+    }
+    print_along(&mut out, found)?;
+    writeln!(out, "{:<28} {:>12.0} blocks/s", "planned", *blocks as f64 / took_s)?;
+    if let Some(operated) = operated {
+        print_operated(args, operated, &mut *out)?;
+    }
+    tell_written(&mut *out, [json])
+}
+
+fn print_operated(args: &PlanArgs, operated: &OverrideTime, out: &mut dyn Write) -> std::io::Result<()> {
+    let percent = args.override_percent.unwrap_or(100.0);
+    let OverrideTime { time_s, plan_s, largest_violation, hold } = operated;
+    let name = format!("override of {percent} %");
+    if let Some(HoldStop { at_s, stops_in_s, way_mm, least_mm, position_mm: [x, y, z] }) = hold {
+        writeln!(out, "{name:<28} {time_s:>12.3} s, at rest by feed hold")?;
+        writeln!(out, "  {:<26} {at_s:>12.3} s", "feed hold pressed after")?;
+        writeln!(out, "  {:<26} {stops_in_s:>12.3} s, {way_mm:.3} mm", "stops within")?;
+        writeln!(out, "  {:<26} {least_mm:>12.3} mm, each axis for itself", "at least")?;
+        writeln!(out, "  {:<26} X{x:.3} Y{y:.3} Z{z:.3}", "rests at")?;
+    } else if time_s.is_finite() {
+        writeln!(out, "{name:<28} {time_s:>12.3} s, {:.3} times the plan", time_s / plan_s)?;
+    } else {
+        writeln!(out, "{name:<28} never ends: feeds stand still")?;
+    }
+    writeln!(out, "  {:<26} {largest_violation:>12.6} of its limit", "largest use of a limit")
+}

@@ -1,0 +1,206 @@
+//! What a run came to, as text: the headline, the table, what was assumed, and what is to be done with it.
+
+use std::io::{self, Write};
+
+use crate::correct::CorrectOutcome;
+use crate::correct::exported::ExportedFigures;
+use crate::fastest::FastestPlan;
+use crate::job::{AS_EXPORTED, Job, JobOutcome, MEASURED};
+use crate::report::{Assumptions, Outcome as Ending, ReportedRun, RunSummary};
+
+use crate::command::controls::print_correction;
+use crate::command::streams::tell_written;
+use crate::command::table::{ConsoleTable, TableColumn};
+use crate::command::terminal::wrapped;
+
+pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io::Result<()> {
+    let runs = &outcome.report.runs;
+    let measured = runs.iter().any(|run| run.summary.measured);
+    let say = |out: &mut dyn Write, text: &str| writeln!(out, "{}", wrapped(text, 2));
+    if let (Some(first), Some(last)) = (runs.first(), run_of(runs, job.controller.name)) {
+        say(out, &headline(&first.summary, last))?;
+    }
+    writeln!(out)?;
+    table(runs).print(out)?;
+    say(
+        out,
+        "N m: peak torque; off: how far the command leaves the path at most; mm/s2: largest acceleration of the command",
+    )?;
+    if measured {
+        say(
+            out,
+            "measured: from the first cut on, so its time is without the way there; a log has no torque, and digits that make accelerations of it too large",
+        )?;
+    }
+    writeln!(out)?;
+    say(out, &assumed(&outcome.report.assumed, measured))?;
+    if let Some(reference) = &job.reference {
+        say(out, &format!("errors and uncut path are those to {}", reference.display()))?;
+    }
+    if let Some(text) = harm(job, outcome) {
+        say(out, &text)?;
+    }
+    if let Some(exported) = &outcome.exported {
+        print_exported(out, exported)?;
+    }
+    if let (Some(tolerance_um), Some(last)) = (job.tolerance_um, runs.last()) {
+        let verdict = if outcome.within_tolerance { "within" } else { "out of" };
+        say(out, &format!("{verdict} tolerance: max {:.2} um, allowed {tolerance_um} um", last.summary.max_um))?;
+    }
+    if let Some(plan) = &outcome.fastest {
+        print_fastest(out, plan)?;
+    }
+    print_written(out, job, outcome)
+}
+
+fn run_of<'a>(runs: &'a [ReportedRun], controller: &str) -> Option<&'a RunSummary> {
+    runs.iter().map(|run| &run.summary).find(|run| run.controller == controller)
+}
+
+/// The largest torque of all axes, N m.
+fn peak_torque_nm(run: &RunSummary) -> f64 {
+    run.peak_torque_nm.into_iter().flatten().fold(0.0, f64::max)
+}
+
+/// Gain and cost in one sentence.
+fn headline(first: &RunSummary, last: &RunSummary) -> String {
+    let RunSummary { controller, rms_um, max_um, time_s, max_deviation_um, max_command_accel_mm_s2, .. } = last;
+    let torque_nm = peak_torque_nm(last);
+    if first.controller == last.controller || first.controller == MEASURED {
+        return format!(
+            "simulated: {controller} leaves a contour error of {rms_um:.2} um RMS and {max_um:.2} um max in {time_s:.3} s, with a peak \
+             torque of {torque_nm:.2} N m, a command up to {max_deviation_um:.1} um off the path and accelerations of it up to \
+             {max_command_accel_mm_s2:.0} mm/s2"
+        );
+    }
+    let change = |now: f64, before: f64| {
+        let percent = 100.0 * (now / before - 1.0);
+        if percent.is_finite() { format!(" ({percent:+.0} %)") } else { String::new() }
+    };
+    format!(
+        "simulated: {controller} takes the contour error from {:.2} to {rms_um:.2} um RMS{} and from {:.2} to {max_um:.2} um max{} in \
+         {} the time; it costs a peak torque of {torque_nm:.2} N m for {:.2}{}, a command up to {max_deviation_um:.1} um off the path, \
+         and accelerations of the command up to {max_command_accel_mm_s2:.0} mm/s2 for {:.0}{}",
+        first.rms_um,
+        change(*rms_um, first.rms_um),
+        first.max_um,
+        change(*max_um, first.max_um),
+        times(*time_s, first.time_s),
+        peak_torque_nm(first),
+        change(torque_nm, peak_torque_nm(first)),
+        first.max_command_accel_mm_s2,
+        change(*max_command_accel_mm_s2, first.max_command_accel_mm_s2),
+    )
+}
+
+/// A ratio in words.
+fn times(value: f64, base: f64) -> String {
+    let ratio = value / base;
+    if ratio.is_finite() { format!("{ratio:.3} times") } else { "no part of".to_owned() }
+}
+
+fn table(runs: &[ReportedRun]) -> ConsoleTable {
+    let mut table = ConsoleTable::new(vec![
+        TableColumn::new("simulated"),
+        TableColumn::new("time s"),
+        TableColumn::new("RMS um"),
+        TableColumn::new("max um"),
+        TableColumn::new("uncut um"),
+        TableColumn::optional("N m", 1),
+        TableColumn::optional("off um", 2),
+        TableColumn::optional("mm/s2", 3),
+    ]);
+    for run in runs {
+        let now = &run.summary;
+        let is_measured = now.controller == MEASURED;
+        table.row(vec![
+            if is_measured { format!("{MEASURED}, not simulated") } else { now.controller.clone() },
+            format!("{:.3}", now.time_s),
+            format!("{:.2}", now.rms_um),
+            format!("{:.2}", now.max_um),
+            format!("{:.2}", now.uncut_um),
+            if is_measured { "-".to_owned() } else { format!("{:.2}", peak_torque_nm(now)) },
+            format!("{:.1}", now.max_deviation_um),
+            if is_measured { "-".to_owned() } else { format!("{:.0}", now.max_command_accel_mm_s2) },
+        ]);
+        if let (Some(rms_um), Some(max_um)) = (now.joint_rms_um, now.joint_max_um) {
+            table.remark(format!("without the geometry that no encoder sees: RMS {rms_um:.2}, max {max_um:.2} um"));
+        }
+        if let Ending::Diverged { at_s } = now.outcome {
+            table.remark(format!("diverged at {at_s:.3} s: the servo loop of this machine is unstable"));
+        }
+        if let Some(faded) = now.faded_out {
+            let share = 100.0 * now.engaged_share;
+            let last = if now.engaged_at_end { "last left it" } else { "left it for good" };
+            table.remark(format!(
+                "in the loop for {share:.1} % of the cut; {last} at {:.3} s, because {}",
+                faded.at_s, faded.cause
+            ));
+        }
+    }
+    table
+}
+
+/// What the figures rest on.
+fn assumed(assumed: &Assumptions, measured: bool) -> String {
+    let sentences = [assumed.machine_sentence(), assumed.disturbance_sentence(), assumed.law_sentence()];
+    format!("assumed: {}. {}", sentences.join("; "), Assumptions::cut_sentence(measured))
+}
+
+/// Says so where the correction is worse than none.
+fn harm(job: &Job, outcome: &JobOutcome) -> Option<String> {
+    let worse = &outcome.harm;
+    if worse.is_empty() {
+        return None;
+    }
+    let figures = worse.iter().map(|harm| format!("{} {:.2} um for {:.2}", harm.what, harm.after_um, harm.before_um));
+    let (worse, better) = (job.controller.name, job.against.name);
+    let figures = figures.collect::<Vec<_>>().join(", ");
+    Some(format!("{worse} is worse than {better} for this part on this machine ({figures}): do not use its command"))
+}
+
+/// What the corrected program is, beside the original as its control cuts it.
+fn print_exported(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
+    let ExportedFigures { rms_um, max_um, time_s, .. } = outcome.original;
+    let CorrectOutcome { control, planner, .. } = outcome;
+    let text = format!(
+        "{AS_EXPORTED}: the corrected program, cut open loop as its control plans it ({control}, planner {planner})"
+    );
+    writeln!(out, "{}", wrapped(&text, 2))?;
+    let text = format!("the original, cut in the same way: {time_s:.3} s, RMS {rms_um:.2}, max {max_um:.2} um");
+    writeln!(out, "{}", wrapped(&text, 2))?;
+    print_correction(out, outcome)
+}
+
+fn print_fastest(out: &mut dyn Write, plan: &FastestPlan) -> io::Result<()> {
+    let FastestPlan { cycle, largest_um, rounds, machine, .. } = plan;
+    let moving_s = cycle.cutting_s + cycle.rapid_s;
+    let cuts = if *rounds == 1 { "1 cut".to_owned() } else { format!("{rounds} cuts") };
+    writeln!(out, "least time: {moving_s:.3} s of motion, largest error {largest_um:.2} um, found in {cuts}")?;
+    if let Some(bound_s) = cycle.bound_s {
+        writeln!(out, "  {bound_s:.3} s for a tool without error, motion {:.4} times that", moving_s / bound_s)?;
+    }
+    if let Some(path_um) = machine.limits.path_tolerance_um {
+        writeln!(out, "  of the tolerance, {path_um:.2} um are the path's")?;
+    }
+    for binding in &cycle.binding {
+        writeln!(out, "  {:<16} binds {:>5.1} % of the motion", binding.limit, 100.0 * binding.share)?;
+    }
+    Ok(())
+}
+
+/// Which files there are, and why one is not.
+fn print_written(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io::Result<()> {
+    let outputs = &job.outputs;
+    let is_good = outcome.exported.as_ref().map_or(outcome.is_of_use, |program| program.refusal.is_none());
+    let written = outputs.out.as_deref().filter(|_| is_good);
+    tell_written(out, [outputs.report.as_deref(), outputs.json.as_deref(), outputs.trace.as_deref(), written])?;
+    match (outputs.out.as_deref(), &outcome.exported) {
+        // Why there is no program is told above.
+        (Some(path), None) if !is_good => {
+            let why = if outcome.harm.is_empty() { "the cut did not come to its end" } else { "open loop is better" };
+            writeln!(out, "{}", wrapped(&format!("{} was not written: {why}", path.display()), 2))
+        }
+        _ => Ok(()),
+    }
+}

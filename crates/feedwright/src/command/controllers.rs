@@ -1,0 +1,48 @@
+//! Controllers and their parameters by name.
+
+use crate::controllers::{Controllers, Entry, Setting};
+use miette::{Result, miette};
+
+/// The controller of a name.
+pub fn find(name: &str, table: Controllers) -> Result<&'static Entry> {
+    table.find(name).ok_or_else(|| {
+        let names: Vec<&str> = table.iter().map(|entry| entry.name).collect();
+        let meant = table.meant_by(name).map_or(String::new(), |meant| format!("did you mean '{meant}'? "));
+        miette!(
+            help = format!("{meant}'feedwright controllers' says what each does, and 'feedwright lab controllers' those of the laboratory"),
+            "no controller is called '{name}'; there are {}",
+            names.join(", ")
+        )
+    })
+}
+
+/// What `--set` asks for, of controllers that take part; names without a controller are those of `of`.
+pub fn settings(
+    texts: &[String],
+    table: Controllers,
+    of: Option<&'static Entry>,
+    take_part: &[&'static Entry],
+) -> Result<Vec<Setting>> {
+    let mut settings: Vec<Setting> = Vec::new();
+    for text in texts {
+        let setting = Setting::parse(text, of, table)?;
+        if !take_part.iter().any(|entry| entry.name == setting.controller) {
+            let names: Vec<&str> = take_part.iter().map(|entry| entry.name).collect();
+            return Err(miette!(
+                help = format!("controllers that do: {}", names.join(", ")),
+                "--set {text}: {} does not take part",
+                setting.controller
+            ));
+        }
+        if settings.iter().any(|other| (other.controller, other.name) == (setting.controller, setting.name)) {
+            return Err(miette!(
+                help = "leave one of them out",
+                "--set {text}: {} of {} is set twice",
+                setting.name,
+                setting.controller
+            ));
+        }
+        settings.push(setting);
+    }
+    Ok(settings)
+}

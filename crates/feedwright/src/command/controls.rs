@@ -1,0 +1,56 @@
+//! Controls that programs are for, by name, and what is told of a corrected program.
+
+use std::io::{self, Write};
+
+use crate::correct::{CorrectOutcome, TARGETS, TargetControl};
+use feedwright_gcode::suggestion::nearest;
+use miette::{Result, miette};
+
+use crate::command::terminal::wrapped;
+
+/// Largest tolerance that is no slip of the unit, um.
+const MAX_TOLERANCE_UM: f64 = 1e6;
+
+/// The control of that name.
+pub(crate) fn control(name: &str) -> Result<&'static TargetControl> {
+    TargetControl::find(name).ok_or_else(|| {
+        let names: Vec<&str> = TARGETS.iter().map(|target| target.name).collect();
+        let near = nearest(name, &names).map_or_else(String::new, |near| format!("did you mean '{near}'? "));
+        miette!(
+            help = format!("{near}'{}' suits a control that is not listed", names[0]),
+            "--for: no control is called '{name}'; there are {}",
+            names.join(", ")
+        )
+    })
+}
+
+/// Refuses a tolerance that is none.
+pub(crate) fn check_tolerance(tolerance_um: Option<f64>) -> Result<()> {
+    match tolerance_um {
+        Some(value) if !(value > 0.0 && value <= MAX_TOLERANCE_UM) => Err(miette!(
+            help = "the unit is um: 0.01 mm is --tolerance 10",
+            "--tolerance is {value} um; it must lie above 0 and up to {MAX_TOLERANCE_UM} um"
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// What was changed, and why nothing is written.
+pub(crate) fn print_correction(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
+    let CorrectOutcome { stretches, stretches_changed, rounds, .. } = outcome;
+    let changed = format!(
+        "{stretches_changed} of {stretches} stretches between corners were changed, found in {rounds} simulated cuts"
+    );
+    writeln!(out, "{}", wrapped(&changed, 2))?;
+    if outcome.expanded {
+        writeln!(out, "loops and subroutines are written out")?;
+    }
+    match &outcome.refusal {
+        Some(refusal) => writeln!(out, "{}", wrapped(&format!("no corrected program: {refusal}"), 2))?,
+        None => return Ok(()),
+    }
+    match &outcome.hint {
+        Some(hint) => writeln!(out, "{}", wrapped(&format!("  hint: {hint}"), 8)),
+        None => Ok(()),
+    }
+}

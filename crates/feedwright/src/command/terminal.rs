@@ -1,0 +1,114 @@
+//! The terminal: how wide it is, and whether it shows colours.
+
+use std::io::{self, IsTerminal};
+use std::sync::OnceLock;
+
+use clap::ValueEnum;
+
+/// Columns where there is no terminal to ask.
+const COLUMNS: usize = 80;
+/// Longer lines are hard to read.
+const MOST_COLUMNS: usize = 120;
+/// Fewer are as good as none.
+const LEAST_COLUMNS: usize = 40;
+
+/// When text is coloured.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum ColorWhen {
+    /// On a terminal, unless NO_COLOR is set or TERM is dumb
+    #[default]
+    Auto,
+    /// Into files and pipes, too
+    Always,
+    /// Nowhere
+    Never,
+}
+
+/// As `--color` says, from when the command line is read.
+static COLOR: OnceLock<ColorWhen> = OnceLock::new();
+
+/// Takes what `--color` says.
+pub(crate) fn set_color(when: ColorWhen) {
+    // It is said once.
+    let _ = COLOR.set(when);
+}
+
+/// Whether messages on stderr are coloured.
+pub(crate) fn is_stderr_colored() -> bool {
+    let wants_none = std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty());
+    match COLOR.get().copied().unwrap_or_default() {
+        ColorWhen::Auto => io::stderr().is_terminal() && !wants_none && !is_dumb(),
+        ColorWhen::Always => true,
+        ColorWhen::Never => false,
+    }
+}
+
+/// Whether the terminal can do no more than print: no colours, no cursor, no lines.
+pub(crate) fn is_dumb() -> bool {
+    std::env::var_os("TERM").is_some_and(|term| term == "dumb")
+}
+
+/// Whether stderr shows characters beyond ASCII. What goes to a file does.
+pub(crate) fn shows_unicode() -> bool {
+    if is_dumb() {
+        return false;
+    }
+    let named = ["LC_ALL", "LC_CTYPE", "LANG"].iter().filter_map(std::env::var_os).find(|value| !value.is_empty());
+    let is_utf8 = named.is_some_and(|name| {
+        let name = name.to_string_lossy().to_ascii_lowercase();
+        name.contains("utf-8") || name.contains("utf8")
+    });
+    is_utf8 || !io::stderr().is_terminal()
+}
+
+/// Columns of the terminal: as COLUMNS says, as it is, or 80 where there is none.
+pub(crate) fn columns() -> usize {
+    let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    let there = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
+    let columns: usize = said.or_else(there).unwrap_or(COLUMNS);
+    if columns < LEAST_COLUMNS { COLUMNS } else { columns }
+}
+
+/// Columns of text that is read line by line.
+pub(crate) fn text_columns() -> usize {
+    columns().min(MOST_COLUMNS)
+}
+
+/// A text in lines that fit; all but the first begin with so many blanks. A number and its unit stay together.
+pub fn wrapped(text: &str, indent: usize) -> String {
+    let text = &with_units(text);
+    let blanks = " ".repeat(indent);
+    let options = textwrap::Options::new(text_columns())
+        .subsequent_indent(&blanks)
+        .break_words(false)
+        .word_splitter(textwrap::WordSplitter::NoHyphenation);
+    textwrap::fill(text, options).replace(KEPT, " ")
+}
+
+/// Stands for a blank at which no line ends.
+const KEPT: char = '\u{a0}';
+
+fn with_units(text: &str) -> String {
+    let mut kept = String::with_capacity(text.len());
+    let mut before = ' ';
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
+        let is_unit =
+            c == ' ' && before.is_ascii_digit() && rest.peek().is_some_and(|c| c.is_ascii_alphabetic() || *c == '%');
+        kept.push(if is_unit { KEPT } else { c });
+        before = c;
+    }
+    kept.replace(&format!("{KEPT}N m"), &format!("{KEPT}N{KEPT}m"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_and_its_unit_stay_together() {
+        let text = format!("{} 12.5 N m, +79 % and 3", "a".repeat(75));
+        let lines = wrapped(&text, 2);
+        assert!(lines.ends_with("a\n  12.5 N m, +79 % and 3"), "{lines}");
+    }
+}

@@ -1,0 +1,292 @@
+//! The table of controllers: a name, what it is, where it comes from, and how it is made.
+//!
+//! Help texts, docs and conformance tests iterate over [`CONTROLLERS`]; another table can hold the same rows and more, with the
+//! macro [`controller!`](crate::controller).
+//!
+//! | File | What |
+//! |---|---|
+//! | `controllers/parameters.rs` | parameters that a user can set, by name |
+//! | `controllers/rows.rs` | the parameters of the rows |
+//! | `controllers/setup.rs` | what a controller is made from: what is known of a machine, and a model |
+//! | `controllers/make.rs` | how each row is made from that |
+
+mod parameters;
+mod make;
+mod rows;
+mod setup;
+
+use feedwright_control::{Controller, IdentifierKind, OpenLoop};
+use feedwright_gcode::suggestion::nearest;
+use feedwright_ident::Model;
+use serde::{Deserialize, Serialize};
+
+pub use make::{correction_limits, offset_bounds};
+pub use parameters::{Parameter, ParameterKind, Setting, SettingError, Values};
+pub use rows::{ACCELERATION_GAIN, FRICTION_GAIN, KNOTS, PLAN_PERIOD_S, RATE_WEIGHT, VELOCITY_GAIN};
+use rows::{
+    CHANGE_WEIGHT, ETA, FORESEEN_MM, IDENTIFIED_PRICE, INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S,
+    INVERSION_STEPS, LAST_WEIGHT, LEARNING_STEP, ON_RAPIDS, RHO, SOLVER_STEPS, TANGENTIAL_WEIGHT,
+};
+pub use setup::{ModelMisfit, NothingIdentified, Setup};
+
+/// One row of the table.
+pub struct Entry {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// What it does, in half a line.
+    pub summary: &'static str,
+    /// Author, year.
+    pub source: &'static str,
+    /// What it knows of the machine.
+    pub knows: Knows,
+    /// Which kind of identifier it uses, where it does.
+    pub identifier: Option<IdentifierKind>,
+    /// Laps of the same part that it cuts; all but the last are practice.
+    pub laps: u32,
+    /// What can be set; first what the comparison searches for the best of.
+    pub parameters: &'static [Parameter],
+    /// Makes it for two axes.
+    #[doc(hidden)]
+    pub plane: Maker<2>,
+    /// Makes it for three axes.
+    #[doc(hidden)]
+    pub space: Maker<3>,
+}
+
+/// What a controller knows of the machine before it cuts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Knows {
+    /// Nothing.
+    Nothing,
+    /// What was identified from a recording.
+    Identified,
+    /// The parameters of its model.
+    ExactModel,
+    /// Everything that can be: the parameters, and the statistics of all noise.
+    Everything,
+    /// What went wrong in earlier laps of the same part.
+    EarlierLaps,
+}
+
+/// Makes a controller from a setup and the values of its parameters.
+pub type Maker<const N: usize> = fn(&mut Setup<'_>, &Values) -> Box<dyn Controller<N>>;
+
+/// A row of a table of controllers: name, summary, source, what it knows, laps, parameters, and how it is made for N axes from a
+/// [`Setup`] and the values of its parameters.
+#[macro_export]
+macro_rules! controller {
+    ($name:literal, $summary:literal, $source:literal, $knows:ident $(($kind:ident))?, laps: $laps:literal, $parameters:expr, |$setup:ident, $values:ident| $make:expr) => {{
+        fn make<const N: usize>(
+            $setup: &mut $crate::Setup<'_>,
+            $values: &$crate::Values,
+        ) -> Box<dyn $crate::control::Controller<N>> {
+            $make
+        }
+        $crate::Entry {
+            name: $name,
+            summary: $summary,
+            source: $source,
+            knows: $crate::Knows::$knows,
+            identifier: [$($crate::control::IdentifierKind::$kind)?].first().copied(),
+            laps: $laps,
+            parameters: &$parameters,
+            plane: make::<2>,
+            space: make::<3>,
+        }
+    }};
+}
+
+/// `open-loop`.
+pub static OPEN_LOOP: Entry = controller!(
+    "open-loop",
+    "the programmed path at the planned feed",
+    "what every open-source control does",
+    Nothing,
+    laps: 1,
+    [],
+    |_setup, _values| Box::new(OpenLoop)
+);
+
+/// `feedforward`.
+pub static FEEDFORWARD: Entry = controller!(
+    "feedforward",
+    "velocity, acceleration and friction feedforward with the exact model of the machine",
+    "Masory (1986); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
+    ExactModel,
+    laps: 1,
+    [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN],
+    |setup, values| make::feedforward(setup, values)
+);
+
+/// `magnitude-only`.
+pub static MAGNITUDE_ONLY: Entry = controller!(
+    "magnitude-only",
+    "inversion of the identifier, speed along the path only",
+    "Yoon and Jeon (2000)",
+    Identified(Contour),
+    laps: 1,
+    [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
+    |setup, values| make::magnitude_only(setup, values)
+);
+
+/// `two-dimensional`.
+pub static TWO_DIMENSIONAL: Entry = controller!(
+    "two-dimensional",
+    "inversion of the identifier, speed and geometry",
+    "Lee, Cho and Jeon (2005)",
+    Identified(Contour),
+    laps: 1,
+    [RHO, ETA, INVERSION_STEPS, INVERSION_KNOTS, INVERSION_PERIOD_S, LEARNING_STEP],
+    |setup, values| make::two_dimensional(setup, values)
+);
+
+/// `receding-horizon`.
+pub static RECEDING_HORIZON: Entry = controller!(
+    "receding-horizon",
+    "geometry planned over 20 knots ahead through an identified servo, speed as planned",
+    "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
+    Identified(Servo),
+    laps: 1,
+    [
+        KNOTS,
+        PLAN_PERIOD_S,
+        RATE_WEIGHT,
+        CHANGE_WEIGHT,
+        TANGENTIAL_WEIGHT,
+        LAST_WEIGHT,
+        INNOVATION_SCALE_MM,
+        FORESEEN_MM,
+        SOLVER_STEPS,
+        ON_RAPIDS
+    ],
+    |setup, values| make::receding_horizon(setup, values)
+);
+
+/// `lqg-identified`.
+pub static LQG_IDENTIFIED: Entry = controller!(
+    "lqg-identified",
+    "Kalman filter and linear-quadratic regulator with preview, by an identified law of each axis",
+    "Anderson and Moore (1990); Gautier, Janot and Vandanjon (2013)",
+    Identified(Axes),
+    laps: 1,
+    [IDENTIFIED_PRICE],
+    |setup, values| make::lqg_identified(setup, values)
+);
+
+/// The controllers that a machine runs.
+pub const CONTROLLERS: Controllers = Controllers::new(&ROWS);
+
+static ROWS: [&Entry; 6] =
+    [&OPEN_LOOP, &FEEDFORWARD, &MAGNITUDE_ONLY, &TWO_DIMENSIONAL, &RECEDING_HORIZON, &LQG_IDENTIFIED];
+
+/// The default.
+pub const BEST: &str = "lqg-identified";
+/// Needs nothing but a recording, and adapts while cutting.
+pub const HORIZON: &str = "receding-horizon";
+/// What others are compared with.
+pub const BASELINE: &str = "open-loop";
+
+/// A table of controllers, in the order in which they are listed.
+#[derive(Debug, Clone, Copy)]
+pub struct Controllers(&'static [&'static Entry]);
+
+impl Controllers {
+    /// A table of these rows.
+    pub const fn new(rows: &'static [&'static Entry]) -> Self {
+        Self(rows)
+    }
+
+    /// All rows.
+    pub fn iter(self) -> impl Iterator<Item = &'static Entry> {
+        self.0.iter().copied()
+    }
+
+    /// Finds a row by its name.
+    pub fn find(self, name: &str) -> Option<&'static Entry> {
+        self.iter().find(|entry| entry.name == name)
+    }
+
+    /// The name nearest to one that is not in the table.
+    pub fn meant_by(self, name: &str) -> Option<&'static str> {
+        let names: Vec<&'static str> = self.iter().map(|entry| entry.name).collect();
+        nearest(name, &names)
+    }
+}
+
+impl IntoIterator for Controllers {
+    type Item = &'static Entry;
+    type IntoIter = std::iter::Copied<std::slice::Iter<'static, &'static Entry>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter().copied()
+    }
+}
+
+/// What a user can choose.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Choices {
+    /// Seed of the training.
+    pub seed: u64,
+    /// Parameters that were set, of any controller; the last of the same counts.
+    pub set: Vec<Setting>,
+}
+
+impl Entry {
+    /// A parameter by its name.
+    pub fn parameter(&self, name: &str) -> Option<&'static Parameter> {
+        self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// The parameters that the comparison searches for the best of, with the ranges.
+    pub fn searched(&self) -> impl Iterator<Item = (&'static Parameter, [f64; 2])> + use<> {
+        self.parameters.iter().filter_map(|parameter| Some((parameter, parameter.searched?)))
+    }
+
+    /// The controller of this row, with a model in place of a training.
+    ///
+    /// # Errors
+    /// A model that does not suit it.
+    pub fn make_with<'a, const N: usize>(
+        &self,
+        mut setup: Setup<'a>,
+        model: &'a Model,
+    ) -> Result<Box<dyn Controller<N>>, ModelMisfit>
+    where
+        Self: Make<N>,
+    {
+        setup.take(model, self, N)?;
+        Ok(self.make(&mut setup))
+    }
+}
+
+/// A number of axes that controllers exist for: 2 or 3.
+pub trait Make<const N: usize> {
+    /// The controller of this row.
+    fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<N>>;
+}
+
+impl Make<2> for Entry {
+    fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<2>> {
+        (self.plane)(setup, &Values::of(self, &setup.choices.set))
+    }
+}
+
+impl Make<3> for Entry {
+    fn make(&self, setup: &mut Setup<'_>) -> Box<dyn Controller<3>> {
+        (self.space)(setup, &Values::of(self, &setup.choices.set))
+    }
+}
+
+/// By their names: there is one row of each.
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl std::fmt::Debug for Entry {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(self.name)
+    }
+}

@@ -1,0 +1,367 @@
+//! What a controller is made from: what is known of its machine, and a trained model.
+//!
+//! The machine itself stays in here: what makes a controller gets no hold of it, and cannot tell it what only the simulation
+//! knows. A training sees a recording of it.
+
+use crate::identifier_cache::identified;
+use feedwright_control::{AxisKnowledge, ContourIdentifier, IdentifiedAxes, IdentifierKind, ServoIdentifier, Spread};
+use feedwright_ident::{
+    AxisEstimate, AxisRecordings, DriveSettings, Excitation, Model, NotIdentified, Origin, TrainedAxes, Training,
+    an_identifier, identify_axis, train_axes, train_servo,
+};
+use feedwright_sim::{Known, KnownAxis, Machine};
+use miette::Diagnostic;
+use thiserror::Error;
+
+use super::parameters::Values;
+use super::{CONTROLLERS, Choices, Entry};
+
+/// What a controller is made from.
+pub struct Setup<'a> {
+    /// What is known of the machine it is for.
+    pub known: Known,
+    /// The user's choices.
+    pub choices: &'a Choices,
+    /// Is recorded where a model has to be trained.
+    machine: &'a Machine,
+    /// Was trained before, and suits.
+    model: Option<&'a Model>,
+    /// Told of the progress of a training, 0 to 1.
+    progress: Option<&'a mut dyn FnMut(f64)>,
+    /// What was found of each axis, where axes were identified, or why nothing was.
+    found: Option<Result<Vec<AxisEstimate>, NotIdentified>>,
+}
+
+/// Why a controller cannot be made with a model.
+#[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
+pub enum ModelMisfit {
+    /// It has no use for one.
+    #[error("{controller} uses no trained identifier")]
+    NoIdentifier {
+        /// Its name.
+        controller: &'static str,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+    /// The model is of another kind.
+    #[error("the model holds {found}, and {controller} needs {needed}")]
+    Kind {
+        /// Name of the controller.
+        controller: &'static str,
+        /// What the model holds.
+        found: &'static str,
+        /// What is needed.
+        needed: &'static str,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+    /// The model is for another number of axes.
+    #[error("the model is for {found} axes, and {needed} are controlled")]
+    Axes {
+        /// Axes of the model.
+        found: usize,
+        /// Axes that are controlled.
+        needed: usize,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+    /// There are no such axes to train on.
+    #[error("the machine `{machine}` has {has} axes, and a model for {asked} was asked for")]
+    #[diagnostic(help(
+        "a program that stays in the XY plane is cut with a model for 2 axes, any other with one for 3"
+    ))]
+    NoSuchAxes {
+        /// Name of the machine.
+        machine: String,
+        /// Its axes.
+        has: usize,
+        /// Axes that were asked for.
+        asked: usize,
+    },
+    /// The recording does not tell what an axis is.
+    #[error("the axes of `{machine}` cannot be identified: {cause}")]
+    NotIdentified {
+        /// Name of the machine.
+        machine: String,
+        /// Why.
+        cause: NotIdentified,
+    },
+    /// The model was trained for another period.
+    #[error("the model was trained for a {period} of {found_s} s, and that of {of} is {needed_s} s")]
+    Period {
+        /// Servo period or feed period.
+        period: &'static str,
+        /// Whose it is.
+        of: &'static str,
+        /// Of the model, s.
+        found_s: f64,
+        /// What is needed, s.
+        needed_s: f64,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+}
+
+/// A controller that cuts open loop, because nothing was identified that it could go by.
+#[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
+#[error("{controller} cuts open loop: the axes of `{machine}` cannot be identified: {cause}")]
+#[diagnostic(severity(Warning))]
+pub struct NothingIdentified {
+    /// Its name.
+    pub controller: &'static str,
+    /// Name of the machine.
+    pub machine: String,
+    /// Why.
+    pub cause: NotIdentified,
+}
+
+/// Periods that differ by less are the same: they come from decimal numbers.
+const SAME_PERIOD: f64 = 1e-9;
+
+impl Entry {
+    /// Whether a model suits this controller, as it is set, for a machine and a number of axes.
+    ///
+    /// # Errors
+    /// The first thing that does not suit.
+    pub fn suits(&self, model: &Model, known: &Known, axes: usize, choices: &Choices) -> Result<(), ModelMisfit> {
+        let controller = self.name;
+        let needed = self.identifier.ok_or_else(|| self.no_identifier())?;
+        let anew = format!(
+            "'feedwright identify --controller {controller} --axes {axes}' with this machine writes one that suits"
+        );
+        if model.kind() != needed {
+            let (found, needed) = (an_identifier(model.kind()), an_identifier(needed));
+            return Err(ModelMisfit::Kind { controller, found, needed, hint: anew });
+        }
+        if model.axes() != axes {
+            return Err(ModelMisfit::Axes { found: model.axes(), needed: axes, hint: anew });
+        }
+        let period = |period, of, found_s: f64, needed_s: f64, hint: String| {
+            let same = (found_s - needed_s).abs() <= SAME_PERIOD * needed_s;
+            if same { Ok(()) } else { Err(ModelMisfit::Period { period, of, found_s, needed_s, hint }) }
+        };
+        let (servo_s, feed_period_s) = (known.period.servo_s, self.feed_period_s(known, choices));
+        period("servo period", "the machine", model.period().servo_s, servo_s, anew.clone())?;
+        let found_s = model.period().feed_period_s;
+        let hint = match self.parameter("feed_period_s") {
+            Some(_) => format!("--set feed_period_s={found_s} takes that of the model; {anew}"),
+            None => anew,
+        };
+        period("feed period", controller, found_s, feed_period_s, hint)
+    }
+
+    fn no_identifier(&self) -> ModelMisfit {
+        let others = CONTROLLERS.iter().filter(|entry| entry.identifier.is_some()).map(|entry| entry.name);
+        let hint =
+            format!("leave --model out, or choose a controller that does: {}", others.collect::<Vec<_>>().join(", "));
+        ModelMisfit::NoIdentifier { controller: self.name, hint }
+    }
+
+    /// Time between decisions of one that uses an identifier, s. One that cannot be set to another decides in each servo period.
+    fn feed_period_s(&self, known: &Known, choices: &Choices) -> f64 {
+        if self.parameter("feed_period_s").is_none() {
+            return known.period.servo_s;
+        }
+        let wished_s = Values::of(self, &choices.set).number("feed_period_s");
+        f64::from(known.period.servo_periods(wished_s)) * known.period.servo_s
+    }
+}
+
+impl<'a> Setup<'a> {
+    /// For a machine, which is recorded where a model has to be trained.
+    pub fn new(machine: &'a Machine, choices: &'a Choices) -> Self {
+        Self { known: machine.known(), choices, machine, model: None, progress: None, found: None }
+    }
+
+    /// Tells of the progress of a training, 0 to 1.
+    pub fn telling(self, progress: &'a mut dyn FnMut(f64)) -> Self {
+        Self { progress: Some(progress), ..self }
+    }
+
+    /// What is to be told of a controller that was made from this: where nothing was identified it cuts open loop.
+    pub fn remark(&self, entry: &Entry) -> Option<NothingIdentified> {
+        let Some(Err(cause)) = &self.found else { return None };
+        Some(NothingIdentified { controller: entry.name, machine: self.machine.name.clone(), cause: *cause })
+    }
+
+    /// What was found of each axis by the last training of a model of axes, or why nothing was; none where there was none.
+    pub fn found(&self) -> Option<&Result<Vec<AxisEstimate>, NotIdentified>> {
+        self.found.as_ref()
+    }
+
+    fn tell(&mut self, part: f64) {
+        if let Some(progress) = &mut self.progress {
+            progress(part);
+        }
+    }
+
+    /// What is true of the axes of the machine: for the limit alone. A screw with a scale on the table counts as rigid.
+    pub fn truth<const N: usize>(&self) -> [AxisKnowledge; N] {
+        let (periods, statistics) = (self.known.period.periods(), self.machine.statistics::<N>());
+        std::array::from_fn(|i| {
+            let axis = KnownAxis { transmission: self.machine.axis(i).transmission(), ..*self.known.axis(i) };
+            let axis = if axis.scale_on_table { *self.known.axis(i) } else { axis };
+            axis.with_statistics(periods, statistics[i])
+        })
+    }
+
+    /// Takes a model in place of a training, of the controller that is made next.
+    ///
+    /// # Errors
+    /// A model that does not suit it.
+    pub(super) fn take(&mut self, model: &'a Model, entry: &Entry, axes: usize) -> Result<(), ModelMisfit> {
+        entry.suits(model, &self.known, axes, self.choices)?;
+        self.model = Some(model);
+        Ok(())
+    }
+
+    /// A servo identifier for decisions each `feed_period_s`, and how others of its kind differ.
+    pub(super) fn servo<const N: usize>(&mut self, feed_period_s: f64) -> (ServoIdentifier<N>, Spread<N>) {
+        self.model.and_then(Model::servo).unwrap_or_else(|| {
+            let excitation = Excitation { feed_period_s, ..Excitation::servo() };
+            let trained = train_servo(&excitation.record(self.machine, self.choices.seed).0);
+            (trained.net, trained.spread)
+        })
+    }
+
+    /// Takes inertia and friction of the first N axes from a recording of the machine, in place of those of its data sheets; what its
+    /// drives are set to stays known.
+    ///
+    /// # Errors
+    /// A machine that does not move so that its parameters show.
+    pub fn identify_parameters<const N: usize>(&mut self) -> Result<(), NotIdentified> {
+        let excitation = Excitation::axis_parameters(self.machine);
+        let (recording, _) = excitation.record::<N>(self.machine, self.choices.seed);
+        let found = |i: usize| {
+            let axis = self.known.axis(i);
+            let settings = DriveSettings::of(axis, &self.known.period);
+            Ok(identify_axis(&recording, i, &settings)?.parameters.believed(axis, &settings))
+        };
+        let axes = (0..N).map(found).collect::<Result<Vec<_>, _>>()?;
+        self.known = self.known.with_axes(|i, known| axes.get(i).copied().unwrap_or(*known));
+        Ok(())
+    }
+
+    /// The identified axes; none where the machine does not move so that they show, see [`Self::found`].
+    pub(super) fn axes<const N: usize>(&mut self) -> Option<IdentifiedAxes<N>> {
+        self.model.and_then(Model::identified_axes).or_else(|| {
+            let (_, trained) = self.train_axes().ok()?;
+            trained.axes.with_periods(self.known.period.servo_s)
+        })
+    }
+
+    /// Records the machine and identifies its axes.
+    fn train_axes<const N: usize>(&mut self) -> Result<(AxisRecordings<N>, TrainedAxes<N>), NotIdentified> {
+        let recordings = AxisRecordings::of(self.machine, self.choices.seed);
+        let trained = train_axes(&recordings, &self.machine.known(), &self.known);
+        self.found = Some(trained.as_ref().map(|trained| trained.estimates.clone()).map_err(|cause| *cause));
+        Ok((recordings, trained?))
+    }
+
+    /// An identifier of the contour error for decisions each `feed_period_s`.
+    pub(super) fn contour<const N: usize>(&mut self, feed_period_s: f64) -> ContourIdentifier<N> {
+        self.model.and_then(Model::contour).unwrap_or_else(|| {
+            let excitation = Excitation { feed_period_s, ..Excitation::general() };
+            let (machine, seed) = (self.machine, self.choices.seed);
+            identified(machine, &excitation, &Training::default(), seed, &mut |part| self.tell(part)).net
+        })
+    }
+
+    /// Trains the model that a controller uses, on a recording of the simulated machine; `date` is that of the file.
+    ///
+    /// # Errors
+    /// A controller that uses none, and more axes than the machine has.
+    pub fn train(&mut self, entry: &Entry, axes: usize, date: String) -> Result<Model, ModelMisfit> {
+        let has = self.machine.axis_count();
+        match axes {
+            2 => self.train_for::<2>(entry, date),
+            3 if has >= 3 => self.train_for::<3>(entry, date),
+            _ => Err(ModelMisfit::NoSuchAxes { machine: self.machine.name.clone(), has, asked: axes }),
+        }
+    }
+
+    fn train_for<const N: usize>(&mut self, entry: &Entry, date: String) -> Result<Model, ModelMisfit> {
+        let kind = entry.identifier.ok_or_else(|| entry.no_identifier())?;
+        let feed_period_s = entry.feed_period_s(&self.known, self.choices);
+        let seed = self.choices.seed;
+        let source = format!("simulated excitation of {}, seed {seed}", self.machine.name);
+        let origin = Origin { source, date };
+        Ok(match kind {
+            IdentifierKind::Servo => {
+                let excitation = Excitation { feed_period_s, ..Excitation::servo() };
+                let (recording, _) = excitation.record::<N>(self.machine, seed);
+                Model::of_servo(&recording, &train_servo(&recording), origin)
+            }
+            IdentifierKind::Axes => {
+                let not_identified = |cause| ModelMisfit::NotIdentified { machine: self.machine.name.clone(), cause };
+                let (recordings, trained) = self.train_axes::<N>().map_err(not_identified)?;
+                Model::of_axes(&recordings.joined(), &trained, origin)
+            }
+            IdentifierKind::Contour => {
+                let excitation = Excitation { feed_period_s, ..Excitation::general() };
+                let (recording, rng) = excitation.record::<N>(self.machine, seed);
+                let trained = crate::identifier_cache::trained(&recording, &Training::default(), rng, &mut |part| {
+                    self.tell(part);
+                });
+                Model::of_contour(&recording, &trained, origin)
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::Knows;
+    use super::*;
+
+    #[test]
+    fn every_controller_that_was_identified_names_its_kind_and_trains_a_model_that_suits_it_and_no_other_kind() {
+        let machine = Machine::load("tnv40".as_ref()).unwrap();
+        let choices = Choices::default();
+        let servo =
+            Setup::new(&machine, &choices).train(CONTROLLERS.find("receding-horizon").unwrap(), 2, "today".to_owned());
+        let axes =
+            Setup::new(&machine, &choices).train(CONTROLLERS.find("lqg-identified").unwrap(), 2, "today".to_owned());
+        for (model, kind) in [(servo.unwrap(), IdentifierKind::Servo), (axes.unwrap(), IdentifierKind::Axes)] {
+            for entry in CONTROLLERS {
+                assert_eq!(entry.identifier.is_some(), entry.knows == Knows::Identified, "{}", entry.name);
+                let suits = entry.suits(&model, &machine.known(), 2, &choices);
+                assert_eq!(suits.is_ok(), entry.identifier == Some(kind), "{}: {suits:?}", entry.name);
+                assert!(entry.suits(&model, &machine.known(), 3, &choices).is_err(), "{}", entry.name);
+            }
+        }
+    }
+
+    #[test]
+    fn what_differs_in_the_simulation_alone_is_not_known() {
+        let machine = Machine::load("tnv40".as_ref()).unwrap();
+        let mut other = machine.clone();
+        for axis in &mut other.axes {
+            (axis.disturbance_hz, axis.encoder_step_um, axis.cogging_nm) = (3.0, 5.0, 0.1);
+            (axis.torque_bits, axis.transmission) = (Some(9), Some(Default::default()));
+        }
+        assert!(other != machine && other.known() == machine.known());
+        other.axes[1].inertia_kg_m2 *= 2.0;
+        assert!(other.known() != machine.known());
+    }
+
+    #[test]
+    fn where_nothing_is_identified_the_training_fails_and_the_controller_tells_that_it_cuts_open_loop() {
+        let mut machine = Machine::load("tnv40".as_ref()).unwrap();
+        // The loop takes longer to settle than the excitation lasts.
+        machine.axes.iter_mut().for_each(|axis| axis.kp_1_s = 0.1);
+        let (choices, entry) = (Choices::default(), CONTROLLERS.find("lqg-identified").unwrap());
+        let mut setup = Setup::new(&machine, &choices);
+        let refused = setup.train(entry, 2, "today".to_owned()).unwrap_err().to_string();
+        assert!(refused.starts_with("the axes of `tnv40` cannot be identified: 0 stretches are longer"), "{refused}");
+        let mut setup = Setup::new(&machine, &choices);
+        assert_eq!(setup.remark(entry), None);
+        let _ = super::super::Make::<2>::make(entry, &mut setup);
+        let told = setup.remark(entry).unwrap().to_string();
+        assert!(told.starts_with("lqg-identified cuts open loop: the axes of `tnv40` cannot"), "{told}");
+    }
+}

@@ -1,0 +1,178 @@
+//! A corrected program for a control that gets no feedback from us: the error that repeats, taken out of the program itself.
+//!
+//! A controller of [`crate::controllers`] sees the tool while it cuts. A program that is taken to another control is cut open loop, planned by that control. So the
+//! correction is computed for that: the machine is simulated without what does not repeat ([`deterministic`]), along the plan of the
+//! target's own planner, and the program is changed until the simulated program itself holds:
+//!
+//! 1. The program falls into stretches that are cut without a corner, and all else, which stays.
+//! 2. A round plans and cuts the program as it now is. With `e` from the tool to its foot on the original path, the command becomes
+//!    `c + e + T1 e' + T2 e''` with the lags of the loop, smoothed; arcs and lines are fitted to it, and the next round begins. The best of each
+//!    stretch is kept.
+//! 3. At true corners and beside rapids the tool comes to rest, by a dwell of some ten milliseconds.
+//! 4. The text is written with the lines of the original wherever they need no change, read again, compared, planned and cut with what disturbs, and
+//!    measured against the original path. These figures are what is told, and a program that is no better is not written.
+//!
+//! Source: the iteration is that of model-based iterative learning (Moore 1993), on the path of blocks rather than on samples.
+//!
+//! | File | What |
+//! |---|---|
+//! | `nominal.rs` | the machine without what does not repeat |
+//! | `loop_lag.rs` | how an axis lags behind its command |
+//! | `target.rs` | the controls that programs are for |
+//! | `source.rs` | the program with its text and modes |
+//! | `stretches.rs` | stretches without a corner, and all else |
+//! | `arc_fit.rs` | points to arcs and lines |
+//! | `exported.rs` | a program as the other control cuts it |
+//! | `slow_end.rs` | slow ways to where the tool would run over |
+//! | `command_update.rs` | a better command from the errors of a cut |
+//! | `stretch_cut.rs` | what each stretch comes to in a cut |
+//! | `budget.rs` | how many blocks and how much time a program may have |
+//! | `rounds.rs` | cut, change, fit, until it gets no better |
+//! | `block_words.rs` | motions and events as blocks |
+//! | `source_line.rs` | a line without its motion |
+//! | `program_text.rs` | the text |
+//! | `expanded_text.rs` | that of a program whose loops, subroutines and jumps are written out |
+//! | `verified.rs` | what the text says when it is read again |
+//! | `outcome.rs` | what came of it, and whether it is to be used |
+//! | `advise.rs` | the feedrates at which a tolerance is held |
+//! | `advise/feed_cuts.rs` | a program at other feedrates |
+//! | `advise/feed_search.rs` | the search of the feedrates that hold |
+//! | `advise/page.rs` | its figure and its page |
+
+mod nominal;
+mod loop_lag;
+mod target;
+mod source;
+mod stretches;
+pub(crate) mod arc_fit;
+pub(crate) mod exported;
+mod slow_end;
+mod command_update;
+mod stretch_cut;
+mod budget;
+mod rounds;
+mod block_words;
+mod source_line;
+mod program_text;
+mod expanded_text;
+mod verified;
+mod outcome;
+pub(crate) mod advise;
+
+use std::path::PathBuf;
+
+use crate::job_error::{JobError, axes_that_move};
+use exported::ExportedCut;
+use feedwright_gcode::{self, Settings};
+use feedwright_sim::{Machine, Watch};
+pub use nominal::deterministic;
+pub use outcome::CorrectOutcome;
+use outcome::{UnwrittenProgram, WrittenProgram, refusal};
+use program_text::TextParts;
+use rounds::{RoundsResult, rounds, steps_of};
+use source::SourceProgram;
+use stretches::{ProgramPart, assembled, parts, stretches};
+pub use target::{MacroLanguage, TARGETS, TargetControl};
+
+/// A program, a machine, and a control that the corrected program is for.
+#[derive(Debug, Clone)]
+pub struct CorrectJob {
+    /// The G-code program.
+    pub part: PathBuf,
+    /// The machine that cuts it.
+    pub machine: Machine,
+    /// What the correction believes of the machine; none is the machine itself.
+    pub believed: Option<Machine>,
+    /// The control that the corrected program is for.
+    pub target: &'static TargetControl,
+    /// Replaces every programmed feedrate, mm/s.
+    pub feed_mm_s: Option<f64>,
+    /// Settings of the reader.
+    pub reader: Settings,
+}
+
+impl CorrectJob {
+    /// Corrects it and verifies the text.
+    ///
+    /// # Errors
+    /// A program with mistakes, more axes than the machine has, or an end from outside.
+    pub fn run(&self, watch: &dyn Watch) -> Result<CorrectOutcome, JobError> {
+        watch.begin("reading the program", 1);
+        let summary = feedwright_gcode::check(&self.part, self.reader.clone())?;
+        let axes = axes_that_move(&self.part, &summary, &self.machine)?;
+        let source = SourceProgram::read(&self.part, &self.reader, self.feed_mm_s)?;
+        let path_error = |fault| JobError::Path { part: self.part.clone(), fault };
+        let original = steps_of(&source.steps).map_err(path_error)?;
+        let nominal = deterministic(self.believed.as_ref().unwrap_or(&self.machine));
+        let stages = self.target.suits(&self.machine)?;
+        let on = |machine| ExportedCut { machine, stages, original: &original, axes, watch };
+        let of_run = |error| JobError::of_run(&self.part, error);
+        let parts = parts(&source.steps);
+        let found = rounds(&on(&nominal), &parts, self.target).map_err(of_run)?;
+        watch.begin("cutting the original", 1);
+        let uncorrected = on(&self.machine).figures(&original).map_err(of_run)?;
+        let written = self.written(&source, &parts, &found);
+        let (written, unwritten) = match written {
+            Ok(written) => (Some(written), None),
+            Err(fault) => (None, Some(fault)),
+        };
+        watch.begin("cutting as exported", 1);
+        let corrected =
+            written.as_ref().map(|written| on(&self.machine).figures(&written.steps).map_err(of_run)).transpose()?;
+        let changed = found.commands.iter().flatten().count();
+        Ok(CorrectOutcome {
+            control: self.target.name,
+            planner: stages.planner.name,
+            refusal: refusal(&uncorrected, corrected.as_ref(), changed, unwritten.as_ref()),
+            hint: unwritten.and_then(|fault| fault.hint()),
+            original: uncorrected,
+            corrected: corrected.unwrap_or(uncorrected),
+            stretches: stretches(&parts).count(),
+            stretches_changed: changed,
+            expanded: written.as_ref().is_some_and(|written| written.expanded),
+            rounds: found.rounds,
+            dwell_s: found.dwell_s,
+            warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
+            written,
+            original_steps: original,
+            axes,
+        })
+    }
+
+    /// A text that says what was found, with as many lines of the original as can be.
+    fn written(
+        &self,
+        source: &SourceProgram,
+        parts: &[ProgramPart],
+        found: &RoundsResult,
+    ) -> Result<WrittenProgram, UnwrittenProgram> {
+        let RoundsResult { commands, dwell_s, .. } = found;
+        let notes = [
+            format!("corrected by feedwright for the machine {}, control {}", self.machine.name, self.target.name),
+            format!(
+                "{} of {} stretches between corners were changed",
+                commands.iter().flatten().count(),
+                commands.len()
+            ),
+        ];
+        let text = TextParts { source, parts, commands, dwell_s: *dwell_s, target: self.target, notes: &notes };
+        let wanted = assembled(parts, commands, *dwell_s);
+        let step_mm = 1.0 / self.target.steps_per_mm();
+        let checked = |text: String, expanded: bool| {
+            let is_own = |line: &str| source.lines.iter().any(|kept| kept == line);
+            if text.lines().any(|line| line.len() > self.target.columns && !is_own(line)) {
+                return Err(UnwrittenProgram::Columns(self.target.columns));
+            }
+            let (read, modes) =
+                verified::read(&text, &self.reader, source.dialect).ok_or(UnwrittenProgram::ReadOtherwise)?;
+            let steps = steps_of(&read).map_err(|_| UnwrittenProgram::ReadOtherwise)?;
+            let frames = verified::same_frames(read.iter().zip(&modes), source.steps_and_modes());
+            let same = frames && verified::same(&read, &wanted, step_mm);
+            if same { Ok(WrittenProgram { text, steps, expanded }) } else { Err(UnwrittenProgram::ReadOtherwise) }
+        };
+        if let Some(Ok(written)) = text.kept().map(|text| checked(text, false)) {
+            return Ok(written);
+        }
+        checked(text.expanded().map_err(UnwrittenProgram::Line)?, true)
+    }
+}

@@ -1,0 +1,326 @@
+//! At which feed a tolerance is held: by the program as it is, by the corrected program, and with a controller that sees the tool.
+//!
+//! The program is cut with all its feedrates at factors that go up and down by the root of two, until it is within the tolerance. Where the error
+//! passes the tolerance the factor is interpolated, over logarithms, and a cut at that factor shows that it holds; it is lowered until one does. The same errors,
+//! stretch by stretch, give each stretch a factor of its own, and a cut with all of them shows that they hold together.
+
+mod feed_cuts;
+mod feed_search;
+pub(crate) mod page;
+
+use std::path::PathBuf;
+
+use feedwright_gcode::canon::{Canon, Motion};
+use feedwright_gcode::{self, Diagnostic, Settings};
+use feedwright_sim::{Machine, StageSteps, Watch};
+use serde::Serialize;
+
+use super::source::SourceProgram;
+use super::stretches::{ProgramPart, SmoothStretch, parts, stretches};
+use super::target::TargetControl;
+use crate::controllers::{Choices, Entry, Make, Setup};
+use crate::job_error::{JobError, axes_that_move};
+pub use feed_cuts::ErrorPlace;
+use feed_cuts::FeedBench;
+use feed_search::{FeedSearch, LARGEST};
+
+/// A program, a machine, and a tolerance that is to be held.
+#[derive(Debug, Clone)]
+pub struct AdviseJob {
+    /// The G-code program.
+    pub part: PathBuf,
+    /// The machine that cuts it.
+    pub machine: Machine,
+    /// The control that cuts it without feedback, corrected or not.
+    pub target: &'static TargetControl,
+    /// The controller of the cut with feedback.
+    pub controller: &'static Entry,
+    /// Settings of the controller.
+    pub choices: Choices,
+    /// Largest contour error, um.
+    pub tolerance_um: f64,
+    /// Settings of the reader.
+    pub reader: Settings,
+}
+
+/// How a program is cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum CutWay {
+    /// As it is, open loop.
+    Uncorrected,
+    /// Corrected for that feedrate, open loop.
+    Corrected,
+    /// With a controller.
+    Controlled,
+}
+
+/// All of them, in the order in which they are told.
+pub(crate) const WAYS: [CutWay; 3] = [CutWay::Uncorrected, CutWay::Corrected, CutWay::Controlled];
+
+/// What a program comes to, at a factor on all of its feedrates or at one for each stretch.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FeedCut {
+    /// Factor on the programmed feedrates; none where each stretch has its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub factor: Option<f64>,
+    /// Machining time, s.
+    pub time_s: f64,
+    /// Quadratic mean of the RMS errors over the cuts, um.
+    pub rms_um: f64,
+    /// Largest error of all cuts, um.
+    pub max_um: f64,
+}
+
+/// What holds the tolerance, in one way.
+#[derive(Debug, Clone, Serialize)]
+pub struct WayAdvice {
+    /// The way.
+    pub way: CutWay,
+    /// Cuts by rising factor.
+    pub cuts: Vec<FeedCut>,
+    /// The fastest factor on the whole program that holds; none where the least does not.
+    pub whole: Option<FeedCut>,
+    /// Each stretch at its own feed; none where one of them holds at none.
+    pub by_stretch: Option<FeedCut>,
+    /// Where no factor on the whole program holds: what comes nearest.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nearest: Option<NearestCut>,
+}
+
+/// The cut that comes nearest to a tolerance that is not held.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NearestCut {
+    /// What it comes to.
+    pub cut: FeedCut,
+    /// First and last line of the stretch with the largest error.
+    pub lines: [u32; 2],
+    /// Where on that stretch it is.
+    pub place: ErrorPlace,
+    /// The fastest factor that holds beside the ends of the stretches, where the tool comes from rest or goes there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub beside_ends: Option<FeedCut>,
+}
+
+/// A stretch without a corner, and the feedrates at which it holds the tolerance.
+#[derive(Debug, Clone, Serialize)]
+pub struct StretchAdvice {
+    /// First and last line.
+    pub lines: [u32; 2],
+    /// Largest programmed feedrate, mm/s.
+    pub feed_mm_s: f64,
+    /// Largest feedrate that holds, mm/s, in each of [`WAYS`]; none where the least that was cut does not.
+    pub holds_mm_s: [Option<f64>; 3],
+    /// Where none does: what comes nearest.
+    pub nearest: [Option<NearestFeed>; 3],
+}
+
+/// What comes nearest where no feedrate of a stretch holds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NearestFeed {
+    /// Least of its largest errors, um.
+    pub max_um: f64,
+    /// Where that is.
+    pub place: ErrorPlace,
+    /// Largest feedrate that holds beside its ends, mm/s.
+    pub beside_ends_mm_s: Option<f64>,
+}
+
+/// What holds the tolerance.
+#[derive(Debug, Clone, Serialize)]
+pub struct Advice {
+    /// Name of the control that cuts without feedback.
+    pub control: &'static str,
+    /// Name of the planner that stands for it.
+    pub planner: &'static str,
+    /// Name of the controller.
+    pub controller: &'static str,
+    /// The tolerance, um.
+    pub tolerance_um: f64,
+    /// Least and largest programmed feedrate, mm/s.
+    pub programmed_mm_s: [f64; 2],
+    /// One for each of `WAYS`.
+    pub ways: Vec<WayAdvice>,
+    /// The stretches in the order of the program.
+    pub stretches: Vec<StretchAdvice>,
+    /// What the reader warned of.
+    #[serde(skip)]
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl Advice {
+    /// Whether any way holds the tolerance.
+    pub fn holds(&self) -> bool {
+        self.ways.iter().any(|way| way.whole.is_some())
+    }
+}
+
+impl AdviseJob {
+    /// Finds the feedrates.
+    ///
+    /// # Errors
+    /// A program with mistakes or without a feed motion, more axes than the machine has, or an end from outside.
+    pub fn run(&self, watch: &dyn Watch) -> Result<Advice, JobError> {
+        watch.begin("reading the program", 1);
+        let summary = feedwright_gcode::check(&self.part, self.reader.clone())?;
+        let axes = axes_that_move(&self.part, &summary, &self.machine)?;
+        self.target.suits(&self.machine)?;
+        let source = SourceProgram::read(&self.part, &self.reader, None)?;
+        let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
+        let found = match axes {
+            2 => self.of_axes::<2>(&source, watch),
+            _ => self.of_axes::<3>(&source, watch),
+        };
+        Ok(Advice { warnings, ..found? })
+    }
+
+    fn of_axes<const N: usize>(&self, source: &SourceProgram, watch: &dyn Watch) -> Result<Advice, JobError>
+    where
+        Entry: Make<N>,
+    {
+        let parts = parts(&source.steps);
+        let feeds: Vec<f64> = stretches(&parts).map(feed_mm_s).collect();
+        let largest_mm_s = feeds.iter().copied().fold(0.0, f64::max);
+        if largest_mm_s == 0.0 {
+            return Err(JobError::NothingToCut { part: self.part.clone() });
+        }
+        let mut steps = StageSteps::begin(watch, &format!("identifying for {}", self.controller.name));
+        let mut progress = |part: f64| steps.reach(part);
+        let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
+        let controller = Make::<N>::make(self.controller, &mut setup);
+        let mut bench = FeedBench::<N> {
+            machine: &self.machine,
+            target: self.target,
+            laps: self.controller.laps,
+            parts: &parts,
+            controller,
+            watch,
+        };
+        let most = (self.machine.limits.max_feed_mm_s / largest_mm_s).min(LARGEST);
+        let (mut ways, mut found) = (Vec::new(), Vec::new());
+        for way in WAYS {
+            let of_way = format!("cutting, {}", way.name(self.controller.name));
+            let mut search =
+                FeedSearch { bench: &mut bench, way, progress: StageSteps::begin(watch, &of_way), done: 0.0 };
+            let (advice, of_stretches) =
+                search.advice(most, self.tolerance_um).map_err(|error| JobError::of_run(&self.part, error))?;
+            ways.push(advice);
+            found.push(of_stretches);
+        }
+        let of_stretch = |(k, stretch): (usize, &SmoothStretch)| StretchAdvice {
+            lines: lines_of(stretch),
+            feed_mm_s: feeds[k],
+            holds_mm_s: [0, 1, 2].map(|way: usize| found[way][k].holds.map(|factor| factor * feeds[k])),
+            nearest: [0, 1, 2].map(|way: usize| found[way][k].nearest(feeds[k])),
+        };
+        let least_mm_s = stretches(&parts).flat_map(|stretch| &stretch.motions).map(|motion| motion.feed_mm_s);
+        Ok(Advice {
+            control: self.target.name,
+            planner: self.target.stages(&self.machine).planner.name,
+            controller: self.controller.name,
+            tolerance_um: self.tolerance_um,
+            programmed_mm_s: [least_mm_s.fold(f64::INFINITY, f64::min), largest_mm_s],
+            ways,
+            stretches: stretches(&parts).enumerate().map(of_stretch).collect(),
+            warnings: Vec::new(),
+        })
+    }
+}
+
+impl CutWay {
+    /// How it is called; a cut with a controller by the controller's name.
+    pub const fn name(self, controller: &'static str) -> &'static str {
+        match self {
+            Self::Uncorrected => "uncorrected",
+            Self::Corrected => "corrected",
+            Self::Controlled => controller,
+        }
+    }
+}
+
+/// Largest feedrate of a stretch, mm/s.
+fn feed_mm_s(stretch: &SmoothStretch) -> f64 {
+    stretch.motions.iter().map(|motion| motion.feed_mm_s).fold(0.0, f64::max)
+}
+
+impl NearestCut {
+    /// In words, with a sign for micrometres; `largest_mm_s` is the largest programmed feedrate.
+    pub fn sentence(&self, um: &str, largest_mm_s: f64) -> String {
+        let [first, last] = self.lines;
+        let place = match self.place {
+            ErrorPlace::Start => format!("where line {first} begins"),
+            ErrorPlace::End => format!("where line {last} ends"),
+            ErrorPlace::Way if first == last => format!("on line {first}"),
+            ErrorPlace::Way => format!("on lines {first} to {last}"),
+        };
+        let percent = |cut: &FeedCut| 100.0 * cut.factor.unwrap_or(1.0);
+        let nearest = format!("at no feed: {:.1} {um} at {:.0} %, {place}", self.cut.max_um, percent(&self.cut));
+        match &self.beside_ends {
+            Some(cut) => {
+                let mm_min = 0.6 * percent(cut) * largest_mm_s;
+                format!(
+                    "{nearest}; beside the ends of stretches at {:.0} %, {mm_min:.0} mm/min, in {:.3} s",
+                    percent(cut),
+                    cut.time_s
+                )
+            }
+            None => nearest,
+        }
+    }
+}
+
+impl StretchAdvice {
+    /// The feedrate that holds in one of [`WAYS`], mm/min: in brackets where it holds beside the ends of the stretch only.
+    pub fn cell(&self, way: usize) -> String {
+        let beside_ends = self.nearest[way].and_then(|nearest| nearest.beside_ends_mm_s);
+        match (self.holds_mm_s[way], beside_ends) {
+            (Some(mm_s), _) => format!("{:.0}", 60.0 * mm_s),
+            (None, Some(mm_s)) => format!("({:.0})", 60.0 * mm_s),
+            (None, None) => "-".to_owned(),
+        }
+    }
+
+    /// The error that no feedrate takes back, and where it is, with a sign for micrometres; none where each way holds at some feedrate.
+    pub fn remark(&self, um: &str) -> Option<String> {
+        let largest = self.nearest.iter().flatten().max_by(|a, b| a.max_um.total_cmp(&b.max_um))?;
+        let place = match largest.place {
+            ErrorPlace::Start => "start",
+            ErrorPlace::End => "end",
+            ErrorPlace::Way => "way",
+        };
+        Some(format!("{:.1} {um}, {place}", largest.max_um))
+    }
+}
+
+/// What brackets, dashes and the last column in the table of stretches mean.
+pub(crate) const STRETCH_LEGEND: &str = "in brackets: holds beside the ends of the stretch, where the tool comes from rest or goes there and is off by more at every feed that was cut (a \
+                                  corrected program goes there slowly); -: holds at no feed that was cut; left: the error that no feed takes back, at its start, \
+                                  its end, or on its way";
+
+/// First and last line of a stretch.
+fn lines_of(stretch: &SmoothStretch) -> [u32; 2] {
+    [0, stretch.motions.len() - 1].map(|n| stretch.motions[n].line)
+}
+
+/// The parts of a program with other feedrates in its stretches, up to what the machine can.
+fn with_factors(program: &[ProgramPart], factors: &[f64], most_mm_s: f64) -> Vec<ProgramPart> {
+    let mut factors = factors.iter();
+    let part = |part: &ProgramPart| match part {
+        ProgramPart::Kept(step) => ProgramPart::Kept(step.clone()),
+        ProgramPart::Stretch(stretch) => {
+            let factor = factors.next().copied().unwrap_or(1.0);
+            let motion =
+                |motion: &Motion| Motion { feed_mm_s: (factor * motion.feed_mm_s).min(most_mm_s), ..motion.clone() };
+            ProgramPart::Stretch(SmoothStretch {
+                motions: stretch.motions.iter().map(motion).collect(),
+                ..stretch.clone()
+            })
+        }
+    };
+    program.iter().map(part).collect()
+}
+
+/// The steps of parts as they are, each motion by the number of its stretch.
+fn canon_of(parts: &[ProgramPart]) -> Vec<Canon> {
+    super::stretches::assembled(parts, &vec![None; stretches(parts).count()], 0.0)
+}

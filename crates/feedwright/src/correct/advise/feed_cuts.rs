@@ -1,0 +1,163 @@
+//! A program at other feedrates, cut in one of the ways, stretch by stretch.
+
+use feedwright_control::Controller;
+use feedwright_plan::Step;
+use feedwright_plan::vector::norm;
+use feedwright_sim::{Machine, Outcome, Run, RunError, RunResult, Watch};
+use serde::Serialize;
+
+use super::{CutWay, FeedCut, canon_of, with_factors};
+use crate::correct::exported::{CutPhase, CutRow, CutRows, ExportedCut, waited};
+use crate::correct::nominal::deterministic;
+use crate::correct::rounds::{rounds, steps_of};
+use crate::correct::stretch_cut::{StretchCut, by_stretch};
+use crate::correct::stretches::{ProgramPart, assembled, stretches};
+use crate::correct::target::TargetControl;
+
+/// What cuts.
+pub(super) struct FeedBench<'a, const N: usize> {
+    pub(super) machine: &'a Machine,
+    pub(super) target: &'a TargetControl,
+    pub(super) laps: u32,
+    pub(super) parts: &'a [ProgramPart],
+    pub(super) controller: Box<dyn Controller<N>>,
+    pub(super) watch: &'a dyn Watch,
+}
+
+/// What a program comes to, over the cuts.
+#[derive(Debug, Clone)]
+pub(super) struct FeedErrors {
+    pub(super) time_s: f64,
+    rms_um: f64,
+    pub(super) max_um: f64,
+    /// Those of each stretch.
+    pub(super) stretches: Vec<StretchErrors>,
+}
+
+/// What a stretch comes to, over the cuts.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct StretchErrors {
+    pub(super) time_s: f64,
+    /// Its largest error, um, and where that is.
+    pub(super) max_um: f64,
+    pub(super) place: ErrorPlace,
+    /// The largest beside its ends, um.
+    pub(super) way_um: f64,
+}
+
+/// Where on a stretch an error is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ErrorPlace {
+    /// Where it begins: the tool has still to come to rest there.
+    Start,
+    /// Where the command does not come from rest, or go there.
+    Way,
+    /// Where it ends.
+    End,
+}
+
+/// Time constants of the position loop in which a tool settles at an end.
+const SETTLES_IN: f64 = 3.0;
+
+impl FeedErrors {
+    pub(super) const fn cut(&self, factor: Option<f64>) -> FeedCut {
+        FeedCut { factor, time_s: self.time_s, rms_um: self.rms_um, max_um: self.max_um }
+    }
+}
+
+/// Tells nothing of its own progress, and ends with the others.
+struct Silent<'a>(&'a dyn Watch);
+
+impl Watch for Silent<'_> {
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}
+
+impl<const N: usize> FeedBench<'_, N> {
+    /// Cuts the program with a factor on the feedrates of each stretch.
+    pub(super) fn cut(&mut self, way: CutWay, factors: &[f64]) -> Result<FeedErrors, RunError> {
+        let parts = with_factors(self.parts, factors, self.machine.limits.max_feed_mm_s);
+        let original = steps_of(&canon_of(&parts))?;
+        let silent = Silent(self.watch);
+        let stages = self.target.stages(self.machine);
+        let nominal = deterministic(self.machine);
+        let on = |machine| ExportedCut { machine, stages, original: &original, axes: N, watch: &silent };
+        let program = match way {
+            CutWay::Corrected => {
+                let found = rounds(&on(&nominal), &parts, self.target)?;
+                steps_of(&assembled(&parts, &found.commands, found.dwell_s))?
+            }
+            CutWay::Uncorrected | CutWay::Controlled => original.clone(),
+        };
+        let count = stretches(&parts).count();
+        let nothing = StretchErrors { time_s: 0.0, max_um: 0.0, place: ErrorPlace::Way, way_um: 0.0 };
+        let mut all = FeedErrors { time_s: 0.0, rms_um: 0.0, max_um: 0.0, stretches: vec![nothing; count] };
+        let phases = on(self.machine).phases();
+        for CutPhase { machine, wait_s } in &phases {
+            let (program, mut kept) = (waited(&program, *wait_s), CutRows::new(&original));
+            let run = match way {
+                CutWay::Controlled => self.controlled(machine, &program, &mut kept, &silent),
+                CutWay::Uncorrected | CutWay::Corrected => on(machine).cut(&program, &mut [&mut kept]),
+            };
+            let run = run.map_err(|error| kept.fault(error, machine.period.servo_s))?;
+            all.take(&run, &kept.rows, machine, *wait_s);
+            all.rms_um += mean_square_um2(&kept.rows) / phases.len() as f64;
+        }
+        all.rms_um = all.rms_um.sqrt();
+        Ok(all)
+    }
+
+    fn controlled(
+        &mut self,
+        machine: &Machine,
+        program: &[Step],
+        kept: &mut CutRows<'_>,
+        watch: &dyn Watch,
+    ) -> Result<RunResult, RunError> {
+        let steps = || Ok(Box::new(program.iter().cloned().map(Ok)) as _);
+        Run::on(machine).laps(self.laps).watched(watch).cut(steps, &mut *self.controller, &mut [kept])
+    }
+}
+
+/// Mean square of the errors where the program cuts, um2.
+fn mean_square_um2(rows: &[CutRow]) -> f64 {
+    let cutting = || rows.iter().filter(|row| row.cutting).map(|row| 1e3 * norm(row.error_mm));
+    cutting().map(|um| um * um).sum::<f64>() / (cutting().count().max(1) as f64)
+}
+
+impl FeedErrors {
+    /// Takes in a cut of several, all but its RMS.
+    fn take(&mut self, run: &RunResult, rows: &[CutRow], machine: &Machine, wait_s: f64) {
+        self.time_s = run.time_s - wait_s;
+        let cutting = rows.iter().filter(|row| row.cutting).map(|row| 1e3 * norm(row.error_mm));
+        self.max_um = cutting.fold(self.max_um, f64::max);
+        let servo_s = machine.period.servo_s;
+        let settles = (SETTLES_IN / machine.slowest_kp_1_s() / servo_s).ceil() as usize;
+        let by_stretch = by_stretch(rows, self.stretches.len());
+        for (stretch, cut) in self.stretches.iter_mut().zip(by_stretch) {
+            stretch.take(&cut, rows, settles);
+            stretch.time_s = f64::from(cut.periods) * servo_s;
+        }
+        if run.outcome != Outcome::Completed {
+            self.max_um = f64::INFINITY;
+        }
+    }
+}
+
+impl StretchErrors {
+    /// Takes in a cut of several; within so many rows of its ends the tool settles.
+    fn take(&mut self, cut: &StretchCut, rows: &[CutRow], settles: usize) {
+        let (from, to) = (cut.rows.start + settles, cut.rows.end.saturating_sub(settles));
+        let way = rows.get(from..to.max(from)).unwrap_or_default();
+        let way = way.iter().filter(|row| row.cutting).map(|row| 1e3 * norm(row.error_mm));
+        self.way_um = way.fold(self.way_um, f64::max);
+        if 1e3 * cut.max_mm > self.max_um {
+            self.max_um = 1e3 * cut.max_mm;
+            let early = cut.max_row < cut.rows.start + (cut.rows.len() / 2).min(settles);
+            let place = if cut.max_row >= to { ErrorPlace::End } else { ErrorPlace::Way };
+            self.place = if early { ErrorPlace::Start } else { place };
+        }
+    }
+}

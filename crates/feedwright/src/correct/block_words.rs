@@ -1,0 +1,131 @@
+//! Blocks of motions, in the words of a program.
+
+use std::fmt::Write;
+
+use feedwright_gcode::canon::{EventKind, Motion, MotionKind, Shape};
+use feedwright_gcode::{Dialect, ModesInForce};
+
+use super::target::TargetControl;
+
+/// Decimals of a feedrate in units a minute.
+const FEED_DECIMALS: usize = 2;
+
+/// Writes blocks at one place of a program.
+pub(super) struct BlockWords<'a> {
+    target: &'a TargetControl,
+    /// Modes that the blocks are written under; none is mm in machine coordinates.
+    modes: Option<&'a ModesInForce>,
+    feed: String,
+}
+
+/// A number without zeros at its end, but with a point: controls count in steps without it.
+fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = text.trim_end_matches('0');
+    let text = if text.ends_with('.') { format!("{text}0") } else { text.to_owned() };
+    if text == "-0.0" { "0.0".to_owned() } else { text }
+}
+
+impl<'a> BlockWords<'a> {
+    pub(super) const fn new(target: &'a TargetControl, modes: Option<&'a ModesInForce>) -> Self {
+        Self { target, modes, feed: String::new() }
+    }
+
+    fn unit_mm(&self) -> f64 {
+        self.modes.map_or(1.0, |modes| modes.unit_mm)
+    }
+
+    /// An inch is 25 mm: one decimal more, and then the step is smaller than asked for.
+    fn decimals(&self) -> usize {
+        self.target.decimals as usize + usize::from(self.unit_mm() > 1.0)
+    }
+
+    fn to_program(&self, machine_mm: [f64; 3]) -> [f64; 3] {
+        let program_mm = self.modes.map_or(machine_mm, |modes| modes.to_program(machine_mm));
+        program_mm.map(|value| value / self.unit_mm())
+    }
+
+    /// The block of a motion; none of one that no block of straight lines and arcs of the XY plane can say, empty where nothing moves.
+    pub(super) fn motion(&mut self, motion: &Motion) -> Option<String> {
+        if !motion.others.is_none() {
+            return None;
+        }
+        let decimals = self.decimals();
+        let (start, end) = (self.to_program(motion.start_mm), self.to_program(motion.end_mm));
+        let print = |value: f64| number(value, decimals);
+        let mut text = match (&motion.shape, motion.kind) {
+            (Shape::Line, MotionKind::Rapid) => "G0".to_owned(),
+            (Shape::Line, MotionKind::Feed) => "G1".to_owned(),
+            (Shape::Arc { plane: feedwright_gcode::canon::Plane::Xy, turns, .. }, _) if turns.abs() == 1 => {
+                if *turns > 0 { "G3".to_owned() } else { "G2".to_owned() }
+            }
+            _ => return None,
+        };
+        let is_arc = !matches!(motion.shape, Shape::Line);
+        for (axis, letter) in ['X', 'Y', 'Z'].into_iter().enumerate() {
+            if is_arc && axis < 2 || print(start[axis]) != print(end[axis]) {
+                let _ = write!(text, " {letter}{}", print(end[axis]));
+            }
+        }
+        if let Shape::Arc { center_mm, .. } = &motion.shape {
+            let center = self.to_program(*center_mm);
+            let _ = write!(text, " I{} J{}", print(center[0] - start[0]), print(center[1] - start[1]));
+        } else if !text.contains(' ') {
+            return Some(String::new());
+        }
+        if motion.kind == MotionKind::Feed {
+            let feed = feed_number(motion.feed_mm_s, self.unit_mm());
+            if feed != self.feed {
+                let _ = write!(text, " F{feed}");
+                self.feed = feed;
+            }
+        }
+        Some(text)
+    }
+}
+
+/// A feedrate in units a minute.
+pub(super) fn feed_number(feed_mm_s: f64, unit_mm: f64) -> String {
+    number(feed_mm_s * 60.0 / unit_mm, FEED_DECIMALS)
+}
+
+/// A rest of so long.
+pub(super) fn dwell(seconds: f64, dialect: Dialect) -> String {
+    if dialect.is_fanuc() { format!("G4 P{}", (seconds * 1e3).round()) } else { format!("G4 P{}", number(seconds, 4)) }
+}
+
+/// The block of an event; none of one that a block cannot say, empty where it needs none.
+pub(super) fn event(kind: &EventKind, dialect: Dialect) -> Option<String> {
+    Some(match kind {
+        EventKind::Dwell { seconds } => dwell(*seconds, dialect),
+        EventKind::SpindleSpeed { rpm } => format!("S{rpm}"),
+        EventKind::MCode { code: 2 | 30, .. } => String::new(),
+        EventKind::MCode { code, p, q } => {
+            let word =
+                |letter, value: &Option<f64>| value.map_or_else(String::new, |value| format!(" {letter}{value}"));
+            format!("M{code}{}{}", word('P', p), word('Q', q))
+        }
+        EventKind::ToolSelect { tool } => format!("T{tool}"),
+        EventKind::Message { text } => format!("(MSG, {})", text.replace(['(', ')', '\n', '\r'], " ")),
+        EventKind::ProgramEnd => "M2".to_owned(),
+        EventKind::SpindleSync { .. } | EventKind::Probe => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_keep_their_point_and_lose_their_zeros() {
+        assert_eq!(number(10.0, 5), "10.0");
+        assert_eq!(number(-0.000_001, 5), "0.0");
+        assert_eq!(number(1.25, 5), "1.25");
+    }
+
+    #[test]
+    fn a_dwell_is_in_the_unit_of_its_control() {
+        assert_eq!(dwell(0.057, Dialect::LinuxCnc), "G4 P0.057");
+        assert_eq!(dwell(0.057, Dialect::FanucMill), "G4 P57");
+    }
+}

@@ -1,0 +1,224 @@
+//! A program as the other control would cut it: planned as it plans, open loop, measured against the original.
+//!
+//! What disturbs has another phase, and noise other random numbers, each time a part is cut. So it is cut several times, with a rest before the start
+//! that is another part of a period of the disturbance, and with other seeds.
+
+use feedwright_control::OpenLoop;
+use feedwright_gcode::canon::{Event, EventKind};
+use feedwright_plan::vector::{Vector, sub};
+use feedwright_plan::{AlignedPaths, Step};
+use feedwright_sim::{Commanded, Machine, Outcome, Row, Run, RunError, RunResult, Sink, Stages, Watch};
+use serde::Serialize;
+
+use crate::report::Statistics;
+
+/// Cuts of a machine that disturbs or has noise.
+const CUTS: u32 = 4;
+
+/// What a program comes to, cut open loop.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct ExportedFigures {
+    /// Contour error against the original: quadratic mean of the RMS over the cuts, um.
+    pub rms_um: f64,
+    /// Largest contour error of all cuts, um.
+    pub max_um: f64,
+    /// Uncut path of the original, the largest of all cuts, um.
+    pub uncut_um: f64,
+    /// Machining time, s.
+    pub time_s: f64,
+    /// Motions of the program.
+    pub blocks: u64,
+    /// Whether the loop stayed stable.
+    pub completed: bool,
+    /// Number of the cut with the largest error.
+    #[serde(skip)]
+    worst_phase: usize,
+}
+
+/// What a servo period of a cut tells of the command and the error.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct CutRow {
+    pub(super) t_s: f64,
+    /// Line of the motion under way; 0 in a rest.
+    pub(super) line: u32,
+    /// What kind of motion the command is in.
+    pub(super) commanded: Commanded,
+    /// Whether the tool is where the program cuts.
+    pub(super) cutting: bool,
+    pub(super) cmd_mm: Vector,
+    /// From the tool to its foot; zero where it does not cut.
+    pub(super) error_mm: Vector,
+    /// The point of the original path that the command stands for.
+    pub(super) path_mm: Vector,
+    /// Feedrate that the original has there, mm/s.
+    pub(super) feed_mm_s: f64,
+}
+
+/// Rows that are kept of a cut, at the most: some 2 GB.
+const MOST_ROWS: usize = 10_000_000;
+
+/// Keeps the rows of a cut.
+pub(super) struct CutRows<'a> {
+    pub(super) rows: Vec<CutRow>,
+    original: &'a [Step],
+}
+
+impl<'a> CutRows<'a> {
+    pub(super) const fn new(original: &'a [Step]) -> Self {
+        Self { rows: Vec::new(), original }
+    }
+
+    /// What is wrong with a cut that could not be kept.
+    pub(super) fn fault(&self, error: RunError, servo_s: f64) -> RunError {
+        if self.rows.len() < MOST_ROWS {
+            return error;
+        }
+        RunError::TooLong { most_periods: MOST_ROWS, most_s: MOST_ROWS as f64 * servo_s }
+    }
+
+    /// Feedrate of the original at an arc length, where it cuts.
+    fn feed_mm_s(&self, s_mm: f64) -> Option<f64> {
+        let before = |step: &Step| if let Step::Piece(piece) = step { piece.s_mm <= s_mm } else { true };
+        // Events stand between pieces and do not disturb the order.
+        let mut index = self.original.partition_point(before);
+        while index > 0 {
+            index -= 1;
+            if let Step::Piece(piece) = &self.original[index] {
+                return piece.cutting.then_some(piece.feed_mm_s);
+            }
+        }
+        None
+    }
+}
+
+impl Sink for CutRows<'_> {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        if self.rows.len() >= MOST_ROWS {
+            return Err(std::io::ErrorKind::OutOfMemory.into());
+        }
+        let feed_mm_s = self.feed_mm_s(row.s_mm).or_else(|| self.rows.last().map(|last| last.feed_mm_s));
+        self.rows.push(CutRow {
+            t_s: row.t_s,
+            line: if row.commanded == Commanded::Rest { 0 } else { row.line },
+            commanded: row.commanded,
+            cutting: row.cutting,
+            cmd_mm: row.cmd_mm,
+            error_mm: if row.cutting { sub(row.foot_mm, row.act_mm) } else { [0.0; 3] },
+            path_mm: row.path_mm,
+            feed_mm_s: feed_mm_s.unwrap_or(0.0),
+        });
+        Ok(())
+    }
+}
+
+/// The machine of one cut, and how long it rests before.
+pub(super) struct CutPhase {
+    pub(super) machine: Machine,
+    pub(super) wait_s: f64,
+}
+
+/// A program behind a rest.
+pub(super) fn waited(program: &[Step], wait_s: f64) -> Vec<Step> {
+    let wait = Step::Event(Event { line: 0, kind: EventKind::Dwell { seconds: wait_s } });
+    std::iter::once(wait).chain(program.iter().cloned()).collect()
+}
+
+/// Motions of a path; an arc of more than half a turn counts as it is planned.
+fn path_steps(program: &[Step]) -> u64 {
+    program.iter().filter(|step| matches!(step, Step::Piece(_))).count() as u64
+}
+
+/// A program beside the original.
+pub struct ExportedCut<'a> {
+    /// The machine that cuts it.
+    pub machine: &'a Machine,
+    /// How the control plans.
+    pub stages: Stages,
+    /// The path that errors are measured to.
+    pub original: &'a [Step],
+    /// Axes that move, 2 or 3.
+    pub axes: usize,
+    /// Is told whether to go on.
+    pub watch: &'a dyn Watch,
+}
+
+impl ExportedCut<'_> {
+    /// What a program comes to, over several cuts.
+    ///
+    /// # Errors
+    /// A machine without sensible limits, or an end from outside.
+    pub fn figures(&self, program: &[Step]) -> Result<ExportedFigures, RunError> {
+        let mut figures =
+            ExportedFigures { completed: true, blocks: path_steps(program), ..ExportedFigures::default() };
+        let phases = self.phases();
+        let mut square_sum_um2 = 0.0;
+        for (phase, CutPhase { machine, wait_s }) in phases.iter().enumerate() {
+            let now = ExportedCut { machine, ..*self }.once(program, *wait_s)?;
+            square_sum_um2 += now.rms_um * now.rms_um;
+            if now.max_um > figures.max_um {
+                (figures.max_um, figures.worst_phase) = (now.max_um, phase);
+            }
+            figures.uncut_um = figures.uncut_um.max(now.uncut_um);
+            figures.completed &= now.completed;
+            figures.time_s = now.time_s;
+        }
+        figures.rms_um = (square_sum_um2 / phases.len() as f64).sqrt();
+        Ok(figures)
+    }
+
+    /// What differs from cut to cut.
+    pub(super) fn phases(&self) -> Vec<CutPhase> {
+        let disturbs = self.machine.axes.iter().any(|axis| axis.disturbance_nm > 0.0);
+        let cuts = if disturbs || self.machine.is_noisy() { CUTS } else { 1 };
+        let slowest_hz = self.machine.axes.iter().map(|axis| axis.disturbance_hz).fold(f64::INFINITY, f64::min);
+        let phase = |cut: u32| {
+            let part = f64::from(cut) / f64::from(cuts);
+            let wait_s = if disturbs && slowest_hz > 0.0 { part / slowest_hz } else { 0.0 };
+            CutPhase { machine: self.machine.with_noise_seed(self.machine.noise.seed.wrapping_add(cut.into())), wait_s }
+        };
+        (0..cuts).map(phase).collect()
+    }
+
+    /// The cut of a program that has the largest error of all that its figures are of.
+    pub(crate) fn worst(
+        &self,
+        program: &[Step],
+        figures: &ExportedFigures,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        match self.phases().get(figures.worst_phase) {
+            Some(CutPhase { machine, wait_s }) => {
+                ExportedCut { machine, ..*self }.cut(&waited(program, *wait_s), sinks)
+            }
+            None => self.cut(program, sinks),
+        }
+    }
+
+    /// What one cut comes to, after a rest; its time is that without the rest.
+    ///
+    /// # Errors
+    /// As [`ExportedCut::figures`].
+    pub fn once(&self, program: &[Step], wait_s: f64) -> Result<ExportedFigures, RunError> {
+        let mut statistics = Statistics::new();
+        let run = self.cut(&waited(program, wait_s), &mut [&mut statistics])?;
+        Ok(ExportedFigures {
+            rms_um: statistics.rms_um(),
+            max_um: statistics.max_um(),
+            uncut_um: run.uncut_mm * 1e3,
+            time_s: run.time_s - wait_s,
+            blocks: path_steps(program),
+            completed: run.outcome == Outcome::Completed,
+            worst_phase: 0,
+        })
+    }
+
+    /// Cuts a program once; the rows go to sinks.
+    pub(super) fn cut(&self, program: &[Step], sinks: &mut [&mut dyn Sink]) -> Result<RunResult, RunError> {
+        let aligned = AlignedPaths::new(self.original, program);
+        let run = Run::on(self.machine).stages(self.stages).watched(self.watch);
+        match self.axes {
+            2 => run.cut_aligned::<2>(&aligned, &mut OpenLoop, sinks),
+            _ => run.cut_aligned::<3>(&aligned, &mut OpenLoop, sinks),
+        }
+    }
+}

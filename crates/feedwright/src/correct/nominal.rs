@@ -1,0 +1,49 @@
+//! The machine of which a correction is computed: what repeats from cut to cut and may be known.
+//!
+//! Loops, masses, friction and the ball screw stay. What is random, or has a phase or a place that nobody knows, is left out: the
+//! disturbance, noise and steps of the encoder, jitter, cogging, ripple and the geometry that no encoder sees. One phase of them in the program
+//! would be an error of its own in the next cut.
+
+use feedwright_sim::{Axis, Machine, Noise, Squareness};
+
+/// The machine without what does not repeat or is not known.
+pub fn deterministic(machine: &Machine) -> Machine {
+    let axis = |axis: &Axis| Axis {
+        disturbance_nm: 0.0,
+        disturbance_wander: 0.0,
+        torque_noise_nm: 0.0,
+        torque_bits: None,
+        encoder_step_um: 0.0,
+        encoder_noise_um: 0.0,
+        interpolation_error_um: 0.0,
+        jitter_s: 0.0,
+        cogging_nm: 0.0,
+        ripple: 0.0,
+        scale_um_m: 0.0,
+        pitch_error_um: 0.0,
+        ..*axis
+    };
+    Machine {
+        axes: machine.axes.iter().map(axis).collect(),
+        geometry: Squareness::default(),
+        noise: Noise::default(),
+        ..machine.clone()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_random_and_no_geometry_is_left_and_friction_is() {
+        let machine = Machine::load("workshop".as_ref()).expect("built in");
+        let nominal = deterministic(&machine);
+        assert!(machine.is_noisy() && !nominal.is_noisy());
+        assert_eq!(nominal.geometry, Squareness::default());
+        for (was, is) in machine.axes.iter().zip(&nominal.axes) {
+            assert_eq!((is.parameters(), is.drive(), is.friction()), (was.parameters(), was.drive(), was.friction()));
+            assert_eq!((is.disturbance_nm, is.scale_um_m, is.cogging_nm), (0.0, 0.0, 0.0));
+        }
+    }
+}

@@ -1,0 +1,253 @@
+//! The text of a corrected program.
+//!
+//! Where every line of the original is carried out once and in its order, all lines stay but those of the stretches that have another
+//! command: comments, cycles, rapids, tool changes and line numbers are the original's, and new blocks are written in the coordinates,
+//! the unit and the modes of their place. Otherwise (loops, subroutines, jumps) the program is [expanded](super::expanded_text). What is written is
+//! read again by [`super::verified`].
+
+use std::collections::BTreeMap;
+
+use feedwright_gcode::ModesInForce;
+use feedwright_gcode::canon::{Canon, Corner, Motion, MotionKind, Plane, Shape};
+
+use super::block_words::{BlockWords, dwell, feed_number};
+use super::source::SourceProgram;
+use super::source_line::{PartedLine, has_macros, with_feed, with_word};
+use super::stretches::{ProgramPart, StretchCommand, dwells, stretches};
+use super::target::TargetControl;
+
+/// What the text is made of.
+pub(super) struct TextParts<'a> {
+    pub(super) source: &'a SourceProgram,
+    pub(super) parts: &'a [ProgramPart],
+    pub(super) commands: &'a [StretchCommand],
+    pub(super) dwell_s: f64,
+    pub(super) target: &'a TargetControl,
+    /// What the program says of itself.
+    pub(super) notes: &'a [String],
+}
+
+/// What happens to lines of the original.
+#[derive(Debug, Default)]
+struct LineEdit {
+    /// Last line that is replaced; before the first where lines are only put in front.
+    to: usize,
+    text: Vec<String>,
+}
+
+/// Words that the next line that moves has to say itself, since a line that said them has been replaced.
+#[derive(Debug, Default)]
+struct NeededWords {
+    code: bool,
+    feed: bool,
+}
+
+pub(super) fn line_of(step: &Canon) -> usize {
+    match step {
+        Canon::Motion(motion) => motion.line as usize,
+        Canon::Event(event) => event.line as usize,
+    }
+}
+
+impl TextParts<'_> {
+    /// The original with new blocks in place of those that have another command; none where its lines are not carried out in their order, the control
+    /// does not run its macros, or a line that is to be replaced cannot be taken apart.
+    pub(super) fn kept(&self) -> Option<String> {
+        let steps = &self.source.steps;
+        let runs =
+            self.target.runs_macros_of(self.source.dialect) || !self.source.lines.iter().any(|line| has_macros(line));
+        if !runs || !steps.is_sorted_by_key(line_of) {
+            return None;
+        }
+        let mut edits: BTreeMap<usize, LineEdit> = BTreeMap::new();
+        for (number, stretch) in stretches(self.parts).enumerate() {
+            let [before, _] = dwells(self.parts, self.commands, number, self.dwell_s);
+            let from = line_of(&steps[stretch.steps[0]]);
+            if let Some(command) = &self.commands[number] {
+                if let (Some(approach), Some((step, _))) = (&command.approach, &stretch.rapid) {
+                    edits.insert(line_of(&steps[*step]), self.replaced([*step; 2], approach, [None; 2])?);
+                }
+                let rests = dwells(self.parts, self.commands, number, self.dwell_s);
+                edits.insert(from, self.replaced(stretch.steps, &command.motions, rests)?);
+            } else if let Some(seconds) = before {
+                let text = vec![dwell(seconds, self.source.dialect)];
+                edits.insert(from, LineEdit { to: from - 1, text });
+            }
+        }
+        let mut text = Vec::new();
+        let mut next = 1;
+        let mut needs = NeededWords::default();
+        for (from, edit) in edits {
+            if from < next {
+                return None;
+            }
+            self.copy(next..from, &mut needs, &mut text)?;
+            text.extend(edit.text);
+            next = edit.to + 1;
+            if edit.to >= from {
+                needs = NeededWords { code: true, feed: true };
+            }
+        }
+        self.copy(next..self.source.lines.len() + 1, &mut needs, &mut text)?;
+        self.put_notes(&mut text);
+        Some(joined(&text))
+    }
+
+    /// Lines as they are; the first that moves gets its code, and its feedrate, where the one that said it has gone.
+    fn copy(&self, lines: std::ops::Range<usize>, needs: &mut NeededWords, text: &mut Vec<String>) -> Option<()> {
+        for number in lines {
+            let mut copied = self.source.lines.get(number - 1)?.clone();
+            if let Some(feed_mm_s) = self.source.feed_mm_s {
+                copied = with_feed(&copied, &self.feed(feed_mm_s, number));
+            }
+            if needs.code
+                && let Some(parsed) = PartedLine::parse(&copied)
+            {
+                if parsed.has_code() {
+                    needs.code = false;
+                } else if parsed.has("XYZIJK") {
+                    copied = self.with_code(number, &copied)?;
+                    needs.code = false;
+                }
+            }
+            if needs.feed
+                && let Some(parsed) = PartedLine::parse(&copied)
+            {
+                if parsed.has("F") {
+                    needs.feed = false;
+                } else if let Some(feed_mm_s) = self.feed_of(number) {
+                    copied = with_word(&copied, &format!("F{}", self.feed(feed_mm_s, number)));
+                    needs.feed = false;
+                }
+            }
+            text.push(copied);
+        }
+        Some(())
+    }
+
+    /// Feedrate of the feed motion that a line makes.
+    fn feed_of(&self, line: usize) -> Option<f64> {
+        let steps = &self.source.steps;
+        let of_line = &steps[steps.partition_point(|step| line_of(step) < line)..];
+        of_line.iter().take_while(|step| line_of(step) == line).find_map(|step| match step {
+            Canon::Motion(motion) if motion.kind == MotionKind::Feed => Some(motion.feed_mm_s),
+            _ => None,
+        })
+    }
+
+    /// A feedrate as an F word of a line says it.
+    fn feed(&self, feed_mm_s: f64, line: usize) -> String {
+        let steps = &self.source.steps;
+        let step = steps.partition_point(|step| line_of(step) < line).min(steps.len().saturating_sub(1));
+        feed_number(feed_mm_s, self.source.modes(step).unit_mm)
+    }
+
+    /// A line that moves by the code of a line before, with that code.
+    fn with_code(&self, number: usize, line: &str) -> Option<String> {
+        let moves = |step: &&Canon| matches!(step, Canon::Motion(_)) && line_of(step) == number;
+        let Some(Canon::Motion(motion)) = self.source.steps.iter().find(moves) else { return Some(line.to_owned()) };
+        let code = match (&motion.shape, motion.kind) {
+            (Shape::Line, MotionKind::Rapid) => "G0",
+            (Shape::Line, MotionKind::Feed) => "G1",
+            (Shape::Arc { turns, .. }, _) if *turns > 0 => "G3",
+            (Shape::Arc { .. }, _) => "G2",
+            (Shape::Spline(_), _) => return None,
+        };
+        let body = line.trim_start();
+        let is_number = body.starts_with(['N', 'n']);
+        let end =
+            if is_number { body[1..].find(|c: char| !c.is_ascii_digit()).map_or(body.len(), |k| k + 1) } else { 0 };
+        Some(format!("{}{}{code} {}", &body[..end], if end > 0 { " " } else { "" }, body[end..].trim_start()))
+    }
+
+    /// New blocks for the lines of some steps, with rests before and behind.
+    fn replaced(&self, [first, last]: [usize; 2], command: &[Motion], rests: [Option<f64>; 2]) -> Option<LineEdit> {
+        let steps = &self.source.steps;
+        let (from, to) = (line_of(&steps[first]), line_of(&steps[last]));
+        let (modes, at_end) = (self.source.modes(first), self.source.modes(last));
+        let as_first = modes == at_end && !self.source.sets_offsets_within([first, last]);
+        if !as_first || modes.changes_coordinates || !modes.feed_per_minute {
+            return None;
+        }
+        let (mut before, mut behind) = (Vec::new(), Vec::new());
+        for line in from..=to {
+            let parsed = PartedLine::parse(self.source.lines.get(line - 1)?)?;
+            before.extend(parsed.comments.iter().cloned());
+            let rest = parsed.without_motion();
+            if rest.is_empty() || line > from && !parsed.has("MST") {
+                continue;
+            }
+            let early = steps[..first].iter().rev().take_while(|step| line_of(step) >= line).count();
+            let late = steps[last + 1..].iter().take_while(|step| line_of(step) <= line).count();
+            match (early, late) {
+                (_, 0) => before.push(rest),
+                (0, _) => behind.push(rest),
+                _ => return None,
+            }
+        }
+        let [rests_before, rests_behind] = rests;
+        let rest = |seconds: f64| dwell(seconds, self.source.dialect);
+        let mut text = before;
+        text.extend(rests_before.map(rest));
+        let [enter, leave] = around(modes, command);
+        text.extend(enter);
+        let mut words = BlockWords::new(self.target, Some(modes));
+        for motion in command {
+            text.push(words.motion(motion)?);
+        }
+        text.extend(leave);
+        text.extend(rests_behind.map(rest));
+        text.extend(behind);
+        text.retain(|line| !line.is_empty());
+        Some(LineEdit { to, text })
+    }
+
+    /// Notes as comments behind `%` and the program's number.
+    pub(super) fn put_notes(&self, text: &mut Vec<String>) {
+        let head = |line: &&String| {
+            let line = line.trim_start();
+            line.is_empty() || line.starts_with('%') || line.starts_with(['O', 'o']) && !line.contains(' ')
+        };
+        let at = text.iter().take_while(head).count();
+        let notes = self.notes.iter().map(|note| format!("({})", note.replace(['(', ')'], " ")));
+        text.splice(at..at, notes);
+    }
+}
+
+pub(super) fn joined(lines: &[String]) -> String {
+    lines.iter().map(|line| format!("{line}\n")).collect()
+}
+
+pub(super) fn corner_words(corner: Corner) -> String {
+    match corner {
+        Corner::ExactStop => "G61.1".to_owned(),
+        Corner::ExactPath => "G61".to_owned(),
+        Corner::Continuous { tolerance_mm: None, .. } => "G64".to_owned(),
+        Corner::Continuous { tolerance_mm: Some(tolerance_mm), merge_mm: None } => format!("G64 P{tolerance_mm}"),
+        Corner::Continuous { tolerance_mm: Some(tolerance_mm), merge_mm: Some(merge_mm) } => {
+            format!("G64 P{tolerance_mm} Q{merge_mm}")
+        }
+    }
+}
+
+/// Codes that put modes in force which blocks need, and those that take them back.
+fn around(modes: &ModesInForce, command: &[Motion]) -> [Option<String>; 2] {
+    let (mut enter, mut leave) = (Vec::new(), Vec::new());
+    let mut need = |needed: bool, on: String, off: String| {
+        if needed {
+            enter.push(on);
+            leave.push(off);
+        }
+    };
+    let plane = match modes.plane {
+        Plane::Xy => "G17",
+        Plane::Zx => "G18",
+        Plane::Yz => "G19",
+    };
+    need(modes.incremental, "G90".to_owned(), "G91".to_owned());
+    need(modes.arc_absolute, "G91.1".to_owned(), "G90.1".to_owned());
+    need(modes.plane != Plane::Xy, "G17".to_owned(), plane.to_owned());
+    let other = command.first().map(|motion| motion.corner).filter(|corner| *corner != modes.corner);
+    need(other.is_some(), other.map_or_else(String::new, corner_words), corner_words(modes.corner));
+    [enter, leave].map(|words| (!words.is_empty()).then(|| words.join(" ")))
+}

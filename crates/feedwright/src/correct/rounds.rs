@@ -1,0 +1,311 @@
+//! Rounds: cut, change the command where the tool was off, fit blocks to it, cut again.
+//!
+//! Each stretch is judged by itself: the tool rests at its ends, so that it does not see the others. The best command of each is kept, and a
+//! stretch whose command gets no better is left alone. One that is cut within [`GOOD_MM`] from the start stays as it is programmed.
+
+use std::iter;
+
+use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Shape};
+use feedwright_plan::{PathError, Pieces, Step};
+use feedwright_sim::{Machine, RunError, StageSteps};
+
+use super::arc_fit::{ArcFit, FitMotion, FitPoint};
+use super::budget::{StretchBudget, StretchCost, details_to_give_up};
+use super::command_update::{UpdateSettings, new_command};
+use super::exported::{CutRow, CutRows, ExportedCut};
+use super::loop_lag::{LoopLag, loop_lags};
+use super::slow_end::{SlowEnd, slow_approach, slow_end, slow_last};
+use super::stretch_cut::{StretchCut, by_stretch, overshoot_mm, rapid_overshoot_mm};
+use super::stretches::{NewMotions, ProgramPart, SmoothStretch, StretchCommand, assembled, rest_s, stretches};
+use super::target::TargetControl;
+
+/// Cuts at the most, and those without a gain after which a stretch is left alone.
+const ROUNDS: u32 = 10;
+const NO_GAIN: u32 = 3;
+/// Cuts at the most in which commands are given up that are worse together.
+const CHECKS: u32 = 4;
+/// A gain of less than this part is none.
+const LEAST_GAIN: f64 = 0.02;
+/// A stretch whose largest error is less stays as it is, mm: what blocks that fit a command miss it by.
+const GOOD_MM: f64 = 1e-3;
+/// Distance of blocks from the command, mm: the finest at which they are few enough, from this part of the RMS error that they are to correct and
+/// no less than this and a printed step, in steps of this factor.
+const FIT_SHARE: f64 = 0.04;
+const FINEST_MM: f64 = 1e-4;
+const COARSER: f64 = 1.25;
+/// Where no such distance is left, mm, and whether blocks may be many.
+const TOLERANCES_MM: [(f64, bool); 4] = [(1e-3, false), (2e-3, false), (1e-3, true), (4e-3, true)];
+/// Standard deviations of the Gaussians over errors and over the command, time constants of the position loop.
+const SMOOTHING: f64 = 0.15;
+const COMMAND_SMOOTHING: f64 = 0.4;
+/// Time in which a change fades at the ends of a stretch, s.
+const FADE_S: f64 = 0.01;
+/// Least distance of points that blocks are fitted to, mm.
+const LEAST_MM: f64 = 0.005;
+/// A tool that runs over the end of a stretch, or of the rapid to it, by more goes there slowly, mm.
+const OVERSHOOT_MM: f64 = 2e-3;
+/// A dwell is three lags of the loop and five of its time constants, within these bounds, s.
+const DWELL_TIME_CONSTANTS: f64 = 5.0;
+const DWELL_LAGS: f64 = 3.0;
+const DWELL_S: [f64; 2] = [0.03, 0.06];
+
+/// What the rounds have come to.
+pub(super) struct RoundsResult {
+    /// A command for each stretch.
+    pub(super) commands: Vec<StretchCommand>,
+    /// How long the tool rests where it has to come to rest, s.
+    pub(super) dwell_s: f64,
+    /// Cuts that were simulated.
+    pub(super) rounds: u32,
+}
+
+/// A stretch under way.
+struct StretchRounds {
+    current: StretchCommand,
+    best: StretchCommand,
+    /// Figure and time, s, of the best; those of the programmed command first.
+    best_mm: f64,
+    best_s: f64,
+    budget: StretchBudget,
+    programmed_max_mm: f64,
+    /// Distance of blocks from the command that is small beside what they are to correct, mm.
+    tolerance_mm: f64,
+    /// Sum of the squares of its errors, of the programmed command and of the best, mm2.
+    square_sums_mm2: [f64; 2],
+    since: u32,
+    slow_end: Option<SlowEnd>,
+    slow_rapid: Option<SlowEnd>,
+    done: bool,
+}
+
+/// The path of canonical steps.
+pub(super) fn steps_of(program: &[Canon]) -> Result<Vec<Step>, PathError> {
+    Pieces::new(program.iter().cloned()).collect()
+}
+
+/// Finds commands for the stretches of a program, on the machine of `cut`.
+pub(super) fn rounds(
+    cut: &ExportedCut<'_>,
+    parts: &[ProgramPart],
+    target: &TargetControl,
+) -> Result<RoundsResult, RunError> {
+    let lags: Vec<LoopLag> = match cut.axes {
+        2 => loop_lags::<2>(cut.machine).to_vec(),
+        _ => loop_lags::<3>(cut.machine).to_vec(),
+    };
+    let slowest_s = lags.iter().map(|lag| lag.first_s).fold(0.0, f64::max);
+    let settles_s = DWELL_TIME_CONSTANTS / cut.machine.slowest_kp_1_s();
+    let dwell_s = (DWELL_LAGS * slowest_s).max(settles_s).clamp(DWELL_S[0], DWELL_S[1]);
+    let dwell_s = (1e3 * dwell_s).round() / 1e3;
+    let settings = settings(cut.machine);
+    let mut progress = StageSteps::begin(cut.watch, "correcting");
+    let bench = RoundsBench { cut, parts, target, lags, settings, dwell_s, count: stretches(parts).count() };
+    let (cuts, rows) = bench.cut(&vec![None; bench.count])?;
+    let mut under_way: Vec<StretchRounds> =
+        stretches(parts).zip(&cuts).map(|(stretch, cut)| bench.begun(stretch, cut, &rows)).collect();
+    let mut round = 1;
+    while round <= ROUNDS && under_way.iter().any(|stretch| !stretch.done) {
+        let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.current.clone()).collect();
+        let (cuts, rows) = bench.cut(&commands)?;
+        for (stretch, cut) in under_way.iter_mut().zip(&cuts) {
+            stretch.judge(cut, settings.servo_s, dwell_s);
+        }
+        bench.update(&mut under_way, &cuts, &rows);
+        round += 1;
+        progress.reach(f64::from(round) / f64::from(ROUNDS + CHECKS));
+    }
+    bench.give_up_details(&mut under_way);
+    let checks = bench.give_up_what_is_worse(&mut under_way)?;
+    let commands = under_way.into_iter().map(|stretch| stretch.best).collect();
+    Ok(RoundsResult { commands, dwell_s, rounds: round + checks })
+}
+
+/// What every round needs.
+struct RoundsBench<'a> {
+    cut: &'a ExportedCut<'a>,
+    parts: &'a [ProgramPart],
+    target: &'a TargetControl,
+    lags: Vec<LoopLag>,
+    settings: UpdateSettings,
+    dwell_s: f64,
+    count: usize,
+}
+
+impl RoundsBench<'_> {
+    /// What every stretch comes to, and the rows.
+    fn cut(&self, commands: &[StretchCommand]) -> Result<(Vec<StretchCut>, Vec<CutRow>), RunError> {
+        let steps = steps_of(&assembled(self.parts, commands, self.dwell_s))?;
+        let mut kept = CutRows::new(self.cut.original);
+        let cut = self.cut.cut(&steps, &mut [&mut kept]).map(|_| ());
+        cut.map_err(|error| kept.fault(error, self.settings.servo_s))?;
+        Ok((by_stretch(&kept.rows, self.count), kept.rows))
+    }
+
+    /// From the cut of the program as it is.
+    fn begun(&self, stretch: &SmoothStretch, cut: &StretchCut, rows: &[CutRow]) -> StretchRounds {
+        let servo_s = self.settings.servo_s;
+        let overruns = rapid_overshoot_mm(rows, cut, stretch, servo_s) > OVERSHOOT_MM;
+        let slow_rapid = overruns.then(|| slow_end(self.cut.machine));
+        let approach = slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
+        let done = cut.max_mm < GOOD_MM || cut.rows.is_empty();
+        let time_s = f64::from(cut.periods) * servo_s;
+        let finest_mm = (1.0 / self.target.steps_per_mm()).clamp(FINEST_MM, TOLERANCES_MM[0].0);
+        let programmed = NewMotions { motions: stretch.motions.clone(), approach, settles: false };
+        StretchRounds {
+            current: (!done).then_some(programmed),
+            best: None,
+            best_mm: cut.figure_mm(),
+            best_s: time_s,
+            budget: StretchBudget {
+                time_s,
+                blocks: stretch.motions.len(),
+                lines: stretch.motions.iter().filter(|motion| motion.shape == Shape::Line).count(),
+                loop_s: 1.0 / self.cut.machine.slowest_kp_1_s(),
+            },
+            programmed_max_mm: cut.max_mm,
+            tolerance_mm: (FIT_SHARE * cut.rms_mm()).clamp(finest_mm, TOLERANCES_MM[0].0),
+            square_sums_mm2: [cut.square_sum_mm2; 2],
+            since: 0,
+            slow_end: None,
+            slow_rapid,
+            done,
+        }
+    }
+
+    /// New commands for those that are not done.
+    fn update(&self, under_way: &mut [StretchRounds], cuts: &[StretchCut], rows: &[CutRow]) {
+        let (settings, slow_end) = (&self.settings, slow_end(self.cut.machine));
+        for ((state, stretch), cut) in under_way.iter_mut().zip(stretches(self.parts)).zip(cuts) {
+            if state.done {
+                continue;
+            }
+            if overshoot_mm(rows, cut, stretch, settings.servo_s) > OVERSHOOT_MM {
+                state.slow_end = Some(state.slow_end.map_or(slow_end, SlowEnd::slower));
+            }
+            if rapid_overshoot_mm(rows, cut, stretch, settings.servo_s) > OVERSHOOT_MM {
+                state.slow_rapid = Some(state.slow_rapid.map_or(slow_end, SlowEnd::slower));
+            }
+            let points = new_command(rows, cut.rows.clone(), &self.lags, stretch, settings, state.slow_end);
+            let fitted = points.and_then(|points| state.fitted(&points, self.target.steps_per_mm()));
+            let fitted: Option<Vec<Motion>> = fitted
+                .map(|motions| motions.into_iter().map(|motion| as_motion(motion, stretch, self.target)).collect())
+                .or_else(|| slow_last(&stretch.motions, state.slow_end?, self.target));
+            match fitted {
+                Some(motions) => {
+                    let approach = state.slow_rapid.and_then(|slow| slow_approach(stretch, slow, self.target));
+                    state.current = Some(NewMotions { motions, approach, settles: state.slow_end.is_some() });
+                }
+                None => state.finish(),
+            }
+        }
+    }
+
+    /// Takes details back to what they were until the program has few enough blocks and is fast enough.
+    fn give_up_details(&self, under_way: &mut [StretchRounds]) {
+        let dwell_s = self.dwell_s;
+        let kept = |part: &&ProgramPart| matches!(part, ProgramPart::Kept(Canon::Motion(_)));
+        let costs: Vec<StretchCost> = under_way.iter().map(|stretch| stretch.cost(dwell_s)).collect();
+        for k in details_to_give_up(&costs, self.parts.iter().filter(kept).count(), dwell_s) {
+            under_way[k].best = None;
+        }
+    }
+
+    /// Cuts the best of all together: where the tool does not come to rest between them, they are not what they were each by itself. How often
+    /// it was cut.
+    fn give_up_what_is_worse(&self, under_way: &mut [StretchRounds]) -> Result<u32, RunError> {
+        for check in 1..=CHECKS {
+            let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.best.clone()).collect();
+            let (cuts, _) = self.cut(&commands)?;
+            let mut worse = Vec::new();
+            for (k, (stretch, cut)) in under_way.iter().zip(&cuts).enumerate() {
+                if cut.max_mm > stretch.programmed_max_mm + GOOD_MM {
+                    worse.push(k);
+                }
+            }
+            if worse.is_empty() {
+                return Ok(check);
+            }
+            for k in worse {
+                // What a stretch is off at its start may be that of the one before.
+                let culprit = if under_way[k].best.is_some() || k == 0 { k } else { k - 1 };
+                under_way[culprit].best = None;
+            }
+        }
+        Ok(CHECKS)
+    }
+}
+
+fn settings(machine: &Machine) -> UpdateSettings {
+    let slowest_s = 1.0 / machine.slowest_kp_1_s();
+    UpdateSettings {
+        smoothing_s: SMOOTHING * slowest_s,
+        command_smoothing_s: COMMAND_SMOOTHING * slowest_s,
+        fade_s: FADE_S,
+        least_mm: LEAST_MM,
+        most_mm: machine.limits.max_deviation_mm,
+        servo_s: machine.period.servo_s,
+    }
+}
+
+impl StretchRounds {
+    /// What its best command costs and gains.
+    fn cost(&self, dwell_s: f64) -> StretchCost {
+        let Self { best, budget, .. } = self;
+        let Some(best) = best else { return StretchCost { budget: *budget, blocks: 0.0, time_s: 0.0, gain_mm2: None } };
+        StretchCost {
+            budget: *budget,
+            blocks: best.motions.len() as f64 - budget.blocks as f64 + 1.0,
+            time_s: self.best_s - budget.time_s + rest_s(best.settles, dwell_s),
+            gain_mm2: Some(self.square_sums_mm2[0] - self.square_sums_mm2[1]),
+        }
+    }
+
+    /// Takes in how its command was cut.
+    fn judge(&mut self, cut: &StretchCut, servo_s: f64, dwell_s: f64) {
+        if self.done {
+            return;
+        }
+        let (figure_mm, time_s) = (cut.figure_mm(), f64::from(cut.periods) * servo_s);
+        let slow_s = self.slow_end.map_or(0.0, |slow| slow.length_mm / slow.speed_mm_s);
+        let most_s = self.budget.most_s(dwell_s) + slow_s;
+        let better = figure_mm < self.best_mm && time_s < most_s;
+        self.since = if better && figure_mm < (1.0 - LEAST_GAIN) * self.best_mm { 0 } else { self.since + 1 };
+        if better {
+            (self.best, self.best_mm, self.best_s) = (self.current.clone(), figure_mm, time_s);
+            self.square_sums_mm2[1] = cut.square_sum_mm2;
+        }
+        if self.since >= NO_GAIN {
+            self.finish();
+        }
+    }
+
+    /// Blocks along the points of a command, as fine as they may be; none where they would be too many.
+    fn fitted(&self, points: &[FitPoint], steps_per_mm: f64) -> Option<Vec<FitMotion>> {
+        let fine = iter::successors(Some(self.tolerance_mm), |mm| Some(COARSER * mm));
+        let fine = fine.take_while(|&mm| mm < TOLERANCES_MM[0].0).map(|mm| (mm, self.budget.most_fine_blocks()));
+        let [few, most] = self.budget.most_blocks();
+        let coarse = TOLERANCES_MM.map(|(mm, many)| (mm, if many { most } else { few }));
+        fine.chain(coarse).find_map(|(tolerance_mm, most)| {
+            let motions = ArcFit::new(points, tolerance_mm, steps_per_mm).motions();
+            (!motions.is_empty() && motions.len() as f64 <= most).then_some(motions)
+        })
+    }
+
+    fn finish(&mut self) {
+        self.done = true;
+        self.current.clone_from(&self.best);
+    }
+}
+
+fn as_motion(fitted: FitMotion, stretch: &SmoothStretch, target: &TargetControl) -> Motion {
+    let FitMotion { start_mm, end_mm, shape, feed_mm_s } = fitted;
+    let first = &stretch.motions[0];
+    let corner = match (target.corner, first.corner) {
+        (Some(corner), _) => corner,
+        (None, Corner::Continuous { .. }) => first.corner,
+        (None, Corner::ExactStop | Corner::ExactPath) => Corner::Continuous { tolerance_mm: None, merge_mm: None },
+    };
+    let feed_mm_s = if feed_mm_s > 0.0 { feed_mm_s } else { first.feed_mm_s };
+    let others = AuxiliaryAxes::default();
+    Motion { line: first.line, kind: MotionKind::Feed, start_mm, end_mm, shape, feed_mm_s, corner, others }
+}

@@ -1,0 +1,86 @@
+//! Slow ways to where a tool would run over the end: of a stretch, and of the rapid that leads to one.
+//!
+//! A drive with feedforward runs over by `a (T1^2 - T2)` where the command decelerates at `a` until it rests. No geometry takes that back; a last piece
+//! at a speed from which it brakes in a fraction of the loop's time constant does. Where that is not slow enough, it is halved from round to round.
+
+use feedwright_gcode::canon::{Motion, MotionKind, Shape};
+use feedwright_plan::vector::{add_scaled, distance, norm, sub};
+use feedwright_sim::Machine;
+
+use super::arc_fit::FitPoint;
+use super::stretches::SmoothStretch;
+use super::target::TargetControl;
+
+/// A straight motion is slowed down before its end where it is longer than what is slow by this factor.
+const LEAST_WAY: f64 = 4.0;
+/// Time constants of the loop in which it brakes from there, and that the slow way takes.
+const BRAKES_IN: f64 = 0.25;
+const SETTLES_IN: f64 = 2.0;
+
+/// A slow way to an end that the tool would run over.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct SlowEnd {
+    /// Speed of the last piece, mm/s.
+    pub(super) speed_mm_s: f64,
+    /// Its length, mm.
+    pub(super) length_mm: f64,
+}
+
+impl SlowEnd {
+    /// Half as fast, and as long.
+    pub(super) fn slower(self) -> Self {
+        Self { speed_mm_s: 0.5 * self.speed_mm_s, length_mm: 0.5 * self.length_mm }
+    }
+
+    /// Lowers the feedrates of the last points.
+    pub(super) fn slow_down(self, points: &mut [FitPoint]) {
+        let mut to_go_mm = 0.0;
+        for n in (0..points.len().saturating_sub(1)).rev() {
+            to_go_mm += distance(points[n].at_mm, points[n + 1].at_mm);
+            points[n].feed_mm_s = points[n].feed_mm_s.min(self.speed_mm_s);
+            if to_go_mm > self.length_mm {
+                break;
+            }
+        }
+        if let [.., before, last] = points {
+            last.feed_mm_s = before.feed_mm_s;
+        }
+    }
+}
+
+/// A way to the end that is so slow that it brakes in a part of the loop's time constant, and as long as that takes to settle.
+pub(super) fn slow_end(machine: &Machine) -> SlowEnd {
+    let slowest_s = 1.0 / machine.slowest_kp_1_s();
+    let speed_mm_s = machine.limits.tangential_accel_mm_s2 * BRAKES_IN * slowest_s;
+    SlowEnd { speed_mm_s, length_mm: speed_mm_s * SETTLES_IN * slowest_s }
+}
+
+/// The rapid to a stretch, the last of it at the slow end's speed; none where it is not much longer.
+pub(super) fn slow_approach(stretch: &SmoothStretch, slow: SlowEnd, target: &TargetControl) -> Option<[Motion; 2]> {
+    let (_, rapid) = stretch.rapid.as_ref()?;
+    slow.parted(rapid, target)
+}
+
+/// Programmed motions, the last of them slow at its end; none where that is no straight line, or not much longer.
+pub(super) fn slow_last(motions: &[Motion], slow: SlowEnd, target: &TargetControl) -> Option<Vec<Motion>> {
+    let (last, others) = motions.split_last().filter(|(last, _)| matches!(last.shape, Shape::Line))?;
+    Some(others.iter().cloned().chain(slow.parted(last, target)?).collect())
+}
+
+impl SlowEnd {
+    /// A straight motion in two, the second of them slow.
+    fn parted(self, motion: &Motion, target: &TargetControl) -> Option<[Motion; 2]> {
+        let way = sub(motion.end_mm, motion.start_mm);
+        let length_mm = norm(way);
+        if length_mm < LEAST_WAY * self.length_mm {
+            return None;
+        }
+        let steps_per_mm = target.steps_per_mm();
+        let printed = |value: f64| (value * steps_per_mm).round() / steps_per_mm;
+        let middle_mm = add_scaled(motion.end_mm, -self.length_mm / length_mm, way).map(printed);
+        let feed_mm_s =
+            if motion.kind == MotionKind::Feed { motion.feed_mm_s.min(self.speed_mm_s) } else { self.speed_mm_s };
+        let last = Motion { kind: MotionKind::Feed, start_mm: middle_mm, feed_mm_s, ..motion.clone() };
+        Some([Motion { end_mm: middle_mm, ..motion.clone() }, last])
+    }
+}

@@ -1,0 +1,81 @@
+//! A program with its text, and the modes in force behind each step.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use feedwright_gcode::canon::{Canon, MotionKind};
+use feedwright_gcode::{Dialect, ModesInForce, ReadError, Reader, Settings, input};
+
+/// A program that is to be corrected.
+#[derive(Debug, Clone)]
+pub(super) struct SourceProgram {
+    /// Its lines, without their ends.
+    pub(super) lines: Vec<String>,
+    /// What it asks for.
+    pub(super) steps: Vec<Canon>,
+    /// Whose G-code it is.
+    pub(super) dialect: Dialect,
+    /// Feedrate in place of every programmed one, mm/s.
+    pub(super) feed_mm_s: Option<f64>,
+    /// Modes before its first line.
+    start: ModesInForce,
+    modes: Vec<ModesInForce>,
+    /// Which of them are in force behind each step.
+    in_force: Vec<usize>,
+    /// Text of the lines before a step that set offsets, for those steps that have any.
+    offset_lines: BTreeMap<usize, Vec<String>>,
+}
+
+impl SourceProgram {
+    /// The program in a file, which has been checked, with another feedrate where one is given.
+    pub(super) fn read(part: &Path, settings: &Settings, feed_mm_s: Option<f64>) -> Result<Self, ReadError> {
+        let bytes = input::read(part).map_err(|cause| ReadError::Io { path: part.to_owned(), cause })?;
+        let mut reader = Reader::open(part, settings.clone())?;
+        let (dialect, start) = (reader.dialect().0, reader.modes());
+        let (mut steps, mut modes, mut in_force) = (Vec::new(), Vec::<ModesInForce>::new(), Vec::new());
+        let mut offset_lines = BTreeMap::new();
+        while let Some(Ok(mut step)) = reader.next() {
+            if !reader.offset_lines().is_empty() {
+                offset_lines.insert(steps.len(), reader.offset_lines().to_vec());
+            }
+            if let (Canon::Motion(motion), Some(feed_mm_s)) = (&mut step, feed_mm_s)
+                && motion.kind == MotionKind::Feed
+            {
+                motion.feed_mm_s = feed_mm_s;
+            }
+            let now = reader.modes();
+            if modes.last() != Some(&now) {
+                modes.push(now);
+            }
+            in_force.push(modes.len() - 1);
+            steps.push(step);
+        }
+        let lines = String::from_utf8_lossy(&bytes).lines().map(str::to_owned).collect();
+        Ok(Self { lines, steps, dialect, feed_mm_s, start, modes, in_force, offset_lines })
+    }
+
+    /// The steps, each with the modes behind it.
+    pub(super) fn steps_and_modes(&self) -> impl Iterator<Item = (&Canon, &ModesInForce)> {
+        self.steps.iter().zip(self.in_force.iter().map(|&modes| &self.modes[modes]))
+    }
+
+    /// The lines, carried out between the step before and this one, that write offsets or put others in force.
+    pub(super) fn offset_lines(&self, step: usize) -> &[String] {
+        self.offset_lines.get(&step).map_or(&[], Vec::as_slice)
+    }
+
+    /// Whether offsets are written or put in force behind the first of some steps and before the last.
+    pub(super) fn sets_offsets_within(&self, [first, last]: [usize; 2]) -> bool {
+        self.offset_lines.range(first + 1..).next().is_some_and(|(&step, _)| step <= last)
+    }
+
+    /// Modes before a step.
+    pub(super) fn modes_before(&self, step: usize) -> &ModesInForce {
+        step.checked_sub(1).map_or(&self.start, |before| self.modes(before))
+    }
+
+    /// Modes behind a step.
+    pub(super) fn modes(&self, step: usize) -> &ModesInForce {
+        &self.modes[self.in_force[step]]
+    }
+}

@@ -1,0 +1,104 @@
+//! What each stretch comes to in a cut.
+
+use std::ops::Range;
+
+use feedwright_plan::vector::{dot, norm, sub};
+use feedwright_sim::Commanded;
+
+use super::exported::CutRow;
+use super::stretches::SmoothStretch;
+
+/// Weight of the largest error beside the RMS.
+const MAX_WEIGHT: f64 = 0.3;
+/// How long before and behind the end of a stretch the tool may run over it, s.
+const AROUND_END_S: f64 = 0.02;
+
+/// What a stretch came to in a cut.
+#[derive(Debug, Clone, Default)]
+pub(super) struct StretchCut {
+    /// Rows in which the stretch is commanded.
+    pub(super) rows: Range<usize>,
+    /// Errors of those rows, and of those behind until the next stretch begins.
+    pub(super) square_sum_mm2: f64,
+    pub(super) max_mm: f64,
+    /// The row with the largest error.
+    pub(super) max_row: usize,
+    /// Rows that cut.
+    pub(super) cutting: u32,
+    /// Servo periods of the command.
+    pub(super) periods: u32,
+}
+
+impl StretchCut {
+    /// RMS of its errors, mm.
+    pub(super) fn rms_mm(&self) -> f64 {
+        if self.cutting == 0 { 0.0 } else { (self.square_sum_mm2 / f64::from(self.cutting)).sqrt() }
+    }
+
+    /// One figure of it, mm.
+    pub(super) fn figure_mm(&self) -> f64 {
+        self.rms_mm() + MAX_WEIGHT * self.max_mm
+    }
+}
+
+/// How far the tool runs over the end of a stretch, mm.
+pub(super) fn overshoot_mm(rows: &[CutRow], cut: &StretchCut, stretch: &SmoothStretch, servo_s: f64) -> f64 {
+    let around = (AROUND_END_S / servo_s) as usize;
+    let [_, direction] = stretch.directions();
+    let from = cut.rows.end.saturating_sub(around).max(cut.rows.start);
+    let near = &rows[from..(cut.rows.end + around).min(rows.len())];
+    near.iter().map(|row| -dot(row.error_mm, direction)).fold(0.0, f64::max)
+}
+
+/// How far the tool runs over the end of the rapid that leads to a stretch, mm.
+pub(super) fn rapid_overshoot_mm(rows: &[CutRow], cut: &StretchCut, stretch: &SmoothStretch, servo_s: f64) -> f64 {
+    let Some((_, rapid)) = &stretch.rapid else { return 0.0 };
+    let way = sub(rapid.end_mm, rapid.start_mm);
+    let to = cut.rows.start + (AROUND_END_S / servo_s) as usize;
+    let from = rows[..cut.rows.start].iter().rposition(|row| row.commanded == Commanded::Rapid).unwrap_or(0);
+    let near = &rows[from..to.min(rows.len())];
+    near.iter().map(|row| -dot(row.error_mm, way) / norm(way)).fold(0.0, f64::max)
+}
+
+/// Rows and errors of each stretch. What the tool still does when the command has gone on belongs to it, until the next begins; what it does at
+/// the end of a rapid belongs to the stretch that the rapid leads to.
+pub(super) fn by_stretch(rows: &[CutRow], count: usize) -> Vec<StretchCut> {
+    let mut cuts = vec![StretchCut::default(); count];
+    let (mut last, mut behind_rapid) = (None, None);
+    for (n, row) in rows.iter().enumerate() {
+        match row.commanded {
+            Commanded::Cut => {
+                let number = (row.line as usize).checked_sub(1);
+                if let Some(cut) = number.and_then(|number| cuts.get_mut(number)) {
+                    let from = if cut.rows.is_empty() { n } else { cut.rows.start };
+                    cut.rows = from..n + 1;
+                    cut.periods += 1;
+                    if let Some(from) = behind_rapid.take() {
+                        (from..n).for_each(|n| cut.take(n, &rows[n]));
+                    }
+                }
+                last = number;
+            }
+            Commanded::Rapid => (last, behind_rapid) = (None, Some(n)),
+            Commanded::Rest => {}
+        }
+        if let Some(cut) = last.and_then(|last| cuts.get_mut(last)) {
+            cut.take(n, row);
+        }
+    }
+    cuts
+}
+
+impl StretchCut {
+    /// Takes in the error of a row.
+    fn take(&mut self, n: usize, row: &CutRow) {
+        if row.cutting {
+            let error_mm = norm(row.error_mm);
+            self.square_sum_mm2 += error_mm * error_mm;
+            if error_mm > self.max_mm {
+                (self.max_mm, self.max_row) = (error_mm, n);
+            }
+            self.cutting += 1;
+        }
+    }
+}

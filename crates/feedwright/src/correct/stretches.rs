@@ -1,0 +1,231 @@
+//! A program as stretches that are cut without a corner, and all else.
+//!
+//! A stretch is what a correction may bend as a whole: feed motions of X, Y and Z, one behind the other, that meet within
+//! [`CORNER_RAD`], without anything between them. At its ends the tool is to be where the program says, so the command rests there
+//! until the tool has come: a dwell at true corners and beside rapids.
+
+use std::f64::consts::PI;
+
+use feedwright_gcode::canon::{Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
+use feedwright_plan::vector::{Vector, angle};
+use feedwright_plan::{Piece, Pieces, Step};
+
+/// A sharper turn is a corner: no arc is to replace it.
+pub(super) const CORNER_RAD: f64 = 25.0 / 180.0 * PI;
+/// A turn from which G61 stops, as in feed planners.
+const TANGENT_RAD: f64 = 1e-3;
+
+/// Where the tool comes slowly it rests so much of a dwell.
+const SETTLED: f64 = 0.25;
+
+/// Part of a program.
+#[derive(Debug, Clone)]
+pub(super) enum ProgramPart {
+    /// Stays what it is.
+    Kept(Canon),
+    /// May be bent.
+    Stretch(SmoothStretch),
+}
+
+/// Feed motions that are cut without a corner.
+#[derive(Debug, Clone)]
+pub(super) struct SmoothStretch {
+    /// As they are programmed.
+    pub(super) motions: Vec<Motion>,
+    /// Numbers of its first and last step in the program.
+    pub(super) steps: [usize; 2],
+    /// Whether the tool has to come to rest before and behind.
+    pub(super) rests: [bool; 2],
+    /// Whether the motion before belongs to the stretch before.
+    pub(super) follows: bool,
+    /// The straight rapid that leads to its start, and its step in the program.
+    pub(super) rapid: Option<(usize, Motion)>,
+    pub(super) ends: [Vector; 2],
+}
+
+/// Direction of travel at both ends of a motion; none of one without length.
+fn directions(motion: &Motion) -> Option<[Vector; 2]> {
+    let alone = Motion { feed_mm_s: motion.feed_mm_s.max(1.0), ..motion.clone() };
+    let pieces: Vec<Piece> = Pieces::new(std::iter::once(Canon::Motion(alone)))
+        .filter_map(|step| if let Ok(Step::Piece(piece)) = step { Some(piece) } else { None })
+        .collect();
+    let (first, last) = (pieces.first()?, pieces.last()?);
+    Some([first.curve.at(0.0).tangent, last.curve.at(last.length_mm).tangent])
+}
+
+/// The parts of a program, in order.
+pub(super) fn parts(program: &[Canon]) -> Vec<ProgramPart> {
+    let mut parts: Vec<ProgramPart> = Vec::new();
+    // Direction at the end of the last motion, and whether nothing has happened since.
+    let (mut before, mut adjacent) = (None::<Vector>, false);
+    let mut rapid = None;
+    for (index, step) in program.iter().enumerate() {
+        let Canon::Motion(motion) = step else {
+            parts.push(ProgramPart::Kept(step.clone()));
+            adjacent = false;
+            continue;
+        };
+        let Some([starts, ends]) = directions(motion) else {
+            parts.push(ProgramPart::Kept(step.clone()));
+            continue;
+        };
+        let turn_rad = before.map(|before| angle(before, starts));
+        let bends = motion.kind == MotionKind::Feed && motion.others.is_none();
+        if bends && let Some(ProgramPart::Stretch(stretch)) = parts.last_mut().filter(|_| adjacent) {
+            let corner = stretch.motions.last().map_or(motion.corner, |last| last.corner);
+            if turn_rad.is_some_and(|turn| turn < most_turn_rad(corner)) {
+                stretch.motions.push(motion.clone());
+                stretch.ends[1] = ends;
+                stretch.steps[1] = index;
+                before = Some(ends);
+                continue;
+            }
+        }
+        let corner = turn_rad.is_some();
+        let mut follows = false;
+        if let Some(last) = last_stretch(&mut parts) {
+            last.rests[1] = !bends;
+            follows = true;
+        }
+        parts.push(if bends {
+            let motions = vec![motion.clone()];
+            ProgramPart::Stretch(SmoothStretch {
+                motions,
+                steps: [index; 2],
+                rests: [corner, false],
+                follows,
+                rapid: rapid.take(),
+                ends: [starts, ends],
+            })
+        } else {
+            ProgramPart::Kept(step.clone())
+        });
+        let leads = motion.kind == MotionKind::Rapid && motion.shape == Shape::Line && motion.others.is_none();
+        rapid = leads.then(|| (index, motion.clone()));
+        (before, adjacent) = (Some(ends), true);
+    }
+    parts
+}
+
+/// The stretch that the last motion belongs to.
+fn last_stretch(parts: &mut [ProgramPart]) -> Option<&mut SmoothStretch> {
+    let last = parts.iter_mut().rev().find(|part| !matches!(part, ProgramPart::Kept(Canon::Event(_))))?;
+    if let ProgramPart::Stretch(stretch) = last { Some(stretch) } else { None }
+}
+
+/// Turn at which a motion that ends by `corner` ends a stretch.
+fn most_turn_rad(corner: Corner) -> f64 {
+    match corner {
+        Corner::ExactStop => 0.0,
+        Corner::ExactPath => TANGENT_RAD,
+        Corner::Continuous { .. } => CORNER_RAD,
+    }
+}
+
+impl SmoothStretch {
+    /// Where it starts.
+    pub(super) fn start_mm(&self) -> Vector {
+        self.motions[0].start_mm
+    }
+
+    /// Where it ends.
+    pub(super) fn end_mm(&self) -> Vector {
+        self.motions[self.motions.len() - 1].end_mm
+    }
+
+    /// Directions of travel at both ends.
+    pub(super) const fn directions(&self) -> [Vector; 2] {
+        self.ends
+    }
+}
+
+/// Motions in place of those of a stretch.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct NewMotions {
+    /// In place of those of the stretch.
+    pub(super) motions: Vec<Motion>,
+    /// In place of the rapid that leads to it: a rapid most of the way, and a slow feed motion to its end.
+    pub(super) approach: Option<[Motion; 2]>,
+    /// Whether the last of it is so slow that the tool has settled at its end.
+    pub(super) settles: bool,
+}
+
+/// What a stretch becomes; none where it stays as it is.
+pub(super) type StretchCommand = Option<NewMotions>;
+
+/// The program with other motions in place of its stretches, and dwells where the tool has to come to rest.
+///
+/// The line of a motion is the number of its stretch, from 1, and 0 of all that is kept.
+pub(super) fn assembled(parts: &[ProgramPart], commands: &[StretchCommand], dwell_s: f64) -> Vec<Canon> {
+    let (mut program, mut number) = (Vec::new(), 0);
+    let rest = |seconds: f64| Canon::Event(Event { line: 0, kind: EventKind::Dwell { seconds } });
+    let numbered = |motion: &Motion, line: u32| Canon::Motion(Motion { line, ..motion.clone() });
+    for part in parts {
+        match part {
+            ProgramPart::Kept(Canon::Motion(motion)) => program.push(numbered(motion, 0)),
+            ProgramPart::Kept(event) => program.push(event.clone()),
+            ProgramPart::Stretch(stretch) => {
+                let [before, behind] = dwells(parts, commands, number, dwell_s);
+                let command = commands[number].as_ref();
+                let motions = command.map_or(&stretch.motions, |command| &command.motions);
+                if let Some(approach) = command.and_then(|command| command.approach.as_ref()) {
+                    slow_down(&mut program, approach);
+                }
+                number += 1;
+                program.extend(before.map(rest));
+                program.extend(motions.iter().map(|motion| numbered(motion, number as u32)));
+                program.extend(behind.map(rest));
+            }
+        }
+    }
+    join(&mut program);
+    program
+}
+
+/// Puts an approach in the place of the last rapid.
+fn slow_down(program: &mut Vec<Canon>, approach: &[Motion; 2]) {
+    if let Some(at) = program.iter().rposition(|step| matches!(step, Canon::Motion(_))) {
+        let slow = approach.iter().map(|motion| Canon::Motion(Motion { line: 0, ..motion.clone() }));
+        program.splice(at..=at, slow);
+    }
+}
+
+/// How long a dwell is, s, where the tool comes slowly or does not.
+pub(super) fn rest_s(comes_slowly: bool, dwell_s: f64) -> f64 {
+    if comes_slowly { (SETTLED * dwell_s * 1e3).round() / 1e3 } else { dwell_s }
+}
+
+/// How long the tool rests before and behind a stretch, s: where it, or the stretch before, has another command, a dwell, and less where the tool comes
+/// so slowly that it has settled.
+pub(super) fn dwells(
+    parts: &[ProgramPart],
+    commands: &[StretchCommand],
+    number: usize,
+    dwell_s: f64,
+) -> [Option<f64>; 2] {
+    let Some(stretch) = stretches(parts).nth(number) else { return [None; 2] };
+    let command = commands[number].as_ref();
+    let before = if number > 0 && stretch.follows { commands[number - 1].as_ref() } else { None };
+    let comes_slowly = command.is_some_and(|command| command.approach.is_some());
+    let comes_slowly = comes_slowly || before.is_some_and(|before| before.settles);
+    let goes_slowly = command.is_some_and(|command| command.settles);
+    let rests_before = stretch.rests[0] && (command.is_some() || before.is_some());
+    let rests_behind = stretch.rests[1] && command.is_some();
+    [rests_before.then(|| rest_s(comes_slowly, dwell_s)), rests_behind.then(|| rest_s(goes_slowly, dwell_s))]
+}
+
+/// Printed ends need not be those of the program to the last digit: each motion begins where the one before has ended.
+fn join(program: &mut [Canon]) {
+    let mut here_mm = None;
+    for step in program {
+        if let Canon::Motion(motion) = step {
+            motion.start_mm = here_mm.unwrap_or(motion.start_mm);
+            here_mm = Some(motion.end_mm);
+        }
+    }
+}
+
+/// The stretches among the parts.
+pub(super) fn stretches(parts: &[ProgramPart]) -> impl Iterator<Item = &SmoothStretch> {
+    parts.iter().filter_map(|part| if let ProgramPart::Stretch(stretch) = part { Some(stretch) } else { None })
+}

@@ -1,0 +1,124 @@
+//! The controls that a corrected program is for.
+//!
+//! A row says how the control plans the speed, by the name of a [feed planner](feedwright_plan::feed), and what its programs may hold. To add
+//! a control is one row.
+
+use feedwright_gcode::Dialect;
+use feedwright_gcode::canon::Corner;
+use feedwright_plan::feed_planner;
+use feedwright_sim::{Machine, Stages};
+
+use crate::job_error::JobError;
+
+/// A row of [`TARGETS`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TargetControl {
+    /// Name, as in `--for`.
+    pub name: &'static str,
+    /// What it stands for, for lists.
+    pub about: &'static str,
+    /// FeedMember of the family of feed planners; none is the one that suits the machine.
+    pub planner: Option<&'static str>,
+    /// How blocks of a corrected stretch meet; none is as in the program, and without exact stops.
+    pub corner: Option<Corner>,
+    /// Most characters of a line.
+    pub columns: usize,
+    /// Decimals of a coordinate in mm.
+    pub decimals: u32,
+    /// Loops, subroutines and parameters that it runs.
+    pub macros: MacroLanguage,
+}
+
+/// In which words a control takes loops, subroutines and parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum MacroLanguage {
+    /// In those of the program: it is the control that the program was written for.
+    OfProgram,
+    /// O-words, as LinuxCNC.
+    OWords,
+    /// Custom macro B, M98 and M99.
+    Fanuc,
+    /// In none.
+    None,
+}
+
+/// All of them; the first is the one to take when nobody chooses.
+pub const TARGETS: &[TargetControl] = &[
+    TargetControl {
+        name: "generic",
+        about: "any control with look-ahead and arcs: the planner that suits the machine",
+        planner: None,
+        corner: None,
+        columns: 120,
+        decimals: 5,
+        macros: MacroLanguage::OfProgram,
+    },
+    TargetControl {
+        name: "linuxcnc",
+        about: "LinuxCNC 2.9: its own planner, with the limits that the machine file has of each axis",
+        planner: Some("linuxcnc"),
+        corner: Some(Corner::Continuous { tolerance_mm: Some(0.001), merge_mm: Some(0.0) }),
+        columns: 120,
+        decimals: 5,
+        macros: MacroLanguage::OWords,
+    },
+    TargetControl {
+        name: "grbl",
+        about: "grbl: constant acceleration along the path, lines of 80 characters",
+        planner: Some("trapezoid"),
+        corner: None,
+        columns: 80,
+        decimals: 4,
+        macros: MacroLanguage::None,
+    },
+    TargetControl {
+        name: "fanuc",
+        about: "Fanuc and its relatives: constant acceleration along the path, steps of 1 um",
+        planner: Some("trapezoid"),
+        corner: None,
+        columns: 120,
+        decimals: 3,
+        macros: MacroLanguage::Fanuc,
+    },
+];
+
+impl TargetControl {
+    /// The target of that name.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        TARGETS.iter().find(|target| target.name == name)
+    }
+
+    /// How it plans on a machine.
+    pub fn stages(&self, machine: &Machine) -> Stages {
+        let planner = self.planner.and_then(feed_planner);
+        let own = Stages::of(machine);
+        Stages { planner: planner.unwrap_or(own.planner), ..own }
+    }
+
+    /// The same, where the machine has what the control plans by.
+    ///
+    /// # Errors
+    /// A control that plans by the limits of each axis, and a machine without.
+    pub fn suits(&self, machine: &Machine) -> Result<Stages, JobError> {
+        let stages = self.stages(machine);
+        if stages.planner.needs_axes && !machine.has_axis_limits() {
+            return Err(JobError::NoAxisLimits { control: self.name, machine: machine.name.clone() });
+        }
+        Ok(stages)
+    }
+
+    /// Whether it runs loops, subroutines and parameters as a program of a dialect has them.
+    pub(super) const fn runs_macros_of(&self, dialect: Dialect) -> bool {
+        match self.macros {
+            MacroLanguage::OfProgram => true,
+            MacroLanguage::OWords => !dialect.is_fanuc(),
+            MacroLanguage::Fanuc => dialect.is_fanuc(),
+            MacroLanguage::None => false,
+        }
+    }
+
+    /// Printed steps in a millimetre.
+    pub(super) fn steps_per_mm(&self) -> f64 {
+        10_f64.powi(self.decimals as i32)
+    }
+}

@@ -1,0 +1,125 @@
+//! Whether a text says what it is meant to say: it is read again and compared, step by step.
+
+use feedwright_gcode::canon::{Canon, EventKind, Motion, MotionKind, Shape};
+use feedwright_gcode::{Dialect, ModesInForce, Reader, Settings};
+use feedwright_plan::vector::distance;
+
+/// Feedrates may differ by this part: their printed digits.
+const FEED_PART: f64 = 1e-3;
+/// Dwells may differ by this, s.
+const DWELL_S: f64 = 1e-3;
+/// Centres of arcs may be off by so many steps, and by this part of the radius: what reading an arc does to make both of its ends meet.
+const CENTER_STEPS: f64 = 100.0;
+const CENTER_PART: f64 = 1e-3;
+
+/// The steps of a text, and the modes behind each; none where it has a mistake.
+pub(super) fn read(text: &str, settings: &Settings, dialect: Dialect) -> Option<(Vec<Canon>, Vec<ModesInForce>)> {
+    let settings = Settings { dialect: Some(dialect), ..settings.clone() };
+    let mut reader = Reader::from_text("corrected.ngc", text, settings).ok()?;
+    let (mut steps, mut modes) = (Vec::new(), Vec::new());
+    while let Some(step) = reader.next() {
+        steps.push(step.ok()?);
+        modes.push(reader.modes());
+    }
+    Some((steps, modes))
+}
+
+/// Whether the motions of two programs have the same frames, one behind the other: a coordinate system with other offsets on the control than here is
+/// no place in the machine.
+pub(super) fn same_frames<'a>(
+    found: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
+    wanted: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>,
+) -> bool {
+    let (found, wanted) = (frames(found), frames(wanted));
+    found.len() == wanted.len() && found.iter().zip(&wanted).all(|(found, wanted)| found.same_frame(wanted))
+}
+
+fn frames<'a>(steps: impl Iterator<Item = (&'a Canon, &'a ModesInForce)>) -> Vec<&'a ModesInForce> {
+    let mut frames: Vec<&ModesInForce> = Vec::new();
+    for (_, modes) in steps.filter(|(step, _)| matches!(step, Canon::Motion(_))) {
+        if frames.last().is_none_or(|last| !last.same_frame(modes)) {
+            frames.push(modes);
+        }
+    }
+    frames
+}
+
+/// Whether two programs ask for the same, up to their printed steps, mm; events between two motions may have another order.
+pub(super) fn same(found: &[Canon], wanted: &[Canon], step_mm: f64) -> bool {
+    let (found, wanted) = (legs(found, step_mm), legs(wanted, step_mm));
+    found.len() == wanted.len() && found.iter().zip(&wanted).all(|(found, wanted)| same_leg(found, wanted, step_mm))
+}
+
+/// A motion, none behind the last, and the events before it in an order of their own.
+type Leg<'a> = (Vec<&'a EventKind>, Option<&'a Motion>);
+
+fn legs(program: &[Canon], step_mm: f64) -> Vec<Leg<'_>> {
+    let mut legs: Vec<Leg<'_>> = vec![(Vec::new(), None)];
+    for step in program {
+        match step {
+            Canon::Motion(motion) if is_nothing(motion, step_mm) => {}
+            Canon::Motion(motion) => {
+                if let Some(leg) = legs.last_mut() {
+                    leg.1 = Some(motion);
+                }
+                legs.push((Vec::new(), None));
+            }
+            Canon::Event(event) => match &event.kind {
+                EventKind::ProgramEnd | EventKind::MCode { code: 2 | 30, .. } => {}
+                kind => legs.last_mut().into_iter().for_each(|leg| leg.0.push(kind)),
+            },
+        }
+    }
+    for leg in &mut legs {
+        leg.0.sort_by_key(|kind| format!("{kind:?}"));
+    }
+    legs
+}
+
+fn same_leg(found: &Leg<'_>, wanted: &Leg<'_>, step_mm: f64) -> bool {
+    let events = found.0.len() == wanted.0.len()
+        && found.0.iter().zip(&wanted.0).all(|(found, wanted)| same_event(found, wanted));
+    events
+        && match (found.1, wanted.1) {
+            (None, None) => true,
+            (Some(found), Some(wanted)) => same_motion(found, wanted, step_mm),
+            _ => false,
+        }
+}
+
+fn is_nothing(motion: &Motion, step_mm: f64) -> bool {
+    matches!(motion.shape, Shape::Line) && motion.others.is_none() && distance(motion.start_mm, motion.end_mm) < step_mm
+}
+
+fn same_event(found: &EventKind, wanted: &EventKind) -> bool {
+    match (found, wanted) {
+        (EventKind::Dwell { seconds: a }, EventKind::Dwell { seconds: b }) => (a - b).abs() < DWELL_S,
+        (a, b) => a == b,
+    }
+}
+
+fn same_motion(found: &Motion, wanted: &Motion, step_mm: f64) -> bool {
+    found.kind == wanted.kind
+        && (found.corner == wanted.corner || found.kind == MotionKind::Rapid)
+        && found.others == wanted.others
+        && distance(found.end_mm, wanted.end_mm) < 2.0 * step_mm
+        && (found.feed_mm_s - wanted.feed_mm_s).abs() <= FEED_PART * wanted.feed_mm_s + 1e-6
+        && same_shape(&found.shape, wanted, step_mm)
+}
+
+fn same_shape(found: &Shape, wanted: &Motion, step_mm: f64) -> bool {
+    match (found, &wanted.shape) {
+        (Shape::Line, Shape::Line) => true,
+        (
+            Shape::Arc { plane, center_mm, turns },
+            Shape::Arc { plane: wanted_plane, center_mm: wanted_mm, turns: wanted_turns },
+        ) => {
+            let radius_mm = distance(*wanted_mm, wanted.start_mm);
+            plane == wanted_plane
+                && turns == wanted_turns
+                && distance(*center_mm, *wanted_mm) < CENTER_STEPS * step_mm + CENTER_PART * radius_mm
+        }
+        (Shape::Spline(found), Shape::Spline(wanted)) => found == wanted,
+        _ => false,
+    }
+}

@@ -1,0 +1,384 @@
+//! Cycle time of a program on a machine: how long its plan takes, with which tool and in which kind of motion, what binds it, and
+//! whether it keeps what it has to.
+//!
+//! The plan is looked at as it comes out, every 0.1 ms; memory does not grow with the program. `cycle_time/along.rs` keeps what binds where.
+
+pub(crate) mod along;
+
+use std::collections::VecDeque;
+use std::sync::{Mutex, PoisonError};
+
+use feedwright_gcode::ReadError;
+use feedwright_gcode::canon::{Corner, EventKind};
+use feedwright_plan::vector::{distance, norm};
+use feedwright_plan::{
+    AxisLimits, AxisMotion, Constraints, Phase, Piece, Plan, PlanSink, Planned, Plc, Steps, WHOLE_PROGRAM, feed_mm_s,
+};
+use feedwright_sim::{AXIS_NAMES, Machine, RunError, Stages, Watch};
+use serde::Serialize;
+
+use along::{BindingAlong, BindingStretch, LIMITS};
+
+/// Time between two looks, s.
+const SAMPLE_S: f64 = 1e-4;
+
+/// A limit binds where so much of it is used.
+const BINDS: f64 = 0.999;
+
+/// The tolerance binds where so much of it is used: a planner keeps a part of it for what it does not look at.
+const TOLERANCE_BINDS: f64 = 0.8;
+
+/// A cap on the speed, which holds roughly, binds where so much of it is used.
+const CAP_BINDS: f64 = 0.98;
+
+/// The nearest point is looked for so many tolerances along the path, and in no more pieces to either side than these.
+const WAY: f64 = 10.0;
+const MOST_PIECES: usize = 64;
+
+/// Time of one tool.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ToolTime {
+    /// Its number; 0 before the first tool change.
+    pub tool: u32,
+    /// Motion and rests with it, s.
+    pub time_s: f64,
+}
+
+/// A limit with the part of the moving time in which it binds.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BindingShare {
+    /// Such as `feedrate`, `x jerk`, `tolerance`.
+    pub limit: String,
+    /// Part of the moving time, 0 to 1; limits bind together, so parts do not add up to 1.
+    pub share: f64,
+}
+
+/// What a program takes.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct CycleTime {
+    /// Name of the planner.
+    pub planner: String,
+    /// Motions of the program.
+    pub blocks: u64,
+    /// Everything, s.
+    pub time_s: f64,
+    /// At feedrates, s.
+    pub cutting_s: f64,
+    /// Rapids, s.
+    pub rapid_s: f64,
+    /// Dwells, tool changes, spindle, s.
+    pub waiting_s: f64,
+    /// Motion alone with each path from rest to rest planned as a whole, s, where that was asked for.
+    pub bound_s: Option<f64>,
+    /// Largest ratio of a velocity, acceleration or jerk to its limit, or of the speed to the feedrate; none where axes have no limits.
+    pub largest_violation: Option<f64>,
+    /// Largest distance of the planned motion from the programmed path, um.
+    pub largest_deviation_um: f64,
+    /// Time of each tool, in the order of use.
+    pub tools: Vec<ToolTime>,
+    /// What binds, the most frequent first; nothing that never does.
+    pub binding: Vec<BindingShare>,
+    /// What binds where.
+    #[serde(skip)]
+    pub along: BindingAlong,
+}
+
+/// Names of limits, in the order in which they are counted everywhere.
+pub(crate) fn limit_names() -> Vec<String> {
+    let of_axis = |name: &str| ["velocity", "acceleration", "jerk"].map(|limit| format!("{name} {limit}"));
+    let axes = AXIS_NAMES.iter().flat_map(|name| of_axis(name));
+    ["feedrate", "tolerance"].map(str::to_owned).into_iter().chain(axes).collect()
+}
+
+/// Plans a program by the stages that suit a machine, `steps` once, and once more for the bound where `bound` asks for it.
+///
+/// # Errors
+/// A program that cannot be read, a motion without a path, a limit that is none, an end from outside.
+pub fn cycle_time<'p>(
+    machine: &Machine,
+    bound: bool,
+    steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
+    watch: &dyn Watch,
+) -> Result<CycleTime, RunError> {
+    cycle_time_within(machine, &Constraints::from(machine), bound, steps, watch)
+}
+
+/// The same within other constraints than the machine's.
+///
+/// # Errors
+/// As [`cycle_time`].
+pub fn cycle_time_within<'p>(
+    machine: &Machine,
+    constraints: &Constraints,
+    bound: bool,
+    steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
+    watch: &dyn Watch,
+) -> Result<CycleTime, RunError> {
+    cycle_time_by(Stages::of(machine), machine, constraints, bound, steps, watch)
+}
+
+/// The same by stages of one's own choice.
+///
+/// # Errors
+/// As [`cycle_time`].
+pub fn cycle_time_by<'p>(
+    stages: Stages,
+    machine: &Machine,
+    constraints: &Constraints,
+    bound: bool,
+    mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
+    watch: &dyn Watch,
+) -> Result<CycleTime, RunError> {
+    let mut plan =
+        Plan::new((stages.blend.make)(steps()?, constraints), constraints, stages.planner, Plc::from(machine))?;
+    let mut sampler = Sampler::new(constraints, stages.planner.name);
+    for planned in plan.by_ref() {
+        watch.check()?;
+        sampler.take(&planned);
+    }
+    if let Some(fault) = plan.fault() {
+        return Err(fault.clone().into());
+    }
+    let mut result = sampler.finish();
+    if bound && stages.planner.needs_axes {
+        let blended = (stages.blend.make)(steps()?, constraints);
+        let mut time_s = 0.0;
+        for planned in Plan::new(blended, constraints, &WHOLE_PROGRAM, Plc::default())? {
+            watch.check()?;
+            if let Planned::Phase(Phase { duration_s, rest: None, .. }) = planned {
+                time_s += duration_s;
+            }
+        }
+        result.bound_s = Some(time_s);
+    }
+    Ok(result)
+}
+
+/// The same of a plan that is made in any case, for a cut: it is told of it.
+#[derive(Debug)]
+pub(crate) struct CycleTimeOfCut<'a>(Mutex<Sampler<'a>>);
+
+impl<'a> CycleTimeOfCut<'a> {
+    /// Of a plan within constraints, by a planner with this name.
+    pub(crate) fn new(constraints: &'a Constraints, planner: &str) -> Self {
+        Self(Mutex::new(Sampler::new(constraints, planner)))
+    }
+
+    /// What the plan came to, where it was handed out to its end.
+    pub(crate) fn finish(self) -> CycleTime {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner).finish()
+    }
+}
+
+impl PlanSink for CycleTimeOfCut<'_> {
+    fn planned(&self, planned: &Planned) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).take(planned);
+    }
+}
+
+/// What holds on a piece.
+#[derive(Clone, Copy)]
+struct PiecePlace {
+    /// Its index among those that are kept.
+    index: usize,
+    s_mm: f64,
+    line: u32,
+    feed_mm_s: f64,
+    tolerance_mm: f64,
+}
+
+/// Looks at a plan as it comes out.
+#[derive(Debug)]
+struct Sampler<'a> {
+    constraints: &'a Constraints,
+    result: CycleTime,
+    pieces: VecDeque<Piece>,
+    /// Number of the first piece that is kept.
+    first: u64,
+    /// The tool that the next M6 loads.
+    selected: u32,
+    /// Time in which each limit binds, in the order of [`limit_names`].
+    bound_s: [f64; LIMITS],
+    /// The sample under way.
+    sample: BindingStretch,
+}
+
+impl<'a> Sampler<'a> {
+    fn new(constraints: &'a Constraints, planner: &str) -> Self {
+        let result = CycleTime {
+            planner: planner.to_owned(),
+            tools: vec![ToolTime { tool: 0, time_s: 0.0 }],
+            ..CycleTime::default()
+        };
+        Self {
+            constraints,
+            result,
+            pieces: VecDeque::new(),
+            first: 0,
+            selected: 0,
+            bound_s: [0.0; LIMITS],
+            sample: BindingStretch::default(),
+        }
+    }
+
+    fn take(&mut self, planned: &Planned) {
+        match planned {
+            Planned::Programmed(piece) => {
+                self.result.blocks += 1;
+                self.pieces.push_back(piece.clone());
+            }
+            Planned::Piece(_) => {}
+            Planned::Event(event) => match &event.event.kind {
+                EventKind::ToolSelect { tool } => self.selected = *tool,
+                EventKind::MCode { code: 6, .. } => {
+                    self.result.tools.push(ToolTime { tool: self.selected, time_s: 0.0 });
+                }
+                _ => {}
+            },
+            Planned::Phase(phase) => self.phase(phase),
+        }
+    }
+
+    fn phase(&mut self, phase: &Phase) {
+        let duration_s = phase.duration_s;
+        self.result.time_s += duration_s;
+        if let Some(tool) = self.result.tools.last_mut() {
+            tool.time_s += duration_s;
+        }
+        if phase.rest.is_some() {
+            self.result.waiting_s += duration_s;
+            return;
+        }
+        while self.first + (MOST_PIECES as u64) < phase.piece && self.pieces.len() > 1 {
+            self.pieces.pop_front();
+            self.first += 1;
+        }
+        let index = (phase.piece - self.first) as usize;
+        let Some(piece) = self.pieces.get(index) else {
+            return;
+        };
+        if piece.cutting {
+            self.result.cutting_s += duration_s;
+        } else {
+            self.result.rapid_s += duration_s;
+        }
+        let at = PiecePlace {
+            index,
+            s_mm: piece.s_mm,
+            line: piece.line,
+            feed_mm_s: feed_mm_s(piece, self.constraints),
+            tolerance_mm: self.tolerance_mm(piece),
+        };
+        let count = (duration_s / SAMPLE_S).ceil().max(1.0);
+        for i in 0..count as u32 {
+            self.look_at(phase, at, duration_s * (f64::from(i) + 0.5) / count, duration_s / count);
+        }
+        // Acceleration is straight over a phase: its ends are its extremes.
+        for motion in phase.motion.into_iter().flat_map(|motion| [motion, motion.after(duration_s)]) {
+            self.axes(&motion, 0.0);
+        }
+    }
+
+    /// Looks at a moment of a phase, which stands for so much time.
+    fn look_at(&mut self, phase: &Phase, at: PiecePlace, t: f64, time_s: f64) {
+        let PiecePlace { index, s_mm, line, feed_mm_s, tolerance_mm } = at;
+        let to_mm = s_mm + phase.place_mm(t);
+        let way_mm = phase.speed_mm_s(t) * time_s;
+        self.sample = BindingStretch { duration_s: time_s, to_mm, way_mm, lines: [line, line], ..Default::default() };
+        if let Some(motion) = phase.motion.map(|motion| motion.after(t)) {
+            let speed_mm_s = norm(motion.velocity_mm_s);
+            self.sample.way_mm = speed_mm_s * time_s;
+            self.axes(&motion, time_s);
+            self.violated(speed_mm_s / feed_mm_s);
+            self.binds(0, speed_mm_s / feed_mm_s, BINDS, time_s);
+            let away_mm = self.distance_mm(index, motion.position_mm, tolerance_mm);
+            self.result.largest_deviation_um = self.result.largest_deviation_um.max(1e3 * away_mm);
+            let cap_mm_s = self.constraints.speed_caps.as_ref().map_or(f64::INFINITY, |caps| caps.at(to_mm));
+            // Where the speed is held down for the tool to stay within the tolerance, it is the tolerance that binds.
+            let used = if speed_mm_s >= CAP_BINDS * cap_mm_s { 1.0 } else { away_mm / tolerance_mm };
+            self.binds(1, used, TOLERANCE_BINDS, time_s);
+        } else {
+            self.binds(0, phase.speed_mm_s(t) / feed_mm_s, BINDS, time_s);
+        }
+        self.result.along.push(&self.sample);
+    }
+
+    fn tolerance_mm(&self, piece: &Piece) -> f64 {
+        let machine_mm = self.constraints.path_tolerance_mm.unwrap_or(f64::INFINITY);
+        match piece.corner {
+            Corner::Continuous { tolerance_mm: Some(tolerance_mm), .. } => tolerance_mm,
+            _ => machine_mm,
+        }
+    }
+
+    fn violated(&mut self, ratio: f64) {
+        self.result.largest_violation = Some(self.result.largest_violation.unwrap_or(0.0).max(ratio));
+    }
+
+    fn binds(&mut self, limit: usize, ratio: f64, least: f64, time_s: f64) {
+        if ratio >= least {
+            self.bound_s[limit] += time_s;
+            self.sample.bound_s[limit] += time_s;
+        }
+    }
+
+    fn axes(&mut self, motion: &AxisMotion, time_s: f64) {
+        for k in 0..AXIS_NAMES.len() {
+            let axes = &self.constraints.axes;
+            let Some(&AxisLimits { velocity_mm_s, accel_mm_s2, jerk_mm_s3 }) = axes.get(k).or(axes.last()) else {
+                return;
+            };
+            let ratios = [
+                motion.velocity_mm_s[k].abs() / velocity_mm_s,
+                motion.accel_mm_s2[k].abs() / accel_mm_s2,
+                motion.jerk_mm_s3[k].abs() / jerk_mm_s3,
+            ];
+            for (limit, ratio) in ratios.into_iter().enumerate() {
+                self.violated(ratio);
+                self.binds(2 + 3 * k + limit, ratio, BINDS, time_s);
+            }
+        }
+    }
+
+    /// Distance of a point from the programmed path around a piece.
+    fn distance_mm(&self, index: usize, point_mm: [f64; 3], tolerance_mm: f64) -> f64 {
+        let mut least = f64::INFINITY;
+        let mut look = |piece: &Piece| {
+            let s_mm = piece.curve.nearest(point_mm, 0.0, piece.length_mm);
+            for s_mm in [0.0, s_mm, piece.length_mm] {
+                least = least.min(distance(piece.curve.at(s_mm).position_mm, point_mm));
+            }
+        };
+        for further in [1_isize, -1] {
+            let mut way_mm = 0.0;
+            let mut at = index as isize;
+            for _ in 0..MOST_PIECES {
+                let Some(piece) = usize::try_from(at).ok().and_then(|at| self.pieces.get(at)) else {
+                    break;
+                };
+                look(piece);
+                if at != index as isize {
+                    way_mm += piece.length_mm;
+                }
+                if way_mm > WAY * tolerance_mm {
+                    break;
+                }
+                at += further;
+            }
+        }
+        least
+    }
+
+    fn finish(self) -> CycleTime {
+        let mut result = self.result;
+        let moving_s = (result.cutting_s + result.rapid_s).max(f64::MIN_POSITIVE);
+        let shares = limit_names().into_iter().zip(&self.bound_s);
+        result.binding = shares
+            .filter(|(_, time_s)| **time_s > 0.0)
+            .map(|(limit, time_s)| BindingShare { limit, share: time_s / moving_s })
+            .collect();
+        result.binding.sort_by(|a, b| b.share.total_cmp(&a.share));
+        result.tools.retain(|tool| tool.time_s > 0.0);
+        result
+    }
+}

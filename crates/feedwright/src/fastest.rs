@@ -1,0 +1,390 @@
+//! Least time within a tolerance of the tool: speed is held down only where the simulated tool would leave it.
+//!
+//! The tolerance of the tool is shared between the planned path and the error of the servo and its controller. The program is planned
+//! and cut. By what the cut was like the error at each place is modelled over the speeds around it, and speeds of least time
+//! are found within the tolerance; they bound the next plan, which is cut in turn. Where errors are beyond the tolerance in spite of it, less is aimed at
+//! there. The fastest plan whose cut stayed within the tolerance is taken.
+//!
+//! | File | What |
+//! |---|---|
+//! | `fastest/path_grid.rs` | the path at even places |
+//! | `fastest/cut_places.rs` | what a cut was like there |
+//! | `fastest/steepness.rs` | how steeply errors answer to speeds |
+//! | `fastest/error_model.rs` | what they would be at other speeds |
+//! | `fastest/speed_profile.rs` | speeds of least time by that model |
+//! | `fastest/tightening.rs` | bounds for the next cut |
+//! | `fastest/remaining_error.rs` | whether lower speeds help |
+
+mod path_grid;
+mod cut_places;
+mod steepness;
+mod error_model;
+mod speed_profile;
+mod tightening;
+mod remaining_error;
+
+use std::sync::Arc;
+
+use feedwright_control::Controller;
+use feedwright_gcode::ReadError;
+use feedwright_gcode::canon::Corner;
+use feedwright_plan::{Constraints, SpeedCaps, Step, Steps};
+use feedwright_sim::{Machine, Outcome, Run, RunError, Watch};
+use thiserror::Error;
+
+use crate::cycle_time::{CycleTime, cycle_time_within};
+use cut_places::CutPlaces;
+use path_grid::PathGrid;
+use remaining_error::RemainingError;
+use tightening::{LOWEST_MM_S, Tightening};
+
+/// Distance of bounds along the path, mm.
+const SPACING_MM: f64 = 0.1;
+
+/// How often the program is planned and cut with one share of the path at most, and after how many cuts within the tolerance without a gain
+/// it is enough.
+const ROUNDS: u32 = 24;
+const NO_GAIN: u32 = 3;
+
+/// A gain of less than this part of the time is none.
+const LEAST_GAIN: f64 = 1e-3;
+
+/// From this cut on less is aimed at where errors are beyond the tolerance: before, they are beyond it since speeds still change.
+const AIM_LOWER: u32 = 8;
+
+/// Part of the tolerance that the path has at first.
+const FIRST_SHARE: f64 = 0.9;
+
+/// Where the controller errs much, it errs the less the slower it is. What the path has of the tolerance then costs speed everywhere; what it lacks costs
+/// it at corners and chords. After some cuts with the first of these it shows which: where the speed is bounded by the error for all of the time but
+/// this part, the path has less; elsewhere more, as long as that gains time.
+const MUCH_SHARES: [f64; 5] = [0.03, 0.1, 0.3, 0.6, FIRST_SHARE];
+const LITTLE_SHARE: f64 = 0.01;
+const TRIED: u32 = 5;
+const HELD_PART: f64 = 0.3;
+
+/// A controller errs little where the first cut is within so many tolerances.
+const LITTLE: f64 = 1.6;
+
+/// Where no cut was within the tolerance yet, all were beyond it by this part, and in so many none came nearer by that part, none will.
+const BEYOND: f64 = 1.1;
+const NO_NEARER: u32 = 4;
+const NEARER: f64 = 0.03;
+
+/// A plan within the tolerance.
+#[derive(Debug, Clone)]
+pub struct FastestPlan {
+    /// The machine with the tolerance of the path.
+    pub machine: Machine,
+    /// Bounds on the speed.
+    pub caps: Arc<SpeedCaps>,
+    /// Largest distance of the tool from the path, um.
+    pub largest_um: f64,
+    /// What the plan takes and what binds; its bound is that of the path alone, with the whole tolerance.
+    pub cycle: CycleTime,
+    /// How often it was planned and cut.
+    pub rounds: u32,
+}
+
+/// Why there is none.
+#[derive(Debug, Error, miette::Diagnostic)]
+pub enum FastestError {
+    /// Not planned axis by axis.
+    #[error(
+        "the least time within a tolerance is planned axis by axis, and the axes of {machine} have no limits of their own: \
+         give each max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3"
+    )]
+    NoLimits {
+        /// Name of the machine.
+        machine: String,
+    },
+    /// The tool is too far away however slow it is.
+    #[error("line {line}: the tool is {error_um:.2} um away, and {tolerance_um} um are allowed; {reason}")]
+    Impossible {
+        /// Where it is furthest away.
+        line: u32,
+        /// How far, um.
+        error_um: f64,
+        /// What is allowed, um.
+        tolerance_um: f64,
+        /// Why.
+        reason: &'static str,
+    },
+    /// A run did not come to its end.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Run(#[from] RunError),
+}
+
+/// Finds the fastest plan of a program that a controller cuts within a tolerance on a machine; `laps` as in [`Run::laps`].
+///
+/// # Errors
+/// See [`FastestError`].
+pub fn fastest<'p, const N: usize>(
+    machine: &Machine,
+    tolerance_um: f64,
+    mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
+    controller: &mut dyn Controller<N>,
+    laps: u32,
+    watch: &dyn Watch,
+) -> Result<FastestPlan, FastestError> {
+    let mut search = Search::new(machine, tolerance_um, PathGrid::of(steps().map_err(RunError::from)?, SPACING_MM));
+    if !search.planned(1.0).has_axis_limits() {
+        return Err(FastestError::NoLimits { machine: machine.name.clone() });
+    }
+    let mut cut = |search: &mut Search<'_>, share: f64| search.cut(share, &mut steps, controller, laps, watch);
+    let first = cut(&mut search, FIRST_SHARE)?;
+    let error = first.worst().0 / tolerance_um;
+    if error > 1.0 && !search.diverged {
+        search.over_shares(error, &mut cut)?;
+    }
+    let Some(found) = search.best.take() else {
+        return Err(search.impossible());
+    };
+    search.plan_of(found, &mut steps, watch)
+}
+
+/// A cut within the tolerance.
+#[derive(Debug)]
+struct FastestCut {
+    time_s: f64,
+    error_um: f64,
+    share: f64,
+    caps: Arc<SpeedCaps>,
+}
+
+/// What is looked for, and what has been found so far.
+struct Search<'a> {
+    machine: &'a Machine,
+    tolerance_um: f64,
+    grid: PathGrid,
+    tightening: Tightening,
+    caps: Arc<SpeedCaps>,
+    /// Part of the time in which the speed is bounded by something else than the error.
+    held_part: f64,
+    best: Option<FastestCut>,
+    rounds: u32,
+    diverged: bool,
+    /// The error stays, however slow the tool is.
+    hopeless: bool,
+    /// Time of the last cut, s, its largest error, um, and the line of that.
+    time_s: f64,
+    worst: (f64, u32),
+}
+
+impl<'a> Search<'a> {
+    fn new(machine: &'a Machine, tolerance_um: f64, grid: PathGrid) -> Self {
+        Self {
+            machine,
+            tolerance_um,
+            tightening: Tightening::new(1e-3 * tolerance_um, grid.len()),
+            caps: Arc::new(SpeedCaps::none(grid.spacing_mm)),
+            grid,
+            held_part: 1.0,
+            best: None,
+            rounds: 0,
+            diverged: false,
+            hopeless: false,
+            time_s: 0.0,
+            worst: (0.0, 0),
+        }
+    }
+
+    /// The machine, with a share of the tolerance for the path.
+    fn planned(&self, share: f64) -> Machine {
+        let mut machine = self.machine.clone();
+        machine.limits.path_tolerance_um = Some(share * self.tolerance_um);
+        machine
+    }
+
+    fn best_s(&self) -> f64 {
+        self.best.as_ref().map_or(f64::INFINITY, |best| best.time_s)
+    }
+
+    /// Plans within the bounds as they are, and cuts.
+    fn cut<'p, const N: usize>(
+        &mut self,
+        share: f64,
+        steps: &mut impl FnMut() -> Result<Steps<'p>, ReadError>,
+        controller: &mut dyn Controller<N>,
+        laps: u32,
+        watch: &dyn Watch,
+    ) -> Result<CutPlaces, FastestError> {
+        watch.check().map_err(RunError::from)?;
+        self.rounds += 1;
+        watch.begin(&format!("looking for the least time, cut {}", self.rounds), 1);
+        let planned = self.planned(share);
+        let mut places = CutPlaces::new(self.grid.spacing_mm, self.grid.len());
+        let path_mm = 1e-3 * share * self.tolerance_um;
+        let run = Run::on(&planned).capped(Some(&self.caps)).laps(laps).watched(watch).cut(
+            || Ok(with_tolerance(steps()?, path_mm)),
+            controller,
+            &mut [&mut places],
+        )?;
+        self.diverged = run.outcome != Outcome::Completed;
+        self.worst = places.worst();
+        let (time_s, error_um) = (run.time_s, self.worst.0);
+        self.time_s = time_s;
+        if !self.diverged && error_um <= self.tolerance_um && time_s < self.best_s() {
+            self.best = Some(FastestCut { time_s, error_um, share, caps: self.caps.clone() });
+        }
+        Ok(places)
+    }
+
+    /// Looks for the least time with several shares of the path, where the tool was so many tolerances away with [`FIRST_SHARE`].
+    fn over_shares(
+        &mut self,
+        error: f64,
+        cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
+    ) -> Result<(), FastestError> {
+        if error < LITTLE {
+            // What the path leaves to the servo is what the servo was seen to need; or it keeps what it has.
+            let needed = (1.0 - (error - FIRST_SHARE)).max(LITTLE_SHARE);
+            return self.over([needed, FIRST_SHARE], cut);
+        }
+        self.descend(MUCH_SHARES[0], TRIED, cut)?;
+        match self.held_part {
+            _ if self.hopeless => Ok(()),
+            held_part if held_part < HELD_PART => self.over([LITTLE_SHARE], cut),
+            _ => self.over_much_shares(cut),
+        }
+    }
+
+    /// Gives the path more and more, as long as that gains time.
+    fn over_much_shares(
+        &mut self,
+        cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
+    ) -> Result<(), FastestError> {
+        let mut next = Some(MUCH_SHARES[0]);
+        while let Some(share) = next {
+            let before_s = if share > MUCH_SHARES[0] { self.best_s() } else { f64::INFINITY };
+            if !self.gains(share, before_s, cut)? {
+                break;
+            }
+            next = self.larger_share(share);
+        }
+        Ok(())
+    }
+
+    /// The next share of the path: what the tool has left of the tolerance, where that is less than the next one that is tried anyway.
+    fn larger_share(&self, share: f64) -> Option<f64> {
+        let next = MUCH_SHARES.into_iter().find(|&next| next > share)?;
+        let left = self.best.as_ref().map_or(0.0, |best| 1.0 - best.error_um / self.tolerance_um);
+        Some(if left > LITTLE_SHARE { next.min(share + left) } else { next })
+    }
+
+    const fn ends(&self) -> bool {
+        self.diverged || self.hopeless
+    }
+
+    /// Looks for it with one share after the other, as long as that gains time.
+    fn over<const K: usize>(
+        &mut self,
+        shares: [f64; K],
+        cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
+    ) -> Result<(), FastestError> {
+        for share in shares {
+            if !self.gains(share, self.best_s(), cut)? {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Looks for it with a share; whether that has gained time beside what was known before, s, and another may gain more.
+    fn gains(
+        &mut self,
+        share: f64,
+        before_s: f64,
+        cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
+    ) -> Result<bool, FastestError> {
+        self.descend(share, ROUNDS, cut)?;
+        let gained = !before_s.is_finite() || self.best_s() <= (1.0 - LEAST_GAIN) * before_s;
+        Ok(gained && !self.ends())
+    }
+
+    /// Cuts with a share of the path until that gains no more, or so many times.
+    fn descend(
+        &mut self,
+        share: f64,
+        rounds: u32,
+        cut: &mut impl FnMut(&mut Self, f64) -> Result<CutPlaces, FastestError>,
+    ) -> Result<(), FastestError> {
+        let known_s = self.best_s();
+        let (mut since, mut nearest_um, mut no_nearer) = (0, f64::INFINITY, 0);
+        let mut remaining = RemainingError::default();
+        for _ in 0..rounds {
+            let before_s = self.best_s();
+            let places = cut(self, share)?;
+            let (lowers, error_um) = (self.rounds >= AIM_LOWER, self.worst.0);
+            if error_um <= self.tolerance_um {
+                since = if self.best_s() < (1.0 - LEAST_GAIN) * before_s { 0 } else { since + 1 };
+            }
+            let near = error_um < BEYOND * self.tolerance_um || error_um < (1.0 - NEARER) * nearest_um;
+            no_nearer = if near || !lowers { 0 } else { no_nearer + 1 };
+            nearest_um = nearest_um.min(error_um);
+            self.hopeless = self.best.is_none() && remaining.take_in(&places, 1e-3 * self.tolerance_um);
+            let slower = lowers && self.time_s > known_s;
+            if self.ends() || slower || since >= NO_GAIN || no_nearer >= NO_NEARER {
+                break;
+            }
+            if lowers {
+                self.tightening.aim_lower(&places, self.grid.spacing_mm);
+            }
+            let next = self.tightening.caps(&self.grid, &places, &self.caps, self.rounds);
+            self.held_part = next.held_part;
+            if error_um <= self.tolerance_um && next.caps == *self.caps {
+                break;
+            }
+            self.caps = Arc::new(next.caps);
+        }
+        Ok(())
+    }
+
+    /// Why there is no plan.
+    fn impossible(&self) -> FastestError {
+        let (error_um, line) = self.worst;
+        let reason = if self.diverged {
+            "the servo loop is unstable"
+        } else if self.hopeless || self.caps.caps_mm_s.iter().any(|&cap| cap <= LOWEST_MM_S) {
+            "that is no matter of speed: noise, friction or geometry takes it there"
+        } else {
+            "lower speeds brought it no nearer"
+        };
+        FastestError::Impossible { line, error_um, tolerance_um: self.tolerance_um, reason }
+    }
+
+    /// What a cut comes to as a plan.
+    fn plan_of<'p>(
+        &self,
+        found: FastestCut,
+        steps: &mut impl FnMut() -> Result<Steps<'p>, ReadError>,
+        watch: &dyn Watch,
+    ) -> Result<FastestPlan, FastestError> {
+        let FastestCut { error_um, share, caps, .. } = found;
+        let mut cycle_of = |machine: &Machine, constraints: &Constraints, share: f64, bound: bool| {
+            let path_mm = 1e-3 * share * self.tolerance_um;
+            cycle_time_within(machine, constraints, bound, || Ok(with_tolerance(steps()?, path_mm)), watch)
+        };
+        let (planned, whole) = (self.planned(share), self.planned(1.0));
+        let constraints = Constraints { speed_caps: Some(caps.clone()), ..Constraints::from(&planned) };
+        let mut cycle = cycle_of(&planned, &constraints, share, false)?;
+        cycle.bound_s = cycle_of(&whole, &Constraints::from(&whole), 1.0, true)?.bound_s;
+        Ok(FastestPlan { machine: planned, caps, largest_um: error_um, cycle, rounds: self.rounds })
+    }
+}
+
+/// The same path with another tolerance where it is not to be kept exactly.
+pub(crate) fn with_tolerance<'p>(steps: Steps<'p>, tolerance_mm: f64) -> Steps<'p> {
+    Box::new(steps.map(move |step| {
+        step.map(|step| match step {
+            Step::Piece(mut piece) => {
+                if matches!(piece.corner, Corner::Continuous { .. }) {
+                    piece.corner = Corner::Continuous { tolerance_mm: Some(tolerance_mm), merge_mm: None };
+                }
+                Step::Piece(piece)
+            }
+            other => other,
+        })
+    }))
+}

@@ -1,0 +1,113 @@
+//! Trained identifiers are kept by content: the same recording and training find the same weights. The recording is made
+//! anew each time, which takes a fraction of the training, so that no change of machine, plant or planner finds old weights.
+//!
+//! One small JSON file each, in the user's cache folder, or in `$FEEDWRIGHT_CACHE` where that is set; where that is empty nothing is
+//! kept. Each has a checksum: what cannot be read, is damaged or does not hold a network is trained anew; one that cannot be written
+//! is not an error.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS};
+use feedwright_sim::Machine;
+use serde::{Deserialize, Serialize};
+
+use crate::checked_json::{checked, with_check};
+use crate::output::{OutputFile, OutputFiles};
+use feedwright_ident::{Excitation, Recording, Rng, TrainedContour, Training, train_contour};
+
+/// Raised whenever the same recording gives other weights: a change of the network or of its training.
+const FORMAT: u32 = 4;
+
+#[derive(Serialize, Deserialize)]
+struct StoredWeights {
+    hidden: Vec<f64>,
+    output: Vec<f64>,
+    fit_um: f64,
+    samples: usize,
+}
+
+/// The identifier of a machine, from the cache where it is there.
+pub fn identified<const N: usize>(
+    machine: &Machine,
+    excitation: &Excitation,
+    training: &Training,
+    seed: u64,
+    progress: &mut dyn FnMut(f64),
+) -> TrainedContour<N> {
+    let (recording, rng) = excitation.record(machine, seed);
+    trained(&recording, training, rng, progress)
+}
+
+/// The identifier that a training makes of a recording, from the cache where it is there.
+pub fn trained<const N: usize>(
+    recording: &Recording<N>,
+    training: &Training,
+    rng: Rng,
+    progress: &mut dyn FnMut(f64),
+) -> TrainedContour<N> {
+    let file = folder().map(|folder| folder.join(format!("{}.json", key(recording, training, &rng))));
+    if let Some(found) = file.as_ref().and_then(load) {
+        return found;
+    }
+    let identified = train_contour(recording, training, rng, progress);
+    if let Some(file) = file {
+        // A cache that cannot be written costs time, nothing else.
+        let _ = store(&file, &identified);
+    }
+    identified
+}
+
+/// The folder of the cache, where there is one.
+pub fn folder() -> Option<PathBuf> {
+    match std::env::var_os("FEEDWRIGHT_CACHE") {
+        Some(folder) if folder.is_empty() => None,
+        Some(folder) => Some(PathBuf::from(folder)),
+        None => directories::ProjectDirs::from("", "", "feedwright").map(|dirs| dirs.cache_dir().to_owned()),
+    }
+}
+
+/// A name for what depends on these parts.
+pub fn key_of(parts: &[&[u8]]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    for part in parts {
+        hasher.update(&(part.len() as u64).to_le_bytes());
+        hasher.update(part);
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+fn key<const N: usize>(recording: &Recording<N>, training: &Training, rng: &Rng) -> String {
+    let content = serde_json::json!([FORMAT, N, recording.hash(), format!("{rng:?}"), training]);
+    blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+}
+
+fn load<const N: usize>(file: &PathBuf) -> Option<TrainedContour<N>> {
+    let stored: StoredWeights = serde_json::from_str(&checked(&std::fs::read_to_string(file).ok()?)?).ok()?;
+    let complete = stored.hidden.len() == N * INPUTS * HIDDEN && stored.output.len() == N * HIDDEN;
+    if !complete || stored.hidden.iter().chain(&stored.output).any(|w| !w.is_finite()) {
+        return None;
+    }
+    let net = ContourIdentifier {
+        hidden: std::array::from_fn(|a| {
+            std::array::from_fn(|i| std::array::from_fn(|j| stored.hidden[(a * INPUTS + i) * HIDDEN + j]))
+        }),
+        output: std::array::from_fn(|o| std::array::from_fn(|j| stored.output[o * HIDDEN + j])),
+    };
+    Some(TrainedContour { net, fit_um: stored.fit_um, samples: stored.samples })
+}
+
+fn store<const N: usize>(file: &std::path::Path, identified: &TrainedContour<N>) -> std::io::Result<()> {
+    let Some(folder) = file.parent() else { return Ok(()) };
+    std::fs::create_dir_all(folder)?;
+    let stored = StoredWeights {
+        hidden: identified.net.hidden.as_flattened().as_flattened().to_vec(),
+        output: identified.net.output.as_flattened().to_vec(),
+        fit_um: identified.fit_um,
+        samples: identified.samples,
+    };
+    let text = with_check(&serde_json::to_string(&stored)?);
+    let mut kept = OutputFiles::default().start(file).map_err(std::io::Error::other)?;
+    kept.write_all(text.as_bytes())?;
+    OutputFile::commit_all(vec![kept], &()).map_err(std::io::Error::other)
+}

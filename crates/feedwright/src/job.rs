@@ -1,0 +1,393 @@
+//! The main job: a program and a machine in, every controller's cut, report and files out.
+//!
+//! Calls, no arithmetic. The program is read twice: once to find every mistake before anything is written, once for each
+//! cut, as a stream. A cut is a [`Run`].
+//!
+//! | File | What |
+//! |---|---|
+//! | `job/assumed.rs` | what it assumes of its machine |
+//! | `job/files.rs` | the files that it writes, all of them or none |
+//! | `job/record.rs` | what it keeps of the rows of a run |
+//! | `job/exported.rs` | the corrected program for a control without feedback |
+//! | `job/report.rs` | what the page shows |
+//! | `job/listing.rs` | lines of the program for it |
+//! | `job/stored.rs` | how it is serialised |
+
+mod assumed;
+mod files;
+mod record;
+mod exported;
+mod report;
+mod listing;
+mod stored;
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use feedwright_control::Controller;
+use feedwright_gcode::canon::{Canon, MotionKind};
+use feedwright_gcode::{self, ReadError, Reader, Summary};
+use feedwright_ident::{Columns, Log, LogFinding, Model};
+use feedwright_plan::{AlignedPaths, Constraints, PlanSink, Step, Steps};
+use feedwright_sim::{Machine, Outcome, Row, Run, RunError, Sink, StageSteps, Stages, Watch, path_steps};
+use serde::{Deserialize, Serialize};
+
+use crate::controllers::{Choices, Entry, Make, NothingIdentified, Setup};
+use crate::correct::{CorrectOutcome, TargetControl};
+use crate::cycle_time::CycleTimeOfCut;
+use crate::fastest::{FastestError, FastestPlan, fastest, with_tolerance};
+pub use crate::job_error::JobError;
+use crate::job_error::axes_that_move;
+use crate::measured::{MeasuredRun, measured};
+use crate::report::harm::Harm;
+use crate::report::{FullCircle, Report, ReportedRun, full_circles};
+pub(crate) use exported::AS_EXPORTED;
+pub use files::Outputs;
+use files::{Files, Timeline};
+use record::RunRecord;
+
+/// A part, a machine, two controllers, and what to write. Serialised, the machine and the model are the texts of their files, and
+/// the controllers their names.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Job {
+    /// The G-code program.
+    pub part: PathBuf,
+    /// The machine that cuts it.
+    #[serde(with = "stored::machine")]
+    pub machine: Machine,
+    /// The file that the machine was read from; none where it is built in.
+    #[serde(default)]
+    pub machine_file: Option<PathBuf>,
+    /// The controller that is asked for.
+    #[serde(with = "stored::entry")]
+    pub controller: &'static Entry,
+    /// What it is compared against.
+    #[serde(with = "stored::entry")]
+    pub against: &'static Entry,
+    /// Replaces every programmed feedrate, mm/s.
+    pub feed_mm_s: Option<f64>,
+    /// Settings of the controllers.
+    pub choices: Choices,
+    /// A model for the controller that is asked for, in place of a training.
+    #[serde(with = "stored::model")]
+    pub model: Option<Model>,
+    /// Largest contour error that is allowed, um.
+    pub tolerance_um: Option<f64>,
+    /// The control that a program of `outputs.out` is for.
+    #[serde(with = "stored::target")]
+    pub target: &'static TargetControl,
+    /// A program that errors are measured to, in place of the one that is cut.
+    #[serde(default)]
+    pub reference: Option<PathBuf>,
+    /// Cut as fast as the tolerance allows the controller that is asked for.
+    pub fastest: bool,
+    /// What a machine recorded while it cut the program, shown beside what is predicted.
+    pub log: Option<LogFile>,
+    /// Settings of the reader.
+    pub reader: feedwright_gcode::Settings,
+    /// Files that were read to make this job, besides the program: no output may take their place.
+    pub inputs: Vec<PathBuf>,
+    /// Files to write.
+    pub outputs: Outputs,
+}
+
+/// What stands for a controller in the run of a log.
+pub const MEASURED: &str = "measured";
+
+/// A log, and what is said of its columns, as [`Columns`] reads it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct LogFile {
+    /// The file.
+    pub path: PathBuf,
+    /// Its columns, where they are not guessed.
+    pub columns: Option<String>,
+}
+
+/// What a job came to. The runs stand in the order in which they were made: what is compared against, what was
+/// measured, where there is a log, then the controller that was asked for.
+#[derive(Debug)]
+pub struct JobOutcome {
+    /// Everything that the page shows.
+    pub report: Report,
+    /// What the reader warned of.
+    pub warnings: Vec<feedwright_gcode::Diagnostic>,
+    /// Controllers that cut open loop, because nothing was identified that they could go by.
+    pub without_identification: Vec<NothingIdentified>,
+    /// What was guessed or noticed of the log.
+    pub log_findings: Vec<LogFinding>,
+    /// The corrected program for another control, where one was asked for; its run is the last.
+    pub exported: Option<CorrectOutcome>,
+    /// The plan of least time, where that was asked for.
+    pub fastest: Option<FastestPlan>,
+    /// In what the correction is worse than open loop; nothing where it is compared with something else.
+    pub harm: Vec<Harm>,
+    /// Whether the command of the controller was written, where that was asked for: it was cut to its end, and does no harm.
+    pub is_of_use: bool,
+    /// Whether the last run was cut to its end and within the tolerance, where one was asked for, and a program that was asked for is better
+    /// than the original.
+    pub within_tolerance: bool,
+}
+
+impl Job {
+    /// Runs it and writes its files.
+    ///
+    /// # Errors
+    /// A program with mistakes, more axes than the machine has, a file that cannot be written, or an end from outside. No file
+    /// appears then.
+    pub fn run(&self, watch: &dyn Watch) -> Result<JobOutcome, JobError> {
+        watch.begin("reading the program", 1);
+        self.check_values()?;
+        let summary = feedwright_gcode::check(&self.part, self.reader.clone())?;
+        let axes = axes_that_move(&self.part, &summary, &self.machine)?;
+        if let Some(model) = &self.model {
+            self.controller.suits(model, &self.machine.known(), axes, &self.choices)?;
+        }
+        match axes {
+            2 => self.cut::<2>(&summary, watch),
+            _ => self.cut::<3>(&summary, watch),
+        }
+    }
+
+    fn cut<const N: usize>(&self, summary: &Summary, watch: &dyn Watch) -> Result<JobOutcome, JobError>
+    where
+        Entry: Make<N>,
+    {
+        let mut files = Files::create(self, N)?;
+        let aligned = self.aligned()?;
+        let fastest = self.fastest_plan::<N>(watch)?;
+        let circles = self.circles()?;
+        let constraints = Constraints::from(&self.machine);
+        let looked_at = self.looks_at_cut(fastest.as_ref(), aligned.as_ref(), &constraints);
+        let (mut runs, without_identification) = {
+            let looked_at = looked_at.as_ref().map(|cycle| cycle as &dyn PlanSink);
+            let plan =
+                PlannedCut { fastest: fastest.as_ref(), aligned: aligned.as_ref(), circles: &circles, looked_at };
+            self.cut_with_each::<N>(summary, plan, &mut files, watch)?
+        };
+        let completed = runs.last().is_some_and(|run| run.summary.outcome == Outcome::Completed);
+        let looked_at = looked_at.filter(|_| completed).map(CycleTimeOfCut::finish);
+        let mut log_findings = Vec::new();
+        if let Some(log) = &self.log {
+            let at = runs.len() - 1;
+            let (run, findings) = self.measured(log, N, &circles, watch)?;
+            runs.insert(at, run);
+            log_findings = findings;
+        }
+        let exported = self.exported(&circles, watch)?.map(|(outcome, run)| {
+            runs.extend(run);
+            outcome
+        });
+        let limits = self.limit_band(fastest.as_ref().map(|plan| &plan.cycle).or(looked_at.as_ref()), watch)?;
+        watch.begin("writing", 1);
+        let report = Report { limits, ..self.report(N, summary, circles, runs, &without_identification)? };
+        let (harm, is_of_use) = (self.harm(&report), self.is_of_use(&report));
+        let exported_well = exported.as_ref().is_none_or(|outcome| outcome.refusal.is_none());
+        let within_tolerance = self.within_tolerance(&report) && exported_well;
+        files.finish(self, &report, exported.as_ref(), watch)?;
+        let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
+        Ok(JobOutcome {
+            report,
+            warnings,
+            without_identification,
+            log_findings,
+            exported,
+            fastest,
+            harm,
+            is_of_use,
+            within_tolerance,
+        })
+    }
+
+    /// What a log says of the cut.
+    fn measured(
+        &self,
+        file: &LogFile,
+        axes: usize,
+        circles: &[FullCircle],
+        watch: &dyn Watch,
+    ) -> Result<(ReportedRun, Vec<LogFinding>), JobError> {
+        let columns = match &file.columns {
+            Some(text) => Columns::from_str(text).map_err(|error| JobError::LogColumns { error })?,
+            None => Columns::default(),
+        };
+        let log = Log::read_watched(&file.path, &columns, watch)?;
+        watch.begin("comparing the log", 1);
+        let of_log = |error| JobError::Measured { log: file.path.clone(), part: self.part.clone(), error };
+        let steps = path_steps(self.program()?);
+        let limits = |error| JobError::of_run(&self.part, RunError::Limits(error));
+        let mut reference = Stages::of(&self.machine).reference(steps, &self.machine).map_err(limits)?;
+        let mut record = RunRecord::new(axes, log.sample_time_s, circles);
+        let MeasuredRun { run, findings: of_axes } =
+            measured(&log, &self.machine, axes, &mut reference, &mut record.sinks(), watch).map_err(of_log)?;
+        Ok((self.reported(record, MEASURED, run)?, [log.findings, of_axes].concat()))
+    }
+
+    /// The plan of least time, found with a controller of its own.
+    fn fastest_plan<const N: usize>(&self, watch: &dyn Watch) -> Result<Option<FastestPlan>, JobError>
+    where
+        Entry: Make<N>,
+    {
+        let Some(tolerance_um) = self.tolerance_um.filter(|_| self.fastest) else {
+            return Ok(None);
+        };
+        watch.begin("planning the least time", 1);
+        let mut setup = Setup::new(&self.machine, &self.choices);
+        let mut controller = match &self.model {
+            Some(model) => self.controller.make_with::<N>(setup, model)?,
+            None => Make::<N>::make(self.controller, &mut setup),
+        };
+        let steps = || Ok(path_steps(self.program()?));
+        let found = fastest(&self.machine, tolerance_um, steps, &mut *controller, self.controller.laps, watch);
+        found.map(Some).map_err(|error| match error {
+            FastestError::Run(error) => JobError::of_run(&self.part, error),
+            error => JobError::Fastest { part: self.part.clone(), error },
+        })
+    }
+
+    /// One run for each controller, and for which of them nothing was identified.
+    fn cut_with_each<const N: usize>(
+        &self,
+        summary: &Summary,
+        plan: PlannedCut<'_>,
+        files: &mut Files,
+        watch: &dyn Watch,
+    ) -> Result<(Vec<ReportedRun>, Vec<NothingIdentified>), JobError>
+    where
+        Entry: Make<N>,
+    {
+        let (mut runs, mut without_identification) = (Vec::new(), Vec::new());
+        for entry in self.controllers() {
+            watch.check()?;
+            let mut steps = StageSteps::begin(watch, &format!("identifying for {}", entry.name));
+            let mut progress = |part: f64| steps.reach(part);
+            let mut setup = Setup::new(&self.machine, &self.choices).telling(&mut progress);
+            let judged = entry.name == self.controller.name;
+            let mut controller = match self.model.as_ref().filter(|_| judged) {
+                Some(model) => entry.make_with::<N>(setup, model)?,
+                None => {
+                    let controller = Make::<N>::make(entry, &mut setup);
+                    without_identification.extend(setup.remark(entry));
+                    controller
+                }
+            };
+            let written = judged.then_some(&mut *files);
+            let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), ..plan };
+            runs.push(self.cut_once(summary, entry, &mut *controller, plan, written, watch)?);
+        }
+        Ok((runs, without_identification))
+    }
+
+    fn cut_once<const N: usize>(
+        &self,
+        summary: &Summary,
+        entry: &Entry,
+        controller: &mut dyn Controller<N>,
+        PlannedCut { fastest, aligned, circles, looked_at }: PlannedCut<'_>,
+        files: Option<&mut Files>,
+        watch: &dyn Watch,
+    ) -> Result<ReportedRun, JobError> {
+        let mut record = RunRecord::new(N, self.machine.period.servo_s, circles);
+        let mut timeline = Timeline::new(&self.machine.plc_events);
+        let steps = StageSteps::begin(watch, &format!("cutting, {}", entry.name));
+        let mut cut = CutProgress { steps, length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
+        let others: [&mut dyn Sink; 2] = [&mut timeline, &mut cut];
+        let files = files.map(|files| files as &mut dyn Sink);
+        let mut sinks: Vec<&mut dyn Sink> = record.sinks().into_iter().chain(others).chain(files).collect();
+        let machine = fastest.map_or(&self.machine, |plan| &plan.machine);
+        let steps = || {
+            let steps = path_steps(self.program()?);
+            Ok(match fastest.and_then(|plan| plan.machine.limits.path_tolerance_um) {
+                Some(path_um) => with_tolerance(steps, 1e-3 * path_um),
+                None => steps,
+            })
+        };
+        let run = Run::on(machine).capped(fastest.map(|plan| &plan.caps)).laps(entry.laps).watched(watch);
+        let run = run.planned_to(looked_at);
+        let run = match aligned {
+            Some(aligned) => run.cut_aligned(aligned, controller, &mut sinks),
+            None => run.cut(steps, controller, &mut sinks),
+        };
+        let run = run.map_err(|error| JobError::of_run(&self.part, error))?;
+        drop(sinks);
+        Ok(ReportedRun { events: timeline.events, ..self.reported(record, entry.name, run)? })
+    }
+
+    /// The full circles of the program that errors are measured to.
+    fn circles(&self) -> Result<Vec<FullCircle>, JobError> {
+        Ok(match &self.reference {
+            None => full_circles(path_steps(self.program()?).map_while(Result::ok)),
+            Some(reference) => {
+                let steps = Reader::open(reference, self.reader.clone())?.map_while(Result::ok);
+                full_circles(path_steps(steps).map_while(Result::ok))
+            }
+        })
+    }
+
+    /// The path that is cut beside the one that errors are measured to, where that is another.
+    fn aligned(&self) -> Result<Option<AlignedPaths>, JobError> {
+        let Some(reference) = &self.reference else { return Ok(None) };
+        feedwright_gcode::check(reference, self.reader.clone())?;
+        let original = Reader::open(reference, self.reader.clone())?.map_while(Result::ok);
+        let steps = |part: &PathBuf, steps: Steps<'_>| {
+            let of_path = |fault| JobError::Path { part: part.clone(), fault };
+            steps.collect::<Result<Vec<Step>, _>>().map_err(of_path)
+        };
+        let (original, other) =
+            (steps(reference, path_steps(original))?, steps(&self.part, path_steps(self.program()?))?);
+        Ok(Some(AlignedPaths::new(&original, &other)))
+    }
+
+    /// The controllers in the order in which they cut: the one that is asked for last, and once.
+    fn controllers(&self) -> Vec<&'static Entry> {
+        if self.against.name == self.controller.name {
+            vec![self.controller]
+        } else {
+            vec![self.against, self.controller]
+        }
+    }
+
+    /// The canonical steps of the program, with the feedrate replaced where that was asked for.
+    fn program(&self) -> Result<impl Iterator<Item = Canon> + Send + use<>, ReadError> {
+        let feed_mm_s = self.feed_mm_s;
+        // The program was checked from end to end before: a mistake here means that the file changed, and ends it.
+        let steps = Reader::open(&self.part, self.reader.clone())?.map_while(Result::ok);
+        Ok(steps.map(move |mut step| {
+            if let (Canon::Motion(motion), Some(feed_mm_s)) = (&mut step, feed_mm_s)
+                && motion.kind == MotionKind::Feed
+            {
+                motion.feed_mm_s = feed_mm_s;
+            }
+            step
+        }))
+    }
+}
+
+/// What a cut is made by, besides machine and controller.
+#[derive(Clone, Copy)]
+struct PlannedCut<'a> {
+    fastest: Option<&'a FastestPlan>,
+    aligned: Option<&'a AlignedPaths>,
+    circles: &'a [FullCircle],
+    /// Who is told of the plan.
+    looked_at: Option<&'a dyn PlanSink>,
+}
+/// Tells the progress of a cut by its arc length.
+struct CutProgress<'a> {
+    steps: StageSteps<'a>,
+    length_mm: f64,
+    rows: u32,
+}
+
+/// Rows between two steps at the least: a tenth of a second of machining.
+const ROWS_BETWEEN: u32 = 100;
+
+impl Sink for CutProgress<'_> {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        self.rows += 1;
+        if self.rows == ROWS_BETWEEN {
+            self.rows = 0;
+            self.steps.reach(row.s_mm / self.length_mm);
+        }
+        Ok(())
+    }
+}

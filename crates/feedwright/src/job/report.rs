@@ -1,0 +1,186 @@
+//! What the page of a job shows.
+
+use std::io::BufRead;
+
+use feedwright_gcode::{Summary, input};
+use feedwright_ident::Model;
+use feedwright_plan::{AlignedPaths, Constraints};
+use feedwright_sim::{Machine, Stages, Watch, path_steps};
+
+use super::{Job, JobError};
+use crate::controllers::{BASELINE, NothingIdentified};
+use crate::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
+use crate::fastest::FastestPlan;
+use crate::report::harm::{Harm, harm};
+use crate::report::{FullCircle, LimitBand, Outcome, Report, ReportedRun, WorstPlace};
+
+impl Job {
+    /// The part as the report calls it: the file's name.
+    pub(super) fn part_name(&self) -> String {
+        let name = std::path::PathBuf::from(input::name(&self.part));
+        name.file_name().unwrap_or(name.as_os_str()).to_string_lossy().into_owned()
+    }
+
+    /// That the program could not be read once more.
+    pub(super) fn reread(&self, cause: std::io::Error) -> JobError {
+        JobError::Reread { part: self.part.clone(), cause }
+    }
+
+    /// The text of the program, and its size in bytes.
+    pub(super) fn program_text(&self) -> Result<(Box<dyn BufRead>, u64), JobError> {
+        let reread = |cause| self.reread(cause);
+        if input::is_standard_input(&self.part) {
+            let text = input::standard_input().map_err(reread)?;
+            return Ok((Box::new(text), text.len() as u64));
+        }
+        let file = std::fs::File::open(&self.part).map_err(reread)?;
+        let bytes = file.metadata().map_err(reread)?.len();
+        Ok((Box::new(std::io::BufReader::new(file)), bytes))
+    }
+
+    /// Looks up the texts of the worst places' lines, in one pass over the program.
+    pub(super) fn fill_in_texts(&self, worst: &mut [WorstPlace]) -> Result<(), JobError> {
+        let last = worst.iter().map(|place| place.line).max().unwrap_or(0);
+        let (mut file, _) = self.program_text()?;
+        let mut text = Vec::new();
+        for line in 1..=last {
+            text.clear();
+            file.read_until(b'\n', &mut text).map_err(|cause| self.reread(cause))?;
+            for place in worst.iter_mut().filter(|place| place.line == line) {
+                place.text = String::from_utf8_lossy(&text).trim_end().to_owned();
+            }
+        }
+        Ok(())
+    }
+
+    /// Everything that the page shows.
+    pub(super) fn report(
+        &self,
+        axes: usize,
+        summary: &Summary,
+        circles: Vec<FullCircle>,
+        runs: Vec<ReportedRun>,
+        unidentified: &[NothingIdentified],
+    ) -> Result<Report, JobError> {
+        let value = |name: &str, value: String| (name.to_owned(), value);
+        let mut settings = vec![
+            value("Compared against", self.against.name.to_owned()),
+            value("Controller", format!("{}: {}", self.controller.name, self.controller.summary)),
+            value("Source of the method", self.controller.source.to_owned()),
+            value("Axes controlled", axes.to_string()),
+            value("Program read as", format!("{}: {}", summary.dialect.0, summary.dialect.1)),
+            value("Seed", self.choices.seed.to_string()),
+        ];
+        for set in &self.choices.set {
+            settings.push(value(&format!("{}, {}", set.controller, set.name), set.value.to_string()));
+        }
+        if let Some(model) = self.model.as_ref().map(Model::about) {
+            settings.push(value("Model", format!("{}, {}", model.source, model.date)));
+        }
+        if let Some(reference) = &self.reference {
+            settings.push(value("Errors measured to", reference.display().to_string()));
+        }
+        if self.outputs.is_program() {
+            settings.push(value("Corrected program for", format!("{}: {}", self.target.name, self.target.about)));
+        }
+        if let Some(feed_mm_s) = self.feed_mm_s {
+            settings.push(value("Feedrate, in place of the programmed", format!("{feed_mm_s} mm/s")));
+        }
+        Ok(Report {
+            title: format!("{} on {}", self.part_name(), self.machine.name),
+            part: self.part_name(),
+            machine: describe(&self.machine),
+            settings,
+            assumed: self.assumptions(axes, unidentified),
+            program: self.listing(&runs)?,
+            circles,
+            tolerance_um: self.tolerance_um,
+            limits: None,
+            runs,
+        })
+    }
+
+    /// In what the controller that is asked for is worse than open loop; nothing where it is compared with something else.
+    pub(super) fn harm(&self, report: &Report) -> Vec<Harm> {
+        let of = |name: &str| report.runs.iter().map(|run| &run.summary).find(|run| run.controller == name);
+        match (of(BASELINE), of(self.controller.name)) {
+            (Some(before), Some(after)) if before.outcome == Outcome::Completed => harm(before, after),
+            _ => Vec::new(),
+        }
+    }
+
+    /// Whether the command of the controller that is asked for may be used: it was cut to its end, and is not worse than open loop.
+    pub(super) fn is_of_use(&self, report: &Report) -> bool {
+        let mut runs = report.runs.iter().map(|run| &run.summary);
+        let cut = runs.any(|run| run.controller == self.controller.name && run.outcome == Outcome::Completed);
+        cut && self.harm(report).is_empty()
+    }
+
+    /// Whether the page shows what binds along the path: on machines that are planned axis by axis.
+    fn shows_limits(&self) -> bool {
+        self.outputs.report.is_some() && Stages::of(&self.machine).planner.needs_axes
+    }
+
+    /// Looks at the plan of a cut for the page, where that is the plan of the program.
+    pub(super) fn looks_at_cut<'a>(
+        &self,
+        fastest: Option<&FastestPlan>,
+        aligned: Option<&AlignedPaths>,
+        constraints: &'a Constraints,
+    ) -> Option<CycleTimeOfCut<'a>> {
+        let cut = self.shows_limits() && fastest.is_none() && aligned.is_none();
+        cut.then(|| CycleTimeOfCut::new(constraints, Stages::of(&self.machine).planner.name))
+    }
+
+    /// What binds along the path, where the page shows it. A plan that was looked at already tells it; where there is none, since the cut did not come
+    /// to its end or went along another path, one is made.
+    pub(super) fn limit_band(
+        &self,
+        known: Option<&CycleTime>,
+        watch: &dyn Watch,
+    ) -> Result<Option<LimitBand>, JobError> {
+        if !self.shows_limits() {
+            return Ok(None);
+        }
+        let along = match known {
+            Some(cycle) => cycle.along.clone(),
+            None => {
+                watch.begin("looking at what binds", 1);
+                let found = cycle_time(&self.machine, false, || Ok(path_steps(self.program()?)), watch);
+                found.map_err(|error| JobError::of_run(&self.part, error))?.along
+            }
+        };
+        Ok(Some(LimitBand { names: cycle_time::limit_names(), along }))
+    }
+
+    /// Whether the run that was asked for is one to be content with.
+    pub(super) fn within_tolerance(&self, report: &Report) -> bool {
+        report.runs.last().is_some_and(|run| {
+            run.summary.outcome == Outcome::Completed
+                && self.tolerance_um.is_none_or(|tolerance_um| run.summary.max_um <= tolerance_um)
+        })
+    }
+}
+
+/// The machine's values, named and with units.
+fn describe(machine: &Machine) -> Vec<(String, String)> {
+    let mut lines = vec![
+        ("Machine".to_owned(), format!("{}: {}", machine.name, machine.description)),
+        ("Source".to_owned(), machine.source.clone()),
+    ];
+    // The keys of the file carry their units; the serialisation lists all of them without a second list here.
+    let sections = [
+        ("period".to_owned(), serde_json::json!(machine.period)),
+        ("limits".to_owned(), serde_json::json!(machine.limits)),
+    ];
+    let axes =
+        ["x", "y", "z"].iter().zip(&machine.axes).map(|(name, axis)| (format!("axis.{name}"), serde_json::json!(axis)));
+    let geometry = [("geometry".to_owned(), serde_json::json!(machine.geometry))];
+    let noise = [("noise".to_owned(), serde_json::json!(machine.noise))];
+    for (section, values) in sections.into_iter().chain(axes).chain(geometry).chain(noise) {
+        for (key, value) in values.as_object().into_iter().flatten() {
+            lines.push((format!("{section}.{key}"), value.to_string()));
+        }
+    }
+    lines
+}

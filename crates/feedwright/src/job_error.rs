@@ -1,0 +1,205 @@
+//! What can go wrong with a job: a program that is cut on a machine.
+
+use std::path::{Path, PathBuf};
+
+use feedwright_gcode::{self, CheckError, ReadError, Summary};
+use feedwright_ident::{ColumnsError, LogError};
+use feedwright_plan::{LimitsError, PathError};
+use feedwright_sim::{Cancelled, Machine, RunError, shown};
+use thiserror::Error;
+
+use crate::controllers::ModelMisfit;
+use crate::fastest::FastestError;
+use crate::measured::MeasuredError;
+use crate::output::OutputError;
+
+/// Why a job cannot be done.
+#[derive(Debug, Error, miette::Diagnostic)]
+pub enum JobError {
+    /// The program cannot be read at all.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Read(#[from] ReadError),
+    /// The program has mistakes.
+    #[error("{}: {} mistake{}, nothing was cut", part.display(), faults.len(), if faults.len() == 1 { "" } else { "s" })]
+    Faults {
+        /// The program.
+        part: PathBuf,
+        /// All of them, in program order.
+        #[related]
+        faults: Vec<feedwright_gcode::Diagnostic>,
+    },
+    /// A motion has no path.
+    #[error("{}: {fault}", part.display())]
+    Path {
+        /// The program.
+        part: PathBuf,
+        /// Why.
+        fault: PathError,
+    },
+    /// The program moves an axis that the machine does not have.
+    #[error("{} moves Z, and the machine `{machine}` has no [axis.z]", part.display())]
+    #[diagnostic(help("give the machine file a section [axis.z], or choose a machine with three axes"))]
+    NoZ {
+        /// The program.
+        part: PathBuf,
+        /// The machine.
+        machine: String,
+    },
+    /// A program without a feed motion.
+    #[error("{} has no feed motion: there is nothing to cut", part.display())]
+    #[diagnostic(help("G1, G2 and G3 cut; G0 is a rapid"))]
+    NothingToCut {
+        /// The program.
+        part: PathBuf,
+    },
+    /// A control plans by limits that the machine file does not have.
+    #[error("{control} plans by the limits of each axis, and the machine `{machine}` has none")]
+    #[diagnostic(help(
+        "give each [axis.*] of the machine file max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3, the first two as in the control"
+    ))]
+    NoAxisLimits {
+        /// The control.
+        control: &'static str,
+        /// The machine.
+        machine: String,
+    },
+    /// The model does not suit.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Model(#[from] ModelMisfit),
+    /// A value on the command line is out of its range.
+    #[error("{name} is {}{unit}; it must lie {bounds}", shown(*value))]
+    Value {
+        /// Name of the option.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit after a space, where it has one.
+        unit: &'static str,
+        /// The range in words.
+        bounds: String,
+        /// Remedy.
+        #[help]
+        hint: Option<&'static str>,
+    },
+    /// `--out` with an ending that says nothing.
+    #[error("{} does not say what to write", path.display())]
+    #[diagnostic(help("the ending decides: .csv for setpoints, .ngc for G-code; - is G-code on the standard output"))]
+    Ending {
+        /// The place.
+        path: PathBuf,
+    },
+    /// A program is asked for of a cut that is none of the program alone.
+    #[error("{}: no corrected program is written with {option}", out.display())]
+    #[diagnostic(help("{}", if *option == "--fastest" {
+        "the plan of least time holds for a cut with feedback: write its setpoints (.csv)"
+    } else {
+        "give the original as PART, without --reference"
+    }))]
+    NoProgramWith {
+        /// The place.
+        out: PathBuf,
+        /// The option.
+        option: &'static str,
+    },
+    /// The log cannot be read.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Log(#[from] LogError),
+    /// What is said of its columns cannot be read.
+    #[error("columns of the log: {error}")]
+    LogColumns {
+        /// Why.
+        error: ColumnsError,
+    },
+    /// The log is not one of the program.
+    #[error("{} is not compared with {}: {error}", log.display(), part.display())]
+    Measured {
+        /// The log.
+        log: PathBuf,
+        /// The program.
+        part: PathBuf,
+        /// Why.
+        #[diagnostic_source]
+        error: MeasuredError,
+    },
+    /// No plan is within the tolerance.
+    #[error("{}: {error}", part.display())]
+    Fastest {
+        /// The program.
+        part: PathBuf,
+        /// Why.
+        error: FastestError,
+    },
+    /// The cut did not come to its end.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Run(RunError),
+    /// Ended from outside.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Cancelled(#[from] Cancelled),
+    /// A file cannot be written.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Output(#[from] OutputError),
+    /// The program went away, or changed, while it was cut.
+    #[error("{}: {cause}", part.display())]
+    Reread {
+        /// The program.
+        part: PathBuf,
+        /// What the system says.
+        cause: std::io::Error,
+    },
+}
+
+impl JobError {
+    /// Of a cut of a part.
+    pub(crate) fn of_run(part: &Path, error: RunError) -> Self {
+        match error {
+            RunError::Read(error) => Self::Read(error),
+            RunError::Path(fault) => Self::Path { part: part.to_owned(), fault },
+            RunError::Write(error) => error.into(),
+            RunError::Cancelled(cancelled) => Self::Cancelled(cancelled),
+            RunError::Limits(_) | RunError::TooLong { .. } => Self::Run(error),
+        }
+    }
+}
+
+impl From<LimitsError> for JobError {
+    fn from(error: LimitsError) -> Self {
+        Self::Run(error.into())
+    }
+}
+
+/// Rows go to files whose errors name them; anything else is of the program.
+impl From<std::io::Error> for JobError {
+    fn from(error: std::io::Error) -> Self {
+        Self::Output(OutputError::from_io(error, Path::new("the output")))
+    }
+}
+
+impl From<CheckError> for JobError {
+    fn from(error: CheckError) -> Self {
+        match error {
+            CheckError::Read(error) => Self::Read(error),
+            CheckError::Faults(faults) => {
+                let part = faults.first().map(|fault| PathBuf::from(&*fault.file)).unwrap_or_default();
+                Self::Faults { part, faults }
+            }
+        }
+    }
+}
+
+/// Two axes where the program stays in the XY plane and the third would only stand still.
+///
+/// # Errors
+/// A program that moves an axis that the machine does not have.
+pub(crate) fn axes_that_move(part: &Path, summary: &Summary, machine: &Machine) -> Result<usize, JobError> {
+    match (summary.moves[2], machine.axis_count()) {
+        (false, _) => Ok(2),
+        (true, 3..) => Ok(3),
+        (true, _) => Err(JobError::NoZ { part: part.to_owned(), machine: machine.name.clone() }),
+    }
+}

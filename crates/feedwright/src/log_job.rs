@@ -1,0 +1,274 @@
+//! The identification of a real machine from its log: a log in; a machine file, numbers and a page out.
+//!
+//! ```text
+//! log -> records of its axes -> grey box of each -> machine file, JSON, page
+//! ```
+//!
+//! What is computed is in [`feedwright_ident::identify::grey_box`].
+
+mod axis_keys;
+mod machine_text;
+mod update;
+mod json;
+mod page;
+
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use feedwright_ident::{
+    AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, LawVerdict, Log, NotFound, NumberSource,
+    identify_machine,
+};
+use feedwright_sim::{Cancelled, Machine, StageSteps, Watch};
+use miette::Diagnostic;
+use thiserror::Error;
+
+pub use json::write as write_json;
+pub use machine_text::machine_text;
+pub use page::{following as following_figure, write as write_page};
+pub use update::{UpdateError, updated_text};
+
+/// What is asked for.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct LogJob {
+    /// What the log is called in texts.
+    pub name: String,
+    /// Times that are fitted and scored, s of the log.
+    pub times_s: Option<[Range<f64>; 2]>,
+    /// What is known of every axis.
+    pub facts: AxisFacts,
+    /// The machine as it was known before: what the log does not tell stays.
+    pub before: Option<Machine>,
+}
+
+/// What it came to.
+#[derive(Debug, Clone)]
+pub struct LogIdentified {
+    /// The job.
+    pub job: LogJob,
+    /// The log, or the windows of it that were used.
+    pub log: Log,
+    /// What was found.
+    pub machine: FoundMachine,
+    /// Of how many samples these windows are, where not all were used.
+    pub of_samples: Option<usize>,
+}
+
+/// Why it came to nothing.
+#[derive(Debug, Error, Diagnostic)]
+pub enum LogJobError {
+    /// The record does not tell the law.
+    #[error(transparent)]
+    NotFound(#[from] NotFound),
+    /// It was ended from outside.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// Most samples that are used, and windows of a longer log.
+const MOST_SAMPLES: usize = 200_000;
+const WINDOW_SAMPLES: usize = 10_000;
+
+impl LogJob {
+    /// Identifies the axes of a log.
+    ///
+    /// # Errors
+    /// A log that does not tell the law of an axis, or an end from outside.
+    pub fn run(self, log: Log, watch: &dyn Watch) -> Result<LogIdentified, LogJobError> {
+        let (log, of_samples) = informative(log);
+        let records: Vec<AxisRecord<'_>> = log
+            .axes
+            .iter()
+            .map(|axis| AxisRecord {
+                name: &axis.name,
+                sample_s: log.sample_time_s,
+                stretches: &log.stretches,
+                command_mm: &axis.command_mm,
+                actual_mm: &axis.actual_mm,
+                step_mm: axis.step_mm,
+            })
+            .collect();
+        let torques: Vec<Option<&[f64]>> = log.axes.iter().map(|axis| axis.torque.as_deref()).collect();
+        let options = GreyBoxOptions { times_s: self.times_s.clone(), facts: self.facts_of(&log) };
+        let mut steps = StageSteps::begin(watch, "identifying the axes");
+        let machine = identify_machine(&records, &torques, &log.time_s, &options, |part| {
+            steps.reach(part);
+            !watch.is_cancelled()
+        })?;
+        watch.check()?;
+        Ok(LogIdentified { job: self, log, machine, of_samples })
+    }
+}
+
+impl LogJob {
+    /// What is known of each axis of a log.
+    fn facts_of(&self, log: &Log) -> Vec<AxisFacts> {
+        let names: Vec<&str> = log.axes.iter().map(|axis| axis.name.as_str()).collect();
+        let places = places(&names);
+        let of_axis = |i: usize| {
+            let place = places.iter().position(|place| *place == Some(i))?;
+            self.before.as_ref()?.axes.get(place)
+        };
+        (0..names.len()).map(|i| of_axis(i).map_or(self.facts, |axis| self.facts.or_of(axis))).collect()
+    }
+}
+
+/// A log of no more samples than are used: windows of a longer one, evenly over those in which it moves.
+pub fn informative(log: Log) -> (Log, Option<usize>) {
+    let samples = log.time_s.len();
+    if samples <= MOST_SAMPLES {
+        return (log, None);
+    }
+    let mut windows: Vec<Range<usize>> = vec![];
+    for stretch in &log.stretches {
+        let mut from = stretch.start;
+        while from < stretch.end {
+            let to = (from + WINDOW_SAMPLES).min(stretch.end);
+            let moves = |command: &[f64]| command[from..to].windows(2).any(|pair| pair[0] != pair[1]);
+            if log.axes.iter().any(|axis| moves(&axis.command_mm)) {
+                windows.push(from..to);
+            }
+            from = to;
+        }
+    }
+    let moving: usize = windows.iter().map(ExactSizeIterator::len).sum();
+    let apart = moving.div_ceil(MOST_SAMPLES).max(1);
+    let mut used = 0;
+    let within = |window: &Range<usize>| {
+        used += window.len();
+        used <= MOST_SAMPLES
+    };
+    let windows: Vec<Range<usize>> = windows.into_iter().step_by(apart).take_while(within).collect();
+    let of = |values: &[f64]| -> Vec<f64> { windows.iter().flat_map(|w| values[w.clone()].iter().copied()).collect() };
+    let mut short = log;
+    short.time_s = of(&short.time_s);
+    for axis in &mut short.axes {
+        (axis.command_mm, axis.actual_mm) = (of(&axis.command_mm), of(&axis.actual_mm));
+        axis.torque = axis.torque.as_deref().map(of);
+    }
+    let mut begin = 0;
+    short.stretches = windows
+        .iter()
+        .map(|window| {
+            begin += window.len();
+            begin - window.len()..begin
+        })
+        .collect();
+    (short, Some(samples))
+}
+
+impl LogIdentified {
+    /// Which axis of the log is x, y and z of the machine file.
+    fn places(&self) -> [Option<usize>; 3] {
+        let names: Vec<&str> = self.machine.axes.iter().map(|axis| axis.name.as_str()).collect();
+        places(&names)
+    }
+
+    /// The verdict of an axis, in words.
+    pub fn verdict(&self, axis: usize) -> String {
+        let found = &self.machine.axes[axis];
+        let words = LawVerdict::of(found).words(found);
+        match self.log.axes.get(axis).map(|axis| &axis.verdict) {
+            Some(Fitness::NotForControl { reason }) => format!("not for control: {reason}; {words}"),
+            _ => words,
+        }
+    }
+
+    /// What to record so that what is assumed can be told.
+    pub fn advice(&self) -> Vec<String> {
+        let mut advice = vec![];
+        for axis in &self.machine.axes {
+            let name = &axis.name;
+            if axis.inertia().2 == NumberSource::Assumed {
+                advice.push(format!("axis {name}: positions do not tell the inertia. Give --inertia, or record the torque and give --torque-gain; until then torques in the machine file have a scale that is assumed"));
+            }
+            if axis.gains_source() == NumberSource::Assumed {
+                advice.push(format!("axis {name}: positions do not tell Kp, Kv and B apart; B is taken as zero. Give --inertia and --viscous, or record the torque"));
+            }
+            if axis.resolved.is_none() {
+                advice.push(format!("axis {name}: the drive is taken to know the speed exactly. One that takes it from positions over some samples looks like a smaller inertia: the products may be too large by 10 % and more. --speed-window says it, a torque column tells"));
+            }
+            if axis.scores.beyond.is_some() {
+                advice.push(format!("axis {name}: part of what was scored is faster than all that was fitted. Record all speeds in both parts"));
+            }
+        }
+        for (axis, direction) in &self.machine.split.one_sided {
+            if let Some(axis) = self.machine.axes.get(*axis) {
+                let way = if *direction > 0 { "positive" } else { "negative" };
+                advice.push(format!("axis {}: nearly all motion in the {way} direction lies in one of the two parts, fitted or scored. Record both directions several times", axis.name));
+            }
+        }
+        advice
+    }
+
+    /// What other settings of the drives would bring, as far as the log supports it: of axes whose law holds.
+    pub fn improvements(&self) -> Vec<String> {
+        let mut improvements = vec![];
+        for (found, axis) in self.machine.axes.iter().zip(&self.log.axes) {
+            let is_sound = matches!(LawVerdict::of(found), LawVerdict::LawHolds | LawVerdict::LinearSuffices);
+            if !is_sound || axis.verdict != Fitness::ForControl {
+                continue;
+            }
+            improvements.extend(found.gain_changes.iter().map(|change| {
+                format!(
+                    "axis {}: {} would leave {} um RMS of following error on the motions of the log, simulated ({} um by the gains alone), where there \
+                     are {} um now",
+                    found.name,
+                    change.words(),
+                    digits(change.simulated_um),
+                    digits(change.predicted_um),
+                    digits(change.now_um)
+                )
+            }));
+        }
+        improvements
+    }
+
+    /// A table of the numbers, as a terminal shows it.
+    pub fn table(&self) -> String {
+        let mut text = String::new();
+        for (i, axis) in self.machine.axes.iter().enumerate() {
+            let _ = writeln!(text, "axis {}: {}", axis.name, self.verdict(i));
+            for number in axis.numbers() {
+                let interval =
+                    number.interval.map_or(String::new(), |[low, high]| format!("{} to {}", digits(low), digits(high)));
+                let _ = writeln!(
+                    text,
+                    "  {:<27} {:>12} {:<10} {:<24} {}",
+                    number.name,
+                    digits(number.value),
+                    number.unit,
+                    interval,
+                    number.source.word()
+                );
+            }
+        }
+        text
+    }
+}
+
+/// With four digits, whatever its size.
+pub(crate) fn digits(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    let before_the_point = value.abs().log10().floor() as i32;
+    match before_the_point {
+        -4..=5 => format!("{value:.*}", (3 - before_the_point).max(0) as usize),
+        _ => format!("{value:.3e}"),
+    }
+}
+
+/// Name of the axis of a machine file that each axis of the log becomes: those that are called so, the others in their order.
+fn places(axes: &[&str]) -> [Option<usize>; 3] {
+    let named = |name: &str| axes.iter().position(|axis| axis.to_lowercase().starts_with(name));
+    let mut places = ["x", "y", "z"].map(named);
+    let mut left = (0..axes.len()).filter(|i| !places.contains(&Some(*i))).collect::<Vec<_>>().into_iter();
+    for place in &mut places {
+        if place.is_none() {
+            *place = left.next();
+        }
+    }
+    places
+}

@@ -1,0 +1,201 @@
+//! The keys that a machine file has of an identified axis.
+
+use std::f64::consts::TAU;
+
+use feedwright_ident::{FoundAxis, LawTerm, NumberSource, SERVO_MECHANICS};
+
+use super::digits;
+
+/// Most that a machine file has of an asymmetry, part of the Coulomb friction.
+const MOST_ASYMMETRY: f64 = 0.99;
+/// Torque limit where the log never came to one, times what its motions took.
+const SPARE: f64 = 10.0;
+/// Least friction and smoothing that a machine file has.
+const LEAST_SMOOTHING_RAD_S: f64 = 1e-6;
+
+/// Keys of an axis, and remarks on it.
+pub(super) struct AxisKeys {
+    /// Those of its table.
+    pub(super) keys: Vec<AxisKey>,
+    /// Those of the table of its transmission; none where it is rigid.
+    pub(super) transmission: Vec<AxisKey>,
+    /// What no key says.
+    pub(super) remarks: Vec<String>,
+}
+
+/// A key of a machine file.
+pub(super) struct AxisKey {
+    pub(super) name: &'static str,
+    pub(super) value: f64,
+    pub(super) comment: String,
+    /// Whether the log tells it; the others stand for what nobody said.
+    pub(super) is_told: bool,
+}
+
+/// The keys of an axis of a machine whose servo period is that of the log.
+pub(super) fn axis_keys(found: &FoundAxis, servo_s: f64) -> AxisKeys {
+    let mechanics_s = servo_s / f64::from(SERVO_MECHANICS);
+    let mut keys = vec![];
+    mechanics(&mut keys, found, mechanics_s);
+    loops(&mut keys, found);
+    extras(&mut keys, found, mechanics_s);
+    noise(&mut keys, found);
+    AxisKeys { keys, transmission: transmission(found, mechanics_s), remarks: remarks(found) }
+}
+
+fn told(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKey {
+    AxisKey { name, value: in_six_digits(value), comment: comment.into(), is_told: true }
+}
+
+fn assumed(name: &'static str, value: f64, comment: impl Into<String>) -> AxisKey {
+    AxisKey { is_told: false, ..told(name, value, comment) }
+}
+
+/// What a log tells has no more.
+fn in_six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
+
+/// A key by where its number comes from.
+fn by_source(name: &'static str, value: f64, source: NumberSource) -> AxisKey {
+    let is_told = matches!(source, NumberSource::Identified | NumberSource::TorqueColumn);
+    AxisKey { is_told, ..told(name, value, source.word()) }
+}
+
+/// Noise: of the encoder, and what the free run leaves, as a torque.
+fn noise(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
+    if found.step_um > 0.0 {
+        keys.push(told("encoder_step_um", found.step_um.min(1e3), "as the log shows them"));
+    }
+    if found.noise_um > 0.0 {
+        keys.push(told("encoder_noise_um", found.noise_um.min(1e3), "by third differences of the actual position"));
+    }
+    if let Some(residual) = &found.residual {
+        let nm = nm_per_mm_s2(found) * residual.load_mm_s2;
+        let comment = format!("moves the axis as what the free run leaves: {} um RMS", digits(residual.left_um));
+        keys.push(told("torque_noise_nm", nm.min(1e3), comment));
+        keys.push(told("torque_noise_s", residual.correlation_s, "as long as that is correlated"));
+    }
+}
+
+fn remarks(found: &FoundAxis) -> Vec<String> {
+    let mut remarks = vec![];
+    if let Some(resolved) = &found.resolved {
+        let window = digits(resolved.values.get(LawTerm::SpeedWindow));
+        let told = if resolved.torque.is_some() { "by the torque column" } else { "as given," };
+        remarks.push(format!(
+            "{told} the drive takes the speed over {window} s; the gains here have that in them, as no key does"
+        ));
+    }
+    let late = digits(found.values.get(LawTerm::RecordDelay));
+    remarks.push(format!(
+        "the log has actual positions {late} s later than the commands; no machine shows that of itself"
+    ));
+    remarks
+}
+
+/// Torque at the shaft for an acceleration of the table of 1 mm/s2, N m.
+fn nm_per_mm_s2(found: &FoundAxis) -> f64 {
+    found.inertia().0 * TAU / found.lead().0
+}
+
+/// Inertia and friction.
+fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
+    let ((lead, of_lead), (inertia, _, of_inertia)) = (found.lead(), found.inertia());
+    let (get, nm) = (|term| found.values.get(term), nm_per_mm_s2(found));
+    keys.push(by_source("lead_mm_per_rev", lead, of_lead));
+    keys.push(by_source("inertia_kg_m2", inertia.clamp(1e-9, 1e3), of_inertia));
+    let viscous = get(LawTerm::Viscous);
+    let of_viscous = if viscous > 0.0 { found.gains_source() } else { NumberSource::Assumed };
+    keys.push(by_source("viscous_friction_nm_s", inertia * viscous, of_viscous));
+    keys.push(told("coulomb_friction_nm", nm * get(LawTerm::Coulomb), interval(found, LawTerm::Coulomb, nm)));
+    let smoothing = found.values.smoothing_at_mm_s(mechanics_s) * TAU / lead;
+    keys.push(assumed("coulomb_smoothing_rad_s", smoothing.max(LEAST_SMOOTHING_RAD_S), "assumed"));
+    let (offset, most) = (get(LawTerm::Offset), MOST_ASYMMETRY * get(LawTerm::Coulomb));
+    let held = if offset.abs() > most { "; held within the Coulomb friction" } else { "" };
+    let comment = format!("{}{held}", interval(found, LawTerm::Offset, nm));
+    keys.push(told("coulomb_asymmetry_nm", nm * offset.clamp(-most, most), comment));
+    keys.push(assumed("disturbance_nm", 0.0, ""));
+    keys.push(assumed("disturbance_hz", 0.0, ""));
+}
+
+/// Gains and limits of the loops.
+fn loops(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
+    let (get, nm) = (|term| found.values.get(term), nm_per_mm_s2(found));
+    let apart = match found.gains_source() {
+        NumberSource::Assumed => "from Kp Kv / J and (Kv + B) / J, B being assumed",
+        _ => "from Kp Kv / J and (Kv + B) / J",
+    };
+    keys.push(told("kp_1_s", found.values.kp_1_s(), apart));
+    keys.push(assumed("kd", 0.0, "assumed"));
+    keys.push(told("kv_nm_s_per_rad", found.inertia().0 * found.values.speed_gain_1_s(), apart));
+    let limit = get(LawTerm::AccelerationLimit);
+    if limit > 0.0 {
+        keys.push(told("torque_limit_nm", nm * limit, interval(found, LawTerm::AccelerationLimit, nm)));
+    } else {
+        let needed = nm * (found.most[1] + get(LawTerm::Coulomb) + get(LawTerm::Viscous) * found.most[0]);
+        let limit = (SPARE * needed).clamp(1e-6, 1e6);
+        keys.push(assumed("torque_limit_nm", limit, "assumed: the log never came to one"));
+    }
+}
+
+/// What an axis may have beside.
+fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
+    let get = |term| found.values.get(term);
+    let whole = (get(LawTerm::LoopDelay) / mechanics_s).round() * mechanics_s;
+    optional(keys, found, "drive_delay_s", LawTerm::LoopDelay, whole, 1.0);
+    let integral = get(LawTerm::Integral);
+    if integral > 0.0 {
+        let half = found.half_interval(LawTerm::Integral).unwrap_or(f64::INFINITY);
+        let end = |rate: f64| if rate > 0.0 { digits(1.0 / rate) } else { "any".to_owned() };
+        let comment = format!("{} to {}", end(integral + half), end(integral - half));
+        keys.push(told("speed_integral_s", (1.0 / integral).min(10.0), comment));
+    }
+    for (name, term) in [
+        ("velocity_feedforward", LawTerm::VelocityFeedforward),
+        ("acceleration_feedforward", LawTerm::AccelerationFeedforward),
+        ("speed_limit_mm_s", LawTerm::SpeedLimit),
+    ] {
+        optional(keys, found, name, term, get(term), 1.0);
+    }
+    let filter = get(LawTerm::FilterTime);
+    if filter > 0.0 {
+        let comment = format!("a time constant of {} s", interval(found, LawTerm::FilterTime, 1.0));
+        keys.push(told("torque_filter_hz", (1.0 / (TAU * filter)).min(1e5), comment));
+    }
+    optional(keys, found, "presliding_um", LawTerm::Presliding, 1e3 * get(LawTerm::Presliding), 1e3);
+    let stribeck = get(LawTerm::Stribeck);
+    if stribeck > 0.0 {
+        let nm = nm_per_mm_s2(found) * stribeck * get(LawTerm::Coulomb);
+        let comment = format!("a part of {} of the Coulomb friction", interval(found, LawTerm::Stribeck, 1.0));
+        keys.push(told("stribeck_nm", nm, comment));
+        optional(keys, found, "stribeck_mm_s", LawTerm::StribeckSpeed, get(LawTerm::StribeckSpeed), 1.0);
+    }
+}
+
+/// The interval of a term in the unit of its key.
+fn interval(found: &FoundAxis, term: LawTerm, scale: f64) -> String {
+    found.half_interval(term).map_or_else(String::new, |half| {
+        let value = scale * found.values.get(term);
+        format!("{} to {}", digits(value - scale * half), digits(value + scale * half))
+    })
+}
+
+/// A key of a term that the axis may not have.
+fn optional(keys: &mut Vec<AxisKey>, found: &FoundAxis, name: &'static str, term: LawTerm, value: f64, scale: f64) {
+    if value > 0.0 {
+        keys.push(told(name, value, interval(found, term, scale)));
+    }
+}
+
+/// Motor and table as two masses, where the log shows them.
+fn transmission(found: &FoundAxis, mechanics_s: f64) -> Vec<AxisKey> {
+    let Some(screw) = found.values.transmission(mechanics_s) else { return vec![] };
+    let seconds = interval(found, LawTerm::Resonance, 1.0);
+    vec![
+        told("table_share", screw.table_share, interval(found, LawTerm::TableShare, 1.0)),
+        told("resonance_hz", screw.resonance_hz, format!("a time constant of {seconds} s")),
+        assumed("damping_ratio", screw.damping_ratio, "assumed"),
+        told("backlash_um", screw.backlash_um, interval(found, LawTerm::Backlash, 1e3)),
+    ]
+}

@@ -1,0 +1,154 @@
+//! How long a program takes with a feed override, and where a feed hold leaves it: the plan of the program, moved along by
+//! [`time_scaling`](feedwright_plan::feed::time_scaling).
+
+use std::collections::VecDeque;
+
+use feedwright_plan::{
+    AxisLimits, Constraints, Plan, Planned, Plc, PublishedPlan, ScaledStep, ScalingLimits, Steps, TimeScaling,
+    shortest_stop_mm,
+};
+use feedwright_sim::{Machine, RunError, Stages, Watch};
+use serde::Serialize;
+
+/// The rate changes every so often, s. At a low speed that rises, a change of the slope that stays for a millisecond uses little of the jerk at its begin;
+/// above the override 1 ways to a rate that can stay have to reach further ahead than so many short periods do.
+const PERIOD_S: f64 = 2.5e-4;
+const PERIOD_ABOVE_S: f64 = 1e-3;
+
+/// Moments of a step at which limits are looked at.
+const MOMENTS: u32 = 8;
+
+/// What an operator does.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct OperatorRequest {
+    /// Override of feeds, 1 for none, up to [`MOST_OVERRIDE`](feedwright_plan::MOST_OVERRIDE).
+    pub override_of_feeds: f64,
+    /// When the feed hold is pressed, s.
+    pub hold_at_s: Option<f64>,
+}
+
+/// A stop by feed hold.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(crate) struct HoldStop {
+    /// When it was pressed, s.
+    pub at_s: f64,
+    /// How long the tool goes on until it rests, s.
+    pub stops_in_s: f64,
+    /// How far, along the path, mm.
+    pub way_mm: f64,
+    /// How far at least with the limits of each axis for itself, mm.
+    pub least_mm: f64,
+    /// Where it rests, mm.
+    pub position_mm: [f64; 3],
+}
+
+/// What becomes of a plan.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub(crate) struct OverrideTime {
+    /// Until the program ends, or the tool rests by the hold, s.
+    pub time_s: f64,
+    /// The same without override and hold, to the end, s.
+    pub plan_s: f64,
+    /// Largest ratio of a velocity, acceleration or jerk to its limit.
+    pub largest_violation: f64,
+    /// The stop, where a hold was asked for before the end.
+    pub hold: Option<HoldStop>,
+}
+
+/// Plans a program, and moves along the plan. None where the planner does not say what the axes do.
+///
+/// # Errors
+/// A program that cannot be planned, a limit that is none, an end from outside.
+pub(crate) fn override_time(
+    machine: &Machine,
+    stages: Stages,
+    steps: Steps<'_>,
+    request: OperatorRequest,
+    watch: &dyn Watch,
+) -> Result<Option<OverrideTime>, RunError> {
+    let constraints = Constraints::from(machine);
+    let blended = (stages.blend.make)(steps, &constraints);
+    let mut plan = Plan::new(blended, &constraints, stages.planner, Plc::from(machine))?;
+    let mut published = PublishedPlan::new();
+    // Whether each piece that phases may still be of is no rapid, and the number of the first.
+    let (mut cutting, mut first) = (VecDeque::new(), 0);
+    for planned in plan.by_ref() {
+        watch.check()?;
+        match planned {
+            Planned::Piece(planned) => cutting.push_back(planned.piece.cutting),
+            Planned::Phase(phase) => {
+                while first < phase.piece && cutting.len() > 1 {
+                    cutting.pop_front();
+                    first += 1;
+                }
+                if !published.push(&phase, cutting.front().copied().unwrap_or(true)) {
+                    return Ok(None);
+                }
+            }
+            Planned::Programmed(_) | Planned::Event(_) => {}
+        }
+    }
+    if let Some(fault) = plan.fault() {
+        return Err(fault.clone().into());
+    }
+    let limits = |k: usize| constraints.axes.get(k).or(constraints.axes.last()).copied().unwrap_or(AxisLimits::NONE);
+    let limits = ScalingLimits {
+        axes: [limits(0), limits(1), limits(2)],
+        speed_mm_s: constraints.path.max_feed_mm_s,
+        period_s: if request.override_of_feeds > 1.0 { PERIOD_ABOVE_S } else { PERIOD_S },
+    };
+    moved_along(&published, limits, request, watch).map(Some)
+}
+
+fn moved_along(
+    plan: &PublishedPlan,
+    limits: ScalingLimits,
+    request: OperatorRequest,
+    watch: &dyn Watch,
+) -> Result<OverrideTime, RunError> {
+    let mut scaling = TimeScaling::new(plan, limits);
+    let mut result = OverrideTime { time_s: 0.0, plan_s: plan.end_s(), largest_violation: 0.0, hold: None };
+    // Plan time and time at which the hold was pressed.
+    let mut pressed: Option<(f64, f64)> = None;
+    while !scaling.has_ended() {
+        watch.check()?;
+        let hold = request.hold_at_s.is_some_and(|at_s| result.time_s >= at_s);
+        let now = scaling.now();
+        if hold && pressed.is_none() {
+            pressed = Some((now.tau_s, result.time_s));
+        }
+        let rests = now.rate == 0.0 && now.slope_1_s == 0.0;
+        if let Some((tau_s, at_s)) = pressed.filter(|_| rests || scaling.rests()) {
+            result.hold = Some(HoldStop {
+                at_s,
+                stops_in_s: result.time_s - at_s,
+                way_mm: plan.length_mm(tau_s, now.tau_s),
+                least_mm: shortest_stop_mm(plan, &limits.axes, tau_s),
+                position_mm: plan.at(now.tau_s).position_mm,
+            });
+            break;
+        }
+        if request.override_of_feeds <= 0.0 && rests && result.time_s > 0.0 {
+            // It stays there until somebody turns the override up.
+            result.time_s = f64::INFINITY;
+            break;
+        }
+        let step = scaling.step(request.override_of_feeds, hold);
+        result.time_s += step.duration_s;
+        result.largest_violation = result.largest_violation.max(use_of_limits(plan, &limits, &step));
+    }
+    Ok(result)
+}
+
+/// The largest ratio of what an axis does in a step to its limit.
+fn use_of_limits(plan: &PublishedPlan, limits: &ScalingLimits, step: &ScaledStep) -> f64 {
+    let ratios = (0..=MOMENTS).flat_map(|m| {
+        let motion = step.motion(plan, step.duration_s * f64::from(m) / f64::from(MOMENTS));
+        limits.axes.iter().enumerate().map(move |(k, axis)| {
+            let v = motion.velocity_mm_s[k].abs() / axis.velocity_mm_s;
+            let a = motion.accel_mm_s2[k].abs() / axis.accel_mm_s2;
+            v.max(a).max(motion.jerk_mm_s3[k].abs() / axis.jerk_mm_s3)
+        })
+    });
+    ratios.fold(0.0, f64::max)
+}

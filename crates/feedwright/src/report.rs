@@ -1,0 +1,115 @@
+//! Report: what a run came to, as numbers ([`RunSummary`]), as one HTML page ([`write_html`]) and as figures ([`figure`]).
+//!
+//! A run hands its rows to two sinks of bounded memory: [`Statistics`] sees every row and keeps exact sums, [`Series`]
+//! keeps a thinned record to draw. The page is one file without references to anything outside it, and equal
+//! reports give equal bytes.
+//!
+//! Only rows that cut count for the contour error; rapids and dwells are recorded and drawn, but not judged.
+
+pub(crate) mod text;
+pub(crate) mod plain_page;
+pub(crate) mod figure;
+mod outline;
+mod series;
+mod embedded_data;
+mod limit_band;
+mod html;
+mod worst;
+mod histogram;
+mod error_spectrum;
+mod circles;
+mod summary;
+mod statistics;
+pub(crate) mod harm;
+mod assumptions;
+
+pub use assumptions::{Assumptions, LawKnowledge};
+pub use circles::{FullCircle, Roundness};
+pub(crate) use circles::{RadialDeviations, full_circles};
+pub use error_spectrum::{ErrorSpectrum, SpectrumBand};
+pub use histogram::Histogram;
+pub use html::write_html;
+pub use limit_band::LimitBand;
+pub use series::{Series, SeriesPoint};
+pub use statistics::Statistics;
+pub use summary::{RunFacts, RunSummary};
+pub use worst::WorstPlace;
+
+pub(crate) use feedwright_sim::{FadedOut, Outcome};
+
+/// Everything that the page shows.
+#[derive(Debug, Clone)]
+pub struct Report {
+    /// Heading of the page.
+    pub title: String,
+    /// Name of the part, as the program calls it.
+    pub part: String,
+    /// Description of the machine: name and value, in the order in which they are shown.
+    pub machine: Vec<(String, String)>,
+    /// Settings of the run: name and value, in the order in which they are shown.
+    pub settings: Vec<(String, String)>,
+    /// What the figures rest on.
+    pub assumed: Assumptions,
+    /// Lines of the program, in their order; not all of a long one.
+    pub program: Vec<ProgramLine>,
+    /// The full circles of the program.
+    pub circles: Vec<FullCircle>,
+    /// Largest contour error that the part allows, µm, where one was asked for.
+    pub tolerance_um: Option<f64>,
+    /// What binds the plan along the path, where it is planned axis by axis.
+    pub limits: Option<LimitBand>,
+    /// One for each controller. The first is what the others are compared with; the last is the one that is judged.
+    pub runs: Vec<ReportedRun>,
+}
+
+/// One controller's run.
+#[derive(Debug, Clone)]
+pub struct ReportedRun {
+    /// Its numbers.
+    pub summary: RunSummary,
+    /// Its record.
+    pub series: Series,
+    /// The spectrum of its contour error; empty where too little was cut.
+    pub spectrum: Vec<SpectrumBand>,
+    /// How round it cut each of the circles; none where that cannot be told.
+    pub roundness: Vec<Option<Roundness>>,
+    /// Events of the program in the time of this run; may be empty.
+    pub events: Vec<TimelineEvent>,
+}
+
+impl ReportedRun {
+    /// How round it cut a circle of the program.
+    fn roundness_of(&self, circle: usize) -> Option<&Roundness> {
+        self.roundness.get(circle)?.as_ref()
+    }
+}
+
+/// A line of the program.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ProgramLine {
+    /// Its number, from 1.
+    pub line: u32,
+    /// Its text.
+    pub text: String,
+}
+
+/// A tool change, dwell or other event of the program at the time at which the run came to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TimelineEvent {
+    /// When it began, s.
+    pub t_s: f64,
+    /// How long it took, s; 0 for an event without duration.
+    pub duration_s: f64,
+    /// Line of the program, from 1.
+    pub line: u32,
+    /// Row of the timeline that it stands in, as in "spindle" or "lamp".
+    pub row: String,
+    /// What happened, as in "tool 3" or "dwell".
+    pub label: String,
+}
+
+/// A row of the tests: at rest.
+#[cfg(test)]
+const fn row(t_s: f64) -> feedwright_sim::Row {
+    feedwright_sim::Row { t_s, ..feedwright_sim::Row::AT_REST }
+}

@@ -1,0 +1,107 @@
+//! Pages of tables and figures: head, table of contents, parts that fold, foot. One file without references to anything outside it; without
+//! scripts everything is there, but nothing is sorted.
+
+use std::io::{self, Write};
+
+use super::text::escaped;
+
+const PAGE_CSS: &str = include_str!("../../assets/report/pages.css");
+const PAGE_JS: &str = include_str!("../../assets/report/pages.js");
+
+/// A part of a page, as its table of contents has it.
+#[derive(Debug, Clone, Default)]
+pub struct PagePart {
+    /// What a link leads to: letters, digits and dashes.
+    pub id: String,
+    /// Heading.
+    pub title: String,
+    /// What stands beside the heading while it is folded; may be empty.
+    pub note: String,
+    /// Whether it is folded to begin with.
+    pub folded: bool,
+    /// What it stands under in the contents; may be empty.
+    pub group: String,
+    /// What it is called there, where not by its title.
+    pub short: Option<String>,
+}
+
+impl PagePart {
+    /// One that is open, under no group.
+    pub fn new(id: &str, title: impl Into<String>) -> Self {
+        Self { id: id.to_owned(), title: title.into(), ..Self::default() }
+    }
+
+    /// Its beginning.
+    pub fn begin(&self, out: &mut impl Write) -> io::Result<()> {
+        let note = if self.note.is_empty() { String::new() } else { format!("<small>{}</small>", escaped(&self.note)) };
+        writeln!(
+            out,
+            "<details class=\"part\" id=\"{}\"{}><summary><h2>{}</h2>{note}</summary>",
+            self.id,
+            if self.folded { "" } else { " open" },
+            escaped(&self.title)
+        )
+    }
+
+    /// Its end.
+    pub fn end(out: &mut impl Write) -> io::Result<()> {
+        out.write_all(b"</details>\n")
+    }
+}
+
+/// The beginning of a page, up to its first part. `class` is "tables" or "figures": the second is narrow, to be read.
+pub fn write_head(
+    out: &mut impl Write,
+    class: &str,
+    title: &str,
+    introduction: &str,
+    parts: &[PagePart],
+) -> io::Result<()> {
+    let (title, introduction) = (escaped(title), escaped(introduction));
+    write!(
+        out,
+        "<!doctype html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:\">\n\
+         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light dark\">\n\
+         <link rel=\"icon\" href=\"data:,\">\n<title>{title}</title>\n<style>\n{PAGE_CSS}</style>\n</head>\n<body class=\"{class}\">\n<div class=\"page\">\n"
+    )?;
+    write_contents(out, parts)?;
+    writeln!(out, "<main>\n<h1>{title}</h1>\n<p>{introduction}</p>")
+}
+
+fn write_contents(out: &mut impl Write, parts: &[PagePart]) -> io::Result<()> {
+    out.write_all(
+        b"<nav class=\"contents\" aria-label=\"Contents\"><details open><summary>Contents</summary>\n\
+          <div class=\"buttons needs-script\"><button type=\"button\" id=\"unfold\">Unfold all</button>\
+          <button type=\"button\" id=\"fold\">Fold all</button><button type=\"button\" id=\"theme\">Theme: auto</button></div>\n<ol>\n",
+    )?;
+    for group in parts.chunk_by(|a, b| a.group == b.group) {
+        let grouped = !group[0].group.is_empty();
+        if grouped {
+            write!(out, "<li>{}<ol>", escaped(&group[0].group))?;
+        }
+        for part in group {
+            let title = escaped(part.short.as_ref().unwrap_or(&part.title));
+            write!(out, "<li><a href=\"#{}\">{title}</a></li>", part.id)?;
+        }
+        out.write_all(if grouped { b"</ol></li>\n" } else { b"\n" })?;
+    }
+    out.write_all(b"</ol></details></nav>\n")
+}
+
+/// The end of such a page.
+pub fn write_foot(out: &mut impl Write) -> io::Result<()> {
+    write!(out, "</main>\n</div>\n<script>(() => {{\n\"use strict\";\n{PAGE_JS}}})();\n</script>\n</body>\n</html>\n")
+}
+
+/// The beginning of a table, up to its first row.
+pub fn write_table_head<'a>(out: &mut impl Write, heads: impl IntoIterator<Item = &'a str>) -> io::Result<()> {
+    out.write_all(b"<div class=\"wide\"><table><thead><tr>")?;
+    heads.into_iter().try_for_each(|head| write!(out, "<th>{}</th>", escaped(head)))?;
+    out.write_all(b"</tr></thead><tbody>\n")
+}
+
+/// Its end.
+pub fn write_table_end(out: &mut impl Write) -> io::Result<()> {
+    out.write_all(b"</tbody></table></div>\n")
+}

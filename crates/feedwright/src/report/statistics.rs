@@ -1,0 +1,229 @@
+//! Statistics: the numbers of a run, from every row, in bounded memory.
+//!
+//! - RMS contour error: sqrt(sum of e² / n) over the n rows that cut.
+//! - Largest contour error: the largest |e| over the rows that cut.
+//! - Largest deviation of the command: the largest |corrected - path| over all rows.
+//! - Largest acceleration of the command: the largest |c(k) - 2 c(k-1) + c(k-2)| / dt^2 over rows that follow each other evenly;
+//!   across a rest of which a part was left out there is none.
+//! - Peak torque: the largest |torque| of each axis over all rows.
+//! - Cutting length and time: what arc length and time advance by while rows cut.
+//!
+//! A row with a number that is not finite counts nowhere: only a run that diverged has them, and its outcome says so.
+
+use std::io;
+
+use feedwright_sim::{Row, Sink};
+
+use super::histogram::Counts;
+use super::summary::{RunFacts, RunSummary};
+use super::worst::WorstFinder;
+
+/// Periods that differ by less are the same: times are rounded.
+const SAME_PERIOD: f64 = 1e-3;
+
+/// Streaming statistics of a run.
+#[derive(Debug, Clone)]
+pub struct Statistics {
+    rows: u64,
+    cutting_rows: u64,
+    square_sum_mm2: f64,
+    max_mm: f64,
+    max_deviation_mm: f64,
+    max_command_accel_mm_s2: f64,
+    /// Times and commands of the last two rows, the last first.
+    commands: [Option<(f64, [f64; 3])>; 2],
+    peak_torque_nm: [f64; 3],
+    cutting_length_mm: f64,
+    cutting_time_s: f64,
+    previous: Option<(f64, f64)>,
+    counts: Counts,
+    worst: WorstFinder,
+}
+
+impl Default for Statistics {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Statistics {
+    /// Before the first row.
+    pub fn new() -> Self {
+        Self {
+            rows: 0,
+            cutting_rows: 0,
+            square_sum_mm2: 0.0,
+            max_mm: 0.0,
+            max_deviation_mm: 0.0,
+            max_command_accel_mm_s2: 0.0,
+            commands: [None; 2],
+            peak_torque_nm: [0.0; 3],
+            cutting_length_mm: 0.0,
+            cutting_time_s: 0.0,
+            previous: None,
+            counts: Counts::new(),
+            worst: WorstFinder::default(),
+        }
+    }
+
+    /// The summary of the run; `text` gives the text of a program line.
+    pub fn summary(&self, facts: RunFacts, text: impl FnMut(u32) -> String) -> RunSummary {
+        RunSummary {
+            controller: facts.controller,
+            machine: facts.machine,
+            part: facts.part,
+            axes: facts.axes,
+            measured: facts.measured,
+            outcome: facts.run.outcome,
+            faded_out: facts.run.faded_out,
+            engaged_share: facts.run.engaged_share,
+            engaged_at_end: facts.run.engaged_at_end,
+            time_s: facts.run.time_s,
+            rms_um: self.rms_um(),
+            max_um: self.max_um(),
+            joint_rms_um: facts.run.joint_error.map(|joints| joints.rms_mm * 1e3),
+            joint_max_um: facts.run.joint_error.map(|joints| joints.max_mm * 1e3),
+            uncut_um: facts.run.uncut_mm * 1e3,
+            max_deviation_um: self.max_deviation_mm * 1e3,
+            max_command_accel_mm_s2: self.max_command_accel_mm_s2,
+            peak_torque_nm: (!facts.measured).then_some(self.peak_torque_nm),
+            cutting_length_mm: self.cutting_length_mm,
+            cutting_time_s: self.cutting_time_s,
+            rows: self.rows,
+            arrival_s: facts.run.arrival_s,
+            tick_median_us: facts.run.ticks.quantile_us(0.5),
+            tick_p999_us: facts.run.ticks.quantile_us(0.999),
+            most_register_entries: facts.run.most_entries,
+            worst: self.worst.places(text),
+            histogram: self.counts.histogram(),
+        }
+    }
+
+    /// Root mean square of the contour error over the rows that cut, µm; 0 without such rows.
+    pub fn rms_um(&self) -> f64 {
+        if self.cutting_rows == 0 { 0.0 } else { (self.square_sum_mm2 / self.cutting_rows as f64).sqrt() * 1e3 }
+    }
+
+    /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.
+    pub fn max_deviation_um(&self) -> f64 {
+        self.max_deviation_mm * 1e3
+    }
+
+    /// Largest acceleration of the command of any axis, mm/s2.
+    pub fn max_command_accel_mm_s2(&self) -> f64 {
+        self.max_command_accel_mm_s2
+    }
+
+    /// Largest torque of each axis, N m.
+    pub fn peak_torque_nm(&self) -> [f64; 3] {
+        self.peak_torque_nm
+    }
+
+    /// Largest |contour error| over the rows that cut, µm.
+    pub fn max_um(&self) -> f64 {
+        self.max_mm * 1e3
+    }
+
+    /// Takes the command of a row.
+    fn command(&mut self, t_s: f64, command_mm: [f64; 3]) {
+        let [last, before] = self.commands;
+        self.commands = [Some((t_s, command_mm)), last];
+        let (Some((last_s, last_mm)), Some((before_s, before_mm))) = (last, before) else { return };
+        let (dt_s, dt_before_s) = (t_s - last_s, last_s - before_s);
+        if (dt_s - dt_before_s).abs() > SAME_PERIOD * dt_s {
+            return;
+        }
+        let second: [f64; 3] = std::array::from_fn(|k| command_mm[k] - 2.0 * last_mm[k] + before_mm[k]);
+        let accel_mm_s2 = second[0].hypot(second[1]).hypot(second[2]) / (dt_s * dt_s);
+        self.max_command_accel_mm_s2 = self.max_command_accel_mm_s2.max(accel_mm_s2);
+    }
+
+    fn cut(&mut self, row: &Row) {
+        let error_mm = row.contour_error_mm;
+        self.cutting_rows += 1;
+        self.square_sum_mm2 += error_mm * error_mm;
+        self.max_mm = self.max_mm.max(error_mm.abs());
+        self.worst.row(row);
+        if let Some((t_s, s_mm)) = self.previous {
+            self.cutting_time_s += row.t_s - t_s;
+            self.cutting_length_mm += (row.s_mm - s_mm).max(0.0);
+        }
+        self.counts.add(error_mm * 1e3);
+    }
+}
+
+impl Sink for Statistics {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        let numbers = [row.path_mm, row.act_mm, row.cmd_mm, row.torque_nm];
+        let scalars = [row.t_s, row.s_mm, row.contour_error_mm];
+        if !numbers.iter().flatten().chain(&scalars).all(|x| x.is_finite()) {
+            return Ok(());
+        }
+        self.rows += 1;
+        for k in 0..3 {
+            self.peak_torque_nm[k] = self.peak_torque_nm[k].max(row.torque_nm[k].abs());
+        }
+        let (c, p) = (row.cmd_mm, row.path_mm);
+        let deviation_mm = (c[0] - p[0]).hypot(c[1] - p[1]).hypot(c[2] - p[2]);
+        self.max_deviation_mm = self.max_deviation_mm.max(deviation_mm);
+        self.command(row.t_s, c);
+        if row.cutting {
+            self.cut(row);
+        }
+        self.previous = Some((row.t_s, row.s_mm));
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::row;
+
+    fn statistics_of(errors_um: &[f64]) -> Statistics {
+        let mut statistics = Statistics::new();
+        for (k, error) in errors_um.iter().enumerate() {
+            statistics.row(&Row { contour_error_mm: error * 1e-3, ..row(k as f64 * 1e-3) }).unwrap();
+        }
+        statistics
+    }
+
+    #[test]
+    fn rms_of_a_sine_is_its_amplitude_over_root_two() {
+        let sine: Vec<f64> = (0..1000).map(|k| 10.0 * (f64::from(k) * std::f64::consts::TAU / 1000.0).sin()).collect();
+        let statistics = statistics_of(&sine);
+        assert!((statistics.rms_um() - 10.0 / 2f64.sqrt()).abs() < 1e-9);
+        assert!((statistics.max_um() - 10.0).abs() < 1e-12);
+    }
+
+    /// A command along x^2 + y^2 = r^2 has v^2 / r, a jump over a rest has none.
+    #[test]
+    fn the_acceleration_of_the_command_is_that_of_its_curve() {
+        let (radius_mm, speed_mm_s) = (10.0, 50.0);
+        let at = |t_s: f64| {
+            let angle: f64 = speed_mm_s / radius_mm * t_s;
+            [radius_mm * angle.cos(), radius_mm * angle.sin(), 0.0]
+        };
+        let mut statistics = Statistics::new();
+        for t_s in (0..100).map(|k| f64::from(k) * 1e-3) {
+            statistics.row(&Row { cmd_mm: at(t_s), path_mm: at(t_s), ..row(t_s) }).unwrap();
+        }
+        statistics.row(&Row { cmd_mm: [900.0, 0.0, 0.0], ..row(5.0) }).unwrap();
+        statistics.row(&Row { cmd_mm: [900.0, 0.0, 0.0], ..row(5.001) }).unwrap();
+        let facts = RunFacts { axes: 2, ..RunFacts::default() };
+        let accel_mm_s2 = statistics.summary(facts, |_| String::new()).max_command_accel_mm_s2;
+        assert!((accel_mm_s2 / (speed_mm_s * speed_mm_s / radius_mm) - 1.0).abs() < 1e-4, "{accel_mm_s2}");
+    }
+
+    #[test]
+    fn rapids_count_for_torque_but_not_for_the_error() {
+        let mut statistics = statistics_of(&[1.0, -1.0]);
+        let rapid = Row { cutting: false, contour_error_mm: 9.0, torque_nm: [0.0, -2.0, 0.0], ..row(1.0) };
+        statistics.row(&rapid).unwrap();
+        let facts = RunFacts { axes: 2, ..RunFacts::default() };
+        let summary = statistics.summary(facts, |_| String::new());
+        assert!((summary.rms_um - 1.0).abs() < 1e-12 && (summary.max_um - 1.0).abs() < 1e-12);
+        assert_eq!(summary.peak_torque_nm, Some([0.0, 2.0, 0.0]));
+        assert!((summary.cutting_time_s - 1e-3).abs() < 1e-15, "{}", summary.cutting_time_s);
+    }
+}

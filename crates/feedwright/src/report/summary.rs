@@ -1,0 +1,88 @@
+//! The numbers of one run, as the page's tables and `--json` give them.
+
+use feedwright_sim::{FadedOut, Outcome, RunResult};
+use serde::Serialize;
+
+use super::histogram::Histogram;
+use super::worst::WorstPlace;
+
+/// What [`Statistics`](super::Statistics) cannot see in the rows of a run.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RunFacts {
+    /// Name of the controller.
+    pub controller: String,
+    /// Name of the machine.
+    pub machine: String,
+    /// Name of the part.
+    pub part: String,
+    /// Axes of the machine, 2 or 3.
+    pub axes: usize,
+    /// Whether the rows are those of a log, not of a simulation.
+    pub measured: bool,
+    /// What the loop says about the run.
+    pub run: RunResult,
+}
+
+/// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunSummary {
+    /// Name of the controller.
+    pub controller: String,
+    /// Name of the machine.
+    pub machine: String,
+    /// Name of the part.
+    pub part: String,
+    /// Axes of the machine, 2 or 3.
+    pub axes: usize,
+    /// Whether it was measured on a machine; simulated where not.
+    pub measured: bool,
+    /// How the run ended.
+    pub outcome: Outcome,
+    /// When and why the safety layer took the controller out of the loop last.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub faded_out: Option<FadedOut>,
+    /// Part of the cutting time in which the controller was in the loop.
+    pub engaged_share: f64,
+    /// Whether it was at the end.
+    pub engaged_at_end: bool,
+    /// Machining time: when the command has ended, s.
+    pub time_s: f64,
+    /// Root mean square of the contour error over the rows that cut, µm.
+    pub rms_um: f64,
+    /// Largest contour error of the rows that cut, µm.
+    pub max_um: f64,
+    /// The same two without the geometry that no encoder sees, µm; none where the machine has no such geometry.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint_rms_um: Option<f64>,
+    /// See above.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub joint_max_um: Option<f64>,
+    /// Uncut path: largest distance from a programmed point to what the tool did in the time that it has for it, µm.
+    pub uncut_um: f64,
+    /// Largest distance of the corrected reference from the programmed path's point of the same row, µm.
+    pub max_deviation_um: f64,
+    /// Largest acceleration of the command from one servo period to the next, mm/s2.
+    pub max_command_accel_mm_s2: f64,
+    /// Largest torque of each axis, N m; none of a log: torques of logs are not read.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub peak_torque_nm: Option<[f64; 3]>,
+    /// Arc length that was cut, mm.
+    pub cutting_length_mm: f64,
+    /// Time during which the tool cut, s.
+    pub cutting_time_s: f64,
+    /// Servo periods simulated.
+    pub rows: u64,
+    /// When the tool has arrived at the end, s.
+    pub arrival_s: f64,
+    /// Computing time of the ticks in which the controller decides, us: half of them take less. Not shown on the page,
+    /// which must not depend on the computer.
+    pub tick_median_us: f64,
+    /// 99.9 % of them take less, us.
+    pub tick_p999_us: f64,
+    /// The most register entries that one estimate of the contour error looked at.
+    pub most_register_entries: usize,
+    /// Largest contour errors, largest first, each place once.
+    pub worst: Vec<WorstPlace>,
+    /// Distribution of the contour error.
+    pub histogram: Histogram,
+}

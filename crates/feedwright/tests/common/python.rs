@@ -1,0 +1,19 @@
+//! The Python that the scripts of the oracles run with.
+
+#[path = "../../../plan/tests/common/missing.rs"]
+mod missing;
+
+use std::process::Command;
+
+use missing::missing;
+
+/// A Python that reads TOML: 3.11 or newer; it is said where there is none, and under CI the test fails.
+pub(crate) fn python() -> Option<&'static str> {
+    let python = ["python3", "python"].into_iter().find(|python| {
+        Command::new(python).args(["-c", "import tomllib"]).output().is_ok_and(|output| output.status.success())
+    });
+    if python.is_none() {
+        missing("there is no Python 3.11 or newer to run the script with");
+    }
+    python
+}

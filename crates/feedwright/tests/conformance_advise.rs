@@ -1,0 +1,87 @@
+//! The feedrates that are advised hold the tolerance, each way for itself, and are told with what they are cut at.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+use std::path::Path;
+
+use feedwright::{Advice, AdviseJob, BEST, CONTROLLERS, Choices, CutWay, ErrorPlace, JobError, TARGETS};
+use feedwright_gcode::Settings;
+use feedwright_sim::Machine;
+
+fn advice(text: &str, tolerance_um: f64) -> Result<Advice, JobError> {
+    let folder = tempfile::tempdir().unwrap();
+    let part = folder.path().join("part.ngc");
+    std::fs::write(&part, text).unwrap();
+    job(&part, tolerance_um).run(&())
+}
+
+fn job(part: &Path, tolerance_um: f64) -> AdviseJob {
+    AdviseJob {
+        part: part.to_owned(),
+        machine: Machine::load("tnv40".as_ref()).unwrap(),
+        target: &TARGETS[0],
+        controller: CONTROLLERS.find(BEST).unwrap(),
+        choices: Choices::default(),
+        tolerance_um,
+        reader: Settings::default(),
+    }
+}
+
+/// What is to be held.
+const TOLERANCE_UM: f64 = 10.0;
+/// Two circles from rest to rest, the smaller of which asks for a lower feedrate.
+const CIRCLES: &str = "G21 G90 G64\nG2 X0 Y0 I2 J0 F1800\nG4 P0.2\nG2 X0 Y0 I6 J0\nM2\n";
+
+#[test]
+fn what_is_advised_holds_and_the_page_says_so() {
+    let advice = advice(CIRCLES, TOLERANCE_UM).unwrap();
+    assert_eq!(advice.ways.len(), 3);
+    for way in &advice.ways {
+        let whole = way.whole.unwrap_or_else(|| panic!("{way:?}"));
+        let each = way.by_stretch.unwrap_or_else(|| panic!("{way:?}"));
+        assert!(whole.max_um <= TOLERANCE_UM && each.max_um <= TOLERANCE_UM, "{way:?}");
+        assert!(each.time_s < 1.02 * whole.time_s, "{way:?}");
+        assert!(way.cuts.is_sorted_by(|a, b| a.factor < b.factor), "{way:?}");
+    }
+    let factor =
+        |way: CutWay| advice.ways.iter().find(|found| found.way == way).unwrap().whole.unwrap().factor.unwrap();
+    assert!(factor(CutWay::Uncorrected) < 1.0 && factor(CutWay::Corrected) >= 1.0, "{:?}", advice.ways);
+    let time = |way: usize| advice.ways[way].whole.unwrap().time_s;
+    assert!(time(0) > 1.2 * time(1) && time(0) > 1.2 * time(2), "{:?}", advice.ways);
+    let [small, large] = [0, 1].map(|k: usize| &advice.stretches[k]);
+    assert_eq!((small.lines, large.lines), ([2, 2], [4, 4]));
+    assert!(small.holds_mm_s[0].unwrap() < 0.9 * large.holds_mm_s[0].unwrap(), "{:?}", advice.stretches);
+    let mut page = Vec::new();
+    advice.write_page(&mut page, "part <1>.ngc", "tnv40").unwrap();
+    let page = String::from_utf8(page).unwrap();
+    assert!(
+        page.contains("part &lt;1&gt;.ngc") && page.contains("Simulated.") && page.ends_with("</html>\n"),
+        "{page}"
+    );
+    assert!(!page.contains("NaN") && !page.contains("inf") && page.contains("lqg-identified"), "{page}");
+    let svg = advice.figure().to_svg();
+    assert!(svg.starts_with("<svg") && svg.contains("Largest contour error"), "{svg}");
+}
+
+#[test]
+fn what_no_feedrate_holds_is_said_and_a_program_that_cuts_nothing_is_refused() {
+    let out_of_reach = advice("G21 G90 G64\nG2 X0 Y0 I1 J0 F1800\nM2\n", 0.001).unwrap();
+    assert!(!out_of_reach.holds() && out_of_reach.stretches[0].holds_mm_s == [None; 3], "{out_of_reach:?}");
+    // A machine with feedforward runs over the end of a rapid whatever the feed is: the feed that holds on the way is told beside.
+    let folder = tempfile::tempdir().unwrap();
+    let part = folder.path().join("part.ngc");
+    std::fs::write(&part, "G21 G90 G64\nG0 X30\nG3 X30 Y0 I-8 J0 F3000\nM2\n").unwrap();
+    let machine = Machine::load("stiff".as_ref()).unwrap();
+    let overrun =
+        AdviseJob { machine, controller: CONTROLLERS.find("feedforward").unwrap(), ..job(&part, TOLERANCE_UM) }
+            .run(&())
+            .unwrap();
+    let nearest = overrun.ways[0].nearest.unwrap();
+    assert_eq!((overrun.ways[0].whole, nearest.lines, nearest.place), (None, [3, 3], ErrorPlace::Start));
+    let sentence = nearest.sentence("um", overrun.programmed_mm_s[1]);
+    assert!(sentence.contains("where line 3 begins; beside the ends of stretches at"), "{sentence}");
+    assert!(overrun.stretches[0].cell(0).starts_with('(') && overrun.ways[1].whole.is_some(), "{overrun:?}");
+    assert!(overrun.stretches[0].remark("um").unwrap().ends_with("um, start"), "{overrun:?}");
+    let error = advice("G21 G0 X5\nM2\n", 10.0).unwrap_err();
+    assert!(error.to_string().ends_with("has no feed motion: there is nothing to cut"), "{error}");
+}

@@ -1,0 +1,302 @@
+//! The command line as such: `-` in place of files, units, widths, colours, help, version, completions, manual pages.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+#[path = "common/command.rs"]
+mod common;
+
+use std::io::Write;
+use std::process::{Command, Stdio};
+
+use common::{Folder, Ran, skipped};
+
+/// All commands.
+const COMMANDS: [&str; 18] = [
+    "run",
+    "correct",
+    "advise",
+    "plan",
+    "check",
+    "identify",
+    "excite",
+    "machines",
+    "controllers",
+    "export-contour",
+    "canon",
+    "block",
+    "paper",
+    "compare",
+    "never-worse",
+    "held-out",
+    "completions",
+    "man",
+];
+
+/// Runs a command that gets `input` on its standard input.
+fn fed(folder: &Folder, arguments: &[&str], input: &[u8]) -> Ran {
+    let mut command = folder.command();
+    let mut child =
+        command.args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut stdin = child.stdin.take().unwrap();
+    // A command that does not read it is not the fault of this end.
+    let _ = stdin.write_all(input);
+    drop(stdin);
+    Ran::from(child.wait_with_output().unwrap())
+}
+
+const TNV40: &str = include_str!("../../sim/machines/tnv40.toml");
+
+#[test]
+fn a_dash_is_the_standard_input_wherever_a_file_is_read() {
+    let folder = Folder::new();
+    let open_loop = ["--controller", "open-loop"];
+    let ran = fed(&folder, &[&["run", "-"], &open_loop[..]].concat(), common::CIRCLE.as_bytes()).succeeded();
+    assert!(ran.stdout.contains("wrote stdin.report.html"), "{}", ran.stdout);
+    let named = folder.run_open_loop(&["circle.ngc", "--json", "named.json"]).succeeded();
+    assert!(named.stdout.contains("wrote named.json"));
+    for (arguments, input) in [
+        (&["plan", "-"][..], common::CIRCLE),
+        (&["check", "-"], common::CIRCLE),
+        (&["canon", "-"], common::CIRCLE),
+        (&["run", "circle.ngc", "--machine", "-", "--controller", "open-loop"], TNV40),
+        (&["plan", "circle.ngc", "--machine", "-"], TNV40),
+        (&["excite", "--machine", "-", "--out", "excite.ngc"], TNV40),
+        (&["check", "circle.ngc", "--tool-table", "-"], "T1 P1 Z25.4 D6\n"),
+    ] {
+        fed(&folder, arguments, input.as_bytes()).succeeded();
+    }
+    fed(&folder, &["run", "-", "--machine", "-"], b"").refused(&["the program and --machine at once", "hint:"]);
+    fed(&folder, &["check", "-"], b"G1 X1 Q\n").faulty(&["standard input:1"]);
+    fed(&folder, &["run", "-"], b"").refused(&["standard input", "empty"]);
+}
+
+#[test]
+fn a_dash_is_the_standard_output_wherever_a_file_is_written() {
+    let folder = Folder::new();
+    let before = folder.content();
+    let ran = folder.run(&["export-contour", "eight", "--out", "-"]).succeeded();
+    assert!(ran.stdout.starts_with("(eight:") && ran.stdout.ends_with("M2\n"), "{}", ran.stdout);
+    let ran = folder.run_open_loop(&["circle.ngc", "--json", "-", "--report", "/dev/null"]).succeeded();
+    let json: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!((json["simulated"].as_bool(), json["assumed"]["law"].as_str()), (Some(true), Some("none")));
+    // The table is on stderr then.
+    assert!(ran.stderr.contains("RMS um") && !ran.stderr.contains("wrote r"), "{}", ran.stderr);
+    let ran = folder.run_open_loop(&["circle.ngc", "--trace", "-", "--report", "/dev/null"]).succeeded();
+    assert!(ran.stdout.starts_with("t_s,") && ran.stdout.lines().count() > 500);
+    let ran = folder.run(&["excite", "--machine", "tnv40", "--out", "-"]).succeeded();
+    assert!(ran.stdout.contains("G21") && ran.stderr.contains("axes"), "{ran:?}");
+    let ran = folder.run(&["plan", "circle.ngc", "--json", "-"]).succeeded();
+    assert!(serde_json::from_str::<serde_json::Value>(&ran.stdout).is_ok());
+    folder
+        .run_open_loop(&["circle.ngc", "--json", "-", "--trace", "-"])
+        .refused(&["another output of this run goes there"]);
+    assert_eq!(folder.content(), before);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_behind_the_standard_output_is_told() {
+    let folder = Folder::new();
+    let full = || std::fs::File::options().write(true).open("/dev/full").unwrap();
+    for arguments in [
+        &["export-contour", "star"][..],
+        &["plan", "circle.ngc"],
+        &["plan", "circle.ngc", "--json", "-"],
+        &["machines"],
+        &["completions", "bash"],
+        &["canon", "circle.ngc"],
+    ] {
+        let ran = Ran::from(folder.command().args(arguments).stdout(full()).output().unwrap());
+        assert_eq!(ran.code, Some(2), "{arguments:?}: {ran:?}");
+        assert!(ran.stderr.contains("No space left on device") && !ran.stderr.contains("panicked"), "{}", ran.stderr);
+    }
+}
+
+#[test]
+fn a_feedrate_has_a_unit() {
+    let folder = Folder::new();
+    let time_s = |feed: &str| {
+        folder.run_open_loop(&["circle.ngc", "--feed", feed, "--json", "r.json"]).succeeded();
+        let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+        json["runs"][0]["time_s"].as_f64().unwrap().to_bits()
+    };
+    assert_eq!(time_s("600mm/min"), time_s("10 mm/s"));
+    let ran = folder.run_open_loop(&["circle.ngc", "--feed", "50"]);
+    ran.refused(&["'50'", "--feed", "50mm/min is 0.833 mm/s", "50mm/s is 3000 mm/min"]);
+}
+
+#[test]
+fn everything_fits_eighty_columns_where_there_is_no_terminal() {
+    let folder = Folder::new();
+    folder.file("bad.ngc", "G1 X10 G555 F100\n");
+    let wide =
+        |text: &str| text.lines().filter(|line| line.chars().count() > 80).map(str::to_owned).collect::<Vec<_>>();
+    let machine = ["--machine", "tnv40"];
+    for arguments in [
+        &[&["run", "circle.ngc", "--controller", "contour-compensation"], &machine[..]].concat()[..],
+        &["plan", "circle.ngc"],
+        &["machines"],
+        &["controllers"],
+        &["controllers", "receding-horizon"],
+        &["run", "circle.ngc", "--controller", "no-such"],
+        &["check", "bad.ngc"],
+        &["--help"],
+    ] {
+        let ran = Ran::from(folder.command().env_remove("COLUMNS").args(arguments).output().unwrap());
+        assert_eq!((wide(&ran.stdout), wide(&ran.stderr)), (vec![], vec![]), "{arguments:?}");
+    }
+    let ran = folder.run(&[&["run", "circle.ngc", "--controller", "contour-compensation"], &machine[..]].concat());
+    for says in [
+        "simulated: contour-compensation",
+        "peak torque",
+        "off the path",
+        "uncut um",
+        "assumed: the machine is tnv40 (built in",
+    ] {
+        assert!(ran.stdout.split_whitespace().collect::<Vec<_>>().join(" ").contains(says), "{says}: {}", ran.stdout);
+    }
+    let narrow = Ran::from(
+        folder
+            .command()
+            .env("COLUMNS", "44")
+            .args(["run", "circle.ngc", "--controller", "open-loop"])
+            .output()
+            .unwrap(),
+    );
+    assert!(narrow.stdout.contains("no room for the columns"), "{}", narrow.stdout);
+    let compared = folder.run(&[
+        "compare",
+        "--only",
+        "circle,tnv40,open-loop,contour-compensation",
+        "--no-tuning",
+        "--knowledge",
+        "own",
+    ]);
+    assert_eq!(wide(&compared.succeeded().stdout), [""; 0]);
+}
+
+#[test]
+fn colours_come_where_they_are_asked_for_and_a_dumb_terminal_gets_ascii() {
+    let folder = Folder::new();
+    folder.file("bad.ngc", "G1 X10 G555 F100\n");
+    let told = |arguments: &[&str], variables: &[(&str, &str)]| {
+        let output = folder.command().args(arguments).envs(variables.iter().copied()).output().unwrap();
+        Ran::from(output).stderr
+    };
+    assert!(!told(&["check", "bad.ngc"], &[]).contains('\u{1b}'));
+    assert!(told(&["check", "bad.ngc", "--color", "always"], &[("NO_COLOR", "1")]).contains('\u{1b}'));
+    assert!(told(&["--color=always", "run"], &[]).contains('\u{1b}'));
+    assert!(!told(&["check", "bad.ngc", "--color", "never"], &[]).contains('\u{1b}'));
+    let dumb = told(&["check", "bad.ngc"], &[("TERM", "dumb")]);
+    assert!(dumb.is_ascii() && dumb.contains("G555"), "{dumb}");
+}
+
+#[test]
+fn every_command_has_a_short_help_and_a_long_one_and_a_version() {
+    let folder = Folder::new();
+    let root = folder.run(&["-h"]).succeeded().stdout;
+    for command in COMMANDS {
+        assert!(root.contains(&format!("\n  {command} ")), "{command} is not listed");
+        let [short, long] = ["-h", "--help"].map(|option| folder.run(&[command, option]).succeeded().stdout);
+        assert!(long.len() > short.len(), "{command}");
+        let examples = !["machines", "controllers"].contains(&command);
+        assert_eq!(long.contains("Example"), examples, "{command}:\n{long}");
+        assert!(folder.run(&[command, "--version"]).succeeded().stdout.contains(env!("CARGO_PKG_VERSION")));
+    }
+    let listed = root.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    // The commands, and help itself; each on one line.
+    assert_eq!(listed.count(), COMMANDS.len() + 1, "{root}");
+}
+
+#[test]
+fn shells_get_completions_and_man_its_pages() {
+    let folder = Folder::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = folder.run(&["completions", shell]).succeeded().stdout;
+        assert!(script.contains("never-worse") && script.contains("tolerance"), "{shell}");
+    }
+    folder.run(&["completions", "bash", "--out", "fw.bash"]).succeeded();
+    match Command::new("bash").arg("-n").arg(folder.path().join("fw.bash")).status() {
+        Ok(status) => assert!(status.success()),
+        Err(_) => skipped("the script of bash is not read by bash, which is not installed"),
+    }
+    folder.run(&["man", "--out", "man"]).succeeded();
+    let pages = std::fs::read_dir(folder.path().join("man")).unwrap().count();
+    assert_eq!(pages, COMMANDS.len() + 1);
+    let page = folder.text("man/feedwright-run.1");
+    assert!(page.contains(".TH feedwright-run 1") && page.contains("tolerance") && page.contains("jq"), "{page}");
+}
+
+#[test]
+fn contours_are_exported() {
+    let folder = Folder::new();
+    for name in ["circle", "ellipse", "eight", "star", "butterfly", "square", "line-line-circle"] {
+        let file = format!("{name}.ngc");
+        folder.run(&["export-contour", name, "--out", &file, "--feed", "1200mm/min"]).succeeded();
+        assert!(folder.text(&file).contains("F1200\n"));
+        folder.run(&["check", &file]).succeeded();
+    }
+    folder.run(&["export-contour", "triangle"]).refused(&["triangle", "line-line-circle"]);
+    folder.run(&["export-contour", "eight", "--feed", "0mm/s"]).refused(&["--feed is 0 mm/s"]);
+    folder.run(&["export-contour", "eight", "--tolerance", "1e9"]).refused(&["--tolerance", "um"]);
+}
+
+#[test]
+fn a_correction_that_is_worse_is_told_and_not_written() {
+    let folder = Folder::new();
+    folder.file("square.ngc", "G21 G17 G90 G94 G64\nG0 X0 Y0\nG1 X3 F3000\nY3\nX0\nY0\nM2\n");
+    let cut = |controller: &str| {
+        let machine = ["--machine", "tnv40", "--controller", controller];
+        let outputs = ["--out", "setpoints.csv", "--json", "r.json"];
+        folder.run(&[&["run", "square.ngc"], &machine[..], &outputs[..]].concat())
+    };
+    let worse = cut("contour-compensation");
+    assert_eq!(worse.code, Some(1), "{worse:?}");
+    let text = worse.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(text.contains("contour-compensation is worse than open-loop for this part on this machine (RMS"), "{text}");
+    assert!(text.contains("setpoints.csv was not written: open loop is better"), "{text}");
+    assert!(!folder.path().join("setpoints.csv").exists() && folder.path().join("square.report.html").exists());
+    let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    assert_eq!(json["worse_than_open_loop"][0]["what"], "RMS");
+    let better = cut("cross-coupled");
+    assert_eq!(better.code, Some(0), "{better:?}");
+    assert!(better.stdout.contains("wrote setpoints.csv") && folder.path().join("setpoints.csv").exists());
+}
+
+#[test]
+fn what_a_killed_run_left_is_cleaned_up() {
+    let folder = Folder::new();
+    folder.file(".feedwright-Ab12Cd.part", "half of a trace");
+    folder.run_open_loop(&["circle.ngc"]).succeeded();
+    assert!(!folder.path().join(".feedwright-Ab12Cd.part").exists());
+}
+
+/// Trains the identifier of the paper, once for each cache.
+#[test]
+fn a_damaged_cache_is_found_and_an_empty_name_is_none() {
+    let folder = Folder::new();
+    let cut = |cache: &str| {
+        let arguments =
+            ["run", "circle.ngc", "--machine", "tnv40", "--controller", "two-dimensional", "--json", "r.json"];
+        let ran =
+            Ran::from(folder.command().args(arguments).env("FEEDWRIGHT_CACHE", cache).output().unwrap()).succeeded();
+        let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+        (json["runs"][1]["rms_um"].as_f64().unwrap().to_bits(), ran)
+    };
+    let (first, _) = cut("cache");
+    let kept: Vec<_> =
+        std::fs::read_dir(folder.path().join("cache")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    let [file] = &kept[..] else { panic!("{kept:?}") };
+    let text = std::fs::read_to_string(file).unwrap();
+    // A digit of a weight: the file reads as before, and says something else.
+    let at = text.rfind(|c: char| c.is_ascii_digit() && c != '9').unwrap();
+    let at = text[..at].find("0.").map_or(at, |from| from + 3);
+    let mut damaged = text.clone().into_bytes();
+    damaged[at] = if damaged[at] == b'9' { b'1' } else { b'9' };
+    std::fs::write(file, &damaged).unwrap();
+    assert_eq!(cut("cache").0, first);
+    assert_eq!(std::fs::read_to_string(file).unwrap(), text, "it was made anew");
+    let before = folder.content().len();
+    assert_eq!(cut("").0, first);
+    assert_eq!(folder.content().len(), before, "an empty name is no folder");
+}

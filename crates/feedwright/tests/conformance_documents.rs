@@ -1,0 +1,132 @@
+//! The documents speak of what there is: their links lead somewhere, every key of a machine file is explained, and
+//! ARCHITECTURE.md names every source file and none that is not there.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+use std::path::{Path, PathBuf};
+
+/// Folders with documents; not searched deeper.
+const FOLDERS: [&str; 7] = [
+    "",
+    "docs",
+    "examples/01_paper_circle",
+    "examples/02_horizon",
+    "examples/03_realism",
+    "examples/04_planner",
+    "examples/05_noise",
+];
+
+fn root() -> PathBuf {
+    PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+fn documents() -> Vec<PathBuf> {
+    let entries = FOLDERS.iter().flat_map(|folder| std::fs::read_dir(root().join(folder)).unwrap());
+    entries.map(|entry| entry.unwrap().path()).filter(|path| path.extension().is_some_and(|e| e == "md")).collect()
+}
+
+/// Targets of the links and figures of a text that are files.
+fn targets(text: &str) -> impl Iterator<Item = &str> {
+    let links = text.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    let files = links.map(|(target, _)| target).filter(|target| !target.contains("://") && !target.starts_with('#'));
+    files.map(|target| target.split_once('#').map_or(target, |(file, _)| file))
+}
+
+fn lead_nowhere(document: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(document).unwrap();
+    let folder = document.parent().unwrap();
+    targets(&text).filter(|target| !folder.join(target).exists()).map(str::to_owned).collect()
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let documents = documents();
+    assert!(documents.len() >= 8, "{documents:?}");
+    for document in documents {
+        assert_eq!(lead_nowhere(&document), [""; 0], "{}", document.display());
+    }
+}
+
+#[test]
+fn every_key_of_a_machine_file_is_explained() {
+    fn keys(table: &toml::Table, found: &mut Vec<String>) {
+        for (key, value) in table {
+            match value {
+                toml::Value::Table(inner) => keys(inner, found),
+                _ => found.push(key.clone()),
+            }
+        }
+    }
+    let document = std::fs::read_to_string(root().join("docs/machine-file.md")).unwrap();
+    let (_, text) = feedwright_sim::BUILT_IN_MACHINES[0];
+    let mut found = Vec::new();
+    keys(&text.parse().unwrap(), &mut found);
+    assert!(found.len() > 20, "{found:?}");
+    for key in found {
+        assert!(document.contains(&format!("| `{key}` |")), "docs/machine-file.md says nothing of {key}");
+    }
+}
+
+/// Folders whose files ARCHITECTURE.md lists, each below a line with its name.
+const LISTED: [&str; 4] = ["gcode/src", "control/src", "core/src", "cli/src"];
+
+/// All files below a folder with one of these endings, as paths from there.
+fn files(folder: &Path, endings: &[&str]) -> Vec<String> {
+    fn walk(folder: &Path, from: &Path, endings: &[&str], found: &mut Vec<String>) {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                walk(&path, from, endings, found);
+            } else if path.extension().is_some_and(|e| endings.iter().any(|ending| e == *ending)) {
+                let words = path.strip_prefix(from).unwrap().components();
+                found.push(words.map(|word| word.as_os_str().to_string_lossy()).collect::<Vec<_>>().join("/"));
+            }
+        }
+    }
+    let mut found = Vec::new();
+    walk(folder, folder, endings, &mut found);
+    found.sort();
+    found
+}
+
+#[test]
+fn every_source_file_is_listed_in_the_architecture() {
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    for folder in LISTED {
+        let (_, list) = text.split_once(&format!("\n`{folder}/`\n\n")).unwrap();
+        let lines = list.lines().take_while(|line| line.starts_with("    "));
+        let mut listed: Vec<&str> = lines.filter_map(|line| line.split_whitespace().next()).collect();
+        listed.sort_unstable();
+        let there = files(&root().join(folder), &["rs"]);
+        let unlisted: Vec<_> = there.iter().filter(|file| !listed.contains(&file.as_str())).collect();
+        let gone: Vec<_> = listed.iter().filter(|file| !there.iter().any(|there| there == *file)).collect();
+        assert!(
+            unlisted.is_empty() && gone.is_empty() && listed.len() == there.len(),
+            "ARCHITECTURE.md, list of {folder}: not listed {unlisted:?}, not there {gone:?}; hint: one line for each file"
+        );
+    }
+}
+
+#[test]
+fn every_file_of_which_the_architecture_speaks_is_there() {
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let there: Vec<String> = ["gcode", "control", "core", "cli"]
+        .iter()
+        .flat_map(|folder| {
+            files(&root().join(folder), &["rs", "py"]).into_iter().map(move |file| format!("{folder}/{file}"))
+        })
+        .collect();
+    let quoted: Vec<&str> = text.split('`').skip(1).step_by(2).filter(|word| !word.contains(['*', ' '])).collect();
+    let named: Vec<&str> = quoted.into_iter().filter(|word| word.ends_with(".rs") || word.ends_with(".py")).collect();
+    assert!(named.len() > 30, "{named:?}");
+    for name in named {
+        let ending = format!("/{name}");
+        assert!(there.iter().any(|file| file == name || file.ends_with(&ending)), "ARCHITECTURE.md speaks of {name}");
+    }
+}
+
+#[test]
+fn a_link_to_nothing_is_found() {
+    let text = "[a](b.md) ![c](d.svg) [e](https://example.org) [f](#g)";
+    assert_eq!(targets(text).collect::<Vec<_>>(), ["b.md", "d.svg"]);
+}

@@ -1,0 +1,179 @@
+//! What a job promises to whoever runs it: it can be written down and read back, it tells its progress, it ends when it is told
+//! to, it needs no file, and it shares nothing with another one beside it.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use feedwright::{
+    BASELINE, BEST, CONTROLLERS, Choices, HORIZON, Job, JobError, Make, Outputs, Setting, Setup, TARGETS,
+};
+use feedwright_gcode::{Dialect, Increment, Settings};
+use feedwright_sim::{BUILT_IN_MACHINES, Machine, Row, Run, Watch, path_steps};
+
+fn part() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../parts/circle.ngc")
+}
+
+fn job(machine: &str, controller: &str) -> Job {
+    Job {
+        part: part(),
+        machine: Machine::load(machine.as_ref()).unwrap(),
+        machine_file: None,
+        controller: CONTROLLERS.find(controller).unwrap(),
+        against: CONTROLLERS.find(BASELINE).unwrap(),
+        feed_mm_s: None,
+        choices: Choices::default(),
+        model: None,
+        tolerance_um: None,
+        target: &TARGETS[0],
+        reference: None,
+        fastest: false,
+        reader: Settings::default(),
+        inputs: Vec::new(),
+        log: None,
+        outputs: Outputs::default(),
+    }
+}
+
+fn again(job: &Job) -> Job {
+    serde_json::from_str(&serde_json::to_string(job).unwrap()).unwrap()
+}
+
+#[test]
+fn a_job_is_read_back_as_it_was_written_on_every_machine_with_every_controller() {
+    for (machine, _) in BUILT_IN_MACHINES {
+        for controller in CONTROLLERS {
+            let job = job(machine, controller.name);
+            assert_eq!(again(&job), job);
+        }
+    }
+}
+
+#[test]
+fn everything_that_can_be_asked_for_is_read_back() {
+    let setting = Setting::parse("receding-horizon.rate_weight_s2=3.3e-10", None, CONTROLLERS).unwrap();
+    let mut full = job("soft", BEST);
+    full.feed_mm_s = Some(33.3);
+    full.choices = Choices { seed: u64::MAX, set: vec![setting] };
+    full.tolerance_um = Some(1.0 / 3.0);
+    full.target = &TARGETS[2];
+    full.reader.dialect = Some(Dialect::FanucLathe);
+    full.reader.increment = Some(Increment::named("0.0001inch").unwrap());
+    full.inputs = vec!["a machine.toml".into()];
+    full.outputs = Outputs { trace: Some("trace.csv".into()), out: Some("out.ngc".into()), ..Outputs::default() };
+    assert_eq!(again(&full), full);
+}
+
+#[test]
+fn what_is_no_job_is_refused_with_the_reason() {
+    let mut text = serde_json::to_value(job("tnv40", BEST)).unwrap();
+    let refused = |text: &serde_json::Value| serde_json::from_value::<Job>(text.clone()).unwrap_err().to_string();
+    text["controller"] = "receding".into();
+    assert!(refused(&text).contains("no controller is called 'receding'"), "{}", refused(&text));
+    text["controller"] = BEST.into();
+    text["choices"]["set"] = serde_json::json!([{ "controller": HORIZON, "name": "knots", "value": 21.0 }]);
+    assert!(refused(&text).contains("knots is 1 to 20, whole"), "{}", refused(&text));
+    text["choices"]["set"] = serde_json::json!([]);
+    text["machine"] = "name = 'none'".into();
+    assert!(refused(&text).contains("machine"), "{}", refused(&text));
+}
+
+#[test]
+fn rows_are_read_back_to_the_bit() {
+    let machine = Machine::load("tnv40".as_ref()).unwrap();
+    let text = std::fs::read_to_string(part()).unwrap();
+    let program = || {
+        let reader = feedwright_gcode::Reader::from_text("circle", text.clone(), Settings::default())?;
+        Ok(path_steps(reader.map_while(Result::ok)))
+    };
+    let choices = Choices::default();
+    let mut controller = Make::<2>::make(CONTROLLERS.find(BEST).unwrap(), &mut Setup::new(&machine, &choices));
+    let mut rows = Vec::<Row>::new();
+    Run::on(&machine).cut(program, &mut *controller, &mut [&mut rows]).unwrap();
+    assert!(rows.len() > 1000);
+    let read: Vec<Row> = serde_json::from_str(&serde_json::to_string(&rows).unwrap()).unwrap();
+    assert_eq!(read, rows);
+}
+
+/// Ends the work after so many steps of its progress, and keeps what it is told.
+struct Ending {
+    after: u64,
+    steps: AtomicU64,
+    stages: Mutex<Vec<(String, u64, u64)>>,
+}
+
+impl Ending {
+    fn after(after: u64) -> Self {
+        Self { after, steps: AtomicU64::new(0), stages: Mutex::default() }
+    }
+}
+
+impl Watch for Ending {
+    fn begin(&self, stage: &str, steps: u64) {
+        self.stages.lock().unwrap().push((stage.to_owned(), steps, 0));
+    }
+
+    fn advance(&self, steps: u64) {
+        self.steps.fetch_add(steps, Ordering::Relaxed);
+        self.stages.lock().unwrap().last_mut().unwrap().2 += steps;
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.steps.load(Ordering::Relaxed) >= self.after
+    }
+}
+
+#[test]
+fn a_job_tells_its_stages_and_never_more_than_their_steps() {
+    let watch = Ending::after(u64::MAX);
+    job("tnv40", "two-dimensional").run(&watch).unwrap();
+    let stages = watch.stages.into_inner().unwrap();
+    let names: Vec<&str> = stages.iter().map(|(name, ..)| name.as_str()).collect();
+    let expected = [
+        "reading the program",
+        "identifying for open-loop",
+        "cutting, open-loop",
+        "identifying for two-dimensional",
+        "cutting, two-dimensional",
+        "writing",
+    ];
+    assert_eq!(names, expected);
+    assert!(stages.iter().all(|(_, steps, done)| done <= steps), "{stages:?}");
+    let cuts = stages.iter().filter(|(name, ..)| name.starts_with("cutting"));
+    assert!(cuts.clone().all(|(_, steps, done)| 10 * done > 9 * steps), "{stages:?}");
+}
+
+#[test]
+fn a_job_that_is_ended_leaves_no_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| Some(folder.path().join(name));
+    // In the cut of the first, of the second, and before anything.
+    for after in [300, 1300, 0] {
+        let mut job = job("tnv40", "feedforward");
+        job.outputs =
+            Outputs { report: place("r.html"), json: place("r.json"), trace: place("t.csv"), out: place("o.ngc") };
+        let ended = job.run(&Ending::after(after)).unwrap_err();
+        assert!(matches!(ended, JobError::Cancelled(_)), "{after}: {ended}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "{after}");
+    }
+}
+
+#[test]
+fn jobs_beside_each_other_share_nothing() {
+    let jobs: Vec<Job> = ["feedforward", BEST, "cross-coupled"].map(|name| job("tnv40", name)).into();
+    let summary = |job: &Job| {
+        let mut summary = job.run(&()).unwrap().report.runs.pop().unwrap().summary;
+        // Times of ticks are the clock's.
+        (summary.tick_median_us, summary.tick_p999_us) = (0.0, 0.0);
+        serde_json::to_string(&summary).unwrap()
+    };
+    let alone: Vec<String> = jobs.iter().map(summary).collect();
+    let together: Vec<String> = std::thread::scope(|scope| {
+        let threads: Vec<_> = jobs.iter().map(|job| scope.spawn(move || summary(job))).collect();
+        threads.into_iter().map(|thread| thread.join().unwrap()).collect()
+    });
+    assert_eq!(alone, together);
+}

@@ -1,0 +1,207 @@
+//! `identify` and `run --model`: what a training gives is the same from a file, and a file that does not suit is refused.
+
+#[path = "common/command.rs"]
+#[expect(dead_code, reason = "every test file uses a part of this")]
+mod common;
+
+use common::Folder;
+
+/// Trace and table of a run, without what is said of where its model comes from.
+fn cut(folder: &Folder, more: &[&str]) -> (String, String) {
+    let ran = folder.run(&[&["run", "circle.ngc", "--trace", "t.csv"], more].concat()).succeeded();
+    let (table, _) = ran.stdout.split_once("assumed: ").expect("a run says what was assumed");
+    (folder.text("t.csv"), table.to_owned())
+}
+
+#[test]
+fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit() {
+    for (controller, seed, machine) in [
+        ("receding-horizon", "1", "tnv40"),
+        ("receding-horizon", "7", "tnv40"),
+        ("two-dimensional", "3", "tnv40"),
+        ("lqg-identified", "1", "workshop"),
+    ] {
+        let folder = Folder::new();
+        let same = ["--controller", controller, "--machine", machine, "--seed", seed];
+        folder.run(&[&["identify", "--out", "m.model.toml"], &same[..]].concat()).succeeded();
+        let trained = cut(&folder, &same);
+        // Another seed: nothing may be trained.
+        let other = ["--controller", controller, "--machine", machine, "--seed", "99"];
+        let read = cut(&folder, &[&other[..], &["--model", "m.model.toml"]].concat());
+        assert!(trained == read, "{controller}");
+        assert!(trained != cut(&folder, &other), "{controller}");
+    }
+}
+
+#[test]
+fn the_same_identification_writes_the_same_bytes() {
+    let folder = Folder::new();
+    for name in ["1", "2"] {
+        let mut command = folder.command();
+        command.env("SOURCE_DATE_EPOCH", "1700000000").env("LC_ALL", "de_DE.UTF-8");
+        command.args([
+            "identify",
+            "--controller",
+            "receding-horizon",
+            "--axes",
+            "3",
+            "--machine",
+            "heavy",
+            "--out",
+            &format!("{name}.model.toml"),
+        ]);
+        assert!(command.output().unwrap().status.success());
+    }
+    let text = folder.text("1.model.toml");
+    assert_eq!(text, folder.text("2.model.toml"));
+    assert!(text.contains("date = \"2023-11-14\"") && text.contains("axes = 3"), "{text}");
+    assert!(text.contains("source = \"simulated excitation of heavy, seed 1\""), "{text}");
+    let told = folder.run(&["check", "1.model.toml"]).succeeded().stdout;
+    assert!(told.contains("servo model, 3 axes, simulated excitation of heavy, seed 1"), "{told}");
+}
+
+#[test]
+fn a_model_that_does_not_suit_is_refused_with_what_does() {
+    let folder = Folder::new();
+    folder.file("helix.ngc", "G21 G17 G90\nG0 X0 Y0\nG2 X0 Y0 Z-1 I2 J0 F1200\nM2\n");
+    folder.file(
+        "half.toml",
+        include_str!("../../sim/machines/tnv40.toml").replace("servo_s = 0.001", "servo_s = 0.0005"),
+    );
+    folder.run(&["identify", "--controller", "receding-horizon", "--out", "m.model.toml"]).succeeded();
+    let before = folder.content();
+    let refused = |arguments: &[&str], texts: &[&str]| {
+        folder.run(&[&["run"], arguments, &["--model", "m.model.toml"]].concat()).refused(texts);
+        assert_eq!(folder.content(), before, "{arguments:?}");
+    };
+    refused(
+        &["circle.ngc", "--controller", "open-loop"],
+        &["open-loop uses no trained identifier", "leave --model out"],
+    );
+    refused(
+        &["circle.ngc", "--controller", "two-dimensional"],
+        &["the model holds a servo identifier, and two-dimensional needs a contour identifier"],
+    );
+    refused(
+        &["circle.ngc", "--controller", "lqg-identified"],
+        &["the model holds a servo identifier, and lqg-identified needs an axes identifier"],
+    );
+    refused(
+        &["helix.ngc", "--controller", "receding-horizon"],
+        &["the model is for 2 axes, and 3 are controlled", "--axes 3"],
+    );
+    refused(
+        &["circle.ngc", "--controller", "receding-horizon", "--machine", "half.toml"],
+        &["a servo period of 0.001 s, and that of the machine is 0.0005 s"],
+    );
+    refused(
+        &["circle.ngc", "--controller", "receding-horizon", "--set", "feed_period_s=0.005"],
+        &["a feed period of 0.003 s", "--set feed_period_s=0.003"],
+    );
+}
+
+#[test]
+fn a_model_file_with_faults_cuts_nothing() {
+    let folder = Folder::new();
+    folder.run(&["identify", "--out", "m.model.toml"]).succeeded();
+    let text = folder.text("m.model.toml");
+    folder.file("changed.model.toml", text.replacen("seed 1", "seed 2", 1));
+    folder.file("cut.model.toml", &text[..text.len() / 2]);
+    folder.file("later.model.toml", text.replacen("format = 1", "format = 2", 1));
+    let before = folder.content();
+    for (file, said) in [
+        ("changed.model.toml", "the checksum does not fit"),
+        ("cut.model.toml", "not TOML"),
+        ("later.model.toml", "the model is of format 2"),
+        ("none.model.toml", "cannot read model file"),
+    ] {
+        folder.run(&["run", "circle.ngc", "--model", file]).refused(&[said, "model file"]);
+        assert_eq!(folder.content(), before, "{file}");
+    }
+}
+
+#[test]
+fn identify_writes_nothing_where_it_cannot_or_must_not() {
+    let folder = Folder::new();
+    folder.file("mine.toml", include_str!("../../sim/machines/tnv40.toml"));
+    let flat = include_str!("../../sim/machines/tnv40.toml").split("\n[axis.z]").next().unwrap();
+    folder.file("flat.toml", flat);
+    let before = folder.content();
+    let refused = |arguments: &[&str], texts: &[&str]| {
+        folder.run(&[&["identify"], arguments].concat()).refused(texts);
+        assert_eq!(folder.content(), before, "{arguments:?}");
+    };
+    refused(&["--controller", "open-loop", "--out", "m.model.toml"], &["open-loop uses no trained identifier"]);
+    refused(&["--machine", "mine.toml", "--out", "mine.toml"], &["mine.toml"]);
+    refused(&["--machine", "flat.toml", "--axes", "3", "--out", "m.model.toml"], &["has 2 axes, and a model for 3"]);
+    refused(&["--out", "none/m.model.toml"], &["none"]);
+    let mut command = folder.command();
+    command.env("SOURCE_DATE_EPOCH", "today").args(["identify", "--out", "m.model.toml"]);
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("SOURCE_DATE_EPOCH is 'today'"));
+    assert_eq!(folder.content(), before);
+}
+
+#[test]
+fn what_was_found_of_each_axis_is_shown_with_standard_errors() {
+    let folder = Folder::new();
+    let command = ["identify", "--controller", "lqg-identified", "--machine", "workshop", "--out", "m.model.toml"];
+    let told = folder.run(&command).succeeded().stdout;
+    let row = |label: &str| {
+        let line = told.lines().find(|line| line.starts_with(label)).unwrap_or_else(|| panic!("no {label}: {told}"));
+        let numbers = line[label.len()..].split_whitespace().filter_map(|word| word.parse::<f64>().ok());
+        numbers.collect::<Vec<f64>>()
+    };
+    for label in ["viscous, N m s/rad", "Coulomb, N m", "asymmetry, N m", "presliding, um"] {
+        assert_eq!(row(label).len(), 4, "{told}");
+    }
+    assert_eq!(row("left, um RMS").len(), 2, "{told}");
+    let text = folder.text("m.model.toml");
+    let (_, inertia) = text.split_once("inertia_kg_m2 = [").unwrap();
+    let inertia = inertia.split_once(']').unwrap().0.split(',').filter_map(|word| word.trim().parse::<f64>().ok());
+    for (stored, shown) in inertia.zip(row("inertia, kg m2").chunks(2)) {
+        assert!((stored - shown[0]).abs() < 0.01 * stored && shown[1] < 0.05 * stored, "{told}");
+    }
+    let told = folder.run(&["check", "m.model.toml"]).succeeded().stdout;
+    assert!(told.contains("axes model, 2 axes, simulated excitation of workshop, seed 1"), "{told}");
+}
+
+#[test]
+fn axes_that_do_not_show_are_told_of() {
+    let folder = Folder::new();
+    // Loops that take longer to settle than the excitation lasts.
+    let slow = include_str!("../../sim/machines/tnv40.toml").lines();
+    let slow = slow.map(|line| if line.starts_with("kp_1_s") { "kp_1_s = 0.01" } else { line });
+    folder.file("slow.toml", slow.collect::<Vec<_>>().join("\n"));
+    let said = ["the axes of `", "cannot be identified", "hint: record for longer"];
+    let before = folder.content();
+    let same = ["--controller", "lqg-identified", "--machine", "slow.toml"];
+    folder.run(&[&["identify", "--out", "m.model.toml"], &same[..]].concat()).refused(&said);
+    assert_eq!(folder.content(), before);
+    let ran = folder.run(&[&["run", "circle.ngc", "--against", "lqg-identified"], &same[..]].concat());
+    assert!(ran.stderr.contains("lqg-identified cuts open loop: the axes of `"), "{}", ran.stderr);
+}
+
+#[test]
+fn a_block_is_of_a_model_or_of_a_machine_and_nothing_is_written_where_neither_is_there() {
+    let folder = Folder::new();
+    folder.run(&["block", "workshop", "--out", "exact.fwmodel"]).succeeded();
+    folder
+        .run(&["identify", "--controller", "lqg-identified", "--machine", "tnv40", "--out", "m.model.toml"])
+        .succeeded();
+    let told = folder.run(&["block", "m.model.toml", "--out", "found.fwmodel"]).succeeded().stdout;
+    assert!(told.contains("the model of kind 'axes', 2 axes: 644 bytes"), "{told}");
+    let before = folder.content();
+    for (arguments, texts) in [
+        (
+            ["m.model.toml", "--axes", "3"],
+            ["the model m.model.toml has 2 axes", "identify the machine again with --axes"],
+        ),
+        (["missing.toml", "--axes", "3"], ["missing.toml", "cannot"]),
+        (["tnv40", "--axes", "4"], ["a block is of 2 or 3 axes", "--axes"]),
+    ] {
+        folder.run(&[&["block"], &arguments[..], &["--out", "more.fwmodel"]].concat()).refused(&texts);
+        assert_eq!(folder.content(), before, "{arguments:?}");
+    }
+}

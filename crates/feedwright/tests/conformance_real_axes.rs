@@ -1,0 +1,35 @@
+//! The default controller on the machines that have what real axes have: it is not held back by what they have beside an ideal axis.
+//!
+//! Bounds are twice what it leaves today or more; what the loops leave counts, not the geometry that no encoder sees.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+#[path = "common/cut.rs"]
+mod cut;
+
+use std::path::Path;
+
+use cut::cut;
+use feedwright::{BASELINE, BEST, CONTROLLERS};
+
+/// RMS of the joints' contour error over open loop's.
+fn ratio(machine: &str, part: &str) -> f64 {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let (part, machine) = (root.join("parts").join(part), root.join("machines").join(format!("{machine}.toml")));
+    let folder = tempfile::tempdir().unwrap();
+    let [open_um, corrected_um] = [BASELINE, BEST].map(|name| {
+        let summary = cut(&part, &machine, CONTROLLERS.find(name).unwrap(), &folder.path().join("trace.csv"));
+        summary.joint_rms_um.unwrap()
+    });
+    corrected_um / open_um
+}
+
+#[test]
+fn the_loops_of_workshop_and_stiff_leave_a_part_of_what_open_loop_leaves() {
+    for (machine, part, bound) in
+        [("workshop", "circle.ngc", 0.25), ("workshop", "star.ngc", 0.2), ("stiff", "star.ngc", 0.4)]
+    {
+        let ratio = ratio(machine, part);
+        assert!(ratio < bound, "{part} on {machine}: {ratio}");
+    }
+}

@@ -1,0 +1,49 @@
+//! The help of every command, as docs/command-line.md has it. `just help` writes the document anew.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+#[path = "common/command.rs"]
+#[expect(dead_code, reason = "every test file uses a part of this")]
+mod common;
+
+use std::path::Path;
+
+use common::{Folder, Ran};
+
+/// What stands before the help in the document.
+const HEADING: &str = "\n## Commands\n\n";
+
+fn help(folder: &Folder, arguments: &[&str]) -> String {
+    let mut command = folder.command();
+    let ran = Ran::from(command.env_remove("COLUMNS").args(arguments).arg("-h").output().unwrap()).succeeded();
+    ran.stdout.trim_end().to_owned()
+}
+
+/// The help as it is to stand in the document.
+fn section() -> String {
+    let folder = Folder::new();
+    let root = help(&folder, &[]);
+    let commands = root.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
+    let names = commands.map(|line| line.split_whitespace().next().unwrap()).filter(|name| *name != "help");
+    let mut text = String::new();
+    for name in names {
+        let lines: String =
+            help(&folder, &[name]).lines().map(|line| format!("    {line}\n").replace("    \n", "\n")).collect();
+        text += &format!("### {name}\n\n{lines}\n");
+    }
+    text.trim_end().to_owned() + "\n"
+}
+
+#[test]
+fn the_help_in_the_document_is_that_of_the_program() {
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/command-line.md"));
+    let document = std::fs::read_to_string(path).unwrap();
+    let (before, found) = document.split_once(HEADING).unwrap();
+    let wanted = section();
+    if std::env::var_os("FEEDWRIGHT_UPDATE_DOCUMENTS").is_some() {
+        std::fs::write(path, format!("{before}{HEADING}{wanted}")).unwrap();
+        return;
+    }
+    let difference = found.lines().zip(wanted.lines()).find(|(found, wanted)| found != wanted);
+    assert!(found == wanted, "the document is out of date; hint: `just help`\nfirst difference: {difference:?}");
+}

@@ -1,0 +1,109 @@
+//! Identification from logs: what is found of simulated machines is what they were made of, and of a public bench what was published.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+#[path = "../../ident/tests/common/identification_log.rs"]
+mod identification_log;
+
+use std::path::Path;
+
+use feedwright::machine_text;
+use feedwright::{LogIdentified, LogJob};
+use feedwright_ident::{AxisFacts, Columns, FoundAxis, LawTerm, LawVerdict, Log, NumberSource};
+use feedwright_sim::{Machine, Plant};
+use identification_log::{commands_mm, log_of};
+
+fn identified(log: Log, job: LogJob) -> LogIdentified {
+    job.run(log, &()).unwrap()
+}
+
+fn number(axis: &FoundAxis, key: &str) -> f64 {
+    axis.numbers().into_iter().find(|number| number.key == key).unwrap().value
+}
+
+fn assert_near(found: f64, wanted: f64, part: f64, what: &str) {
+    assert!((found / wanted - 1.0).abs() < part, "{what}: {found}, not {wanted}");
+}
+
+/// 1 %: what the machine file was made with, over what the steps of the encoder and the disturbance of 25 Hz blur.
+const PRODUCT: f64 = 0.01;
+const FRICTION: f64 = 0.03;
+
+#[test]
+fn the_products_of_a_simulated_machine_are_found_from_positions_alone() {
+    let machine = Machine::load("tnv40".as_ref()).unwrap();
+    let found = identified(log_of(&machine, 20.0, 1.0, 1), LogJob::default());
+    for (axis, is) in found.machine.axes.iter().zip(&machine.axes) {
+        let j = is.inertia_kg_m2;
+        let fc = is.coulomb_friction_nm / j / is.rad_per_mm();
+        assert_near(number(axis, "kp_kv_over_j_1_s2"), is.kp_1_s * is.kv_nm_s_per_rad / j, PRODUCT, "Kp Kv / J");
+        let damping = (is.kv_nm_s_per_rad + is.viscous_friction_nm_s) / j;
+        assert_near(number(axis, "kv_plus_b_over_j_1_s"), damping, PRODUCT, "(Kv + B) / J");
+        assert_near(number(axis, "fc_over_j_mm_s2"), fc, FRICTION, "Fc / J");
+        assert_eq!(axis.inertia().2, NumberSource::Assumed);
+        assert!(axis.scores.grey_box.at_um[2] < 2.0, "{:?}", axis.scores.grey_box);
+    }
+    // The file reads back, and its machine does what the log's did on other commands.
+    let text = machine_text(&found, "mine");
+    let mine = Machine::parse("mine.toml", &text).unwrap();
+    let ways = [commands_mm(0.001, 5.0, 77), commands_mm(0.001, 5.0, 78)];
+    let mut plants = [&machine, &mine].map(|machine| Plant::<2>::new(machine, [0.0; 2]));
+    let mut square = 0.0;
+    for (x, y) in ways[0].iter().zip(&ways[1]) {
+        let [a, b] = plants.each_mut().map(|plant| plant.step([*x, *y]).position_mm);
+        square += (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2);
+    }
+    // The disturbance of 25 Hz, 0.1 N m, is 1.1 um RMS in each axis, and the file does not have it.
+    let rms_um = 1e3 * (square / (2.0 * ways[0].len() as f64)).sqrt();
+    assert!(rms_um < 2.5, "{rms_um} um");
+}
+
+#[test]
+fn gains_that_are_given_scale_the_machine_file_and_nothing_else() {
+    let machine = Machine::load("tnv40".as_ref()).unwrap();
+    let mut log = log_of(&machine, 8.0, 0.0, 3);
+    log.axes.truncate(1);
+    let is = machine.axes[0];
+    let facts = AxisFacts {
+        inertia: Some(is.inertia_kg_m2),
+        viscous: Some(is.viscous_friction_nm_s),
+        lead_mm_per_rev: Some(is.lead_mm_per_rev),
+        ..AxisFacts::default()
+    };
+    let found = identified(log, LogJob { facts, ..LogJob::default() });
+    let mine = Machine::parse("mine.toml", &machine_text(&found, "mine")).unwrap();
+    let axis = mine.axes[0];
+    assert_near(axis.inertia_kg_m2, is.inertia_kg_m2, 1e-12, "J");
+    assert_near(axis.kp_1_s, is.kp_1_s, PRODUCT, "Kp");
+    assert_near(axis.kv_nm_s_per_rad, is.kv_nm_s_per_rad, PRODUCT, "Kv");
+    assert_near(axis.coulomb_friction_nm, is.coulomb_friction_nm, FRICTION, "Fc");
+    assert_eq!(mine.axes[1], axis, "a machine has two axes");
+}
+
+#[test]
+fn the_public_bench_is_what_was_published_of_it() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus/logs/emps.mat");
+    if !path.exists() {
+        eprintln!("SKIPPED: {} is missing", path.display());
+        return;
+    }
+    let log = Log::read(&path, &Columns::default()).unwrap();
+    // Janot, Gautier and Brunot (2019): 35.15 N/V.
+    let facts = AxisFacts { torque_gain: Some(35.15), ..AxisFacts::default() };
+    let job = LogJob { times_s: Some([0.0..12.42, 12.42..25.0]), facts, ..LogJob::default() };
+    let found = identified(log, job);
+    let axis = &found.machine.axes[0];
+    let scores = &axis.scores;
+    assert!(scores.grey_box.whole_um < 2.0 && scores.grey_box.at_um[2] < 1.5, "{:?}", scores.grey_box);
+    assert!(scores.grey_box.at_um[2] < 1.5 * scores.best_arx().at_um[2]);
+    assert_eq!(LawVerdict::of(axis), LawVerdict::LawHolds);
+    // M 95.11 kg, viscous 203.5 N s/m, Coulomb 20.4 N; kp 160.18 1/s, kv 243.45 V s/m.
+    assert_near(number(axis, "kp_kv_over_j_1_s2"), 14_412.0, 0.01, "Kp Kv / J");
+    assert_near(number(axis, "kv_plus_b_over_j_1_s"), 92.1, 0.01, "(Kv + B) / J");
+    assert_near(number(axis, "fc_over_j_mm_s2"), 214.5, 0.03, "Fc / J");
+    let (inertia, _, source) = axis.inertia();
+    let m_per_rad = 0.01 / std::f64::consts::TAU;
+    assert_near(inertia / (m_per_rad * m_per_rad), 95.11, 0.01, "M");
+    assert_eq!(source, NumberSource::TorqueColumn);
+    assert!(axis.values.get(LawTerm::LoopGain) > 15_000.0, "without the torque the drive seems to know the speed");
+}

@@ -1,0 +1,245 @@
+//! A program that shows how the axes of a machine behave: what to cut, in the air, while a log is recorded.
+//!
+//! ```text
+//! each axis alone     standstill; creeping there and back; reversals at several speeds; short strokes at the full acceleration
+//! two axes together   circles from large to small at v = sqrt(a r), so that w = sqrt(a / r) grows past the position loop; a diagonal
+//! ```
+//!
+//! Creeping shows friction and its asymmetry, where inertia counts for nothing; strokes and small circles show the loops and the
+//! inertia, where friction counts for little; standstills show noise and offset. All moves are relative to where the machine stands,
+//! and stay within half of the travel on each side of it.
+
+use std::fmt::Write;
+
+use feedwright_sim::{AXIS_NAMES, Machine, to_four_digits};
+use miette::Diagnostic;
+use thiserror::Error;
+
+/// What the program may do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExciteOptions {
+    /// Travel of each axis, mm: half of it on each side of where the machine stands.
+    pub travel_mm: f64,
+}
+
+impl Default for ExciteOptions {
+    fn default() -> Self {
+        Self { travel_mm: TRAVEL_MM }
+    }
+}
+
+/// A program, and what it does.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ExciteProgram {
+    /// The text.
+    pub text: String,
+    /// About how long it takes, s.
+    pub takes_s: f64,
+    /// Highest programmed feed, mm/s.
+    pub max_feed_mm_s: f64,
+}
+
+/// Why there is no program.
+#[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
+pub enum ExciteError {
+    /// The travel is out of range.
+    #[error("a travel of {travel_mm} mm is asked for; {MIN_TRAVEL_MM} to {MAX_TRAVEL_MM} mm are possible")]
+    #[diagnostic(help("free travel of 20 mm about where the machine stands is enough"))]
+    Travel {
+        /// What was asked for, mm.
+        travel_mm: f64,
+    },
+}
+
+/// Travel where nothing else is said, mm: machines of any size have it, and rapid axes come to a tenth of their speed in it.
+const TRAVEL_MM: f64 = 20.0;
+/// Least travel, mm: circles are a quarter of it at the most.
+const MIN_TRAVEL_MM: f64 = 2.0;
+/// Most travel, mm.
+const MAX_TRAVEL_MM: f64 = 1000.0;
+/// Part of the highest feed that is used: a control slows down at its limit, and what it then does is no longer what is programmed.
+const FEED_PART: f64 = 0.8;
+/// Speeds of creeping, mm/s, and how far each way, mm: below and above the speed at which friction has its least.
+const CREEPS: [(f64, f64); 3] = [(0.2, 0.08), (1.0, 0.5), (4.0, 2.0)];
+/// Speeds of reversals, parts of the fastest.
+const SPEEDS: [f64; 4] = [0.1, 0.3, 0.6, 1.0];
+/// Short strokes: length each way, mm, and how often.
+const STROKES: [(f64, u32); 4] = [(1.0, 1), (0.4, 2), (0.15, 3), (0.05, 4)];
+/// Radii of circles, mm, and turns of each; larger ones first.
+const CIRCLES: [(f64, u32); 7] = [(5.0, 1), (2.0, 1), (0.8, 2), (0.3, 3), (0.12, 4), (0.05, 5), (0.02, 6)];
+/// Part of the travel that a circle reaches over at the most.
+const CIRCLE_PART: f64 = 0.5;
+/// Standstill between the parts, s.
+const STANDSTILL_S: f64 = 0.3;
+
+/// The program for a machine: as many axes as it has.
+///
+/// # Errors
+/// A travel out of range.
+pub fn excitation_program(machine: &Machine, options: ExciteOptions) -> Result<ExciteProgram, ExciteError> {
+    let travel_mm = options.travel_mm;
+    if !(MIN_TRAVEL_MM..=MAX_TRAVEL_MM).contains(&travel_mm) {
+        return Err(ExciteError::Travel { travel_mm });
+    }
+    let limits = &machine.limits;
+    let mut moves = MoveWriter {
+        text: String::new(),
+        takes_s: 0.0,
+        max_feed_mm_s: 0.0,
+        accel_mm_s2: limits.tangential_accel_mm_s2,
+        normal_accel_mm_s2: limits.normal_accel_mm_s2,
+    };
+    let speeds: Vec<f64> = (0..machine.axis_count()).map(|axis| fastest_mm_s(machine, axis)).collect();
+    for (axis, &fastest_mm_s) in speeds.iter().enumerate() {
+        moves.axis_alone(axis, fastest_mm_s, travel_mm);
+    }
+    let slower_mm_s = speeds[..2].iter().copied().fold(f64::INFINITY, f64::min);
+    moves.two_together(slower_mm_s, travel_mm);
+    let MoveWriter { text: body, takes_s, max_feed_mm_s, .. } = moves;
+    let head = head(machine, travel_mm, takes_s, max_feed_mm_s);
+    let text = format!("{head}G21 G17 G40 G49 G80 G91 G91.1 G94 G61\n{body}G90\nM2\n");
+    Ok(ExciteProgram { text, takes_s, max_feed_mm_s })
+}
+
+/// The highest speed that is programmed for an axis, mm/s.
+fn fastest_mm_s(machine: &Machine, axis: usize) -> f64 {
+    let own_mm_s = machine.axes.get(axis).and_then(|axis| axis.max_velocity_mm_s).unwrap_or(f64::INFINITY);
+    FEED_PART * machine.limits.max_feed_mm_s.min(own_mm_s)
+}
+
+/// What to do before, while and after it runs, as comments.
+fn head(machine: &Machine, travel_mm: f64, takes_s: f64, max_feed_mm_s: f64) -> String {
+    let names = &AXIS_NAMES[..machine.axis_count()];
+    let half_mm = to_four_digits(0.5 * travel_mm);
+    let (takes_s, feed) = (takes_s.round(), to_four_digits(max_feed_mm_s));
+    let servo_s = machine.period.servo_s;
+    let columns: Vec<String> = names.iter().map(|name| format!("{name}.cmd {name}.act")).collect();
+    let mut lines = vec![
+        format!("Moves that show how the axes of {} behave; written by feedwright excite.", machine.name),
+        format!("About {takes_s} s, at most {feed} mm/s, within {half_mm} mm on each side of where the machine stands."),
+        String::new(),
+        "Check first".to_owned(),
+        "- spindle off, no tool that can touch anything, no workpiece".to_owned(),
+        format!("- {half_mm} mm of free travel in both directions of {}", names.join(", ")),
+        "- feed override at 100 %, emergency stop in reach; a first run at 10 % shows where it goes".to_owned(),
+        "- the machine is warm, and its brakes are released".to_owned(),
+        String::new(),
+        "Record with LinuxCNC, in a second terminal; where a pin is on a signal already, that signal takes the place of its net".to_owned(),
+        format!("  halcmd loadrt sampler depth=16000 cfg={}", "ff".repeat(names.len())),
+        "  halcmd addf sampler.0 servo-thread".to_owned(),
+    ];
+    for (joint, name) in names.iter().enumerate() {
+        for (kind, pin, offset) in [("cmd", "motor-pos-cmd", 0), ("act", "motor-pos-fb", 1)] {
+            let number = 2 * joint + offset;
+            lines.push(format!("  halcmd net feedwright-{name}-{kind} joint.{joint}.{pin} => sampler.0.pin.{number}"));
+        }
+    }
+    lines.push(format!(
+        "  (echo '# sample_time_s = {servo_s}'; echo '# n {}'; halsampler -t) > log.txt",
+        columns.join(" ")
+    ));
+    lines.push("then run this program, end halsampler with Ctrl-C, and".to_owned());
+    lines.push("  feedwright identify log.txt --out mine.toml --report ident.html".to_owned());
+    lines.push(String::new());
+    lines.iter().map(|line| format!("; {line}").trim_end().to_owned() + "\n").collect()
+}
+
+/// Writes moves, and adds up how long they take.
+struct MoveWriter {
+    text: String,
+    takes_s: f64,
+    max_feed_mm_s: f64,
+    accel_mm_s2: f64,
+    normal_accel_mm_s2: f64,
+}
+
+impl MoveWriter {
+    /// Writing to a string cannot fail.
+    fn line(&mut self, line: std::fmt::Arguments<'_>) {
+        let _ = writeln!(self.text, "{line}");
+    }
+
+    fn rest(&mut self) {
+        self.line(format_args!("G4 P{STANDSTILL_S}"));
+        self.takes_s += STANDSTILL_S;
+    }
+
+    /// A straight move of so many mm at a feed.
+    fn straight(&mut self, words: std::fmt::Arguments<'_>, length_mm: f64, feed_mm_s: f64) {
+        self.line(format_args!("G1 {words} F{}", minutes(feed_mm_s)));
+        self.max_feed_mm_s = self.max_feed_mm_s.max(feed_mm_s);
+        let accel = self.accel_mm_s2;
+        let reaches = feed_mm_s * feed_mm_s / accel <= length_mm;
+        self.takes_s +=
+            if reaches { length_mm / feed_mm_s + feed_mm_s / accel } else { 2.0 * (length_mm / accel).sqrt() };
+    }
+
+    /// To one side, to the other, and back.
+    fn there_and_back(&mut self, axis: usize, length_mm: f64, feed_mm_s: f64) {
+        let letter = AXIS_NAMES[axis].to_uppercase();
+        let length_mm = rounded(length_mm);
+        for part in [1.0, -2.0, 1.0] {
+            let way_mm = part * length_mm;
+            self.straight(format_args!("{letter}{way_mm}"), way_mm.abs(), feed_mm_s);
+        }
+    }
+
+    fn axis_alone(&mut self, axis: usize, fastest_mm_s: f64, travel_mm: f64) {
+        self.line(format_args!("; {} alone", AXIS_NAMES[axis]));
+        self.rest();
+        let half_mm = 0.5 * travel_mm;
+        for (creep_mm_s, way_mm) in CREEPS {
+            self.there_and_back(axis, way_mm.min(half_mm), creep_mm_s.min(fastest_mm_s));
+        }
+        self.rest();
+        // What can be reached within the travel: half of it to speed up, half to slow down.
+        let reached_mm_s = fastest_mm_s.min((self.accel_mm_s2 * travel_mm).sqrt());
+        for part in SPEEDS {
+            let feed_mm_s = part * reached_mm_s;
+            // Ways of a quarter of a second at that speed, and what it takes to come to it.
+            let way_mm = 0.5 * (0.25 * feed_mm_s + feed_mm_s * feed_mm_s / self.accel_mm_s2);
+            self.there_and_back(axis, way_mm.clamp(0.5, half_mm), feed_mm_s);
+        }
+        self.rest();
+        for (way_mm, times) in STROKES {
+            for _ in 0..times {
+                self.there_and_back(axis, 0.5 * way_mm, fastest_mm_s);
+            }
+        }
+        self.rest();
+    }
+
+    fn two_together(&mut self, fastest_mm_s: f64, travel_mm: f64) {
+        self.line(format_args!("; x and y together"));
+        for (number, (radius_mm, turns)) in CIRCLES.into_iter().enumerate() {
+            let radius_mm = radius_mm.min(0.5 * CIRCLE_PART * travel_mm);
+            let feed_mm_s = fastest_mm_s.min((self.normal_accel_mm_s2 * radius_mm).sqrt());
+            // Both senses, so that friction meets each quadrant from both sides.
+            let code = if number % 2 == 0 { "G2" } else { "G3" };
+            for _ in 0..turns {
+                self.line(format_args!("{code} X0 Y0 I-{} J0 F{}", rounded(radius_mm), minutes(feed_mm_s)));
+                self.takes_s += std::f64::consts::TAU * radius_mm / feed_mm_s;
+            }
+            self.max_feed_mm_s = self.max_feed_mm_s.max(feed_mm_s);
+            self.takes_s += feed_mm_s / self.accel_mm_s2;
+        }
+        self.rest();
+        let way_mm = rounded(0.25 * travel_mm);
+        let feed_mm_s = fastest_mm_s.min((self.accel_mm_s2 * way_mm).sqrt());
+        for [x, y] in [[1.0, 1.0], [-2.0, -2.0], [1.0, 1.0], [1.0, -1.0], [-2.0, 2.0], [1.0, -1.0]] {
+            let length_mm = way_mm * f64::hypot(x, y);
+            self.straight(format_args!("X{} Y{}", x * way_mm, y * way_mm), length_mm, feed_mm_s);
+        }
+        self.rest();
+    }
+}
+
+/// To the digits that controls read.
+fn rounded(length_mm: f64) -> f64 {
+    (length_mm * 1e4).round() / 1e4
+}
+
+/// A feed in mm/min, rounded down: it is not to exceed what is allowed.
+fn minutes(feed_mm_s: f64) -> f64 {
+    (feed_mm_s * 600.0).floor().max(1.0) / 10.0
+}

@@ -1,0 +1,248 @@
+//! Least squares of what a free run leaves of the measured positions, by steps of Gauss and Newton with Levenberg's and Marquardt's damping.
+
+use feedwright_control::TransmissionParameters;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+use super::free_run::FreeRun;
+use super::{AxisEstimate, AxisParameters, DriveSettings, NotIdentified, PARAMETERS, RIGID_PARAMETERS};
+
+/// Knots that the speed at the start is taken over: the mean of five differences has a fifth of the noise of one.
+pub(super) const START_KNOTS: usize = 5;
+/// Speed loop beside the position loop, before anything is known: Kv / J four times Kp, as loops are usually set.
+const LOOPS_APART: f64 = 4.0;
+/// Coulomb friction before anything is known, a part of the torque limit; the first steps find it from anywhere.
+const FRICTION_SHARE: f64 = 0.01;
+/// Presliding before anything is known, and the least that is told from none, mm of travel: a fiftieth of the usual 10 um.
+const PRESLIDING_MM: [f64; 2] = [0.005, 0.0002];
+/// Scales of a screw: share of the table, damping ratio, and backlash, mm of travel; the resonance is its own.
+const SCREW_SCALES: [f64; 3] = [0.5, 0.05, 0.005];
+/// Differences to both sides that a derivative is taken over, parts of the scales. A free run that sticks and slips is not smooth: over
+/// differences of a thousandth the derivatives on workshop are mostly that, and 30 steps do not suffice where these need four to six.
+const DIFFERENCES: [f64; PARAMETERS] = [0.05, 0.5, 0.1, 0.1, 0.1, 0.05, 0.02, 0.2, 0.1];
+/// The inertia is no smaller than this part of what it was a step before: below zero there is no law.
+const LEAST_INERTIA_STEP: f64 = 0.3;
+/// Bounds of the table's share, of the damping ratio, and of the resonance: 1/s, and turns in a servo period beyond which it is not sampled.
+const SHARES: [f64; 2] = [0.05, 0.95];
+const DAMPING_RATIOS: [f64; 2] = [0.0, 0.7];
+const LEAST_RESONANCE_RAD_S: f64 = 30.0;
+const MOST_RESONANCE_RAD: f64 = 2.0;
+/// Part of the squares below which a step gains nothing: on workshop V itself is irregular by that much, and parameters move by less than
+/// their standard errors.
+const DONE: f64 = 2e-3;
+/// Steps at the most; three to ten are usual.
+const MAX_STEPS: u32 = 30;
+/// Damping of Levenberg and Marquardt: at the start, after a step that helped and after one that did not; given up at the last.
+const DAMPING: f64 = 1e-3;
+const DAMPING_AFTER: [f64; 2] = [0.1, 10.0];
+const DAMPING_MOST: f64 = 1e6;
+
+/// Commands and measured positions of an axis, mm.
+#[derive(Clone)]
+pub(super) struct Stretch {
+    pub(super) commands_mm: Vec<f64>,
+    pub(super) measured_mm: Vec<f64>,
+}
+
+/// What is fitted.
+pub(super) struct OutputErrorFit<'a> {
+    pub(super) settings: &'a DriveSettings,
+    pub(super) stretches: Vec<Stretch>,
+    /// Knots at the beginning of a stretch that are left out.
+    pub(super) settled: usize,
+}
+
+/// The sum of squares, and a step's equations, in parameters over their scales.
+struct Linearised {
+    gradient: DVector<f64>,
+    curvature: DMatrix<f64>,
+    /// Sum of the squares of the gradient's parts by stretch.
+    scatter: DMatrix<f64>,
+}
+
+/// Where a search is.
+pub(super) struct FitState {
+    pub(super) at: AxisParameters,
+    scales: [f64; PARAMETERS],
+    /// How many of the parameters are searched, from the first on.
+    free: usize,
+    left: Vec<Vec<f64>>,
+    here: Linearised,
+    damping: f64,
+    steps: u32,
+    done: bool,
+}
+
+impl FitState {
+    /// Sum of the squares of what is left, mm^2.
+    pub(super) fn squares_mm2(&self) -> f64 {
+        squares(&self.left)
+    }
+
+    /// The same, stretch by stretch.
+    pub(super) fn by_stretch_mm2(&self) -> impl Iterator<Item = f64> + '_ {
+        self.left.iter().map(|stretch| stretch.iter().map(|left| left * left).sum())
+    }
+}
+
+impl OutputErrorFit<'_> {
+    /// Of an axis with a rigid screw.
+    pub(super) fn rigid(&self) -> Result<AxisEstimate, NotIdentified> {
+        let [inertia, _, coulomb, _, presliding, ..] = self.scales(TransmissionParameters::RIGID);
+        let start = AxisParameters {
+            inertia_kg_m2: inertia,
+            coulomb_friction_nm: coulomb,
+            presliding_rad: presliding,
+            ..AxisParameters::default()
+        };
+        let mut state = self.start(start, RIGID_PARAMETERS);
+        self.steps(&mut state, MAX_STEPS)?;
+        self.estimate(&state)
+    }
+
+    /// The same over each so-manieth stretch.
+    pub(super) fn every(&self, nth: usize) -> Self {
+        let stretches = self.stretches.iter().step_by(nth).cloned().collect();
+        Self { settings: self.settings, stretches, settled: self.settled }
+    }
+
+    /// Begins a search of the first so many parameters.
+    pub(super) fn start(&self, at: AxisParameters, free: usize) -> FitState {
+        let scales = self.scales(at.transmission);
+        let left = self.left_mm(&at);
+        let here = self.linearised(&at, &scales, free, &left);
+        FitState { at, scales, free, left, here, damping: DAMPING, steps: 0, done: false }
+    }
+
+    /// At most so many steps more.
+    pub(super) fn steps(&self, state: &mut FitState, most: u32) -> Result<(), NotIdentified> {
+        for _ in 0..most {
+            if state.done || state.damping >= DAMPING_MOST {
+                break;
+            }
+            state.steps += 1;
+            let mut damped = state.here.curvature.clone();
+            (0..state.free).for_each(|i| damped[(i, i)] *= 1.0 + state.damping);
+            let step = damped.cholesky().ok_or(NotIdentified::NotExcited)?.solve(&state.here.gradient);
+            let next = self.stepped(state, &step);
+            let next_left = self.left_mm(&next);
+            let gained = 1.0 - squares(&next_left) / squares(&state.left);
+            // What is not a number is no gain.
+            if gained >= 0.0 {
+                (state.at, state.left, state.damping) = (next, next_left, state.damping * DAMPING_AFTER[0]);
+                state.here = self.linearised(&state.at, &state.scales, state.free, &state.left);
+            } else {
+                state.damping *= DAMPING_AFTER[1];
+            }
+            state.done = gained.abs() < DONE;
+        }
+        Ok(())
+    }
+
+    /// Sizes of the parameters before anything is known; those of all but the inertia and the presliding begin at zero.
+    fn scales(&self, screw: TransmissionParameters) -> [f64; PARAMETERS] {
+        let DriveSettings { rad_per_mm, kp_1_s, kv_nm_s_per_rad, torque_limit_nm, .. } = *self.settings;
+        let friction_nm = FRICTION_SHARE * torque_limit_nm;
+        let inertia = kv_nm_s_per_rad / (LOOPS_APART * kp_1_s);
+        let [share, damping_ratio, backlash_mm] = SCREW_SCALES;
+        [
+            inertia,
+            0.01 * kv_nm_s_per_rad,
+            friction_nm,
+            friction_nm,
+            PRESLIDING_MM[0] * rad_per_mm,
+            share,
+            screw.resonance_rad_s,
+            damping_ratio,
+            backlash_mm * rad_per_mm,
+        ]
+    }
+
+    /// What the free run of these parameters leaves of each measured position, mm, by stretch.
+    fn left_mm(&self, at: &AxisParameters) -> Vec<Vec<f64>> {
+        let run = FreeRun::new(self.settings, at);
+        let left = |stretch: &Stretch| {
+            let Stretch { commands_mm, measured_mm } = stretch;
+            let moved_mm = measured_mm[START_KNOTS] - measured_mm[0];
+            let start_mm_s = moved_mm / (START_KNOTS as f64 * self.settings.periods.servo_s);
+            let simulated_mm = run.measured_mm(commands_mm, measured_mm[0], start_mm_s);
+            let pairs = measured_mm.iter().zip(&simulated_mm).skip(self.settled);
+            pairs.map(|(measured, simulated)| measured - simulated).collect()
+        };
+        self.stretches.par_iter().map(left).collect()
+    }
+
+    fn linearised(
+        &self,
+        at: &AxisParameters,
+        scales: &[f64; PARAMETERS],
+        free: usize,
+        left: &[Vec<f64>],
+    ) -> Linearised {
+        let moved_by = |i: usize, by: f64| {
+            let mut values = at.array();
+            values[i] += by * DIFFERENCES[i] * scales[i];
+            self.left_mm(&AxisParameters::of(values))
+        };
+        let moved: Vec<[Vec<Vec<f64>>; 2]> = (0..free).map(|i| [moved_by(i, -1.0), moved_by(i, 1.0)]).collect();
+        let mut curvature = DMatrix::zeros(free, free);
+        let (mut scatter, mut gradient) = (DMatrix::zeros(free, free), DVector::zeros(free));
+        let mut slopes = DVector::zeros(free);
+        for (stretch, left) in left.iter().enumerate() {
+            let mut of_stretch = DVector::zeros(free);
+            for (k, left) in left.iter().enumerate() {
+                for (i, [below, above]) in moved.iter().enumerate() {
+                    slopes[i] = (below[stretch][k] - above[stretch][k]) / (2.0 * DIFFERENCES[i]);
+                }
+                of_stretch.axpy(*left, &slopes, 1.0);
+                curvature.ger(1.0, &slopes, &slopes, 1.0);
+            }
+            scatter.ger(1.0, &of_stretch, &of_stretch, 1.0);
+            gradient += of_stretch;
+        }
+        Linearised { gradient, curvature, scatter }
+    }
+
+    /// The parameters after a step, where there is a law.
+    fn stepped(&self, state: &FitState, step: &DVector<f64>) -> AxisParameters {
+        let mut values = state.at.array();
+        for (i, step) in step.iter().enumerate() {
+            values[i] += step * state.scales[i];
+        }
+        let mut next = AxisParameters::of(values);
+        next.inertia_kg_m2 = next.inertia_kg_m2.max(LEAST_INERTIA_STEP * state.at.inertia_kg_m2);
+        next.viscous_friction_nm_s = next.viscous_friction_nm_s.max(0.0);
+        next.coulomb_friction_nm = next.coulomb_friction_nm.max(0.0);
+        next.presliding_rad = next.presliding_rad.max(PRESLIDING_MM[1] * self.settings.rad_per_mm);
+        if state.free > RIGID_PARAMETERS {
+            let screw = &mut next.transmission;
+            let most_rad_s = MOST_RESONANCE_RAD / self.settings.periods.servo_s;
+            screw.table_share = screw.table_share.clamp(SHARES[0], SHARES[1]);
+            screw.resonance_rad_s = screw.resonance_rad_s.max(LEAST_RESONANCE_RAD_S).min(most_rad_s);
+            screw.damping_ratio = screw.damping_ratio.clamp(DAMPING_RATIOS[0], DAMPING_RATIOS[1]);
+            screw.backlash_rad = screw.backlash_rad.max(0.0);
+        }
+        next
+    }
+
+    /// What a search has found.
+    pub(super) fn estimate(&self, state: &FitState) -> Result<AxisEstimate, NotIdentified> {
+        let inverse = state.here.curvature.clone().cholesky().ok_or(NotIdentified::NotExcited)?.inverse();
+        let n = self.stretches.len() as f64;
+        let covariance = &inverse * &state.here.scatter * &inverse * (n / (n - 1.0));
+        let standard = |i: usize| covariance[(i, i)].max(0.0).sqrt() * state.scales[i];
+        let standard = std::array::from_fn(|i| if i < state.free { standard(i) } else { 0.0 });
+        let knots: usize = state.left.iter().map(Vec::len).sum();
+        let left_um = (state.squares_mm2() / knots as f64).sqrt() * 1e3;
+        let mut at = state.at;
+        if at.presliding_rad <= PRESLIDING_MM[1] * self.settings.rad_per_mm {
+            at.presliding_rad = 0.0;
+        }
+        let standard_errors = AxisParameters::of(standard);
+        Ok(AxisEstimate { parameters: at, standard_errors, left_um, steps: state.steps })
+    }
+}
+
+fn squares(left: &[Vec<f64>]) -> f64 {
+    left.iter().flatten().map(|left| left * left).sum()
+}

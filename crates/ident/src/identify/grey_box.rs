@@ -1,0 +1,165 @@
+//! Grey box: the law of each axis of a real machine, from commanded and actual positions that it recorded.
+//!
+//! Nothing is known of the drive. What is fitted is the law of [`feedwright_control::axis`], divided by the inertia, by output error over
+//! free runs: the model gets the commands and nothing else. Terms are admitted one by one, by samples that were not fitted; how far it
+//! misses is told by samples that neither saw, beside linear models and the guess that the error stays.
+//!
+//! | File | What |
+//! |---|---|
+//! | `grey_box/axis_record.rs` | what was recorded of an axis |
+//! | `grey_box/sample_split.rs` | which samples are fitted, and which are kept to judge by |
+//! | `grey_box/terms.rs` | the numbers that positions determine |
+//! | `grey_box/axis_run.rs` | free runs |
+//! | `grey_box/output_error.rs` | least squares over free runs |
+//! | `grey_box/admission.rs` | which terms there are |
+//! | `grey_box/standard_errors.rs` | intervals where what is left is coloured |
+//! | `grey_box/torque_column.rs` | what a torque column tells beside |
+//! | `grey_box/linear_arx.rs`, `grey_box/start_filter.rs`, `grey_box/free_run_scores.rs` | how far predictions miss |
+//! | `grey_box/residual_noise.rs` | what free runs leave, as a load |
+//! | `grey_box/gain_changes.rs` | what other gains would bring |
+//! | `grey_box/found_axis.rs`, `grey_box/verdict.rs` | what was found, and what to say of it |
+
+pub(crate) mod axis_record;
+pub(crate) mod sample_split;
+pub(crate) mod terms;
+pub(crate) mod axis_facts;
+mod axis_run;
+mod output_error;
+mod standard_errors;
+mod admission;
+pub(crate) mod torque_column;
+pub(crate) mod linear_arx;
+mod start_filter;
+pub(crate) mod free_run_scores;
+pub(crate) mod residual_noise;
+pub(crate) mod gain_changes;
+pub(crate) mod found_axis;
+mod law_fit;
+pub(crate) mod contour_scores;
+pub(crate) mod verdict;
+
+use std::ops::Range;
+
+use thiserror::Error;
+
+use axis_facts::AxisFacts;
+use axis_record::AxisRecord;
+use contour_scores::ContourScores;
+use found_axis::FoundAxis;
+use sample_split::SampleSplit;
+
+/// What an identification is told beside the record.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct GreyBoxOptions {
+    /// Times that are fitted, and times that are scored, s of the record; blocks of motion that take turns where there are none.
+    pub times_s: Option<[Range<f64>; 2]>,
+    /// What is known of each axis, in the order of the records; of one that is not there nothing is.
+    pub facts: Vec<AxisFacts>,
+}
+
+/// What was found of a machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundMachine {
+    /// Its axes, in the order of the records.
+    pub axes: Vec<FoundAxis>,
+    /// Which samples were fitted and scored.
+    pub split: SampleSplit,
+    /// The contour error, where two axes move.
+    pub contour: Option<ContourScores>,
+    /// Time between two samples, s.
+    pub sample_s: f64,
+}
+
+/// Why nothing was found.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum NotFound {
+    /// No axis.
+    #[error("the log has no axis with a commanded and an actual position")]
+    NoAxis,
+    /// Too little is left to fit or to judge by.
+    #[error(
+        "{part} has {found} samples, and {LEAST_SAMPLES} are needed\n  hint: the log goes from {from_s:.3} to {to_s:.3} s; give times within, or record for longer"
+    )]
+    TooFew {
+        /// `--fit` or `--score`.
+        part: &'static str,
+        /// Samples that there are.
+        found: usize,
+        /// Beginning of the record, s.
+        from_s: f64,
+        /// Its end, s.
+        to_s: f64,
+    },
+    /// An axis does not move where it is fitted.
+    #[error(
+        "axis {axis} does not move in what is to be fitted\n  hint: record both directions at several speeds, or give other times with --fit"
+    )]
+    AtRest {
+        /// Its name.
+        axis: String,
+    },
+    /// Ended from outside.
+    #[error("interrupted")]
+    Ended,
+    /// No law fits.
+    #[error(
+        "no law of a servo axis fits axis {axis}: the best leaves {left_um:.1} um RMS of a following error of {following_um:.1} um\n  hint: check with --columns that command and actual position belong to this axis"
+    )]
+    NoLaw {
+        /// Its name.
+        axis: String,
+        /// RMS that is left, um.
+        left_um: f64,
+        /// RMS of the following error, um.
+        following_um: f64,
+    },
+}
+
+/// Samples that a fit or a score needs.
+const LEAST_SAMPLES: usize = 100;
+
+/// Mechanics periods in a servo period of the machine that is made of a record.
+pub const SERVO_MECHANICS: u32 = axis_run::MECHANICS_PER_SERVO;
+
+/// Servo period of that machine, s.
+pub fn servo_period_s(sample_s: f64) -> f64 {
+    axis_run::periods(sample_s).0.servo_s
+}
+
+/// A torque column, in the unit of the file.
+pub(crate) type TorqueValues<'a> = Option<&'a [f64]>;
+
+/// Identifies axes that were recorded together. `tell` is told which part of the work is done, 0 to 1, and
+/// answers whether to go on.
+///
+/// # Errors
+/// A record that does not tell the law of an axis, or an end from outside.
+pub fn identify_machine(
+    records: &[AxisRecord<'_>],
+    torques: &[TorqueValues<'_>],
+    time_s: &[f64],
+    options: &GreyBoxOptions,
+    mut tell: impl FnMut(f64) -> bool,
+) -> Result<FoundMachine, NotFound> {
+    let first = records.first().ok_or(NotFound::NoAxis)?;
+    let split = match &options.times_s {
+        Some([fit, score]) => SampleSplit::by_times(records, time_s, fit.clone(), score.clone()),
+        None => SampleSplit::by_motion(records),
+    };
+    let ends = [time_s.first(), time_s.last()].map(|time_s| time_s.copied().unwrap_or(0.0));
+    for (part, counts) in [("--fit", &split.fit), ("--score", &split.score)] {
+        let found = counts.iter().filter(|counts| **counts).count();
+        if found < LEAST_SAMPLES {
+            return Err(NotFound::TooFew { part, found, from_s: ends[0], to_s: ends[1] });
+        }
+    }
+    let mut axes = vec![];
+    for (i, record) in records.iter().enumerate() {
+        let facts = options.facts.get(i).copied().unwrap_or_default();
+        let torque = torques.get(i).copied().flatten();
+        let done = |part: f64| (i as f64 + part) / records.len() as f64;
+        axes.push(law_fit::find(record, torque, &split, facts, &mut |part| tell(done(part)))?);
+    }
+    let contour = ContourScores::of(records, &axes, &split.score);
+    Ok(FoundMachine { axes, split, contour, sample_s: first.sample_s })
+}

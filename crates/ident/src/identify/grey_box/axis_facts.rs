@@ -1,0 +1,42 @@
+//! What is known of an axis beside its record.
+
+use feedwright_sim::Axis;
+
+use super::terms::TermValues;
+
+/// What is known of the machine beside the record.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct AxisFacts {
+    /// Inertia at the motor shaft, kg m2, or mass of a linear axis, kg.
+    pub inertia: Option<f64>,
+    /// Viscous friction, N m s/rad at the shaft, or N s/m of a linear axis.
+    pub viscous: Option<f64>,
+    /// Travel for a turn of the motor, mm; none is a linear axis.
+    pub lead_mm_per_rev: Option<f64>,
+    /// Torque, N m at the shaft, or force, N of a linear axis, for a unit of the torque column.
+    pub torque_gain: Option<f64>,
+    /// Time over which the drive takes the speed from positions, s, of a drive that closes its loops once a servo period and records
+    /// itself.
+    pub speed_window_s: Option<f64>,
+    /// By how much the record has the actual position later than the command, s: zero where both were taken at the same moment. What else is
+    /// late is then the drive.
+    pub record_delay_s: Option<f64>,
+    /// Its law as an earlier log told it: what this one does not tell stays.
+    pub before: Option<TermValues>,
+}
+
+impl AxisFacts {
+    /// What nobody said is that of an axis of a machine file.
+    #[must_use]
+    pub fn or_of(self, axis: &Axis) -> Self {
+        let is_same_unit = self.lead_mm_per_rev.is_some() || (self.inertia.is_none() && self.viscous.is_none());
+        let kept = |given: Option<f64>, axis: f64| given.or_else(|| is_same_unit.then_some(axis));
+        Self {
+            inertia: kept(self.inertia, axis.inertia_kg_m2),
+            viscous: kept(self.viscous, axis.viscous_friction_nm_s),
+            lead_mm_per_rev: kept(self.lead_mm_per_rev, axis.lead_mm_per_rev),
+            before: Some(TermValues::of_axis(axis)),
+            ..self
+        }
+    }
+}

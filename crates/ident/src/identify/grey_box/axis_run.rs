@@ -1,0 +1,293 @@
+//! Free runs of an axis: what its law makes of the commands alone, from a state.
+//!
+//! The law is that of [`feedwright_control::axis`], with the numbers of [`super::terms`]. A sample of the record is a whole number of
+//! servo periods, a servo period [`MECHANICS_PER_SERVO`] mechanics periods. Delays and the window of the speed are fractions of these, by
+//! linear interpolation, so that they can be fitted.
+
+use feedwright_control::{
+    AxisLaw, AxisState, DriveLaw, DriveReference, DriveState, FrictionLaw, Periods, TransmissionLaw,
+    TransmissionParameters,
+};
+use feedwright_sim::Transmission;
+
+use super::terms::{LawTerm, TermValues};
+
+/// Mechanics periods in a servo period: as tnv40's.
+pub(super) const MECHANICS_PER_SERVO: u32 = 10;
+/// Longest servo period that a machine is taken to have, s: a record with fewer samples is one of several servo periods a sample.
+const LONGEST_SERVO_S: f64 = 0.0041;
+
+/// Periods of the loops of a machine whose record has such samples.
+pub(super) fn periods(sample_s: f64) -> (Periods, usize) {
+    // A sample time that is not a number or far too long is the reader's to refuse.
+    let servo_per_sample = (sample_s / LONGEST_SERVO_S).ceil().clamp(1.0, 1000.0);
+    let servo_s = sample_s / servo_per_sample;
+    let mechanics_s = servo_s / f64::from(MECHANICS_PER_SERVO);
+    (Periods { servo_s, mechanics_s, mechanics_per_servo: MECHANICS_PER_SERVO }, servo_per_sample as usize)
+}
+
+/// Commands of an even stretch of a record, mm.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Commands<'a> {
+    mm: &'a [f64],
+}
+
+impl<'a> Commands<'a> {
+    pub(super) fn new(mm: &'a [f64]) -> Self {
+        Self { mm }
+    }
+
+    /// At a time, samples since its beginning; beyond an end, that of the end.
+    #[inline]
+    fn at_mm(&self, samples: f64) -> f64 {
+        let last = self.mm.len() - 1;
+        let before = samples.floor();
+        if before < 0.0 {
+            return self.mm[0];
+        }
+        let index = before as usize;
+        if index >= last {
+            return self.mm[last];
+        }
+        let part = samples - before;
+        self.mm[index] + part * (self.mm[index + 1] - self.mm[index])
+    }
+}
+
+/// The last values of something, one a period.
+#[derive(Debug, Clone)]
+struct Recent<T> {
+    values: Vec<T>,
+    newest: usize,
+}
+
+impl<T: Copy> Recent<T> {
+    /// With room for so many before the newest.
+    fn new(before: usize, value: impl Fn(usize) -> T) -> Self {
+        let length = (before + 1).next_power_of_two();
+        let values = (0..length).map(|age| value((length - age) % length)).collect();
+        Self { values, newest: 0 }
+    }
+
+    #[inline]
+    fn push(&mut self, value: T) {
+        self.newest = (self.newest + 1) & (self.values.len() - 1);
+        self.values[self.newest] = value;
+    }
+
+    /// The one that came so many before the newest.
+    #[inline]
+    fn before(&self, age: usize) -> T {
+        let length = self.values.len();
+        self.values[(self.newest + length - age) & (length - 1)]
+    }
+}
+
+/// An axis, ready to run.
+#[derive(Debug, Clone)]
+pub(super) struct AxisRun {
+    values: TermValues,
+    law: AxisLaw,
+    drive: DriveLaw,
+    friction: FrictionLaw,
+    servo_per_sample: usize,
+    /// Samples by which the record is late.
+    late_samples: f64,
+    /// Delay within the loop, mechanics periods.
+    loop_late: f64,
+    /// Window of the speed, mechanics periods; none is the speed itself.
+    window: Option<f64>,
+    /// Motor and table, where the screw is not rigid.
+    screw: Option<TransmissionLaw>,
+    /// The speed is taken at the start of each servo period, and held.
+    holds: bool,
+}
+
+/// Where an axis is, and what its drive remembers.
+#[derive(Debug, Clone)]
+pub(super) struct RunState {
+    axis: AxisState,
+    drive: DriveState,
+    presliding: f64,
+    /// A load that an observer found, mm/s2.
+    load: f64,
+    /// Position and speed of the table, mm and mm/s, where it is a mass of its own.
+    table: [f64; 2],
+    /// Speed that the drive has taken, mm/s.
+    taken_mm_s: f64,
+    /// Positions at the starts of mechanics periods.
+    course: Recent<f64>,
+    /// References of servo periods.
+    sent: Recent<DriveReference>,
+}
+
+impl RunState {
+    /// Position, mm.
+    pub(super) fn position_mm(&self) -> f64 {
+        self.axis.angle_rad
+    }
+
+    /// Speed, mm/s.
+    pub(super) fn speed_mm_s(&self) -> f64 {
+        self.axis.speed_rad_s
+    }
+
+    /// Friction of the presliding spring, mm/s2.
+    pub(super) fn presliding_mm_s2(&self) -> f64 {
+        self.presliding
+    }
+
+    /// What an observer finds position, speed and load to be higher.
+    pub(super) fn correct(&mut self, [mm, mm_s, mm_s2]: [f64; 3]) {
+        self.axis.angle_rad += mm;
+        self.course.values.iter_mut().for_each(|position| *position += mm);
+        self.axis.speed_rad_s += mm_s;
+        self.table[0] += mm;
+        self.table[1] += mm_s;
+        self.load += mm_s2;
+    }
+}
+
+impl AxisRun {
+    pub(super) fn new(values: &TermValues, sample_s: f64) -> Self {
+        let (periods, servo_per_sample) = periods(sample_s);
+        let law = AxisLaw::new(values.parameters(periods.mechanics_s), periods);
+        let window = values.get(LawTerm::SpeedWindow) / periods.mechanics_s;
+        Self {
+            values: *values,
+            law,
+            drive: DriveLaw::new(&law, values.drive()),
+            friction: FrictionLaw::new(&law, values.friction()),
+            servo_per_sample,
+            late_samples: values.get(LawTerm::RecordDelay) / sample_s,
+            loop_late: values.get(LawTerm::LoopDelay) / periods.mechanics_s,
+            window: (window > 1.0).then_some(window),
+            screw: screw_law(values, periods.mechanics_s),
+            holds: values.get(LawTerm::SpeedHold) > 0.0,
+        }
+    }
+
+    /// Moving evenly at a sample: the integral carries the friction.
+    pub(super) fn state(&self, commands: &Commands<'_>, sample: usize, mm: f64, mm_s: f64) -> RunState {
+        let Periods { servo_s, mechanics_s, mechanics_per_servo } = self.law.periods;
+        let per_servo = mechanics_per_servo as usize;
+        let sign = if mm_s.abs() > self.law.parameters.coulomb_smoothing_rad_s { mm_s.signum() } else { 0.0 };
+        let sliding = sign * self.values.get(LawTerm::Coulomb) + sign.abs() * self.values.get(LawTerm::Offset);
+        let carried = sliding + self.values.get(LawTerm::Viscous) * mm_s;
+        let mut axis = AxisState { angle_rad: mm, speed_rad_s: mm_s, error_rad: 0.0 };
+        let mut drive = DriveState::AT_REST;
+        // What the commands before were, it remembers.
+        let mut reference = DriveReference::default();
+        for servo_periods in [3.0, 2.0, 1.0] {
+            let at = sample as f64 - servo_periods / self.servo_per_sample as f64;
+            let position_mm = mm - servo_periods * servo_s * mm_s;
+            reference =
+                self.drive.position_loop(&self.law, self.command_mm(commands, at), position_mm, &mut axis, &mut drive);
+        }
+        let integral = if self.values.get(LawTerm::Integral) > 0.0 { carried } else { 0.0 };
+        drive.correct(integral, carried);
+        let longest = self.window.unwrap_or(0.0).ceil() as usize + 1;
+        let sent = self.loop_late.ceil() as usize / per_servo + 2;
+        RunState {
+            axis,
+            drive,
+            presliding: sliding,
+            load: 0.0,
+            table: [mm - self.leads_mm(sign), mm_s],
+            taken_mm_s: mm_s,
+            course: Recent::new(longest, |age| mm - age as f64 * mechanics_s * mm_s),
+            sent: Recent::new(sent, |_| reference),
+        }
+    }
+
+    /// By how much the motor leads the table while it moves evenly: half the backlash, and what friction twists the screw by.
+    fn leads_mm(&self, sign: f64) -> f64 {
+        let twist_s = self.values.get(LawTerm::Resonance);
+        let share = self.values.get(LawTerm::TableShare).max(f64::MIN_POSITIVE);
+        let twisted = self.values.get(LawTerm::Coulomb) / share * twist_s * twist_s;
+        if self.screw.is_some() { sign * (0.5 * self.values.get(LawTerm::Backlash) + twisted) } else { 0.0 }
+    }
+
+    #[inline]
+    fn command_mm(&self, commands: &Commands<'_>, samples: f64) -> f64 {
+        commands.at_mm(samples - self.late_samples)
+    }
+
+    /// One sample of the record goes by.
+    #[inline]
+    pub(super) fn step(&self, commands: &Commands<'_>, sample: usize, state: &mut RunState) {
+        for servo in 0..self.servo_per_sample {
+            let at = sample as f64 + servo as f64 / self.servo_per_sample as f64;
+            let command_mm = self.command_mm(commands, at);
+            let position_mm = state.axis.angle_rad;
+            let reference =
+                self.drive.position_loop(&self.law, command_mm, position_mm, &mut state.axis, &mut state.drive);
+            state.sent.push(reference);
+            for substep in 0..self.law.periods.mechanics_per_servo {
+                self.advance(f64::from(substep), state);
+            }
+        }
+    }
+
+    /// The reference that has arrived within a servo period, between two of them where the delay ends within a mechanics period.
+    #[inline]
+    fn arrived(&self, substep: f64, state: &RunState) -> DriveReference {
+        if self.loop_late <= 0.0 {
+            return state.sent.before(0);
+        }
+        let per_servo = f64::from(self.law.periods.mechanics_per_servo);
+        let at = |late: f64| state.sent.before((((late - substep) / per_servo).ceil().max(0.0)) as usize);
+        let (whole, part) = (self.loop_late.floor(), self.loop_late.fract());
+        let (newer, older) = (at(whole), at(whole + 1.0));
+        DriveReference {
+            speed_rad_s: newer.speed_rad_s + part * (older.speed_rad_s - newer.speed_rad_s),
+            torque_nm: newer.torque_nm + part * (older.torque_nm - newer.torque_nm),
+        }
+    }
+
+    /// One mechanics period.
+    #[inline]
+    fn advance(&self, substep: f64, state: &mut RunState) {
+        let reference = self.arrived(substep, state);
+        let dt_s = self.law.periods.mechanics_s;
+        let taken_mm_s = match self.window {
+            Some(window) => {
+                state.course.push(state.axis.angle_rad);
+                let (whole, part) = (window.floor() as usize, window.fract());
+                let [newer, older] = [whole, whole + 1].map(|age| state.course.before(age));
+                (state.axis.angle_rad - newer - part * (older - newer)) / (window * dt_s)
+            }
+            None => state.axis.speed_rad_s,
+        };
+        if !self.holds || substep == 0.0 {
+            state.taken_mm_s = taken_mm_s;
+        }
+        let drive = self.drive.torque_nm(&self.law, reference, state.taken_mm_s, &mut state.drive);
+        match &self.screw {
+            None => {
+                let forces = drive - state.load;
+                state.axis.speed_rad_s =
+                    self.friction.speed_after_rad_s(forces, 1.0, state.axis.speed_rad_s, &mut state.presliding);
+            }
+            Some(screw) => {
+                let [table_mm, table_mm_s] = &mut state.table;
+                let through = screw.torque_nm(state.axis.angle_rad - *table_mm, state.axis.speed_rad_s - *table_mm_s);
+                state.axis.speed_rad_s += dt_s * screw.inverse_motor_inertia * (drive - through);
+                let (forces, inverse) = (through - state.load, screw.inverse_table_inertia);
+                *table_mm_s = self.friction.speed_after_rad_s(forces, inverse, *table_mm_s, &mut state.presliding);
+                *table_mm += dt_s * *table_mm_s;
+            }
+        }
+        state.axis.angle_rad += dt_s * state.axis.speed_rad_s;
+    }
+}
+
+/// The screw of an axis of inertia 1, whose motor turns by 1 for a mm.
+fn screw_law(values: &TermValues, mechanics_s: f64) -> Option<TransmissionLaw> {
+    let Transmission { table_share, resonance_hz, damping_ratio, backlash_um, .. } =
+        values.transmission(mechanics_s)?;
+    let resonance_rad_s = std::f64::consts::TAU * resonance_hz;
+    let screw =
+        TransmissionParameters { table_share, resonance_rad_s, damping_ratio, backlash_rad: 1e-3 * backlash_um };
+    TransmissionLaw::new(1.0, mechanics_s, screw)
+}

@@ -1,0 +1,297 @@
+//! The numbers of an axis that commanded and actual positions determine, and the law that they make.
+//!
+//! Everything is divided by the inertia, so that a torque is an acceleration of the table, mm/s2. Positions determine
+//!
+//! ```text
+//! Kp Kv / J    (Kv + B) / J    Fc / J    offset / J
+//! ```
+//!
+//! and not J, nor Kp, Kv and B apart, unless the speed loop has an integral part or a limit. What cannot be told is taken from
+//! outside: B / J is a number of its own here, zero where nobody knows it. Then Kv / J = (Kv + B) / J - B / J, and Kp is the first over
+//! that.
+//!
+//! | Number | In the law of `control/src/axis.rs` |
+//! |---|---|
+//! | lead | c(t - d): the record's actual positions are this much later than its commands |
+//! | loop delay | between position loop and drive |
+//! | feedforward | parts of speed and acceleration |
+//! | integral | 1 / Ti |
+//! | filter | time constant of the torque filter |
+//! | window | (y(t) - y(t - T)) / T takes the place of the speed |
+//! | hold | the drive takes the speed once a servo period, and not all the time |
+//! | limits | of the reference speed, of the torque over the inertia |
+//! | resonance, table share, backlash | motor and table as two masses, see `core/src/plant/transmission.rs` |
+//! | presliding, Stribeck | see `control/src/axis/friction.rs` |
+
+use feedwright_control::{DriveParameters, FrictionParameters, Parameters};
+use feedwright_sim::{Axis, Transmission};
+
+/// A number of an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum LawTerm {
+    /// Kp Kv / J, 1/s2.
+    LoopGain,
+    /// (Kv + B) / J, 1/s.
+    Damping,
+    /// Fc / J, mm/s2.
+    Coulomb,
+    /// What friction is higher in the positive direction and lower in the negative, over J, mm/s2.
+    Offset,
+    /// By how much the record has the actual position later than the command, s.
+    RecordDelay,
+    /// Delay within the loop, s.
+    LoopDelay,
+    /// Part of the command's speed that is fed forward.
+    VelocityFeedforward,
+    /// Part of the command's acceleration that is fed forward.
+    AccelerationFeedforward,
+    /// 1 / Ti of the speed loop, 1/s.
+    Integral,
+    /// Time constant of the torque filter, s.
+    FilterTime,
+    /// Time over which the drive takes the speed from positions, s.
+    SpeedWindow,
+    /// Highest reference speed, mm/s; zero is none.
+    SpeedLimit,
+    /// Highest torque over the inertia, mm/s2; zero is none.
+    AccelerationLimit,
+    /// Deflection before friction slides, mm.
+    Presliding,
+    /// What friction has at rest above Fc, part of it.
+    Stribeck,
+    /// Speed over which that goes, mm/s.
+    StribeckSpeed,
+    /// B / J, 1/s.
+    Viscous,
+    /// Time constant of the resonance of the table on the screw, motor held: 1 / (2 pi f), s.
+    Resonance,
+    /// Part of the inertia that is on the table's side of the screw.
+    TableShare,
+    /// Backlash, mm.
+    Backlash,
+    /// Servo period at which the drive takes the speed, s; zero is a drive that sees it all the time. Given, never fitted.
+    SpeedHold,
+}
+
+/// How many there are.
+pub(crate) const TERMS: usize = 21;
+
+/// Range of a number, and by how much it is changed for a difference.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct TermRow {
+    /// As a report calls it.
+    pub(super) name: &'static str,
+    /// Unit.
+    pub(super) unit: &'static str,
+    pub(super) range: [f64; 2],
+    /// Change for a difference: a part of the value, and at least so much.
+    pub(super) change: [f64; 2],
+}
+
+impl LawTerm {
+    /// All, in the order of `TermValues`.
+    pub const ALL: [Self; TERMS] = [
+        Self::LoopGain,
+        Self::Damping,
+        Self::Coulomb,
+        Self::Offset,
+        Self::RecordDelay,
+        Self::LoopDelay,
+        Self::VelocityFeedforward,
+        Self::AccelerationFeedforward,
+        Self::Integral,
+        Self::FilterTime,
+        Self::SpeedWindow,
+        Self::SpeedLimit,
+        Self::AccelerationLimit,
+        Self::Presliding,
+        Self::Stribeck,
+        Self::StribeckSpeed,
+        Self::Viscous,
+        Self::Resonance,
+        Self::TableShare,
+        Self::Backlash,
+        Self::SpeedHold,
+    ];
+
+    /// Key in files.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::LoopGain => "kp_kv_over_j_1_s2",
+            Self::Damping => "kv_plus_b_over_j_1_s",
+            Self::Coulomb => "fc_over_j_mm_s2",
+            Self::Offset => "offset_over_j_mm_s2",
+            Self::RecordDelay => "record_delay_s",
+            Self::LoopDelay => "loop_delay_s",
+            Self::VelocityFeedforward => "velocity_feedforward",
+            Self::AccelerationFeedforward => "acceleration_feedforward",
+            Self::Integral => "inverse_integral_time_1_s",
+            Self::FilterTime => "torque_filter_s",
+            Self::SpeedWindow => "speed_window_s",
+            Self::SpeedLimit => "speed_limit_mm_s",
+            Self::AccelerationLimit => "torque_limit_over_j_mm_s2",
+            Self::Presliding => "presliding_mm",
+            Self::Stribeck => "stribeck_part",
+            Self::StribeckSpeed => "stribeck_mm_s",
+            Self::Viscous => "b_over_j_1_s",
+            Self::Resonance => "resonance_time_s",
+            Self::TableShare => "table_share",
+            Self::Backlash => "backlash_mm",
+            Self::SpeedHold => "speed_hold_s",
+        }
+    }
+
+    pub(super) fn row(self) -> TermRow {
+        let row = |name, unit, range, change| TermRow { name, unit, range, change };
+        match self {
+            Self::LoopGain => row("Kp Kv / J", "1/s2", [0.1, 1e9], [0.01, 0.0]),
+            Self::Damping => row("(Kv + B) / J", "1/s", [0.1, 1e5], [0.01, 0.0]),
+            Self::Coulomb => row("Fc / J", "mm/s2", [0.0, 1e6], [0.02, 1.0]),
+            Self::Offset => row("offset / J", "mm/s2", [-1e6, 1e6], [0.0, 1.0]),
+            Self::RecordDelay => row("delay of the record", "s", [-0.05, 0.1], [0.0, 5e-5]),
+            Self::LoopDelay => row("delay within the loop", "s", [0.0, 0.02], [0.0, 1e-4]),
+            Self::VelocityFeedforward => row("velocity feedforward", "", [0.0, 2.0], [0.0, 0.01]),
+            Self::AccelerationFeedforward => row("acceleration feedforward", "", [0.0, 2.0], [0.0, 0.02]),
+            Self::Integral => row("1 / Ti", "1/s", [0.0, 2000.0], [0.02, 0.2]),
+            Self::FilterTime => row("torque filter", "s", [0.0, 0.05], [0.0, 1e-4]),
+            Self::SpeedWindow => row("window of the speed", "s", [0.0, 0.02], [0.0, 1e-4]),
+            Self::SpeedLimit => row("speed limit", "mm/s", [0.0, 1e4], [0.005, 0.0]),
+            Self::AccelerationLimit => row("torque limit / J", "mm/s2", [0.0, 1e7], [0.01, 0.0]),
+            Self::Presliding => row("presliding", "mm", [0.0, 1.0], [0.05, 2e-4]),
+            Self::Stribeck => row("Stribeck", "", [0.0, 2.0], [0.0, 0.05]),
+            Self::StribeckSpeed => row("Stribeck speed", "mm/s", [0.2, 1e3], [0.1, 0.02]),
+            Self::Viscous => row("B / J", "1/s", [0.0, 1e4], [0.02, 0.2]),
+            Self::Resonance => row("time constant of the resonance", "s", [0.0, 0.008], [0.03, 1e-5]),
+            Self::TableShare => row("part of J at the table", "", [0.05, 0.95], [0.0, 0.03]),
+            Self::Backlash => row("backlash", "mm", [0.0, 0.2], [0.05, 2e-4]),
+            Self::SpeedHold => row("the speed is taken every", "s", [0.0, 0.1], [0.0, 1e-4]),
+        }
+    }
+}
+
+/// A value for each number of an axis; zero is without it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TermValues(pub [f64; TERMS]);
+
+impl TermValues {
+    /// Those of an axis of a machine file. Of its torque limit nothing is said: the log comes to it or does not.
+    pub fn of_axis(axis: &Axis) -> Self {
+        let j = axis.inertia_kg_m2;
+        let per_mm = j * axis.rad_per_mm();
+        let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
+        let plain = Self([0.0; TERMS])
+            .with(LawTerm::LoopGain, axis.kp_1_s * axis.kv_nm_s_per_rad / j)
+            .with(LawTerm::Damping, (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / j)
+            .with(LawTerm::Viscous, axis.viscous_friction_nm_s / j)
+            .with(LawTerm::Coulomb, axis.coulomb_friction_nm / per_mm)
+            .with(LawTerm::Offset, axis.coulomb_asymmetry_nm / per_mm)
+            .with(LawTerm::LoopDelay, axis.drive_delay_s)
+            .with(LawTerm::VelocityFeedforward, axis.velocity_feedforward)
+            .with(LawTerm::AccelerationFeedforward, axis.acceleration_feedforward)
+            .with(LawTerm::Integral, inverse(axis.speed_integral_s))
+            .with(LawTerm::FilterTime, inverse(axis.torque_filter_hz) / std::f64::consts::TAU)
+            .with(LawTerm::SpeedLimit, axis.speed_limit_mm_s)
+            .with(LawTerm::Presliding, 1e-3 * axis.presliding_um)
+            .with(LawTerm::Stribeck, axis.stribeck_nm * inverse(axis.coulomb_friction_nm))
+            .with(LawTerm::StribeckSpeed, axis.stribeck_mm_s);
+        axis.transmission.map_or(plain, |screw| {
+            plain
+                .with(LawTerm::Resonance, 1.0 / (std::f64::consts::TAU * screw.resonance_hz))
+                .with(LawTerm::TableShare, screw.table_share)
+                .with(LawTerm::Backlash, 1e-3 * screw.backlash_um)
+        })
+    }
+
+    /// Of one.
+    pub fn get(&self, term: LawTerm) -> f64 {
+        self.0[term as usize]
+    }
+
+    /// With another value of one, held within its range.
+    #[must_use]
+    pub fn with(mut self, term: LawTerm, value: f64) -> Self {
+        let [least, most] = term.row().range;
+        self.0[term as usize] = value.clamp(least, most);
+        self
+    }
+
+    /// Kv / J, 1/s.
+    pub fn speed_gain_1_s(&self) -> f64 {
+        let damping = self.get(LawTerm::Damping);
+        // Below, the speed loop would drive.
+        (damping - self.get(LawTerm::Viscous)).max(1e-3 * damping)
+    }
+
+    /// Kp, 1/s.
+    pub fn kp_1_s(&self) -> f64 {
+        self.get(LawTerm::LoopGain) / self.speed_gain_1_s()
+    }
+
+    /// As the law of an axis takes them, for an inertia of 1 kg m2 and 1 rad/mm: a torque of 1 N m is 1 mm/s2.
+    pub(super) fn parameters(&self, mechanics_s: f64) -> Parameters {
+        let limit = self.get(LawTerm::AccelerationLimit);
+        Parameters {
+            rad_per_mm: 1.0,
+            kp_1_s: self.kp_1_s(),
+            kd: 0.0,
+            kv_nm_s_per_rad: self.speed_gain_1_s(),
+            torque_limit_nm: if limit > 0.0 { limit } else { f64::MAX },
+            inertia_kg_m2: 1.0,
+            viscous_friction_nm_s: self.get(LawTerm::Viscous),
+            coulomb_friction_nm: self.get(LawTerm::Coulomb),
+            coulomb_smoothing_rad_s: self.smoothing_mm_s(mechanics_s),
+        }
+    }
+
+    /// Speed over which friction without presliding turns its sign, mm/s: as tnv40's, and so much that a step of the integration does
+    /// not go past it.
+    pub(super) fn smoothing_mm_s(&self, mechanics_s: f64) -> f64 {
+        let most = self.get(LawTerm::Coulomb) * (1.0 + self.get(LawTerm::Stribeck));
+        (2.0 * most * mechanics_s).max(SMOOTHING_MM_S)
+    }
+
+    /// The same for a machine file, mm/s.
+    pub fn smoothing_at_mm_s(&self, mechanics_s: f64) -> f64 {
+        self.smoothing_mm_s(mechanics_s)
+    }
+
+    pub(super) fn drive(&self) -> DriveParameters {
+        let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
+        DriveParameters {
+            speed_integral_s: inverse(self.get(LawTerm::Integral)),
+            velocity_feedforward: self.get(LawTerm::VelocityFeedforward),
+            acceleration_feedforward: self.get(LawTerm::AccelerationFeedforward),
+            torque_filter_hz: inverse(self.get(LawTerm::FilterTime)) / std::f64::consts::TAU,
+            speed_limit_rad_s: self.get(LawTerm::SpeedLimit),
+        }
+    }
+
+    /// Motor and table as two masses; none where the screw is rigid. In um where a machine file has um.
+    pub fn transmission(&self, mechanics_s: f64) -> Option<Transmission> {
+        let time_s = self.get(LawTerm::Resonance);
+        (time_s > STIFFEST * mechanics_s).then(|| Transmission {
+            table_share: self.get(LawTerm::TableShare),
+            resonance_hz: 1.0 / (std::f64::consts::TAU * time_s),
+            damping_ratio: ASSUMED_DAMPING_RATIO,
+            backlash_um: 1e3 * self.get(LawTerm::Backlash),
+            scale_on_table: false,
+        })
+    }
+
+    pub(super) fn friction(&self) -> FrictionParameters {
+        FrictionParameters {
+            coulomb_asymmetry_nm: self.get(LawTerm::Offset),
+            stribeck_nm: self.get(LawTerm::Stribeck) * self.get(LawTerm::Coulomb),
+            stribeck_rad_s: self.get(LawTerm::StribeckSpeed),
+            presliding_rad: self.get(LawTerm::Presliding),
+        }
+    }
+}
+
+/// Damping of a screw that nobody has measured: of the size that machine tools have.
+pub(crate) const ASSUMED_DAMPING_RATIO: f64 = 0.02;
+/// Mechanics periods that the time constant of a resonance has at least: a stiffer screw is rigid.
+const STIFFEST: f64 = 2.0;
+
+/// As tnv40's: a millisecond of a reversal.
+const SMOOTHING_MM_S: f64 = 0.08;

@@ -1,0 +1,214 @@
+//! Logs of real machines: commanded and actual positions, recorded at an even clock, from whatever file there is.
+//!
+//! ```text
+//! file -> format by content -> table of columns -> which column is what -> clock, units -> screening -> Log
+//! ```
+//!
+//! Nothing is taken for granted: what was guessed is a [`LogFinding`], and a log of which a servo model cannot be made is refused
+//! with its reason. Formats are recognised by content, never by the name of the file.
+
+pub(crate) mod error;
+pub(crate) mod units;
+pub(crate) mod finding;
+pub(crate) mod columns;
+pub(crate) mod table;
+mod names;
+mod pairs;
+mod roles;
+mod decimal;
+mod dialect;
+mod text;
+mod matlab;
+mod sinumerik;
+mod clock;
+mod axes;
+mod screen;
+mod joined;
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::ops::Range;
+use std::path::Path;
+
+use columns::Columns;
+pub use error::LogError;
+use feedwright_gcode::input;
+use feedwright_sim::{StageSteps, Watch};
+pub use finding::LogFinding;
+use table::LogTable;
+
+/// Commanded and actual positions of a machine's axes, recorded at an even clock.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Log {
+    /// What kind of file it was.
+    pub format: LogFormat,
+    /// Time between two samples, s.
+    pub sample_time_s: f64,
+    /// Even stretches: where the record has a gap, a new one begins. Indices are into the vectors of the axes.
+    pub stretches: Vec<Range<usize>>,
+    /// Time of every sample, s, as recorded; zero at the first where the file counts samples only.
+    pub time_s: Vec<f64>,
+    /// Axes in the order of the file, at most [`MAX_AXES`]: those that have command and actual position, and move.
+    pub axes: Vec<LogAxis>,
+    /// Axes that have both and whose command stands still.
+    pub still: Vec<LogAxis>,
+    /// What was guessed or noticed, in the order in which it is to be told.
+    pub findings: Vec<LogFinding>,
+}
+
+/// An axis of a log.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LogAxis {
+    /// x, y, z, or the file's own name.
+    pub name: String,
+    /// Commanded position, mm.
+    pub command_mm: Vec<f64>,
+    /// Measured position, mm.
+    pub actual_mm: Vec<f64>,
+    /// Torque, force or current, in the unit of the file.
+    pub torque: Option<Vec<f64>>,
+    /// That unit.
+    pub torque_unit: TorqueUnit,
+    /// Step of the measured position, mm; 0 where none shows.
+    pub step_mm: f64,
+    /// What it is good for.
+    pub verdict: Fitness,
+}
+
+/// Most axes of a log.
+pub const MAX_AXES: usize = 9;
+
+/// Kinds of files that are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LogFormat {
+    /// LinuxCNC's `halsampler`: columns of numbers, behind a sample number with `-t`.
+    Halsampler,
+    /// What LinuxCNC's `halscope` saves.
+    Halscope,
+    /// Variables of MATLAB or Octave, saved as version 5 to 7.
+    Matlab,
+    /// Recorder of Sinumerik Edge: JSON.
+    SinumerikEdge,
+    /// Rows of numbers.
+    TextTable,
+}
+
+impl std::fmt::Display for LogFormat {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Halsampler => "halsampler",
+            Self::Halscope => "halscope",
+            Self::Matlab => "MATLAB v5",
+            Self::SinumerikEdge => "Sinumerik Edge",
+            Self::TextTable => "text table",
+        })
+    }
+}
+
+/// Unit of a torque column.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TorqueUnit {
+    /// N m.
+    NewtonMetre,
+    /// N.
+    Newton,
+    /// V.
+    Volt,
+    /// A.
+    Ampere,
+    /// Percent of what the drive is rated for.
+    Percent,
+    /// The file does not say.
+    Unknown,
+}
+
+impl std::fmt::Display for TorqueUnit {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::NewtonMetre => "N m",
+            Self::Newton => "N",
+            Self::Volt => "V",
+            Self::Ampere => "A",
+            Self::Percent => "%",
+            Self::Unknown => "of no known unit",
+        })
+    }
+}
+
+/// What the record of an axis is good for.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Fitness {
+    /// A servo model of it can be used for control.
+    ForControl,
+    /// It shows how large errors are, but is too coarse for a model that corrects them.
+    NotForControl {
+        /// Why, with numbers.
+        reason: String,
+    },
+}
+
+impl Log {
+    /// Reads the log in a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is none of the formats, columns that are missing or hold no numbers, and records of which no
+    /// model of a servo can be made.
+    pub fn read(path: &Path, columns: &Columns) -> Result<Self, LogError> {
+        Self::read_watched(path, columns, &())
+    }
+
+    /// The same, with somebody who is told of the progress and can end it.
+    ///
+    /// # Errors
+    /// As [`Log::read`]; and where it is ended.
+    pub fn read_watched(path: &Path, columns: &Columns, watch: &dyn Watch) -> Result<Self, LogError> {
+        let table = read_table(path, columns, watch)?;
+        of_table(path, table, columns)
+    }
+}
+
+/// Bytes from which the format of a file is recognised.
+const HEAD_BYTES: usize = 64 << 10;
+
+/// The columns of a file, whatever its format.
+fn read_table(path: &Path, columns: &Columns, watch: &dyn Watch) -> Result<LogTable, LogError> {
+    let unreadable = |source| LogError::unreadable(path, source);
+    let mut file = open(path).map_err(unreadable)?;
+    if file.metadata().map_err(unreadable)?.is_dir() {
+        return Err(unreadable(std::io::Error::from(std::io::ErrorKind::IsADirectory)));
+    }
+    let mut head = Vec::with_capacity(HEAD_BYTES);
+    file.by_ref().take(HEAD_BYTES as u64).read_to_end(&mut head).map_err(unreadable)?;
+    file.seek(SeekFrom::Start(0)).map_err(unreadable)?;
+    let mut steps = StageSteps::begin(watch, &format!("reading {}", path.display()));
+    if matlab::is_matlab(&head) {
+        return matlab::read(path, &mut file, &mut steps, watch);
+    }
+    if sinumerik::is_json(&head) {
+        return sinumerik::read(path, file, columns, &mut steps, watch);
+    }
+    text::read(path, &mut file, &head, columns, &mut steps, watch)
+}
+
+/// The file; what comes from the standard input goes to one without a name, as formats are read from several places.
+fn open(path: &Path) -> std::io::Result<File> {
+    if !input::is_standard_input(path) {
+        return File::open(path);
+    }
+    let mut file = tempfile::tempfile()?;
+    std::io::copy(&mut input::standard_input()?, &mut file)?;
+    file.seek(SeekFrom::Start(0))?;
+    Ok(file)
+}
+
+/// The log in a table.
+fn of_table(path: &Path, mut table: LogTable, columns: &Columns) -> Result<Log, LogError> {
+    let mut findings: Vec<LogFinding> =
+        table.cut_off_line.map(|line| LogFinding::CutOff { line }).into_iter().collect();
+    let roles = roles::find(path, &table, columns, &mut findings)?;
+    let clock = clock::of_table(path, &mut table, &roles, columns, &mut findings)?;
+    let axes = axes::of_table(path, &mut table, &roles, columns, &clock, &mut findings)?;
+    let [axes, still] = screen::fit(path, axes, &clock, &mut findings)?;
+    let clock::Clock { sample_time_s, stretches, time_s, .. } = clock;
+    Ok(Log { format: table.format, sample_time_s, stretches, time_s, axes, still, findings })
+}

@@ -1,0 +1,160 @@
+//! What `--columns` says: which column is what, and what the file does not say of its units.
+//!
+//! ```text
+//! t=0,x.cmd=1,x.act=3,x.torque=5          by number, from 0
+//! t=t,x.cmd=qg,x.act=qm,x.torque=vir      by name
+//! unit=mm,time=ms,period_s=0.001          units; time between samples where there is no column of it
+//! ```
+
+use std::str::FromStr;
+
+use feedwright_gcode::suggestion::nearest;
+use miette::Diagnostic;
+use thiserror::Error;
+
+use super::MAX_AXES;
+use super::units::{PositionUnit, TimeUnit};
+
+/// A column by number, from 0, or by name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ColumnChoice(pub String);
+
+/// The columns of one axis, as far as they are said.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct AxisChoice {
+    /// Name of the axis.
+    pub name: String,
+    /// Its command.
+    pub command: Option<ColumnChoice>,
+    /// Its actual position.
+    pub actual: Option<ColumnChoice>,
+    /// Its torque.
+    pub torque: Option<ColumnChoice>,
+}
+
+/// What is said of the columns of a log; whatever is not said is guessed.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Columns {
+    /// Column of the time.
+    pub time: Option<ColumnChoice>,
+    /// Axes; where there is one, the others of the file are left out.
+    pub axes: Vec<AxisChoice>,
+    /// Unit of the positions.
+    pub position_unit: Option<PositionUnit>,
+    /// Unit of the time.
+    pub time_unit: Option<TimeUnit>,
+    /// Time between samples, s.
+    pub sample_time_s: Option<f64>,
+}
+
+/// What is wrong with `--columns`.
+#[derive(Debug, Clone, PartialEq, Eq, Error, Diagnostic)]
+#[error("--columns: '{item}': {message}")]
+pub struct ColumnsError {
+    /// The part of it that is wrong.
+    pub item: String,
+    /// What is wrong.
+    pub message: String,
+    /// Remedy.
+    #[help]
+    pub hint: String,
+}
+
+/// How it is written.
+const EXAMPLE: &str = "such as t=0,x.cmd=1,x.act=3,x.torque=5; columns by number from 0, or by name";
+/// What may stand before `=`.
+const KEYS: [&str; 4] = ["t", "unit", "time", "period_s"];
+/// What may stand behind the name of an axis.
+const PARTS: [&str; 3] = ["cmd", "act", "torque"];
+
+impl FromStr for Columns {
+    type Err = ColumnsError;
+
+    fn from_str(text: &str) -> Result<Self, ColumnsError> {
+        let mut columns = Self::default();
+        for item in text.split(',').map(str::trim).filter(|item| !item.is_empty()) {
+            columns.add(item)?;
+        }
+        for axis in &columns.axes {
+            for (part, column) in [("cmd", &axis.command), ("act", &axis.actual)] {
+                if column.is_none() {
+                    let item = axis.name.clone();
+                    let message = format!("no {part} of this axis");
+                    return Err(ColumnsError { item, message, hint: format!("add {}.{part}=COLUMN", axis.name) });
+                }
+            }
+        }
+        Ok(columns)
+    }
+}
+
+impl Columns {
+    fn add(&mut self, item: &str) -> Result<(), ColumnsError> {
+        let fault = |message: String, hint: String| ColumnsError { item: item.to_owned(), message, hint };
+        let Some((key, value)) = item.split_once('=').map(|(key, value)| (key.trim(), value.trim())) else {
+            return Err(fault("no '='".to_owned(), EXAMPLE.to_owned()));
+        };
+        if value.is_empty() {
+            return Err(fault("nothing behind '='".to_owned(), EXAMPLE.to_owned()));
+        }
+        let column = || ColumnChoice(value.to_owned());
+        let twice = || fault(format!("{key} is said twice"), "say it once".to_owned());
+        match key {
+            "t" => set(&mut self.time, column()).ok_or_else(twice),
+            "unit" => {
+                let unit = PositionUnit::from_name(value).ok_or_else(|| {
+                    fault(format!("no unit of length is called '{value}'"), "mm, um, m or inch".to_owned())
+                })?;
+                set(&mut self.position_unit, unit).ok_or_else(twice)
+            }
+            "time" => {
+                let unit = TimeUnit::from_name(value).ok_or_else(|| {
+                    fault(format!("no unit of time is called '{value}'"), "s, ms, us, ns or samples".to_owned())
+                })?;
+                set(&mut self.time_unit, unit).ok_or_else(twice)
+            }
+            "period_s" => match value.parse::<f64>() {
+                Ok(period_s) if period_s.is_finite() && period_s > 0.0 => {
+                    set(&mut self.sample_time_s, period_s).ok_or_else(twice)
+                }
+                _ => Err(fault("a time above zero is needed, s".to_owned(), "such as period_s=0.001".to_owned())),
+            },
+            _ => self.add_axis(key, column()).map_err(|(message, hint)| fault(message, hint)),
+        }
+    }
+
+    fn add_axis(&mut self, key: &str, column: ColumnChoice) -> Result<(), (String, String)> {
+        let Some((name, part)) = key.rsplit_once('.').filter(|(name, _)| !name.is_empty()) else {
+            let hint = nearest(key, &KEYS).map(|near| format!("did you mean '{near}'?"));
+            return Err((format!("'{key}' is unknown"), hint.unwrap_or_else(|| EXAMPLE.to_owned())));
+        };
+        let at = self.axes.iter().position(|axis| axis.name == name).unwrap_or_else(|| {
+            self.axes.push(AxisChoice { name: name.to_owned(), ..AxisChoice::default() });
+            self.axes.len() - 1
+        });
+        if at >= MAX_AXES {
+            return Err((format!("more than {MAX_AXES} axes"), "read those that belong together".to_owned()));
+        }
+        let axis = &mut self.axes[at];
+        let field = match part {
+            "cmd" => &mut axis.command,
+            "act" => &mut axis.actual,
+            "torque" => &mut axis.torque,
+            _ => {
+                let hint = nearest(part, &PARTS).map(|near| format!("did you mean '{name}.{near}'?"));
+                let message = format!("an axis has no '{part}', but cmd, act and torque");
+                return Err((message, hint.unwrap_or_else(|| EXAMPLE.to_owned())));
+            }
+        };
+        set(field, column).ok_or_else(|| (format!("{key} is said twice"), "say it once".to_owned()))
+    }
+}
+
+/// Sets what is not set yet.
+fn set<T>(field: &mut Option<T>, value: T) -> Option<()> {
+    if field.is_some() {
+        return None;
+    }
+    *field = Some(value);
+    Some(())
+}

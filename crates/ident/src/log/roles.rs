@@ -1,0 +1,326 @@
+//! Which column is what: as `--columns` says, else by the names, else by the data.
+
+use std::path::Path;
+
+use feedwright_gcode::suggestion::nearest;
+
+use super::columns::{AxisChoice, ColumnChoice, Columns};
+use super::error::LogError;
+use super::finding::LogFinding;
+use super::names::{Meaning, Quantity, is_spindle, understand};
+use super::pairs;
+use super::table::LogTable;
+use super::{LogFormat, MAX_AXES, TorqueUnit};
+
+/// Which column is what.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(super) struct Roles {
+    pub(super) time: Option<TimeColumn>,
+    pub(super) axes: Vec<AxisRoles>,
+}
+
+/// The column of the time.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct TimeColumn {
+    pub(super) column: usize,
+    /// It counts samples.
+    pub(super) counts: bool,
+    /// Its unit, as the file has it.
+    pub(super) unit: String,
+}
+
+/// The columns of an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct AxisRoles {
+    pub(super) name: String,
+    pub(super) command: usize,
+    pub(super) actual: usize,
+    pub(super) torque: Option<usize>,
+    pub(super) torque_unit: TorqueUnit,
+    /// Measured speed, from which the time between samples can be told.
+    pub(super) velocity: Option<usize>,
+    /// Unit of the positions, as the file has it.
+    pub(super) unit: String,
+}
+
+impl AxisRoles {
+    fn columns(&self) -> impl Iterator<Item = usize> {
+        [Some(self.command), Some(self.actual), self.torque, self.velocity].into_iter().flatten()
+    }
+}
+
+/// Names of axes that have none.
+const NAMES: [&str; MAX_AXES] = ["x", "y", "z", "a", "b", "c", "u", "v", "w"];
+
+/// Which columns have to be kept to know the roles: all of them, where the data has to tell.
+pub(super) fn needed(table: &LogTable, columns: &Columns) -> Vec<bool> {
+    let meanings = meanings(table);
+    let axes = match chosen(table, columns) {
+        Ok(axes) if !axes.is_empty() => axes,
+        _ => named(table, &meanings, &mut Vec::new()),
+    };
+    let time = time(table, columns, &meanings);
+    let Ok(time) = time else { return vec![true; table.columns.len()] };
+    if axes.is_empty() {
+        return vec![true; table.columns.len()];
+    }
+    let wanted: Vec<usize> = axes.iter().flat_map(AxisRoles::columns).chain(time.map(|time| time.column)).collect();
+    (0..table.columns.len()).map(|column| wanted.contains(&column)).collect()
+}
+
+/// The roles of the columns of a table that is read.
+pub(super) fn find(
+    path: &Path,
+    table: &LogTable,
+    columns: &Columns,
+    findings: &mut Vec<LogFinding>,
+) -> Result<Roles, LogError> {
+    let fault = |message: String| LogError::columns(path, message, there_are(table));
+    let meanings = meanings(table);
+    let mut time = time(table, columns, &meanings).map_err(fault)?;
+    let mut axes = chosen(table, columns).map_err(fault)?;
+    let mut incomplete = Vec::new();
+    let mut by_data = false;
+    if axes.is_empty() {
+        axes = named(table, &meanings, &mut incomplete);
+    }
+    if axes.is_empty() {
+        by_data = true;
+        time = time.or_else(|| clock_like(table));
+        axes = by_likeness(table, time.as_ref());
+    }
+    if axes.is_empty() {
+        return Err(fault("no two columns are the command and the actual position of an axis".to_owned()));
+    }
+    axes.retain(|axis| {
+        let is_rotary = !by_data && columns.axes.is_empty() && is_rotary(axis);
+        if is_rotary {
+            incomplete.push(LogFinding::Rotary { axis: axis.name.clone() });
+        }
+        !is_rotary
+    });
+    if axes.is_empty() {
+        return Err(fault("all axes with command and actual position are rotary".to_owned()));
+    }
+    axes.truncate(MAX_AXES);
+    for axis in &axes {
+        findings.push(LogFinding::AxisColumns {
+            axis: axis.name.clone(),
+            command: table.label(axis.command),
+            actual: table.label(axis.actual),
+            torque: axis.torque.map(|column| table.label(column)),
+            torque_unit: axis.torque_unit,
+            by_data,
+        });
+    }
+    findings.append(&mut incomplete);
+    if by_data {
+        let used: Vec<usize> =
+            axes.iter().flat_map(AxisRoles::columns).chain(time.as_ref().map(|t| t.column)).collect();
+        let unused: Vec<String> =
+            (0..table.columns.len()).filter(|i| !used.contains(i)).map(|i| table.label(i)).collect();
+        if !unused.is_empty() {
+            findings.push(LogFinding::Unused { columns: unused });
+        }
+    }
+    Ok(Roles { time, axes })
+}
+
+/// Whether the name of an axis, or its unit, says that it turns.
+fn is_rotary(axis: &AxisRoles) -> bool {
+    let letter = axis.name.trim_end_matches(|c: char| c.is_ascii_digit());
+    ["a", "b", "c"].contains(&letter)
+        || ["deg", "degree", "degrees", "\u{b0}", "rad"].contains(&axis.unit.to_lowercase().as_str())
+}
+
+/// What columns there are, and how to say which is which.
+fn there_are(table: &LogTable) -> String {
+    const SHOWN: usize = 30;
+    let mut labels: Vec<String> = (0..table.columns.len().min(SHOWN)).map(|i| table.label(i)).collect();
+    if table.columns.len() > SHOWN {
+        labels.push("...".to_owned());
+    }
+    format!("the columns are {}; say which is which, such as --columns t=0,x.cmd=1,x.act=3", labels.join(", "))
+}
+
+fn meanings(table: &LogTable) -> Vec<Meaning> {
+    let of = |column: &super::table::LogColumn| {
+        let mut meaning = understand(&column.name);
+        if let Some(axis) = &column.axis {
+            meaning.axis.clone_from(axis);
+            if is_spindle(axis) {
+                meaning.quantity = Quantity::Other;
+            }
+        }
+        if !column.unit.is_empty() {
+            meaning.unit = column.unit.trim_matches(['[', ']', '(', ')', ' ']).to_owned();
+        }
+        meaning
+    };
+    table.columns.iter().map(of).collect()
+}
+
+/// The column that somebody names.
+fn resolve(table: &LogTable, choice: &ColumnChoice) -> Result<usize, String> {
+    let ColumnChoice(text) = choice;
+    if let Some(at) = table.columns.iter().position(|column| column.name == *text) {
+        return Ok(at);
+    }
+    let count = table.columns.len();
+    match text.parse::<usize>() {
+        Ok(number) if number < count => Ok(number),
+        Ok(number) => Err(format!("there is no column {number}: the last of {count} is {}", count.saturating_sub(1))),
+        Err(_) => {
+            let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+            let near = nearest(text, &names).map_or_else(String::new, |near| format!("; did you mean '{near}'?"));
+            Err(format!("no column is called '{text}'{near}"))
+        }
+    }
+}
+
+/// The axes that `--columns` says.
+fn chosen(table: &LogTable, columns: &Columns) -> Result<Vec<AxisRoles>, String> {
+    let meanings = meanings(table);
+    let axis = |choice: &AxisChoice| {
+        let column = |of: &Option<ColumnChoice>| of.as_ref().map(|choice| resolve(table, choice)).transpose();
+        let (Some(command), Some(actual)) = (column(&choice.command)?, column(&choice.actual)?) else {
+            return Err(format!("axis {} needs both cmd and act", choice.name));
+        };
+        let torque = column(&choice.torque)?;
+        let torque_unit = torque.map_or(TorqueUnit::Unknown, |at| torque_unit(table, &meanings, at));
+        let unit = unit_of(&meanings, command, actual);
+        Ok(AxisRoles { name: choice.name.clone(), command, actual, torque, torque_unit, velocity: None, unit })
+    };
+    columns.axes.iter().map(axis).collect()
+}
+
+fn unit_of(meanings: &[Meaning], command: usize, actual: usize) -> String {
+    let units = [command, actual].map(|at| meanings.get(at).map_or("", |meaning| meaning.unit.as_str()));
+    units.into_iter().find(|unit| !unit.is_empty()).unwrap_or("").to_owned()
+}
+
+fn torque_unit(table: &LogTable, meanings: &[Meaning], at: usize) -> TorqueUnit {
+    let unit = TorqueUnit::from_name(meanings.get(at).map_or("", |meaning| meaning.unit.as_str()));
+    let name = table.columns.get(at).map_or("", |column| column.name.as_str()).to_lowercase();
+    match unit {
+        // The signal of a drive amplifier is a voltage.
+        TorqueUnit::Unknown if name == "vir" => TorqueUnit::Volt,
+        unit => unit,
+    }
+}
+
+/// The column of the time: as said, or by its name.
+fn time(table: &LogTable, columns: &Columns, meanings: &[Meaning]) -> Result<Option<TimeColumn>, String> {
+    if let Some(choice) = &columns.time {
+        let column = resolve(table, choice)?;
+        let Meaning { quantity, unit, .. } = &meanings[column];
+        return Ok(Some(TimeColumn { column, counts: *quantity == Quantity::Counter, unit: unit.clone() }));
+    }
+    let best = |wanted: Quantity| {
+        let of_kind = meanings.iter().enumerate().filter(|(_, meaning)| meaning.quantity == wanted);
+        // The first of the best.
+        of_kind.rev().max_by_key(|(_, meaning)| meaning.fit)
+    };
+    let found =
+        best(Quantity::Time).map(|found| (found, false)).or_else(|| best(Quantity::Counter).map(|found| (found, true)));
+    let found = found.map(|((column, meaning), counts)| TimeColumn { column, counts, unit: meaning.unit.clone() });
+    // An index without a name stands first, before columns that have one.
+    let first_has_no_name =
+        table.columns.len() > 2 && table.columns[0].name.is_empty() && !table.columns[1].name.is_empty();
+    let index = first_has_no_name.then(|| TimeColumn { column: 0, counts: true, unit: String::new() });
+    Ok(found.or(index))
+}
+
+/// Axes by the names of their columns.
+fn named(table: &LogTable, meanings: &[Meaning], findings: &mut Vec<LogFinding>) -> Vec<AxisRoles> {
+    let mut names: Vec<&str> = Vec::new();
+    for meaning in meanings {
+        let is_of_axis = matches!(meaning.quantity, Quantity::Command | Quantity::Actual | Quantity::Position);
+        if is_of_axis && !names.contains(&meaning.axis.as_str()) {
+            names.push(&meaning.axis);
+        }
+    }
+    let mut axes = Vec::new();
+    for name in &names {
+        let best = |quantity: Quantity| {
+            let of_kind = meanings.iter().enumerate().filter(|(_, m)| m.quantity == quantity && m.axis == *name);
+            of_kind.rev().max_by_key(|(_, meaning)| meaning.fit).map(|(column, _)| column)
+        };
+        let (command, actual, position) = (best(Quantity::Command), best(Quantity::Actual), best(Quantity::Position));
+        let shown = if name.is_empty() { NAMES[0] } else { name };
+        let both = match (command, actual, position) {
+            (Some(command), Some(actual), _)
+            | (Some(command), None, Some(actual))
+            | (None, Some(actual), Some(command)) => Some((command, actual)),
+            (command, actual, _) => {
+                let lacks = if actual.is_none() && command.is_some() { "actual position" } else { "command" };
+                findings.push(LogFinding::Incomplete { axis: shown.to_owned(), lacks });
+                None
+            }
+        };
+        let Some((command, actual)) = both else { continue };
+        let torque = best(Quantity::Torque);
+        axes.push(AxisRoles {
+            name: shown.to_owned(),
+            command,
+            actual,
+            torque,
+            torque_unit: torque.map_or(TorqueUnit::Unknown, |at| torque_unit(table, meanings, at)),
+            velocity: best(Quantity::Velocity),
+            unit: unit_of(meanings, command, actual),
+        });
+    }
+    axes
+}
+
+/// The first column that grows evenly.
+fn clock_like(table: &LogTable) -> Option<TimeColumn> {
+    let column = table.columns.iter().position(|column| {
+        let rises = column.values.windows(2).filter(|pair| pair[1] > pair[0]).count();
+        let steps = column.values.len().saturating_sub(1);
+        // All but a few: a clock that runs backward is still a clock, and refused with its reason.
+        let rising = steps > 0 && rises as f64 > 0.99 * steps as f64;
+        rising && is_even(&column.values)
+    })?;
+    let values = &table.columns[column].values;
+    let counts = table.format == LogFormat::Halsampler
+        && values.windows(2).take(1000).all(|pair| (pair[1] - pair[0]).fract() == 0.0);
+    Some(TimeColumn { column, counts, unit: String::new() })
+}
+
+/// Whether most steps of a column are alike: within a half of the median.
+fn is_even(values: &[f64]) -> bool {
+    let mut steps: Vec<f64> = values.windows(2).take(20_000).map(|pair| pair[1] - pair[0]).collect();
+    let middle = steps.len() / 2;
+    steps.sort_by(f64::total_cmp);
+    let Some(&median) = steps.get(middle) else { return false };
+    let alike = steps.iter().filter(|&&step| (step - median).abs() <= 0.5 * median).count();
+    median > 0.0 && alike as f64 > 0.9 * steps.len() as f64
+}
+
+/// Axes by what the columns hold.
+fn by_likeness(table: &LogTable, time: Option<&TimeColumn>) -> Vec<AxisRoles> {
+    let is_time = |i: usize| time.is_some_and(|time| time.column == i);
+    let none: &[f64] = &[];
+    let columns: Vec<&[f64]> = table
+        .columns
+        .iter()
+        .enumerate()
+        .map(|(i, column)| if is_time(i) { none } else { &column.values[..] })
+        .collect();
+    let pairs = pairs::find(&columns);
+    let name = |number: usize| NAMES.get(number).map_or_else(|| format!("axis{number}"), |name| (*name).to_owned());
+    pairs
+        .iter()
+        .enumerate()
+        .map(|(number, pair)| AxisRoles {
+            name: name(number),
+            command: pair.command,
+            actual: pair.actual,
+            torque: None,
+            torque_unit: TorqueUnit::Unknown,
+            velocity: None,
+            unit: String::new(),
+        })
+        .collect()
+}

@@ -1,0 +1,80 @@
+//! The columns of a file, before anything is known of them.
+
+use super::LogFormat;
+
+/// Columns of numbers, whatever the file.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct LogTable {
+    /// What kind of file it was.
+    pub format: LogFormat,
+    /// The columns in the order of the file.
+    pub columns: Vec<LogColumn>,
+    /// Rows before which samples are known to be missing.
+    pub breaks: Vec<usize>,
+    /// Where rows stand.
+    pub lines: LineNumbers,
+    /// Time between rows, s, where the file says so.
+    pub sample_time_s: Option<f64>,
+    /// A last line that is cut off.
+    pub cut_off_line: Option<u64>,
+}
+
+/// A column.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct LogColumn {
+    /// Its name in the file; none where it has none.
+    pub name: String,
+    /// Its unit, as the file has it.
+    pub unit: String,
+    /// The axis that it belongs to, where the file says so.
+    pub axis: Option<String>,
+    /// A value a row; empty where nobody needs it.
+    pub values: Vec<f64>,
+    /// The first row whose value is no number, and what stands there.
+    pub not_a_number: Option<(usize, String)>,
+}
+
+impl LogTable {
+    /// What a column is called in messages: its name, or its number from 0.
+    pub(crate) fn label(&self, column: usize) -> String {
+        let name = self.columns.get(column).map_or("", |column| column.name.as_str());
+        if name.is_empty() { column.to_string() } else { format!("'{name}'") }
+    }
+
+    /// Rows.
+    pub(crate) fn rows(&self) -> usize {
+        self.columns.iter().map(|column| column.values.len()).max().unwrap_or(0)
+    }
+
+    /// Where a row stands, for messages.
+    pub(crate) fn place(&self, row: usize) -> String {
+        match self.lines.of(row) {
+            Some(line) => format!("line {line}"),
+            None => format!("sample {row}"),
+        }
+    }
+}
+
+/// Which line a row stands in.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct LineNumbers {
+    /// From this row on, the line is the row plus so many; in the order of rows.
+    shifts: Vec<(usize, u64)>,
+}
+
+impl LineNumbers {
+    /// The next row stands in this line, from 1.
+    pub(crate) fn note(&mut self, row: usize, line: u64) {
+        let shift = line.saturating_sub(row as u64);
+        if self.shifts.last().is_none_or(|&(_, last)| last != shift) {
+            self.shifts.push((row, shift));
+        }
+    }
+
+    /// The line of a row, from 1; none where the file has no lines.
+    pub(crate) fn of(&self, row: usize) -> Option<u64> {
+        let at = self.shifts.partition_point(|&(first, _)| first <= row);
+        let (_, shift) = self.shifts.get(at.checked_sub(1)?)?;
+        Some(row as u64 + shift)
+    }
+}

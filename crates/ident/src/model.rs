@@ -1,0 +1,348 @@
+//! Model files: a trained identifier with where it comes from, as a text that is checked value by value.
+//!
+//! Training writes one, [`feedwright::Setup`] takes one in place of a training, and [`Model::block`] makes the bytes of
+//! it that a component in a servo thread is given ([`feedwright_control::model`]). docs/model-file.md explains every key.
+//!
+//! The checksum is that of the content: of all keys as they are written, but for the date, the version that wrote them, and itself.
+//! It finds what was changed by hand or lost on the way; it is no signature.
+
+pub(crate) mod date;
+pub(crate) mod exact;
+pub(crate) mod keys;
+mod layout;
+
+use std::path::Path;
+
+use feedwright_control::{
+    AxisKnowledge, ContourIdentifier, IdentifiedAxes, Identifier, IdentifierKind, ModelBlock, Number, ServoIdentifier,
+    Spread, Trained, UNKNOWNS,
+};
+use feedwright_gcode::input;
+use feedwright_sim::toml_file::key::write;
+use feedwright_sim::toml_file::{self, FileError, read_text};
+use serde::Serialize;
+
+use crate::identify::recording::Recording;
+use crate::identify::{axes, contour, servo};
+
+/// The format that is read and written. It is raised whenever a file of before would be read otherwise.
+pub(crate) const FORMAT: u64 = 1;
+
+/// A model file, for messages.
+pub(crate) const FILE: toml_file::Kind = toml_file::Kind {
+    name: "model file",
+    is: "a model file is some pages of TOML text, as 'feedwright identify' writes it",
+    code: "model::file",
+    where_to_find: "'feedwright identify --out FILE.model.toml' writes one",
+};
+
+/// A trained identifier and where it comes from. Made by a training or read from a file, and whole either way.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct Model {
+    pub(crate) about: About,
+    pub(crate) period: ModelPeriods,
+    pub(crate) fit: Fit,
+    pub(crate) weights: Weights,
+}
+
+/// What it is and where it comes from.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct About {
+    /// Format of the file.
+    pub format: u64,
+    /// Version of feedwright that wrote it.
+    pub written_by: String,
+    /// Kind of the identifier, see [`name`].
+    pub kind: String,
+    /// Number of axes.
+    pub axes: u64,
+    /// What it was trained on, in words.
+    pub source: String,
+    /// When, as year-month-day.
+    pub date: String,
+    /// Hash of the recording that it was trained on.
+    pub training_data: String,
+    /// Checksum of the content.
+    pub checksum: String,
+}
+
+/// Periods that it was trained for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct ModelPeriods {
+    /// Servo period of the machine, s.
+    pub servo_s: f64,
+    /// Time between decisions of the controller, s.
+    pub feed_period_s: f64,
+}
+
+/// How well it fits.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Fit {
+    /// RMS of the prediction error of one knot, um per axis.
+    pub fit_um: f64,
+    /// Samples it was trained on.
+    pub samples: u64,
+}
+
+/// The numbers, row by row.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub(crate) struct Weights {
+    pub(crate) linear: Vec<f64>,
+    pub(crate) hidden: Vec<f64>,
+    pub(crate) output: Vec<f64>,
+    pub(crate) spread: Vec<f64>,
+    pub(crate) mechanics_s: f64,
+    /// Each of [`AxisKnowledge::NUMBERS`], axis by axis.
+    pub(crate) axes: Vec<Vec<f64>>,
+}
+
+impl Weights {
+    /// Those of a group of [`Identifier::weights`].
+    fn group(&mut self, name: &str) -> &mut Vec<f64> {
+        match name {
+            "linear" => &mut self.linear,
+            "hidden" => &mut self.hidden,
+            _ => &mut self.output,
+        }
+    }
+
+    fn of<const N: usize>(mut net: impl Identifier<N>, spread: &[f64]) -> Self {
+        let mut weights = Self { spread: spread.to_vec(), ..Self::default() };
+        net.weights(&mut |name, group| *weights.group(name) = group.to_vec());
+        weights
+    }
+
+    fn of_axes<const N: usize>(mut identified: IdentifiedAxes<N>) -> Self {
+        let of = |number: &Number| identified.axes.iter_mut().map(|axis| *(number.of)(axis)).collect();
+        let axes = AxisKnowledge::NUMBERS.iter().map(of).collect();
+        Self { mechanics_s: identified.mechanics_s, axes, ..Self::default() }
+    }
+
+    /// Takes what a number is, axis by axis.
+    fn set_of_axes(&mut self, index: usize, numbers: Vec<f64>) {
+        self.axes.resize(AxisKnowledge::NUMBERS.len(), Vec::new());
+        self.axes[index] = numbers;
+    }
+
+    /// Fills an identifier; none where the numbers are not as many as it has.
+    fn fill<const N: usize, I: Identifier<N>>(&self) -> Option<I> {
+        let (mut net, mut weights, mut fits) = (I::NULL, self.clone(), true);
+        net.weights(&mut |name, group| {
+            let own = weights.group(name);
+            fits &= own.len() == group.len();
+            group.iter_mut().zip(own).for_each(|(weight, own)| *weight = *own);
+        });
+        fits.then_some(net)
+    }
+}
+
+/// What a kind is called in files and messages.
+pub fn identifier_name(kind: IdentifierKind) -> &'static str {
+    match kind {
+        IdentifierKind::Contour => "contour",
+        IdentifierKind::Servo => "servo",
+        IdentifierKind::Axes => "axes",
+    }
+}
+
+/// An identifier of a kind, with its article.
+pub fn an_identifier(kind: IdentifierKind) -> &'static str {
+    match kind {
+        IdentifierKind::Contour => "a contour identifier",
+        IdentifierKind::Servo => "a servo identifier",
+        IdentifierKind::Axes => "an axes identifier",
+    }
+}
+
+/// All kinds.
+pub(crate) const KINDS: [IdentifierKind; 3] = [IdentifierKind::Contour, IdentifierKind::Servo, IdentifierKind::Axes];
+
+/// The kind of a name.
+pub(crate) fn kind_named(name_of_kind: &str) -> Option<IdentifierKind> {
+    KINDS.into_iter().find(|kind| identifier_name(*kind) == name_of_kind)
+}
+
+/// Where a training comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Origin {
+    /// What was recorded, in words.
+    pub source: String,
+    /// When, see `today`.
+    pub date: String,
+}
+
+impl Model {
+    /// Of a servo identifier that was trained on a recording.
+    pub fn of_servo<const N: usize>(
+        recording: &Recording<N>,
+        trained: &servo::TrainedServo<N>,
+        origin: Origin,
+    ) -> Self {
+        let fit = Fit { fit_um: trained.fit_um, samples: trained.samples as u64 };
+        let spread = trained.spread.as_flattened().as_flattened();
+        Self::sealed(IdentifierKind::Servo, recording, fit, Weights::of(trained.net.clone(), spread), origin)
+    }
+
+    /// Of an identifier of the contour error that was trained on a recording.
+    pub fn of_contour<const N: usize>(
+        recording: &Recording<N>,
+        trained: &contour::TrainedContour<N>,
+        origin: Origin,
+    ) -> Self {
+        let fit = Fit { fit_um: trained.fit_um, samples: trained.samples as u64 };
+        Self::sealed(IdentifierKind::Contour, recording, fit, Weights::of(trained.net.clone(), &[]), origin)
+    }
+
+    /// Of axes that were identified from a recording.
+    pub fn of_axes<const N: usize>(
+        recording: &Recording<N>,
+        identified: &axes::TrainedAxes<N>,
+        origin: Origin,
+    ) -> Self {
+        let fit = Fit { fit_um: identified.fit_um, samples: identified.samples as u64 };
+        Self::sealed(IdentifierKind::Axes, recording, fit, Weights::of_axes(identified.axes), origin)
+    }
+
+    fn sealed<const N: usize>(
+        kind: IdentifierKind,
+        recording: &Recording<N>,
+        fit: Fit,
+        weights: Weights,
+        Origin { source, date }: Origin,
+    ) -> Self {
+        let about = About {
+            format: FORMAT,
+            written_by: version(),
+            kind: identifier_name(kind).to_owned(),
+            axes: N as u64,
+            source,
+            date,
+            training_data: recording.hash(),
+            checksum: String::new(),
+        };
+        let period = ModelPeriods { servo_s: recording.servo_s, feed_period_s: recording.feed_period_s };
+        let mut model = Self { about, period, fit, weights };
+        model.about.checksum = model.checksum();
+        model
+    }
+
+    /// A model from a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is not text, and every fault found in its text.
+    pub fn read(path: &Path) -> Result<Self, FileError> {
+        Self::parse(&input::name(path), &read_text(&FILE, path)?)
+    }
+
+    /// A model from the text of a model file; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// Every fault found in the text, in one go.
+    pub fn parse(file: &str, text: &str) -> Result<Self, FileError> {
+        let invalid = |faults| FileError::invalid(&FILE, file, text, faults);
+        let document = toml_file::document(text).map_err(invalid)?;
+        layout::model(&document).map_err(invalid)
+    }
+
+    /// The text of a model file that reads as this model.
+    pub fn text(&self) -> String {
+        let Self { about, period, fit, .. } = self;
+        let (about, period, fit) = (write(keys::ABOUT, about), write(keys::PERIOD, period), write(keys::FIT, fit));
+        let weights = write(keys::weights(self.kind()), &self.weights);
+        format!("{about}\n[period]\n{period}\n[fit]\n{fit}\n[weights]\n{weights}")
+    }
+
+    /// The checksum of its content.
+    pub(crate) fn checksum(&self) -> String {
+        let [written_by, date, checksum] = [const { String::new() }; 3];
+        let about = About { written_by, date, checksum, ..self.about.clone() };
+        blake3::hash(Self { about, ..self.clone() }.text().as_bytes()).to_hex().to_string()
+    }
+
+    /// What it is and where it comes from.
+    pub fn about(&self) -> &About {
+        &self.about
+    }
+
+    /// Kind of the identifier.
+    pub fn kind(&self) -> IdentifierKind {
+        // What is read is one of the names; a default is a contour identifier without weights.
+        kind_named(&self.about.kind).unwrap_or(IdentifierKind::Contour)
+    }
+
+    /// Number of axes.
+    pub fn axes(&self) -> usize {
+        usize::try_from(self.about.axes).unwrap_or(usize::MAX)
+    }
+
+    /// Periods that it was trained for.
+    pub fn period(&self) -> ModelPeriods {
+        self.period
+    }
+
+    /// How well it fits.
+    pub fn fit(&self) -> Fit {
+        self.fit
+    }
+
+    /// The servo identifier that it holds, and how others of its kind differ; none where it holds another, or for another number
+    /// of axes.
+    pub fn servo<const N: usize>(&self) -> Option<(ServoIdentifier<N>, Spread<N>)> {
+        let (rows, []) = self.weights.spread.as_chunks::<UNKNOWNS>() else { return None };
+        let (axes, []) = rows.as_chunks::<UNKNOWNS>() else { return None };
+        let spread = Spread::<N>::try_from(axes).ok()?;
+        Some((self.weights.fill().filter(|_| self.is(IdentifierKind::Servo, N))?, spread))
+    }
+
+    /// The identifier of the contour error that it holds; none where it holds another, or for another number of axes.
+    pub fn contour<const N: usize>(&self) -> Option<ContourIdentifier<N>> {
+        self.weights.fill().filter(|_| self.is(IdentifierKind::Contour, N))
+    }
+
+    /// The axes that it holds; none where it holds another kind, or another number of them.
+    pub fn identified_axes<const N: usize>(&self) -> Option<IdentifiedAxes<N>> {
+        let Weights { mechanics_s, axes, .. } = &self.weights;
+        let mut identified = IdentifiedAxes::<N> { mechanics_s: *mechanics_s, ..IdentifiedAxes::NULL };
+        let mut fits = self.is(IdentifierKind::Axes, N) && axes.len() == AxisKnowledge::NUMBERS.len();
+        for (number, values) in AxisKnowledge::NUMBERS.iter().zip(axes) {
+            fits &= values.len() == N;
+            identified.axes.iter_mut().zip(values).for_each(|(axis, value)| *(number.of)(axis) = *value);
+        }
+        identified.with_periods(self.period.servo_s).filter(|_| fits)
+    }
+
+    fn is(&self, kind: IdentifierKind, axes: usize) -> bool {
+        (self.kind(), self.axes()) == (kind, axes)
+    }
+
+    /// As `control` takes it; none where it is for another number of axes.
+    pub fn control<const N: usize>(&self) -> Option<ModelBlock<N>> {
+        let trained = match self.kind() {
+            IdentifierKind::Contour => Trained::Contour(self.contour()?),
+            IdentifierKind::Servo => self.servo().map(|(net, spread)| Trained::Servo(net, spread))?,
+            IdentifierKind::Axes => Trained::Axes(self.identified_axes()?),
+        };
+        let ModelPeriods { servo_s, feed_period_s } = self.period;
+        Some(ModelBlock { servo_s, feed_period_s, trained })
+    }
+
+    /// The block of bytes that a component in a servo thread is given.
+    pub fn block(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let put = |more: &[u8]| bytes.extend_from_slice(more);
+        if let Some(model) = self.control::<2>() {
+            model.to_bytes(put);
+        } else if let Some(model) = self.control::<3>() {
+            model.to_bytes(put);
+        }
+        bytes
+    }
+}
+
+/// This version, as files name it.
+pub(crate) fn version() -> String {
+    format!("feedwright {}", env!("CARGO_PKG_VERSION"))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,39 @@
+//! A machine as a model that nobody had to identify: the axes with the numbers of its file.
+
+use feedwright_control::{IdentifiedAxes, ModelBlock, Trained};
+use feedwright_sim::Machine;
+
+/// The block of bytes, as of [`super::Model::block`], of the first `axes` axes of a machine, 2 or 3, with exactly its numbers. What a
+/// block has no place for, two masses, ripple and geometry, is not in it.
+pub fn exact_block(machine: &Machine, axes: usize) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let put = |more: &[u8]| bytes.extend_from_slice(more);
+    if axes == 2 {
+        exact::<2>(machine).to_bytes(put);
+    } else {
+        exact::<3>(machine).to_bytes(put);
+    }
+    bytes
+}
+
+fn exact<const N: usize>(machine: &Machine) -> ModelBlock<N> {
+    let (known, periods, statistics) = (machine.known(), machine.period.periods(), machine.statistics::<N>());
+    let axes = std::array::from_fn(|i| known.axis(i).with_statistics(periods, statistics[i]));
+    let trained = Trained::Axes(IdentifiedAxes { mechanics_s: periods.mechanics_s, axes });
+    ModelBlock { servo_s: periods.servo_s, feed_period_s: periods.servo_s, trained }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_block_of_every_machine_reads_as_its_axes() {
+        for (name, _) in feedwright_sim::BUILT_IN_MACHINES {
+            let machine = Machine::load(name.as_ref()).unwrap();
+            let read = ModelBlock::<3>::from_bytes(&exact_block(&machine, 3)).unwrap();
+            assert_eq!(read, exact::<3>(&machine), "{name}");
+            ModelBlock::<2>::from_bytes(&exact_block(&machine, 2)).unwrap();
+        }
+    }
+}

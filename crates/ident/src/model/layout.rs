@@ -1,0 +1,164 @@
+//! The layout of a model file: its tables, and what holds between their values.
+
+use feedwright_control::{
+    AxisKnowledge, HIDDEN, INPUTS, IdentifierKind, MAX_MECHANICS_PER_SERVO, ModelBlock, UNKNOWNS,
+};
+use feedwright_gcode::suggestion::nearest;
+use feedwright_sim::toml_file::key::{read, read_all};
+use feedwright_sim::toml_file::{Document, Fault, Table};
+
+use super::{About, FORMAT, KINDS, Model, Weights, an_identifier, identifier_name, keys, kind_named, version};
+
+/// The model that a file holds, or every fault in it.
+pub(super) fn model(document: &Document<'_>) -> Result<Model, Vec<Fault>> {
+    let mut faults = Vec::new();
+    of_this_format(document).map_err(|fault| vec![fault])?;
+    let mut root = Table::root(document, None);
+    let about: About = read(keys::ABOUT, &mut root, &mut faults);
+    let kind = kind(&about, &root, &mut faults);
+    let period = read_all(keys::PERIOD, root.table("period", &mut faults), &mut faults);
+    let fit = read_all(keys::FIT, root.table("fit", &mut faults), &mut faults);
+    let mut table = root.table("weights", &mut faults);
+    // Which weights there have to be is said by the kind alone.
+    let weights = kind.map(|kind| weights(kind, about.axes, &mut table, &mut faults)).unwrap_or_default();
+    let place = table.header();
+    if kind.is_some() {
+        table.finish(&mut faults);
+    }
+    let at_checksum = root.place("checksum");
+    root.finish(&mut faults);
+    if !faults.is_empty() {
+        return Err(faults);
+    }
+    let model = Model { about, period, fit, weights };
+    if model.checksum() != model.about.checksum {
+        return Err(vec![Fault {
+            at: at_checksum,
+            label: "of another content",
+            message: "the checksum does not fit: the file was changed since it was written, or damaged on its way"
+                .to_owned(),
+            hint: Some(
+                "copy it once more from where it is whole, or write it anew with 'feedwright identify'".to_owned(),
+            ),
+        }]);
+    }
+    match refused(&model) {
+        Some(message) => Err(vec![Fault { at: place, label: "here", message, hint: None }]),
+        None => Ok(model),
+    }
+}
+
+/// A file of another format has other keys: nothing but this is said of it.
+fn of_this_format(document: &Document<'_>) -> Result<(), Fault> {
+    let entries = document.get_ref();
+    let Some(format) = entries.get("format") else {
+        let is_machine = entries.contains_key("axis") || entries.contains_key("limits");
+        return Err(Fault {
+            at: 0..0,
+            label: "missing here",
+            message: "format is missing: this is no model file".to_owned(),
+            hint: Some(if is_machine {
+                "it looks like a machine file: give that to --machine".to_owned()
+            } else {
+                format!("'feedwright identify' writes model files, which have 'format = {FORMAT}' at their top")
+            }),
+        });
+    };
+    let mut faults = Vec::new();
+    let mut root = Table::root(document, None);
+    let found = root.whole("format", "", 1.0..=1e9, &mut faults);
+    // What is no number is told of with everything else.
+    if found.is_none_or(|found| found == FORMAT) {
+        return Ok(());
+    }
+    let writer = entries.get("written_by").and_then(|writer| writer.get_ref().as_str()).unwrap_or("a later version");
+    Err(Fault {
+        at: format.span(),
+        label: "of another version",
+        message: format!("the model is of format {}; {} reads format {FORMAT}", found.unwrap_or(0), version()),
+        hint: Some(format!(
+            "{writer} wrote it and reads it; or write it anew with this version's 'feedwright identify'"
+        )),
+    })
+}
+
+fn kind(about: &About, root: &Table<'_, '_>, faults: &mut Vec<Fault>) -> Option<IdentifierKind> {
+    let found = kind_named(&about.kind);
+    if found.is_none() && !about.kind.is_empty() {
+        let names = KINDS.map(identifier_name);
+        faults.push(Fault {
+            at: root.place("kind"),
+            label: "unknown",
+            message: format!("no identifier is of kind '{}'; there are {}", about.kind, names.join(", ")),
+            hint: nearest(&about.kind, &names).map(|near| format!("did you mean '{near}'?")),
+        });
+    }
+    found
+}
+
+fn weights(kind: IdentifierKind, axes: u64, table: &mut Table<'_, '_>, faults: &mut Vec<Fault>) -> Weights {
+    let before = faults.len();
+    let weights: Weights = read(keys::weights(kind), table, faults);
+    // A number of axes that has a fault is 0 here; arrays with faults of their own get no second one.
+    if axes == 0 || faults.len() > before {
+        return weights;
+    }
+    let n = axes as usize;
+    let of = |kinds: &[IdentifierKind], number: usize| if kinds.contains(&kind) { number } else { 0 };
+    let (servo, nets) = ([IdentifierKind::Servo], [IdentifierKind::Servo, IdentifierKind::Contour]);
+    let expected = [
+        ("linear", &weights.linear, of(&servo, n * n * INPUTS)),
+        ("hidden", &weights.hidden, of(&nets, n * INPUTS * HIDDEN)),
+        ("output", &weights.output, of(&nets, n * HIDDEN)),
+        ("spread", &weights.spread, of(&servo, n * UNKNOWNS * UNKNOWNS)),
+    ];
+    // A number for each axis.
+    let of_axes = keys::weights(IdentifierKind::Axes).iter().filter(|key| key.name != "mechanics_s");
+    let of_axes = of_axes.zip(&weights.axes).map(|(key, found)| (key.name, found, n));
+    for (key, found, expected) in expected.into_iter().chain(of_axes) {
+        if found.len() != expected {
+            faults.push(Fault {
+                at: table.place(key),
+                label: "of another length",
+                message: format!(
+                    "{key} has {} numbers; {} of {n} axes has {expected}",
+                    found.len(),
+                    an_identifier(kind)
+                ),
+                hint: None,
+            });
+        }
+    }
+    weights
+}
+
+/// Why a component would not take it, where it would not.
+fn refused(model: &Model) -> Option<String> {
+    if model.kind() == IdentifierKind::Axes {
+        return refused_axes(model);
+    }
+    let bytes = model.block();
+    let error = match model.axes() {
+        2 => ModelBlock::<2>::from_bytes(&bytes).err(),
+        _ => ModelBlock::<3>::from_bytes(&bytes).err(),
+    };
+    error.map(|error| format!("no training gives these weights: {error}"))
+}
+
+/// What a range alone does not tell of axes.
+fn refused_axes(model: &Model) -> Option<String> {
+    if model.block().is_empty() {
+        return Some(format!("servo_s is no whole multiple of mechanics_s, 1 to {MAX_MECHANICS_PER_SERVO} times"));
+    }
+    AxisKnowledge::NUMBERS.iter().zip(&model.weights.axes).find_map(|(number, values)| {
+        let at = values.iter().position(|value| !number.holds(*value))?;
+        let [least, most] = number.range;
+        Some(format!(
+            "{}, number {} is {:e} {unit}; it must be 0 or lie between {least:e} and {most:e} {unit}",
+            number.name,
+            at + 1,
+            values[at],
+            unit = number.unit
+        ))
+    })
+}

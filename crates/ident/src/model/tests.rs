@@ -1,0 +1,337 @@
+//! What a model file may hold, and what is said about one that holds something else.
+
+use feedwright_control::BLOCK_FORMAT;
+use feedwright_sim::toml_file::{Key, Problem};
+use miette::Diagnostic;
+
+use super::*;
+use crate::identify::recording::RecordedKnot;
+
+fn recording<const N: usize>() -> Recording<N> {
+    let knot = RecordedKnot { command_mm: [0.3; N], tool_mm: [0.2; N], contour_mm: [0.1; N] };
+    Recording { servo_s: 0.001, feed_period_s: 0.003, stretches: vec![vec![knot; 3]] }
+}
+
+/// Weights without symmetry, as a training gives them: not short in decimals.
+fn filled<const N: usize, I: Identifier<N>>() -> I {
+    let (mut net, mut number) = (I::NULL, 0.1_f64);
+    net.weights(&mut |_, group| {
+        for weight in group {
+            number = (7.0 * number + 0.3).sin();
+            *weight = number / 3.0;
+        }
+    });
+    net
+}
+
+fn origin() -> Origin {
+    Origin { source: "a \"bench\", seed 1".to_owned(), date: "2026-05-17".to_owned() }
+}
+
+fn servo<const N: usize>() -> Model {
+    let products = std::array::from_fn(|i| std::array::from_fn(|j| 1e-4 / 3.0 / ((1 + i) * (1 + j)) as f64));
+    let trained = servo::TrainedServo { net: filled(), fit_um: 0.1 + 0.2, samples: 12_345, spread: [products; N] };
+    Model::of_servo::<N>(&recording(), &trained, origin())
+}
+
+fn contour<const N: usize>() -> Model {
+    let trained = contour::TrainedContour { net: filled(), fit_um: 4.0, samples: 99 };
+    Model::of_contour::<N>(&recording(), &trained, origin())
+}
+
+/// Axes like those of a machine: not short in decimals.
+fn axes<const N: usize>() -> Model {
+    let mut identified = IdentifiedAxes::<N> { mechanics_s: 1e-4, ..IdentifiedAxes::NULL };
+    let mut number = 0.1_f64;
+    for axis in &mut identified.axes {
+        for of in AxisKnowledge::NUMBERS {
+            let [least, most] = of.range;
+            number = (7.0 * number + 0.3).sin();
+            *(of.of)(axis) = least + (0.2 + 0.1 * number / 3.0) * (most.min(1.0) - least);
+        }
+    }
+    let trained = axes::TrainedAxes { axes: identified, estimates: Vec::new(), fit_um: 0.1 + 0.2, samples: 12_345 };
+    let recording = Recording { feed_period_s: 0.001, ..recording() };
+    Model::of_axes::<N>(&recording, &trained, origin())
+}
+
+fn problems(text: &str) -> Vec<Problem> {
+    match Model::parse("broken.model.toml", text) {
+        Err(FileError::Invalid { problems, .. }) => problems,
+        other => panic!("expected faults, got {other:?}"),
+    }
+}
+
+fn told(text: &str) -> Vec<String> {
+    let told = |problem: &Problem| {
+        let hint = problem.hint.as_deref().unwrap_or("no hint");
+        format!("{}:{}: {problem} / {hint}", problem.line, problem.column)
+    };
+    problems(text).iter().map(told).collect()
+}
+
+/// What is told of a servo model of two axes once `from` is replaced by `to`.
+fn told_after(from: &str, to: &str) -> Vec<String> {
+    let text = servo::<2>().text();
+    assert!(text.contains(from), "the file has no '{from}'");
+    told(&text.replacen(from, to, 1))
+}
+
+#[test]
+fn what_is_written_reads_back_to_the_bit() {
+    for model in [servo::<2>(), servo::<3>(), contour::<2>(), contour::<3>(), axes::<2>(), axes::<3>()] {
+        let read = Model::parse("written.model.toml", &model.text()).unwrap();
+        assert_eq!(read, model);
+        assert_eq!(read.block(), model.block());
+        assert_eq!(read.text(), model.text());
+    }
+    let (net, _) = Model::parse("m", &servo::<3>().text()).unwrap().servo::<3>().unwrap();
+    assert_eq!(net, filled::<3, ServoIdentifier<3>>());
+    assert_eq!(contour::<2>().contour::<2>(), Some(filled::<2, ContourIdentifier<2>>()));
+}
+
+#[test]
+fn the_block_is_what_control_takes() {
+    let taken = ModelBlock::<2>::from_bytes(&servo::<2>().block()).unwrap();
+    assert_eq!(Some(taken), servo::<2>().control::<2>());
+    let taken = ModelBlock::<3>::from_bytes(&contour::<3>().block()).unwrap();
+    assert_eq!(Some(taken), contour::<3>().control::<3>());
+    let taken = ModelBlock::<3>::from_bytes(&axes::<3>().block()).unwrap();
+    assert_eq!(Some(taken), axes::<3>().control::<3>());
+}
+
+#[test]
+fn a_model_gives_nothing_but_what_it_holds() {
+    assert!(servo::<2>().servo::<3>().is_none() && servo::<2>().contour::<2>().is_none());
+    assert!(contour::<3>().contour::<2>().is_none() && contour::<3>().servo::<3>().is_none());
+    assert!(axes::<2>().identified_axes::<3>().is_none() && axes::<3>().identified_axes::<2>().is_none());
+    assert!(axes::<2>().servo::<2>().is_none() && axes::<2>().contour::<2>().is_none());
+    assert!(servo::<2>().identified_axes::<2>().is_none() && contour::<2>().identified_axes::<2>().is_none());
+    assert!(axes::<2>().identified_axes::<2>().is_some() && axes::<3>().identified_axes::<3>().is_some());
+}
+
+#[test]
+fn line_ends_comments_and_the_order_of_keys_change_nothing() {
+    let text = servo::<2>().text();
+    for other in [text.replace('\n', "\r\n"), format!("# mine\n{text}"), text.replace(",\n", ",\n\n")] {
+        assert_eq!(Model::parse("other", &other).unwrap(), servo::<2>());
+    }
+    let (about, tables) = text.split_once("\n[period]").unwrap();
+    let mut lines: Vec<&str> = about.lines().collect();
+    lines.reverse();
+    assert_eq!(Model::parse("other", &format!("{}\n[period]{tables}", lines.join("\n"))).unwrap(), servo::<2>());
+}
+
+#[test]
+fn the_date_is_no_part_of_the_content_and_everything_else_is() {
+    let text = servo::<2>().text();
+    let dated = Model::parse("m", &text.replace("2026-05-17", "2030-01-01")).unwrap();
+    assert_eq!((dated.about.checksum, dated.weights), (servo::<2>().about.checksum, servo::<2>().weights));
+    let weight = format!("{:?}", servo::<2>().weights.hidden[7]);
+    for (from, to) in [
+        ("seed 1", "seed 2"),
+        ("feed_period_s = 0.003", "feed_period_s = 0.004"),
+        ("samples = 12345", "samples = 12346"),
+        (weight.as_str(), "0.25"),
+        ("training_data = \"", "training_data = \"0"),
+    ] {
+        let told = told_after(from, to);
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].starts_with("8:12: the checksum does not fit: the file was changed"), "{told:?}");
+        assert!(told[0].contains("write it anew with 'feedwright identify'"), "{told:?}");
+    }
+}
+
+#[test]
+fn every_fault_is_told_at_its_place_with_a_remedy() {
+    let text = servo::<2>()
+        .text()
+        .replace("axes = 2", "axis = 2")
+        .replace("servo_s = 0.001", "servo_s = 1")
+        .replace("samples = 12345", "samples = 1.5")
+        .replace("[fit]", "more = 3\n[fit]");
+    assert_eq!(
+        told(&text),
+        [
+            "1:1: axes is missing / is 'axis' meant to be it?",
+            "4:1: unknown key 'axis' in the file / did you mean 'axes'?",
+            "11:11: servo_s is 1 s; it must lie between 1e-5 and 0.1 s / is the unit right? this key is in s",
+            "14:1: unknown key 'more' in [period] / [period] holds servo_s, feed_period_s",
+            "17:11: samples is 1.5; it must be a whole number / no hint",
+        ]
+    );
+    assert_eq!(problems(&text)[0].code().unwrap().to_string(), "model::file");
+}
+
+#[test]
+fn numbers_of_an_array_have_places_and_bounds() {
+    let weight = format!("{:?}", servo::<2>().weights.linear[1]);
+    for (to, what) in [
+        ("nan", "is NaN; it must lie between -1e6 and 1e6 / write a finite number"),
+        ("-inf", "is -inf; it must lie between -1e6 and 1e6 / write a finite number"),
+        ("1e7", "is 1e7; it must lie between -1e6 and 1e6 / no hint"),
+        ("'1.5'", "is a string, not a number / no hint"),
+        ("[1.0]", "is an array, not a number / no hint"),
+    ] {
+        let told = told_after(&weight, to);
+        assert_eq!(told.len(), 1, "{told:?}");
+        assert!(told[0].contains(&format!("linear, number 2 {what}")), "{told:?}");
+        assert!(told[0].starts_with("20:"), "{told:?}");
+    }
+    assert_eq!(told_after(&weight, "1,5").len(), 1, "a decimal comma makes two numbers of one");
+    let short = told_after(&format!(" {weight},"), "");
+    assert_eq!(short.len(), 1);
+    assert!(short[0].ends_with("linear has 19 numbers; a servo identifier of 2 axes has 20 / no hint"), "{short:?}");
+    let mut wild = servo::<2>();
+    wild.weights.hidden.fill(f64::NAN);
+    let told = told(&wild.text().replace("NaN", "nan"));
+    assert_eq!(told.len(), 3, "{told:?}");
+    assert!(told[2].contains("117 more of hidden are as wrong"), "{told:?}");
+}
+
+#[test]
+fn kinds_have_their_own_weights() {
+    let told = told_after("kind = \"servo\"", "kind = \"contour\"");
+    assert!(told.iter().any(|told| told.contains("unknown key 'linear' in [weights]")), "{told:?}");
+    let told = told_after("kind = \"servo\"", "kind = \"servos\"");
+    assert_eq!(
+        told,
+        ["3:8: no identifier is of kind 'servos'; there are contour, servo, axes / did you mean 'servo'?"]
+    );
+    let told = told_after("axes = 2", "axes = 3");
+    assert!(
+        told.len() == 4 && told[0].contains("linear has 20 numbers; a servo identifier of 3 axes has 45"),
+        "{told:?}"
+    );
+}
+
+#[test]
+fn every_number_of_an_axis_has_its_key_its_bounds_and_one_for_each_axis() {
+    let text = axes::<2>().text();
+    let array = |name: &str| {
+        let (_, rest) = text.split_once(&format!("\n{name} = [")).unwrap_or_else(|| panic!("no {name}"));
+        rest.split_once(']').unwrap().0.to_owned()
+    };
+    for number in AxisKnowledge::NUMBERS {
+        let (name, was) = (number.name, array(number.name));
+        let after = |to: &str| told(&text.replacen(&format!("{name} = [{was}]"), &format!("{name} = {to}"), 1));
+        let beyond = after(&format!("[{:?}, {:?}]", number.range[0], 2.0 * number.range[1]));
+        assert!(beyond.len() == 1 && beyond[0].contains(&format!("{name}, number 2 is")), "{beyond:?}");
+        let short = after(&format!("[{:?}]", number.range[0]));
+        let said = format!("{name} has 1 numbers; an axes identifier of 2 axes has 2");
+        assert!(short.len() == 1 && short[0].contains(&said), "{short:?}");
+    }
+    let told = told(&text.replacen("mechanics_s = 0.0001", "mechanics_s = 0", 1));
+    assert!(told.len() == 1 && told[0].contains("mechanics_s is 0 s; it must lie between 1e-7 and 0.1 s"), "{told:?}");
+}
+
+/// With the checksum that belongs to it.
+fn told_of(mut model: Model) -> Vec<String> {
+    model.about.checksum = model.checksum();
+    told(&model.text())
+}
+
+#[test]
+fn axes_that_cannot_be_computed_with_are_refused() {
+    let mut uneven = axes::<2>();
+    uneven.weights.mechanics_s = 0.0003;
+    let mut divides = axes::<2>();
+    let presliding = AxisKnowledge::NUMBERS.iter().position(|number| number.name == "presliding_rad").unwrap();
+    divides.weights.axes[presliding][1] = 1e-300;
+    for (model, said) in [
+        (uneven, "servo_s is no whole multiple of mechanics_s, 1 to 10000 times"),
+        (divides, "presliding_rad, number 2 is 1e-300 rad; it must be 0 or lie between 1e-12 and 1e4 rad"),
+    ] {
+        let told = told_of(model);
+        assert!(told.len() == 1 && told[0].contains(said), "{told:?}");
+    }
+}
+
+#[test]
+fn a_spread_that_is_none_is_refused() {
+    let mut model = servo::<2>();
+    model.weights.spread[0] = -1.0;
+    model.about.checksum = model.checksum();
+    let told = told(&model.text());
+    assert_eq!(told.len(), 1);
+    assert!(told[0].contains("no training gives these weights: number"), "{told:?}");
+}
+
+#[test]
+fn another_format_is_told_of_by_who_reads_it_and_by_nothing_else() {
+    let told = told_after("format = 1", "format = 2\nkey_of_the_future = true");
+    let version = version();
+    assert_eq!(
+        told,
+        [format!(
+            "1:10: the model is of format 2; {version} reads format 1 / {version} wrote it and reads it; or write it anew with this \
+             version's 'feedwright identify'"
+        )]
+    );
+    let told = told_after("format = 1", "format = 'one'");
+    assert!(told[0].starts_with("1:10: format has to be a number, but is a string"), "{told:?}");
+}
+
+#[test]
+fn other_files_are_told_apart() {
+    let (_, machine) = feedwright_sim::BUILT_IN_MACHINES[0];
+    let machine = told(machine);
+    assert_eq!(
+        machine,
+        ["1:1: format is missing: this is no model file / it looks like a machine file: give that to --machine"]
+    );
+    assert!(told("")[0].contains("'feedwright identify' writes model files"));
+    let program = told(&"G0 X1 Y2\n".repeat(100));
+    assert!(
+        program.len() == 5 && program[4].ends_with("95 more places are not TOML: was another file meant?"),
+        "{program:?}"
+    );
+    let text = servo::<2>().text();
+    for length in (0..text.len()).step_by(97) {
+        assert!(Model::parse("cut", &text[..length]).is_err(), "{length}");
+    }
+}
+
+#[test]
+fn a_file_that_cannot_be_read_is_told_of_as_a_model_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let tell = |name: &str, content: Option<&[u8]>| {
+        let path = folder.path().join(name);
+        content.into_iter().for_each(|content| std::fs::write(&path, content).unwrap());
+        let error = Model::read(&path).unwrap_err();
+        (error.to_string(), error.help().map(|help| help.to_string()).unwrap_or_default())
+    };
+    let (message, hint) = tell("none.model.toml", None);
+    assert!(message.starts_with("cannot read model file") && hint.contains("identify --out"), "{message} {hint}");
+    let (message, hint) = tell("huge", Some(&vec![b' '; 2 << 20]));
+    assert!(message.ends_with("this is no model file") && hint.contains("pages of TOML"), "{message} {hint}");
+    let (message, hint) = tell("block", Some(&servo::<2>().block()));
+    assert!(message.contains("is not text") && hint.contains("a model file is TOML text"), "{message} {hint}");
+}
+
+/// The document's tables begin `| `key` | unit | range |`.
+#[test]
+fn the_document_has_the_units_and_ranges_of_all_keys() {
+    fn rows<T>(keys: &[Key<T>]) -> Vec<String> {
+        let number = |value: f64| match value {
+            value if value == 0.0 || (0.01..1000.0).contains(&value.abs()) => format!("{value}"),
+            value => format!("{value:e}"),
+        };
+        let row = |key: &Key<T>| match key.range {
+            [least, most] if least < most => {
+                format!("| `{}` | {} | {} to {} |", key.name, key.unit, number(least), number(most))
+                    .replace("|  |", "| |")
+            }
+            _ => format!("| `{}` | | text |", key.name),
+        };
+        keys.iter().map(row).collect()
+    }
+    let document = include_str!("../../../../docs/model-file.md");
+    let weights = KINDS.map(|kind| rows(keys::weights(kind))).concat();
+    for row in [rows(keys::ABOUT), rows(keys::PERIOD), rows(keys::FIT), weights].concat() {
+        assert!(document.contains(&row), "docs/model-file.md has no row that begins {row}");
+    }
+    for (line, text) in [("format", FORMAT.to_string()), ("format", BLOCK_FORMAT.to_string())] {
+        assert!(document.contains(&format!("{line} {text}")), "docs/model-file.md does not tell the {line}");
+    }
+}

@@ -1,0 +1,202 @@
+//! A segment of the queue: its curve, how far it is, and what bounds its speed.
+
+use feedwright_gcode::canon::Corner;
+
+use super::blocks::PlannerBlock;
+use super::limits::{MAX_OVERRIDE, NORMAL_RATIO, PERIOD_S, TANGENTIAL_RATIO};
+use super::shape::SegmentShape;
+
+/// How a segment ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum SegmentEnd {
+    /// At rest (G61.1).
+    Stop,
+    /// On the path: at rest, or tangent to the next (G61).
+    Exact,
+    /// While it slows down the next begins, and both motions are added.
+    Parabolic,
+    /// At a speed, straight into the next.
+    Tangent,
+}
+
+/// See the module's page.
+#[derive(Debug, Clone)]
+pub(super) struct MotionSegment {
+    /// Its curve.
+    pub shape: SegmentShape,
+    /// Places along it before its beginning was cut, and the arc lengths of the program that they stand for, mm.
+    pub places_mm: Vec<[f64; 2]>,
+    /// What was cut from its beginning.
+    pub cut_mm: f64,
+    /// Length.
+    pub length_mm: f64,
+    /// Length before anything was cut.
+    pub nominal_mm: f64,
+    /// How far it is.
+    pub progress_mm: f64,
+    /// Speed asked for.
+    pub feed_mm_s: f64,
+    /// Highest speed.
+    pub highest_mm_s: f64,
+    /// Speed now.
+    pub speed_mm_s: f64,
+    /// Speed at its end, as the look-ahead allows it.
+    pub final_mm_s: f64,
+    /// Speed at which it will end within this servo period.
+    pub ending_mm_s: f64,
+    /// Acceleration.
+    pub accel_mm_s2: f64,
+    /// Part of the acceleration that is for the tangent.
+    pub tangential_ratio: f64,
+    /// Speed at which the corner at the end takes no more than its part of the acceleration; none where there is no such corner.
+    pub kink_mm_s: Option<f64>,
+    /// Parts of the acceleration that the corners at its beginning and at its end take.
+    pub kink_parts: [f64; 2],
+    /// How it ends.
+    pub end: SegmentEnd,
+    /// Whether the one before blends into it.
+    pub is_blended_into: bool,
+    /// Tolerance of a blend; 0 is none.
+    pub tolerance_mm: f64,
+    /// Whether it is a rapid.
+    pub is_rapid: bool,
+    /// Whether something turns along.
+    pub is_rotary: bool,
+    /// Whether its length is final.
+    pub is_final: bool,
+    /// Whether its speed at the end has been found to be a bound's.
+    pub is_peak: bool,
+    /// What there is of it from period to period.
+    pub run: SegmentRun,
+}
+
+/// What a segment keeps while it moves.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SegmentRun {
+    /// Time that it has in this servo period.
+    pub period_s: f64,
+    /// It has begun.
+    pub is_active: bool,
+    /// It runs at one acceleration.
+    pub is_ramp: bool,
+    /// It ends within this servo period.
+    pub ends_within: bool,
+    /// It is over.
+    pub is_over: bool,
+    /// It slows down to its final speed.
+    pub slows_down: bool,
+    /// The next one has begun.
+    pub blends: bool,
+}
+
+impl MotionSegment {
+    /// The segment of a block.
+    pub(super) fn new(block: PlannerBlock) -> Self {
+        let PlannerBlock { shape, places_mm, is_rapid, is_rotary, feed_mm_s, highest_mm_s, accel_mm_s2, corner } =
+            block;
+        let (end, tolerance_mm) = match corner {
+            Corner::ExactStop => (SegmentEnd::Stop, 0.0),
+            Corner::ExactPath => (SegmentEnd::Exact, 0.0),
+            Corner::Continuous { tolerance_mm, .. } => (SegmentEnd::Parabolic, tolerance_mm.unwrap_or(0.0)),
+        };
+        let length_mm = shape.length_mm();
+        let run = SegmentRun {
+            period_s: PERIOD_S,
+            is_active: false,
+            is_ramp: false,
+            ends_within: false,
+            is_over: false,
+            slows_down: false,
+            blends: false,
+        };
+        let mut segment = Self {
+            shape,
+            places_mm,
+            cut_mm: 0.0,
+            length_mm,
+            nominal_mm: length_mm,
+            progress_mm: 0.0,
+            feed_mm_s,
+            highest_mm_s,
+            speed_mm_s: 0.0,
+            final_mm_s: 0.0,
+            ending_mm_s: 0.0,
+            accel_mm_s2,
+            tangential_ratio: TANGENTIAL_RATIO,
+            kink_mm_s: None,
+            kink_parts: [0.0; 2],
+            end,
+            is_blended_into: false,
+            tolerance_mm,
+            is_rapid,
+            is_rotary,
+            is_final: false,
+            is_peak: false,
+            run,
+        };
+        segment.bound_by_period();
+        segment
+    }
+
+    /// In one servo period no more than its length.
+    pub(super) fn bound_by_period(&mut self) {
+        self.highest_mm_s = self.highest_mm_s.min(self.length_mm / PERIOD_S);
+    }
+
+    /// Its length will not change any more.
+    pub(super) fn fix_length(&mut self) {
+        if self.is_final {
+            return;
+        }
+        self.bound_by_period();
+        if let SegmentShape::Circle(circle) = self.shape {
+            let radius_mm = circle.curvature_radius_mm();
+            let accel = self.whole_accel_mm_s2();
+            let normal = self.highest_mm_s * self.highest_mm_s / radius_mm;
+            if normal > NORMAL_RATIO * accel {
+                self.highest_mm_s = (NORMAL_RATIO * accel * radius_mm).sqrt();
+            } else {
+                self.tangential_ratio = (1.0 - (normal / accel).powi(2)).sqrt();
+            }
+        }
+        self.is_final = true;
+    }
+
+    /// Acceleration without the part of its corners; half of it where it is added to that of a neighbour.
+    pub(super) fn whole_accel_mm_s2(&self) -> f64 {
+        let left = 1.0 - self.kink_parts[0].max(self.kink_parts[1]);
+        let is_added = self.is_blended_into || self.end == SegmentEnd::Parabolic;
+        self.accel_mm_s2 * left * if is_added { 0.5 } else { 1.0 }
+    }
+
+    /// Acceleration along the path.
+    pub(super) fn along_mm_s2(&self) -> f64 {
+        self.whole_accel_mm_s2() * if self.shape.is_round() { self.tangential_ratio } else { 1.0 }
+    }
+
+    /// Highest speed at the largest override.
+    pub(super) fn overridden_mm_s(&self) -> f64 {
+        (MAX_OVERRIDE * self.feed_mm_s).min(self.highest_mm_s)
+    }
+
+    /// Speed to go for.
+    pub(super) fn wanted_mm_s(&self) -> f64 {
+        self.feed_mm_s.min(self.highest_mm_s)
+    }
+
+    /// What is left of it.
+    pub(super) fn left_mm(&self) -> f64 {
+        self.length_mm - self.progress_mm
+    }
+
+    /// Arc length of the program that a place of it stands for.
+    pub(super) fn station_mm(&self, along_mm: f64) -> f64 {
+        let along_mm = along_mm + self.cut_mm;
+        let after = self.places_mm.partition_point(|place| place[0] < along_mm);
+        match (after.checked_sub(1).and_then(|before| self.places_mm.get(before)), self.places_mm.get(after)) {
+            (Some(&[x0, s0]), Some(&[x1, s1])) => s0 + (along_mm - x0) / (x1 - x0) * (s1 - s0),
+            (None, Some(place)) | (Some(place), None) => place[1],
+            (None, None) => 0.0,
+        }
+    }
+}

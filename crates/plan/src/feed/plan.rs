@@ -1,0 +1,232 @@
+//! Pieces, phases and events on the clock, in the order in which they become known.
+
+use feedwright_gcode::canon::{Event, EventKind};
+
+use super::{FeedMember, FeedPlanner, Phase, Span, TimedEvent};
+use crate::blend::{BlendedStep, BlendedSteps, PlannedPiece};
+use crate::constraints::{Constraints, LimitsError};
+use crate::path::pieces::ArcLength;
+use crate::path::{MAX_REST_S, PathError, Piece, Rest};
+use crate::plc::Plc;
+use std::collections::VecDeque;
+
+/// M-codes that take effect with the next motion and so do not interrupt it: digital and analogue outputs synchronised with
+/// motion.
+const CODES_THAT_DO_NOT_STOP: [u16; 3] = [62, 63, 67];
+
+/// What a plan hands out.
+#[derive(Debug, Clone)]
+pub enum Planned {
+    /// The next piece of the programmed path.
+    Programmed(Piece),
+    /// The next piece of the planned path; its phases come later.
+    Piece(PlannedPiece),
+    /// The next phase.
+    Phase(Phase),
+    /// The next event; it happens between the phase before and the phase after.
+    Event(TimedEvent),
+}
+
+/// Is told of all that a plan hands out, in order.
+pub trait PlanSink: Sync {
+    /// The next of it.
+    fn planned(&self, planned: &Planned);
+}
+
+/// The plan of a path, made as it is read; `None` when all has been handed out.
+pub struct Plan<'p> {
+    steps: BlendedSteps<'p>,
+    rapid_mm_s: f64,
+    plc: Plc,
+    planner: Box<dyn FeedPlanner>,
+    /// Planned pieces so far, and the length of the last.
+    pieces: u64,
+    last_mm: f64,
+    /// The next piece starts from rest.
+    stop: bool,
+    /// What happens between pieces, in order.
+    between: VecDeque<Between>,
+    clock: ArcLength,
+    ready: VecDeque<Planned>,
+    fault: Option<PathError>,
+    finished: bool,
+    sink: Option<&'p dyn PlanSink>,
+}
+
+/// Something between two pieces.
+#[derive(Debug, Clone)]
+struct Between {
+    /// Number of the planned piece that it comes before.
+    before: u64,
+    /// Where the tool is then.
+    piece: u64,
+    from_mm: f64,
+    event: Option<Event>,
+    /// How long the tool rests, s, and for which line.
+    rest: Option<(f64, u32)>,
+}
+
+impl<'p> Plan<'p> {
+    /// Plans both paths with a planner, on a machine whose PLC and spindle hold the motion up.
+    ///
+    /// # Errors
+    /// Where a limit is none.
+    pub fn new(
+        steps: BlendedSteps<'p>,
+        constraints: &Constraints,
+        planner: &FeedMember,
+        plc: Plc,
+    ) -> Result<Self, LimitsError> {
+        constraints.check()?;
+        if planner.needs_axes {
+            constraints.check_axes()?;
+        }
+        Ok(Self {
+            steps,
+            rapid_mm_s: constraints.path.rapid_mm_s,
+            plc,
+            planner: (planner.make)(constraints),
+            pieces: 0,
+            last_mm: 0.0,
+            stop: true,
+            between: VecDeque::new(),
+            clock: ArcLength::default(),
+            ready: VecDeque::new(),
+            fault: None,
+            finished: false,
+            sink: None,
+        })
+    }
+
+    /// With one who is told of what it hands out.
+    #[must_use]
+    pub fn told_to(self, sink: Option<&'p dyn PlanSink>) -> Self {
+        Self { sink, ..self }
+    }
+
+    /// Why the path ends early, if it does; known once the plan has ended.
+    pub const fn fault(&self) -> Option<&PathError> {
+        self.fault.as_ref()
+    }
+
+    fn read_step(&mut self) {
+        match self.steps.next() {
+            Some(Ok(BlendedStep::Programmed(piece))) => self.ready.push_back(Planned::Programmed(piece)),
+            Some(Ok(BlendedStep::Planned(piece))) => self.piece(piece),
+            Some(Ok(BlendedStep::Event(event))) => self.event(event),
+            Some(Ok(BlendedStep::Rest(rest))) => self.rest(rest),
+            Some(Err(error)) => {
+                self.fault = Some(error);
+                self.finish();
+            }
+            None => self.finish(),
+        }
+    }
+
+    fn piece(&mut self, planned: PlannedPiece) {
+        self.planner.push(&planned.piece, self.stop);
+        self.stop = false;
+        self.pieces += 1;
+        self.last_mm = planned.piece.length_mm;
+        self.ready.push_back(Planned::Piece(planned));
+        self.take_spans();
+    }
+
+    fn rest(&mut self, rest: Rest) {
+        let Rest { line, seconds, turn_deg, further_mm } = rest;
+        self.stop = true;
+        let least_s = self.plc.turn_s(turn_deg).max(further_mm / self.rapid_mm_s);
+        let seconds = seconds.max(least_s).min(MAX_REST_S);
+        self.between(None, Some((seconds, line)));
+    }
+
+    fn event(&mut self, event: Event) {
+        self.stop |= match event.kind {
+            EventKind::Dwell { .. } | EventKind::SpindleSync { .. } | EventKind::Probe | EventKind::ProgramEnd => true,
+            EventKind::MCode { code, .. } => !CODES_THAT_DO_NOT_STOP.contains(&code),
+            EventKind::SpindleSpeed { .. } | EventKind::ToolSelect { .. } | EventKind::Message { .. } => false,
+        };
+        let seconds = self.plc.takes_s(&event.kind);
+        let rest = (seconds > 0.0).then_some((seconds, event.line));
+        self.stop |= rest.is_some();
+        self.between(Some(event), rest);
+    }
+
+    fn between(&mut self, event: Option<Event>, rest: Option<(f64, u32)>) {
+        // Before the first piece the tool is at the start of it.
+        let piece = self.pieces.saturating_sub(1);
+        self.between.push_back(Between { before: self.pieces, piece, from_mm: self.last_mm, event, rest });
+    }
+
+    fn finish(&mut self) {
+        if !self.finished {
+            self.finished = true;
+            self.planner.finish();
+            self.take_spans();
+            self.happen_before(u64::MAX);
+        }
+    }
+
+    fn take_spans(&mut self) {
+        while let Some(span) = self.planner.pop() {
+            self.happen_before(span.piece);
+            let Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, jerk_mm_s3, motion } = span;
+            let tau_s = self.clock.advance(duration_s);
+            let phase =
+                Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, jerk_mm_s3, motion, rest: None };
+            self.ready.push_back(Planned::Phase(phase));
+        }
+    }
+
+    /// Hands out what comes before a planned piece.
+    fn happen_before(&mut self, piece: u64) {
+        while self.between.front().is_some_and(|between| between.before <= piece) {
+            let Some(Between { piece, from_mm, event, rest, .. }) = self.between.pop_front() else {
+                return;
+            };
+            if let Some(event) = event {
+                self.ready.push_back(Planned::Event(TimedEvent {
+                    tau_s: self.clock.total(),
+                    duration_s: rest.map_or(0.0, |(seconds, _)| seconds),
+                    event,
+                }));
+            }
+            if let Some((duration_s, line)) = rest.filter(|(seconds, _)| *seconds > 0.0) {
+                let tau_s = self.clock.advance(duration_s);
+                let (speed_mm_s, accel_mm_s2, jerk_mm_s3) = (0.0, 0.0, 0.0);
+                let rest = Some(line);
+                let phase = Phase {
+                    tau_s,
+                    duration_s,
+                    piece,
+                    from_mm,
+                    speed_mm_s,
+                    accel_mm_s2,
+                    jerk_mm_s3,
+                    motion: None,
+                    rest,
+                };
+                self.ready.push_back(Planned::Phase(phase));
+            }
+        }
+    }
+}
+
+impl Iterator for Plan<'_> {
+    type Item = Planned;
+
+    fn next(&mut self) -> Option<Planned> {
+        loop {
+            if let Some(planned) = self.ready.pop_front() {
+                if let Some(sink) = self.sink {
+                    sink.planned(&planned);
+                }
+                return Some(planned);
+            }
+            if self.finished {
+                return None;
+            }
+            self.read_step();
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! Machine files: what the simulated or real machine is, read from TOML and checked value by value.
+//!
+//! A machine is a file; `machines/tnv40.toml` explains every key beside its value. [`Machine::load`] takes the name of
+//! a machine that is built in or the path of a file. A later part of a machine (a compliant transmission, an encoder)
+//! is an optional table of the file: one struct here, one `Option` field in [`Machine`] or [`Axis`], one table in
+//! [`keys`], one reader in `layout`.
+
+mod axis;
+mod error;
+pub mod keys;
+mod known;
+mod layout;
+mod plan_limits;
+mod statistics;
+
+use std::ffi::OsStr;
+use std::path::Path;
+
+use feedwright_control::{AxisLaw, Periods};
+use feedwright_gcode::input;
+use feedwright_plan::{Durations, PlcEvent};
+use serde::Serialize;
+
+use crate::toml_file::key::write;
+use crate::toml_file::{self, FileError, quoted, read_text};
+pub use axis::{Axis, Transmission};
+use error::KIND;
+pub use error::MachineError;
+pub use known::{Known, KnownAxis};
+
+/// Machines that need no file: name and text.
+pub const BUILT_IN_MACHINES: &[(&str, &str)] = &[
+    ("tnv40", include_str!("../machines/tnv40.toml")),
+    ("heavy", include_str!("../machines/heavy.toml")),
+    ("sticky", include_str!("../machines/sticky.toml")),
+    ("rough", include_str!("../machines/rough.toml")),
+    ("soft", include_str!("../machines/soft.toml")),
+    ("coarse", include_str!("../machines/coarse.toml")),
+    ("workshop", include_str!("../machines/workshop.toml")),
+    ("stiff", include_str!("../machines/stiff.toml")),
+    ("router", include_str!("../machines/router.toml")),
+    ("emps", include_str!("../machines/emps.toml")),
+    ("sinumerik", include_str!("../machines/sinumerik.toml")),
+];
+
+/// What is cut on where nothing else is said: the built-in machine that is most like one that somebody has.
+pub const DEFAULT_MACHINE: &str = "workshop";
+
+/// Names of the axes, in the order of every `[f64; 3]` of this library.
+pub const AXIS_NAMES: [&str; 3] = ["x", "y", "z"];
+
+/// A machine, every value checked.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Machine {
+    /// Short name, as in tables and results.
+    pub name: String,
+    /// One line for people.
+    pub description: String,
+    /// Where the values come from.
+    pub source: String,
+    /// Periods of the control and of its simulation.
+    pub period: Period,
+    /// What the machine may be asked for.
+    pub limits: Limits,
+    /// PLC and spindle.
+    pub plc: Durations,
+    /// M-codes that the machine builder gave a meaning, such as a lamp.
+    pub plc_events: Vec<PlcEvent>,
+    /// Two or three axes: x, y and perhaps z.
+    pub axes: Vec<Axis>,
+    /// How the axes lie to each other.
+    #[serde(skip_serializing_if = "is_default")]
+    pub geometry: Squareness,
+    /// What random numbers begin with.
+    #[serde(skip_serializing_if = "is_default")]
+    pub noise: Noise,
+}
+
+/// How far from square the axes are: table `[geometry]`, all zero without it. Positive where the angle between the positive
+/// directions is less than 90 degrees.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Squareness {
+    /// Of y to x, urad.
+    pub squareness_xy_urad: f64,
+    /// Of z to x, urad.
+    pub squareness_xz_urad: f64,
+    /// Of z to y, urad.
+    pub squareness_yz_urad: f64,
+}
+
+/// Random numbers of a machine: table `[noise]`.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub struct Noise {
+    /// Seed; another one gives other numbers of the same statistics.
+    pub seed: u64,
+}
+
+/// Periods of the control and of its simulation.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Period {
+    /// Period of the position loop, s.
+    pub servo_s: f64,
+    /// Period of the speed loop and of the integration of the mechanics, s.
+    pub mechanics_s: f64,
+    /// Mechanics steps in a servo period: `servo_s / mechanics_s`, a whole number.
+    pub mechanics_per_servo: u32,
+}
+
+/// Most servo periods in a feed period: twenty feed periods of preview must fit into the window.
+const MAX_SERVO_PERIODS: f64 = 12.0;
+
+impl Period {
+    /// As the law of an axis takes them.
+    pub fn periods(&self) -> Periods {
+        let Self { servo_s, mechanics_s, mechanics_per_servo } = *self;
+        Periods { servo_s, mechanics_s, mechanics_per_servo }
+    }
+
+    /// Servo periods in a feed period of about `feed_period_s`: at least one, and no more than a preview has room for.
+    pub fn servo_periods(&self, feed_period_s: f64) -> u32 {
+        (feed_period_s / self.servo_s).round().clamp(1.0, MAX_SERVO_PERIODS) as u32
+    }
+}
+
+/// What the machine may be asked for.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Limits {
+    /// Speed of a rapid motion, mm/s.
+    pub rapid_mm_s: f64,
+    /// Highest cutting feed, mm/s.
+    pub max_feed_mm_s: f64,
+    /// Acceleration along the path, mm/s2.
+    pub tangential_accel_mm_s2: f64,
+    /// Acceleration across the path in a curve, mm/s2.
+    pub normal_accel_mm_s2: f64,
+    /// Jump of the velocity vector allowed at a corner, mm/s; 0 stops there.
+    pub corner_jump_mm_s: f64,
+    /// Largest distance of the corrected command from the programmed path, mm.
+    pub max_deviation_mm: f64,
+    /// Largest distance of the planned path from the programmed one where the program says none (G64 without P), um; none is a planner
+    /// that keeps to the programmed path.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub path_tolerance_um: Option<f64>,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+impl Machine {
+    /// A machine by the name of one that is built in, or by the path of a machine file.
+    ///
+    /// Whatever ends in `.toml` or contains a path separator is a path, and so is `-`, the standard input.
+    ///
+    /// # Errors
+    /// No such name or file, a file that cannot be read or is not text, and every fault found in its text.
+    pub fn load(name_or_path: &OsStr) -> Result<Self, MachineError> {
+        let path = Path::new(name_or_path);
+        if is_machine_path(path) {
+            return Self::read(path);
+        }
+        let name = name_or_path.to_string_lossy();
+        BUILT_IN_MACHINES
+            .iter()
+            .find(|(known, _)| *known == name)
+            .map(|(known, text)| Self::parse(&format!("{known}.toml"), text))
+            .unwrap_or_else(|| Err(MachineError::unknown_name(&name, path.is_file())))
+    }
+
+    /// A machine from a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read or is not text, and every fault found in its text.
+    pub fn read(path: &Path) -> Result<Self, MachineError> {
+        let text = read_text(&KIND, path)?;
+        Self::parse(&input::name(path), &text)
+    }
+
+    /// A machine from the text of a machine file; `file` is its name in messages.
+    ///
+    /// # Errors
+    /// Every fault found in the text, in one go.
+    pub fn parse(file: &str, text: &str) -> Result<Self, MachineError> {
+        let invalid = |faults| MachineError::File(FileError::invalid(&KIND, file, text, faults));
+        let document = toml_file::document(text).map_err(invalid)?;
+        let Some(base) = layout::base(&document).map_err(invalid)? else {
+            return layout::machine(&document, None).map_err(invalid);
+        };
+        // The base is a machine of its own: its faults are reported in its own text.
+        let (base_file, base_text) = Self::base_text(file, &base)?;
+        let invalid_base = |faults| MachineError::File(FileError::invalid(&KIND, &base_file, &base_text, faults));
+        let base_document = toml_file::document(&base_text).map_err(invalid_base)?;
+        if layout::base(&base_document).is_ok_and(|base| base.is_some()) {
+            return Err(invalid(vec![layout::chained(&document, &base)]));
+        }
+        layout::machine(&base_document, None).map_err(invalid_base)?;
+        layout::machine(&document, Some(&base_document)).map_err(invalid)
+    }
+
+    /// The text of a machine file that reads as this machine, without a base.
+    pub fn text(&self) -> String {
+        let texts = [("name", &self.name), ("description", &self.description), ("source", &self.source)];
+        let mut text: String = texts.iter().map(|(key, value)| format!("{key} = {}\n", quoted(value))).collect();
+        let mut table = |name: &str, lines: String| text += &format!("\n[{name}]\n{lines}");
+        table("period", write(keys::PERIOD, &self.period));
+        table("limits", write(keys::LIMITS, &self.limits));
+        for (axis, name) in self.axes.iter().zip(AXIS_NAMES) {
+            table(&format!("axis.{name}"), write(keys::AXIS, axis));
+            if let Some(transmission) = &axis.transmission {
+                table(&format!("axis.{name}.transmission"), write(keys::TRANSMISSION, transmission));
+            }
+        }
+        for (name, lines) in
+            [("geometry", write(keys::GEOMETRY, &self.geometry)), ("noise", write(keys::NOISE, &self.noise))]
+        {
+            if !lines.is_empty() {
+                table(name, lines);
+            }
+        }
+        table("plc", write(keys::PLC, &self.plc));
+        for event in &self.plc_events {
+            let p = event.p.map_or(String::new(), |p| format!(" P{p}"));
+            let [row, label] = [&event.row, &event.label].map(|value| quoted(value));
+            let lines = format!("row = {row}\nlabel = {label}\ntakes_s = {:?}\n", event.takes_s);
+            table(&format!("plc.event.\"M{}{p}\"", event.code), lines);
+        }
+        text
+    }
+
+    /// Name and text of a base: a built-in machine, or a file beside the one that names it.
+    fn base_text(file: &str, base: &str) -> Result<(String, String), MachineError> {
+        if let Some((name, text)) = BUILT_IN_MACHINES.iter().find(|(name, _)| *name == base) {
+            return Ok((format!("{name}.toml"), (*text).to_owned()));
+        }
+        if !is_machine_path(Path::new(base)) {
+            return Err(MachineError::unknown_name(base, false));
+        }
+        let path = Path::new(file).parent().unwrap_or(Path::new("")).join(base);
+        Ok((path.display().to_string(), read_text(&KIND, &path)?))
+    }
+
+    /// Whether anything of it is random: then two cuts differ by the seed of the noise.
+    pub fn is_noisy(&self) -> bool {
+        self.axes.iter().any(Axis::is_noisy)
+    }
+
+    /// The same machine with other random numbers.
+    #[must_use]
+    pub fn with_noise_seed(&self, seed: u64) -> Self {
+        Self { noise: Noise { seed }, ..self.clone() }
+    }
+
+    /// The law of the first N axes.
+    pub fn law<const N: usize>(&self) -> [AxisLaw; N] {
+        std::array::from_fn(|i| AxisLaw::new(self.axis(i).parameters(), self.period.periods()))
+    }
+
+    /// Whether each axis has limits of its own, and the path a tolerance: then it is planned axis by axis.
+    pub fn has_axis_limits(&self) -> bool {
+        let limited = |axis: &Axis| {
+            axis.max_velocity_mm_s.is_some() && axis.max_accel_mm_s2.is_some() && axis.max_jerk_mm_s3.is_some()
+        };
+        self.limits.path_tolerance_um.is_some() && self.axes.iter().all(limited)
+    }
+
+    /// The lowest gain of a position loop, 1/s.
+    pub fn slowest_kp_1_s(&self) -> f64 {
+        self.axes.iter().map(|axis| axis.kp_1_s).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Two or three.
+    pub fn axis_count(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// The i-th axis; one that the machine does not have is like its last.
+    pub fn axis(&self, i: usize) -> &Axis {
+        &self.axes[i.min(self.axes.len() - 1)]
+    }
+
+    /// Acceleration that a correction of the i-th axis may add to the plan's, mm/s2: as much as the plan itself has, where nothing else
+    /// is said.
+    pub fn correction_accel_mm_s2(&self, i: usize) -> f64 {
+        let axis = self.axis(i);
+        let planned_mm_s2 = axis.max_accel_mm_s2.filter(|_| self.has_axis_limits());
+        axis.correction_accel_mm_s2.or(planned_mm_s2).unwrap_or(self.limits.normal_accel_mm_s2)
+    }
+
+    /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move equally, whatever
+    /// their names and however long their PLC takes.
+    ///
+    /// Hashed is the JSON of periods, limits and axes, and of geometry and noise where there is any; field order and the
+    /// shortest round-trip form of numbers make it canonical.
+    pub fn fingerprint(&self) -> String {
+        let content = if is_default(&self.geometry) && is_default(&self.noise) {
+            serde_json::json!([self.period, self.limits, self.axes])
+        } else {
+            serde_json::json!([self.period, self.limits, self.axes, self.geometry, self.noise])
+        };
+        blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+    }
+}
+
+/// Whether `--machine` means a file, or the standard input, rather than the name of a built-in machine.
+pub fn is_machine_path(name_or_path: &Path) -> bool {
+    input::is_standard_input(name_or_path)
+        || name_or_path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml"))
+        || name_or_path.components().count() != 1
+}
+
+#[cfg(test)]
+mod tests;

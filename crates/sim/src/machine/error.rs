@@ -1,0 +1,52 @@
+//! Why there is no machine.
+
+use feedwright_gcode::suggestion::nearest;
+use miette::Diagnostic;
+use thiserror::Error;
+
+use super::BUILT_IN_MACHINES;
+use crate::toml_file::{FileError, Kind};
+
+/// A machine file, for messages.
+pub(super) const KIND: Kind = Kind {
+    name: "machine file",
+    is: "a machine file is a page of TOML text, like machines/tnv40.toml",
+    code: "machine::file",
+    where_to_find: "a name without .toml means a built-in machine; 'feedwright machines' lists them",
+};
+
+/// Why there is no machine.
+#[derive(Debug, Error, Diagnostic)]
+pub enum MachineError {
+    /// The name is none of the built-in machines.
+    #[error("no machine is called '{name}'; there is {known}")]
+    UnknownName {
+        /// As it was given.
+        name: String,
+        /// The names there are, for people.
+        known: String,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+    /// The file is none, or has faults.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    File(#[from] FileError),
+}
+
+impl MachineError {
+    /// No such built-in machine; `is_file` when a file of that name stands in the current directory.
+    pub(super) fn unknown_name(name: &str, is_file: bool) -> Self {
+        let names: Vec<&str> = BUILT_IN_MACHINES.iter().map(|(name, _)| *name).collect();
+        let hint = if is_file {
+            format!("for the file of that name, write ./{name}")
+        } else {
+            match nearest(name, &names) {
+                Some(near) => format!("did you mean '{near}'?"),
+                None => "a machine of your own is a file: give its path, ending in .toml".to_owned(),
+            }
+        };
+        Self::UnknownName { name: name.to_owned(), known: names.join(", "), hint }
+    }
+}

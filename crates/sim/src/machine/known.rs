@@ -1,0 +1,155 @@
+//! What may be known of a machine before it is identified: what its control is set to, and what its maker says of its axes.
+//!
+//! Controllers are made from this and from a trained model, never from a [`Machine`]. What is true of a simulated machine alone is
+//! not here: encoder, jitter, steps of the drive, ball screw, cogging and ripple, geometry, noise, phase and frequency of the
+//! disturbance.
+
+use std::f64::consts::TAU;
+
+use feedwright_control::{
+    AxisInverse, AxisKnowledge, AxisLaw, AxisStatistics, DriveParameters, FrictionParameters, LoopDelays, Parameters,
+    Periods, TransmissionParameters,
+};
+
+use super::{Limits, Machine, Period};
+
+/// What is known of a machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Known {
+    /// Periods of the control. That of the speed loop is among them: a drive's manual has it.
+    pub period: Period,
+    /// What the machine may be asked for.
+    pub limits: Limits,
+    axes: Vec<KnownAxis>,
+}
+
+/// What is known of an axis.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct KnownAxis {
+    /// Travel for one motor turn, mm.
+    pub lead_mm_per_rev: f64,
+    /// Its law by the data sheets: loops, inertia, friction, and the torque at which the drive saturates.
+    pub nominal: Parameters,
+    /// What its drive is set to beside.
+    pub drive: DriveParameters,
+    /// What the data sheets say of friction beside.
+    pub friction: FrictionParameters,
+    /// Its ball screw: rigid, until it is identified.
+    pub transmission: TransmissionParameters,
+    /// Whether the position is measured at the table.
+    pub scale_on_table: bool,
+    /// How late the bus and the encoder are; a manual has both.
+    pub delays: LoopDelays,
+    /// Acceleration that a correction may add to the plan's, mm/s2.
+    pub correction_accel_mm_s2: f64,
+    /// Torque that is left for acceleration, N m: less friction, and less what the load takes at the most. The amplitude of a load
+    /// is known, since drives are chosen by it; its course is not.
+    pub spare_torque_nm: f64,
+}
+
+impl Known {
+    /// The i-th axis; one that the machine does not have is like its last.
+    pub fn axis(&self, i: usize) -> &KnownAxis {
+        &self.axes[i.min(self.axes.len() - 1)]
+    }
+
+    /// The first N axes.
+    pub fn axes<const N: usize>(&self) -> [KnownAxis; N] {
+        std::array::from_fn(|i| *self.axis(i))
+    }
+
+    /// The same with wrong values of the axes: inertia and all friction by these factors. What the control is set to (gains,
+    /// feedforward, delays) is read off it and stays right. The torque that is left for acceleration follows from what is believed.
+    #[must_use]
+    pub fn misjudged(&self, inertia: f64, friction: f64) -> Self {
+        let axis = |axis: &KnownAxis| {
+            let mut believed = *axis;
+            believed.nominal.inertia_kg_m2 *= inertia;
+            believed.nominal.viscous_friction_nm_s *= friction;
+            believed.nominal.coulomb_friction_nm *= friction;
+            believed.friction.coulomb_asymmetry_nm *= friction;
+            believed.friction.stribeck_nm *= friction;
+            let more_nm = believed.nominal.coulomb_friction_nm - axis.nominal.coulomb_friction_nm;
+            believed.spare_torque_nm = (axis.spare_torque_nm - more_nm).max(0.0);
+            believed
+        };
+        self.with_axes(|_, known| axis(known))
+    }
+
+    /// The same with other axes, made of those that it has, by their numbers.
+    #[must_use]
+    pub fn with_axes(&self, axis: impl Fn(usize, &KnownAxis) -> KnownAxis) -> Self {
+        let axes = self.axes.iter().enumerate().map(|(i, known)| axis(i, known)).collect();
+        Self { axes, ..self.clone() }
+    }
+
+    /// The nominal law of the first N axes.
+    pub fn law<const N: usize>(&self) -> [AxisLaw; N] {
+        std::array::from_fn(|i| AxisLaw::new(self.axis(i).nominal, self.period.periods()))
+    }
+
+    /// The inverse of the first N axes, with all that is known of them.
+    pub fn inverse<const N: usize>(&self) -> [AxisInverse; N] {
+        let laws = self.law::<N>();
+        std::array::from_fn(|i| {
+            let axis = self.axis(i);
+            AxisInverse::new(laws[i], axis.drive, axis.friction, axis.delays)
+        })
+    }
+}
+
+impl KnownAxis {
+    /// With periods and statistics, as a controller takes it.
+    pub fn with_statistics(&self, periods: Periods, statistics: AxisStatistics) -> AxisKnowledge {
+        let Self { nominal: parameters, drive, friction, transmission, delays, .. } = *self;
+        AxisKnowledge { parameters, periods, drive, friction, transmission, delays, statistics }
+    }
+
+    /// Acceleration of the tool with the torque that is left for it, mm/s2.
+    pub fn drive_mm_s2(&self) -> f64 {
+        self.spare_torque_nm / self.nominal.inertia_kg_m2 * self.lead_mm_per_rev / TAU
+    }
+}
+
+impl Machine {
+    /// What is known of it.
+    pub fn known(&self) -> Known {
+        let axis = |(i, axis): (usize, &super::Axis)| KnownAxis {
+            lead_mm_per_rev: axis.lead_mm_per_rev,
+            nominal: axis.parameters(),
+            drive: axis.drive(),
+            friction: axis.friction(),
+            transmission: TransmissionParameters::RIGID,
+            scale_on_table: axis.transmission.is_some_and(|screw| screw.scale_on_table),
+            delays: LoopDelays { drive_s: axis.drive_delay_s, measurement_s: axis.measurement_delay_s },
+            correction_accel_mm_s2: self.correction_accel_mm_s2(i),
+            spare_torque_nm: (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0),
+        };
+        Known { period: self.period, limits: self.limits, axes: self.axes.iter().enumerate().map(axis).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_misjudged_is_inertia_and_friction_and_no_setting() {
+        let known = Machine::load("tnv40".as_ref()).unwrap().known();
+        let believed = known.misjudged(0.8, 1.2);
+        for i in 0..2 {
+            let (was, is) = (known.axis(i), believed.axis(i));
+            assert_eq!(is.nominal.inertia_kg_m2, 0.8 * was.nominal.inertia_kg_m2);
+            assert_eq!(is.nominal.viscous_friction_nm_s, 1.2 * was.nominal.viscous_friction_nm_s);
+            assert_eq!(is.nominal.coulomb_friction_nm, 1.2 * was.nominal.coulomb_friction_nm);
+            let more_nm = 0.2 * was.nominal.coulomb_friction_nm;
+            assert!((was.spare_torque_nm - is.spare_torque_nm - more_nm).abs() < 1e-12);
+            assert_eq!(
+                (is.nominal.kp_1_s, is.nominal.kv_nm_s_per_rad),
+                (was.nominal.kp_1_s, was.nominal.kv_nm_s_per_rad)
+            );
+            assert_eq!(is.drive, was.drive);
+        }
+        assert_eq!(known.misjudged(1.0, 1.0), known);
+    }
+}

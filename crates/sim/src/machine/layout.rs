@@ -1,0 +1,308 @@
+//! The layout of a machine file: its tables, and what holds between their values.
+
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+use super::{AXIS_NAMES, Axis, Machine, Noise, Period, Squareness, Transmission, keys};
+use crate::toml_file::key::{read, read_all};
+use crate::toml_file::{Document, Fault, Table};
+use feedwright_plan::{Durations, PlcEvent};
+
+/// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
+/// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.
+const WHOLE_RATIO_TOLERANCE: f64 = 1e-12;
+
+/// More mechanics steps than this within a servo period are a mistaken unit, and nobody could wait for them.
+const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
+
+/// The name of the machine that a file builds upon, where it does.
+pub(super) fn base(document: &Document<'_>) -> Result<Option<String>, Vec<Fault>> {
+    let mut faults = Vec::new();
+    let name = document.get_ref().contains_key("base").then(|| Table::root(document, None).text("base", &mut faults));
+    if faults.is_empty() { Ok(name) } else { Err(faults) }
+}
+
+/// The base builds upon another machine.
+pub(super) fn chained(document: &Document<'_>, base: &str) -> Fault {
+    Fault {
+        at: document.get_ref().get("base").map_or(0..0, toml::Spanned::span),
+        label: "has a base itself",
+        message: format!("base: '{base}' builds upon another machine itself"),
+        hint: Some("name that machine, and repeat here what differs".to_owned()),
+    }
+}
+
+/// The machine that a file describes, upon a base without faults where it has one, or every fault in it.
+pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> Result<Machine, Vec<Fault>> {
+    let mut faults = Vec::new();
+    let mut root = Table::root(document, base);
+    if base.is_some() {
+        root.text("base", &mut faults);
+    }
+    let period = period(root.table("period", &mut faults), &mut faults);
+    let mut plc_events = Vec::new();
+    let [name, description, source] = ["name", "description", "source"].map(|key| root.text(key, &mut faults));
+    let limits = root.table("limits", &mut faults);
+    let in_limits = limits.header();
+    let machine = Machine {
+        name,
+        description,
+        source,
+        period,
+        limits: read_all(keys::LIMITS, limits, &mut faults),
+        plc: root
+            .optional_table("plc", &mut faults)
+            .map(|table| plc(table, &mut plc_events, &mut faults))
+            .unwrap_or_default(),
+        plc_events,
+        axes: axes(root.table("axis", &mut faults), period, &mut faults),
+        geometry: root
+            .optional_table("geometry", &mut faults)
+            .map_or(Squareness::default(), |table| read_all(keys::GEOMETRY, table, &mut faults)),
+        noise: root
+            .optional_table("noise", &mut faults)
+            .map_or(Noise::default(), |table| read_all(keys::NOISE, table, &mut faults)),
+    };
+    tolerance_with_axes(&machine, in_limits, &mut faults);
+    root.finish(&mut faults);
+    if faults.is_empty() { Ok(machine) } else { Err(faults) }
+}
+
+/// A tolerance of the path asks for a planner that needs the limits of each axis; these alone stand there for what else uses them.
+fn tolerance_with_axes(machine: &Machine, at: Range<usize>, faults: &mut Vec<Fault>) {
+    let limited = machine.axes.iter().all(|axis| axis.max_velocity_mm_s.is_some());
+    if let (false, Some(tolerance_um)) = (limited, machine.limits.path_tolerance_um) {
+        faults.push(Fault {
+            at,
+            label: "not without limits of the axes",
+            message: format!("path_tolerance_um is {tolerance_um} um, and the axes have no limits of their own"),
+            hint: Some(format!("give each axis {}, or leave path_tolerance_um out", AXIS_LIMITS.join(", "))),
+        });
+    }
+}
+
+/// The limits of an axis: all or none.
+const AXIS_LIMITS: [&str; 3] = ["max_velocity_mm_s", "max_accel_mm_s2", "max_jerk_mm_s3"];
+
+fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
+    let Period { servo_s, mechanics_s, .. } = read(keys::PERIOD, &mut table, faults);
+    let ratio = servo_s / mechanics_s;
+    // A value that has a fault of its own is NaN here and gets no second one.
+    let is_whole = (ratio - ratio.round()).abs() <= WHOLE_RATIO_TOLERANCE * ratio;
+    if ratio.is_finite() && (!is_whole || !(1.0..=MAX_MECHANICS_PER_SERVO).contains(&ratio.round())) {
+        let steps = ratio.round().clamp(1.0, MAX_MECHANICS_PER_SERVO);
+        faults.push(Fault {
+            at: table.place("mechanics_s"),
+            label: "does not divide servo_s",
+            message: format!(
+                "servo_s is {ratio} times mechanics_s ({servo_s} s / {mechanics_s} s); it must be a whole multiple from 1 to {MAX_MECHANICS_PER_SERVO}"
+            ),
+            hint: Some(format!("mechanics_s = {} s gives {steps} steps", servo_s / steps)),
+        });
+    }
+    table.finish(faults);
+    Period { servo_s, mechanics_s, mechanics_per_servo: ratio.round() as u32 }
+}
+
+fn plc(mut table: Table<'_, '_>, events: &mut Vec<PlcEvent>, faults: &mut Vec<Fault>) -> Durations {
+    let durations = read(keys::PLC, &mut table, faults);
+    if let Some(named) = table.optional_table("event", faults) {
+        for (key, table) in named.tables(faults) {
+            events.extend(plc_event(&key, table, events, faults));
+        }
+    }
+    table.finish(faults);
+    durations
+}
+
+fn plc_event(key: &str, mut table: Table<'_, '_>, before: &[PlcEvent], faults: &mut Vec<Fault>) -> Option<PlcEvent> {
+    let event = m_code(key).map(|(code, p)| PlcEvent {
+        code,
+        p,
+        row: table.text("row", faults),
+        label: table.text("label", faults),
+        takes_s: table.number("takes_s", "s", 0.0..=1e4, faults),
+    });
+    let at = table.header();
+    let fault = |label, message, hint: &str| faults.push(Fault { at, label, message, hint: Some(hint.to_owned()) });
+    match &event {
+        None => {
+            fault(
+                "no M-code",
+                format!("[plc.event] names '{key}', which is no M-code"),
+                "write \"M64 P3\" or \"M100\"",
+            );
+            return None;
+        }
+        Some(event) if CODES_OF_THEIR_OWN.contains(&event.code) => {
+            fault(
+                "has a meaning of its own",
+                format!("M{} cannot be given another meaning", event.code),
+                "its duration is a key of [plc], where it has one",
+            );
+        }
+        Some(event) if before.iter().any(|other| (other.code, other.p) == (event.code, event.p)) => {
+            fault("named twice", format!("'{key}' is another spelling of an M-code that is named already"), "keep one");
+        }
+        Some(_) => {}
+    }
+    table.finish(faults);
+    event
+}
+
+/// M-codes whose meaning no machine builder changes: stops, spindle, tool change, coolant, overrides, pallets, modes.
+const CODES_OF_THEIR_OWN: [u16; 23] =
+    [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 30, 48, 49, 50, 51, 52, 53, 60, 70, 71, 72, 73, 99];
+
+/// `M64 P3`: the code and its P word, blanks and case free.
+fn m_code(key: &str) -> Option<(u16, Option<u32>)> {
+    let key: String = key.chars().filter(|c| !c.is_whitespace()).map(|c| c.to_ascii_uppercase()).collect();
+    let words = key.strip_prefix('M')?;
+    // `parse` alone would take a sign.
+    let number = |digits: &str| digits.bytes().all(|byte| byte.is_ascii_digit()).then(|| digits.parse().ok()).flatten();
+    let (code, p) = match words.split_once('P') {
+        Some((code, p)) => (number(code)?, Some(number(p)?)),
+        None => (number(words)?, None),
+    };
+    u16::try_from(code).ok().filter(|&code| code <= LAST_M_CODE).map(|code| (code, p))
+}
+
+/// As the reader has it.
+const LAST_M_CODE: u16 = 9999;
+
+fn axes(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Vec<Axis> {
+    let [x, y, z] = AXIS_NAMES;
+    let mut axes: Vec<Axis> = [x, y].into_iter().map(|name| axis(table.table(name, faults), period, faults)).collect();
+    if let Some(present) = table.optional_table(z, faults) {
+        axes.push(axis(present, period, faults));
+    }
+    let limited = axes.iter().position(|axis| axis.max_velocity_mm_s.is_some());
+    let unlimited = axes.iter().position(|axis| axis.max_velocity_mm_s.is_none());
+    if let (Some(limited), Some(unlimited)) = (limited, unlimited)
+        && axes.iter().all(|axis| axis.max_velocity_mm_s.is_some() == axis.max_jerk_mm_s3.is_some())
+    {
+        let [has, lacks] = [limited, unlimited].map(|i| AXIS_NAMES[i]);
+        faults.push(Fault {
+            at: table.header(),
+            label: "some axes with limits, some without",
+            message: format!("axis.{has} has limits of its own, and axis.{lacks} lacks {}", AXIS_LIMITS.join(", ")),
+            hint: Some("a planner that plans axis by axis needs those of every axis".to_owned()),
+        });
+    }
+    table.finish(faults);
+    axes
+}
+
+fn axis(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Axis {
+    let transmission = table.optional_table("transmission", faults);
+    let mut axis: Axis = read(keys::AXIS, &mut table, faults);
+    axis.transmission = transmission.map(|table| self::transmission(table, period.mechanics_s, faults));
+    between_keys(&axis, &period, &table, faults);
+    table.finish(faults);
+    axis
+}
+
+/// Longest delay, in servo periods: what is under way is kept.
+const MAX_DELAY_PERIODS: f64 = 60.0;
+
+/// An axis has all of its limits or none.
+fn all_limits(axis: &Axis, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
+    let limits = [axis.max_velocity_mm_s, axis.max_accel_mm_s2, axis.max_jerk_mm_s3];
+    let those = |there: bool| {
+        let named = AXIS_LIMITS.iter().zip(limits).filter(move |(_, limit)| limit.is_some() == there);
+        named.map(|(name, _)| *name).collect::<Vec<_>>()
+    };
+    if let ([first, ..], [_, ..]) = (&those(true)[..], &those(false)[..]) {
+        faults.push(Fault {
+            at: table.place(first),
+            label: "not without the others",
+            message: format!(
+                "{} given, {} missing: an axis has all three or none",
+                those(true).join(", "),
+                those(false).join(", ")
+            ),
+            hint: Some("a limit that no planner could keep is not dropped silently".to_owned()),
+        });
+    }
+}
+
+/// What holds between the values of an axis.
+fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
+    let pairs = [
+        (axis.interpolation_error_um, "interpolation_error_um", axis.signal_period_um, "signal_period_um"),
+        (axis.stribeck_nm, "stribeck_nm", axis.stribeck_mm_s, "stribeck_mm_s"),
+        (axis.cogging_nm, "cogging_nm", axis.cogging_per_rev, "cogging_per_rev"),
+        (axis.ripple, "ripple", axis.ripple_per_rev, "ripple_per_rev"),
+    ];
+    for (amount, key, over, needed) in pairs {
+        if amount > 0.0 && over == 0.0 {
+            faults.push(Fault {
+                at: table.place(key),
+                label: "says how much, but not over what",
+                message: format!("{key} is {amount}, and {needed} is 0 or not there"),
+                hint: Some(format!("give {needed} above 0, or leave {key} out")),
+            });
+        }
+    }
+    all_limits(axis, table, faults);
+    let (asymmetry_nm, coulomb_nm) = (axis.coulomb_asymmetry_nm, axis.coulomb_friction_nm);
+    if asymmetry_nm.abs() > coulomb_nm {
+        faults.push(Fault {
+            at: table.place("coulomb_asymmetry_nm"),
+            label: "friction would drive",
+            message: format!(
+                "coulomb_asymmetry_nm is {asymmetry_nm} N m; it must lie within the Coulomb friction, {coulomb_nm} N m each way"
+            ),
+            hint: Some("it is half the difference of the friction torques of both directions".to_owned()),
+        });
+    }
+    for (delay_s, key) in [(axis.drive_delay_s, "drive_delay_s"), (axis.measurement_delay_s, "measurement_delay_s")] {
+        if delay_s > MAX_DELAY_PERIODS * period.servo_s {
+            let most_s = MAX_DELAY_PERIODS * period.servo_s;
+            faults.push(Fault {
+                at: table.place(key),
+                label: "too many servo periods",
+                message: format!(
+                    "{key} is {delay_s} s; with servo_s of {} s it must be {most_s} s or less",
+                    period.servo_s
+                ),
+                hint: None,
+            });
+        }
+    }
+    if axis.jitter_s > period.servo_s {
+        faults.push(Fault {
+            at: table.place("jitter_s"),
+            label: "longer than servo_s",
+            message: format!(
+                "jitter_s is {} s; it must lie within a servo period, {} s",
+                axis.jitter_s, period.servo_s
+            ),
+            hint: Some("what all references are late by is drive_delay_s".to_owned()),
+        });
+    }
+}
+
+/// The two masses may turn by this angle against each other within a mechanics period, rad: beyond, the integration loses
+/// the frequency by more than a percent.
+const MAX_PHASE_RAD: f64 = 0.5;
+
+fn transmission(mut table: Table<'_, '_>, mechanics_s: f64, faults: &mut Vec<Fault>) -> Transmission {
+    let transmission: Transmission = read(keys::TRANSMISSION, &mut table, faults);
+    let free_rad_s = TAU * transmission.resonance_hz / (1.0 - transmission.table_share).sqrt();
+    if free_rad_s * mechanics_s > MAX_PHASE_RAD {
+        let finest = MAX_PHASE_RAD / free_rad_s;
+        faults.push(Fault {
+            at: table.place("resonance_hz"),
+            label: "too fast for mechanics_s",
+            message: format!(
+                "resonance_hz is {} Hz, with which motor and table swing against each other at {:.0} Hz; mechanics_s of {mechanics_s} s cannot follow that",
+                transmission.resonance_hz,
+                free_rad_s / TAU
+            ),
+            hint: Some(format!("mechanics_s has to be {finest:.1e} s or less")),
+        });
+    }
+    table.finish(faults);
+    transmission
+}

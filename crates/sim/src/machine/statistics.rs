@@ -1,0 +1,37 @@
+//! What is true of a simulated axis beside what may be known of it ([`super::Known`]): statistics of its noise, what depends on the
+//! angle of the motor, with its phase, and the load.
+//!
+//! It is for the limit alone ([`feedwright::lqg_preview`]): what a controller would reach that knew all that can be known. The
+//! random numbers themselves nobody knows.
+
+use std::f64::consts::TAU;
+
+use feedwright_control::AxisStatistics;
+
+use super::Machine;
+
+impl Machine {
+    /// What is true of its axes.
+    pub fn statistics<const N: usize>(&self) -> [AxisStatistics; N] {
+        std::array::from_fn(|i| {
+            let axis = self.axis(i);
+            let rad = |um: f64| um * 1e-3 * axis.rad_per_mm();
+            let signal_rad = rad(axis.signal_period_um);
+            AxisStatistics {
+                encoder_noise_rad: rad(axis.encoder_noise_um),
+                encoder_step_rad: rad(axis.encoder_step_um),
+                interpolation_rad: rad(axis.interpolation_error_um),
+                interpolation_phase_rad: 0.0,
+                signal_per_rad: if signal_rad > 0.0 { TAU / signal_rad } else { 0.0 },
+                torque_noise_nm: axis.torque_noise_nm,
+                torque_noise_s: axis.torque_noise_s,
+                disturbance_nm: axis.disturbance_nm,
+                disturbance_rad_s: TAU * axis.disturbance_hz,
+                disturbance_wander: axis.disturbance_wander,
+                cogging_nm: axis.cogging_nm,
+                cogging_phase_rad: 0.0,
+                cogging_per_rev: axis.cogging_per_rev,
+            }
+        })
+    }
+}

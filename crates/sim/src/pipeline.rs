@@ -1,0 +1,321 @@
+//! One run: from the steps of a program to the rows of its cut, in the order in which data flows.
+//!
+//! ```text
+//! pieces -> blend -> plan -> reference -> loop of controller and plant -> rows
+//! ```
+//!
+//! Whatever cuts goes through [`Run`]: the main job, the comparison, the experiments of the paper, the excitation of an
+//! identification, tests.
+
+use std::sync::Arc;
+
+use feedwright_control::Controller;
+use feedwright_gcode::ReadError;
+use feedwright_gcode::canon::Canon;
+use feedwright_plan::{
+    AlignedPaths, BLENDS, BlendMember, BlendedSteps, Constraints, FEED_PLANNERS, FeedMember, LimitsError, PathError,
+    Pieces, Plan, PlanSink, Plc, SpeedCaps, Step, Steps,
+};
+use thiserror::Error;
+
+use crate::machine::Machine;
+use crate::reference::Reference;
+use crate::simulate::{RunResult, Stopped, simulate};
+use crate::trace::Sink;
+use crate::watch::{Cancelled, Watch};
+
+/// The members of the families that make a plan of a path.
+#[derive(Debug, Clone, Copy)]
+pub struct Stages {
+    /// From the programmed path to the planned one.
+    pub blend: &'static BlendMember,
+    /// Speed over the planned path.
+    pub planner: &'static FeedMember,
+}
+
+impl Default for Stages {
+    /// The first of each family.
+    fn default() -> Self {
+        Self { blend: &BLENDS[0], planner: &FEED_PLANNERS[0] }
+    }
+}
+
+impl Stages {
+    /// Those that suit a machine: where each axis has limits of its own, the planner that keeps them; otherwise the first of each family.
+    pub fn of(machine: &Machine) -> Self {
+        let planner = FEED_PLANNERS.iter().find(|member| member.needs_axes == machine.has_axis_limits());
+        Self { planner: planner.unwrap_or(&FEED_PLANNERS[0]), ..Self::default() }
+    }
+
+    /// The reference of the steps of a program on a machine.
+    ///
+    /// # Errors
+    /// Where a limit of the machine is none.
+    pub fn reference<'p>(self, steps: Steps<'p>, machine: &Machine) -> Result<Reference<'p>, LimitsError> {
+        self.reference_within(steps, machine, &Constraints::from(machine))
+    }
+
+    /// The same within other constraints than the machine's.
+    ///
+    /// # Errors
+    /// Where a limit is none.
+    pub fn reference_within<'p>(
+        self,
+        steps: Steps<'p>,
+        machine: &Machine,
+        constraints: &Constraints,
+    ) -> Result<Reference<'p>, LimitsError> {
+        self.reference_of(self.blended(steps, constraints), machine, constraints, None)
+    }
+
+    /// The planned path beside the programmed one.
+    fn blended<'p>(self, steps: Steps<'p>, constraints: &Constraints) -> BlendedSteps<'p> {
+        (self.blend.make)(steps, constraints)
+    }
+
+    /// The reference of two paths that are there already.
+    fn reference_of<'p>(
+        self,
+        blended: BlendedSteps<'p>,
+        machine: &Machine,
+        constraints: &Constraints,
+        sink: Option<&'p dyn PlanSink>,
+    ) -> Result<Reference<'p>, LimitsError> {
+        Ok(Reference::new(Plan::new(blended, constraints, self.planner, Plc::from(machine))?.told_to(sink)))
+    }
+}
+
+/// The pieces of a program.
+pub fn path_steps<'p>(program: impl IntoIterator<Item = Canon, IntoIter: Send + 'p>) -> Steps<'p> {
+    Box::new(Pieces::new(program.into_iter()))
+}
+
+/// The noise of a lap of practice has the machine's seed and so many bits further up the number of the lap: further apart than seeds
+/// that are counted through.
+const LAP_SEED_SHIFT: u32 = 32;
+
+/// A cut that is about to be made.
+#[derive(Clone, Copy)]
+pub struct Run<'a> {
+    machine: &'a Machine,
+    caps: Option<&'a Arc<SpeedCaps>>,
+    stages: Stages,
+    laps: u32,
+    plan_sink: Option<&'a dyn PlanSink>,
+    watch: &'a dyn Watch,
+}
+
+/// Why a cut was not made to its end.
+#[derive(Debug, Error, miette::Diagnostic)]
+pub enum RunError {
+    /// The program cannot be read.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Read(#[from] ReadError),
+    /// A limit of the machine is none.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Limits(#[from] LimitsError),
+    /// A motion has no path.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Path(#[from] PathError),
+    /// A sink takes no more rows.
+    #[error("cannot write the rows: {0}")]
+    Write(std::io::Error),
+    /// A correction keeps each servo period of a cut in memory.
+    #[error("the program takes more than {:.1} h, {most_periods} servo periods: a correction keeps all of them in memory", most_s / 3600.0)]
+    #[diagnostic(help("split the program and correct its parts one by one"))]
+    TooLong {
+        /// Servo periods that it may have.
+        most_periods: usize,
+        /// How long they take, s.
+        most_s: f64,
+    },
+    /// Ended from outside.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+impl From<Stopped> for RunError {
+    fn from(stopped: Stopped) -> Self {
+        match stopped {
+            Stopped::Write(error) => Self::Write(error),
+            Stopped::Cancelled(cancelled) => Self::Cancelled(cancelled),
+        }
+    }
+}
+
+impl<'a> Run<'a> {
+    /// One lap on a machine, by the stages that suit it.
+    pub fn on(machine: &'a Machine) -> Self {
+        Self { machine, caps: None, stages: Stages::of(machine), laps: 1, plan_sink: None, watch: &() }
+    }
+
+    /// With laps of practice: the last of so many counts.
+    #[must_use]
+    pub const fn laps(self, laps: u32) -> Self {
+        Self { laps, ..self }
+    }
+
+    /// With bounds on the speed, place by place.
+    #[must_use]
+    pub const fn capped(self, caps: Option<&'a Arc<SpeedCaps>>) -> Self {
+        Self { caps, ..self }
+    }
+
+    /// With other members of the families.
+    #[must_use]
+    pub const fn stages(self, stages: Stages) -> Self {
+        Self { stages, ..self }
+    }
+
+    /// With one who is told of the plan of the last lap.
+    #[must_use]
+    pub const fn planned_to(self, plan_sink: Option<&'a dyn PlanSink>) -> Self {
+        Self { plan_sink, ..self }
+    }
+
+    /// Ended by this one.
+    #[must_use]
+    pub const fn watched(self, watch: &'a dyn Watch) -> Self {
+        Self { watch, ..self }
+    }
+
+    /// Cuts a path that is in memory, with a controller that begins anew; every row of the last lap goes to every sink.
+    ///
+    /// # Errors
+    /// A machine without sensible limits, a sink that takes no more, or an end from outside.
+    pub fn cut_steps<const N: usize>(
+        &self,
+        steps: &[Step],
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        self.cut(|| Ok(Box::new(steps.iter().cloned().map(Ok))), controller, sinks)
+    }
+
+    /// As [`Run::cut_steps`], of a path that is read for each lap anew.
+    ///
+    /// # Errors
+    /// A path that cannot be read or is none, too.
+    pub fn cut<'p, const N: usize>(
+        &self,
+        mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        self.laps_of(|run| Ok(run.blended(steps()?)), controller, sinks)
+    }
+
+    /// All laps, each along paths of its own.
+    fn laps_of<'p, const N: usize>(
+        &self,
+        mut blended: impl FnMut(&Run<'_>) -> Result<BlendedSteps<'p>, ReadError>,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        controller.reset();
+        for lap in 1..self.laps {
+            // Noise does not repeat itself from lap to lap: what is learned of it is of no use.
+            let seed = self.machine.noise.seed.wrapping_add(u64::from(lap) << LAP_SEED_SHIFT);
+            let practice = self.machine.with_noise_seed(seed);
+            let practising = Run { machine: &practice, plan_sink: None, ..*self };
+            practising.lap(blended(&practising)?, controller, &mut [])?;
+            controller.next_lap();
+        }
+        self.lap(blended(self)?, controller, sinks)
+    }
+
+    /// As [`Run::cut`], along the path of another program, with errors to the programmed one.
+    ///
+    /// # Errors
+    /// See there.
+    pub fn cut_aligned<const N: usize>(
+        &self,
+        aligned: &AlignedPaths,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        let mut result = self.laps_of(|_| Ok(aligned.steps()), controller, sinks)?;
+        result.uncut_mm = result.uncut_mm.max(aligned.left_out_mm);
+        Ok(result)
+    }
+
+    fn constraints(&self) -> Constraints {
+        Constraints { speed_caps: self.caps.cloned(), ..Constraints::from(self.machine) }
+    }
+
+    fn blended<'p>(&self, steps: Steps<'p>) -> BlendedSteps<'p> {
+        self.stages.blended(steps, &self.constraints())
+    }
+
+    fn lap<const N: usize>(
+        &self,
+        blended: BlendedSteps<'_>,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> Result<RunResult, RunError> {
+        let mut reference = self.stages.reference_of(blended, self.machine, &self.constraints(), self.plan_sink)?;
+        let result = simulate(self.machine, &mut reference, controller, sinks, self.watch)?;
+        match reference.fault() {
+            Some(fault) => Err(fault.clone().into()),
+            None => Ok(result),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use feedwright_control::Window;
+    use feedwright_control::{Command, Measured, Schedule};
+
+    use feedwright_gcode::{Reader, Settings};
+
+    use super::*;
+
+    /// Adds up what it measures in each lap.
+    #[derive(Default)]
+    struct Seen(Vec<f64>);
+
+    impl Controller<2> for Seen {
+        fn schedule(&self) -> Schedule {
+            Schedule { servo_periods: 1, preview: 0 }
+        }
+
+        fn reset(&mut self) {
+            self.0 = vec![0.0];
+        }
+
+        fn next_lap(&mut self) {
+            self.0.push(0.0);
+        }
+
+        fn command(&mut self, _: &Window<'_, 2>, measured: &Measured<2>) -> Command<2> {
+            if let Some(sum) = self.0.last_mut() {
+                *sum += measured.position_mm[0];
+            }
+            Command::straight(1.0, [0.0; 2])
+        }
+    }
+
+    #[test]
+    fn laps_differ_in_their_noise_and_in_nothing_else() {
+        let circle =
+            Reader::from_text("circle.ngc", "G17 G21 G90 G61 F3000\nG2 X0 Y0 I10 J0\nM2\n", Settings::default());
+        let steps = path_steps(circle.unwrap().map(Result::unwrap)).collect::<Result<Vec<_>, _>>().unwrap();
+        let quiet = Machine::load("tnv40".as_ref()).unwrap();
+        let mut noisy = quiet.clone();
+        noisy.axes[0].encoder_noise_um = 1.0;
+        let laps = |machine: &Machine| {
+            let mut seen = Seen::default();
+            Run::on(machine).laps(3).cut_steps(&steps, &mut seen, &mut []).unwrap();
+            seen.0
+        };
+        let [a, b, c] = laps(&quiet).try_into().unwrap();
+        assert!(a == b && b == c, "{a} {b} {c}");
+        let [a, b, c] = laps(&noisy).try_into().unwrap();
+        assert!(a != b && b != c && a != c, "{a} {b} {c}");
+    }
+}

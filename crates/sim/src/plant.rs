@@ -1,0 +1,257 @@
+//! The machine: position servo, drive and mechanics of each axis.
+//!
+//! Each axis follows the law of [`feedwright_control::axis`] under the load of a disturbance, D sin(2 pi f t), with D and f of the
+//! machine file. The command is held for one servo period; t, and with it the disturbance, is taken at the start of each mechanics
+//! period; the axis starts at rest.
+//!
+//! A machine file may add what a real axis has on top, each in its own file:
+//!
+//! | File | What |
+//! |---|---|
+//! | `plant/drive.rs` | delay and jitter of what goes to the drive, steps of the torque command |
+//! | `plant/encoder.rs` | what is measured: interpolation error, noise, steps, latency, speed by differences |
+//! | `plant/torque.rs` | ripple and cogging of the motor, broadband torque, a disturbance whose frequency wanders |
+//! | `plant/noise.rs` | the random numbers of all of these |
+//! | `plant/nonideal.rs` | an axis with all of it |
+//!
+//! What a controller may have to predict of a drive and of friction stands in [`feedwright_control::axis`], the geometry that no encoder
+//! sees in [`crate::kinematics`].
+//!
+//! Source: Lee, Cho and Jeon (2005), section 4, Table 1 and Fig. 6; the values that the paper leaves open stand, with their reasons, in
+//! the machine file.
+
+mod noise;
+mod drive;
+mod encoder;
+mod torque;
+mod nonideal;
+
+use std::f64::consts::TAU;
+
+use crate::kinematics::{AxisErrors, GeometricErrors};
+use crate::machine::{Axis, Machine};
+use feedwright_control::{AxisLaw, AxisState, Periods, friction_signs};
+use nonideal::{Moment, NonidealAxis};
+
+/// What the machine did in one servo period.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Measurement<const N: usize> {
+    /// True position of the tool at the end of the servo period, mm.
+    pub position_mm: [f64; N],
+    /// That of the joints, mm: the tool's, but for the geometry that no encoder sees.
+    pub joint_mm: [f64; N],
+    /// The position as it is measured, mm.
+    pub measured_mm: [f64; N],
+    /// Motor torque at the end of the servo period, N m.
+    pub torque_nm: [f64; N],
+}
+
+/// N axes and their state.
+#[derive(Debug, Clone)]
+pub struct Plant<const N: usize> {
+    laws: [AxisLaw; N],
+    periods: Periods,
+    /// Servo periods since the start.
+    period: u64,
+    seed: u64,
+    disturbance_nm: [f64; N],
+    disturbance_rad_s: [f64; N],
+    /// cos and sin of the angle by which the disturbance turns in one mechanics period.
+    disturbance_turn: [[f64; 2]; N],
+    /// The motors.
+    states: [AxisState; N],
+    /// What a rigid axis with an ideal drive and encoder does not have; none where no axis has any of it.
+    nonideal: Option<Box<[NonidealAxis; N]>>,
+    /// Geometry that no encoder sees; none where there is no error in it.
+    geometry: Option<GeometricErrors<N>>,
+}
+
+impl<const N: usize> Plant<N> {
+    /// The first N axes of a machine, at rest with the joints at `start_mm`; its random numbers are by the seed of its file.
+    pub fn new(machine: &Machine, start_mm: [f64; N]) -> Self {
+        Self::with_seed(machine, start_mm, machine.noise.seed)
+    }
+
+    /// As [`Self::new`], with random numbers by another seed.
+    pub fn with_seed(machine: &Machine, start_mm: [f64; N], seed: u64) -> Self {
+        let each = |value: fn(&Axis) -> f64| -> [f64; N] { std::array::from_fn(|i| value(machine.axis(i))) };
+        let laws: [AxisLaw; N] = machine.law();
+        let disturbance_rad_s = each(|a| TAU * a.disturbance_hz);
+        let periods = machine.period.periods();
+        let states: [AxisState; N] = std::array::from_fn(|i| AxisState {
+            angle_rad: start_mm[i] * laws[i].parameters.rad_per_mm,
+            ..AxisState::default()
+        });
+        let nonideal = (0..N).any(|i| !NonidealAxis::is_ideal(machine.axis(i)));
+        Self {
+            laws,
+            periods,
+            period: 0,
+            disturbance_nm: each(|a| a.disturbance_nm),
+            disturbance_rad_s,
+            disturbance_turn: disturbance_rad_s.map(|w| cos_sin(w * periods.mechanics_s)),
+            states,
+            nonideal: nonideal.then(|| {
+                Box::new(std::array::from_fn(|i| NonidealAxis::new(machine, i, &laws[i], states[i].angle_rad, seed)))
+            }),
+            geometry: geometry(machine),
+            seed,
+        }
+    }
+
+    /// The machine becomes another one in mid-cut, as where a workpiece is loaded: angles, speeds, errors and time go on, but what
+    /// was on its way to the drive or from the encoder is lost. Leads and periods are to be the same.
+    pub fn change_to(&mut self, machine: &Machine) {
+        let before = std::mem::replace(self, Self::with_seed(machine, self.joint_mm(), self.seed));
+        self.period = before.period;
+        self.states = before.states;
+        let Some(nonideal) = &mut self.nonideal else { return };
+        for (i, axis) in nonideal.iter_mut().enumerate() {
+            axis.take_over(before.nonideal.as_ref().map(|nonideal| &nonideal[i]), &before.states[i]);
+        }
+    }
+
+    /// Whether the tool is elsewhere than the encoders say.
+    pub fn has_geometry(&self) -> bool {
+        self.geometry.is_some()
+    }
+
+    /// Where the tool is, mm.
+    pub fn position_mm(&self) -> [f64; N] {
+        self.tool_mm(self.joint_mm())
+    }
+
+    /// Where the joints are, mm.
+    fn joint_mm(&self) -> [f64; N] {
+        match &self.nonideal {
+            Some(nonideal) => self.in_mm(std::array::from_fn(|i| nonideal[i].table_rad())),
+            None => self.in_mm(self.states.map(|state| state.angle_rad)),
+        }
+    }
+
+    fn tool_mm(&self, joint_mm: [f64; N]) -> [f64; N] {
+        self.geometry.map_or(joint_mm, |geometry| geometry.tool_mm(joint_mm))
+    }
+
+    /// Travel of the table for angles at the motor shafts, mm.
+    fn in_mm(&self, angles_rad: [f64; N]) -> [f64; N] {
+        std::array::from_fn(|i| angles_rad[i] / self.laws[i].parameters.rad_per_mm)
+    }
+
+    /// The position as it is measured, rad at the motor shaft.
+    fn measured_rad(&self) -> [f64; N] {
+        let Some(nonideal) = &self.nonideal else { return self.states.map(|state| state.angle_rad) };
+        let counter = self.counter();
+        std::array::from_fn(|i| nonideal[i].measured_rad(&self.states[i], counter))
+    }
+
+    /// Mechanics periods since the start, at the start of a servo period.
+    fn counter(&self) -> u64 {
+        self.period * u64::from(self.periods.mechanics_per_servo)
+    }
+
+    /// One servo period at the position command `command_mm`.
+    pub fn step(&mut self, command_mm: [f64; N]) -> Measurement<N> {
+        let torque_nm = if self.nonideal.is_some() {
+            self.turn_nonideal(command_mm)
+        } else {
+            let reference_rad_s = self.position_loop(command_mm);
+            self.turn(reference_rad_s)
+        };
+        self.period += 1;
+        let joint_mm = self.joint_mm();
+        let measured_mm = self.in_mm(self.measured_rad());
+        Measurement { position_mm: self.tool_mm(joint_mm), joint_mm, measured_mm, torque_nm }
+    }
+
+    /// Time goes on by servo periods in which nothing moves: speeds and angles stay, the disturbance is that of the time.
+    pub fn skip(&mut self, periods: u64) {
+        self.period += periods;
+    }
+
+    /// The mechanics of one servo period; the torque at its end.
+    fn turn(&mut self, reference_rad_s: [f64; N]) -> [f64; N] {
+        let mut disturbance = self.disturbance_at_start();
+        let mut torque_nm = [0.0; N];
+        for _ in 0..self.periods.mechanics_per_servo {
+            let sign = friction_signs(&self.laws, self.states.map(|state| state.speed_rad_s));
+            for (i, (law, state)) in self.laws.iter().zip(&mut self.states).enumerate() {
+                torque_nm[i] = law.torque_nm(reference_rad_s[i], state.speed_rad_s);
+                let load = law.friction_nm(state.speed_rad_s, sign[i]) + self.disturbance_nm[i] * disturbance[i][1];
+                law.accelerate(torque_nm[i] - load, state);
+                disturbance[i] = turned(disturbance[i], self.disturbance_turn[i]);
+            }
+        }
+        torque_nm
+    }
+
+    /// Position loop and mechanics of one servo period, of axes that are not ideal.
+    fn turn_nonideal(&mut self, command_mm: [f64; N]) -> [f64; N] {
+        let mut disturbance = self.disturbance_at_start();
+        let mut disturbance_turn = self.disturbance_turn;
+        let (mut torque_nm, counter) = ([0.0; N], self.counter());
+        let t_s = self.period as f64 * self.periods.servo_s;
+        let Some(nonideal) = &mut self.nonideal else { return torque_nm };
+        for (i, axis) in nonideal.iter_mut().enumerate() {
+            let law = &self.laws[i];
+            let command_rad = command_mm[i] * law.parameters.rad_per_mm;
+            axis.position_loop(law, command_rad, &mut self.states[i], self.period, counter);
+            if let Some(wander) = &mut axis.wander {
+                [disturbance[i], disturbance_turn[i]] = wander.servo_period(self.period, t_s);
+            }
+        }
+        for substep in 0..self.periods.mechanics_per_servo {
+            let moment = Moment { substep, counter: counter + u64::from(substep) };
+            for (i, axis) in nonideal.iter_mut().enumerate() {
+                let load_nm = self.disturbance_nm[i] * disturbance[i][1];
+                torque_nm[i] = axis.advance(&self.laws[i], &mut self.states[i], moment, load_nm);
+                disturbance[i] = turned(disturbance[i], disturbance_turn[i]);
+            }
+        }
+        torque_nm
+    }
+
+    /// The PD position loop of ideal axes: reference speed of the motor, rad/s, held for the servo period.
+    fn position_loop(&mut self, command_mm: [f64; N]) -> [f64; N] {
+        std::array::from_fn(|i| {
+            let law = &self.laws[i];
+            let error_rad = command_mm[i] * law.parameters.rad_per_mm - self.states[i].angle_rad;
+            law.position_loop(error_rad, &mut self.states[i])
+        })
+    }
+
+    /// cos and sin of the disturbance's phase at the start of the servo period: exact there, turned from substep to
+    /// substep within it.
+    fn disturbance_at_start(&self) -> [[f64; 2]; N] {
+        let t_s = self.period as f64 * self.periods.servo_s;
+        self.disturbance_rad_s.map(|w| cos_sin(w * t_s))
+    }
+}
+
+/// cos and sin of an angle.
+fn cos_sin(angle_rad: f64) -> [f64; 2] {
+    let (sin, cos) = angle_rad.sin_cos();
+    [cos, sin]
+}
+
+/// cos and sin of the sum of two angles.
+#[inline]
+fn turned([cos, sin]: [f64; 2], [by_cos, by_sin]: [f64; 2]) -> [f64; 2] {
+    [cos * by_cos - sin * by_sin, sin * by_cos + cos * by_sin]
+}
+
+/// Geometry that no encoder sees, of the first N axes.
+fn geometry<const N: usize>(machine: &Machine) -> Option<GeometricErrors<N>> {
+    let squareness = machine.geometry;
+    let urad = [squareness.squareness_xy_urad, squareness.squareness_xz_urad, squareness.squareness_yz_urad];
+    let of_axes: [&Axis; N] = std::array::from_fn(|i| machine.axis(i));
+    let is_exact = of_axes.iter().all(|axis| axis.scale_um_m == 0.0 && axis.pitch_error_um == 0.0);
+    (!is_exact || urad != [0.0; 3]).then(|| GeometricErrors {
+        axes: of_axes.map(|axis| AxisErrors {
+            scale: axis.scale_um_m * 1e-6,
+            pitch_mm: axis.pitch_error_um * 1e-3,
+            pitch_rad_per_mm: axis.rad_per_mm(),
+        }),
+        squareness_rad: urad.map(|urad| urad * 1e-6),
+    })
+}

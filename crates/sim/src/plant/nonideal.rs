@@ -1,0 +1,174 @@
+//! An axis with what real ones have, and one mechanics period of it.
+//!
+//! ```text
+//! reference that has arrived -> drive -> steps of the torque -> ripple, cogging -> motor [-> screw -> table] <- load, friction
+//! ```
+//!
+//! What the machine file does not name is passed over, to the bit.
+
+use feedwright_control::{
+    AxisLaw, AxisState, DriveLaw, DriveParameters, DriveState, FrictionParameters, MechanicsLaw, MechanicsState,
+    TableState,
+};
+
+use super::drive::{Delay, in_steps, torque_step_nm};
+use super::encoder::{Encoder, Latency, SpeedByDifference};
+use super::noise::{CorrelatedNoise, RandomStream, RandomUse};
+use super::torque::{MotorTorque, Wander, broadband};
+use crate::machine::{Axis, Machine};
+
+/// What an axis has on top of the ideal one, and its state.
+#[derive(Debug, Clone)]
+pub(super) struct NonidealAxis {
+    drive: DriveLaw,
+    drive_state: DriveState,
+    delay: Delay,
+    torque_step_nm: f64,
+    encoder: Encoder,
+    latency: Option<Latency>,
+    speed: Option<SpeedByDifference>,
+    /// Whether there is any of the two.
+    is_sensed: bool,
+    motor: Option<MotorTorque>,
+    mechanics: MechanicsLaw,
+    broadband: Option<CorrelatedNoise>,
+    pub(super) wander: Option<Wander>,
+    scale_on_table: bool,
+    /// Table and friction; the motor is given at each step.
+    masses: MechanicsState,
+}
+
+/// A mechanics period: its number within the servo period, and since the start of the machine.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment {
+    pub(super) substep: u32,
+    pub(super) counter: u64,
+}
+
+impl NonidealAxis {
+    pub(super) fn new(machine: &Machine, index: usize, law: &AxisLaw, angle_rad: f64, seed: u64) -> Self {
+        let (axis, period) = (machine.axis(index), &machine.period);
+        let encoder = Encoder::new(axis, RandomStream::new(seed, index, RandomUse::Encoder));
+        let latency = Latency::new(axis, period, angle_rad);
+        let speed = SpeedByDifference::new(axis, encoder, seed, index);
+        Self {
+            drive: DriveLaw::new(law, axis.drive()),
+            drive_state: DriveState::default(),
+            delay: Delay::new(axis, period, seed),
+            torque_step_nm: torque_step_nm(axis),
+            encoder,
+            is_sensed: latency.is_some() || speed.is_some(),
+            latency,
+            speed,
+            motor: MotorTorque::new(axis),
+            mechanics: MechanicsLaw::new(law, axis.friction(), axis.transmission()),
+            broadband: broadband(axis, period.mechanics_s, seed, index),
+            wander: Wander::new(axis, period.servo_s, period.mechanics_s, seed, index),
+            scale_on_table: axis.transmission.is_some_and(|transmission| transmission.scale_on_table),
+            masses: MechanicsState::at_rest(angle_rad),
+        }
+    }
+
+    /// Whether an axis has nothing of this.
+    pub(super) fn is_ideal(axis: &Axis) -> bool {
+        let absent = [
+            axis.encoder_step_um,
+            axis.encoder_noise_um,
+            axis.interpolation_error_um,
+            axis.measurement_delay_s,
+            axis.drive_delay_s,
+            axis.jitter_s,
+            axis.cogging_nm,
+            axis.ripple,
+            axis.torque_noise_nm,
+            axis.disturbance_wander,
+        ];
+        absent.iter().all(|value| *value == 0.0)
+            && !axis.speed_from_encoder
+            && axis.torque_bits.is_none()
+            && axis.transmission.is_none()
+            && axis.drive() == DriveParameters::default()
+            && axis.friction() == FrictionParameters::default()
+    }
+
+    /// The axis goes on as another one: where its parts are and how fast, what its drive has summed up, and the disturbance's phase.
+    pub(super) fn take_over(&mut self, before: Option<&Self>, motor: &AxisState) {
+        let Some(before) = before else {
+            self.masses.table = TableState { angle_rad: motor.angle_rad, speed_rad_s: motor.speed_rad_s };
+            return;
+        };
+        (self.masses, self.drive_state) = (before.masses, before.drive_state);
+        if let (Some(wander), Some(before)) = (&mut self.wander, &before.wander) {
+            wander.take_over(before);
+        }
+    }
+
+    /// The position at the start of a servo period, as the control has it, rad at the motor shaft.
+    pub(super) fn measured_rad(&self, motor: &AxisState, counter: u64) -> f64 {
+        match &self.latency {
+            Some(latency) => latency.arrived_rad(),
+            None => self.shown_rad(motor, counter),
+        }
+    }
+
+    /// Angle of the table at the motor shaft, rad; the motor's where the screw is rigid.
+    #[inline]
+    pub(super) fn table_rad(&self) -> f64 {
+        self.masses.table.angle_rad
+    }
+
+    /// What the encoder shows.
+    #[inline]
+    fn shown_rad(&self, motor: &AxisState, counter: u64) -> f64 {
+        self.encoder.read(if self.scale_on_table { self.table_rad() } else { motor.angle_rad }, counter)
+    }
+
+    /// The position loop: what it asks for leaves for the drive.
+    pub(super) fn position_loop(
+        &mut self,
+        law: &AxisLaw,
+        command_rad: f64,
+        motor: &mut AxisState,
+        period: u64,
+        counter: u64,
+    ) {
+        let measured_rad = self.measured_rad(motor, counter);
+        let reference = self.drive.position_loop(law, command_rad, measured_rad, motor, &mut self.drive_state);
+        self.delay.send(reference, period);
+    }
+
+    /// One mechanics period under a disturbance; the torque of the drive, N m.
+    #[inline]
+    pub(super) fn advance(&mut self, law: &AxisLaw, motor: &mut AxisState, moment: Moment, disturbance_nm: f64) -> f64 {
+        let speed_rad_s = if self.is_sensed { self.sensed_rad_s(law, motor, moment) } else { motor.speed_rad_s };
+        let reference = self.delay.arrived(moment.substep);
+        let wanted_nm = self.drive.torque_nm(law, reference, speed_rad_s, &mut self.drive_state);
+        let torque_nm = in_steps(wanted_nm, self.torque_step_nm);
+        let load_nm = match &mut self.broadband {
+            Some(noise) => disturbance_nm + noise.next(moment.counter),
+            None => disturbance_nm,
+        };
+        let motor_nm = match &self.motor {
+            Some(unevenness) => unevenness.at_nm(torque_nm, motor.angle_rad),
+            None => torque_nm,
+        };
+        self.masses.motor = *motor;
+        self.mechanics.advance(&mut self.masses, motor_nm, load_nm);
+        *motor = self.masses.motor;
+        torque_nm
+    }
+
+    /// The position on its way to the control is taken; the speed as the drive has it.
+    fn sensed_rad_s(&mut self, law: &AxisLaw, motor: &AxisState, moment: Moment) -> f64 {
+        if self.latency.as_ref().is_some_and(|latency| latency.takes(moment.substep)) {
+            let shown_rad = self.shown_rad(motor, moment.counter);
+            if let Some(latency) = &mut self.latency {
+                latency.take(shown_rad);
+            }
+        }
+        match &mut self.speed {
+            Some(speed) => speed.speed_rad_s(motor.angle_rad, moment.counter, law.periods.mechanics_s),
+            None => motor.speed_rad_s,
+        }
+    }
+}

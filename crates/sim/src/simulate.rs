@@ -1,0 +1,321 @@
+//! The closed loop: reference, controller and plant, one servo period after the other.
+//!
+//! Row n: at t = n Ts the tick makes the position command from the reference and the tool position; the plant holds it for
+//! one servo period; the contour error is that of the tool at its end, against the exact path.
+//!
+//! | File | What |
+//! |---|---|
+//! | `simulate/foot.rs` | how far along the path the tool has come, and so the contour error |
+//! | `simulate/joints.rs` | the contour error without the geometry that no encoder sees |
+//! | `simulate/rests.rs` | which part of a long rest is simulated |
+//! | `simulate/uncut.rs` | how far the tool stays away from what it should have cut |
+//! | `simulate/tick_times.rs` | how long the ticks took |
+
+pub(crate) mod foot;
+mod joints;
+mod rests;
+mod tick_times;
+pub(crate) mod uncut;
+
+use std::time::Instant;
+
+use feedwright_control::{Bounds, Controller, Fade, Setpoint, State};
+use feedwright_control::{Knot, Tick};
+use feedwright_plan::vector::distance;
+
+use crate::kinematics::{joints_of, tool_of};
+use crate::machine::Machine;
+use crate::plant::{Measurement, Plant};
+use crate::reference::{Foot, Reference, Sample};
+use crate::trace::{Commanded, FadedOut, Outcome, Row, Sink};
+use crate::watch::{Cancelled, Watch};
+use foot::{FootTracker, settled_periods, settled_s};
+pub use joints::JointError;
+use joints::JointErrorMeter;
+pub use tick_times::TickTimes;
+use uncut::Uncut;
+
+/// A stable loop of gain Kp lags by v / Kp. Where the command is this many times the lag of a rapid away, or
+/// [`LOST_MM`] where that is more, the tool does not follow any more.
+const LOST_LAGS: f64 = 4.0;
+/// As [`LOST_LAGS`], for loops so stiff that they hardly lag, mm.
+const LOST_MM: f64 = 2.0;
+/// The tool has arrived when it is this near a path at rest, mm: a usual in-position width.
+const ARRIVED_MM: f64 = 0.01;
+/// Longest wait for the tool to arrive, s: friction may hold it off for good.
+const ARRIVAL_S: f64 = 0.25;
+/// The path is kept for this many times as long as a following tool needs to come to a point of it.
+const KEPT_SETTLED_TIMES: f64 = 3.0;
+
+/// Rows between two questions whether to go on: some milliseconds.
+const ROWS_BETWEEN_CHECKS: u64 = 1000;
+
+/// What a run says about itself beyond its rows.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct RunResult {
+    /// How it ended.
+    pub outcome: Outcome,
+    /// When the safety layer took the controller out of the loop last.
+    pub faded_out: Option<FadedOut>,
+    /// Part of the cutting time in which the controller was in the loop, and whether it was at the end.
+    pub engaged_share: f64,
+    /// See above.
+    pub engaged_at_end: bool,
+    /// Machining time: when the command has ended, s.
+    pub time_s: f64,
+    /// When the tool has arrived there, s.
+    pub arrival_s: f64,
+    /// The contour error without the geometry that no encoder sees; none where the machine has no such geometry.
+    pub joint_error: Option<JointError>,
+    /// The uncut path: the largest distance from a programmed point to what the tool did in the time that it has for it, mm.
+    pub uncut_mm: f64,
+    /// The most register entries that one contour error estimate looked at.
+    pub most_entries: usize,
+    /// Time of the ticks in which the controller decided.
+    pub ticks: TickTimes,
+}
+
+/// Why a lap did not go on to its end.
+#[derive(Debug)]
+pub enum Stopped {
+    /// A sink takes no more rows.
+    Write(std::io::Error),
+    /// Ended from outside.
+    Cancelled(Cancelled),
+}
+
+impl From<std::io::Error> for Stopped {
+    fn from(error: std::io::Error) -> Self {
+        Self::Write(error)
+    }
+}
+
+impl From<Cancelled> for Stopped {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::Cancelled(cancelled)
+    }
+}
+
+/// Cuts the whole reference, one lap; every row goes to every sink. The controller is as the caller has it: at its beginning, or
+/// with what it learnt in the laps before.
+///
+/// # Errors
+/// What a sink says when it takes no more, or an end from outside.
+pub(crate) fn simulate<const N: usize>(
+    machine: &Machine,
+    reference: &mut Reference<'_>,
+    controller: &mut dyn Controller<N>,
+    sinks: &mut [&mut dyn Sink],
+    watch: &dyn Watch,
+) -> Result<RunResult, Stopped> {
+    let mut lap = ClosedLoop::new(machine, reference, controller);
+    let (mut n, mut rows) = (0_u64, 0_u64);
+    while let Some(periods) = lap.servo_period(n, reference, controller, sinks)? {
+        n += periods;
+        rows += 1;
+        if rows.is_multiple_of(ROWS_BETWEEN_CHECKS) {
+            watch.check()?;
+        }
+    }
+    Ok(lap.finish())
+}
+
+/// A lap under way.
+struct ClosedLoop<'a, const N: usize> {
+    machine: &'a Machine,
+    servo_s: f64,
+    kept_s: f64,
+    lost_mm: f64,
+    feed_periods: u32,
+    tick: Tick<N>,
+    plant: Plant<N>,
+    foot: FootTracker,
+    joint_error: Option<JointErrorMeter>,
+    uncut: Uncut,
+    /// The measured position.
+    seen_mm: [f64; N],
+    run: RunResult,
+    /// When the command has ended.
+    ended_s: Option<f64>,
+    last_tau_s: f64,
+    fade: Option<Fade>,
+    /// Servo periods that cut: without the controller in the loop, and with it.
+    cut: [u64; 2],
+}
+
+impl<'a, const N: usize> ClosedLoop<'a, N> {
+    /// At rest at the start of the path.
+    fn new(machine: &'a Machine, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
+        let servo_s = machine.period.servo_s;
+        let slowest_s = 1.0 / machine.slowest_kp_1_s();
+        let start_mm = joints_of(reference.at(0.0).position_mm);
+        let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
+        let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s, fade_mm_s2);
+        let plant = Plant::new(machine, start_mm);
+        Self {
+            machine,
+            servo_s,
+            kept_s: KEPT_SETTLED_TIMES * settled_s(machine),
+            lost_mm: LOST_MM.max(LOST_LAGS * machine.limits.rapid_mm_s * slowest_s),
+            feed_periods: controller.schedule().servo_periods.max(1),
+            tick: Tick::new(servo_s, controller.schedule(), bounds),
+            foot: FootTracker::new(machine, tool_of(start_mm)),
+            joint_error: plant.has_geometry().then(|| JointErrorMeter::new(machine, tool_of(start_mm))),
+            plant,
+            uncut: Uncut::new(settled_periods(machine), tool_of(start_mm)),
+            seen_mm: start_mm,
+            run: RunResult::default(),
+            ended_s: None,
+            last_tau_s: 0.0,
+            fade: None,
+            cut: [0; 2],
+        }
+    }
+
+    /// Cuts servo period `n`, and says how many on the next to simulate is: more than one in a long rest. None where the lap
+    /// is over.
+    fn servo_period(
+        &mut self,
+        n: u64,
+        reference: &mut Reference<'_>,
+        controller: &mut dyn Controller<N>,
+        sinks: &mut [&mut dyn Sink],
+    ) -> std::io::Result<Option<u64>> {
+        let t_s = n as f64 * self.servo_s;
+        let setpoint = self.command(t_s, reference, controller);
+        let measurement = self.plant.step(setpoint.command_mm);
+        self.seen_mm = measurement.measured_mm;
+        if self.is_lost(t_s, distance(measurement.position_mm, setpoint.command_mm)) {
+            return Ok(None);
+        }
+        let sample = reference.at(setpoint.tau_s);
+        let tau_s = reference.end_s().map_or(setpoint.tau_s, |end_s| setpoint.tau_s.min(end_s));
+        // A command that a correction holds beside the end of the path is not where the tool is to rest.
+        // And where the encoders say so: what they do not see is not waited for.
+        let to_go_mm = distance(measurement.joint_mm, joints_of(sample.position_mm));
+        let foot = self.foot.foot(reference, tau_s, sample.s_mm, tool_of(measurement.position_mm));
+        let row = row(t_s, &setpoint, &measurement, &sample, &foot, to_go_mm <= ARRIVED_MM);
+        if row.cutting {
+            self.cut[usize::from(self.tick.state() == State::Engaged)] += 1;
+        }
+        while let Some(timed) = reference.next_event(setpoint.tau_s) {
+            for sink in sinks.iter_mut() {
+                sink.event(t_s, &timed)?;
+            }
+        }
+        for sink in sinks.iter_mut() {
+            sink.row(&row)?;
+        }
+        self.uncut.row(&row);
+        if let Some(meter) = &mut self.joint_error {
+            meter.row(reference, tau_s, tool_of(measurement.joint_mm), &row);
+        }
+        reference.forget_before(tau_s - self.kept_s);
+        if let Some(ended_s) = self.ended_s
+            && (to_go_mm <= ARRIVED_MM || t_s >= ended_s + ARRIVAL_S)
+        {
+            self.run.arrival_s = t_s + self.servo_s;
+            return Ok(None);
+        }
+        let left_out = if sample.resting { self.left_out(reference, setpoint.tau_s) } else { 0 };
+        self.tick.skip(left_out);
+        self.plant.skip(left_out);
+        Ok(Some(1 + left_out))
+    }
+
+    /// The tick of a servo period, and what it says about the run.
+    fn command(&mut self, t_s: f64, reference: &mut Reference<'_>, controller: &mut dyn Controller<N>) -> Setpoint<N> {
+        let clock = Instant::now();
+        let setpoint = self.tick.step(&mut Axes(reference), controller, self.seen_mm);
+        if setpoint.decided {
+            self.run.ticks.add(clock.elapsed().as_nanos());
+            self.run.most_entries = self.run.most_entries.max(self.tick.contour().entries);
+            if self.tick.fade() != self.fade {
+                self.fade = self.tick.fade();
+                self.run.faded_out = self.fade.map(|fade| FadedOut { at_s: t_s, cause: fade.cause.words() });
+            }
+        }
+        if self.ended_s.is_none()
+            && let Some(end_s) = reference.end_s()
+            && setpoint.tau_s >= end_s
+        {
+            self.ended_s = Some(t_s);
+            self.run.time_s = crossing(t_s, self.servo_s, self.last_tau_s, setpoint.tau_s, end_s);
+        }
+        self.last_tau_s = setpoint.tau_s;
+        setpoint
+    }
+
+    /// Whether the tool does not follow any more; then the run ends here.
+    fn is_lost(&mut self, t_s: f64, following_mm: f64) -> bool {
+        let lost = following_mm.is_nan() || following_mm > self.lost_mm;
+        if lost {
+            self.run.outcome = Outcome::Diverged { at_s: t_s };
+            self.run.arrival_s = t_s;
+            if self.ended_s.is_none() {
+                self.run.time_s = t_s;
+            }
+        }
+        lost
+    }
+
+    fn left_out(&self, reference: &mut Reference<'_>, tau_s: f64) -> u64 {
+        rests::left_out(reference, tau_s, self.servo_s, self.feed_periods, settled_s(self.machine))
+    }
+
+    fn finish(self) -> RunResult {
+        let [out, within] = self.cut;
+        RunResult {
+            engaged_share: if out + within == 0 { 1.0 } else { within as f64 / (out + within) as f64 },
+            engaged_at_end: self.tick.state() == State::Engaged,
+            joint_error: self.joint_error.as_ref().map(JointErrorMeter::finish),
+            uncut_mm: self.uncut.finish(ARRIVED_MM),
+            ..self.run
+        }
+    }
+}
+
+/// The row of a servo period; `arrived` says whether the tool is where the path is.
+fn row<const N: usize>(
+    t_s: f64,
+    setpoint: &Setpoint<N>,
+    measurement: &Measurement<N>,
+    sample: &Sample,
+    foot: &Foot,
+    arrived: bool,
+) -> Row {
+    Row {
+        t_s,
+        s_mm: sample.s_mm,
+        line: sample.line,
+        feed_plan_mm_s: sample.feed_mm_s,
+        cutting: foot.cutting && !(sample.resting && arrived),
+        commanded: match (sample.resting, sample.cutting) {
+            (true, _) => Commanded::Rest,
+            (false, true) => Commanded::Cut,
+            (false, false) => Commanded::Rapid,
+        },
+        path_mm: sample.programmed_mm,
+        cmd_mm: tool_of(setpoint.command_mm),
+        act_mm: tool_of(measurement.position_mm),
+        torque_nm: tool_of(measurement.torque_nm),
+        foot_mm: foot.position_mm,
+        tangent: foot.tangent,
+        contour_error_mm: if N == 2 { foot.signed_mm } else { foot.distance_mm },
+    }
+}
+
+/// When plan time passed `end_s` between the last servo period and this one.
+fn crossing(t_s: f64, servo_s: f64, last_tau_s: f64, tau_s: f64, end_s: f64) -> f64 {
+    if tau_s > last_tau_s { t_s - servo_s * (tau_s - end_s) / (tau_s - last_tau_s) } else { t_s }
+}
+
+/// The planned path as the tick sees it: the joints.
+struct Axes<'a, 'p>(&'a mut Reference<'p>);
+
+impl<const N: usize> feedwright_control::KnotSource<N> for Axes<'_, '_> {
+    fn knot(&mut self, tau_s: f64) -> Knot<N> {
+        let Sample { position_mm, tangent, feed_mm_s, rapid, .. } = self.0.at(tau_s);
+        Knot { position_mm: joints_of(position_mm), tangent: joints_of(tangent), feed_mm_s, cutting: !rapid }
+    }
+}

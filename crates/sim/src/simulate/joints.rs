@@ -1,0 +1,50 @@
+//! The contour error of the joints: what it would be without the geometry that no encoder sees.
+//!
+//! It is measured as the tool's is, with a foot of its own, over the same servo periods. The rest of the tool's error no control can
+//! take back that has encoders alone.
+
+use feedwright_plan::vector::Vector;
+
+use super::foot::FootTracker;
+use crate::machine::Machine;
+use crate::reference::Reference;
+use crate::trace::Row;
+
+/// Contour error of the joints over the servo periods that cut, mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct JointError {
+    /// Root mean square; 0 where nothing cuts.
+    pub rms_mm: f64,
+    /// Largest.
+    pub max_mm: f64,
+}
+
+/// Measures it, servo period by servo period.
+pub(super) struct JointErrorMeter {
+    foot: FootTracker,
+    square_sum_mm2: f64,
+    max_mm: f64,
+    rows: u64,
+}
+
+impl JointErrorMeter {
+    /// At rest at the start of the path.
+    pub(super) fn new(machine: &Machine, start_mm: Vector) -> Self {
+        Self { foot: FootTracker::new(machine, start_mm), square_sum_mm2: 0.0, max_mm: 0.0, rows: 0 }
+    }
+
+    /// The joints at the end of the servo period of a row that begins with the reference at `tau_s`.
+    pub(super) fn row(&mut self, reference: &mut Reference<'_>, tau_s: f64, joints_mm: Vector, row: &Row) {
+        let error_mm = self.foot.foot(reference, tau_s, row.s_mm, joints_mm).distance_mm;
+        if row.cutting {
+            self.square_sum_mm2 += error_mm * error_mm;
+            self.max_mm = self.max_mm.max(error_mm);
+            self.rows += 1;
+        }
+    }
+
+    pub(super) fn finish(&self) -> JointError {
+        let rms_mm = if self.rows == 0 { 0.0 } else { (self.square_sum_mm2 / self.rows as f64).sqrt() };
+        JointError { rms_mm, max_mm: self.max_mm }
+    }
+}

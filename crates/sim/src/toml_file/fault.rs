@@ -1,0 +1,163 @@
+//! What can be wrong with a file of TOML text, each with its place and, where one is likely, a remedy.
+
+use std::io;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use miette::{Diagnostic, LabeledSpan, NamedSource, SourceSpan};
+use thiserror::Error;
+
+/// What sort of file it is, for messages.
+#[derive(Debug, PartialEq, Eq)]
+pub struct Kind {
+    /// As in "cannot read machine file".
+    pub name: &'static str,
+    /// What such a file is, as a hint.
+    pub is: &'static str,
+    /// Code of its faults.
+    pub code: &'static str,
+    /// Where to find one, for a file that is not there.
+    pub where_to_find: &'static str,
+}
+
+/// Why a file does not say what it should.
+#[derive(Debug, Error, Diagnostic)]
+pub enum FileError {
+    /// The file cannot be read.
+    #[error("cannot read {} {}: {source}", kind.name, path.display())]
+    Unreadable {
+        /// What it should be.
+        kind: &'static Kind,
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+        /// Remedy.
+        #[help]
+        hint: Option<&'static str>,
+    },
+    /// The file is far larger than any of its kind.
+    #[error("{} is larger than {limit_bytes} bytes: this is no {}", path.display(), kind.name)]
+    TooLarge {
+        /// What it should be.
+        kind: &'static Kind,
+        /// The file.
+        path: PathBuf,
+        /// Largest size that is read.
+        limit_bytes: u64,
+        /// Remedy.
+        #[help]
+        hint: &'static str,
+    },
+    /// The file is not UTF-8 text.
+    #[error("{} is not text: byte 0x{byte:02x} at offset {offset} is not UTF-8", path.display())]
+    NotText {
+        /// The file.
+        path: PathBuf,
+        /// Offset of the first byte that is no text.
+        offset: usize,
+        /// That byte.
+        byte: u8,
+        /// Remedy.
+        #[help]
+        hint: String,
+    },
+    /// The text has faults; all that were found.
+    #[error("{} {} has {} {}", kind.name, text.name(), problems.len(), if problems.len() == 1 { "fault" } else { "faults" })]
+    Invalid {
+        /// What it should be.
+        kind: &'static Kind,
+        /// The text with the name of the file, for carets.
+        #[source_code]
+        text: NamedSource<String>,
+        /// The faults, in the order of the text.
+        #[related]
+        problems: Vec<Problem>,
+    },
+}
+
+/// A fault in the text of a file.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{message}")]
+pub struct Problem {
+    /// Which sort of file it is in.
+    pub code: &'static str,
+    /// What is wrong: key, value, limit, unit.
+    /// What is wrong.
+    pub message: String,
+    /// Line of the text, from 1.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// Place in the text.
+    pub span: SourceSpan,
+    /// Short word beside the caret.
+    /// What stands below the place.
+    pub label: &'static str,
+    /// Remedy.
+    /// Remedy, where there is one.
+    pub hint: Option<String>,
+}
+
+/// A fault before its line and column are known.
+#[derive(Debug)]
+pub struct Fault {
+    /// Bytes of the text that it is about.
+    pub at: Range<usize>,
+    /// What stands below the place.
+    pub label: &'static str,
+    /// What is wrong.
+    pub message: String,
+    /// Remedy, where there is one.
+    pub hint: Option<String>,
+}
+
+impl Diagnostic for Problem {
+    fn code<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        Some(Box::new(self.code))
+    }
+
+    fn help<'a>(&'a self) -> Option<Box<dyn std::fmt::Display + 'a>> {
+        self.hint.as_ref().map(|hint| Box::new(hint) as Box<dyn std::fmt::Display>)
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let label = LabeledSpan::new_with_span(Some(self.label.to_owned()), self.span);
+        Some(Box::new(std::iter::once(label)))
+    }
+}
+
+impl FileError {
+    /// The operating system does not give the file.
+    pub(crate) fn unreadable(kind: &'static Kind, path: &Path, source: io::Error) -> Self {
+        let hint = match source.kind() {
+            io::ErrorKind::NotFound => Some(kind.where_to_find),
+            io::ErrorKind::IsADirectory => Some("give a file of that directory"),
+            _ => None,
+        };
+        Self::Unreadable { kind, path: path.to_owned(), source, hint }
+    }
+
+    /// The faults of a text, sorted by place.
+    pub fn invalid(kind: &'static Kind, file: &str, text: &str, mut faults: Vec<Fault>) -> Self {
+        faults.sort_by_key(|fault| (fault.at.start, fault.at.end));
+        let problems = faults.into_iter().map(|fault| Problem::locate(kind, fault, text)).collect();
+        Self::Invalid { kind, text: NamedSource::new(file, text.to_owned()).with_language("toml"), problems }
+    }
+}
+
+impl Problem {
+    fn locate(kind: &Kind, fault: Fault, text: &str) -> Self {
+        let before = text.get(..fault.at.start).unwrap_or(text);
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        Self {
+            code: kind.code,
+            message: fault.message,
+            line: before.matches('\n').count() + 1,
+            column: before[line_start..].chars().count() + 1,
+            span: (fault.at.start, fault.at.len()).into(),
+            label: fault.label,
+            hint: fault.hint,
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! Keys declared in tables: name, unit, range, and the field that each fills.
+//!
+//! Reading, writing, the bounds in messages and the tables of the documents all go by such tables. To add a key is one field and
+//! one row.
+
+use super::{Fault, Table, quoted};
+
+/// A key of a file.
+pub struct Key<T> {
+    /// Name; its end is the unit.
+    pub name: &'static str,
+    /// Unit, as messages tell it; empty where there is none to tell.
+    pub unit: &'static str,
+    /// Least and most of its number or numbers; of a text they say nothing.
+    pub range: [f64; 2],
+    /// Whether it may be left out.
+    pub optional: bool,
+    /// What it holds.
+    pub value: Value<T>,
+}
+
+/// What a key holds, and the field of a T that it fills; where it was left out there is none.
+pub enum Value<T> {
+    /// A number.
+    Number {
+        /// From the field.
+        get: fn(&T) -> Option<f64>,
+        /// Into it.
+        set: fn(&mut T, f64),
+    },
+    /// A whole number.
+    Whole {
+        /// From the field.
+        get: fn(&T) -> Option<u64>,
+        /// Into it.
+        set: fn(&mut T, u64),
+    },
+    /// Numbers in a row.
+    Numbers {
+        /// From the field; empty where it was left out.
+        get: fn(&T) -> &[f64],
+        /// Into it.
+        set: fn(&mut T, Vec<f64>),
+    },
+    /// A text that is not blank.
+    Text {
+        /// From the field.
+        get: fn(&T) -> &str,
+        /// Into it.
+        set: fn(&mut T, String),
+    },
+}
+
+/// `field, unit, least, most`; `optional field` is an `Option`, `field or zero` has that where it is left out; `whole field`,
+/// `numbers field` and `text field` are of those kinds; `flag field` is 0 or 1, and 0 where it is left out.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! key {
+    (@ $field:ident, $unit:literal, [$least:expr, $most:expr], $optional:literal, $kind:ident, $get:expr, $set:expr) => {
+        $crate::toml_file::Key {
+            name: stringify!($field),
+            unit: $unit,
+            range: [$least, $most],
+            optional: $optional,
+            value: $crate::toml_file::key::Value::$kind { get: $get, set: $set },
+        }
+    };
+    (optional $field:ident, $unit:literal, $least:expr, $most:expr) => {
+        key!(@ $field, $unit, [$least, $most], true, Number, |part| part.$field, |part, value| part.$field = Some(value))
+    };
+    ($field:ident or zero, $unit:literal, $least:expr, $most:expr) => {
+        key!(@ $field, $unit, [$least, $most], true, Number,
+            |part| Some(part.$field).filter(|value| *value != 0.0), |part, value| part.$field = value)
+    };
+    (flag $field:ident) => {
+        key!(@ $field, "(0 or 1)", [0.0, 1.0], true, Number,
+            |part| part.$field.then_some(1.0), |part, value| part.$field = value > 0.5)
+    };
+    (whole $field:ident, $unit:literal, $least:expr, $most:expr) => {
+        key!(@ $field, $unit, [$least, $most], false, Whole, |part| Some(part.$field), |part, value| part.$field = value)
+    };
+    (numbers $field:ident, $unit:literal, $least:expr, $most:expr) => {
+        key!(@ $field, $unit, [$least, $most], false, Numbers, |part| &part.$field, |part, value| part.$field = value)
+    };
+    (text $field:ident) => {
+        key!(@ $field, "", [0.0, 0.0], false, Text, |part| &part.$field, |part, value| part.$field = value)
+    };
+    ($field:ident, $unit:literal, $least:expr, $most:expr) => {
+        key!(@ $field, $unit, [$least, $most], false, Number, |part| Some(part.$field), |part, value| part.$field = value)
+    };
+}
+pub use key;
+
+/// Reads all keys of a table; a number that has a fault is not a number, everything else stays empty.
+pub fn read<T: Default>(keys: &[Key<T>], table: &mut Table<'_, '_>, faults: &mut Vec<Fault>) -> T {
+    let mut part = T::default();
+    for key in keys {
+        if !key.optional || table.has(key.name) {
+            read_one(key, table, &mut part, faults);
+        }
+    }
+    part
+}
+
+/// A table that has these keys and no other.
+pub fn read_all<T: Default>(keys: &[Key<T>], mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> T {
+    let part = read(keys, &mut table, faults);
+    table.finish(faults);
+    part
+}
+
+fn read_one<T>(key: &Key<T>, table: &mut Table<'_, '_>, part: &mut T, faults: &mut Vec<Fault>) {
+    let [least, most] = key.range;
+    match key.value {
+        Value::Number { set, .. } => set(part, table.number(key.name, key.unit, least..=most, faults)),
+        Value::Whole { set, .. } => {
+            if let Some(whole) = table.whole(key.name, key.unit, least..=most, faults) {
+                set(part, whole);
+            }
+        }
+        Value::Numbers { set, .. } => set(part, table.numbers(key.name, key.unit, least..=most, faults)),
+        Value::Text { set, .. } => set(part, table.text(key.name, faults)),
+    }
+}
+
+/// Numbers of an array in a line of a file.
+const NUMBERS_IN_A_LINE: usize = 4;
+
+/// The lines of a table; what was left out stays out.
+pub fn write<T>(keys: &[Key<T>], part: &T) -> String {
+    let line = |key: &Key<T>| {
+        let value = match key.value {
+            Value::Number { get, .. } => format!("{:?}", get(part)?),
+            Value::Whole { get, .. } => get(part)?.to_string(),
+            Value::Numbers { get, .. } => array(Some(get(part)).filter(|numbers| !numbers.is_empty())?),
+            Value::Text { get, .. } => quoted(get(part)),
+        };
+        Some(format!("{} = {value}\n", key.name))
+    };
+    keys.iter().filter_map(line).collect()
+}
+
+fn array(numbers: &[f64]) -> String {
+    let line = |numbers: &[f64]| numbers.iter().map(|number| format!(" {number:?},")).collect::<String>();
+    let lines: String = numbers.chunks(NUMBERS_IN_A_LINE).map(|numbers| format!("   {}\n", line(numbers))).collect();
+    format!("[\n{lines}]")
+}

@@ -1,0 +1,118 @@
+//! What a run leaves behind: one [`Row`] per servo period, handed to every [`Sink`] that wants it.
+
+pub(crate) mod csv;
+
+use feedwright_plan::TimedEvent;
+use serde::{Deserialize, Serialize};
+
+/// What the command of a servo period does. The tool follows it by some ten milliseconds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Commanded {
+    /// It moves at a programmed feedrate.
+    Cut,
+    /// It moves at the machine's rapid rate.
+    Rapid,
+    /// It rests: in a dwell, or behind the end.
+    Rest,
+}
+
+/// One servo period of a run. Two-axis runs leave the third component at zero.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Row {
+    /// Start of the servo period, s.
+    pub t_s: f64,
+    /// Arc length along the programmed path at `t_s`, mm.
+    pub s_mm: f64,
+    /// Line of the program whose motion is under way.
+    pub line: u32,
+    /// Planned feedrate at `s_mm`, mm/s.
+    pub feed_plan_mm_s: f64,
+    /// Whether the tool is where the program cuts: not on a rapid, and not at rest where it has arrived.
+    pub cutting: bool,
+    /// What the command does.
+    pub commanded: Commanded,
+    /// Point of the programmed path at `s_mm`.
+    pub path_mm: [f64; 3],
+    /// Position command of this servo period, as the servo drive gets it.
+    pub cmd_mm: [f64; 3],
+    /// True position of the tool at the end of this servo period.
+    pub act_mm: [f64; 3],
+    /// Motor torque at the end of this servo period, N m.
+    pub torque_nm: [f64; 3],
+    /// Foot of `act_mm`: the point of the programmed path that the contour error is measured to.
+    pub foot_mm: [f64; 3],
+    /// Unit tangent of the path at the foot, in the direction of travel.
+    pub tangent: [f64; 3],
+    /// Contour error of `act_mm`, mm: from the foot, in the plane [signed](feedwright_plan::signed_distance_mm), magnitude in space.
+    pub contour_error_mm: f64,
+}
+
+impl Row {
+    /// A row at rest in the origin, on line 1 of a cut along x.
+    pub const AT_REST: Self = Self {
+        t_s: 0.0,
+        s_mm: 0.0,
+        line: 1,
+        feed_plan_mm_s: 0.0,
+        cutting: true,
+        commanded: Commanded::Cut,
+        path_mm: [0.0; 3],
+        cmd_mm: [0.0; 3],
+        act_mm: [0.0; 3],
+        torque_nm: [0.0; 3],
+        foot_mm: [0.0; 3],
+        tangent: [1.0, 0.0, 0.0],
+        contour_error_mm: 0.0,
+    };
+}
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[serde(rename_all = "snake_case", tag = "kind")]
+pub enum Outcome {
+    /// The program was cut to its end.
+    #[default]
+    Completed,
+    /// The servo loop is unstable: the tool left the command by several times what a stable loop
+    /// lags, or is nowhere.
+    Diverged {
+        /// When, s.
+        at_s: f64,
+    },
+}
+
+/// The safety layer took the controller out of the loop: the rest was cut open loop.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FadedOut {
+    /// When, s.
+    pub at_s: f64,
+    /// Why, in words.
+    pub cause: &'static str,
+}
+
+/// Takes the rows of a run in order.
+pub trait Sink {
+    /// Takes one row.
+    ///
+    /// # Errors
+    /// Where the sink writes to a file that takes no more.
+    fn row(&mut self, row: &Row) -> std::io::Result<()>;
+
+    /// Takes an event of the program, at the time at which the command came to it, before the rows from then on.
+    ///
+    /// # Errors
+    /// As [`Sink::row`].
+    fn event(&mut self, t_s: f64, event: &TimedEvent) -> std::io::Result<()> {
+        let _ = (t_s, event);
+        Ok(())
+    }
+}
+
+/// Keeps every row.
+impl Sink for Vec<Row> {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        self.push(*row);
+        Ok(())
+    }
+}

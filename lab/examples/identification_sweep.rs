@@ -1,0 +1,133 @@
+//! Round trip: simulated machines cut the program of `excite`, and are identified from a log of it in steps of 1 um.
+//!
+//! How far the products come out, how often intervals of 90 % hold, and what is left after 100 ms; of each machine over so many logs, with
+//! noise and disturbance of their own each.
+//!
+//!     cargo run --release -p feedwright --example identification_sweep -- 50 tnv40 heavy sticky soft coarse sliding
+
+#![expect(clippy::print_stdout, reason = "it is a command")]
+
+use feedwright::LogJob;
+use feedwright_control::OpenLoop;
+use feedwright_gcode::canon::Canon;
+use feedwright_gcode::{Reader, Settings};
+use feedwright_ident::{AxisFacts, ExciteOptions, FoundAxis, LawTerm, excitation_program};
+use feedwright_sim::{Axis, Machine, Row, Run, Sink, path_steps};
+
+#[path = "../../crates/ident/tests/common/identification_log.rs"]
+#[expect(dead_code, reason = "tests use more of it")]
+mod identification_log;
+
+type Failure = Box<dyn std::error::Error>;
+
+/// Steps of the encoder, um.
+const STEP_UM: f64 = 1.0;
+/// A machine that is not built in: tnv40 with presliding, cogging and ripple.
+const SLIDING: &str = "base = \"tnv40\"\nname = \"sliding\"
+[axis.x]\npresliding_um = 10\nripple = 0.01\nripple_per_rev = 8\ncogging_nm = 0.05\ncogging_per_rev = 24
+[axis.y]\npresliding_um = 10\nripple = 0.01\nripple_per_rev = 8\ncogging_nm = 0.05\ncogging_per_rev = 24\n";
+
+/// Keeps the commands of a cut, mm.
+#[derive(Default)]
+struct Commands([Vec<f64>; 2]);
+
+impl Sink for Commands {
+    fn row(&mut self, row: &Row) -> std::io::Result<()> {
+        self.0.iter_mut().zip(row.cmd_mm).for_each(|(commands, mm)| commands.push(mm));
+        Ok(())
+    }
+}
+
+/// Commands of two axes while the program of `excite` is cut.
+fn excited(machine: &Machine) -> Result<[Vec<f64>; 2], Failure> {
+    let mut machine = machine.clone();
+    machine.axes.truncate(2);
+    let text = excitation_program(&machine, ExciteOptions::default())?.text;
+    let canon: Vec<Canon> = Reader::from_text("excite.ngc", text, Settings::default())?
+        .collect::<Result<_, _>>()
+        .map_err(|error| format!("{error:?}"))?;
+    let mut commands = Commands::default();
+    Run::on(&machine).cut::<2>(|| Ok(path_steps(canon.clone())), &mut OpenLoop, &mut [&mut commands])?;
+    Ok(commands.0)
+}
+
+/// Products of an axis: key, and what it is.
+fn products(axis: &Axis) -> [(&'static str, f64); 3] {
+    let j = axis.inertia_kg_m2;
+    [
+        ("kp_kv_over_j_1_s2", axis.kp_1_s * axis.kv_nm_s_per_rad / j),
+        ("kv_plus_b_over_j_1_s", (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / j),
+        ("fc_over_j_mm_s2", axis.coulomb_friction_nm / j / axis.rad_per_mm()),
+    ]
+}
+
+/// How a product came out over all logs.
+#[derive(Debug, Clone, Copy, Default)]
+struct Seen {
+    largest: f64,
+    mean: f64,
+    square: f64,
+    half: f64,
+    held: f64,
+    logs: f64,
+}
+
+impl Seen {
+    fn add(&mut self, found: &FoundAxis, (key, is): (&str, f64)) {
+        let Some(number) = found.numbers().into_iter().find(|number| number.key == key) else { return };
+        let off = number.value / is - 1.0;
+        let [low, high] = number.interval.unwrap_or([f64::NAN; 2]);
+        self.largest = self.largest.max(off.abs());
+        self.mean += off;
+        self.square += off * off;
+        self.half += 0.5 * (high - low) / is;
+        self.held += f64::from(u8::from((low..=high).contains(&is)));
+        self.logs += 1.0;
+    }
+}
+
+fn main() -> Result<(), Failure> {
+    let mut arguments = std::env::args().skip(1);
+    let repeats: u64 = arguments.next().map_or(Ok(5), |text| text.parse())?;
+    println!(
+        "in %: error, largest, RMS and mean; half of an interval; intervals that hold.  um: left after 100 ms, at most"
+    );
+    println!(
+        "machine  product                largest    RMS   mean   half   hold | after 100 ms, terms beside the base"
+    );
+    for name in arguments {
+        let machine = match name.as_str() {
+            "sliding" => Machine::parse("sliding.toml", SLIDING)?,
+            name => Machine::load(name.as_ref())?,
+        };
+        let commands = excited(&machine)?;
+        let mut seen = [Seen::default(); 3];
+        let (mut worst_um, mut beside) = (0.0_f64, std::collections::BTreeMap::new());
+        for seed in 1..=repeats {
+            let log = identification_log::logged(&machine, commands.clone(), STEP_UM, seed);
+            // The log has commands and positions of the same moments.
+            let facts = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
+            let found = LogJob { facts, ..LogJob::default() }.run(log, &())?;
+            for (axis, is) in found.machine.axes.iter().zip(&machine.axes) {
+                worst_um = worst_um.max(axis.scores.grey_box.at_um[2]);
+                for term in axis.terms.iter().filter(|term| **term > LawTerm::RecordDelay) {
+                    *beside.entry(term.key()).or_insert(0) += 1;
+                }
+                seen.iter_mut().zip(products(is)).for_each(|(seen, product)| seen.add(axis, product));
+            }
+        }
+        for ((key, _), seen) in products(&machine.axes[0]).iter().zip(seen) {
+            let Seen { largest, mean, square, half, held, logs } = seen;
+            println!(
+                "{name:<8} {key:<22} {:7.3} {:6.3} {:6.3} {:6.3} {:6.0} | {worst_um:5.2} {beside:?} {:.1} s",
+                100.0 * largest,
+                100.0 * (square / logs).sqrt(),
+                100.0 * mean / logs,
+                100.0 * half / logs,
+                100.0 * held / logs,
+                commands[0].len() as f64 * machine.period.servo_s
+            );
+        }
+    }
+    Ok(())
+}

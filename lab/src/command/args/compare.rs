@@ -1,0 +1,135 @@
+//! Options of `feedwright-lab compare`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use crate::compare::{Knowledge, MAX_SEEDS, Shard};
+use clap::{Args, ValueEnum};
+
+use feedwright::command::ReaderArgs;
+
+/// Compare all controllers on contours and machines
+///
+/// One table: errors, time, torque, and how they compare with open loop.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Examples:
+  feedwright-lab compare --only workshop --html compare.html
+  feedwright-lab compare --only circle,star,tnv40,open-loop,lqg-identified")]
+pub(crate) struct CompareArgs {
+    /// Only these contours, machines and controllers; what is not named in its kind is left out.
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    pub(crate) only: Vec<String>,
+    /// Cut this program too, in the XY plane; may be given several times.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) part: Vec<PathBuf>,
+    /// Cut on this machine too; may be given several times.
+    #[arg(long, value_name = "FILE.toml")]
+    pub(crate) machine: Vec<OsString>,
+    /// Seed of everything random.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Set a parameter of a controller, such as two-dimensional.rho=0.01: it has its defaults then, and is not searched. May be given
+    /// several times; `feedwright-lab controllers NAME` lists them.
+    #[arg(long, value_name = "NAME.PARAMETER=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Where the values of the controllers' parameters come from: earlier searches that are kept with the program (where there is none,
+    /// a new search), a search for each controller and machine (an hour and more), or the defaults.
+    #[arg(long, value_name = "SOURCE", value_enum, default_value_t = TuningSource::Recorded)]
+    tuning: TuningSource,
+    /// As --tuning defaults.
+    #[arg(long, conflicts_with = "tuning")]
+    no_tuning: bool,
+    /// Search, and keep the values in this file beside those that it has; cut nothing. The program keeps core/src/compare/recorded.jsonl.
+    #[arg(long, value_name = "FILE.jsonl", conflicts_with_all = ["json", "html", "merge", "at_tolerance"])]
+    pub(crate) record: Option<PathBuf>,
+    /// What is cut.
+    #[arg(long, value_name = "WORK", value_enum, default_value_t = Work::Contours)]
+    pub(crate) work: Work,
+    /// Noise seeds that everything is cut with on a machine that has noise: the table has medians.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..=i64::from(MAX_SEEDS)))]
+    pub(crate) seeds: u32,
+    /// What controllers are given of the machine; a row for each.
+    #[arg(long, value_name = "GIVEN,...", value_enum, value_delimiter = ',', default_values_t = [Given::Own, Given::Identified, Given::TwentyPercentOff, Given::Unseen])]
+    pub(crate) knowledge: Vec<Given>,
+    /// Do only the i-th of n parts of the work; --merge puts the parts together.
+    #[arg(long, value_name = "I/N", conflicts_with_all = ["json", "html", "merge"])]
+    pub(crate) shard: Option<Shard>,
+    /// Keep rows in this file as they are made, and go on with those that it has.
+    #[arg(long, value_name = "FILE.jsonl", conflicts_with = "merge")]
+    pub(crate) rows: Option<PathBuf>,
+    /// Cut nothing: make the table of the rows in these files, with the same options as for them.
+    #[arg(long, value_name = "FILE.jsonl,...", value_delimiter = ',')]
+    pub(crate) merge: Vec<PathBuf>,
+    /// Also find, for each smooth contour, the feedrate at which each controller just holds 10 um.
+    #[arg(long)]
+    pub(crate) at_tolerance: bool,
+    /// Threads; all cores where it is left out. The table does not depend on it.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// Write all rows.
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) json: Option<PathBuf>,
+    /// Write a page with the table and plots of the errors.
+    #[arg(long, value_name = "FILE.html")]
+    pub(crate) html: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reader: ReaderArgs,
+}
+
+/// Where values of parameters come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TuningSource {
+    /// Earlier searches that are kept with the program; a search where there is none.
+    Recorded,
+    /// A search.
+    Search,
+    /// The defaults.
+    Defaults,
+}
+
+/// What is cut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Work {
+    /// Seven contours at 50 mm/s.
+    Contours,
+    /// The contours, and the parts that come with the program.
+    Development,
+    /// Contours turned and scaled, and random programs, whose seeds were drawn after everything was tuned.
+    HeldOut,
+}
+
+/// What controllers are given of a machine.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Given {
+    /// Its parameters, an identification on it, or nothing, by the kind of the controller.
+    Own,
+    /// Parameters that are identified from a recording of the machine.
+    Identified,
+    /// Parameters that are 20 % off.
+    #[value(name = "20%off")]
+    TwentyPercentOff,
+    /// An identification on tnv40.
+    Unseen,
+}
+
+impl From<Given> for Knowledge {
+    fn from(given: Given) -> Self {
+        match given {
+            Given::Own => Self::Own,
+            Given::Identified => Self::Identified,
+            Given::TwentyPercentOff => Self::TwentyPercentOff,
+            Given::Unseen => Self::Unseen,
+        }
+    }
+}
+
+impl CompareArgs {
+    pub(crate) fn tuning(&self) -> TuningSource {
+        match (&self.record, self.no_tuning) {
+            (Some(_), _) => TuningSource::Search,
+            (None, true) => TuningSource::Defaults,
+            (None, false) => self.tuning,
+        }
+    }
+}

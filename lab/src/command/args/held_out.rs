@@ -1,0 +1,36 @@
+//! Options of `feedwright-lab held-out`.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::sweep::{SweepArgs, at_least_one};
+
+/// Look for such harm with random programs on random machines
+///
+/// With --failures the smallest case of what fails is written.
+#[derive(Debug, Args)]
+#[command(after_long_help = "\
+Example:
+  feedwright-lab held-out 1 100 --failures failures")]
+pub(crate) struct HeldOutArgs {
+    /// Seed of programs and machines.
+    pub(crate) drawn_by: u64,
+    /// Number of cuts.
+    #[arg(value_parser = at_least_one)]
+    pub(crate) count: usize,
+    /// Programs for each machine, which is identified once for all of them.
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u16).range(1..))]
+    pub(crate) programs: u16,
+    /// Only machines without encoder steps and delay.
+    #[arg(long)]
+    pub(crate) rigid: bool,
+    /// Make the worst failures smaller and write each as DIR/N.ngc and DIR/N.toml.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) failures: Option<PathBuf>,
+    /// Failures that are made smaller.
+    #[arg(long, value_name = "N", default_value_t = 10, requires = "failures")]
+    pub(crate) smallest: usize,
+    #[command(flatten)]
+    pub(crate) sweep: SweepArgs,
+}

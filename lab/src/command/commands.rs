@@ -1,0 +1,7 @@
+//! One file per command.
+
+pub(crate) mod compare;
+pub(crate) mod export_contour;
+pub(crate) mod held_out;
+pub(crate) mod never_worse;
+pub(crate) mod paper;

@@ -1,0 +1,106 @@
+//! What is compared, from the arguments.
+
+use crate::compare::held_out_work::HeldOutSeeds;
+use crate::compare::{ComparisonOptions, Tuning, Workpiece, recorded};
+use crate::peers::CONTROLLERS;
+use feedwright::{BASELINE, Entry};
+use feedwright_gcode::suggestion::nearest;
+use feedwright_sim::{BUILT_IN_MACHINES, Machine};
+use miette::{Result, miette};
+
+use crate::command::args::compare::{CompareArgs, TuningSource, Work};
+
+pub(super) fn options(args: &CompareArgs) -> Result<ComparisonOptions> {
+    let mut workpieces = match args.work {
+        Work::Contours => Workpiece::contours(),
+        Work::Development => Workpiece::development(),
+        Work::HeldOut => HeldOutSeeds::recorded().workpieces(),
+    };
+    let mut machines: Vec<Machine> =
+        BUILT_IN_MACHINES.iter().map(|(name, _)| Machine::load(name.as_ref())).collect::<Result<_, _>>()?;
+    let mut controllers: Vec<&'static Entry> = CONTROLLERS.iter().collect();
+    let nominal = machines[0].clone();
+    let added: Vec<Machine> = args.machine.iter().map(|machine| Machine::load(machine)).collect::<Result<_, _>>()?;
+    check_only(&args.only, &workpieces, &[&machines[..], &added[..]].concat(), &controllers)?;
+    let named = |name: &str| args.only.iter().any(|only| only == name);
+    if workpieces.iter().any(|w| named(&w.name)) || !args.part.is_empty() && !args.only.is_empty() {
+        workpieces.retain(|w| named(&w.name));
+    }
+    if machines.iter().chain(&added).any(|m| named(&m.name)) {
+        machines.retain(|m| named(&m.name));
+    }
+    if controllers.iter().any(|c| named(c.name)) {
+        controllers.retain(|c| named(c.name) || c.name == BASELINE);
+    }
+    let settings = args.reader.settings()?;
+    for part in &args.part {
+        let part = Workpiece::program(part, settings.clone())?;
+        if workpieces.iter().any(|w| w.name == part.name) {
+            return Err(ambiguous("--part", &part.name));
+        }
+        workpieces.push(part);
+    }
+    for machine in added {
+        match machines.iter().find(|m| m.name == machine.name) {
+            // All that are built in are there already.
+            Some(there) if *there == machine => {}
+            Some(_) => return Err(ambiguous("--machine", &machine.name)),
+            None => machines.push(machine),
+        }
+    }
+    let set = feedwright::command::settings(&args.set, CONTROLLERS, None, &controllers)?;
+    let tuning = match args.tuning() {
+        TuningSource::Recorded => Tuning::Known(recorded::known(&machines_and(&machines, &nominal), args.seed)),
+        TuningSource::Search => Tuning::Search,
+        TuningSource::Defaults => Tuning::Defaults,
+    };
+    Ok(ComparisonOptions {
+        workpieces,
+        nominal,
+        machines,
+        controllers,
+        knowledge: args.knowledge.iter().map(|&given| given.into()).collect(),
+        seed: args.seed,
+        noise_seeds: args.seeds,
+        tuning,
+        set,
+        at_tolerance: args.at_tolerance,
+    })
+}
+
+fn machines_and(machines: &[Machine], nominal: &Machine) -> Vec<Machine> {
+    machines.iter().chain([nominal]).cloned().collect()
+}
+
+/// Whether all that `--only` names is there.
+fn check_only(
+    only: &[String],
+    workpieces: &[Workpiece],
+    machines: &[Machine],
+    controllers: &[&'static Entry],
+) -> Result<()> {
+    let known: Vec<String> = (workpieces.iter().map(|w| w.name.clone()))
+        .chain(machines.iter().map(|m| m.name.clone()))
+        .chain(controllers.iter().map(|c| c.name.to_owned()))
+        .collect();
+    for name in only {
+        if !known.contains(name) {
+            let names: Vec<&str> = known.iter().map(String::as_str).collect();
+            let help = match nearest(name, &names) {
+                Some(meant) => format!("did you mean '{meant}'?"),
+                None => format!("there are {}; what --part and --machine add is always cut", known.join(", ")),
+            };
+            return Err(miette!(help = help, "--only: no contour, machine or controller is called '{name}'"));
+        }
+    }
+    Ok(())
+}
+
+/// The rows of two that have the same name could not be told apart.
+fn ambiguous(option: &str, name: &str) -> miette::Report {
+    let help = match option {
+        "--part" => "the name is that of the file: give this one another",
+        _ => "give it another `name` in its file, or choose from those that are built in with --only",
+    };
+    miette!(help = help, "{option}: there is another '{name}' in the table")
+}

@@ -1,0 +1,106 @@
+//! `feedwright-lab never-worse`: programs on many machines, open loop and corrected.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use crate::never_worse::program::{Length, Program};
+use crate::never_worse::{SweepJob, jobs, machines, sample};
+use feedwright::command::{Console, FilesToCheck, printed};
+use feedwright_gcode::Settings;
+use feedwright_sim::{Machine, Watch};
+use glob::Pattern;
+use miette::{Result, miette};
+use rayon::prelude::*;
+
+use crate::command::args::never_worse::NeverWorseArgs;
+use crate::command::sweep::Sweep;
+
+/// The machine whose time counts where long programs are shortened.
+const PACE: &str = "tnv40";
+/// A week of machining, s: more is a mistaken unit.
+const MAX_S: f64 = 7.0 * 24.0 * 3600.0;
+
+pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> {
+    if !(args.limit_s > 0.0 && args.limit_s <= MAX_S) {
+        let help = "600 is the first ten minutes of machining";
+        return Err(miette!(help = help, "--limit-s is {} s; it must lie above 0 and up to {MAX_S} s", args.limit_s));
+    }
+    let machines = machines_of(args)?;
+    let files = files(args)?;
+    let machine_files = args.machine.iter().map(PathBuf::from).collect::<Vec<_>>();
+    let inputs: Vec<&Path> = files.iter().chain(&machine_files).map(PathBuf::as_path).collect();
+    let sweep = Sweep::new(&args.sweep, &inputs)?;
+    let programs = read(&files, &args.reader.settings()?, args.limit_s, console)?;
+    let jobs = jobs(programs, machines);
+    let jobs = match args.sample {
+        Some(count) => sample(jobs, count, args.sweep.seed),
+        None => jobs,
+    };
+    announce(&jobs);
+    let done = sweep.run(&jobs, console)?;
+    printed(done.print(), done.code())
+}
+
+fn machines_of(args: &NeverWorseArgs) -> Result<Vec<Machine>> {
+    if args.machine.is_empty() {
+        return Ok(machines::machines()?);
+    }
+    Ok(args.machine.iter().map(|machine| Machine::load(machine)).collect::<Result<_, _>>()?)
+}
+
+/// The programs that are asked for.
+fn files(args: &NeverWorseArgs) -> Result<Vec<PathBuf>> {
+    if let Some(missing) = args.programs.iter().find(|path| !path.exists()) {
+        return Err(miette!(
+            help = "name programs, or folders that hold some",
+            "{}: there is no such file or folder",
+            missing.display()
+        ));
+    }
+    let found = FilesToCheck::find(&args.programs);
+    if let Some(fault) = found.faults.first() {
+        return Err(miette!("{fault}"));
+    }
+    let Some(only) = &args.only else { return Ok(found.files) };
+    let pattern = Pattern::new(only).map_err(|error| miette!("--only {only}: {error}"))?;
+    let files: Vec<PathBuf> = found.files.into_iter().filter(|file| pattern.matches_path(file)).collect();
+    if files.is_empty() {
+        return Err(miette!(help = "the pattern is for the whole path: '*circle*'", "--only {only}: no program fits"));
+    }
+    Ok(files)
+}
+
+/// Reads all programs; those with mistakes are counted and left out.
+fn read(files: &[PathBuf], settings: &Settings, limit_s: f64, console: &Console) -> Result<Vec<Program>> {
+    let pace = Machine::load(PACE.as_ref())?;
+    let length = Length { machine: &pace, limit_s };
+    let bar = console.bar(0);
+    bar.begin("reading the programs", files.len() as u64);
+    let read = |file: &PathBuf| {
+        let program = if bar.is_cancelled() { None } else { Program::read(file, settings, length).ok() };
+        bar.advance(1);
+        program
+    };
+    let programs: Vec<Program> = files.par_iter().filter_map(read).collect();
+    bar.clear();
+    bar.check()?;
+    let refused = files.len() - programs.len();
+    if refused > 0 {
+        eprintln!(
+            "left out, with mistakes or without motion: {refused} of {} (feedwright check tells why)",
+            files.len()
+        );
+    }
+    if programs.is_empty() {
+        return Err(miette!("none of the programs can be cut"));
+    }
+    Ok(programs)
+}
+
+fn announce(jobs: &[SweepJob]) {
+    let hours = jobs.iter().map(|job| job.program.machining_s).sum::<f64>() / 3600.0;
+    let shortened = jobs.iter().filter(|job| job.program.shortened).count();
+    let parts =
+        if shortened > 0 { format!("; {shortened} of them of the beginning of a program") } else { String::new() };
+    eprintln!("{} cuts, {hours:.1} h of machining on {PACE}{parts}", jobs.len());
+}

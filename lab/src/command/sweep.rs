@@ -1,0 +1,154 @@
+//! What the commands share that compare a controller with open loop on many cuts: the journal, the bar, the table.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+use crate::journal::Journal;
+use crate::never_worse::cut::{Figures, SweepRow};
+use crate::never_worse::summary::{Judged, OPEN_LOOP_UM, Quantiles, SweepSummary};
+use crate::never_worse::{SweepJob, SweepOptions, Swept, journal_path, sweep};
+use crate::peers::CONTROLLERS;
+use feedwright::command::{
+    Console, ConsoleTable, OUT_OF_TOLERANCE, TableColumn, find, remark, settings, tables, wrapped,
+};
+use feedwright::{OutputFile, OutputFiles, cache_folder, key_of};
+use miette::{IntoDiagnostic, Result, WrapErr};
+
+use crate::command::args::sweep::SweepArgs;
+
+/// A sweep that is about to begin: everything that can be refused has been.
+pub(super) struct Sweep {
+    pub(crate) options: SweepOptions,
+    journal: Journal<SweepRow>,
+    json: Option<OutputFile>,
+    json_to: Option<PathBuf>,
+}
+
+impl Sweep {
+    /// `inputs` are files that no output may take the place of.
+    pub(crate) fn new(args: &SweepArgs, inputs: &[&Path]) -> Result<Self> {
+        let controller = find(&args.controller, CONTROLLERS)?;
+        let set = settings(&args.set, CONTROLLERS, Some(controller), &[controller])?;
+        let threads =
+            args.threads.map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
+        let options = SweepOptions { controller, set, seed: args.seed, threads };
+        let mut files = OutputFiles::new(inputs.iter().copied());
+        let json = args.json.as_ref().map(|path| files.start(path)).transpose()?;
+        let journal = journal(args.journal.as_deref())?;
+        if journal.damaged() > 0 {
+            remark(&format!("lines of the journal that are damaged, and cut anew: {}", journal.damaged()));
+        }
+        Ok(Self { options, journal, json, json_to: args.json.clone() })
+    }
+
+    /// Cuts all jobs and writes what was asked for.
+    pub(crate) fn run(self, jobs: &[SweepJob], console: &Console) -> Result<Done> {
+        let bar = console.bar(0);
+        let began = Instant::now();
+        let swept = sweep(jobs, &self.options, &self.journal, &bar);
+        bar.clear();
+        let Swept { rows, known } = swept?;
+        let summary = SweepSummary::of(rows);
+        let (threads, took_s) = (self.options.threads, began.elapsed().as_secs_f64());
+        if let Some(mut file) = self.json {
+            serde_json::to_writer_pretty(&mut file, &summary).into_diagnostic().wrap_err("cannot write the cuts")?;
+            file.write_all(b"\n").into_diagnostic()?;
+            OutputFile::commit_all(vec![file], &bar)?;
+        }
+        Ok(Done { summary, known, threads, took_s, json: self.json_to })
+    }
+}
+
+/// The journal: where it is asked for, or in the cache; none where there is no place for it.
+fn journal(file: Option<&Path>) -> Result<Journal<SweepRow>> {
+    if let Some(file) = file {
+        return Journal::open(file)
+            .into_diagnostic()
+            .wrap_err_with(|| format!("{}: no journal can be kept there", file.display()));
+    }
+    let program = std::env::current_exe().and_then(std::fs::read).unwrap_or_default();
+    let path = cache_folder().map(|folder| journal_path(&folder, &key_of(&[&program])));
+    Ok(path.and_then(|path| Journal::open(&path).ok()).unwrap_or_else(Journal::none))
+}
+
+/// A sweep that is done.
+pub(super) struct Done {
+    pub(crate) summary: SweepSummary,
+    known: usize,
+    threads: usize,
+    took_s: f64,
+    json: Option<PathBuf>,
+}
+
+impl Done {
+    /// 1 where any cut is worse.
+    pub(crate) fn code(&self) -> ExitCode {
+        if self.summary.worse > 0 { ExitCode::from(OUT_OF_TOLERANCE) } else { ExitCode::SUCCESS }
+    }
+
+    /// Failures, then totals.
+    pub(crate) fn print(&self) -> io::Result<()> {
+        let out = &mut *tables([self.json.as_deref()]);
+        let SweepSummary { judged, not_judged, worse, by_fault, rows, .. } = &self.summary;
+        let failures: Vec<&Judged> = rows.iter().filter(|judged| !judged.faults.is_empty()).collect();
+        let mut table = ConsoleTable::new(vec![
+            TableColumn::new("RMS / max um"),
+            TableColumn::new("machine"),
+            TableColumn::new("open loop"),
+            TableColumn::new("corrected"),
+            TableColumn::new("worse in"),
+        ]);
+        for Judged { row, faults, .. } in &failures {
+            let names: Vec<&str> = faults.iter().map(|fault| fault.name()).collect();
+            let [before, after] = [&row.open_loop, &row.corrected].map(figures);
+            table.row(vec![row.program.clone(), row.machine.clone(), before, after, names.join(", ")]);
+            if let Some(why) = &row.corrected.lost {
+                table.remark(why.clone());
+            }
+        }
+        if !failures.is_empty() {
+            table.print(out)?;
+        }
+        let by_fault: Vec<String> = by_fault.iter().map(|(fault, cuts)| format!("{} {cuts}", fault.name())).collect();
+        writeln!(out, "{worse} of {judged} cuts worse than open loop ({})", by_fault.join(", "))?;
+        if *not_judged > 0 {
+            writeln!(out, "not judged, because open loop itself is lost: {not_judged}")?;
+        }
+        self.print_numbers(out)
+    }
+
+    fn print_numbers(&self, out: &mut dyn Write) -> io::Result<()> {
+        let SweepSummary { rms_ratio, rms_ratio_rigid, engaged_share, machining_s, .. } = &self.summary;
+        let mut quantiles = |what: &str, ratios: &Option<Quantiles>| match ratios {
+            Some(Quantiles { cuts, median, p90, p99, largest }) => {
+                let text = format!(
+                    "RMS against open loop, {what}: median {median:.3}, 90 % {p90:.3}, 99 % {p99:.3}, largest {largest:.3} ({cuts} cuts)"
+                );
+                writeln!(out, "{}", wrapped(&text, 2))
+            }
+            None => Ok(()),
+        };
+        quantiles("all cuts", rms_ratio)?;
+        quantiles(
+            &format!("rigid machines without encoder steps and delay, open loop above {OPEN_LOOP_UM} um"),
+            rms_ratio_rigid,
+        )?;
+        if let Some(share) = engaged_share {
+            writeln!(out, "share of the time with the controller in the loop: median {share:.3}")?;
+        }
+        let Self { known, threads, took_s, .. } = self;
+        let known = if *known > 0 { format!("; cuts that were in the journal: {known}") } else { String::new() };
+        writeln!(
+            out,
+            "{:.2} h of machining, cut twice, in {took_s:.0} s on {threads} threads{known}",
+            machining_s / 3600.0
+        )
+    }
+}
+
+/// RMS and largest error, um.
+fn figures(figures: &Figures) -> String {
+    format!("{:.2} / {:.1}", figures.rms_um, figures.max_um)
+}

@@ -1,0 +1,141 @@
+//! Who competes: a controller, and what it is given of the machine that it cuts on.
+
+use crate::peers::CONTROLLERS;
+use feedwright::{Choices, Entry, Knows, Make, Setup};
+use feedwright_control::Controller;
+use feedwright_control::{IdentifierKind, OpenLoop};
+use feedwright_sim::Machine;
+use serde::{Deserialize, Serialize};
+
+use super::tuned::Tuned;
+
+/// What a controller is given of the machine that it cuts on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Knowledge {
+    /// All that its kind may have: the machine's parameters, an identification on the machine, or nothing.
+    Own,
+    /// Inertia and friction as they are found from a recording of the machine; values that are tuned with the exact ones.
+    Identified,
+    /// Inertia that is 20 % too low and friction that is 20 % too high; values that are tuned with the exact ones.
+    TwentyPercentOff,
+    /// An identification on the nominal machine, and the values that are tuned there.
+    Unseen,
+}
+
+/// Inertia that is believed where parameters are 20 % off, as a part of the true one. Opposite to friction, so that the two errors
+/// of the torque do not cancel each other where an axis speeds up.
+const INERTIA_BELIEVED: f64 = 0.8;
+/// The same of friction.
+const FRICTION_BELIEVED: f64 = 1.2;
+
+impl Knowledge {
+    /// All kinds, in the order of the table.
+    pub const ALL: [Self; 4] = [Self::Own, Self::Identified, Self::TwentyPercentOff, Self::Unseen];
+
+    /// What stands behind the name of the controller.
+    pub const fn suffix(self) -> &'static str {
+        match self {
+            Self::Own => "",
+            Self::Identified => "+identified",
+            Self::TwentyPercentOff => "+20%off",
+            Self::Unseen => "+unseen",
+        }
+    }
+
+    /// Whether it makes a row of its own for a controller.
+    fn is_for(self, entry: &Entry) -> bool {
+        match self {
+            Self::Own => true,
+            Self::Identified | Self::TwentyPercentOff => entry.knows == Knows::ExactModel,
+            Self::Unseen => entry.knows == Knows::Identified,
+        }
+    }
+}
+
+/// A controller in the comparison.
+#[derive(Debug, Clone, Copy)]
+pub struct Competitor {
+    /// Its row in the table of controllers.
+    pub entry: &'static Entry,
+    /// What it is given.
+    pub knowledge: Knowledge,
+}
+
+impl Competitor {
+    /// The controller of a row of the table, with all that its kind may know.
+    pub const fn own(entry: &'static Entry) -> Self {
+        Self { entry, knowledge: Knowledge::Own }
+    }
+
+    /// All on a machine, in the order of the table. On the nominal machine nobody is unseen.
+    pub(super) fn all(controllers: &[&'static Entry], known: &[Knowledge], is_nominal: bool) -> Vec<Self> {
+        let here = known.iter().filter(|&&knowledge| knowledge != Knowledge::Unseen || !is_nominal);
+        here.flat_map(|&knowledge| {
+            let suited = controllers.iter().filter(move |entry| knowledge.is_for(entry));
+            suited.map(move |&entry| Self { entry, knowledge })
+        })
+        .collect()
+    }
+
+    /// Its name in the table.
+    pub fn name(&self) -> String {
+        format!("{}{}", self.entry.name, self.knowledge.suffix())
+    }
+
+    /// The competitor of that name.
+    pub fn find(name: &str) -> Option<Self> {
+        let with = |knowledge: Knowledge| Some((CONTROLLERS.find(name.strip_suffix(knowledge.suffix())?)?, knowledge));
+        let (entry, knowledge) = Knowledge::ALL.into_iter().find_map(with)?;
+        Some(Self { entry, knowledge })
+    }
+
+    /// Makes it for a machine. Recordings for an identification are made with the noise seed that the machine has here. One whose
+    /// parameters cannot be identified there stays open loop.
+    pub(super) fn make(
+        &self,
+        machine: &Machine,
+        nominal: &Machine,
+        seed: u64,
+        tuned: Option<&Tuned>,
+    ) -> Box<dyn Controller<2>> {
+        let set = tuned.map_or(Vec::new(), |tuned| tuned.settings(self.entry));
+        let choices = Choices { seed, set };
+        // The periods of the control are never a secret.
+        let unseen = Machine { period: machine.period, ..nominal.clone() };
+        let known = if self.knowledge == Knowledge::Unseen { &unseen } else { machine };
+        let mut setup = Setup::new(known, &choices);
+        match self.knowledge {
+            Knowledge::TwentyPercentOff => {
+                setup.known = setup.known.misjudged(INERTIA_BELIEVED, FRICTION_BELIEVED);
+            }
+            Knowledge::Identified if setup.identify_parameters::<2>().is_err() => return Box::new(OpenLoop),
+            // What a drive is set to is read off it, wherever its axis was identified.
+            Knowledge::Unseen if self.entry.identifier == Some(IdentifierKind::Axes) => setup.known = machine.known(),
+            Knowledge::Own | Knowledge::Identified | Knowledge::Unseen => {}
+        }
+        Make::<2>::make(self.entry, &mut setup)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::peers::CONTROLLERS;
+
+    #[test]
+    fn every_competitor_is_found_by_its_name_and_no_two_have_the_same() {
+        let controllers: Vec<&'static Entry> = CONTROLLERS.iter().collect();
+        let all = Competitor::all(&controllers, &Knowledge::ALL, false);
+        assert!(all.len() > controllers.len());
+        for (i, competitor) in all.iter().enumerate() {
+            let name = competitor.name();
+            let found = Competitor::find(&name).unwrap();
+            assert_eq!((found.entry, found.knowledge), (competitor.entry, competitor.knowledge));
+            assert!(all[..i].iter().all(|other| other.name() != name), "{name}");
+        }
+        let nominal = Competitor::all(&controllers, &Knowledge::ALL, true);
+        assert!(nominal.iter().all(|competitor| competitor.knowledge != Knowledge::Unseen));
+        assert!(Competitor::find("open-loop+30%off").is_none());
+    }
+}

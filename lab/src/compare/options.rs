@@ -1,0 +1,114 @@
+//! What is compared.
+
+use feedwright::{Entry, Setting};
+use feedwright_sim::Machine;
+use serde::{Deserialize, Serialize};
+
+use super::competitor::{Competitor, Knowledge};
+use super::tuned::Tuned;
+use super::work::Workpiece;
+
+/// Where the values of the controllers' parameters come from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub enum Tuning {
+    /// A search on each machine, the same for all.
+    Search,
+    /// The defaults.
+    Defaults,
+    /// An earlier search; a new one for controllers and machines that it does not have.
+    Known(Vec<Tuned>),
+}
+
+/// What is to be compared.
+#[derive(Debug, Clone)]
+pub struct ComparisonOptions {
+    /// Contours and parts.
+    pub workpieces: Vec<Workpiece>,
+    /// The machine on which those are identified that meet the others [unseen](Knowledge::Unseen).
+    pub nominal: Machine,
+    /// Machines to cut on.
+    pub machines: Vec<Machine>,
+    /// Controllers, open loop among them: the ratios are against it.
+    pub controllers: Vec<&'static Entry>,
+    /// What they are given of the machines: a row for each kind that suits a controller.
+    pub knowledge: Vec<Knowledge>,
+    /// Seed of everything random.
+    pub seed: u64,
+    /// Noise seeds that each workpiece is cut with on a machine that has noise.
+    pub noise_seeds: u32,
+    /// Values of the controllers' parameters.
+    pub tuning: Tuning,
+    /// Parameters that are set; the others of such a controller have their defaults.
+    pub set: Vec<Setting>,
+    /// Whether to look for the machining times at equal tolerance too.
+    pub at_tolerance: bool,
+}
+
+impl ComparisonOptions {
+    /// All competitors on a machine, in the order of the table.
+    pub fn competitors(&self, machine: &Machine) -> Vec<Competitor> {
+        Competitor::all(&self.controllers, &self.knowledge, machine.name == self.nominal.name)
+    }
+
+    /// Whether parameters of a controller are set.
+    pub(super) fn is_set(&self, entry: &Entry) -> bool {
+        self.set.iter().any(|set| set.controller == entry.name)
+    }
+
+    /// Whether a controller runs with values other than what it always has.
+    pub(super) fn has_values(&self, entry: &Entry) -> bool {
+        entry.searched().count() > 0 || self.is_set(entry)
+    }
+
+    /// The values of a controller on a machine, where no search is needed for them.
+    pub(super) fn given(&self, machine: &Machine, entry: &Entry) -> Option<Tuned> {
+        match &self.tuning {
+            _ if self.is_set(entry) => Some(Tuned::set(&machine.name, entry, &self.set)),
+            Tuning::Search => None,
+            Tuning::Defaults => Some(Tuned::defaults(&machine.name, entry)),
+            Tuning::Known(known) => {
+                known.iter().find(|tuned| tuned.machine == machine.name && tuned.controller == entry.name).cloned()
+            }
+        }
+    }
+
+    /// Controllers and machines whose values have to be searched, by name.
+    pub fn to_search(&self) -> Vec<(String, &'static str)> {
+        let on = |machine: &'_ Machine| {
+            let name = machine.name.clone();
+            let searched = self.controllers.iter().filter(|entry| self.has_values(entry));
+            let open = searched.filter(|entry| self.given(machine, entry).is_none());
+            open.map(|entry| (name.clone(), entry.name)).collect::<Vec<_>>()
+        };
+        self.machines.iter().flat_map(on).collect()
+    }
+
+    /// What the result depends on, apart from the program: the key of the journal.
+    pub fn fingerprint(&self) -> String {
+        let workpieces: Vec<_> = self.workpieces.iter().map(|w| (&w.name, format!("{:?}", w.steps))).collect();
+        let machine = |machine: &Machine| (machine.name.clone(), machine.fingerprint());
+        let machines: Vec<_> = self.machines.iter().map(machine).collect();
+        let names: Vec<_> = self.controllers.iter().map(|entry| entry.name).collect();
+        let content = serde_json::json!([
+            workpieces,
+            machine(&self.nominal),
+            machines,
+            names,
+            self.knowledge,
+            [self.seed, u64::from(self.noise_seeds)],
+            self.tuning,
+            self.set,
+            self.at_tolerance
+        ]);
+        blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
+    }
+}
+
+/// What rows depend on.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct RowsStamp {
+    /// [`ComparisonOptions::fingerprint`].
+    pub options: String,
+    /// Hash of the program.
+    pub program: String,
+}

@@ -1,0 +1,87 @@
+//! What tables over many rows are made of: names in their order, a row by its names, an error over all contours, a claim over
+//! all that it was made of.
+
+use feedwright_ident::quadratic_mean;
+
+use super::Comparison;
+use super::table::{ComparisonRow, each_once};
+use super::tolerance::AtTolerance;
+use super::verdict::Verdict;
+
+/// One claim, and what became of it everywhere.
+#[derive(Debug)]
+pub struct Claimed<'a> {
+    /// What is claimed.
+    pub claim: &'a str,
+    /// What the value may be.
+    pub limit: f64,
+    /// Its unit; empty for a ratio.
+    pub unit: &'a str,
+    /// On how many it holds.
+    pub held: usize,
+    /// The largest value.
+    pub worst: f64,
+    /// All of them.
+    pub verdicts: Vec<&'a Verdict>,
+}
+
+impl Comparison {
+    /// Contours and parts, in the order of the rows.
+    pub fn contours(&self) -> Vec<&str> {
+        each_once(self.rows.iter().map(|row| &row.contour))
+    }
+
+    /// Machines, in the order of the rows.
+    pub fn machines(&self) -> Vec<&str> {
+        each_once(self.rows.iter().map(|row| &row.machine))
+    }
+
+    /// Controllers, in the order of the rows.
+    pub fn controllers(&self) -> Vec<&str> {
+        each_once(self.rows.iter().map(|row| &row.controller))
+    }
+
+    /// The row of a cut; none where it was not asked for.
+    pub fn row(&self, contour: &str, machine: &str, controller: &str) -> Option<&ComparisonRow> {
+        self.rows.iter().find(|row| row.contour == contour && row.machine == machine && row.controller == controller)
+    }
+
+    /// A number of the rows of a controller on a machine, contour by contour; none where a cut is missing or was not completed.
+    pub fn on_contours(&self, machine: &str, controller: &str, number: fn(&ComparisonRow) -> f64) -> Option<Vec<f64>> {
+        let row = |contour: &str| self.row(contour, machine, controller).filter(|row| row.completed);
+        self.contours().into_iter().map(|contour| row(contour).map(number)).collect()
+    }
+
+    /// RMS contour error over all contours (quadratic mean), um; none where a cut is missing or was not completed.
+    pub fn rms_over_contours_um(&self, machine: &str, controller: &str) -> Option<f64> {
+        self.on_contours(machine, controller, |row| row.rms_um).map(quadratic_mean)
+    }
+
+    /// As [`Self::rms_over_contours_um`], without the geometry that no encoder sees where the machine has any.
+    pub fn controlled_rms_over_contours_um(&self, machine: &str, controller: &str) -> Option<f64> {
+        self.on_contours(machine, controller, ComparisonRow::controlled_rms_um).map(quadratic_mean)
+    }
+
+    /// Whether a machine has geometry that no encoder sees.
+    pub fn has_geometry(&self, machine: &str) -> bool {
+        self.rows.iter().any(|row| row.machine == machine && row.joint_rms_um.is_some())
+    }
+
+    /// The claims, in the order of the verdicts.
+    pub fn claims(&self) -> Vec<Claimed<'_>> {
+        let of_claim = |claim| {
+            let verdicts: Vec<&Verdict> = self.verdicts.iter().filter(|verdict| verdict.claim == claim).collect();
+            let held = verdicts.iter().filter(|verdict| verdict.holds).count();
+            let worst = verdicts.iter().map(|verdict| verdict.value).fold(f64::NEG_INFINITY, f64::max);
+            Claimed { claim, limit: verdicts[0].limit, unit: &verdicts[0].unit, held, worst, verdicts }
+        };
+        each_once(self.verdicts.iter().map(|verdict| &verdict.claim)).into_iter().map(of_claim).collect()
+    }
+
+    /// The feedrate at which a controller just holds the tolerance, mm/s, and its time there against open loop; none where it
+    /// never does.
+    pub fn just_holding(&self, contour: &str, controller: &str) -> Option<(f64, f64)> {
+        let is_it = |row: &&AtTolerance| row.contour == contour && row.controller == controller;
+        self.at_tolerance.iter().find(is_it).and_then(|row| row.feed_mm_s.zip(row.time_ratio))
+    }
+}

@@ -1,0 +1,210 @@
+//! The table: one row for each workpiece, machine and controller, with ratios against open loop.
+
+use feedwright::{BASELINE, Knows};
+use feedwright_ident::median_and_spread;
+use feedwright_sim::Machine;
+use serde::{Deserialize, Serialize};
+
+use super::competitor::Competitor;
+use super::options::ComparisonOptions;
+use super::work::Workpiece;
+
+/// The numbers of one cut.
+#[derive(Debug, Clone, Default)]
+pub(super) struct CutNumbers {
+    pub(super) time_s: f64,
+    pub(super) rms_um: f64,
+    pub(super) max_um: f64,
+    /// RMS and largest contour error of the joints, um; none where the machine has no geometry that no encoder sees.
+    pub(super) joint_um: Option<[f64; 2]>,
+    pub(super) uncut_um: f64,
+    pub(super) max_deviation_um: f64,
+    pub(super) accel_mm_s2: f64,
+    pub(super) peak_torque_nm: f64,
+    pub(super) completed: bool,
+    pub(super) faded_out: Option<&'static str>,
+}
+
+/// One row. Errors and times are medians over the noise seeds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ComparisonRow {
+    /// Contour or part.
+    pub contour: String,
+    /// Machine that was cut on.
+    pub machine: String,
+    /// Controller, and what it was given of the machine.
+    pub controller: String,
+    /// Machining time, s.
+    pub time_s: f64,
+    /// RMS contour error, um.
+    pub rms_um: f64,
+    /// The lowest and the highest of all noise seeds, um.
+    pub rms_spread_um: [f64; 2],
+    /// Largest contour error, um.
+    pub max_um: f64,
+    /// The lowest and the highest of all noise seeds, um.
+    pub max_spread_um: [f64; 2],
+    /// RMS contour error without the geometry that no encoder sees, um; none where the machine has no such geometry.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_rms_um: Option<f64>,
+    /// The largest, um.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub joint_max_um: Option<f64>,
+    /// Uncut path: largest distance from a programmed point to what the tool did in the time that it has for it, um. Of all seeds.
+    pub uncut_um: f64,
+    /// Largest distance of the command from the point of the path of the same instant, um. Of all seeds.
+    pub max_deviation_um: f64,
+    /// Largest acceleration of the command of any axis, mm/s2. Of all seeds.
+    pub accel_mm_s2: f64,
+    /// Largest torque of any axis, N m. Of all seeds.
+    pub peak_torque_nm: f64,
+    /// Machining time against open loop on the same machine.
+    pub time_ratio: f64,
+    /// RMS against open loop.
+    pub rms_ratio: f64,
+    /// Largest error against open loop.
+    pub max_ratio: f64,
+    /// Noise seeds that it was cut with.
+    pub seeds: u32,
+    /// With how many of them it was not cut to its end, or the safety layer took the controller out of the loop.
+    pub lost: u32,
+    /// Whether it was cut to its end with all of them.
+    pub completed: bool,
+    /// Why the safety layer took the controller out of the loop, where it did, with the first of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub faded_out: Option<String>,
+    /// Contour error along the cut with the first seed, um, for plots.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub error_um: Vec<f32>,
+}
+
+impl ComparisonRow {
+    /// Of what was measured with each noise seed; ratios are still open.
+    pub(super) fn new(
+        workpiece: &Workpiece,
+        machine: &Machine,
+        competitor: &Competitor,
+        measured: &[CutNumbers],
+        error_um: Vec<f32>,
+    ) -> Self {
+        let spread = |number: fn(&CutNumbers) -> f64| median_and_spread(measured.iter().map(number));
+        let worst = |number: fn(&CutNumbers) -> f64| measured.iter().map(number).fold(0.0, f64::max);
+        let joint = |k: usize| {
+            let all: Option<Vec<f64>> = measured.iter().map(|cut| cut.joint_um.map(|um| um[k])).collect();
+            all.map(|um| median_and_spread(um).0)
+        };
+        let ((rms_um, rms_spread_um), (max_um, max_spread_um)) = (spread(|cut| cut.rms_um), spread(|cut| cut.max_um));
+        Self {
+            contour: workpiece.name.clone(),
+            machine: machine.name.clone(),
+            controller: competitor.name(),
+            time_s: spread(|cut| cut.time_s).0,
+            rms_um,
+            rms_spread_um,
+            max_um,
+            max_spread_um,
+            joint_rms_um: joint(0),
+            joint_max_um: joint(1),
+            uncut_um: worst(|cut| cut.uncut_um),
+            max_deviation_um: worst(|cut| cut.max_deviation_um),
+            accel_mm_s2: worst(|cut| cut.accel_mm_s2),
+            peak_torque_nm: worst(|cut| cut.peak_torque_nm),
+            time_ratio: 1.0,
+            rms_ratio: 1.0,
+            max_ratio: 1.0,
+            seeds: measured.len() as u32,
+            lost: measured.iter().filter(|cut| !cut.completed || cut.faded_out.is_some()).count() as u32,
+            completed: measured.iter().all(|cut| cut.completed),
+            faded_out: measured.iter().find_map(|cut| cut.faded_out).map(str::to_owned),
+            error_um,
+        }
+    }
+
+    /// RMS contour error that a control with encoders alone can do something about, um.
+    pub fn controlled_rms_um(&self) -> f64 {
+        self.joint_rms_um.unwrap_or(self.rms_um)
+    }
+
+    /// The largest of the same, um.
+    pub fn controlled_max_um(&self) -> f64 {
+        self.joint_max_um.unwrap_or(self.max_um)
+    }
+
+    /// What became of it, where it is not just an end: in words.
+    pub fn note(&self) -> Option<String> {
+        let of = if self.seeds > 1 { format!(" with {} of {} seeds", self.lost, self.seeds) } else { String::new() };
+        match (self.completed, &self.faded_out) {
+            (false, _) => Some(format!("diverged{of}")),
+            (true, Some(cause)) => Some(format!("left the loop{of}: {cause}")),
+            (true, None) => None,
+        }
+    }
+}
+
+/// All rows by workpiece, then machine, in the order of the cuts otherwise; ratios filled in.
+pub(super) fn in_order(cuts: &[ComparisonRow], options: &ComparisonOptions) -> Vec<ComparisonRow> {
+    let mut rows = Vec::with_capacity(cuts.len());
+    for workpiece in &options.workpieces {
+        for machine in &options.machines {
+            let here = cuts.iter().filter(|row| row.contour == workpiece.name && row.machine == machine.name);
+            let base = here.clone().find(|row| row.controller == BASELINE);
+            rows.extend(here.map(|row| against(row.clone(), base)));
+        }
+    }
+    rows
+}
+
+fn against(mut row: ComparisonRow, base: Option<&ComparisonRow>) -> ComparisonRow {
+    if let Some(base) = base {
+        row.time_ratio = row.time_s / base.time_s;
+        row.rms_ratio = row.rms_um / base.rms_um;
+        row.max_ratio = row.max_um / base.max_um;
+    }
+    row
+}
+
+/// Names of a column, each once, in the order of the rows.
+pub fn each_once<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
+    let mut once: Vec<&str> = Vec::new();
+    for name in names {
+        if !once.contains(&name.as_str()) {
+            once.push(name);
+        }
+    }
+    once
+}
+
+/// What the controller of a row knows; nothing where its name is none.
+pub fn knows(row: &ComparisonRow) -> Option<Knows> {
+    Competitor::find(&row.controller).map(|competitor| competitor.entry.knows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::peers::CONTROLLERS;
+
+    #[test]
+    fn a_row_has_medians_of_errors_the_worst_of_all_else_and_counts_what_was_lost() {
+        let cut =
+            |rms_um: f64, uncut_um: f64| CutNumbers { rms_um, uncut_um, completed: true, ..CutNumbers::default() };
+        let mut measured = vec![cut(3.0, 7.0), cut(1.0, 9.0), cut(2.0, 8.0)];
+        let workpiece = &Workpiece::contours()[0];
+        let machine = Machine::load("tnv40".as_ref()).unwrap();
+        let competitor = Competitor::own(CONTROLLERS.find(BASELINE).unwrap());
+        let row = |measured: &[CutNumbers]| ComparisonRow::new(workpiece, &machine, &competitor, measured, Vec::new());
+        let sound = row(&measured);
+        assert_eq!((sound.rms_um, sound.rms_spread_um, sound.uncut_um), (2.0, [1.0, 3.0], 9.0));
+        assert_eq!((sound.seeds, sound.lost, sound.completed, sound.note()), (3, 0, true, None));
+        assert_eq!((sound.joint_rms_um, sound.controlled_rms_um()), (None, 2.0));
+        measured[1].completed = false;
+        measured[2].faded_out = Some("why");
+        let lost = row(&measured);
+        assert_eq!((lost.lost, lost.completed), (2, false));
+        assert_eq!(lost.note().unwrap(), "diverged with 2 of 3 seeds");
+        for (k, cut) in measured.iter_mut().enumerate() {
+            cut.joint_um = Some([k as f64, 10.0]);
+        }
+        assert_eq!(row(&measured).controlled_rms_um(), 1.0);
+    }
+}

@@ -1,0 +1,234 @@
+//! What is claimed of the default controller: value, limit, and whether it holds.
+//!
+//! - Nominal machine, contours without corners: against open loop, the best peer that knows no model, and the exact model. The square:
+//!   RMS and largest error in um.
+//! - Other machines without noise: against the best peer that knows no model, identified there and unseen.
+//! - Machines with noise: RMS without the geometry that no encoder sees, against the best peer (exact parameters included; no laps of
+//!   practice, not the limit), against feedforward with cross-coupled control whose parameters are 20 % off, and against the limit.
+//! - Held-out work: never worse than open loop nor than the baseline, by more than what cannot be told from nothing; nobody lost.
+//! - All: peak torque against the baseline's.
+
+use feedwright::{BASELINE, BEST, HORIZON, Knows};
+use feedwright_ident::quadratic_mean;
+use serde::{Deserialize, Serialize};
+
+use super::competitor::{Competitor, Knowledge};
+use super::options::ComparisonOptions;
+use super::table::{ComparisonRow, each_once, knows};
+
+/// One claim on one workpiece of one machine.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Verdict {
+    /// What is claimed.
+    pub claim: String,
+    /// Contour or part, or [`ALL_WORK`].
+    pub contour: String,
+    /// Machine.
+    pub machine: String,
+    /// What it is compared with; empty where the limit stands for itself.
+    pub against: String,
+    /// Ratio, or number of `unit`.
+    pub value: f64,
+    /// What it may be.
+    pub limit: f64,
+    /// Unit of both; empty for a ratio.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub unit: String,
+    /// Whether it holds.
+    pub holds: bool,
+}
+
+/// In place of a workpiece: the quadratic mean over all of them.
+pub const ALL_WORK: &str = "all work";
+/// What a control without corrections has today: feedforward as machines are delivered.
+pub const DELIVERED: &str = "feedforward-as-delivered";
+/// The peer that knows all that can be known, statistics of the noise included: a bound on what can be reached, not a competitor.
+pub const LIMIT: &str = "lqg-preview";
+/// No peers of each other: the default, and the one that adapts.
+const OURS: [&str; 2] = [BEST, HORIZON];
+/// The same where there is no noise: it has the exact model and unlimited computing time.
+const NOISELESS_LIMIT: &str = "model-predictive";
+/// The best of the peers that controls could have tomorrow.
+const FEEDFORWARD_WITH_FEEDBACK: &str = "feedforward-cross-coupled";
+
+/// A ratio of machining times that is 1 to rounding.
+const SAME_TIME: f64 = 1.0 + 1e-9;
+
+/// What is claimed, the most at which it holds, and its unit.
+struct Claim(&'static str, f64, &'static str);
+
+// On the nominal machine, contours without corners.
+const RMS_OPEN_LOOP: Claim = Claim("RMS against open loop", 0.045, "");
+const MAX_OPEN_LOOP: Claim = Claim("max against open loop", 0.10, "");
+const RMS_BEST_PEER: Claim = Claim("RMS against the best peer without model", 0.25, "");
+const RMS_EXACT_MODEL: Claim = Claim("RMS against the exact model", 1.2, "");
+// On the nominal machine, the square.
+const SQUARE: &str = "square";
+const RMS_SQUARE: Claim = Claim("RMS of the square", 0.03, "um");
+const MAX_SQUARE: Claim = Claim("max of the square", 0.5, "um");
+// On other machines without noise.
+const RMS_UNSEEN: Claim = Claim("RMS, unseen machine, against the best peer without model", 0.5, "");
+const RMS_IDENTIFIED: Claim = Claim("RMS, identified machine, against the best peer without model", 0.25, "");
+// On machines with noise.
+const NOISY_BEST_PEER: Claim = Claim("RMS under noise against the best peer", 0.5, "");
+const NOISY_OFF: Claim = Claim("RMS under noise against parameters 20 % off", 0.4, "");
+const NOISY_LIMIT: Claim = Claim("RMS under noise against the limit", 2.0, "");
+// On held-out work.
+const HELD_OUT_RMS: Claim = Claim("held-out: RMS above that of", 0.05, "um");
+const HELD_OUT_MAX: Claim = Claim("held-out: max above that of", 1.0, "um");
+const HELD_OUT_UNCUT: Claim = Claim("held-out: uncut path above that of open loop", 1.0, "um");
+const HELD_OUT_LOST: Claim = Claim("held-out: lost", 0.0, "seeds");
+// Everywhere.
+const PEAK_TORQUE: Claim = Claim("peak torque against the baseline", 1.25, "");
+
+impl Claim {
+    /// What a row makes of it: `value` is against the row of `against`.
+    fn of(&self, row: &ComparisonRow, against: &str, value: f64) -> Verdict {
+        let Self(claim, limit, unit) = *self;
+        Verdict {
+            claim: claim.to_owned(),
+            contour: row.contour.clone(),
+            machine: row.machine.clone(),
+            against: against.to_owned(),
+            value,
+            limit,
+            unit: unit.to_owned(),
+            holds: value <= limit && row.completed && row.time_ratio <= SAME_TIME,
+        }
+    }
+
+    /// The ratio of a number of two rows.
+    fn ratio(&self, row: &ComparisonRow, against: &ComparisonRow, number: fn(&ComparisonRow) -> f64) -> Verdict {
+        self.of(row, &against.controller, number(row) / number(against))
+    }
+
+    fn rms(&self, row: &ComparisonRow, against: &ComparisonRow) -> Verdict {
+        self.ratio(row, against, ComparisonRow::controlled_rms_um)
+    }
+
+    /// The difference of a number of two rows.
+    fn above(&self, row: &ComparisonRow, against: &ComparisonRow, number: fn(&ComparisonRow) -> f64) -> Verdict {
+        self.of(row, &against.controller, number(row) - number(against))
+    }
+}
+
+/// The rows of a workpiece on a machine.
+struct RowsHere<'a> {
+    rows: Vec<&'a ComparisonRow>,
+}
+
+/// All claims that the rows can bear out.
+pub(super) fn verdicts(rows: &[ComparisonRow], options: &ComparisonOptions) -> Vec<Verdict> {
+    let mut verdicts = Vec::new();
+    let workpiece = |name: &str| options.workpieces.iter().find(|workpiece| workpiece.name == name);
+    for here in rows.chunk_by(|a, b| a.contour == b.contour && a.machine == b.machine) {
+        let cell = RowsHere { rows: here.iter().collect() };
+        let (Some(ours), Some(workpiece)) = (cell.named(BEST), workpiece(&here[0].contour)) else { continue };
+        let is_noisy = options.machines.iter().any(|machine| machine.name == ours.machine && machine.is_noisy());
+        match (ours.machine == options.nominal.name, is_noisy) {
+            (_, true) => verdicts.extend(cell.under_noise(ours)),
+            (true, false) if workpiece.smooth => verdicts.extend(cell.without_corners(ours)),
+            (true, false) if ours.contour == SQUARE => verdicts.extend(square(ours)),
+            (true, false) => {}
+            (false, false) => verdicts.extend(cell.elsewhere(ours)),
+        }
+        if workpiece.held_out {
+            verdicts.extend(cell.held_out(ours));
+        }
+        verdicts.extend(cell.named(DELIVERED).map(|base| PEAK_TORQUE.ratio(ours, base, |row| row.peak_torque_nm)));
+    }
+    for machine in options.machines.iter().filter(|machine| machine.is_noisy() && options.workpieces.len() > 1) {
+        let means = over_all_work(rows, &machine.name);
+        let cell = RowsHere { rows: means.iter().collect() };
+        verdicts.extend(cell.named(BEST).into_iter().flat_map(|ours| cell.under_noise(ours)));
+    }
+    verdicts
+}
+
+/// The square of the nominal machine.
+fn square(ours: &ComparisonRow) -> [Verdict; 2] {
+    [RMS_SQUARE.of(ours, "", ours.rms_um), MAX_SQUARE.of(ours, "", ours.max_um)]
+}
+
+/// For each controller of a machine a row with the quadratic means over all work, and whether all was completed.
+fn over_all_work(rows: &[ComparisonRow], machine: &str) -> Vec<ComparisonRow> {
+    let on = || rows.iter().filter(|row| row.machine == machine);
+    let mean_of = |controller: &str| {
+        let its: Vec<&ComparisonRow> = on().filter(|row| row.controller == controller).collect();
+        let rms_um = quadratic_mean(its.iter().map(|row| row.controlled_rms_um()));
+        ComparisonRow {
+            contour: ALL_WORK.to_owned(),
+            rms_um,
+            joint_rms_um: Some(rms_um),
+            completed: its.iter().all(|row| row.completed),
+            time_ratio: its.iter().map(|row| row.time_ratio).fold(0.0, f64::max),
+            ..its[0].clone()
+        }
+    };
+    each_once(on().map(|row| &row.controller)).into_iter().map(mean_of).collect()
+}
+
+impl<'a> RowsHere<'a> {
+    fn named(&self, controller: &str) -> Option<&'a ComparisonRow> {
+        self.rows.iter().copied().find(|row| row.controller == controller)
+    }
+
+    fn with(&self, controller: &str, knowledge: Knowledge) -> Option<&'a ComparisonRow> {
+        self.named(&format!("{controller}{}", knowledge.suffix()))
+    }
+
+    fn without_corners(&self, ours: &ComparisonRow) -> Vec<Verdict> {
+        let mut verdicts =
+            vec![RMS_OPEN_LOOP.of(ours, BASELINE, ours.rms_ratio), MAX_OPEN_LOOP.of(ours, BASELINE, ours.max_ratio)];
+        verdicts.extend(self.best_without_model().map(|peer| RMS_BEST_PEER.rms(ours, peer)));
+        verdicts.extend(self.named(NOISELESS_LIMIT).map(|bound| RMS_EXACT_MODEL.rms(ours, bound)));
+        verdicts
+    }
+
+    fn elsewhere(&self, ours: &ComparisonRow) -> Vec<Verdict> {
+        let Some(peer) = self.best_without_model() else { return Vec::new() };
+        let unseen = self.with(BEST, Knowledge::Unseen).map(|unseen| RMS_UNSEEN.rms(unseen, peer));
+        unseen.into_iter().chain([RMS_IDENTIFIED.rms(ours, peer)]).collect()
+    }
+
+    fn under_noise(&self, ours: &ComparisonRow) -> Vec<Verdict> {
+        let peer = self.best(&[Knows::Nothing, Knows::Identified, Knows::ExactModel]);
+        let off = self.with(FEEDFORWARD_WITH_FEEDBACK, Knowledge::TwentyPercentOff);
+        let mut verdicts: Vec<Verdict> = peer.map(|peer| NOISY_BEST_PEER.rms(ours, peer)).into_iter().collect();
+        verdicts.extend(off.map(|off| NOISY_OFF.rms(ours, off)));
+        verdicts.extend(self.named(LIMIT).map(|limit| NOISY_LIMIT.rms(ours, limit)));
+        verdicts
+    }
+
+    fn held_out(&self, ours: &ComparisonRow) -> Vec<Verdict> {
+        let mut verdicts = vec![HELD_OUT_LOST.of(ours, "", f64::from(ours.lost))];
+        for other in [BASELINE, DELIVERED].into_iter().filter_map(|name| self.named(name)) {
+            verdicts.push(HELD_OUT_RMS.above(ours, other, ComparisonRow::controlled_rms_um));
+            verdicts.push(HELD_OUT_MAX.above(ours, other, ComparisonRow::controlled_max_um));
+        }
+        verdicts.extend(self.named(BASELINE).map(|open| HELD_OUT_UNCUT.above(ours, open, |row| row.uncut_um)));
+        verdicts
+    }
+
+    fn best_without_model(&self) -> Option<&'a ComparisonRow> {
+        self.best(&[Knows::Nothing, Knows::Identified])
+    }
+
+    /// Rows that came to their end of others that know no more than this, and that of their own machine.
+    fn peers(&self, known: &[Knows]) -> impl Iterator<Item = &'a ComparisonRow> {
+        self.rows.iter().copied().filter(|row| {
+            let own = Competitor::find(&row.controller).is_some_and(|peer| peer.knowledge == Knowledge::Own);
+            let is_other = own && !OURS.contains(&row.controller.as_str()) && row.controller != LIMIT;
+            is_other && row.completed && knows(row).is_some_and(|knows| known.contains(&knows))
+        })
+    }
+
+    /// The best of these, open loop among them; none where open loop is alone.
+    fn best(&self, known: &[Knows]) -> Option<&'a ComparisonRow> {
+        self.peers(known).find(|row| row.controller != BASELINE)?;
+        self.peers(known).min_by(|a, b| a.controlled_rms_um().total_cmp(&b.controlled_rms_um()))
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,320 @@
+//! The closed-form contours of the benchmark, exact and by arc length.
+//!
+//! | Name | Definition, mm, `a` from 0 to 2 pi |
+//! |---|---|
+//! | circle | `R (1 - cos a, sin a)`, R = 10 (Lee, Cho, Jeon 2005, eq. 11) |
+//! | ellipse | `(20 cos a, 10 sin a)` |
+//! | eight | `(15 sin a, 10 sin 2a)` |
+//! | star | `(12 + 4 cos 5a) (cos a, sin a)` |
+//! | square | 20 x 20, sharp corners, counter-clockwise |
+//! | butterfly | NURBS of Yeh and Hsu (2002), see `butterfly.rs` |
+//! | line-line-circle | (0,0) (40,30) (60,30), then a full circle about (90,30), counter-clockwise |
+
+use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape, Spline};
+use feedwright_plan::vector::scale;
+
+use feedwright_plan::{Curve, Jet, MIN_FEED_MM_S, Parametric, PathError, Piece, Pieces, Smooth, Step};
+
+use crate::butterfly::butterfly;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// A contour with a name.
+#[derive(Debug, Clone, Copy)]
+pub struct Contour {
+    /// Name.
+    pub name: &'static str,
+    /// What it is, for lists.
+    pub about: &'static str,
+    outline: Outline,
+}
+
+#[derive(Debug, Clone, Copy)]
+enum Outline {
+    /// Corner points.
+    Polygon(&'static [[f64; 2]]),
+    /// Corner points, then a full turn about a centre; negative is clockwise.
+    Circle(&'static [[f64; 2]], [f64; 2], i32),
+    /// A closed curve, and its third derivative.
+    Curve(fn(f64) -> Jet, fn(f64) -> [f64; 3]),
+    /// A NURBS.
+    Spline(fn() -> Spline),
+}
+
+/// All contours.
+pub const CONTOURS: &[Contour] = &[
+    Contour {
+        name: "circle",
+        about: "circle of radius 10 mm, from the origin, clockwise",
+        outline: Outline::Circle(&[[0.0, 0.0]], [10.0, 0.0], -1),
+    },
+    Contour { name: "ellipse", about: "half axes 20 and 10 mm", outline: Outline::Curve(ellipse, ellipse_third) },
+    Contour { name: "eight", about: "figure of eight, 30 x 20 mm", outline: Outline::Curve(eight, eight_third) },
+    Contour { name: "star", about: "five soft points, radius 8 to 16 mm", outline: Outline::Curve(star, star_third) },
+    Contour { name: "butterfly", about: "NURBS with sharp tips, 103 x 62 mm", outline: Outline::Spline(butterfly) },
+    Contour {
+        name: "square",
+        about: "20 x 20 mm, sharp corners",
+        outline: Outline::Polygon(&[[0.0, 0.0], [20.0, 0.0], [20.0, 20.0], [0.0, 20.0], [0.0, 0.0]]),
+    },
+    Contour {
+        name: "line-line-circle",
+        about: "two lines and a circle of radius 30 mm",
+        outline: Outline::Circle(&[[0.0, 0.0], [40.0, 30.0], [60.0, 30.0]], [90.0, 30.0], 1),
+    },
+];
+
+/// How a contour is put elsewhere: scaled, and turned about the origin.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Placement {
+    /// Factor on all lengths.
+    pub scale: f64,
+    /// Counter-clockwise, rad.
+    pub turn_rad: f64,
+}
+
+impl Placement {
+    /// Where it is defined.
+    pub const NONE: Self = Self { scale: 1.0, turn_rad: 0.0 };
+
+    /// A vector, scaled and turned. Where nothing is to be done it keeps its bits.
+    fn of(self, vector: [f64; 3]) -> [f64; 3] {
+        if self == Self::NONE {
+            return vector;
+        }
+        let [x, y, z] = scale(self.scale, vector);
+        let (sin, cos) = (libm::sin(self.turn_rad), libm::cos(self.turn_rad));
+        [cos * x - sin * y, sin * x + cos * y, z]
+    }
+}
+
+/// The contour of that name.
+pub fn contour(name: &str) -> Option<&'static Contour> {
+    CONTOURS.iter().find(|contour| contour.name == name)
+}
+
+impl Contour {
+    /// Whether it has no corners.
+    pub fn is_smooth(&self) -> bool {
+        match self.outline {
+            Outline::Polygon(_) => false,
+            Outline::Circle(points, ..) => points.len() == 1,
+            Outline::Curve(..) | Outline::Spline(_) => true,
+        }
+    }
+
+    /// The contour as steps of a path, all cutting, at `feed_mm_s`, corners taken as `corner` says; lines count from 1.
+    ///
+    /// # Errors
+    /// Where the feedrate is none.
+    pub fn steps(&self, feed_mm_s: f64, corner: Corner) -> Result<Vec<Step>, PathError> {
+        self.placed_steps(Placement::NONE, feed_mm_s, corner)
+    }
+
+    /// As [`Contour::steps`], elsewhere.
+    ///
+    /// # Errors
+    /// Where the feedrate is none.
+    pub fn placed_steps(&self, place: Placement, feed_mm_s: f64, corner: Corner) -> Result<Vec<Step>, PathError> {
+        if !(MIN_FEED_MM_S..=f64::MAX).contains(&feed_mm_s) {
+            return Err(PathError::Feed { line: 1, feed_mm_s });
+        }
+        if let Some(canon) = self.lines_and_arcs(place, feed_mm_s, corner) {
+            return Pieces::new(canon.into_iter()).collect();
+        }
+        match self.outline {
+            // Made above.
+            Outline::Polygon(_) | Outline::Circle(..) => Ok(Vec::new()),
+            Outline::Spline(spline) => {
+                let mut spline = spline();
+                spline.control_mm.iter_mut().for_each(|point_mm| *point_mm = place.of(*point_mm));
+                let spline = Arc::new(spline);
+                let ends_mm = [0, spline.control_mm.len() - 1].map(|i| spline.control_mm[i]);
+                let motion = Motion {
+                    line: 1,
+                    kind: MotionKind::Feed,
+                    start_mm: ends_mm[0],
+                    end_mm: ends_mm[1],
+                    shape: Shape::Spline(spline),
+                    feed_mm_s,
+                    corner,
+                    others: AuxiliaryAxes::default(),
+                };
+                Pieces::new(std::iter::once(Canon::Motion(motion))).collect()
+            }
+            Outline::Curve(jet, third) => {
+                let smooth = Smooth::new(Box::new(Closed { jet, third, place }));
+                Ok(vec![Step::Piece(Piece {
+                    start_mm: place.of(jet(0.0).position_mm),
+                    length_mm: smooth.length_mm(),
+                    curve: Curve::Smooth(Arc::new(smooth)),
+                    s_mm: 0.0,
+                    line: 1,
+                    cutting: true,
+                    feed_mm_s,
+                    corner,
+                    turn_deg_mm: 0.0,
+                    further_mm_mm: 0.0,
+                })])
+            }
+        }
+    }
+
+    /// The motions of a contour that is made of straight lines and full circles; none of others.
+    pub fn lines_and_arcs(&self, place: Placement, feed_mm_s: f64, corner: Corner) -> Option<Vec<Canon>> {
+        match self.outline {
+            Outline::Polygon(points) => Some(lines(points, place, feed_mm_s, corner)),
+            Outline::Circle(points, center, turns) => {
+                let mut canon = lines(points, place, feed_mm_s, corner);
+                let at = place.of(space(points[points.len() - 1]));
+                canon.push(Canon::Motion(Motion {
+                    line: points.len() as u32,
+                    kind: MotionKind::Feed,
+                    start_mm: at,
+                    end_mm: at,
+                    shape: Shape::Arc { plane: Plane::Xy, center_mm: place.of(space(center)), turns },
+                    feed_mm_s,
+                    corner,
+                    others: AuxiliaryAxes::default(),
+                }));
+                Some(canon)
+            }
+            Outline::Curve(..) | Outline::Spline(_) => None,
+        }
+    }
+}
+
+fn space(point: [f64; 2]) -> [f64; 3] {
+    [point[0], point[1], 0.0]
+}
+
+fn lines(points: &[[f64; 2]], place: Placement, feed_mm_s: f64, corner: Corner) -> Vec<Canon> {
+    let ends = points.windows(2);
+    ends.zip(1..)
+        .map(|(ends, line)| {
+            Canon::Motion(Motion {
+                line,
+                kind: MotionKind::Feed,
+                start_mm: place.of(space(ends[0])),
+                end_mm: place.of(space(ends[1])),
+                shape: Shape::Line,
+                feed_mm_s,
+                corner,
+                others: AuxiliaryAxes::default(),
+            })
+        })
+        .collect()
+}
+
+/// Parts of a closed curve to begin with, so many that the first test of a cell is not fooled by the curve's symmetry.
+const SPANS: usize = 16;
+
+/// A closed curve over the angle `a`.
+struct Closed {
+    jet: fn(f64) -> Jet,
+    third: fn(f64) -> [f64; 3],
+    place: Placement,
+}
+
+impl std::fmt::Debug for Closed {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Closed")
+    }
+}
+
+impl Parametric for Closed {
+    fn spans(&self) -> usize {
+        SPANS
+    }
+
+    fn jet(&self, span: usize, u: f64) -> Jet {
+        let per_span = TAU / SPANS as f64;
+        let jet = (self.jet)(per_span * (span as f64 + u));
+        Jet {
+            position_mm: self.place.of(jet.position_mm),
+            first: self.place.of(scale(per_span, jet.first)),
+            second: self.place.of(scale(per_span * per_span, jet.second)),
+        }
+    }
+
+    fn third(&self, span: usize, u: f64) -> [f64; 3] {
+        let per_span = TAU / SPANS as f64;
+        self.place.of(scale(per_span.powi(3), (self.third)(per_span * (span as f64 + u))))
+    }
+}
+
+fn ellipse(a: f64) -> Jet {
+    let (sin, cos) = a.sin_cos();
+    Jet {
+        position_mm: [20.0 * cos, 10.0 * sin, 0.0],
+        first: [-20.0 * sin, 10.0 * cos, 0.0],
+        second: [-20.0 * cos, -10.0 * sin, 0.0],
+    }
+}
+
+fn ellipse_third(a: f64) -> [f64; 3] {
+    [20.0 * a.sin(), -10.0 * a.cos(), 0.0]
+}
+
+fn eight(a: f64) -> Jet {
+    let (sin, cos) = a.sin_cos();
+    let (sin2, cos2) = (2.0 * sin * cos, 1.0 - 2.0 * sin * sin);
+    Jet {
+        position_mm: [15.0 * sin, 10.0 * sin2, 0.0],
+        first: [15.0 * cos, 20.0 * cos2, 0.0],
+        second: [-15.0 * sin, -40.0 * sin2, 0.0],
+    }
+}
+
+fn eight_third(a: f64) -> [f64; 3] {
+    [-15.0 * a.cos(), -80.0 * (2.0 * a).cos(), 0.0]
+}
+
+fn star(a: f64) -> Jet {
+    let (sin, cos) = a.sin_cos();
+    // (cos a + i sin a)^5, which is several times faster than another sine and cosine.
+    let (cos2, sin2) = (cos * cos - sin * sin, 2.0 * cos * sin);
+    let (cos4, sin4) = (cos2 * cos2 - sin2 * sin2, 2.0 * cos2 * sin2);
+    let (cos5, sin5) = (cos4 * cos - sin4 * sin, sin4 * cos + cos4 * sin);
+    let r = 12.0 + 4.0 * cos5;
+    let dr = -20.0 * sin5;
+    let ddr = -100.0 * cos5;
+    Jet {
+        position_mm: [r * cos, r * sin, 0.0],
+        first: [dr * cos - r * sin, dr * sin + r * cos, 0.0],
+        second: [(ddr - r) * cos - 2.0 * dr * sin, (ddr - r) * sin + 2.0 * dr * cos, 0.0],
+    }
+}
+
+fn star_third(a: f64) -> [f64; 3] {
+    let (sin, cos) = a.sin_cos();
+    let (sin5, cos5) = (5.0 * a).sin_cos();
+    let (r, dr, ddr, dddr) = (12.0 + 4.0 * cos5, -20.0 * sin5, -100.0 * cos5, 500.0 * sin5);
+    let (inward, around) = (dddr - 3.0 * dr, 3.0 * ddr - r);
+    [inward * cos - around * sin, inward * sin + around * cos, 0.0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Length and places of the first piece follow the placement; of a smooth curve to what its arc length is exact to.
+    #[test]
+    fn a_contour_elsewhere_is_the_same_scaled_and_turned() {
+        let place = Placement { scale: 1.5, turn_rad: 2.0 };
+        let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
+        for contour in CONTOURS {
+            let (here, there) =
+                (contour.steps(50.0, corner).unwrap(), contour.placed_steps(place, 50.0, corner).unwrap());
+            let (Some(Step::Piece(a)), Some(Step::Piece(b))) = (here.first(), there.first()) else {
+                panic!("{}", contour.name)
+            };
+            assert!((1.5 * a.length_mm - b.length_mm).abs() < 1e-7, "{}", contour.name);
+            for part in [0.0, 0.3, 1.0] {
+                let wanted = place.of(a.curve.at(part * a.length_mm).position_mm);
+                let found = b.curve.at(part * b.length_mm).position_mm;
+                assert!((0..2).all(|k| (wanted[k] - found[k]).abs() < 1e-7), "{}: {wanted:?} {found:?}", contour.name);
+            }
+        }
+    }
+}

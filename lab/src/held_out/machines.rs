@@ -1,0 +1,164 @@
+//! Machines drawn at random: `tnv40` with other loops, accelerations, masses, friction, encoders and delays.
+//!
+//! Each axis has a position loop of gain Kp around a speed loop of bandwidth a = (Kv + Bv) / J, and hears the command
+//! after the drive's delay and, on average, half a servo period:
+//!
+//! ```text
+//! L(s) = Kp e^(-s T) / (s (1 + s / a))      T = delay + 3/2 Ts
+//! phase margin = 90 deg - atan(w / a) - w T  at the w with |L| = 1
+//! ```
+//!
+//! A machine with an axis below [`PHASE_MARGIN_DEG`] is drawn anew, since none is delivered so; what a controller
+//! makes of a machine plays no part. Torque limits are those that the plan needs, with room.
+
+use std::f64::consts::{PI, TAU};
+
+use feedwright_sim::{Axis, Machine};
+
+use super::random::{Random, rounded};
+use super::variant::{AXES, Variant};
+
+/// What all of them build upon.
+const BASE: &str = "tnv40";
+/// Least phase margin of a position loop, degrees: textbooks ask for 30 to 60.
+pub const PHASE_MARGIN_DEG: f64 = 40.0;
+/// Range of the position loops' gain, 1/s.
+const KP_1_S: [f64; 2] = [25.0, 150.0];
+/// Range of the speed loops' bandwidth, in gains of the position loop: cascades are tuned with 2 to 6.
+const SPEED_LOOP: [f64; 2] = [2.0, 6.0];
+/// Range of accelerations along and across the path, mm/s2.
+const ACCEL_MM_S2: [f64; 2] = [100.0, 4000.0];
+/// Range of factors on inertia and friction.
+const FACTOR: [f64; 2] = [0.5, 2.0];
+/// x and y differ by up to this factor in gain and inertia.
+const UNLIKE: f64 = 1.5;
+/// Largest encoder step, um, and drive delay, s; one machine in three has none.
+const ENCODER_UM: [f64; 2] = [0.05, 1.0];
+const DELAY_S: f64 = 0.002;
+/// Range of the disturbance, N m, and of its frequency, Hz.
+const DISTURBANCE_NM: [f64; 2] = [0.02, 0.5];
+const DISTURBANCE_HZ: [f64; 2] = [5.0, 120.0];
+/// Range of torque limits, in what the plan needs.
+const TORQUE: [f64; 2] = [1.5, 4.0];
+
+/// Which machines are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Class {
+    /// All of them.
+    Any,
+    /// Without encoder steps and without delay.
+    Rigid,
+}
+
+/// The machine of a seed; the same on every platform.
+pub fn machine(seed: u64, class: Class) -> Variant {
+    let mut random = Random::new(seed);
+    loop {
+        let variant = draw(&mut random, seed, class);
+        if variant.machine().is_ok_and(|machine| is_stable(&machine)) {
+            return variant;
+        }
+    }
+}
+
+fn draw(random: &mut Random, seed: u64, class: Class) -> Variant {
+    let base = Machine::load(BASE.as_ref()).expect("the base is built in");
+    let mut variant = Variant::of(BASE, format!("random-{seed}"));
+    let [along, across] = [random.by_ratio(ACCEL_MM_S2), random.by_ratio(ACCEL_MM_S2)];
+    variant = variant.with("limits", "tangential_accel_mm_s2", along).with("limits", "normal_accel_mm_s2", across);
+    let (kp_1_s, speed_loop) = (random.by_ratio(KP_1_S), random.by_ratio(SPEED_LOOP));
+    // One machine in two has equal axes, as it should.
+    let unlike = random.one_in(2);
+    let other = |random: &mut Random| if unlike { random.by_ratio([1.0 / UNLIKE, UNLIKE]) } else { 1.0 };
+    let inertia = random.by_ratio(FACTOR);
+    let friction = [random.by_ratio(FACTOR), random.by_ratio(FACTOR)];
+    let disturbance = [random.by_ratio(DISTURBANCE_NM), random.by_ratio(DISTURBANCE_HZ)];
+    let torque = random.by_ratio(TORQUE);
+    for (i, table) in AXES.into_iter().enumerate() {
+        let mut axis = *base.axis(i);
+        axis.kp_1_s = rounded((kp_1_s * other(random)).clamp(KP_1_S[0], KP_1_S[1]));
+        axis.inertia_kg_m2 = rounded(axis.inertia_kg_m2 * inertia * other(random));
+        axis.kv_nm_s_per_rad = rounded(speed_loop * kp_1_s * axis.inertia_kg_m2);
+        axis.viscous_friction_nm_s = rounded(axis.viscous_friction_nm_s * friction[0]);
+        axis.coulomb_friction_nm = rounded(axis.coulomb_friction_nm * friction[1]);
+        [axis.disturbance_nm, axis.disturbance_hz] = disturbance;
+        let needed_nm = torque_of_plan_nm(&axis, &base, along.hypot(across));
+        variant = variant
+            .with(table, "kp_1_s", axis.kp_1_s)
+            .with(table, "inertia_kg_m2", axis.inertia_kg_m2)
+            .with(table, "kv_nm_s_per_rad", axis.kv_nm_s_per_rad)
+            .with(table, "viscous_friction_nm_s", axis.viscous_friction_nm_s)
+            .with(table, "coulomb_friction_nm", axis.coulomb_friction_nm)
+            .with(table, "disturbance_nm", axis.disturbance_nm)
+            .with(table, "disturbance_hz", axis.disturbance_hz)
+            .with(table, "torque_limit_nm", rounded(torque * needed_nm));
+    }
+    let late = [random.by_ratio(ENCODER_UM), rounded(random.between([0.0, DELAY_S]))];
+    let has = [!random.one_in(3), !random.one_in(3)];
+    let keys = ["encoder_step_um", "drive_delay_s"];
+    let wanted = (0..2).filter(|&i| has[i] && class == Class::Any);
+    wanted.fold(variant, |variant, i| variant.with_axes(keys[i], late[i]))
+}
+
+/// Torque that the plan may ask of an axis: the largest acceleration and the jump at corners that the position loop passes
+/// on, against friction and disturbance, N m.
+fn torque_of_plan_nm(axis: &Axis, machine: &Machine, accel_mm_s2: f64) -> f64 {
+    let rad_per_mm = TAU / axis.lead_mm_per_rev;
+    let jump_mm_s2 = machine.limits.corner_jump_mm_s * axis.kp_1_s;
+    let friction_nm = axis.coulomb_friction_nm + axis.viscous_friction_nm_s * machine.limits.rapid_mm_s * rad_per_mm;
+    axis.inertia_kg_m2 * (accel_mm_s2 + jump_mm_s2) * rad_per_mm + friction_nm + axis.disturbance_nm
+}
+
+/// Whether every position loop has its phase margin.
+pub fn is_stable(machine: &Machine) -> bool {
+    machine.axes.iter().all(|axis| phase_margin_deg(axis, machine.period.servo_s) >= PHASE_MARGIN_DEG)
+}
+
+/// Phase margin of the position loop, degrees.
+fn phase_margin_deg(axis: &Axis, servo_s: f64) -> f64 {
+    let speed_1_s = (axis.kv_nm_s_per_rad + axis.viscous_friction_nm_s) / axis.inertia_kg_m2;
+    // |L| = 1: w^2 (1 + w^2 / a^2) = Kp^2, solved so that nothing cancels where a is large.
+    let ratio = axis.kp_1_s / speed_1_s;
+    let w_1_s = axis.kp_1_s * (2.0 / (1.0 + (1.0 + 4.0 * ratio * ratio).sqrt())).sqrt();
+    let late_s = axis.drive_delay_s + 1.5 * servo_s;
+    90.0 - (libm::atan(w_1_s / speed_1_s) + w_1_s * late_s) * 180.0 / PI
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seeds that are looked at.
+    const SEEDS: u64 = 200;
+
+    #[test]
+    fn machines_are_valid_stable_and_the_same_for_the_same_seed() {
+        for seed in 0..SEEDS {
+            let variant = machine(seed, Class::Any);
+            let made = variant.machine().expect("a machine file without faults");
+            assert!(is_stable(&made), "{}", variant.text());
+            assert_eq!(variant, machine(seed, Class::Any));
+            assert!(made.axes.iter().all(|axis| (KP_1_S[0]..=KP_1_S[1]).contains(&axis.kp_1_s)), "{}", variant.text());
+        }
+        assert_ne!(machine(1, Class::Any).changes, machine(2, Class::Any).changes);
+    }
+
+    #[test]
+    fn rigid_ones_have_neither_steps_nor_delay_and_most_others_do() {
+        let late = |machine: Machine| machine.axis(0).encoder_step_um > 0.0 || machine.axis(0).drive_delay_s > 0.0;
+        let count = |class| (0..SEEDS).filter(|&seed| late(machine(seed, class).machine().expect("valid"))).count();
+        assert_eq!(count(Class::Rigid), 0);
+        assert!(count(Class::Any) > SEEDS as usize / 2);
+    }
+
+    /// A pure integrator has 90 degrees less its delay; a speed loop as fast as its crossover takes 45 more.
+    #[test]
+    fn the_phase_margin_is_that_of_the_closed_form() {
+        let mut axis = *Machine::load(BASE.as_ref()).expect("built in").axis(0);
+        (axis.kp_1_s, axis.inertia_kg_m2, axis.viscous_friction_nm_s) = (50.0, 1e-9, 0.0);
+        assert!((phase_margin_deg(&axis, 0.001) - (90.0 - 0.075 * 180.0 / PI)).abs() < 1e-3);
+        (axis.kv_nm_s_per_rad, axis.inertia_kg_m2) = (1.0, 0.02);
+        axis.kp_1_s = 50.0 * 2.0_f64.sqrt();
+        assert!((phase_margin_deg(&axis, 0.0) - 45.0).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,134 @@
+//! Writes a program line by line: where the tool is, how fast it cuts, and about how long that takes.
+//!
+//! Places are absolute and every line says all that it needs but modes, so that most lines can be left out and what stays is
+//! still a program.
+
+use feedwright_plan::vector::distance;
+
+use super::random::Random;
+
+/// Acceleration by which the time of a short leg is estimated, mm/s2.
+const ACCEL_MM_S2: f64 = 400.0;
+/// Range of the programmed feedrates, mm/min.
+const FEED_MM_MIN: [f64; 2] = [100.0, 12_000.0];
+/// One feedrate in so many legs, where they are mixed.
+const FEED_EVERY: u32 = 8;
+
+/// A program that is being written.
+pub(super) struct ProgramWriter {
+    pub(super) random: Random,
+    lines: Vec<String>,
+    at_mm: [f64; 3],
+    feed_mm_s: f64,
+    mixed: bool,
+    left_s: f64,
+}
+
+impl ProgramWriter {
+    /// Begins a program: modes, how corners are taken, a place, a feedrate.
+    pub(super) fn new(mut random: Random, comment: &str) -> Self {
+        let mode = match random.whole(0, 5) {
+            0 => "G61".to_owned(),
+            1 => "G61.1".to_owned(),
+            2 => format!("G64 P{}", random.by_ratio([0.001, 0.05])),
+            _ => "G64".to_owned(),
+        };
+        let lines = vec![format!("({comment})"), "G21 G17 G90 G94 G40".to_owned(), mode];
+        let mixed = random.one_in(3);
+        let mut writer = Self { random, lines, at_mm: [0.0; 3], feed_mm_s: 0.0, mixed, left_s: 0.0 };
+        writer.feed();
+        writer
+    }
+
+    /// The next part may take about so long, s.
+    pub(super) fn begin_part(&mut self, time_s: f64) {
+        self.left_s = time_s;
+    }
+
+    /// Whether there is time for more in this part.
+    pub(super) fn goes_on(&self) -> bool {
+        self.left_s > 0.0
+    }
+
+    pub(super) fn at_mm(&self) -> [f64; 3] {
+        self.at_mm
+    }
+
+    /// Another feedrate.
+    pub(super) fn feed(&mut self) {
+        let feed_mm_min = self.random.by_ratio(FEED_MM_MIN);
+        self.feed_mm_s = feed_mm_min / 60.0;
+        self.lines.push(format!("F{feed_mm_min}"));
+    }
+
+    /// A line as it stands.
+    pub(super) fn say(&mut self, line: &str) {
+        self.lines.push(line.to_owned());
+    }
+
+    pub(super) fn rapid(&mut self, to_mm: [f64; 3]) {
+        self.travel("G0", to_mm, "");
+    }
+
+    /// A straight cut.
+    pub(super) fn line(&mut self, to_mm: [f64; 3]) {
+        self.maybe_feed();
+        let leg_mm = distance(self.at_mm, to_mm);
+        self.travel("G1", to_mm, "");
+        self.spend(leg_mm);
+    }
+
+    /// A straight cut by so much in x and y.
+    pub(super) fn by(&mut self, x_mm: f64, y_mm: f64) {
+        let [x, y, z] = self.at_mm;
+        self.line([x + x_mm, y + y_mm, z]);
+    }
+
+    /// An arc in the XY plane about a centre that lies at `to_center_mm` from here; counter-clockwise where `sweep_rad` is
+    /// positive; a whole turn where it is 2 pi. Rises by `rise_mm`.
+    pub(super) fn arc(&mut self, to_center_mm: [f64; 2], sweep_rad: f64, rise_mm: f64) {
+        self.maybe_feed();
+        let [x, y, z] = self.at_mm;
+        let [i, j] = to_center_mm.map(decimal);
+        let (sin, cos) = (libm::sin(sweep_rad), libm::cos(sweep_rad));
+        let turned = [-i * cos + j * sin, -i * sin - j * cos];
+        let is_whole = (sweep_rad.abs() - std::f64::consts::TAU).abs() < 1e-9;
+        let [end_x, end_y] = if is_whole { [x, y] } else { [x + i + turned[0], y + j + turned[1]] };
+        let code = if sweep_rad > 0.0 { "G3" } else { "G2" };
+        self.travel(code, [end_x, end_y, z + rise_mm], &format!(" I{i} J{j}"));
+        self.spend((i.hypot(j) * sweep_rad).hypot(rise_mm));
+    }
+
+    /// The program, ended.
+    pub(super) fn finish(mut self) -> String {
+        self.lines.push("M2".to_owned());
+        self.lines.join("\n") + "\n"
+    }
+
+    fn travel(&mut self, code: &str, to_mm: [f64; 3], more: &str) {
+        let to_mm = to_mm.map(decimal);
+        let [x, y, z] = to_mm;
+        // A program in the plane stays one of two axes.
+        let height = if z == 0.0 && self.at_mm[2] == 0.0 { String::new() } else { format!(" Z{z}") };
+        self.lines.push(format!("{code} X{x} Y{y}{height}{more}"));
+        self.at_mm = to_mm;
+    }
+
+    fn maybe_feed(&mut self) {
+        if self.mixed && self.random.one_in(FEED_EVERY) {
+            self.feed();
+        }
+    }
+
+    /// A leg takes its time at the feedrate, and where it is short that of speeding up and slowing down.
+    fn spend(&mut self, leg_mm: f64) {
+        /// However short: a servo period or two.
+        const MIN_S: f64 = 0.002;
+        self.left_s -= (leg_mm / self.feed_mm_s).max((leg_mm / ACCEL_MM_S2).sqrt()).max(MIN_S);
+    }
+}
+
+/// As programs write places: four decimals, and no zero with a sign.
+fn decimal(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4 + 0.0
+}

@@ -1,0 +1,110 @@
+//! A machine as what differs from a built-in one: a list of changes, and the machine file that they make.
+//!
+//! The list is what can be drawn at random, and taken back change by change to find out which of them matters.
+
+use std::fmt::Write;
+
+use feedwright_sim::{Machine, MachineError};
+
+/// One key of the machine file that is not the base's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Change {
+    /// Table of the file, such as `axis.x`.
+    pub table: &'static str,
+    /// Key in it, with its unit at the end.
+    pub key: &'static str,
+    /// Value.
+    pub value: f64,
+}
+
+/// A built-in machine with changes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Variant {
+    /// Name of the built-in machine.
+    pub base: &'static str,
+    /// Its own name.
+    pub name: String,
+    /// What differs; each key once.
+    pub changes: Vec<Change>,
+}
+
+/// Tables of the axes of a machine with three.
+pub const AXES: [&str; 3] = ["axis.x", "axis.y", "axis.z"];
+
+impl Variant {
+    /// The base itself under another name.
+    pub fn of(base: &'static str, name: impl Into<String>) -> Self {
+        Self { base, name: name.into(), changes: Vec::new() }
+    }
+
+    /// With one more change; in place of an earlier one of the same key.
+    #[must_use]
+    pub fn with(mut self, table: &'static str, key: &'static str, value: f64) -> Self {
+        self.changes.retain(|change| (change.table, change.key) != (table, key));
+        self.changes.push(Change { table, key, value });
+        self
+    }
+
+    /// With the same change in every axis.
+    #[must_use]
+    pub fn with_axes(self, key: &'static str, value: f64) -> Self {
+        AXES.iter().fold(self, |variant, table| variant.with(table, key, value))
+    }
+
+    /// The machine file.
+    pub fn text(&self) -> String {
+        let changed = if self.changes.is_empty() { "as it is" } else { "with the changes below" };
+        let mut text = format!(
+            "base = \"{base}\"\nname = \"{}\"\ndescription = \"{base} {changed}\"\nsource = \"generated\"\n",
+            self.name,
+            base = self.base
+        );
+        let mut tables: Vec<&str> = Vec::new();
+        for change in &self.changes {
+            if !tables.contains(&change.table) {
+                tables.push(change.table);
+            }
+        }
+        for table in tables {
+            // Writing to a string does not fail.
+            let _ = writeln!(text, "\n[{table}]");
+            for Change { key, value, .. } in self.changes.iter().filter(|change| change.table == table) {
+                let _ = writeln!(text, "{key} = {value:?}");
+            }
+        }
+        text
+    }
+
+    /// The machine.
+    ///
+    /// # Errors
+    /// A key that there is none of, or a value out of its range.
+    pub fn machine(&self) -> Result<Machine, MachineError> {
+        Machine::parse(&format!("{}.toml", self.name), &self.text())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changes_are_those_of_the_machine_and_nothing_else_is() {
+        let base = Machine::load("tnv40".as_ref()).expect("built in");
+        let variant = Variant::of("tnv40", "odd").with_axes("kp_1_s", 40.0).with("axis.y", "kp_1_s", 60.0).with(
+            "limits",
+            "normal_accel_mm_s2",
+            1000.0,
+        );
+        let machine = variant.machine().expect("valid");
+        assert_eq!((machine.axis(0).kp_1_s, machine.axis(1).kp_1_s, machine.axis(2).kp_1_s), (40.0, 60.0, 40.0));
+        assert_eq!(machine.limits.normal_accel_mm_s2, 1000.0);
+        assert_eq!(machine.axis(0).inertia_kg_m2, base.axis(0).inertia_kg_m2);
+        assert_eq!(Variant::of("tnv40", "same").machine().expect("valid").fingerprint(), base.fingerprint());
+    }
+
+    #[test]
+    fn a_key_that_there_is_none_of_is_refused() {
+        assert!(Variant::of("tnv40", "odd").with("limits", "no_such_key", 1.0).machine().is_err());
+    }
+}

@@ -1,0 +1,187 @@
+//! A program as it is cut: read once, its path shared by all machines, long ones shortened to the first part of their
+//! machining time.
+
+use std::fmt::Write;
+use std::path::Path;
+use std::sync::mpsc;
+
+use feedwright::JobError;
+use feedwright_gcode::{ReadError, Reader, Settings, summarize};
+use feedwright_plan::{
+    BLENDS, Constraints, FEED_PLANNERS, LimitsError, PathError, Pieces, Plan, Planned, Plc, Step, Steps,
+};
+use feedwright_sim::Machine;
+
+/// A program, ready to be cut on any machine.
+#[derive(Debug, Clone)]
+pub struct Program {
+    /// Name in tables.
+    pub name: String,
+    /// Axes that it needs, 2 or 3.
+    pub axes: usize,
+    /// Planned time on the machine that it was shortened for, rests included, s.
+    pub machining_s: f64,
+    /// Whether the rest of it was left out.
+    pub shortened: bool,
+    /// Content of the path, hashed.
+    pub key: String,
+    /// The path.
+    pub steps: Vec<Step>,
+}
+
+/// How much of a program is cut.
+#[derive(Debug, Clone, Copy)]
+pub struct Length<'a> {
+    /// The machine whose time counts; the same part of the program is then cut on all others.
+    pub machine: &'a Machine,
+    /// Most machining time on it, s.
+    pub limit_s: f64,
+}
+
+impl Program {
+    /// The program in a file.
+    ///
+    /// # Errors
+    /// A program with mistakes, without motion or without a path.
+    pub fn read(file: &Path, settings: &Settings, length: Length<'_>) -> Result<Self, JobError> {
+        let name = file.display().to_string();
+        Self::new(name, || Reader::open(file, settings.clone()), length)
+    }
+
+    /// The program in a text.
+    ///
+    /// # Errors
+    /// As [`Program::read`].
+    pub fn from_text(name: &str, text: &str, length: Length<'_>) -> Result<Self, JobError> {
+        Self::new(name.to_owned(), || Reader::from_text(name, text, Settings::default()), length)
+    }
+
+    fn new(name: String, open: impl Fn() -> Result<Reader, ReadError>, length: Length<'_>) -> Result<Self, JobError> {
+        let summary = summarize(open()?)?;
+        let axes = if summary.moves[2] { 3 } else { 2 };
+        let steps = Box::new(Pieces::new(open()?.map_while(Result::ok)));
+        let planned = planned(steps, length)?;
+        if let Some(fault) = planned.fault {
+            return Err(JobError::Path { part: name.into(), fault });
+        }
+        let Part { steps, time_s: machining_s, shortened, .. } = planned;
+        Ok(Self { name, axes, machining_s, shortened, key: key(axes, &steps), steps })
+    }
+}
+
+/// As much of a path as is cut.
+struct Part {
+    steps: Vec<Step>,
+    time_s: f64,
+    shortened: bool,
+    fault: Option<PathError>,
+}
+
+/// Plans the path until its time is over, and keeps it as far as the end of the motion that is under way then.
+fn planned(steps: Steps<'_>, length: Length<'_>) -> Result<Part, LimitsError> {
+    let (keep, kept) = mpsc::channel();
+    let mut ended = false;
+    let read = steps.map(move |step| step.map(|step| first_part(step, length.limit_s, &mut ended)));
+    let read = read.take_while(|step| !matches!(step, Ok(None))).filter_map(Result::transpose);
+    let read = read.inspect(move |step| {
+        if let Ok(step) = step {
+            // The other end is there as long as the plan is.
+            let _ = keep.send(step.clone());
+        }
+    });
+    let constraints = Constraints::from(length.machine);
+    let blended = (BLENDS[0].make)(Box::new(read), &constraints);
+    let mut plan = Plan::new(blended, &constraints, &FEED_PLANNERS[0], Plc::from(length.machine))?;
+    let (mut time_s, mut last) = (0.0, None);
+    for planned in &mut plan {
+        if let Planned::Phase(phase) = planned {
+            time_s = phase.tau_s + phase.duration_s;
+            if time_s > length.limit_s {
+                last = Some(phase.piece);
+                break;
+            }
+        }
+    }
+    let fault = plan.fault().cloned();
+    drop(plan);
+    // The plan looks ahead: what it has read beyond that motion is left out.
+    let mut pieces = 0;
+    let within = |step: &Step| {
+        let is_within = last.is_none_or(|last| pieces <= last);
+        pieces += u64::from(matches!(step, Step::Piece(_)));
+        is_within
+    };
+    Ok(Part { steps: kept.into_iter().take_while(within).collect(), time_s, shortened: last.is_some(), fault })
+}
+
+/// A step, or the first part of a motion that takes longer than the limit by itself and ends the path.
+fn first_part(step: Step, limit_s: f64, ended: &mut bool) -> Option<Step> {
+    if *ended {
+        return None;
+    }
+    let Step::Piece(mut piece) = step else { return Some(step) };
+    // Curves are looked up by arc length: a shorter one is the same curve, left earlier.
+    let most_mm = piece.feed_mm_s * limit_s;
+    if piece.cutting && piece.length_mm > most_mm {
+        piece.length_mm = most_mm;
+        *ended = true;
+    }
+    Some(Step::Piece(piece))
+}
+
+/// The content of a path: equal for equal paths, whatever the name of the program.
+fn key(axes: usize, steps: &[Step]) -> String {
+    let mut hasher = blake3::Hasher::new();
+    let mut text = String::new();
+    hasher.update(&[axes as u8]);
+    for step in steps {
+        text.clear();
+        // Numbers are written so that they round-trip; writing to a string does not fail.
+        let _ = write!(text, "{step:?}");
+        hasher.update(text.as_bytes());
+    }
+    hasher.finalize().to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "G21 G90 F600\nG1 X10\nG1 X20\nG1 X30\nG4 P1\nG1 X40\nM2\n";
+
+    fn program(limit_s: f64) -> Program {
+        let machine = Machine::load("tnv40".as_ref()).expect("built in");
+        Program::from_text("lines", TEXT, Length { machine: &machine, limit_s }).expect("a program")
+    }
+
+    #[test]
+    fn a_long_program_is_cut_for_the_first_part_of_its_time() {
+        let (whole, part) = (program(600.0), program(1.5));
+        assert!(!whole.shortened && (5.0..6.0).contains(&whole.machining_s), "{whole:?}");
+        assert!(part.shortened && part.machining_s > 1.5, "{part:?}");
+        assert!(part.steps.len() < whole.steps.len(), "{part:?}");
+        assert_ne!(part.key, whole.key);
+    }
+
+    #[test]
+    fn a_motion_that_takes_longer_than_the_limit_is_left_early() {
+        let machine = Machine::load("tnv40".as_ref()).expect("built in");
+        let length = Length { machine: &machine, limit_s: 10.0 };
+        let slow = Program::from_text("slow", "G21 F60\nG2 X0 Y0 I5 J0\nG1 X10\nM2\n", length).expect("a program");
+        assert!(slow.shortened && (9.9..10.5).contains(&slow.machining_s), "{slow:?}");
+        assert_eq!(slow.steps.len(), 1);
+    }
+
+    #[test]
+    fn the_key_is_that_of_the_content() {
+        assert_eq!(program(600.0).key, program(700.0).key);
+    }
+
+    #[test]
+    fn a_program_with_mistakes_is_refused() {
+        let machine = Machine::load("tnv40".as_ref()).expect("built in");
+        let length = Length { machine: &machine, limit_s: 1.0 };
+        assert!(Program::from_text("wrong", "G1 X[oops\nM2\n", length).is_err());
+        assert!(Program::from_text("still", "M2\n", length).is_err());
+    }
+}

@@ -1,0 +1,122 @@
+//! What counts as worse than open loop.
+
+use serde::{Deserialize, Serialize};
+
+use super::cut::SweepRow;
+
+pub use feedwright::{MAX_UM, RMS_UM, UNCUT_UM};
+
+/// A way of being worse.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Failure {
+    /// RMS contour error.
+    Rms,
+    /// Largest contour error.
+    Max,
+    /// More of the path stays uncut.
+    Uncut,
+    /// Not cut to its end, or not with the controller in the loop.
+    Lost,
+}
+
+impl Failure {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Rms, Self::Max, Self::Uncut, Self::Lost];
+
+    /// Its name in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Rms => "RMS",
+            Self::Max => "max",
+            Self::Uncut => "uncut",
+            Self::Lost => "lost",
+        }
+    }
+}
+
+impl SweepRow {
+    /// Whether there is an open loop to compare with: one that came to its end.
+    pub fn is_judged(&self) -> bool {
+        self.open_loop.lost.is_none()
+    }
+
+    /// In what it is worse; nothing where it is not judged.
+    pub fn faults(&self) -> Vec<Failure> {
+        let is_fault = |fault: &Failure| match fault {
+            // A number that is none is above no limit, and no good result either.
+            Failure::Lost => self.corrected.lost.is_some(),
+            Failure::Rms => self.excesses()[0] > 1.0,
+            Failure::Max => self.excesses()[1] > 1.0,
+            Failure::Uncut => self.excesses()[2] > 1.0,
+        };
+        if self.is_judged() { Failure::ALL.into_iter().filter(is_fault).collect() } else { Vec::new() }
+    }
+
+    /// By how much RMS, largest error and uncut path are larger than open loop's, in what they may be larger.
+    fn excesses(&self) -> [f64; 3] {
+        let (before, after) = (&self.open_loop, &self.corrected);
+        let uncut = before.uncut_um.zip(after.uncut_um).map_or(0.0, |(before, after)| (after - before) / UNCUT_UM);
+        let all = [(after.rms_um - before.rms_um) / RMS_UM, (after.max_um - before.max_um) / MAX_UM, uncut];
+        all.map(|excess| if excess.is_nan() { f64::INFINITY } else { excess })
+    }
+
+    /// How bad it is: the largest of the excesses, at least 1 where it is lost.
+    pub fn severity(&self) -> f64 {
+        let lost = if self.corrected.lost.is_some() { 1.0 } else { 0.0 };
+        self.excesses().into_iter().fold(lost, f64::max)
+    }
+
+    /// RMS contour error over open loop's.
+    pub fn rms_ratio(&self) -> f64 {
+        /// An open loop below this is as good as none, um.
+        const MIN_UM: f64 = 1e-3;
+        self.corrected.rms_um / self.open_loop.rms_um.max(MIN_UM)
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::never_worse::cut::Figures;
+
+    /// A row of these figures: RMS and largest error, um.
+    pub(crate) fn row(open: [f64; 2], corrected: [f64; 2]) -> SweepRow {
+        let figures = |[rms_um, max_um]: [f64; 2]| Figures { rms_um, max_um, time_s: 1.0, ..Figures::default() };
+        SweepRow {
+            program: "p".to_owned(),
+            machine: "m".to_owned(),
+            rigid: true,
+            open_loop: figures(open),
+            corrected: figures(corrected),
+        }
+    }
+
+    #[test]
+    fn worse_is_what_is_above_the_allowance() {
+        assert_eq!(row([10.0, 20.0], [10.04, 20.9]).faults(), []);
+        assert_eq!(row([10.0, 20.0], [10.06, 20.9]).faults(), [Failure::Rms]);
+        assert_eq!(row([10.0, 20.0], [1.0, 21.1]).faults(), [Failure::Max]);
+        assert_eq!(row([10.0, 20.0], [f64::NAN, 2.0]).faults(), [Failure::Rms]);
+    }
+
+    #[test]
+    fn uncut_path_counts_where_both_know_it() {
+        let mut uncut = row([10.0, 20.0], [1.0, 2.0]);
+        uncut.corrected.uncut_um = Some(400.0);
+        assert_eq!(uncut.faults(), []);
+        uncut.open_loop.uncut_um = Some(20.0);
+        assert_eq!(uncut.faults(), [Failure::Uncut]);
+        assert!((uncut.severity() - 380.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn lost_is_worse_however_small_the_error_and_is_not_judged_where_open_loop_is_lost() {
+        let mut lost = row([10.0, 20.0], [1.0, 2.0]);
+        lost.corrected.lost = Some("faded".to_owned());
+        assert_eq!(lost.faults(), [Failure::Lost]);
+        assert!(lost.severity() >= 1.0);
+        lost.open_loop.lost = Some("diverged".to_owned());
+        assert_eq!(lost.faults(), []);
+    }
+}

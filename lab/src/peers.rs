@@ -1,0 +1,284 @@
+//! The peers: published controllers, each in a file named after its method, and the table of all controllers.
+//!
+//! | File | What |
+//! |---|---|
+//! | `peers/rows.rs` | the parameters of the rows |
+//! | `peers/closed_loop.rs` | the closed loop of an axis, for the filter that inverts it |
+//! | `peers/make.rs` | how each row is made from what is known of a machine |
+//! | `peers/model_predictive.rs`, `peers/iterative_learning.rs` | those that are not fit for a servo thread |
+
+pub mod cross_coupled;
+pub mod contour_compensation;
+pub mod fuzzy_feedrate;
+pub mod cross_coupled_feedrate;
+pub mod input_shaping;
+pub mod zero_phase;
+pub mod sum;
+pub mod disturbance_rejection;
+pub mod disturbance_observer;
+pub mod kalman_disturbance;
+pub mod iterative_learning;
+pub mod model_predictive;
+#[cfg(test)]
+mod fixture;
+mod closed_loop;
+mod make;
+mod rows;
+
+use feedwright::{
+    ACCELERATION_GAIN, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, KNOTS, LQG_IDENTIFIED, MAGNITUDE_ONLY,
+    OPEN_LOOP, PLAN_PERIOD_S, Parameter, RATE_WEIGHT, RECEDING_HORIZON, TWO_DIMENSIONAL, VELOCITY_GAIN, controller,
+};
+use rows::{
+    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CROSS_COUPLED_KD, CROSS_COUPLED_KI,
+    CROSS_COUPLED_KP, DRIFT, INERTIA_SCALE, LAG_SCALE, PRICE, SHAPED_DAMPING, SHAPED_FREQUENCY, SHAPER_IMPULSES,
+    TORQUE_NOISE,
+};
+
+/// `cross-coupled`.
+pub static CROSS_COUPLED: Entry = controller!(
+    "cross-coupled",
+    "PID control of the contour error, added to the command across the path",
+    "Koren (1980); Srinivasan and Kulkarni (1990)",
+    Nothing,
+    laps: 1,
+    [CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
+    |setup, values| make::cross_coupled(setup, values)
+);
+
+/// `contour-compensation`.
+pub static CONTOUR_COMPENSATION: Entry = controller!(
+    "contour-compensation",
+    "the reference moved by the estimated contour error",
+    "Lee and Jeon (1999)",
+    Nothing,
+    laps: 1,
+    [
+        Parameter::number(
+            "rate_1_s",
+            contour_compensation::Settings::DEFAULT.rate_1_s,
+            [0.0, 1e4],
+            Some([1.0, 3000.0]),
+            "how fast the reference follows the error: small is late, large swings"
+        ),
+        Parameter::number(
+            "filter_s",
+            contour_compensation::Settings::DEFAULT.filter_s,
+            [1e-5, 10.0],
+            Some([1e-4, 0.1]),
+            "time constant of the filter on the error: long takes out noise, and is late"
+        )
+    ],
+    |setup, values| make::contour_compensation(setup, values)
+);
+
+/// `fuzzy-feedrate`.
+pub static FUZZY_FEEDRATE: Entry = controller!(
+    "fuzzy-feedrate",
+    "fuzzy rules on the contour error and its change, speed along the path only",
+    "after Tsai and others (about 2003)",
+    Nothing,
+    laps: 1,
+    [
+        Parameter::number(
+            "error_mm",
+            fuzzy_feedrate::Settings::DEFAULT.error_mm,
+            [1e-4, 10.0],
+            Some([0.002, 0.2]),
+            "contour error that counts as large: small slows down for every error, large for none"
+        ),
+        Parameter::number(
+            "change_mm_s",
+            fuzzy_feedrate::Settings::DEFAULT.change_mm_s,
+            [1e-3, 1e3],
+            Some([0.05, 20.0]),
+            "change of the error that counts as large"
+        ),
+        Parameter::number(
+            "slowest",
+            fuzzy_feedrate::Settings::DEFAULT.slowest,
+            [0.05, 1.0],
+            Some([0.2, 1.0]),
+            "slowest it may run, as a part of the planned feedrate"
+        )
+    ],
+    |setup, values| make::fuzzy_feedrate(setup, values)
+);
+
+/// `cross-coupled-feedrate`.
+pub static CROSS_COUPLED_FEEDRATE: Entry = controller!(
+    "cross-coupled-feedrate",
+    "PID control of the contour error, and a feedrate that keeps it within what is allowed",
+    "after Chuang and Liu (1991)",
+    Nothing,
+    laps: 1,
+    [ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, CROSS_COUPLED_KP, CROSS_COUPLED_KI, CROSS_COUPLED_KD],
+    |setup, values| make::cross_coupled_feedrate(setup, values)
+);
+
+/// `feedforward-as-delivered`.
+pub static FEEDFORWARD_AS_DELIVERED: Entry = controller!(
+    "feedforward-as-delivered",
+    "velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction",
+    "Masory (1986); FF1 and FF2 of LinuxCNC",
+    ExactModel,
+    laps: 1,
+    [VELOCITY_GAIN, ACCELERATION_GAIN],
+    |setup, values| make::feedforward_as_delivered(setup, values)
+);
+
+/// `feedforward-cross-coupled`.
+pub static FEEDFORWARD_CROSS_COUPLED: Entry = controller!(
+    "feedforward-cross-coupled",
+    "velocity, acceleration and friction feedforward, and PID control of the contour error behind it",
+    "Masory (1986); Koren (1980); Koren and Lo (1992)",
+    ExactModel,
+    laps: 1,
+    [VELOCITY_GAIN, ACCELERATION_GAIN, FRICTION_GAIN, BEHIND_KP, BEHIND_KI, BEHIND_KD],
+    |setup, values| make::feedforward_cross_coupled(setup, values)
+);
+
+/// `input-shaping`.
+pub static INPUT_SHAPING: Entry = controller!(
+    "input-shaping",
+    "the path shaped so that a resonance is not excited, and feedforward of it with the exact model",
+    "Singer and Seering (1990)",
+    ExactModel,
+    laps: 1,
+    [SHAPED_FREQUENCY, SHAPED_DAMPING, SHAPER_IMPULSES],
+    |setup, values| make::input_shaping(setup, values)
+);
+
+/// `zero-phase`.
+pub static ZERO_PHASE: Entry = controller!(
+    "zero-phase",
+    "zero phase error tracking control with the linear model of the machine",
+    "Tomizuka (1987)",
+    ExactModel,
+    laps: 1,
+    [LAG_SCALE, INERTIA_SCALE],
+    |setup, values| make::zero_phase(setup, values)
+);
+
+/// `zero-phase-friction`.
+pub static ZERO_PHASE_FRICTION: Entry = controller!(
+    "zero-phase-friction",
+    "zero phase error tracking control, and feedforward of the Coulomb friction",
+    "Tomizuka (1987); Armstrong-Helouvry, Dupont and Canudas de Wit (1994)",
+    ExactModel,
+    laps: 1,
+    [LAG_SCALE, INERTIA_SCALE, FRICTION_GAIN],
+    |setup, values| make::zero_phase_friction(setup, values)
+);
+
+/// `disturbance-observer`.
+pub static DISTURBANCE_OBSERVER: Entry = controller!(
+    "disturbance-observer",
+    "velocity and acceleration feedforward, and an observer of friction and cutting force",
+    "Ohnishi (1987)",
+    ExactModel,
+    laps: 1,
+    [Parameter::number(
+        "bandwidth_hz",
+        disturbance_observer::BANDWIDTH_HZ,
+        [0.0, 1000.0],
+        Some([1.0, 1000.0]),
+        "of the observer: low is late at every reversal, high hands on the noise of the encoder; from 500 on the observer \
+         believes what it measures, and hardly changes"
+    )],
+    |setup, values| make::disturbance_observer(setup, values)
+);
+
+/// `kalman-disturbance`.
+pub static KALMAN_DISTURBANCE: Entry = controller!(
+    "kalman-disturbance",
+    "velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out",
+    "Erkorkmaz and Altintas (2001)",
+    ExactModel,
+    laps: 1,
+    [DRIFT, TORQUE_NOISE, FRICTION_GAIN],
+    |setup, values| make::kalman_disturbance(setup, values)
+);
+
+/// `model-predictive`.
+pub static MODEL_PREDICTIVE: Entry = controller!(
+    "model-predictive",
+    "contouring over 20 knots ahead with the exact model of the machine, solved to convergence",
+    "Lam, Manzie and Good (2010)",
+    ExactModel,
+    laps: 1,
+    [Parameter { searched: Some([1e-11, 1e-2]), ..RATE_WEIGHT }, KNOTS, PLAN_PERIOD_S],
+    |setup, values| make::model_predictive(setup, values)
+);
+
+/// `lqg-preview`.
+pub static LQG_PREVIEW: Entry = controller!(
+    "lqg-preview",
+    "the limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine",
+    "Anderson and Moore (1990)",
+    Everything,
+    laps: 1,
+    [PRICE],
+    |setup, values| make::lqg_preview(setup, values)
+);
+
+/// `iterative-learning-1`.
+pub static ITERATIVE_LEARNING_1: Entry = controller!(
+    "iterative-learning-1",
+    "offsets learned from the contour error of the same part, 1 lap of practice",
+    "Arimoto, Kawamura and Miyazaki (1984)",
+    EarlierLaps,
+    laps: 2,
+    iterative_learning::PARAMETERS,
+    |setup, values| make::iterative_learning(setup, values)
+);
+
+/// `iterative-learning-3`.
+pub static ITERATIVE_LEARNING_3: Entry = controller!(
+    "iterative-learning-3",
+    "offsets learned from the contour error of the same part, 3 laps of practice",
+    "Arimoto, Kawamura and Miyazaki (1984)",
+    EarlierLaps,
+    laps: 4,
+    iterative_learning::PARAMETERS,
+    |setup, values| make::iterative_learning(setup, values)
+);
+
+/// `iterative-learning-10`.
+pub static ITERATIVE_LEARNING_10: Entry = controller!(
+    "iterative-learning-10",
+    "offsets learned from the contour error of the same part, 10 laps of practice",
+    "Arimoto, Kawamura and Miyazaki (1984)",
+    EarlierLaps,
+    laps: 11,
+    iterative_learning::PARAMETERS,
+    |setup, values| make::iterative_learning(setup, values)
+);
+
+/// All controllers: those that a machine runs, and the peers.
+pub const CONTROLLERS: Controllers = Controllers::new(&ROWS);
+
+static ROWS: [&Entry; 22] = [
+    &OPEN_LOOP,
+    &CROSS_COUPLED,
+    &CONTOUR_COMPENSATION,
+    &FUZZY_FEEDRATE,
+    &CROSS_COUPLED_FEEDRATE,
+    &FEEDFORWARD,
+    &FEEDFORWARD_AS_DELIVERED,
+    &FEEDFORWARD_CROSS_COUPLED,
+    &INPUT_SHAPING,
+    &ZERO_PHASE,
+    &ZERO_PHASE_FRICTION,
+    &DISTURBANCE_OBSERVER,
+    &KALMAN_DISTURBANCE,
+    &MODEL_PREDICTIVE,
+    &LQG_PREVIEW,
+    &ITERATIVE_LEARNING_1,
+    &ITERATIVE_LEARNING_3,
+    &ITERATIVE_LEARNING_10,
+    &MAGNITUDE_ONLY,
+    &TWO_DIMENSIONAL,
+    &RECEDING_HORIZON,
+    &LQG_IDENTIFIED,
+];

@@ -1,0 +1,337 @@
+//! Model-predictive contouring with the exact model of the machine, solved to convergence.
+//!
+//! The horizon of `horizon` over a model that is the machine itself: its servo law, inertia, friction,
+//! period by period, with its drive, its delays and its friction. The model is as late as the encoder: its position is what is
+//! measured, and a reference acts on it both delays after it was sent. What is not known of a machine it does not know: the disturbance
+//! is predicted from what the model missed, as everywhere. It is what an identified model could reach if it were perfect and the control had all the time of
+//! the world; it allocates nothing, but takes too long for a servo thread.
+//!
+//! Source: Lam, Manzie and Good (2010), "Model predictive contouring control", for the contour error over a horizon; the
+//! progress along the path stays as planned here, since a time bought with error is not compared.
+
+use feedwright_control::vector::{add_scaled, norm, sub};
+use feedwright_control::{
+    AxisLaw, AxisState, CommandedPeriod, DisturbanceForecast, DriveLaw, DriveParameters, DriveReference, DriveState,
+    FrictionLaw, FrictionParameters, HorizonSettings, MAX_KNOTS, OffsetPlan, Parameters, Predictor, Residual,
+    ResidualSettings, Sensitivity, friction_signs,
+};
+use feedwright_control::{Command, Controller, Measured, Schedule, Window};
+use feedwright_sim::{Known, KnownAxis};
+
+/// Steps of Gauss and Newton, at most.
+const MAX_STEPS: usize = 20;
+/// Converged: no acceleration of the offset changes by more, mm/s^2; a tenth of a micrometre per second in a feed period.
+const CONVERGED_MM_S2: f64 = 0.05;
+
+/// Settings of the controller.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings<const N: usize> {
+    /// Servo periods in a feed period.
+    pub servo_periods: u32,
+    /// The inversion.
+    pub horizon: HorizonSettings<N>,
+}
+
+/// Model-predictive contouring.
+#[derive(Debug, Clone)]
+pub struct ModelPredictive<const N: usize> {
+    settings: Settings<N>,
+    /// The model at rest at the origin.
+    rest: Exact<N>,
+    model: Exact<N>,
+    residuals: [Residual; N],
+    plan: OffsetPlan<N>,
+    /// Where the tool was expected, mm, without and with what the model was expected to miss.
+    expected_mm: Option<[[f64; N]; 2]>,
+    prediction_error_mm: f64,
+}
+
+impl<const N: usize> ModelPredictive<N> {
+    /// With the nominal law of a machine.
+    pub fn new(known: &Known, settings: Settings<N>) -> Self {
+        let rest = Exact::new(known, settings.servo_periods);
+        Self {
+            settings,
+            model: rest.clone(),
+            rest,
+            residuals: [Residual::new(ResidualSettings::DEFAULT); N],
+            plan: OffsetPlan::default(),
+            expected_mm: None,
+            prediction_error_mm: 0.0,
+        }
+    }
+
+    /// The tool is where it is measured; its speed is the model's, which forgets its errors within the time constant of the
+    /// speed loop.
+    fn take_in(&mut self, window: &Window<'_, N>, position_mm: [f64; N]) {
+        if !norm(position_mm).is_finite() {
+            return;
+        }
+        match self.expected_mm {
+            Some([modelled_mm, expected_mm]) => {
+                let prediction_error_mm = sub(position_mm, modelled_mm);
+                self.prediction_error_mm = norm(sub(position_mm, expected_mm));
+                for axis in 0..N {
+                    self.residuals[axis].push(prediction_error_mm[axis]);
+                }
+            }
+            None => {
+                // The position loop has seen this error before: its derivative begins at rest.
+                let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
+                let error_mm = sub(command_mm, position_mm);
+                for (i, (axis, error_mm)) in self.model.axes.iter_mut().zip(error_mm).enumerate() {
+                    axis.state.motor.angle_rad = position_mm[i] * axis.law.parameters.rad_per_mm;
+                    axis.state.motor.error_rad = error_mm * axis.law.parameters.rad_per_mm;
+                }
+            }
+        }
+        for (axis, position_mm) in self.model.axes.iter_mut().zip(position_mm) {
+            axis.take_in(position_mm);
+        }
+    }
+}
+
+impl<const N: usize> Controller<N> for ModelPredictive<N> {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: self.settings.servo_periods, preview: self.settings.horizon.knots as u32 }
+    }
+
+    fn reset(&mut self) {
+        self.model.clone_from(&self.rest);
+        self.residuals = [Residual::new(ResidualSettings::DEFAULT); N];
+        self.plan.reset();
+        self.expected_mm = None;
+        self.prediction_error_mm = 0.0;
+    }
+
+    fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
+        if let Some(measured) = measured {
+            self.take_in(window, measured.position_mm);
+        }
+    }
+
+    fn prediction_error_mm(&self) -> f64 {
+        self.prediction_error_mm
+    }
+
+    fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
+        let settings = &self.settings.horizon;
+        let mut model = self.model.clone();
+        model.residual = self.residuals.each_ref().map(Residual::forecast);
+        self.plan.shift(1, settings);
+        let mut step = self.plan.improve(&model, window, settings);
+        for _ in 1..MAX_STEPS {
+            if step.change_mm_s2 <= CONVERGED_MM_S2 {
+                break;
+            }
+            step = self.plan.improve(&model, window, settings);
+        }
+        let mut stretch = CommandedPeriod::now(window, 1);
+        stretch.go_on(window, step.acceleration_mm_s2);
+        let expected_mm = model.advance(window, &stretch, &mut [[0.0; N]; MAX_KNOTS]);
+        for (own, foreseen) in self.model.axes.iter_mut().zip(&model.axes) {
+            own.state = foreseen.state;
+        }
+        self.expected_mm = Some([self.model.tool_mm(), expected_mm]);
+        Command::accelerated(window, window.offset_mm_s, step.acceleration_mm_s2)
+    }
+}
+
+/// The machine without its disturbance, and what the model is expected to miss.
+#[derive(Debug, Clone)]
+struct Exact<const N: usize> {
+    axes: [ExactAxis; N],
+    servo_periods: u32,
+    servo_s: f64,
+    residual: [DisturbanceForecast; N],
+    /// Sum of what it is expected to miss on the way, mm.
+    prediction_error_mm: [f64; N],
+    lag_s: f64,
+    response_s: f64,
+}
+
+impl<const N: usize> Exact<N> {
+    fn new(known: &Known, servo_periods: u32) -> Self {
+        let laws: [AxisLaw; N] = known.law();
+        let axes: [ExactAxis; N] = std::array::from_fn(|i| ExactAxis::new(laws[i], known.axis(i)));
+        let response_s: [f64; N] = laws.map(|law| 1.0 / law.parameters.kp_1_s);
+        // What the drive feeds forward of the speed does not wait for an error.
+        let lag_s = |i: usize| (1.0 - known.axis(i).drive.velocity_feedforward).max(0.0) * response_s[i];
+        let lag_s = (0..N).map(lag_s).sum::<f64>() / N as f64;
+        Self {
+            axes,
+            servo_periods,
+            servo_s: known.period.servo_s,
+            residual: [Residual::new(ResidualSettings::DEFAULT).forecast(); N],
+            prediction_error_mm: [0.0; N],
+            lag_s,
+            response_s: response_s.iter().sum::<f64>() / N as f64,
+        }
+    }
+
+    fn tool_mm(&self) -> [f64; N] {
+        std::array::from_fn(|i| {
+            self.axes[i].state.motor.angle_rad / self.axes[i].law.parameters.rad_per_mm + self.prediction_error_mm[i]
+        })
+    }
+}
+
+impl<const N: usize> Predictor<N> for Exact<N> {
+    fn lag_s(&self) -> f64 {
+        self.lag_s
+    }
+
+    fn response_s(&self) -> f64 {
+        self.response_s
+    }
+
+    fn advance(
+        &mut self,
+        window: &Window<'_, N>,
+        stretch: &CommandedPeriod<N>,
+        sensitivity: &mut Sensitivity<N>,
+    ) -> [f64; N] {
+        let offset = Command { bend_mm: stretch.bend_mm(), ..Command::straight(1.0, stretch.offset_mm[1]) };
+        for phase in 0..self.servo_periods {
+            let ahead = stretch.period as u32 * self.servo_periods + phase;
+            let path_mm = window.at(f64::from(ahead) * self.servo_s).position_mm;
+            let part = f64::from(phase) / f64::from(self.servo_periods);
+            let offset_mm = offset.offset_after_mm(part, stretch.offset_mm[0]);
+            let moved_s2 = std::array::from_fn(|knot| stretch.moved_s2(knot, part));
+            for (i, axis) in self.axes.iter_mut().enumerate() {
+                axis.advance(path_mm[i] + offset_mm[i], &moved_s2, stretch.knot());
+            }
+        }
+        for i in 0..N {
+            self.prediction_error_mm[i] += self.residual[i].next_mm();
+            for knot in 0..=stretch.knot() {
+                sensitivity[knot][i] =
+                    self.axes[i].slopes[knot].motor.angle_rad / self.axes[i].law.parameters.rad_per_mm;
+            }
+        }
+        self.tool_mm()
+    }
+}
+
+/// Servo periods of references under way that are kept: 20 ms each way at 1 ms, the most of a machine file, and some.
+const KEPT_PERIODS: usize = 48;
+
+/// What of an axis moves on: its motor, its drive, and references that are on their way, the newest first.
+#[derive(Debug, Clone, Copy)]
+struct Moving {
+    motor: AxisState,
+    drive: DriveState,
+    sent: [DriveReference; KEPT_PERIODS],
+    presliding_nm: f64,
+}
+
+impl Moving {
+    const AT_REST: Self = Self {
+        motor: AxisState { angle_rad: 0.0, speed_rad_s: 0.0, error_rad: 0.0 },
+        drive: DriveState::AT_REST,
+        sent: [DriveReference { speed_rad_s: 0.0, torque_nm: 0.0 }; KEPT_PERIODS],
+        presliding_nm: 0.0,
+    };
+}
+
+/// An axis: its state, and the derivative of that to the acceleration of each knot, per mm/s^2.
+#[derive(Debug, Clone)]
+struct ExactAxis {
+    law: AxisLaw,
+    drive: DriveLaw,
+    friction: Option<FrictionLaw>,
+    /// The same without limits, for the derivative.
+    linear: (AxisLaw, DriveLaw),
+    /// Integral of the speed loop for a position that was missed, N m/rad.
+    integral_nm_rad: f64,
+    /// Mechanics periods until a reference acts on what is measured.
+    late: u32,
+    state: Moving,
+    slopes: [Moving; MAX_KNOTS],
+}
+
+impl ExactAxis {
+    fn new(law: AxisLaw, known: &KnownAxis) -> Self {
+        let unlimited = Parameters { torque_limit_nm: f64::INFINITY, ..law.parameters };
+        let linear = AxisLaw::new(unlimited, law.periods);
+        let time_s = known.drive.speed_integral_s;
+        let longest = (KEPT_PERIODS as u32 - 2) * law.periods.mechanics_per_servo;
+        let late = (known.delays.drive_s + known.delays.measurement_s) / law.periods.mechanics_s;
+        Self {
+            drive: DriveLaw::new(&law, known.drive),
+            friction: (known.friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, known.friction)),
+            linear: (linear, DriveLaw::new(&linear, DriveParameters { speed_limit_rad_s: 0.0, ..known.drive })),
+            integral_nm_rad: if time_s > 0.0 { law.parameters.kv_nm_s_per_rad / time_s } else { 0.0 },
+            // A float that is not a number saturates to zero here.
+            late: (late.round() as u32).min(longest),
+            law,
+            state: Moving::AT_REST,
+            slopes: [Moving::AT_REST; MAX_KNOTS],
+        }
+    }
+
+    /// The motor is where it is measured; the integral of its speed loop has summed up what was missed.
+    fn take_in(&mut self, position_mm: f64) {
+        let angle_rad = position_mm * self.law.parameters.rad_per_mm;
+        let missed_rad = angle_rad - self.state.motor.angle_rad;
+        self.state.motor.angle_rad = angle_rad;
+        self.state.drive.correct(-self.integral_nm_rad * missed_rad, 0.0);
+    }
+
+    /// One servo period at a command that moves by `moved_s2` mm for an acceleration of 1 mm/s^2 in each of the knots up to `knot`.
+    fn advance(&mut self, command_mm: f64, moved_s2: &[f64; MAX_KNOTS], knot: usize) {
+        let rad_per_mm = self.law.parameters.rad_per_mm;
+        let send = |law: &AxisLaw, drive: &DriveLaw, moved_mm: f64, state: &mut Moving| {
+            let position_rad = state.motor.angle_rad;
+            let reference =
+                drive.position_loop(law, moved_mm * rad_per_mm, position_rad, &mut state.motor, &mut state.drive);
+            state.sent.rotate_right(1);
+            state.sent[0] = reference;
+        };
+        send(&self.law, &self.drive, command_mm, &mut self.state);
+        let (linear, linear_drive) = &self.linear;
+        for (slope, moved_s2) in self.slopes.iter_mut().zip(moved_s2).take(knot + 1) {
+            send(linear, linear_drive, *moved_s2, slope);
+        }
+        for substep in 0..self.law.periods.mechanics_per_servo {
+            self.substep(self.age(substep), knot);
+        }
+    }
+
+    /// How many servo periods ago was sent what acts in a mechanics period of this one.
+    fn age(&self, substep: u32) -> usize {
+        let per_servo = self.law.periods.mechanics_per_servo;
+        (self.late.saturating_sub(substep)).div_ceil(per_servo) as usize
+    }
+
+    fn substep(&mut self, age: usize, knot: usize) {
+        let (law, state) = (&self.law, &mut self.state);
+        let w = state.motor.speed_rad_s;
+        let torque_nm = self.drive.torque_nm(law, state.sent[age], w, &mut state.drive);
+        let coulomb = match &self.friction {
+            Some(friction) => {
+                let inverse_inertia = 1.0 / law.parameters.inertia_kg_m2;
+                state.motor.speed_rad_s =
+                    friction.speed_after_rad_s(torque_nm, inverse_inertia, w, &mut state.presliding_nm);
+                state.motor.angle_rad += law.periods.mechanics_s * state.motor.speed_rad_s;
+                0.0
+            }
+            None => {
+                let [sign] = friction_signs(&[*law], [w]);
+                law.accelerate(torque_nm - law.friction_nm(w, sign), &mut state.motor);
+                sign
+            }
+        };
+        // Where friction has a memory, its slope is that of sliding: none.
+        let sign = if self.friction.is_some() { 1.0 } else { coulomb };
+        let [gain, damping] = law.slopes_nm_s(torque_nm, sign);
+        let (linear, linear_drive) = &self.linear;
+        for slope in self.slopes.iter_mut().take(knot + 1) {
+            let w = slope.motor.speed_rad_s;
+            let held_nm_s = damping - gain;
+            let torque_nm =
+                if gain > 0.0 { linear_drive.torque_nm(linear, slope.sent[age], w, &mut slope.drive) } else { 0.0 };
+            linear.accelerate(torque_nm - held_nm_s * w, &mut slope.motor);
+        }
+    }
+}

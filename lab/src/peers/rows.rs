@@ -1,0 +1,108 @@
+//! Parameters of the rows of the laboratory: ranges, defaults, reasons.
+
+use feedwright::Parameter;
+use feedwright_control::LqgSettings;
+
+use super::kalman_disturbance::AxisNoise;
+use super::{cross_coupled, cross_coupled_feedrate, input_shaping};
+
+// Of the limit.
+pub(super) const PRICE: Parameter = Parameter::number(
+    "price_s2",
+    LqgSettings::DEFAULT.price_s2,
+    [1e-12, 1e-2],
+    Some([1e-11, 1e-3]),
+    "price of the reference speed beside the error: low rings between servo periods, high leaves the error as it is",
+);
+// Of cross-coupled control. Beyond the gains that the reasons name the loop is still stable on smooth paths, but catches the tool in
+// acute corners; what a machine can bear differs.
+pub(super) const CROSS_COUPLED_KP: Parameter = Parameter::number(
+    "kp",
+    cross_coupled::Settings::DEFAULT.kp,
+    [0.0, 100.0],
+    Some([0.1, 60.0]),
+    "gain of the contour error: more corrects more; beyond 8 the tool is caught in acute corners",
+);
+pub(super) const CROSS_COUPLED_KI: Parameter = Parameter::number(
+    "ki_1_s",
+    cross_coupled::Settings::DEFAULT.ki_1_s,
+    [0.0, 1e5],
+    Some([0.1, 1e4]),
+    "gain of its integral: 0 leaves a part of a steady error; beyond 400 the tool is caught in acute corners",
+);
+pub(super) const CROSS_COUPLED_KD: Parameter = Parameter::number(
+    "kd_s",
+    cross_coupled::Settings::DEFAULT.kd_s,
+    [0.0, 1.0],
+    Some([1e-5, 0.5]),
+    "gain of its derivative, which damps: beyond 0.03 the tool is caught in acute corners",
+);
+// The same behind a feedforward, which leaves it a tenth of the error: on a noisy encoder next to no gain may be best.
+pub(super) const BEHIND_KP: Parameter = Parameter { searched: Some([0.01, 60.0]), ..CROSS_COUPLED_KP };
+pub(super) const BEHIND_KI: Parameter = Parameter { searched: Some([0.01, 1e4]), ..CROSS_COUPLED_KI };
+pub(super) const BEHIND_KD: Parameter = Parameter { searched: Some([1e-6, 0.5]), ..CROSS_COUPLED_KD };
+pub(super) const LAG_SCALE: Parameter =
+    Parameter::number("lag_scale", 1.0, [0.01, 10.0], Some([0.1, 1.5]), EXACT_REASON);
+pub(super) const INERTIA_SCALE: Parameter =
+    Parameter::number("inertia_scale", 1.0, [0.01, 10.0], Some([0.2, 3.0]), EXACT_REASON);
+pub(super) const EXACT_REASON: &str =
+    "1 is what the exact model calls for; another makes up for a model that is not exact";
+// Of the feedrate that adapts to the contour error.
+pub(super) const ALLOWED: Parameter = Parameter::number(
+    "allowed_mm",
+    cross_coupled_feedrate::Settings::DEFAULT.allowed_mm,
+    [1e-5, 10.0],
+    Some([1e-4, 0.1]),
+    "contour error that is allowed: a small one slows down for every error, a large one for none",
+);
+pub(super) const ALLOWED_FILTER: Parameter = Parameter::number(
+    "filter_s",
+    cross_coupled_feedrate::Settings::DEFAULT.filter_s,
+    [1e-4, 10.0],
+    Some([2e-3, 1.0]),
+    "time constant of the estimate of the error: short follows its noise, long is late at curves",
+);
+pub(super) const ALLOWED_SLOWEST: Parameter = Parameter::number(
+    "slowest",
+    cross_coupled_feedrate::Settings::DEFAULT.slowest,
+    [0.1, 1.0],
+    Some([0.2, 1.0]),
+    "slowest it may run, as a part of the planned feedrate",
+);
+// Of the Kalman filter, in servo periods and against an encoder of 1 um: of all three noises the ratios alone count.
+pub(super) const DRIFT: Parameter = Parameter::number(
+    "drift_mm_s",
+    AxisNoise::DEFAULT.drift_mm_s,
+    [1e-6, 1e4],
+    Some([1e-3, 1e4]),
+    "change of the disturbance: a small one is late at every reversal, a large one hands on the noise of the encoder; from 100 on \
+     the filter believes what it measures, and hardly changes",
+);
+pub(super) const TORQUE_NOISE: Parameter = Parameter::number(
+    "torque_noise_mm_s",
+    AxisNoise::DEFAULT.torque_mm_s,
+    [0.0, 100.0],
+    Some([1e-4, 10.0]),
+    "white part of the torque: what is put down to it is no disturbance",
+);
+// Of the shaper.
+pub(super) const SHAPED_FREQUENCY: Parameter = Parameter::number(
+    "frequency_hz",
+    input_shaping::Settings::DEFAULT.frequency_hz,
+    [5.0, 1000.0],
+    Some([10.0, 500.0]),
+    "of the resonance that is not excited: at 500 its impulses are a servo period apart, and shape nothing",
+);
+pub(super) const SHAPED_DAMPING: Parameter = Parameter::number(
+    "damping_ratio",
+    input_shaping::Settings::DEFAULT.damping_ratio,
+    [0.0, 0.9],
+    Some([1e-3, 0.5]),
+    "of that resonance: more makes the later impulses smaller",
+);
+pub(super) const SHAPER_IMPULSES: Parameter = Parameter::whole(
+    "impulses",
+    input_shaping::Settings::DEFAULT.impulses as usize,
+    [2.0, 3.0],
+    "2 hit the frequency (ZV), 3 also what is near it (ZVD) and round the path by more",
+);

@@ -1,0 +1,203 @@
+//! The comparison: the same for any number of threads and after an interruption, ratios and verdicts as they are defined.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+use feedwright::{BASELINE, BEST};
+use feedwright_lab::CONTROLLERS;
+use feedwright_lab::compare::{page, recorded, rows_file, tuning};
+use feedwright_lab::{
+    Comparison, ComparisonOptions, Finished, Journal, Knowledge, RowsStamp, Shard, Tuning, Verdict, Workpiece, compare,
+    journal_path, merged, work_on,
+};
+use feedwright_sim::Machine;
+
+/// With encoder noise on the second machine.
+fn options() -> ComparisonOptions {
+    let named = |name: &str| CONTROLLERS.find(name).unwrap();
+    let [nominal, mut noisy] = ["tnv40", "rough"].map(|name| Machine::load(name.as_ref()).unwrap());
+    for axis in &mut noisy.axes {
+        axis.encoder_noise_um = 0.2;
+    }
+    let controllers =
+        [BASELINE, "contour-compensation", "feedforward", "iterative-learning-3", BEST].map(named).to_vec();
+    ComparisonOptions {
+        workpieces: Workpiece::contours()
+            .into_iter()
+            .filter(|w| ["circle", "square"].contains(&w.name.as_str()))
+            .collect(),
+        machines: vec![nominal.clone(), noisy],
+        nominal,
+        controllers,
+        knowledge: Knowledge::ALL.to_vec(),
+        seed: 7,
+        noise_seeds: 2,
+        tuning: Tuning::Defaults,
+        set: Vec::new(),
+        at_tolerance: false,
+    }
+}
+
+fn with_threads(threads: usize, options: &ComparisonOptions, journal: &Journal<Finished>) -> Comparison {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+    pool.install(|| compare(options, journal, &())).unwrap()
+}
+
+fn json(comparison: &Comparison) -> String {
+    serde_json::to_string(comparison).unwrap()
+}
+
+#[test]
+fn the_table_is_the_same_for_any_number_of_threads_and_after_an_interruption() {
+    let options = options();
+    let one = with_threads(1, &options, &Journal::none());
+    assert_eq!(json(&one), json(&with_threads(3, &options, &Journal::none())));
+
+    let folder = tempfile::tempdir().unwrap();
+    let journal = Journal::open(&journal_path(folder.path(), "key")).unwrap();
+    with_threads(2, &options, &journal);
+    drop(journal);
+    let file = std::fs::read_dir(folder.path()).unwrap().next().unwrap().unwrap().path();
+    let text = std::fs::read_to_string(&file).unwrap();
+    // Killed in the middle of a line.
+    std::fs::write(&file, &text[..text.len() * 2 / 3]).unwrap();
+    let journal = Journal::open(&journal_path(folder.path(), "key")).unwrap();
+    let known = journal.rows().filter(|finished| matches!(finished, Finished::Row(_))).count();
+    assert!(known > 0 && known < one.rows.len(), "{known} of {}", one.rows.len());
+    assert_eq!(json(&one), json(&with_threads(2, &options, &journal)));
+    journal.remove();
+    assert!(!file.exists());
+}
+
+#[test]
+fn shards_merge_to_the_bytes_of_the_undivided_run_and_missing_rows_are_named() {
+    let options = ComparisonOptions { at_tolerance: true, ..options() };
+    let whole = with_threads(2, &options, &Journal::none());
+    assert!(!whole.at_tolerance.is_empty());
+    let folder = tempfile::tempdir().unwrap();
+    let stamp = RowsStamp { options: options.fingerprint(), program: "this".to_owned() };
+    let files: Vec<_> = (1..=3).map(|i| folder.path().join(format!("{i}.jsonl"))).collect();
+    for (file, shard) in files.iter().zip(["1/3", "2/3", "3/3"]) {
+        let journal = rows_file::open(file, &stamp).unwrap();
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
+        pool.install(|| work_on(&options, shard.parse().unwrap(), &journal, &())).unwrap();
+    }
+    let results = merged(&options, &rows_file::read_all(&files, &stamp).unwrap()).unwrap();
+    assert_eq!(json(&whole), json(&Comparison::new(&options, results)));
+    let missing = merged(&options, &rows_file::read_all(&files[..2], &stamp).unwrap()).unwrap_err();
+    let third = "feedforward on tnv40: 2 of 2 workpieces".to_owned();
+    assert!(missing.units.contains(&third), "{missing:?}");
+    for wrong in ["0/3", "4/3", "1", "a/b", "1/0"] {
+        assert!(wrong.parse::<Shard>().is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn rows_are_complete_and_ratios_are_against_open_loop() {
+    let options = options();
+    let comparison = with_threads(2, &options, &Journal::none());
+    // Parameters identified and 20 % off once on each machine; unseen on the one that is not nominal.
+    let rows = options.workpieces.len() * (options.machines.len() * (options.controllers.len() + 2) + 1);
+    assert_eq!(comparison.rows.len(), rows);
+    for row in &comparison.rows {
+        let base = comparison.rows.iter().find(|base| {
+            (&base.contour, &base.machine, base.controller.as_str()) == (&row.contour, &row.machine, BASELINE)
+        });
+        let base = base.unwrap();
+        assert_eq!(row.rms_ratio, row.rms_um / base.rms_um);
+        assert_eq!(row.max_ratio, row.max_um / base.max_um);
+        assert_eq!(row.time_ratio, row.time_s / base.time_s);
+        assert!(row.completed && row.lost == 0 && row.faded_out.is_none(), "{row:?}");
+        let noisy = row.machine == "rough";
+        let [low, high] = row.rms_spread_um;
+        assert_eq!(row.seeds, if noisy { 2 } else { 1 });
+        assert!((low <= row.rms_um && row.rms_um <= high) && (noisy == (low < high)), "{row:?}");
+        assert!(row.accel_mm_s2 > 0.0, "{row:?}");
+    }
+    let rms_um = |controller: &str| comparison.row("circle", "rough", controller).unwrap().rms_um;
+    let [exact, identified, off] = ["", "+identified", "+20%off"].map(|given| rms_um(&format!("feedforward{given}")));
+    assert!(exact < off && identified < off && identified != exact, "{exact} {identified} {off}");
+    assert!(rms_um(BEST) != rms_um(&format!("{BEST}+unseen")));
+    let mut html = Vec::new();
+    page::write(&mut html, &comparison).unwrap();
+    let html = String::from_utf8(html).unwrap();
+    for entry in &options.controllers {
+        assert!(html.contains(entry.name), "{}", entry.name);
+    }
+    assert!(!html.contains("NaN") && !html.contains("src=\"http") && html.ends_with("</html>\n"));
+}
+
+/// By how much identified parameters may differ from exact ones in what becomes of them: torque noise hides less.
+const AS_EXACT: f64 = 0.03;
+
+#[test]
+fn identified_parameters_are_worth_as_much_as_exact_ones_on_workshop_and_more_than_those_that_are_20_percent_off() {
+    let workshop = Machine::load("workshop".as_ref()).unwrap();
+    let options = ComparisonOptions {
+        workpieces: Workpiece::contours().into_iter().filter(|workpiece| workpiece.name == "circle").collect(),
+        machines: vec![workshop],
+        controllers: [BASELINE, "feedforward"].map(|name| CONTROLLERS.find(name).unwrap()).to_vec(),
+        ..options()
+    };
+    let comparison = with_threads(2, &options, &Journal::none());
+    let [exact, identified, off] = ["", "+identified", "+20%off"].map(|given| {
+        let row = comparison.row("circle", "workshop", &format!("feedforward{given}")).unwrap();
+        row.joint_rms_um.unwrap()
+    });
+    assert!((identified / exact - 1.0).abs() < AS_EXACT && exact != identified, "{exact} {identified} {off}");
+    assert!(identified < (1.0 - AS_EXACT) * off, "{exact} {identified} {off}");
+    // The first table of the page has what the encoders see, and says so.
+    assert_eq!(comparison.controlled_rms_over_contours_um("workshop", "feedforward"), Some(exact));
+    assert!(comparison.rms_over_contours_um("workshop", "feedforward").unwrap() > 1.2 * exact);
+    let mut html = Vec::new();
+    page::write(&mut html, &comparison).unwrap();
+    let html = String::from_utf8(html).unwrap();
+    assert!(html.contains("By the encoders on workshop") && html.contains("largest whole contour error"), "{html}");
+}
+
+#[test]
+fn verdicts_are_those_of_the_machines_and_hold_on_the_nominal_circle() {
+    let options = options();
+    let comparison = with_threads(2, &options, &Journal::none());
+    let claims: Vec<(&str, &str, &str)> =
+        comparison.verdicts.iter().map(|v| (v.contour.as_str(), v.machine.as_str(), v.claim.as_str())).collect();
+    let expected = [
+        ("circle", "tnv40", "RMS against open loop"),
+        ("circle", "tnv40", "max against open loop"),
+        ("circle", "tnv40", "RMS against the best peer without model"),
+        ("circle", "rough", "RMS under noise against the best peer"),
+        ("square", "tnv40", "RMS of the square"),
+        ("square", "tnv40", "max of the square"),
+        ("square", "rough", "RMS under noise against the best peer"),
+        ("all work", "rough", "RMS under noise against the best peer"),
+    ];
+    assert_eq!(claims, expected);
+    let circle = |v: &&Verdict| v.contour == "circle" && v.machine == "tnv40";
+    assert!(comparison.verdicts.iter().filter(circle).all(|v| v.holds), "{:?}", comparison.verdicts);
+}
+
+/// A search that takes seconds.
+const SEARCHED_ANEW: [&str; 2] = ["contour-compensation", "tnv40"];
+
+#[test]
+fn a_search_finds_the_recorded_values_to_the_bit() {
+    let [controller, machine] = SEARCHED_ANEW;
+    let machine = Machine::load(machine.as_ref()).unwrap();
+    let known = recorded::known(std::slice::from_ref(&machine), 1);
+    let recorded = known.iter().find(|tuned| tuned.controller == controller).expect("hint: record it");
+    assert_eq!(tuning::search(CONTROLLERS.find(controller).unwrap(), &machine, 1, &()).unwrap(), *recorded);
+}
+
+#[test]
+fn every_default_lies_in_its_ranges_and_what_is_searched_in_what_is_allowed() {
+    for entry in CONTROLLERS {
+        for parameter in entry.parameters {
+            for [low, high] in [Some(parameter.allowed), parameter.searched].into_iter().flatten() {
+                assert!((low..=high).contains(&parameter.default), "{}: {parameter:?}", entry.name);
+            }
+            if let Some(searched) = parameter.searched {
+                let [least, most] = parameter.allowed;
+                assert!(searched.iter().all(|value| (least..=most).contains(value)), "{}: {parameter:?}", entry.name);
+            }
+        }
+    }
+}

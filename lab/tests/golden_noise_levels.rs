@@ -1,0 +1,89 @@
+//! Table and figures of the study of noise levels are those of its comparison, and that is what the program makes today:
+//! `just noise-levels` regenerates all of it.
+//!
+//! Golden: that nothing has changed says nothing on whether it is right.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+#[path = "../examples/noise_levels/levels.rs"]
+mod levels;
+#[path = "../examples/noise_levels/show.rs"]
+mod show;
+
+use std::path::PathBuf;
+
+use feedwright::{BASELINE, CONTROLLERS};
+use feedwright_lab::{Comparison, ComparisonOptions, Journal, Knowledge, Tuning, Workpiece, compare};
+use feedwright_sim::Machine;
+use levels::{BASE, KINDS, LEVELS};
+
+/// Rounding of another platform's sine, after thousands of servo periods with feedback.
+const SAME_RATIO: f64 = 1e-3;
+
+fn text(file: &str) -> String {
+    let study = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/05_noise"));
+    std::fs::read_to_string(study.join(file)).unwrap()
+}
+
+fn kept() -> Comparison {
+    serde_json::from_str(&text(show::COMPARISON)).unwrap()
+}
+
+#[test]
+fn table_and_figures_are_those_of_the_kept_comparison() {
+    let (kept, document) = (kept(), text(show::DOCUMENT));
+    let table = show::table(&kept).unwrap();
+    assert_eq!(document[show::place(&document).unwrap()], table, "hint: `just noise-levels`");
+    let figures = show::figures(&kept);
+    assert_eq!(figures.len(), KINDS.len());
+    for (name, drawing) in figures {
+        assert!(document.contains(&format!("]({name})")), "{name} is not shown");
+        assert_eq!(text(&name), drawing, "{name}; hint: `just noise-levels`");
+    }
+}
+
+#[test]
+fn every_controller_was_cut_at_the_ends_of_every_kind() {
+    let kept = kept();
+    for kind in &KINDS {
+        for level in [kind.levels[0], kind.levels[LEVELS - 1]] {
+            let machine = kind.machine_name(level);
+            for controller in show::CONTROLLERS {
+                for contour in kept.contours() {
+                    let row = kept.row(contour, &machine, controller);
+                    assert!(row.is_some_and(|row| row.rms_um > 0.0), "{controller}, {contour} on {machine}: {row:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_kept_comparison_is_what_the_program_makes() {
+    let kept = kept();
+    let machines = vec![KINDS[0].machine(KINDS[0].levels[0]).unwrap(), KINDS[3].machine(KINDS[3].levels[0]).unwrap()];
+    let mut workpieces = Workpiece::contours();
+    workpieces.retain(|workpiece| workpiece.name == "square");
+    let controllers = [BASELINE, "feedforward-cross-coupled", "kalman-disturbance"];
+    let options = ComparisonOptions {
+        workpieces,
+        nominal: Machine::load(BASE.as_ref()).unwrap(),
+        machines,
+        controllers: controllers.iter().map(|name| CONTROLLERS.find(name).unwrap()).collect(),
+        knowledge: vec![Knowledge::Own],
+        seed: kept.seed,
+        noise_seeds: kept.noise_seeds,
+        tuning: Tuning::Known(kept.tuned.clone()),
+        set: Vec::new(),
+        at_tolerance: false,
+    };
+    assert!(options.to_search().is_empty(), "{:?}", options.to_search());
+    let made = compare(&options, &Journal::none(), &()).unwrap();
+    assert_eq!(made.rows.len(), 6);
+    for row in &made.rows {
+        let was = kept.row(&row.contour, &row.machine, &row.controller).unwrap();
+        for (was, is) in [(was.rms_um, row.rms_um), (was.max_um, row.max_um), (was.time_s, row.time_s)] {
+            assert!((was - is).abs() <= SAME_RATIO * was, "{was} is {is}; hint: `just noise-levels`\n{row:?}");
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The tables of the documents are what the program makes today: `just tables` regenerates them.
+//!
+//! Golden: that they have not changed says nothing on whether they are right; `conformance_paper` holds bounds from elsewhere.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+#[path = "../examples/tables/table.rs"]
+mod table;
+
+use feedwright::CONTROLLERS;
+use feedwright_lab::{
+    Comparison, ComparisonOptions, ComparisonRow, HeldOutSeeds, Journal, Knowledge, Tuning, Workpiece, compare,
+};
+use feedwright_sim::Machine;
+use table::{Place, root};
+
+/// Another platform's sine may differ in its last bit and turn a number over at a rounding.
+const LAST_PLACES: f64 = 1.0;
+
+/// The numbers of a table with the value of their last place, and everything between them.
+fn take_apart(table: &str) -> (Vec<(f64, f64)>, String) {
+    let is_number = |c: char| c.is_ascii_digit() || c == '.';
+    let (mut numbers, mut rest) = (Vec::new(), String::new());
+    for word in table.split_inclusive(|c| !is_number(c)) {
+        let digits = word.trim_end_matches(|c| !is_number(c));
+        if let Ok(number) = digits.parse() {
+            let decimals = digits.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+            numbers.push((number, 0.1_f64.powi(decimals as i32)));
+        }
+        rest.push_str(&word[digits.len()..]);
+    }
+    (numbers, rest)
+}
+
+fn same(document: &str, made: &str) -> bool {
+    let ((was, was_between), (is, is_between)) = (take_apart(document), take_apart(made));
+    was_between == is_between
+        && was.len() == is.len()
+        && was.iter().zip(&is).all(|((was, place), (is, _))| (was - is).abs() < (LAST_PLACES + 0.5) * place)
+}
+
+fn holds(place: Place) {
+    let text = std::fs::read_to_string(root().join(place.file)).unwrap();
+    let document = &text[place.find(&text).unwrap()];
+    assert!(
+        same(document, &place.table),
+        "{} is out of date; hint: `just tables`\nit says\n{document}\nand it is\n{}",
+        place.file,
+        place.table
+    );
+}
+
+#[test]
+fn the_tables_of_results_are_those_of_the_kept_comparison() {
+    for place in Place::results().unwrap() {
+        holds(place);
+    }
+}
+
+/// Rounding of another platform's sine, after thousands of servo periods with feedback.
+const SAME_RATIO: f64 = 1e-3;
+
+/// Whether these rows of a kept comparison are what the program makes.
+fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], machines: &[&str], controllers: &[&str]) {
+    let kept: Comparison = table::comparison(file).unwrap();
+    let options = ComparisonOptions {
+        workpieces,
+        nominal: Machine::load(kept.nominal.as_ref()).unwrap(),
+        machines: machines.iter().map(|name| Machine::load(name.as_ref()).unwrap()).collect(),
+        controllers: controllers.iter().map(|name| CONTROLLERS.find(name).unwrap()).collect(),
+        knowledge: knowledge.to_vec(),
+        seed: kept.seed,
+        noise_seeds: kept.noise_seeds,
+        tuning: Tuning::Known(kept.tuned.clone()),
+        set: Vec::new(),
+        at_tolerance: false,
+    };
+    let made = compare(&options, &Journal::none(), &()).unwrap();
+    assert!(!made.rows.is_empty());
+    for row in &made.rows {
+        let place = |other: &&ComparisonRow| {
+            (&other.contour, &other.machine, &other.controller) == (&row.contour, &row.machine, &row.controller)
+        };
+        let was = kept.rows.iter().find(place).unwrap();
+        for (was, is) in [(was.rms_um, row.rms_um), (was.max_um, row.max_um), (was.time_s, row.time_s)] {
+            assert!((was - is).abs() <= SAME_RATIO * was, "{was} is {is}; hint: `just tables`\n{row:?}");
+        }
+    }
+}
+
+/// The whole takes minutes.
+#[test]
+fn the_kept_comparison_is_what_the_program_makes() {
+    let mut contours = Workpiece::contours();
+    contours.retain(|workpiece| ["ellipse", "square"].contains(&workpiece.name.as_str()));
+    let controllers = ["open-loop", "cross-coupled", "feedforward", "two-dimensional", "receding-horizon"];
+    let knowledge = [Knowledge::Own, Knowledge::Unseen];
+    cut_anew(table::COMPARISON, contours, &knowledge, &["tnv40", "rough", "soft"], &controllers);
+}
+
+/// A contour and a program, as they were drawn.
+#[test]
+fn the_kept_held_out_work_is_what_the_program_makes() {
+    let mut held_out = HeldOutSeeds::recorded().workpieces();
+    let drawn: Vec<Workpiece> = [held_out.remove(0), held_out.pop().unwrap()].into();
+    let knowledge = [Knowledge::Own, Knowledge::TwentyPercentOff];
+    let controllers = ["open-loop", "feedforward-cross-coupled", "kalman-disturbance", "receding-horizon"];
+    cut_anew(table::HELD_OUT, drawn, &knowledge, &["workshop"], &controllers);
+}
+
+#[test]
+fn the_seeds_in_the_study_are_those_of_the_program() {
+    holds(Place::paper().unwrap());
+}
+
+#[test]
+fn only_the_last_place_of_a_number_may_differ() {
+    assert!(same("| a | 1.2 s, 3.4 |", "| a | 1.3 s, 3.4 |"));
+    assert!(!same("| a | 1.2 s, 3.4 |", "| a | 1.4 s, 3.4 |"));
+    assert!(!same("| a | 1.2 s, 3.4 |", "| b | 1.2 s, 3.4 |"));
+    assert!(!same("| a | 1.2 |", "| a | 1.2 | 3 |"));
+}

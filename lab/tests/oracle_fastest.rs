@@ -1,0 +1,98 @@
+//! Least time within a tolerance of the tool, against the least time of a nonlinear program for the same servo.
+//!
+//! The servo is linear, `x' = v`, `v' = a (k (r - x) - v)` with k = 50 and a = 194 and 167 1/s. The published times are those of the
+//! command on the path, as fast as leaves the tool within 10 um.
+
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
+use feedwright::{FastestPlan, fastest};
+use feedwright_control::OpenLoop;
+use feedwright_gcode::canon::Corner;
+use feedwright_lab::contour;
+use feedwright_plan::Steps;
+use feedwright_sim::Machine;
+
+fn linear() -> Machine {
+    let mut machine = Machine::load("tnv40".as_ref()).unwrap();
+    machine.period.servo_s = 1e-4;
+    machine.period.mechanics_s = 1e-4;
+    machine.period.mechanics_per_servo = 1;
+    machine.limits.rapid_mm_s = 200.0;
+    machine.limits.path_tolerance_um = Some(10.0);
+    for axis in &mut machine.axes {
+        (axis.viscous_friction_nm_s, axis.coulomb_friction_nm, axis.disturbance_nm) = (0.0, 0.0, 0.0);
+        axis.torque_limit_nm = 1e3;
+        axis.max_velocity_mm_s = Some(200.0);
+        axis.max_accel_mm_s2 = Some(2000.0);
+        axis.max_jerk_mm_s3 = Some(50_000.0);
+    }
+    machine
+}
+
+/// Least times of the nonlinear program, s; of the butterfly the best that was found.
+const LEAST_S: [(&str, f64); 4] = [("circle", 1.921), ("star", 4.385), ("eight", 2.599), ("butterfly", 9.957)];
+
+fn planned(name: &str, tolerance_um: f64) -> FastestPlan {
+    let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
+    let steps = contour(name).unwrap().steps(200.0, corner).unwrap();
+    let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
+    let plan = fastest::<2>(&linear(), tolerance_um, all, &mut OpenLoop, 1, &()).unwrap();
+    assert!(plan.largest_um <= tolerance_um, "{name}: {} um", plan.largest_um);
+    plan
+}
+
+/// Planned and cut some twenty times, within 3 % of the nonlinear program.
+fn is_cut_in_the_least_time(name: &str, least_s: f64) {
+    let plan = planned(name, 10.0);
+    let ratio = plan.cycle.cutting_s / least_s;
+    assert!((0.99..1.03).contains(&ratio), "{name}: {ratio} in {} rounds", plan.rounds);
+}
+
+#[test]
+fn the_circle_is_cut_in_the_least_time_of_open_loop() {
+    let [(name, least_s), ..] = LEAST_S;
+    is_cut_in_the_least_time(name, least_s);
+}
+
+#[test]
+#[ignore = "the butterfly alone takes minutes: cargo test --release --test oracle_fastest -- --ignored"]
+fn contours_are_cut_in_the_least_time_of_open_loop() {
+    for (name, least_s) in LEAST_S {
+        is_cut_in_the_least_time(name, least_s);
+    }
+}
+
+/// A steady circle of radius R at w lets an axis of gain `|G(jw)|`, `G = 1 / (1 + s / k + s^2 / ak)`, cut inside by `(1 - |G|) R`: the
+/// speed at which the better axis is at the tolerance is faster than any steady one, the other's slower.
+#[test]
+fn a_circle_takes_as_long_as_at_the_speed_of_its_error() {
+    let tolerance_um = 100.0;
+    let machine = linear();
+    let turn_s = machine.axes.iter().take(2).map(|axis| {
+        let (k, a) = (axis.kp_1_s, axis.kv_nm_s_per_rad / axis.inertia_kg_m2);
+        let missed_um = |w: f64| 1e4 * (1.0 - 1.0 / (1.0 - w * w / (a * k)).hypot(w / k));
+        let (mut low, mut high) = (0.1, 100.0);
+        for _ in 0..60 {
+            let w = 0.5 * (low + high);
+            if missed_um(w) > tolerance_um { high = w } else { low = w }
+        }
+        std::f64::consts::TAU / low
+    });
+    let [fast_s, slow_s] = turn_s.collect::<Vec<_>>().try_into().map(|[x, y]: [f64; 2]| [x.min(y), x.max(y)]).unwrap();
+    let time_s = planned("circle", tolerance_um).cycle.cutting_s;
+    // From rest to a speed v and back takes v / a + a / j more than the way at v, with acceleration a and jerk j of one axis.
+    let with_ends = |turn_s: f64| turn_s + 10.0 * std::f64::consts::TAU / turn_s / 2000.0 + 2000.0 / 50_000.0;
+    let [fast_s, slow_s] = [fast_s, slow_s].map(with_ends);
+    assert!((0.97 * fast_s..1.03 * slow_s).contains(&time_s), "{time_s} s, {fast_s} to {slow_s} s");
+}
+
+#[test]
+fn a_machine_without_limits_of_its_axes_is_refused() {
+    let steps =
+        contour("circle").unwrap().steps(200.0, Corner::Continuous { tolerance_mm: None, merge_mm: None }).unwrap();
+    let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
+    let mut bare = linear();
+    bare.axes[1].max_jerk_mm_s3 = None;
+    let error = fastest::<2>(&bare, 10.0, all, &mut OpenLoop, 1, &()).unwrap_err();
+    assert!(error.to_string().contains("no limits of their own"), "{error}");
+}
