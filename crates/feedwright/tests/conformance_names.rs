@@ -10,10 +10,15 @@ use std::path::{Path, PathBuf};
 
 use source::code;
 
+/// Folders of the crates.
+const FOLDERS: [&str; 7] =
+    ["crates/gcode", "crates/control", "crates/plan", "crates/sim", "crates/ident", "crates/feedwright", "lab"];
+
 /// Names that several files give to a type of theirs, and why.
 const SHARED: &[(&str, &str)] = &[
     ("Settings", "every member of a family has its own; they are written with its module, `cross_coupled::Settings`"),
-    // Each of these is to get a name of its own; where they stand.
+    ("Cli", "the arguments of a command, `feedwright` or `feedwright-lab`"),
+    ("CommandArgs", "the subcommands of a command, `feedwright` or `feedwright-lab`"),
 ];
 
 /// Names of the types that a source text declares outside of its tests. Associated types are none: a trait names them.
@@ -50,7 +55,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
 fn names() -> BTreeMap<String, Vec<String>> {
     let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
     let mut names: BTreeMap<String, Vec<String>> = BTreeMap::new();
-    for folder in ["gcode", "control", "core", "cli"] {
+    for folder in FOLDERS {
         let mut sources = Vec::new();
         files(&root.join(folder).join("src"), &mut sources);
         sources.sort();

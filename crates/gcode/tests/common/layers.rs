@@ -68,8 +68,11 @@ fn paths(file: &File) -> Vec<(usize, String)> {
     for (at, _) in file.code.match_indices("::") {
         let before = &file.code[..at];
         let first = &before[before.rfind(|c| !is_word(c)).map_or(0, |space| space + 1)..];
-        let starts = !before[..before.len() - first.len()].ends_with("::");
+        let ahead = &before[..before.len() - first.len()];
+        let starts = !ahead.ends_with("::");
         let (mut base, mut rest) = match first {
+            // A macro that other crates expand has no other way than through the root.
+            "crate" if ahead.ends_with('$') => continue,
             "crate" => (String::new(), &file.code[at + 2..]),
             "super" if starts => (parent(&file.module).to_owned(), &file.code[at + 2..]),
             _ => continue,
