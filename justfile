@@ -51,7 +51,7 @@ imperfections out="target/imperfections":
 # Search the values that `compare` runs with, for every controller on every built-in machine: an hour. Ends where it was interrupted.
 # Behind it new seeds are due: `cargo run --release -p feedwright --example draw_held_out`.
 record-searches:
-    cargo run --release -- compare --record core/src/compare/recorded.jsonl
+    cargo run --release -- compare --record lab/src/compare/recorded.jsonl
 
 # Every program that is here, on every machine, against open loop: `just never-worse --sample 200` for a part of it. What was
 # interrupted goes on where it was. The corpus of foreign programs is not part of this repository.

@@ -88,5 +88,5 @@ fn the_cache_holds_what_training_gives() {
     let cached = identified::<2>(&machine, &excitation, &training, 1, &mut |_| {});
     let (recording, rng) = excitation.record::<2>(&machine, 1);
     let trained = train_contour(&recording, &training, rng, &mut |_| {});
-    assert!(cached == trained, "hint: raise FORMAT in core/src/identify/cache.rs");
+    assert!(cached == trained, "hint: raise FORMAT in crates/feedwright/src/identifier_cache.rs");
 }

@@ -78,7 +78,7 @@ fn finer(entry: &Entry) -> &'static [u32] {
 
 /// What the script says of a trace, its mechanics stepped `finer` times as often.
 fn resimulated(python: &str, machine: &Path, trace: &Path, finer: u32) -> Output {
-    let script = root().join("core/tests/oracle_scripts/resimulate.py");
+    let script = root().join("crates/feedwright/tests/oracle_scripts/resimulate.py");
     Command::new(python).arg(script).args([machine, trace]).arg(finer.to_string()).output().unwrap()
 }
 

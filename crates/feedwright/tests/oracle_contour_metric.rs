@@ -54,7 +54,7 @@ fn the_script_finds_the_same_contour_error_and_uncut_path() {
         for part in &parts {
             for name in [BASELINE, BEST] {
                 let summary = cut(part, &machine, CONTROLLERS.find(name).unwrap(), &trace);
-                let script = root().join("core/tests/oracle_scripts/contour_metric.py");
+                let script = root().join("crates/feedwright/tests/oracle_scripts/contour_metric.py");
                 let output = Command::new(python).arg(script).args([&machine, part, &trace]).output().unwrap();
                 let what = format!("{} on {} with {name}", part.display(), machine.display());
                 assert!(output.status.success(), "{what}: {}", String::from_utf8_lossy(&output.stderr));

@@ -1,8 +1,8 @@
 //! Every term of the plant beyond a rigid axis with ideal drive and encoder: a script that shares nothing with the program gets the
 //! same tool, noise included, and another one as soon as one value differs; a zero is the same as no key, to the bit.
 //!
-//! The script: `oracle_scripts/resimulate.py`. Closed forms: `oracle_plant_lag.rs`, and with each term in `control/src/axis/` and
-//! `core/src/plant/`.
+//! The script: `oracle_scripts/resimulate.py`. Closed forms: `oracle_plant_lag.rs`, and with each term in `crates/control/src/axis/` and
+//! `crates/sim/src/plant/`.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
@@ -84,7 +84,7 @@ fn entry(name: &str) -> &'static Entry {
 }
 
 fn resimulated(python: &str, machine: &Path, trace: &Path) -> Output {
-    let script = root().join("core/tests/oracle_scripts/resimulate.py");
+    let script = root().join("crates/feedwright/tests/oracle_scripts/resimulate.py");
     Command::new(python).arg(script).args([machine, trace]).output().unwrap()
 }
 

@@ -1,6 +1,6 @@
 //! Machine files: what the simulated or real machine is, read from TOML and checked value by value.
 //!
-//! A machine is a file; `machines/tnv40.toml` explains every key beside its value. [`Machine::load`] takes the name of
+//! A machine is a file; `crates/sim/machines/tnv40.toml` explains every key beside its value. [`Machine::load`] takes the name of
 //! a machine that is built in or the path of a file. A later part of a machine (a compliant transmission, an encoder)
 //! is an optional table of the file: one struct here, one `Option` field in [`Machine`] or [`Axis`], one table in
 //! [`keys`], one reader in `layout`.

@@ -4,7 +4,7 @@
  *   fann_bench FILE time              median ns of a forward pass and of a training step
  *   fann_bench FILE forward|learn N   N of them
  *
- * FILE, by control/benches/fann.rs: 120 weights [input][hidden], 24 weights [output][hidden], then samples of ten inputs
+ * FILE, by crates/control/benches/fann.rs: 120 weights [input][hidden], 24 weights [output][hidden], then samples of ten inputs
  * and two targets. -DSINGLE takes float FANN instead of double FANN. FANN cannot leave out the bias neurons: it has
  * 144 + 14 connections; the biases' weights start at 0, so that one pass and one step are those of 144. */
 
@@ -20,7 +20,7 @@
 #include <string.h>
 #include <time.h>
 
-/* These are the same in control/benches/fann.rs. */
+/* These are the same in crates/control/benches/fann.rs. */
 enum { INPUTS = 10, HIDDEN = 12, OUTPUTS = 2, SAMPLES = 64, BATCHES = 101, BATCH = 4096 };
 #define LEARNING_STEP 0.015625f
 

@@ -1,4 +1,4 @@
-// Decodes the data: columns are differences of integers, see core/src/report/embedded_data.rs.
+// Decodes the data: columns are differences of integers, see crates/feedwright/src/report/embedded_data.rs.
 
 const AXIS_NAMES = ["x", "y", "z"];
 

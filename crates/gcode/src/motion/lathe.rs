@@ -3,7 +3,7 @@
 //! The cycle's block calls the subroutine; `state/lathe.rs` keeps its motions instead of handing them out. `words` are those that only
 //! a profile has. When it returns, `corners` and `profile` bring it into the cycle's own coordinates (`cycle_plane`), and `offset` puts a curve beside it; `pockets`
 //! finds where it goes down, and `roughing` and `finishing` make motions of it. What LinuxCNC 2.9 does was found by trying programs on it; those that showed
-//! it are the `turning_*` of `core/tests/oracle_data`.
+//! it are the `turning_*` of `crates/plan/tests/oracle_data`.
 
 pub(crate) mod cycle_plane;
 mod corners;

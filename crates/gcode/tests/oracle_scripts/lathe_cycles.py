@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Expands the lathe cycles of Fanuc by hand: what gcode/tests/oracle_data/lathe_cycles.json was made by.
+"""Expands the lathe cycles of Fanuc by hand: what crates/gcode/tests/oracle_data/lathe_cycles.json was made by.
 
     lathe_cycles.py > ../oracle_data/lathe_cycles.json
 

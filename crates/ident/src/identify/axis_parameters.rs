@@ -9,7 +9,7 @@
 //! parameters. This is the output error of the closed loop. What is random, encoder and torque noise, does not depend on the command,
 //! so that it is uncorrelated with S and leaves the minimum where it is; the torque that is recomputed from measured positions, and
 //! linear least squares on it, would have the noise in its regressors, twice differentiated (errors in variables). By how much the
-//! inertia comes out wrong, measured over both axes (`core/tests/oracle_axis_parameters.rs` has the method, the bounds, and holds them):
+//! inertia comes out wrong, measured over both axes (`crates/ident/tests/oracle_axis_parameters.rs` has the method, the bounds, and holds them):
 //!
 //! | Machine | output error | least squares on the torque |
 //! |---|--:|--:|

@@ -1,7 +1,7 @@
 //! Differences from LinuxCNC that are intended: the rows of docs/gcode-differences.md that a random program can meet.
 //!
 //! A row names what is told and what the program has where it is told, so that another difference nearby does not hide behind it.
-//! `core/tests/oracle_linuxcnc_listed.rs` has a program for every row.
+//! `crates/plan/tests/oracle_linuxcnc_listed.rs` has a program for every row.
 
 use std::path::Path;
 

@@ -10,7 +10,7 @@ use crate::toml_file::{FileError, Kind};
 /// A machine file, for messages.
 pub(super) const KIND: Kind = Kind {
     name: "machine file",
-    is: "a machine file is a page of TOML text, like machines/tnv40.toml",
+    is: "a machine file is a page of TOML text, like crates/sim/machines/tnv40.toml",
     code: "machine::file",
     where_to_find: "a name without .toml means a built-in machine; 'feedwright machines' lists them",
 };

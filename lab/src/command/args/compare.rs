@@ -40,7 +40,7 @@ pub(crate) struct CompareArgs {
     /// As --tuning defaults.
     #[arg(long, conflicts_with = "tuning")]
     no_tuning: bool,
-    /// Search, and keep the values in this file beside those that it has; cut nothing. The program keeps core/src/compare/recorded.jsonl.
+    /// Search, and keep the values in this file beside those that it has; cut nothing. The program keeps lab/src/compare/recorded.jsonl.
     #[arg(long, value_name = "FILE.jsonl", conflicts_with_all = ["json", "html", "merge", "at_tolerance"])]
     pub(crate) record: Option<PathBuf>,
     /// What is cut.

@@ -8,7 +8,7 @@
 //! The correlation time is that with which S has the correlation of the residual over the lag of the position loop, the load s that with
 //! which it has its mean square. Noise of the encoder is white, and taken out of both.
 //!
-//! Source: the load as an Ornstein-Uhlenbeck process, Uhlenbeck and Ornstein (1930); position loops as in `control/src/axis.rs`.
+//! Source: the load as an Ornstein-Uhlenbeck process, Uhlenbeck and Ornstein (1930); position loops as in `crates/control/src/axis.rs`.
 
 use super::axis_record::AxisRecord;
 use super::terms::{LawTerm, TermValues};

@@ -10,7 +10,7 @@
 //! outside: B / J is a number of its own here, zero where nobody knows it. Then Kv / J = (Kv + B) / J - B / J, and Kp is the first over
 //! that.
 //!
-//! | Number | In the law of `control/src/axis.rs` |
+//! | Number | In the law of `crates/control/src/axis.rs` |
 //! |---|---|
 //! | lead | c(t - d): the record's actual positions are this much later than its commands |
 //! | loop delay | between position loop and drive |
@@ -20,8 +20,8 @@
 //! | window | (y(t) - y(t - T)) / T takes the place of the speed |
 //! | hold | the drive takes the speed once a servo period, and not all the time |
 //! | limits | of the reference speed, of the torque over the inertia |
-//! | resonance, table share, backlash | motor and table as two masses, see `core/src/plant/transmission.rs` |
-//! | presliding, Stribeck | see `control/src/axis/friction.rs` |
+//! | resonance, table share, backlash | motor and table as two masses, see `crates/control/src/axis/transmission.rs` |
+//! | presliding, Stribeck | see `crates/control/src/axis/friction.rs` |
 
 use feedwright_control::{DriveParameters, FrictionParameters, Parameters};
 use feedwright_sim::{Axis, Transmission};
