@@ -19,12 +19,13 @@ fn help(folder: &Folder, arguments: &[&str]) -> String {
     ran.stdout.trim_end().to_owned()
 }
 
-/// The help as it is to stand in the document.
+/// The help as it is to stand in the document; `lab` hands everything to another program.
 fn section() -> String {
     let folder = Folder::new();
     let root = help(&folder, &[]);
     let commands = root.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
-    let names = commands.map(|line| line.split_whitespace().next().unwrap()).filter(|name| *name != "help");
+    let names =
+        commands.map(|line| line.split_whitespace().next().unwrap()).filter(|name| !["help", "lab"].contains(name));
     let mut text = String::new();
     for name in names {
         let lines: String =
