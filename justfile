@@ -13,7 +13,7 @@ run part="parts/star.ngc" *options:
 
 # The experiments of the paper: figures, page and paper.json.
 paper out="target/paper":
-    cargo run --release -- paper --out {{ out }}
+    cargo run --release -p feedwright-lab -- paper --out {{ out }}
 
 # Times of ticks and of the reference.
 bench:
@@ -21,37 +21,37 @@ bench:
 
 # Time-optimal planner against the bound, program by program: ratios, violations, blocks/s. Foreign programs where they are.
 bench-plan *programs:
-    cargo run --release -p feedwright --example bench_plan -- {{ programs }}
-    cargo run --release -p feedwright --example fixed_path_peer
+    cargo run --release -p feedwright-lab --example bench_plan -- {{ programs }}
+    cargo run --release -p feedwright-lab --features copp --example fixed_path_peer
 
 # A corner as the time-optimal planner has it: the figure of examples/04_planner.
 corner-figure out="examples/04_planner/corner.svg":
-    cargo run --release -p feedwright --example corner_figure -- {{ out }}
+    cargo run --release -p feedwright-lab --example corner_figure -- {{ out }}
 
 # Least times in which the tool stays within 10 um, open loop on a linear servo and with two controllers on tnv40: some ten minutes.
 least-time *contours:
-    cargo run --release -p feedwright --example least_time -- {{ contours }}
+    cargo run --release -p feedwright-lab --example least_time -- {{ contours }}
 
 # Every controller on every contour, on machines without noise: the tables of examples/02_horizon.
 compare out="target/compare":
-    cargo run --release -- compare --only tnv40,heavy,sticky,rough,soft,coarse --knowledge own,unseen --at-tolerance --json {{ out }}.json --html {{ out }}.html
+    cargo run --release -p feedwright-lab -- compare --only tnv40,heavy,sticky,rough,soft,coarse --knowledge own,unseen --at-tolerance --json {{ out }}.json --html {{ out }}.html
 
 # Controllers that the README shows.
 shown := "contour-compensation,cross-coupled,disturbance-observer,kalman-disturbance,feedforward-as-delivered,feedforward,feedforward-cross-coupled,receding-horizon,lqg-identified,lqg-preview"
 
 # The table of README.md: held-out work on machines with noise.
 held-out-table out="target/held_out":
-    cargo run --release -- compare --work held-out --only workshop,stiff,router,{{ shown }} --knowledge own,identified,20%off --json {{ out }}.json --html {{ out }}.html
+    cargo run --release -p feedwright-lab -- compare --work held-out --only workshop,stiff,router,{{ shown }} --knowledge own,identified,20%off --json {{ out }}.json --html {{ out }}.html
 
 # What each imperfection costs each controller: the table of examples/03_realism. Each peer is tuned on each machine first.
 imperfections out="target/imperfections":
-    cargo run --release -- compare --only tnv40,circle,eight,star,square,{{ shown }} --knowledge own,20%off \
+    cargo run --release -p feedwright-lab -- compare --only tnv40,circle,eight,star,square,{{ shown }} --knowledge own,20%off \
         $(printf -- '--machine %s ' examples/03_realism/machines/*.toml) --json {{ out }}.json --html {{ out }}.html
 
 # Search the values that `compare` runs with, for every controller on every built-in machine: an hour. Ends where it was interrupted.
-# Behind it new seeds are due: `cargo run --release -p feedwright --example draw_held_out`.
+# Behind it new seeds are due: `cargo run --release -p feedwright-lab --example draw_held_out`.
 record-searches:
-    cargo run --release -- compare --record lab/src/compare/recorded.jsonl
+    cargo run --release -p feedwright-lab -- compare --record lab/src/compare/recorded.jsonl
 
 # Every program that is here, on every machine, against open loop: `just never-worse --sample 200` for a part of it. What was
 # interrupted goes on where it was. The corpus of foreign programs is not part of this repository.
@@ -62,27 +62,28 @@ never-worse *options:
     for folder in ../shared/corpus/gcode ../shared/cases; do
         if [ -d "$folder" ]; then programs+=("$folder"); else echo "no foreign programs at $folder: they are not cut" >&2; fi
     done
-    cargo build --release --quiet
-    target/release/feedwright never-worse "${programs[@]}" {{ options }}
+    cargo build --release --quiet -p feedwright-lab
+    target/release/feedwright-lab never-worse "${programs[@]}" {{ options }}
 
-# Whether the present state gives the same to the bit as another build's binary: after a change that is to change nothing.
+# Whether the present state gives the same to the bit as another build's binary, with its feedwright-lab beside it: after a change
+# that is to change nothing.
 same-outputs old:
-    cargo build --release --quiet
+    cargo build --release --quiet -p feedwright -p feedwright-lab
     scripts/same-outputs {{ old }} target/release/feedwright
 
 # A stretch of a log as measured and as its law and a linear model predict it, over times of which nothing was fitted: the figure of README.md
 # is that of the public bench EMPS, `just identification-figure DATA_EMPS.mat 0:12.42 12.42:25 13:18`.
 identification-figure log fit score shown out="docs/identification.svg":
-    cargo run --release -p feedwright --example identification_figure -- {{ log }} {{ fit }} {{ score }} {{ shown }} {{ out }}
+    cargo run --release -p feedwright-lab --example identification_figure -- {{ log }} {{ fit }} {{ score }} {{ shown }} {{ out }}
 
 # Simulated machines cut the program of `excite` and are identified from the log: the table of docs/identification.md.
 identification-sweep repeats="5" machines="tnv40 heavy sticky soft coarse sliding":
-    cargo run --release -p feedwright --example identification_sweep -- {{ repeats }} {{ machines }}
+    cargo run --release -p feedwright-lab --example identification_sweep -- {{ repeats }} {{ machines }}
 
 # Random programs on random machines against open loop: `just held-out 20261 2000 --failures target/failures`. Seeds of a
 # verdict are drawn after the settings are frozen.
 held-out seed count *options:
-    cargo run --release -- held-out {{ seed }} {{ count }} {{ options }}
+    cargo run --release -p feedwright-lab -- held-out {{ seed }} {{ count }} {{ options }}
 
 # The identifier beside FANN (Debian: libfann-dev, valgrind), on one core.
 bench-fann:
@@ -91,17 +92,17 @@ bench-fann:
 # The solver of the receding horizon: beside another exact one, the times of one tick, and the cuts.
 solvers:
     taskset --cpu-list 1 cargo bench --package feedwright-control --bench solvers
-    cargo build --release --quiet --package feedwright --example solvers
+    cargo build --release --quiet --package feedwright-lab --example solvers
     taskset --cpu-list 1 target/release/examples/solvers
 
 # The limit, peers and our controllers over the level of each kind of noise: table, figures and noise.json of examples/05_noise, some ten
 # to twenty minutes. `just noise-levels target/noise 2` tries it with two levels each.
 noise-levels out="examples/05_noise" levels="5":
-    cargo run --release --quiet -p feedwright --example noise_levels -- {{ out }} {{ levels }}
+    cargo run --release --quiet -p feedwright-lab --example noise_levels -- {{ out }} {{ levels }}
 
 # How the error depends on what the correction may accelerate: table, and figure for examples/02_horizon.
 correction-acceleration out="target/correction_acceleration.svg":
-    cargo run --release --quiet -p feedwright --example correction_acceleration -- {{ out }}
+    cargo run --release --quiet -p feedwright-lab --example correction_acceleration -- {{ out }}
 
 # Percentiles of the time of a whole decision of the receding horizon and of the regulator, on one core; counts on an idle machine only.
 tick ticks="100000" runs="5":
@@ -112,19 +113,19 @@ tick ticks="100000" runs="5":
 tables: paper compare held-out-table imperfections
     cp target/paper/figure_10.svg docs/paper_circle.svg
     cp target/paper/figure_*.svg target/paper/paper.json examples/01_paper_circle/
-    cargo run --release -p feedwright --example tables
+    cargo run --release -p feedwright-lab --example tables
 
 # Write the messages of docs/gcode-mistakes.md anew.
 mistakes:
-    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright-cli --test golden_gcode_mistakes
+    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright --test golden_gcode_mistakes
 
 # Write the help of all commands in docs/command-line.md anew.
 help:
-    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright-cli --test golden_help
+    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright --test golden_help
 
 # The reader beside LinuxCNC on random programs (Debian: linuxcnc-uspace): about a quarter of an hour for 20,000.
 gcode-compare programs="20000" first="1":
-    cargo run --release --quiet -p feedwright --example gcode_compare -- {{ programs }} {{ first }}
+    cargo run --release --quiet -p feedwright-plan --example gcode_compare -- {{ programs }} {{ first }}
 
 # Instructions of one piece of work in the servo thread, counted by callgrind (Debian: valgrind).
 instructions:
@@ -162,7 +163,7 @@ speed part="parts/pocket.ngc":
 
 # What each term of the plant does to a circle: the figure of docs/machine-file.md.
 plant-terms out="docs/plant_terms.svg":
-    cargo run --release --quiet -p feedwright --example plant_terms -- {{ out }}
+    cargo run --release --quiet -p feedwright-lab --example plant_terms -- {{ out }}
 
 # Reading a print program of so many lines, 30 bytes each (GNU time): time, processor time and resident memory, three times.
 reading lines="2200000":
@@ -197,7 +198,7 @@ linuxcnc-sweep: linuxcnc
     #!/usr/bin/env bash
     set -euo pipefail
     cargo build --release --quiet
-    cargo build --quiet -p feedwright --example linuxcnc_planner
+    cargo build --quiet -p feedwright-lab --example linuxcnc_planner
     export FEEDWRIGHT=$PWD/target/release/feedwright
     cd linuxcnc
     python3 tests/sweep.py
