@@ -53,7 +53,7 @@ def main():
         recording = headless.run("cut", {"program": program.read_text(), "params": {"feedwright.direct": 1}},
                                  {"FEEDWRIGHT": {"MACHINE": block, "MODEL": block}}, limit_s=300)
         log.write_text(log_of(recording, "drive", "feedback"))
-        truth = tomllib.loads((headless.HERE.parents[1] / "machines" / f"{args.machine}.toml").read_text())
+        truth = tomllib.loads((headless.HERE.parents[1] / "crates" / "sim" / "machines" / f"{args.machine}.toml").read_text())
         run("identify", log, "--lead", truth["axis"]["x"]["lead_mm_per_rev"], "--inertia", truth["axis"]["x"]["inertia_kg_m2"], "--out", found)
         machine, wrong = tomllib.loads(found.read_text()), 0
         for axis in "xyz":

@@ -22,7 +22,7 @@ import headless
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
-PROGRAMS = ROOT / "core" / "tests" / "oracle_data" / "linuxcnc_planner"
+PROGRAMS = ROOT / "crates" / "sim" / "tests" / "oracle_data" / "linuxcnc_planner"
 AXES = "XYZ"
 VELOCITY, ACCEL = 200, 2000
 # The program may take so long, s.
