@@ -1,7 +1,7 @@
 //! The table of the time-optimal planner: for each program the bound, each path from rest to rest as a whole, the streaming planner and
 //! the model of LinuxCNC's planner in the same run; how much of each limit is used, sampled at 0.1 ms; the deviation; what planning takes.
 //!
-//!     cargo run --release -p feedwright --example bench_plan [PROGRAM.ngc...]
+//!     cargo run --release -p feedwright-lab --example bench_plan [PROGRAM.ngc...]
 //!
 //! Without arguments: parts/, and ../shared/planner where it is. All axes 200 mm/s, 2000 mm/s2, 50,000 mm/s3, tolerance 10 um. The motion
 //! alone: rests are left out of all times, and so are rapids that lead from the origin to a rest before the first cut. `bound` holds the

@@ -1,4 +1,4 @@
-//! What corrected programs deliver, cut open loop: `cargo run --release -p feedwright --example corrected_programs [MACHINE,...] [PROGRAM...]`.
+//! What corrected programs deliver, cut open loop: `cargo run --release -p feedwright-lab --example corrected_programs [MACHINE,...] [PROGRAM...]`.
 //!
 //! Each program is corrected for `generic` on each machine, and original and corrected text are cut open loop on it with the disturbance, over [`CUTS`] of its
 //! phases and seeds of the noise. Printed are the means, and corrected over original of the part above what nobody can take away by a program:

@@ -1,5 +1,5 @@
-//! Draws the seeds of the held-out work of `feedwright compare --work held-out` anew and records them:
-//! `cargo run --release -p feedwright --example draw_held_out`, when all settings are final.
+//! Draws the seeds of the held-out work of `feedwright-lab compare --work held-out` anew and records them:
+//! `cargo run --release -p feedwright-lab --example draw_held_out`, when all settings are final.
 
 use std::error::Error;
 use std::hash::{BuildHasher, RandomState};

@@ -1,6 +1,6 @@
 //! Speed alone on a fixed path, beside `time-optimal`, which may leave the path within a tolerance: the second table of `just bench-plan`.
 //!
-//!     cargo run --release -p feedwright --example fixed_path_peer [CONTOUR...]
+//!     cargo run --release -p feedwright-lab --features copp --example fixed_path_peer [CONTOUR...]
 //!
 //! The peer is `copp` (Wang and others, MIT): TOPP3-SOCP, linearised about TOPP2-RA first, then about its own last solution, the best of three such
 //! rounds on 1001 stations that are evenly apart. It has contours of one smooth curve only: a corner or a joint has no derivatives. Each axis has

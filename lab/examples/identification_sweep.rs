@@ -3,7 +3,7 @@
 //! How far the products come out, how often intervals of 90 % hold, and what is left after 100 ms; of each machine over so many logs, with
 //! noise and disturbance of their own each.
 //!
-//!     cargo run --release -p feedwright --example identification_sweep -- 50 tnv40 heavy sticky soft coarse sliding
+//!     cargo run --release -p feedwright-lab --example identification_sweep -- 50 tnv40 heavy sticky soft coarse sliding
 
 #![expect(clippy::print_stdout, reason = "it is a command")]
 

@@ -1,4 +1,4 @@
-//! `feedwright compare` in parts: shards merge to the bytes of the undivided run, and what cannot be merged is said.
+//! `feedwright-lab compare` in parts: shards merge to the bytes of the undivided run, and what cannot be merged is said.
 
 #[expect(dead_code, reason = "each test uses its own part")]
 #[path = "../../crates/feedwright/tests/common/command.rs"]

@@ -1,4 +1,4 @@
-//! `feedwright never-worse`: exit codes, files, and what it refuses.
+//! `feedwright-lab never-worse`: exit codes, files, and what it refuses.
 
 #[expect(dead_code, reason = "each test uses its own part")]
 #[path = "../../crates/feedwright/tests/common/command.rs"]

@@ -31,7 +31,7 @@ const PROTOTYPE_OPEN_LOOP_TOLERANCE: f64 = 0.1;
 /// arithmetic is exact to rounding.
 const TIME_TOLERANCE_S: f64 = 1e-9;
 
-/// Seeds that are cut: those of `feedwright paper`.
+/// Seeds that are cut: those of `feedwright-lab paper`.
 const SEEDS: u64 = 10;
 
 fn machine() -> Machine {

@@ -1,7 +1,7 @@
 //! The default controller is never worse than open loop: on random programs and random machines, each identified first, and
 //! on shapes on which it once was.
 //!
-//! What fails is made as small as it can be, and printed as program and machine file. `feedwright held-out` does the same
+//! What fails is made as small as it can be, and printed as program and machine file. `feedwright-lab held-out` does the same
 //! with thousands of cuts.
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]

@@ -1,4 +1,4 @@
-//! Vectors: what the servo thread's crate has for N axes, and what only three dimensions, or only the core, need.
+//! Vectors: what the servo thread's crate has for N axes, and what only three dimensions, or only planning, need.
 
 pub use feedwright_control::vector::{add_scaled, dot, norm, scale, sub};
 

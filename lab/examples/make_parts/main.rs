@@ -1,4 +1,4 @@
-//! Writes the test parts: `cargo run -p feedwright --example make_parts -- parts`.
+//! Writes the test parts: `cargo run -p feedwright-lab --example make_parts -- parts`.
 //!
 //! Curves become biarcs within [`biarc::TOLERANCE_MM`] (`biarc.rs`), the pocket is laid out in `pocket.rs`. What the files
 //! must hold is checked against the closed forms by `tests/oracle_parts.rs`, which shares no code with this program.

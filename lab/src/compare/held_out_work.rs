@@ -132,7 +132,7 @@ mod tests {
         assert!(
             HeldOutSeeds::recorded().settings == settings_fingerprint(),
             "a default, a range or a recorded value is another than when the held-out work was drawn; hint: when all settings are \
-             final, `cargo run --release -p feedwright --example draw_held_out` draws new seeds"
+             final, `cargo run --release -p feedwright-lab --example draw_held_out` draws new seeds"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! Values that earlier searches came to, kept with the program: `feedwright compare --tuning search --record FILE` makes the file.
+//! Values that earlier searches came to, kept with the program: `feedwright-lab compare --tuning search --record FILE` makes the file.
 //!
 //! A search on all machines takes an hour and more; its result is the same to the bit, which a test holds for one controller. Values are
 //! of a machine file as it was: where that has changed, they are not used.

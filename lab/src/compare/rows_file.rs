@@ -26,7 +26,7 @@ pub enum RowsError {
     },
     /// It is something else.
     #[error("{} is no file of rows", path.display())]
-    #[diagnostic(help("'feedwright compare --rows FILE' makes one; nothing was written to this one"))]
+    #[diagnostic(help("'feedwright-lab compare --rows FILE' makes one; nothing was written to this one"))]
     NoRows {
         /// The file.
         path: PathBuf,
