@@ -1,6 +1,6 @@
 //! Writes a page of figures with made-up curves, for work on the figures themselves.
 //!
-//! `cargo run --example synthetic_figures -- FILE`
+//! `cargo run -p feedwright-lab --example synthetic_figures -- FILE`
 
 use std::f64::consts::TAU;
 use std::fs::File;

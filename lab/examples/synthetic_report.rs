@@ -1,7 +1,7 @@
 //! Writes report pages from made-up runs: a tool that follows a path with a first-order lag, once as it is and once with
 //! less lag. For work on the page itself; nothing here is a prediction of a machine.
 //!
-//! `cargo run --example synthetic_report -- DIRECTORY`
+//! `cargo run -p feedwright-lab --example synthetic_report -- DIRECTORY`
 
 use std::f64::consts::TAU;
 use std::fs::File;

@@ -1,6 +1,6 @@
 //! Compares this reader with LinuxCNC on random programs: verdicts, end points, centres and arcs, all to 1e-6 mm.
 //!
-//! Usage: `cargo run --release --example gcode_compare -- [PROGRAMS] [FIRST]`. Needs the interpreter's Python module
+//! Usage: `cargo run --release -p feedwright-plan --example gcode_compare -- [PROGRAMS] [FIRST]`. Needs the interpreter's Python module
 //! (Debian: `linuxcnc-uspace`). The same numbers give the same programs. Every difference that is not listed is written to
 //! `gcode_compare_NUMBER.ngc` and ends the run with exit code 1; in the end it says which codes the programs had. A program
 //! alone is printed.
