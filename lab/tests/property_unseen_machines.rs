@@ -7,7 +7,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use feedwright::{BASELINE, BEST, CONTROLLERS, Choices, HORIZON, Make, Setup, Statistics};
+use feedwright::{BASELINE, BEST, CONTROLLERS, Choices, HORIZON, Make, RMS_UM, Setup, Statistics};
 use feedwright_control::Controller;
 use feedwright_lab::Workpiece;
 use feedwright_sim::{Axis, Limits, Machine, Outcome, Run, RunResult, Transmission};
@@ -20,13 +20,12 @@ const MACHINES: u64 = 48;
 const MACHINES_BY_LAW: u64 = 10;
 /// Where the open loop itself rings by more than this, the machine is broken, um.
 const BROKEN_UM: f64 = 400.0;
-/// Part of the cuts that may be worse, and by how much at the most: what was measured, rounded up.
-const WORSE: f64 = 0.03;
+/// Part of the cuts that may be worse in RMS, and by how much at the most: what was measured, rounded up. It was 6 of 134, by 0.34 um at
+/// the most.
+const WORSE: f64 = 0.05;
 const WORST_RATIO: f64 = 6.0;
 const WORST_RATIO_BY_LAW: f64 = 1.05;
 const WORSE_BY_LAW: f64 = 0.0;
-/// An RMS that differs from open loop's by less is the same, um: it is below the steps of any encoder.
-const SAME_UM: f64 = 0.5;
 
 fn tnv40() -> Machine {
     Machine::load("tnv40".as_ref()).unwrap()
@@ -141,7 +140,7 @@ fn judge(name: &str, machines: u64, most_worse: f64, worst_ratio: f64) {
         quantile(0.99),
         quantile(1.0)
     );
-    let worse: Vec<_> = judged.iter().filter(|(_, rms_um, open_um)| *rms_um > open_um + SAME_UM).collect();
+    let worse: Vec<_> = judged.iter().filter(|(_, rms_um, open_um)| *rms_um > open_um + RMS_UM).collect();
     for (what, rms_um, open_um) in &worse {
         eprintln!("{what}: {rms_um:.2} um, open loop {open_um:.2} um");
     }

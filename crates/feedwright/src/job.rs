@@ -180,9 +180,9 @@ impl Job {
         let limits = self.limit_band(fastest.as_ref().map(|plan| &plan.cycle).or(looked_at.as_ref()), watch)?;
         watch.begin("writing", 1);
         let report = Report { limits, ..self.report(N, summary, circles, runs, &without_identification)? };
-        let (harm, is_of_use) = (self.harm(&report), self.is_of_use(&report));
+        let (harm, is_of_use) = (report.harm(), self.is_of_use(&report));
         let exported_well = exported.as_ref().is_none_or(|outcome| outcome.refusal.is_none());
-        let within_tolerance = self.within_tolerance(&report) && exported_well;
+        let within_tolerance = report.is_within_tolerance() && exported_well;
         files.finish(self, &report, exported.as_ref(), watch)?;
         let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
         Ok(JobOutcome {

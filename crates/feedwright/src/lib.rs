@@ -51,7 +51,7 @@ pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
 pub use report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page, write_figure_part,
 };
-pub use report::harm::{MAX_UM, RMS_UM, UNCUT_UM};
+pub use report::harm::{CutErrors, ErrorChange, Harm, MAX_UM, RMS_UM, UNCUT_UM, harm};
 pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
 pub use report::text::{escaped, number};
 pub use report::{

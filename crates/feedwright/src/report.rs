@@ -13,6 +13,8 @@ mod outline;
 mod series;
 mod embedded_data;
 mod limit_band;
+pub(crate) mod harm;
+pub(crate) mod headline;
 mod html;
 mod worst;
 mod histogram;
@@ -20,7 +22,6 @@ mod error_spectrum;
 mod circles;
 mod summary;
 mod statistics;
-pub(crate) mod harm;
 mod assumptions;
 
 pub use assumptions::{Assumptions, LawKnowledge};
@@ -36,6 +37,9 @@ pub use summary::{RunFacts, RunSummary};
 pub use worst::WorstPlace;
 
 pub(crate) use feedwright_sim::{FadedOut, Outcome};
+
+/// In place of a controller: the run of a corrected program, cut open loop by another control.
+pub(crate) const AS_EXPORTED: &str = "as exported";
 
 /// Everything that the page shows.
 #[derive(Debug, Clone)]

@@ -147,13 +147,13 @@ fn everything_fits_eighty_columns_where_there_is_no_terminal() {
     }
     let ran = folder.run(&[&["run", "circle.ngc", "--controller", "contour-compensation"], &machine[..]].concat());
     for says in [
-        "simulated: contour-compensation",
-        "peak torque",
-        "off the path",
+        "Simulated, contour-compensation against open-loop: RMS contour error",
+        "peak torque of",
+        "beside the program",
         "uncut um",
         "assumed: the machine is tnv40 (built in",
     ] {
-        assert!(ran.stdout.split_whitespace().collect::<Vec<_>>().join(" ").contains(says), "{says}: {}", ran.stdout);
+        assert!(ran.told().contains(says), "{says}: {}", ran.stdout);
     }
     let narrow = Ran::from(
         folder
@@ -252,7 +252,7 @@ fn a_correction_that_is_worse_is_told_and_not_written() {
     };
     let worse = cut("contour-compensation");
     assert_eq!(worse.code, Some(1), "{worse:?}");
-    let text = worse.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    let text = worse.told();
     assert!(text.contains("contour-compensation is worse than open-loop for this part on this machine (RMS"), "{text}");
     assert!(text.contains("setpoints.csv was not written: open loop is better"), "{text}");
     assert!(!folder.path().join("setpoints.csv").exists() && folder.path().join("square.report.html").exists());

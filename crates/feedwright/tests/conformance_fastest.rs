@@ -39,7 +39,7 @@ fn it_tells_time_bound_error_and_what_binds() {
     for told in
         ["s for a tool without error, motion ", "um are the path's", "feedrate ", "% of the motion", "within tolerance"]
     {
-        assert!(ran.stdout.contains(told), "{told} in {}", ran.stdout);
+        assert!(ran.told().contains(told), "{told} in {}", ran.stdout);
     }
     assert!(folder.text("circle.report.html").contains("What binds along the path"));
 }

@@ -31,13 +31,28 @@ fn the_exit_code_says_whether_the_part_is_within_tolerance() {
     let max_um = results(&folder)["runs"][0]["max_um"].as_f64().unwrap();
     assert!(max_um > 1.0, "{max_um}");
     let (above, below) = ((max_um * 1.01).to_string(), (max_um * 0.99).to_string());
-    assert!(run(&above).succeeded().stdout.contains("within tolerance"));
+    assert!(run(&above).succeeded().told().contains("within tolerance: max"));
     assert_eq!(results(&folder)["within_tolerance"], true);
     let out = run(&below);
     assert_eq!(out.code, Some(1), "{out:?}");
-    assert!(out.stdout.contains("out of tolerance: max") && out.stdout.contains("um"), "{out:?}");
+    assert!(out.told().contains("out of tolerance: max") && out.stdout.contains("um"), "{out:?}");
     assert_eq!(results(&folder)["within_tolerance"], false);
     assert!(folder.path().join("circle.report.html").is_file(), "a part out of tolerance needs its report most");
+}
+
+#[test]
+fn the_terminal_begins_with_the_headline_of_the_page() {
+    let folder = Folder::new();
+    let cut = ["run", "circle.ngc", "--machine", "tnv40", "--controller", "contour-compensation", "--tolerance", "10"];
+    let ran = folder.run(&[&cut[..], &["--report", "r.html"]].concat());
+    let page = folder.text("r.html");
+    let (_, verdict) = page.split_once("<p class=\"verdict\">").unwrap();
+    let (verdict, _) = verdict.split_once("</p>").unwrap();
+    let text: String = verdict.split('<').map(|piece| piece.split_once('>').map_or(piece, |(_, text)| text)).collect();
+    let signs = [("µ", "u"), ("→", "->"), ("−", "-"), ("²", "2"), ("±", "+-")];
+    let headline = signs.iter().fold(text, |text, (sign, plain)| text.replace(sign, plain));
+    assert!(headline.contains("peak torque of") && headline.contains(" tolerance: max"), "{headline}");
+    assert!(ran.told().starts_with(&headline), "{headline}\n{}", ran.stdout);
 }
 
 #[test]
@@ -341,5 +356,5 @@ fn a_controller_that_makes_it_worse_is_named() {
     let results = results(&folder);
     let of = |run: usize, key: &str| results["runs"][run][key].as_f64().unwrap();
     let worse = of(1, "rms_um") > of(0, "rms_um") && of(1, "max_um") > of(0, "max_um");
-    assert_eq!(ran.stdout.contains("two-dimensional is worse than open-loop"), worse, "{ran:?}");
+    assert_eq!(ran.told().contains("two-dimensional is worse than open-loop"), worse, "{ran:?}");
 }

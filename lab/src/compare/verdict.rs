@@ -9,6 +9,7 @@
 //! - All: peak torque against the baseline's.
 
 use feedwright::{BASELINE, BEST, HORIZON, Knows};
+use feedwright::{MAX_UM, RMS_UM, UNCUT_UM};
 use feedwright_ident::quadratic_mean;
 use serde::{Deserialize, Serialize};
 
@@ -74,9 +75,9 @@ const NOISY_BEST_PEER: Claim = Claim("RMS under noise against the best peer", 0.
 const NOISY_OFF: Claim = Claim("RMS under noise against parameters 20 % off", 0.4, "");
 const NOISY_LIMIT: Claim = Claim("RMS under noise against the limit", 2.0, "");
 // On held-out work.
-const HELD_OUT_RMS: Claim = Claim("held-out: RMS above that of", 0.05, "um");
-const HELD_OUT_MAX: Claim = Claim("held-out: max above that of", 1.0, "um");
-const HELD_OUT_UNCUT: Claim = Claim("held-out: uncut path above that of open loop", 1.0, "um");
+const HELD_OUT_RMS: Claim = Claim("held-out: RMS above that of", RMS_UM, "um");
+const HELD_OUT_MAX: Claim = Claim("held-out: max above that of", MAX_UM, "um");
+const HELD_OUT_UNCUT: Claim = Claim("held-out: uncut path above that of open loop", UNCUT_UM, "um");
 const HELD_OUT_LOST: Claim = Claim("held-out: lost", 0.0, "seeds");
 // Everywhere.
 const PEAK_TORQUE: Claim = Claim("peak torque against the baseline", 1.25, "");

@@ -1,5 +1,6 @@
 //! One program on one machine: open loop, and with the controller that was made for the machine.
 
+use feedwright::CutErrors;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
@@ -45,6 +46,11 @@ impl Figures {
         let [rms_um, max_um] = [statistics.rms_um(), statistics.max_um()];
         let (uncut_um, engaged_share) = (Some(run.uncut_mm * 1e3), Some(run.engaged_share));
         Self { rms_um, max_um, uncut_um, engaged_share, lost, time_s: run.time_s }
+    }
+
+    /// The errors that decide whether one cut is worse than another.
+    pub(super) const fn errors(&self) -> CutErrors {
+        CutErrors { rms_um: self.rms_um, max_um: self.max_um, uncut_um: self.uncut_um }
     }
 
     /// A cut that did not end.

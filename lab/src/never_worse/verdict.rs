@@ -1,10 +1,9 @@
-//! What counts as worse than open loop.
+//! Whether a cut is worse than open loop, by the rule of [`crate::report::harm`].
 
 use serde::{Deserialize, Serialize};
 
 use super::cut::SweepRow;
-
-pub use feedwright::{MAX_UM, RMS_UM, UNCUT_UM};
+use feedwright::ErrorChange;
 
 /// A way of being worse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -43,28 +42,25 @@ impl SweepRow {
 
     /// In what it is worse; nothing where it is not judged.
     pub fn faults(&self) -> Vec<Failure> {
+        let [rms, max, uncut] = self.changes();
         let is_fault = |fault: &Failure| match fault {
-            // A number that is none is above no limit, and no good result either.
             Failure::Lost => self.corrected.lost.is_some(),
-            Failure::Rms => self.excesses()[0] > 1.0,
-            Failure::Max => self.excesses()[1] > 1.0,
-            Failure::Uncut => self.excesses()[2] > 1.0,
+            Failure::Rms => rms.is_worse(),
+            Failure::Max => max.is_worse(),
+            Failure::Uncut => uncut.is_worse(),
         };
         if self.is_judged() { Failure::ALL.into_iter().filter(is_fault).collect() } else { Vec::new() }
     }
 
-    /// By how much RMS, largest error and uncut path are larger than open loop's, in what they may be larger.
-    fn excesses(&self) -> [f64; 3] {
-        let (before, after) = (&self.open_loop, &self.corrected);
-        let uncut = before.uncut_um.zip(after.uncut_um).map_or(0.0, |(before, after)| (after - before) / UNCUT_UM);
-        let all = [(after.rms_um - before.rms_um) / RMS_UM, (after.max_um - before.max_um) / MAX_UM, uncut];
-        all.map(|excess| if excess.is_nan() { f64::INFINITY } else { excess })
+    /// RMS error, largest error and uncut path, compared with open loop.
+    fn changes(&self) -> [ErrorChange; 3] {
+        self.corrected.errors().compared_with(&self.open_loop.errors())
     }
 
     /// How bad it is: the largest of the excesses, at least 1 where it is lost.
     pub fn severity(&self) -> f64 {
         let lost = if self.corrected.lost.is_some() { 1.0 } else { 0.0 };
-        self.excesses().into_iter().fold(lost, f64::max)
+        self.changes().iter().map(ErrorChange::excess).fold(lost, f64::max)
     }
 
     /// RMS contour error over open loop's.

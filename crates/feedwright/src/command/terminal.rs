@@ -85,6 +85,13 @@ pub fn wrapped(text: &str, indent: usize) -> String {
     textwrap::fill(text, options).replace(KEPT, " ")
 }
 
+/// `text` with ASCII in place of the signs that the report uses.
+pub(crate) fn ascii(text: &str) -> String {
+    const SIGNS: [(char, &str); 7] =
+        [('µ', "u"), ('→', "->"), ('−', "-"), ('–', "-"), ('²', "2"), ('×', "x"), ('±', "+-")];
+    SIGNS.iter().fold(text.to_owned(), |text, (sign, plain)| text.replace(*sign, plain))
+}
+
 /// Stands for a blank at which no line ends.
 const KEPT: char = '\u{a0}';
 

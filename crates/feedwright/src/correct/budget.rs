@@ -111,4 +111,29 @@ mod tests {
         let costs = [StretchCost { budget: larger, ..cost(1.0) }, cost(1.0)];
         assert_eq!(details_to_give_up(&costs, 0, 0.05), [0; 0]);
     }
+
+    #[test]
+    fn a_stretch_may_take_a_twentieth_and_one_and_a_half_dwells_longer() {
+        let stretch = StretchBudget { time_s: 2.0, blocks: 1, lines: 1, loop_s: 0.02 };
+        // 2.1 s and 0.06 s.
+        assert!((stretch.most_s(0.04) - 2.16).abs() < 1e-12, "{}", stretch.most_s(0.04));
+    }
+
+    #[test]
+    fn details_are_given_up_until_the_program_takes_no_more_than_its_share_of_time_longer() {
+        // The program takes 10.4 s. It may take 3.5 % longer, and 1.5 dwells of 0.04 s for itself and for its larger stretch:
+        // 0.484 s in all. The larger stretch takes 0.14 s of that, so three details of 0.1 s each may stay.
+        let stretch = |time_s: f64| StretchBudget { time_s, blocks: 1, lines: 1, loop_s: 0.02 };
+        let cost = |time_s: f64, more_s: f64, gain_mm2: f64| StretchCost {
+            budget: stretch(time_s),
+            blocks: 0.0,
+            time_s: more_s,
+            gain_mm2: Some(gain_mm2),
+        };
+        let larger = cost(10.0, 0.14, 9.0);
+        let details = [3.0, 1.0, 4.0, 2.0].map(|gain_mm2| cost(0.1, 0.1, gain_mm2));
+        let costs: Vec<StretchCost> = std::iter::once(larger).chain(details).collect();
+        assert_eq!(details_to_give_up(&costs, 0, 0.04), [2]);
+        assert_eq!(details_to_give_up(&costs[..4], 0, 0.04), [0; 0]);
+    }
 }

@@ -3,6 +3,7 @@
 //! What disturbs has another phase, and noise other random numbers, each time a part is cut. So it is cut several times, with a rest before the start
 //! that is another part of a period of the disturbance, and with other seeds.
 
+use crate::report::harm::CutErrors;
 use feedwright_control::OpenLoop;
 use feedwright_gcode::canon::{Event, EventKind};
 use feedwright_plan::vector::{Vector, sub};
@@ -33,6 +34,13 @@ pub struct ExportedFigures {
     /// Number of the cut with the largest error.
     #[serde(skip)]
     worst_phase: usize,
+}
+
+impl ExportedFigures {
+    /// The errors that decide whether one program is worse than another.
+    pub(super) const fn errors(&self) -> CutErrors {
+        CutErrors { rms_um: self.rms_um, max_um: self.max_um, uncut_um: Some(self.uncut_um) }
+    }
 }
 
 /// What a servo period of a cut tells of the command and the error.

@@ -1,5 +1,6 @@
 //! What came of a correction, and why a program is not to be used.
 
+use crate::report::harm::{harm, listed};
 use std::fmt;
 
 use feedwright_gcode::Diagnostic;
@@ -9,12 +10,9 @@ use serde::Serialize;
 use super::expanded_text::UnwritableLine;
 use super::exported::ExportedFigures;
 
-/// An RMS or a largest error that is less by no more than this part is no better.
+/// A corrected program whose RMS error is not smaller by this share is no better than the original. A smaller gain does not
+/// pay for a longer program.
 const LEAST_GAIN: f64 = 0.02;
-/// The largest error may grow by this, um: it is that of one moment, of cuts that differ by what disturbs them.
-const MAX_SLACK_UM: f64 = 0.5;
-/// The uncut path may grow by this, um: what the end of a program is off while the tool settles.
-const UNCUT_UM: f64 = 5.0;
 
 /// What came of it; serialised, its figures.
 #[derive(Debug, Clone, Serialize)]
@@ -122,21 +120,70 @@ pub(super) fn refusal(
     if let Some(fault) = unwritten {
         return Some(format!("the corrected program cannot be written: {fault}"));
     }
-    let ExportedFigures { rms_um, max_um, uncut_um, completed, .. } = corrected?;
-    if !completed {
+    let corrected = corrected?;
+    if !corrected.completed {
         return Some("the servo loop is unstable".to_owned());
     }
-    let worse = |what: &str, was: f64, is: f64| {
-        Some(format!("{what} is {is:.2} um as exported, and {was:.2} um of the original"))
-    };
-    if *rms_um > (1.0 - LEAST_GAIN) * original.rms_um {
-        return worse("the RMS error", original.rms_um, *rms_um);
+    let worse = harm(&original.errors(), &corrected.errors());
+    if !worse.is_empty() {
+        return Some(format!("it is worse than the original ({})", listed(&worse)));
     }
-    if *max_um > (1.0 + LEAST_GAIN) * original.max_um + MAX_SLACK_UM {
-        return worse("the largest error", original.max_um, *max_um);
+    is_no_better(original, corrected).then(|| {
+        format!(
+            "it is no better than the original: RMS {:.2} um for {:.2}, and the gain must be at least {} %",
+            corrected.rms_um,
+            original.rms_um,
+            100.0 * LEAST_GAIN
+        )
+    })
+}
+
+/// Whether a corrected program gains too little to replace the original, though it need not be worse.
+fn is_no_better(original: &ExportedFigures, corrected: &ExportedFigures) -> bool {
+    corrected.rms_um > (1.0 - LEAST_GAIN) * original.rms_um
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn figures([rms_um, max_um, uncut_um]: [f64; 3]) -> ExportedFigures {
+        let mut figures = ExportedFigures::default();
+        (figures.rms_um, figures.max_um, figures.uncut_um, figures.completed) = (rms_um, max_um, uncut_um, true);
+        figures
     }
-    if *uncut_um > original.uncut_um + UNCUT_UM {
-        return worse("the uncut path", original.uncut_um, *uncut_um);
+
+    /// Why a program with these errors, um, is refused in place of one with 10, 40 and 2 um.
+    fn refused(corrected: [f64; 3]) -> Option<String> {
+        refusal(&figures([10.0, 40.0, 2.0]), Some(&figures(corrected)), 1, None)
     }
-    None
+
+    #[test]
+    fn a_program_that_is_worse_in_any_error_is_refused() {
+        assert_eq!(refused([1.0, 40.9, 2.9]), None);
+        for (corrected, why) in [
+            ([10.1, 4.0, 0.0], "it is worse than the original (RMS 10.10 um for 10.00)"),
+            ([1.0, 41.1, 0.0], "it is worse than the original (max 41.10 um for 40.00)"),
+            ([1.0, 4.0, 3.1], "it is worse than the original (uncut 3.10 um for 2.00)"),
+            ([1.0, 41.1, f64::NAN], "it is worse than the original (max 41.10 um for 40.00, uncut NaN um for 2.00)"),
+        ] {
+            assert_eq!(refused(corrected).as_deref(), Some(why));
+        }
+    }
+
+    #[test]
+    fn a_program_that_gains_less_than_two_percent_is_refused_as_no_better() {
+        assert_eq!(refused([9.79, 40.0, 2.0]), None);
+        let why = "it is no better than the original: RMS 9.81 um for 10.00, and the gain must be at least 2 %";
+        assert_eq!(refused([9.81, 40.0, 2.0]).as_deref(), Some(why));
+    }
+
+    #[test]
+    fn a_program_that_is_lost_or_was_not_changed_is_refused() {
+        let mut lost = figures([1.0, 4.0, 2.0]);
+        lost.completed = false;
+        let refused = |corrected, changed| refusal(&figures([10.0, 40.0, 2.0]), Some(corrected), changed, None);
+        assert_eq!(refused(&lost, 1).as_deref(), Some("the servo loop is unstable"));
+        assert!(refused(&figures([1.0, 4.0, 2.0]), 0).is_some_and(|why| why.starts_with("no stretch")));
+    }
 }

@@ -3,6 +3,7 @@
 //! Each stretch is judged by itself: the tool rests at its ends, so that it does not see the others. The best command of each is kept, and a
 //! stretch whose command gets no better is left alone. One that is cut within [`GOOD_MM`] from the start stays as it is programmed.
 
+use crate::report::harm;
 use std::iter;
 
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Shape};
@@ -216,23 +217,25 @@ impl RoundsBench<'_> {
         for check in 1..=CHECKS {
             let commands: Vec<StretchCommand> = under_way.iter().map(|stretch| stretch.best.clone()).collect();
             let (cuts, _) = self.cut(&commands)?;
-            let mut worse = Vec::new();
-            for (k, (stretch, cut)) in under_way.iter().zip(&cuts).enumerate() {
-                if cut.max_mm > stretch.programmed_max_mm + GOOD_MM {
-                    worse.push(k);
-                }
-            }
-            if worse.is_empty() {
+            if !give_up_culprits(under_way, &cuts) {
                 return Ok(check);
-            }
-            for k in worse {
-                // What a stretch is off at its start may be that of the one before.
-                let culprit = if under_way[k].best.is_some() || k == 0 { k } else { k - 1 };
-                under_way[culprit].best = None;
             }
         }
         Ok(CHECKS)
     }
+}
+
+/// Gives up the commands that make a stretch of a common cut worse, and returns whether any stretch is worse.
+fn give_up_culprits(under_way: &mut [StretchRounds], cuts: &[StretchCut]) -> bool {
+    let is_worse =
+        |(stretch, cut): (&StretchRounds, &StretchCut)| cut.max_mm > stretch.programmed_max_mm + 1e-3 * harm::MAX_UM;
+    let worse: Vec<bool> = under_way.iter().zip(cuts).map(is_worse).collect();
+    for k in (0..worse.len()).filter(|&k| worse[k]) {
+        // A stretch as it is programmed is worse at its start because of the command of the one before.
+        let culprit = if under_way[k].best.is_some() || k == 0 { k } else { k - 1 };
+        under_way[culprit].best = None;
+    }
+    worse.contains(&true)
 }
 
 fn settings(machine: &Machine) -> UpdateSettings {
@@ -308,4 +311,51 @@ fn as_motion(fitted: FitMotion, stretch: &SmoothStretch, target: &TargetControl)
     let feed_mm_s = if feed_mm_s > 0.0 { feed_mm_s } else { first.feed_mm_s };
     let others = AuxiliaryAxes::default();
     Motion { line: first.line, kind: MotionKind::Feed, start_mm, end_mm, shape, feed_mm_s, corner, others }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Stretches of 10 um of programmed error; those that are listed have another command.
+    fn stretches_with_commands(count: usize, changed: &[usize]) -> Vec<StretchRounds> {
+        let command = || Some(NewMotions { motions: Vec::new(), approach: None, settles: false });
+        let stretch = |k: usize| StretchRounds {
+            current: None,
+            best: changed.contains(&k).then(command).flatten(),
+            best_mm: 0.0,
+            best_s: 1.0,
+            budget: StretchBudget { time_s: 1.0, blocks: 1, lines: 0, loop_s: 0.02 },
+            programmed_max_mm: 0.01,
+            tolerance_mm: FINEST_MM,
+            square_sums_mm2: [1.0; 2],
+            since: 0,
+            slow_end: None,
+            slow_rapid: None,
+            done: true,
+        };
+        (0..count).map(stretch).collect()
+    }
+
+    /// Stretches that keep their command behind a cut with these largest errors, mm, and whether one was worse.
+    fn kept(changed: &[usize], max_mm: &[f64]) -> (Vec<usize>, bool) {
+        let mut under_way = stretches_with_commands(max_mm.len(), changed);
+        let cuts: Vec<StretchCut> =
+            max_mm.iter().map(|&max_mm| StretchCut { max_mm, ..StretchCut::default() }).collect();
+        let any = give_up_culprits(&mut under_way, &cuts);
+        ((0..max_mm.len()).filter(|&k| under_way[k].best.is_some()).collect(), any)
+    }
+
+    #[test]
+    fn a_command_that_makes_its_stretch_worse_is_given_up() {
+        assert_eq!(kept(&[0, 1, 2], &[0.001, 0.012, 0.001]), (vec![0, 2], true));
+        // By no more than 1 um it is not worse.
+        assert_eq!(kept(&[0, 1, 2], &[0.001, 0.0109, 0.001]), (vec![0, 1, 2], false));
+    }
+
+    #[test]
+    fn a_stretch_as_programmed_that_is_worse_is_blamed_on_the_command_before_it() {
+        assert_eq!(kept(&[0, 1], &[0.001, 0.001, 0.012]), (vec![0], true));
+        assert_eq!(kept(&[1], &[0.012, 0.001]), (vec![1], true));
+    }
 }

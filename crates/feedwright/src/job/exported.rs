@@ -6,10 +6,8 @@ use super::record::RunRecord;
 use super::{Job, JobError, Timeline};
 use crate::correct::exported::ExportedCut;
 use crate::correct::{CorrectJob, CorrectOutcome};
+pub(crate) use crate::report::AS_EXPORTED;
 use crate::report::{FullCircle, ReportedRun, RunSummary};
-
-/// What stands for a controller in the run of the corrected program.
-pub(crate) const AS_EXPORTED: &str = "as exported";
 
 impl Job {
     /// The corrected program, where one is asked for, and its run; no run where no text could be written.

@@ -8,10 +8,9 @@ use feedwright_plan::{AlignedPaths, Constraints};
 use feedwright_sim::{Machine, Stages, Watch, path_steps};
 
 use super::{Job, JobError};
-use crate::controllers::{BASELINE, NothingIdentified};
+use crate::controllers::NothingIdentified;
 use crate::cycle_time::{self, CycleTime, CycleTimeOfCut, cycle_time};
 use crate::fastest::FastestPlan;
-use crate::report::harm::{Harm, harm};
 use crate::report::{FullCircle, LimitBand, Outcome, Report, ReportedRun, WorstPlace};
 
 impl Job {
@@ -100,20 +99,11 @@ impl Job {
         })
     }
 
-    /// In what the controller that is asked for is worse than open loop; nothing where it is compared with something else.
-    pub(super) fn harm(&self, report: &Report) -> Vec<Harm> {
-        let of = |name: &str| report.runs.iter().map(|run| &run.summary).find(|run| run.controller == name);
-        match (of(BASELINE), of(self.controller.name)) {
-            (Some(before), Some(after)) if before.outcome == Outcome::Completed => harm(before, after),
-            _ => Vec::new(),
-        }
-    }
-
     /// Whether the command of the controller that is asked for may be used: it was cut to its end, and is not worse than open loop.
     pub(super) fn is_of_use(&self, report: &Report) -> bool {
         let mut runs = report.runs.iter().map(|run| &run.summary);
         let cut = runs.any(|run| run.controller == self.controller.name && run.outcome == Outcome::Completed);
-        cut && self.harm(report).is_empty()
+        cut && report.harm().is_empty()
     }
 
     /// Whether the page shows what binds along the path: on machines that are planned axis by axis.
@@ -151,14 +141,6 @@ impl Job {
             }
         };
         Ok(Some(LimitBand { names: cycle_time::limit_names(), along }))
-    }
-
-    /// Whether the run that was asked for is one to be content with.
-    pub(super) fn within_tolerance(&self, report: &Report) -> bool {
-        report.runs.last().is_some_and(|run| {
-            run.summary.outcome == Outcome::Completed
-                && self.tolerance_um.is_none_or(|tolerance_um| run.summary.max_um <= tolerance_um)
-        })
     }
 }
 

@@ -215,6 +215,18 @@ mod tests {
         assert!((accel_mm_s2 / (speed_mm_s * speed_mm_s / radius_mm) - 1.0).abs() < 1e-4, "{accel_mm_s2}");
     }
 
+    /// 3, 4 and 12 um in the three axes are 13 um.
+    #[test]
+    fn the_deviation_of_the_command_is_that_in_space() {
+        for (at_um, deviation_um) in [([3.0, 4.0, 12.0], 13.0), ([0.0, 0.0, -7.0], 7.0)] {
+            let mut statistics = Statistics::new();
+            statistics
+                .row(&Row { path_mm: [1.0; 3], cmd_mm: at_um.map(|um: f64| 1.0 + um * 1e-3), ..row(0.0) })
+                .unwrap();
+            assert!((statistics.max_deviation_um() - deviation_um).abs() < 1e-9, "{}", statistics.max_deviation_um());
+        }
+    }
+
     #[test]
     fn rapids_count_for_torque_but_not_for_the_error() {
         let mut statistics = statistics_of(&[1.0, -1.0]);

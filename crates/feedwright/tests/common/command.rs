@@ -108,6 +108,11 @@ impl Ran {
         self
     }
 
+    /// What it printed, as one line: lines are wrapped to the width of the terminal.
+    pub(crate) fn told(&self) -> String {
+        self.stdout.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
     /// It ended with an error that says all of `says`, and printed nothing else.
     pub(crate) fn refused(&self, says: &[&str]) {
         self.ended(2, says);

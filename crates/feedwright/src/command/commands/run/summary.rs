@@ -1,5 +1,7 @@
 //! What a run came to, as text: the headline, the table, what was assumed, and what is to be done with it.
 
+use crate::command::terminal::ascii;
+use crate::report::headline::headline;
 use std::io::{self, Write};
 
 use crate::correct::CorrectOutcome;
@@ -17,9 +19,7 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io:
     let runs = &outcome.report.runs;
     let measured = runs.iter().any(|run| run.summary.measured);
     let say = |out: &mut dyn Write, text: &str| writeln!(out, "{}", wrapped(text, 2));
-    if let (Some(first), Some(last)) = (runs.first(), run_of(runs, job.controller.name)) {
-        say(out, &headline(&first.summary, last))?;
-    }
+    say(out, &ascii(&headline(&outcome.report).to_string()))?;
     writeln!(out)?;
     table(runs).print(out)?;
     say(
@@ -37,15 +37,8 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io:
     if let Some(reference) = &job.reference {
         say(out, &format!("errors and uncut path are those to {}", reference.display()))?;
     }
-    if let Some(text) = harm(job, outcome) {
-        say(out, &text)?;
-    }
     if let Some(exported) = &outcome.exported {
         print_exported(out, exported)?;
-    }
-    if let (Some(tolerance_um), Some(last)) = (job.tolerance_um, runs.last()) {
-        let verdict = if outcome.within_tolerance { "within" } else { "out of" };
-        say(out, &format!("{verdict} tolerance: max {:.2} um, allowed {tolerance_um} um", last.summary.max_um))?;
     }
     if let Some(plan) = &outcome.fastest {
         print_fastest(out, plan)?;
@@ -53,50 +46,9 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io:
     print_written(out, job, outcome)
 }
 
-fn run_of<'a>(runs: &'a [ReportedRun], controller: &str) -> Option<&'a RunSummary> {
-    runs.iter().map(|run| &run.summary).find(|run| run.controller == controller)
-}
-
 /// The largest torque of all axes, N m.
 fn peak_torque_nm(run: &RunSummary) -> f64 {
     run.peak_torque_nm.into_iter().flatten().fold(0.0, f64::max)
-}
-
-/// Gain and cost in one sentence.
-fn headline(first: &RunSummary, last: &RunSummary) -> String {
-    let RunSummary { controller, rms_um, max_um, time_s, max_deviation_um, max_command_accel_mm_s2, .. } = last;
-    let torque_nm = peak_torque_nm(last);
-    if first.controller == last.controller || first.controller == MEASURED {
-        return format!(
-            "simulated: {controller} leaves a contour error of {rms_um:.2} um RMS and {max_um:.2} um max in {time_s:.3} s, with a peak \
-             torque of {torque_nm:.2} N m, a command up to {max_deviation_um:.1} um off the path and accelerations of it up to \
-             {max_command_accel_mm_s2:.0} mm/s2"
-        );
-    }
-    let change = |now: f64, before: f64| {
-        let percent = 100.0 * (now / before - 1.0);
-        if percent.is_finite() { format!(" ({percent:+.0} %)") } else { String::new() }
-    };
-    format!(
-        "simulated: {controller} takes the contour error from {:.2} to {rms_um:.2} um RMS{} and from {:.2} to {max_um:.2} um max{} in \
-         {} the time; it costs a peak torque of {torque_nm:.2} N m for {:.2}{}, a command up to {max_deviation_um:.1} um off the path, \
-         and accelerations of the command up to {max_command_accel_mm_s2:.0} mm/s2 for {:.0}{}",
-        first.rms_um,
-        change(*rms_um, first.rms_um),
-        first.max_um,
-        change(*max_um, first.max_um),
-        times(*time_s, first.time_s),
-        peak_torque_nm(first),
-        change(torque_nm, peak_torque_nm(first)),
-        first.max_command_accel_mm_s2,
-        change(*max_command_accel_mm_s2, first.max_command_accel_mm_s2),
-    )
-}
-
-/// A ratio in words.
-fn times(value: f64, base: f64) -> String {
-    let ratio = value / base;
-    if ratio.is_finite() { format!("{ratio:.3} times") } else { "no part of".to_owned() }
 }
 
 fn table(runs: &[ReportedRun]) -> ConsoleTable {
@@ -145,18 +97,6 @@ fn table(runs: &[ReportedRun]) -> ConsoleTable {
 fn assumed(assumed: &Assumptions, measured: bool) -> String {
     let sentences = [assumed.machine_sentence(), assumed.disturbance_sentence(), assumed.law_sentence()];
     format!("assumed: {}. {}", sentences.join("; "), Assumptions::cut_sentence(measured))
-}
-
-/// Says so where the correction is worse than none.
-fn harm(job: &Job, outcome: &JobOutcome) -> Option<String> {
-    let worse = &outcome.harm;
-    if worse.is_empty() {
-        return None;
-    }
-    let figures = worse.iter().map(|harm| format!("{} {:.2} um for {:.2}", harm.what, harm.after_um, harm.before_um));
-    let (worse, better) = (job.controller.name, job.against.name);
-    let figures = figures.collect::<Vec<_>>().join(", ");
-    Some(format!("{worse} is worse than {better} for this part on this machine ({figures}): do not use its command"))
 }
 
 /// What the corrected program is, beside the original as its control cuts it.

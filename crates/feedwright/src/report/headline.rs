@@ -1,0 +1,348 @@
+//! The headline: what came out of the runs of a report and what it costs. The terminal and the page show the same text.
+//!
+//! The run that is judged, the last, is compared with the first run that was simulated.
+
+use std::fmt;
+
+use super::harm::{CutErrors, Harm, harm, listed};
+use super::text::{change, duration, fixed, number};
+use super::{AS_EXPORTED, Outcome, Report, RunSummary};
+use crate::controllers::BASELINE;
+
+const AXES: [&str; 3] = ["X", "Y", "Z"];
+
+/// Part of the headline. Only the page sets the kinds apart.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum HeadlinePart {
+    /// Text between the others.
+    Text(String),
+    /// Name of a run.
+    Name(String),
+    /// A value with its unit.
+    Value {
+        /// The value it is compared with.
+        before: Option<String>,
+        /// The value.
+        after: String,
+        /// Relative change, as in "−87 %".
+        change: Option<String>,
+    },
+}
+
+/// The headline. Its text is what [`fmt::Display`] writes.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub(crate) struct Headline {
+    /// Its parts, in order.
+    pub parts: Vec<HeadlinePart>,
+}
+
+impl fmt::Display for Headline {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for part in &self.parts {
+            match part {
+                HeadlinePart::Text(text) | HeadlinePart::Name(text) => f.write_str(text)?,
+                HeadlinePart::Value { before, after, change } => {
+                    if let Some(before) = before {
+                        write!(f, "{before} → ")?;
+                    }
+                    f.write_str(after)?;
+                    if let Some(change) = change {
+                        write!(f, " ({change})")?;
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Report {
+    /// The run that is judged: the last.
+    fn judged(&self) -> Option<&RunSummary> {
+        self.runs.last().map(|run| &run.summary)
+    }
+
+    /// The run that it is compared with: the first that was simulated, if there are two.
+    fn compared(&self) -> Option<&RunSummary> {
+        let (_, others) = self.runs.split_last()?;
+        others.iter().map(|run| &run.summary).find(|run| !run.measured)
+    }
+
+    /// Whether the run that is judged reached its end within the tolerance. Without a tolerance the end is enough.
+    pub fn is_within_tolerance(&self) -> bool {
+        self.judged().is_some_and(|run| {
+            run.outcome == Outcome::Completed && self.tolerance_um.is_none_or(|tolerance_um| run.max_um <= tolerance_um)
+        })
+    }
+
+    /// The run of the controller that was asked for. A corrected program is cut without it.
+    fn controlled(&self) -> Option<&RunSummary> {
+        let runs = self.runs.iter().map(|run| &run.summary);
+        runs.rev().find(|run| !run.measured && run.controller != AS_EXPORTED)
+    }
+
+    /// The errors of the controller that was asked for that are worse than those of open loop. Empty without a run in open
+    /// loop that reached its end.
+    pub fn harm(&self) -> Vec<Harm> {
+        let baseline = self.runs.iter().map(|run| &run.summary).find(|run| run.controller == BASELINE);
+        match (baseline, self.controlled()) {
+            (Some(before), Some(after)) if before.outcome == Outcome::Completed => {
+                harm(&CutErrors::of(before), &CutErrors::of(after))
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// The headline of a report.
+pub(crate) fn headline(report: &Report) -> Headline {
+    let mut headline = Headline::default();
+    match report.judged() {
+        None => headline.text("No run was made."),
+        Some(RunSummary { controller, outcome: Outcome::Diverged { at_s }, .. }) => {
+            headline.name(controller);
+            headline.text(&format!(" diverged at {}: the tool ran away from the path.", duration(*at_s)));
+        }
+        Some(judged) => headline.completed(report, judged),
+    }
+    headline
+}
+
+impl Headline {
+    fn text(&mut self, text: &str) {
+        self.parts.push(HeadlinePart::Text(text.to_owned()));
+    }
+
+    fn name(&mut self, controller: &str) {
+        self.parts.push(HeadlinePart::Name(controller.to_owned()));
+    }
+
+    /// Writes a value of a run behind `what`, and the same value of `before`.
+    fn value(
+        &mut self,
+        what: &str,
+        [before, after]: [Option<&RunSummary>; 2],
+        value: impl Fn(&RunSummary) -> f64,
+        text: impl Fn(f64) -> String,
+    ) {
+        self.text(what);
+        let [before, after] = [before.map(&value), after.map(&value)];
+        let after = after.unwrap_or(f64::NAN);
+        self.parts.push(HeadlinePart::Value {
+            before: before.map(&text),
+            after: text(after),
+            change: before.and_then(|before| change(before, after)),
+        });
+    }
+
+    /// A run that reached its end.
+    fn completed(&mut self, report: &Report, judged: &RunSummary) {
+        let compared = report.compared();
+        let runs = [compared, Some(judged)];
+        self.text("Simulated, ");
+        self.name(&judged.controller);
+        if let Some(compared) = compared {
+            self.text(" against ");
+            self.name(&compared.controller);
+        }
+        self.value(": RMS contour error ", runs, |run| run.rms_um, um);
+        self.value(", largest ", runs, |run| run.max_um, um);
+        self.value(", uncut path ", runs, |run| run.uncut_um, um);
+        self.value(", machining time ", runs, |run| run.time_s, duration);
+        if let Some(tolerance_um) = report.tolerance_um {
+            let side = if report.is_within_tolerance() { "within" } else { "out of" };
+            self.text(&format!("; {side} tolerance: max {} µm, allowed {tolerance_um} µm", fixed(judged.max_um, 2)));
+        }
+        self.text(".");
+        self.harm(report);
+        self.cost(runs, judged);
+        self.faded(judged);
+        self.measured(report);
+    }
+
+    /// That the correction is worse than none.
+    fn harm(&mut self, report: &Report) {
+        let harm = report.harm();
+        if let Some(run) = report.controlled().filter(|_| !harm.is_empty()) {
+            self.text(" ");
+            self.name(&run.controller);
+            let figures = listed(&harm).replace(" um", " µm");
+            self.text(&format!(
+                " is worse than {BASELINE} for this part on this machine ({figures}): do not use its command."
+            ));
+        }
+    }
+
+    /// What drives and command do for the result.
+    fn cost(&mut self, runs: [Option<&RunSummary>; 2], judged: &RunSummary) {
+        let (axis, why) = costly_axis(runs[0], judged);
+        let torque_nm = |run: &RunSummary| run.peak_torque_nm.map_or(f64::NAN, |peaks| peaks[axis]);
+        let accel_m_s2 = |run: &RunSummary| if run.measured { f64::NAN } else { run.max_command_accel_mm_s2 * 1e-3 };
+        let what = format!(" Cost: peak torque of {}, {why}, ", AXES[axis]);
+        self.value(&what, runs, torque_nm, |nm| format!("{} N m", number(nm)));
+        self.value(", command beside the program by up to ", [None, runs[1]], |run| run.max_deviation_um, um);
+        self.value(", its largest acceleration ", runs, accel_m_s2, |accel| format!("{} m/s²", number(accel)));
+        self.text(".");
+    }
+
+    /// That the controller was taken out of the loop.
+    fn faded(&mut self, judged: &RunSummary) {
+        let Some(faded) = judged.faded_out else { return };
+        let (from, share, cause) = (duration(faded.at_s), number(100.0 * judged.engaged_share), faded.cause);
+        self.text(" ");
+        self.name(&judged.controller);
+        self.text(&format!(
+            " was in the loop for {share} % of the cut; the safety layer took it out last at {from}, because {cause}."
+        ));
+    }
+
+    /// What a log shows, if there is one.
+    fn measured(&mut self, report: &Report) {
+        let Some(run) = report.runs.iter().map(|run| &run.summary).find(|run| run.measured) else { return };
+        self.value(" Measured on the machine: RMS contour error ", [None, Some(run)], |run| run.rms_um, um);
+        self.value(", largest ", [None, Some(run)], |run| run.max_um, um);
+        self.text(".");
+    }
+}
+
+fn um(value: f64) -> String {
+    format!("{} µm", number(value))
+}
+
+/// The axis whose peak torque is told, and why it is that one.
+///
+/// Each axis has a drive of its own, so its peak is compared with its own peak in the other run. The largest peaks of all
+/// axes may belong to different drives, and their ratio hides a drive whose load has grown more. Without another run it is
+/// the axis with the largest torque.
+fn costly_axis(before: Option<&RunSummary>, after: &RunSummary) -> (usize, &'static str) {
+    let Some(peaks_nm) = after.peak_torque_nm else { return (0, "of which there is no record") };
+    let before_nm = before.and_then(|before| before.peak_torque_nm);
+    let load = |k: usize| match before_nm {
+        Some(before_nm) if before_nm[k] > 0.0 => peaks_nm[k] / before_nm[k],
+        Some(_) => 0.0,
+        None => peaks_nm[k],
+    };
+    let axis = (0..after.axes.clamp(1, 3)).max_by(|&a, &b| load(a).total_cmp(&load(b))).unwrap_or(0);
+    let why = match before_nm {
+        None => "the largest",
+        Some(_) if load(axis) < 1.0 => "which falls least",
+        Some(_) => "which rises most",
+    };
+    (axis, why)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Assumptions, ReportedRun, RunFacts, Series, Statistics};
+    use super::*;
+
+    /// A run of two axes with these errors, um, and peak torques, N m.
+    fn run(controller: &str, [rms_um, max_um, uncut_um]: [f64; 3], peaks_nm: [f64; 2]) -> ReportedRun {
+        let facts = RunFacts { controller: controller.to_owned(), axes: 2, ..RunFacts::default() };
+        let summary = RunSummary {
+            rms_um,
+            max_um,
+            uncut_um,
+            time_s: 2.0,
+            max_deviation_um: 12.0,
+            max_command_accel_mm_s2: 1500.0,
+            peak_torque_nm: Some([peaks_nm[0], peaks_nm[1], 0.0]),
+            ..Statistics::new().summary(facts, |_| String::new())
+        };
+        ReportedRun { summary, series: Series::new(), spectrum: Vec::new(), roundness: Vec::new(), events: Vec::new() }
+    }
+
+    fn open_loop() -> ReportedRun {
+        run(BASELINE, [10.0, 40.0, 5.0], [1.0, 0.5])
+    }
+
+    fn controlled() -> ReportedRun {
+        run("two-dimensional", [1.0, 4.0, 5.0], [1.2, 0.75])
+    }
+
+    fn report(runs: Vec<ReportedRun>, tolerance_um: Option<f64>) -> Report {
+        Report {
+            title: String::new(),
+            part: String::new(),
+            machine: Vec::new(),
+            settings: Vec::new(),
+            assumed: Assumptions::default(),
+            program: Vec::new(),
+            circles: Vec::new(),
+            tolerance_um,
+            limits: None,
+            runs,
+        }
+    }
+
+    fn text(runs: Vec<ReportedRun>, tolerance_um: Option<f64>) -> String {
+        headline(&report(runs, tolerance_um)).to_string()
+    }
+
+    #[test]
+    fn it_compares_the_last_run_with_the_first() {
+        assert_eq!(
+            text(vec![open_loop(), controlled()], None),
+            "Simulated, two-dimensional against open-loop: RMS contour error 10.0 µm → 1.00 µm (−90 %), \
+             largest 40.0 µm → 4.00 µm (−90 %), uncut path 5.00 µm → 5.00 µm (±0 %), machining time 2.00 s → 2.00 s (±0 %). \
+             Cost: peak torque of Y, which rises most, 0.50 N m → 0.75 N m (+50 %), \
+             command beside the program by up to 12.0 µm, its largest acceleration 1.50 m/s² → 1.50 m/s² (±0 %)."
+        );
+    }
+
+    #[test]
+    fn a_run_alone_is_compared_with_nothing_and_a_log_is_no_run_to_compare_with() {
+        let alone = text(vec![open_loop()], None);
+        assert!(alone.starts_with("Simulated, open-loop: RMS contour error 10.0 µm, largest 40.0 µm,"), "{alone}");
+        assert!(alone.contains("peak torque of X, the largest, 1.00 N m,"), "{alone}");
+        let mut log = run("measured", [12.0, 50.0, 5.0], [0.0; 2]);
+        (log.summary.measured, log.summary.peak_torque_nm) = (true, None);
+        let beside_a_log = text(vec![log, open_loop()], None);
+        let measured = " Measured on the machine: RMS contour error 12.0 µm, largest 50.0 µm.";
+        assert_eq!(beside_a_log, alone + measured);
+    }
+
+    #[test]
+    fn the_tolerance_is_judged_by_the_largest_error_of_the_last_run() {
+        for (tolerance_um, said) in [
+            (4.0, "; within tolerance: max 4.00 µm, allowed 4 µm."),
+            (3.5, "; out of tolerance: max 4.00 µm, allowed 3.5 µm."),
+        ] {
+            let text = text(vec![open_loop(), controlled()], Some(tolerance_um));
+            assert!(text.contains(said), "{text}");
+        }
+        assert!(!text(vec![open_loop(), controlled()], None).contains("tolerance"));
+        let mut lost = controlled();
+        lost.summary.outcome = Outcome::Diverged { at_s: 0.5 };
+        let lost = report(vec![open_loop(), lost], Some(100.0));
+        assert!(!lost.is_within_tolerance());
+        assert_eq!(headline(&lost).to_string(), "two-dimensional diverged at 0.50 s: the tool ran away from the path.");
+    }
+
+    #[test]
+    fn the_torque_is_that_of_the_axis_on_which_it_rises_most() {
+        let torque = |peaks_nm: [f64; 2]| {
+            let text = text(vec![open_loop(), run("two-dimensional", [1.0; 3], peaks_nm)], None);
+            let (_, rest) = text.split_once("peak torque of ").unwrap_or_default();
+            rest.split_once(", command").unwrap_or_default().0.to_owned()
+        };
+        // The largest of all axes, X, goes from 1 to 2.72 N m; Y from 0.5 to 1.48.
+        assert_eq!(torque([2.72, 1.48]), "Y, which rises most, 0.50 N m → 1.48 N m (+196 %)");
+        assert_eq!(torque([3.0, 1.48]), "X, which rises most, 1.00 N m → 3.00 N m (+200 %)");
+        assert_eq!(torque([0.8, 0.3]), "X, which falls least, 1.00 N m → 0.80 N m (−20 %)");
+    }
+
+    #[test]
+    fn a_correction_that_is_worse_is_named_and_a_corrected_program_does_not_hide_it() {
+        let worse = || run("two-dimensional", [10.1, 30.0, 9.0], [1.0; 2]);
+        let said = "two-dimensional is worse than open-loop for this part on this machine \
+                    (RMS 10.10 µm for 10.00, uncut 9.00 µm for 5.00): do not use its command.";
+        let exported = || run(AS_EXPORTED, [1.0; 3], [1.0; 2]);
+        for runs in [vec![open_loop(), worse()], vec![open_loop(), worse(), exported()]] {
+            let text = text(runs, None);
+            assert!(text.contains(said), "{text}");
+        }
+        assert!(!text(vec![open_loop(), controlled()], None).contains("worse"));
+        assert!(!text(vec![run("cross-coupled", [0.1; 3], [1.0; 2]), worse()], None).contains("worse"));
+    }
+}
