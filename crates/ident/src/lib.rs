@@ -1,4 +1,68 @@
-//! TODO front page
+//! Identifies the axes of a machine tool: the program to cut, the log to read, and the model to
+//! fit.
+//!
+//! The example identifies the x axis of a simulated machine. [`Excitation`] makes the machine cut
+//! circles at random feedrates, and [`identify_axis`] fits inertia and friction to the commanded
+//! and measured positions alone.
+//!
+//! ```
+//! use feedwright_ident::{DriveSettings, Excitation, identify_axis};
+//! use feedwright_sim::Machine;
+//!
+//! let machine = Machine::load("tnv40".as_ref())?;
+//! // 8 laps of the default 24 are enough without noise. The seed draws feedrates and offsets.
+//! let excitation = Excitation { laps: 8, ..Excitation::axis_parameters(&machine) };
+//! let (recording, _) = excitation.record::<2>(&machine, 1);
+//!
+//! let settings = DriveSettings::of(machine.known().axis(0), &machine.period);
+//! let found = identify_axis(&recording, 0, &settings)?;
+//! println!("{:?}, {:.3} um left", found.parameters, found.left_um);
+//!
+//! let true_kg_m2 = machine.axis(0).inertia_kg_m2;
+//! let found_kg_m2 = found.parameters.inertia_kg_m2;
+//! assert!((found_kg_m2 / true_kg_m2 - 1.0).abs() < 0.01, "{found_kg_m2} kg m2");
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! For a real machine, [`excitation_program`] writes the G-code to cut, a recorder logs commanded
+//! and actual positions, [`Log::read`] reads the log, and [`identify_machine`] fits the axes
+//! without any setting of the drives.
+//!
+//! # Main names
+//!
+//! | Topic | Names |
+//! |---|---|
+//! | Program to cut | [`excitation_program`], [`ExciteOptions`], [`ExciteError`] |
+//! | Logs | [`Log`], [`LogAxis`], [`LogFormat`], [`Columns`], [`LogFinding`], [`LogError`], [`Fitness`] |
+//! | Real machine, from a log | [`identify_machine`], [`GreyBoxOptions`], [`FoundMachine`], [`FoundAxis`], [`LawVerdict`] |
+//! | Simulated machine | [`Excitation`], [`Recording`], [`RecordedKnot`], [`Rng`] |
+//! | Axis with known drive settings | [`identify_axis`], [`DriveSettings`], [`AxisParameters`], [`AxisEstimate`], [`NotIdentified`] |
+//! | Models for controllers | [`train_axes`], [`train_servo`], [`train_contour`], [`axis_statistics`] |
+//! | Model files | [`Model`], [`Origin`], [`exact_block`] |
+//! | Numbers | [`Spectrum`], [`median_and_spread`], [`quadratic_mean`] |
+//!
+//! # Units
+//!
+//! Positions are mm and times s, whatever unit the log has. Parameters of an axis are at the motor
+//! shaft: kg m2, N m, N m s/rad. Residual errors are in µm. Torque of a log stays in the unit of
+//! the file ([`TorqueUnit`]).
+//!
+//! # What is promised
+//!
+//! - The same recording and the same seed give the same model, bit for bit.
+//! - No function sees the simulated machine: each gets commands, measured positions and the
+//!   settings of the drives.
+//! - A log is recognized by its content. Every guess is a [`LogFinding`]; a log that cannot give
+//!   a model is refused with a reason ([`LogError`]).
+//! - A recording that does not determine a parameter is refused ([`NotIdentified`],
+//!   [`NotFound`]).
+//! - A log is held in memory as a whole.
+//!
+//! # Layers
+//!
+//! The `mod` lines stand in the order in which data flows; each module uses only those above it.
+//! `average` and `spectrum` are numerical helpers, `log` reads logs, `excite` writes the program
+//! that excites a machine, `identify` fits, and `model` reads and writes model files.
 
 mod average;
 mod spectrum;
