@@ -1,7 +1,7 @@
 //! Never worse: a controller compared with open loop on every program and every machine, and the cuts that it made worse.
 //!
-//! A cut is worse where its RMS or its largest contour error, or the uncut path, is larger than open loop's by more than
-//! [`verdict`] allows, or where the controller is not in the loop any more at the end. Each controller is made for the
+//! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than open loop's by the rule
+//! of [`crate::report::harm`], or where the controller is not in the loop any more at the end. Each controller is made for the
 //! machine that it cuts on. Cuts depend on nothing but program, machine and seed: the rows are the same for any number
 //! of threads, and those that a [`Journal`] holds are not cut again.
 //!
@@ -11,7 +11,7 @@
 //! | `never_worse/machines.rs` | the machines of the sweep |
 //! | `never_worse/cut.rs` | one program on one machine, open loop and corrected |
 //! | `never_worse/generated.rs` | random programs on random machines, and the smallest case of a failure |
-//! | `never_worse/verdict.rs` | what counts as worse |
+//! | `never_worse/verdict.rs` | in what a cut is worse |
 //! | `never_worse/summary.rs` | totals, quantiles, failures by severity |
 
 pub mod program;

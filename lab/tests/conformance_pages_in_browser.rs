@@ -113,6 +113,8 @@ fn scales(browser: &mut Browser) {
 
 /// Space plays and stops, arrows step, and the line of the program goes along.
 fn play(browser: &mut Browser) {
+    // So slowly that the end is a minute away, however late the second press comes.
+    browser.value("document.querySelector('#play-speed').value = '0.05'");
     browser.value("document.activeElement.blur()");
     browser.press(" ", 32);
     browser.until("Number(document.querySelector('#play-time').value) > 20");

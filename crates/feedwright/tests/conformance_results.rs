@@ -7,8 +7,8 @@
 mod common;
 
 use std::io::Read;
-use std::process::{Command, Stdio};
-use std::time::{Duration, Instant};
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
 
 use common::{Folder, Ran, skipped};
 use feedwright::{BASELINE, BEST};
@@ -309,7 +309,7 @@ fn an_interrupted_run_leaves_nothing() {
         let mut command = folder.command();
         command.args(["run", "long.ngc", "--controller", "open-loop"]).args(ALL_OUTPUTS);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-        let writes = wait_until_it_writes(&folder);
+        let writes = wait_until_it_writes(&mut child, &folder);
         let id = child.id().to_string();
         let signalled =
             Command::new("kill").args([&format!("-{signal}"), &id]).status().is_ok_and(|status| status.success());
@@ -328,11 +328,10 @@ fn an_interrupted_run_leaves_nothing() {
     }
 }
 
-/// Waits until a file under way has content, for half a minute at the most.
+/// Waits until a file under way has content; false if the command ends before.
 #[cfg(unix)]
-fn wait_until_it_writes(folder: &Folder) -> bool {
-    let start = Instant::now();
-    while start.elapsed() < Duration::from_secs(30) {
+fn wait_until_it_writes(child: &mut Child, folder: &Folder) -> bool {
+    while child.try_wait().unwrap().is_none() {
         let under_way = std::fs::read_dir(folder.path()).unwrap().filter_map(Result::ok);
         if under_way
             .filter(|e| e.file_name().to_string_lossy().starts_with('.'))

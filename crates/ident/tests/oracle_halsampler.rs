@@ -13,6 +13,12 @@ use feedwright_ident::{Columns, Log, LogFormat, RefusalReason};
 
 /// Samples, one a millisecond.
 const SAMPLES: usize = 1500;
+/// Samples that HAL keeps until `halsampler` fetches them: it may be late by a minute on a busy machine.
+const KEPT: usize = 60_000;
+/// How long another HAL may go on before this one starts, s.
+const TURN_S: u32 = 200;
+/// How often a recording is tried: without a real-time kernel HAL may fail to start on a busy machine.
+const TRIALS: usize = 3;
 /// Part of the way to its input that the filter goes in a period: its output is behind by (1 - g) / g periods.
 const GAIN: f64 = 0.05;
 /// Whom HAL runs as where it is started by root.
@@ -22,7 +28,7 @@ const NOBODY: u32 = 65534;
 fn hal() -> String {
     format!(
         "loadrt threads name1=servo-thread period1=1000000\nloadrt siggen num_chan=1\nloadrt lowpass count=1\n\
-         loadrt sampler depth=4000 cfg=ffff\naddf siggen.0.update servo-thread\naddf lowpass.0 servo-thread\n\
+         loadrt sampler depth={KEPT} cfg=ffff\naddf siggen.0.update servo-thread\naddf lowpass.0 servo-thread\n\
          addf sampler.0 servo-thread\nsetp siggen.0.frequency 1.0\nsetp siggen.0.amplitude 5.0\nsetp lowpass.0.gain {GAIN}\n\
          net cmd siggen.0.sine => lowpass.0.in sampler.0.pin.0 sampler.0.pin.2\nnet act lowpass.0.out => sampler.0.pin.1\n\
          start\nloadusr -w halsampler -t -n {SAMPLES} log.txt\n"
@@ -31,13 +37,22 @@ fn hal() -> String {
 
 /// Records; none where there is no LinuxCNC, or another one is running.
 fn record(folder: &Path) -> Option<String> {
+    (0..TRIALS).find_map(|_| recorded(folder))
+}
+
+fn recorded(folder: &Path) -> Option<String> {
     let home = folder.join("home");
-    std::fs::create_dir(&home).unwrap();
+    std::fs::create_dir_all(&home).unwrap();
     std::fs::write(folder.join("log.hal"), hal()).unwrap();
     // One HAL at a time: its shared memory has fixed keys.
     let lock = std::env::temp_dir().join("lcnc_run.lock");
     let mut command = Command::new("flock");
-    command.arg("--timeout=60").arg(lock).args(["halrun", "-f", "log.hal"]).current_dir(folder).env("HOME", &home);
+    command
+        .arg(format!("--timeout={TURN_S}"))
+        .arg(lock)
+        .args(["halrun", "-f", "log.hal"])
+        .current_dir(folder)
+        .env("HOME", &home);
     if std::fs::metadata(folder).unwrap().uid() == 0 {
         chown(&home, Some(NOBODY), Some(NOBODY)).unwrap();
         std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755)).unwrap();

@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 use crate::missing::missing;
 
 const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
-/// A browser that says nothing for so long is stuck: this machine may be busy.
-const PATIENCE: Duration = Duration::from_secs(120);
+/// A browser that says nothing for so long is stuck, however busy the machine is.
+const PATIENCE: Duration = Duration::from_secs(600);
 
 pub(crate) struct Browser {
     process: Child,
