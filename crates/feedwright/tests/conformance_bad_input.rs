@@ -160,14 +160,7 @@ fn what_commands_beside_run_are_asked_for() {
         &["plan", "circle.ngc", "--planner", "linuxnc"],
         &["no planner is called 'linuxnc'", "did you mean 'linuxcnc'?"],
     );
-    refuses(&["never-worse", "circle.ngc", "--sample", "0"], &["--sample", "from 1 on"]);
-    refuses(&["held-out", "1", "0"], &["<COUNT>", "from 1 on"]);
-    for command in ["man", "paper"] {
-        refuses(
-            &[command, "--out", "circle.ngc"],
-            &["cannot make the folder circle.ngc", "a file stands in its place"],
-        );
-    }
+    refuses(&["man", "--out", "circle.ngc"], &["cannot make the folder circle.ngc", "a file stands in its place"]);
     refuses(&["identify", ".", "--out", "mine.toml"], &["cannot read log", "is a directory", "name a file in it"]);
     refuses(&["run", "circle.ngc", "--out", "circle.ngc/s.csv"], &["circle.ngc is a file, not a directory"]);
 }
@@ -192,37 +185,6 @@ fn a_parameter_that_cannot_be_set() {
     folder
         .run(&[&["run", "circle.ngc", "--controller", "receding-horizon"], &twice[..]].concat())
         .refused(&["knots of receding-horizon is set twice"]);
-    folder.run(&["compare", "--set", "knots=10"]).refused(&["whose parameter it is is missing", "CONTROLLER.knots=10"]);
-}
-
-#[test]
-fn a_comparison_of_what_there_is_not() {
-    let folder = Folder::new();
-    folder.file("space.ngc", "G21 G90 F600\nG1 X1 Z1\nM2\n");
-    folder.file("wrong.ngc", "G21 G90\nG1 X1\nM2\n");
-    folder.file("two.ngc", "G21 G90 F600\nG1 X1\nG1 Y1\nM2\n");
-    folder.file("beside.ngc", "G21 G90 F600\nT1 M6\nG41 G1 X4\nX8\nG40 X9 Y9\nM2\n");
-    folder.file("faster.toml", TNV40.replace("kp_1_s = 50", "kp_1_s = 60"));
-    let before = folder.content();
-    for (arguments, says) in [
-        (&["--only", "circel"][..], &["--only", "circel", "did you mean 'circle'?"][..]),
-        (&["--only", "circle,receding-horison"], &["receding-horison", "did you mean 'receding-horizon'?"]),
-        (&["--part", "space.ngc"], &["space.ngc moves Z", "XY plane", "feedwright run"]),
-        (&["--part", "wrong.ngc"], &["wrong.ngc:2:1", "F"]),
-        (&["--part", "missing.ngc"], &["missing.ngc", "No such file"]),
-        (&["--part", "beside.ngc"], &["beside.ngc:3:1", "tool 1 is not in the tool table", "--tool-table"]),
-        (&["--part", "circle.ngc", "--tool-table", "no.tbl"], &["no.tbl"]),
-        (&["--part", "circle.ngc", "--dialect", "fanuk"], &["fanuk", "fanuc"]),
-        (&["--part", "two.ngc", "--max-motions", "1"], &["two.ngc", "motions"]),
-        (&["--part", "circle.ngc", "--part", "circle.ngc"], &["another 'circle.ngc' in the table", "file"]),
-        (&["--machine", "faster.toml"], &["another 'tnv40' in the table", "another `name`"]),
-        (&["--machine", "tnv4"], &["tnv4", "did you mean 'tnv40'?"]),
-        (&["--threads", "0"], &["--threads", "0"]),
-        (&["--json", "no/such/folder/r.json"], &["no/such/folder"]),
-    ] {
-        folder.run(&[&["compare"], arguments].concat()).refused(says);
-    }
-    assert_eq!(before, folder.content());
 }
 
 #[test]
@@ -339,12 +301,12 @@ fn arguments_that_are_none() {
         (&["fly"], &["fly", "Usage"]),
         (&["run"], &["<PART>"]),
         (&["run", "circle.ngc", "--fast"], &["--fast"]),
+        (
+            &["run", "circle.ngc", "--controller", "cross-coupled"],
+            &["no controller is called 'cross-coupled'", "feedwright lab controllers"],
+        ),
         (&["check", "missing.ngc"], &["missing.ngc", "No such file"]),
         (&["canon", "missing.ngc"], &["missing.ngc", "No such file"]),
-        (&["paper"], &["--out"]),
-        (&["paper", "--out", "p", "--seeds", "0"], &["--seeds"]),
-        (&["paper", "--out", "circle.ngc"], &["circle.ngc"]),
-        (&["paper", "--out", "p", "--machine", "tnv41"], &["tnv41"]),
     ] {
         let before = folder.content();
         folder.run(arguments).refused(says);

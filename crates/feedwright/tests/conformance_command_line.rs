@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 use common::{Folder, Ran, skipped};
 
 /// All commands.
-const COMMANDS: [&str; 18] = [
+const COMMANDS: [&str; 13] = [
     "run",
     "correct",
     "advise",
@@ -21,13 +21,8 @@ const COMMANDS: [&str; 18] = [
     "excite",
     "machines",
     "controllers",
-    "export-contour",
     "canon",
     "block",
-    "paper",
-    "compare",
-    "never-worse",
-    "held-out",
     "completions",
     "man",
 ];
@@ -74,8 +69,6 @@ fn a_dash_is_the_standard_input_wherever_a_file_is_read() {
 fn a_dash_is_the_standard_output_wherever_a_file_is_written() {
     let folder = Folder::new();
     let before = folder.content();
-    let ran = folder.run(&["export-contour", "eight", "--out", "-"]).succeeded();
-    assert!(ran.stdout.starts_with("(eight:") && ran.stdout.ends_with("M2\n"), "{}", ran.stdout);
     let ran = folder.run_open_loop(&["circle.ngc", "--json", "-", "--report", "/dev/null"]).succeeded();
     let json: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!((json["simulated"].as_bool(), json["assumed"]["law"].as_str()), (Some(true), Some("none")));
@@ -99,8 +92,7 @@ fn a_full_disk_behind_the_standard_output_is_told() {
     let folder = Folder::new();
     let full = || std::fs::File::options().write(true).open("/dev/full").unwrap();
     for arguments in [
-        &["export-contour", "star"][..],
-        &["plan", "circle.ngc"],
+        &["plan", "circle.ngc"][..],
         &["plan", "circle.ngc", "--json", "-"],
         &["machines"],
         &["completions", "bash"],
@@ -133,7 +125,7 @@ fn everything_fits_eighty_columns_where_there_is_no_terminal() {
         |text: &str| text.lines().filter(|line| line.chars().count() > 80).map(str::to_owned).collect::<Vec<_>>();
     let machine = ["--machine", "tnv40"];
     for arguments in [
-        &[&["run", "circle.ngc", "--controller", "contour-compensation"], &machine[..]].concat()[..],
+        &[&["run", "circle.ngc", "--controller", "feedforward"], &machine[..]].concat()[..],
         &["plan", "circle.ngc"],
         &["machines"],
         &["controllers"],
@@ -145,9 +137,9 @@ fn everything_fits_eighty_columns_where_there_is_no_terminal() {
         let ran = Ran::from(folder.command().env_remove("COLUMNS").args(arguments).output().unwrap());
         assert_eq!((wide(&ran.stdout), wide(&ran.stderr)), (vec![], vec![]), "{arguments:?}");
     }
-    let ran = folder.run(&[&["run", "circle.ngc", "--controller", "contour-compensation"], &machine[..]].concat());
+    let ran = folder.run(&[&["run", "circle.ngc", "--controller", "feedforward"], &machine[..]].concat());
     for says in [
-        "Simulated, contour-compensation against open-loop: RMS contour error",
+        "Simulated, feedforward against open-loop: RMS contour error",
         "peak torque of",
         "beside the program",
         "uncut um",
@@ -164,15 +156,6 @@ fn everything_fits_eighty_columns_where_there_is_no_terminal() {
             .unwrap(),
     );
     assert!(narrow.stdout.contains("no room for the columns"), "{}", narrow.stdout);
-    let compared = folder.run(&[
-        "compare",
-        "--only",
-        "circle,tnv40,open-loop,contour-compensation",
-        "--no-tuning",
-        "--knowledge",
-        "own",
-    ]);
-    assert_eq!(wide(&compared.succeeded().stdout), [""; 0]);
 }
 
 #[test]
@@ -204,8 +187,8 @@ fn every_command_has_a_short_help_and_a_long_one_and_a_version() {
         assert!(folder.run(&[command, "--version"]).succeeded().stdout.contains(env!("CARGO_PKG_VERSION")));
     }
     let listed = root.lines().skip_while(|line| *line != "Commands:").skip(1).take_while(|line| !line.is_empty());
-    // The commands, and help itself; each on one line.
-    assert_eq!(listed.count(), COMMANDS.len() + 1, "{root}");
+    // The commands, `lab`, which another program answers, and help itself; each on one line.
+    assert_eq!(listed.count(), COMMANDS.len() + 2, "{root}");
 }
 
 #[test]
@@ -213,7 +196,7 @@ fn shells_get_completions_and_man_its_pages() {
     let folder = Folder::new();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let script = folder.run(&["completions", shell]).succeeded().stdout;
-        assert!(script.contains("never-worse") && script.contains("tolerance"), "{shell}");
+        assert!(script.contains("advise") && script.contains("tolerance"), "{shell}");
     }
     folder.run(&["completions", "bash", "--out", "fw.bash"]).succeeded();
     match Command::new("bash").arg("-n").arg(folder.path().join("fw.bash")).status() {
@@ -222,45 +205,9 @@ fn shells_get_completions_and_man_its_pages() {
     }
     folder.run(&["man", "--out", "man"]).succeeded();
     let pages = std::fs::read_dir(folder.path().join("man")).unwrap().count();
-    assert_eq!(pages, COMMANDS.len() + 1);
+    assert_eq!(pages, COMMANDS.len() + 2);
     let page = folder.text("man/feedwright-run.1");
     assert!(page.contains(".TH feedwright-run 1") && page.contains("tolerance") && page.contains("jq"), "{page}");
-}
-
-#[test]
-fn contours_are_exported() {
-    let folder = Folder::new();
-    for name in ["circle", "ellipse", "eight", "star", "butterfly", "square", "line-line-circle"] {
-        let file = format!("{name}.ngc");
-        folder.run(&["export-contour", name, "--out", &file, "--feed", "1200mm/min"]).succeeded();
-        assert!(folder.text(&file).contains("F1200\n"));
-        folder.run(&["check", &file]).succeeded();
-    }
-    folder.run(&["export-contour", "triangle"]).refused(&["triangle", "line-line-circle"]);
-    folder.run(&["export-contour", "eight", "--feed", "0mm/s"]).refused(&["--feed is 0 mm/s"]);
-    folder.run(&["export-contour", "eight", "--tolerance", "1e9"]).refused(&["--tolerance", "um"]);
-}
-
-#[test]
-fn a_correction_that_is_worse_is_told_and_not_written() {
-    let folder = Folder::new();
-    folder.file("square.ngc", "G21 G17 G90 G94 G64\nG0 X0 Y0\nG1 X3 F3000\nY3\nX0\nY0\nM2\n");
-    let cut = |controller: &str| {
-        let machine = ["--machine", "tnv40", "--controller", controller];
-        let outputs = ["--out", "setpoints.csv", "--json", "r.json"];
-        folder.run(&[&["run", "square.ngc"], &machine[..], &outputs[..]].concat())
-    };
-    let worse = cut("contour-compensation");
-    assert_eq!(worse.code, Some(1), "{worse:?}");
-    let text = worse.told();
-    assert!(text.contains("contour-compensation is worse than open-loop for this part on this machine (RMS"), "{text}");
-    assert!(text.contains("setpoints.csv was not written: open loop is better"), "{text}");
-    assert!(!folder.path().join("setpoints.csv").exists() && folder.path().join("square.report.html").exists());
-    let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
-    assert_eq!(json["worse_than_open_loop"][0]["what"], "RMS");
-    let better = cut("cross-coupled");
-    assert_eq!(better.code, Some(0), "{better:?}");
-    assert!(better.stdout.contains("wrote setpoints.csv") && folder.path().join("setpoints.csv").exists());
 }
 
 #[test]
@@ -299,4 +246,25 @@ fn a_damaged_cache_is_found_and_an_empty_name_is_none() {
     let before = folder.content().len();
     assert_eq!(cut("").0, first);
     assert_eq!(folder.content().len(), before, "an empty name is no folder");
+}
+
+/// Copies the command into a folder that has no laboratory beside it, and starts one that stands for it once it is there.
+#[cfg(unix)]
+#[test]
+fn the_laboratory_is_started_where_it_is_installed() {
+    use std::os::unix::fs::PermissionsExt;
+
+    let folder = Folder::new();
+    let binary = folder.path().join("feedwright");
+    std::fs::copy(env!("CARGO_BIN_EXE_feedwright"), &binary).unwrap();
+    let run = || {
+        let arguments = ["lab", "compare", "--only", "circle", "--help"];
+        Ran::from(Command::new(&binary).args(arguments).env("PATH", folder.path().join("none")).output().unwrap())
+    };
+    run().refused(&["the laboratory is not installed", "cargo install --path lab"]);
+    let laboratory = folder.path().join("feedwright-lab");
+    std::fs::write(&laboratory, "#!/bin/sh\necho \"$@\"\nexit 7\n").unwrap();
+    std::fs::set_permissions(&laboratory, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let ran = run();
+    assert_eq!((ran.code, ran.stdout.as_str()), (Some(7), "compare --only circle --help\n"), "{ran:?}");
 }

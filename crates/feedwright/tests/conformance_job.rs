@@ -163,7 +163,7 @@ fn a_job_that_is_ended_leaves_no_file() {
 
 #[test]
 fn jobs_beside_each_other_share_nothing() {
-    let jobs: Vec<Job> = ["feedforward", BEST, "cross-coupled"].map(|name| job("tnv40", name)).into();
+    let jobs: Vec<Job> = ["feedforward", BEST, "open-loop"].map(|name| job("tnv40", name)).into();
     let summary = |job: &Job| {
         let mut summary = job.run(&()).unwrap().report.runs.pop().unwrap().summary;
         // Times of ticks are the clock's.

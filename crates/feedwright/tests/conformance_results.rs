@@ -43,7 +43,7 @@ fn the_exit_code_says_whether_the_part_is_within_tolerance() {
 #[test]
 fn the_terminal_begins_with_the_headline_of_the_page() {
     let folder = Folder::new();
-    let cut = ["run", "circle.ngc", "--machine", "tnv40", "--controller", "contour-compensation", "--tolerance", "10"];
+    let cut = ["run", "circle.ngc", "--machine", "tnv40", "--controller", "feedforward", "--tolerance", "10"];
     let ran = folder.run(&[&cut[..], &["--report", "r.html"]].concat());
     let page = folder.text("r.html");
     let (_, verdict) = page.split_once("<p class=\"verdict\">").unwrap();
@@ -75,36 +75,6 @@ fn the_json_has_the_documented_numbers_of_every_run() {
         let time_s = run["time_s"].as_f64().unwrap();
         assert!((0.5..1.2).contains(&time_s), "{time_s}");
     }
-}
-
-#[test]
-fn the_comparison_has_the_documented_rows_and_its_own_part() {
-    let folder = Folder::new();
-    // Only a tool table tells how far beside its contour this program runs.
-    folder.file("beside.ngc", "G21 G90 F600\nT1 M6\nG41 G1 X4\nG1 X8\nG1 Y8\nG40 G1 X9 Y9\nM2\n");
-    folder.file("tools.tbl", "T1 P1 D2 ;\n");
-    let parts = ["--part", "circle.ngc", "--part", "beside.ngc", "--tool-table", "tools.tbl", "--dialect", "linuxcnc"];
-    let only = ["--only", "square,tnv40,rough,open-loop,contour-compensation", "--machine", "rough", "--no-tuning"];
-    let only = [&only[..], &parts[..]].concat();
-    let outputs = ["--json", "r.json", "--html", "r.html"];
-    let out = folder.run(&[&["compare"], &only[..], &outputs[..]].concat()).succeeded();
-    assert!(out.stdout.contains("square on rough") && out.stdout.contains("wrote r.html"), "{out:?}");
-    let results = results(&folder);
-    let rows = results["rows"].as_array().unwrap();
-    assert_eq!(rows.len(), 3 * 2 * 2, "{rows:?}");
-    for row in rows {
-        for key in ["contour", "machine", "controller"] {
-            assert!(row[key].is_string(), "{row}");
-        }
-        for key in ["time_s", "rms_um", "max_um", "uncut_um", "time_ratio", "rms_ratio", "max_ratio"] {
-            assert!(row[key].as_f64().is_some_and(|value| value > 0.0), "{key}: {row}");
-        }
-    }
-    assert!(["circle.ngc", "beside.ngc"].iter().all(|part| rows.iter().any(|row| row["contour"] == *part)));
-    assert!(folder.text("r.html").contains("circle.ngc on rough"));
-    let again = [&["compare", "--threads", "1"], &only[..], &["--json", "again.json"]].concat();
-    folder.run(&again).succeeded();
-    assert_eq!(folder.read("r.json"), folder.read("again.json"));
 }
 
 #[test]
@@ -238,7 +208,7 @@ fn lists_name_all_there_is() {
     }
     let machines = folder.run(&["machines"]).succeeded().stdout;
     assert!(machines.starts_with("tnv40"), "{machines}");
-    for command in ["run", "paper", "check", "canon", "machines", "controllers"] {
+    for command in ["run", "plan", "check", "canon", "machines", "controllers"] {
         assert!(folder.run(&[command, "--help"]).succeeded().stdout.contains("Usage"));
     }
 }

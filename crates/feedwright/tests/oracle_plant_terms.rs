@@ -242,7 +242,7 @@ fn the_error_of_the_joints_is_that_of_the_machine_without_its_geometry() {
         path
     });
     for name in ["circle", "square", "pocket"] {
-        for controller in [BASELINE, "cross-coupled"] {
+        for controller in [BASELINE, "feedforward"] {
             let entry = CONTROLLERS.find(controller).unwrap();
             let [with, plain] =
                 files.each_ref().map(|file| cut(&part(name), file, entry, &folder.path().join("t.csv")));

@@ -3,17 +3,17 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/cut.rs"]
+#[path = "../../crates/feedwright/tests/common/cut.rs"]
 mod cut;
-#[path = "common/python.rs"]
+#[path = "../../crates/feedwright/tests/common/python.rs"]
 mod python;
 
 use std::path::Path;
 use std::process::Command;
 
 use cut::cut;
-use feedwright::CONTROLLERS;
 use feedwright_control::{LqgGains, LqgPreview, LqgSettings};
+use feedwright_lab::CONTROLLERS;
 use feedwright_sim::{KnownAxis, Machine};
 use python::python;
 
@@ -65,7 +65,7 @@ struct Script {
 }
 
 fn script(python: &str, machine: &Path, axis: &str) -> Script {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/oracle_scripts/lqg.py");
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/feedwright/tests/oracle_scripts/lqg.py");
     let price = LqgSettings::DEFAULT.price_s2.to_string();
     let output = Command::new(python).arg(script).arg(machine).args([axis, &price]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
