@@ -95,7 +95,7 @@ fn a_correction_that_is_worse_is_told_and_not_written() {
     assert!(text.contains("contour-compensation is worse than open-loop for this part on this machine (RMS"), "{text}");
     assert!(text.contains("setpoints.csv was not written: open loop is better"), "{text}");
     assert!(!folder.path().join("setpoints.csv").exists() && folder.path().join("square.report.html").exists());
-    let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    let json: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
     assert_eq!(json["worse_than_open_loop"][0]["what"], "RMS");
     let better = cut("cross-coupled");
     assert_eq!(better.code, Some(0), "{better:?}");

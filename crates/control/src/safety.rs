@@ -7,11 +7,11 @@
 //! |---|---|
 //! | `safety/feedback.rs` | whether the measured position can be true |
 //! | `safety/benefit.rs` | the contour error with and without the correction |
-//! | `safety/engagement.rs` | the states: shadow, engaged, fading |
+//! | `safety/disengagement.rs` | the states: shadow, engaged, fading |
 //! | `safety/fade.rs` | the way of the offset back to the path |
 
 mod benefit;
-pub(crate) mod engagement;
+pub(crate) mod disengagement;
 mod fade;
 pub(crate) mod feedback;
 
@@ -20,8 +20,8 @@ use crate::controller::{Command, Controller, Measured};
 use crate::vector::{add_scaled, bounded, dot, limit_norm, norm, scale, smooth_step, sub};
 use crate::window::Window;
 use benefit::Benefit;
-use engagement::Engagement;
-pub use engagement::{Cause, Fade, State};
+use disengagement::Engagement;
+pub use disengagement::{Cause, Fade, State};
 
 /// Slowest and fastest that any controller may run the plan: a program always ends, and no command leaps.
 const RATE_RANGE: [f64; 2] = [0.1, 3.0];

@@ -1,5 +1,5 @@
 //! How long a program takes with a feed override, and where a feed hold leaves it: the plan of the program, moved along by
-//! [`time_scaling`](feedwright_plan::feed::time_scaling).
+//! [`TimeScaling`](feedwright_plan::TimeScaling).
 
 use std::collections::VecDeque;
 

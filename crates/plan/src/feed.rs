@@ -11,23 +11,23 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `joint.rs` | the speed at a joint of two pieces |
+//! | `corner_speed.rs` | the speed at a joint of two pieces |
 //! | `sections.rs` | the path to sections with a bound on the square of the speed |
 //! | `trapezoid.rs` | member: constant accelerations, time-optimal |
 //! | `unlimited.rs` | null member: every section at its bound |
 //! | `time_optimal.rs` | member: speed and path within the tolerance, axis by axis, with jerk |
 //! | `linuxcnc.rs` | member: what LinuxCNC's own planner makes of the path |
-//! | `time_scaling.rs` | feed override and feed hold on a published plan |
+//! | `feed_override.rs` | feed override and feed hold on a published plan |
 //! | `plan.rs` | pieces, spans and events on the clock |
 
-pub(crate) mod joint;
+pub(crate) mod corner_speed;
 pub(crate) mod plan;
 pub(crate) mod sections;
 pub(crate) mod trapezoid;
 pub(crate) mod unlimited;
 pub(crate) mod time_optimal;
 pub(crate) mod linuxcnc;
-pub(crate) mod time_scaling;
+pub(crate) mod feed_override;
 
 use crate::constraints::{Constraints, PathLimits};
 use crate::path::Piece;

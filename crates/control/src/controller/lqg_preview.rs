@@ -17,7 +17,7 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `lqg_preview/settings.rs` | price and bounds |
+//! | `lqg_preview/control_weight.rs` | price and bounds |
 //! | `lqg_preview/riccati.rs` | the gains |
 //! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
 //! | `lqg_preview/screw.rs` | where the motor has to be behind a ball screw that gives |
@@ -36,7 +36,7 @@
 //!
 //! Departures: the part of the preview is the inverse of the known law, with which a reference is followed at no cost.
 
-mod settings;
+mod control_weight;
 mod riccati;
 mod linear;
 mod screw;
@@ -62,7 +62,7 @@ use regulated_axis::AxisLqg;
 use validity::{Shown, Validity};
 
 pub use regulated_axis::LqgGains;
-pub use settings::{IDENTIFIED_PRICE, LqgSettings, OffsetBounds};
+pub use control_weight::{IDENTIFIED_PRICE, LqgSettings, OffsetBounds};
 
 /// Servo periods beyond the command that the inverse looks at.
 const DIFFERENCES: f64 = 3.0;

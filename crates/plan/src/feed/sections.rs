@@ -10,7 +10,7 @@
 
 use feedwright_gcode::canon::Corner;
 
-use super::joint::{JointSide, joint_cap};
+use super::corner_speed::{JointSide, joint_cap};
 use super::{FeedPlanner, Span, feed_mm_s};
 use crate::constraints::Constraints;
 use crate::path::smooth::{MAX_CURVATURE_1_MM, Smooth};

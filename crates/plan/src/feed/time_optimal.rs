@@ -19,7 +19,7 @@
 //! | `interior_point.rs` | its solution |
 //! | `settle.rs` | axes that the path leaves where they are |
 //! | `solved.rs` | from a mesh to a window, and from its solution to steps |
-//! | `tube.rs` | what nodes do not bound |
+//! | `path_deviation.rs` | what nodes do not bound |
 //! | `rest_to_rest.rs` | straight, in closed form |
 
 mod steps;
@@ -31,7 +31,7 @@ mod barrier;
 mod interior_point;
 mod settle;
 mod solved;
-mod tube;
+mod path_deviation;
 mod rest_to_rest;
 
 use super::{AxisMotion, FeedPlanner, Span, feed_mm_s};
@@ -315,14 +315,14 @@ impl TimeOptimal {
                 return Some((steps, ends));
             }
             let soon = if ends { steps.len() } else { self.soon(&steps) };
-            let mut excesses = tube::excesses(&self.track, &self.caps, &steps, soon);
+            let mut excesses = path_deviation::excesses(&self.track, &self.caps, &steps, soon);
             if round + 1 == ROUNDS {
                 excesses.retain(|excess| excess.tube_mm > LAST_OVER_MM || excess.feed_part < 1.0 - LAST_OVER);
             }
             if excesses.is_empty() {
                 return Some((steps, ends));
             }
-            (nodes, feed_parts) = tube::tightened(&nodes, &feed_parts, &steps, &excesses, step_s, &self.track);
+            (nodes, feed_parts) = path_deviation::tightened(&nodes, &feed_parts, &steps, &excesses, step_s, &self.track);
         }
         None
     }

@@ -12,7 +12,7 @@ use super::linear::{self, LinearAxis};
 use super::one_step::OneStep;
 use super::riccati;
 use super::screw::{ScrewTwist, TwistCourse};
-use super::settings::{LqgSettings, OffsetBounds};
+use super::control_weight::{LqgSettings, OffsetBounds};
 use super::validity::{self, LawTrial};
 
 /// Stationary gains of an axis: by state, as in `lqg_preview/linear.rs`.
