@@ -49,7 +49,7 @@ fn the_terminal_begins_with_the_headline_of_the_page() {
     let (_, verdict) = page.split_once("<p class=\"verdict\">").unwrap();
     let (verdict, _) = verdict.split_once("</p>").unwrap();
     let text: String = verdict.split('<').map(|piece| piece.split_once('>').map_or(piece, |(_, text)| text)).collect();
-    let signs = [("µ", "u"), ("→", "->"), ("−", "-"), ("²", "2"), ("±", "+-")];
+    let signs = [("µ", "u"), ("→", "->"), ("−", "-"), ("²", "2"), ("±", "+-"), ("×", "x")];
     let headline = signs.iter().fold(text, |text, (sign, plain)| text.replace(sign, plain));
     assert!(headline.contains("peak torque of") && headline.contains(" tolerance: max"), "{headline}");
     assert!(ran.told().starts_with(&headline), "{headline}\n{}", ran.stdout);

@@ -91,7 +91,7 @@ pub(crate) enum CommandArgs {
         name: Option<String>,
     },
     Canon(CanonArgs),
-    /// Start the laboratory: comparison, held-out work, the experiments of the paper
+    /// Start the laboratory, where it is installed
     ///
     /// The laboratory is a command of its own, `feedwright-lab`, which is installed beside this one or on the PATH.
     #[command(disable_help_flag = true)]
