@@ -58,7 +58,7 @@ fn root() -> PathBuf {
 }
 
 fn machine_file(name: &str) -> PathBuf {
-    root().join("machines").join(format!("{name}.toml"))
+    root().join("crates/sim/machines").join(format!("{name}.toml"))
 }
 
 fn part(name: &str) -> PathBuf {

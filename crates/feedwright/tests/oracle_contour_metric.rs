@@ -50,7 +50,7 @@ fn the_script_finds_the_same_contour_error_and_uncut_path() {
         made("spikes.ngc", SPIKES),
     ];
     let trace = folder.path().join("trace.csv");
-    for machine in ["tnv40", "soft"].map(|name| root().join("machines").join(format!("{name}.toml"))) {
+    for machine in ["tnv40", "soft"].map(|name| root().join("crates/sim/machines").join(format!("{name}.toml"))) {
         for part in &parts {
             for name in [BASELINE, BEST] {
                 let summary = cut(part, &machine, CONTROLLERS.find(name).unwrap(), &trace);
