@@ -15,7 +15,8 @@ use feedwright::{BASELINE, BEST, CONTROLLERS};
 /// RMS of the joints' contour error over open loop's.
 fn ratio(machine: &str, part: &str) -> f64 {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-    let (part, machine) = (root.join("parts").join(part), root.join("crates/sim/machines").join(format!("{machine}.toml")));
+    let (part, machine) =
+        (root.join("parts").join(part), root.join("crates/sim/machines").join(format!("{machine}.toml")));
     let folder = tempfile::tempdir().unwrap();
     let [open_um, corrected_um] = [BASELINE, BEST].map(|name| {
         let summary = cut(&part, &machine, CONTROLLERS.find(name).unwrap(), &folder.path().join("trace.csv"));

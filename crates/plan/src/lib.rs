@@ -78,12 +78,12 @@ pub use blend::aligned::AlignedPaths;
 pub use blend::{BLENDS, BlendMember, BlendedStep, BlendedSteps, PlannedPiece, ProgrammedPart};
 pub use constraints::speed_caps::SpeedCaps;
 pub use constraints::{AxisLimits, Constraints, LimitsError, PathLimits};
-pub use feed::plan::{Plan, PlanSink, Planned};
-pub use feed::sections::{Section, SectionPlanner};
-pub use feed::time_optimal::{PlanCounts, TimeOptimal};
 pub use feed::feed_override::{
     MOST_OVERRIDE, PublishedPlan, PublishedSpan, ScaledStep, ScalingLimits, TimeScaling, shortest_stop_mm,
 };
+pub use feed::plan::{Plan, PlanSink, Planned};
+pub use feed::sections::{Section, SectionPlanner};
+pub use feed::time_optimal::{PlanCounts, TimeOptimal};
 pub use feed::trapezoid::Trapezoid;
 pub use feed::unlimited::Unlimited;
 pub use feed::{

@@ -61,8 +61,8 @@ use one_step::OneStep;
 use regulated_axis::AxisLqg;
 use validity::{Shown, Validity};
 
-pub use regulated_axis::LqgGains;
 pub use control_weight::{IDENTIFIED_PRICE, LqgSettings, OffsetBounds};
+pub use regulated_axis::LqgGains;
 
 /// Servo periods beyond the command that the inverse looks at.
 const DIFFERENCES: f64 = 3.0;

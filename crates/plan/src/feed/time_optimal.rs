@@ -322,7 +322,8 @@ impl TimeOptimal {
             if excesses.is_empty() {
                 return Some((steps, ends));
             }
-            (nodes, feed_parts) = path_deviation::tightened(&nodes, &feed_parts, &steps, &excesses, step_s, &self.track);
+            (nodes, feed_parts) =
+                path_deviation::tightened(&nodes, &feed_parts, &steps, &excesses, step_s, &self.track);
         }
         None
     }

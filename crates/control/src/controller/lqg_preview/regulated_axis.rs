@@ -7,12 +7,12 @@ use crate::axis::mechanics::MechanicsState;
 use crate::axis::{AxisLaw, AxisState, Parameters};
 
 use super::approach::{self, PricedGains, Room, Trusted};
+use super::control_weight::{LqgSettings, OffsetBounds};
 use super::estimate::{AxisModel, Estimate, KEPT_PERIODS, Learnt, Sent};
 use super::linear::{self, LinearAxis};
 use super::one_step::OneStep;
 use super::riccati;
 use super::screw::{ScrewTwist, TwistCourse};
-use super::control_weight::{LqgSettings, OffsetBounds};
 use super::validity::{self, LawTrial};
 
 /// Stationary gains of an axis: by state, as in `lqg_preview/linear.rs`.
