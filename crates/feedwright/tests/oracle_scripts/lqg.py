@@ -22,7 +22,7 @@ import pathlib
 import sys
 import tomllib
 
-MACHINES = pathlib.Path(__file__).parents[3] / "machines"
+MACHINES = pathlib.Path(__file__).parents[3] / "sim" / "machines"
 DOUBLINGS = 20
 # As the controller documents them.
 LONGEST_MEMORY_S = 10.0

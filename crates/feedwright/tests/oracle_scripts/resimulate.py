@@ -58,7 +58,7 @@ import pathlib
 import sys
 import tomllib
 
-BUILT_IN = pathlib.Path(__file__).resolve().parents[3] / "machines"
+BUILT_IN = pathlib.Path(__file__).resolve().parents[3] / "sim" / "machines"
 
 # At the same step nothing differs but the last bits of sine, tanh and sums: some 1e-6 nm. It stays so where the
 # machine does not amplify them: friction grows with the speed everywhere, so two runs draw near to each other and no choice
