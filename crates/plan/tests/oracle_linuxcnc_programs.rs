@@ -118,7 +118,7 @@ enum Answer {
     /// With its message. A crash counts as a refusal.
     Refuses(String),
     /// It did not come to its end within the last of [`LIMITS_S`]. That says nothing about the program.
-    NoAnswer,
+    Silent,
 }
 
 /// Judges the outcome of an attempt; none if the program has to be tried again with more time.
@@ -157,7 +157,7 @@ fn ask(path: &Path, tools: &Path) -> Answer {
         }
         eprintln!("{}: rs274 gave no answer within {limit_s} s", path.display());
     }
-    Answer::NoAnswer
+    Answer::Silent
 }
 
 #[test]
@@ -199,7 +199,7 @@ fn linuxcnc_reads_the_same() {
         let refused = match ask(path, tools.path()) {
             Answer::Accepts => None,
             Answer::Refuses(text) => Some(text),
-            Answer::NoAnswer => {
+            Answer::Silent => {
                 failures.push(format!(
                     "{shown}: rs274 gave no answer within {LIMITS_S:?} s; an endless program belongs in ENDLESS"
                 ));
