@@ -1,7 +1,7 @@
 //! Never worse: a controller compared with open loop on every program and every machine, and the cuts that it made worse.
 //!
 //! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than open loop's by the rule
-//! of [`crate::report::harm`], or where the controller is not in the loop any more at the end. Each controller is made for the
+//! of [`feedwright::harm`], or where the controller is not in the loop any more at the end. Each controller is made for the
 //! machine that it cuts on. Cuts depend on nothing but program, machine and seed: the rows are the same for any number
 //! of threads, and those that a [`Journal`] holds are not cut again.
 //!

@@ -1,4 +1,4 @@
-//! Whether a cut is worse than open loop, by the rule of [`crate::report::harm`].
+//! Whether a cut is worse than open loop, by the rule of [`feedwright::harm`].
 
 use serde::{Deserialize, Serialize};
 
