@@ -4,9 +4,8 @@
 //! The controller is made from `tnv40`; `heavy` meets it unseen. Times are of whole decisions, medians over a cut.
 
 use feedwright::{Statistics, correction_limits, identified};
-use feedwright_control::Controller;
 use feedwright_control::{
-    Gradient, INVERTING_FEED_PERIOD_S, InvertingSettings, RECEDING_HORIZON_FEED_PERIOD_S, RecedingHorizon,
+    Controller, Gradient, INVERTING_FEED_PERIOD_S, InvertingSettings, RECEDING_HORIZON_FEED_PERIOD_S, RecedingHorizon,
     RecedingHorizonSettings, TwoDimensional,
 };
 use feedwright_ident::{Excitation, Training, train_servo};

@@ -8,8 +8,9 @@ pub mod figures;
 pub mod page;
 
 use feedwright::{Statistics, identified};
-use feedwright_control::Controller;
-use feedwright_control::{ContourIdentifier, Gradient, InvertingSettings, MagnitudeOnly, OpenLoop, TwoDimensional};
+use feedwright_control::{
+    ContourIdentifier, Controller, Gradient, InvertingSettings, MagnitudeOnly, OpenLoop, TwoDimensional,
+};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_ident::{Excitation, TrainedContour, Training};
 use feedwright_sim::{Machine, Outcome, Run, RunError, Sink, Stages, Watch, path_steps};

@@ -3,11 +3,10 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 use feedwright::{BASELINE, BEST};
-use feedwright_lab::CONTROLLERS;
 use feedwright_lab::compare::{page, recorded, rows_file, tuning};
 use feedwright_lab::{
-    Comparison, ComparisonOptions, Finished, Journal, Knowledge, RowsStamp, Shard, Tuning, Verdict, Workpiece, compare,
-    journal_path, merged, work_on,
+    CONTROLLERS, Comparison, ComparisonOptions, Finished, Journal, Knowledge, RowsStamp, Shard, Tuning, Verdict,
+    Workpiece, compare, journal_path, merged, work_on,
 };
 use feedwright_sim::Machine;
 

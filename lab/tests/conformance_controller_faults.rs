@@ -5,11 +5,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use feedwright::MAX_UM;
-use feedwright::{BASELINE, BEST, CONTROLLERS, Choices, HORIZON, Make, Setup};
+use feedwright::{BASELINE, BEST, CONTROLLERS, Choices, HORIZON, MAX_UM, Make, Setup};
 use feedwright_control::vector::sub;
-use feedwright_control::{Bounds, State};
-use feedwright_control::{Controller, Knot, Tick};
+use feedwright_control::{Bounds, Controller, Knot, State, Tick};
 use feedwright_lab::Workpiece;
 use feedwright_plan::Step;
 use feedwright_sim::{Machine, Plant, Reference, Sample};

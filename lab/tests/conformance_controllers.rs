@@ -5,10 +5,8 @@
 use std::sync::OnceLock;
 
 use feedwright::{Choices, Entry, Make, Setting, Setup};
-use feedwright_control::{Bounds, Command, Measured, Schedule};
-use feedwright_control::{Controller, Knot, KnotSource, Tick, Window};
-use feedwright_lab::CONTROLLERS;
-use feedwright_lab::Workpiece;
+use feedwright_control::{Bounds, Command, Controller, Knot, KnotSource, Measured, Schedule, Tick, Window};
+use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Machine, Row, Run, Sink};
 
 /// Deviation that the tick admits here, mm.

@@ -2,8 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use feedwright::{BASELINE, CONTROLLERS, Choices, HORIZON, Make, Setup, Statistics};
-use feedwright::{CutErrors, harm};
+use feedwright::{BASELINE, CONTROLLERS, Choices, CutErrors, HORIZON, Make, Setup, Statistics, harm};
 use feedwright_lab::Workpiece;
 use feedwright_sim::{Machine, Run};
 use rayon::prelude::*;

@@ -6,8 +6,7 @@
 #[path = "../../crates/ident/tests/common/identification_log.rs"]
 mod identification_log;
 
-use feedwright::machine_text;
-use feedwright::{CONTROLLERS, Choices, LogJob, Make, Setup};
+use feedwright::{CONTROLLERS, Choices, LogJob, Make, Setup, machine_text};
 use feedwright_gcode::canon::Corner;
 use feedwright_ident::AxisFacts;
 use feedwright_lab::contour;

@@ -5,8 +5,7 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 use feedwright::{BASELINE, Choices, Entry, Make, Setting, Setup, Statistics};
-use feedwright_lab::CONTROLLERS;
-use feedwright_lab::Workpiece;
+use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Axis, Machine, Run, Squareness};
 
 /// What a controller makes of the circle of 10 mm radius at 50 mm/s on tnv40, against open loop.

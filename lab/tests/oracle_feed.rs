@@ -8,8 +8,7 @@ use common::{BLEND, LIMITS, arc, line, polyline};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_lab::contour;
-use feedwright_plan::Durations;
-use feedwright_plan::{BLENDS, Constraints, FEED_PLANNERS, PathLimits, Plan, Plc};
+use feedwright_plan::{BLENDS, Constraints, Durations, FEED_PLANNERS, PathLimits, Plan, Plc};
 use feedwright_sim::{Reference, path_steps};
 use std::f64::consts::PI;
 

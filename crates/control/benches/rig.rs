@@ -1,11 +1,11 @@
 //! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
 
 use feedwright_control::{
-    AxisKnowledge, Bounds, ContourError, ContourIdentifier, Estimator, IDENTIFIED_PRICE, Identifier, Inputs,
-    InvertingSettings, LqgPreview, LqgSettings, OffsetBounds, Parameters, Periods, Preview, RecedingHorizon,
-    RecedingHorizonSettings, Register, ServoIdentifier, TransmissionParameters, TwoDimensional, UNKNOWNS,
+    AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator, IDENTIFIED_PRICE, Identifier,
+    Inputs, InvertingSettings, Knot, KnotSource, LqgPreview, LqgSettings, Measured, OffsetBounds, Parameters, Periods,
+    Preview, RecedingHorizon, RecedingHorizonSettings, Register, ServoIdentifier, Setpoint, Tick,
+    TransmissionParameters, TwoDimensional, UNKNOWNS, Window,
 };
-use feedwright_control::{Controller, Knot, KnotSource, Measured, Setpoint, Tick, Window};
 
 /// The circle of eq. 11 at 50 mm/s.
 pub(crate) struct Circle;

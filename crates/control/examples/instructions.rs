@@ -8,8 +8,7 @@
 #[path = "../benches/rig.rs"]
 mod rig;
 
-use feedwright_control::ContourModel;
-use feedwright_control::Controller;
+use feedwright_control::{ContourModel, Controller};
 
 fn main() {
     let mut arguments = std::env::args().skip(1);

@@ -1,8 +1,9 @@
 //! The safety layer around controllers that are wild, broken, blind, wrong or harmful.
 
 use feedwright_control::vector::{norm, sub};
-use feedwright_control::{Bounds, Cause, Command, Controller, Measured, Schedule, State, Window};
-use feedwright_control::{Knot, KnotSource, Tick};
+use feedwright_control::{
+    Bounds, Cause, Command, Controller, Knot, KnotSource, Measured, Schedule, State, Tick, Window,
+};
 use proptest::prelude::*;
 
 const SERVO_S: f64 = 0.001;

@@ -58,13 +58,13 @@ mod expanded_text;
 mod verified;
 mod outcome;
 pub(crate) mod advise;
-
 use std::path::PathBuf;
+
+use feedwright_gcode::{self, Settings};
+use feedwright_sim::{Machine, Watch};
 
 use crate::job_error::{JobError, axes_that_move};
 use exported::ExportedCut;
-use feedwright_gcode::{self, Settings};
-use feedwright_sim::{Machine, Watch};
 pub use nominal::deterministic;
 pub use outcome::CorrectOutcome;
 use outcome::{UnwrittenProgram, WrittenProgram, refusal};

@@ -4,17 +4,16 @@
 //! One small JSON file each, in the user's cache folder, or in `$FEEDWRIGHT_CACHE` where that is set; where that is empty nothing is
 //! kept. Each has a checksum: what cannot be read, is damaged or does not hold a network is trained anew; one that cannot be written
 //! is not an error.
-
 use std::io::Write;
 use std::path::PathBuf;
 
 use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS};
+use feedwright_ident::{Excitation, Recording, Rng, TrainedContour, Training, train_contour};
 use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};
 
 use crate::checked_json::{checked, with_check};
 use crate::output::{OutputFile, OutputFiles};
-use feedwright_ident::{Excitation, Recording, Rng, TrainedContour, Training, train_contour};
 
 /// Raised whenever the same recording gives other weights: a change of the network or of its training.
 const FORMAT: u32 = 4;

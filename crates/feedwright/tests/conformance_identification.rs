@@ -3,8 +3,7 @@
 #[path = "../../ident/tests/common/identification_log.rs"]
 mod identification_log;
 
-use feedwright::machine_text;
-use feedwright::{LogJob, LogJobError, write_json, write_page};
+use feedwright::{LogJob, LogJobError, machine_text, write_json, write_page};
 use feedwright_sim::Machine;
 use identification_log::{commands_mm, drawn, log_of};
 

@@ -7,8 +7,7 @@ mod identification_log;
 
 use std::path::Path;
 
-use feedwright::machine_text;
-use feedwright::{LogIdentified, LogJob};
+use feedwright::{LogIdentified, LogJob, machine_text};
 use feedwright_ident::{AxisFacts, Columns, FoundAxis, LawTerm, LawVerdict, Log, NumberSource};
 use feedwright_sim::{Machine, Plant};
 use identification_log::{commands_mm, log_of};

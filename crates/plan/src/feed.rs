@@ -28,10 +28,10 @@ pub(crate) mod unlimited;
 pub(crate) mod time_optimal;
 pub(crate) mod linuxcnc;
 pub(crate) mod feed_override;
+use feedwright_gcode::canon::Event;
 
 use crate::constraints::{Constraints, PathLimits};
 use crate::path::Piece;
-use feedwright_gcode::canon::Event;
 use sections::Capped;
 
 /// What the axes do from a moment on, at a constant jerk of each.

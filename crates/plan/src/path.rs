@@ -20,10 +20,10 @@ pub(crate) mod smooth;
 pub(crate) mod spline;
 pub(crate) mod line;
 pub(crate) mod pieces;
+use feedwright_gcode::canon::{Corner, Event};
 
 use crate::vector::norm;
 use arc::Arc;
-use feedwright_gcode::canon::{Corner, Event};
 use line::Line;
 use smooth::Smooth;
 

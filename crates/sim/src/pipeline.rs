@@ -268,8 +268,7 @@ impl<'a> Run<'a> {
 
 #[cfg(test)]
 mod tests {
-    use feedwright_control::Window;
-    use feedwright_control::{Command, Measured, Schedule};
+    use feedwright_control::{Command, Measured, Schedule, Window};
 
     use feedwright_gcode::{Reader, Settings};
 

@@ -25,12 +25,12 @@ mod drive;
 mod encoder;
 mod torque;
 mod nonideal;
-
 use std::f64::consts::TAU;
+
+use feedwright_control::{AxisLaw, AxisState, Periods, friction_signs};
 
 use crate::kinematics::{AxisErrors, GeometricErrors};
 use crate::machine::{Axis, Machine};
-use feedwright_control::{AxisLaw, AxisState, Periods, friction_signs};
 use nonideal::{Moment, NonidealAxis};
 
 /// What the machine did in one servo period.

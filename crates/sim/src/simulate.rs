@@ -19,8 +19,7 @@ pub(crate) mod uncut;
 
 use std::time::Instant;
 
-use feedwright_control::{Bounds, Controller, Fade, Setpoint, State};
-use feedwright_control::{Knot, Tick};
+use feedwright_control::{Bounds, Controller, Fade, Knot, Setpoint, State, Tick};
 use feedwright_plan::vector::distance;
 
 use crate::kinematics::{joints_of, tool_of};

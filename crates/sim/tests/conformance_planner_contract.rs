@@ -8,8 +8,7 @@
 mod common;
 
 use common::{BLEND, polyline};
-use feedwright_control::Controller;
-use feedwright_control::OpenLoop;
+use feedwright_control::{Controller, OpenLoop};
 use feedwright_gcode::canon::{Canon, Motion, Plane, Shape};
 use feedwright_plan::{
     BlendMember, BlendedStep, BlendedSteps, Constraints, FEED_PLANNERS, FeedMember, FeedPlanner, Piece, PlannedPiece,

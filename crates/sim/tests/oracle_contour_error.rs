@@ -7,8 +7,9 @@
 
 use std::path::{Path, PathBuf};
 
-use feedwright_control::{Bounds, Command, Controller, MAX_ENTRIES, Measured, REGISTER_KNOTS, Schedule, Window};
-use feedwright_control::{Knot, Tick};
+use feedwright_control::{
+    Bounds, Command, Controller, Knot, MAX_ENTRIES, Measured, REGISTER_KNOTS, Schedule, Tick, Window,
+};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_plan::PathLimits;
 use feedwright_sim::{Foot, Machine, Plant, Reference};

@@ -105,8 +105,7 @@ fn the_circle_of_the_bound_takes_its_time() {
 
 #[test]
 fn limits_of_axes_are_asked_for() {
-    use feedwright_plan::Plan;
-    use feedwright_plan::Plc;
+    use feedwright_plan::{Plan, Plc};
     let none = Constraints::from(&LIMITS);
     for member in FEED_PLANNERS.iter().filter(|member| member.needs_axes) {
         let plan = Plan::new(Box::new(std::iter::empty()), &none, member, Plc::default());

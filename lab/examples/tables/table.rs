@@ -8,8 +8,7 @@ use std::ops::Range;
 use std::path::PathBuf;
 
 use feedwright::{BASELINE, HORIZON, Knows};
-use feedwright_lab::CONTROLLERS;
-use feedwright_lab::{Claimed, Comparison, ComparisonRow, Knowledge, Numbers, each_once, experiment};
+use feedwright_lab::{CONTROLLERS, Claimed, Comparison, ComparisonRow, Knowledge, Numbers, each_once, experiment};
 use feedwright_sim::Machine;
 
 /// The machine of the paper.

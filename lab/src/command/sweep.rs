@@ -1,15 +1,9 @@
 //! What the commands share that compare a controller with open loop on many cuts: the journal, the bar, the table.
-
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use crate::journal::Journal;
-use crate::never_worse::cut::{Figures, SweepRow};
-use crate::never_worse::summary::{Judged, OPEN_LOOP_UM, Quantiles, SweepSummary};
-use crate::never_worse::{SweepJob, SweepOptions, Swept, journal_path, sweep};
-use crate::peers::CONTROLLERS;
 use feedwright::command::{
     Console, ConsoleTable, OUT_OF_TOLERANCE, TableColumn, find, remark, settings, tables, wrapped,
 };
@@ -17,6 +11,11 @@ use feedwright::{OutputFile, OutputFiles, cache_folder, key_of};
 use miette::{IntoDiagnostic, Result, WrapErr};
 
 use crate::command::args::sweep::SweepArgs;
+use crate::journal::Journal;
+use crate::never_worse::cut::{Figures, SweepRow};
+use crate::never_worse::summary::{Judged, OPEN_LOOP_UM, Quantiles, SweepSummary};
+use crate::never_worse::{SweepJob, SweepOptions, Swept, journal_path, sweep};
+use crate::peers::CONTROLLERS;
 
 /// A sweep that is about to begin: everything that can be refused has been.
 pub(super) struct Sweep {

@@ -1,13 +1,11 @@
 //! Who competes: a controller, and what it is given of the machine that it cuts on.
-
-use crate::peers::CONTROLLERS;
 use feedwright::{Choices, Entry, Knows, Make, Setup};
-use feedwright_control::Controller;
-use feedwright_control::{IdentifierKind, OpenLoop};
+use feedwright_control::{Controller, IdentifierKind, OpenLoop};
 use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};
 
 use super::tuned::Tuned;
+use crate::peers::CONTROLLERS;
 
 /// What a controller is given of the machine that it cuts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

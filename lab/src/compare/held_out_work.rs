@@ -2,8 +2,6 @@
 //!
 //! The seeds are kept with the date of the draw and a fingerprint of all settings that can be tuned: defaults, searched ranges, and the
 //! recorded values. Where a setting has changed since, the work is held out no more, and a test asks for new seeds.
-
-use crate::peers::CONTROLLERS;
 use feedwright::{BASELINE, Choices, Make, Setup};
 use feedwright_sim::{Machine, Outcome, Run, RunError};
 use serde::{Deserialize, Serialize};
@@ -13,6 +11,7 @@ use super::work::{CORNER, FEED_MM_S, Workpiece, steps};
 use crate::contour::CONTOURS;
 use crate::held_out::contours::placement;
 use crate::held_out::programs;
+use crate::peers::CONTROLLERS;
 
 /// Programs of the set.
 const PROGRAMS: usize = 11;

@@ -5,8 +5,6 @@
 //! better. What is minimised is the quadratic mean of the RMS contour errors on a smooth contour, on one with corners and on an acute
 //! tip, which feedback that is tuned without it may be caught in, without the geometry that no encoder sees, at no more time than open loop takes: each percent above costs as much as ten percent of error.
 //! The noise is that of the machine file's seed, which no reported cut has.
-
-use crate::peers::CONTROLLERS;
 use feedwright::{BASELINE, Choices, Entry, Make, Parameter, Setting, Setup};
 use feedwright_ident::quadratic_mean;
 use feedwright_sim::{Machine, Run, RunError, Watch};
@@ -15,6 +13,7 @@ use rayon::prelude::*;
 use super::cut::cut;
 use super::tuned::{RangeEnd, Tuned, TunedValue};
 use super::work::Workpiece;
+use crate::peers::CONTROLLERS;
 
 /// Points of the Halton sequence for each parameter.
 const SCATTERED: usize = 12;

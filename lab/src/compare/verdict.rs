@@ -8,8 +8,7 @@
 //! - Held-out work: never worse than open loop nor than the baseline, by more than what cannot be told from nothing; nobody lost.
 //! - All: peak torque against the baseline's.
 
-use feedwright::{BASELINE, BEST, HORIZON, Knows};
-use feedwright::{MAX_UM, RMS_UM, UNCUT_UM};
+use feedwright::{BASELINE, BEST, HORIZON, Knows, MAX_UM, RMS_UM, UNCUT_UM};
 use feedwright_ident::quadratic_mean;
 use serde::{Deserialize, Serialize};
 

@@ -1,10 +1,8 @@
 //! One program on one machine: open loop, and with the controller that was made for the machine.
-
-use feedwright::CutErrors;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
-use crate::peers::CONTROLLERS;
+use feedwright::CutErrors;
 use feedwright::{BASELINE, Choices, Entry, Make, Setup, Statistics};
 use feedwright_control::Controller;
 use feedwright_sim::{Cancelled, Machine, Outcome, Run, RunError, RunResult, Watch};
@@ -12,6 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::SweepOptions;
 use super::program::Program;
+use crate::peers::CONTROLLERS;
 
 /// What a cut came to.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]

@@ -1,9 +1,8 @@
 //! Whether a cut is worse than open loop, by the rule of [`feedwright::harm`].
-
+use feedwright::ErrorChange;
 use serde::{Deserialize, Serialize};
 
 use super::cut::SweepRow;
-use feedwright::ErrorChange;
 
 /// A way of being worse.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,8 +1,7 @@
 //! Figures 7 to 10 of Lee, Cho and Jeon (2005), from cuts of the circle with the identifier of one seed.
 
 use feedwright::{COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline};
-use feedwright_control::Controller;
-use feedwright_control::{Gradient, InvertingSettings, OpenLoop, TwoDimensional};
+use feedwright_control::{Controller, Gradient, InvertingSettings, OpenLoop, TwoDimensional};
 use feedwright_sim::{Machine, RunError, Watch};
 
 use super::curves::Curves;

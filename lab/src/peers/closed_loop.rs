@@ -21,11 +21,11 @@
 //! is, Nu Nm / Nv: they differ by what the integral does within a servo period, less than 1e-4 of the position.
 //!
 //! Symbols: as in [`feedwright_control::axis::drive`]. Polynomials are in ascending powers of z^-1.
-
-use crate::peers::zero_phase::Filter;
 use feedwright_control::{AxisLaw, AxisState, DriveLaw, DriveParameters, DriveReference, DriveState, Parameters};
 use feedwright_sim::{KnownAxis, Period};
 use nalgebra::{DMatrix, SMatrix, Schur};
+
+use crate::peers::zero_phase::Filter;
 
 /// States: angle and speed of the motor, integral of the speed loop, torque behind the filter.
 const STATES: usize = 4;

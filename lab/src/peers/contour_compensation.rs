@@ -82,8 +82,7 @@ impl<const N: usize> Controller<N> for ContourCompensation<N> {
 pub(super) mod tests {
     use super::*;
     use crate::peers::cross_coupled::tests::cut;
-    use feedwright_control::OpenLoop;
-    use feedwright_control::{Knot, KnotSource};
+    use feedwright_control::{Knot, KnotSource, OpenLoop};
 
     /// The circle of eq. 11 at 50 mm/s.
     pub(crate) struct Circle;

@@ -111,8 +111,7 @@ impl<const N: usize> Controller<N> for CrossCoupled<N> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use feedwright_control::Estimator;
-    use feedwright_control::{Knot, KnotSource, Preview, Register};
+    use feedwright_control::{Estimator, Knot, KnotSource, Preview, Register};
 
     /// Where a tool is after so many servo periods of 1 ms that a constant load pushes `load_mm` off its command, in loops
     /// of 50 1/s and without the safety layer.

@@ -16,13 +16,12 @@
 //! filter, which forgets over Tf, because curvature and load change along the path.
 //!
 //! Departures: the feed is never above the programmed one, and changes within the acceleration that the machine allows along the path.
-
 use feedwright_control::Window;
 use feedwright_control::vector::{bounded, norm};
+use feedwright_control::{Command, Controller, Measured, Schedule};
 
 use super::cross_coupled::CrossCoupled;
 use super::fuzzy_feedrate::eased;
-use feedwright_control::{Command, Controller, Measured, Schedule};
 
 /// Settings of the adaptation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -88,8 +87,7 @@ impl<const N: usize> Controller<N> for CrossCoupledFeedrate<N> {
 mod tests {
     use super::*;
     use crate::peers::cross_coupled;
-    use feedwright_control::ContourError;
-    use feedwright_control::{Knot, Preview, Register};
+    use feedwright_control::{ContourError, Knot, Preview, Register};
 
     const SETTINGS: Settings = Settings { allowed_mm: 0.004, ..Settings::DEFAULT };
 

@@ -29,13 +29,11 @@
 //! Source: Johnson (1971), "Accommodation of external disturbances in linear regulator and servomechanism problems".
 //!
 //! Departures: the drive takes positions, so that the estimate acts through the position loop and not as a torque.
-
 use feedwright_control::Window;
 use feedwright_control::vector::{add_scaled, bounded, norm};
+use feedwright_control::{Command, Controller, Feedforward, Measured, Schedule};
 
 use super::zero_phase::SampledAxis;
-use feedwright_control::Feedforward;
-use feedwright_control::{Command, Controller, Measured, Schedule};
 
 /// Longest delay that is kept, servo periods: 20 ms each way, the most of a machine file, at 1 ms.
 const KEPT_PERIODS: usize = 48;

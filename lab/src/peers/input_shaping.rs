@@ -23,8 +23,7 @@
 use feedwright_control::vector::{add_scaled, sub};
 use feedwright_control::{Preview, Window};
 
-use feedwright_control::{Command, Controller, Measured, Schedule};
-use feedwright_control::{Feedforward, MAX_PREVIEW};
+use feedwright_control::{Command, Controller, Feedforward, MAX_PREVIEW, Measured, Schedule};
 
 /// Settings of the shaper.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -128,9 +127,8 @@ mod tests {
     use crate::peers::contour_compensation::tests::Circle;
     use crate::peers::cross_coupled::tests::Line;
     use crate::peers::fixture::{axis, commands, inverse};
-    use feedwright_control::Gains;
-    use feedwright_control::KnotSource;
     use feedwright_control::vector::norm;
+    use feedwright_control::{Gains, KnotSource};
 
     const SERVO_S: f64 = 0.001;
 

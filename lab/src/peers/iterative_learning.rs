@@ -176,8 +176,7 @@ fn smooth<const N: usize>(values: &mut [[f64; N]], cut_off: f64) {
 
 #[cfg(test)]
 mod tests {
-    use feedwright_control::Bounds;
-    use feedwright_control::{Knot, Tick};
+    use feedwright_control::{Bounds, Knot, Tick};
 
     use super::*;
 

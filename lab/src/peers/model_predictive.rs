@@ -11,11 +11,10 @@
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{
-    AxisLaw, AxisState, CommandedPeriod, DisturbanceForecast, DriveLaw, DriveParameters, DriveReference, DriveState,
-    FrictionLaw, FrictionParameters, HorizonSettings, MAX_KNOTS, OffsetPlan, Parameters, Predictor, Residual,
-    ResidualSettings, Sensitivity, friction_signs,
+    AxisLaw, AxisState, Command, CommandedPeriod, Controller, DisturbanceForecast, DriveLaw, DriveParameters,
+    DriveReference, DriveState, FrictionLaw, FrictionParameters, HorizonSettings, MAX_KNOTS, Measured, OffsetPlan,
+    Parameters, Predictor, Residual, ResidualSettings, Schedule, Sensitivity, Window, friction_signs,
 };
-use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 use feedwright_sim::{Known, KnownAxis};
 
 /// Steps of Gauss and Newton, at most.

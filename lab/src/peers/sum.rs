@@ -77,10 +77,8 @@ mod tests {
     use crate::peers::cross_coupled::tests::{Line, cut};
     use crate::peers::cross_coupled::{CrossCoupled, Settings};
     use crate::peers::fixture::{axis, commands, inverse};
-    use feedwright_control::Feedforward;
-    use feedwright_control::Gains;
-    use feedwright_control::KnotSource;
     use feedwright_control::vector::norm;
+    use feedwright_control::{Feedforward, Gains, KnotSource};
 
     const SERVO_S: f64 = 0.001;
 

@@ -34,8 +34,7 @@
 use feedwright_control::Window;
 use feedwright_control::vector::add_scaled;
 
-use feedwright_control::{Command, Controller, Measured, Schedule};
-use feedwright_control::{MAX_PREVIEW, preview};
+use feedwright_control::{Command, Controller, MAX_PREVIEW, Measured, Schedule, preview};
 
 /// One axis between two servo periods: the effect of its speed and of the reference speed that is held.
 #[derive(Debug, Clone, Copy, PartialEq)]

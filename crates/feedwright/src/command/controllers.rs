@@ -1,7 +1,7 @@
 //! Controllers and their parameters by name.
+use miette::{Result, miette};
 
 use crate::controllers::{Controllers, Entry, Setting};
-use miette::{Result, miette};
 
 /// The controller of a name.
 pub fn find(name: &str, table: Controllers) -> Result<&'static Entry> {

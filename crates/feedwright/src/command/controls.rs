@@ -1,12 +1,11 @@
 //! Controls that programs are for, by name, and what is told of a corrected program.
-
 use std::io::{self, Write};
 
-use crate::correct::{CorrectOutcome, TARGETS, TargetControl};
 use feedwright_gcode::suggestion::nearest;
 use miette::{Result, miette};
 
 use crate::command::terminal::wrapped;
+use crate::correct::{CorrectOutcome, TARGETS, TargetControl};
 
 /// Largest tolerance that is no slip of the unit, um.
 const MAX_TOLERANCE_UM: f64 = 1e6;

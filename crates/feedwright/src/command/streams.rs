@@ -1,16 +1,15 @@
 //! `-` in place of a file: the standard input, or the standard output.
-
 use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-use crate::output::{OutputFiles, is_standard_output};
 use feedwright_gcode::input::is_standard_input;
 use feedwright_sim::is_machine_path;
 use miette::{Result, miette};
 
 use crate::command::args::reader::ReaderArgs;
 use crate::command::console::Console;
+use crate::output::{OutputFiles, is_standard_output};
 
 /// Refuses the standard input for two things at once, and says so where a person has to type it. `inputs` are options and files.
 pub(crate) fn check_inputs<'a>(

@@ -2,8 +2,6 @@
 //!
 //! The machine itself stays in here: what makes a controller gets no hold of it, and cannot tell it what only the simulation
 //! knows. A training sees a recording of it.
-
-use crate::identifier_cache::identified;
 use feedwright_control::{AxisKnowledge, ContourIdentifier, IdentifiedAxes, IdentifierKind, ServoIdentifier, Spread};
 use feedwright_ident::{
     AxisEstimate, AxisRecordings, DriveSettings, Excitation, Model, NotIdentified, Origin, TrainedAxes, Training,
@@ -15,6 +13,7 @@ use thiserror::Error;
 
 use super::parameters::Values;
 use super::{CONTROLLERS, Choices, Entry};
+use crate::identifier_cache::identified;
 
 /// What a controller is made from.
 pub struct Setup<'a> {

@@ -2,8 +2,6 @@
 //!
 //! What disturbs has another phase, and noise other random numbers, each time a part is cut. So it is cut several times, with a rest before the start
 //! that is another part of a period of the disturbance, and with other seeds.
-
-use crate::report::harm::CutErrors;
 use feedwright_control::OpenLoop;
 use feedwright_gcode::canon::{Event, EventKind};
 use feedwright_plan::vector::{Vector, sub};
@@ -12,6 +10,7 @@ use feedwright_sim::{Commanded, Machine, Outcome, Row, Run, RunError, RunResult,
 use serde::Serialize;
 
 use crate::report::Statistics;
+use crate::report::harm::CutErrors;
 
 /// Cuts of a machine that disturbs or has noise.
 const CUTS: u32 = 4;

@@ -3,8 +3,7 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use feedwright_plan::PlcEvent;
-use feedwright_plan::{EventName, TimedEvent, named};
+use feedwright_plan::{EventName, PlcEvent, TimedEvent, named};
 use feedwright_sim::{Row, SetpointWriter, Sink, TraceWriter, Watch};
 use serde::{Deserialize, Serialize};
 

@@ -20,16 +20,16 @@ mod search;
 mod innovation;
 mod noise;
 mod place;
+use std::f64::consts::TAU;
+
+use feedwright_control::{AxisLaw, AxisStatistics};
+use feedwright_sim::{Known, KnownAxis, Period};
 
 use super::recording::Recording;
 use crate::spectrum::{self, Spectrum};
-use feedwright_control::{AxisLaw, AxisStatistics};
-use feedwright_sim::{Known, KnownAxis, Period};
 use innovation::{AxisFilter, Innovations};
 use noise::{NoiseFit, Seen};
 use place::{Through, Wave, Weighed};
-
-use std::f64::consts::TAU;
 
 /// Length of a segment of the spectrum, s: 0.2 Hz are told apart, and a minute has some twenty.
 const SEGMENT_S: f64 = 4.0;

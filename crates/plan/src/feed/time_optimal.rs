@@ -33,17 +33,18 @@ mod settle;
 mod solved;
 mod path_deviation;
 mod rest_to_rest;
+use std::collections::VecDeque;
+
+use feedwright_gcode::canon::Corner;
 
 use super::{AxisMotion, FeedPlanner, Span, feed_mm_s};
 use crate::constraints::{AxisLimits, Constraints};
 use crate::path::Piece;
 use crate::vector::{angle, dot, norm, sub};
-use feedwright_gcode::canon::Corner;
 use interior_point::SolverSettings;
 use mesh::{Mesh, MeshNode, MeshStart};
 use rest_to_rest::straight;
 use solved::MeshProblem;
-use std::collections::VecDeque;
 use steps::{AxisCaps, PlannedStep, place_after, place_powers, time_of_place};
 use track::Track;
 

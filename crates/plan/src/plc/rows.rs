@@ -1,7 +1,7 @@
 //! What an event is called, and which row of a timeline it stands in: one for each unit of the machine.
+use feedwright_gcode::canon::EventKind;
 
 use super::PlcEvent;
-use feedwright_gcode::canon::EventKind;
 
 /// An event for people.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,12 +1,12 @@
 //! The layout of a machine file: its tables, and what holds between their values.
-
 use std::f64::consts::TAU;
 use std::ops::Range;
+
+use feedwright_plan::{Durations, PlcEvent};
 
 use super::{AXIS_NAMES, Axis, Machine, Noise, Period, Squareness, Transmission, keys};
 use crate::toml_file::key::{read, read_all};
 use crate::toml_file::{Document, Fault, Table};
-use feedwright_plan::{Durations, PlcEvent};
 
 /// Relative distance from a whole number below which `servo_s / mechanics_s` counts as whole: a hundred times the
 /// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.

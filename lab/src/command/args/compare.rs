@@ -1,12 +1,11 @@
 //! Options of `feedwright-lab compare`.
-
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-use crate::compare::{Knowledge, MAX_SEEDS, Shard};
 use clap::{Args, ValueEnum};
-
 use feedwright::command::ReaderArgs;
+
+use crate::compare::{Knowledge, MAX_SEEDS, Shard};
 
 /// Compare all controllers on contours and machines
 ///

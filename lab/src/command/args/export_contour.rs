@@ -1,12 +1,11 @@
 //! Options of `feedwright-lab export-contour`.
-
 use std::path::PathBuf;
 
-use crate::contour::CONTOURS;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-
 use feedwright::command::feed_mm_s;
+
+use crate::contour::CONTOURS;
 
 /// Write a built-in contour as a G-code program
 ///

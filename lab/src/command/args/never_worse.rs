@@ -1,12 +1,11 @@
 //! Options of `feedwright-lab never-worse`.
-
 use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::Args;
+use feedwright::command::ReaderArgs;
 
 use super::sweep::{SweepArgs, at_least_one};
-use feedwright::command::ReaderArgs;
 
 /// Find programs and machines where a correction does harm
 ///

@@ -2,22 +2,21 @@
 
 mod options;
 mod print;
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::compare::{
-    Comparison, ComparisonOptions, Finished, MissingUnits, RowsStamp, Shard, compare, journal_path, merged, page,
-    recorded, rows_file, tune_alone, work_on,
-};
-use crate::journal::Journal;
 use feedwright::command::{Console, printed, remark};
 use feedwright::{OutputFile, OutputFiles, cache_folder, key_of};
 use feedwright_sim::{Machine, Watch};
 use miette::{IntoDiagnostic, Result, WrapErr, miette};
 
 use crate::command::args::compare::CompareArgs;
+use crate::compare::{
+    Comparison, ComparisonOptions, Finished, MissingUnits, RowsStamp, Shard, compare, journal_path, merged, page,
+    recorded, rows_file, tune_alone, work_on,
+};
+use crate::journal::Journal;
 
 pub(crate) fn run(args: &CompareArgs, console: &Console) -> Result<ExitCode> {
     let options = options::options(args)?;

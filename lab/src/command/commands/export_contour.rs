@@ -1,15 +1,14 @@
 //! `feedwright-lab export-contour`: a built-in contour as a program.
-
 use std::io::Write;
 use std::process::ExitCode;
 
-use crate::contour::contour;
-use crate::contour_program::contour_program;
 use feedwright::command::{Console, printed, remark, tables, tell_written};
 use feedwright::{OutputError, OutputFile, OutputFiles};
 use miette::{Result, miette};
 
 use crate::command::args::export_contour::ExportContourArgs;
+use crate::contour::contour;
+use crate::contour_program::contour_program;
 
 /// Below, digits are cut off; above, it is no more the contour, um.
 const LEAST_UM: f64 = 0.01;

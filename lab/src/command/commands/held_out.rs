@@ -1,13 +1,8 @@
 //! `feedwright-lab held-out`: random programs on random machines, open loop and corrected, and the smallest case of what fails.
-
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use crate::held_out::machines::Class;
-use crate::never_worse::generated::{Generated, draw, smallest};
-use crate::never_worse::summary::Judged;
-use crate::never_worse::{SweepJob, SweepOptions};
 use feedwright::command::{Console, make_folder, printed};
 use feedwright::{OutputFile, OutputFiles};
 use feedwright_sim::Watch;
@@ -15,6 +10,10 @@ use miette::{IntoDiagnostic, Result};
 
 use crate::command::args::held_out::HeldOutArgs;
 use crate::command::sweep::Sweep;
+use crate::held_out::machines::Class;
+use crate::never_worse::generated::{Generated, draw, smallest};
+use crate::never_worse::summary::Judged;
+use crate::never_worse::{SweepJob, SweepOptions};
 
 /// Trials for each failure: enough for a few hundred lines and a machine of thirty changes.
 const TRIALS: u32 = 400;

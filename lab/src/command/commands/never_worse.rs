@@ -1,10 +1,7 @@
 //! `feedwright-lab never-worse`: programs on many machines, open loop and corrected.
-
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::never_worse::program::{Length, Program};
-use crate::never_worse::{SweepJob, jobs, machines, sample};
 use feedwright::command::{Console, FilesToCheck, printed};
 use feedwright_gcode::Settings;
 use feedwright_sim::{Machine, Watch};
@@ -14,6 +11,8 @@ use rayon::prelude::*;
 
 use crate::command::args::never_worse::NeverWorseArgs;
 use crate::command::sweep::Sweep;
+use crate::never_worse::program::{Length, Program};
+use crate::never_worse::{SweepJob, jobs, machines, sample};
 
 /// The machine whose time counts where long programs are shortened.
 const PACE: &str = "tnv40";

@@ -1,17 +1,16 @@
 //! `feedwright-lab paper`: the experiments of the paper, its figures and `paper.json`.
-
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use crate::paper::figures::figures;
-use crate::paper::{self, Paper, page};
 use feedwright::command::{Console, make_folder, printed, wrapped};
 use feedwright::{CaptionedFigure, OutputFile, OutputFiles};
 use feedwright_sim::{Machine, Watch};
 use miette::{IntoDiagnostic, Result};
 
 use crate::command::args::paper::PaperArgs;
+use crate::paper::figures::figures;
+use crate::paper::{self, Paper, page};
 
 pub(crate) fn run(args: &PaperArgs, console: &Console) -> Result<ExitCode> {
     let machine = Machine::load(&args.machine)?;

@@ -1,11 +1,7 @@
 //! `feedwright advise`: the feedrates at which a tolerance is held.
-
 use std::io::Write;
 use std::process::ExitCode;
 
-use crate::controllers::{CONTROLLERS, Choices};
-use crate::correct::advise::{Advice, AdviseJob, FeedCut, STRETCH_LEGEND, WayAdvice};
-use crate::output::OutputFile;
 use feedwright_sim::Machine;
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
@@ -18,6 +14,9 @@ use crate::command::message::{OUT_OF_TOLERANCE, printed, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::wrapped;
+use crate::controllers::{CONTROLLERS, Choices};
+use crate::correct::advise::{Advice, AdviseJob, FeedCut, STRETCH_LEGEND, WayAdvice};
+use crate::output::OutputFile;
 
 /// Stretches that are listed.
 const LISTED: usize = 12;

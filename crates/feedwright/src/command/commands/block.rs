@@ -1,19 +1,17 @@
 //! `feedwright block`: what a component in a servo thread reads.
-
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
-use crate::output::{OutputError, OutputFile, OutputFiles};
 use feedwright_ident::{Model, exact_block};
-use feedwright_sim::Machine;
-use feedwright_sim::is_machine_path;
+use feedwright_sim::{Machine, is_machine_path};
 use miette::{Result, miette};
 
 use crate::command::args::block::BlockArgs;
 use crate::command::console::Console;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
+use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &BlockArgs, console: &Console) -> Result<ExitCode> {
     let from = Path::new(&args.file);

@@ -1,9 +1,7 @@
 //! `feedwright completions`: the completion script of a shell.
-
 use std::io::Write;
 use std::process::ExitCode;
 
-use crate::output::{OutputError, OutputFile, OutputFiles};
 use clap::CommandFactory;
 use miette::Result;
 
@@ -12,6 +10,7 @@ use crate::command::args::completions::CompletionsArgs;
 use crate::command::console::Console;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
+use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &CompletionsArgs, console: &Console) -> Result<ExitCode> {
     let mut script = Vec::new();

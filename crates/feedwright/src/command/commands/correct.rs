@@ -1,11 +1,7 @@
 //! `feedwright correct`: a corrected program for a control that gets no feedback from us.
-
 use std::io::Write;
 use std::process::ExitCode;
 
-use crate::correct::exported::ExportedFigures;
-use crate::correct::{CorrectJob, CorrectOutcome};
-use crate::output::OutputFile;
 use feedwright_sim::Machine;
 use miette::{IntoDiagnostic, Result};
 use serde_json::{Value, json};
@@ -17,6 +13,9 @@ use crate::command::message::{OUT_OF_TOLERANCE, printed, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::wrapped;
+use crate::correct::exported::ExportedFigures;
+use crate::correct::{CorrectJob, CorrectOutcome};
+use crate::output::OutputFile;
 
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;

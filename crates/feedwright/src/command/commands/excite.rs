@@ -1,13 +1,10 @@
 //! `feedwright excite`: a program to record a log with.
-
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use crate::output::{OutputError, OutputFile, OutputFiles};
 use feedwright_ident::{ExciteOptions, excitation_program};
-use feedwright_sim::Machine;
-use feedwright_sim::is_machine_path;
+use feedwright_sim::{Machine, is_machine_path};
 use miette::Result;
 
 use crate::command::args::excite::ExciteArgs;
@@ -15,6 +12,7 @@ use crate::command::console::Console;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::terminal::wrapped;
+use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &ExciteArgs, console: &Console) -> Result<ExitCode> {
     let machine = Machine::load(&args.machine)?;

@@ -1,14 +1,11 @@
 //! `feedwright identify`: a model of a machine, trained and written.
 
 mod from_log;
-
 use std::f64::consts::TAU;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::controllers::{CONTROLLERS, Choices, Setup};
-use crate::output::{OutputError, OutputFile, OutputFiles};
 use feedwright_ident::{AxisEstimate, AxisParameters, Model, identifier_name, today};
 use feedwright_sim::{Machine, StageSteps, is_machine_path};
 use miette::Result;
@@ -19,6 +16,8 @@ use crate::command::controllers::{find, settings};
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
+use crate::controllers::{CONTROLLERS, Choices, Setup};
+use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     // Without --out there is --update, which belongs to a log.

@@ -1,15 +1,14 @@
 //! `feedwright machines` and `feedwright controllers`.
-
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use crate::controllers::{BEST, Controllers, Knows};
 use feedwright_sim::{BUILT_IN_MACHINES, Machine, shown};
 use miette::Result;
 
 use crate::command::controllers::find;
 use crate::command::message::printed;
 use crate::command::terminal::wrapped;
+use crate::controllers::{BEST, Controllers, Knows};
 
 pub(crate) fn machines() -> Result<ExitCode> {
     let mut lines = String::new();

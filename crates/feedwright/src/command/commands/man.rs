@@ -1,8 +1,6 @@
 //! `feedwright man`: the manual pages, one for each command.
-
 use std::process::ExitCode;
 
-use crate::output::{OutputError, OutputFile, OutputFiles};
 use clap::{Command, CommandFactory};
 use clap_mangen::Man;
 use miette::Result;
@@ -12,6 +10,7 @@ use crate::command::args::man::ManArgs;
 use crate::command::console::Console;
 use crate::command::message::printed;
 use crate::command::streams::make_folder;
+use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(crate) fn run(args: &ManArgs, console: &Console) -> Result<ExitCode> {
     make_folder(&args.out)?;

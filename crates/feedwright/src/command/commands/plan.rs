@@ -1,14 +1,8 @@
 //! `feedwright plan`: the cycle time of a program, and what binds it.
-
 use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use crate::cycle_time::along::BindingStretch;
-use crate::cycle_time::{CycleTime, cycle_time_by, limit_names};
-use crate::job::JobError;
-use crate::output::OutputFile;
-use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
 use feedwright_gcode::suggestion::nearest;
 use feedwright_gcode::{self, Reader};
 use feedwright_plan::{Constraints, FEED_PLANNERS, MOST_OVERRIDE, feed_planner};
@@ -20,6 +14,11 @@ use crate::command::args::plan::PlanArgs;
 use crate::command::console::Console;
 use crate::command::message::{printed, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
+use crate::cycle_time::along::BindingStretch;
+use crate::cycle_time::{CycleTime, cycle_time_by, limit_names};
+use crate::job::JobError;
+use crate::output::OutputFile;
+use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);

@@ -1,18 +1,12 @@
 //! `feedwright run`: a job from the arguments, a summary of its outcome.
 
 mod summary;
-
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::controllers::{Choices, Controllers};
-use crate::correct::{TARGETS, TargetControl};
-use crate::fastest::FastestError;
-use crate::job::{Job, JobError, LogFile, Outputs};
 use feedwright_gcode::input::is_standard_input;
 use feedwright_ident::Model;
-use feedwright_sim::Machine;
-use feedwright_sim::is_machine_path;
+use feedwright_sim::{Machine, is_machine_path};
 use miette::{Result, miette};
 
 use crate::command::args::run::RunArgs;
@@ -21,6 +15,10 @@ use crate::command::controllers::{find, settings};
 use crate::command::controls::control;
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell, warn};
 use crate::command::streams::{check_inputs, tables};
+use crate::controllers::{Choices, Controllers};
+use crate::correct::{TARGETS, TargetControl};
+use crate::fastest::FastestError;
+use crate::job::{Job, JobError, LogFile, Outputs};
 
 /// Cuts a part with controllers of a table.
 pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitCode> {

@@ -1,14 +1,13 @@
 //! What is compared, from the arguments.
-
-use crate::compare::held_out_work::HeldOutSeeds;
-use crate::compare::{ComparisonOptions, Tuning, Workpiece, recorded};
-use crate::peers::CONTROLLERS;
 use feedwright::{BASELINE, Entry};
 use feedwright_gcode::suggestion::nearest;
 use feedwright_sim::{BUILT_IN_MACHINES, Machine};
 use miette::{Result, miette};
 
 use crate::command::args::compare::{CompareArgs, TuningSource, Work};
+use crate::compare::held_out_work::HeldOutSeeds;
+use crate::compare::{ComparisonOptions, Tuning, Workpiece, recorded};
+use crate::peers::CONTROLLERS;
 
 pub(super) fn options(args: &CompareArgs) -> Result<ComparisonOptions> {
     let mut workpieces = match args.work {

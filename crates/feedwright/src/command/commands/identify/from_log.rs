@@ -1,11 +1,8 @@
 //! `feedwright identify LOG`: the machine file of a real machine.
-
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use crate::log_job::{LogIdentified, LogJob, machine_text, updated_text, write_json, write_page};
-use crate::output::{OutputError, OutputFile, OutputFiles};
 use feedwright_gcode::input;
 use feedwright_ident::{AxisFacts, Log, LogError};
 use feedwright_sim::{Machine, Watch};
@@ -16,6 +13,8 @@ use crate::command::console::Console;
 use crate::command::message::{printed, remark};
 use crate::command::streams::{check_inputs, tables, tell_written};
 use crate::command::terminal::wrapped;
+use crate::log_job::{LogIdentified, LogJob, machine_text, updated_text, write_json, write_page};
+use crate::output::{OutputError, OutputFile, OutputFiles};
 
 pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> Result<ExitCode> {
     let of_log = &args.of_log;
