@@ -16,7 +16,7 @@ use args::{Cli, CommandArgs};
 pub fn main() -> ExitCode {
     let cli: Cli = parse();
     let writes_files = !matches!(cli.command, CommandArgs::Controllers { .. });
-    with_console(cli.quiet, writes_files, |console| run(cli.command, console))
+    with_console(cli.common.quiet, writes_files, |console| run(cli.command, console))
 }
 
 fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {

@@ -35,7 +35,7 @@ use rows::{
     TORQUE_NOISE,
 };
 
-/// `cross-coupled`.
+/// PID control of the contour error, added to the command across the path.
 pub static CROSS_COUPLED: Entry = controller!(
     "cross-coupled",
     "PID control of the contour error, added to the command across the path",
@@ -46,7 +46,7 @@ pub static CROSS_COUPLED: Entry = controller!(
     |setup, values| make::cross_coupled(setup, values)
 );
 
-/// `contour-compensation`.
+/// The reference moved by the estimated contour error.
 pub static CONTOUR_COMPENSATION: Entry = controller!(
     "contour-compensation",
     "the reference moved by the estimated contour error",
@@ -72,7 +72,7 @@ pub static CONTOUR_COMPENSATION: Entry = controller!(
     |setup, values| make::contour_compensation(setup, values)
 );
 
-/// `fuzzy-feedrate`.
+/// Fuzzy rules on the contour error and its change, speed along the path only.
 pub static FUZZY_FEEDRATE: Entry = controller!(
     "fuzzy-feedrate",
     "fuzzy rules on the contour error and its change, speed along the path only",
@@ -105,7 +105,7 @@ pub static FUZZY_FEEDRATE: Entry = controller!(
     |setup, values| make::fuzzy_feedrate(setup, values)
 );
 
-/// `cross-coupled-feedrate`.
+/// PID control of the contour error, and a feedrate that keeps it within what is allowed.
 pub static CROSS_COUPLED_FEEDRATE: Entry = controller!(
     "cross-coupled-feedrate",
     "PID control of the contour error, and a feedrate that keeps it within what is allowed",
@@ -116,7 +116,7 @@ pub static CROSS_COUPLED_FEEDRATE: Entry = controller!(
     |setup, values| make::cross_coupled_feedrate(setup, values)
 );
 
-/// `feedforward-as-delivered`.
+/// Velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction.
 pub static FEEDFORWARD_AS_DELIVERED: Entry = controller!(
     "feedforward-as-delivered",
     "velocity and acceleration feedforward as controls are delivered, set to each axis; nothing of friction",
@@ -127,7 +127,7 @@ pub static FEEDFORWARD_AS_DELIVERED: Entry = controller!(
     |setup, values| make::feedforward_as_delivered(setup, values)
 );
 
-/// `feedforward-cross-coupled`.
+/// Velocity, acceleration and friction feedforward, and PID control of the contour error behind it.
 pub static FEEDFORWARD_CROSS_COUPLED: Entry = controller!(
     "feedforward-cross-coupled",
     "velocity, acceleration and friction feedforward, and PID control of the contour error behind it",
@@ -138,7 +138,7 @@ pub static FEEDFORWARD_CROSS_COUPLED: Entry = controller!(
     |setup, values| make::feedforward_cross_coupled(setup, values)
 );
 
-/// `input-shaping`.
+/// The path shaped so that a resonance is not excited, and feedforward of it with the exact model.
 pub static INPUT_SHAPING: Entry = controller!(
     "input-shaping",
     "the path shaped so that a resonance is not excited, and feedforward of it with the exact model",
@@ -149,7 +149,7 @@ pub static INPUT_SHAPING: Entry = controller!(
     |setup, values| make::input_shaping(setup, values)
 );
 
-/// `zero-phase`.
+/// Zero phase error tracking control with the linear model of the machine.
 pub static ZERO_PHASE: Entry = controller!(
     "zero-phase",
     "zero phase error tracking control with the linear model of the machine",
@@ -160,7 +160,7 @@ pub static ZERO_PHASE: Entry = controller!(
     |setup, values| make::zero_phase(setup, values)
 );
 
-/// `zero-phase-friction`.
+/// Zero phase error tracking control, and feedforward of the Coulomb friction.
 pub static ZERO_PHASE_FRICTION: Entry = controller!(
     "zero-phase-friction",
     "zero phase error tracking control, and feedforward of the Coulomb friction",
@@ -171,7 +171,7 @@ pub static ZERO_PHASE_FRICTION: Entry = controller!(
     |setup, values| make::zero_phase_friction(setup, values)
 );
 
-/// `disturbance-observer`.
+/// Velocity and acceleration feedforward, and an observer of friction and cutting force.
 pub static DISTURBANCE_OBSERVER: Entry = controller!(
     "disturbance-observer",
     "velocity and acceleration feedforward, and an observer of friction and cutting force",
@@ -189,7 +189,7 @@ pub static DISTURBANCE_OBSERVER: Entry = controller!(
     |setup, values| make::disturbance_observer(setup, values)
 );
 
-/// `kalman-disturbance`.
+/// Velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out.
 pub static KALMAN_DISTURBANCE: Entry = controller!(
     "kalman-disturbance",
     "velocity, acceleration and friction feedforward, and a Kalman filter whose disturbance is taken out",
@@ -200,7 +200,7 @@ pub static KALMAN_DISTURBANCE: Entry = controller!(
     |setup, values| make::kalman_disturbance(setup, values)
 );
 
-/// `model-predictive`.
+/// Contouring over 20 knots ahead with the exact model of the machine, solved to convergence.
 pub static MODEL_PREDICTIVE: Entry = controller!(
     "model-predictive",
     "contouring over 20 knots ahead with the exact model of the machine, solved to convergence",
@@ -211,7 +211,7 @@ pub static MODEL_PREDICTIVE: Entry = controller!(
     |setup, values| make::model_predictive(setup, values)
 );
 
-/// `lqg-preview`.
+/// The limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine.
 pub static LQG_PREVIEW: Entry = controller!(
     "lqg-preview",
     "the limit: Kalman filter and linear-quadratic regulator with preview, by everything that can be known of the machine",
@@ -222,7 +222,7 @@ pub static LQG_PREVIEW: Entry = controller!(
     |setup, values| make::lqg_preview(setup, values)
 );
 
-/// `iterative-learning-1`.
+/// Offsets learned from the contour error of the same part, 1 lap of practice.
 pub static ITERATIVE_LEARNING_1: Entry = controller!(
     "iterative-learning-1",
     "offsets learned from the contour error of the same part, 1 lap of practice",
@@ -233,7 +233,7 @@ pub static ITERATIVE_LEARNING_1: Entry = controller!(
     |setup, values| make::iterative_learning(setup, values)
 );
 
-/// `iterative-learning-3`.
+/// Offsets learned from the contour error of the same part, 3 laps of practice.
 pub static ITERATIVE_LEARNING_3: Entry = controller!(
     "iterative-learning-3",
     "offsets learned from the contour error of the same part, 3 laps of practice",
@@ -244,7 +244,7 @@ pub static ITERATIVE_LEARNING_3: Entry = controller!(
     |setup, values| make::iterative_learning(setup, values)
 );
 
-/// `iterative-learning-10`.
+/// Offsets learned from the contour error of the same part, 10 laps of practice.
 pub static ITERATIVE_LEARNING_10: Entry = controller!(
     "iterative-learning-10",
     "offsets learned from the contour error of the same part, 10 laps of practice",

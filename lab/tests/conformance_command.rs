@@ -5,6 +5,8 @@
 #[expect(dead_code, reason = "it is used in part")]
 #[path = "../../crates/feedwright/tests/common/command.rs"]
 mod common;
+#[path = "../../crates/feedwright/tests/common/controller_list.rs"]
+mod controller_list;
 
 use common::Folder;
 use serde_json::Value;
@@ -135,14 +137,5 @@ fn the_comparison_has_the_documented_rows_and_its_own_part() {
 #[test]
 fn the_list_names_every_controller_with_its_parameters() {
     let folder = Folder::new();
-    let controllers = folder.run(&["controllers"]).succeeded().stdout;
-    for entry in feedwright_lab::CONTROLLERS {
-        assert!(controllers.lines().any(|line| line.starts_with(entry.name)), "{controllers}");
-        let one = folder.run(&["controllers", entry.name]).succeeded().stdout;
-        let in_words = one.split_whitespace().collect::<Vec<_>>().join(" ");
-        for parameter in entry.parameters {
-            let named = one.lines().any(|line| line.starts_with(&format!("{} = ", parameter.name)));
-            assert!(named && in_words.contains(parameter.reason), "{one}");
-        }
-    }
+    controller_list::lists(&folder, feedwright_lab::CONTROLLERS);
 }

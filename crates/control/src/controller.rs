@@ -108,8 +108,8 @@ pub trait Controller<const N: usize> {
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let _ = (window, measured);
     }
-    /// By how much the last prediction missed what was measured, mm; 0 where there was none. `safety` reads it
-    /// after each decision.
+    /// Distance between the last prediction and the measurement, mm; 0 without a prediction. `safety` reads
+    /// it after each decision.
     fn prediction_error_mm(&self) -> f64 {
         0.0
     }

@@ -28,7 +28,7 @@ use args::{Cli, CommandArgs};
 pub use args::feed::feed_mm_s;
 pub use args::reader::ReaderArgs;
 pub use args::run::RunArgs;
-pub use args::{COLUMNS, EVERYWHERE, parse};
+pub use args::{COLUMNS, CommonArgs, parse};
 pub use commands::list::{controller, controllers};
 pub use commands::run::run as run_part;
 pub use console::Console;
@@ -37,13 +37,13 @@ pub use files_to_check::FilesToCheck;
 pub use message::{OUT_OF_TOLERANCE, printed, remark};
 pub use streams::{make_folder, tables, tell_written};
 pub use table::{ConsoleTable, TableColumn};
-pub use terminal::{ColorWhen, wrapped};
+pub use terminal::wrapped;
 
 /// Runs the command of this process.
 pub fn main() -> ExitCode {
     let cli: Cli = parse();
     let writes_files = cli.command.writes_files();
-    with_console(cli.quiet, writes_files, |console| run(cli.command, console))
+    with_console(cli.common.quiet, writes_files, |console| run(cli.command, console))
 }
 
 /// Runs a command, shows its error, and returns its exit code. Where the command writes files, an interrupt ends it between two steps.

@@ -97,7 +97,7 @@ macro_rules! controller {
     }};
 }
 
-/// `open-loop`.
+/// The programmed path at the planned feed.
 pub static OPEN_LOOP: Entry = controller!(
     "open-loop",
     "the programmed path at the planned feed",
@@ -108,7 +108,7 @@ pub static OPEN_LOOP: Entry = controller!(
     |_setup, _values| Box::new(OpenLoop)
 );
 
-/// `feedforward`.
+/// Velocity, acceleration and friction feedforward with the exact model of the machine.
 pub static FEEDFORWARD: Entry = controller!(
     "feedforward",
     "velocity, acceleration and friction feedforward with the exact model of the machine",
@@ -119,7 +119,7 @@ pub static FEEDFORWARD: Entry = controller!(
     |setup, values| make::feedforward(setup, values)
 );
 
-/// `magnitude-only`.
+/// Inversion of the identifier, speed along the path only.
 pub static MAGNITUDE_ONLY: Entry = controller!(
     "magnitude-only",
     "inversion of the identifier, speed along the path only",
@@ -130,7 +130,7 @@ pub static MAGNITUDE_ONLY: Entry = controller!(
     |setup, values| make::magnitude_only(setup, values)
 );
 
-/// `two-dimensional`.
+/// Inversion of the identifier, speed and geometry.
 pub static TWO_DIMENSIONAL: Entry = controller!(
     "two-dimensional",
     "inversion of the identifier, speed and geometry",
@@ -141,7 +141,7 @@ pub static TWO_DIMENSIONAL: Entry = controller!(
     |setup, values| make::two_dimensional(setup, values)
 );
 
-/// `receding-horizon`.
+/// Geometry planned over 20 knots ahead through an identified servo, speed as planned.
 pub static RECEDING_HORIZON: Entry = controller!(
     "receding-horizon",
     "geometry planned over 20 knots ahead through an identified servo, speed as planned",
@@ -163,7 +163,7 @@ pub static RECEDING_HORIZON: Entry = controller!(
     |setup, values| make::receding_horizon(setup, values)
 );
 
-/// `lqg-identified`.
+/// Kalman filter and linear-quadratic regulator with preview, by an identified law of each axis.
 pub static LQG_IDENTIFIED: Entry = controller!(
     "lqg-identified",
     "Kalman filter and linear-quadratic regulator with preview, by an identified law of each axis",
@@ -199,7 +199,7 @@ impl Controllers {
 
     /// All rows.
     pub fn iter(self) -> impl Iterator<Item = &'static Entry> {
-        self.0.iter().copied()
+        self.into_iter()
     }
 
     /// Finds a row by its name.

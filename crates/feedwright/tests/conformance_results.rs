@@ -5,6 +5,8 @@
 #[path = "common/command.rs"]
 #[expect(dead_code, reason = "every test file uses a part of this")]
 mod common;
+#[path = "common/controller_list.rs"]
+mod controller_list;
 
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
@@ -196,16 +198,7 @@ fn output_that_goes_to_no_terminal_has_no_escape_codes() {
 #[test]
 fn lists_name_all_there_is() {
     let folder = Folder::new();
-    let controllers = folder.run(&["controllers"]).succeeded().stdout;
-    for entry in feedwright::CONTROLLERS {
-        assert!(controllers.lines().any(|line| line.starts_with(entry.name)), "{controllers}");
-        let one = folder.run(&["controllers", entry.name]).succeeded().stdout;
-        let in_words = one.split_whitespace().collect::<Vec<_>>().join(" ");
-        for parameter in entry.parameters {
-            let named = one.lines().any(|line| line.starts_with(&format!("{} = ", parameter.name)));
-            assert!(named && in_words.contains(parameter.reason), "{one}");
-        }
-    }
+    controller_list::lists(&folder, feedwright::CONTROLLERS);
     let machines = folder.run(&["machines"]).succeeded().stdout;
     assert!(machines.starts_with("tnv40"), "{machines}");
     for command in ["run", "plan", "check", "canon", "machines", "controllers"] {

@@ -8,7 +8,7 @@ pub(crate) mod paper;
 pub(crate) mod export_contour;
 
 use clap::{Parser, Subcommand};
-use feedwright::command::{COLUMNS, ColorWhen, EVERYWHERE, RunArgs};
+use feedwright::command::{COLUMNS, CommonArgs, RunArgs};
 
 use compare::CompareArgs;
 use export_contour::ExportContourArgs;
@@ -23,14 +23,8 @@ use paper::PaperArgs;
 #[derive(Debug, Parser)]
 #[command(name = "feedwright-lab", version, propagate_version = true, max_term_width = COLUMNS, after_long_help = AFTER)]
 pub(crate) struct Cli {
-    /// Print results and errors only: no progress, no remarks.
-    #[arg(short, long, global = true, help_heading = EVERYWHERE)]
-    pub(crate) quiet: bool,
-    /// When messages are colored.
-    ///
-    /// auto colors on a terminal, unless NO_COLOR is set or TERM is dumb.
-    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE)]
-    pub(crate) color: ColorWhen,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
     #[command(subcommand)]
     pub(crate) command: CommandArgs,
 }

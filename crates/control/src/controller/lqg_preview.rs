@@ -17,7 +17,7 @@
 //!
 //! | File | What |
 //! |---|---|
-//! | `lqg_preview/control_weight.rs` | price and bounds |
+//! | `lqg_preview/control_weight.rs` | control weight and bounds of the offset |
 //! | `lqg_preview/riccati.rs` | the gains |
 //! | `lqg_preview/linear.rs` | the linear part of an axis and of what acts on it |
 //! | `lqg_preview/screw.rs` | where the motor has to be behind a ball screw that gives |

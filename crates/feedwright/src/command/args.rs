@@ -18,7 +18,7 @@ pub(crate) mod man;
 use std::ffi::OsString;
 use std::io::{self, IsTerminal};
 
-use clap::{ColorChoice, Command, CommandFactory, Parser, Subcommand, ValueEnum};
+use clap::{Args, ColorChoice, Command, CommandFactory, Parser, Subcommand, ValueEnum};
 
 use advise::AdviseArgs;
 use block::BlockArgs;
@@ -42,20 +42,26 @@ use crate::command::terminal::{ColorWhen, columns, is_dumb, set_color};
 #[derive(Debug, Parser)]
 #[command(name = "feedwright", version, propagate_version = true, max_term_width = COLUMNS, after_long_help = AFTER)]
 pub(crate) struct Cli {
-    /// Print results and errors only: no progress, no remarks.
-    #[arg(short, long, global = true, help_heading = EVERYWHERE)]
-    pub(crate) quiet: bool,
-    /// When messages are coloured.
-    ///
-    /// auto colours on a terminal, unless NO_COLOR is set or TERM is dumb.
-    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE)]
-    pub(crate) color: ColorWhen,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
     #[command(subcommand)]
     pub(crate) command: CommandArgs,
 }
 
-/// Heading of the options of every command.
-pub const EVERYWHERE: &str = "Options of every command";
+/// Options of every command.
+#[derive(Debug, Args)]
+pub struct CommonArgs {
+    /// Print results and errors only: no progress, no remarks.
+    #[arg(short, long, global = true, help_heading = EVERYWHERE)]
+    pub quiet: bool,
+    /// When messages are coloured.
+    ///
+    /// auto colours on a terminal, unless NO_COLOR is set or TERM is dumb.
+    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorWhen::Auto, help_heading = EVERYWHERE)]
+    pub color: ColorWhen,
+}
+
+const EVERYWHERE: &str = "Options of every command";
 
 /// Longer lines are hard to read.
 pub const COLUMNS: usize = 100;
