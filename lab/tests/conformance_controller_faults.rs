@@ -5,10 +5,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use feedwright::{BASELINE, BEST, CONTROLLERS, Choices, HORIZON, MAX_UM, Make, Setup};
+use feedwright::{BASELINE, BEST, Choices, HORIZON, MAX_UM, Make, Setup};
 use feedwright_control::vector::sub;
 use feedwright_control::{Bounds, Controller, Knot, State, Tick};
-use feedwright_lab::Workpiece;
+use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_plan::Step;
 use feedwright_sim::{Machine, Plant, Reference, Sample};
 use rayon::prelude::*;

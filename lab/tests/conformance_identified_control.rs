@@ -6,10 +6,10 @@
 #[path = "../../crates/ident/tests/common/identification_log.rs"]
 mod identification_log;
 
-use feedwright::{CONTROLLERS, Choices, LogJob, Make, Setup, machine_text};
+use feedwright::{Choices, LogJob, Make, Setup, machine_text};
 use feedwright_gcode::canon::Corner;
 use feedwright_ident::AxisFacts;
-use feedwright_lab::contour;
+use feedwright_lab::{CONTROLLERS, contour};
 use feedwright_sim::{Machine, Row, Run, Sink};
 use identification_log::log_of;
 use rayon::prelude::*;

@@ -2,9 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use feedwright::{BASELINE, CONTROLLERS, Choices, Entry, Make, Setup};
+use feedwright::{BASELINE, Choices, Entry, Make, Setup};
 use feedwright_gcode::{Reader, Settings};
-use feedwright_lab::Workpiece;
+use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_plan::{Step, signed_distance_mm};
 use feedwright_sim::{Machine, Row, Run, path_steps};
 

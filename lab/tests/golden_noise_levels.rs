@@ -12,8 +12,8 @@ mod show;
 
 use std::path::PathBuf;
 
-use feedwright::{BASELINE, CONTROLLERS};
-use feedwright_lab::{Comparison, ComparisonOptions, Journal, Knowledge, Tuning, Workpiece, compare};
+use feedwright::BASELINE;
+use feedwright_lab::{CONTROLLERS, Comparison, ComparisonOptions, Journal, Knowledge, Tuning, Workpiece, compare};
 use feedwright_sim::Machine;
 use levels::{BASE, KINDS, LEVELS};
 

@@ -7,9 +7,9 @@
 #[path = "../examples/tables/table.rs"]
 mod table;
 
-use feedwright::CONTROLLERS;
 use feedwright_lab::{
-    Comparison, ComparisonOptions, ComparisonRow, HeldOutSeeds, Journal, Knowledge, Tuning, Workpiece, compare,
+    CONTROLLERS, Comparison, ComparisonOptions, ComparisonRow, HeldOutSeeds, Journal, Knowledge, Tuning, Workpiece,
+    compare,
 };
 use feedwright_sim::Machine;
 use table::{Place, root};

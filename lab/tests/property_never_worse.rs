@@ -8,8 +8,10 @@
 
 use std::sync::Arc;
 
-use feedwright::{BEST, CONTROLLERS};
-use feedwright_lab::{Class, Cutter, Generated, Length, Program, SweepOptions, SweepRow, Variant, draw, smallest};
+use feedwright::BEST;
+use feedwright_lab::{
+    CONTROLLERS, Class, Cutter, Generated, Length, Program, SweepOptions, SweepRow, Variant, draw, smallest,
+};
 
 /// Cuts: with the identification of their machines about twenty seconds.
 const CUTS: usize = 36;

@@ -2,8 +2,8 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use feedwright::{BASELINE, CONTROLLERS, Choices, Make, Setup, Statistics};
-use feedwright_lab::Workpiece;
+use feedwright::{BASELINE, Choices, Make, Setup, Statistics};
+use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Machine, Period, Run};
 use rayon::prelude::*;
 

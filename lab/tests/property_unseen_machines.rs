@@ -7,9 +7,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-use feedwright::{BASELINE, BEST, CONTROLLERS, Choices, HORIZON, Make, RMS_UM, Setup, Statistics};
+use feedwright::{BASELINE, BEST, Choices, HORIZON, Make, RMS_UM, Setup, Statistics};
 use feedwright_control::Controller;
-use feedwright_lab::Workpiece;
+use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Axis, Limits, Machine, Outcome, Run, RunResult, Transmission};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;

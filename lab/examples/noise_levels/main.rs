@@ -11,9 +11,9 @@ mod show;
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use feedwright::{CONTROLLERS, Entry, cache_folder, key_of};
+use feedwright::{Entry, cache_folder, key_of};
 use feedwright_lab::{
-    Comparison, ComparisonOptions, Finished, Journal, Knowledge, Tuning, Workpiece, compare, journal_path,
+    CONTROLLERS, Comparison, ComparisonOptions, Finished, Journal, Knowledge, Tuning, Workpiece, compare, journal_path,
 };
 use feedwright_sim::{Machine, Watch};
 use levels::{BASE, KINDS, LEVELS};
