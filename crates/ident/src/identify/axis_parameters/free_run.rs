@@ -30,35 +30,77 @@ impl FreeRun {
         }
     }
 
-    /// Positions at the starts of the servo periods of these commands, as they are measured but for all noise, mm; from a place, mm,
-    /// and a speed, mm/s.
-    pub(super) fn measured_mm(&self, commands_mm: &[f64], start_mm: f64, start_mm_s: f64) -> Vec<f64> {
-        let scale = self.law.parameters.rad_per_mm;
-        let per_servo = self.law.periods.mechanics_per_servo as usize;
-        let [drive_late, measured_late] = self.late;
-        let start_rad = start_mm * scale;
-        let mut masses = MechanicsState::moving(start_rad, start_mm_s * scale);
-        let mut drive = DriveState::AT_REST;
-        let mut course_rad = Vec::with_capacity(commands_mm.len() * per_servo);
-        let mut sent = Vec::<DriveReference>::with_capacity(commands_mm.len());
-        let mut measured_mm = Vec::with_capacity(commands_mm.len());
+    /// Positions at the starts of the servo periods of these commands, as they are measured but for all noise, mm, of several axes
+    /// with the same settings; from a place, mm, and a speed, mm/s.
+    ///
+    /// They run side by side: each step of one waits for its step before, and the processor works on the others meanwhile.
+    pub(super) fn measured_mm<const M: usize>(
+        axes: &[Self; M],
+        commands_mm: &[f64],
+        start_mm: f64,
+        start_mm_s: f64,
+    ) -> [Vec<f64>; M] {
+        let mut running = axes.each_ref().map(|axis| FreeAxis::new(axis, commands_mm.len(), start_mm, start_mm_s));
         for command_mm in commands_mm {
-            course_rad.push(masses.motor.angle_rad);
-            let measured_rad =
-                (course_rad.len() - 1).checked_sub(measured_late).map_or(start_rad, |moment| course_rad[moment]);
-            measured_mm.push(measured_rad / scale);
-            let command_rad = command_mm * scale;
-            sent.push(self.drive.position_loop(&self.law, command_rad, measured_rad, &mut masses.motor, &mut drive));
-            for substep in 0..per_servo {
-                if substep > 0 {
-                    course_rad.push(masses.motor.angle_rad);
-                }
-                let arrived = (course_rad.len() - 1).checked_sub(drive_late).map(|moment| sent[moment / per_servo]);
-                let reference = arrived.unwrap_or_default();
-                let torque_nm = self.drive.torque_nm(&self.law, reference, masses.motor.speed_rad_s, &mut drive);
-                self.mechanics.advance(&mut masses, torque_nm, 0.0);
+            running.iter_mut().for_each(|axis| axis.command(*command_mm));
+            for _ in 0..axes[0].law.periods.mechanics_per_servo {
+                running.iter_mut().for_each(FreeAxis::step);
             }
         }
-        measured_mm
+        running.map(|axis| axis.measured_mm)
+    }
+}
+
+/// An axis on its way.
+struct FreeAxis<'a> {
+    axis: &'a FreeRun,
+    start_rad: f64,
+    masses: MechanicsState,
+    drive: DriveState,
+    /// Mechanics periods before now, and the angle at the start of each, rad.
+    moment: usize,
+    course_rad: Vec<f64>,
+    sent: Vec<DriveReference>,
+    measured_mm: Vec<f64>,
+}
+
+impl<'a> FreeAxis<'a> {
+    fn new(axis: &'a FreeRun, commands: usize, start_mm: f64, start_mm_s: f64) -> Self {
+        let scale = axis.law.parameters.rad_per_mm;
+        let start_rad = start_mm * scale;
+        Self {
+            axis,
+            start_rad,
+            masses: MechanicsState::moving(start_rad, start_mm_s * scale),
+            drive: DriveState::AT_REST,
+            moment: 0,
+            course_rad: vec![0.0; commands * axis.law.periods.mechanics_per_servo as usize],
+            sent: Vec::with_capacity(commands),
+            measured_mm: Vec::with_capacity(commands),
+        }
+    }
+
+    /// A servo period begins.
+    fn command(&mut self, command_mm: f64) {
+        let FreeRun { law, drive, late: [_, measured_late], .. } = self.axis;
+        let scale = law.parameters.rad_per_mm;
+        self.course_rad[self.moment] = self.masses.motor.angle_rad;
+        let measured_rad = self.moment.checked_sub(*measured_late).map_or(self.start_rad, |then| self.course_rad[then]);
+        self.measured_mm.push(measured_rad / scale);
+        let motor = &mut self.masses.motor;
+        self.sent.push(drive.position_loop(law, command_mm * scale, measured_rad, motor, &mut self.drive));
+    }
+
+    /// A mechanics period.
+    #[inline]
+    fn step(&mut self) {
+        let FreeRun { law, drive, mechanics, late: [drive_late, _] } = self.axis;
+        self.course_rad[self.moment] = self.masses.motor.angle_rad;
+        let per_servo = law.periods.mechanics_per_servo as usize;
+        let arrived = self.moment.checked_sub(*drive_late).map(|then| self.sent[then / per_servo]);
+        let speed_rad_s = self.masses.motor.speed_rad_s;
+        let torque_nm = drive.torque_nm(law, arrived.unwrap_or_default(), speed_rad_s, &mut self.drive);
+        mechanics.advance(&mut self.masses, torque_nm, 0.0);
+        self.moment += 1;
     }
 }

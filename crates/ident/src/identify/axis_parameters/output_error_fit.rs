@@ -160,14 +160,20 @@ impl OutputErrorFit<'_> {
 
     /// What the free run of these parameters leaves of each measured position, mm, by stretch.
     fn left_mm(&self, at: &AxisParameters) -> Vec<Vec<f64>> {
-        let run = FreeRun::new(self.settings, at);
+        self.left_of_each_mm([*at]).into_iter().map(|[left]| left).collect()
+    }
+
+    /// The same of several sets of parameters.
+    fn left_of_each_mm<const M: usize>(&self, at: [AxisParameters; M]) -> Vec<[Vec<f64>; M]> {
+        let runs = at.map(|at| FreeRun::new(self.settings, &at));
         let left = |stretch: &Stretch| {
             let Stretch { commands_mm, measured_mm } = stretch;
             let moved_mm = measured_mm[START_KNOTS] - measured_mm[0];
             let start_mm_s = moved_mm / (START_KNOTS as f64 * self.settings.periods.servo_s);
-            let simulated_mm = run.measured_mm(commands_mm, measured_mm[0], start_mm_s);
-            let pairs = measured_mm.iter().zip(&simulated_mm).skip(self.settled);
-            pairs.map(|(measured, simulated)| measured - simulated).collect()
+            FreeRun::measured_mm(&runs, commands_mm, measured_mm[0], start_mm_s).map(|simulated_mm| {
+                let pairs = measured_mm.iter().zip(&simulated_mm).skip(self.settled);
+                pairs.map(|(measured, simulated)| measured - simulated).collect()
+            })
         };
         self.stretches.par_iter().map(left).collect()
     }
@@ -182,17 +188,19 @@ impl OutputErrorFit<'_> {
         let moved_by = |i: usize, by: f64| {
             let mut values = at.array();
             values[i] += by * DIFFERENCES[i] * scales[i];
-            self.left_mm(&AxisParameters::of(values))
+            AxisParameters::of(values)
         };
-        let moved: Vec<[Vec<Vec<f64>>; 2]> = (0..free).map(|i| [moved_by(i, -1.0), moved_by(i, 1.0)]).collect();
+        let moved: Vec<Vec<[Vec<f64>; 2]>> =
+            (0..free).map(|i| self.left_of_each_mm([moved_by(i, -1.0), moved_by(i, 1.0)])).collect();
         let mut curvature = DMatrix::zeros(free, free);
         let (mut scatter, mut gradient) = (DMatrix::zeros(free, free), DVector::zeros(free));
         let mut slopes = DVector::zeros(free);
         for (stretch, left) in left.iter().enumerate() {
             let mut of_stretch = DVector::zeros(free);
             for (k, left) in left.iter().enumerate() {
-                for (i, [below, above]) in moved.iter().enumerate() {
-                    slopes[i] = (below[stretch][k] - above[stretch][k]) / (2.0 * DIFFERENCES[i]);
+                for (i, moved) in moved.iter().enumerate() {
+                    let [below, above] = &moved[stretch];
+                    slopes[i] = (below[k] - above[k]) / (2.0 * DIFFERENCES[i]);
                 }
                 of_stretch.axpy(*left, &slopes, 1.0);
                 curvature.ger(1.0, &slopes, &slopes, 1.0);
