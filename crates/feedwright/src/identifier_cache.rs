@@ -1,15 +1,21 @@
 //! Trained identifiers are kept by content: the same recording and training find the same weights. The recording is made
 //! anew each time, which takes a fraction of the training, so that no change of machine, plant or planner finds old weights.
+//! Identified axes are found by the program that identified them alone.
 //!
-//! One small JSON file each, in the user's cache folder, or in `$FEEDWRIGHT_CACHE` where that is set; where that is empty nothing is
-//! kept. Each has a checksum: what cannot be read, is damaged or does not hold a network is trained anew; one that cannot be written
-//! is not an error.
-use std::io::Write;
-use std::path::PathBuf;
+//! One small file each, in the user's cache folder, or in `$FEEDWRIGHT_CACHE` where that is set; where that is empty nothing is
+//! kept. Each has a checksum: what cannot be read, is damaged or does not hold an identifier is trained anew; one that cannot be
+//! written is not an error.
 
-use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS};
-use feedwright_ident::{Excitation, Recording, Rng, TrainedContour, Training, train_contour};
-use feedwright_sim::Machine;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS, IdentifiedAxes};
+use feedwright_ident::{
+    AxisRecordings, Excitation, Model, NotIdentified, Origin, Recording, Rng, TrainedContour, Training, train_axes,
+    train_contour,
+};
+use feedwright_sim::{Known, Machine};
 use serde::{Deserialize, Serialize};
 
 use crate::checked_json::{checked, with_check};
@@ -57,6 +63,39 @@ pub fn trained<const N: usize>(
     identified
 }
 
+/// The axes that are identified from recordings, from the cache where they are there.
+///
+/// # Errors
+/// Recordings in which parameters do not show.
+pub(crate) fn identified_axes<const N: usize>(
+    recordings: &AxisRecordings<N>,
+    known: &Known,
+    used_on: &Known,
+) -> Result<IdentifiedAxes<N>, NotIdentified> {
+    let recording = recordings.joined();
+    let key = |program: &String| {
+        key_of(&[program.as_bytes(), recording.hash().as_bytes(), format!("{known:?}{used_on:?}").as_bytes()])
+    };
+    let file = PROGRAM.as_ref().zip(folder()).map(|(program, folder)| folder.join(format!("{}.toml", key(program))));
+    let kept = file.as_deref().and_then(|file| Model::read(file).ok()?.identified_axes());
+    if let Some(axes) = kept {
+        return Ok(axes);
+    }
+    let trained = train_axes(recordings, known, used_on)?;
+    if let Some(file) = file {
+        let origin = Origin { source: "a simulated excitation".to_owned(), date: "1970-01-01".to_owned() };
+        // A cache that cannot be written costs time, nothing else.
+        let _ = write(&file, &Model::of_axes(&recording, &trained, origin).text());
+    }
+    Ok(trained.axes)
+}
+
+/// A hash of this program.
+static PROGRAM: LazyLock<Option<String>> = LazyLock::new(|| {
+    let program = std::env::current_exe().and_then(std::fs::read).ok()?;
+    Some(blake3::hash(&program).to_hex().to_string())
+});
+
 /// The folder of the cache, where there is one.
 pub fn folder() -> Option<PathBuf> {
     match std::env::var_os("FEEDWRIGHT_CACHE") {
@@ -96,16 +135,19 @@ fn load<const N: usize>(file: &PathBuf) -> Option<TrainedContour<N>> {
     Some(TrainedContour { net, fit_um: stored.fit_um, samples: stored.samples })
 }
 
-fn store<const N: usize>(file: &std::path::Path, identified: &TrainedContour<N>) -> std::io::Result<()> {
-    let Some(folder) = file.parent() else { return Ok(()) };
-    std::fs::create_dir_all(folder)?;
+fn store<const N: usize>(file: &Path, identified: &TrainedContour<N>) -> std::io::Result<()> {
     let stored = StoredWeights {
         hidden: identified.net.hidden.as_flattened().as_flattened().to_vec(),
         output: identified.net.output.as_flattened().to_vec(),
         fit_um: identified.fit_um,
         samples: identified.samples,
     };
-    let text = with_check(&serde_json::to_string(&stored)?);
+    write(file, &with_check(&serde_json::to_string(&stored)?))
+}
+
+fn write(file: &Path, text: &str) -> std::io::Result<()> {
+    let Some(folder) = file.parent() else { return Ok(()) };
+    std::fs::create_dir_all(folder)?;
     let mut kept = OutputFiles::default().start(file).map_err(std::io::Error::other)?;
     kept.write_all(text.as_bytes())?;
     OutputFile::commit_all(vec![kept], &()).map_err(std::io::Error::other)
