@@ -7,6 +7,10 @@ check:
     env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
     cargo test --workspace --locked
 
+# The long tests that the suite leaves out: more controllers, machines, moments and programs. Half an hour.
+sweep:
+    cargo test --release --workspace --locked -- --ignored
+
 # Cut a part and write its report.
 run part="parts/star.ngc" *options:
     cargo run --release -- run {{ part }} {{ options }}
@@ -117,11 +121,11 @@ tables: paper compare held-out-table imperfections
 
 # Write the messages of docs/gcode-mistakes.md anew.
 mistakes:
-    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright --test golden_gcode_mistakes
+    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright --test suite golden_gcode_mistakes
 
 # Write the help of all commands in docs/command-line.md anew.
 help:
-    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright --test golden_help
+    FEEDWRIGHT_UPDATE_DOCUMENTS=1 cargo test -p feedwright --test suite golden_help
 
 # The reader beside LinuxCNC on random programs (Debian: linuxcnc-uspace): about a quarter of an hour for 20,000.
 gcode-compare programs="20000" first="1":

@@ -2,13 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[expect(dead_code, reason = "it is used in part")]
-#[path = "../../crates/feedwright/tests/common/command.rs"]
-mod common;
-#[path = "../../crates/feedwright/tests/common/controller_list.rs"]
-mod controller_list;
-
-use common::Folder;
+use crate::command::Folder;
 use serde_json::Value;
 
 const TNV40: &str = include_str!("../../crates/sim/machines/tnv40.toml");
@@ -137,5 +131,5 @@ fn the_comparison_has_the_documented_rows_and_its_own_part() {
 #[test]
 fn the_list_names_every_controller_with_its_parameters() {
     let folder = Folder::new();
-    controller_list::lists(&folder, feedwright_lab::CONTROLLERS);
+    crate::controller_list::lists(&folder, feedwright_lab::CONTROLLERS);
 }

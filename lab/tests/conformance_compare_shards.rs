@@ -1,10 +1,6 @@
 //! `feedwright-lab compare` in parts: shards merge to the bytes of the undivided run, and what cannot be merged is said.
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "../../crates/feedwright/tests/common/command.rs"]
-mod common;
-
-use common::Folder;
+use crate::command::Folder;
 
 const ONLY: [&str; 4] = ["--tuning", "defaults", "--only", "circle,tnv40,rough,open-loop,feedforward"];
 

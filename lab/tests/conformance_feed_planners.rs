@@ -2,11 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "../../crates/plan/tests/common/programs.rs"]
-mod common;
-
-use common::{BLEND, LIMITS, Random};
+use crate::programs::{BLEND, LIMITS, Random};
 use feedwright_lab::CONTOURS;
 use feedwright_plan::{
     AxisLimits, BLENDS, Constraints, FEED_PLANNERS, FeedMember, FeedPlanner, Piece, Plan, Planned, Plc, Section,

@@ -3,15 +3,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../../crates/ident/tests/common/identification_log.rs"]
-mod identification_log;
-
+use crate::identification_log::log_of;
 use feedwright::{Choices, LogJob, Make, Setup, machine_text};
 use feedwright_gcode::canon::Corner;
 use feedwright_ident::AxisFacts;
 use feedwright_lab::{CONTROLLERS, contour};
 use feedwright_sim::{Machine, Row, Run, Sink};
-use identification_log::log_of;
 use rayon::prelude::*;
 
 /// A log of this time, s, in steps of this size, um.

@@ -1,10 +1,6 @@
 //! `feedwright-lab never-worse`: exit codes, files, and what it refuses.
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "../../crates/feedwright/tests/common/command.rs"]
-mod common;
-
-use common::Folder;
+use crate::command::Folder;
 use serde_json::Value;
 
 const OPEN_LOOP: [&str; 3] = ["never-worse", "--controller", "open-loop"];

@@ -2,16 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../../crates/feedwright/tests/common/browser.rs"]
-mod browser;
-#[path = "../../crates/feedwright/tests/common/made_up_report.rs"]
-mod made_up_report;
-#[path = "../../crates/plan/tests/common/missing.rs"]
-mod missing;
-
 use std::path::PathBuf;
 
-use browser::Browser;
+use crate::browser::Browser;
 use feedwright::{COLORS, CaptionedFigure, Figure, Panel, Polyline, write_figure_page};
 use feedwright_lab::{Comparison, page as comparison_page};
 use serde_json::json;
@@ -49,7 +42,7 @@ fn ready(browser: &mut Browser) {
 
 #[test]
 fn the_report_answers_mouse_and_keys() {
-    let (_folder, path) = file(&made_up_report::page(&made_up_report::report(2, 3000)));
+    let (_folder, path) = file(&crate::made_up_report::page(&crate::made_up_report::report(2, 3000)));
     let Some(mut browser) = Browser::start() else { return };
     browser.screen(1400, 1000, false);
     for fragment in ["#theme=dark", "#theme=light&error=log", ""] {
@@ -69,7 +62,7 @@ fn the_report_answers_mouse_and_keys() {
 /// A run of a log has no torque, and the page is none the worse for it.
 #[test]
 fn a_measured_run_is_drawn_without_torque() {
-    let (_folder, path) = file(&made_up_report::page(&made_up_report::report_with_log(2, 1500)));
+    let (_folder, path) = file(&crate::made_up_report::page(&crate::made_up_report::report_with_log(2, 1500)));
     let Some(mut browser) = Browser::start() else { return };
     browser.screen(1400, 1000, false);
     browser.open(&path, "#error=linear");
@@ -126,7 +119,7 @@ fn play(browser: &mut Browser) {
     assert_ne!(before, after);
     let line = browser.value("document.querySelector('#listing [aria-current]').value");
     assert!(after.starts_with(&format!("line {line} ")), "{after}, {line}");
-    assert_eq!(text(browser, "#listing [aria-current]"), made_up_report::HOSTILE);
+    assert_eq!(text(browser, "#listing [aria-current]"), crate::made_up_report::HOSTILE);
     browser.press("ArrowLeft", 37);
     let back = text(browser, "#readout");
     assert_eq!(back.split_once('·').unwrap().0, before.split_once('·').unwrap().0);
@@ -173,7 +166,7 @@ const MOST_FRAMES: u32 = 600;
 /// A finger on the path scrolls the page, and moves the part where that was asked for; nothing is wider than the screen.
 #[test]
 fn the_report_scrolls_on_a_phone() {
-    let (_folder, path) = file(&made_up_report::page(&made_up_report::report(3, 3000)));
+    let (_folder, path) = file(&crate::made_up_report::page(&crate::made_up_report::report(3, 3000)));
     let Some(mut browser) = Browser::start() else { return };
     browser.screen(390, 844, true);
     browser.open(&path, "");

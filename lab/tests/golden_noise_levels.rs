@@ -5,17 +5,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../examples/noise_levels/levels.rs"]
-mod levels;
-#[path = "../examples/noise_levels/show.rs"]
-mod show;
-
 use std::path::PathBuf;
 
+use crate::levels::{BASE, KINDS, LEVELS};
 use feedwright::BASELINE;
 use feedwright_lab::{CONTROLLERS, Comparison, ComparisonOptions, Journal, Knowledge, Tuning, Workpiece, compare};
 use feedwright_sim::Machine;
-use levels::{BASE, KINDS, LEVELS};
 
 /// Rounding of another platform's sine, after thousands of servo periods with feedback.
 const SAME_RATIO: f64 = 1e-3;
@@ -26,15 +21,15 @@ fn text(file: &str) -> String {
 }
 
 fn kept() -> Comparison {
-    serde_json::from_str(&text(show::COMPARISON)).unwrap()
+    serde_json::from_str(&text(crate::show::COMPARISON)).unwrap()
 }
 
 #[test]
 fn table_and_figures_are_those_of_the_kept_comparison() {
-    let (kept, document) = (kept(), text(show::DOCUMENT));
-    let table = show::table(&kept).unwrap();
-    assert_eq!(document[show::place(&document).unwrap()], table, "hint: `just noise-levels`");
-    let figures = show::figures(&kept);
+    let (kept, document) = (kept(), text(crate::show::DOCUMENT));
+    let table = crate::show::table(&kept).unwrap();
+    assert_eq!(document[crate::show::place(&document).unwrap()], table, "hint: `just noise-levels`");
+    let figures = crate::show::figures(&kept);
     assert_eq!(figures.len(), KINDS.len());
     for (name, drawing) in figures {
         assert!(document.contains(&format!("]({name})")), "{name} is not shown");
@@ -48,7 +43,7 @@ fn every_controller_was_cut_at_the_ends_of_every_kind() {
     for kind in &KINDS {
         for level in [kind.levels[0], kind.levels[LEVELS - 1]] {
             let machine = kind.machine_name(level);
-            for controller in show::CONTROLLERS {
+            for controller in crate::show::CONTROLLERS {
                 for contour in kept.contours() {
                     let row = kept.row(contour, &machine, controller);
                     assert!(row.is_some_and(|row| row.rms_um > 0.0), "{controller}, {contour} on {machine}: {row:?}");

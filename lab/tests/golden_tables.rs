@@ -4,15 +4,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../examples/tables/table.rs"]
-mod table;
-
+use crate::table::{Place, root};
 use feedwright_lab::{
     CONTROLLERS, Comparison, ComparisonOptions, ComparisonRow, HeldOutSeeds, Journal, Knowledge, Tuning, Workpiece,
     compare,
 };
 use feedwright_sim::Machine;
-use table::{Place, root};
 
 /// Another platform's sine may differ in its last bit and turn a number over at a rounding.
 const LAST_PLACES: f64 = 1.0;
@@ -62,7 +59,7 @@ const SAME_RATIO: f64 = 1e-3;
 
 /// Whether these rows of a kept comparison are what the program makes.
 fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], machines: &[&str], controllers: &[&str]) {
-    let kept: Comparison = table::comparison(file).unwrap();
+    let kept: Comparison = crate::table::comparison(file).unwrap();
     let options = ComparisonOptions {
         workpieces,
         nominal: Machine::load(kept.nominal.as_ref()).unwrap(),
@@ -95,7 +92,7 @@ fn the_kept_comparison_is_what_the_program_makes() {
     contours.retain(|workpiece| ["ellipse", "square"].contains(&workpiece.name.as_str()));
     let controllers = ["open-loop", "cross-coupled", "feedforward", "two-dimensional", "receding-horizon"];
     let knowledge = [Knowledge::Own, Knowledge::Unseen];
-    cut_anew(table::COMPARISON, contours, &knowledge, &["tnv40", "rough", "soft"], &controllers);
+    cut_anew(crate::table::COMPARISON, contours, &knowledge, &["tnv40", "rough", "soft"], &controllers);
 }
 
 /// A contour and a program, as they were drawn.
@@ -105,7 +102,7 @@ fn the_kept_held_out_work_is_what_the_program_makes() {
     let drawn: Vec<Workpiece> = [held_out.remove(0), held_out.pop().unwrap()].into();
     let knowledge = [Knowledge::Own, Knowledge::TwentyPercentOff];
     let controllers = ["open-loop", "feedforward-cross-coupled", "kalman-disturbance", "receding-horizon"];
-    cut_anew(table::HELD_OUT, drawn, &knowledge, &["workshop"], &controllers);
+    cut_anew(crate::table::HELD_OUT, drawn, &knowledge, &["workshop"], &controllers);
 }
 
 #[test]

@@ -55,7 +55,7 @@ fn the_circle_is_cut_in_the_least_time_of_open_loop() {
 }
 
 #[test]
-#[ignore = "the butterfly alone takes minutes: cargo test --release -p feedwright-lab --test oracle_fastest -- --ignored"]
+#[ignore = "a sweep, the butterfly alone takes minutes: just sweep"]
 fn contours_are_cut_in_the_least_time_of_open_loop() {
     for (name, least_s) in LEAST_S {
         is_cut_in_the_least_time(name, least_s);

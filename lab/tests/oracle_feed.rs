@@ -1,10 +1,6 @@
 //! Plan times that have a closed form.
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "../../crates/plan/tests/common/programs.rs"]
-mod common;
-
-use common::{BLEND, LIMITS, arc, line, polyline};
+use crate::programs::{BLEND, LIMITS, arc, line, polyline};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Event, EventKind, Motion, MotionKind, Shape};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_lab::contour;

@@ -3,19 +3,14 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../../crates/feedwright/tests/common/cut.rs"]
-mod cut;
-#[path = "../../crates/feedwright/tests/common/python.rs"]
-mod python;
-
 use std::path::Path;
 use std::process::Command;
 
-use cut::cut;
+use crate::cut::cut;
+use crate::python::python;
 use feedwright_control::{LqgGains, LqgPreview, LqgSettings};
 use feedwright_lab::CONTROLLERS;
 use feedwright_sim::{KnownAxis, Machine};
-use python::python;
 
 /// tnv40 without the disturbance, linear once it moves, under noise: encoder and torque; what stands in place of `DISTURBANCE` is beside.
 const NOISY: &str = "

@@ -1,9 +1,6 @@
 //! Plans keep every limit, and bounded look-ahead gives what unlimited look-ahead gives.
 
-#[path = "../../crates/plan/tests/common/programs.rs"]
-mod common;
-
-use common::{BLEND, LIMITS, Random, arc, distance, line, polyline};
+use crate::programs::{BLEND, LIMITS, Random, arc, distance, line, polyline};
 use feedwright_gcode::canon::{Canon, Corner};
 use feedwright_lab::CONTOURS;
 use feedwright_plan::{PathLimits, Piece, Pieces, Section, SectionPlanner, Span, Step, Trapezoid};

@@ -1,10 +1,6 @@
 //! Curves against brute force: arc length, tangent, curvature, nearest point.
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "../../crates/plan/tests/common/programs.rs"]
-mod common;
-
-use common::{BLEND, Random, distance};
+use crate::programs::{BLEND, Random, distance};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Motion, MotionKind, Plane, Shape};
 use feedwright_lab::{CONTOURS, contour};
 use feedwright_plan::{Curve, Piece, Pieces, Step};

@@ -1,9 +1,6 @@
 //! The reference against brute force: nearest point over many pieces, order of calls, memory.
 
-#[path = "../../crates/plan/tests/common/programs.rs"]
-mod common;
-
-use common::{BLEND, LIMITS, Random, arc, distance, line, polyline};
+use crate::programs::{BLEND, LIMITS, Random, arc, distance, line, polyline};
 use feedwright_gcode::canon::{Canon, Event, EventKind};
 use feedwright_lab::CONTOURS;
 use feedwright_sim::Reference;

@@ -2,10 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../../crates/plan/tests/common/programs.rs"]
-mod common;
-
-use common::{BLEND, LIMITS, Random, arc, distance, line, polyline};
+use crate::programs::{BLEND, LIMITS, Random, arc, distance, line, polyline};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_lab::contour;
 use feedwright_plan::{

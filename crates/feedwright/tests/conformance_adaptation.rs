@@ -74,8 +74,7 @@ fn circle_behind(name: &str, length_mm: f64, machine: &Machine, seed: u64) -> f6
 
 #[test]
 fn nothing_drifts_on_a_straight_line_of_ten_minutes() {
-    let cases =
-        [(HORIZON, "tnv40"), (HORIZON, "rough"), (HORIZON, "coarse"), (REGULATOR, "tnv40"), (REGULATOR, "coarse")];
+    let cases = [(HORIZON, "rough"), (REGULATOR, "coarse")];
     cases.par_iter().for_each(|&(controller, name)| {
         let machine = Machine::load(name.as_ref()).unwrap();
         let behind_um = |length_mm: f64| circle_behind(controller, length_mm, &machine, 1);
@@ -92,14 +91,13 @@ fn nothing_drifts_on_a_straight_line_of_ten_minutes() {
 }
 
 #[test]
-fn the_worst_of_ten_seeds_is_near_the_median() {
+fn the_worst_of_five_seeds_is_near_the_median() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     for controller in [HORIZON, REGULATOR] {
         let mut errors_um: Vec<f64> =
-            (1..=10_u64).into_par_iter().map(|seed| circle_behind(controller, SHORT_LINE_MM, &machine, seed)).collect();
+            (1..=5_u64).into_par_iter().map(|seed| circle_behind(controller, SHORT_LINE_MM, &machine, seed)).collect();
         errors_um.sort_by(f64::total_cmp);
-        let median_um = 0.5 * (errors_um[4] + errors_um[5]);
-        eprintln!("{controller}, ten seeds: {errors_um:.3?} um");
-        assert!(errors_um[9] <= 1.5 * median_um, "{errors_um:?}");
+        eprintln!("{controller}, five seeds: {errors_um:.3?} um");
+        assert!(errors_um[4] <= 1.5 * errors_um[2], "{errors_um:?}");
     }
 }

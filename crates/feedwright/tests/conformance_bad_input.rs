@@ -1,14 +1,10 @@
 //! Whatever is wrong with what the command gets: exit code 2, a message that names place, value, limit, unit and remedy,
 //! nothing on stdout, no panic, and a folder in which nothing has changed.
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-
 use std::ffi::OsStr;
 use std::process::Command;
 
-use common::{Folder, Ran, skipped};
+use crate::command::{Folder, Ran, skipped};
 
 /// The machine of the paper.
 const TNV40: &str = include_str!("../../sim/machines/tnv40.toml");
@@ -317,7 +313,7 @@ fn arguments_that_are_none() {
 #[test]
 fn names_with_spaces_work() {
     let folder = Folder::new();
-    folder.file("my part.ngc", common::CIRCLE);
+    folder.file("my part.ngc", crate::command::CIRCLE);
     folder.run_open_loop(&["my part.ngc", "--trace", "the trace.csv"]).succeeded();
     assert!(folder.text("the trace.csv").starts_with("t_s,"));
     assert!(folder.text("my part.report.html").contains("my part.ngc"));
@@ -330,7 +326,7 @@ fn names_that_are_no_text_work() {
 
     let folder = Folder::new();
     let name = |bytes: &'static [u8]| OsStr::from_bytes(bytes);
-    folder.file(name(b"fr\xe4se.ngc"), common::CIRCLE);
+    folder.file(name(b"fr\xe4se.ngc"), crate::command::CIRCLE);
     folder.file(name(b"fr\xe4se.toml"), TNV40);
     let arguments = [
         name(b"fr\xe4se.ngc"),

@@ -3,11 +3,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-
-use common::{CIRCLE, Folder, Ran};
+use crate::command::{CIRCLE, Folder, Ran};
 use feedwright_gcode::{AUTO, DIALECTS};
 
 /// Programs of very different length, every third with mistakes.

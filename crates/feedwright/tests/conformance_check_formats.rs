@@ -1,10 +1,6 @@
 //! `check` for other programs: formats and exit codes; and what `canon` writes of a faulty program.
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-
-use common::Folder;
+use crate::command::Folder;
 use serde_json::Value;
 
 /// A folder with a program without mistakes, one with two of them and one with a warning.

@@ -2,13 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/command.rs"]
-mod common;
-
 use std::io::Write;
 use std::process::{Command, Stdio};
 
-use common::{Folder, Ran, skipped};
+use crate::command::{Folder, Ran, skipped};
 
 /// All commands.
 const COMMANDS: [&str; 13] = [
@@ -45,14 +42,14 @@ const TNV40: &str = include_str!("../../sim/machines/tnv40.toml");
 fn a_dash_is_the_standard_input_wherever_a_file_is_read() {
     let folder = Folder::new();
     let open_loop = ["--controller", "open-loop"];
-    let ran = fed(&folder, &[&["run", "-"], &open_loop[..]].concat(), common::CIRCLE.as_bytes()).succeeded();
+    let ran = fed(&folder, &[&["run", "-"], &open_loop[..]].concat(), crate::command::CIRCLE.as_bytes()).succeeded();
     assert!(ran.stdout.contains("wrote stdin.report.html"), "{}", ran.stdout);
     let named = folder.run_open_loop(&["circle.ngc", "--json", "named.json"]).succeeded();
     assert!(named.stdout.contains("wrote named.json"));
     for (arguments, input) in [
-        (&["plan", "-"][..], common::CIRCLE),
-        (&["check", "-"], common::CIRCLE),
-        (&["canon", "-"], common::CIRCLE),
+        (&["plan", "-"][..], crate::command::CIRCLE),
+        (&["check", "-"], crate::command::CIRCLE),
+        (&["canon", "-"], crate::command::CIRCLE),
         (&["run", "circle.ngc", "--machine", "-", "--controller", "open-loop"], TNV40),
         (&["plan", "circle.ngc", "--machine", "-"], TNV40),
         (&["excite", "--machine", "-", "--out", "excite.ngc"], TNV40),

@@ -1,10 +1,6 @@
 //! `feedwright correct`, and `run --out FILE.ngc`: what they write, tell and refuse.
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-
-use common::Folder;
+use crate::command::Folder;
 use serde_json::Value;
 
 #[test]

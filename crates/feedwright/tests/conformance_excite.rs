@@ -1,10 +1,6 @@
 //! `excite`: its program passes `check`, is cut by `run`, and what is recorded meanwhile is read as a log without options.
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-
-use common::Folder;
+use crate::command::Folder;
 use feedwright_ident::{Columns, Fitness, Log, LogFormat};
 
 #[test]

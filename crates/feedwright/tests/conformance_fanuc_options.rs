@@ -1,10 +1,6 @@
 //! `--dialect` and `--increment` for programs of Fanuc and Haas, from the command line to what is printed.
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-
-use common::Folder;
+use crate::command::Folder;
 
 #[test]
 fn the_increment_is_an_option_and_its_absence_a_warning() {

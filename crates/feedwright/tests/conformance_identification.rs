@@ -1,11 +1,8 @@
 //! What an identification writes: JSON with what it promises, a machine file that reads back, a page that refers to nothing outside.
 
-#[path = "../../ident/tests/common/identification_log.rs"]
-mod identification_log;
-
+use crate::identification_log::{commands_mm, drawn, log_of};
 use feedwright::{LogJob, LogJobError, machine_text, write_json, write_page};
 use feedwright_sim::Machine;
-use identification_log::{commands_mm, drawn, log_of};
 
 #[test]
 fn files_hold_what_they_promise() {

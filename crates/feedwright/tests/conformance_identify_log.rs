@@ -3,17 +3,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-#[path = "../../ident/tests/common/identification_log.rs"]
-mod identification_log;
-
 use std::fmt::Write as _;
 
-use common::Folder;
+use crate::command::Folder;
+use crate::identification_log::log_of;
 use feedwright_sim::Machine;
-use identification_log::log_of;
 
 /// Time of a log, s.
 const TIME_S: f64 = 4.0;

@@ -1,14 +1,9 @@
 //! The order of `mod` lines is the order in which data flows: a file uses only files above it, a parent and its children belong
 //! together, and a crate uses only crates below it. The reader holds itself to the same.
 
-#[path = "../../gcode/tests/common/layers.rs"]
-mod layers;
-#[path = "../../gcode/tests/common/source.rs"]
-mod source;
-
 use std::path::{Path, PathBuf};
 
-use layers::{check, files};
+use crate::layers::{check, files};
 
 /// Crates of the workspace: folder, and which of ours it depends on, outside of tests.
 const CRATES: [(&str, &[&str]); 7] = [

@@ -2,13 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-
 use std::fmt::Write as _;
 
-use common::Folder;
+use crate::command::Folder;
 
 /// A program along Y alone, 2 s long.
 const ALONG_Y: &str = "G21 G90 G64\nG0 X0 Y0\nG1 Y20 F600\nM2\n";

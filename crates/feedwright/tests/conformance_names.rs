@@ -2,13 +2,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../../gcode/tests/common/source.rs"]
-mod source;
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use source::code;
+use crate::source::code;
 
 /// Folders of the crates.
 const FOLDERS: [&str; 7] =

@@ -1,13 +1,9 @@
 //! Machine files that are checked, and what an interrupt leaves: nothing.
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-
 use std::process::Stdio;
 use std::time::Duration;
 
-use common::{Folder, Ran};
+use crate::command::{Folder, Ran};
 
 #[test]
 fn check_reads_machine_files_too() {

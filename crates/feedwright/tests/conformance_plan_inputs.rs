@@ -92,7 +92,7 @@ fn very_many_blocks_of_a_micrometre_take_the_time_of_one() {
 }
 
 #[test]
-#[ignore = "half a minute: cargo test --release --test conformance_plan_inputs -- --ignored"]
+#[ignore = "a sweep, half a minute: just sweep"]
 fn a_million_blocks_of_a_micrometre_take_the_time_of_one() {
     take_the_time_of_one(MILLION);
 }

@@ -4,12 +4,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/cut.rs"]
-mod cut;
-
 use std::path::Path;
 
-use cut::cut;
+use crate::cut::cut;
 use feedwright::{BASELINE, BEST, CONTROLLERS};
 
 /// RMS of the joints' contour error over open loop's.

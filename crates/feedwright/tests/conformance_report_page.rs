@@ -3,12 +3,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/made_up_report.rs"]
-mod made_up_report;
-
+use crate::made_up_report::{HOSTILE, page, report, report_with_log};
 use feedwright::{Report, Series};
 use feedwright_sim::Outcome;
-use made_up_report::{HOSTILE, page, report, report_with_log};
 
 /// Largest page for two controllers and three axes at full resolution, bytes.
 const LARGEST_PAGE: usize = 3_000_000;

@@ -2,17 +2,11 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-#[path = "common/controller_list.rs"]
-mod controller_list;
-
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
-use common::{Folder, Ran, skipped};
+use crate::command::{Folder, Ran, skipped};
 use feedwright::{BASELINE, BEST};
 use serde_json::Value;
 
@@ -198,7 +192,7 @@ fn output_that_goes_to_no_terminal_has_no_escape_codes() {
 #[test]
 fn lists_name_all_there_is() {
     let folder = Folder::new();
-    controller_list::lists(&folder, feedwright::CONTROLLERS);
+    crate::controller_list::lists(&folder, feedwright::CONTROLLERS);
     let machines = folder.run(&["machines"]).succeeded().stdout;
     assert!(machines.starts_with("tnv40"), "{machines}");
     for command in ["run", "plan", "check", "canon", "machines", "controllers"] {

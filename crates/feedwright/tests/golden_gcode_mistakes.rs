@@ -4,11 +4,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-
-use common::Folder;
+use crate::command::Folder;
 
 /// Set to write the messages into the document instead of comparing them.
 const UPDATE: &str = "FEEDWRIGHT_UPDATE_DOCUMENTS";

@@ -2,13 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/command.rs"]
-#[expect(dead_code, reason = "every test file uses a part of this")]
-mod common;
-
 use std::path::Path;
 
-use common::{Folder, Ran};
+use crate::command::{Folder, Ran};
 
 /// What stands before the help in the document.
 const HEADING: &str = "\n## Commands\n\n";

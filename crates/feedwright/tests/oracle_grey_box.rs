@@ -2,15 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../../ident/tests/common/identification_log.rs"]
-mod identification_log;
-
 use std::path::Path;
 
+use crate::identification_log::{commands_mm, log_of};
 use feedwright::{LogIdentified, LogJob, machine_text};
 use feedwright_ident::{AxisFacts, Columns, FoundAxis, LawTerm, LawVerdict, Log, NumberSource};
 use feedwright_sim::{Machine, Plant};
-use identification_log::{commands_mm, log_of};
 
 fn identified(log: Log, job: LogJob) -> LogIdentified {
     job.run(log, &()).unwrap()

@@ -6,19 +6,14 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/cut.rs"]
-mod cut;
-#[path = "common/python.rs"]
-mod python;
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-use cut::cut;
+use crate::cut::cut;
+use crate::python::python;
 use feedwright::{BASELINE, BEST, CONTROLLERS, Entry};
 use feedwright_sim::machine_keys as keys;
 use feedwright_sim::{Machine, Plant};
-use python::python;
 
 const HEAD: &str = "base = 'tnv40'\nname = 'all'\ndescription = 'everything that there is'\nsource = 'made up'\n";
 

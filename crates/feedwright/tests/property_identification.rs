@@ -3,13 +3,10 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../../ident/tests/common/identification_log.rs"]
-mod identification_log;
-
+use crate::identification_log::{drawn, log_of};
 use feedwright::LogJob;
 use feedwright_ident::{FoundAxis, Log};
 use feedwright_sim::Machine;
-use identification_log::{drawn, log_of};
 
 const PRODUCTS: [&str; 3] = ["kp_kv_over_j_1_s2", "kv_plus_b_over_j_1_s", "fc_over_j_mm_s2"];
 

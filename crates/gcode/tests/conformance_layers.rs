@@ -1,14 +1,9 @@
 //! Layers: the `mod` lines of every file stand in the order in which data flows, and a file uses only files above it. A parent
 //! and its children belong together. Methods count, too: `self.arc(..)` is a use of the file that implements `arc`.
 
-#[path = "common/layers.rs"]
-mod layers;
-#[path = "common/source.rs"]
-mod source;
-
 use std::path::Path;
 
-use layers::{File, check, files};
+use crate::layers::{File, check, files};
 
 /// Types whose methods stand in many files, and how a value of them is called.
 const SPREAD: [(&str, &str); 3] = [("Interpreter", "interpreter"), ("Flow", "flow"), ("Reader", "reader")];

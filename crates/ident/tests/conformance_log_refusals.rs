@@ -2,11 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "common/logs.rs"]
-mod common;
-
-use common::{SAMPLES, axis, read, rows, time_s};
+use crate::logs::{SAMPLES, axis, read, rows, time_s};
 use feedwright_ident::{LogError, Refusal, RefusalReason};
 
 /// The only reason for which this table is refused.

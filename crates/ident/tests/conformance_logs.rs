@@ -2,10 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "common/logs.rs"]
-mod common;
-
-use common::{SAMPLE_S, SAMPLES, axis, file, read, rows, time_s, told};
+use crate::logs::{SAMPLE_S, SAMPLES, axis, file, read, rows, time_s, told};
 use feedwright_ident::{Columns, Fitness, Log, LogAxis, LogFormat, TorqueUnit};
 use miniz_oxide::deflate::compress_to_vec_zlib;
 
@@ -303,9 +300,9 @@ fn steps_limits_and_lines_are_told() {
     }
     let log = read(rows(&[&time, &command, &limited], ",").as_bytes(), "").unwrap();
     assert!(
-        common::told(&log).contains("stays below 80 mm/s, where the command reaches 125"),
+        crate::logs::told(&log).contains("stays below 80 mm/s, where the command reaches 125"),
         "{}",
-        common::told(&log)
+        crate::logs::told(&log)
     );
 }
 

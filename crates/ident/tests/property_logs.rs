@@ -2,11 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "common/logs.rs"]
-mod common;
-
-use common::{axis, read, rows, time_s};
+use crate::logs::{axis, read, rows, time_s};
 use feedwright_ident::Log;
 use proptest::prelude::*;
 

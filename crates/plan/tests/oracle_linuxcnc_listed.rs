@@ -2,19 +2,10 @@
 //! and no other: the same program with the difference elsewhere is not listed.
 #![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
 
-#[path = "../examples/gcode_compare/cut.rs"]
-mod cut;
-#[path = "../examples/gcode_compare/listed.rs"]
-mod listed;
-#[path = "common/linuxcnc.rs"]
-mod linuxcnc;
-#[path = "common/rs274.rs"]
-mod rs274;
-
 use std::path::PathBuf;
 
-use linuxcnc::{Totals, theirs};
-use listed::{Verdict, judge};
+use crate::linuxcnc::{Totals, theirs};
+use crate::listed::{Verdict, judge};
 
 const START: &str = "G21 G17 G90 G40 G49 G80 G94 F600 S500 M3\n";
 const PROFILE: &str = "G18 G8\no1 sub\nG0 X10\nG1 Z-5\nX14 Z-9\nZ-14\nX20 Z-18\nX32\no1 endsub\nG0 X40 Z5\n";
@@ -89,7 +80,7 @@ fn examples() -> Vec<(&'static str, String)> {
 
 #[test]
 fn every_row_has_a_program() {
-    if !rs274::is_installed() {
+    if !crate::rs274::is_installed() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
@@ -104,7 +95,7 @@ fn every_row_has_a_program() {
     for (((what, text), path), theirs) in examples.iter().zip(&paths).zip(theirs(&paths)) {
         match judge(path, text, &theirs, &mut totals) {
             Verdict::Differ(difference) => {
-                let found = listed::find(text, &theirs, &difference);
+                let found = crate::listed::find(text, &theirs, &difference);
                 if found != Some(what) {
                     failures.push(format!("{what}: {found:?} for {difference}\n{text}"));
                 }
@@ -114,6 +105,7 @@ fn every_row_has_a_program() {
             Verdict::Same => failures.push(format!("{what}: no difference\n{text}")),
         }
     }
-    let missing: Vec<&str> = listed::names().filter(|name| !examples.iter().any(|(what, _)| what == name)).collect();
+    let missing: Vec<&str> =
+        crate::listed::names().filter(|name| !examples.iter().any(|(what, _)| what == name)).collect();
     assert!(failures.is_empty() && missing.is_empty(), "rows without a program: {missing:?}\n{}", failures.join("\n"));
 }

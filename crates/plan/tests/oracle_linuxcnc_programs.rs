@@ -6,17 +6,12 @@
 //! listed in `docs/gcode-differences.md` and in [`DIFFERENCES`].
 #![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
 
-#[path = "common/linuxcnc.rs"]
-mod linuxcnc;
-#[path = "common/rs274.rs"]
-mod rs274;
-
 use std::collections::BTreeMap;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 
-use linuxcnc::{Totals, compare, ours, theirs, tool_table};
+use crate::linuxcnc::{Totals, compare, ours, theirs, tool_table};
 
 /// Programs that are read differently on purpose: part of the path, and why.
 const DIFFERENCES: &[(&str, &str)] = &[
@@ -179,7 +174,7 @@ fn a_program_that_a_timeout_ended_has_no_answer() {
 
 #[test]
 fn linuxcnc_reads_the_same() {
-    if !rs274::is_installed() {
+    if !crate::rs274::is_installed() {
         return;
     }
     let is_endless = |path: &PathBuf| ENDLESS.iter().any(|row| path.display().to_string().contains(row.0));

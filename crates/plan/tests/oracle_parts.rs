@@ -2,9 +2,6 @@
 //!
 //! The parts are read here by a few lines that know no more than these files need, and share nothing with the library.
 
-#[path = "common/rs274.rs"]
-mod rs274;
-
 use std::f64::consts::PI;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -157,7 +154,7 @@ fn a_header_says_how_many_arcs_there_are() {
 
 #[test]
 fn linuxcnc_accepts_every_part() {
-    if !rs274::is_installed() {
+    if !crate::rs274::is_installed() {
         return;
     }
     let mut seen = 0;

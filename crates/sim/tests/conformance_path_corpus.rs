@@ -1,10 +1,6 @@
 //! Programs that nobody here wrote: every motion has a path, the plan ends where the program ends, memory stays bounded.
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "../../plan/tests/common/programs.rs"]
-mod common;
-
-use common::{LIMITS, distance};
+use crate::programs::{LIMITS, distance};
 use feedwright_gcode::canon::Canon;
 use feedwright_gcode::{Reader, Settings};
 use feedwright_sim::Reference;

@@ -3,11 +3,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "../../plan/tests/common/programs.rs"]
-mod common;
-
-use common::{BLEND, polyline};
+use crate::programs::{BLEND, polyline};
 use feedwright_control::{Controller, OpenLoop};
 use feedwright_gcode::canon::{Canon, Motion, Plane, Shape};
 use feedwright_plan::{
@@ -203,6 +199,6 @@ fn the_tool_follows_the_planned_path_and_is_measured_to_the_programmed_one() {
     let corner = rows.iter().max_by(|a, b| a.contour_error_mm.abs().total_cmp(&b.contour_error_mm.abs())).unwrap();
     assert!((corner.s_mm - SIDE_MM).abs() < 2.0, "{corner:?}");
     let length_mm = 2.0 * (SIDE_MM - RADIUS_MM) + 0.5 * PI * RADIUS_MM;
-    let cmd_mm: f64 = rows.windows(2).map(|pair| common::distance(pair[0].cmd_mm, pair[1].cmd_mm)).sum();
+    let cmd_mm: f64 = rows.windows(2).map(|pair| crate::programs::distance(pair[0].cmd_mm, pair[1].cmd_mm)).sum();
     assert!((cmd_mm - length_mm).abs() < 1e-3, "{cmd_mm} {length_mm}");
 }

@@ -1,10 +1,6 @@
 //! Splines against numbers made by `oracle_data/spline.py`, and the butterfly against the literature.
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "../../plan/tests/common/programs.rs"]
-mod common;
-
-use common::{BLEND, LIMITS, Random, distance};
+use crate::programs::{BLEND, LIMITS, Random, distance};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Motion, MotionKind, Shape, Spline};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_plan::{Piece, Pieces, Step};

@@ -5,11 +5,7 @@
 //! are used, accelerations and jerks are at most sqrt(2) times as long, so the mean speed is at most `2^(1/4)` times that. The circle of 10 mm from rest to rest within 10 um: 0.5516 s by a nonlinear program that shares nothing with this
 //! one (IPOPT).
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "../../plan/tests/common/programs.rs"]
-mod common;
-
-use common::{BLEND, LIMITS, arc, distance, line, polyline};
+use crate::programs::{BLEND, LIMITS, arc, distance, line, polyline};
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::{
     AxisLimits, Constraints, FEED_PLANNERS, FeedMember, PathLimits, Span, Step, WHOLE_PROGRAM, feed_planner,

@@ -3,10 +3,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../../plan/tests/common/programs.rs"]
-mod common;
-
-use common::{BLEND, LIMITS, Random, arc, distance, polyline};
+use crate::programs::{BLEND, LIMITS, Random, arc, distance, polyline};
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::{
     AxisLimits, Constraints, FeedPlanner, PathLimits, Phase, PublishedPlan, ScaledStep, ScalingLimits, Span, Step,

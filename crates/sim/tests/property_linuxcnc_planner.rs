@@ -3,10 +3,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
-#[path = "../../plan/tests/common/programs.rs"]
-mod common;
-
-use common::{LIMITS, Random, arc, distance, line, polyline};
+use crate::programs::{LIMITS, Random, arc, distance, line, polyline};
 use feedwright_gcode::canon::{Canon, Corner, MotionKind};
 use feedwright_plan::{AxisLimits, AxisMotion, Constraints, FeedPlanner, PathLimits, Piece, Span, Step, feed_planner};
 use feedwright_sim::path_steps;

@@ -1,10 +1,6 @@
 //! Whatever numbers a motion is made of: no panic, nothing that is not a number, limits kept.
 
-#[expect(dead_code, reason = "each test uses its own part")]
-#[path = "../../plan/tests/common/programs.rs"]
-mod common;
-
-use common::{LIMITS, Random};
+use crate::programs::{LIMITS, Random};
 use feedwright_gcode::canon::{
     AuxiliaryAxes, Canon, Corner, Event, EventKind, Motion, MotionKind, Plane, Shape, Spline,
 };

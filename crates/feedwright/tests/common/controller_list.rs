@@ -1,6 +1,6 @@
 //! What `controllers` lists, whatever table the command has.
 
-use super::common::Folder;
+use super::command::Folder;
 
 /// `controllers` lists every controller of a table, and each with every parameter and its reason.
 pub(crate) fn lists(folder: &Folder, table: feedwright::Controllers) {

@@ -1,0 +1,55 @@
+//! All tests of the command and its library in one binary: it links once, and uses every core to its end.
+
+#[path = "common/command.rs"]
+mod command;
+#[path = "common/controller_list.rs"]
+mod controller_list;
+#[path = "common/cut.rs"]
+mod cut;
+#[path = "../../ident/tests/common/identification_log.rs"]
+mod identification_log;
+#[path = "../../gcode/tests/common/layers.rs"]
+mod layers;
+#[path = "common/made_up_report.rs"]
+mod made_up_report;
+#[path = "common/python.rs"]
+mod python;
+#[path = "../../gcode/tests/common/source.rs"]
+mod source;
+
+mod conformance_adaptation;
+mod conformance_advise;
+mod conformance_bad_input;
+mod conformance_check;
+mod conformance_check_formats;
+mod conformance_command_line;
+mod conformance_contrast;
+mod conformance_correct;
+mod conformance_correct_command;
+mod conformance_documents;
+mod conformance_events;
+mod conformance_excite;
+mod conformance_fanuc_options;
+mod conformance_fastest;
+mod conformance_identification;
+mod conformance_identify_log;
+mod conformance_job;
+mod conformance_layers;
+mod conformance_measured;
+mod conformance_measured_run;
+mod conformance_models;
+mod conformance_names;
+mod conformance_outputs;
+mod conformance_plan;
+mod conformance_plan_inputs;
+mod conformance_real_axes;
+mod conformance_report_page;
+mod conformance_results;
+mod conformance_style;
+mod golden_gcode_mistakes;
+mod golden_help;
+mod oracle_contour_metric;
+mod oracle_grey_box;
+mod oracle_plant_terms;
+mod property_identification;
+mod property_report;

@@ -1,0 +1,24 @@
+//! All tests of the reader in one binary: it links once, and uses every core to its end.
+
+#[path = "common/layers.rs"]
+mod layers;
+#[path = "common/source.rs"]
+mod source;
+
+mod conformance_corpus;
+mod conformance_dialects;
+mod conformance_fanuc;
+mod conformance_fanuc_lathe;
+mod conformance_fanuc_macros;
+mod conformance_faults;
+mod conformance_language;
+mod conformance_layers;
+mod conformance_program_flow;
+mod oracle_lathe_cycles;
+mod oracle_linuxcnc_expected;
+mod oracle_linuxcnc_facts;
+mod property_compensation;
+mod property_fanuc;
+mod property_fanuc_lathe;
+mod property_lathe;
+mod property_reader;

@@ -1,0 +1,13 @@
+//! All tests of the identification in one binary: it links once, and uses every core to its end.
+
+#[path = "common/logs.rs"]
+mod logs;
+
+mod conformance_excite;
+mod conformance_log_refusals;
+mod conformance_logs;
+mod oracle_axis_parameters;
+mod oracle_halsampler;
+mod oracle_logs;
+mod oracle_statistics;
+mod property_logs;
