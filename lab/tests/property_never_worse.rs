@@ -14,7 +14,7 @@ use feedwright_lab::{
 };
 
 /// Cuts, and those of the sweep.
-const CUTS: usize = 12;
+const CUTS: usize = 8;
 const MANY_CUTS: usize = 36;
 /// Programs for each machine.
 const FOR_EACH: usize = 4;

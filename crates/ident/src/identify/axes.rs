@@ -60,7 +60,9 @@ pub fn train_axes<const N: usize>(
 ) -> Result<TrainedAxes<N>, NotIdentified> {
     let estimate =
         |i: usize| identify_axis(&recordings.parameters, i, &DriveSettings::of(known.axis(i), &known.period));
-    let estimates = (0..N).into_par_iter().map(estimate).collect::<Result<Vec<_>, _>>()?;
+    // All, and then the first axis that fails: not the one whose thread is first.
+    let estimates: Vec<_> = (0..N).into_par_iter().map(estimate).collect();
+    let estimates = estimates.into_iter().collect::<Result<Vec<_>, _>>()?;
     let believed = |of: &Known| {
         of.with_axes(|i, axis| {
             let settings = DriveSettings::of(axis, &of.period);
