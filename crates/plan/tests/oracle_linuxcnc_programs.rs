@@ -130,7 +130,7 @@ fn answer(status: ExitStatus, stderr: &[u8]) -> Option<Answer> {
     Some(if is_fine { Answer::Accepts } else { Answer::Refuses(text.replace('\n', " | ")) })
 }
 
-/// Asks `rs274` about a program.
+/// Asks `rs274` about a program. One at a time: its processes share a tool table in memory.
 fn ask(path: &Path, tools: &Path) -> Answer {
     let attempt = |limit_s: u32| {
         let mut command = Command::new("timeout");
