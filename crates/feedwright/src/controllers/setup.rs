@@ -354,7 +354,7 @@ mod tests {
     fn where_nothing_is_identified_the_training_fails_and_the_controller_tells_that_it_cuts_open_loop() {
         let mut machine = Machine::load("tnv40".as_ref()).unwrap();
         // The loop takes longer to settle than the excitation lasts.
-        machine.axes.iter_mut().for_each(|axis| axis.kp_1_s = 0.25);
+        machine.axes.iter_mut().for_each(|axis| axis.kp_1_s = 1.0);
         let (choices, entry) = (Choices::default(), CONTROLLERS.find("lqg-identified").unwrap());
         let mut setup = Setup::new(&machine, &choices);
         let refused = setup.train(entry, 2, "today".to_owned()).unwrap_err().to_string();
