@@ -1,7 +1,5 @@
 //! The command of the laboratory: what it takes and refuses, and what it writes.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::command::Folder;
 use serde_json::Value;
 

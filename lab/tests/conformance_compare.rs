@@ -1,7 +1,5 @@
 //! The comparison: the same for any number of threads and after an interruption, ratios and verdicts as they are defined.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::sync::LazyLock;
 
 use feedwright::{BASELINE, BEST};

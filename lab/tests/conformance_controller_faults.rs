@@ -3,8 +3,6 @@
 //! The position loops of the machine go on with the true position; only the controller sees a lost, frozen or leaping one.
 //! What is asked for: the correction leaves the loop at once and gently, it comes back, and the cut is no worse than open loop.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright::{BASELINE, BEST, Choices, HORIZON, MAX_UM, Make, Setup};
 use feedwright_control::vector::sub;
 use feedwright_control::{Bounds, Controller, Knot, State, Tick};

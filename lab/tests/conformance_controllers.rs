@@ -1,7 +1,5 @@
 //! Every row of the table of controllers keeps the contract, in the plane and in space.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use std::sync::OnceLock;
 
 use feedwright::{Choices, Entry, Make, Setting, Setup};

@@ -1,7 +1,5 @@
 //! The default controller is no worse than open loop, however little or much the correction may accelerate.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright::{BASELINE, Choices, CutErrors, HORIZON, Make, Setup, Statistics, harm};
 use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Machine, Run};

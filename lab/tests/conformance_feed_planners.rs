@@ -1,7 +1,5 @@
 //! Every planner of the table: gapless spans in order, bounds kept, the same however the calls are spread, no piece lost.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::programs::{BLEND, LIMITS, Random};
 use feedwright_lab::CONTOURS;
 use feedwright_plan::{

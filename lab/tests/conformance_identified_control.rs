@@ -1,8 +1,6 @@
 //! A controller that was set up on an identified machine file cuts the machine that the log came from nearly as well as one that was set up
 //! on the true file.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::identification_log::log_of;
 use feedwright::{Choices, LogJob, Make, Setup, machine_text};
 use feedwright_gcode::canon::Corner;

@@ -1,7 +1,5 @@
 //! The pages in a browser: no fault in the console, and what a reader does with mouse, keys and fingers has its effect.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::PathBuf;
 
 use crate::browser::Browser;

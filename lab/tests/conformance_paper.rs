@@ -4,8 +4,6 @@
 //! another language, and from the closed form of the feed plan. The prototype is not in this repository, so it is no oracle that
 //! anyone can ask again.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::sync::OnceLock;
 
 use feedwright::identified;

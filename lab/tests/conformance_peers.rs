@@ -2,8 +2,6 @@
 //!
 //! A controller that does nothing cuts as open loop does, and fails here.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright::{BASELINE, Choices, Entry, Make, Setting, Setup, Statistics};
 use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Axis, Machine, Run, Squareness};

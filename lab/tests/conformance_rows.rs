@@ -1,7 +1,5 @@
 //! What the rows of a run say about foot and contour error, on every contour of the comparison and in space.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright::{BASELINE, Choices, Entry, Make, Setup};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_lab::{CONTROLLERS, Workpiece};

@@ -2,8 +2,6 @@
 //!
 //! Golden: that they have not changed says nothing on whether they are right; `conformance_paper` holds bounds from elsewhere.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::table::{Place, root};
 use feedwright_lab::{
     CONTROLLERS, Comparison, ComparisonOptions, ComparisonRow, HeldOutSeeds, Journal, Knowledge, Tuning, Workpiece,

@@ -1,7 +1,5 @@
 //! The built-in contours as G-code, read again: every point of a program is on the closed form of its contour, and the other way round.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::f64::consts::TAU;
 
 use feedwright_gcode::{Reader, Settings};

@@ -3,8 +3,6 @@
 //! The servo is linear, `x' = v`, `v' = a (k (r - x) - v)` with k = 50 and a = 194 and 167 1/s. The published times are those of the
 //! command on the path, as fast as leaves the tool within 10 um.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright::{FastestPlan, fastest};
 use feedwright_control::OpenLoop;
 use feedwright_gcode::canon::Corner;

@@ -1,8 +1,6 @@
 //! The limit against an independent script, `oracle_scripts/lqg.py`: the gains of its filter and its regulator, and what is left of the
 //! position in the closed loop on a machine that is linear, where the theory says it exactly.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::Path;
 use std::process::Command;
 

@@ -4,8 +4,6 @@
 //! The script: `oracle_scripts/resimulate.py`, written from the laws. With a finer step it also measures what the program's
 //! integration adds to them, against the closed form of that error; both limits are derived in the script.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

@@ -4,8 +4,6 @@
 //! What fails is made as small as it can be, and printed as program and machine file. `feedwright-lab held-out` does the same
 //! with thousands of cuts.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::sync::Arc;
 
 use feedwright::BEST;

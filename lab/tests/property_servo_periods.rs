@@ -1,7 +1,5 @@
 //! The controllers that decide in every servo period serve at any: settings follow from the period, not from a millisecond.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright::{BASELINE, Choices, Make, Setup, Statistics};
 use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Machine, Period, Run};

@@ -1,7 +1,5 @@
 //! What holds of a time-optimal plan whatever the program: limits of axes, feedrate, tolerance both ways, continuity, rests.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::programs::{BLEND, LIMITS, Random, arc, distance, line, polyline};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_lab::contour;

@@ -5,8 +5,6 @@
 //!
 //! And on drives that are just strong enough for the plan.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright::{BASELINE, BEST, Choices, HORIZON, Make, RMS_UM, Setup, Statistics};
 use feedwright_control::Controller;
 use feedwright_lab::{CONTROLLERS, Workpiece};

@@ -1,8 +1,6 @@
 //! No panic is left in a tick once it is linked: of every controller, in two and in three axes.
 
 #![cfg(target_os = "linux")]
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::process::Command;
 
 /// Links `tests/linked_tick`, where the handler of a panic cannot be linked.

@@ -1,7 +1,5 @@
 //! What controllers learn while cutting does no harm: not on a straight line of ten minutes, not with another seed of their training.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright::{CONTROLLERS, Choices, HORIZON, Make, Setup};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_sim::{Machine, Row, Run, Sink, path_steps};

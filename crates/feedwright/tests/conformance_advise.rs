@@ -1,7 +1,5 @@
 //! The feedrates that are advised hold the tolerance, each way for itself, and are told with what they are cut at.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::Path;
 
 use feedwright::{Advice, AdviseJob, BEST, CONTROLLERS, Choices, CutWay, ErrorPlace, JobError, TARGETS};

@@ -1,8 +1,6 @@
 //! `feedwright check` on many files: order, folders, files named twice, threads; and the options of reading that three
 //! commands share.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::command::{CIRCLE, Folder, Ran};
 use feedwright_gcode::{AUTO, DIALECTS};
 

@@ -1,7 +1,5 @@
 //! The command line as such: `-` in place of files, units, widths, colours, help, version, completions, manual pages.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::io::Write;
 use std::process::{Command, Stdio};
 

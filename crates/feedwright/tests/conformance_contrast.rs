@@ -1,8 +1,6 @@
 //! The colours of the pages are told apart from what is behind them: the contrast ratios that WCAG 2.1 asks for at level AA, 4.5 for text
 //! and 3 for what is drawn, in light and dark.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::collections::BTreeMap;
 use std::path::Path;
 

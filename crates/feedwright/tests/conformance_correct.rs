@@ -1,7 +1,5 @@
 //! A corrected program delivers what is told of it: its text keeps the lines of the original, and is better as the control cuts it.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::Path;
 
 use feedwright::{CorrectJob, CorrectOutcome, TARGETS, TargetControl};

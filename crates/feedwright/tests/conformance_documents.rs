@@ -1,8 +1,6 @@
 //! The documents speak of what there is: their links lead somewhere, every key of a machine file is explained, and
 //! ARCHITECTURE.md names no source file that is not there.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::{Path, PathBuf};
 
 /// Folders with documents; not searched deeper.

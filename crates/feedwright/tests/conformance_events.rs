@@ -1,8 +1,6 @@
 //! What happens besides motions: each unit of the machine has its row and its durations in the report, and rotary axes that
 //! turn alone take their time.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::command::Folder;
 
 const TNV40: &str = include_str!("../../sim/machines/tnv40.toml");

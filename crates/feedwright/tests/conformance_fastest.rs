@@ -1,7 +1,5 @@
 //! `feedwright run --tolerance UM --fastest`: what it prints, what bounds it, and what it says where there is no such plan.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::command::{Folder, Ran};
 
 const LIMITS: &str = "max_velocity_mm_s = 200\nmax_accel_mm_s2 = 2000\nmax_jerk_mm_s3 = 50000\n";

@@ -1,8 +1,6 @@
 //! `identify LOG`: a log in, a machine file, numbers and a page out; several logs, a machine file that is updated; and what is refused leaves
 //! nothing behind.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::fmt::Write as _;
 
 use crate::command::Folder;

@@ -1,8 +1,6 @@
 //! What a job promises to whoever runs it: it can be written down and read back, it tells its progress, it ends when it is told
 //! to, it needs no file, and it shares nothing with another one beside it.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,7 +1,5 @@
 //! A log of a cut has the contour error that the cut had, and a log of anything else is refused with its reason.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 

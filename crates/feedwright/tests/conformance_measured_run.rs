@@ -1,7 +1,5 @@
 //! `run --log`: an axis that stands still, in the program and in the log, needs no `--columns`.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::fmt::Write as _;
 
 use crate::command::Folder;

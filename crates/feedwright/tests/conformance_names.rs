@@ -1,7 +1,5 @@
 //! Names of types: no two types of the workspace have the same name without a reason.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 

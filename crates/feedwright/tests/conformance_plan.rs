@@ -1,7 +1,5 @@
 //! `feedwright plan`: the cycle time of a program, on machines with and without limits of their axes.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::command::Folder;
 use serde_json::Value;
 

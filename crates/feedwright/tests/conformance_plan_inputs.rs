@@ -1,7 +1,5 @@
 //! Programs that no planner likes: axes that move along, events and dwells between, ends in the middle, very many very short blocks.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright::{CycleTime, cycle_time, cycle_time_by};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_plan::{Constraints, feed_planner};

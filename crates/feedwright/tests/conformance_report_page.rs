@@ -1,8 +1,6 @@
 //! What every report page keeps to: complete without scripts, no request, nothing from a program becomes markup, equal
 //! reports give equal bytes, bounded size.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::made_up_report::{HOSTILE, page, report, report_with_log};
 use feedwright::{Report, Series};
 use feedwright_sim::Outcome;

@@ -1,7 +1,5 @@
 //! What the command hands over: exit codes, files, tables, and that nothing but the arguments decides on them.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::io::Read;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;

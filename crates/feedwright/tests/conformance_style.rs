@@ -1,7 +1,5 @@
 //! Rules of style that a machine can hold: no function is longer than a screen.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::{Path, PathBuf};
 
 use crate::source::code;

@@ -2,8 +2,6 @@
 //!
 //! Golden: it holds the document to the program, not the program to the truth.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::command::Folder;
 
 /// Set to write the messages into the document instead of comparing them.

@@ -1,7 +1,5 @@
 //! The help of every command, as docs/command-line.md has it. `just help` writes the document anew.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::Path;
 
 use crate::command::{Folder, Ran};

@@ -3,8 +3,6 @@
 //!
 //! The script: `oracle_scripts/contour_metric.py`.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

@@ -1,7 +1,5 @@
 //! Identification from logs: what is found of simulated machines is what they were made of, and of a public bench what was published.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::Path;
 
 use crate::identification_log::{commands_mm, log_of};

@@ -4,8 +4,6 @@
 //! The script: `oracle_scripts/resimulate.py`. Closed forms: `oracle_plant_lag.rs`, and with each term in `crates/control/src/axis/` and
 //! `crates/sim/src/plant/`.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 

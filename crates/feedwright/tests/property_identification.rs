@@ -1,8 +1,6 @@
 //! What an identification finds does not depend on what the machine does not depend on: when it was recorded, in which order its axes stand,
 //! how far away its zero is, and, but for friction, in which unit it was written.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::identification_log::{drawn, log_of};
 use feedwright::LogJob;
 use feedwright_ident::{FoundAxis, Log};

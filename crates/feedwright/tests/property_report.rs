@@ -1,7 +1,5 @@
 //! Properties of the bounded record and of the statistics, whatever the rows.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright::{RunFacts, Series, Statistics};
 use feedwright_sim::{Commanded, Row, Sink};
 use proptest::prelude::*;

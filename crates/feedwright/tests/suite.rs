@@ -1,5 +1,7 @@
 //! All tests of the command and its library in one binary: it links once, and uses every core to its end.
 
+#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
+
 #[path = "common/command.rs"]
 mod command;
 #[path = "common/controller_list.rs"]
@@ -12,6 +14,8 @@ mod identification_log;
 mod layers;
 #[path = "common/made_up_report.rs"]
 mod made_up_report;
+#[path = "../../plan/tests/common/missing.rs"]
+mod missing;
 #[path = "common/python.rs"]
 mod python;
 #[path = "../../gcode/tests/common/source.rs"]

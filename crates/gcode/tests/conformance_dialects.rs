@@ -1,6 +1,4 @@
 //! Programs of other controls, firmware and post-processors: what is theirs is read, one program for each.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use feedwright_gcode::canon::{Canon, Motion, Shape};
 use feedwright_gcode::{Diagnostic, Dialect, Reader, Settings};
 

@@ -1,6 +1,4 @@
 //! Every fault of a program names its place, its value and its limit; the reader goes on behind it.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use std::io::Write;
 
 use feedwright_gcode::{CheckError, Diagnostic, ReadError, Reader, Settings, check, summarize};

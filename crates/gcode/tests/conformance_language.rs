@@ -1,6 +1,4 @@
 //! What programs mean: end points, shapes and events, against values worked out by hand.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use feedwright_gcode::canon::{Canon, Corner, EventKind, Motion, MotionKind, Plane, Shape};
 use feedwright_gcode::{Reader, Settings, summarize};
 

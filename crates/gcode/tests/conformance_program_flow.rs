@@ -1,6 +1,4 @@
 //! Parameters, O-words, subroutines, cycles, splines and cutter compensation: what programs that compute come to.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use std::fs;
 
 use feedwright_gcode::canon::{Canon, EventKind, Motion, MotionKind, Shape};

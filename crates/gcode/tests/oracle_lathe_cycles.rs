@@ -1,7 +1,5 @@
 //! The cycles of Fanuc lathes against an expansion by hand: `oracle_scripts/lathe_cycles.py` made the numbers from the published rules.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_gcode::{Dialect, Reader, Settings};
 use serde::Deserialize;

@@ -1,8 +1,6 @@
 //! LinuxCNC's own interpreter tests: the motions that its `.expected` files print, against ours.
 //!
 //! The files print four decimals in the unit under way and program coordinates, so offsets are followed here. They need no LinuxCNC.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use std::path::{Path, PathBuf};
 
 use feedwright_gcode::canon::{Canon, MotionKind, Shape};

@@ -1,8 +1,6 @@
 //! Small programs whose end points LinuxCNC 2.9 was asked for, where this reader once went elsewhere.
 //!
 //! The numbers are those of `oracle_scripts/linuxcnc_canon.py`, rounded to 1e-6 mm.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use feedwright_gcode::canon::{Canon, EventKind, Motion, MotionKind};
 use feedwright_gcode::{Diagnostic, Reader, Settings};
 

@@ -2,8 +2,6 @@
 //! wherever the tool fits.
 //!
 //! The contour is kept here as the lines and arcs that the program is printed from; distances are those of points from them.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use std::f64::consts::{PI, TAU};
 
 use feedwright_gcode::canon::{Canon, Motion, MotionKind, Shape};

@@ -1,7 +1,5 @@
 //! G71, G72 and G73 of Fanuc lathes over random profiles: no motion comes into the part that the allowance leaves, the roughing leaves nothing
 //! thicker than a pass and the allowance, and extreme words end in a fault or in few motions.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use feedwright_gcode::canon::{Canon, Motion, MotionKind, Shape};
 use feedwright_gcode::{Diagnostic, Dialect, Reader, Settings};
 use proptest::prelude::*;

@@ -2,8 +2,6 @@
 //! leaves the stock and the way back, and words that ask for too much end in a fault.
 //!
 //! The part is here a polyline of its own: distances are those of points from chords, and what lies below is found by height.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use feedwright_gcode::canon::{Canon, Motion, Shape};
 use feedwright_gcode::{Diagnostic, Reader, Settings};
 use proptest::prelude::*;

@@ -1,6 +1,4 @@
 //! The reader on printed numbers, on garbage, and on every program of the corpus: it answers, and its answers lie inside the file.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use std::path::{Path, PathBuf};
 
 use feedwright_gcode::canon::Canon;

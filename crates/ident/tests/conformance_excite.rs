@@ -1,8 +1,6 @@
 //! The program that excites a machine: it keeps the limits and the travel of every built-in machine, ends where it began, and has every
 //! kind of motion that an identification needs.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright_gcode::canon::{Canon, Motion, Shape};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_ident::{ExciteError, ExciteOptions, excitation_program};

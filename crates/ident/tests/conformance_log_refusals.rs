@@ -1,7 +1,5 @@
 //! Records of which no servo model can be made are refused, each with its reason, place, value and limit.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::logs::{SAMPLES, axis, read, rows, time_s};
 use feedwright_ident::{LogError, Refusal, RefusalReason};
 

@@ -1,7 +1,5 @@
 //! Every format of logs is recognised by its content, and gives the same log.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::logs::{SAMPLE_S, SAMPLES, axis, file, read, rows, time_s, told};
 use feedwright_ident::{Columns, Fitness, Log, LogAxis, LogFormat, TorqueUnit};
 use miniz_oxide::deflate::compress_to_vec_zlib;

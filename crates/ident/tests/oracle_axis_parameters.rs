@@ -4,8 +4,6 @@
 //! Encoder noise leaves the output error where it is; linear least squares on the torque that the law makes of measured positions,
 //! `torque = J a + B v + Fc sign(v) + Fa`, has the noise in a and v, and is biased by it. Both are measured here.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright_control::{AxisLaw, AxisState, DriveLaw, DriveState, Parameters};
 use feedwright_ident::{AxisParameters, DriveSettings, Excitation, Recording, identify_axis};
 use feedwright_sim::Machine;

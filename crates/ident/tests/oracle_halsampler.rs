@@ -3,8 +3,6 @@
 //!
 //! The recording is made here, by LinuxCNC's HAL without its motion controller: a generator is the command, a filter behind it the axis.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::os::unix::fs::{MetadataExt, PermissionsExt, chown};
 use std::path::Path;
 use std::process::{Command, Stdio};

@@ -1,7 +1,5 @@
 //! Statistics of axes that are estimated from a recording of a simulated machine, against those of its file.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 

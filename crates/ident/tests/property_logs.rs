@@ -1,7 +1,5 @@
 //! Whatever a file holds, reading it gives a log or a message, and a log is what its description says.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::logs::{axis, read, rows, time_s};
 use feedwright_ident::Log;
 use proptest::prelude::*;

@@ -1,7 +1,5 @@
 //! Every row of the list of intended differences (`examples/gcode_compare/listed.rs`) names the difference of a program that has it,
 //! and no other: the same program with the difference elsewhere is not listed.
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use std::path::PathBuf;
 
 use crate::linuxcnc::{Totals, theirs};

@@ -4,8 +4,6 @@
 //! precision. What the path stage makes of an arc is compared with LinuxCNC's motion, and the points of its chords with our splines.
 //! Programs are those in `oracle_data`, of the corpus beside the repository and those that the package installs. Differences that remain are
 //! listed in `docs/gcode-differences.md` and in [`DIFFERENCES`].
-#![expect(clippy::unwrap_used, reason = "a test helper may fail its test")]
-
 use std::collections::BTreeMap;
 use std::os::unix::process::ExitStatusExt;
 use std::path::{Path, PathBuf};

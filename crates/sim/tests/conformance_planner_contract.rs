@@ -1,8 +1,6 @@
 //! What the contract of blends and planners carries beyond the members of today: jerk, derivatives by arc length, and a planned path
 //! beside the programmed one. A planner of constant jerk and a blend that rounds corners are made here and run through the chain.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::programs::{BLEND, polyline};
 use feedwright_control::{Controller, OpenLoop};
 use feedwright_gcode::canon::{Canon, Motion, Plane, Shape};

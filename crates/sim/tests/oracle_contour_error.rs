@@ -3,8 +3,6 @@
 //!
 //! The exact distance is that of `Reference::nearest`, which is itself checked here against dense sampling.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::{Path, PathBuf};
 
 use feedwright_control::{

@@ -4,8 +4,6 @@
 //! 2000 mm/s2 of every axis, `MAX_FEED_OVERRIDE` 2) and wrote beside each the number of servo periods and every 20th command. Recordings have
 //! six decimals.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use std::path::{Path, PathBuf};
 
 use feedwright_gcode::{Reader, Settings};

@@ -9,8 +9,6 @@
 //! with d the latency of the measurement; the delay of the drive and its filter move nothing that is constant, and with an integral in the
 //! speed loop T is nothing.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright_sim::{Axis, Machine, Plant};
 
 const SPEED_MM_S: f64 = 20.0;

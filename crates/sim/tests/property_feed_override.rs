@@ -1,8 +1,6 @@
 //! What holds of overrides and feed holds whatever the plan: the path is that of the plan, limits are kept, and a hold stops as soon as
 //! closed forms allow.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::programs::{BLEND, LIMITS, Random, arc, distance, polyline};
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::{

@@ -1,8 +1,6 @@
 //! What holds of a plan of the member `linuxcnc` whatever the program: motion without jumps from rest to rest, along all pieces in order, near
 //! the path; the same however calls are spread; spans that come while pieces do.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use crate::programs::{LIMITS, Random, arc, distance, line, polyline};
 use feedwright_gcode::canon::{Canon, Corner, MotionKind};
 use feedwright_plan::{AxisLimits, AxisMotion, Constraints, FeedPlanner, PathLimits, Piece, Span, Step, feed_planner};

@@ -1,8 +1,6 @@
 //! Machines with a soft screw, late drives and coarse encoders stay machines: they follow a slow line, and what is measured
 //! is what the encoder can show.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright_sim::{Machine, Plant, Transmission};
 use proptest::prelude::*;
 

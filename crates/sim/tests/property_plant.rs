@@ -1,7 +1,5 @@
 //! Whatever a machine file may say: a second of it is simulated without a panic. What is tuned badly diverges; that is a result.
 
-#![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
-
 use feedwright_sim::machine_keys as keys;
 use feedwright_sim::toml_file::Key;
 use feedwright_sim::toml_file::key::Value;

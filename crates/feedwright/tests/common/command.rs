@@ -1,7 +1,5 @@
 //! Runs the command as a user does: in a folder of its own, looking at nothing but files, exit code and what is printed.
 
-#![expect(clippy::unwrap_used, reason = "a test may stop")]
-
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};

@@ -1,11 +1,8 @@
 //! The Python that the scripts of the oracles run with.
 
-#[path = "../../../plan/tests/common/missing.rs"]
-mod missing;
-
 use std::process::Command;
 
-use missing::missing;
+use crate::missing::missing;
 
 /// A Python that reads TOML: 3.11 or newer; it is said where there is none, and under CI the test fails.
 pub(crate) fn python() -> Option<&'static str> {

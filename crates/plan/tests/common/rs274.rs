@@ -1,11 +1,8 @@
 //! Whether LinuxCNC's stand-alone interpreter is there.
 
-#[path = "missing.rs"]
-mod missing;
-
 use std::process::{Command, Stdio};
 
-use missing::missing;
+use crate::missing::missing;
 
 /// Whether `rs274` can be run; it is said where it cannot, and under CI the test fails.
 pub(crate) fn is_installed() -> bool {
