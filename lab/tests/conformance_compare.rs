@@ -51,17 +51,19 @@ fn json(comparison: &Comparison) -> String {
     serde_json::to_string(comparison).unwrap()
 }
 
-#[test]
-fn the_table_is_the_same_for_any_number_of_threads() {
-    assert_eq!(json(compared()), json(&with_threads(1, &options(), &Journal::none())));
+/// Those of one machine.
+fn few_options() -> ComparisonOptions {
+    let mut options = options();
+    options.machines.truncate(1);
+    options
 }
 
 #[test]
-fn the_table_is_the_same_after_an_interruption() {
-    let mut options = options();
-    options.machines.truncate(1);
-    options.workpieces.truncate(1);
+fn the_table_is_the_same_for_any_number_of_threads_and_after_an_interruption() {
+    let options = few_options();
     let two = with_threads(2, &options, &Journal::none());
+    assert_eq!(json(&two), json(&with_threads(1, &options, &Journal::none())));
+
     let folder = tempfile::tempdir().unwrap();
     let journal = Journal::open(&journal_path(folder.path(), "key")).unwrap();
     with_threads(2, &options, &journal);
@@ -80,7 +82,7 @@ fn the_table_is_the_same_after_an_interruption() {
 
 #[test]
 fn shards_merge_to_the_bytes_of_the_undivided_run_and_missing_rows_are_named() {
-    let options = ComparisonOptions { at_tolerance: true, ..options() };
+    let options = ComparisonOptions { at_tolerance: true, ..few_options() };
     let whole = with_threads(2, &options, &Journal::none());
     assert!(!whole.at_tolerance.is_empty());
     let folder = tempfile::tempdir().unwrap();

@@ -233,19 +233,18 @@ fn acceleration_mm_s2(rows: &[Row], servo_s: f64) -> f64 {
 
 #[test]
 fn what_the_controller_is_told_wrong_does_no_harm() {
-    judge(TIMES);
+    judge(TIMES, &["star", "square"]);
 }
 
 #[test]
 #[ignore = "a sweep, minutes: just sweep"]
 fn what_the_controller_is_told_wrong_at_many_times_does_no_harm() {
-    judge(MANY_TIMES);
+    judge(MANY_TIMES, &["circle", "star", "square"]);
 }
 
-fn judge(times: [(&'static str, usize); 2]) {
+fn judge(times: [(&'static str, usize); 2], contours: &[&'static str]) {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
-    let contours = ["circle", "star", "square"];
-    let faults = || contours.into_iter().flat_map(|name| FAULTS.map(|fault| (name, fault)));
+    let faults = || contours.iter().flat_map(|name| FAULTS.map(|fault| (*name, fault)));
     let cases: Vec<_> =
         times.into_iter().flat_map(|controller| faults().map(move |fault| (controller, fault))).collect();
     let failures: Vec<String> =
@@ -302,7 +301,7 @@ fn told_wrong(machine: &Machine, (corrects, times): (&str, usize), (name, fault)
 /// predictions of 3 ms hold all the while, those of six knots do not.
 const HEAVIER: [(f64, f64); 4] = [(3.0, 1.5), (10.0, 1.02), (2.0, 1.0), (5.0, 1.2)];
 /// How many of them are not left to the sweep.
-const FEW: usize = 2;
+const FEW: usize = 1;
 
 #[test]
 fn more_inertia_from_one_line_to_the_next_does_no_more_harm_than_is_known() {
