@@ -7,7 +7,7 @@ check:
     env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
     cargo test --workspace --locked
 
-# The long tests that the suite leaves out: more controllers, machines, moments and programs. Half an hour.
+# The long tests that the suite leaves out: more controllers, machines, moments and programs.
 sweep:
     cargo test --release --workspace --locked -- --ignored
 
