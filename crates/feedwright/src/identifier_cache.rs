@@ -73,10 +73,13 @@ pub(crate) fn identified_axes<const N: usize>(
     used_on: &Known,
 ) -> Result<IdentifiedAxes<N>, NotIdentified> {
     let recording = recordings.joined();
-    let key = |program: &String| {
-        key_of(&[program.as_bytes(), recording.hash().as_bytes(), format!("{known:?}{used_on:?}").as_bytes()])
+    let name = |program: &String| {
+        let key =
+            key_of(&[program.as_bytes(), recording.hash().as_bytes(), format!("{known:?}{used_on:?}").as_bytes()]);
+        format!("{key}.toml")
     };
-    let file = PROGRAM.as_ref().zip(folder()).map(|(program, folder)| folder.join(format!("{}.toml", key(program))));
+    // The program is read where there is a cache only.
+    let file = folder().and_then(|folder| Some(folder.join(name(PROGRAM.as_ref()?))));
     let kept = file.as_deref().and_then(|file| Model::read(file).ok()?.identified_axes());
     if let Some(axes) = kept {
         return Ok(axes);

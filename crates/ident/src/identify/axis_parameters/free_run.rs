@@ -57,8 +57,7 @@ struct FreeAxis<'a> {
     start_rad: f64,
     masses: MechanicsState,
     drive: DriveState,
-    /// Mechanics periods before now, and the angle at the start of each, rad.
-    moment: usize,
+    /// Angle at the start of each mechanics period, to that of the next, rad.
     course_rad: Vec<f64>,
     sent: Vec<DriveReference>,
     measured_mm: Vec<f64>,
@@ -68,24 +67,29 @@ impl<'a> FreeAxis<'a> {
     fn new(axis: &'a FreeRun, commands: usize, start_mm: f64, start_mm_s: f64) -> Self {
         let scale = axis.law.parameters.rad_per_mm;
         let start_rad = start_mm * scale;
+        let mut course_rad = Vec::with_capacity(commands * axis.law.periods.mechanics_per_servo as usize + 1);
+        course_rad.push(start_rad);
         Self {
             axis,
             start_rad,
             masses: MechanicsState::moving(start_rad, start_mm_s * scale),
             drive: DriveState::AT_REST,
-            moment: 0,
-            course_rad: vec![0.0; commands * axis.law.periods.mechanics_per_servo as usize],
+            course_rad,
             sent: Vec::with_capacity(commands),
             measured_mm: Vec::with_capacity(commands),
         }
+    }
+
+    /// The mechanics period so many before the next, if the run had begun then.
+    fn moment(&self, late: usize) -> Option<usize> {
+        (self.course_rad.len() - 1).checked_sub(late)
     }
 
     /// A servo period begins.
     fn command(&mut self, command_mm: f64) {
         let FreeRun { law, drive, late: [_, measured_late], .. } = self.axis;
         let scale = law.parameters.rad_per_mm;
-        self.course_rad[self.moment] = self.masses.motor.angle_rad;
-        let measured_rad = self.moment.checked_sub(*measured_late).map_or(self.start_rad, |then| self.course_rad[then]);
+        let measured_rad = self.moment(*measured_late).map_or(self.start_rad, |then| self.course_rad[then]);
         self.measured_mm.push(measured_rad / scale);
         let motor = &mut self.masses.motor;
         self.sent.push(drive.position_loop(law, command_mm * scale, measured_rad, motor, &mut self.drive));
@@ -95,12 +99,11 @@ impl<'a> FreeAxis<'a> {
     #[inline]
     fn step(&mut self) {
         let FreeRun { law, drive, mechanics, late: [drive_late, _] } = self.axis;
-        self.course_rad[self.moment] = self.masses.motor.angle_rad;
         let per_servo = law.periods.mechanics_per_servo as usize;
-        let arrived = self.moment.checked_sub(*drive_late).map(|then| self.sent[then / per_servo]);
+        let arrived = self.moment(*drive_late).map(|then| self.sent[then / per_servo]);
         let speed_rad_s = self.masses.motor.speed_rad_s;
         let torque_nm = drive.torque_nm(law, arrived.unwrap_or_default(), speed_rad_s, &mut self.drive);
         mechanics.advance(&mut self.masses, torque_nm, 0.0);
-        self.moment += 1;
+        self.course_rad.push(self.masses.motor.angle_rad);
     }
 }
