@@ -117,12 +117,27 @@ fn so_they_do_with_every_controller() {
             agrees(python, &part("circle"), &machine_file(machine), entry, steps(machine, entry));
         }
     }
+    let odd = odd(folder.path());
+    for entry in two() {
+        for machine in ["soft", "coarse"] {
+            agrees(python, &part("star"), &machine_file(machine), entry, steps(machine, entry));
+        }
+        agrees(python, &part("star"), &odd, entry, BOTH);
+    }
+    agrees(python, &pocket, &machine_file("coarse"), &feedwright::OPEN_LOOP, BOTH);
 }
 
 /// With backlash a finer step has the flanks strike at other times, and what a quick command makes of that the closed form does not
 /// know: by the same step it is the same to the last digit.
 fn steps(machine: &str, entry: &Entry) -> &'static [u32] {
     if machine == "soft" && entry.name == HORIZON { &[1] } else { finer(entry) }
+}
+
+/// The machine that the project does not have, in a folder.
+fn odd(folder: &Path) -> PathBuf {
+    let odd = folder.join("odd.toml");
+    std::fs::write(&odd, ODD).unwrap();
+    odd
 }
 
 /// The beginning of the pocket, in a folder.
@@ -152,8 +167,7 @@ fn so_they_do_with_backlash_encoder_steps_delay_and_torque_steps() {
 fn so_they_do_on_a_machine_that_the_project_does_not_have() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let odd = folder.path().join("odd.toml");
-    std::fs::write(&odd, ODD).unwrap();
+    let odd = odd(folder.path());
     for name in ["circle", "square"] {
         for entry in two() {
             agrees(python, &part(name), &odd, entry, BOTH);

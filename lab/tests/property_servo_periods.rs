@@ -6,7 +6,7 @@ use feedwright_sim::{Machine, Period, Run};
 use rayon::prelude::*;
 
 /// Servo periods, s, and the mechanics periods in them.
-const PERIODS: [(f64, u32); 3] = [(0.25e-3, 5), (2e-3, 20), (10e-3, 100)];
+const PERIODS: [(f64, u32); 5] = [(0.25e-3, 5), (0.5e-3, 5), (2e-3, 20), (4e-3, 40), (10e-3, 100)];
 /// RMS against open loop's at the most: up to 2 ms, and beyond, where a corner lasts less than a period.
 const RATIO: f64 = 0.03;
 const SLOW_RATIO: f64 = 0.6;

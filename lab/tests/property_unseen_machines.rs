@@ -178,7 +178,7 @@ fn a_drive_that_is_just_strong_enough_for_the_plan_is_strong_enough() {
     for axis in &mut machine.axes {
         axis.torque_limit_nm = torque_of_plan_nm(axis, &limits);
     }
-    for workpiece in contours(&["star", "square"]) {
+    for workpiece in Workpiece::contours() {
         let (open, open_numbers) = cut(&workpiece, &machine, &mut *controller(BASELINE, &machine));
         assert_eq!(open.outcome, Outcome::Completed);
         for (name, knows, most) in [(HORIZON, &tnv40(), 0.05), (BEST, &machine, 0.2)] {

@@ -15,7 +15,7 @@ fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit()
         ("receding-horizon", "1", "tnv40"),
         ("receding-horizon", "7", "tnv40"),
         ("two-dimensional", "3", "tnv40"),
-        ("lqg-identified", "1", "tnv40"),
+        ("lqg-identified", "1", "workshop"),
     ] {
         let folder = Folder::new();
         let same = ["--controller", controller, "--machine", machine, "--seed", seed];

@@ -121,7 +121,7 @@ fn so_it_does_in_space_and_over_long_rests() {
     let part = folder.path().join("rests.ngc");
     let program = "G21 G90 F1200\nG1 X3 Y1 Z-1\nG4 P2.3457\nG1 X1 Y4 Z-2\nM6 T1\nM8\nG4 P1.5\nG1 X0 Y0 Z0\nM2\n";
     std::fs::write(&part, program).unwrap();
-    for delay_s in [0.001, 0.02] {
+    for delay_s in [0.001, 0.003, 0.02] {
         let values: Vec<_> =
             without(&["measurement_delay_s"]).into_iter().chain([("measurement_delay_s", delay_s)]).collect();
         agrees(python, &part, &text(&values, GEOMETRY), entry(BASELINE));

@@ -354,11 +354,11 @@ mod tests {
     fn where_nothing_is_identified_the_training_fails_and_the_controller_tells_that_it_cuts_open_loop() {
         let mut machine = Machine::load("tnv40".as_ref()).unwrap();
         // The loop takes longer to settle than the excitation lasts.
-        machine.axes.iter_mut().for_each(|axis| axis.kp_1_s = 1.0);
+        machine.axes.iter_mut().for_each(|axis| axis.kp_1_s = 0.1);
         let (choices, entry) = (Choices::default(), CONTROLLERS.find("lqg-identified").unwrap());
         let mut setup = Setup::new(&machine, &choices);
         let refused = setup.train(entry, 2, "today".to_owned()).unwrap_err().to_string();
-        assert!(refused.starts_with("the axes of `tnv40` cannot be identified: "), "{refused}");
+        assert!(refused.starts_with("the axes of `tnv40` cannot be identified: 0 stretches are longer"), "{refused}");
         let mut setup = Setup::new(&machine, &choices);
         assert_eq!(setup.remark(entry), None);
         let _ = super::super::Make::<2>::make(entry, &mut setup);
