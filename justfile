@@ -7,9 +7,9 @@ check:
     env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --locked
     cargo test --workspace --locked
 
-# The long tests that the suite leaves out: more controllers, machines, moments and programs.
+# The suite with all cases of its long tests: more controllers, machines, moments and programs.
 sweep:
-    cargo test --release --workspace --locked -- --ignored
+    FEEDWRIGHT_SWEEP=1 cargo test --release --workspace --locked -- --include-ignored
 
 # Cut a part and write its report.
 run part="parts/star.ngc" *options:

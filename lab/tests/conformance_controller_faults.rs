@@ -3,6 +3,7 @@
 //! The position loops of the machine go on with the true position; only the controller sees a lost, frozen or leaping one.
 //! What is asked for: the correction leaves the loop at once and gently, it comes back, and the cut is no worse than open loop.
 
+use crate::sweep::part_or_whole;
 use feedwright::{BASELINE, BEST, Choices, HORIZON, MAX_UM, Make, Setup};
 use feedwright_control::vector::sub;
 use feedwright_control::{Bounds, Controller, Knot, State, Tick};
@@ -234,16 +235,7 @@ fn acceleration_mm_s2(rows: &[Row], servo_s: f64) -> f64 {
 
 #[test]
 fn what_the_controller_is_told_wrong_does_no_harm() {
-    judge(TIMES, &["star", "square"]);
-}
-
-#[test]
-#[ignore = "a sweep, minutes: just sweep"]
-fn what_the_controller_is_told_wrong_at_many_times_does_no_harm() {
-    judge(MANY_TIMES, &["circle", "star", "square"]);
-}
-
-fn judge(times: [(&'static str, usize); 2], contours: &[&'static str]) {
+    let (times, contours) = part_or_whole((TIMES, &["square"][..]), (MANY_TIMES, &["circle", "star", "square"]));
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     let faults = || contours.iter().flat_map(|name| FAULTS.map(|fault| (*name, fault)));
     let cases: Vec<_> =
@@ -306,16 +298,7 @@ const FEW: usize = 1;
 
 #[test]
 fn more_inertia_from_one_line_to_the_next_does_no_more_harm_than_is_known() {
-    judge_heavier(&HEAVIER[..FEW]);
-}
-
-#[test]
-#[ignore = "a sweep, minutes: just sweep"]
-fn any_more_inertia_from_one_line_to_the_next_does_no_more_harm_than_is_known() {
-    judge_heavier(&HEAVIER[FEW..]);
-}
-
-fn judge_heavier(cases: &[(f64, f64)]) {
+    let cases = part_or_whole(&HEAVIER[..FEW], &HEAVIER);
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     let failures: Vec<String> = cases
         .par_iter()

@@ -6,6 +6,7 @@
 
 use std::sync::Arc;
 
+use crate::sweep::part_or_whole;
 use feedwright::BEST;
 use feedwright_lab::{
     CONTROLLERS, Class, Cutter, Generated, Length, Program, SweepOptions, SweepRow, Variant, draw, smallest,
@@ -45,17 +46,7 @@ fn told(row: &SweepRow) -> String {
 
 #[test]
 fn random_programs_on_random_machines_are_cut_no_worse_than_open_loop() {
-    judge(CUTS);
-}
-
-#[test]
-#[ignore = "a sweep, minutes: just sweep"]
-fn many_random_programs_on_random_machines_are_cut_no_worse_than_open_loop() {
-    judge(MANY_CUTS);
-}
-
-fn judge(cuts: usize) {
-    let options = options();
+    let (cuts, options) = (part_or_whole(CUTS, MANY_CUTS), options());
     let generated = draw(SEED, cuts, FOR_EACH, Class::Any).unwrap();
     let mut failures: Vec<(SweepRow, Generated)> = Vec::new();
     for of_machine in generated.chunks(FOR_EACH) {
@@ -150,7 +141,7 @@ fn teeth_smaller_than_the_lag_are_cut_no_worse_than_open_loop() {
 
 #[test]
 fn two_turns_of_a_small_circle_are_cut_no_worse_than_open_loop() {
-    for kp_1_s in [25.0, 40.0] {
+    for &kp_1_s in part_or_whole(&[25.0][..], &[25.0, 40.0]) {
         let variant = Variant::of("tnv40", format!("kp{kp_1_s}")).with_axes("kp_1_s", kp_1_s);
         assert_eq!(judged("two turns", &two_turns(), &variant).faults(), []);
     }

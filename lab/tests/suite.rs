@@ -25,6 +25,8 @@ mod programs;
 mod python;
 #[path = "../examples/noise_levels/show.rs"]
 mod show;
+#[path = "../../crates/ident/tests/common/sweep.rs"]
+mod sweep;
 #[path = "../examples/tables/table.rs"]
 mod table;
 

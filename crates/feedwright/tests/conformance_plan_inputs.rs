@@ -1,5 +1,6 @@
 //! Programs that no planner likes: axes that move along, events and dwells between, ends in the middle, very many very short blocks.
 
+use crate::sweep::part_or_whole;
 use feedwright::{CycleTime, cycle_time, cycle_time_by};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_plan::{Constraints, feed_planner};
@@ -70,10 +71,11 @@ fn a_truncated_program_ends_at_rest_where_it_ends() {
     }
 }
 
-/// A straight line in blocks of 1 um at 100 mm/s takes what it takes in one block.
-fn take_the_time_of_one(micrometres: u32) {
+/// A straight line at 100 mm/s.
+#[test]
+fn very_many_blocks_of_a_micrometre_take_the_time_of_one() {
     use std::fmt::Write;
-    let machine = machine();
+    let (machine, micrometres) = (machine(), part_or_whole(MICROMETRES, MILLION));
     let mut program = "G21 G90 G64 P0.01 F6000\n".to_owned();
     for i in 1..=micrometres {
         writeln!(program, "G1 X{:.3}", f64::from(i) * 1e-3).unwrap();
@@ -82,17 +84,6 @@ fn take_the_time_of_one(micrometres: u32) {
     let one = planned(&machine, &format!("G21 G90 G64 P0.01 F6000\nG1 X{}\n", micrometres / 1000));
     assert_eq!((short.blocks, one.blocks), (u64::from(micrometres), 1));
     assert!((short.time_s / one.time_s - 1.0).abs() < 2e-3, "{} {}", short.time_s, one.time_s);
-}
-
-#[test]
-fn very_many_blocks_of_a_micrometre_take_the_time_of_one() {
-    take_the_time_of_one(MICROMETRES);
-}
-
-#[test]
-#[ignore = "a sweep, half a minute: just sweep"]
-fn a_million_blocks_of_a_micrometre_take_the_time_of_one() {
-    take_the_time_of_one(MILLION);
 }
 
 #[test]

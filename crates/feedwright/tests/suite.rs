@@ -20,6 +20,8 @@ mod missing;
 mod python;
 #[path = "../../gcode/tests/common/source.rs"]
 mod source;
+#[path = "../../ident/tests/common/sweep.rs"]
+mod sweep;
 
 mod conformance_adaptation;
 mod conformance_advise;

@@ -4,6 +4,8 @@
 
 #[path = "common/logs.rs"]
 mod logs;
+#[path = "common/sweep.rs"]
+mod sweep;
 
 mod conformance_excite;
 mod conformance_log_refusals;

@@ -316,6 +316,8 @@ impl<'a> Setup<'a> {
 
 #[cfg(test)]
 mod tests {
+    use feedwright_sim::Period;
+
     use super::super::Knows;
     use super::*;
 
@@ -353,8 +355,9 @@ mod tests {
     #[test]
     fn where_nothing_is_identified_the_training_fails_and_the_controller_tells_that_it_cuts_open_loop() {
         let mut machine = Machine::load("tnv40".as_ref()).unwrap();
-        // The loop takes longer to settle than the excitation lasts.
+        // The loop takes longer to settle than the excitation lasts; with long servo periods its recording is short.
         machine.axes.iter_mut().for_each(|axis| axis.kp_1_s = 0.1);
+        machine.period = Period { servo_s: 0.01, mechanics_s: 0.001, mechanics_per_servo: 10 };
         let (choices, entry) = (Choices::default(), CONTROLLERS.find("lqg-identified").unwrap());
         let mut setup = Setup::new(&machine, &choices);
         let refused = setup.train(entry, 2, "today".to_owned()).unwrap_err().to_string();
