@@ -9,7 +9,7 @@
 use std::path::{Path, PathBuf};
 
 use feedwright::{CorrectJob, ExportedCut, ExportedFigures, TARGETS, deterministic};
-use feedwright_gcode::{Reader, Settings, check};
+use feedwright_gcode::{Program, Reader, Settings};
 use feedwright_plan::{Pieces, Step};
 use feedwright_sim::{Axis, Machine};
 
@@ -75,16 +75,10 @@ fn ratio(original: f64, corrected: f64, nobody: f64, power: i32) -> f64 {
 }
 
 fn line(name: &str, machine: &Machine, part: &Path, believed: Option<Machine>) {
-    let summary = check(part, Settings::default()).expect("a program");
+    let summary = Program::in_file(part).check(Settings::default()).expect("a program");
     let axes = if summary.moves[2] { 3 } else { 2 };
-    let job = CorrectJob {
-        part: part.to_owned(),
-        machine: machine.clone(),
-        believed,
-        feed_mm_s: None,
-        target: &TARGETS[0],
-        reader: Settings::default(),
-    };
+    let mut job = CorrectJob::new(Program::in_file(part), machine.clone(), &TARGETS[0]);
+    job.believed = believed;
     let outcome = match job.run(&()) {
         Ok(outcome) => outcome,
         Err(error) => return println!("{:<9} {name:<24} {error}", machine.name),

@@ -5,7 +5,7 @@ use std::error::Error;
 use std::hash::{BuildHasher, RandomState};
 use std::path::Path;
 
-use feedwright_ident::today;
+use feedwright::command::today;
 use feedwright_lab::HeldOutSeeds;
 
 /// Seeds have at most so many digits, to be read.

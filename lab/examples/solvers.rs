@@ -3,6 +3,8 @@
 //!
 //! The controller is made from `tnv40`; `heavy` meets it unseen. Times are of whole decisions, medians over a cut.
 
+use std::time::{Duration, Instant};
+
 use feedwright::{Statistics, correction_limits, identified};
 use feedwright_control::{
     Controller, Gradient, INVERTING_FEED_PERIOD_S, InvertingSettings, RECEDING_HORIZON_FEED_PERIOD_S, RecedingHorizon,
@@ -10,7 +12,7 @@ use feedwright_control::{
 };
 use feedwright_ident::{Excitation, Training, train_servo};
 use feedwright_lab::Workpiece;
-use feedwright_sim::{Machine, Run, RunResult};
+use feedwright_sim::{Machine, Run, RunResult, Watch};
 
 const CONTOURS: [&str; 3] = ["circle", "star", "square"];
 const MACHINES: [&str; 2] = ["tnv40", "heavy"];
@@ -97,8 +99,18 @@ fn cut(
     controller: &mut dyn Controller<2>,
 ) -> Result<(Statistics, RunResult), Failure> {
     let mut statistics = Statistics::new();
-    let run = Run::on(machine).cut_steps(&workpiece.steps, controller, &mut [&mut statistics])?;
+    let watch = Timer(Instant::now());
+    let run = Run::on(machine).watched(&watch).cut_steps(&workpiece.steps, controller, &mut [&mut statistics])?;
     Ok((statistics, run))
+}
+
+/// Times the decisions.
+struct Timer(Instant);
+
+impl Watch for Timer {
+    fn clock(&self) -> Duration {
+        self.0.elapsed()
+    }
 }
 
 fn errors(statistics: &Statistics) -> String {

@@ -5,6 +5,7 @@
 //!
 //! What is public here serves the laboratory, which has commands of its own and the same look. It may change at any time.
 
+mod date;
 mod terminal;
 mod args;
 mod message;
@@ -33,6 +34,7 @@ pub use commands::list::{controller, controllers};
 pub use commands::run::run as run_part;
 pub use console::Console;
 pub use controllers::{find, settings};
+pub use date::today;
 pub use files_to_check::FilesToCheck;
 pub use message::{OUT_OF_TOLERANCE, printed, remark};
 pub use streams::{make_folder, tables, tell_written};

@@ -58,9 +58,7 @@ mod expanded_text;
 mod verified;
 mod outcome;
 pub(crate) mod advise;
-use std::path::PathBuf;
-
-use feedwright_gcode::{self, Settings};
+use feedwright_gcode::{Program, Settings};
 use feedwright_sim::{Machine, Watch};
 
 use crate::job_error::{JobError, axes_that_move};
@@ -76,9 +74,10 @@ pub use target::{MacroLanguage, TARGETS, TargetControl};
 
 /// A program, a machine, and a control that the corrected program is for.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct CorrectJob {
     /// The G-code program.
-    pub part: PathBuf,
+    pub program: Program,
     /// The machine that cuts it.
     pub machine: Machine,
     /// What the correction believes of the machine; none is the machine itself.
@@ -92,21 +91,26 @@ pub struct CorrectJob {
 }
 
 impl CorrectJob {
+    /// Corrects a program for a control, as the machine is and with the feedrates of the program.
+    pub fn new(program: Program, machine: Machine, target: &'static TargetControl) -> Self {
+        Self { program, machine, believed: None, target, feed_mm_s: None, reader: Settings::default() }
+    }
+
     /// Corrects it and verifies the text.
     ///
     /// # Errors
     /// A program with mistakes, more axes than the machine has, or an end from outside.
     pub fn run(&self, watch: &dyn Watch) -> Result<CorrectOutcome, JobError> {
         watch.begin("reading the program", 1);
-        let summary = feedwright_gcode::check(&self.part, self.reader.clone())?;
-        let axes = axes_that_move(&self.part, &summary, &self.machine)?;
-        let source = SourceProgram::read(&self.part, &self.reader, self.feed_mm_s)?;
-        let path_error = |fault| JobError::Path { part: self.part.clone(), fault };
+        let summary = self.program.check(self.reader.clone())?;
+        let axes = axes_that_move(&self.program, &summary, &self.machine)?;
+        let source = SourceProgram::read(&self.program, &self.reader, self.feed_mm_s)?;
+        let path_error = |fault| JobError::Path { part: self.program.name(), fault };
         let original = steps_of(&source.steps).map_err(path_error)?;
         let nominal = deterministic(self.believed.as_ref().unwrap_or(&self.machine));
         let stages = self.target.suits(&self.machine)?;
         let on = |machine| ExportedCut { machine, stages, original: &original, axes, watch };
-        let of_run = |error| JobError::of_run(&self.part, error);
+        let of_run = |error| JobError::of_run(&self.program, error);
         let parts = parts(&source.steps);
         let found = rounds(&on(&nominal), &parts, self.target).map_err(of_run)?;
         watch.begin("cutting the original", 1);

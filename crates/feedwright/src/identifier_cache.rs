@@ -2,13 +2,12 @@
 //! anew each time, which takes a fraction of the training, so that no change of machine, plant or planner finds old weights.
 //! Identified axes are found by the program that identified them alone.
 //!
-//! One small file each, in the user's cache folder, or in `$FEEDWRIGHT_CACHE` where that is set; where that is empty nothing is
-//! kept. Each has a checksum: what cannot be read, is damaged or does not hold an identifier is trained anew; one that cannot be
-//! written is not an error.
+//! What cannot be read, is damaged or does not hold an identifier is trained anew. Without the feature `files` nothing is kept.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
-use std::sync::LazyLock;
+#[cfg(feature = "files")]
+pub(crate) mod files;
+#[cfg(not(feature = "files"))]
+mod no_files;
 
 use feedwright_control::{ContourIdentifier, HIDDEN, INPUTS, IdentifiedAxes};
 use feedwright_ident::{
@@ -19,7 +18,8 @@ use feedwright_sim::{Known, Machine};
 use serde::{Deserialize, Serialize};
 
 use crate::checked_json::{checked, with_check};
-use crate::output::{OutputFile, OutputFiles};
+#[cfg(not(feature = "files"))]
+use no_files as files;
 
 /// Raised whenever the same recording gives other weights: a change of the network or of its training.
 const FORMAT: u32 = 4;
@@ -51,14 +51,13 @@ pub fn trained<const N: usize>(
     rng: Rng,
     progress: &mut dyn FnMut(f64),
 ) -> TrainedContour<N> {
-    let file = folder().map(|folder| folder.join(format!("{}.json", key(recording, training, &rng))));
-    if let Some(found) = file.as_ref().and_then(load) {
+    let name = format!("{}.json", key(recording, training, &rng));
+    if let Some(found) = files::read(&name).and_then(|text| stored(&text)) {
         return found;
     }
     let identified = train_contour(recording, training, rng, progress);
-    if let Some(file) = file {
-        // A cache that cannot be written costs time, nothing else.
-        let _ = store(&file, &identified);
+    if let Ok(text) = text(&identified) {
+        files::write(&name, &text);
     }
     identified
 }
@@ -73,39 +72,23 @@ pub(crate) fn identified_axes<const N: usize>(
     used_on: &Known,
 ) -> Result<IdentifiedAxes<N>, NotIdentified> {
     let recording = recordings.joined();
-    let name = |program: &String| {
+    // The program is read where there is a cache only.
+    let name = files::program().map(|program| {
         let key =
             key_of(&[program.as_bytes(), recording.hash().as_bytes(), format!("{known:?}{used_on:?}").as_bytes()]);
         format!("{key}.toml")
-    };
-    // The program is read where there is a cache only.
-    let file = folder().and_then(|folder| Some(folder.join(name(PROGRAM.as_ref()?))));
-    let kept = file.as_deref().and_then(|file| Model::read(file).ok()?.identified_axes());
+    });
+    let kept =
+        name.as_deref().and_then(files::read).and_then(|text| Model::parse("cache", &text).ok()?.identified_axes());
     if let Some(axes) = kept {
         return Ok(axes);
     }
     let trained = train_axes(recordings, known, used_on)?;
-    if let Some(file) = file {
+    if let Some(name) = name {
         let origin = Origin { source: "a simulated excitation".to_owned(), date: "1970-01-01".to_owned() };
-        // A cache that cannot be written costs time, nothing else.
-        let _ = write(&file, &Model::of_axes(&recording, &trained, origin).text());
+        files::write(&name, &Model::of_axes(&recording, &trained, origin).text());
     }
     Ok(trained.axes)
-}
-
-/// A hash of this program.
-static PROGRAM: LazyLock<Option<String>> = LazyLock::new(|| {
-    let program = std::env::current_exe().and_then(std::fs::read).ok()?;
-    Some(blake3::hash(&program).to_hex().to_string())
-});
-
-/// The folder of the cache, where there is one.
-pub fn folder() -> Option<PathBuf> {
-    match std::env::var_os("FEEDWRIGHT_CACHE") {
-        Some(folder) if folder.is_empty() => None,
-        Some(folder) => Some(PathBuf::from(folder)),
-        None => directories::ProjectDirs::from("", "", "feedwright").map(|dirs| dirs.cache_dir().to_owned()),
-    }
 }
 
 /// A name for what depends on these parts.
@@ -123,8 +106,9 @@ fn key<const N: usize>(recording: &Recording<N>, training: &Training, rng: &Rng)
     blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
 }
 
-fn load<const N: usize>(file: &PathBuf) -> Option<TrainedContour<N>> {
-    let stored: StoredWeights = serde_json::from_str(&checked(&std::fs::read_to_string(file).ok()?)?).ok()?;
+/// The identifier in a file of the cache.
+fn stored<const N: usize>(text: &str) -> Option<TrainedContour<N>> {
+    let stored: StoredWeights = serde_json::from_str(&checked(text)?).ok()?;
     let complete = stored.hidden.len() == N * INPUTS * HIDDEN && stored.output.len() == N * HIDDEN;
     if !complete || stored.hidden.iter().chain(&stored.output).any(|w| !w.is_finite()) {
         return None;
@@ -138,20 +122,13 @@ fn load<const N: usize>(file: &PathBuf) -> Option<TrainedContour<N>> {
     Some(TrainedContour { net, fit_um: stored.fit_um, samples: stored.samples })
 }
 
-fn store<const N: usize>(file: &Path, identified: &TrainedContour<N>) -> std::io::Result<()> {
+/// The file of an identifier.
+fn text<const N: usize>(identified: &TrainedContour<N>) -> serde_json::Result<String> {
     let stored = StoredWeights {
         hidden: identified.net.hidden.as_flattened().as_flattened().to_vec(),
         output: identified.net.output.as_flattened().to_vec(),
         fit_um: identified.fit_um,
         samples: identified.samples,
     };
-    write(file, &with_check(&serde_json::to_string(&stored)?))
-}
-
-fn write(file: &Path, text: &str) -> std::io::Result<()> {
-    let Some(folder) = file.parent() else { return Ok(()) };
-    std::fs::create_dir_all(folder)?;
-    let mut kept = OutputFiles::default().start(file).map_err(std::io::Error::other)?;
-    kept.write_all(text.as_bytes())?;
-    OutputFile::commit_all(vec![kept], &()).map_err(std::io::Error::other)
+    Ok(with_check(&serde_json::to_string(&stored)?))
 }

@@ -1,38 +1,37 @@
-//! The main job: a program and a machine in, every controller's cut, report and files out.
+//! The main job: a program and a machine in, every controller's cut, its rows and the report out.
 //!
-//! Calls, no arithmetic. The program is read twice: once to find every mistake before anything is written, once for each
+//! Calls, no arithmetic. The program is read twice: once to find every mistake before anything is cut, once for each
 //! cut, as a stream. A cut is a [`Run`].
 //!
 //! | File | What |
 //! |---|---|
 //! | `job/assumed.rs` | what it assumes of its machine |
-//! | `job/files.rs` | the files that it writes, all of them or none |
+//! | `job/values.rs` | which values it takes |
 //! | `job/record.rs` | what it keeps of the rows of a run |
 //! | `job/exported.rs` | the corrected program for a control without feedback |
 //! | `job/report.rs` | what the page shows |
 //! | `job/listing.rs` | lines of the program for it |
+//! | `job/results.rs` | its figures as JSON |
 //! | `job/stored.rs` | how it is serialised |
 
 mod assumed;
-mod files;
+mod values;
 mod record;
 mod exported;
 mod report;
 mod listing;
+mod results;
 mod stored;
-
-use std::path::PathBuf;
-use std::str::FromStr;
 
 use feedwright_control::Controller;
 use feedwright_gcode::canon::{Canon, MotionKind};
-use feedwright_gcode::{self, ReadError, Reader, Summary};
-use feedwright_ident::{Columns, Log, LogFinding, Model};
+use feedwright_gcode::{self, Program, ReadError, Summary};
+use feedwright_ident::{Log, LogFinding, Model};
 use feedwright_plan::{AlignedPaths, Constraints, PlanSink, Step, Steps};
 use feedwright_sim::{Machine, Outcome, Row, Run, RunError, Sink, StageSteps, Stages, Watch, path_steps};
 use serde::{Deserialize, Serialize};
 
-use crate::controllers::{Choices, Entry, Make, NothingIdentified, Setup};
+use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, NothingIdentified, OPEN_LOOP, Setup};
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
 use crate::fastest::{FastestError, FastestPlan, fastest, with_tolerance};
@@ -41,23 +40,22 @@ use crate::job_error::axes_that_move;
 use crate::measured::{MeasuredRun, measured};
 use crate::report::harm::Harm;
 use crate::report::{FullCircle, Report, ReportedRun, full_circles};
-pub(crate) use exported::AS_EXPORTED;
-pub use files::Outputs;
-use files::{Files, Timeline};
-use record::RunRecord;
+use record::{RunRecord, Timeline};
 
-/// A part, a machine, two controllers, and what to write. Serialised, the machine and the model are the texts of their files, and
-/// the controllers their names.
+/// A program, a machine, two controllers, and what is wanted of the cuts.
+///
+/// [`Job::new`] cuts the program without a correction and with the default controller; what else is wanted is set in its fields.
+/// Serialised, the machine and the model are the texts of their files, and the controllers their names; the log is left out.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Job {
     /// The G-code program.
-    pub part: PathBuf,
+    pub program: Program,
     /// The machine that cuts it.
     #[serde(with = "stored::machine")]
     pub machine: Machine,
-    /// The file that the machine was read from; none where it is built in.
-    #[serde(default)]
-    pub machine_file: Option<PathBuf>,
+    /// The file that the machine was read from, for the report; none where it is built in.
+    pub machine_file: Option<String>,
     /// The controller that is asked for.
     #[serde(with = "stored::entry")]
     pub controller: &'static Entry,
@@ -73,39 +71,38 @@ pub struct Job {
     pub model: Option<Model>,
     /// Largest contour error that is allowed, um.
     pub tolerance_um: Option<f64>,
-    /// The control that a program of `outputs.out` is for.
+    /// The control, without feedback, that a corrected program is made for.
     #[serde(with = "stored::target")]
-    pub target: &'static TargetControl,
+    pub target: Option<&'static TargetControl>,
     /// A program that errors are measured to, in place of the one that is cut.
-    #[serde(default)]
-    pub reference: Option<PathBuf>,
+    pub reference: Option<Program>,
     /// Cut as fast as the tolerance allows the controller that is asked for.
     pub fastest: bool,
+    /// Find which limit of the machine binds the feedrate along the path.
+    pub with_limits: bool,
     /// What a machine recorded while it cut the program, shown beside what is predicted.
-    pub log: Option<LogFile>,
+    #[serde(skip)]
+    pub log: Option<MeasuredLog>,
     /// Settings of the reader.
     pub reader: feedwright_gcode::Settings,
-    /// Files that were read to make this job, besides the program: no output may take their place.
-    pub inputs: Vec<PathBuf>,
-    /// Files to write.
-    pub outputs: Outputs,
 }
 
 /// What stands for a controller in the run of a log.
 pub const MEASURED: &str = "measured";
 
-/// A log, and what is said of its columns, as [`Columns`] reads it.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct LogFile {
-    /// The file.
-    pub path: PathBuf,
-    /// Its columns, where they are not guessed.
-    pub columns: Option<String>,
+/// A log of a cut.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeasuredLog {
+    /// What messages call it.
+    pub name: String,
+    /// The log.
+    pub log: Log,
 }
 
 /// What a job came to. The runs stand in the order in which they were made: what is compared against, what was
 /// measured, where there is a log, then the controller that was asked for.
 #[derive(Debug)]
+#[non_exhaustive]
 pub struct JobOutcome {
     /// Everything that the page shows.
     pub report: Report,
@@ -121,105 +118,148 @@ pub struct JobOutcome {
     pub fastest: Option<FastestPlan>,
     /// In what the correction is worse than open loop; nothing where it is compared with something else.
     pub harm: Vec<Harm>,
-    /// Whether the command of the controller was written, where that was asked for: it was cut to its end, and does no harm.
+    /// Whether the command of the controller may be used: it was cut to its end, and does no harm.
     pub is_of_use: bool,
     /// Whether the last run was cut to its end and within the tolerance, where one was asked for, and a program that was asked for is better
     /// than the original.
     pub within_tolerance: bool,
 }
 
+/// A job whose program was read to its end and has no mistakes.
+#[derive(Debug)]
+pub struct CheckedJob<'a> {
+    job: &'a Job,
+    summary: Summary,
+    axes: usize,
+}
+
 impl Job {
-    /// Runs it and writes its files.
-    ///
-    /// # Errors
-    /// A program with mistakes, more axes than the machine has, a file that cannot be written, or an end from outside. No file
-    /// appears then.
-    pub fn run(&self, watch: &dyn Watch) -> Result<JobOutcome, JobError> {
-        watch.begin("reading the program", 1);
-        self.check_values()?;
-        let summary = feedwright_gcode::check(&self.part, self.reader.clone())?;
-        let axes = axes_that_move(&self.part, &summary, &self.machine)?;
-        if let Some(model) = &self.model {
-            self.controller.suits(model, &self.machine.known(), axes, &self.choices)?;
-        }
-        match axes {
-            2 => self.cut::<2>(&summary, watch),
-            _ => self.cut::<3>(&summary, watch),
+    /// Cuts a program on a machine without a correction, and with the default controller.
+    pub fn new(program: Program, machine: Machine) -> Self {
+        Self {
+            program,
+            machine,
+            machine_file: None,
+            controller: &LQG_IDENTIFIED,
+            against: &OPEN_LOOP,
+            feed_mm_s: None,
+            choices: Choices::default(),
+            model: None,
+            tolerance_um: None,
+            target: None,
+            reference: None,
+            fastest: false,
+            with_limits: false,
+            log: None,
+            reader: feedwright_gcode::Settings::default(),
         }
     }
 
-    fn cut<const N: usize>(&self, summary: &Summary, watch: &dyn Watch) -> Result<JobOutcome, JobError>
+    /// Runs it.
+    ///
+    /// # Errors
+    /// A value out of its range, a program with mistakes, more axes than the machine has, or an end from outside.
+    pub fn run(&self, watch: &dyn Watch) -> Result<JobOutcome, JobError> {
+        watch.begin("reading the program", 1);
+        self.check()?.run(&mut [], watch)
+    }
+
+    /// Reads the program to its end, so that every mistake is known before anything is cut.
+    ///
+    /// # Errors
+    /// A value out of its range, a program with mistakes, more axes than the machine has, and a model that does not suit.
+    pub fn check(&self) -> Result<CheckedJob<'_>, JobError> {
+        self.check_values()?;
+        let summary = self.program.check(self.reader.clone())?;
+        let axes = axes_that_move(&self.program, &summary, &self.machine)?;
+        if let Some(model) = &self.model {
+            self.controller.suits(model, &self.machine.known(), axes, &self.choices)?;
+        }
+        Ok(CheckedJob { job: self, summary, axes })
+    }
+}
+
+impl CheckedJob<'_> {
+    /// Axes that are controlled: two where the program stays in the XY plane, else three.
+    pub const fn axes(&self) -> usize {
+        self.axes
+    }
+
+    /// Cuts it; the sinks get the rows of the controller that is asked for.
+    ///
+    /// # Errors
+    /// A cut that does not come to its end, a sink that takes no more, or an end from outside.
+    pub fn run(&self, rows: &mut [&mut dyn Sink], watch: &dyn Watch) -> Result<JobOutcome, JobError> {
+        match self.axes {
+            2 => self.job.cut::<2>(&self.summary, rows, watch),
+            _ => self.job.cut::<3>(&self.summary, rows, watch),
+        }
+    }
+}
+
+impl Job {
+    fn cut<const N: usize>(
+        &self,
+        summary: &Summary,
+        rows: &mut [&mut dyn Sink],
+        watch: &dyn Watch,
+    ) -> Result<JobOutcome, JobError>
     where
         Entry: Make<N>,
     {
-        let mut files = Files::create(self, N)?;
         let aligned = self.aligned()?;
         let fastest = self.fastest_plan::<N>(watch)?;
         let circles = self.circles()?;
         let constraints = Constraints::from(&self.machine);
         let looked_at = self.looks_at_cut(fastest.as_ref(), aligned.as_ref(), &constraints);
-        let (mut runs, without_identification) = {
-            let looked_at = looked_at.as_ref().map(|cycle| cycle as &dyn PlanSink);
-            let plan =
-                PlannedCut { fastest: fastest.as_ref(), aligned: aligned.as_ref(), circles: &circles, looked_at };
-            self.cut_with_each::<N>(summary, plan, &mut files, watch)?
+        let plan = PlannedCut {
+            fastest: fastest.as_ref(),
+            aligned: aligned.as_ref(),
+            circles: &circles,
+            looked_at: looked_at.as_ref().map(|cycle| cycle as &dyn PlanSink),
         };
+        let (mut runs, without_identification) = self.cut_with_each::<N>(summary, plan, rows, watch)?;
         let completed = runs.last().is_some_and(|run| run.summary.outcome == Outcome::Completed);
-        let looked_at = looked_at.filter(|_| completed).map(CycleTimeOfCut::finish);
-        let mut log_findings = Vec::new();
-        if let Some(log) = &self.log {
-            let at = runs.len() - 1;
-            let (run, findings) = self.measured(log, N, &circles, watch)?;
-            runs.insert(at, run);
-            log_findings = findings;
-        }
-        let exported = self.exported(&circles, watch)?.map(|(outcome, run)| {
-            runs.extend(run);
-            outcome
-        });
-        let limits = self.limit_band(fastest.as_ref().map(|plan| &plan.cycle).or(looked_at.as_ref()), watch)?;
-        watch.begin("writing", 1);
+        let cycle = looked_at.filter(|_| completed).map(CycleTimeOfCut::finish);
+        let log_findings = self.insert_measured(&mut runs, N, &circles, watch)?;
+        let exported = self.push_exported(&mut runs, &circles, watch)?;
+        let limits = self.limit_band(fastest.as_ref().map(|plan| &plan.cycle).or(cycle.as_ref()), watch)?;
         let report = Report { limits, ..self.report(N, summary, circles, runs, &without_identification)? };
-        let (harm, is_of_use) = (report.harm(), self.is_of_use(&report));
         let exported_well = exported.as_ref().is_none_or(|outcome| outcome.refusal.is_none());
-        let within_tolerance = report.is_within_tolerance() && exported_well;
-        files.finish(self, &report, exported.as_ref(), watch)?;
-        let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
         Ok(JobOutcome {
+            harm: report.harm(),
+            is_of_use: self.is_of_use(&report),
+            within_tolerance: report.is_within_tolerance() && exported_well,
+            warnings: summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect(),
             report,
-            warnings,
             without_identification,
             log_findings,
             exported,
             fastest,
-            harm,
-            is_of_use,
-            within_tolerance,
         })
     }
 
-    /// What a log says of the cut.
-    fn measured(
+    /// Puts what a log says of the cut, where there is one, before the run of the controller that is asked for; returns what was
+    /// guessed or noticed.
+    fn insert_measured(
         &self,
-        file: &LogFile,
+        runs: &mut Vec<ReportedRun>,
         axes: usize,
         circles: &[FullCircle],
         watch: &dyn Watch,
-    ) -> Result<(ReportedRun, Vec<LogFinding>), JobError> {
-        let columns = match &file.columns {
-            Some(text) => Columns::from_str(text).map_err(|error| JobError::LogColumns { error })?,
-            None => Columns::default(),
-        };
-        let log = Log::read_watched(&file.path, &columns, watch)?;
+    ) -> Result<Vec<LogFinding>, JobError> {
+        let Some(MeasuredLog { name, log }) = &self.log else { return Ok(Vec::new()) };
         watch.begin("comparing the log", 1);
-        let of_log = |error| JobError::Measured { log: file.path.clone(), part: self.part.clone(), error };
-        let steps = path_steps(self.program()?);
-        let limits = |error| JobError::of_run(&self.part, RunError::Limits(error));
+        let steps = path_steps(self.steps()?);
+        let limits = |error| JobError::of_run(&self.program, RunError::Limits(error));
         let mut reference = Stages::of(&self.machine).reference(steps, &self.machine).map_err(limits)?;
         let mut record = RunRecord::new(axes, log.sample_time_s, circles);
         let MeasuredRun { run, findings: of_axes } =
-            measured(&log, &self.machine, axes, &mut reference, &mut record.sinks(), watch).map_err(of_log)?;
-        Ok((self.reported(record, MEASURED, run)?, [log.findings, of_axes].concat()))
+            measured(log, &self.machine, axes, &mut reference, &mut record.sinks(), watch)
+                .map_err(|error| JobError::Measured { log: name.clone(), part: self.program.name(), error })?;
+        let run = self.reported(record, MEASURED, run)?;
+        runs.insert(runs.len() - 1, run);
+        Ok([log.findings.clone(), of_axes].concat())
     }
 
     /// The plan of least time, found with a controller of its own.
@@ -236,11 +276,11 @@ impl Job {
             Some(model) => self.controller.make_with::<N>(setup, model)?,
             None => Make::<N>::make(self.controller, &mut setup),
         };
-        let steps = || Ok(path_steps(self.program()?));
+        let steps = || Ok(path_steps(self.steps()?));
         let found = fastest(&self.machine, tolerance_um, steps, &mut *controller, self.controller.laps, watch);
         found.map(Some).map_err(|error| match error {
-            FastestError::Run(error) => JobError::of_run(&self.part, error),
-            error => JobError::Fastest { part: self.part.clone(), error },
+            FastestError::Run(error) => JobError::of_run(&self.program, error),
+            error => JobError::Fastest { part: self.program.name(), error },
         })
     }
 
@@ -249,7 +289,7 @@ impl Job {
         &self,
         summary: &Summary,
         plan: PlannedCut<'_>,
-        files: &mut Files,
+        rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<(Vec<ReportedRun>, Vec<NothingIdentified>), JobError>
     where
@@ -270,9 +310,9 @@ impl Job {
                     controller
                 }
             };
-            let written = judged.then_some(&mut *files);
+            let rows: &mut [&mut dyn Sink] = if judged { &mut *rows } else { &mut [] };
             let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), ..plan };
-            runs.push(self.cut_once(summary, entry, &mut *controller, plan, written, watch)?);
+            runs.push(self.cut_once(summary, entry, &mut *controller, plan, rows, watch)?);
         }
         Ok((runs, without_identification))
     }
@@ -283,7 +323,7 @@ impl Job {
         entry: &Entry,
         controller: &mut dyn Controller<N>,
         PlannedCut { fastest, aligned, circles, looked_at }: PlannedCut<'_>,
-        files: Option<&mut Files>,
+        rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<ReportedRun, JobError> {
         let mut record = RunRecord::new(N, self.machine.period.servo_s, circles);
@@ -291,11 +331,13 @@ impl Job {
         let steps = StageSteps::begin(watch, &format!("cutting, {}", entry.name));
         let mut cut = CutProgress { steps, length_mm: summary.feed_mm + summary.rapid_mm, rows: 0 };
         let others: [&mut dyn Sink; 2] = [&mut timeline, &mut cut];
-        let files = files.map(|files| files as &mut dyn Sink);
-        let mut sinks: Vec<&mut dyn Sink> = record.sinks().into_iter().chain(others).chain(files).collect();
+        let mut sinks: Vec<&mut dyn Sink> = record.sinks().into_iter().chain(others).collect();
+        for sink in rows {
+            sinks.push(&mut **sink);
+        }
         let machine = fastest.map_or(&self.machine, |plan| &plan.machine);
         let steps = || {
-            let steps = path_steps(self.program()?);
+            let steps = path_steps(self.steps()?);
             Ok(match fastest.and_then(|plan| plan.machine.limits.path_tolerance_um) {
                 Some(path_um) => with_tolerance(steps, 1e-3 * path_um),
                 None => steps,
@@ -307,7 +349,7 @@ impl Job {
             Some(aligned) => run.cut_aligned(aligned, controller, &mut sinks),
             None => run.cut(steps, controller, &mut sinks),
         };
-        let run = run.map_err(|error| JobError::of_run(&self.part, error))?;
+        let run = run.map_err(|error| JobError::of_run(&self.program, error))?;
         drop(sinks);
         Ok(ReportedRun { events: timeline.events, ..self.reported(record, entry.name, run)? })
     }
@@ -315,9 +357,9 @@ impl Job {
     /// The full circles of the program that errors are measured to.
     fn circles(&self) -> Result<Vec<FullCircle>, JobError> {
         Ok(match &self.reference {
-            None => full_circles(path_steps(self.program()?).map_while(Result::ok)),
+            None => full_circles(path_steps(self.steps()?).map_while(Result::ok)),
             Some(reference) => {
-                let steps = Reader::open(reference, self.reader.clone())?.map_while(Result::ok);
+                let steps = reference.reader(self.reader.clone())?.map_while(Result::ok);
                 full_circles(path_steps(steps).map_while(Result::ok))
             }
         })
@@ -326,14 +368,14 @@ impl Job {
     /// The path that is cut beside the one that errors are measured to, where that is another.
     fn aligned(&self) -> Result<Option<AlignedPaths>, JobError> {
         let Some(reference) = &self.reference else { return Ok(None) };
-        feedwright_gcode::check(reference, self.reader.clone())?;
-        let original = Reader::open(reference, self.reader.clone())?.map_while(Result::ok);
-        let steps = |part: &PathBuf, steps: Steps<'_>| {
-            let of_path = |fault| JobError::Path { part: part.clone(), fault };
+        reference.check(self.reader.clone())?;
+        let original = reference.reader(self.reader.clone())?.map_while(Result::ok);
+        let steps = |program: &Program, steps: Steps<'_>| {
+            let of_path = |fault| JobError::Path { part: program.name(), fault };
             steps.collect::<Result<Vec<Step>, _>>().map_err(of_path)
         };
         let (original, other) =
-            (steps(reference, path_steps(original))?, steps(&self.part, path_steps(self.program()?))?);
+            (steps(reference, path_steps(original))?, steps(&self.program, path_steps(self.steps()?))?);
         Ok(Some(AlignedPaths::new(&original, &other)))
     }
 
@@ -347,10 +389,10 @@ impl Job {
     }
 
     /// The canonical steps of the program, with the feedrate replaced where that was asked for.
-    fn program(&self) -> Result<impl Iterator<Item = Canon> + Send + use<>, ReadError> {
+    fn steps(&self) -> Result<impl Iterator<Item = Canon> + Send + use<>, ReadError> {
         let feed_mm_s = self.feed_mm_s;
         // The program was checked from end to end before: a mistake here means that the file changed, and ends it.
-        let steps = Reader::open(&self.part, self.reader.clone())?.map_while(Result::ok);
+        let steps = self.program.reader(self.reader.clone())?.map_while(Result::ok);
         Ok(steps.map(move |mut step| {
             if let (Canon::Motion(motion), Some(feed_mm_s)) = (&mut step, feed_mm_s)
                 && motion.kind == MotionKind::Feed

@@ -1,9 +1,6 @@
 //! What can go wrong with a job: a program that is cut on a machine.
 
-use std::path::{Path, PathBuf};
-
-use feedwright_gcode::{self, CheckError, ReadError, Summary};
-use feedwright_ident::{ColumnsError, LogError};
+use feedwright_gcode::{self, CheckError, Program, ReadError, Summary};
 use feedwright_plan::{LimitsError, PathError};
 use feedwright_sim::{Cancelled, Machine, RunError, shown};
 use thiserror::Error;
@@ -11,7 +8,6 @@ use thiserror::Error;
 use crate::controllers::ModelMisfit;
 use crate::fastest::FastestError;
 use crate::measured::MeasuredError;
-use crate::output::OutputError;
 
 /// Why a job cannot be done.
 #[derive(Debug, Error, miette::Diagnostic)]
@@ -21,37 +17,37 @@ pub enum JobError {
     #[diagnostic(transparent)]
     Read(#[from] ReadError),
     /// The program has mistakes.
-    #[error("{}: {} mistake{}, nothing was cut", part.display(), faults.len(), if faults.len() == 1 { "" } else { "s" })]
+    #[error("{part}: {} mistake{}, nothing was cut", faults.len(), if faults.len() == 1 { "" } else { "s" })]
     Faults {
         /// The program.
-        part: PathBuf,
+        part: String,
         /// All of them, in program order.
         #[related]
         faults: Vec<feedwright_gcode::Diagnostic>,
     },
     /// A motion has no path.
-    #[error("{}: {fault}", part.display())]
+    #[error("{part}: {fault}")]
     Path {
         /// The program.
-        part: PathBuf,
+        part: String,
         /// Why.
         fault: PathError,
     },
     /// The program moves an axis that the machine does not have.
-    #[error("{} moves Z, and the machine `{machine}` has no [axis.z]", part.display())]
+    #[error("{part} moves Z, and the machine `{machine}` has no [axis.z]")]
     #[diagnostic(help("give the machine file a section [axis.z], or choose a machine with three axes"))]
     NoZ {
         /// The program.
-        part: PathBuf,
+        part: String,
         /// The machine.
         machine: String,
     },
     /// A program without a feed motion.
-    #[error("{} has no feed motion: there is nothing to cut", part.display())]
+    #[error("{part} has no feed motion: there is nothing to cut")]
     #[diagnostic(help("G1, G2 and G3 cut; G0 is a rapid"))]
     NothingToCut {
         /// The program.
-        part: PathBuf,
+        part: String,
     },
     /// A control plans by limits that the machine file does not have.
     #[error("{control} plans by the limits of each axis, and the machine `{machine}` has none")]
@@ -83,52 +79,33 @@ pub enum JobError {
         #[help]
         hint: Option<&'static str>,
     },
-    /// `--out` with an ending that says nothing.
-    #[error("{} does not say what to write", path.display())]
-    #[diagnostic(help("the ending decides: .csv for setpoints, .ngc for G-code; - is G-code on the standard output"))]
-    Ending {
-        /// The place.
-        path: PathBuf,
-    },
     /// A program is asked for of a cut that is none of the program alone.
-    #[error("{}: no corrected program is written with {option}", out.display())]
+    #[error("no corrected program is made with {option}")]
     #[diagnostic(help("{}", if *option == "--fastest" {
         "the plan of least time holds for a cut with feedback: write its setpoints (.csv)"
     } else {
         "give the original as PART, without --reference"
     }))]
     NoProgramWith {
-        /// The place.
-        out: PathBuf,
         /// The option.
         option: &'static str,
     },
-    /// The log cannot be read.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Log(#[from] LogError),
-    /// What is said of its columns cannot be read.
-    #[error("columns of the log: {error}")]
-    LogColumns {
-        /// Why.
-        error: ColumnsError,
-    },
     /// The log is not one of the program.
-    #[error("{} is not compared with {}: {error}", log.display(), part.display())]
+    #[error("{log} is not compared with {part}: {error}")]
     Measured {
         /// The log.
-        log: PathBuf,
+        log: String,
         /// The program.
-        part: PathBuf,
+        part: String,
         /// Why.
         #[diagnostic_source]
         error: MeasuredError,
     },
     /// No plan is within the tolerance.
-    #[error("{}: {error}", part.display())]
+    #[error("{part}: {error}")]
     Fastest {
         /// The program.
-        part: PathBuf,
+        part: String,
         /// Why.
         error: FastestError,
     },
@@ -140,15 +117,14 @@ pub enum JobError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Cancelled(#[from] Cancelled),
-    /// A file cannot be written.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Output(#[from] OutputError),
+    /// What takes the rows takes no more.
+    #[error("the rows cannot be written: {0}")]
+    Write(#[from] std::io::Error),
     /// The program went away, or changed, while it was cut.
-    #[error("{}: {cause}", part.display())]
+    #[error("{part}: {cause}")]
     Reread {
         /// The program.
-        part: PathBuf,
+        part: String,
         /// What the system says.
         cause: std::io::Error,
     },
@@ -156,11 +132,11 @@ pub enum JobError {
 
 impl JobError {
     /// Of a cut of a part.
-    pub(crate) fn of_run(part: &Path, error: RunError) -> Self {
+    pub(crate) fn of_run(program: &Program, error: RunError) -> Self {
         match error {
             RunError::Read(error) => Self::Read(error),
-            RunError::Path(fault) => Self::Path { part: part.to_owned(), fault },
-            RunError::Write(error) => error.into(),
+            RunError::Path(fault) => Self::Path { part: program.name(), fault },
+            RunError::Write(error) => Self::Write(error),
             RunError::Cancelled(cancelled) => Self::Cancelled(cancelled),
             RunError::Limits(_) | RunError::TooLong { .. } => Self::Run(error),
         }
@@ -173,19 +149,12 @@ impl From<LimitsError> for JobError {
     }
 }
 
-/// Rows go to files whose errors name them; anything else is of the program.
-impl From<std::io::Error> for JobError {
-    fn from(error: std::io::Error) -> Self {
-        Self::Output(OutputError::from_io(error, Path::new("the output")))
-    }
-}
-
 impl From<CheckError> for JobError {
     fn from(error: CheckError) -> Self {
         match error {
             CheckError::Read(error) => Self::Read(error),
             CheckError::Faults(faults) => {
-                let part = faults.first().map(|fault| PathBuf::from(&*fault.file)).unwrap_or_default();
+                let part = faults.first().map(|fault| fault.file.to_string()).unwrap_or_default();
                 Self::Faults { part, faults }
             }
         }
@@ -196,10 +165,10 @@ impl From<CheckError> for JobError {
 ///
 /// # Errors
 /// A program that moves an axis that the machine does not have.
-pub(crate) fn axes_that_move(part: &Path, summary: &Summary, machine: &Machine) -> Result<usize, JobError> {
+pub(crate) fn axes_that_move(program: &Program, summary: &Summary, machine: &Machine) -> Result<usize, JobError> {
     match (summary.moves[2], machine.axis_count()) {
         (false, _) => Ok(2),
         (true, 3..) => Ok(3),
-        (true, _) => Err(JobError::NoZ { part: part.to_owned(), machine: machine.name.clone() }),
+        (true, _) => Err(JobError::NoZ { part: program.name(), machine: machine.name.clone() }),
     }
 }

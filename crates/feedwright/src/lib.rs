@@ -33,7 +33,7 @@
 //!
 //! | Topic | Names |
 //! |---|---|
-//! | Predict and compare | [`Job`], [`Outputs`], [`JobError`] |
+//! | Predict and compare | [`Job`], [`JobOutcome`], [`JobError`] |
 //! | Corrected program for another control | [`CorrectJob`], [`CorrectOutcome`], [`TARGETS`] |
 //! | Feedrate that holds a tolerance | [`AdviseJob`], [`Advice`], [`fastest()`], [`FastestPlan`] |
 //! | Cycle time | [`cycle_time()`], [`CycleTime`] |
@@ -80,11 +80,13 @@ pub use feedwright_ident as ident;
 pub use feedwright_plan as plan;
 pub use feedwright_sim as sim;
 
+#[cfg(feature = "files")]
 mod output;
 mod checked_json;
 mod identifier_cache;
 mod measured;
 mod cycle_time;
+#[cfg(feature = "command")]
 mod override_time;
 mod fastest;
 mod controllers;
@@ -109,13 +111,16 @@ pub use correct::exported::{ExportedCut, ExportedFigures};
 pub use correct::{CorrectJob, CorrectOutcome, MacroLanguage, TARGETS, TargetControl, deterministic};
 pub use cycle_time::{CycleTime, cycle_time, cycle_time_by, cycle_time_within};
 pub use fastest::{FastestError, FastestPlan, fastest};
-pub use identifier_cache::{folder as cache_folder, identified, key_of, trained};
-pub use job::{Job, JobError, MEASURED, Outputs};
+#[cfg(feature = "files")]
+pub use identifier_cache::files::folder as cache_folder;
+pub use identifier_cache::{identified, key_of, trained};
+pub use job::{CheckedJob, Job, JobError, JobOutcome, MEASURED, MeasuredLog};
 pub use log_job::{
     LogIdentified, LogJob, LogJobError, UpdateError, following_figure, informative, machine_text, updated_text,
     write_json, write_page,
 };
 pub use measured::{MeasuredError, measured};
+#[cfg(feature = "files")]
 pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
 pub use report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page, write_figure_part,

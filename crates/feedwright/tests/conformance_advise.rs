@@ -1,28 +1,16 @@
 //! The feedrates that are advised hold the tolerance, each way for itself, and are told with what they are cut at.
 
-use std::path::Path;
-
-use feedwright::{Advice, AdviseJob, BEST, CONTROLLERS, Choices, CutWay, ErrorPlace, JobError, TARGETS};
-use feedwright_gcode::Settings;
+use feedwright::{Advice, AdviseJob, CONTROLLERS, CutWay, ErrorPlace, JobError, TARGETS};
+use feedwright_gcode::Program;
 use feedwright_sim::Machine;
 
 fn advice(text: &str, tolerance_um: f64) -> Result<Advice, JobError> {
-    let folder = tempfile::tempdir().unwrap();
-    let part = folder.path().join("part.ngc");
-    std::fs::write(&part, text).unwrap();
-    job(&part, tolerance_um).run(&())
+    job(text, tolerance_um).run(&())
 }
 
-fn job(part: &Path, tolerance_um: f64) -> AdviseJob {
-    AdviseJob {
-        part: part.to_owned(),
-        machine: Machine::load("tnv40".as_ref()).unwrap(),
-        target: &TARGETS[0],
-        controller: CONTROLLERS.find(BEST).unwrap(),
-        choices: Choices::default(),
-        tolerance_um,
-        reader: Settings::default(),
-    }
+fn job(text: &str, tolerance_um: f64) -> AdviseJob {
+    let machine = Machine::load("tnv40".as_ref()).unwrap();
+    AdviseJob::new(Program::from_text("part.ngc", text), machine, &TARGETS[0], tolerance_um)
 }
 
 /// What is to be held.
@@ -66,14 +54,10 @@ fn what_no_feedrate_holds_is_said_and_a_program_that_cuts_nothing_is_refused() {
     let out_of_reach = advice("G21 G90 G64\nG2 X0 Y0 I1 J0 F1800\nM2\n", 0.001).unwrap();
     assert!(!out_of_reach.holds() && out_of_reach.stretches[0].holds_mm_s == [None; 3], "{out_of_reach:?}");
     // A machine with feedforward runs over the end of a rapid whatever the feed is: the feed that holds on the way is told beside.
-    let folder = tempfile::tempdir().unwrap();
-    let part = folder.path().join("part.ngc");
-    std::fs::write(&part, "G21 G90 G64\nG0 X30\nG3 X30 Y0 I-8 J0 F3000\nM2\n").unwrap();
-    let machine = Machine::load("stiff".as_ref()).unwrap();
-    let overrun =
-        AdviseJob { machine, controller: CONTROLLERS.find("feedforward").unwrap(), ..job(&part, TOLERANCE_UM) }
-            .run(&())
-            .unwrap();
+    let mut job = job("G21 G90 G64\nG0 X30\nG3 X30 Y0 I-8 J0 F3000\nM2\n", TOLERANCE_UM);
+    job.machine = Machine::load("stiff".as_ref()).unwrap();
+    job.controller = CONTROLLERS.find("feedforward").unwrap();
+    let overrun = job.run(&()).unwrap();
     let nearest = overrun.ways[0].nearest.unwrap();
     assert_eq!((overrun.ways[0].whole, nearest.lines, nearest.place), (None, [3, 3], ErrorPlace::Start));
     let sentence = nearest.sentence("um", overrun.programmed_mm_s[1]);

@@ -1,24 +1,19 @@
 //! A corrected program delivers what is told of it: its text keeps the lines of the original, and is better as the control cuts it.
 
-use std::path::Path;
-
 use feedwright::{CorrectJob, CorrectOutcome, TARGETS, TargetControl};
 use feedwright_gcode::canon::{Canon, MotionKind};
-use feedwright_gcode::{Reader, Settings};
+use feedwright_gcode::{Program, Reader, Settings};
 use feedwright_sim::Machine;
 
 fn corrected(text: &str, target: &'static TargetControl) -> CorrectOutcome {
-    let folder = tempfile::tempdir().unwrap();
-    let part = folder.path().join("part.ngc");
-    std::fs::write(&part, text).unwrap();
-    job(&part, target).run(&()).unwrap()
+    job(text, target).run(&()).unwrap()
 }
 
-fn job(part: &Path, target: &'static TargetControl) -> CorrectJob {
+fn job(text: &str, target: &'static TargetControl) -> CorrectJob {
     // LinuxCNC plans by the limits of each axis.
     let machine =
         if target.planner == Some("linuxcnc") { with_axis_limits() } else { Machine::load("tnv40".as_ref()).unwrap() };
-    CorrectJob { part: part.to_owned(), machine, believed: None, target, feed_mm_s: None, reader: Settings::default() }
+    CorrectJob::new(Program::from_text("part.ngc", text), machine, target)
 }
 
 fn with_axis_limits() -> Machine {
@@ -61,12 +56,9 @@ fn a_circle_is_cut_open_loop_with_a_twentieth_of_its_error_for_every_control() {
 
 #[test]
 fn a_control_that_plans_by_axes_needs_their_limits() {
-    let folder = tempfile::tempdir().unwrap();
-    let part = folder.path().join("part.ngc");
-    std::fs::write(&part, "G21 G90 G64\nG2 X0 Y0 I6 J0 F2400\nM2\n").unwrap();
-    let target = TargetControl::find("linuxcnc").unwrap();
-    let machine = Machine::load("tnv40".as_ref()).unwrap();
-    let error = CorrectJob { machine, ..job(&part, target) }.run(&()).unwrap_err();
+    let mut job = job("G21 G90 G64\nG2 X0 Y0 I6 J0 F2400\nM2\n", TargetControl::find("linuxcnc").unwrap());
+    job.machine = Machine::load("tnv40".as_ref()).unwrap();
+    let error = job.run(&()).unwrap_err();
     assert_eq!(error.to_string(), "linuxcnc plans by the limits of each axis, and the machine `tnv40` has none");
 }
 
@@ -208,11 +200,9 @@ fn programs_for_grbl_have_80_columns_and_arcs_that_grbl_takes() {
 #[test]
 fn a_rapid_that_overruns_its_end_goes_there_slowly() {
     // With feedforward the tool runs over the end of a rapid by some 20 um.
-    let folder = tempfile::tempdir().unwrap();
-    let part = folder.path().join("part.ngc");
-    std::fs::write(&part, "G21 G90 G64\nG0 X30 Y0\nG3 X30 Y0 I-8 J0 F3000\nM2\n").unwrap();
-    let machine = Machine::load("stiff".as_ref()).unwrap();
-    let outcome = CorrectJob { machine, ..job(&part, &TARGETS[0]) }.run(&()).unwrap();
+    let mut job = job("G21 G90 G64\nG0 X30 Y0\nG3 X30 Y0 I-8 J0 F3000\nM2\n", &TARGETS[0]);
+    job.machine = Machine::load("stiff".as_ref()).unwrap();
+    let outcome = job.run(&()).unwrap();
     let (was, is, program) = (outcome.original, outcome.corrected, outcome.program().unwrap());
     assert!(was.max_um > 15.0 && is.max_um < 0.35 * was.max_um, "{is:?} {was:?}");
     let at = program.lines().position(|line| line.starts_with("G0 X29.")).unwrap();
@@ -230,10 +220,9 @@ fn what_cannot_get_better_is_refused_with_a_reason() {
 #[test]
 fn another_feedrate_stands_in_the_text_in_the_unit_of_its_place() {
     let text = "G20 G90 G64 F200 (F200)\nG0 X1\nG2 X1 Y0 I0.25 J0\nG4 P0.5\nG1 X3 F10\nM2\n";
-    let folder = tempfile::tempdir().unwrap();
-    let part = folder.path().join("part.ngc");
-    std::fs::write(&part, text).unwrap();
-    let outcome = CorrectJob { feed_mm_s: Some(40.0), ..job(&part, &TARGETS[0]) }.run(&()).unwrap();
+    let mut job = job(text, &TARGETS[0]);
+    job.feed_mm_s = Some(40.0);
+    let outcome = job.run(&()).unwrap();
     let program = outcome.program().unwrap();
     assert!(!outcome.expanded && program.contains("F94.49 (F200)"), "{program}");
     for step in steps(program) {

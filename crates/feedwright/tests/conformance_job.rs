@@ -5,10 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use feedwright::{
-    BASELINE, BEST, CONTROLLERS, Choices, HORIZON, Job, JobError, Make, Outputs, Setting, Setup, TARGETS,
-};
-use feedwright_gcode::{Dialect, Increment, Settings};
+use feedwright::{BEST, CONTROLLERS, Choices, HORIZON, Job, JobError, Make, Setting, Setup, TARGETS};
+use feedwright_gcode::{Dialect, Increment, Program, Settings};
 use feedwright_sim::{BUILT_IN_MACHINES, Machine, Row, Run, Watch, path_steps};
 
 fn part() -> PathBuf {
@@ -16,24 +14,9 @@ fn part() -> PathBuf {
 }
 
 fn job(machine: &str, controller: &str) -> Job {
-    Job {
-        part: part(),
-        machine: Machine::load(machine.as_ref()).unwrap(),
-        machine_file: None,
-        controller: CONTROLLERS.find(controller).unwrap(),
-        against: CONTROLLERS.find(BASELINE).unwrap(),
-        feed_mm_s: None,
-        choices: Choices::default(),
-        model: None,
-        tolerance_um: None,
-        target: &TARGETS[0],
-        reference: None,
-        fastest: false,
-        reader: Settings::default(),
-        inputs: Vec::new(),
-        log: None,
-        outputs: Outputs::default(),
-    }
+    let mut job = Job::new(Program::in_file(part()), Machine::load(machine.as_ref()).unwrap());
+    job.controller = CONTROLLERS.find(controller).unwrap();
+    job
 }
 
 fn again(job: &Job) -> Job {
@@ -57,11 +40,10 @@ fn everything_that_can_be_asked_for_is_read_back() {
     full.feed_mm_s = Some(33.3);
     full.choices = Choices { seed: u64::MAX, set: vec![setting] };
     full.tolerance_um = Some(1.0 / 3.0);
-    full.target = &TARGETS[2];
+    full.target = Some(&TARGETS[2]);
+    full.reference = Some(Program::from_text("original", "G1 X1 F100\nM2\n"));
     full.reader.dialect = Some(Dialect::FanucLathe);
     full.reader.increment = Some(Increment::named("0.0001inch").unwrap());
-    full.inputs = vec!["a machine.toml".into()];
-    full.outputs = Outputs { trace: Some("trace.csv".into()), out: Some("out.ngc".into()), ..Outputs::default() };
     assert_eq!(again(&full), full);
 }
 
@@ -136,7 +118,6 @@ fn a_job_tells_its_stages_and_never_more_than_their_steps() {
         "cutting, open-loop",
         "identifying for two-dimensional",
         "cutting, two-dimensional",
-        "writing",
     ];
     assert_eq!(names, expected);
     assert!(stages.iter().all(|(_, steps, done)| done <= steps), "{stages:?}");
@@ -145,18 +126,29 @@ fn a_job_tells_its_stages_and_never_more_than_their_steps() {
 }
 
 #[test]
-fn a_job_that_is_ended_leaves_no_file() {
-    let folder = tempfile::tempdir().unwrap();
-    let place = |name: &str| Some(folder.path().join(name));
+fn a_job_ends_when_it_is_told_to() {
     // In the cut of the first, of the second, and before anything.
     for after in [300, 1300, 0] {
-        let mut job = job("tnv40", "feedforward");
-        job.outputs =
-            Outputs { report: place("r.html"), json: place("r.json"), trace: place("t.csv"), out: place("o.ngc") };
-        let ended = job.run(&Ending::after(after)).unwrap_err();
+        let ended = job("tnv40", "feedforward").run(&Ending::after(after)).unwrap_err();
         assert!(matches!(ended, JobError::Cancelled(_)), "{after}: {ended}");
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "{after}");
     }
+}
+
+#[test]
+fn a_text_is_cut_as_the_file_is() {
+    let of_file = job("tnv40", "feedforward");
+    let text = std::fs::read_to_string(part()).unwrap();
+    let mut of_text = of_file.clone();
+    of_text.program = Program::from_text("circle.ngc", text);
+    let json = |job: &Job| {
+        let mut json = Vec::new();
+        let mut rows = Vec::<Row>::new();
+        let outcome = job.check().unwrap().run(&mut [&mut rows], &()).unwrap();
+        outcome.write_json(job, &mut json).unwrap();
+        assert!(rows.len() > 1000);
+        (String::from_utf8(json).unwrap(), rows)
+    };
+    assert_eq!(json(&of_file), json(&of_text));
 }
 
 #[test]

@@ -52,7 +52,7 @@
 //!
 //! [`ReadError`] says why a file is no program at all. A [`Diagnostic`] has a stable code, line, column, a message with value and
 //! limit, and most have a hint; each place is told once. It is a [`miette::Diagnostic`], so that miette shows it with its line and
-//! a caret. [`Reader::warnings`] has what deserves a look and stops nothing. [`check`] runs through a whole file ahead of all work:
+//! a caret. [`Reader::warnings`] has what deserves a look and stops nothing. [`Program::check`] runs through a whole program ahead of all work:
 //! every mistake, or a [`Summary`] with lengths, extent and axes.
 //!
 //! # What is bounded
@@ -72,7 +72,7 @@
 //! The modules stand in the order in which data flows, and each uses only those above it: `text` makes words of a line, `canon` is
 //! what comes out, `geometry` measures it, `settings` is what the caller says, `state` what a program has brought about so far,
 //! `motion` what moves, `dialects` what other controls mean by the same words, and `flow` decides which line comes next and carries
-//! it out. Plain G0 and G1, nearly all lines of a long program, take the short way of `flow/reader/plain`.
+//! it out. `program` is where a program comes from. Plain G0 and G1, nearly all lines of a long program, take the short way of `flow/reader/plain`.
 
 mod text;
 
@@ -84,9 +84,11 @@ mod state;
 mod motion;
 mod dialects;
 mod flow;
+mod program;
 
 pub use flow::reader::Reader;
-pub use flow::summary::{CheckError, Summary, check, summarize};
+pub use flow::summary::{CheckError, Summary, summarize};
+pub use program::Program;
 pub use settings::tools::{Tool, ToolTable, ToolTableError};
 pub use settings::{AUTO, DIALECTS, Dialect, Increment, Settings, UnknownDialect, UnknownIncrement};
 pub use state::in_force::ModesInForce;

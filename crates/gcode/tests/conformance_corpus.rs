@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use feedwright_gcode::{CheckError, Settings, check};
+use feedwright_gcode::{CheckError, Program, Settings};
 
 /// Programs that are refused, and a part of the reason.
 const REFUSED: &[(&str, &str)] = &[
@@ -48,7 +48,7 @@ fn programs_of_other_controls_are_read() {
         for path in paths {
             let shown = path.display().to_string();
             let known = REFUSED.iter().find(|row| shown.ends_with(row.0));
-            match (check(&path, Settings::default()), known) {
+            match (Program::in_file(&path).check(Settings::default()), known) {
                 (Ok(_), None) => {}
                 (Err(CheckError::Faults(faults)), Some(row)) if faults[0].message.contains(row.1) => {}
                 (Err(CheckError::Faults(faults)), _) => {

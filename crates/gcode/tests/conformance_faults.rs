@@ -1,7 +1,7 @@
 //! Every fault of a program names its place, its value and its limit; the reader goes on behind it.
 use std::io::Write;
 
-use feedwright_gcode::{CheckError, Diagnostic, ReadError, Reader, Settings, check, summarize};
+use feedwright_gcode::{CheckError, Diagnostic, Program, ReadError, Reader, Settings, summarize};
 
 fn faults(text: &str) -> Vec<Diagnostic> {
     let reader = Reader::from_text("part.ngc", text, Settings::default()).unwrap();
@@ -169,15 +169,24 @@ fn a_program_without_motion_is_an_error() {
 
 #[test]
 fn files_that_are_no_program_are_named() {
-    let missing = check("does/not/exist.ngc".as_ref(), Settings::default());
+    let missing = Program::in_file("does/not/exist.ngc").check(Settings::default());
     let Err(CheckError::Read(error @ ReadError::Io { .. })) = missing else { panic!("{missing:?}") };
     assert!(error.to_string().contains("does/not/exist.ngc"));
     let folder = tempfile::tempdir().unwrap();
-    assert!(matches!(check(folder.path(), Settings::default()), Err(CheckError::Read(ReadError::Directory { .. }))));
+    assert!(matches!(
+        Program::in_file(folder.path()).check(Settings::default()),
+        Err(CheckError::Read(ReadError::Directory { .. }))
+    ));
     let mut file = tempfile::NamedTempFile::new().unwrap();
-    assert!(matches!(check(file.path(), Settings::default()), Err(CheckError::Read(ReadError::Empty { .. }))));
+    assert!(matches!(
+        Program::in_file(file.path()).check(Settings::default()),
+        Err(CheckError::Read(ReadError::Empty { .. }))
+    ));
     file.write_all(b"\x7fELF\0\0").unwrap();
-    assert!(matches!(check(file.path(), Settings::default()), Err(CheckError::Read(ReadError::Binary { .. }))));
+    assert!(matches!(
+        Program::in_file(file.path()).check(Settings::default()),
+        Err(CheckError::Read(ReadError::Binary { .. }))
+    ));
 }
 
 #[test]

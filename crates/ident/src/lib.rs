@@ -92,7 +92,6 @@ pub use identify::{Excitation, Rng};
 pub use log::columns::{Columns, ColumnsError};
 pub use log::error::{Refusal, RefusalReason};
 pub use log::{Fitness, Log, LogAxis, LogError, LogFinding, LogFormat, MAX_AXES, TorqueUnit};
-pub use model::date::today;
 pub use model::exact::exact_block;
 pub use model::{Model, Origin, an_identifier, identifier_name};
 pub use spectrum::{Spectrum, SpectrumSegments};

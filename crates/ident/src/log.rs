@@ -26,7 +26,7 @@ mod screen;
 mod joined;
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{Cursor, Read};
 use std::ops::Range;
 use std::path::Path;
 
@@ -162,8 +162,32 @@ impl Log {
     /// # Errors
     /// As [`Log::read`]; and where it is ended.
     pub fn read_watched(path: &Path, columns: &Columns, watch: &dyn Watch) -> Result<Self, LogError> {
-        let table = read_table(path, columns, watch)?;
-        of_table(path, table, columns)
+        let unreadable = |source| LogError::unreadable(path, source);
+        if input::is_standard_input(path) {
+            let bytes = input::standard_input().map_err(unreadable)?;
+            return Self::from_reader(path, bytes, bytes.len() as u64, columns, watch);
+        }
+        let file = File::open(path).map_err(unreadable)?;
+        let found = file.metadata().map_err(unreadable)?;
+        if found.is_dir() {
+            return Err(unreadable(std::io::Error::from(std::io::ErrorKind::IsADirectory)));
+        }
+        Self::from_reader(path, file, found.len(), columns, watch)
+    }
+
+    /// The log that a reader gives: so many bytes, which the progress goes by; messages call it `name`.
+    ///
+    /// # Errors
+    /// As [`Log::read_watched`].
+    pub fn from_reader(
+        name: &Path,
+        reader: impl Read,
+        size_bytes: u64,
+        columns: &Columns,
+        watch: &dyn Watch,
+    ) -> Result<Self, LogError> {
+        let table = read_table(name, reader, size_bytes, columns, watch)?;
+        of_table(name, table, columns)
     }
 }
 
@@ -171,34 +195,25 @@ impl Log {
 const HEAD_BYTES: usize = 64 << 10;
 
 /// The columns of a file, whatever its format.
-fn read_table(path: &Path, columns: &Columns, watch: &dyn Watch) -> Result<LogTable, LogError> {
-    let unreadable = |source| LogError::unreadable(path, source);
-    let mut file = open(path).map_err(unreadable)?;
-    if file.metadata().map_err(unreadable)?.is_dir() {
-        return Err(unreadable(std::io::Error::from(std::io::ErrorKind::IsADirectory)));
-    }
+fn read_table(
+    path: &Path,
+    mut reader: impl Read,
+    size_bytes: u64,
+    columns: &Columns,
+    watch: &dyn Watch,
+) -> Result<LogTable, LogError> {
     let mut head = Vec::with_capacity(HEAD_BYTES);
-    file.by_ref().take(HEAD_BYTES as u64).read_to_end(&mut head).map_err(unreadable)?;
-    file.seek(SeekFrom::Start(0)).map_err(unreadable)?;
+    let beginning = reader.by_ref().take(HEAD_BYTES as u64).read_to_end(&mut head);
+    beginning.map_err(|source| LogError::unreadable(path, source))?;
+    let mut whole = Cursor::new(&head).chain(reader);
     let mut steps = StageSteps::begin(watch, &format!("reading {}", path.display()));
     if matlab::is_matlab(&head) {
-        return matlab::read(path, &mut file, &mut steps, watch);
+        return matlab::read(path, &mut whole, &mut steps, watch);
     }
     if sinumerik::is_json(&head) {
-        return sinumerik::read(path, file, columns, &mut steps, watch);
+        return sinumerik::read(path, &mut whole, size_bytes, columns, &mut steps, watch);
     }
-    text::read(path, &mut file, &head, columns, &mut steps, watch)
-}
-
-/// The file; what comes from the standard input goes to one without a name, as formats are read from several places.
-fn open(path: &Path) -> std::io::Result<File> {
-    if !input::is_standard_input(path) {
-        return File::open(path);
-    }
-    let mut file = tempfile::tempfile()?;
-    std::io::copy(&mut input::standard_input()?, &mut file)?;
-    file.seek(SeekFrom::Start(0))?;
-    Ok(file)
+    text::read(path, &mut whole, size_bytes, &head, columns, &mut steps, watch)
 }
 
 /// The log in a table.

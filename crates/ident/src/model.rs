@@ -6,7 +6,6 @@
 //! The checksum is that of the content: of all keys as they are written, but for the date, the version that wrote them, and itself.
 //! It finds what was changed by hand or lost on the way; it is no signature.
 
-pub(crate) mod date;
 pub(crate) mod exact;
 pub(crate) mod keys;
 mod layout;
@@ -167,7 +166,7 @@ pub(crate) fn kind_named(name_of_kind: &str) -> Option<IdentifierKind> {
 pub struct Origin {
     /// What was recorded, in words.
     pub source: String,
-    /// When, see `today`.
+    /// When, as year-month-day.
     pub date: String,
 }
 

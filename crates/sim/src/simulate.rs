@@ -17,8 +17,6 @@ mod rests;
 mod tick_times;
 pub(crate) mod uncut;
 
-use std::time::Instant;
-
 use feedwright_control::{Bounds, Controller, Fade, Knot, Setpoint, State, Tick};
 use feedwright_plan::vector::distance;
 
@@ -70,7 +68,7 @@ pub struct RunResult {
     pub uncut_mm: f64,
     /// The most register entries that one contour error estimate looked at.
     pub most_entries: usize,
-    /// Time of the ticks in which the controller decided.
+    /// Time of the ticks in which the controller decided, by [`Watch::clock`].
     pub ticks: TickTimes,
 }
 
@@ -109,7 +107,7 @@ pub(crate) fn simulate<const N: usize>(
 ) -> Result<RunResult, Stopped> {
     let mut lap = ClosedLoop::new(machine, reference, controller);
     let (mut n, mut rows) = (0_u64, 0_u64);
-    while let Some(periods) = lap.servo_period(n, reference, controller, sinks)? {
+    while let Some(periods) = lap.servo_period(n, reference, controller, sinks, watch)? {
         n += periods;
         rows += 1;
         if rows.is_multiple_of(ROWS_BETWEEN_CHECKS) {
@@ -179,9 +177,10 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         reference: &mut Reference<'_>,
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
+        watch: &dyn Watch,
     ) -> std::io::Result<Option<u64>> {
         let t_s = n as f64 * self.servo_s;
-        let setpoint = self.command(t_s, reference, controller);
+        let setpoint = self.command(t_s, reference, controller, watch);
         let measurement = self.plant.step(setpoint.command_mm);
         self.seen_mm = measurement.measured_mm;
         if self.is_lost(t_s, distance(measurement.position_mm, setpoint.command_mm)) {
@@ -223,11 +222,17 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
     }
 
     /// The tick of a servo period, and what it says about the run.
-    fn command(&mut self, t_s: f64, reference: &mut Reference<'_>, controller: &mut dyn Controller<N>) -> Setpoint<N> {
-        let clock = Instant::now();
+    fn command(
+        &mut self,
+        t_s: f64,
+        reference: &mut Reference<'_>,
+        controller: &mut dyn Controller<N>,
+        watch: &dyn Watch,
+    ) -> Setpoint<N> {
+        let began = watch.clock();
         let setpoint = self.tick.step(&mut Axes(reference), controller, self.seen_mm);
         if setpoint.decided {
-            self.run.ticks.add(clock.elapsed().as_nanos());
+            self.run.ticks.add(watch.clock().saturating_sub(began).as_nanos());
             self.run.most_entries = self.run.most_entries.max(self.tick.contour().entries);
             if self.tick.fade() != self.fade {
                 self.fade = self.tick.fade();

@@ -1,4 +1,6 @@
-//! Who is told how long work goes on, and can end it.
+//! Who is told how far work has come, can end it, and has the clock.
+
+use std::time::Duration;
 
 use thiserror::Error;
 
@@ -21,6 +23,11 @@ pub trait Watch: Sync {
         false
     }
 
+    /// Time since a fixed moment, which times the ticks. Without a clock they count as taking no time.
+    fn clock(&self) -> Duration {
+        Duration::ZERO
+    }
+
     /// Ends the work where that is asked for.
     ///
     /// # Errors
@@ -30,7 +37,7 @@ pub trait Watch: Sync {
     }
 }
 
-/// Tells nobody, and goes on to the end.
+/// Tells nobody, goes on to the end, and has no clock.
 impl Watch for () {}
 
 /// Steps of a stage that is told by parts.

@@ -82,15 +82,15 @@ impl Workpiece {
     /// # Errors
     /// A program with mistakes, one that leaves the XY plane, or one without a path.
     pub fn program(file: &Path, settings: gcode::Settings) -> Result<Self, PartError> {
-        let summary = gcode::check(file, settings.clone()).map_err(feedwright::JobError::from)?;
+        let program = gcode::Program::in_file(file);
+        let summary = program.check(settings.clone()).map_err(feedwright::JobError::from)?;
         if summary.moves[2] {
             return Err(PartError::LeavesPlane { part: file.to_owned() });
         }
-        let steps = gcode::Reader::open(file, settings).map_err(feedwright::JobError::from)?.map_while(Result::ok);
+        let steps = program.reader(settings).map_err(feedwright::JobError::from)?.map_while(Result::ok);
         let steps: Result<Vec<Step>, PathError> = Pieces::new(steps).collect();
-        let name = file.file_name().unwrap_or(file.as_os_str()).to_string_lossy().into_owned();
-        let steps = steps.map_err(|fault| feedwright::JobError::Path { part: file.to_owned(), fault })?;
-        Ok(Self { name, smooth: false, held_out: false, steps })
+        let steps = steps.map_err(|fault| feedwright::JobError::Path { part: program.name(), fault })?;
+        Ok(Self { name: program.file_name(), smooth: false, held_out: false, steps })
     }
 }
 

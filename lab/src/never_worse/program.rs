@@ -62,7 +62,7 @@ impl Program {
         let steps = Box::new(Pieces::new(open()?.map_while(Result::ok)));
         let planned = planned(steps, length)?;
         if let Some(fault) = planned.fault {
-            return Err(JobError::Path { part: name.into(), fault });
+            return Err(JobError::Path { part: name, fault });
         }
         let Part { steps, time_s: machining_s, shortened, .. } = planned;
         Ok(Self { name, axes, machining_s, shortened, key: key(axes, &steps), steps })

@@ -3,17 +3,18 @@
 use std::fmt::Write;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use feedwright_sim::Watch;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
 use crate::command::terminal::{is_dumb, shows_unicode};
 
-/// Shows the progress of work, and tells it of an interrupt.
+/// Shows the progress of work, tells it of an interrupt, and has its clock.
 pub struct Bar {
     bar: ProgressBar,
     interrupted: Arc<AtomicBool>,
+    began: Instant,
 }
 
 impl Bar {
@@ -28,7 +29,7 @@ impl Bar {
             });
             bar.set_style(if shows_unicode() { style } else { style.progress_chars("#> ") });
         }
-        Self { bar, interrupted }
+        Self { bar, interrupted, began: Instant::now() }
     }
 
     pub fn say(&self, message: impl Into<String>) {
@@ -73,6 +74,10 @@ impl Watch for Bar {
 
     fn is_cancelled(&self) -> bool {
         self.interrupted.load(Ordering::Relaxed)
+    }
+
+    fn clock(&self) -> Duration {
+        self.began.elapsed()
     }
 }
 

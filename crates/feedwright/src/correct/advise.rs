@@ -8,17 +8,15 @@ mod feed_cuts;
 mod feed_search;
 pub(crate) mod page;
 
-use std::path::PathBuf;
-
 use feedwright_gcode::canon::{Canon, Motion};
-use feedwright_gcode::{self, Diagnostic, Settings};
+use feedwright_gcode::{Diagnostic, Program, Settings};
 use feedwright_sim::{Machine, StageSteps, Watch};
 use serde::Serialize;
 
 use super::source::SourceProgram;
 use super::stretches::{ProgramPart, SmoothStretch, parts, stretches};
 use super::target::TargetControl;
-use crate::controllers::{Choices, Entry, Make, Setup};
+use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, Setup};
 use crate::job_error::{JobError, axes_that_move};
 pub use feed_cuts::ErrorPlace;
 use feed_cuts::FeedBench;
@@ -26,9 +24,10 @@ use feed_search::{FeedSearch, LARGEST};
 
 /// A program, a machine, and a tolerance that is to be held.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct AdviseJob {
     /// The G-code program.
-    pub part: PathBuf,
+    pub program: Program,
     /// The machine that cuts it.
     pub machine: Machine,
     /// The control that cuts it without feedback, corrected or not.
@@ -156,16 +155,29 @@ impl Advice {
 }
 
 impl AdviseJob {
+    /// Asks for the feedrates of a program that hold a tolerance: on a control, and with the default controller.
+    pub fn new(program: Program, machine: Machine, target: &'static TargetControl, tolerance_um: f64) -> Self {
+        Self {
+            program,
+            machine,
+            target,
+            controller: &LQG_IDENTIFIED,
+            choices: Choices::default(),
+            tolerance_um,
+            reader: Settings::default(),
+        }
+    }
+
     /// Finds the feedrates.
     ///
     /// # Errors
     /// A program with mistakes or without a feed motion, more axes than the machine has, or an end from outside.
     pub fn run(&self, watch: &dyn Watch) -> Result<Advice, JobError> {
         watch.begin("reading the program", 1);
-        let summary = feedwright_gcode::check(&self.part, self.reader.clone())?;
-        let axes = axes_that_move(&self.part, &summary, &self.machine)?;
+        let summary = self.program.check(self.reader.clone())?;
+        let axes = axes_that_move(&self.program, &summary, &self.machine)?;
         self.target.suits(&self.machine)?;
-        let source = SourceProgram::read(&self.part, &self.reader, None)?;
+        let source = SourceProgram::read(&self.program, &self.reader, None)?;
         let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
         let found = match axes {
             2 => self.of_axes::<2>(&source, watch),
@@ -182,7 +194,7 @@ impl AdviseJob {
         let feeds: Vec<f64> = stretches(&parts).map(feed_mm_s).collect();
         let largest_mm_s = feeds.iter().copied().fold(0.0, f64::max);
         if largest_mm_s == 0.0 {
-            return Err(JobError::NothingToCut { part: self.part.clone() });
+            return Err(JobError::NothingToCut { part: self.program.name() });
         }
         let mut steps = StageSteps::begin(watch, &format!("identifying for {}", self.controller.name));
         let mut progress = |part: f64| steps.reach(part);
@@ -203,7 +215,7 @@ impl AdviseJob {
             let mut search =
                 FeedSearch { bench: &mut bench, way, progress: StageSteps::begin(watch, &of_way), done: 0.0 };
             let (advice, of_stretches) =
-                search.advice(most, self.tolerance_um).map_err(|error| JobError::of_run(&self.part, error))?;
+                search.advice(most, self.tolerance_um).map_err(|error| JobError::of_run(&self.program, error))?;
             ways.push(advice);
             found.push(of_stretches);
         }

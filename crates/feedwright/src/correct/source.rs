@@ -1,10 +1,10 @@
 //! A program with its text, and the modes in force behind each step.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::io::Read;
 
 use feedwright_gcode::canon::{Canon, MotionKind};
-use feedwright_gcode::{Dialect, ModesInForce, ReadError, Reader, Settings, input};
+use feedwright_gcode::{Dialect, ModesInForce, Program, ReadError, Settings};
 
 /// A program that is to be corrected.
 #[derive(Debug, Clone)]
@@ -27,10 +27,12 @@ pub(super) struct SourceProgram {
 }
 
 impl SourceProgram {
-    /// The program in a file, which has been checked, with another feedrate where one is given.
-    pub(super) fn read(part: &Path, settings: &Settings, feed_mm_s: Option<f64>) -> Result<Self, ReadError> {
-        let bytes = input::read(part).map_err(|cause| ReadError::Io { path: part.to_owned(), cause })?;
-        let mut reader = Reader::open(part, settings.clone())?;
+    /// A program that has been checked, with another feedrate where one is given.
+    pub(super) fn read(program: &Program, settings: &Settings, feed_mm_s: Option<f64>) -> Result<Self, ReadError> {
+        let mut bytes = Vec::new();
+        let copied = program.text().and_then(|(mut text, _)| text.read_to_end(&mut bytes));
+        copied.map_err(|cause| ReadError::Io { path: program.name().into(), cause })?;
+        let mut reader = program.reader(settings.clone())?;
         let (dialect, start) = (reader.dialect().0, reader.modes());
         let (mut steps, mut modes, mut in_force) = (Vec::new(), Vec::<ModesInForce>::new(), Vec::new());
         let mut offset_lines = BTreeMap::new();

@@ -1,6 +1,5 @@
 //! What a job assumes of its machine.
 
-use feedwright_gcode::input;
 use feedwright_sim::Axis;
 
 use super::Job;
@@ -42,7 +41,7 @@ impl Job {
         Assumptions {
             machine: self.machine.name.clone(),
             description: self.machine.description.clone(),
-            machine_file: self.machine_file.as_deref().map(input::name),
+            machine_file: self.machine_file.clone(),
             machine_source: self.machine.source.clone(),
             position_gains_1_s: ["X", "Y", "Z"].into_iter().zip(simulated).map(gain).collect(),
             disturbed_by: named(&DISTURBANCES, true),

@@ -1,40 +1,36 @@
-//! `--out FILE.ngc`: the corrected program for a control that gets no feedback, and its cut beside the others.
+//! The corrected program for a control that gets no feedback, and its cut beside the others.
 
 use feedwright_sim::{Sink, Watch};
 
-use super::record::RunRecord;
-use super::{Job, JobError, Timeline};
+use super::record::{RunRecord, Timeline};
+use super::{Job, JobError};
 use crate::correct::exported::ExportedCut;
-use crate::correct::{CorrectJob, CorrectOutcome};
-pub(crate) use crate::report::AS_EXPORTED;
-use crate::report::{FullCircle, ReportedRun, RunSummary};
+use crate::correct::{CorrectJob, CorrectOutcome, TargetControl};
+use crate::report::{AS_EXPORTED, FullCircle, ReportedRun, RunSummary};
 
 impl Job {
-    /// The corrected program, where one is asked for, and its run; no run where no text could be written.
-    pub(super) fn exported(
+    /// The corrected program, where one is asked for; its run, where a text could be written, goes behind the others.
+    pub(super) fn push_exported(
         &self,
+        runs: &mut Vec<ReportedRun>,
         circles: &[FullCircle],
         watch: &dyn Watch,
-    ) -> Result<Option<(CorrectOutcome, Option<ReportedRun>)>, JobError> {
-        if !self.outputs.is_program() {
-            return Ok(None);
-        }
+    ) -> Result<Option<CorrectOutcome>, JobError> {
+        let Some(target) = self.target else { return Ok(None) };
         let job = CorrectJob {
-            part: self.part.clone(),
-            machine: self.machine.clone(),
-            believed: None,
-            target: self.target,
             feed_mm_s: self.feed_mm_s,
             reader: self.reader.clone(),
+            ..CorrectJob::new(self.program.clone(), self.machine.clone(), target)
         };
         let outcome = job.run(watch)?;
-        let run = self.exported_run(&outcome, circles, watch)?;
-        Ok(Some((outcome, run)))
+        runs.extend(self.exported_run(target, &outcome, circles, watch)?);
+        Ok(Some(outcome))
     }
 
     /// The run of the text: the figures of all its cuts, and the rows of the one with the largest error.
     fn exported_run(
         &self,
+        target: &TargetControl,
         outcome: &CorrectOutcome,
         circles: &[FullCircle],
         watch: &dyn Watch,
@@ -42,7 +38,7 @@ impl Job {
         let Some(written) = &outcome.written else { return Ok(None) };
         let mut record = RunRecord::new(outcome.axes, self.machine.period.servo_s, circles);
         let mut timeline = Timeline::new(&self.machine.plc_events);
-        let stages = self.target.stages(&self.machine);
+        let stages = target.stages(&self.machine);
         let cut = ExportedCut {
             machine: &self.machine,
             stages,
@@ -54,7 +50,7 @@ impl Job {
         let mut sinks: [&mut dyn Sink; 5] = [statistics, series, spectrum, radial, &mut timeline];
         let run = cut
             .worst(&written.steps, &outcome.corrected, &mut sinks)
-            .map_err(|error| JobError::of_run(&self.part, error))?;
+            .map_err(|error| JobError::of_run(&self.program, error))?;
         let lines: Vec<&str> = written.text.lines().collect();
         let text = |line: u32| lines.get((line as usize).wrapping_sub(1)).copied().unwrap_or_default().to_owned();
         let figures = outcome.corrected;

@@ -1,7 +1,6 @@
 //! The lines of the program that the page shows beside the tool.
 
 use std::collections::BTreeSet;
-use std::io::BufRead;
 
 use super::{Job, JobError};
 use crate::report::{ProgramLine, ReportedRun};
@@ -16,7 +15,7 @@ const MOST_CHARACTERS: usize = 160;
 impl Job {
     /// The lines in their order.
     pub(super) fn listing(&self, runs: &[ReportedRun]) -> Result<Vec<ProgramLine>, JobError> {
-        let (mut file, size_bytes) = self.program_text()?;
+        let (mut file, size_bytes) = self.program.text().map_err(|cause| self.reread(cause))?;
         let whole = size_bytes <= WHOLE_BYTES;
         let drawn: BTreeSet<u32> = match whole {
             true => BTreeSet::new(),

@@ -1,9 +1,14 @@
-//! What the page keeps of the rows of a run.
+//! What the page keeps of the rows and the events of a run.
 
-use feedwright_sim::{RunResult, Sink};
+use std::io;
+
+use feedwright_plan::{EventName, PlcEvent, TimedEvent, named};
+use feedwright_sim::{Row, RunResult, Sink};
 
 use super::{Job, JobError, MEASURED};
-use crate::report::{ErrorSpectrum, FullCircle, RadialDeviations, ReportedRun, RunFacts, Series, Statistics};
+use crate::report::{
+    ErrorSpectrum, FullCircle, RadialDeviations, ReportedRun, RunFacts, Series, Statistics, TimelineEvent,
+};
 
 /// Everything that is drawn or counted of a run, while its rows come.
 pub(super) struct RunRecord<'a> {
@@ -32,6 +37,38 @@ impl<'a> RunRecord<'a> {
     }
 }
 
+/// Most events that the page shows: more than that nobody reads, and a program may have millions.
+const MAX_EVENTS: usize = 500;
+
+/// The events of a run, for the page.
+#[derive(Debug)]
+pub(super) struct Timeline<'a> {
+    pub(super) events: Vec<TimelineEvent>,
+    /// What the machine builder named.
+    named: &'a [PlcEvent],
+}
+
+impl<'a> Timeline<'a> {
+    pub(super) const fn new(named: &'a [PlcEvent]) -> Self {
+        Self { events: Vec::new(), named }
+    }
+}
+
+impl Sink for Timeline<'_> {
+    fn row(&mut self, _: &Row) -> io::Result<()> {
+        Ok(())
+    }
+
+    fn event(&mut self, t_s: f64, event: &TimedEvent) -> io::Result<()> {
+        if self.events.len() < MAX_EVENTS {
+            let TimedEvent { duration_s, event, .. } = event;
+            let EventName { row, label } = named(&event.kind, self.named);
+            self.events.push(TimelineEvent { t_s, duration_s: *duration_s, line: event.line, row, label });
+        }
+        Ok(())
+    }
+}
+
 impl Job {
     /// A run as the page has it; its events are still open.
     pub(super) fn reported(&self, record: RunRecord<'_>, name: &str, run: RunResult) -> Result<ReportedRun, JobError> {
@@ -51,7 +88,7 @@ impl Job {
         let facts = RunFacts {
             controller: name.to_owned(),
             machine: self.machine.name.clone(),
-            part: self.part_name(),
+            part: self.program.file_name(),
             axes: record.axes,
             measured: name == MEASURED,
             run,

@@ -1,8 +1,6 @@
 //! What the page of a job shows.
 
-use std::io::BufRead;
-
-use feedwright_gcode::{Summary, input};
+use feedwright_gcode::Summary;
 use feedwright_ident::Model;
 use feedwright_plan::{AlignedPaths, Constraints};
 use feedwright_sim::{Machine, Stages, Watch, path_steps};
@@ -14,33 +12,15 @@ use crate::fastest::FastestPlan;
 use crate::report::{FullCircle, LimitBand, Outcome, Report, ReportedRun, WorstPlace};
 
 impl Job {
-    /// The part as the report calls it: the file's name.
-    pub(super) fn part_name(&self) -> String {
-        let name = std::path::PathBuf::from(input::name(&self.part));
-        name.file_name().unwrap_or(name.as_os_str()).to_string_lossy().into_owned()
-    }
-
     /// That the program could not be read once more.
     pub(super) fn reread(&self, cause: std::io::Error) -> JobError {
-        JobError::Reread { part: self.part.clone(), cause }
-    }
-
-    /// The text of the program, and its size in bytes.
-    pub(super) fn program_text(&self) -> Result<(Box<dyn BufRead>, u64), JobError> {
-        let reread = |cause| self.reread(cause);
-        if input::is_standard_input(&self.part) {
-            let text = input::standard_input().map_err(reread)?;
-            return Ok((Box::new(text), text.len() as u64));
-        }
-        let file = std::fs::File::open(&self.part).map_err(reread)?;
-        let bytes = file.metadata().map_err(reread)?.len();
-        Ok((Box::new(std::io::BufReader::new(file)), bytes))
+        JobError::Reread { part: self.program.name(), cause }
     }
 
     /// Looks up the texts of the worst places' lines, in one pass over the program.
     pub(super) fn fill_in_texts(&self, worst: &mut [WorstPlace]) -> Result<(), JobError> {
         let last = worst.iter().map(|place| place.line).max().unwrap_or(0);
-        let (mut file, _) = self.program_text()?;
+        let (mut file, _) = self.program.text().map_err(|cause| self.reread(cause))?;
         let mut text = Vec::new();
         for line in 1..=last {
             text.clear();
@@ -77,17 +57,17 @@ impl Job {
             settings.push(value("Model", format!("{}, {}", model.source, model.date)));
         }
         if let Some(reference) = &self.reference {
-            settings.push(value("Errors measured to", reference.display().to_string()));
+            settings.push(value("Errors measured to", reference.name()));
         }
-        if self.outputs.is_program() {
-            settings.push(value("Corrected program for", format!("{}: {}", self.target.name, self.target.about)));
+        if let Some(target) = self.target {
+            settings.push(value("Corrected program for", format!("{}: {}", target.name, target.about)));
         }
         if let Some(feed_mm_s) = self.feed_mm_s {
             settings.push(value("Feedrate, in place of the programmed", format!("{feed_mm_s} mm/s")));
         }
         Ok(Report {
-            title: format!("{} on {}", self.part_name(), self.machine.name),
-            part: self.part_name(),
+            title: format!("{} on {}", self.program.file_name(), self.machine.name),
+            part: self.program.file_name(),
             machine: describe(&self.machine),
             settings,
             assumed: self.assumptions(axes, unidentified),
@@ -106,9 +86,9 @@ impl Job {
         cut && report.harm().is_empty()
     }
 
-    /// Whether the page shows what binds along the path: on machines that are planned axis by axis.
+    /// Whether to find what binds along the path: on machines that are planned axis by axis.
     fn shows_limits(&self) -> bool {
-        self.outputs.report.is_some() && Stages::of(&self.machine).planner.needs_axes
+        self.with_limits && Stages::of(&self.machine).planner.needs_axes
     }
 
     /// Looks at the plan of a cut for the page, where that is the plan of the program.
@@ -136,8 +116,8 @@ impl Job {
             Some(cycle) => cycle.along.clone(),
             None => {
                 watch.begin("looking at what binds", 1);
-                let found = cycle_time(&self.machine, false, || Ok(path_steps(self.program()?)), watch);
-                found.map_err(|error| JobError::of_run(&self.part, error))?.along
+                let found = cycle_time(&self.machine, false, || Ok(path_steps(self.steps()?)), watch);
+                found.map_err(|error| JobError::of_run(&self.program, error))?.along
             }
         };
         Ok(Some(LimitBand { names: cycle_time::limit_names(), along }))

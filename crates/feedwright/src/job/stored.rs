@@ -1,7 +1,7 @@
 //! How a job is serialised: what has a file of its own as the text of that file, what stands in a table by its name.
 
 use serde::de::{Deserialize, Deserializer, Error};
-use serde::ser::Serializer;
+use serde::ser::{Serialize, Serializer};
 
 /// A machine.
 pub(super) mod machine {
@@ -35,24 +35,26 @@ pub(super) mod model {
     }
 }
 
-/// A row of the table of controls.
+/// A row of the table of controls, where one is asked for.
 pub(super) mod target {
-    use super::{Deserialize, Deserializer, Error, Serializer};
+    use super::{Deserialize, Deserializer, Error, Serialize, Serializer};
     use crate::correct::TargetControl;
 
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde gives a reference")]
+    #[expect(clippy::ref_option, reason = "serde gives a reference")]
     pub(in super::super) fn serialize<S: Serializer>(
-        target: &&'static TargetControl,
+        target: &Option<&'static TargetControl>,
         serializer: S,
     ) -> Result<S::Ok, S::Error> {
-        serializer.serialize_str(target.name)
+        target.map(|target| target.name).serialize(serializer)
     }
 
     pub(in super::super) fn deserialize<'d, D: Deserializer<'d>>(
         deserializer: D,
-    ) -> Result<&'static TargetControl, D::Error> {
-        let name = String::deserialize(deserializer)?;
-        TargetControl::find(&name).ok_or_else(|| D::Error::custom(format!("no control is called '{name}'")))
+    ) -> Result<Option<&'static TargetControl>, D::Error> {
+        let find = |name: String| {
+            TargetControl::find(&name).ok_or_else(|| D::Error::custom(format!("no control is called '{name}'")))
+        };
+        Option::<String>::deserialize(deserializer)?.map(find).transpose()
     }
 }
 

@@ -1,29 +1,19 @@
 //! A part cut by one controller, with its trace in a file.
 
+use std::fs::File;
 use std::path::Path;
 
-use feedwright::{Choices, Entry, Job, Outputs, RunSummary};
-use feedwright_sim::Machine;
+use feedwright::{Entry, Job, RunSummary};
+use feedwright_gcode::Program;
+use feedwright_sim::{Machine, TraceWriter};
 
 /// Cuts a part and leaves its trace.
 pub(crate) fn cut(part: &Path, machine: &Path, entry: &'static Entry, trace: &Path) -> RunSummary {
-    let job = Job {
-        part: part.to_owned(),
-        machine: Machine::read(machine).unwrap(),
-        machine_file: Some(machine.to_owned()),
-        controller: entry,
-        against: entry,
-        feed_mm_s: None,
-        choices: Choices::default(),
-        model: None,
-        tolerance_um: None,
-        target: &feedwright::TARGETS[0],
-        reference: None,
-        fastest: false,
-        reader: feedwright_gcode::Settings::default(),
-        inputs: Vec::new(),
-        log: None,
-        outputs: Outputs { trace: Some(trace.to_owned()), ..Outputs::default() },
-    };
-    job.run(&()).unwrap().report.runs.remove(0).summary
+    let mut job = Job::new(Program::in_file(part), Machine::read(machine).unwrap());
+    (job.controller, job.against) = (entry, entry);
+    let checked = job.check().unwrap();
+    let mut rows = TraceWriter::new(File::create(trace).unwrap(), checked.axes()).unwrap();
+    let mut outcome = checked.run(&mut [&mut rows], &()).unwrap();
+    rows.finish().unwrap();
+    outcome.report.runs.remove(0).summary
 }

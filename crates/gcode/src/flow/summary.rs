@@ -1,12 +1,11 @@
 //! A run through a whole program ahead of all others: every fault at once, or what the program amounts to.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use crate::canon::{Canon, Motion, MotionKind, Shape};
 use crate::flow::reader::Reader;
 use crate::geometry::spiral::Spiral;
-use crate::settings::{Dialect, Settings};
+use crate::settings::Dialect;
 use crate::text::diagnostic::{Diagnostic, Severity};
 use crate::text::read_error::ReadError;
 
@@ -46,14 +45,6 @@ pub enum CheckError {
     Read(ReadError),
     /// Its faults, in program order.
     Faults(Vec<Diagnostic>),
-}
-
-/// Runs through the program in a file.
-///
-/// # Errors
-/// All faults of the program, up to [`Settings::max_errors`].
-pub fn check(path: &Path, settings: Settings) -> Result<Summary, CheckError> {
-    summarize(Reader::open(path, settings).map_err(CheckError::Read)?)
 }
 
 /// Runs through the program that `reader` has just opened.

@@ -10,7 +10,6 @@
 //! Source: The MathWorks, MAT-File Format. Vectors of real numbers are columns of the log, and so are the columns of matrices that are
 //! longer than wide; text, cells, structs and what is complex or sparse is left out.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -43,7 +42,7 @@ fn is_hdf5(head: &[u8]) -> bool {
 /// Reads all vectors of a file.
 pub(super) fn read(
     path: &Path,
-    file: &mut File,
+    file: &mut impl Read,
     steps: &mut StageSteps<'_>,
     watch: &dyn Watch,
 ) -> Result<LogTable, LogError> {

@@ -8,7 +8,6 @@
 
 use std::cell::Cell;
 use std::fmt;
-use std::fs::File;
 use std::io::{self, BufReader, Read};
 use std::path::Path;
 
@@ -29,12 +28,12 @@ pub(super) fn is_json(head: &[u8]) -> bool {
 /// Reads the rows of a recording.
 pub(super) fn read(
     path: &Path,
-    file: File,
+    file: &mut dyn Read,
+    total_bytes: u64,
     columns: &Columns,
     steps: &mut StageSteps<'_>,
     watch: &dyn Watch,
 ) -> Result<LogTable, LogError> {
-    let total_bytes = file.metadata().map_or(0, |found| found.len());
     let (cancelled, failed) = (Cell::new(false), Cell::new(None));
     let reader = Watched { file, done_bytes: 0, total_bytes, steps, watch, cancelled: &cancelled, failed: &failed };
     let mut reader = BufReader::with_capacity(1 << 18, reader);
@@ -66,7 +65,7 @@ fn skip_mark(reader: &mut impl io::BufRead) -> io::Result<()> {
 
 /// A file that tells how much of it is read.
 struct Watched<'a, 'b> {
-    file: File,
+    file: &'a mut dyn Read,
     done_bytes: u64,
     total_bytes: u64,
     steps: &'a mut StageSteps<'b>,

@@ -1,6 +1,5 @@
 //! Text tables: rows of numbers, read in chunks; only the columns that are needed are kept.
 
-use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
@@ -20,7 +19,8 @@ const MAX_LINE_BYTES: usize = 1 << 20;
 /// Reads a text table whose beginning is known.
 pub(super) fn read(
     path: &Path,
-    file: &mut File,
+    file: &mut impl Read,
+    total_bytes: u64,
     head: &[u8],
     columns: &Columns,
     steps: &mut StageSteps<'_>,
@@ -28,7 +28,6 @@ pub(super) fn read(
 ) -> Result<LogTable, LogError> {
     let dialect = dialect_of(path, head)?;
     let mut rows = TextRows::new(path, dialect, columns);
-    let total_bytes = file.metadata().map_or(0, |found| found.len());
     rows.reserve(head, total_bytes);
     let (mut chunk, mut carried, mut done_bytes) = (vec![0; CHUNK_BYTES], Vec::new(), 0_u64);
     loop {

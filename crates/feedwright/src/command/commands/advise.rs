@@ -2,6 +2,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
+use feedwright_gcode::Program;
 use feedwright_sim::Machine;
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
@@ -32,13 +33,10 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     let figure = args.figure.as_deref().map(|path| files.start(path)).transpose()?;
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
     let job = AdviseJob {
-        part: args.part.clone(),
-        machine,
-        target,
         controller: find(&args.controller, CONTROLLERS)?,
         choices: Choices { seed: args.seed, ..Choices::default() },
-        tolerance_um: args.tolerance,
         reader: args.reader.settings()?,
+        ..AdviseJob::new(Program::in_file(&args.part), machine, target, args.tolerance)
     };
     let bar = console.bar(0);
     let advice = job.run(&bar)?;

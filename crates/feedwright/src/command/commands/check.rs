@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
-use feedwright_gcode::{self, CheckError, Settings, input};
+use feedwright_gcode::{self, CheckError, Program, Settings, input};
 use feedwright_ident::{Model, identifier_name};
 use feedwright_sim::toml_file::{FileError, Problem};
 use feedwright_sim::{Machine, MachineError, Watch};
@@ -233,7 +233,7 @@ fn findings(file: &Path, error: &FileError) -> Vec<Finding> {
 }
 
 fn program(file: &Path, settings: Settings) -> CheckedFile {
-    let summary = match feedwright_gcode::check(file, settings) {
+    let summary = match Program::in_file(file).check(settings) {
         Ok(summary) => summary,
         Err(CheckError::Read(error)) => return refused(file, FileOutcome::Unreadable, error.into()),
         Err(CheckError::Faults(faults)) => {

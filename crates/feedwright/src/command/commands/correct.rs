@@ -2,6 +2,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
+use feedwright_gcode::Program;
 use feedwright_sim::Machine;
 use miette::{IntoDiagnostic, Result};
 use serde_json::{Value, json};
@@ -26,14 +27,8 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let mut files = inputs.outputs();
     let mut out = args.out.as_deref().map(|path| files.start(path)).transpose()?;
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
-    let job = CorrectJob {
-        part: args.part.clone(),
-        machine,
-        believed: None,
-        target,
-        feed_mm_s: None,
-        reader: args.reader.settings()?,
-    };
+    let reader = args.reader.settings()?;
+    let job = CorrectJob { reader, ..CorrectJob::new(Program::in_file(&args.part), machine, target) };
     let bar = console.bar(0);
     let outcome = job.run(&bar)?;
     bar.clear();

@@ -6,13 +6,14 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use feedwright_ident::{AxisEstimate, AxisParameters, Model, identifier_name, today};
+use feedwright_ident::{AxisEstimate, AxisParameters, Model, identifier_name};
 use feedwright_sim::{Machine, StageSteps, is_machine_path};
 use miette::Result;
 
 use crate::command::args::identify::IdentifyArgs;
 use crate::command::console::Console;
 use crate::command::controllers::{find, settings};
+use crate::command::date::today;
 use crate::command::message::printed;
 use crate::command::streams::{tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};

@@ -3,8 +3,8 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::Instant;
 
+use feedwright_gcode::Program;
 use feedwright_gcode::suggestion::nearest;
-use feedwright_gcode::{self, Reader};
 use feedwright_plan::{Constraints, FEED_PLANNERS, MOST_OVERRIDE, feed_planner};
 use feedwright_sim::{Machine, Stages, path_steps, shown};
 use miette::{IntoDiagnostic, Result, miette};
@@ -28,15 +28,15 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let request = request(args, stages)?;
     let mut files = inputs.outputs();
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
-    let settings = args.reader.settings()?;
-    let summary = feedwright_gcode::check(&args.part, settings.clone()).map_err(JobError::from)?;
+    let (program, settings) = (Program::in_file(&args.part), args.reader.settings()?);
+    let summary = program.check(settings.clone()).map_err(JobError::from)?;
     for warning in summary.warnings {
         warn(warning.into());
     }
     let bar = console.bar(0);
     let begun = Instant::now();
     // The program was checked from end to end before: a mistake here means that the file changed, and ends it.
-    let steps = || Ok(path_steps(Reader::open(&args.part, settings.clone())?.map_while(std::result::Result::ok)));
+    let steps = || Ok(path_steps(program.reader(settings.clone())?.map_while(std::result::Result::ok)));
     let constraints = Constraints::from(&machine);
     let plan = |bound: bool| cycle_time_by(stages, &machine, &constraints, bound, steps, &bar);
     let found = plan(false)?;

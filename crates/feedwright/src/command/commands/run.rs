@@ -1,12 +1,16 @@
 //! `feedwright run`: a job from the arguments, a summary of its outcome.
 
+mod files;
 mod summary;
+
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::str::FromStr;
 
-use feedwright_gcode::input::is_standard_input;
-use feedwright_ident::Model;
-use feedwright_sim::{Machine, is_machine_path};
+use feedwright_gcode::Program;
+use feedwright_gcode::input::{self, is_standard_input};
+use feedwright_ident::{Columns, Log, Model};
+use feedwright_sim::{Machine, Watch, is_machine_path};
 use miette::{Result, miette};
 
 use crate::command::args::run::RunArgs;
@@ -14,11 +18,14 @@ use crate::command::console::Console;
 use crate::command::controllers::{find, settings};
 use crate::command::controls::control;
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell, warn};
+use crate::command::progress::Bar;
 use crate::command::streams::{check_inputs, tables};
 use crate::controllers::{Choices, Controllers};
 use crate::correct::{TARGETS, TargetControl};
 use crate::fastest::FastestError;
-use crate::job::{Job, JobError, LogFile, Outputs};
+use crate::job::{Job, JobError, MeasuredLog};
+use crate::output::OutputError;
+use files::{Files, Outputs};
 
 /// Cuts a part with controllers of a table.
 pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitCode> {
@@ -33,18 +40,26 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
             ("--tool-table", args.reader.tool_table.as_deref()),
         ],
     )?;
-    let job = job(args, table)?;
     let bar = console.bar(0);
-    let outcome = job.run(&bar);
-    bar.clear();
-    // That nothing is fast enough is what the answer is, and no mistake of what was asked for.
-    let outcome = match outcome {
+    let Asked { job, inputs, outputs } = asked(args, table, &bar)?;
+    bar.begin("reading the program", 1);
+    let checked = job.check()?;
+    let mut files = Files::create(&outputs, inputs.iter().map(PathBuf::as_path), checked.axes())?;
+    let outcome = match checked.run(&mut [&mut files], &bar) {
+        Ok(outcome) => outcome,
+        // That nothing is fast enough is what the answer is, and no mistake of what was asked for.
         Err(error @ JobError::Fastest { error: FastestError::Impossible { .. }, .. }) => {
+            bar.clear();
             tell(&error.into());
             return Ok(ExitCode::from(OUT_OF_TOLERANCE));
         }
-        outcome => outcome?,
+        // The rows go to files, whose errors name them.
+        Err(JobError::Write(error)) => return Err(OutputError::from_io(error, Path::new("the output")).into()),
+        Err(error) => return Err(error.into()),
     };
+    bar.begin("writing", 1);
+    files.finish(&job, &outcome, &bar)?;
+    bar.clear();
     for warning in outcome.warnings.iter().cloned() {
         warn(warning.into());
     }
@@ -55,45 +70,48 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     // Where a program for another control was asked for, that program decides.
     let is_good = outcome.within_tolerance && (outcome.harm.is_empty() || outcome.exported.is_some());
     let code = if is_good { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
-    let Outputs { report, json, trace, out } = &job.outputs;
+    let Outputs { report, json, trace, out } = &outputs;
     let mut table = tables([report, json, trace, out].map(Option::as_deref));
-    printed(summary::print(&mut *table, &job, &outcome), code)
+    printed(summary::print(&mut *table, &job, &outputs, &outcome), code)
 }
 
-fn job(args: RunArgs, table: Controllers) -> Result<Job> {
+/// What the arguments ask for.
+struct Asked {
+    job: Job,
+    /// Files that no output may take the place of.
+    inputs: Vec<PathBuf>,
+    outputs: Outputs,
+}
+
+fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
+    let machine_file = Some(PathBuf::from(&args.machine)).filter(|path| is_machine_path(path));
     let report = args.report.unwrap_or_else(|| report_of(&args.part));
+    let outputs = Outputs { report: Some(report), json: args.json, trace: args.trace, out: args.out };
     let (controller, against) = (find(&args.controller, table)?, find(&args.against, table)?);
-    let target = target(args.target.as_deref(), args.out.as_deref())?;
+    let target = target(args.target.as_deref(), outputs.out.as_deref())?;
     let set = settings(&args.set, table, Some(controller), &[controller, against])?;
     let mut machine = Machine::load(&args.machine)?;
     if args.fastest && machine.limits.path_tolerance_um.is_none() {
         machine.limits.path_tolerance_um = args.tolerance;
     }
-    Ok(Job {
-        machine,
-        machine_file: Some(PathBuf::from(&args.machine)).filter(|path| is_machine_path(path)),
-        controller,
-        against,
-        feed_mm_s: args.feed,
-        choices: Choices { seed: args.seed, set },
-        model: args.model.as_deref().map(Model::read).transpose()?,
-        tolerance_um: args.tolerance,
-        target,
-        reference: args.reference.clone(),
-        fastest: args.fastest,
-        log: args.log.clone().map(|path| LogFile { path, columns: args.columns }),
-        reader: args.reader.settings()?,
-        inputs: Some(PathBuf::from(args.machine))
-            .filter(|path| is_machine_path(path))
-            .into_iter()
-            .chain(args.reader.tool_table)
-            .chain(args.model)
-            .chain(args.log)
-            .chain(args.reference)
-            .collect(),
-        outputs: Outputs { report: Some(report), json: args.json, trace: args.trace, out: args.out },
-        part: args.part,
-    })
+    let mut job = Job::new(Program::in_file(&args.part), machine);
+    job.machine_file = machine_file.as_deref().map(input::name);
+    (job.controller, job.against) = (controller, against);
+    job.feed_mm_s = args.feed;
+    job.choices = Choices { seed: args.seed, set };
+    job.model = args.model.as_deref().map(Model::read).transpose()?;
+    job.tolerance_um = args.tolerance;
+    job.target = outputs.is_program()?.then_some(target);
+    job.reference = args.reference.as_ref().map(Program::in_file);
+    job.fastest = args.fastest;
+    job.with_limits = true;
+    job.reader = args.reader.settings()?;
+    if let Some(path) = &args.log {
+        let columns = args.columns.as_deref().map(Columns::from_str).transpose()?.unwrap_or_default();
+        job.log = Some(MeasuredLog { name: input::name(path), log: Log::read_watched(path, &columns, bar)? });
+    }
+    let read = [machine_file, args.reader.tool_table, args.model, args.log, args.reference, Some(args.part)];
+    Ok(Asked { job, inputs: read.into_iter().flatten().collect(), outputs })
 }
 
 /// The control that a program is for; setpoints are for none.

@@ -7,15 +7,16 @@ use std::io::{self, Write};
 use crate::correct::CorrectOutcome;
 use crate::correct::exported::ExportedFigures;
 use crate::fastest::FastestPlan;
-use crate::job::{AS_EXPORTED, Job, JobOutcome, MEASURED};
-use crate::report::{Assumptions, Outcome as Ending, ReportedRun, RunSummary};
+use crate::job::{Job, JobOutcome, MEASURED};
+use crate::report::{AS_EXPORTED, Assumptions, Outcome as Ending, ReportedRun, RunSummary};
 
+use super::files::Outputs;
 use crate::command::controls::print_correction;
 use crate::command::streams::tell_written;
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::wrapped;
 
-pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io::Result<()> {
+pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: &JobOutcome) -> io::Result<()> {
     let runs = &outcome.report.runs;
     let measured = runs.iter().any(|run| run.summary.measured);
     let say = |out: &mut dyn Write, text: &str| writeln!(out, "{}", wrapped(text, 2));
@@ -35,7 +36,7 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io:
     writeln!(out)?;
     say(out, &assumed(&outcome.report.assumed, measured))?;
     if let Some(reference) = &job.reference {
-        say(out, &format!("errors and uncut path are those to {}", reference.display()))?;
+        say(out, &format!("errors and uncut path are those to {}", reference.name()))?;
     }
     if let Some(exported) = &outcome.exported {
         print_exported(out, exported)?;
@@ -43,7 +44,7 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io:
     if let Some(plan) = &outcome.fastest {
         print_fastest(out, plan)?;
     }
-    print_written(out, job, outcome)
+    print_written(out, outputs, outcome)
 }
 
 /// The largest torque of all axes, N m.
@@ -130,8 +131,7 @@ fn print_fastest(out: &mut dyn Write, plan: &FastestPlan) -> io::Result<()> {
 }
 
 /// Which files there are, and why one is not.
-fn print_written(out: &mut dyn Write, job: &Job, outcome: &JobOutcome) -> io::Result<()> {
-    let outputs = &job.outputs;
+fn print_written(out: &mut dyn Write, outputs: &Outputs, outcome: &JobOutcome) -> io::Result<()> {
     let is_good = outcome.exported.as_ref().map_or(outcome.is_of_use, |program| program.refusal.is_none());
     let written = outputs.out.as_deref().filter(|_| is_good);
     tell_written(out, [outputs.report.as_deref(), outputs.json.as_deref(), outputs.trace.as_deref(), written])?;

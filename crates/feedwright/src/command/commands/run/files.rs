@@ -1,0 +1,124 @@
+//! The files that `run` writes, all of them or none.
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use feedwright_sim::{Row, SetpointWriter, Sink, TraceWriter, Watch};
+use miette::{Result, miette};
+
+use crate::job::{Job, JobOutcome};
+use crate::output::{OutputError, OutputFile, OutputFiles, is_standard_output};
+use crate::report::write_html;
+
+/// Where to write what; `None` is not written.
+#[derive(Debug)]
+pub(super) struct Outputs {
+    /// The page.
+    pub(super) report: Option<PathBuf>,
+    /// All results as JSON.
+    pub(super) json: Option<PathBuf>,
+    /// One row per servo period of the last run.
+    pub(super) trace: Option<PathBuf>,
+    /// Setpoints of the controller's cut (`.csv`), or the corrected program for a control without feedback (`.ngc`).
+    pub(super) out: Option<PathBuf>,
+}
+
+/// What `--out` writes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    Setpoints,
+    Gcode,
+}
+
+impl Outputs {
+    /// Whether a program is to be written.
+    pub(super) fn is_program(&self) -> Result<bool> {
+        Ok(self.form()? == Some(Form::Gcode))
+    }
+
+    /// What the ending of `--out` asks for.
+    fn form(&self) -> Result<Option<Form>> {
+        let Some(path) = &self.out else { return Ok(None) };
+        let ending = path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+        match ending.as_deref() {
+            Some("csv") => Ok(Some(Form::Setpoints)),
+            Some("ngc" | "nc" | "gcode" | "tap") => Ok(Some(Form::Gcode)),
+            // A program on the standard output; setpoints are a file.
+            _ if is_standard_output(path) => Ok(Some(Form::Gcode)),
+            _ => Err(miette!(
+                help = "the ending decides: .csv for setpoints, .ngc for G-code; - is G-code on the standard output",
+                "{} does not say what to write",
+                path.display()
+            )),
+        }
+    }
+}
+
+/// The files while they are written.
+pub(super) struct Files {
+    report: Option<OutputFile>,
+    json: Option<OutputFile>,
+    trace: Option<TraceWriter<OutputFile>>,
+    setpoints: Option<SetpointWriter<OutputFile>>,
+    program: Option<OutputFile>,
+}
+
+impl Files {
+    /// Starts all of them, so that a place that cannot be written is known before the part is cut. None takes the place of an
+    /// input.
+    pub(super) fn create<'a>(
+        outputs: &Outputs,
+        inputs: impl IntoIterator<Item = &'a Path>,
+        axes: usize,
+    ) -> Result<Self> {
+        let mut files = OutputFiles::new(inputs);
+        let mut start = |path: Option<&PathBuf>| path.map(|path| files.start(path)).transpose();
+        let form = outputs.form()?;
+        let out = |wanted: Form| outputs.out.as_ref().filter(|_| form == Some(wanted));
+        let of_io = |error| OutputError::from_io(error, Path::new("the output"));
+        let trace = start(outputs.trace.as_ref())?;
+        let setpoints = start(out(Form::Setpoints))?;
+        Ok(Self {
+            report: start(outputs.report.as_ref())?,
+            json: start(outputs.json.as_ref())?,
+            trace: trace.map(|output| TraceWriter::new(output, axes)).transpose().map_err(of_io)?,
+            setpoints: setpoints.map(|output| SetpointWriter::new(output, axes)).transpose().map_err(of_io)?,
+            program: start(out(Form::Gcode))?,
+        })
+    }
+
+    /// Writes the rest and moves all files to their places.
+    pub(super) fn finish(self, job: &Job, outcome: &JobOutcome, watch: &dyn Watch) -> Result<(), OutputError> {
+        let mut complete = Vec::new();
+        let named = |path: &Path| {
+            let path = path.to_owned();
+            move |cause| OutputError::from_io(cause, &path)
+        };
+        let of_rows = |error| OutputError::from_io(error, Path::new("the output"));
+        if let Some(mut output) = self.report {
+            write_html(&mut output, &outcome.report).map_err(named(output.path()))?;
+            complete.push(output);
+        }
+        if let Some(mut output) = self.json {
+            outcome.write_json(job, &mut output).map_err(named(output.path()))?;
+            complete.push(output);
+        }
+        complete.extend(self.trace.map(TraceWriter::finish).transpose().map_err(of_rows)?);
+        if outcome.is_of_use {
+            complete.extend(self.setpoints.map(SetpointWriter::finish).transpose().map_err(of_rows)?);
+        }
+        let program = outcome.exported.as_ref().and_then(|exported| exported.program());
+        if let (Some(mut output), Some(program)) = (self.program, program) {
+            output.write_all(program.as_bytes()).map_err(named(output.path()))?;
+            complete.push(output);
+        }
+        OutputFile::commit_all(complete, watch)
+    }
+}
+
+impl Sink for Files {
+    fn row(&mut self, row: &Row) -> io::Result<()> {
+        self.trace.as_mut().map_or(Ok(()), |sink| sink.row(row))?;
+        self.setpoints.as_mut().map_or(Ok(()), |sink| sink.row(row))
+    }
+}
