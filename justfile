@@ -197,6 +197,10 @@ linuxcnc:
 linuxcnc-check:
     linuxcnc/check
 
+# The library as a WebAssembly module, run under node beside the command.
+web-check:
+    web/check
+
 # Every program and fault in a real LinuxCNC, on machines that differ: the figures of docs/linuxcnc.md. An hour and a half, most of it waiting.
 linuxcnc-sweep: linuxcnc
     #!/usr/bin/env bash

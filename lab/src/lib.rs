@@ -30,7 +30,7 @@ pub use journal::Journal;
 pub use never_worse::SweepOptions;
 pub use never_worse::cut::{Cutter, SweepRow};
 pub use never_worse::generated::{Generated, draw, smallest};
-pub use never_worse::program::{Length, Program};
+pub use never_worse::program::{Length, SweepProgram};
 pub use paper::{Numbers, Paper, experiment};
 pub use peers::CONTROLLERS;
 pub use peers::contour_compensation::ContourCompensation;

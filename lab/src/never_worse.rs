@@ -33,13 +33,13 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 use crate::journal::Journal;
 use cut::{Cutter, SweepRow};
-use program::Program;
+use program::SweepProgram;
 
 /// One program on one machine.
 #[derive(Debug, Clone)]
 pub struct SweepJob {
     /// What is cut.
-    pub program: Arc<Program>,
+    pub program: Arc<SweepProgram>,
     /// On what.
     pub machine: Arc<Machine>,
 }
@@ -59,8 +59,8 @@ pub struct SweepOptions {
 
 /// Every program on every machine: by machine, so that each is identified once for a thread, and the longest program
 /// first, so that no thread is left alone with it.
-pub fn jobs(programs: Vec<Program>, machines: Vec<Machine>) -> Vec<SweepJob> {
-    let mut programs: Vec<Arc<Program>> = programs.into_iter().map(Arc::new).collect();
+pub fn jobs(programs: Vec<SweepProgram>, machines: Vec<Machine>) -> Vec<SweepJob> {
+    let mut programs: Vec<Arc<SweepProgram>> = programs.into_iter().map(Arc::new).collect();
     programs.sort_by(|a, b| b.machining_s.total_cmp(&a.machining_s).then_with(|| a.name.cmp(&b.name)));
     let on = |machine: Machine| {
         let machine = Arc::new(machine);
@@ -175,7 +175,7 @@ mod tests {
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
         let length = Length { machine: &machine, limit_s: 10.0 };
         let programs = ["G21 F1200\nG1 X5\nG1 Y5\nM2\n", "G21 F1200\nG1 X-5\nM2\n"]
-            .map(|text| Program::from_text("lines", text, length).expect("a program"));
+            .map(|text| SweepProgram::from_text("lines", text, length).expect("a program"));
         let jobs = jobs(programs.to_vec(), vec![machine.clone()]);
         let options = SweepOptions {
             controller: CONTROLLERS.find(BASELINE).expect("in the table"),
@@ -195,7 +195,7 @@ mod tests {
         assert_eq!((first.known, again.known), (0, 1));
         assert_eq!(first.rows, again.rows);
         let renamed = SweepJob {
-            program: Arc::new(Program { name: "other".to_owned(), ..(*jobs[0].program).clone() }),
+            program: Arc::new(SweepProgram { name: "other".to_owned(), ..(*jobs[0].program).clone() }),
             ..jobs[0].clone()
         };
         let named = swept(&[renamed]).rows;

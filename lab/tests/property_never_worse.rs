@@ -9,7 +9,7 @@ use std::sync::Arc;
 use crate::sweep::part_or_whole;
 use feedwright::BEST;
 use feedwright_lab::{
-    CONTROLLERS, Class, Cutter, Generated, Length, Program, SweepOptions, SweepRow, Variant, draw, smallest,
+    CONTROLLERS, Class, Cutter, Generated, Length, SweepOptions, SweepProgram, SweepRow, Variant, draw, smallest,
 };
 
 /// Cuts, and those of the sweep.
@@ -128,7 +128,8 @@ fn holes() -> &'static str {
 fn judged(name: &str, text: &str, variant: &Variant) -> SweepRow {
     let machine = Arc::new(variant.machine().unwrap());
     let length = Length { machine: &machine, limit_s: 60.0 };
-    let row = Cutter::new(&machine, &options()).row(&Program::from_text(name, text, length).unwrap(), &()).unwrap();
+    let row =
+        Cutter::new(&machine, &options()).row(&SweepProgram::from_text(name, text, length).unwrap(), &()).unwrap();
     eprintln!("{}", told(&row));
     row
 }

@@ -1,33 +1,39 @@
 //! Predicts the contour error of a G-code program on a CNC machine, and corrects feedrate, speed
 //! and geometry of the command, so that the part is more accurate and done sooner.
 //!
-//! The example cuts a circle on a simulated machine twice: uncorrected, and with the default
-//! controller, which identifies the machine first.
+//! The example cuts the circle of 10 mm radius at 50 mm/s on the machine of the paper, without a
+//! correction and with the default controller, which identifies the machine first. It needs no file.
 //!
 //! ```
-//! use feedwright::gcode::{Reader, Settings};
-//! use feedwright::sim::{Machine, Run, path_steps};
-//! use feedwright::{BASELINE, BEST, CONTROLLERS, Choices, Make, Setup, Statistics};
+//! use feedwright::gcode::Program;
+//! use feedwright::sim::{Machine, SetpointWriter};
+//! use feedwright::{Job, write_html};
 //!
-//! let machine = Machine::load("tnv40".as_ref())?;
-//! let program = "G17 G21 G90 F3000\nG2 X0 Y0 I10 J0\nM2\n";
-//! let canon = Reader::from_text("circle.ngc", program, Settings::default())?
-//!     .collect::<Result<Vec<_>, _>>()?;
-//! let steps = path_steps(canon).collect::<Result<Vec<_>, _>>()?;
+//! let program = Program::from_text("circle.ngc", "G17 G21 G90 F3000\nG2 X0 Y0 I10 J0\nM2\n");
+//! let mut job = Job::new(program, Machine::load("tnv40".as_ref())?);
+//! job.tolerance_um = Some(10.0);
 //!
-//! let choices = Choices::default();
-//! let mut rms_um = Vec::new();
-//! for name in [BASELINE, BEST] {
-//!     let entry = CONTROLLERS.find(name).ok_or(name)?;
-//!     let mut controller = Make::<2>::make(entry, &mut Setup::new(&machine, &choices));
-//!     let mut statistics = Statistics::new();
-//!     Run::on(&machine).cut_steps(&steps, &mut *controller, &mut [&mut statistics])?;
-//!     println!("{name}: {:.2} um RMS, {:.1} um max", statistics.rms_um(), statistics.max_um());
-//!     rms_um.push(statistics.rms_um());
+//! let checked = job.check()?;
+//! let mut setpoints = SetpointWriter::new(Vec::new(), checked.axes())?;
+//! let outcome = checked.run(&mut [&mut setpoints], &())?;
+//!
+//! let [uncorrected, corrected] = &outcome.report.runs[..] else { panic!("two runs") };
+//! for run in [uncorrected, corrected] {
+//!     println!("{}: {:.2} um RMS", run.summary.controller, run.summary.rms_um);
 //! }
-//! assert!(rms_um[1] < 0.02 * rms_um[0], "{rms_um:?} um");
+//! assert!(corrected.summary.rms_um < 0.02 * uncorrected.summary.rms_um && outcome.within_tolerance);
+//!
+//! let mut page = Vec::new();
+//! write_html(&mut page, &outcome.report)?;
+//! let command_csv = setpoints.finish()?;
+//! # assert!(page.starts_with(b"<!") && command_csv.len() > 10_000);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//!
+//! A program comes from a text, a reader or a file ([`gcode::Program`]), a machine from a name or
+//! a text, and the rows go to [`sim::Sink`]s. Progress, cancellation and the clock are a
+//! [`sim::Watch`]; `&()` has none of them. To make a corrected program for a control without
+//! feedback, set [`Job::target`], or run a [`CorrectJob`] alone.
 //!
 //! # Main names
 //!
@@ -40,7 +46,7 @@
 //! | Real machine, from a log | [`LogJob`], [`LogIdentified`], [`measured()`] |
 //! | Controllers | [`CONTROLLERS`], [`Entry`], [`Setup`], [`Make`], [`Choices`], [`Setting`], [`controller!`] |
 //! | Figures and page | [`Statistics`], [`Report`], [`RunSummary`], [`write_html`] |
-//! | Files | [`OutputFile`], [`OutputFiles`], [`OutputError`] |
+//! | Files | `OutputFile`, `OutputFiles`, `OutputError` |
 //!
 //! The crate re-exports the stages that it joins: [`gcode`] reads programs, [`control`] has the
 //! controllers, [`plan`] plans, [`sim`] simulates, and [`ident`] identifies machines.
@@ -53,9 +59,9 @@
 //! # What is promised
 //!
 //! - The same job predicts the same cut, bit for bit.
-//! - Output files appear whole or not at all ([`OutputFile`]).
-//! - [`Job`] and [`CorrectJob`] compare a correction with open loop. They do not write a command
-//!   or a program that is worse.
+//! - Output files appear whole or not at all (`OutputFile`).
+//! - [`Job`] and [`CorrectJob`] compare a correction with the uncorrected cut, and say whether it is
+//!   worse ([`JobOutcome::is_of_use`]).
 //! - A corrected program is read, planned and cut again before it is written.
 //! - The mistakes of a program and of a machine file are reported with their lines before a cut
 //!   starts.
@@ -64,8 +70,11 @@
 //!
 //! # Features
 //!
-//! `command`, on by default, adds the command line (the binary `feedwright` and the module
-//! `command`). To use the library alone, set `default-features = false`.
+//! - `command`, on by default: the command line (the binary `feedwright` and the module `command`).
+//! - `files`, part of `command`: output files, and the cache of identified models.
+//!
+//! With `default-features = false` the library writes no file and reads neither clock nor
+//! environment. It then builds for `wasm32-unknown-unknown`, where it needs nothing from outside.
 //!
 //! # Layers
 //!

@@ -65,8 +65,11 @@ fn run_writes_no_program_that_is_no_better_and_the_exit_code_says_so() {
     assert!(ran.stdout.contains("no corrected program:") && !ran.stdout.contains("wrote p.ngc"), "{}", ran.stdout);
     assert!(!folder.path().join("p.ngc").exists() && folder.path().join("line.report.html").exists());
     for (arguments, told) in [
-        (&["--out", "p.ngc", "--fastest", "--tolerance", "10"][..], &["p.ngc", "--fastest", "setpoints"][..]),
-        (&["--out", "p.ngc", "--reference", "circle.ngc"], &["p.ngc", "--reference", "original"]),
+        (
+            &["--out", "p.ngc", "--fastest", "--tolerance", "10"][..],
+            &["no corrected program", "--fastest", "setpoints"][..],
+        ),
+        (&["--out", "p.ngc", "--reference", "circle.ngc"], &["no corrected program", "--reference", "original"]),
         (&["--out", "p.ngc", "--for", "grpl"], &["--for", "did you mean 'grbl'?"]),
         (&["--out", "p.csv", "--for", "grbl"], &["--for", "p.csv", "setpoints"]),
         (&["--out", "p.ngc", "--for", "linuxcnc"], &["limits of each axis"]),

@@ -16,11 +16,11 @@ use crate::text::read_error::ReadError;
 
 /// A G-code program: text in memory, or a file that is opened anew for each reading, so that a long program takes no memory.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Program(Place);
+pub struct Program(ProgramPlace);
 
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-enum Place {
+enum ProgramPlace {
     Text { name: String, text: Arc<str> },
     File(PathBuf),
 }
@@ -28,7 +28,7 @@ enum Place {
 impl Program {
     /// The program in `text`; messages call it `name`. Bytes that are no UTF-8, which only comments have, become U+FFFD.
     pub fn from_text(name: impl Into<String>, text: impl AsRef<[u8]>) -> Self {
-        Self(Place::Text { name: name.into(), text: String::from_utf8_lossy(text.as_ref()).into() })
+        Self(ProgramPlace::Text { name: name.into(), text: String::from_utf8_lossy(text.as_ref()).into() })
     }
 
     /// The program that a reader gives, which is kept in memory.
@@ -43,14 +43,14 @@ impl Program {
 
     /// The program in a file; `-` is the standard input, which is read once and kept. Nothing is opened yet.
     pub fn in_file(path: impl Into<PathBuf>) -> Self {
-        Self(Place::File(path.into()))
+        Self(ProgramPlace::File(path.into()))
     }
 
     /// What messages call it: the path as the user gave it.
     pub fn name(&self) -> String {
         match &self.0 {
-            Place::Text { name, .. } => name.clone(),
-            Place::File(path) => input::name(path),
+            ProgramPlace::Text { name, .. } => name.clone(),
+            ProgramPlace::File(path) => input::name(path),
         }
     }
 
@@ -63,8 +63,8 @@ impl Program {
     /// The file that it is in; none for a text and for the standard input.
     pub fn path(&self) -> Option<&Path> {
         match &self.0 {
-            Place::Text { .. } => None,
-            Place::File(path) => Some(path.as_path()).filter(|path| !input::is_standard_input(path)),
+            ProgramPlace::Text { .. } => None,
+            ProgramPlace::File(path) => Some(path.as_path()).filter(|path| !input::is_standard_input(path)),
         }
     }
 
@@ -74,8 +74,8 @@ impl Program {
     /// A file that cannot be read, and what is no G-code program.
     pub fn reader(&self, settings: Settings) -> Result<Reader, ReadError> {
         match &self.0 {
-            Place::Text { name, text } => Reader::from_text(name, text.as_bytes(), settings),
-            Place::File(path) => Reader::open(path, settings),
+            ProgramPlace::Text { name, text } => Reader::from_text(name, text.as_bytes(), settings),
+            ProgramPlace::File(path) => Reader::open(path, settings),
         }
     }
 
@@ -93,9 +93,9 @@ impl Program {
     /// What the operating system says of the file.
     pub fn text(&self) -> io::Result<(Box<dyn BufRead + '_>, u64)> {
         let bytes = match &self.0 {
-            Place::Text { text, .. } => text.as_bytes(),
-            Place::File(path) if input::is_standard_input(path) => input::standard_input()?,
-            Place::File(path) => {
+            ProgramPlace::Text { text, .. } => text.as_bytes(),
+            ProgramPlace::File(path) if input::is_standard_input(path) => input::standard_input()?,
+            ProgramPlace::File(path) => {
                 let file = File::open(path)?;
                 let size = file.metadata()?.len();
                 return Ok((Box::new(BufReader::new(file)), size));

@@ -9,7 +9,7 @@ use feedwright_sim::{Cancelled, Machine, Outcome, Run, RunError, RunResult, Watc
 use serde::{Deserialize, Serialize};
 
 use super::SweepOptions;
-use super::program::Program;
+use super::program::SweepProgram;
 use crate::peers::CONTROLLERS;
 
 /// What a cut came to.
@@ -107,7 +107,7 @@ impl Cutter {
     ///
     /// # Errors
     /// An end from outside.
-    pub fn row(&mut self, program: &Program, watch: &dyn Watch) -> Result<SweepRow, Cancelled> {
+    pub fn row(&mut self, program: &SweepProgram, watch: &dyn Watch) -> Result<SweepRow, Cancelled> {
         let (machine, options) = (&self.machine, &self.options);
         let [open_loop, corrected] = match program.axes {
             2 => both(machine, options, &mut self.plane, program, watch)?,
@@ -124,7 +124,7 @@ fn both<const N: usize>(
     machine: &Machine,
     options: &SweepOptions,
     pair: &mut Pair<N>,
-    program: &Program,
+    program: &SweepProgram,
     watch: &dyn Watch,
 ) -> Result<[Figures; 2], Cancelled>
 where
@@ -166,7 +166,7 @@ mod tests {
     fn a_circle_is_cut_better_with_the_controller_than_without() {
         let machine = Arc::new(Machine::load("tnv40".as_ref()).expect("built in"));
         let length = Length { machine: &machine, limit_s: 10.0 };
-        let program = Program::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length).expect("a program");
+        let program = SweepProgram::from_text("circle", "G21 F1200\nG2 X0 Y0 I5 J0\nM2\n", length).expect("a program");
         let options = SweepOptions {
             controller: CONTROLLERS.find(BEST).expect("in the table"),
             set: Vec::new(),

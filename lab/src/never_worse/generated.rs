@@ -8,7 +8,7 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 use super::cut::{Cutter, SweepRow};
-use super::program::{Length, Program};
+use super::program::{Length, SweepProgram};
 use super::verdict::Failure;
 use super::{SweepJob, SweepOptions};
 use crate::held_out::machines::{self, Class};
@@ -42,7 +42,7 @@ pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Ve
         for _ in 0..for_each {
             let drawn = programs::program(seeds.random_range(0..SEEDS));
             let length = Length { machine: &machine, limit_s: LIMIT_S };
-            let program = Arc::new(Program::from_text(&drawn.name, &drawn.text, length)?);
+            let program = Arc::new(SweepProgram::from_text(&drawn.name, &drawn.text, length)?);
             let case = Case::new(&drawn.text, variant.clone());
             all.push(Generated { case, job: SweepJob { program, machine: machine.clone() } });
         }
@@ -68,7 +68,7 @@ impl<'a> Trials<'a> {
     pub fn row(&mut self, case: &Case) -> Option<SweepRow> {
         let machine = case.machine.machine().ok().filter(machines::is_stable)?;
         let length = Length { machine: &machine, limit_s: LIMIT_S };
-        let program = Program::from_text("smallest", &case.text(), length).ok()?;
+        let program = SweepProgram::from_text("smallest", &case.text(), length).ok()?;
         let is_other = self.cutter.as_ref().is_none_or(|(changes, _)| *changes != case.machine.changes);
         if is_other {
             self.cutter = Some((case.machine.changes.clone(), Cutter::new(&Arc::new(machine), self.options)));

@@ -14,7 +14,7 @@ use feedwright_sim::Machine;
 
 /// A program, ready to be cut on any machine.
 #[derive(Debug, Clone)]
-pub struct Program {
+pub struct SweepProgram {
     /// Name in tables.
     pub name: String,
     /// Axes that it needs, 2 or 3.
@@ -38,7 +38,7 @@ pub struct Length<'a> {
     pub limit_s: f64,
 }
 
-impl Program {
+impl SweepProgram {
     /// The program in a file.
     ///
     /// # Errors
@@ -51,7 +51,7 @@ impl Program {
     /// The program in a text.
     ///
     /// # Errors
-    /// As [`Program::read`].
+    /// As [`SweepProgram::read`].
     pub fn from_text(name: &str, text: &str, length: Length<'_>) -> Result<Self, JobError> {
         Self::new(name.to_owned(), || Reader::from_text(name, text, Settings::default()), length)
     }
@@ -149,9 +149,9 @@ mod tests {
 
     const TEXT: &str = "G21 G90 F600\nG1 X10\nG1 X20\nG1 X30\nG4 P1\nG1 X40\nM2\n";
 
-    fn program(limit_s: f64) -> Program {
+    fn program(limit_s: f64) -> SweepProgram {
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
-        Program::from_text("lines", TEXT, Length { machine: &machine, limit_s }).expect("a program")
+        SweepProgram::from_text("lines", TEXT, Length { machine: &machine, limit_s }).expect("a program")
     }
 
     #[test]
@@ -167,7 +167,7 @@ mod tests {
     fn a_motion_that_takes_longer_than_the_limit_is_left_early() {
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
         let length = Length { machine: &machine, limit_s: 10.0 };
-        let slow = Program::from_text("slow", "G21 F60\nG2 X0 Y0 I5 J0\nG1 X10\nM2\n", length).expect("a program");
+        let slow = SweepProgram::from_text("slow", "G21 F60\nG2 X0 Y0 I5 J0\nG1 X10\nM2\n", length).expect("a program");
         assert!(slow.shortened && (9.9..10.5).contains(&slow.machining_s), "{slow:?}");
         assert_eq!(slow.steps.len(), 1);
     }
@@ -181,7 +181,7 @@ mod tests {
     fn a_program_with_mistakes_is_refused() {
         let machine = Machine::load("tnv40".as_ref()).expect("built in");
         let length = Length { machine: &machine, limit_s: 1.0 };
-        assert!(Program::from_text("wrong", "G1 X[oops\nM2\n", length).is_err());
-        assert!(Program::from_text("still", "M2\n", length).is_err());
+        assert!(SweepProgram::from_text("wrong", "G1 X[oops\nM2\n", length).is_err());
+        assert!(SweepProgram::from_text("still", "M2\n", length).is_err());
     }
 }

@@ -40,7 +40,6 @@ pub(super) mod target {
     use super::{Deserialize, Deserializer, Error, Serialize, Serializer};
     use crate::correct::TargetControl;
 
-    #[expect(clippy::ref_option, reason = "serde gives a reference")]
     pub(in super::super) fn serialize<S: Serializer>(
         target: &Option<&'static TargetControl>,
         serializer: S,

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 
 use crate::command::args::never_worse::NeverWorseArgs;
 use crate::command::sweep::Sweep;
-use crate::never_worse::program::{Length, Program};
+use crate::never_worse::program::{Length, SweepProgram};
 use crate::never_worse::{SweepJob, jobs, machines, sample};
 
 /// The machine whose time counts where long programs are shortened.
@@ -70,17 +70,17 @@ fn files(args: &NeverWorseArgs) -> Result<Vec<PathBuf>> {
 }
 
 /// Reads all programs; those with mistakes are counted and left out.
-fn read(files: &[PathBuf], settings: &Settings, limit_s: f64, console: &Console) -> Result<Vec<Program>> {
+fn read(files: &[PathBuf], settings: &Settings, limit_s: f64, console: &Console) -> Result<Vec<SweepProgram>> {
     let pace = Machine::load(PACE.as_ref())?;
     let length = Length { machine: &pace, limit_s };
     let bar = console.bar(0);
     bar.begin("reading the programs", files.len() as u64);
     let read = |file: &PathBuf| {
-        let program = if bar.is_cancelled() { None } else { Program::read(file, settings, length).ok() };
+        let program = if bar.is_cancelled() { None } else { SweepProgram::read(file, settings, length).ok() };
         bar.advance(1);
         program
     };
-    let programs: Vec<Program> = files.par_iter().filter_map(read).collect();
+    let programs: Vec<SweepProgram> = files.par_iter().filter_map(read).collect();
     bar.clear();
     bar.check()?;
     let refused = files.len() - programs.len();

@@ -76,11 +76,11 @@ impl Files {
         let form = outputs.form()?;
         let out = |wanted: Form| outputs.out.as_ref().filter(|_| form == Some(wanted));
         let of_io = |error| OutputError::from_io(error, Path::new("the output"));
-        let trace = start(outputs.trace.as_ref())?;
-        let setpoints = start(out(Form::Setpoints))?;
+        let (report, json) = (start(outputs.report.as_ref())?, start(outputs.json.as_ref())?);
+        let (trace, setpoints) = (start(outputs.trace.as_ref())?, start(out(Form::Setpoints))?);
         Ok(Self {
-            report: start(outputs.report.as_ref())?,
-            json: start(outputs.json.as_ref())?,
+            report,
+            json,
             trace: trace.map(|output| TraceWriter::new(output, axes)).transpose().map_err(of_io)?,
             setpoints: setpoints.map(|output| SetpointWriter::new(output, axes)).transpose().map_err(of_io)?,
             program: start(out(Form::Gcode))?,

@@ -1,0 +1,74 @@
+// Runs parts/star.ngc on workshop in the WebAssembly module, and beside it natively:
+//   node star.test.mjs MODULE.wasm RESULTS.json TRACE.csv      the latter two of `feedwright run parts/star.ngc --machine workshop`
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { performance } from "node:perf_hooks";
+
+const [modulePath, resultsPath, tracePath] = process.argv.slice(2);
+const bytes = await readFile(modulePath);
+const module = await WebAssembly.compile(bytes);
+assert.deepEqual(WebAssembly.Module.imports(module), [], "the module needs something from outside");
+
+async function answer(request) {
+  const { exports } = await WebAssembly.instantiate(module, {});
+  const text = new TextEncoder().encode(JSON.stringify(request));
+  // Room for the input may make the memory grow, and its buffer is another one then.
+  const at = exports.input(text.length);
+  new Uint8Array(exports.memory.buffer, at, text.length).set(text);
+  const began = performance.now();
+  const succeeded = exports.run() === 1;
+  const seconds = (performance.now() - began) / 1000;
+  const output = (k) => new TextDecoder().decode(new Uint8Array(exports.memory.buffer, exports.at(k), exports.length(k)));
+  return { succeeded, seconds, megabytes: exports.memory.buffer.byteLength / 1e6, outputs: [output(0), output(1)] };
+}
+
+const program = await readFile(new URL("../../parts/star.ngc", import.meta.url), "utf8");
+const star = { name: "star.ngc", program, machine: "workshop", rows: true };
+const cut = await answer(star);
+assert.ok(cut.succeeded, cut.outputs[0]);
+
+// Its figures are those of the command, to three digits until both take sines from one place.
+const [here, native] = [JSON.parse(cut.outputs[0]), JSON.parse(await readFile(resultsPath, "utf8"))];
+const near = (a, b) => Math.abs(a - b) <= 0.02 * Math.max(Math.abs(a), Math.abs(b)) + 1e-9;
+assert.equal(here.runs.length, 2);
+here.runs.forEach((run, k) => {
+  for (const key of ["time_s", "rms_um", "max_um", "uncut_um"]) {
+    assert.ok(near(run[key], native.runs[k][key]), `${run.controller}, ${key}: ${run[key]}, natively ${native.runs[k][key]}`);
+  }
+});
+assert.ok(here.runs[1].rms_um < 0.5 * here.runs[0].rms_um, "the correction does nothing");
+
+// And its rows.
+const table = (text) => text.trim().split("\n").map((row) => row.split(","));
+const [rows, nativeRows] = [table(cut.outputs[1]), table(await readFile(tracePath, "utf8"))];
+assert.deepEqual(rows[0], nativeRows[0]);
+assert.equal(rows.length, nativeRows.length);
+let apart = 0;
+rows.slice(1).forEach((row, k) => {
+  rows[0].forEach((name, column) => {
+    if (name.startsWith("cmd_") || name.startsWith("act_")) {
+      apart = Math.max(apart, Math.abs(Number(row[column]) - Number(nativeRows[k + 1][column])));
+    }
+  });
+});
+assert.ok(apart < 1e-3, `command or tool ${apart} mm apart from the native run`);
+
+// The same input gives the same bits, in a module of its own.
+assert.deepEqual((await answer(star)).outputs, cut.outputs);
+
+// What is wrong is told as the command tells it.
+const refused = async (change, said) => {
+  const { succeeded, outputs } = await answer({ ...star, ...change });
+  assert.ok(!succeeded && outputs[0].includes(said), outputs[0]);
+};
+await refused({ program: "G1 X1 F100 Q\n" }, "1 mistake, nothing was cut");
+await refused({ machine: "none" }, "none");
+await refused({ machine: "name = 1\n" }, "machine");
+await refused({ controller: "none" }, "no controller is called 'none'");
+await refused({ tolerance_um: -1 }, "tolerance");
+await refused({ surplus: 1 }, "surplus");
+
+console.log(
+  `module ${(bytes.length / 1e6).toFixed(2)} MB, ${cut.seconds.toFixed(2)} s, ${cut.megabytes.toFixed(0)} MB of memory; ` +
+    `command and tool at most ${apart.toExponential(1)} mm from the native run`,
+);
