@@ -92,6 +92,7 @@ pub use feedwright_sim as sim;
 #[cfg(feature = "files")]
 mod output;
 mod checked_json;
+mod results_format;
 mod identifier_cache;
 mod measured;
 mod cycle_time;
@@ -142,3 +143,4 @@ pub use report::{
     Roundness, RunFacts, RunSummary, Series, SeriesPoint, SpectrumBand, Statistics, TimelineEvent, WorstPlace,
     write_html,
 };
+pub use results_format::RESULTS_FORMAT;

@@ -11,21 +11,21 @@ use feedwright_sim::Machine;
 const TIME_S: f64 = 4.0;
 
 /// Rows of a log of tnv40: time, command and actual position of x.
-fn rows(seed: u64) -> Vec<[f64; 3]> {
+pub(crate) fn rows(seed: u64) -> Vec<[f64; 3]> {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     let log = log_of(&machine, TIME_S, 1.0, seed);
     let axis = &log.axes[0];
     (0..log.time_s.len()).map(|k| [log.time_s[k], axis.command_mm[k], axis.actual_mm[k]]).collect()
 }
 
-fn text(head: &str, rows: impl IntoIterator<Item = [f64; 3]>) -> String {
+pub(crate) fn text(head: &str, rows: impl IntoIterator<Item = [f64; 3]>) -> String {
     rows.into_iter().fold(format!("{head}\n"), |mut text, [t, command, actual]| {
         writeln!(text, "{t:.4},{command:.6},{actual:.6}").unwrap();
         text
     })
 }
 
-const HEAD: &str = "t,x.cmd,x.act";
+pub(crate) const HEAD: &str = "t,x.cmd,x.act";
 
 #[test]
 fn logs_become_a_machine_file_numbers_and_a_page() {

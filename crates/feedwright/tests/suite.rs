@@ -40,6 +40,7 @@ mod conformance_fastest;
 mod conformance_identification;
 mod conformance_identify_log;
 mod conformance_job;
+mod conformance_json;
 mod conformance_layers;
 mod conformance_measured;
 mod conformance_measured_run;

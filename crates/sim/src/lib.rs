@@ -81,8 +81,8 @@ pub use kinematics::joints_of;
 #[doc(hidden)]
 pub use machine::keys as machine_keys;
 pub use machine::{
-    AXIS_NAMES, Axis, BUILT_IN_MACHINES, DEFAULT_MACHINE, Known, KnownAxis, Limits, Machine, MachineError, Noise,
-    Period, Squareness, Transmission, is_machine_path,
+    AXIS_NAMES, Axis, BUILT_IN_MACHINES, DEFAULT_MACHINE, Known, KnownAxis, Limits, MACHINE_FORMAT, Machine,
+    MachineError, Noise, Period, Squareness, Transmission, is_machine_path,
 };
 pub use number::{shown, to_four_digits};
 pub use pipeline::{Run, RunError, Stages, path_steps};

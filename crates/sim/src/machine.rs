@@ -147,6 +147,10 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
 
+/// The format of machine files that is read and written; a file that states none has it. It is raised whenever a file of before
+/// would be read otherwise.
+pub const MACHINE_FORMAT: u64 = 1;
+
 impl Machine {
     /// A machine by the name of one that is built in, or by the path of a machine file.
     ///
@@ -183,6 +187,7 @@ impl Machine {
     pub fn parse(file: &str, text: &str) -> Result<Self, MachineError> {
         let invalid = |faults| MachineError::File(FileError::invalid(&KIND, file, text, faults));
         let document = toml_file::document(text).map_err(invalid)?;
+        layout::of_this_format(&document).map_err(invalid)?;
         let Some(base) = layout::base(&document).map_err(invalid)? else {
             return layout::machine(&document, None).map_err(invalid);
         };
@@ -190,6 +195,7 @@ impl Machine {
         let (base_file, base_text) = Self::base_text(file, &base)?;
         let invalid_base = |faults| MachineError::File(FileError::invalid(&KIND, &base_file, &base_text, faults));
         let base_document = toml_file::document(&base_text).map_err(invalid_base)?;
+        layout::of_this_format(&base_document).map_err(invalid_base)?;
         if layout::base(&base_document).is_ok_and(|base| base.is_some()) {
             return Err(invalid(vec![layout::chained(&document, &base)]));
         }
@@ -200,7 +206,8 @@ impl Machine {
     /// The text of a machine file that reads as this machine, without a base.
     pub fn text(&self) -> String {
         let texts = [("name", &self.name), ("description", &self.description), ("source", &self.source)];
-        let mut text: String = texts.iter().map(|(key, value)| format!("{key} = {}\n", quoted(value))).collect();
+        let mut text = format!("format = {}\n", MACHINE_FORMAT);
+        text.extend(texts.iter().map(|(key, value)| format!("{key} = {}\n", quoted(value))));
         let mut table = |name: &str, lines: String| text += &format!("\n[{name}]\n{lines}");
         table("period", write(keys::PERIOD, &self.period));
         table("limits", write(keys::LIMITS, &self.limits));

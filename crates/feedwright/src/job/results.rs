@@ -11,10 +11,12 @@ use super::{Job, JobOutcome};
 use crate::correct::CorrectOutcome;
 use crate::report::harm::Harm;
 use crate::report::{Assumptions, RunSummary};
+use crate::results_format::RESULTS_FORMAT;
 
 /// All results: `runs` and what they were made with.
 #[derive(Serialize)]
 struct Results<'a> {
+    format: u32,
     version: &'static str,
     part: &'a str,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -39,6 +41,7 @@ impl JobOutcome {
     pub fn write_json(&self, job: &Job, out: &mut impl Write) -> io::Result<()> {
         let report = &self.report;
         let results = Results {
+            format: RESULTS_FORMAT,
             version: env!("CARGO_PKG_VERSION"),
             part: &report.part,
             reference: job.reference.as_ref().map(Program::name),

@@ -6,6 +6,7 @@ use feedwright_ident::{FoundAxis, FreeRunErrors, HORIZONS, NumberSource};
 use serde_json::{Map, Value, json};
 
 use super::LogIdentified;
+use crate::results_format::stamped;
 
 /// Writes it.
 ///
@@ -29,7 +30,7 @@ pub fn write(out: &mut impl io::Write, identified: &LogIdentified) -> io::Result
     });
     let value = json!({
         "log": identified.job.name,
-        "format": identified.log.format.to_string(),
+        "log_format": identified.log.format.to_string(),
         "sample_time_s": identified.log.sample_time_s,
         "samples": identified.log.time_s.len(),
         "of_samples": identified.of_samples,
@@ -39,7 +40,7 @@ pub fn write(out: &mut impl io::Write, identified: &LogIdentified) -> io::Result
         "contour": contour,
         "axes": axes,
     });
-    serde_json::to_writer_pretty(&mut *out, &value)?;
+    serde_json::to_writer_pretty(&mut *out, &stamped(value))?;
     out.write_all(b"\n")
 }
 

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use feedwright_ident::{FoundAxis, SERVO_MECHANICS, servo_period_s};
+use feedwright_sim::MACHINE_FORMAT;
 use feedwright_sim::toml_file::quoted;
 
 use super::LogIdentified;
@@ -47,7 +48,7 @@ fn head(identified: &LogIdentified, name: &str, servo_s: f64) -> String {
     for line in identified.advice() {
         let _ = writeln!(text, "# {line}.");
     }
-    let _ = writeln!(text, "\nname = {}", quoted(name));
+    let _ = writeln!(text, "\nformat = {MACHINE_FORMAT}\nname = {}", quoted(name));
     let _ = writeln!(text, "description = {}", quoted(&format!("axes identified from {log}")));
     let _ = writeln!(
         text,

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use feedwright_plan::{Durations, PlcEvent};
 
-use super::{AXIS_NAMES, Axis, Machine, Noise, Period, Squareness, Transmission, keys};
+use super::{AXIS_NAMES, Axis, MACHINE_FORMAT, Machine, Noise, Period, Squareness, Transmission, keys};
 use crate::toml_file::key::{read, read_all};
 use crate::toml_file::{Document, Fault, Table};
 
@@ -14,6 +14,27 @@ const WHOLE_RATIO_TOLERANCE: f64 = 1e-12;
 
 /// More mechanics steps than this within a servo period are a mistaken unit, and nobody could wait for them.
 const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
+
+/// Refuses a file of another format, whatever else stands in it.
+pub(super) fn of_this_format(document: &Document<'_>) -> Result<(), Vec<Fault>> {
+    let Some(format) = document.get_ref().get("format") else { return Ok(()) };
+    let mut faults = Vec::new();
+    let found = Table::root(document, None).whole("format", "", 1.0..=1e9, &mut faults);
+    match found {
+        Some(MACHINE_FORMAT) => return Ok(()),
+        Some(found) => faults.push(Fault {
+            at: format.span(),
+            label: "of another version",
+            message: format!(
+                "the machine file is of format {found}; feedwright {} reads format {MACHINE_FORMAT}",
+                env!("CARGO_PKG_VERSION")
+            ),
+            hint: Some("read it with the version of feedwright that wrote it, or a later one".to_owned()),
+        }),
+        None => {}
+    }
+    Err(faults)
+}
 
 /// The name of the machine that a file builds upon, where it does.
 pub(super) fn base(document: &Document<'_>) -> Result<Option<String>, Vec<Fault>> {
@@ -39,6 +60,7 @@ pub(super) fn machine(document: &Document<'_>, base: Option<&Document<'_>>) -> R
     if base.is_some() {
         root.text("base", &mut faults);
     }
+    root.has("format");
     let period = period(root.table("period", &mut faults), &mut faults);
     let mut plc_events = Vec::new();
     let [name, description, source] = ["name", "description", "source"].map(|key| root.text(key, &mut faults));

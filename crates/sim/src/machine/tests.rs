@@ -430,3 +430,19 @@ fn limits_of_axes_are_given_for_all_or_for_none() {
         assert!(said(limited(3, ALL_LIMITS, &tolerance)).contains("path_tolerance_um"), "{value}");
     }
 }
+
+#[test]
+fn a_file_states_its_format_or_has_the_first_and_another_is_refused() {
+    assert_eq!(MACHINE_FORMAT, 1);
+    assert!(!TNV40.contains("format =") && tnv40().text().starts_with("format = 1\n"));
+    let with = |format: &str| Machine::parse("mine.toml", &format!("format = {format}\n{TNV40}"));
+    assert_eq!(with("1").unwrap(), tnv40());
+    for (format, said) in [("2", "is of format 2"), ("'one'", "format has to be a number"), ("0", "format is 0")] {
+        let error = with(format).unwrap_err();
+        let MachineError::File(FileError::Invalid { problems, .. }) = &error else { panic!("{error:?}") };
+        assert!(problems.len() == 1 && problems[0].to_string().contains(said), "{format}: {problems:?}");
+    }
+    let with_base = "format = 2\nbase = 'tnv40'\nname = 'a'\ndescription = 'b'\nsource = 'c'\n";
+    assert!(Machine::parse("mine.toml", with_base).is_err());
+    assert!(Machine::parse("mine.toml", &with_base.replace('2', "1")).is_ok());
+}

@@ -18,6 +18,7 @@ use crate::command::terminal::wrapped;
 use crate::controllers::{CONTROLLERS, Choices};
 use crate::correct::advise::{Advice, AdviseJob, FeedCut, STRETCH_LEGEND, WayAdvice};
 use crate::output::OutputFile;
+use crate::results_format::stamped;
 
 /// Stretches that are listed.
 const LISTED: usize = 12;
@@ -56,10 +57,9 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     }
     if let Some(mut file) = json {
         let mut value = serde_json::to_value(&advice).into_diagnostic()?;
-        value["version"] = json!(env!("CARGO_PKG_VERSION"));
         value["part"] = json!(args.part.display().to_string());
         value["machine"] = json!(job.machine.name);
-        serde_json::to_writer_pretty(&mut file, &value).into_diagnostic()?;
+        serde_json::to_writer_pretty(&mut file, &stamped(value)).into_diagnostic()?;
         writeln!(file).into_diagnostic()?;
         complete.push(file);
     }

@@ -24,6 +24,7 @@ use crate::command::findings::{Finding, sarif};
 use crate::command::message::{ERROR, MISTAKES, printed, tell, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::check_inputs;
+use crate::results_format::stamped;
 
 /// What came of one file, best first: the worst of all files is the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -134,7 +135,7 @@ fn print_in_order(
             writeln!(out, "{} files: {} without mistakes, {faulty} with mistakes", files.len(), files.len() - faulty)
         }
         Format::Text | Format::Github => Ok(()),
-        Format::Json => writeln!(out, "{:#}", json!({ "files": output.files })),
+        Format::Json => writeln!(out, "{:#}", stamped(json!({ "files": output.files }))),
         Format::Sarif => writeln!(out, "{:#}", sarif(&output.findings)),
     }
 }

@@ -17,6 +17,7 @@ use crate::command::terminal::wrapped;
 use crate::correct::exported::ExportedFigures;
 use crate::correct::{CorrectJob, CorrectOutcome};
 use crate::output::OutputFile;
+use crate::results_format::stamped;
 
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
@@ -57,7 +58,6 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
 /// The figures of a correction, and what was asked for.
 fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, within: bool) -> serde_json::Result<Value> {
     let mut results = json!({
-        "version": env!("CARGO_PKG_VERSION"),
         "part": args.part.display().to_string(),
         "machine": job.machine.name,
         "tolerance_um": args.tolerance,
@@ -67,7 +67,7 @@ fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, withi
     if let (Value::Object(all), Value::Object(figures)) = (&mut results, serde_json::to_value(outcome)?) {
         all.extend(figures);
     }
-    Ok(results)
+    Ok(stamped(results))
 }
 
 fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io::Result<()> {

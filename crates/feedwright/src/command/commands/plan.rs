@@ -19,6 +19,7 @@ use crate::cycle_time::{CycleTime, cycle_time_by, limit_names};
 use crate::job::JobError;
 use crate::output::OutputFile;
 use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
+use crate::results_format::stamped;
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
@@ -63,7 +64,7 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
             value["override"] = json!(operated);
         }
         value["along"] = along(&found);
-        serde_json::to_writer_pretty(&mut file, &value).into_diagnostic()?;
+        serde_json::to_writer_pretty(&mut file, &stamped(value)).into_diagnostic()?;
         writeln!(file).into_diagnostic()?;
         OutputFile::commit_all(vec![file], &bar)?;
     }
