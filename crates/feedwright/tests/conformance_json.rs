@@ -29,7 +29,7 @@ fn keys(value: &Value, at: &[String], all: &mut Vec<Vec<String>>) {
     match value {
         Value::Null => {}
         Value::Object(entries) => {
-            entries.iter().for_each(|(name, value)| keys(value, &[at, &[name.clone()]].concat(), all));
+            entries.iter().for_each(|(name, value)| keys(value, &[at, std::slice::from_ref(name)].concat(), all));
         }
         Value::Array(elements) => {
             let mut of_elements = at.to_vec();

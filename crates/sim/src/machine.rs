@@ -206,7 +206,7 @@ impl Machine {
     /// The text of a machine file that reads as this machine, without a base.
     pub fn text(&self) -> String {
         let texts = [("name", &self.name), ("description", &self.description), ("source", &self.source)];
-        let mut text = format!("format = {}\n", MACHINE_FORMAT);
+        let mut text = format!("format = {MACHINE_FORMAT}\n");
         text.extend(texts.iter().map(|(key, value)| format!("{key} = {}\n", quoted(value))));
         let mut table = |name: &str, lines: String| text += &format!("\n[{name}]\n{lines}");
         table("period", write(keys::PERIOD, &self.period));
