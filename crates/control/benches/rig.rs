@@ -38,8 +38,8 @@ pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
     TwoDimensional::new(network().0, InvertingSettings::DEFAULT)
 }
 
-/// The receding horizon of so many knots over a servo like that of tnv40: what least squares give for one axis, for all
-/// axes.
+/// The receding-horizon controller with `knots` knots over a servo model like the one of tnv40.
+/// Every axis has the linear weights that least squares give for one axis.
 pub(crate) fn horizon<const N: usize>(knots: usize) -> RecedingHorizon<N> {
     let mut net = ServoIdentifier { hidden: network::<N>().0.hidden, ..ServoIdentifier::NULL };
     for axis in 0..N {

@@ -44,7 +44,7 @@ fn measure<const N: usize, C: Controller<N>>(controller: impl Fn() -> C, ticks: 
     (0..runs).map(|_| percentiles(run_us(controller(), ticks))).collect()
 }
 
-/// The times of so many decisions, us.
+/// The times of `ticks` decisions, us.
 fn run_us<const N: usize, C: Controller<N>>(controller: C, ticks: usize) -> Vec<f64> {
     let mut rig = rig::Rig::new(controller, rig::Tool::Follows);
     let mut times_us = Vec::with_capacity(ticks);

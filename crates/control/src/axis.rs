@@ -130,8 +130,10 @@ impl AxisLaw {
         state.angle_rad += self.periods.mechanics_s * state.speed_rad_s;
     }
 
-    /// Derivatives of the torque that is left for the inertia: to the speed that is asked for, and, against it, to the speed, N m
-    /// s/rad. `torque_nm` is that of the speed loop.
+    /// Derivatives of the torque left for the inertia, N m s/rad: with respect to the reference
+    /// speed, and, with the sign reversed, with respect to the speed. `torque_nm` is the torque of
+    /// the speed loop; at the torque limit its gain counts as 0. `sign` is the factor of the
+    /// Coulomb friction from `friction_signs`.
     #[inline]
     pub fn slopes_nm_s(&self, torque_nm: f64, sign: f64) -> [f64; 2] {
         let Parameters { kv_nm_s_per_rad, torque_limit_nm, viscous_friction_nm_s, coulomb_friction_nm, .. } =

@@ -113,7 +113,8 @@ pub trait Controller<const N: usize> {
     fn prediction_error_mm(&self) -> f64 {
         0.0
     }
-    /// By how much its offset has moved the tool, mm, where it has a model that says so.
+    /// Displacement of the tool by the offset, mm, as the controller's model predicts it. `None`
+    /// without such a model.
     fn moved_mm(&self) -> Option<[f64; N]> {
         None
     }
@@ -121,8 +122,9 @@ pub trait Controller<const N: usize> {
     fn foreseen_mm2(&self) -> [f64; 2] {
         [0.0; 2]
     }
-    /// Hears after each decision by how much the correction was overdone lately, as measured: 0 where neither more nor less of it
-    /// would have been better, 1 where none at all would have been as good.
+    /// Called after every decision with the over-correction factor that was measured lately. The
+    /// factor is 0 where neither more nor less correction would have been better, and 1 where no
+    /// correction would have been as good. It is negative where more would have been better.
     fn judged(&mut self, overdone: f64) {
         let _ = overdone;
     }

@@ -135,15 +135,16 @@ pub trait Predictor<const N: usize>: Clone {
     fn response_s(&self) -> f64 {
         self.lag_s()
     }
-    /// Moves on by one feed period; the tool at its end, mm. `felt` takes the derivative to the accelerations of the knots so
-    /// far, axis by axis: what one axis feels of another is left out.
+    /// Advances by one feed period and returns the tool position at its end, mm. Writes to
+    /// `sensitivity` its derivative with respect to the accelerations of the knots so far, axis by
+    /// axis. Coupling between axes is neglected.
     fn advance(
         &mut self,
         window: &Window<'_, N>,
         stretch: &CommandedPeriod<N>,
         sensitivity: &mut Sensitivity<N>,
     ) -> [f64; N];
-    /// By how much the offset, past and planned, has moved that tool, mm.
+    /// Displacement of that tool position by the past and the planned offset, mm; 0 by default.
     fn moved_mm(&self) -> [f64; N] {
         [0.0; N]
     }
@@ -253,7 +254,8 @@ pub struct PlanStep<const N: usize> {
     pub acceleration_mm_s2: [f64; N],
     /// Largest change of an acceleration by the solver, mm/s^2.
     pub change_mm_s2: f64,
-    /// Mean squares of the contour error over the horizon, mm^2: of the plan before this step, and without any offset.
+    /// Mean squares of the contour error over the first half of the horizon, mm^2: of the plan
+    /// before this step, and without any offset.
     pub contour_mm2: [f64; 2],
     /// Largest contour error over the horizon without any offset, mm.
     pub open_error_mm: f64,
@@ -359,7 +361,7 @@ impl<const N: usize> HorizonSettings<N> {
         if knot + LAST_KNOTS >= self.knots() { weight.max(self.last_weight) } else { weight }
     }
 
-    /// Knots of the horizon, within what there is room for.
+    /// Number of knots of the horizon, limited to 1 to [`MAX_KNOTS`].
     #[inline]
     pub fn knots(&self) -> usize {
         self.knots.clamp(1, MAX_KNOTS)

@@ -77,7 +77,8 @@ pub trait ContourModel<const N: usize>: Identifier<N> {
     fn learn(&mut self, inputs: &Inputs<N>, error: [f64; N], step: f64) -> f64;
 }
 
-/// An identifier that predicts by how much the following error of each axis grows in a knot, mm: a linear part, and a rest.
+/// An identifier that predicts the growth of the following error of each axis over one knot, mm.
+/// The prediction is the sum of a linear part and a nonlinear rest.
 pub trait ServoModel<const N: usize>: Identifier<N> {
     /// How far the tool is behind the command at constant feedrate, s.
     fn lag_s(&self) -> f64;

@@ -1,4 +1,5 @@
-//! A trained model as a block of bytes: what a component in a servo thread is given, and checks before it believes it.
+//! A trained model as a block of bytes. A component in a servo thread validates the block before it
+//! uses the model.
 //!
 //! | Offset | Bytes | What |
 //! |---|---|---|
@@ -9,11 +10,17 @@
 //! | 20 | 4 | n, number of numbers that follow the periods |
 //! | 24 | 8 | servo period, s |
 //! | 32 | 8 | feed period, s: time between knots |
-//! | 40 | 8 n | weights, group by group as [`Identifier::weights`] hands them over; of a servo the spread behind them, axis by axis, row by row; of axes the mechanics period, s, and axis by axis [`AxisKnowledge::NUMBERS`] |
-//! | 40 + 8 n | 4 | CRC-32 of all before: that of IEEE 802.3, reflected, of polynomial 0x04C11DB7 |
+//! | 40 | 8 n | numbers of the model, in the order below |
+//! | 40 + 8 n | 4 | CRC-32 of all bytes before it: IEEE 802.3, reflected, polynomial 0x04C11DB7 |
 //!
-//! Whole numbers are unsigned, numbers are IEEE 754 of double precision; all little-endian. [`ModelBlock::from_bytes`] needs no memory but
-//! its result, does not panic, whatever the bytes are, and refuses what is not exactly this.
+//! The numbers of a contour identifier are its weights, group by group in the order of
+//! [`Identifier::weights`]. A servo identifier has its spread after the weights, axis by axis and
+//! row by row. Axes have the mechanics period, s, and then [`AxisKnowledge::NUMBERS`], axis by
+//! axis.
+//!
+//! Integers are unsigned; all other numbers are IEEE 754 double precision. Everything is
+//! little-endian. [`ModelBlock::from_bytes`] needs no memory beyond its result and never panics,
+//! whatever the bytes are. It rejects every block that deviates from this layout.
 
 use core::{fmt, slice};
 
@@ -122,13 +129,16 @@ pub enum BlockError {
     Format(u32),
     /// Its identifier is of a kind that is not known.
     Kind(u32),
-    /// It is for so many axes, and others were asked for.
+    /// The block is for this number of axes; the caller expects another.
     Axes(u32),
     /// It is longer or shorter than its kind and axes make it.
     Length,
-    /// The checksum is that of other bytes.
+    /// The checksum does not match the bytes before it.
     Checksum,
-    /// This number, counted from the servo period as 0, is none or out of its bounds.
+    /// The number with this index is NaN or out of bounds; index 0 is the servo period. Index 2
+    /// also stands for a mechanics period that does not divide the servo period into 1 to
+    /// [`MAX_MECHANICS_PER_SERVO`] whole parts. The index after the last number stands for an
+    /// invalid spread.
     Number(usize),
 }
 

@@ -1,7 +1,10 @@
-//! The sine, without a library: that of libm keeps a panic for arguments beyond 1e5, which no tick may hold.
+//! A sine without a panic. The sine of libm keeps a panic for arguments beyond 1e5, and a tick must
+//! not contain one.
 //!
-//! The angle is reduced to half a turn about zero by the nearest whole turn, then to a quarter by the symmetry of the sine, where the
-//! Taylor series to x^17 is off by less than (pi/2)^19 / 19! = 5e-14. The reduction is off by the rounding of the angle: 1e-10 at 1e6 rad.
+//! [`sin`] subtracts the nearest whole number of turns, which leaves at most half a turn to either
+//! side of zero. The symmetry of the sine reduces this to a quarter turn. There the error of the
+//! Taylor series to x^17 is below (pi/2)^19 / 19! = 5e-14. The reduction adds the rounding error of
+//! the angle: 1e-10 at 1e6 rad.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 

@@ -32,7 +32,7 @@ struct PlanTime {
 }
 
 impl PlanTime {
-    /// So many servo periods later.
+    /// The plan time `periods` servo periods later.
     #[inline]
     fn after(self, periods: f64) -> Self {
         let sum = self.part + periods;
@@ -123,7 +123,8 @@ impl<const N: usize> Tick<N> {
         Setpoint { tau_s, path, command_mm, decided }
     }
 
-    /// Plan time goes on by servo periods at rest that nobody computes; everything else stays.
+    /// Advances plan time by `periods` servo periods at rest without computing them. Nothing else
+    /// changes.
     pub fn skip(&mut self, periods: u64) {
         self.time = PlanTime { periods: self.time.periods.saturating_add(periods), ..self.time };
     }

@@ -27,7 +27,7 @@ const SAME_PLACE_MM: f64 = 1e-7;
 pub struct Knot<const N: usize> {
     /// Where it is, mm.
     pub position_mm: [f64; N],
-    /// Unit direction of travel; at rest that of the adjoining motion.
+    /// Unit vector in the direction of travel; at rest, in the direction of the adjoining motion.
     pub tangent: [f64; N],
     /// Planned feedrate, mm/s.
     pub feed_mm_s: f64,
@@ -49,7 +49,7 @@ impl<const N: usize> Knot<N> {
         (length - 1.0).abs() < 1e-3 && norm(self.position_mm).is_finite() && self.feed_mm_s.is_finite()
     }
 
-    /// This knot, or where it is none, rest at another.
+    /// This knot if it is valid; otherwise `other` with a feedrate of 0.
     #[inline]
     pub fn or_as(self, other: &Self) -> Self {
         if self.is_valid() { self } else { Self { feed_mm_s: 0.0, ..*other } }
@@ -223,7 +223,7 @@ pub struct Window<'a, const N: usize> {
     pub feed_period_s: f64,
     /// Offset of the command from the path at the current knot, mm.
     pub offset_mm: [f64; N],
-    /// Speed of that offset, mm/s.
+    /// Velocity of the offset at the current knot, mm/s.
     pub offset_mm_s: [f64; N],
 }
 

@@ -115,7 +115,8 @@ impl KnotSource {
         self.slopes.iter().zip(&self.curvature).map(|(slope, row)| slope + moved(row)).collect()
     }
 
-    /// Goes down along one acceleration after the other, as far as the limit lets it, so many times over.
+    /// Coordinate descent: `sweeps` times, moves one acceleration after the other to its minimum
+    /// within the limit.
     fn descend<const N: usize>(&self, plan: &mut Accelerations<N>, most_mm_s2: f64, sweeps: usize) {
         let mut slopes = self.slopes.clone();
         for _ in 0..sweeps {

@@ -60,10 +60,10 @@ impl Dialect {
         matches!(self, Self::FanucLathe | Self::HaasLathe)
     }
 
-    /// The dialect of a name in [`DIALECTS`], in any case; `None` for [`AUTO`].
+    /// Returns the dialect with this name in [`DIALECTS`], ignoring case; `None` for [`AUTO`].
     ///
     /// # Errors
-    /// A name that is none of these.
+    /// If `name` is neither in [`DIALECTS`] nor [`AUTO`].
     pub fn named(name: &str) -> Result<Option<Self>, UnknownDialect> {
         if name.eq_ignore_ascii_case(AUTO) {
             return Ok(None);
@@ -124,10 +124,11 @@ const INCREMENTS: [(&str, &str, f64); 3] =
     [("0.01mm", "0.001inch", 0.01), ("0.001mm", "0.0001inch", 0.001), ("0.0001mm", "0.00001inch", 0.0001)];
 
 impl Increment {
-    /// The increment of a name such as `0.001mm` or `0.0001inch`.
+    /// Returns the increment with a name such as `0.001mm` or `0.0001inch`, ignoring case and
+    /// blanks.
     ///
     /// # Errors
-    /// A name that is none of these.
+    /// If no increment has this name.
     pub fn named(name: &str) -> Result<Self, UnknownIncrement> {
         let plain = name.to_ascii_lowercase().replace(' ', "");
         let row = INCREMENTS.iter().find(|row| row.0 == plain || row.1 == plain);
@@ -172,7 +173,8 @@ pub struct Settings {
     pub dialect: Option<Dialect>,
     /// What a length without a decimal point counts on a Fanuc or Haas; `None` reads it as whole millimetres or inches.
     pub increment: Option<Increment>,
-    /// Whether lines that begin with `/` are left out. Off, as on a control whose switch nobody touched.
+    /// Whether the reader skips lines that begin with `/`. Off by default, like the block delete
+    /// switch of a control.
     pub block_delete: bool,
     /// Faults that are kept before the rest is only counted.
     pub max_errors: usize,

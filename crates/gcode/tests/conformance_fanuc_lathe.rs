@@ -125,7 +125,7 @@ fn a_surface_speed_turns_the_spindle_faster_towards_the_axis_up_to_g50_s() {
     for motion in motions(after).iter().filter(|motion| motion.kind == MotionKind::Feed) {
         assert!((motion.feed_mm_s - 0.3 * rpm / 60.0).abs() < 1e-9, "{motion:?}");
     }
-    // S of G50 is no speed, and neither is that of G96.
+    // S of G50 limits the spindle speed and S of G96 is a surface speed: neither is a speed event.
     let speeds =
         |step: &Canon| matches!(step, Canon::Event(event) if matches!(event.kind, EventKind::SpindleSpeed { .. }));
     assert!(!steps(text).iter().any(speeds));

@@ -194,7 +194,8 @@ proptest! {
     }
 }
 
-/// Behind a corner flatter than 0.05 rad, the next inner corner was that of a tilted line: 10.9 um into the contour.
+/// Regression: after a corner flatter than 0.05 rad, the reader computed the next inner corner from
+/// a tilted line. The tool went 10.9 um into the contour.
 #[test]
 fn an_inner_corner_behind_a_flat_one_lies_beside_its_own_line() {
     let text = "G21 G17 F100\nG0 X-20 Y-30\nG1 G41.1 D20 X0 Y0\nG1 X30 Y0\nX40.4875 Y-0.5129\nX43.4185 Y59.4154\n\

@@ -70,7 +70,7 @@ pub struct BlendMember {
     pub make: for<'p> fn(Steps<'p>, &Constraints) -> BlendedSteps<'p>,
 }
 
-/// All blends; the first is the one to take when nobody chooses.
+/// All blends; the first is the default.
 pub const BLENDS: &[BlendMember] = &[BlendMember {
     name: "exact",
     about: "the programmed path, corners included",

@@ -21,7 +21,7 @@ pub struct PathLimits {
     pub corner_jump_mm_s: f64,
 }
 
-/// Bounds of one axis; infinite where there is none.
+/// Limits of one axis; infinity means no limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisLimits {
     /// Speed.
@@ -47,7 +47,7 @@ pub struct Constraints {
     pub speed_caps: Option<Arc<SpeedCaps>>,
 }
 
-/// A limit that is none.
+/// Error for a limit that is missing or outside its allowed range.
 #[derive(Debug, Clone, PartialEq, thiserror::Error, miette::Diagnostic)]
 #[error("limit {name} is {value}, it must be a finite number {bound}")]
 pub struct LimitsError {

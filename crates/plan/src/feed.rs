@@ -149,7 +149,10 @@ pub trait FeedPlanner: Send {
     fn pop(&mut self) -> Option<Span>;
 }
 
-/// Highest speed on a piece without its curvature, mm/s: its feedrate, or that of rapids, and what moves along.
+/// Highest speed on a piece before its curvature limits it, mm/s.
+///
+/// A cutting piece has its programmed feedrate, capped at the machine's largest feedrate. A rapid
+/// has the rapid speed. The axes that move along may lower both.
 pub fn feed_mm_s(piece: &Piece, constraints: &Constraints) -> f64 {
     let PathLimits { max_feed_mm_s, rapid_mm_s, .. } = constraints.path;
     let feed_mm_s = if piece.cutting { piece.feed_mm_s.min(max_feed_mm_s) } else { rapid_mm_s };
@@ -171,7 +174,7 @@ pub struct FeedMember {
     pub make: fn(&Constraints) -> Box<dyn FeedPlanner>,
 }
 
-/// All planners; the first is the one to take when nobody chooses.
+/// All feed planners; the first is the default.
 pub const FEED_PLANNERS: &[FeedMember] = &[
     FeedMember {
         name: "trapezoid",

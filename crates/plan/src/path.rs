@@ -43,10 +43,11 @@ pub const MIN_FEED_MM_S: f64 = 1e-6;
 /// The tool rests for no longer than this at a time, s: thirty years, beyond which plan time would lose its milliseconds.
 pub(crate) const MAX_REST_S: f64 = 1e9;
 
-/// Length of `away_mm` with the sign of the side: positive where, seen along `tangent` in the XY plane, it points to the left.
+/// Signed length of `away_mm`, mm: negative if, seen along `tangent` in the XY plane, it points to
+/// the right; positive otherwise.
 ///
-/// The one place where the sign of a contour error is decided: `tangent` is that of the path at the foot of the tool,
-/// `away_mm` runs from the foot to the tool.
+/// Gives the contour error of simulation and measurement its sign. `tangent` is the tangent of the
+/// path at the point nearest to the tool; `away_mm` runs from that point to the tool.
 #[inline]
 pub fn signed_distance_mm(tangent: [f64; 3], away_mm: [f64; 3]) -> f64 {
     let left = tangent[0] * away_mm[1] - tangent[1] * away_mm[0];

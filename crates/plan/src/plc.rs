@@ -64,7 +64,8 @@ impl Plc {
         self
     }
 
-    /// How long the tool waits for what happens, s. Time that an operator takes (M0, M1) is none of the machine's.
+    /// How long the tool waits for an event, s; also updates the spindle speed. M0 and M1 count as
+    /// 0 s, because their time depends on the operator.
     pub fn takes_s(&mut self, kind: &EventKind) -> f64 {
         match kind {
             EventKind::Dwell { seconds } => *seconds,

@@ -94,7 +94,8 @@ fn programs() -> Vec<PathBuf> {
     found
 }
 
-/// Programs that LinuxCNC 2.9 never comes to the end of: part of the path, and why. Nobody asks it; this reader refuses them.
+/// Programs that LinuxCNC 2.9 never finishes: part of the path, and why. The test does not run
+/// `rs274` on them; this reader must refuse them.
 const ENDLESS: &[(&str, &str)] = &[("g71-endless-loop_2", "LinuxCNC 2.9 repeats the pass of a pocket forever")];
 
 /// Limits of `rs274` for a program, s, one attempt after the other: the longest program takes 2 s on a busy machine.

@@ -47,12 +47,13 @@ pub(crate) struct Material<const N: usize> {
 }
 
 impl<const N: usize> Material<N> {
-    /// With so many knots, without limits.
+    /// A tick with a horizon of `knots` knots and without limits.
     pub(crate) fn new(knots: usize) -> Self {
         Self::within(knots, f64::INFINITY)
     }
 
-    /// With so many knots, and accelerations of the offset of at most `most_mm_s2` in each axis.
+    /// A tick with a horizon of `knots` knots. In each axis the acceleration of the offset is at
+    /// most `most_mm_s2`, mm/s^2.
     pub(crate) fn within(knots: usize, most_mm_s2: f64) -> Self {
         let mut register = Register::default();
         for i in 0..300 {
@@ -70,7 +71,8 @@ impl<const N: usize> Material<N> {
         Self { net: servo(), slopes: RefCell::new([[[0.0; 5]; N]; MAX_KNOTS]), register, preview, settings, plan }
     }
 
-    /// Rolls the plan out: the problem, and the slopes of each knot. `felt`: whether the derivative to all accelerations is wanted.
+    /// Rolls the plan out and returns the problem and the slopes of each knot. With `sensitivity`,
+    /// the problem includes the derivative with respect to all accelerations.
     pub(crate) fn roll_out(&self, sensitivity: bool) -> (HorizonProblem<N>, Slopes<N>) {
         let window = Window {
             register: &self.register,

@@ -18,7 +18,8 @@ const LINEAR: [f64; INPUTS] = [0.244, -0.101, -0.001_86, 0.2785, -0.4166];
 /// Output of a hidden node at its largest, mm: the slopes differ by a tenth from knot to knot.
 const HIDDEN_MM: f64 = 0.03;
 
-/// A servo like that of tnv40 with hidden nodes that are far from saturated, other ones in every axis.
+/// A servo model like the one of tnv40, with hidden nodes that are far from saturated and differ
+/// from axis to axis.
 pub(crate) fn servo<const N: usize>() -> ServoIdentifier<N> {
     let mut net = ServoIdentifier::NULL;
     for axis in 0..N {

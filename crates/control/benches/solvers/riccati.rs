@@ -1,18 +1,22 @@
-//! The problem of a tick as a linear-quadratic one over time, solved exactly by the recursion of Riccati.
+//! Solves the problem of one tick exactly, as a linear-quadratic problem over time, by the Riccati
+//! recursion.
 //!
 //! ```text
-//! x(k+1) = A(k) x(k) + B(k) da(k)     x = e(k), e(k-1), F(k-1), F(k-2), o, v of each axis, as changes from the plan
+//! x(k+1) = A(k) x(k) + B(k) da(k)     x = e(k), e(k-1), F(k-1), F(k-2), o, v of each axis,
+//!                                     as changes from the plan
 //! F(k) = v(k) + T/2 da(k)     o(k+1) = o(k) + T v(k) + T^2/2 da(k)     v(k+1) = v(k) + T da(k)
-//! V(k, x) = 1/2 x'P x + p'x           what is left to pay from knot k on
+//! V(k, x) = 1/2 x'P x + p'x           cost to go from knot k on
 //! ```
 //!
-//! Backwards, each knot adds what its errors cost at its end, goes through the dynamics, and takes the best da out; forwards,
-//! the da follow from the x. The work grows with the knots, that of the dense solution with their cube; and it asks only for
-//! the slopes of each knot, not for what the tool feels of every earlier one.
+//! The backward pass adds the cost of the errors at the end of each knot. It passes the sum through
+//! the dynamics and eliminates the optimal da. The forward pass computes each da from x. The work
+//! grows linearly with the number of knots; the dense solution grows with its cube. The recursion
+//! needs only the slopes of each knot, not the sensitivity of the tool to every earlier knot.
 //!
-//! One feed period a knot, no limits, and a cut throughout.
+//! A knot lasts one feed period, there are no limits, and every knot cuts.
 //!
-//! Source: Rao, Wright and Rawlings (1998), "Application of interior-point methods to model predictive control", section 3.
+//! Source: Rao, Wright and Rawlings (1998), "Application of interior-point methods to model
+//! predictive control", section 3.
 
 use feedwright_control::{
     Accelerations, END_WEIGHT, FEED_SCALE_MM_S, FOLLOWING_SCALE_MM, GaussNewton, HorizonProblem, INPUTS, MAX_KNOTS,

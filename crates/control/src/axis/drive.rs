@@ -39,14 +39,16 @@ pub struct DriveParameters {
 }
 
 impl DriveParameters {
-    /// By how much the torque filter makes a slow change of the torque late, s: from y' - y = k (u - y), u = y + (1/k - 1) (y' - y).
+    /// Delay that the torque filter adds to a slow change of the torque, s; 0 without a filter. It
+    /// follows from y' - y = k (u - y), which gives u = y + (1/k - 1) (y' - y).
     pub fn filter_lag_s(&self, mechanics_s: f64) -> f64 {
         let part = filter_part(self.torque_filter_hz, mechanics_s);
         mechanics_s * (1.0 / part - 1.0)
     }
 }
 
-/// Part of the way that a torque filter goes in one mechanics period; one without a corner is none.
+/// Gain of the torque filter, k: the share of the step to a new torque that it makes in one
+/// mechanics period. It is 1, which is no filter, unless the corner frequency is above 0.
 fn filter_part(corner_hz: f64, mechanics_s: f64) -> f64 {
     if corner_hz > 0.0 { 1.0 - libm::exp(-TAU * corner_hz * mechanics_s) } else { 1.0 }
 }
@@ -56,7 +58,7 @@ fn filter_part(corner_hz: f64, mechanics_s: f64) -> f64 {
 pub struct DriveReference {
     /// Reference speed, rad/s.
     pub speed_rad_s: f64,
-    /// Torque beside that of the speed loop, N m.
+    /// Torque offset that the drive adds to the output of its speed loop, N m.
     pub torque_nm: f64,
 }
 
@@ -65,7 +67,8 @@ pub struct DriveReference {
 pub struct DriveState {
     /// The last command, rad; none before the first.
     commanded_rad: Option<f64>,
-    /// Its speed, rad/s; that of the first where there was none.
+    /// Speed of the last command, rad/s. Before the first command it is the speed at which the axis
+    /// starts, and the first command leaves it unchanged.
     commanded_rad_s: f64,
     /// Integral part of the speed loop, N m.
     integral_nm: f64,

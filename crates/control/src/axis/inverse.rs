@@ -1,40 +1,50 @@
-//! The law of an axis, solved for the command: by how much it has to lead a motion, so that the axis is on it.
+//! Inverse model of an axis: computes the lead of the position command that keeps the axis on a
+//! motion.
 //!
-//! In the servo period that begins at m Ts the command c(m) = r(m) + o(m) makes the reference speed and the torque that act from
-//! m Ts + d on, for a period; d is the delay of the drive. A motor that is on the reference r at both ends of that time has the mean
-//! speed w = (r(m+1) - r(m)) / Ts and the mean acceleration a, the change of the central differences (r(m+1) - r(m-1)) / 2 Ts, each
-//! taken d later. The speed loop sees w - a dt, because it answers at the end of each mechanics period to the speed at its start.
-//! What the loops do not ask for by themselves where o = 0 is missing:
+//! The command of the servo period that begins at m Ts is c(m) = r(m) + o(m). It sets the reference
+//! speed and the torque that act for one period from m Ts + d on; d is the delay of the drive. A
+//! motor that is on the reference r at both ends of that time has the mean speed
+//! w = (r(m+1) - r(m)) / Ts. Its mean acceleration a follows from the change of the central
+//! differences (r(m+1) - r(m-1)) / 2 Ts. Both are evaluated d later. At the end of each mechanics
+//! period the speed loop acts on the speed at the start of the period, so it sees w - a dt. With
+//! o = 0 the loops do not supply these parts:
 //!
 //! ```text
-//! M_w = g_v (w - kp (r - y) - kd (r - y)' - fv r') - g_a a dt                        reference speed
-//! M_t = [ g_a (J a - B a dt - fa J r'') + g_v B w + g_f F + L ] / Kv                 torque, as a reference speed
+//! M_w = g_v (w - kp (r - y) - kd (r - y)' - fv r') - g_a a dt       reference speed
+//! M_t = [ g_a (J a - B a dt - fa J r'') + g_v B w + g_f F + L ] / Kv
+//!                                                                   torque, as a reference speed
 //! ```
 //!
-//! with y = r a measurement delay ago, primes for backward differences over Ts, F the mean of the friction along the motion, and L a
-//! load that is known. The mean of the speed loop over the period, with i the integral, gives the lead:
+//! y is the reference r one measurement delay ago, a prime is a backward difference over Ts, F is
+//! the mean friction along the motion, and L is a known load. i is the integral of the speed loop.
+//! The mean of the speed loop over the period gives the lead:
 //!
 //! ```text
-//! s      = kp o + (kd + fv) (o - o1) / Ts - M_w            what is asked for beyond what is needed
+//! s      = kp o + (kd + fv) (o - o1) / Ts - M_w            reference speed beyond the required one
 //! M_t    = s + i + s (Ts + dt) / 2 Ti + fa J (o - 2 o1 + o2) / (Kv Ts^2)
 //! i'     = i + s Ts / Ti
 //! ```
 //!
-//! which is linear in o; o1 and o2 are the leads one and two periods before. It is a stable recursion: its poles are those of the
-//! position loop's own derivative and feedforward, and 1 - Ts / Ti. For a P speed loop without any of the rest it is
-//! `o = (M_w + M_t + kd o1 / Ts) / (kp + kd / Ts)`. The torque filter makes the torque late by its time constant: accelerations
-//! and friction are taken so much ahead.
+//! The equations are linear in o; o1 and o2 are the leads one and two periods before. The recursion
+//! is stable. Its poles are the poles of the derivative and the feedforward of the position loop,
+//! and 1 - Ts / Ti. For a P speed loop without any further part it is
+//! `o = (M_w + M_t + kd o1 / Ts) / (kp + kd / Ts)`. The torque filter delays the torque by its time
+//! constant, so accelerations and friction are evaluated ahead by this time.
 //!
-//! What is linear adds up: leads of parts (velocity alone, friction alone) sum to that of all, each with an integral of its own.
+//! The linear parts superpose: the leads for velocity alone and for friction alone, each with its
+//! own integral, sum to the lead for both.
 //!
-//! Symbols: r reference, o lead, mm; J inertia; B viscous friction; Kv, Ti speed loop; fv, fa feedforward of the drive; g gains of the
-//! parts, 1 being all of it; the others as in [`super`] and [`super::drive`].
+//! Symbols: r reference, o lead, mm; J inertia; B viscous friction; Kv, Ti speed loop; fv, fa
+//! feedforward of the drive; g gains of the parts, where 1 is full compensation; the others as in
+//! [`super`] and [`super::drive`].
 //!
-//! Source: Masory (1986), "Improving contouring accuracy of NC/CNC systems with additional velocity feed forward loop", for
-//! the inverse of the loop; friction stepped along the reference as in Armstrong-Hélouvry, Dupont and Canudas de Wit (1994), "A survey
-//! of models, analysis tools and compensation methods for the control of machines with friction".
+//! Source: Masory (1986), "Improving contouring accuracy of NC/CNC systems with additional velocity
+//! feed forward loop", for the inverse of the loop; friction stepped along the reference as in
+//! Armstrong-Hélouvry, Dupont and Canudas de Wit (1994), "A survey of models, analysis tools and
+//! compensation methods for the control of machines with friction".
 //!
-//! Departures: torque limit and speed limit bound nothing here but the integral: a motion that needs more is not planned.
+//! Departures: the torque limit bounds only the integral, and the speed limit bounds nothing here.
+//! The inverse assumes that no motion needs more.
 
 use super::AxisLaw;
 use super::drive::DriveParameters;
@@ -94,7 +104,7 @@ pub struct AxisInverse {
     delays: LoopDelays,
     /// What friction has beside smoothed Coulomb friction.
     friction: Option<FrictionLaw>,
-    /// By how much the torque filter is late, s.
+    /// Delay of the torque filter, s.
     filter_lag_s: f64,
     /// Friction of the presliding spring, N m.
     presliding_nm: f64,
@@ -140,7 +150,8 @@ impl AxisInverse {
         (self.missing, self.lead_before_mm) = (Missing::default(), 0.0);
     }
 
-    /// Time constants of the loops together, s: about by how much the command leads.
+    /// Sum of the time constants of the position loop and the speed loop, s. The command leads the
+    /// reference by about this time.
     pub fn lag_s(&self) -> f64 {
         let parameters = &self.law.parameters;
         1.0 / parameters.kp_1_s + parameters.inertia_kg_m2 / parameters.kv_nm_s_per_rad
@@ -161,9 +172,10 @@ impl AxisInverse {
         self.friction_mm_s
     }
 
-    /// By how much the command of a servo period has to lead the reference, mm. `at_mm` is the reference so many seconds after its
-    /// beginning, `last_mm` by how much the command really leads in the period before, and `load_mm_s` a load that the drive is to
-    /// carry beside, as a reference speed. To be called once a servo period.
+    /// Returns the required lead of a servo period's command over the reference, mm. Call it once
+    /// per servo period. `at_mm` gives the reference at a time after the start of the period, s.
+    /// `last_mm` is the actual lead of the command in the period before. `load_mm_s` is a load that
+    /// the drive carries in addition, as a reference speed, mm/s.
     #[inline]
     pub fn lead_mm(&mut self, gains: Gains, at_mm: impl Fn(f64) -> f64, last_mm: f64, load_mm_s: f64) -> f64 {
         let servo_s = self.law.periods.servo_s;

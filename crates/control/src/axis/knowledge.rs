@@ -29,7 +29,7 @@ pub struct AxisKnowledge {
 }
 
 impl AxisKnowledge {
-    /// An axis of no use: all zero but its periods.
+    /// Placeholder axis: every parameter is zero except the periods.
     pub const NOTHING: Self = Self {
         parameters: Parameters {
             rad_per_mm: 0.0,
@@ -125,12 +125,13 @@ impl AxisKnowledge {
 pub struct Number {
     /// Name; its end is the unit.
     pub name: &'static str,
-    /// Unit, as messages tell it; empty where there is none.
+    /// Unit for messages; empty for a dimensionless number.
     pub unit: &'static str,
     /// Least and most.
     pub range: [f64; 2],
-    /// Whether zero, which is below the range, tells that there is none of it. A divisor is one of these: what is next to zero and not
-    /// zero is refused.
+    /// Whether zero is valid although it is below the range. Zero then means that the axis lacks
+    /// this part. Other values below the range are rejected, so that nothing is divided by a tiny
+    /// number.
     pub or_none: bool,
     /// The field.
     pub of: fn(&mut AxisKnowledge) -> &mut f64,

@@ -1,6 +1,8 @@
-//! What may be told of the noise of an axis beside its law: statistics, and what depends on the angle of the motor, with its phase.
+//! Noise of an axis: the statistics of its random parts, and the amplitude and phase of the parts
+//! that depend on the angle of the motor.
 //!
-//! The random numbers themselves nobody knows. Symbols and spectra are those of `docs/machine-file.md`.
+//! The random numbers themselves remain unknown to a controller. Symbols and spectra follow
+//! `docs/machine-file.md`.
 
 /// What is true of an axis; at the motor shaft, zero is without.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -8,12 +8,14 @@
 //! J_m dw_m/dt = u - T         J_t dw_t/dt = T - friction(w_t) - disturbance
 //! ```
 //!
-//! with J_m + J_t = J, so that the rigid axis is the limit of a stiff screw. Friction and disturbance act on the table: guideways and
-//! cutter are there. The resonance is that of the table while the servo holds the motor, k = J_t w_r^2, c = 2 D J_t w_r, which is what a
-//! knock on the table shows; free, the two swing against each other at w_r sqrt(J / J_m).
+//! J_m + J_t = J, so the rigid axis is the limit of a stiff screw. Friction and disturbance act on
+//! the table, where the guideways and the cutter are. w_r is the resonance of the table while the
+//! servo holds the motor, as a knock on the table shows it. It gives k = J_t w_r^2 and, with the
+//! damping ratio D, c = 2 D J_t w_r. With a free motor the two masses swing against each other at
+//! w_r sqrt(J / J_m).
 //!
-//! Source: two-mass drive as in Altintas (2012), Manufacturing Automation, section 5; backlash as a dead zone with damping
-//! in contact, Nordin and Gutman (2002), eq. 4.
+//! Source: two-mass drive as in Altintas (2012), Manufacturing Automation, section 5; backlash as a
+//! dead zone with damping in contact, Nordin and Gutman (2002), eq. 4.
 
 /// What a ball screw is, at the motor shaft; all zero is a rigid one.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -79,7 +81,8 @@ impl TransmissionLaw {
         })
     }
 
-    /// By how much the motor is ahead of the table under a torque that lasts, rad.
+    /// Static twist of the screw under a constant torque, rad: the angle of the motor less the
+    /// angle of the table. It includes half the backlash.
     pub fn twist_rad(&self, torque_nm: f64) -> f64 {
         torque_nm / self.stiffness_nm_rad + libm::copysign(self.half_gap_rad, torque_nm)
     }

@@ -65,8 +65,9 @@ impl<const N: usize> Feedforward<N> {
         Self { axes, gains, preview, friction_mm_s: [[0.0; N]; KEPT_PERIODS] }
     }
 
-    /// How far the command of a servo period has to lead a reference, mm: `at_mm` is that so many seconds after the start of the period,
-    /// `last_mm` is by how much it led in the last period. To be called once a servo period.
+    /// Returns the required lead of a servo period's command over a reference, mm. Call it once per
+    /// servo period. `at_mm` gives the reference at a time after the start of the period, s.
+    /// `last_mm` is the lead in the last period. `load_mm_s` is a load, as a reference speed, mm/s.
     pub fn lead_mm(&mut self, at_mm: impl Fn(f64) -> [f64; N], last_mm: [f64; N], load_mm_s: [f64; N]) -> [f64; N] {
         let gains = self.gains;
         let mut lead_mm = [0.0; N];
@@ -113,7 +114,8 @@ impl<const N: usize> Controller<N> for Feedforward<N> {
         self.friction_mm_s = [[0.0; N]; KEPT_PERIODS];
     }
 
-    /// The offset of the next servo period; that of this one is already under way.
+    /// Returns the offset of the next servo period. The offset of the current period is already
+    /// being executed.
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         self.command_against(window, [0.0; N])
     }

@@ -1,19 +1,27 @@
-//! Receding-horizon inversion of the servo identifier: the geometry of the command is planned over many knots ahead.
+//! Receding-horizon inversion of the servo identifier: plans the geometry of the command many knots
+//! ahead.
 //!
-//! Each feed period: take in what the identifier missed ([`crate::identifier::adaptation`]), improve the plan by one step of
-//! [`crate::horizon`], command its first step. The weights of the plan follow the quality of the predictions,
+//! Each feed period the controller adapts the identifier to its last prediction error
+//! ([`crate::identifier::adaptation`]), improves the plan by one step of [`crate::horizon`], and
+//! commands the first step of the plan. The weights of the plan follow the quality of the
+//! predictions:
 //!
 //! ```text
-//! w = w0 b     d = d0 b     h = h0 b^(1/2)     b = 1 + (sigma / s)^4     sigma: RMS innovation, s: RecedingHorizonSettings::innovation_scale_mm
-//! q = (mu / m)^4 + (0.7 sigma / c)^4 + (z / 0.6)^4     mu: largest miss ahead, m: RecedingHorizonSettings::foreseen_mm
-//!                                                      c: largest contour error over the horizon without any offset
-//!                                                      z: by how much the correction was overdone lately
+//! w = w0 b     d = d0 b     h = h0 b^(1/2)     b = 1 + (sigma / s)^4
+//!     sigma: RMS innovation
+//!     s: RecedingHorizonSettings::innovation_scale_mm
+//! q = (mu / m)^4 + (0.7 sigma / c)^4 + (z / 0.6)^4
+//!     mu: largest prediction error several knots ahead
+//!     m: RecedingHorizonSettings::foreseen_mm
+//!     c: largest contour error over the horizon without any offset
+//!     z: over-correction factor measured lately
 //! ```
 //!
-//! so that a resonance which the identifier cannot represent is corrected gently, and a machine that it does not know less, down
-//! to not at all ([`crate::horizon::missed`], [`Controller::judged`]); the fourth power leaves the small innovations of friction
-//! alone. A machine that lags far behind has longer knots, so that the plan reaches beyond the lag. The speed along the path
-//! stays as planned.
+//! The controller thus corrects gently where the identifier cannot represent a resonance. On a
+//! machine that the identifier does not know it corrects less, down to nothing
+//! ([`crate::horizon::missed`], [`Controller::judged`]). Because of the fourth power, the small
+//! innovations of friction hardly change the weights. A machine that lags far behind has longer
+//! knots, so that the plan reaches beyond the lag. The feedrate along the path stays as planned.
 
 mod predictor;
 
@@ -36,13 +44,15 @@ pub const RECEDING_HORIZON_FEED_PERIOD_S: f64 = 0.003;
 /// mind over noise.
 const CLEARLY_OTHER: f64 = 0.7;
 
-/// A measurement is held for an outlier where it misses its prediction by this, mm, and so many times the usual; after so many
-/// in a row it is the machine that has changed.
+/// A measurement is an outlier if it misses its prediction by more than [`OUTLIER_MM`], mm, plus
+/// [`OUTLIER`] times the RMS innovation. After [`MAX_OUTLIERS`] outliers in a row the controller
+/// assumes that the machine has changed, and uses the measurement.
 const OUTLIER_MM: f64 = 0.03;
 const OUTLIER: f64 = 10.0;
 const MAX_OUTLIERS: u32 = 3;
-/// A position that is the same to the bit although the command has moved by this since the last decision, mm, is none: from an
-/// encoder of some micrometres a tool that follows has others by then.
+/// If the command has moved by more than this since the last decision, mm, and the position is the
+/// same to the bit, the controller ignores the position. By then a tool that follows has moved by
+/// more than one step of an encoder with a resolution of some micrometers.
 const STILL_MM: f64 = 0.02;
 /// A following error is strange where it is further than this, mm, and this part of it, from what the commands alone lead to: a
 /// machine that is not yet known differs by less, a position that has leapt by more.
@@ -116,7 +126,7 @@ pub struct RecedingHorizon<const N: usize, S = GaussNewton, D = ServoIdentifier<
     foreseen_mm2: [f64; 2],
     /// Largest contour error over the horizon without any offset, mm.
     open_error_mm: f64,
-    /// By how much the correction was overdone lately.
+    /// Over-correction factor measured lately: see [`Controller::judged`].
     overdone: f64,
     /// What was commanded and seen at the last decision, mm.
     last: Option<LastDecision<N>>,
@@ -226,7 +236,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
         self.missed.look_back(open_mm, window.at(-self.net.net().lag_s()).tangent);
     }
 
-    /// By how much the offset has moved the tool, mm.
+    /// Displacement of the tool by the offset, mm, from the linear part of the identifier.
     fn response_mm(&self) -> [f64; N] {
         let offset_mm = self.last.map_or([0.0; N], |last| last.offset_mm);
         add_scaled(offset_mm, -D::ERROR_SCALE_MM, self.response.error[0])

@@ -59,7 +59,7 @@ struct Iterate {
 }
 
 impl Quadratic {
-    /// Begins anew, with so many unknowns.
+    /// Clears H and g for a problem with `number` unknowns.
     pub(crate) fn clear(&mut self, number: usize) {
         self.number = number;
         let number = self.number();

@@ -1,14 +1,18 @@
-//! By how much predictions some knots ahead miss: whether the model knows what an offset does to the tool.
+//! Prediction error several knots ahead: whether the model knows the effect of an offset on the
+//! tool.
 //!
-//! The innovation says how good a prediction one knot ahead is. On a machine that the identifier does not know it is as good as
-//! on any other, since what was missed last is added to what comes next; further ahead that is worth nothing, and a plan that is
-//! built on it swings about the path. So the tool is compared with where it was foreseen [`AHEAD_KNOTS`] knots ago,
+//! The innovation measures the prediction one knot ahead. This prediction is good even on a machine
+//! that the identifier does not know, because the last error is added to the next prediction.
+//! Further ahead this does not help, and a plan built on such predictions swings about the path.
+//! The controller therefore compares the tool with its position predicted [`AHEAD_KNOTS`] knots
+//! ago:
 //!
 //! ```text
-//! p(k) - g(k)   against   p(k | k-M) - g(k | k-M)       g: by how much the offset has moved the tool
+//! p(k) - g(k)   against   p(k | k-M) - g(k | k-M)       g: displacement of the tool by the offset
 //! ```
 //!
-//! without what the offset makes of it: that plan was another. Of the difference the part across the path counts.
+//! Both sides exclude the effect of the offset, because the plan has changed since. Only the
+//! component of the difference across the path counts.
 
 use crate::vector::{norm, reject, sub};
 
@@ -51,7 +55,8 @@ impl<const N: usize> Missed<N> {
         }
     }
 
-    /// In [`AHEAD_KNOTS`] knots of so many feed periods the tool without the offset is to be here, mm.
+    /// Stores a prediction: in [`AHEAD_KNOTS`] knots of `periods` feed periods each, the tool
+    /// without the offset is at `open_mm`.
     pub(crate) fn foresee(&mut self, periods: usize, open_mm: [f64; N]) {
         let period = self.period.wrapping_add(AHEAD_KNOTS * periods.min(super::MAX_PERIODS));
         self.foreseen[period % UNDER_WAY] = (open_mm, period);

@@ -1,16 +1,18 @@
-//! What a tick has to solve: the predictions along a plan, and their derivative, row by row.
+//! The problem of one tick: the predictions along a plan and their derivative, row by row.
 //!
-//! Linearised about the plan, with r the errors, each with the square root of its weight, and G their derivative to all
-//! accelerations,
+//! The problem is linearized about the plan. r are the errors, each times the square root of its
+//! weight, and G is their derivative with respect to all accelerations:
 //!
 //! ```text
-//! J(a + da) = 1/2 |r + G da|^2 + q/2 sum_j |o_j|^2 + w/2 sum_j |v_j|^2 + d/2 sum_j |v_j - v_{j-1}|^2
+//! J(a + da) = 1/2 |r + G da|^2 + q/2 sum_j |o_j|^2 + w/2 sum_j |v_j|^2
+//!             + d/2 sum_j |v_j - v_{j-1}|^2
 //! ```
 //!
-//! A knot has N rows: the errors of the tool across the path and along it, or on a rapid by how much the offset moves the tool in
-//! each axis. Where the plan is beyond a limit, one more row each asks for what it is beyond; so does one where the tool is
-//! further from its time than without the offset, about a point where the path turns back, and wherever the plan leaves much of
-//! the contour error. N rows more bring the offset back behind the last knot.
+//! A knot has N rows: the errors of the tool across the path and along it, or on a rapid the
+//! displacement of the tool by the offset in each axis. Each exceeded limit adds one row with the
+//! excess. One more row acts where the tool is further from its time than without the offset. It is
+//! used near points where the path turns back, and wherever the plan leaves much of the contour
+//! error. N more rows bring the offset back after the last knot.
 
 use super::{
     Accelerations, CommandedPeriod, HorizonSettings, MAX_AXES, MAX_KNOTS, MAX_UNKNOWNS, Predictor, Sensitivity,
@@ -48,8 +50,8 @@ pub struct HorizonProblem<const N: usize> {
     pub ends: [End<N>; MAX_KNOTS],
     /// Derivative of the tool to the accelerations, s^2.
     pub sensitivity: [Sensitivity<N>; MAX_KNOTS],
-    /// Derivative of the offset at the end of the last knot to the acceleration of each knot, s^2: that of any other is the
-    /// same, shifted.
+    /// Derivative of the offset at the end of the last knot with respect to the acceleration of
+    /// each knot, s^2. At the end of any other knot it is the same, shifted.
     pub moved_s2: [f64; MAX_KNOTS],
     /// The settings.
     pub settings: HorizonSettings<N>,
@@ -76,7 +78,7 @@ pub struct End<const N: usize> {
     pub offset_mm: [f64; N],
     /// See above.
     pub offset_mm_s: [f64; N],
-    /// The tool, mm, and by how much the offset has moved it.
+    /// Predicted position of the tool, and its displacement by the offset, mm.
     pub tool_mm: [f64; N],
     /// See above.
     pub moved_mm: [f64; N],

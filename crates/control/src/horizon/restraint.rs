@@ -1,23 +1,30 @@
-//! What holds a plan back: where a correction cannot do all of it, it is to do a part of it, and no harm.
+//! Restraint of the plan: where a correction cannot undo the whole error, it undoes a part of it
+//! and does no harm.
 //!
 //! ```text
-//! q = q_0 + (n / D)^4 + q_s b^k + (a / S)^8     n = max_i (|eps_open,i|^2 + (z_i theta_open,i)^2)^(1/2)     D = min(D_max, 2 A t^2)
+//! q = q_0 + (n / D)^4 + q_s b^k + (a / S)^8     D = min(D_max, 2 A t^2)
+//! n = max_i (|eps_open,i|^2 + (z_i theta_open,i)^2)^(1/2)
 //! l = L min(1, u / U)^2             u = max((e^2 - e_0^2)^(1/2) / e_open)
 //! ```
 //!
-//! n is by how much the tool would miss its points without any offset, in the worst knot of the horizon: across the path, and
-//! along it as far as the path turns back there (z). D is the largest deviation, or how far the offset comes within t where
-//! its acceleration allows less: the lag of the machine, or, on one whose own feedforward leaves it hardly any, the lag that the horizon is
-//! made for. Of n beyond D nothing within the limits undoes all, and what is cut off at a
-//! limit need not be better than nothing; but of a servo that is nearly linear every *part* of a correction that helps does.
+//! n is the error of the tool without any offset in the worst knot of the horizon: across the path,
+//! and along it as far as the path turns back there (z). D is the deviation limit, or the distance
+//! that the offset covers within t under the smallest acceleration limit A, if this is less. t is
+//! the time that the tool takes to follow an offset, but at least the lag that the horizon is made
+//! for (its length / `LAGS_AHEAD`). The second case applies to a machine whose own feedforward
+//! leaves hardly any lag. Where n exceeds D, no offset within the limits undoes the whole error,
+//! and an offset cut off at a limit can be worse than none. A servo is nearly linear, however:
+//! every *part* of a correction that helps also helps.
 //!
-//! u is the part of the contour error (RMS over the horizon) that the plan leaves: where it is large, limits bind, and the plan
-//! must not buy what is left across the path with a tool that is late or early, which cuts corners off.
+//! u is the part of the contour error (RMS over the first half of the horizon) that the plan
+//! leaves. A large u means that limits bind. The plan must then not reduce the rest across the path
+//! by a tool that is late or early, because such a tool cuts corners off.
 //!
-//! The third term, in decision k, is for the start: nothing is behind the plan yet. The last is for drives at their limit: a is
-//! the largest acceleration of the tool without any offset, in parts of what the drive of its axis can. What no drive does the
-//! model does not know; after a rapid that asks for it, a tool is late for the cut, and the correction of where it is not goes
-//! wrong.
+//! The third term, in decision k, acts at the start, when no earlier plan exists. The last term
+//! acts for drives at their limit: a is the largest acceleration of the tool without any offset, as
+//! a share of the acceleration at the torque limit of its drive. The model does not know this
+//! limit. After a rapid that demands more, the tool is late for the cut, and a correction for the
+//! wrong position goes wrong.
 
 use super::{CorrectionLimits, HorizonSettings};
 use crate::vector::fourth_power;

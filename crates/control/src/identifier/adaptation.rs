@@ -1,19 +1,25 @@
-//! Adaptation of the servo identifier while cutting: of two models of each axis, the one that has foreseen the last third of
-//! a second better is believed.
+//! Adaptation of the servo identifier while cutting. Each axis has a trained and an adapted model.
+//! The one that predicted the last third of a second better over all axes together is used for
+//! every axis.
 //!
 //! ```text
 //! trained:  y(k) = r(k)                           y(k) = e(k+1) - e(k) - N(I(k))
-//! adapted:  y(k) = delta' phi(k) + r(k)           phi: the inputs of the axis itself, and what its hidden nodes add
+//! adapted:  y(k) = delta' phi(k) + r(k)           phi: the inputs of the axis itself,
+//!                                                      and the output of its hidden nodes
 //! ```
 //!
-//! Both have a [`super::residual`] of their own. delta is fitted by [`crate::least_squares`] to y and phi filtered by the
-//! autoregression of the trained model's residual (generalised least squares): unfiltered, a vibration would pass for a
-//! change of the machine. It is held to zero by the [`Spread`] of machines of a kind: heavier or weaker ones differ along a
-//! few directions only, and along those a few knots are enough to know by how much. Along what nothing excites (on a straight
-//! line all inputs stand still) delta goes back to zero, what was identified, whatever the length of the line.
+//! Each model has its own [`super::residual`]. [`crate::least_squares`] fits delta to y and phi,
+//! both filtered by the autoregression of the trained model's residual (generalized least squares).
+//! Without the filter, a vibration would pass for a change of the machine. The [`Spread`] of
+//! machines of a kind gives the prior of delta. Its mean is the mean delta of the other axes times
+//! [`AdaptationSettings::axis_coupling`] and starts at zero. Heavier or weaker machines differ
+//! along a few directions only, and a few knots are enough to identify delta along these. Along
+//! directions without excitation (on a straight line all inputs stand still) delta returns to zero,
+//! the trained model, however long the line is.
 //!
-//! Source: generalised least squares, Clarke (1967); a prior that is the covariance of a population, Lindley and Smith
-//! (1972); switching between models by their recent predictions, Narendra and Balakrishnan (1997).
+//! Source: generalized least squares, Clarke (1967); a prior that is the covariance of a
+//! population, Lindley and Smith (1972); switching between models by their recent predictions,
+//! Narendra and Balakrishnan (1997).
 
 use super::residual::{self, DisturbanceForecast, LAGS, Residual};
 use super::servo::ServoIdentifier;
@@ -34,7 +40,8 @@ pub struct AdaptationSettings {
     pub forgetting: f64,
     /// Innovations of this size are noise, mm.
     pub noise_mm: f64,
-    /// By how much a machine may well differ in any direction, whatever its kind, mm for an input of 1.
+    /// Standard deviation of a machine in any direction, on top of the spread of its kind, mm for
+    /// an input of 1.
     pub beyond_mm: f64,
     /// Part by which the mean squares that the models are judged by follow each innovation; 0.001 to 0.1.
     pub variance_gain: f64,
@@ -66,7 +73,7 @@ impl AdaptationSettings {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Adaptation<const N: usize, D = ServoIdentifier<N>> {
     trained: D,
-    /// Information of the prior of each axis, relative to that of one sample.
+    /// Information of the prior of each axis, relative to the information of one sample.
     prior: Spread<N>,
     now: D,
     axes: [AxisAdaptation; N],

@@ -78,8 +78,8 @@ impl Flow {
             return Ok(None);
         }
         let mut evaluator = Evaluator::new(cursor, interpreter);
-        // Whatever else is wrong in a passed line does not matter, for it is not carried out; a missing keyword may be that of the
-        // line where the passing ends.
+        // A passed line is not executed, so other faults in it do not matter. A missing keyword
+        // does: this line may be the one where the passing ends.
         let start = evaluator.cursor.at;
         let Ok(label) = read_label(&mut evaluator) else {
             return Ok(None);

@@ -124,7 +124,8 @@ impl Flow {
         self.loops[base..].iter().any(|turn| turn.label == head.label && turn.kind == Keyword::Do)
     }
 
-    /// A definition is met, or a branch or a loop begins: its label must not be that of another in the same subroutine.
+    /// Registers the label of a definition, a branch or a loop. Fails if another line of the same
+    /// subroutine already uses this label.
     fn take_label(&mut self, head: &Head, line: u32) -> Read<()> {
         self.label_key(head);
         match self.labels.get(&self.key) {

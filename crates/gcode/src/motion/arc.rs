@@ -90,8 +90,8 @@ impl Interpreter {
         Ok(())
     }
 
-    /// An arc outside XY in a coordinate system that is turned about Z: its plane is none of the three, so it is handed out as one curve of
-    /// cubic Bezier pieces.
+    /// Hands out an arc outside XY in a coordinate system that is rotated about Z. Its plane is not
+    /// XY, ZX or YZ of the machine, so the arc becomes one curve of cubic Bezier pieces.
     fn turned_arc(&mut self, block: &Block, target: &Position, round: PlaneArc, extruder_mm: f64) -> Read<()> {
         let from = self.frame.to_program(&self.here);
         let control_mm: Vec<[f64; 3]> = bezier_points(&from, target, round, self.modal.plane.axes())

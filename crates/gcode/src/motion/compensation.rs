@@ -364,11 +364,14 @@ fn does_not_fit(block: &Block, radius_mm: f64) -> Box<LineFault> {
         .hint("a smaller tool, a larger radius in the corner, or a longer motion")
 }
 
-/// Where the offset curves of an inner corner meet; `beside` is the start of the second one beside the programmed corner.
+/// Returns the point where the offset curves of an inner corner meet, if they do. `beside` is the
+/// start of the second curve, beside the programmed corner.
 ///
-/// An arc with unequal radii has that of its end, so that its offset circle does not pass through `beside`. LinuxCNC 2.9 moves the
-/// circle there before it meets a line, and the meeting back with it: the line then ends up to the difference of the radii off
-/// itself. Two arcs meet as they are. Found by trying corners on it.
+/// An arc with unequal radii uses the radius at its end, so its offset circle does not pass through
+/// `beside`. When a line leads into such an arc, LinuxCNC 2.9 moves the circle onto `beside`,
+/// intersects it with the line, and moves the intersection back with the circle. The line then ends
+/// off its own offset line, by up to the difference of the radii. All other pairs meet without this
+/// shift. Source: tests of corners on LinuxCNC 2.9.
 fn inner_meeting(before: &PlaneCurve, next: &PlaneCurve, corner: PlanePoint, beside: PlanePoint) -> Option<PlanePoint> {
     match (before, next) {
         (PlaneCurve::Line { .. }, PlaneCurve::Arc { start, .. }) => {

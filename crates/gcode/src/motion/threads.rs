@@ -77,7 +77,8 @@ impl Interpreter {
         result
     }
 
-    /// G38.2 to G38.5. Nobody can know where the probe will trip: the motion goes all the way, as in a dry run.
+    /// G38.2 to G38.5. Moves all the way to the target, as in a dry run: the program does not show
+    /// where the probe will trip.
     pub(crate) fn probe(&mut self, block: &Block) -> Read<()> {
         let at = block.code(Group::Motion).map_or(block.whole(), |word| word.at());
         if !block.has_axes() {

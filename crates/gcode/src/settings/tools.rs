@@ -22,7 +22,8 @@ pub struct Tool {
     pub offset: [f64; 9],
     /// Diameter, mm.
     pub diameter_mm: f64,
-    /// Wear of length and radius that offset and diameter contain, mm: what `G10 L11` and `L13` of Fanuc and Haas have set.
+    /// Wear of length and radius, mm, set by `G10 L11` and `L13` on Fanuc and Haas. `offset` and
+    /// `diameter_mm` already include it.
     pub wear_mm: [f64; 2],
     /// Front angle of a lathe tool, degrees.
     pub front_angle_deg: f64,

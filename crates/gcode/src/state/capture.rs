@@ -81,7 +81,7 @@ impl Capture {
         }
     }
 
-    /// Refuses the profile; `line` is that of the block that does not fit.
+    /// Returns the error that refuses the profile; `line` is the line of the unfit block.
     pub(crate) fn refuse(&self, line: u32, message: &str) -> Box<LineFault> {
         let place = if line == self.wanted.line { String::new() } else { format!("line {line}: ") };
         let message = format!("the profile of {} cannot be cut: {place}{message}", spelled(self.wanted.code));

@@ -19,7 +19,7 @@ pub(crate) enum FeedMode {
 /// Modes of RS-274. Lengths in mm, whatever the program's unit.
 #[derive(Debug, Clone)]
 pub(crate) struct Modal {
-    /// Ten times the motion code; 800 is none.
+    /// Ten times the motion code; 800 (G80) means no motion mode.
     pub(crate) motion: u16,
     pub(crate) plane: Plane,
     /// 1 or 25.4.

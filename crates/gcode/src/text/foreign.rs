@@ -1,4 +1,5 @@
-//! G-codes of other controls: refused by what they do, because the nearest number that the reader knows helps nobody.
+//! G-codes of other controls. The reader refuses them and says what they do: naming the nearest
+//! known G-code would not help.
 
 /// Codes, ten times their number; what they do; what helps.
 const CODES: &[(&[u16], &str, &str)] = &[

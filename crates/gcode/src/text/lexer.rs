@@ -91,7 +91,7 @@ impl<'a> Cursor<'a> {
             && after.is_some_and(|byte| byte.is_ascii_digit() || matches!(byte, b'+' | b'-'))
     }
 
-    /// Whether the `$` under the cursor has a number, which is that of a spindle.
+    /// Whether a number follows the `$` under the cursor: the `$` then selects a spindle.
     pub(super) fn is_spindle(&self) -> bool {
         let after = self.bytes[self.at..].iter().skip(1).find(|byte| !is_blank(**byte));
         after.is_some_and(|byte| byte.is_ascii_digit() || *byte == b'-')

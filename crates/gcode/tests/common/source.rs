@@ -38,7 +38,8 @@ fn end_of_string(text: &str) -> usize {
     text.len()
 }
 
-/// How long the character is that starts the text, with its quotes; a lifetime is none.
+/// Length in bytes of the character literal at the start of the text, with its quotes. `None` if
+/// the text starts with something else, for example a lifetime.
 fn character(text: &str) -> Option<usize> {
     let inside = text.strip_prefix('\'')?;
     let escape = usize::from(inside.starts_with('\\'));

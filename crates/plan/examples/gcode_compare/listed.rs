@@ -83,7 +83,8 @@ impl<'a> Case<'a> {
         !self.line().starts_with('O') && self.line().contains(letter)
     }
 
-    /// The last of some codes up to the line, as it is written, and where; that of the line included.
+    /// Returns the last of `codes` up to and including this line: the index of its line and the
+    /// code in the spelling of [`codes_of`]. `None` if no line has one.
     fn last(&self, codes: &[&str]) -> Option<(usize, String)> {
         self.last_before(self.at + 1, codes)
     }

@@ -5,7 +5,8 @@
 pub struct SpeedCaps {
     /// Distance of two values, mm.
     pub spacing_mm: f64,
-    /// Bounds from the start of the path on, mm/s; infinite where there is none.
+    /// Bounds at the arc lengths 0, `spacing_mm`, 2 `spacing_mm` and so on, mm/s; infinity means no
+    /// bound.
     pub caps_mm_s: Vec<f64>,
 }
 

@@ -39,7 +39,7 @@ pub(crate) struct JointSide {
     pub length_mm: f64,
 }
 
-/// Bound on the square of the speed at the joint, mm2/s2, infinite where there is none.
+/// Upper bound on the square of the speed at the joint, mm2/s2; infinity means no bound.
 pub(crate) fn joint_cap(before: &JointSide, after: &JointSide, corner: Corner, limits: &PathLimits) -> f64 {
     let theta = angle(before.tangent, after.tangent);
     let corner_cap = match corner {

@@ -62,7 +62,8 @@ use limits::{DirectionLimits, PERIOD_S};
 use queue::SegmentQueue;
 use std::collections::VecDeque;
 
-/// No block comes into the queue while it holds so many segments. LinuxCNC's holds 2000; the look-ahead goes back over 50.
+/// The queue takes no block while it holds this many segments. LinuxCNC's queue holds 2000
+/// segments; its look-ahead goes back over 50.
 const MOST_SEGMENTS: usize = 200;
 
 /// Rounding of sums over many periods.

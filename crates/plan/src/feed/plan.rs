@@ -67,10 +67,11 @@ struct Between {
 }
 
 impl<'p> Plan<'p> {
-    /// Plans both paths with a planner, on a machine whose PLC and spindle hold the motion up.
+    /// Plans the steps of a program with `planner`; `plc` adds the waits for PLC and spindle.
     ///
     /// # Errors
-    /// Where a limit is none.
+    /// If a limit is outside its allowed range. With a planner that needs axis limits, also if one
+    /// of them or the path tolerance is missing.
     pub fn new(
         steps: BlendedSteps<'p>,
         constraints: &Constraints,

@@ -84,8 +84,9 @@ const LAST_OVER_MM: f64 = 5e-5;
 /// And so much beyond the feedrate, as a part of it.
 const LAST_OVER: f64 = 1e-9;
 
-/// First guesses, tried in turn: the motion of the nodes, or so many times slower along the chords; and the barrier to begin with. The
-/// first is for nodes whose motion was a solution.
+/// First guesses, tried in turn: a motion and the first barrier. The motion is the motion of the
+/// nodes, or with `Some(f)` a motion along the chords that is `f` times slower. The first guess is
+/// for nodes whose motion was a solution.
 const GUESSES: [(Option<f64>, f64); 4] = [(None, 0.01), (None, 0.1), (Some(1.3), 0.1), (Some(2.0), 1.0)];
 
 /// Nodes keep this part of the feedrate away from it, for rounding; where the speed rises by more between two nodes, the window is

@@ -162,7 +162,7 @@ impl SectionPlanner for Trapezoid {
                 let cap = section.joint_cap.min(last.section.end_cap).min(section.start_cap);
                 (cap, cap.min(self.gain(last.forward, last.section.length_mm)))
             }
-            // Only the very first section finds nobody waiting: a commit always keeps the last section.
+            // Only the very first section finds no other one: a commit always keeps the last.
             None => (0.0, 0.0),
         };
         self.waiting.push_back(WaitingSection { section, cap, forward, backward: 0.0 });

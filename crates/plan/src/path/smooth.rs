@@ -122,7 +122,8 @@ impl Smooth {
         Point { position_mm: jet.position_mm, tangent }
     }
 
-    /// Where |C'| vanishes, the direction is that of a point a little further inside the span.
+    /// Unit tangent at a cusp, where |C'| vanishes: the direction of C' slightly further inside the
+    /// span. Returns +X if C' is zero there, too.
     #[cold]
     fn tangent_of_cusp(&self, span: usize, u: f64) -> Vector {
         let inside = self.shape.jet(span, u + 1e-6 * (0.5 - u)).first;

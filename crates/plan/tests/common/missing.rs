@@ -1,7 +1,7 @@
 //! What a test says that cannot be made here.
 
-/// Says that a test was left out for want of a program. Where `CI` is set it fails instead: nobody reads what a test that
-/// passes says.
+/// Prints that a test is skipped because a program is missing. If `CI` is set, it panics instead:
+/// the output of a passing test would go unread.
 #[track_caller]
 pub(crate) fn missing(what: &str) {
     let ci = std::env::var_os("CI").is_some_and(|value| !value.is_empty());

@@ -65,10 +65,10 @@ servo_periods! {
 macro_rules! models {
     ($($name:ident: $axes:literal;)*) => {
         $(
-            /// Reads a model from as many bytes as there are.
+            /// Reads a model from `length` bytes. Returns whether they hold a valid model.
             ///
             /// # Safety
-            /// There are so many bytes.
+            /// `bytes` points to `length` readable bytes.
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn $name(bytes: *const u8, length: usize, model: &mut ModelBlock<$axes>) -> bool {
                 // SAFETY: as the caller promises.

@@ -75,7 +75,8 @@ impl Evidence {
             .find(|sign| sign.is_certain && !others.iter().any(|code| sign.what.starts_with(code)))
     }
 
-    /// Whether two likely signs are those of a lathe of Fanuc or Haas, and none is that of a mill or of LinuxCNC.
+    /// Returns the first sign of a Fanuc or Haas lathe. `None` with fewer than two kinds of them,
+    /// or with any sign of a mill or of LinuxCNC.
     pub(crate) fn likely_lathe(&self) -> Option<Sign> {
         let is_likely = self.lathe.len() > 1 && self.mill.is_empty() && !self.has_linuxcnc;
         self.lathe.first().copied().filter(|_| is_likely)
@@ -203,7 +204,7 @@ struct LineWords {
     m: Vec<u32>,
     letters: u32,
     feed: Option<f64>,
-    /// T with the number of an offset behind that of the tool.
+    /// Whether a T word has three or four digits: the tool number, then the offset number.
     lathe_tool: bool,
 }
 

@@ -1,8 +1,12 @@
 //! G71 (passes along Z) and G72 (passes along X): straight passes down to the profile, then along it.
 //!
-//! The allowance U W moves the profile and the start of the cycle. From the moved start C, pass n cuts at the depth n times that of a pass, up to the
-//! profile; there the tool goes off at 45 degrees by R and returns in a rapid. Then it cuts along the moved profile and goes back to the start of
-//! the cycle. A profile that comes down again has pockets, which need X and Z in its first block (type II); they are cut level by level.
+//! The allowance U W moves the profile and the start of the cycle. Pass n starts from the moved
+//! start C and cuts up to the profile, at n times the depth of cut. There the tool retracts at 45
+//! degrees by R and returns in a rapid. After the last pass the tool cuts along the moved profile
+//! and returns to the start of the cycle.
+//!
+//! A profile that comes down again has pockets. It needs X and Z in its first block (type II), and
+//! the cycle cuts the pockets level by level.
 //!
 //! Coordinates as in the cycles of LinuxCNC, `motion/lathe/cycle_plane.rs`.
 

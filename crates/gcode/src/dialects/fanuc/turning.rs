@@ -24,7 +24,7 @@ impl Interpreter {
         let taper_mm = self.fanuc.turning.taper_mm;
         let start = self.at;
         let name = code % OWN;
-        // The axis of infeed, and that of the cut.
+        // The axes of the infeed and of the cut.
         let [infeed, along] = if name == 940 { [2, 0] } else { [0, 2] };
         let mut begin = start;
         begin[infeed] = end[infeed] + taper_mm;

@@ -107,7 +107,7 @@ impl UpperEnvelope {
         self.curves.push(piece);
     }
 
-    /// Keeps so many pieces, the last of them up to `point`.
+    /// Keeps the first `kept` pieces and ends the last of them at `point`.
     fn shorten(&mut self, kept: usize, point: PlanePoint) {
         self.curves.truncate(kept);
         if let Some(last) = self.curves.last_mut() {

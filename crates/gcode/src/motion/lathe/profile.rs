@@ -95,7 +95,7 @@ impl LatheCycle {
     /// profile ends.
     fn stock_side(&self, [start_mm, entry_mm, last_mm]: [f64; 3], axis: usize) -> Read<f64> {
         let [to_start, to_last] = [start_mm, last_mm].map(|mm| clear(mm - entry_mm));
-        // Finishing needs the side for its distances only, and LinuxCNC takes that of the start.
+        // Finishing (G70) needs the side for its distances only. LinuxCNC uses the start's side.
         if self.code != 700 && to_start.zip(to_last).is_some_and(|(start, last)| start != last) {
             let name = ["X", "Y", "Z"][axis];
             let message = format!(

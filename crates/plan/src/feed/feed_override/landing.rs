@@ -19,7 +19,7 @@ const AIMED_OVER: f64 = 2.5e-4;
 /// Longest way, steps.
 const MOST_STEPS: u32 = 300;
 
-/// A shorter rest of a period is none, s.
+/// A step that is no longer than this ends its period, s: the rest of the period is dropped.
 const SHORTEST_S: f64 = 1e-10;
 
 /// So often the change of the slope that keeps a limit is looked for about the one before.
@@ -34,7 +34,7 @@ const MOST_BEND: f64 = 1.0;
 /// Iterations for the end of a step.
 const NEWTON: u32 = 6;
 
-/// A slope of this is none.
+/// A slope of the rate below this counts as zero, 1/s.
 const NO_SLOPE_1_S: f64 = 1e-9;
 
 /// Moments of a period at which limits are looked at.

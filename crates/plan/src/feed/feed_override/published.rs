@@ -55,7 +55,8 @@ impl PublishedPlan {
         self.spans.partition_point(|span| span.from_s <= tau_s).saturating_sub(1)
     }
 
-    /// The span at a time; at rest where there is none.
+    /// Span at plan time `tau_s`. After the end of the plan it is the last span; a plan without
+    /// spans gives a rest.
     pub fn span_at(&self, tau_s: f64) -> PublishedSpan {
         let none = PublishedSpan { from_s: 0.0, motion: AxisMotion::REST, cutting: false, is_rest: true };
         self.spans.get(self.index(tau_s)).copied().unwrap_or(none)

@@ -67,7 +67,7 @@ struct BlendCorner {
 struct CornerSide {
     /// Where it is a circle: the circle, whether it curves into the corner, and how much of it may go.
     circle: Option<(CircleShape, bool, f64)>,
-    /// What there is of it for the blend.
+    /// Length of the side that the blend may use, mm.
     length_mm: f64,
 }
 
@@ -88,7 +88,7 @@ pub(super) fn arc_blend(before: &MotionSegment, after: &MotionSegment, limits: &
     let sides = corner.sides(before, after)?;
     let size = corner.size(before, after, &sides, limits)?;
     let center_mm = corner.center(&sides, &size)?;
-    // Between lines the radius is that of the tolerance already.
+    // Between two lines, `size` has already bounded the radius by the tolerance.
     let is_round = sides.iter().any(|side| side.circle.is_some());
     if is_round && norm(sub(center_mm, corner.point_mm)) - size.radius_mm > size.tolerance_mm {
         return None;
@@ -314,7 +314,7 @@ impl BlendCorner {
     }
 }
 
-/// Half the angle between the sides of a corner: a right angle where there is none.
+/// Half the angle between the sides of a corner, rad: a right angle if the path goes straight on.
 pub(super) fn half_angle([before, after]: [Vector; 2]) -> f64 {
     0.5 * (PI - angle(before, after))
 }

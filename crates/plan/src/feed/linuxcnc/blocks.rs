@@ -228,7 +228,7 @@ impl BlockMaker {
             self.block(SegmentShape::Line(line), places_mm, &mode, [highest_mm_s, accel_mm_s2]);
             self.from = (end_mm, end_s_mm);
         } else {
-            // A way back to where it began is none; the next block stands for it, too.
+            // Points that lead back to their start make no line: the next block includes them.
             self.from.0 = end_mm;
         }
         self.chain.clear();

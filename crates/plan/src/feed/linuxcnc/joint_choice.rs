@@ -1,9 +1,13 @@
 //! How two segments are joined: tangent, by an arc, by a parabola, or at rest.
 //!
-//! A corner by `alpha` at the speed `v` takes the acceleration `2 (v / T + a) sin(alpha / 2)` for one servo period `T`. Where no axis takes more
-//! than [`KINK_RATIO`] of its own for that, the segments count as tangent, and lose as much of their acceleration; otherwise the speed at which it
-//! would be so is weighed against that of an arc and of a parabola.
-//! A parabola is two motions added, each at half of its acceleration: the next one begins while the one before slows down.
+//! A corner by `alpha` at the speed `v` takes the acceleration `2 (v / T + a) sin(alpha / 2)` for
+//! one servo period `T`. If every axis needs less than [`KINK_RATIO`] of its acceleration for that,
+//! the segments count as tangent, and their acceleration falls by the part that the corner takes.
+//! Otherwise, in G64, the fastest of three joints is chosen: the corner itself, at the speed that
+//! meets this limit; an arc; or a parabola, which counts with half its speed.
+//!
+//! A parabola adds two motions, each at half of its acceleration: the next segment begins while the
+//! one before slows down.
 
 use super::arc_blend::{ArcBlend, arc_blend, half_angle};
 use super::limits::{DirectionLimits, KINK_RATIO, PERIOD_S, TANGENTIAL_RATIO};

@@ -17,9 +17,9 @@ const NO_TIME_S: f64 = 1e-12;
 /// How far the motion comes in a period.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct PeriodStep {
-    /// By how much the axes move, mm.
+    /// Displacement of the axes, mm.
     pub way_mm: Vector,
-    /// By how much the place on the program moves, mm.
+    /// Advance of the arc length on the programmed path, mm.
     pub station_mm: f64,
 }
 

@@ -14,7 +14,7 @@ use super::limits::{DEPTH, DirectionLimits, PERIOD_S};
 use super::segment::{MotionSegment, SegmentEnd};
 use super::shape::SegmentShape;
 
-/// A segment takes at least so many servo periods.
+/// Least duration of a segment, in servo periods.
 const LEAST_PERIODS: f64 = 1.02;
 
 /// A segment that is further than this part of its length is not looked at any more.

@@ -56,7 +56,7 @@ pub(super) struct MotionSegment {
     pub end: SegmentEnd,
     /// Whether the one before blends into it.
     pub is_blended_into: bool,
-    /// Tolerance of a blend; 0 is none.
+    /// Tolerance of a blend, mm; 0 means no tolerance.
     pub tolerance_mm: f64,
     /// Whether it is a rapid.
     pub is_rapid: bool,
@@ -66,7 +66,7 @@ pub(super) struct MotionSegment {
     pub is_final: bool,
     /// Whether its speed at the end has been found to be a bound's.
     pub is_peak: bool,
-    /// What there is of it from period to period.
+    /// State that the servo periods update while it moves.
     pub run: SegmentRun,
 }
 
@@ -162,7 +162,8 @@ impl MotionSegment {
         self.is_final = true;
     }
 
-    /// Acceleration without the part of its corners; half of it where it is added to that of a neighbour.
+    /// Acceleration that its corners leave, mm/s2. A segment of a parabolic blend has half of it,
+    /// because the blend adds the accelerations of both segments.
     pub(super) fn whole_accel_mm_s2(&self) -> f64 {
         let left = 1.0 - self.kink_parts[0].max(self.kink_parts[1]);
         let is_added = self.is_blended_into || self.end == SegmentEnd::Parabolic;

@@ -4,7 +4,7 @@ use super::limits::NO_DISTANCE_MM;
 use crate::path::{Curve, Piece};
 use crate::vector::{Vector, add_scaled, cross, dot, norm, scale, sub};
 
-/// Rise by a millimetre of way that is none.
+/// An arc that rises less than this per millimeter of path counts as flat, mm/mm.
 const NO_RISE: f64 = 1e-9;
 
 /// A straight line.
@@ -37,7 +37,7 @@ pub(super) struct CircleShape {
     pub growth: f64,
     /// Way along the axis.
     pub rise_mm: Vector,
-    /// What rounding leaves between its end and that of the program.
+    /// Rounding error at its end, mm: from the computed end to the programmed end.
     pub left_over_mm: Vector,
 }
 
@@ -166,7 +166,7 @@ impl CircleShape {
         scale(1.0 / norm(tangent), tangent)
     }
 
-    /// By how much the radius grows in a radian.
+    /// Growth of the radius per radian, mm.
     pub(super) fn growth_mm(&self) -> f64 {
         self.growth * self.radius_mm / self.angle
     }

@@ -60,7 +60,7 @@ pub(super) fn control<const D: usize, const N: usize, const M: usize>(
     std::array::from_fn(|k| x[3 * k + 1] + 0.5 * steps[k].d1 * u[D] * x[3 * k + 2])
 }
 
-/// By how much the slack of the feedrate changes along a change of the unknowns, to first order.
+/// First-order change of the feedrate slack for the change `dx`, `du` of the unknowns.
 #[inline]
 fn feed_slope<const D: usize, const N: usize, const M: usize>(
     steps: &[StepOfAxis; D],

@@ -19,8 +19,9 @@ const KAPPA: f64 = 10.0;
 /// Largest defect of a solution, in units: rolling out takes it away, and moves no node by more than a nanometre.
 const LARGEST_DEFECT: f64 = 1e-7;
 
-/// It falls too where so many iterations have not come to that, but to equations that hold this well: what is left then is which of
-/// several motions of the same time is taken.
+/// The barrier also falls after more than `PATIENCE` iterations that miss the condition of `KAPPA`,
+/// if every defect is below `PATIENT_DEFECT`. The iterations then only choose among several motions
+/// that take the same time.
 const PATIENCE: u32 = 8;
 const PATIENT_DEFECT: f64 = 1e-3;
 
@@ -30,7 +31,8 @@ const STATIONARY: f64 = 1e-5;
 /// With no iterations left, a solution with a barrier up to this is better than none.
 const LAST_RESORT_MU: f64 = 1e-3;
 
-/// Where the feedrate binds, the barrier falls once more by this for so many iterations at most: the speed comes as near to it.
+/// If the feedrate binds, the barrier falls once more, by the factor `POLISH`, for at most
+/// `POLISHING` further iterations. The speed comes closer to the feedrate by the same factor.
 const POLISH: f64 = 0.05;
 const POLISHING: u32 = 8;
 

@@ -11,13 +11,14 @@ const ACCEL_PART: f64 = 0.75;
 /// Nodes that are near to the start of a window, whose state is given.
 pub(super) const NEAR_START: usize = 8;
 
-/// So many steps that follow a start that is given have their nodes where they were: what was planned there stays possible exactly.
+/// Number of planned steps after a given start that keep their nodes: the motion planned there
+/// stays exactly feasible.
 const ALIGNED: usize = 16;
 
-/// The part by which an offset may exceed that of the window before.
+/// Relative amount by which a node's offset may exceed the offset planned in the window before.
 const PLANNED_SLACK: f64 = 1e-3;
 
-/// A joint up to so many steps ahead takes the place of the next node.
+/// A joint at most this far ahead, in steps, takes the place of the next node.
 const JOINT_AHEAD: f64 = 1.3;
 
 /// A node with a first guess of what the axes do there.

@@ -18,7 +18,7 @@ const JOINTS: usize = 2;
 /// What the tolerance may be exceeded by, mm: a hundredth of a micrometre.
 const OVER_MM: f64 = 1e-5;
 
-/// A feedrate that is exceeded is lowered by so many times as much.
+/// Where a step exceeds its feedrate, the limit falls by this many times the relative excess.
 const FEED_TIGHTER: f64 = 1.2;
 
 /// What the velocity of an axis may be exceeded by between nodes. A step that exceeds it gets a node more as if it left the tube by this, mm.
@@ -35,7 +35,8 @@ const SLOWLY: f64 = 0.97;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Excess {
     pub(super) step: usize,
-    /// By how much it leaves the tube, mm, 0 where it does not.
+    /// Distance by which it leaves the tube, mm; 0 if it stays inside or was not checked. An axis
+    /// above its velocity counts as `TOO_FAST_MM`.
     pub(super) tube_mm: f64,
     /// The part of the feedrate that would keep it, 1 where it does.
     pub(super) feed_part: f64,

@@ -109,7 +109,7 @@ pub(super) struct NewtonStep<const N: usize, const M: usize> {
 }
 
 impl<const N: usize, const M: usize> NewtonStep<N, M> {
-    /// Room for so many steps.
+    /// Allocates the Newton step of a window with `n` steps.
     pub(super) fn new(n: usize) -> Self {
         Self {
             dx: vec![[0.0; N]; n + 1],

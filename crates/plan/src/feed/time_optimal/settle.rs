@@ -1,9 +1,11 @@
-//! An axis that the path leaves where it is comes to rest: within the tolerance it may do anything as long as it costs no time, and a
-//! solution leaves it drifting. At rest on the path it is none of the unknowns of the windows behind.
+//! Brings axes to rest that the path no longer moves.
+//!
+//! Within the tolerance such an axis may do anything that costs no time, so a solution leaves it
+//! drifting. Once it rests on the path, the following windows leave it out of their unknowns.
 
 use super::window::{WindowProblem, WindowUnknowns};
 
-/// So many steps an axis has to come to rest, from where the path leaves it where it is.
+/// Number of steps in which an axis comes to rest, counted from where the path stops moving it.
 const SETTLING: usize = 40;
 
 /// What of the bounds it may use for that.

@@ -9,7 +9,8 @@ use super::window::{WindowProblem, WindowUnits, WindowUnknowns};
 use crate::feed::AxisMotion;
 use crate::vector::{angle, norm, scale, sub};
 
-/// A shorter way of an axis within a window is none, mm: a thousandth of what any encoder resolves.
+/// An axis that moves no further than this within a window counts as still, mm: a thousandth of
+/// what any encoder resolves.
 const STILL_MM: f64 = 1e-9;
 
 /// Pieces so near to a step belong to it, mm.
@@ -37,7 +38,8 @@ pub(super) struct MeshProblem<'a> {
     /// Factor on the feedrate of each step.
     pub(super) feed_parts: &'a [f64],
     pub(super) ends: bool,
-    /// Begin with a motion along the chords, so many times slower, instead of with that of the nodes.
+    /// With `Some(f)`, the first guess is a motion along the chords, `f` times slower. With `None`,
+    /// it is the motion of the nodes.
     pub(super) slower: Option<f64>,
     pub(super) settings: SolverSettings,
 }

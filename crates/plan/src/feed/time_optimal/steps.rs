@@ -11,7 +11,8 @@ pub(super) struct AxisCaps {
 }
 
 impl AxisCaps {
-    /// A limit along a direction: that of the axis that reaches its own first.
+    /// Limit along `direction`: the axis that reaches its own limit first sets it. `of` selects the
+    /// limit, whose unit the result has.
     pub(super) fn along(&self, direction: [f64; 3], of: impl Fn(&AxisLimits) -> f64) -> f64 {
         let parts = self.axes.iter().zip(direction).filter(|(_, part)| part.abs() > 1e-12);
         parts.map(|(limits, part)| of(limits) / part.abs()).fold(f64::INFINITY, f64::min)

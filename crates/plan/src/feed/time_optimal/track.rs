@@ -13,7 +13,7 @@ const SHARP_RAD: f64 = 0.2;
 /// Widest span over which the path is looked at as a whole, mm; so much of it has to be known beyond a place.
 const WIDEST_MM: f64 = 2.56;
 
-/// Each span is so many times the one before.
+/// Ratio of the width of each span to the width of the span before it.
 const WIDER: f64 = 1.5;
 
 /// Distance of places, in tolerances, near the ends of pieces.
