@@ -164,7 +164,8 @@ impl MoveWriter {
         self.takes_s += STANDSTILL_S;
     }
 
-    /// A straight move of so many mm at a feed.
+    /// Appends a straight move of `length_mm` at `feed_mm_s` and adds its duration; `words` holds
+    /// its axis words.
     fn straight(&mut self, words: std::fmt::Arguments<'_>, length_mm: f64, feed_mm_s: f64) {
         self.line(format_args!("G1 {words} F{}", minutes(feed_mm_s)));
         self.max_feed_mm_s = self.max_feed_mm_s.max(feed_mm_s);

@@ -151,8 +151,8 @@ impl Log {
     /// Reads the log in a file.
     ///
     /// # Errors
-    /// A file that cannot be read or is none of the formats, columns that are missing or hold no numbers, and records of which no
-    /// model of a servo can be made.
+    /// Fails if the file cannot be read or is in no supported format, if columns are missing or
+    /// hold no numbers, or if the record is unsuitable for a servo model.
     pub fn read(path: &Path, columns: &Columns) -> Result<Self, LogError> {
         Self::read_watched(path, columns, &())
     }
@@ -175,7 +175,8 @@ impl Log {
         Self::from_reader(path, file, found.len(), columns, watch)
     }
 
-    /// The log that a reader gives: so many bytes, which the progress goes by; messages call it `name`.
+    /// Reads the log from `reader`. `size_bytes` is its size, which the progress refers to;
+    /// messages call the log `name`.
     ///
     /// # Errors
     /// As [`Log::read_watched`].

@@ -1,10 +1,11 @@
-//! Model files: a trained identifier with where it comes from, as a text that is checked value by value.
+//! Model files: a trained identifier and its origin, as a text that is checked value by value.
 //!
-//! Training writes one, [`feedwright::Setup`] takes one in place of a training, and [`Model::block`] makes the bytes of
-//! it that a component in a servo thread is given ([`feedwright_control::model`]). docs/model-file.md explains every key.
+//! Training writes a model file. [`feedwright::Setup`] takes one in place of a training.
+//! [`Model::block`] converts it to the bytes that a component in a servo thread reads
+//! ([`feedwright_control::model`]). docs/model-file.md explains every key.
 //!
-//! The checksum is that of the content: of all keys as they are written, but for the date, the version that wrote them, and itself.
-//! It finds what was changed by hand or lost on the way; it is no signature.
+//! The checksum covers every key as written, except the date, the version that wrote the file, and
+//! the checksum itself. It detects manual edits and damaged copies; it is not a signature.
 
 pub(crate) mod exact;
 pub(crate) mod keys;

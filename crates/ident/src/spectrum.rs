@@ -100,7 +100,8 @@ pub struct Spectrum {
 
 /// Standard deviations of the window in half a segment.
 const WINDOW_DEVIATIONS: f64 = 4.0;
-/// Segments follow each other by so many parts of one: the windows then overlap at 0.6 of their height.
+/// Length of a segment over the distance between the starts of consecutive segments. Their windows
+/// then overlap at 0.6 of their height.
 const SEGMENT_PARTS: usize = 4;
 
 /// Segments of a sequence as they come, and the spectrum of those so far.
@@ -122,7 +123,7 @@ impl SpectrumSegments {
         Self { window: (0..length).map(gauss).collect(), deviation, sum: vec![0.0; length / 2 + 1], weight: 0.0 }
     }
 
-    /// By how much the beginnings of two segments are apart, samples.
+    /// Distance between the starts of consecutive segments, samples.
     pub fn step(&self) -> usize {
         self.window.len() / SEGMENT_PARTS
     }

@@ -35,7 +35,7 @@ fn three_digits_are_too_coarse() {
     let digits = |values: &[f64]| values.iter().map(|v| format!("{v:.2e}").parse().unwrap()).collect::<Vec<f64>>();
     let found = refusal("t,x.cmd,x.act", &[&time_s(), &digits(&command), &digits(&actual)]);
     assert_refused(&found, RefusalReason::TooCoarse, "at 150 mm they come in steps of 1 mm");
-    // An encoder with steps of 10 um over 10 mm has three digits, and is none of it.
+    // An encoder with steps of 10 um over 10 mm also gives three digits. Its log is accepted.
     let (command, actual) = axis(5.0, 1.0);
     let steps: Vec<f64> = actual.iter().map(|v| (v * 100.0).round() / 100.0).collect();
     read(rows(&[&time_s(), &command, &steps], ",").as_bytes(), "").unwrap();

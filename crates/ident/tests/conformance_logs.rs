@@ -13,7 +13,7 @@ fn assert_near(what: &str, found: &[f64], expected: &[f64]) {
     assert!(worst < ROUNDING_MM, "{what} is off by {worst}");
 }
 
-/// The log is that of one axis that was written.
+/// Asserts that the log has this format and holds the one axis that was written.
 fn assert_is(log: &Log, format: LogFormat, (command, actual): &(Vec<f64>, Vec<f64>)) {
     assert_eq!(log.format, format, "{}", told(log));
     assert!((log.sample_time_s - SAMPLE_S).abs() < 1e-12, "{} s", log.sample_time_s);

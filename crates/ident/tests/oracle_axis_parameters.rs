@@ -43,9 +43,11 @@ fn off(found: &AxisParameters, file: &AxisParameters) -> [f64; 4] {
     ]
 }
 
-/// By how much inertia, viscous and Coulomb friction may be off, as a part, and the asymmetry, as a part of the Coulomb friction: three
-/// times what seed 1 comes to. On `workshop` and `stiff` Stribeck's 20 to 30 % of the Coulomb friction go into that, on `router` its
-/// backlash and the references that are half a millisecond late on the average go into all.
+/// Allowed relative errors of inertia, viscous friction and Coulomb friction, and of the asymmetry
+/// as a part of the Coulomb friction: three times the errors with seed 1. On `workshop` and
+/// `stiff`, the friction parameters absorb the Stribeck friction, which is 20 to 30 % of the
+/// Coulomb friction. On `router`, all four absorb backlash and references that are half a
+/// millisecond late on average.
 const BOUNDS: [(&str, [f64; 4]); 6] = [
     ("heavy", [0.001, 0.002, 0.002, 0.001]),
     ("sticky", [0.015, 0.06, 0.03, 0.003]),
@@ -55,7 +57,8 @@ const BOUNDS: [(&str, [f64; 4]); 6] = [
     ("router", [0.15, 0.6, 0.06, 0.1]),
 ];
 
-/// Presliding deflection against that of the file where it has any: Stribeck's curve makes it look shorter, backlash longer.
+/// Bounds on the identified presliding deflection over the deflection in the machine file, if the
+/// file has one. The Stribeck curve makes the deflection look shorter, backlash longer.
 const PRESLIDING: [f64; 2] = [0.4, 2.0];
 
 /// How many of them are left to the sweep.
@@ -83,7 +86,8 @@ fn what_the_machine_file_says_comes_back() {
     }
 }
 
-/// By how much share of the table, resonance and backlash of `soft` may be off, as parts: measured 0.01, 0.02 and 0.07.
+/// Allowed relative errors of the table's share of the inertia, the resonance and the backlash of
+/// `soft`: measured 0.01, 0.02 and 0.07.
 const SCREW: [f64; 3] = [0.03, 0.04, 0.15];
 
 #[test]
@@ -104,8 +108,11 @@ fn a_ball_screw_that_gives_is_found_from_the_motor_alone() {
     }
 }
 
-/// Inertia at 0.5 um of encoder noise: the output error's, measured -0.05 and -0.01 %, and that of linear least squares, measured -86 and -88 %.
+/// Allowed relative error of the inertia from the output-error method. Measured at 0.5 um of
+/// encoder noise: -0.05 and -0.01 %.
 const UNBIASED: f64 = 0.002;
+/// Linear least squares makes the inertia too small by more than this part at 0.5 um of encoder
+/// noise: measured -86 and -88 %.
 const BIASED: f64 = 0.5;
 
 #[test]

@@ -63,7 +63,7 @@ fn sinumerik_is_read_without_options_and_has_one_gap() {
     let recorded_s = log.time_s.len() as f64 * log.sample_time_s;
     assert!((7.5..7.7).contains(&recorded_s), "{recorded_s} s");
     assert_eq!(log.axes[0].torque_unit, TorqueUnit::NewtonMetre);
-    // What is called Z1 in it goes over 64 m: it is none.
+    // The signal called Z1 covers 64 m, too much for a linear axis, so it is left out.
     assert_eq!(log.axes.iter().map(|axis| axis.name.as_str()).collect::<Vec<_>>(), ["x", "y"]);
     // Behind the gap: RMS, and deviation from the mean.
     for (name, rms_um, expected_um) in [("x", 413.0, 399.0), ("y", 1556.0, 1328.0)] {

@@ -47,18 +47,18 @@ impl Stages {
         Self { planner: planner.unwrap_or(&FEED_PLANNERS[0]), ..Self::default() }
     }
 
-    /// The reference of the steps of a program on a machine.
+    /// Reference of the steps of a program on a machine.
     ///
     /// # Errors
-    /// Where a limit of the machine is none.
+    /// Fails if a limit of the machine is missing or outside its allowed range.
     pub fn reference<'p>(self, steps: Steps<'p>, machine: &Machine) -> Result<Reference<'p>, LimitsError> {
         self.reference_within(steps, machine, &Constraints::from(machine))
     }
 
-    /// The same within other constraints than the machine's.
+    /// As [`Stages::reference`], within `constraints` in place of the machine's.
     ///
     /// # Errors
-    /// Where a limit is none.
+    /// Fails if a limit is missing or outside its allowed range.
     pub fn reference_within<'p>(
         self,
         steps: Steps<'p>,
@@ -90,8 +90,9 @@ pub fn path_steps<'p>(program: impl IntoIterator<Item = Canon, IntoIter: Send + 
     Box::new(Pieces::new(program.into_iter()))
 }
 
-/// The noise of a lap of practice has the machine's seed and so many bits further up the number of the lap: further apart than seeds
-/// that are counted through.
+/// Bits by which the lap number is shifted before it is added to the machine's seed, for the noise
+/// of a practice lap. The seeds of laps then stay clear of machine seeds that are counted up one by
+/// one.
 const LAP_SEED_SHIFT: u32 = 32;
 
 /// A cut that is about to be made.
@@ -112,7 +113,7 @@ pub enum RunError {
     #[error(transparent)]
     #[diagnostic(transparent)]
     Read(#[from] ReadError),
-    /// A limit of the machine is none.
+    /// A limit of the machine is missing or outside its allowed range.
     #[error(transparent)]
     #[diagnostic(transparent)]
     Limits(#[from] LimitsError),
@@ -153,7 +154,8 @@ impl<'a> Run<'a> {
         Self { machine, caps: None, stages: Stages::of(machine), laps: 1, plan_sink: None, watch: &() }
     }
 
-    /// With laps of practice: the last of so many counts.
+    /// Sets the number of laps. All but the last are practice; only the last lap gives rows and the
+    /// result.
     #[must_use]
     pub const fn laps(self, laps: u32) -> Self {
         Self { laps, ..self }
@@ -196,10 +198,10 @@ impl<'a> Run<'a> {
         self.cut(|| Ok(Box::new(steps.iter().cloned().map(Ok))), controller, sinks)
     }
 
-    /// As [`Run::cut_steps`], of a path that is read for each lap anew.
+    /// As [`Run::cut_steps`], for a path that is read anew for each lap.
     ///
     /// # Errors
-    /// A path that cannot be read or is none, too.
+    /// As [`Run::cut_steps`]; also if the program cannot be read or a motion has no path.
     pub fn cut<'p, const N: usize>(
         &self,
         mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
@@ -218,7 +220,7 @@ impl<'a> Run<'a> {
     ) -> Result<RunResult, RunError> {
         controller.reset();
         for lap in 1..self.laps {
-            // Noise does not repeat itself from lap to lap: what is learned of it is of no use.
+            // Noise differs from lap to lap, so a controller cannot gain from learning it.
             let seed = self.machine.noise.seed.wrapping_add(u64::from(lap) << LAP_SEED_SHIFT);
             let practice = self.machine.with_noise_seed(seed);
             let practising = Run { machine: &practice, plan_sink: None, ..*self };

@@ -38,7 +38,8 @@ use nonideal::{Moment, NonidealAxis};
 pub struct Measurement<const N: usize> {
     /// True position of the tool at the end of the servo period, mm.
     pub position_mm: [f64; N],
-    /// That of the joints, mm: the tool's, but for the geometry that no encoder sees.
+    /// Position of the joints, mm: the tool position without the geometric errors that no encoder
+    /// sees.
     pub joint_mm: [f64; N],
     /// The position as it is measured, mm.
     pub measured_mm: [f64; N],
@@ -164,7 +165,8 @@ impl<const N: usize> Plant<N> {
         Measurement { position_mm: self.tool_mm(joint_mm), joint_mm, measured_mm, torque_nm }
     }
 
-    /// Time goes on by servo periods in which nothing moves: speeds and angles stay, the disturbance is that of the time.
+    /// Advances time by `periods` servo periods in which nothing moves. Speeds and angles stay; the
+    /// disturbance continues at the new time.
     pub fn skip(&mut self, periods: u64) {
         self.period += periods;
     }

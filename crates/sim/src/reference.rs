@@ -25,7 +25,8 @@ use std::collections::VecDeque;
 pub struct Sample {
     /// Point of the planned path, mm.
     pub position_mm: [f64; 3],
-    /// Its unit tangent; at rest that of the motion before, at the start that of the first motion.
+    /// Unit tangent of the planned path. At rest it is the tangent of the motion before, at the
+    /// start the tangent of the first motion.
     pub tangent: [f64; 3],
     /// Arc length of the programmed path from its start, mm.
     pub s_mm: f64,
@@ -81,10 +82,12 @@ impl<'p> Reference<'p> {
         Self { plan, kept: KeptPath::default(), events: VecDeque::new(), planned_s: 0.0, ended: false }
     }
 
-    /// The reference of a program, blended and planned by the first members of their families, without a PLC.
+    /// Reference of a program, without a PLC, from the first member of [`BLENDS`] and of
+    /// [`FEED_PLANNERS`].
     ///
     /// # Errors
-    /// Where a limit is none. Errors of the program end it early: see [`Reference::fault`].
+    /// Fails if a limit is outside its allowed range. An error in the program does not fail here:
+    /// it ends the path early, see [`Reference::fault`].
     pub fn of_program(
         source: impl IntoIterator<Item = Canon, IntoIter: Send + 'p>,
         constraints: impl Into<Constraints>,
@@ -92,10 +95,10 @@ impl<'p> Reference<'p> {
         Self::planned(Box::new(Pieces::new(source.into_iter())), &constraints.into())
     }
 
-    /// As [`Reference::of_program`], of a path that no program says.
+    /// As [`Reference::of_program`], for a path that is given as steps.
     ///
     /// # Errors
-    /// Where a limit is none.
+    /// Fails if a limit is outside its allowed range.
     pub fn of_steps(
         steps: impl IntoIterator<Item = Step, IntoIter: Send + 'p>,
         constraints: impl Into<Constraints>,
@@ -135,7 +138,8 @@ impl<'p> Reference<'p> {
         self.kept.nearest_along(point_mm, lo_mm, hi_mm.max(lo_mm))
     }
 
-    /// Start and end of the rest, a dwell or what a PLC takes, at `tau_s`; none where there is none.
+    /// Start and end of the rest at `tau_s`, in plan time, s: a dwell, or the time that a PLC
+    /// takes. `None` if `tau_s` is not in a rest.
     pub fn rest(&mut self, tau_s: f64) -> Option<(f64, f64)> {
         self.read_until(tau_s);
         self.kept.rest(tau_s)
@@ -163,7 +167,7 @@ impl<'p> Reference<'p> {
         if self.events.front()?.tau_s <= until_s { self.events.pop_front() } else { None }
     }
 
-    /// Drops what ends before `tau_s`: pieces, phases, and events that nobody has taken.
+    /// Drops what ends before `tau_s`: pieces, phases, and events that were not taken.
     pub fn forget_before(&mut self, tau_s: f64) {
         self.kept.forget_before(tau_s);
         while self.events.front().is_some_and(|event| event.tau_s < tau_s) {

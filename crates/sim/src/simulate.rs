@@ -1,12 +1,13 @@
-//! The closed loop: reference, controller and plant, one servo period after the other.
+//! The closed loop of reference, controller and plant, one servo period after the other.
 //!
-//! Row n: at t = n Ts the tick makes the position command from the reference and the tool position; the plant holds it for
-//! one servo period; the contour error is that of the tool at its end, against the exact path.
+//! Row n: at t = n Ts, the tick computes the position command from the reference and the measured
+//! position. The plant holds the command for one servo period. The contour error of the row
+//! compares the tool position at the end of this period with the exact path.
 //!
 //! | File | What |
 //! |---|---|
 //! | `simulate/foot.rs` | how far along the path the tool has come, and so the contour error |
-//! | `simulate/joints.rs` | the contour error without the geometry that no encoder sees |
+//! | `simulate/joints.rs` | the contour error without the geometric errors that no encoder sees |
 //! | `simulate/rests.rs` | which part of a long rest is simulated |
 //! | `simulate/uncut.rs` | how far the tool stays away from what it should have cut |
 //! | `simulate/tick_times.rs` | how long the ticks took |

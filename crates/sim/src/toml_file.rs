@@ -23,7 +23,8 @@ pub use reader::Table;
 /// Such a file is a page or a few of text; a larger one is some other file.
 pub const MAX_FILE_BYTES: u64 = 1 << 20;
 
-/// A file that is not TOML at all is wrong in every line: so many faults of syntax are told of.
+/// Most syntax faults that are listed; a hint counts the others. A file that is not TOML at all has
+/// a fault in every line.
 const MAX_SYNTAX_FAULTS: usize = 5;
 
 /// A text, taken apart; its values know their places in the text.

@@ -8,12 +8,12 @@ use thiserror::Error;
 ///
 /// Work of one stage has a number of steps; it is asked at least every second of a core's time.
 pub trait Watch: Sync {
-    /// A stage of so many steps begins.
+    /// Called when a stage of `steps` steps begins.
     fn begin(&self, stage: &str, steps: u64) {
         let _ = (stage, steps);
     }
 
-    /// So many more steps are done.
+    /// Called when another `steps` steps are done.
     fn advance(&self, steps: u64) {
         let _ = steps;
     }
@@ -37,7 +37,7 @@ pub trait Watch: Sync {
     }
 }
 
-/// Tells nobody, goes on to the end, and has no clock.
+/// Ignores the progress, never cancels, and has no clock.
 impl Watch for () {}
 
 /// Steps of a stage that is told by parts.

@@ -1,4 +1,5 @@
-//! Programs that nobody here wrote: every motion has a path, the plan ends where the program ends, memory stays bounded.
+//! Programs from other projects: every motion has a path, the plan ends where the program ends, and
+//! memory stays bounded.
 
 use crate::programs::{LIMITS, distance};
 use feedwright_gcode::canon::Canon;

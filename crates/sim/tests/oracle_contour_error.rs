@@ -1,7 +1,7 @@
-//! The contour error in real time, which knows only the stored knots, against the exact distance to the path, on every
-//! program of `parts/`: within 1 um, with bounded work.
+//! Checks the contour error in real time, which uses only the stored knots, against the exact
+//! distance to the path, on every program of `parts/`: they agree within 1 um, with bounded work.
 //!
-//! The exact distance is that of `Reference::nearest`, which is itself checked here against dense sampling.
+//! `Reference::nearest` gives the exact distance; dense sampling checks it here.
 
 use std::path::{Path, PathBuf};
 

@@ -13,7 +13,7 @@ use feedwright_plan::{
 use feedwright_sim::path_steps;
 
 const PERIOD_S: f64 = 1e-3;
-/// One command in so many is recorded.
+/// The recording keeps one command out of this number.
 const KEPT: usize = 20;
 /// Half a unit of the last decimal that is recorded, in each axis, and rounding of sums over some thousand periods.
 const SAME_MM: f64 = 2e-6;

@@ -43,7 +43,7 @@ fn at_speed_um(machine: &Machine) -> [Vec<f64>; 2] {
     lags_um(machine, |t_s| SPEED_MM_S * t_s)
 }
 
-/// By how much the tool yields to a torque, um.
+/// Deflection of the tool under a constant torque that the speed loop has to hold, um.
 fn yields_um(axis: &Axis, torque_nm: f64) -> f64 {
     torque_nm / (axis.kv_nm_s_per_rad * axis.kp_1_s * axis.rad_per_mm()) * 1e3
 }
@@ -145,7 +145,8 @@ fn cogging_and_ripple_are_waves_over_the_turn() {
 
 #[test]
 fn slow_torque_noise_moves_the_tool_by_what_the_loop_yields() {
-    // A correlation time of 1 s is fifty times that of the loop. Over 400 seeds: standard error of the deviation 3.5 %, four of them.
+    // A correlation time of 1 s is fifty times the time constant of the loop. Over 400 seeds the
+    // standard error of the deviation is 3.5 %; the tolerance is four standard errors.
     let noisy = machine(|axis| (axis.torque_noise_nm, axis.torque_noise_s) = (0.1, 1.0));
     let mut square = 0.0;
     for seed in 0..400 {

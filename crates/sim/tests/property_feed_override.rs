@@ -1,5 +1,5 @@
-//! What holds of overrides and feed holds whatever the plan: the path is that of the plan, limits are kept, and a hold stops as soon as
-//! closed forms allow.
+//! Properties of overrides and feed holds on any plan: the tool stays on the planned path, the
+//! limits hold, and a hold stops as soon as closed forms allow.
 
 use crate::programs::{BLEND, LIMITS, Random, arc, distance, polyline};
 use feedwright_gcode::canon::Canon;
@@ -135,7 +135,8 @@ fn a_hold_at_the_feedrate_on_a_circle_is_within_five_per_cent_of_the_least_way()
     }
 }
 
-/// From rest on a line at constant jerk j the least way is that of -j for twice the time and j again.
+/// From rest on a line at constant jerk j, the shortest stop takes -j for twice the time that has
+/// passed, then j for that time once more.
 #[test]
 fn a_hold_while_the_speed_rises_is_within_five_per_cent_or_six_micrometres_of_the_least_way() {
     let plan = published(polyline(&[[0.0; 3], [60.0, 0.0, 0.0]], 200.0, BLEND));

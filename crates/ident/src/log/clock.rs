@@ -23,7 +23,8 @@ pub(super) struct Clock {
     pub(super) uneven_s: Option<[f64; 2]>,
 }
 
-/// Servo period of a control where nothing else is known: that of LinuxCNC as it is delivered.
+/// Servo period, s, assumed when neither the file, the options nor a recorded speed gives it:
+/// LinuxCNC's default.
 const USUAL_SERVO_S: f64 = 1e-3;
 /// From how many times the usual step on samples are missing.
 const GAP_STEPS: f64 = 1.5;

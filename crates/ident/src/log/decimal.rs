@@ -12,8 +12,8 @@ const EXACT: [f64; 23] = [
 /// Digits of which every whole number is exact.
 const EXACT_DIGITS: u32 = 15;
 
-/// The number in a field, spaces and quotes around it allowed; none where it is none. An empty field and `nan` are no number either,
-/// but [`f64::NAN`].
+/// Parses the number in a field; spaces and quotes around it are allowed. Returns [`f64::NAN`] for
+/// an empty field and for `nan`, and `None` for anything else that is not a number.
 pub(super) fn parse(field: &[u8], point: u8) -> Option<f64> {
     let field = trimmed(field);
     if field.is_empty() {

@@ -143,7 +143,7 @@ fn labels(row: &[u8], delimiter: u8, point: u8) -> Vec<String> {
             _ => names.push(String::from_utf8_lossy(field).into_owned()),
         }
     }
-    // Behind its number the name is that of the number alone.
+    // The column of the number keeps the name; the column of the name itself stays unnamed.
     for pair in names.chunks_exact_mut(2) {
         pair[0].clear();
     }

@@ -21,7 +21,7 @@ pub enum LogError {
         #[help]
         hint: Option<&'static str>,
     },
-    /// The file is none of the formats, or not a whole one.
+    /// The file is in no supported format, or it is damaged or incomplete.
     #[error("{}{}: {message}", path.display(), line_of(*line))]
     Format {
         /// The file.
@@ -41,7 +41,7 @@ pub enum LogError {
         path: PathBuf,
         /// What is missing or wrong.
         message: String,
-        /// What there is, and how to say it.
+        /// Remedy: how to assign the columns with `--columns`.
         #[help]
         hint: String,
     },
@@ -95,7 +95,7 @@ pub enum RefusalReason {
     FeedbackNotConnected,
     /// The actual position leads the command.
     Swapped,
-    /// The actual position is that of another axis.
+    /// The actual position follows the command of another axis, or does not follow its own command.
     Mixed,
     /// Nothing moves.
     Constant,

@@ -126,7 +126,7 @@ pub enum LogFinding {
         axis: String,
         /// RMS of command minus actual position, um.
         following_um: f64,
-        /// By how much later it is, s.
+        /// Delay of the actual position behind the command, s.
         delay_s: f64,
     },
     /// The actual position comes in steps.
@@ -151,7 +151,7 @@ pub enum LogFinding {
         /// Last of them, s.
         to_s: f64,
     },
-    /// The speed stays below that of the command.
+    /// The actual speed stays at a limit below the commanded speed.
     SpeedLimit {
         /// The axis.
         axis: String,

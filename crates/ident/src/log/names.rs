@@ -21,9 +21,9 @@ pub(super) enum Quantity {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Meaning {
     pub(super) quantity: Quantity,
-    /// Name of the axis; empty where there is none.
+    /// Name of the axis; empty if the column name states no axis.
     pub(super) axis: String,
-    /// Unit in the name; empty where there is none.
+    /// Unit in the name; empty if the name states no unit.
     pub(super) unit: String,
     /// How well the word fits, the more the better: of two columns of a kind the better is taken.
     pub(super) fit: u8,

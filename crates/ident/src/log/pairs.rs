@@ -21,7 +21,7 @@ pub(super) struct ColumnPair {
     pub(super) rms: f64,
 }
 
-/// Mean and standard deviation over every so many-th sample.
+/// Mean and standard deviation of every `stride`-th sample.
 fn moments(values: &[f64], stride: usize) -> (f64, f64) {
     let count = values.len().div_ceil(stride).max(1) as f64;
     let mean = values.iter().step_by(stride).sum::<f64>() / count;

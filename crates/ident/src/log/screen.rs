@@ -200,7 +200,8 @@ fn swapped(axis: &LogAxis, clock: &Clock) -> Option<Refusal> {
     })
 }
 
-/// The actual position is that of another axis, or of none.
+/// Refuses an axis whose actual position follows the command of another axis, or does not follow
+/// its own command.
 fn mixed(axes: &[LogAxis], number: usize) -> Option<Refusal> {
     let axis = &axes[number];
     let stride = axis.actual_mm.len().div_ceil(50_000).max(1);

@@ -283,7 +283,8 @@ impl RowsSeed<'_> {
     }
 }
 
-/// A number; anything else is none.
+/// One value of a signal. A boolean becomes 0 or 1, a text or null becomes NaN, and an array or
+/// object is an error.
 struct SignalValue(f64);
 
 impl<'de> Deserialize<'de> for SignalValue {

@@ -28,7 +28,7 @@ pub(crate) struct LogColumn {
     pub unit: String,
     /// The axis that it belongs to, where the file says so.
     pub axis: Option<String>,
-    /// A value a row; empty where nobody needs it.
+    /// One value per row; empty if the reader does not need the column.
     pub values: Vec<f64>,
     /// The first row whose value is no number, and what stands there.
     pub not_a_number: Option<(usize, String)>,
@@ -58,7 +58,8 @@ impl LogTable {
 /// Which line a row stands in.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(crate) struct LineNumbers {
-    /// From this row on, the line is the row plus so many; in the order of rows.
+    /// A row and a shift, in the order of rows: from this row on, the line number is the row plus
+    /// the shift.
     shifts: Vec<(usize, u64)>,
 }
 

@@ -66,7 +66,8 @@ pub(super) fn read(
     rows.finish()
 }
 
-/// The dialect, or why there is none.
+/// Dialect of the table that begins with `head`. Fails if `head` is empty, binary or UTF-16, or has
+/// no rows of at least two numbers.
 fn dialect_of(path: &Path, head: &[u8]) -> Result<TableDialect, LogError> {
     const HINT: &str = "logs are text tables, files of halsampler and halscope, MATLAB files (version 5 to 7) and JSON of Sinumerik Edge";
     if head.is_empty() {

@@ -1,4 +1,5 @@
-//! A machine as a model that nobody had to identify: the axes with the numbers of its file.
+//! Builds a model from a machine without identification: the axes have the values of the machine
+//! file.
 
 use feedwright_control::{IdentifiedAxes, ModelBlock, Trained};
 use feedwright_sim::Machine;

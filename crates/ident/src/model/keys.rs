@@ -53,7 +53,8 @@ const SERVO: &[Key<Weights>] = &[
     key!(numbers spread, "", -MAX_SPREAD, MAX_SPREAD),
 ];
 
-/// The mechanics period, and a key for each number of an axis, with that of all axes in a row.
+/// The mechanics period, then one key for each parameter of an axis. Each of these keys holds one
+/// value per axis.
 macro_rules! axes_keys {
     ($($index:literal)*) => {{
         const { assert!(AxisKnowledge::NUMBERS.len() == [$($index),*].len(), "a key for each number of an axis") };

@@ -8,7 +8,7 @@ use feedwright_ident::{Columns, Log, LogError};
 pub(crate) const SAMPLE_S: f64 = 1e-3;
 /// Samples.
 pub(crate) const SAMPLES: usize = 3000;
-/// By how much the actual position is late, s.
+/// Lag of the actual position behind the command, s.
 pub(crate) const LAG_S: f64 = 8e-3;
 
 /// Command and actual position of an axis, mm, six digits behind the point.

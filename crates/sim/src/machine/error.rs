@@ -18,7 +18,7 @@ pub(super) const KIND: Kind = Kind {
 /// Why there is no machine.
 #[derive(Debug, Error, Diagnostic)]
 pub enum MachineError {
-    /// The name is none of the built-in machines.
+    /// No built-in machine has this name.
     #[error("no machine is called '{name}'; there is {known}")]
     UnknownName {
         /// As it was given.
@@ -29,7 +29,7 @@ pub enum MachineError {
         #[help]
         hint: String,
     },
-    /// The file is none, or has faults.
+    /// The machine file cannot be read, is too large, is not text, or has faults.
     #[error(transparent)]
     #[diagnostic(transparent)]
     File(#[from] FileError),

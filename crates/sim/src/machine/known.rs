@@ -16,7 +16,8 @@ use super::{Limits, Machine, Period};
 /// What is known of a machine.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Known {
-    /// Periods of the control. That of the speed loop is among them: a drive's manual has it.
+    /// Periods of the control, including the period of the speed loop, which the drive's manual
+    /// states.
     pub period: Period,
     /// What the machine may be asked for.
     pub limits: Limits,

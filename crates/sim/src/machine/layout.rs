@@ -12,7 +12,8 @@ use crate::toml_file::{Document, Fault, Table};
 /// rounding of two decimal numbers and their quotient, far below any ratio that is off by a digit.
 const WHOLE_RATIO_TOLERANCE: f64 = 1e-12;
 
-/// More mechanics steps than this within a servo period are a mistaken unit, and nobody could wait for them.
+/// Most mechanics steps in a servo period. The reader rejects a file with more: a unit is wrong,
+/// and the simulation would take too long.
 const MAX_MECHANICS_PER_SERVO: f64 = 10_000.0;
 
 /// Refuses a file of another format, whatever else stands in it.

@@ -1,8 +1,9 @@
-//! What is true of a simulated axis beside what may be known of it ([`super::Known`]): statistics of its noise, what depends on the
-//! angle of the motor, with its phase, and the load.
+//! True properties of a simulated axis beyond those that may be known ([`super::Known`]): the
+//! statistics of its noise, what depends on the angle of the motor, with its phase, and the load.
 //!
-//! It is for the limit alone ([`feedwright::lqg_preview`]): what a controller would reach that knew all that can be known. The
-//! random numbers themselves nobody knows.
+//! The limit ([`feedwright::lqg_preview`]) uses them: it shows what a controller would reach that
+//! knew everything that can be known. The random numbers themselves cannot be known.
+//! `feedwright_ident::exact_block` also writes these properties into a model block.
 
 use std::f64::consts::TAU;
 

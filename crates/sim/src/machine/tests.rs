@@ -396,7 +396,7 @@ fn the_document_has_the_units_and_ranges_of_all_keys() {
     }
 }
 
-/// tnv40 with limits of so many axes, and a tolerance of the path.
+/// `tnv40` with `keys` added to its first `axes` axes and `tolerance` added to its limits.
 fn limited(axes: usize, keys: &str, tolerance: &str) -> Result<Machine, MachineError> {
     let mut text = TNV40.to_owned();
     for name in &AXIS_NAMES[..axes] {

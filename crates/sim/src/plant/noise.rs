@@ -34,13 +34,13 @@ const LAST_BIT: f64 = 1.0 / 9_007_199_254_740_992.0;
 pub(super) enum RandomUse {
     /// The encoder of the position loop.
     Encoder = 0,
-    /// That of the motor, where the position is measured at the table.
+    /// The encoder of the motor, if the position is measured at the table.
     MotorEncoder = 1,
     /// Broadband torque.
     Torque = 2,
     /// Frequency of the disturbance.
     Wander = 3,
-    /// The moment of a reference; it is that of the bus, and the same for all axes.
+    /// The time at which a reference arrives. The bus sets it, so it is the same for all axes.
     Jitter = 4,
 }
 

@@ -1,4 +1,5 @@
-//! Torques beside that of the drive: ripple and cogging of the motor, broadband torque, a disturbance whose frequency wanders.
+//! Torques in addition to the drive's: ripple and cogging of the motor, broadband torque, and a
+//! disturbance whose frequency wanders.
 //!
 //! ```text
 //! motor:    u (1 + r sin(n_r th)) + C sin(n_c th)               th angle of the motor, rad; n periods in a turn
@@ -6,11 +7,13 @@
 //! phi = 2 pi f t + psi,  d psi/dt = 2 pi f y                     y noise with a correlation time of 1 s, one step a servo period
 //! ```
 //!
-//! Broadband torque is what cutting and guideways add that no sine is; it acts at all times, on the table where there is one.
+//! Broadband torque is the part of cutting and guideway torque that is not a sine. It acts at all
+//! times, on the table if the axis has one.
 //!
-//! Source: Holtz and Springob (1996), Identification and compensation of torque ripple in high-precision permanent magnet motor
-//! drives, for ripple and cogging as harmonics of the angle; Altintas (2012), Manufacturing Automation, chapter 2, for the cutting
-//! force at the tooth passing frequency, which follows the spindle's speed.
+//! Source: Holtz and Springob (1996), Identification and compensation of torque ripple in
+//! high-precision permanent magnet motor drives, for ripple and cogging as harmonics of the angle;
+//! Altintas (2012), Manufacturing Automation, chapter 2, for the cutting force at the tooth passing
+//! frequency, which follows the spindle's speed.
 
 use std::f64::consts::TAU;
 
@@ -62,7 +65,7 @@ pub(super) struct Wander {
     nominal_rad_s: f64,
     servo_s: f64,
     mechanics_s: f64,
-    /// By how much the phase is ahead of that at the nominal frequency, rad.
+    /// Lead of the phase over the phase at the nominal frequency, rad.
     ahead_rad: f64,
 }
 
@@ -79,7 +82,7 @@ impl Wander {
         })
     }
 
-    /// The phase goes on from that of another one.
+    /// Continues at the phase of `before`.
     pub(super) fn take_over(&mut self, before: &Self) {
         self.ahead_rad = before.ahead_rad;
     }

@@ -10,7 +10,8 @@ use std::collections::VecDeque;
 /// Times that a servo period looks at: two or three samples, and both ends of the range for the nearest point.
 const HINTS: usize = 6;
 
-/// A slower motion has the direction of its piece, mm/s: that of its velocity would be rounding.
+/// Speed, mm/s, above which the tangent is the direction of the velocity. At lower speed that
+/// direction would be rounding error, so the tangent comes from the piece.
 const MIN_DIRECTED_MM_S: f64 = 1e-6;
 
 /// Pieces and phases in order, the oldest forgotten.

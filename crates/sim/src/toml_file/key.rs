@@ -9,7 +9,7 @@ use super::{Fault, Table, quoted};
 pub struct Key<T> {
     /// Name; its end is the unit.
     pub name: &'static str,
-    /// Unit, as messages tell it; empty where there is none to tell.
+    /// Unit as messages show it; empty if they show no unit.
     pub unit: &'static str,
     /// Least and most of its number or numbers; of a text they say nothing.
     pub range: [f64; 2],
@@ -19,7 +19,8 @@ pub struct Key<T> {
     pub value: Value<T>,
 }
 
-/// What a key holds, and the field of a T that it fills; where it was left out there is none.
+/// Kind of value that a key holds, with the functions that read and write its field of a `T`. A key
+/// that was left out has no value in its field.
 pub enum Value<T> {
     /// A number.
     Number {

@@ -1,6 +1,7 @@
-//! Reads tables of a TOML text key by key and collects every fault, instead of stopping at the first.
+//! Reads tables of a TOML text key by key and collects every fault, instead of stopping at the
+//! first.
 //!
-//! The keys that are asked for are the keys that are known: what nobody asked for is reported by [`Table::finish`].
+//! The known keys are the keys that the caller asks for; [`Table::finish`] reports all others.
 
 use std::ops::{Range, RangeInclusive};
 
@@ -11,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 use super::Fault;
 use crate::number::shown;
 
-/// Of an array whose numbers are all wrong, so many are told of.
+/// Most faults that are listed for one array; the last of them counts the others.
 const FAULTS_OF_AN_ARRAY: usize = 3;
 
 /// A table under reading.
@@ -161,7 +162,8 @@ impl<'t, 'i> Table<'t, 'i> {
         Some(Self { name, at: value.span(), entries, base, asked: Vec::new() })
     }
 
-    /// Every entry as a table with its key, in the order of the file; a fault for each that is none.
+    /// Returns every entry that is a table, with its key, in the order of the file. Every other
+    /// entry is a fault.
     pub(crate) fn tables(self, faults: &mut Vec<Fault>) -> Vec<(String, Self)> {
         let mut found = Vec::new();
         for (key, value) in self.entries.or(self.base).into_iter().flatten() {
@@ -192,7 +194,7 @@ impl<'t, 'i> Table<'t, 'i> {
         self.entries.and_then(|entries| entries.get(key)).map_or_else(|| self.at.clone(), Spanned::span)
     }
 
-    /// Reports the keys that nobody asked for.
+    /// Reports every key that the caller did not ask for as a fault.
     pub fn finish(self, faults: &mut Vec<Fault>) {
         for (key, value) in self.entries.into_iter().flatten() {
             let word: &str = key.get_ref();
@@ -236,7 +238,7 @@ impl<'t, 'i> Table<'t, 'i> {
         here.or_else(|| self.base.and_then(|base| base.get(key)))
     }
 
-    /// A key of the text that nobody asked for yet and that looks like `key`.
+    /// A key of the text that looks like `key` and that the caller has not asked for yet.
     fn near_unknown(&self, key: &str) -> Option<&'t str> {
         let entries = self.entries?;
         let unknown: Vec<&str> =

@@ -20,7 +20,7 @@ const FASTER: f64 = 1.2;
 const BAND: f64 = 1.08;
 /// Part of the samples in which the speed is at its limit, where there is one.
 const AT_LIMIT: f64 = 0.02;
-/// How much more often the speed is there than that of the command.
+/// Actual samples over commanded samples in the band of a speed; a speed limit has more than this.
 const OFTENER: f64 = 2.0;
 
 /// Whether a torque stays at its largest value.
@@ -55,7 +55,8 @@ pub(super) fn torque(axis: &LogAxis, clock: &Clock) -> Option<LogFinding> {
     })
 }
 
-/// Whether the speed stays below that of the command.
+/// Finds a limit below the commanded speed at which the actual speed stays; `None` without such a
+/// limit.
 pub(super) fn speed(axis: &LogAxis, clock: &Clock) -> Option<LogFinding> {
     // As many samples as the steps ask for at the speed of the command.
     let reach_mm = axis.command_mm.windows(2).fold(0.0_f64, |reach, pair| reach.max((pair[1] - pair[0]).abs()));

@@ -1,12 +1,15 @@
-//! Lines in the spectrum of torque and following error: what turns or swings while the machine moves.
+//! Finds lines in the spectrum of torque and following error: parts that turn or vibrate while the
+//! machine moves.
 //!
 //! ```text
-//! P(f)    power of x(k) - x(k-1), mean over segments, where the command accelerates and where it does not
-//! line    P(f) above so many times the median of its neighbours, where the command has none
+//! P(f)    power of x(k) - x(k-1), mean over all segments
+//! line    peak of P(f) above `ABOVE` times the median of its neighbors, where the acceleration
+//!         of the command has no such peak
 //! a       sqrt(2 sum of P over the line) / |1 - exp(-i 2 pi f T)|
 //! ```
 //!
-//! Differences leave the slow parts out, which would leak over everything; the amplitude is that of the signal itself.
+//! The differences remove the slow parts of the signal, which would leak into all frequencies. The
+//! amplitude a is the amplitude of the signal itself, not of its differences.
 
 use std::f64::consts::PI;
 
