@@ -1,22 +1,28 @@
-//! A corrected program for a control that gets no feedback from us: the error that repeats, taken out of the program itself.
+//! A corrected program for a control without feedback: the program itself compensates the error
+//! that repeats.
 //!
-//! A controller of [`crate::controllers`] sees the tool while it cuts. A program that is taken to another control is cut open loop, planned by that control. So the
-//! correction is computed for that: the machine is simulated without what does not repeat ([`deterministic`]), along the plan of the
-//! target's own planner, and the program is changed until the simulated program itself holds:
+//! A controller of [`crate::controllers`] sees the tool while it cuts. Another control plans and
+//! cuts the program without that feedback, so the correction is computed for this case. The machine
+//! is simulated without what does not repeat ([`deterministic`]), along the plan of the target's
+//! own planner. Four steps correct the program:
 //!
-//! 1. The program falls into stretches that are cut without a corner, and all else, which stays.
-//! 2. A round plans and cuts the program as it now is. With `e` from the tool to its foot on the original path, the command becomes
-//!    `c + e + T1 e' + T2 e''` with the lags of the loop, smoothed; arcs and lines are fitted to it, and the next round begins. The best of each
+//! 1. The program is split into stretches that are cut without a corner. All else stays as it is.
+//! 2. Each round plans and cuts the current program. With `e` from the tool to its foot on the
+//!    original path, the command becomes `c + e + T1 e' + T2 e''`, smoothed, with the lags of the
+//!    loop. Arcs and lines are fitted to it, and the next round begins. The best command of each
 //!    stretch is kept.
-//! 3. At true corners and beside rapids the tool comes to rest, by a dwell of some ten milliseconds.
-//! 4. The text is written with the lines of the original wherever they need no change, read again, compared, planned and cut with what disturbs, and
-//!    measured against the original path. These figures are what is told, and a program that is no better is not written.
+//! 3. At true corners and beside rapids, a dwell of some tens of milliseconds lets the tool come to
+//!    rest.
+//! 4. The text is written; it keeps the lines of the original that need no change. It is read
+//!    again, compared, planned, cut with disturbances, and measured against the original path. The
+//!    outcome reports these figures. A program that is no better is not written.
 //!
-//! Source: the iteration is that of model-based iterative learning (Moore 1993), on the path of blocks rather than on samples.
+//! Source: model-based iterative learning (Moore 1993), applied to the path of blocks rather than
+//! to samples.
 //!
 //! | File | What |
 //! |---|---|
-//! | `nominal.rs` | the machine without what does not repeat |
+//! | `nominal.rs` | the machine without effects that do not repeat |
 //! | `loop_lag.rs` | how an axis lags behind its command |
 //! | `target.rs` | the controls that programs are for |
 //! | `source.rs` | the program with its text and modes |
@@ -25,15 +31,15 @@
 //! | `exported.rs` | a program as the other control cuts it |
 //! | `slow_end.rs` | slow ways to where the tool would run over |
 //! | `command_update.rs` | a better command from the errors of a cut |
-//! | `stretch_cut.rs` | what each stretch comes to in a cut |
+//! | `stretch_cut.rs` | errors and time of each stretch in a cut |
 //! | `budget.rs` | how many blocks and how much time a program may have |
 //! | `rounds.rs` | cut, change, fit, until it gets no better |
 //! | `block_words.rs` | motions and events as blocks |
 //! | `source_line.rs` | a line without its motion |
 //! | `program_text.rs` | the text |
-//! | `expanded_text.rs` | that of a program whose loops, subroutines and jumps are written out |
+//! | `expanded_text.rs` | the text of a program with loops, subroutines and jumps written out |
 //! | `verified.rs` | what the text says when it is read again |
-//! | `outcome.rs` | what came of it, and whether it is to be used |
+//! | `outcome.rs` | the result, and why a corrected program is refused |
 //! | `advise.rs` | the feedrates at which a tolerance is held |
 //! | `advise/feed_cuts.rs` | a program at other feedrates |
 //! | `advise/feed_search.rs` | the search of the feedrates that hold |

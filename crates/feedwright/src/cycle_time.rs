@@ -31,8 +31,9 @@ const TOLERANCE_BINDS: f64 = 0.8;
 /// A cap on the speed, which holds roughly, binds where so much of it is used.
 const CAP_BINDS: f64 = 0.98;
 
-/// The nearest point is looked for so many tolerances along the path, and in no more pieces to either side than these.
+/// The search for the nearest point covers this many tolerances of path to either side.
 const WAY: f64 = 10.0;
+/// Most pieces that the search for the nearest point covers to either side.
 const MOST_PIECES: usize = 64;
 
 /// Time of one tool.
@@ -93,7 +94,8 @@ pub(crate) fn limit_names() -> Vec<String> {
 /// Plans a program by the stages that suit a machine, `steps` once, and once more for the bound where `bound` asks for it.
 ///
 /// # Errors
-/// A program that cannot be read, a motion without a path, a limit that is none, an end from outside.
+/// Fails if the program cannot be read, a motion has no path, a limit is not a valid number, or
+/// `watch` cancels the work.
 pub fn cycle_time<'p>(
     machine: &Machine,
     bound: bool,

@@ -46,7 +46,7 @@ const SPACING_MM: f64 = 0.1;
 const ROUNDS: u32 = 24;
 const NO_GAIN: u32 = 3;
 
-/// A gain of less than this part of the time is none.
+/// Smallest reduction of the time that counts as a gain, as a fraction of the time.
 const LEAST_GAIN: f64 = 1e-3;
 
 /// From this cut on less is aimed at where errors are beyond the tolerance: before, they are beyond it since speeds still change.
@@ -63,12 +63,17 @@ const LITTLE_SHARE: f64 = 0.01;
 const TRIED: u32 = 5;
 const HELD_PART: f64 = 0.3;
 
-/// A controller errs little where the first cut is within so many tolerances.
+/// Largest error of the first cut, in tolerances, below which the controller's error counts as
+/// small. Below it, that error gives the share of the path. From it on, the search begins with the
+/// smallest of [`MUCH_SHARES`].
 const LITTLE: f64 = 1.6;
 
-/// Where no cut was within the tolerance yet, all were beyond it by this part, and in so many none came nearer by that part, none will.
+/// An error above this many tolerances is far beyond the tolerance.
 const BEYOND: f64 = 1.1;
+/// The search with one share ends after this many cuts in a row that are far beyond the tolerance
+/// and come no nearer to it. Cuts before [`AIM_LOWER`] do not count.
 const NO_NEARER: u32 = 4;
+/// A cut comes nearer if its error is below the smallest one so far by more than this fraction.
 const NEARER: f64 = 0.03;
 
 /// A plan within the tolerance.
@@ -80,13 +85,14 @@ pub struct FastestPlan {
     pub caps: Arc<SpeedCaps>,
     /// Largest distance of the tool from the path, um.
     pub largest_um: f64,
-    /// What the plan takes and what binds; its bound is that of the path alone, with the whole tolerance.
+    /// Cycle time of the plan and the limits that bind. `bound_s` is the time of a plan that gives
+    /// the path the whole tolerance and has no speed caps.
     pub cycle: CycleTime,
     /// How often it was planned and cut.
     pub rounds: u32,
 }
 
-/// Why there is none.
+/// Why [`fastest`] finds no plan.
 #[derive(Debug, Error, miette::Diagnostic)]
 pub enum FastestError {
     /// Not planned axis by axis.
@@ -231,7 +237,8 @@ impl<'a> Search<'a> {
         Ok(places)
     }
 
-    /// Looks for the least time with several shares of the path, where the tool was so many tolerances away with [`FIRST_SHARE`].
+    /// Searches for the least time over several shares of the tolerance for the path. `error` is
+    /// the largest error of the first cut, made with [`FIRST_SHARE`], in tolerances.
     fn over_shares(
         &mut self,
         error: f64,
@@ -303,7 +310,8 @@ impl<'a> Search<'a> {
         Ok(gained && !self.ends())
     }
 
-    /// Cuts with a share of the path until that gains no more, or so many times.
+    /// Cuts with one share of the path, at most `rounds` times, and sets new speed bounds after
+    /// each cut. Stops early when cuts gain no more time or come no nearer to the tolerance.
     fn descend(
         &mut self,
         share: f64,

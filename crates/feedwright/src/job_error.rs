@@ -79,7 +79,7 @@ pub enum JobError {
         #[help]
         hint: Option<&'static str>,
     },
-    /// A program is asked for of a cut that is none of the program alone.
+    /// A corrected program was requested together with `--fastest` or `--reference`.
     #[error("no corrected program is made with {option}")]
     #[diagnostic(help("{}", if *option == "--fastest" {
         "the plan of least time holds for a cut with feedback: write its setpoints (.csv)"

@@ -35,7 +35,8 @@ const REACH: f64 = 3.0;
 const REACH_MM: f64 = 0.02;
 /// The command has come to the beginning where it is this near, mm.
 const BEGUN_MM: f64 = 0.05;
-/// A command further from the path while it cuts is not that of the program, mm.
+/// Largest distance between a cutting command of the log and the program, mm. Beyond it, the log
+/// does not match the program.
 const LEFT_MM: f64 = 1.0;
 /// Boxes that differ by less have the same size, mm, and lie in the same place: corners are rounded.
 const SAME_SIZE_MM: f64 = 0.05;
@@ -87,14 +88,14 @@ pub enum MeasuredError {
         /// When, s.
         at_s: f64,
     },
-    /// The command is not that of the program.
+    /// A command of the log is too far from the program.
     #[error("at {} s the command of the log is {} mm away from the program, at line {line}; at most {LEFT_MM} mm are allowed",
         shown(*at_s), shown(*off_mm))]
     #[diagnostic(help("a log of another program, or one with more than its cut"))]
     Leaves {
         /// When, s.
         at_s: f64,
-        /// By how much, mm.
+        /// Distance of the command from the program, mm.
         off_mm: f64,
         /// Line of the program.
         line: u32,
@@ -206,7 +207,9 @@ impl PlannedPath {
         sub(high, low)
     }
 
-    /// By how much positions of the log are shifted, mm: none where that cannot be told.
+    /// Shift from the positions of the log to those of the program, mm. Zero if the log and the
+    /// program cover ranges of different size, and on each axis whose shift is within
+    /// [`SAME_SIZE_MM`].
     fn shift_mm(&self, record: &RecordedAxes<'_>, axes: usize) -> Vector {
         let mut theirs = NO_BOX;
         (0..record.len()).for_each(|k| grow(&mut theirs, record.at(k).command_mm));

@@ -10,9 +10,11 @@ use feedwright_plan::{
 use feedwright_sim::{Machine, RunError, Stages, Watch};
 use serde::Serialize;
 
-/// The rate changes every so often, s. At a low speed that rises, a change of the slope that stays for a millisecond uses little of the jerk at its begin;
-/// above the override 1 ways to a rate that can stay have to reach further ahead than so many short periods do.
+/// Period in which the rate changes, s, up to an override of 1. At a low, rising speed, a change of
+/// slope that is held for a millisecond uses little of the jerk limit at its start.
 const PERIOD_S: f64 = 2.5e-4;
+/// Period in which the rate changes, s, above an override of 1. The way back to a rate that can be
+/// held must then reach further ahead than the same number of short periods does.
 const PERIOD_ABOVE_S: f64 = 1e-3;
 
 /// Moments of a step at which limits are looked at.
@@ -58,7 +60,8 @@ pub(crate) struct OverrideTime {
 /// Plans a program, and moves along the plan. None where the planner does not say what the axes do.
 ///
 /// # Errors
-/// A program that cannot be planned, a limit that is none, an end from outside.
+/// Fails if the program cannot be planned, a limit is not a valid number, or `watch` cancels the
+/// work.
 pub(crate) fn override_time(
     machine: &Machine,
     stages: Stages,

@@ -1,5 +1,6 @@
-//! The documents speak of what there is: their links lead somewhere, every key of a machine file is explained, and
-//! ARCHITECTURE.md names no source file that is not there.
+//! The documents are consistent with the repository: their links lead to existing files,
+//! docs/machine-file.md explains every key of a machine file, and ARCHITECTURE.md names only source
+//! files that exist.
 
 use std::path::{Path, PathBuf};
 

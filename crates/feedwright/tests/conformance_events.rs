@@ -51,7 +51,8 @@ fn every_unit_has_its_row_with_the_durations_of_the_machine_file() {
     // Two stops of the motion are one where all of it happens.
     let without = time_s(&folder, &program("M0\n"), "lit.toml");
     assert!((with - without - 7.75).abs() < 0.002, "{with} s, {without} s");
-    // Nobody named the output of the machine of the paper: it takes no time, and its row is that of outputs.
+    // The machine file of the paper's machine does not name the output. The output then takes no
+    // time and appears in the row of outputs.
     let plain = time_s(&folder, &program(events), "tnv40");
     assert!((with - plain - 0.25).abs() < 0.002, "{with} s, {plain} s");
     assert!(folder.text("part.report.html").contains("M64 P3 output on"));
@@ -65,7 +66,7 @@ fn an_axis_that_turns_alone_takes_its_time_and_is_told() {
     let turned = |turn: &str| time_s(&folder, &program(turn), "tnv40") - still;
     // 36 degrees at 360 degrees/min.
     assert!((turned("A36") - 6.0).abs() < 0.002, "{}", turned("A36"));
-    // The same in inches: the unit of lengths is none of angles.
+    // The same in inches: the unit of length does not change angles.
     assert!((turned("G20\nF360\nC-36\nG21\nF360") - 6.0).abs() < 0.002);
     // U in place of X Y Z: millimetres.
     assert!((turned("U36") - 6.0).abs() < 0.002);

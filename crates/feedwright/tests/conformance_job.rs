@@ -78,7 +78,7 @@ fn rows_are_read_back_to_the_bit() {
     assert_eq!(read, rows);
 }
 
-/// Ends the work after so many steps of its progress, and keeps what it is told.
+/// Cancels the work after a number of progress steps, and records the stages and their steps.
 struct Ending {
     after: u64,
     steps: AtomicU64,

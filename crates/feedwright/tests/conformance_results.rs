@@ -198,7 +198,7 @@ fn lists_name_all_there_is() {
     }
 }
 
-/// A program of 40000 lines, which nobody cuts in the time of a test.
+/// A program of 40000 lines, too long to cut in the time of a test.
 fn long_program() -> String {
     let mut text = "G21 G90 G64\nF600\n".to_owned();
     for pass in 0..20_000 {
@@ -223,7 +223,8 @@ fn a_reader_that_goes_away_is_no_error() {
     child.stdout.take().unwrap().read_exact(&mut first).unwrap();
     let ran = Ran::from(child.wait_with_output().unwrap());
     assert_eq!(ran.stderr, "", "{ran:?}");
-    // Closed before the first byte: the verdict is still that of the run.
+    // Standard output closes before the first byte: the exit code still gives the verdict of the
+    // run.
     let reader_gone = |arguments: &[&str]| {
         let mut child = folder.command().args(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         drop(child.stdout.take());

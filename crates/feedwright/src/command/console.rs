@@ -38,7 +38,7 @@ impl Console {
         }
     }
 
-    /// A progress bar of so many steps.
+    /// A progress bar with `steps` steps, hidden on a quiet console.
     pub fn bar(&self, steps: u64) -> Bar {
         Bar::new(self.quiet, steps, self.interrupted.clone())
     }

@@ -23,7 +23,7 @@ pub(crate) fn control(name: &str) -> Result<&'static TargetControl> {
     })
 }
 
-/// Refuses a tolerance that is none.
+/// Fails if a tolerance is not above 0 or exceeds [`MAX_TOLERANCE_UM`].
 pub(crate) fn check_tolerance(tolerance_um: Option<f64>) -> Result<()> {
     match tolerance_um {
         Some(value) if !(value > 0.0 && value <= MAX_TOLERANCE_UM) => Err(miette!(

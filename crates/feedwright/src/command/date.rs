@@ -15,7 +15,7 @@ use thiserror::Error;
 #[diagnostic(help("set it to such a time, as 'date +%s' prints it, or unset it"))]
 pub struct EpochError(String);
 
-/// A time beyond this is none, s: the end of the year 9999.
+/// Latest time that is accepted, s since 1970: the end of the year 9999.
 const LATEST_S: u64 = 253_402_300_799;
 
 /// Today's date.

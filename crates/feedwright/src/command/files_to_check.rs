@@ -9,7 +9,7 @@ const ENDINGS: [&str; 5] = ["ngc", "nc", "gcode", "tap", "cnc"];
 /// Folders inside each other. Real trees have a dozen.
 const MAX_DEPTH: usize = 64;
 
-/// What there is to check.
+/// Files that `feedwright check` reads, with remarks and faults from the search for them.
 #[derive(Debug, Default)]
 pub struct FilesToCheck {
     /// Files, in the order of the arguments, those of a folder by name.

@@ -61,7 +61,8 @@ pub(crate) fn shows_unicode() -> bool {
     is_utf8 || !io::stderr().is_terminal()
 }
 
-/// Columns of the terminal: as COLUMNS says, as it is, or 80 where there is none.
+/// Columns of the terminal: the value of COLUMNS if it is a number, otherwise the actual width.
+/// Returns 80 without a terminal or below [`LEAST_COLUMNS`].
 pub(crate) fn columns() -> usize {
     let said = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     let there = || terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
@@ -74,7 +75,8 @@ pub(crate) fn text_columns() -> usize {
     columns().min(MOST_COLUMNS)
 }
 
-/// A text in lines that fit; all but the first begin with so many blanks. A number and its unit stay together.
+/// Wraps a text to the width of the terminal. Every line but the first begins with `indent` blanks.
+/// A number and its unit stay together.
 pub fn wrapped(text: &str, indent: usize) -> String {
     let text = &with_units(text);
     let blanks = " ".repeat(indent);

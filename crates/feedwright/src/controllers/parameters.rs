@@ -114,7 +114,8 @@ impl Setting {
     /// Reads `name=value` of this controller, or `CONTROLLER.name=value` of any in a table.
     ///
     /// # Errors
-    /// No such controller or parameter, and a value that is none or that is not allowed.
+    /// Fails if `text` has no value or no controller, if the controller or the parameter is
+    /// unknown, or if the value is not a number or not allowed.
     pub fn parse(text: &str, of: Option<&'static Entry>, table: Controllers) -> Result<Self, SettingError> {
         let fail = |message: String, hint: String| Err(SettingError { text: text.to_owned(), message, hint });
         let Some((place, value)) = text.split_once('=') else {

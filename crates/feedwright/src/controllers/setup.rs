@@ -272,10 +272,12 @@ impl<'a> Setup<'a> {
         })
     }
 
-    /// Trains the model that a controller uses, on a recording of the simulated machine; `date` is that of the file.
+    /// Trains the model that a controller uses on a recording of the simulated machine. `date`
+    /// becomes the date in the model file.
     ///
     /// # Errors
-    /// A controller that uses none, and more axes than the machine has.
+    /// Fails if the controller uses no model, if `axes` is not 2 or 3, if the machine has fewer
+    /// axes, or if its axes cannot be identified.
     pub fn train(&mut self, entry: &Entry, axes: usize, date: String) -> Result<Model, ModelMisfit> {
         let has = self.machine.axis_count();
         match axes {

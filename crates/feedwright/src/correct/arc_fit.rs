@@ -1,17 +1,20 @@
-//! Points to few arcs and straight lines that meet without a corner, within a tolerance.
+//! Fits a few arcs and straight lines to points, within a tolerance and without corners between
+//! them.
 //!
-//! A stretch of points is passed by a straight line, by one arc, or by a biarc: two arcs with a common tangent, the first with the
-//! tangent at the first point, the second with that at the last. With `v` from the first point to the last and `t0`, `t1` the unit
+//! A straight line, one arc or a biarc passes a stretch of points. A biarc is two arcs with a
+//! common tangent: the first starts with the tangent at the first point, the second ends with the
+//! tangent at the last point. With `v` from the first point to the last and `t0`, `t1` the unit
 //! tangents, their joint is `(p0 + p1 + d (t0 - t1)) / 2`, where
 //!
 //! ```text
 //! 2 (1 - t0 t1) d^2 + 2 d v (t0 + t1) - v v = 0
 //! ```
 //!
-//! From each point the longest stretch is taken, by doubling and halving. Arcs lie in the XY plane; along Z they rise evenly (helices). Where
-//! a stretch has no way in the plane it is straight.
+//! From each point the fit takes the longest stretch that it finds by doubling and halving. Arcs
+//! lie in the XY plane; along Z they rise evenly (helices). A stretch without motion in the plane
+//! is straight.
 //!
-//! Source: Bolton (1975), Biarc curves; the choice of equal tangent lengths is that of Sutcliffe (2005).
+//! Source: Bolton (1975), Biarc curves; equal tangent lengths as in Sutcliffe (2005).
 
 use feedwright_gcode::canon::{Plane, Shape};
 use feedwright_plan::vector::{Vector, add_scaled, distance, dot, sub};
@@ -24,7 +27,7 @@ const MOST_RAD: f64 = 3.0;
 const STRAIGHT_MM: f64 = 2e4;
 /// An arc of a smaller radius is straight, mm: its centre is only as good as its printed digits.
 const POINT_MM: f64 = 0.02;
-/// A shorter way in the plane is none, mm.
+/// Lengths in the plane up to this count as zero, mm.
 const NO_WAY_MM: f64 = 1e-6;
 /// Most points of a stretch: bounds the work.
 const MOST_POINTS: usize = 4096;
@@ -136,7 +139,9 @@ impl<'a> ArcFit<'a> {
         best
     }
 
-    /// A line or an arc with the tangent at the first point that has that of the last at its end.
+    /// A line or an arc from one point to another that starts along the tangent at the first.
+    /// `None` if it does not end along the tangent at the last or does not fit the points between
+    /// them.
     fn single(&self, from: usize, to: usize) -> Option<FitArc> {
         let (start, end) = (&self.points[from], &self.points[to]);
         let arc = self.arc(start.at_mm, start.tangent, end.at_mm);

@@ -1,25 +1,34 @@
-//! How many blocks and how much time a corrected program may have more than the original.
+//! Limits on the blocks and the time that a corrected program adds to the original.
 
-/// A stretch may take longer by this part, and by so many dwells.
+/// A stretch may take longer by this fraction of its programmed time and by [`MORE_DWELLS`].
 const MORE_TIME: f64 = 0.05;
+/// Extra time that a stretch may take, in dwells. A program may take as much for itself and for
+/// each stretch that is not a detail.
 const MORE_DWELLS: f64 = 1.5;
-/// It may have more blocks than programmed by this factor, and by so many in a time constant of the position loop, within these bounds.
+/// The limit for few blocks is the programmed number times this factor, plus [`FEW_MORE_1`] blocks
+/// for each time constant of the position loop. [`FEW_MORE`] bounds the second part.
 const FEW_BLOCKS: f64 = 1.15;
 const FEW_MORE_1: f64 = 0.32;
 const FEW_MORE: [f64; 2] = [4.0, 28.0];
-/// A stretch of more straight blocks than this, most of it, is a curve as chords: arcs in their place are no more than they are.
+/// A stretch with more straight blocks than this counts as a curve made of chords if they are more
+/// than half of its blocks. Its fine fit may have no more blocks than the stretch has as
+/// programmed.
 const CHORDS: usize = 40;
-/// Many blocks are so many times those that are programmed, or so many a second and a few, of a stretch that is no detail: one that takes so many
-/// time constants.
+/// The limit for many blocks is the larger of two numbers: the programmed blocks times this factor,
+/// or [`MANY_1_S`] blocks per second plus [`MANY_MORE`]. Details have only the limit for few
+/// blocks.
 const MANY_BLOCKS: f64 = 10.0;
 const MANY_1_S: f64 = 40.0;
 const MANY_MORE: f64 = 20.0;
+/// A stretch that takes fewer time constants of the position loop than this is a detail.
 const DETAIL: f64 = 12.5;
-/// A program may have more blocks by this factor, by so many, and by so many for each stretch that is no detail.
+/// A program may have the original number of blocks times this factor, plus [`PROGRAM_MORE`]
+/// blocks, plus [`STRETCH_MORE`] blocks for each stretch that is not a detail.
 const PROGRAM_BLOCKS: f64 = 1.15;
 const PROGRAM_MORE: f64 = 30.0;
 const STRETCH_MORE: f64 = 15.0;
-/// It may take longer by this part, and by so many dwells for each stretch that is no detail.
+/// A program may take longer by this fraction of the programmed time of its stretches, and by
+/// [`MORE_DWELLS`] for itself and for each stretch that is not a detail.
 const PROGRAM_TIME: f64 = 0.035;
 
 /// What a stretch is as programmed.
@@ -53,7 +62,8 @@ impl StretchBudget {
         (1.0 + MORE_TIME) * self.time_s + MORE_DWELLS * dwell_s
     }
 
-    /// Whether it is so short that it has to share with the others what there is.
+    /// Whether the stretch is a detail: so short that it shares the limits of the program with the
+    /// others.
     pub(super) fn is_detail(&self) -> bool {
         self.time_s < DETAIL * self.loop_s
     }
@@ -71,8 +81,9 @@ pub(super) struct StretchCost {
     pub(super) gain_mm2: Option<f64>,
 }
 
-/// The details that are given up, those with the least gain for a block first, until a program with so many other motions has few enough blocks and is
-/// fast enough.
+/// Indices of the details to give up so that the program keeps its limits on blocks and time. The
+/// details with the least gain per block come first. `other_motions` is the number of motions
+/// outside of the stretches.
 pub(super) fn details_to_give_up(costs: &[StretchCost], other_motions: usize, dwell_s: f64) -> Vec<usize> {
     let larger = costs.iter().filter(|cost| !cost.budget.is_detail()).count() as f64;
     let all = other_motions as f64 + costs.iter().map(|cost| cost.budget.blocks as f64).sum::<f64>();

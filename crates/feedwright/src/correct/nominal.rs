@@ -1,8 +1,10 @@
-//! The machine of which a correction is computed: what repeats from cut to cut and may be known.
+//! The machine for which a correction is computed: the effects that repeat from cut to cut and can
+//! be known.
 //!
-//! Loops, masses, friction and the ball screw stay. What is random, or has a phase or a place that nobody knows, is left out: the
-//! disturbance, noise and steps of the encoder, jitter, cogging, ripple and the geometry that no encoder sees. One phase of them in the program
-//! would be an error of its own in the next cut.
+//! Loops, masses, friction and the ball screw stay. Random effects are left out, and so are effects
+//! with an unknown phase or position: the disturbance, noise and steps of the encoder, jitter,
+//! cogging, ripple, and geometry errors that the encoders cannot see. A program that compensates
+//! one phase of them adds an error to the next cut.
 
 use feedwright_sim::{Axis, Machine, Noise, Squareness};
 

@@ -25,7 +25,7 @@ const ROUNDS: u32 = 10;
 const NO_GAIN: u32 = 3;
 /// Cuts at the most in which commands are given up that are worse together.
 const CHECKS: u32 = 4;
-/// A gain of less than this part is none.
+/// Smallest reduction of a stretch's error figure that counts as a gain, as a fraction of it.
 const LEAST_GAIN: f64 = 0.02;
 /// A stretch whose largest error is less stays as it is, mm: what blocks that fit a command miss it by.
 const GOOD_MM: f64 = 1e-3;

@@ -42,7 +42,7 @@ pub enum MacroLanguage {
     None,
 }
 
-/// All of them; the first is the one to take when nobody chooses.
+/// All target controls; the first is the default.
 pub const TARGETS: &[TargetControl] = &[
     TargetControl {
         name: "generic",

@@ -8,7 +8,8 @@ use feedwright_plan::vector::distance;
 const FEED_PART: f64 = 1e-3;
 /// Dwells may differ by this, s.
 const DWELL_S: f64 = 1e-3;
-/// Centres of arcs may be off by so many steps, and by this part of the radius: what reading an arc does to make both of its ends meet.
+/// The center of an arc may be off by this many printed steps plus [`CENTER_PART`] of the radius.
+/// The reader moves it so that the arc meets both of its ends.
 const CENTER_STEPS: f64 = 100.0;
 const CENTER_PART: f64 = 1e-3;
 

@@ -67,7 +67,7 @@ impl BindingAlong {
         &self.stretches
     }
 
-    /// In so many stretches of about equal time at the most.
+    /// The stretches, merged into at most `parts` of about equal time.
     pub fn in_parts(&self, parts: usize) -> Vec<BindingStretch> {
         let each = self.stretches.len().div_ceil(parts.max(1)).max(1);
         let merged = |chunk: &[BindingStretch]| chunk.iter().skip(1).fold(chunk[0], |before, next| before.merged(next));

@@ -35,7 +35,7 @@ pub(super) struct CutPlaces {
 }
 
 impl CutPlaces {
-    /// For a path with so many places.
+    /// Creates the record of a path with `count` places.
     pub(super) fn new(spacing_mm: f64, count: usize) -> Self {
         let places = vec![CutPlace::default(); count];
         Self { spacing_mm, places, behind: VecDeque::new(), last: None, last_foot_mm: 0.0, time_s: 0.0 }

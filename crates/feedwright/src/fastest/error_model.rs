@@ -26,7 +26,8 @@ const LEAST_MM: f64 = 1e-9;
 pub(super) struct ErrorModel {
     /// Contour errors, mm.
     pub(super) errors_mm: Vec<f64>,
-    /// By how much each changes with the square of the speed at the place before, there, and behind, mm/(mm/s)^2.
+    /// Change of each error with the square of the speed at the place before, at the place itself
+    /// and at the place after, mm/(mm/s)^2.
     pub(super) changes: Vec<[f64; 3]>,
 }
 

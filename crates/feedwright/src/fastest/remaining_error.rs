@@ -1,8 +1,10 @@
-//! Errors that no speed takes away: noise, friction, geometry.
+//! Errors that a lower speed does not reduce: noise, friction, geometry.
 //!
-//! An error that the servo loop makes falls with the speed, in proportion to it or faster. Where it is e1 in one cut and e2 in another that is there
-//! slower by the factor r, a line through both leaves `n = (e2 - r e1) / (1 - r)` at rest; of such an error n is none. Errors that are as large
-//! as they can get (a tool is not further from a small circle than its radius) do not fall at first: so one comparison decides nothing.
+//! An error of the servo loop falls with the speed, in proportion to it or faster. Let it be e1 in
+//! one cut, and e2 in another that is slower there by the factor r. A line through both leaves
+//! `n = (e2 - r e1) / (1 - r)` at rest, which is zero or negative for an error of the servo loop.
+//! Some errors are as large as they can get: a tool is no further from a small circle than its
+//! radius. They do not fall at first, so one comparison is not enough.
 
 use super::cut_places::{CutPlace, CutPlaces};
 
@@ -12,8 +14,9 @@ const SLOWER: f64 = 0.5;
 /// Where the tool is far away the speed so long before and behind may be to blame, s: as long as a servo loop remembers.
 const AROUND_S: f64 = 0.03;
 
-/// Where so many tolerances would be left at rest in so many comparisons of one place in a row, no speed helps. The largest of many values of noise
-/// is not the same in each cut, but not larger three times while the speed comes down to an eighth.
+/// No speed helps if more than [`LEFT`] tolerances remain at rest in [`IN_A_ROW`] comparisons of
+/// one place in a row. The largest of many noise values differs from cut to cut. It does not come
+/// out larger three times in a row while the speed falls to an eighth.
 const LEFT: f64 = 1.25;
 const IN_A_ROW: u32 = 3;
 
@@ -75,7 +78,8 @@ mod tests {
 
     const TOLERANCE_MM: f64 = 0.01;
 
-    /// Whether speed no longer matters behind four cuts of which each is so many times slower than the one before.
+    /// Whether speed no longer matters after four cuts, each slower than the one before by the
+    /// factor `slower`.
     fn given_up(slower: f64, error_mm: impl Fn(f64) -> f64) -> bool {
         let mut remaining = RemainingError::default();
         (0..4).map(|cut| 50.0 / slower.powi(cut)).fold(false, |_, speed_mm_s| {

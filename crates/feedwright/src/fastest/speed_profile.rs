@@ -164,7 +164,7 @@ struct BandMatrix {
 }
 
 impl BandMatrix {
-    /// Makes a row and its column that of the identity.
+    /// Sets row `i` and its column to those of the identity matrix.
     fn isolate(&mut self, i: usize) {
         self.rows[i] = [1.0, 0.0, 0.0];
         for before in 1..=BAND.min(i) {

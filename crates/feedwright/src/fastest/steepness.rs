@@ -1,8 +1,10 @@
-//! How steeply errors answer to the speed, from one cut to the next.
+//! How steeply errors respond to the speed, from one cut to the next.
 //!
-//! A servo loop alone makes errors that grow with the square q of the speed. A controller that holds itself back the more is asked of it makes errors
-//! that grow like a higher power p of q: lowered as if it were 1, speeds fall much too far, and swing from cut to cut. Where errors are about the tolerance,
-//! p is the slope of their logarithm over that of q, by least squares over all places of two cuts.
+//! A servo loop alone makes errors that grow with the square q of the speed. A controller that
+//! corrects less the more is asked of it makes errors that grow with a higher power p of q. With p
+//! taken as 1, speeds fall much too far and oscillate from cut to cut. For errors near the
+//! tolerance, p is the slope of the logarithm of the error over the logarithm of q. A least-squares
+//! fit over all places of two cuts gives this slope.
 
 use super::cut_places::CutPlace;
 

@@ -73,7 +73,8 @@ impl Tightening {
         }
     }
 
-    /// The next bounds, behind a cut within others that was one of so many.
+    /// The speed bounds for the next cut. `cut` was made within the bounds `caps`; `cuts` is the
+    /// number of cuts so far.
     pub(super) fn caps(&mut self, grid: &PathGrid, cut: &CutPlaces, caps: &SpeedCaps, cuts: u32) -> NextCaps {
         let squares: Vec<f64> = cut.places.iter().map(|place| place.speed_mm_s * place.speed_mm_s).collect();
         let cap_of = |i: usize| caps.caps_mm_s.get(i).copied().unwrap_or(f64::INFINITY);

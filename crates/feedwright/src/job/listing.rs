@@ -5,11 +5,12 @@ use std::collections::BTreeSet;
 use super::{Job, JobError};
 use crate::report::{ProgramLine, ReportedRun};
 
-/// A program of up to so many bytes is there as a whole; of a longer one the lines that drawn points belong to.
+/// Largest program that the page lists in full, bytes. Of a larger program it lists the lines of
+/// the drawn points.
 const WHOLE_BYTES: u64 = 128 << 10;
 /// Text that is kept, bytes: a page of a long program is some megabytes anyway.
 const MOST_BYTES: usize = 512 << 10;
-/// A line is cut off behind so many characters.
+/// Most characters of a listed line; the rest is cut off.
 const MOST_CHARACTERS: usize = 160;
 
 impl Job {

@@ -37,7 +37,8 @@ impl<'a> RunRecord<'a> {
     }
 }
 
-/// Most events that the page shows: more than that nobody reads, and a program may have millions.
+/// Most events that the page shows. A longer list would not be read, and a program may have
+/// millions.
 const MAX_EVENTS: usize = 500;
 
 /// The events of a run, for the page.

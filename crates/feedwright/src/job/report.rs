@@ -102,8 +102,9 @@ impl Job {
         cut.then(|| CycleTimeOfCut::new(constraints, Stages::of(&self.machine).planner.name))
     }
 
-    /// What binds along the path, where the page shows it. A plan that was looked at already tells it; where there is none, since the cut did not come
-    /// to its end or went along another path, one is made.
+    /// The limits that bind along the path; `None` if the page does not show them. `known` has them
+    /// from the plan of a cut. Without it, because the cut did not finish or took another path,
+    /// this function makes a plan.
     pub(super) fn limit_band(
         &self,
         known: Option<&CycleTime>,

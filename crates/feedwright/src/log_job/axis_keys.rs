@@ -28,11 +28,11 @@ pub(super) struct AxisKey {
     pub(super) name: &'static str,
     pub(super) value: f64,
     pub(super) comment: String,
-    /// Whether the log tells it; the others stand for what nobody said.
+    /// Whether the value comes from the log. Other values are given, kept from before, or assumed.
     pub(super) is_told: bool,
 }
 
-/// The keys of an axis of a machine whose servo period is that of the log.
+/// The keys of an identified axis; `servo_s` is the servo period that follows from the log, s.
 pub(super) fn axis_keys(found: &FoundAxis, servo_s: f64) -> AxisKeys {
     let mechanics_s = servo_s / f64::from(SERVO_MECHANICS);
     let mut keys = vec![];

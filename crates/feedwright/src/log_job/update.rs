@@ -46,7 +46,7 @@ pub fn updated_text(identified: &LogIdentified, before: &str) -> Result<String, 
     Ok(format!("# Updated by feedwright from {log}; intervals of 90 % beside what it told.\n{text}"))
 }
 
-/// The table of a key, a new one where there is none.
+/// The table of a key, which is created if it is missing. Fails if the key holds something else.
 fn within<'t>(
     table: &'t mut dyn TableLike,
     key: &str,

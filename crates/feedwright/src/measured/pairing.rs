@@ -16,8 +16,11 @@ pub(super) struct PairedAxes<'a> {
 }
 
 impl<'a> PairedAxes<'a> {
-    /// Of a program of so many axes that goes over `range_mm`. Names decide; where the log has none and as many axes move in it as in the
-    /// program, their order does.
+    /// Pairs the axes of a log with the `axes` axes of a program, which moves each over `range_mm`.
+    /// Axes pair by name. They pair by order if the log has no axis names, the program leaves an
+    /// axis still, and as many axes move in the log as in the program.
+    ///
+    /// Fails if the log lacks an axis that the program moves.
     pub(super) fn of(log: &'a Log, range_mm: Vector, axes: usize) -> Result<Self, MeasuredError> {
         let moving: Vec<usize> = (0..axes).filter(|&i| range_mm[i] > STILL_MM).collect();
         let has_no_names = log.findings.iter().any(|f| matches!(f, LogFinding::AxisColumns { by_data: true, .. }));

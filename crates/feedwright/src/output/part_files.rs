@@ -1,7 +1,8 @@
-//! Files under way, beside their targets: `.feedwright-XXXXXX.part`.
+//! Unfinished files, in the folders of their targets: `.feedwright-XXXXXX.part`.
 //!
-//! Each is locked by the process that writes it. A process that is killed leaves its files, and the system takes the lock off them: the
-//! next one that writes into the same folder removes what nobody holds.
+//! The process that writes a file locks it. If that process is killed, its files stay and the
+//! system releases their locks. The next process that writes into the same folder removes the files
+//! that no process holds.
 
 use std::ffi::OsStr;
 use std::fs::{self, File};
@@ -12,7 +13,8 @@ use tempfile::TempPath;
 
 const PREFIX: &str = ".feedwright-";
 const SUFFIX: &str = ".part";
-/// A file that another process removed between its creation and its lock is made anew, so many times.
+/// Attempts to create a file. An attempt fails if another process removes the file before it is
+/// locked.
 const ATTEMPTS: usize = 8;
 
 /// A file under way.
@@ -43,7 +45,7 @@ impl PartFile {
     }
 }
 
-/// The error without the name of the hidden file, which nobody asked for.
+/// The error without the name of the hidden file, which the user did not choose.
 fn of_the_system(error: io::Error) -> io::Error {
     let text = error.to_string();
     match text.split_once(" at path ") {

@@ -40,7 +40,7 @@ pub enum LawKnowledge {
     None,
     /// Identified from what the machine did.
     Identified,
-    /// The very parameters of the simulated machine, which nobody has of a real one.
+    /// The exact parameters of the simulated machine. For a real machine they are not available.
     Exact,
     /// From earlier laps of the same part.
     Learned,

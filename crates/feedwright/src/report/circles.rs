@@ -271,7 +271,8 @@ mod tests {
         assert!(found.iter().all(|circle| circle.radius_mm > 8.7), "{found:?}");
     }
 
-    /// An ellipse of 3 um, a shift of the centre and a wrong radius: the circular deviation is that of the ellipse alone.
+    /// The tool cuts an ellipse of 3 um with a shifted center and a wrong radius. Only the ellipse
+    /// counts as circular deviation.
     #[test]
     fn the_circular_deviation_leaves_out_size_and_place() {
         let circles = circles_of("G0 X20 Y0\nG3 X20 Y0 I-10 J0 F3000\nM2\n");

@@ -51,7 +51,7 @@ pub struct ErrorSpectrum {
 }
 
 impl ErrorSpectrum {
-    /// Of a run of so many axes, 2 or 3, with so long a servo period.
+    /// Creates the collector for a run with 2 or 3 `axes` and the servo period `servo_s`, s.
     pub fn new(axes: usize, servo_s: f64) -> Self {
         let length = ((SEGMENT_S / servo_s) as usize).max(LEAST_SAMPLES).next_power_of_two();
         Self {

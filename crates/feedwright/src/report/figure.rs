@@ -37,9 +37,9 @@ pub struct Panel {
     pub equal_axes: bool,
     /// Whether both axes are logarithmic: points and ranges are the powers of ten, and ticks tell the numbers.
     pub powers_of_ten: bool,
-    /// Range of the horizontal axis; from the curves where there is none.
+    /// Range of the horizontal axis; `None` takes it from the curves.
     pub x_range: Option<[f64; 2]>,
-    /// Range of the vertical axis; from the curves where there is none.
+    /// Range of the vertical axis; `None` takes it from the curves.
     pub y_range: Option<[f64; 2]>,
 }
 

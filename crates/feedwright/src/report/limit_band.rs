@@ -20,8 +20,9 @@ const ABOVE: f64 = 14.0;
 /// Stretches that are drawn at the most: about one for two pixels.
 const DRAWN: usize = 600;
 
-/// A stretch is coloured where a limit binds for this part of it, in so many steps.
+/// A stretch is colored if a limit binds for more than this fraction of its time.
 const LEAST: f64 = 0.02;
+/// Levels of opacity that show this fraction, in equal steps.
 const LEVELS: u32 = 4;
 
 /// What binds along the path of a plan, for the page.

@@ -3,12 +3,13 @@
 //! - RMS contour error: sqrt(sum of e² / n) over the n rows that cut.
 //! - Largest contour error: the largest |e| over the rows that cut.
 //! - Largest deviation of the command: the largest |corrected - path| over all rows.
-//! - Largest acceleration of the command: the largest |c(k) - 2 c(k-1) + c(k-2)| / dt^2 over rows that follow each other evenly;
-//!   across a rest of which a part was left out there is none.
+//! - Largest acceleration of the command: the largest |c(k) - 2 c(k-1) + c(k-2)| / dt^2 over rows
+//!   at equal intervals. It does not count across the part of a rest that was left out.
 //! - Peak torque: the largest |torque| of each axis over all rows.
-//! - Cutting length and time: what arc length and time advance by while rows cut.
+//! - Cutting length and time: the sum of the steps in arc length and time to the rows that cut.
 //!
-//! A row with a number that is not finite counts nowhere: only a run that diverged has them, and its outcome says so.
+//! The statistics skip a row with a number that is not finite. Only a run that diverged has such
+//! rows, and its outcome says so.
 
 use std::io;
 

@@ -102,7 +102,7 @@ impl Browser {
         message
     }
 
-    /// A screen of so many pixels; with fingers instead of a mouse where it is a phone.
+    /// Sets the size of the screen in pixels; `phone` turns on touch input and the mobile mode.
     pub(crate) fn screen(&mut self, width: u32, height: u32, phone: bool) {
         let metrics = json!({"width": width, "height": height, "deviceScaleFactor": 1, "mobile": phone});
         self.call("Emulation.setDeviceMetricsOverride", &metrics);

@@ -7,7 +7,7 @@ use std::process::{Command, Output};
 
 use tempfile::TempDir;
 
-/// The command under test: that of the package whose test this is.
+/// Path of the command under test, from the package that the test belongs to.
 const BINARY: &str = match (option_env!("CARGO_BIN_EXE_feedwright"), option_env!("CARGO_BIN_EXE_feedwright-lab")) {
     (Some(binary), _) | (None, Some(binary)) => binary,
     (None, None) => panic!("the package has no command"),

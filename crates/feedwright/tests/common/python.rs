@@ -4,7 +4,8 @@ use std::process::Command;
 
 use crate::missing::missing;
 
-/// A Python that reads TOML: 3.11 or newer; it is said where there is none, and under CI the test fails.
+/// The command of a Python that reads TOML: 3.11 or newer. Without one, prints a note and returns
+/// `None`; under CI the test fails.
 pub(crate) fn python() -> Option<&'static str> {
     let python = ["python3", "python"].into_iter().find(|python| {
         Command::new(python).args(["-c", "import tomllib"]).output().is_ok_and(|output| output.status.success())

@@ -38,7 +38,8 @@ fn print(mut reader: Reader, code: &mut ExitCode) -> io::Result<()> {
     let mut batch = Vec::with_capacity(BATCH);
     // Kept from batch to batch, each with the memory that it has come to.
     let mut shares: Vec<Lines> = (0..BATCH / SHARE).map(|_| Lines::default()).collect();
-    // Behind a faulty line nobody knows where the tool is: faults are told, motions are not written down any more.
+    // After a faulty line the position of the tool is unknown: faults are still reported, but no
+    // more motions and events are written.
     let mut is_faulty = false;
     loop {
         let mut read = 0;

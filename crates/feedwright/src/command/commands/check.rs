@@ -58,7 +58,7 @@ struct CheckedFile {
     outcome: FileOutcome,
     /// What it amounts to; `None` where it has mistakes.
     line: Option<String>,
-    /// Mistakes, or warnings where there is none.
+    /// The mistakes, or the warnings of a file without mistakes.
     reports: Vec<Report>,
     /// The same for other programs.
     findings: Vec<Finding>,
@@ -101,7 +101,8 @@ fn print(files: &[PathBuf], settings: &Settings, bar: &Bar, output: &mut CheckOu
         scope.spawn(move |_| {
             // A bridge hands the files out one by one, so that results come about in their order.
             files.iter().enumerate().par_bridge().for_each_with(sender, |sender, (number, file)| {
-                // Nobody listens any more once printing has failed.
+                // Once printing has failed, no more results are read: the remaining files are
+                // skipped.
                 if !enough.load(Ordering::Relaxed) {
                     let _ = sender.send((number, check_file(file, settings)));
                 }

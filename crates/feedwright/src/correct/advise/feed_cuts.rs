@@ -147,7 +147,8 @@ impl FeedErrors {
 }
 
 impl StretchErrors {
-    /// Takes in a cut of several; within so many rows of its ends the tool settles.
+    /// Adds one of several cuts. The tool settles in the first and last `settles` rows, which do
+    /// not count for `way_um`.
     fn take(&mut self, cut: &StretchCut, rows: &[CutRow], settles: usize) {
         let (from, to) = (cut.rows.start + settles, cut.rows.end.saturating_sub(settles));
         let way = rows.get(from..to.max(from)).unwrap_or_default();

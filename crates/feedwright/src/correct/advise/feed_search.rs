@@ -14,8 +14,9 @@ use crate::correct::stretches::stretches;
 const STEP: f64 = std::f64::consts::SQRT_2;
 const LEAST: f64 = 0.125;
 pub(super) const LARGEST: f64 = 4.0;
-/// Cuts at the most in which a factor is lowered until it holds, and by how much at the least and at the most.
+/// Most cuts in which a factor is lowered until the tolerance holds.
 const TRIES: u32 = 8;
+/// Least and largest ratio of a lowered factor to the one before.
 const LOWER: [f64; 2] = [0.7, 0.96];
 /// A cut that takes longer by no more than this factor is as fast.
 const AS_FAST: f64 = 1.001;

@@ -157,7 +157,8 @@ impl Advice {
         if remarks { writeln!(out, "<p>{}</p>", escaped(STRETCH_LEGEND)) } else { Ok(()) }
     }
 
-    /// So many stretches at the most, those that hold the smallest part of their feedrate uncorrected, in the order of the program.
+    /// At most `most` stretches, in the order of the program: those that hold the tolerance
+    /// uncorrected only at the smallest fractions of their programmed feedrates.
     pub fn slowest(&self, most: usize) -> Vec<&StretchAdvice> {
         let part = |stretch: &StretchAdvice| stretch.holds_mm_s[0].unwrap_or(0.0) / stretch.feed_mm_s;
         let mut order: Vec<usize> = (0..self.stretches.len()).collect();
