@@ -1,10 +1,16 @@
-//! What corrected programs deliver, cut open loop: `cargo run --release -p feedwright-lab --example corrected_programs [MACHINE,...] [PROGRAM...]`.
+//! What corrected programs deliver on a control without a correction of its own:
+//! `cargo run --release -p feedwright-lab --example corrected_programs [MACHINE,...] [PROGRAM...]`.
 //!
-//! Each program is corrected for `generic` on each machine, and original and corrected text are cut open loop on it with the disturbance, over [`CUTS`] of its
-//! phases and seeds of the noise. Printed are the means, and corrected over original of the part above what nobody can take away by a program:
-//! the errors of a cut of the corrected program on the same machine, less those on the machine without disturbance, noise and geometry (as
-//! squares for the RMS). With `--wrong` the correction believes inertia, friction and gain of the speed loop 20 % off, each up
-//! or down; with `--one-wrong`, one of them alone.
+//! Each program is corrected for `generic` on each machine. The machine then cuts the uncorrected
+//! and the corrected program with its disturbance, over [`CUTS`] phases of it and seeds of the
+//! noise. The example prints the mean errors and the ratio of corrected to uncorrected error.
+//!
+//! The ratio leaves out the error that no program can remove. It is the error of the corrected
+//! program on the machine, less its error on the machine without disturbance, noise and geometry
+//! (as squares for the RMS).
+//!
+//! With `--wrong` the correction uses a model whose inertia, friction and speed-loop gain are 20 %
+//! off, each up or down. With `--one-wrong` only one of them is off.
 
 use std::path::{Path, PathBuf};
 
@@ -68,7 +74,8 @@ fn one_wrong() -> Vec<[f64; 3]> {
     (0..3).flat_map(|which| [one(which, 0.8), one(which, 1.2)]).collect()
 }
 
-/// Part of an error that a program can take away, over that of the original.
+/// Ratio of the corrected to the uncorrected error, both without the error that no program can
+/// remove. `power` is 2 for the RMS, whose squares are subtracted, and 1 for the largest error.
 fn ratio(original: f64, corrected: f64, nobody: f64, power: i32) -> f64 {
     let above = |error: f64| (error.powi(power) - nobody.powi(power)).max(0.0).powf(1.0 / f64::from(power));
     above(corrected) / above(original).max(1e-9)

@@ -8,7 +8,7 @@ use std::path::Path;
 use feedwright::command::today;
 use feedwright_lab::HeldOutSeeds;
 
-/// Seeds have at most so many digits, to be read.
+/// The first seed is below this. With at most nine digits it is easy to read.
 const SEEDS: u64 = 1_000_000_000;
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -33,7 +33,7 @@ const LEAST_SQUARE: f64 = 1e-6;
 /// Axes that move.
 const AXES: usize = 2;
 
-/// Tolerances of `time-optimal`, um: next to none, and that of the first table.
+/// Path tolerances of `time-optimal`, um: 1 um leaves next to no room; the first table uses 10 um.
 const TOLERANCES_UM: [f64; 2] = [1.0, 10.0];
 
 /// Distance of the samples of the peer's motion, s.

@@ -1,7 +1,9 @@
-//! Round trip: simulated machines cut the program of `excite`, and are identified from a log of it in steps of 1 um.
+//! Round trip: simulated machines cut the program of `excite`, and are identified from a log of it
+//! with encoder steps of 1 um.
 //!
-//! How far the products come out, how often intervals of 90 % hold, and what is left after 100 ms; of each machine over so many logs, with
-//! noise and disturbance of their own each.
+//! Prints, for each machine, the errors of the identified products, how often 90 % intervals
+//! contain the true value, and the prediction error after 100 ms. The first argument is the number
+//! of logs per machine. Each log has its own noise and its own phase of the disturbance.
 //!
 //!     cargo run --release -p feedwright-lab --example identification_sweep -- 50 tnv40 heavy sticky soft coarse sliding
 

@@ -1,7 +1,8 @@
-//! The butterfly: a cubic NURBS of 51 control points, closed, 382.86 mm long, with tips of a radius of 0.02 mm.
+//! The butterfly: a closed cubic NURBS of 51 control points, 382.86 mm long, with tips of 0.02 mm
+//! radius.
 //!
-//! Source: the numbers as tabulated in Hu et al. (2023), doi 10.1007/s00170-023-12427-5; the control polygon is that of
-//! Yeh and Hsu (2002), on which interpolators have been compared since.
+//! Source: Hu et al. (2023), doi 10.1007/s00170-023-12427-5, tabulate the numbers. The control
+//! polygon is from Yeh and Hsu (2002); interpolators have been compared on it since.
 
 use feedwright_gcode::canon::Spline;
 

@@ -88,7 +88,8 @@ impl Comparison {
     }
 }
 
-/// The journal of a comparison in a folder. The key is that of the options and of the program.
+/// Returns the path of the journal of a comparison in `folder`. `key` identifies the options and
+/// the executable.
 pub fn journal_path(folder: &Path, key: &str) -> PathBuf {
     folder.join(format!("compare-{key}.jsonl"))
 }

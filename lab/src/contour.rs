@@ -103,18 +103,19 @@ impl Contour {
         }
     }
 
-    /// The contour as steps of a path, all cutting, at `feed_mm_s`, corners taken as `corner` says; lines count from 1.
+    /// Returns the contour as steps of a path, all cutting at `feed_mm_s`, with corners taken as
+    /// `corner` says. Lines count from 1.
     ///
     /// # Errors
-    /// Where the feedrate is none.
+    /// Fails if `feed_mm_s` is below [`MIN_FEED_MM_S`] or not finite.
     pub fn steps(&self, feed_mm_s: f64, corner: Corner) -> Result<Vec<Step>, PathError> {
         self.placed_steps(Placement::NONE, feed_mm_s, corner)
     }
 
-    /// As [`Contour::steps`], elsewhere.
+    /// Returns the steps of [`Contour::steps`], scaled and turned by `place`.
     ///
     /// # Errors
-    /// Where the feedrate is none.
+    /// Fails if `feed_mm_s` is below [`MIN_FEED_MM_S`] or not finite.
     pub fn placed_steps(&self, place: Placement, feed_mm_s: f64, corner: Corner) -> Result<Vec<Step>, PathError> {
         if !(MIN_FEED_MM_S..=f64::MAX).contains(&feed_mm_s) {
             return Err(PathError::Feed { line: 1, feed_mm_s });
@@ -206,7 +207,8 @@ fn lines(points: &[[f64; 2]], place: Placement, feed_mm_s: f64, corner: Corner) 
         .collect()
 }
 
-/// Parts of a closed curve to begin with, so many that the first test of a cell is not fooled by the curve's symmetry.
+/// Spans of a closed curve. With 16 of them, the symmetry of the curve does not mislead the first
+/// test of a cell.
 const SPANS: usize = 16;
 
 /// A closed curve over the angle `a`.

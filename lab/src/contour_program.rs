@@ -37,10 +37,11 @@ struct ContourBlock {
     shape: Shape,
 }
 
-/// The program of a contour at a feedrate; arcs in place of a curve stay within `tolerance_mm`.
+/// Returns a contour as a G-code program at `feed_mm_s`. Arcs and lines that replace a curve stay
+/// within `tolerance_mm` of it.
 ///
 /// # Errors
-/// Where the feedrate is none.
+/// Fails if `feed_mm_s` is below [`feedwright_plan::MIN_FEED_MM_S`] or not finite.
 pub fn contour_program(contour: &Contour, feed_mm_s: f64, tolerance_mm: f64) -> Result<ContourProgram, PathError> {
     let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
     let steps = contour.steps(feed_mm_s, corner)?;

@@ -1,4 +1,5 @@
-//! Held-out work: machines and programs that nobody has tuned anything on, drawn by a seed and the same on every platform.
+//! Held-out work: machines and programs that were not used for tuning. A seed draws them; the same
+//! seed gives the same ones on every platform.
 //!
 //! | File | What |
 //! |---|---|

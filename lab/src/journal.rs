@@ -74,7 +74,8 @@ impl<T: Serialize + DeserializeOwned> Journal<T> {
         (rows, damaged)
     }
 
-    /// Lines that were there and are of no use.
+    /// Number of damaged lines: unreadable, or with a wrong checksum. An unfinished last line does
+    /// not count.
     pub const fn damaged(&self) -> usize {
         self.damaged
     }

@@ -145,7 +145,8 @@ fn rows_are_complete_and_ratios_are_against_open_loop() {
     assert!(!html.contains("NaN") && !html.contains("src=\"http") && html.ends_with("</html>\n"));
 }
 
-/// By how much identified parameters may differ from exact ones in what becomes of them: torque noise hides less.
+/// Allowed relative difference of the RMS contour error between identified and exact parameters.
+/// Torque noise hides smaller differences.
 const AS_EXACT: f64 = 0.03;
 
 #[test]

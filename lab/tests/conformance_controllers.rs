@@ -9,11 +9,12 @@ use feedwright_sim::{Machine, Row, Run, Sink};
 
 /// Deviation that the tick admits here, mm.
 const MAX_DEVIATION_MM: f64 = 0.2;
-/// By how much the circle bulges between two reference knots, which is how well the safety layer knows it, mm.
+/// Sagitta of the circle between two reference knots, mm: the accuracy with which the safety layer
+/// knows the path.
 const SAGITTA_MM: f64 = 0.05 * 0.05 / (8.0 * 10.0);
 
-/// By how much the way of an offset that accelerates, by 400 mm/s^2 in a feed period of 12 ms at the most, is bent between decisions, mm:
-/// A T^2 / 8.
+/// Largest deflection, A T^2 / 8, of an accelerating offset from a straight line between decisions,
+/// mm. A is 400 mm/s^2; T is the longest feed period, 12 ms.
 const BEND_MM: f64 = 400.0 * 0.012 * 0.012 / 8.0;
 
 /// Parameters that change nothing of one lap of a circle in one cut: there are no rapids, nothing is learned from a lap before, the

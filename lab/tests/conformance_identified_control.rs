@@ -13,7 +13,8 @@ use rayon::prelude::*;
 const LOG_S: f64 = 5.0;
 const STEP_UM: f64 = 1.0;
 const FEED_MM_S: f64 = 50.0;
-/// What is asked for: so many times the error of the same controller on the true file.
+/// Largest RMS error with the identified file, as a multiple of the RMS error of the same
+/// controller with the true file. Applies to `receding-horizon`.
 const RATIO: f64 = 1.3;
 /// Largest error of any of them, um: open loop has 16.
 const MOST_UM: f64 = 0.5;

@@ -57,7 +57,7 @@ fn the_report_answers_mouse_and_keys() {
     assert_eq!(browser.faults(), [""; 0]);
 }
 
-/// A run of a log has no torque, and the page is none the worse for it.
+/// A run from a log has no torque. The page shows a dash for it and reports no faults.
 #[test]
 fn a_measured_run_is_drawn_without_torque() {
     let (_folder, path) = file(&crate::made_up_report::page(&crate::made_up_report::report_with_log(2, 1500)));

@@ -117,8 +117,9 @@ fn no_controller_is_left_out() {
     }
 }
 
-/// The drive, the friction and the delays of `workshop`, and nothing that nobody can know: what is left of the error of open loop is
-/// what a peer does not know of the machine, or does not use.
+/// Returns `workshop` with its drives, friction and delays, but without noise, disturbance and
+/// geometry errors, which no controller can know. A peer then leaves only the part of the
+/// uncorrected error that comes from what it does not know of the machine, or does not use.
 fn drive_of_workshop() -> Machine {
     let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/sim/machines/workshop.toml");
     let mut machine = Machine::read(&file).unwrap();

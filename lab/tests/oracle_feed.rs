@@ -202,7 +202,7 @@ fn the_slowest_axis_of_a_motion_bounds_it() {
         ("G0 X10 A90", 30.0, at_speed(10.0, 3.0)),
         // The largest angle of several.
         ("G1 X6 Y8 A-90 B120 C30 F6000", 30.0, at_speed(10.0, 4.0)),
-        // F is that of X, Y and Z, and slower than the rotary axis.
+        // F applies to X, Y and Z, and is slower than the limit of the rotary axis.
         ("G1 X10 A9 F60", 30.0, at_speed(10.0, 10.0)),
         // No limit: up to the middle and down again.
         ("G1 X10 A90 F60000", 0.0, 2.0 * (10.0f64 / 100.0).sqrt()),

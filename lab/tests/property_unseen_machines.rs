@@ -19,8 +19,8 @@ const MACHINES: [u64; 2] = [12, 48];
 const MACHINES_BY_LAW: [u64; 2] = [6, 10];
 /// Where the open loop itself rings by more than this, the machine is broken, um.
 const BROKEN_UM: f64 = 400.0;
-/// Part of the cuts that may be worse in RMS, and by how much at the most: what was measured, rounded up. It was 6 of 134, by 0.34 um at
-/// the most.
+/// Largest share of cuts that may be worse in RMS, and largest ratio to the uncorrected RMS:
+/// measured values, rounded up. For the horizon, 6 of 134 cuts were worse, by at most 0.34 um.
 const WORSE: f64 = 0.05;
 const WORST_RATIO: f64 = 6.0;
 const WORST_RATIO_BY_LAW: f64 = 1.05;

@@ -1,9 +1,13 @@
-//! The limit, peers and our controllers over the level of each kind of noise: `just noise-levels`, the study examples/05_noise.
+//! The limit, peers and the controllers of feedwright over the level of each kind of noise:
+//! `just noise-levels`, the study examples/05_noise.
 //!
-//! `noise_levels FOLDER [LEVELS [defaults]]` cuts on `tnv40` with one kind of noise at each level, after every peer was tuned there, and
-//! writes into the folder the comparison (noise.json), a figure for each kind, and the table of a README.md that is there. With LEVELS,
-//! 1 to 5, only so many levels of each kind, spread from the lowest to the highest; with `defaults` peers are not tuned: trials, which the table
-//! tells. What was interrupted goes on where it was.
+//! `noise_levels FOLDER [LEVELS [defaults]]` tunes every peer on `tnv40` with one kind of noise at
+//! each level, and then cuts there. It writes the comparison (noise.json) and a figure for each
+//! kind into the folder, and updates the table of the README.md there, if it exists.
+//!
+//! LEVELS, 1 to 5, is the number of levels of each kind, spread from the lowest to the highest.
+//! With `defaults` the peers are not tuned: the result is a trial, and the table says so. An
+//! interrupted run continues where it stopped.
 
 mod levels;
 mod show;
@@ -22,7 +26,7 @@ type Failure = Box<dyn std::error::Error>;
 
 /// What is cut.
 const CONTOURS: [&str; 4] = ["circle", "eight", "star", "square"];
-/// Seed of the comparison: that of the command line.
+/// Seed of the comparison, the default of the command line.
 const SEED: u64 = 1;
 /// Noise seeds of each cut; the searches have another.
 const NOISE_SEEDS: u32 = 3;
@@ -86,7 +90,8 @@ fn options(levels: usize, tuning: Tuning) -> Result<ComparisonOptions, Failure> 
     })
 }
 
-/// So many of the levels, from the lowest to the highest; one alone is the middle.
+/// Returns the indices of `levels` of the levels, spread from the lowest to the highest. A single
+/// one is the middle.
 fn spread(levels: usize) -> Vec<usize> {
     match levels {
         1 => vec![LEVELS / 2],

@@ -17,9 +17,9 @@ const MACHINE: &str = "tnv40";
 const SEEDS: u64 = 10;
 /// The comparison on machines without noise.
 pub(crate) const COMPARISON: &str = "examples/02_horizon/compare.json";
-/// That of machines with noise, on held-out work.
+/// The comparison on machines with noise, on held-out work.
 pub(crate) const HELD_OUT: &str = "examples/03_realism/held_out.json";
-/// That of machines with one imperfection each.
+/// The comparison on machines with one imperfection each.
 pub(crate) const IMPERFECTIONS: &str = "examples/03_realism/imperfections.json";
 /// What stands after a table.
 const END: &str = "<!-- end of table -->\n";

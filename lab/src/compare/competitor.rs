@@ -66,7 +66,8 @@ impl Competitor {
         Self { entry, knowledge: Knowledge::Own }
     }
 
-    /// All on a machine, in the order of the table. On the nominal machine nobody is unseen.
+    /// Returns all competitors on a machine, in the order of the table. The nominal machine has no
+    /// competitors with [`Knowledge::Unseen`].
     pub(super) fn all(controllers: &[&'static Entry], known: &[Knowledge], is_nominal: bool) -> Vec<Self> {
         let here = known.iter().filter(|&&knowledge| knowledge != Knowledge::Unseen || !is_nominal);
         here.flat_map(|&knowledge| {

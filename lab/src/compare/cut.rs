@@ -59,7 +59,8 @@ impl CutNumbers {
     }
 }
 
-/// One row, its ratios still open: a cut for each of the `seeds` of the noise that the machine has. The plot is that of the first.
+/// Cuts a workpiece once for each noise seed in `seeds` and returns the row. Its ratios are not yet
+/// computed. The error plot shows the cut with the first seed.
 pub(super) fn row(
     workpiece: &Workpiece,
     machine: &Machine,

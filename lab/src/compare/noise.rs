@@ -1,5 +1,5 @@
-//! Noise seeds: those that are reported, and that of everything before. Settings are searched, machines are identified with the seed
-//! of the machine file; no reported cut has it. A machine without noise is cut once.
+//! Noise seeds of the reported cuts. Searches and identification use the noise seed of the machine
+//! file, and no reported cut of a noisy machine uses it. A machine without noise is cut once.
 
 use feedwright_sim::Machine;
 

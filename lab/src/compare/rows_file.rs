@@ -13,7 +13,7 @@ use crate::journal::Journal;
 /// Under which a journal has its stamp.
 const STAMP_KEY: &str = "stamp";
 
-/// Why a file of rows is of no use.
+/// Why a file of rows cannot be used.
 #[derive(Debug, Error, Diagnostic)]
 pub enum RowsError {
     /// It cannot be read or written.

@@ -174,7 +174,7 @@ pub fn each_once<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a str> {
     once
 }
 
-/// What the controller of a row knows; nothing where its name is none.
+/// Returns what the controller of a row knows of the machine; `None` if no controller has its name.
 pub fn knows(row: &ComparisonRow) -> Option<Knows> {
     Competitor::find(&row.controller).map(|competitor| competitor.entry.knows)
 }

@@ -17,7 +17,8 @@ pub struct Tuned {
     pub cuts: u64,
     /// RMS contour error at these values over what it was searched on, um; 0 where nothing was searched.
     pub rms_um: f64,
-    /// That of open loop, um.
+    /// RMS contour error of the uncorrected cut over the same work, um; 0 where nothing was
+    /// searched.
     pub open_um: f64,
     /// Whether the search found nothing that is better than no correction.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

@@ -1,10 +1,15 @@
-//! The search that tunes every controller alike, on each machine, under its noise.
+//! The search that tunes every controller in the same way, on each machine, under its noise.
 //!
-//! Parameters whose range begins above zero are searched by ratios, others by differences. First the default and the points
-//! of a Halton sequence, then a pattern search (Hooke and Jeeves 1961) from the best, whose step halves where no neighbour is
-//! better. What is minimised is the quadratic mean of the RMS contour errors on a smooth contour, on one with corners and on an acute
-//! tip, which feedback that is tuned without it may be caught in, without the geometry that no encoder sees, at no more time than open loop takes: each percent above costs as much as ten percent of error.
-//! The noise is that of the machine file's seed, which no reported cut has.
+//! Parameters whose range begins above zero are searched by ratios, others by differences. The
+//! search evaluates the default and the points of a Halton sequence. A pattern search (Hooke and
+//! Jeeves 1961) then starts from the best of them; its step halves when no neighbor is better.
+//!
+//! The cost is the quadratic mean of the RMS contour errors on a smooth contour, on one with
+//! corners, and on acute tips. Feedback that is tuned without the tips may get caught in one.
+//! Geometry errors that no encoder sees are left out. Each percent of machining time beyond the
+//! uncorrected cut costs as much as ten percent of error.
+//!
+//! The search uses the noise seed of the machine file. No reported cut of a noisy machine uses it.
 use feedwright::{BASELINE, Choices, Entry, Make, Parameter, Setting, Setup};
 use feedwright_ident::quadratic_mean;
 use feedwright_sim::{Machine, Run, RunError, Watch};

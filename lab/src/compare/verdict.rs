@@ -1,12 +1,18 @@
-//! What is claimed of the default controller: value, limit, and whether it holds.
+//! The claims about the default controller: value, limit, and whether the claim holds.
 //!
-//! - Nominal machine, contours without corners: against open loop, the best peer that knows no model, and the exact model. The square:
-//!   RMS and largest error in um.
-//! - Other machines without noise: against the best peer that knows no model, identified there and unseen.
-//! - Machines with noise: RMS without the geometry that no encoder sees, against the best peer (exact parameters included; no laps of
-//!   practice, not the limit), against feedforward with cross-coupled control whose parameters are 20 % off, and against the limit.
-//! - Held-out work: never worse than open loop nor than the baseline, by more than what cannot be told from nothing; nobody lost.
-//! - All: peak torque against the baseline's.
+//! - Nominal machine, contours without corners: compared with the uncorrected cut, the best peer
+//!   without an exact model, and `model-predictive`, which has one. The square: RMS and largest
+//!   error in um.
+//! - Other machines without noise: identified there and unseen, both compared with the best peer
+//!   without an exact model.
+//! - Machines with noise: RMS without the geometry that no encoder sees. It is compared with the
+//!   best peer, with feedforward with cross-coupled control whose parameters are 20 % off, and with
+//!   the limit. Peers with exact parameters count; peers with laps of practice and the limit do
+//!   not.
+//! - Held-out work: RMS and largest error exceed neither the uncorrected cut nor [`DELIVERED`] by
+//!   more than [`RMS_UM`] and [`MAX_UM`]. The uncut path exceeds the uncorrected one by no more
+//!   than [`UNCUT_UM`]. The controller loses no cut.
+//! - All: peak torque compared with [`DELIVERED`].
 
 use feedwright::{BASELINE, BEST, HORIZON, Knows, MAX_UM, RMS_UM, UNCUT_UM};
 use feedwright_ident::quadratic_mean;
@@ -214,7 +220,8 @@ impl<'a> RowsHere<'a> {
         self.best(&[Knows::Nothing, Knows::Identified])
     }
 
-    /// Rows that came to their end of others that know no more than this, and that of their own machine.
+    /// Returns the completed rows of peers whose kind of knowledge is in `known` and concerns their
+    /// own machine. The limit and the controllers in [`OURS`] are no peers.
     fn peers(&self, known: &[Knows]) -> impl Iterator<Item = &'a ComparisonRow> {
         self.rows.iter().copied().filter(|row| {
             let own = Competitor::find(&row.controller).is_some_and(|peer| peer.knowledge == Knowledge::Own);

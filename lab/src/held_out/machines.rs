@@ -1,15 +1,16 @@
 //! Machines drawn at random: `tnv40` with other loops, accelerations, masses, friction, encoders and delays.
 //!
-//! Each axis has a position loop of gain Kp around a speed loop of bandwidth a = (Kv + Bv) / J, and hears the command
-//! after the drive's delay and, on average, half a servo period:
+//! Each axis has a position loop of gain Kp around a speed loop of bandwidth a = (Kv + Bv) / J. The
+//! dead time T of the loop is the drive delay plus one and a half servo periods:
 //!
 //! ```text
 //! L(s) = Kp e^(-s T) / (s (1 + s / a))      T = delay + 3/2 Ts
 //! phase margin = 90 deg - atan(w / a) - w T  at the w with |L| = 1
 //! ```
 //!
-//! A machine with an axis below [`PHASE_MARGIN_DEG`] is drawn anew, since none is delivered so; what a controller
-//! makes of a machine plays no part. Torque limits are those that the plan needs, with room.
+//! A machine with an axis below [`PHASE_MARGIN_DEG`] is drawn again, because no machine is
+//! delivered that way. The performance of a controller on the machine plays no part. Each torque
+//! limit is the torque that the plan needs, times a random factor from 1.5 to 4.
 
 use std::f64::consts::{PI, TAU};
 

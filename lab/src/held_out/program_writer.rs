@@ -11,7 +11,7 @@ use super::random::Random;
 const ACCEL_MM_S2: f64 = 400.0;
 /// Range of the programmed feedrates, mm/min.
 const FEED_MM_MIN: [f64; 2] = [100.0, 12_000.0];
-/// One feedrate in so many legs, where they are mixed.
+/// Average number of legs per change of feedrate, in programs with mixed feedrates.
 const FEED_EVERY: u32 = 8;
 
 /// A program that is being written.
@@ -120,7 +120,9 @@ impl ProgramWriter {
         }
     }
 
-    /// A leg takes its time at the feedrate, and where it is short that of speeding up and slowing down.
+    /// Subtracts the estimated time of a leg from the time left in this part. The estimate is the
+    /// longer of the time at the feedrate and sqrt(leg / [`ACCEL_MM_S2`]), which matters for short
+    /// legs.
     fn spend(&mut self, leg_mm: f64) {
         /// However short: a servo period or two.
         const MIN_S: f64 = 0.002;

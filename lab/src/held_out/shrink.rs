@@ -26,7 +26,8 @@ impl Case {
     }
 }
 
-/// The smallest case that was found within so many trials, and still fails. `fails` must hold for the case itself.
+/// Returns the smallest case that still fails, found in at most `trials` trials. `fails` must hold
+/// for `case` itself.
 pub fn shrink(case: Case, trials: u32, fails: &mut dyn FnMut(&Case) -> bool) -> Case {
     let mut left = trials;
     let mut case = case;

@@ -75,10 +75,10 @@ impl Variant {
         text
     }
 
-    /// The machine.
+    /// Returns the machine.
     ///
     /// # Errors
-    /// A key that there is none of, or a value out of its range.
+    /// Fails if a key does not exist or a value is out of its range.
     pub fn machine(&self) -> Result<Machine, MachineError> {
         Machine::parse(&format!("{}.toml", self.name), &self.text())
     }

@@ -73,7 +73,8 @@ pub struct SweepRow {
     pub corrected: Figures,
 }
 
-/// Whether the encoder of every axis sees the tool without steps and the drive hears the command at once.
+/// Whether no axis has a compliant transmission, an encoder step or a drive delay. Encoder noise
+/// and measurement delay are not checked.
 pub fn is_rigid(machine: &Machine) -> bool {
     machine
         .axes

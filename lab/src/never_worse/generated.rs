@@ -28,11 +28,11 @@ pub struct Generated {
     pub job: SweepJob,
 }
 
-/// `count` jobs of a seed, so many programs to a machine: identifying it takes as long as several cuts. The first jobs of a
-/// seed are the same whatever the count.
+/// Draws `count` jobs from a seed, with `for_each` programs for each machine, because identifying a
+/// machine takes as long as several cuts. The first jobs of a seed are the same for every `count`.
 ///
 /// # Errors
-/// What the reader says of a generated program: a fault of the generator.
+/// Fails if a generated program is rejected, which is a fault of the generator.
 pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Vec<Generated>, JobError> {
     let mut seeds = Xoshiro256PlusPlus::seed_from_u64(seed);
     let mut all = Vec::with_capacity(count);
@@ -77,10 +77,11 @@ impl<'a> Trials<'a> {
     }
 }
 
-/// The smallest case that is worse in the same way, found within so many trials, and what it comes to.
+/// Shrinks `case` in at most `trials` trials. Returns the smallest case found that fails in one of
+/// the ways in `faults`, and its row.
 ///
 /// # Errors
-/// An end from outside.
+/// Fails if `watch` cancels.
 pub fn smallest(
     case: &Case,
     faults: &[Failure],

@@ -16,7 +16,8 @@ const ACCEL_MM_S2: [f64; 4] = [100.0, 400.0, 1000.0, 4000.0];
 const ENCODER_UM: [f64; 2] = [0.1, 1.0];
 /// Drive delays of all axes, ms.
 const DELAY_MS: [f64; 2] = [1.0, 2.0];
-/// y is so many times x: more draws every line visibly askew, and no machine would be left so.
+/// Factor on the gain or on the inertia of y; x keeps its value. With a larger factor every line is
+/// visibly askew, and no machine is left that way.
 const UNLIKE: f64 = 1.5;
 
 /// All of them.

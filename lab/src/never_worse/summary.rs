@@ -11,7 +11,7 @@ pub const OPEN_LOOP_UM: f64 = 1.0;
 /// Quantiles of a number over many cuts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Quantiles {
-    /// Of so many cuts.
+    /// Number of cuts.
     pub cuts: usize,
     /// Half of them are below.
     pub median: f64,

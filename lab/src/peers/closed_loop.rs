@@ -1,8 +1,8 @@
 //! The closed position loop of an axis from command to position, sampled once a servo period, and the filter that inverts it.
 //!
-//! What is known of an axis without friction and limits is linear. Over a servo period the motor, the integral of the speed loop and the
-//! torque filter go from one state to another; a reference speed v and a torque u that leave at the start of a period act from the
-//! delay of the drive on, for a period:
+//! The model of an axis without Coulomb friction and limits is linear. Its states are the motor,
+//! the integral of the speed loop and the torque filter. The position loop sends a reference speed
+//! v and a torque u at the start of a servo period. They act for one period, after the drive delay:
 //!
 //! ```text
 //! x = (Nv v + Nu u) / D                    D the characteristic polynomial, N = D h, h the positions after one period of v or u
@@ -10,15 +10,20 @@
 //! x / c = B / A                            B = Nv (K + fv (1 - z^-1) / Ts) + Nu fa J ((1 - z^-1) / Ts)^2,   A = D + Nm K
 //! ```
 //!
-//! with xm the position a measurement delay ago and Nm that of its h. h is what the law of the axis itself makes of it. The zeros of B
-//! that lie well within the unit circle, or within it on the side that does not ring, are cancelled; of the others only the phase is.
+//! xm is the position one measurement delay ago, and Nm is its N for v. The axis model itself is
+//! simulated to find h. Zeros of B well inside the unit circle are canceled. So are zeros inside it
+//! with a positive real part, whose inverse does not ring. For the other zeros only the phase is
+//! canceled.
 //!
-//! Source: Tomizuka (1987), "Zero phase error tracking algorithm for digital control"; D by Faddeev and LeVerrier, Gantmacher (1959), The
-//! Theory of Matrices, chapter IV; zeros as eigenvalues of the companion matrix by the QR algorithm, Golub
-//! and Van Loan (2013), Matrix Computations, section 7.5.
+//! Source: Tomizuka (1987), "Zero phase error tracking algorithm for digital control"; D by Faddeev
+//! and LeVerrier, Gantmacher (1959), The Theory of Matrices, chapter IV; zeros as eigenvalues of
+//! the companion matrix by the QR algorithm, Golub and Van Loan (2013), Matrix Computations,
+//! section 7.5.
 //!
-//! Departures: delays beyond [`MAX_DELAY_PERIODS`] count as so many. What the loop makes of u is taken to be late at the encoder as that of v
-//! is, Nu Nm / Nv: they differ by what the integral does within a servo period, less than 1e-4 of the position.
+//! Departures: the delay of the drive and the delay of the measurement are each limited to half of
+//! [`MAX_DELAY_PERIODS`]. The encoder delay of the response to u is taken from the response to v,
+//! as Nu Nm / Nv. The two differ by the action of the integral within a servo period: less than
+//! 1e-4 of the position.
 //!
 //! Symbols: as in [`feedwright_control::axis::drive`]. Polynomials are in ascending powers of z^-1.
 use feedwright_control::{AxisLaw, AxisState, DriveLaw, DriveParameters, DriveReference, DriveState, Parameters};
@@ -52,7 +57,7 @@ pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period)
         let size = zero.norm();
         size <= SOON_GONE || (size < 1.0 && zero.re > 0.0)
     });
-    // B-(z) is that of B-(1/z) the other way round, so many periods ahead.
+    // B-(z) has the coefficients of B-(1/z) in reverse order, one period ahead for each zero.
     let ahead = late + mirrored.len();
     let mut mirror = with_zeros(&mirrored);
     mirror.reverse();
@@ -209,7 +214,8 @@ mod tests {
 
     /// Rounding of a few hundred products of positions of about 1 rad, and zeros of a polynomial that has two near 0.9.
     const TOLERANCE: f64 = 1e-9;
-    /// Acceleration feedforward that a late encoder sees, by another course than that of a speed: see the departures.
+    /// Tolerance with acceleration feedforward, a speed-loop integral and a measurement delay. Only
+    /// then the transfer function is approximate: see the departures.
     const SEEN_LATE: f64 = 1e-4;
 
     fn known(change: impl Fn(Axis) -> Axis) -> Known {

@@ -5,22 +5,25 @@
 //! P'(t) = P*(t) + u n                            n: unit normal of the path where the tool is
 //! ```
 //!
-//! Source: Koren (1980), ASME J. Dyn. Sys. Meas. Control 102, for the structure; Srinivasan and Kulkarni (1990), same
-//! journal 112, for curved contours. The gains that turn with the path (Cx and Cy, of Koren and Lo (1991) for circles) are
-//! the components of n: the normal at the nearest point, exact where theirs is of second order.
+//! Source: Koren (1980), ASME J. Dyn. Sys. Meas. Control 102, for the structure; Srinivasan and
+//! Kulkarni (1990), same journal 112, for curved contours. Koren and Lo (1991) use gains Cx and Cy
+//! that turn with the path, for circles. Here they are the components of n, the normal at the
+//! nearest point. This normal is exact, where theirs is of second order.
 //!
-//! The papers were not at hand: this is the method as later work describes it.
+//! The papers were not available; the implementation follows descriptions in later work.
 //!
-//! The frame of e, its integral and its derivative is that of the path: all turn with n, so that an error that is constant
-//! beside a circle is constant here. In space n is any direction across the path, and the frame turns by the smallest
-//! rotation between two tangents; in the plane that is their scalar.
+//! e, its integral and its derivative are vectors in the frame of the path and turn with n. A
+//! constant radial error on a circle is therefore constant here. In space, n is any direction
+//! across the path, and the frame turns by the smallest rotation between two tangents. In the plane
+//! this reduces to the scalar error of the papers.
 //!
-//! Departures: Koren adds u to the velocity command behind the position controllers. Here only position commands are
-//! accepted; with proportional position loops of equal gain that is the same, with all three gains divided by the loop's.
-//! The derivative is filtered (`DERIVATIVE_S`). While the safety layer holds the command back, the integral does not
-//! grow. In a corner the frame does not turn: what was learned across one side serves the other only as far as it lies across
-//! that too, and turning it by the corner makes the command leap. Kp, Ki and Kd are tuned; the sources derive theirs for
-//! their machines.
+//! Departures: Koren adds u to the velocity command behind the position controllers. Here the
+//! drives accept only position commands. With proportional position loops of equal gain, the two
+//! are equivalent if all three gains are divided by the loop gain. The derivative is filtered
+//! (`DERIVATIVE_S`). While the safety layer holds the command back, the integral does not grow. At
+//! a corner the frame does not turn, because turning the integral by the corner makes the command
+//! leap. Only the component across the new side is kept. Kp, Ki and Kd are tuned; the sources
+//! derive them for their machines.
 
 use feedwright_control::vector::{add_scaled, dot, norm, sub};
 use feedwright_control::{Window, carried};
@@ -44,7 +47,8 @@ pub struct Settings {
 }
 
 impl Settings {
-    /// Ki / Kp cancels the pole of a position loop of 50 1/s, Kp / Kd that of a speed loop of 200 1/s.
+    /// Ki / Kp cancels the pole of a position loop of 50 1/s. Kp / Kd cancels the pole of a speed
+    /// loop of 200 1/s.
     pub const DEFAULT: Self = Self { kp: 4.0, ki_1_s: 200.0, kd_s: 0.02 };
 }
 
@@ -113,8 +117,9 @@ pub(super) mod tests {
     use super::*;
     use feedwright_control::{Estimator, Knot, KnotSource, Preview, Register};
 
-    /// Where a tool is after so many servo periods of 1 ms that a constant load pushes `load_mm` off its command, in loops
-    /// of 50 1/s and without the safety layer.
+    /// Returns the tool position after `periods` servo periods of 1 ms, mm. A constant load pushes
+    /// the tool `load_mm` off its command. The position loops have a gain of 50 1/s, and there is
+    /// no safety layer.
     pub(crate) fn cut<C: Controller<2>>(
         reference: &mut impl KnotSource<2>,
         controller: &mut C,

@@ -60,7 +60,8 @@ pub struct ObservedAxis {
     pub drive: ObservedDrive,
     /// Largest disturbance that is believed, mm/s: what its drive can make up for.
     pub limit_mm_s: f64,
-    /// L: by how much a unit of the missed position moves position, speed and disturbance; 1, 1/s, 1/s.
+    /// Observer gains L: correction of position, speed and disturbance per unit of position
+    /// innovation; 1, 1/s, 1/s.
     pub gains: [f64; 3],
 }
 
@@ -204,7 +205,8 @@ impl<const N: usize> Controller<N> for DisturbanceRejection<N> {
         self.observers.iter_mut().for_each(|observer| observer.start(0.0));
     }
 
-    /// Without a position it begins anew: what the tool does meanwhile nobody knows.
+    /// Advances each observer by one servo period. Without a measured position it resets them and
+    /// the feedforward, because the motion of the tool in between is unknown.
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
         let position_mm = measured.map(|measured| measured.position_mm).filter(|mm| norm(*mm).is_finite());
         let Some(position_mm) = position_mm else {

@@ -132,7 +132,8 @@ mod tests {
 
     const SERVO_S: f64 = 0.001;
 
-    /// Vibration that is left of that of one impulse, of a resonance at `frequency_hz`, behind the last impulse.
+    /// Residual vibration of a resonance at `frequency_hz` after the last impulse, as a fraction of
+    /// the vibration that a single impulse excites.
     fn left(settings: &Settings, frequency_hz: f64) -> f64 {
         let zeta = settings.damping_ratio;
         let rad_s = core::f64::consts::TAU * frequency_hz;

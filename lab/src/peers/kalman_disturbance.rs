@@ -29,7 +29,7 @@ const ITERATIONS: u32 = 20_000;
 /// What is taken to be unknown of an axis, as standard deviations for each servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AxisNoise {
-    /// By how much the disturbance changes, mm/s of reference speed; above 0.
+    /// Change of the disturbance, as reference speed, mm/s; above 0.
     pub drift_mm_s: f64,
     /// White part of the torque, mm/s of reference speed.
     pub torque_mm_s: f64,

@@ -321,7 +321,7 @@ impl ExactAxis {
                 sign
             }
         };
-        // Where friction has a memory, its slope is that of sliding: none.
+        // The Coulomb slope of a friction model with presliding is taken as in sliding: zero.
         let sign = if self.friction.is_some() { 1.0 } else { coulomb };
         let [gain, damping] = law.slopes_nm_s(torque_nm, sign);
         let (linear, linear_drive) = &self.linear;

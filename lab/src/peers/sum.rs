@@ -4,19 +4,22 @@
 //! o(k+1) = a(k+1) + b(k+1)      a decides as if b were not there: it sees the offset o - b, and b sees o - a
 //! ```
 //!
-//! so that what either derives from its own last offset (the derivative of a position loop, whether it was held back) is what it
-//! would be alone. For linear loops the tool moves by the sum of what both move it by.
+//! Each controller derives some quantities from its own last offset: the derivative of a position
+//! loop, and whether the command was held back. These are the same as if it ran alone. For linear
+//! loops the two tool motions add.
 //!
 //! | Row | First | Second |
 //! |---|---|---|
 //! | feedforward-cross-coupled | feedforward | PID of the contour error |
 //! | zero-phase-friction | inverse of the closed loop | feedforward of the Coulomb friction |
 //!
-//! An offset of the first along the path is no contour error: the second measures the tool against the path, and not against the
-//! command. Both learn from the command that was really given: [`Controller::observe`] gets it whole.
+//! An offset of the first controller along the path is not a contour error, because the second
+//! measures the tool against the path and not against the command. Both learn from the full command
+//! that was given, which [`Controller::observe`] receives.
 //!
-//! Source: that of the two. Feedforward in the axes with cross-coupled feedback behind it is the practice; Koren and Lo (1992),
-//! "Advanced controllers for feed drives", review both side by side.
+//! Source: the sources of the two controllers. Feedforward in the axes with cross-coupled feedback
+//! behind it is common practice; Koren and Lo (1992), "Advanced controllers for feed drives",
+//! review both side by side.
 
 use feedwright_control::Window;
 use feedwright_control::vector::{add_scaled, sub};

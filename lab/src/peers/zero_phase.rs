@@ -87,8 +87,12 @@ impl Filter {
         Self { weights, ahead: 2, taps: of_reference.len(), feedback, direct: 1.0 - pole }
     }
 
-    /// Of any loop, by A B- with the zeros of B- mirrored, on any scale, of which the first weight is that of the reference `ahead`
-    /// periods on, and by B+, which begins with 1. None where there are too many, or where one is not a number.
+    /// Makes the filter of any loop. `of_reference` is A B- with the zeros of B- mirrored, on any
+    /// scale; its first coefficient weights the reference `ahead` periods ahead. `cancelled` is B+,
+    /// which begins with 1.
+    ///
+    /// Returns `None` if there are too many coefficients, if one is not finite, if `of_reference`
+    /// sums to zero, or if `cancelled` is empty.
     pub fn of_loop(of_reference: &[f64], ahead: u32, cancelled: &[f64]) -> Option<Self> {
         let (_, before) = cancelled.split_first()?;
         let (sum, direct): (f64, f64) = (of_reference.iter().sum(), cancelled.iter().sum());
@@ -107,8 +111,9 @@ impl Filter {
         self.weights.get(..self.taps).unwrap_or_default()
     }
 
-    /// By how much the command is off the reference, from the commands before, the last one first, mm; `at_mm` is the reference so
-    /// many periods from that of the command. Offsets from the reference keep rest at rest to the bit.
+    /// Returns the offset of the command from the reference, mm. `commanded_mm` yields the previous
+    /// commands, the last one first. `at_mm(n)` is the reference n periods after the command.
+    /// Computing with offsets from the reference keeps rest at rest to the bit.
     #[inline]
     fn offset_mm(&self, commanded_mm: impl Iterator<Item = f64>, at_mm: impl Fn(f64) -> f64) -> f64 {
         let here_mm = at_mm(0.0);

@@ -10,10 +10,11 @@ pub(crate) enum TwoOrThree<A, B> {
     Three(B),
 }
 
-/// Puts a value into memory of the caller; false where that is too small, not aligned or none.
+/// Writes a value into memory of the caller. Returns false if the memory is too small, not aligned
+/// or null.
 ///
 /// # Safety
-/// `memory` has `bytes` bytes, or is null, and nobody else uses it.
+/// `memory` is null, or points to `bytes` bytes that nothing else uses.
 pub(crate) unsafe fn put<T>(memory: *mut T, bytes: usize, make: impl FnOnce() -> T) -> bool {
     let Some(memory) = NonNull::new(memory) else { return false };
     if bytes < size_of::<T>() || !memory.is_aligned() {
@@ -24,10 +25,10 @@ pub(crate) unsafe fn put<T>(memory: *mut T, bytes: usize, make: impl FnOnce() ->
     true
 }
 
-/// The bytes of a model.
+/// Returns the bytes of a model; empty if `bytes` is null.
 ///
 /// # Safety
-/// There are so many bytes, or `bytes` is null.
+/// `bytes` is null, or points to `length` bytes.
 pub(crate) unsafe fn model<'a>(bytes: *const u8, length: usize) -> &'a [u8] {
     if bytes.is_null() {
         return &[];

@@ -27,7 +27,7 @@ pub struct Correction<const N: usize> {
     wanted_mm: [f64; N],
     /// Contour error that there would be without it, by the model, mm.
     without_mm: f64,
-    /// Feedrate that was asked for last, as a multiple of that of now.
+    /// Last requested feedrate, as a multiple of the present feedrate.
     rate: f64,
     /// Of axes that are identified.
     trust: Option<Trust<N>>,
@@ -53,7 +53,7 @@ impl<const N: usize> Correction<N> {
         self.controller.change_speed_alone(speed_alone);
     }
 
-    /// Feedrate that was asked for last, as a multiple of that of now.
+    /// Returns the last requested feedrate, as a multiple of the present feedrate.
     pub fn rate(&self) -> f64 {
         self.rate
     }
@@ -63,7 +63,9 @@ impl<const N: usize> Correction<N> {
         self.controller.looks_ahead()
     }
 
-    /// When it decides, and what it sees where so many servo periods ahead are known.
+    /// Returns the interval of decisions and the preview, for a path that is known `ahead` servo
+    /// periods ahead. The regulator previews all of it; the paper's controllers keep their own
+    /// preview.
     pub fn schedule_within(&self, ahead: u32) -> Schedule {
         self.controller.schedule_within(ahead)
     }

@@ -77,7 +77,8 @@ impl<const N: usize> LiveController<N> {
         }
     }
 
-    /// Servo periods that it has to see ahead: the regulator takes what there is.
+    /// Servo periods of path that the controller needs ahead. The regulator needs one, and uses
+    /// more if they are known.
     pub fn looks_ahead(&self) -> u64 {
         match self {
             Self::Regulator(_) => 1,
@@ -88,7 +89,9 @@ impl<const N: usize> LiveController<N> {
         }
     }
 
-    /// When it decides, and what it sees where so many servo periods ahead are known.
+    /// Returns the interval of decisions and the preview, for a path that is known `ahead` servo
+    /// periods ahead. The regulator previews all of it; the paper's controllers keep their own
+    /// preview.
     pub fn schedule_within(&self, ahead: u32) -> Schedule {
         match self {
             Self::Regulator(_) => Schedule { servo_periods: 1, preview: ahead },

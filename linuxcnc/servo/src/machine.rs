@@ -5,7 +5,7 @@ use feedwright_control::{BlockError, ContourIdentifier, IdentifiedAxes, ModelBlo
 /// Why a model cannot be used here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Refused {
-    /// The bytes are no model of so many axes.
+    /// The bytes are not a valid model for this number of axes.
     Block(BlockError),
     /// It is of another kind than is needed.
     Kind,
@@ -43,7 +43,8 @@ impl<const N: usize> LinkModel<N> {
     }
 }
 
-/// Parts by which the period of a thread may differ from that of the model: threads of LinuxCNC are whole nanoseconds.
+/// Largest relative difference between the period of a thread and the servo period of the model. It
+/// is needed because the periods of LinuxCNC threads are whole nanoseconds.
 const PERIOD_TOLERANCE: f64 = 1e-3;
 
 /// The model in these bytes.

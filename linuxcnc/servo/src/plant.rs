@@ -50,7 +50,8 @@ impl<const N: usize> SimulatedMachine<N> {
         self.axes.iter_mut().zip(position_mm).for_each(|(axis, mm)| axis.place(mm));
     }
 
-    /// One servo period under a command, with so many times the inertia. A drive that has no power, or no command, brings its axis to a stand.
+    /// Advances by one servo period under a command, with the inertia of the model times `inertia`.
+    /// An axis without power, or with a command that is not finite, stops where it is.
     pub fn step(&mut self, command_mm: [f64; N], powered: bool, inertia: f64) {
         for (axis, command_mm) in self.axes.iter_mut().zip(command_mm) {
             if powered && command_mm.is_finite() {

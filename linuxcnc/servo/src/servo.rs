@@ -1,19 +1,22 @@
 //! One servo period between the command of a control and the drive.
 //!
 //! ```text
-//! drive    = c(n - D) + o                    the command, D servo periods late, and the correction's offset
-//! feedback = c(n) + (a - c(n - D))           what the control takes for the actual position a: its following error is that of the drive
+//! drive    = c(n - D) + o             command D servo periods late, plus the correction offset
+//! feedback = c(n) + (a - c(n - D))    actual position a as the control gets it: the control sees
+//!                                     the following error of the drive
 //! ```
 //!
-//! The delay is what the correction sees ahead. It is taken up, and given up, only where the command has rested for longer than it, so that
-//! nothing leaps; then the path before and behind is one point. There is none while the control jogs, homes, probes or follows a spindle,
-//! none without a model, and none while the amplifier is off, when drive and control get the actual position.
+//! The delay gives the correction its look-ahead. It starts and ends only after the command has
+//! rested for longer than the delay. The path ahead and behind is then one point, and nothing
+//! leaps. There is no delay while the control jogs, homes, probes or follows a spindle, without a
+//! model, or while the amplifier is off. With the amplifier off, drive and control get the actual
+//! position.
 //!
 //! | Link | Drive gets |
 //! |---|---|
 //! | [`Link::Off`] | the actual position |
-//! | [`Link::Direct`] | the command, and what is left of an offset while it fades |
-//! | [`Link::Delayed`] | the command late, and the offset that the safety layer lets through |
+//! | [`Link::Direct`] | the command, plus the remainder of an offset while it fades |
+//! | [`Link::Delayed`] | the delayed command, plus the offset that the safety layer passes |
 
 use feedwright_control::vector::{add_scaled, norm, scale, sub};
 use feedwright_control::{Bounds, Cause, State};
@@ -25,7 +28,8 @@ use crate::machine::{self, LinkModel, Refused};
 
 /// Delays that can be set, s: below, the inverse of a drive that is late has nothing to look at; above, it sees no more that it needs.
 pub const DELAYS_S: [f64; 2] = [0.008, 0.015];
-/// Time constant with which what is left of an offset goes where there is no correction, s: that of a fade of the safety layer.
+/// Time constant with which a remaining offset decays when there is no correction, s. A fade of the
+/// safety layer has the same one.
 const RESIDUAL_S: f64 = 0.03;
 /// A spindle is followed until the command has rested for so long since its index was awaited, s: it begins to move with the index.
 const FOLLOWED_S: f64 = 0.5;
@@ -36,7 +40,8 @@ const WITHOUT_MODEL_S: f64 = 0.001;
 /// An offset nearer to what was asked for is that, mm.
 const SAME_MM: f64 = 1e-9;
 
-/// A command that goes further in a servo period than the machine, so many times, has leapt.
+/// A command has leapt if it moves more in a servo period than this many times the travel at the
+/// highest speed of the machine.
 const LEAP: f64 = 2.0;
 /// Servo periods of the longest delay.
 const MOST_PERIODS: u64 = 128;
@@ -92,7 +97,7 @@ pub enum Link {
 /// Why there is no correction, or was none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LinkFault {
-    /// There is none.
+    /// No fault.
     None,
     /// The model.
     Model(Refused),
@@ -142,7 +147,7 @@ pub struct Servo<const N: usize> {
     /// Servo periods of delay, and the number of the command at which the tick began.
     delay: u32,
     first: u64,
-    /// What is left of an offset that nobody corrects any more, mm.
+    /// Remaining offset that decays without a correction, mm.
     residual_mm: [f64; N],
     actual_mm: [f64; N],
     command_mm: [f64; N],
@@ -180,7 +185,9 @@ impl<const N: usize> Servo<N> {
         }
     }
 
-    /// Hears the servo period of the thread, before the first one. A model for another one is refused.
+    /// Checks the model against the servo period of the thread, `servo_s`, before the first step.
+    /// Rejects a model for another servo period. Returns the fault of a rejected model, or no
+    /// fault.
     pub fn runs_at(&mut self, servo_s: f64) -> LinkFault {
         if self.correction.is_ok() && !machine::fits(self.servo_s, servo_s) {
             self.correction = Err(Refused::Period);

@@ -1,16 +1,23 @@
-//! Whether a correction is to be trusted that may be by a wrong model: the contour error with it against that of the machine of the model
-//! without any.
+//! Detects a wrong model: compares the contour error with the correction to the error that the
+//! model predicts without it.
 //!
 //! ```text
-//! E  = mean of eps^2        of the actual position, over the last 0.1 s in which the correction was in the loop
-//! E0 = mean of eps0^2       of the axes of the model, simulated along the same path without noise and without offset
+//! E  = mean of eps^2    of the actual position, over the last 0.1 s with a correction in the loop
+//! E0 = mean of eps0^2   of the model axes, simulated along the same path without noise and offset
 //! ```
 //!
-//! A model that holds leaves a small part of E0. The safety layer compares the tool with what the model says of it now, loads that the filter has
-//! found included: where the model is wrong enough to make the loop swing, those swing too, and the tool would seem to be as far off without. E0
-//! knows nothing of the measured position. Both have to say so: under a load that nobody foresees, E is beyond E0 on a straight line. A correction that is worth nothing is faded out by its share: the offset of one that swings would lead the
-//! tool away where it was held and taken back slowly. Found wrong twice, a model is not tried again until the amplifiers were off. Before all this,
-//! and each time that it was found wrong, its law has to prove itself in motion without a correction (`law_proof.rs`).
+//! With a valid model, E is a small part of E0. The safety layer compares the tool with the present
+//! model estimate, which includes the loads that the filter has found. If the model is wrong enough
+//! to make the loop oscillate, these loads oscillate too. The error without the correction then
+//! seems as large as the error with it. E0 does not depend on the measured position.
+//!
+//! Both comparisons have to find the correction useless: under an unpredictable load, E exceeds E0
+//! on a straight line even with a valid model. A useless correction is faded out by its share. If
+//! an oscillating offset were held and taken back slowly instead, it would lead the tool away.
+//!
+//! After two failures the model is not used again until the amplifiers have been off. Before the
+//! first use, and after each failure, the model has to pass the check in motion without a
+//! correction (`law_proof.rs`).
 
 use feedwright_control::vector::{dot, norm, sub};
 use feedwright_control::{IdentifiedAxes, LqgPreview, locate};
@@ -23,11 +30,13 @@ use crate::plant::SimulatedMachine;
 /// prove itself, and the correction comes in from where the axes are by then. Twice the lag of a usual loop.
 const MEMORY_S: f64 = 0.1;
 const SETTLED_S: f64 = 0.05;
-/// Part of the error without it from which on a correction is worth nothing, beside this, mm^2 (2.5 um), and for so many servo periods.
+/// A correction is useless where E exceeds `LEAST_MM2` plus `WORTH_NOTHING`^2 E0, and also the
+/// limit of [`LOADED`], for `WORTHLESS_PERIODS` servo periods in a row. `LEAST_MM2` is (2.5 um)^2.
 const WORTH_NOTHING: f64 = 0.5;
 const LEAST_MM2: f64 = 6.25e-6;
 const WORTHLESS_PERIODS: u32 = 8;
-/// Of the mean square under the loads that the filter has found: what nobody can foresee is no fault of the correction.
+/// E must also exceed this multiple of the mean square error without the correction, under the
+/// loads that the filter has found. An unpredictable load is no fault of the correction.
 const LOADED: f64 = 1.2;
 /// Times that it may be worth nothing: one may be a shock. Time between them, s.
 const TRIALS: u32 = 2;
@@ -37,7 +46,7 @@ const WAIT_S: f64 = 1.0;
 pub struct Trust<const N: usize> {
     nominal: SimulatedMachine<N>,
     proof: LawProof,
-    /// By how much the axes, as they are measured, are behind the path at constant speed, s.
+    /// Largest lag of the measured axis positions behind the path at constant speed, s.
     lag_s: f64,
     begun: bool,
     /// For how long it has been in the loop and the command has moved, s.

@@ -57,7 +57,7 @@ fn turn(
     turn_on(&machine(), model, limits, change)
 }
 
-/// A turn on another machine than that of the model.
+/// A turn on a machine that may differ from the model.
 fn turn_on(
     real: &IdentifiedAxes<2>,
     model: Result<IdentifiedAxes<2>, Refused>,

@@ -45,7 +45,8 @@ fn with_buffers<T>(act: impl FnOnce(&mut Buffers) -> T) -> T {
     act(&mut BUFFERS.lock().unwrap_or_else(PoisonError::into_inner))
 }
 
-/// Makes room for a request of so many bytes, and returns where it is to be written.
+/// Makes room for a request of `bytes` bytes. Returns the address in the memory of the module where
+/// the caller writes the request.
 #[expect(unsafe_code, reason = "the attribute exports the function")]
 #[unsafe(no_mangle)]
 pub extern "C" fn input(bytes: usize) -> usize {
