@@ -1,7 +1,7 @@
 //! How the contour error depends on what the correction may accelerate: `just correction-acceleration`, the table and the figure of
 //! "Acceleration of the correction" in examples/02_horizon.
 //!
-//! `correction_acceleration FILE.svg` cuts contours on `tnv40` with `correction_accel_mm_s2` at each value, and open loop.
+//! `correction_acceleration FILE.svg` cuts contours on `tnv40` with `correction_accel_mm_s2` at each value, and uncorrected.
 
 use feedwright::{BASELINE, COLORS, Choices, Figure, HORIZON, LineStyle, Make, Panel, Polyline, Setup, Statistics};
 use feedwright_lab::{CONTROLLERS, Workpiece};
@@ -56,7 +56,7 @@ fn print_table(open: &[Errors], rows: &[Vec<Errors>]) {
         let cells: Vec<String> = row.iter().map(|[rms_um, max_um]| format!("{rms_um:.3} / {max_um:.2}")).collect();
         cells.join(" | ")
     };
-    println!("| open loop | {} | |", cells(open));
+    println!("| uncorrected | {} | |", cells(open));
     for (k, row) in rows.iter().enumerate() {
         let optimum = OPTIMUM_UM.get(k).map_or(String::new(), |um| format!("{um} "));
         println!("| {} mm/s² | {} | {optimum}|", ACCELERATIONS_MM_S2[k], cells(row));
@@ -72,7 +72,7 @@ fn figure(open: &[Errors], rows: &[Vec<Errors>]) -> Figure {
             LineStyle::Dashed => ACCELERATIONS_MM_S2.iter().map(|a| at(open[contour], *a)).collect(),
             _ => points.map(|(row, a)| at(row[contour], a)).collect(),
         };
-        let label = format!("{}{}", CONTOURS[contour], if line == LineStyle::Dashed { ", open loop" } else { "" });
+        let label = format!("{}{}", CONTOURS[contour], if line == LineStyle::Dashed { ", uncorrected" } else { "" });
         Polyline { label, points, line, color: COLORS[contour].to_owned() }
     };
     let panel = |which: usize, title: &str| {

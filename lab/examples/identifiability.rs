@@ -26,7 +26,7 @@ const SHOWN: usize = 5;
 /// Step of the difference quotients, scaled units.
 const STEP: f64 = 1e-5;
 
-/// Open loop, but for one step of the offset across the path; keeps what an identifier would have seen.
+/// Uncorrected, but for one step of the offset across the path; keeps what an identifier would have seen.
 #[derive(Default)]
 struct Observer {
     kick_at: Option<usize>,

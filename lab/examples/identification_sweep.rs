@@ -10,7 +10,7 @@
 #![expect(clippy::print_stdout, reason = "it is a command")]
 
 use feedwright::LogJob;
-use feedwright_control::OpenLoop;
+use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::Canon;
 use feedwright_gcode::{Reader, Settings};
 use feedwright_ident::{AxisFacts, ExciteOptions, FoundAxis, LawTerm, excitation_program};
@@ -49,7 +49,7 @@ fn excited(machine: &Machine) -> Result<[Vec<f64>; 2], Failure> {
         .collect::<Result<_, _>>()
         .map_err(|error| format!("{error:?}"))?;
     let mut commands = Commands::default();
-    Run::on(&machine).cut::<2>(|| Ok(path_steps(canon.clone())), &mut OpenLoop, &mut [&mut commands])?;
+    Run::on(&machine).cut::<2>(|| Ok(path_steps(canon.clone())), &mut Uncorrected, &mut [&mut commands])?;
     Ok(commands.0)
 }
 

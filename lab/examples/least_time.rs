@@ -1,6 +1,6 @@
 //! Least times in which the tool stays within 10 um of the contours: `just least-time`, the second table of examples/04_planner.
 //!
-//! `least_time [CONTOUR..]` looks for them open loop on the linear servo of `oracle_fastest`, and with two controllers on `tnv40`, each with axes of
+//! `least_time [CONTOUR..]` looks for them uncorrected on the linear servo of `oracle_fastest`, and with two controllers on `tnv40`, each with axes of
 //! 200 mm/s, 2000 mm/s2 and 50,000 mm/s3.
 
 use std::time::Instant;

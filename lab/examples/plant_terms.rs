@@ -1,10 +1,10 @@
 //! What each term of the plant does to a circle: `just plant-terms`, the figure of docs/machine-file.md.
 //!
-//! `plant_terms FILE.svg` cuts the circle of radius 10 mm open loop on tnv40 with one term more, and draws the deviation as a ball bar
+//! `plant_terms FILE.svg` cuts the circle of radius 10 mm uncorrected on tnv40 with one term more, and draws the deviation as a ball bar
 //! shows it. Slowly, where the lag of the loops does not cover what friction and torque do.
 
 use feedwright::{COLORS, Figure, LineStyle, Panel, Polyline};
-use feedwright_control::OpenLoop;
+use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::Corner;
 use feedwright_lab::CONTOURS;
 use feedwright_sim::{Machine, Row, Run, Sink};
@@ -109,7 +109,7 @@ fn panel(term: &Term) -> Result<Panel, Failure> {
     let circle = CONTOURS.iter().find(|contour| contour.name == "circle").ok_or("there is a circle")?;
     let steps = circle.steps(term.feed_mm_s, Corner::ExactPath)?;
     let mut tool = Tool::default();
-    Run::on(&machine).cut_steps::<2>(&steps, &mut OpenLoop, &mut [&mut tool])?;
+    Run::on(&machine).cut_steps::<2>(&steps, &mut Uncorrected, &mut [&mut tool])?;
     let kept = tool.0.len().div_ceil(POINTS).max(1);
     let enlargement = 0.5 * RADIUS_MM / (1e-3 * term.scale_um);
     let drawn = tool.0.iter().step_by(kept).map(|&[x, y]| {

@@ -168,12 +168,12 @@ fn main() -> io::Result<()> {
             title: format!("{} <b>&</b>", job.name),
             part: format!("{}.ngc", job.name),
             machine: vec![("axes".to_owned(), job.axes.to_string()), ("servo period".to_owned(), "1 ms".to_owned())],
-            settings: vec![("controllers".to_owned(), "open loop, less lag".to_owned())],
+            settings: vec![("controllers".to_owned(), "uncorrected, less lag".to_owned())],
             program: Vec::new(),
             circles: Vec::new(),
             tolerance_um: Some(20.0),
             limits: None,
-            runs: vec![run(job, "open loop", [0.012, 0.015, 0.012])?, run(job, "less lag", [0.006, 0.0065, 0.006])?],
+            runs: vec![run(job, "uncorrected", [0.012, 0.015, 0.012])?, run(job, "less lag", [0.006, 0.0065, 0.006])?],
         };
         let path = Path::new(&directory).join(format!("{}.report.html", job.name));
         write_html(&mut BufWriter::new(File::create(&path)?), &report)?;

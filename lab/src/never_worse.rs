@@ -1,6 +1,6 @@
-//! Never worse: a controller compared with open loop on every program and every machine, and the cuts that it made worse.
+//! Never worse: a controller compared with the uncorrected cut on every program and every machine, and the cuts that it made worse.
 //!
-//! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than open loop's by the rule
+//! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than the uncorrected cut's by the rule
 //! of [`feedwright::harm`], or where the controller is not in the loop any more at the end. Each controller is made for the
 //! machine that it cuts on. Cuts depend on nothing but program, machine and seed: the rows are the same for any number
 //! of threads, and those that a [`Journal`] holds are not cut again.
@@ -9,7 +9,7 @@
 //! |---|---|
 //! | `never_worse/program.rs` | a program as it is cut, long ones shortened |
 //! | `never_worse/machines.rs` | the machines of the sweep |
-//! | `never_worse/cut.rs` | one program on one machine, open loop and corrected |
+//! | `never_worse/cut.rs` | one program on one machine, uncorrected and corrected |
 //! | `never_worse/generated.rs` | random programs on random machines, and the smallest case of a failure |
 //! | `never_worse/verdict.rs` | in what a cut is worse |
 //! | `never_worse/summary.rs` | totals, quantiles, failures by severity |
@@ -47,7 +47,7 @@ pub struct SweepJob {
 /// What the jobs have in common.
 #[derive(Debug, Clone)]
 pub struct SweepOptions {
-    /// The controller that is compared with open loop.
+    /// The controller that is compared with the uncorrected cut.
     pub controller: &'static Entry,
     /// Its parameters that are set.
     pub set: Vec<Setting>,
@@ -116,7 +116,7 @@ impl SweepJob {
     }
 }
 
-/// Cuts all jobs, open loop and corrected.
+/// Cuts all jobs, uncorrected and corrected.
 ///
 /// # Errors
 /// An end from outside; what was cut is in the journal.
@@ -199,6 +199,6 @@ mod tests {
             ..jobs[0].clone()
         };
         let named = swept(&[renamed]).rows;
-        assert_eq!((named[0].program.as_str(), &named[0].open_loop), ("other", &first.rows[0].open_loop));
+        assert_eq!((named[0].program.as_str(), &named[0].uncorrected), ("other", &first.rows[0].uncorrected));
     }
 }

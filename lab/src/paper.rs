@@ -1,6 +1,6 @@
 //! The experiments of section 4 of Lee, Cho and Jeon (2005), on the circle of eq. 11.
 //!
-//! For every seed the identifier is trained anew and cuts the circle open loop, with both components of the feedrate, and
+//! For every seed the identifier is trained anew and cuts the circle uncorrected, with both components of the feedrate, and
 //! with the magnitude only: once at the rho that gives it the same machining time, once at the same rho.
 
 mod curves;
@@ -9,7 +9,7 @@ pub mod page;
 
 use feedwright::{Statistics, identified};
 use feedwright_control::{
-    ContourIdentifier, Controller, Gradient, InvertingSettings, MagnitudeOnly, OpenLoop, TwoDimensional,
+    ContourIdentifier, Controller, Gradient, InvertingSettings, MagnitudeOnly, TwoDimensional, Uncorrected,
 };
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_ident::{Excitation, TrainedContour, Training};
@@ -35,7 +35,7 @@ pub struct Numbers {
     pub rms_um: f64,
     /// Largest contour error, um.
     pub max_um: f64,
-    /// Weight of the machining time that the controller ran with; none in open loop.
+    /// Weight of the machining time that the controller ran with; none in the uncorrected cut.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rho: Option<f64>,
     /// Whether the program was cut to its end.
@@ -50,7 +50,7 @@ pub struct SeedResult {
     /// RMS of the identifier's fit, um.
     pub fit_um: f64,
     /// The programmed path at the planned feed.
-    pub open_loop: Numbers,
+    pub uncorrected: Numbers,
     /// Magnitude only, in the machining time of `two_dimensional`.
     pub magnitude_only: Numbers,
     /// Magnitude only, at the rho of `two_dimensional`.
@@ -76,7 +76,7 @@ pub struct Paper {
     pub worst_rms_ratio: f64,
     /// Worst over the seeds of two-dimensional against magnitude-only.
     pub worst_max_ratio: f64,
-    /// Worst over the seeds of two-dimensional against open loop.
+    /// Worst over the seeds of two-dimensional against uncorrected.
     pub worst_time_ratio: f64,
 }
 
@@ -103,7 +103,7 @@ pub fn experiment(machine: &Machine, seeds: &[u64], watch: &dyn Watch) -> Result
         feed_mm_s: FEED_MM_S,
         worst_rms_ratio: worst(|s| s.two_dimensional.rms_um / s.magnitude_only.rms_um),
         worst_max_ratio: worst(|s| s.two_dimensional.max_um / s.magnitude_only.max_um),
-        worst_time_ratio: worst(|s| s.two_dimensional.time_s / s.open_loop.time_s),
+        worst_time_ratio: worst(|s| s.two_dimensional.time_s / s.uncorrected.time_s),
         seeds,
     })
 }
@@ -125,7 +125,7 @@ impl Bench<'_> {
         Ok(SeedResult {
             seed,
             fit_um: trained.fit_um,
-            open_loop: Numbers { rho: None, ..self.cut(&mut OpenLoop, &mut [], 0.0)? },
+            uncorrected: Numbers { rho: None, ..self.cut(&mut Uncorrected, &mut [], 0.0)? },
             magnitude_only: self.cut_magnitude_only(net, same_time)?,
             magnitude_only_same_rho: self.cut_magnitude_only(net, settings.inversion.rho)?,
             two_dimensional_exact_gradient: self.cut_two_dimensional(net, with_gradient(settings, Gradient::Exact))?,

@@ -86,11 +86,14 @@ fn a_correction_that_is_worse_is_told_and_not_written() {
     let worse = cut("contour-compensation");
     assert_eq!(worse.code, Some(1), "{worse:?}");
     let text = worse.told();
-    assert!(text.contains("contour-compensation is worse than open-loop for this part on this machine (RMS"), "{text}");
-    assert!(text.contains("setpoints.csv was not written: open loop is better"), "{text}");
+    assert!(
+        text.contains("contour-compensation is worse than uncorrected for this part on this machine (RMS"),
+        "{text}"
+    );
+    assert!(text.contains("setpoints.csv was not written: the uncorrected cut is better"), "{text}");
     assert!(!folder.path().join("setpoints.csv").exists() && folder.path().join("square.report.html").exists());
     let json: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
-    assert_eq!(json["worse_than_open_loop"][0]["what"], "RMS");
+    assert_eq!(json["worse_than_uncorrected"][0]["what"], "RMS");
     let better = cut("cross-coupled");
     assert_eq!(better.code, Some(0), "{better:?}");
     assert!(better.stdout.contains("wrote setpoints.csv") && folder.path().join("setpoints.csv").exists());
@@ -103,7 +106,7 @@ fn the_comparison_has_the_documented_rows_and_its_own_part() {
     folder.file("beside.ngc", "G21 G90 F600\nT1 M6\nG41 G1 X4\nG1 X8\nG1 Y8\nG40 G1 X9 Y9\nM2\n");
     folder.file("tools.tbl", "T1 P1 D2 ;\n");
     let parts = ["--part", "circle.ngc", "--part", "beside.ngc", "--tool-table", "tools.tbl", "--dialect", "linuxcnc"];
-    let only = ["--only", "square,tnv40,rough,open-loop,contour-compensation", "--machine", "rough", "--no-tuning"];
+    let only = ["--only", "square,tnv40,rough,uncorrected,contour-compensation", "--machine", "rough", "--no-tuning"];
     let only = [&only[..], &parts[..]].concat();
     let outputs = ["--json", "r.json", "--html", "r.html"];
     let out = folder.run(&[&["compare"], &only[..], &outputs[..]].concat()).succeeded();

@@ -112,7 +112,7 @@ fn shards_merge_to_the_bytes_of_the_undivided_run_and_missing_rows_are_named() {
 }
 
 #[test]
-fn rows_are_complete_and_ratios_are_against_open_loop() {
+fn rows_are_complete_and_ratios_are_against_uncorrected() {
     let (options, comparison) = (options(), compared());
     // Parameters identified and 20 % off once on each machine; unseen on the one that is not nominal.
     let rows = options.workpieces.len() * (options.machines.len() * (options.controllers.len() + 2) + 1);
@@ -180,8 +180,8 @@ fn verdicts_are_those_of_the_machines_and_hold_on_the_nominal_circle() {
     let claims: Vec<(&str, &str, &str)> =
         comparison.verdicts.iter().map(|v| (v.contour.as_str(), v.machine.as_str(), v.claim.as_str())).collect();
     let expected = [
-        ("circle", "tnv40", "RMS against open loop"),
-        ("circle", "tnv40", "max against open loop"),
+        ("circle", "tnv40", "RMS against uncorrected"),
+        ("circle", "tnv40", "max against uncorrected"),
         ("circle", "tnv40", "RMS against the best peer without model"),
         ("circle", "rough", "RMS under noise against the best peer"),
         ("square", "tnv40", "RMS of the square"),

@@ -2,7 +2,7 @@
 
 use crate::command::Folder;
 
-const ONLY: [&str; 4] = ["--tuning", "defaults", "--only", "circle,tnv40,rough,open-loop,feedforward"];
+const ONLY: [&str; 4] = ["--tuning", "defaults", "--only", "circle,tnv40,rough,uncorrected,feedforward"];
 
 fn with<'a>(first: &[&'a str], more: &[&'a str]) -> Vec<&'a str> {
     [first, &ONLY, more].concat()

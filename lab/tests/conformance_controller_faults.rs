@@ -1,7 +1,7 @@
 //! The default controller while it is told what is not true, and while the machine becomes another one.
 //!
 //! The position loops of the machine go on with the true position; only the controller sees a lost, frozen or leaping one.
-//! What is asked for: the correction leaves the loop at once and gently, it comes back, and the cut is no worse than open loop.
+//! What is asked for: the correction leaves the loop at once and gently, it comes back, and the cut is no worse than uncorrected.
 
 use crate::sweep::part_or_whole;
 use feedwright::{BASELINE, BEST, Choices, HORIZON, MAX_UM, Make, Setup};
@@ -36,7 +36,7 @@ const WATCHED: usize = 1400;
 /// Times of a fault on a contour, at most about, of each controller: the one that plans ahead, and the one that acts in every servo period.
 const TIMES: [(&str, usize); 2] = [(HORIZON, 10), (BEST, 8)];
 /// Those of the sweep. At 40 times of the controller that acts in every servo period, 5 of some 600 faults fail: while it comes back it
-/// asks for more than [`CAUTIOUS`] allows, on the star at 5,543 ms and on the square at 4,490 and 6,150 ms. The error stays below open loop's.
+/// asks for more than [`CAUTIOUS`] allows, on the star at 5,543 ms and on the square at 4,490 and 6,150 ms. The error stays below the uncorrected cut's.
 const MANY_TIMES: [(&str, usize); 2] = [(HORIZON, 40), (BEST, 10)];
 /// A leap of the measured position, mm, in X.
 const LEAP_MM: f64 = 1.0;
@@ -261,7 +261,7 @@ fn told_wrong(machine: &Machine, (corrects, times): (&str, usize), (name, fault)
     let most = |value: fn(&Outcome) -> f64| outcomes.iter().map(value).fold(0.0, f64::max);
     let periods = |n: Option<usize>| n.map_or(f64::INFINITY, |n| n as f64);
     eprintln!(
-        "{corrects}, {name}, {fault:?}, {} times: fades after {} ms, back after {} ms, {:.3} mm/s2, largest {:.2} um, open loop {:.2} um",
+        "{corrects}, {name}, {fault:?}, {} times: fades after {} ms, back after {} ms, {:.3} mm/s2, largest {:.2} um, uncorrected {:.2} um",
         outcomes.len(),
         outcomes.iter().map(|o| periods(o.faded_after)).fold(0.0, f64::max),
         outcomes.iter().map(|o| periods(o.back_after)).fold(0.0, f64::max),
@@ -284,7 +284,7 @@ fn told_wrong(machine: &Machine, (corrects, times): (&str, usize), (name, fault)
     outcomes
         .iter()
         .filter(|o| fails(o))
-        .map(|o| format!("{corrects}, {name}, {fault:?} at {} ms, open loop {open_mm}: {o:?}", o.at))
+        .map(|o| format!("{corrects}, {name}, {fault:?} at {} ms, uncorrected {open_mm}: {o:?}", o.at))
         .collect()
 }
 
@@ -319,8 +319,8 @@ fn more_inertia_from_one_line_to_the_next_does_no_more_harm_than_is_known() {
     assert!(failures.is_empty(), "{} failures:\n{}", failures.len(), failures.join("\n"));
 }
 
-/// The machine becomes another one at each line of the second lap of the square: where the error is beyond `most` times open
-/// loop's.
+/// The machine becomes another one at each line of the second lap of the square: where the error is beyond `most`
+/// times the uncorrected error.
 fn changing(what: &str, from: &Machine, to: &Machine, most: f64) -> Vec<String> {
     let steps = laps("square");
     let servo_s = from.period.servo_s;
@@ -344,7 +344,7 @@ fn changing(what: &str, from: &Machine, to: &Machine, most: f64) -> Vec<String> 
         let error_mm = largest_mm(&rows);
         let after = |found: &dyn Fn(&Row) -> bool| rows[at..].iter().position(found).map_or(-1, |n| n as i64);
         let what = format!(
-            "{what} at line {}, {at} ms: {:.1} um, open loop {:.1} um, beyond it after {} ms, out of the loop after {} ms",
+            "{what} at line {}, {at} ms: {:.1} um, uncorrected {:.1} um, beyond it after {} ms, out of the loop after {} ms",
             lines[at],
             1e3 * error_mm,
             1e3 * open_mm,

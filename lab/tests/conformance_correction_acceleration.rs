@@ -1,4 +1,4 @@
-//! The default controller is no worse than open loop, however little or much the correction may accelerate.
+//! The default controller is no worse than uncorrected, however little or much the correction may accelerate.
 
 use feedwright::{BASELINE, Choices, CutErrors, HORIZON, Make, Setup, Statistics, harm};
 use feedwright_lab::{CONTROLLERS, Workpiece};
@@ -20,17 +20,17 @@ fn errors(machine: &Machine, workpiece: &Workpiece, name: &str) -> CutErrors {
 }
 
 #[test]
-fn no_acceleration_of_the_correction_makes_a_cut_worse_than_open_loop() {
+fn no_acceleration_of_the_correction_makes_a_cut_worse_than_uncorrected() {
     let tnv40 = Machine::load("tnv40".as_ref()).unwrap();
     let contours: Vec<Workpiece> =
         Workpiece::contours().into_iter().filter(|workpiece| CONTOURS.contains(&workpiece.name.as_str())).collect();
     assert_eq!(contours.len(), CONTOURS.len());
     contours.par_iter().for_each(|workpiece| {
-        let open_loop = errors(&tnv40, workpiece, BASELINE);
+        let uncorrected = errors(&tnv40, workpiece, BASELINE);
         for acceleration_mm_s2 in ACCELERATIONS_MM_S2 {
             let mut machine = tnv40.clone();
             machine.axes.iter_mut().for_each(|axis| axis.correction_accel_mm_s2 = Some(acceleration_mm_s2));
-            let worse = harm(&open_loop, &errors(&machine, workpiece, HORIZON));
+            let worse = harm(&uncorrected, &errors(&machine, workpiece, HORIZON));
             assert!(worse.is_empty(), "{} at {acceleration_mm_s2} mm/s2: {worse:?}", workpiece.name);
         }
     });

@@ -16,7 +16,7 @@ const FEED_MM_S: f64 = 50.0;
 /// Largest RMS error with the identified file, as a multiple of the RMS error of the same
 /// controller with the true file. Applies to `receding-horizon`.
 const RATIO: f64 = 1.3;
-/// Largest error of any of them, um: open loop has 16.
+/// Largest error of any of them, um: the uncorrected cut has 16.
 const MOST_UM: f64 = 0.5;
 
 /// Mean square of the contour error while it cuts, um2.

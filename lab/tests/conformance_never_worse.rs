@@ -3,22 +3,22 @@
 use crate::command::Folder;
 use serde_json::Value;
 
-const OPEN_LOOP: [&str; 3] = ["never-worse", "--controller", "open-loop"];
+const UNCORRECTED: [&str; 3] = ["never-worse", "--controller", "uncorrected"];
 
 fn arguments<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    [&OPEN_LOOP[..], more].concat()
+    [&UNCORRECTED[..], more].concat()
 }
 
 #[test]
-fn open_loop_is_never_worse_than_open_loop() {
+fn uncorrected_is_never_worse_than_uncorrected() {
     let folder = Folder::new();
     let more = ["circle.ngc", "--machine", "tnv40", "--machine", "coarse", "--json", "n.json", "--journal", "j.jsonl"];
     let first = folder.run(&arguments(&more)).succeeded();
-    assert!(first.stdout.contains("0 of 2 cuts worse than open loop"), "{}", first.stdout);
+    assert!(first.stdout.contains("0 of 2 cuts worse than uncorrected"), "{}", first.stdout);
     let results: Value = serde_json::from_slice(&folder.read("n.json")).unwrap();
     assert_eq!((results["judged"].as_u64(), results["rows"].as_array().unwrap().len()), (Some(2), 2));
     for row in results["rows"].as_array().unwrap() {
-        assert_eq!(row["open_loop"], row["corrected"]);
+        assert_eq!(row["uncorrected"], row["corrected"]);
         assert_eq!(row["rigid"].as_bool(), Some(row["machine"] == "tnv40"));
     }
     let again = folder.run(&arguments(&more)).succeeded();

@@ -187,7 +187,7 @@ fn comparison() -> Comparison {
     let mut rows = Vec::new();
     for contour in ["circle", "star", "square"] {
         for machine in ["tnv40", "soft"] {
-            for (controller, rms_um) in [("open-loop", 16.0), ("cross-coupled", 2.0), ("lqg-identified", 0.1)] {
+            for (controller, rms_um) in [("uncorrected", 16.0), ("cross-coupled", 2.0), ("lqg-identified", 0.1)] {
                 rows.push(json!({
                     "contour": contour, "machine": machine, "controller": controller, "time_s": 1.7, "rms_um": rms_um,
                     "rms_spread_um": [rms_um, rms_um], "max_um": 2.0 * rms_um, "max_spread_um": [rms_um, 2.0 * rms_um],

@@ -16,14 +16,14 @@ use feedwright_sim::Machine;
 const PROTOTYPE_RMS_RATIO: f64 = 0.20;
 /// The same of the largest error: 12 um over 27 um.
 const PROTOTYPE_MAX_RATIO: f64 = 0.45;
-/// Two-dimensional against open loop, time: 1.69 s over 1.75 s is 0.966; with a margin of one feed period of 10 ms.
+/// Two-dimensional against uncorrected, time: 1.69 s over 1.75 s is 0.966; with a margin of one feed period of 10 ms.
 const PROTOTYPE_TIME_RATIO: f64 = 0.98;
 /// "The same machining time" in the paper's comparison.
 const EQUAL_TIME: f64 = 0.01;
-/// Open loop the prototype came to 18.0 um RMS and 29.4 um max with a plan that ends in steps of 10 ms; a tenth covers it.
-const PROTOTYPE_OPEN_LOOP_UM: [f64; 2] = [18.0, 29.4];
-/// See [`PROTOTYPE_OPEN_LOOP_UM`].
-const PROTOTYPE_OPEN_LOOP_TOLERANCE: f64 = 0.1;
+/// Uncorrected the prototype came to 18.0 um RMS and 29.4 um max with a plan that ends in steps of 10 ms; a tenth covers it.
+const PROTOTYPE_UNCORRECTED_UM: [f64; 2] = [18.0, 29.4];
+/// See [`PROTOTYPE_UNCORRECTED_UM`].
+const PROTOTYPE_UNCORRECTED_TOLERANCE: f64 = 0.1;
 
 /// The machining time is interpolated in the servo period in which the plan ends, where the plan is nearly at rest: its
 /// arithmetic is exact to rounding.
@@ -44,7 +44,7 @@ fn paper() -> &'static Paper {
 #[test]
 fn both_components_are_far_more_accurate_in_the_same_time() {
     for s in &paper().seeds {
-        let (open, magnitude, both) = (&s.open_loop, &s.magnitude_only, &s.two_dimensional);
+        let (open, magnitude, both) = (&s.uncorrected, &s.magnitude_only, &s.two_dimensional);
         assert!((magnitude.time_s / both.time_s - 1.0).abs() <= EQUAL_TIME, "{s:?}");
         assert!(both.rms_um <= PROTOTYPE_RMS_RATIO * magnitude.rms_um, "{s:?}");
         assert!(both.max_um <= PROTOTYPE_MAX_RATIO * magnitude.max_um, "{s:?}");
@@ -56,27 +56,27 @@ fn both_components_are_far_more_accurate_in_the_same_time() {
 #[test]
 fn with_the_exact_gradient_the_loop_does_not_converge() {
     for s in &paper().seeds {
-        assert!(s.two_dimensional_exact_gradient.rms_um > s.open_loop.rms_um, "{s:?}");
+        assert!(s.two_dimensional_exact_gradient.rms_um > s.uncorrected.rms_um, "{s:?}");
     }
 }
 
 #[test]
-fn open_loop_takes_the_time_of_the_trapezoid() {
+fn uncorrected_takes_the_time_of_the_trapezoid() {
     let paper = paper();
     let accel_mm_s2 = machine().limits.tangential_accel_mm_s2;
     let length_mm = 2.0 * std::f64::consts::PI * paper.radius_mm;
     let expected_s = length_mm / paper.feed_mm_s + paper.feed_mm_s / accel_mm_s2;
     for s in &paper.seeds {
-        assert!((s.open_loop.time_s - expected_s).abs() <= TIME_TOLERANCE_S, "{} s", s.open_loop.time_s);
+        assert!((s.uncorrected.time_s - expected_s).abs() <= TIME_TOLERANCE_S, "{} s", s.uncorrected.time_s);
     }
 }
 
 #[test]
-fn open_loop_errs_as_the_prototype_does() {
-    let open = &paper().seeds[0].open_loop;
-    let [rms_um, max_um] = PROTOTYPE_OPEN_LOOP_UM;
-    assert!((open.rms_um / rms_um - 1.0).abs() <= PROTOTYPE_OPEN_LOOP_TOLERANCE, "{open:?}");
-    assert!((open.max_um / max_um - 1.0).abs() <= PROTOTYPE_OPEN_LOOP_TOLERANCE, "{open:?}");
+fn uncorrected_errs_as_the_prototype_does() {
+    let open = &paper().seeds[0].uncorrected;
+    let [rms_um, max_um] = PROTOTYPE_UNCORRECTED_UM;
+    assert!((open.rms_um / rms_um - 1.0).abs() <= PROTOTYPE_UNCORRECTED_TOLERANCE, "{open:?}");
+    assert!((open.max_um / max_um - 1.0).abs() <= PROTOTYPE_UNCORRECTED_TOLERANCE, "{open:?}");
 }
 
 /// Everything above may have come from a cache that a change of the program should have emptied.

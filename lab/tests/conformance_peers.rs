@@ -1,12 +1,12 @@
 //! Every controller of the table does on the circle what it is there for: it reduces the contour error, or trades it for time.
 //!
-//! A controller that does nothing cuts as open loop does, and fails here.
+//! A controller that does nothing cuts as the uncorrected cut does, and fails here.
 
 use feedwright::{BASELINE, Choices, Entry, Make, Setting, Setup, Statistics};
 use feedwright_lab::{CONTROLLERS, Workpiece};
 use feedwright_sim::{Axis, Machine, Run, Squareness};
 
-/// What a controller makes of the circle of 10 mm radius at 50 mm/s on tnv40, against open loop.
+/// What a controller makes of the circle of 10 mm radius at 50 mm/s on tnv40, against uncorrected.
 struct Held {
     name: &'static str,
     /// Values of its parameters; the defaults where there are none.
@@ -89,7 +89,7 @@ where
     for Held { name, set, rms, time } in HELD.iter().filter(|held| N == 2 || held.set.is_empty()) {
         let [rms_um, time_s] = cut::<N>(&machine, CONTROLLERS.find(name).unwrap(), set);
         let (of_rms, of_time) = (rms_um / open_um, time_s / open_s);
-        let what = format!("{name} {set:?}: RMS {of_rms:.4} of open loop's, time {of_time:.4}");
+        let what = format!("{name} {set:?}: RMS {of_rms:.4} of the uncorrected cut's, time {of_time:.4}");
         println!("{what}");
         let [shortest, longest] = *time;
         // Rounding of the instant at which the plan ends.
@@ -142,7 +142,7 @@ fn drive_of_workshop() -> Machine {
     machine
 }
 
-/// Largest parts of open loop's RMS on that machine. Measured: feedforward 0.0006, the limit 0.0004, model-predictive 0.0001; Kalman filter and observer 0.06 and 0.11, which know
+/// Largest parts of the uncorrected RMS on that machine. Measured: feedforward 0.0006, the limit 0.0004, model-predictive 0.0001; Kalman filter and observer 0.06 and 0.11, which know
 /// nothing of the torque filter; the shaper rounds the circle by 1.2 um, 0.2. Zero phase leaves the friction: 0.17; with that fed forward 0.01.
 const HELD_ON_WORKSHOP: &[(&str, f64)] = &[
     ("feedforward", 0.01),
@@ -172,7 +172,7 @@ fn what_drives_do_by_themselves_is_not_done_twice_and_what_they_do_late_is_done_
 }
 
 #[test]
-fn where_drives_feed_forward_by_themselves_as_delivered_is_open_loop() {
+fn where_drives_feed_forward_by_themselves_as_delivered_is_uncorrected() {
     let machine = drive_of_workshop();
     let cut = |name| cut::<2>(&machine, CONTROLLERS.find(name).unwrap(), &[]);
     assert_eq!(cut("feedforward-as-delivered"), cut(BASELINE));

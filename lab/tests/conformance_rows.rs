@@ -65,7 +65,7 @@ fn on_the_circle_foot_and_tangent_are_those_of_the_circle() {
         assert!(dot(away_mm, row.tangent).abs() < ALONG_MM, "{row:?}");
         largest_mm = largest_mm.max(row.contour_error_mm.abs());
     }
-    assert!(largest_mm > 0.01, "{largest_mm}: open loop cuts this circle some 20 um too small");
+    assert!(largest_mm > 0.01, "{largest_mm}: the uncorrected cut cuts this circle some 20 um too small");
 }
 
 #[test]

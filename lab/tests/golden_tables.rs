@@ -88,7 +88,7 @@ fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], mac
 fn the_kept_comparison_is_what_the_program_makes() {
     let mut contours = Workpiece::contours();
     contours.retain(|workpiece| ["ellipse", "square"].contains(&workpiece.name.as_str()));
-    let controllers = ["open-loop", "cross-coupled", "feedforward", "two-dimensional", "receding-horizon"];
+    let controllers = ["uncorrected", "cross-coupled", "feedforward", "two-dimensional", "receding-horizon"];
     let knowledge = [Knowledge::Own, Knowledge::Unseen];
     cut_anew(crate::table::COMPARISON, contours, &knowledge, &["tnv40", "rough", "soft"], &controllers);
 }
@@ -99,7 +99,7 @@ fn the_kept_held_out_work_is_what_the_program_makes() {
     let mut held_out = HeldOutSeeds::recorded().workpieces();
     let drawn: Vec<Workpiece> = [held_out.remove(0), held_out.pop().unwrap()].into();
     let knowledge = [Knowledge::Own, Knowledge::TwentyPercentOff];
-    let controllers = ["open-loop", "feedforward-cross-coupled", "kalman-disturbance", "receding-horizon"];
+    let controllers = ["uncorrected", "feedforward-cross-coupled", "kalman-disturbance", "receding-horizon"];
     cut_anew(crate::table::HELD_OUT, drawn, &knowledge, &["workshop"], &controllers);
 }
 

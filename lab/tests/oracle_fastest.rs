@@ -4,7 +4,7 @@
 //! command on the path, as fast as leaves the tool within 10 um.
 
 use feedwright::{FastestPlan, fastest};
-use feedwright_control::OpenLoop;
+use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::Corner;
 use feedwright_lab::contour;
 use feedwright_plan::Steps;
@@ -34,7 +34,7 @@ fn planned(name: &str, tolerance_um: f64) -> FastestPlan {
     let corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
     let steps = contour(name).unwrap().steps(200.0, corner).unwrap();
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
-    let plan = fastest::<2>(&linear(), tolerance_um, all, &mut OpenLoop, 1, &()).unwrap();
+    let plan = fastest::<2>(&linear(), tolerance_um, all, &mut Uncorrected, 1, &()).unwrap();
     assert!(plan.largest_um <= tolerance_um, "{name}: {} um", plan.largest_um);
     plan
 }
@@ -47,14 +47,14 @@ fn is_cut_in_the_least_time(name: &str, least_s: f64) {
 }
 
 #[test]
-fn the_circle_is_cut_in_the_least_time_of_open_loop() {
+fn the_circle_is_cut_in_the_least_time_of_uncorrected() {
     let [(name, least_s), ..] = LEAST_S;
     is_cut_in_the_least_time(name, least_s);
 }
 
 #[test]
 #[ignore = "a sweep, the butterfly alone takes minutes: just sweep"]
-fn contours_are_cut_in_the_least_time_of_open_loop() {
+fn contours_are_cut_in_the_least_time_of_uncorrected() {
     for (name, least_s) in LEAST_S {
         is_cut_in_the_least_time(name, least_s);
     }
@@ -91,6 +91,6 @@ fn a_machine_without_limits_of_its_axes_is_refused() {
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
     let mut bare = linear();
     bare.axes[1].max_jerk_mm_s3 = None;
-    let error = fastest::<2>(&bare, 10.0, all, &mut OpenLoop, 1, &()).unwrap_err();
+    let error = fastest::<2>(&bare, 10.0, all, &mut Uncorrected, 1, &()).unwrap_err();
     assert!(error.to_string().contains("no limits of their own"), "{error}");
 }

@@ -59,8 +59,8 @@ struct Script {
 
 fn script(python: &str, machine: &Path, axis: &str) -> Script {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates/feedwright/tests/oracle_scripts/lqg.py");
-    let price = LqgSettings::DEFAULT.price_s2.to_string();
-    let output = Command::new(python).arg(script).arg(machine).args([axis, &price]).output().unwrap();
+    let weight = LqgSettings::DEFAULT.control_weight_s2.to_string();
+    let output = Command::new(python).arg(script).arg(machine).args([axis, &weight]).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).unwrap()
 }

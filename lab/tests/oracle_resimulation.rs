@@ -120,7 +120,7 @@ fn so_they_do_with_every_controller() {
         }
         agrees(python, &part("star"), &odd, entry, BOTH);
     }
-    agrees(python, &pocket, &machine_file("coarse"), &feedwright::OPEN_LOOP, BOTH);
+    agrees(python, &pocket, &machine_file("coarse"), &feedwright::UNCORRECTED, BOTH);
 }
 
 /// With backlash a finer step has the flanks strike at other times, and what a quick command makes of that the closed form does not
@@ -177,7 +177,7 @@ fn so_they_do_in_space() {
     let folder = tempfile::tempdir().unwrap();
     let pocket = short_pocket(folder.path());
     agrees(python, &pocket, &machine_file("tnv40"), CONTROLLERS.find(HORIZON).unwrap(), &[1]);
-    agrees(python, &pocket, &machine_file("soft"), &feedwright::OPEN_LOOP, BOTH);
+    agrees(python, &pocket, &machine_file("soft"), &feedwright::UNCORRECTED, BOTH);
 }
 
 /// Longer than what is simulated of them, one beside the other, one no whole number of feed periods.
@@ -212,7 +212,7 @@ fn a_trace_with_a_wrong_position_is_found_out() {
     let Some(python) = python() else { return };
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("trace.csv");
-    cut(&part("circle"), &machine_file("tnv40"), &feedwright::OPEN_LOOP, &file);
+    cut(&part("circle"), &machine_file("tnv40"), &feedwright::UNCORRECTED, &file);
     let text = std::fs::read_to_string(&file).unwrap();
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
     let column = lines[0].split(',').position(|name| name == "act_x_mm").unwrap();
@@ -251,7 +251,7 @@ fn a_machine_that_is_another_in_one_value_is_found_out() {
         ),
     ];
     for (name, changes) in others {
-        cut(&part("circle"), &machine_file(name), &feedwright::OPEN_LOOP, &file);
+        cut(&part("circle"), &machine_file(name), &feedwright::UNCORRECTED, &file);
         let text = std::fs::read_to_string(machine_file(name)).unwrap();
         for [from, to] in changes {
             let other = folder.path().join("other.toml");

@@ -1,4 +1,4 @@
-//! The default controller is never worse than open loop: on random programs and random machines, each identified first, and
+//! The default controller is never worse than uncorrected: on random programs and random machines, each identified first, and
 //! on shapes on which it once was.
 //!
 //! What fails is made as small as it can be, and printed as program and machine file. `feedwright-lab held-out` does the same
@@ -20,7 +20,7 @@ const FOR_EACH: usize = 4;
 /// Seed of the cuts.
 const SEED: u64 = 20_261;
 /// The one that is worse, and by what: where a helix begins behind a rapid, which leaves the tool 0.60 mm behind its path, 0.604 mm of
-/// it stay uncut in place of 0.601. Its contour error is a tenth of open loop's.
+/// it stay uncut in place of 0.601. Its contour error is a tenth of the uncorrected cut's.
 const KNOWN: &str = "helix-836152549";
 /// Trials until a failure is small: a minute at the most.
 const TRIALS: u32 = 60;
@@ -30,7 +30,7 @@ fn options() -> SweepOptions {
 }
 
 fn told(row: &SweepRow) -> String {
-    let (before, after) = (&row.open_loop, &row.corrected);
+    let (before, after) = (&row.uncorrected, &row.corrected);
     format!(
         "{} on {}: {:.2} / {:.1} -> {:.2} / {:.1} um, worse in {:?}, {:?}",
         row.program,
@@ -45,7 +45,7 @@ fn told(row: &SweepRow) -> String {
 }
 
 #[test]
-fn random_programs_on_random_machines_are_cut_no_worse_than_open_loop() {
+fn random_programs_on_random_machines_are_cut_no_worse_than_uncorrected() {
     let (cuts, options) = (part_or_whole(CUTS, MANY_CUTS), options());
     let generated = draw(SEED, cuts, FOR_EACH, Class::Any).unwrap();
     let mut failures: Vec<(SweepRow, Generated)> = Vec::new();
@@ -53,9 +53,9 @@ fn random_programs_on_random_machines_are_cut_no_worse_than_open_loop() {
         let mut cutter = Cutter::new(&of_machine[0].job.machine, &options);
         for made in of_machine {
             let row = cutter.row(&made.job.program, &()).unwrap();
-            assert!(row.is_judged(), "open loop is lost: {row:?}");
+            assert!(row.is_judged(), "the uncorrected cut is lost: {row:?}");
             if row.program == KNOWN {
-                let more = row.corrected.uncut_um.unwrap() / row.open_loop.uncut_um.unwrap();
+                let more = row.corrected.uncut_um.unwrap() / row.uncorrected.uncut_um.unwrap();
                 assert!(row.rms_ratio() < 0.1 && more < 1.01, "{row:?}");
             } else if !row.faults().is_empty() {
                 failures.push((row, made.clone()));
@@ -135,13 +135,13 @@ fn judged(name: &str, text: &str, variant: &Variant) -> SweepRow {
 }
 
 #[test]
-fn teeth_smaller_than_the_lag_are_cut_no_worse_than_open_loop() {
+fn teeth_smaller_than_the_lag_are_cut_no_worse_than_uncorrected() {
     let row = judged("teeth", &teeth(), &Variant::of("tnv40", "tnv40"));
     assert_eq!(row.faults(), []);
 }
 
 #[test]
-fn two_turns_of_a_small_circle_are_cut_no_worse_than_open_loop() {
+fn two_turns_of_a_small_circle_are_cut_no_worse_than_uncorrected() {
     for &kp_1_s in part_or_whole(&[25.0][..], &[25.0, 40.0]) {
         let variant = Variant::of("tnv40", format!("kp{kp_1_s}")).with_axes("kp_1_s", kp_1_s);
         assert_eq!(judged("two turns", &two_turns(), &variant).faults(), []);
@@ -149,13 +149,13 @@ fn two_turns_of_a_small_circle_are_cut_no_worse_than_open_loop() {
 }
 
 #[test]
-fn a_round_pocket_is_cut_no_worse_than_open_loop_by_a_machine_that_speeds_up_well() {
+fn a_round_pocket_is_cut_no_worse_than_uncorrected_by_a_machine_that_speeds_up_well() {
     let variant = Variant::of("tnv40", "accel250").with("limits", "tangential_accel_mm_s2", 250.0);
     assert_eq!(judged("round pocket", &round_pocket(), &variant).faults(), []);
 }
 
 #[test]
-fn low_teeth_are_cut_no_worse_than_open_loop_where_the_correction_may_hardly_accelerate() {
+fn low_teeth_are_cut_no_worse_than_uncorrected_where_the_correction_may_hardly_accelerate() {
     let variant = Variant::of("tnv40", "slow")
         .with("limits", "tangential_accel_mm_s2", 1290.0)
         .with("limits", "normal_accel_mm_s2", 163.0)
@@ -164,7 +164,7 @@ fn low_teeth_are_cut_no_worse_than_open_loop_where_the_correction_may_hardly_acc
 }
 
 #[test]
-fn slots_are_cut_no_worse_than_open_loop_by_a_machine_that_is_late() {
+fn slots_are_cut_no_worse_than_uncorrected_by_a_machine_that_is_late() {
     let variant = Variant::of("tnv40", "late")
         .with("limits", "tangential_accel_mm_s2", 1640.0)
         .with("limits", "normal_accel_mm_s2", 1890.0)
@@ -177,7 +177,7 @@ fn slots_are_cut_no_worse_than_open_loop_by_a_machine_that_is_late() {
 }
 
 #[test]
-fn holes_behind_rapids_at_the_torque_limit_are_drilled_no_worse_than_open_loop() {
+fn holes_behind_rapids_at_the_torque_limit_are_drilled_no_worse_than_uncorrected() {
     let variant = Variant::of("tnv40", "accel4000").with("limits", "tangential_accel_mm_s2", 4000.0).with(
         "limits",
         "normal_accel_mm_s2",
@@ -188,7 +188,7 @@ fn holes_behind_rapids_at_the_torque_limit_are_drilled_no_worse_than_open_loop()
 
 /// The contours on which it was tuned: those above can pass.
 #[test]
-fn a_circle_is_cut_no_worse_than_open_loop() {
+fn a_circle_is_cut_no_worse_than_uncorrected() {
     let row = judged("circle", "G21 G90 F3000\nG2 X0 Y0 I10 J0\nM2\n", &Variant::of("tnv40", "tnv40"));
     assert_eq!(row.faults(), []);
     assert!(row.rms_ratio() < 0.1, "{}", row.rms_ratio());

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 /// Servo periods, s, and the mechanics periods in them.
 const PERIODS: [(f64, u32); 5] = [(0.25e-3, 5), (0.5e-3, 5), (2e-3, 20), (4e-3, 40), (10e-3, 100)];
-/// RMS against open loop's at the most: up to 2 ms, and beyond, where a corner lasts less than a period.
+/// RMS against the uncorrected cut's at the most: up to 2 ms, and beyond, where a corner lasts less than a period.
 const RATIO: f64 = 0.03;
 const SLOW_RATIO: f64 = 0.6;
 
@@ -35,7 +35,7 @@ fn the_regulator_corrects_at_every_servo_period() {
         machine.period = Period { servo_s, mechanics_s: servo_s / f64::from(mechanics_per_servo), mechanics_per_servo };
         for workpiece in &shapes {
             let [open_um, corrected_um] = [BASELINE, "lqg-identified"].map(|name| cut_um(&machine, workpiece, name));
-            eprintln!("{}, {}: {open_um:.2?} um open loop, {corrected_um:.2?} um", machine.name, workpiece.name);
+            eprintln!("{}, {}: {open_um:.2?} um uncorrected, {corrected_um:.2?} um", machine.name, workpiece.name);
             let ratio = if servo_s > 2e-3 { SLOW_RATIO } else { RATIO };
             assert!(corrected_um[0] <= ratio * open_um[0], "{}, {}", machine.name, workpiece.name);
             assert!(corrected_um[1] <= open_um[1], "{}, {}", machine.name, workpiece.name);

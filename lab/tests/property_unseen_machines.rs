@@ -1,7 +1,7 @@
 //! The horizon, and the default, which goes by an identified law, on machines that they were not identified on: they stay stable, and are
-//! hardly ever worse than open loop.
+//! hardly ever worse than uncorrected.
 //!
-//! Where the horizon is worse: on loops that ring by themselves, and on loops so stiff that open loop is below a micrometre anyway.
+//! Where the horizon is worse: on loops that ring by themselves, and on loops so stiff that the uncorrected cut is below a micrometre anyway.
 //!
 //! And on drives that are just strong enough for the plan.
 
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 /// Machines in the suite and in the sweep; of the controller by a law fewer, which each cost as much as three of the horizon.
 const MACHINES: [u64; 2] = [12, 48];
 const MACHINES_BY_LAW: [u64; 2] = [6, 10];
-/// Where the open loop itself rings by more than this, the machine is broken, um.
+/// Where the uncorrected cut itself rings by more than this, the machine is broken, um.
 const BROKEN_UM: f64 = 400.0;
 /// Largest share of cuts that may be worse in RMS, and largest ratio to the uncorrected RMS:
 /// measured values, rounded up. For the horizon, 6 of 134 cuts were worse, by at most 0.34 um.
@@ -79,7 +79,7 @@ fn cut(workpiece: &Workpiece, machine: &Machine, controller: &mut dyn Controller
 }
 
 #[test]
-fn hardly_any_machine_is_cut_worse_than_open_loop() {
+fn hardly_any_machine_is_cut_worse_than_uncorrected() {
     judge(HORIZON, MACHINES, WORSE, WORST_RATIO);
 }
 
@@ -88,7 +88,7 @@ fn a_law_of_another_machine_is_not_followed() {
     judge(BEST, MACHINES_BY_LAW, WORSE_BY_LAW, WORST_RATIO_BY_LAW);
 }
 
-/// Delays that the law does not know of, s, and the part of open loop's RMS that is left at the most: 0.59 and 0.95 were measured,
+/// Delays that the law does not know of, s, and the part of the uncorrected RMS that is left at the most: 0.59 and 0.95 were measured,
 /// on the square, and 0.08 and 0.22 on circle and eight. By 2 ms the law counts as wrong at corners, and is not followed from there on.
 const LEFT_BY_LATE: [(f64, f64); 2] = [(0.001, 0.65), (0.002, 1.0)];
 
@@ -136,7 +136,7 @@ fn judge(name: &str, [few, many]: [u64; 2], most_worse: f64, worst_ratio: f64) {
     ratios.sort_by(f64::total_cmp);
     let quantile = |part: f64| ratios[((ratios.len() - 1) as f64 * part) as usize];
     eprintln!(
-        "{} cuts, RMS against open loop: median {:.3}, 90 % {:.3}, 99 % {:.3}, worst {:.3}",
+        "{} cuts, RMS against uncorrected: median {:.3}, 90 % {:.3}, 99 % {:.3}, worst {:.3}",
         ratios.len(),
         quantile(0.5),
         quantile(0.9),
@@ -145,10 +145,10 @@ fn judge(name: &str, [few, many]: [u64; 2], most_worse: f64, worst_ratio: f64) {
     );
     let worse: Vec<_> = judged.iter().filter(|(_, rms_um, open_um)| *rms_um > open_um + RMS_UM).collect();
     for (what, rms_um, open_um) in &worse {
-        eprintln!("{what}: {rms_um:.2} um, open loop {open_um:.2} um");
+        eprintln!("{what}: {rms_um:.2} um, uncorrected {open_um:.2} um");
     }
-    assert!((worse.len() as f64) <= most_worse * judged.len() as f64, "worse than open loop on {} cuts", worse.len());
-    assert!(quantile(1.0) <= worst_ratio, "{} times open loop", quantile(1.0));
+    assert!((worse.len() as f64) <= most_worse * judged.len() as f64, "worse than uncorrected on {} cuts", worse.len());
+    assert!(quantile(1.0) <= worst_ratio, "{} times uncorrected", quantile(1.0));
     assert!(judged.len() as u64 > 2 * machines, "only {} cuts were judged", judged.len());
 }
 
@@ -180,7 +180,7 @@ fn a_drive_that_is_just_strong_enough_for_the_plan_is_strong_enough() {
             let (run, numbers) = cut(&workpiece, &machine, &mut *controller(name, knows));
             let (rms_um, open_um) = (numbers.rms_um(), open_numbers.rms_um());
             let what = format!(
-                "{name}, {}: {rms_um:.2} / {:.1} um, open loop {open_um:.2} / {:.1} um",
+                "{name}, {}: {rms_um:.2} / {:.1} um, uncorrected {open_um:.2} / {:.1} um",
                 workpiece.name,
                 numbers.max_um(),
                 open_numbers.max_um()

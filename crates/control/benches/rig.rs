@@ -1,7 +1,7 @@
 //! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
 
 use feedwright_control::{
-    AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator, IDENTIFIED_PRICE, Identifier,
+    AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator, IDENTIFIED_WEIGHT, Identifier,
     Inputs, InvertingSettings, Knot, KnotSource, LqgPreview, LqgSettings, Measured, OffsetBounds, Parameters, Periods,
     Preview, RecedingHorizon, RecedingHorizonSettings, Register, ServoIdentifier, Setpoint, Tick,
     TransmissionParameters, TwoDimensional, UNKNOWNS, Window,
@@ -78,7 +78,7 @@ pub(crate) fn regulator<const N: usize>(gives: bool) -> LqgPreview<N> {
         };
     }
     let bounds = OffsetBounds { largest_mm: 0.5, fastest_mm_s: 400.0 };
-    let settings = LqgSettings::identified(IDENTIFIED_PRICE, 1e-3, bounds);
+    let settings = LqgSettings::identified(IDENTIFIED_WEIGHT, 1e-3, bounds);
     LqgPreview::new([axis; N], settings)
 }
 

@@ -12,7 +12,7 @@
 //!
 //! To add a controller: one file here and one row in the table of the library.
 
-pub(crate) mod open_loop;
+pub(crate) mod uncorrected;
 pub(crate) mod feedforward;
 pub(crate) mod lqg_preview;
 pub(crate) mod inverting;

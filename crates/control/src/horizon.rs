@@ -18,7 +18,7 @@
 //!
 //! What holds the plan back from doing harm:
 //!
-//! - q, the price of the offset itself, where it cannot undo all that is wrong, at the start, where drives are at their limit
+//! - q, the weight of the offset itself, where it cannot undo all that is wrong, at the start, where drives are at their limit
 //!   ([`restraint`]), and where the model is not to be trusted ([`missed`]): then the plan asks for a part of it.
 //! - Where much is left across the path, and about points where the path turns back, a tool that is further from its time than
 //!   without the offset ([`restraint`], [`problem`]).

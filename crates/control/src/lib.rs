@@ -2,10 +2,10 @@
 //! tool position, and corrects the contour error with one of several controllers.
 //!
 //! The crate is `no_std`, so that the same code runs in a servo thread and in a simulation. The
-//! example follows a circle open loop with two axes that lag by 20 ms, and reads the contour error.
+//! example follows a circle uncorrected with two axes that lag by 20 ms, and reads the contour error.
 //!
 //! ```
-//! use feedwright_control::{Bounds, Controller, Knot, KnotSource, OpenLoop, Tick};
+//! use feedwright_control::{Bounds, Controller, Knot, KnotSource, Uncorrected, Tick};
 //!
 //! /// A circle of 10 mm radius, run at 50 mm/s: 5 rad/s.
 //! struct Circle;
@@ -18,7 +18,7 @@
 //!     }
 //! }
 //!
-//! let mut controller = OpenLoop;
+//! let mut controller = Uncorrected;
 //! let schedule = Controller::<2>::schedule(&controller);
 //! let mut tick = Tick::new(0.001, schedule, Bounds::new(1.0, 400.0, 1000.0));
 //! let mut tool_mm = [10.0, 0.0];
@@ -33,7 +33,7 @@
 //! assert!((-0.06..-0.04).contains(&error_mm), "{error_mm} mm");
 //! ```
 //!
-//! A [`Feedforward`] in place of [`OpenLoop`] leads the command by what the axes lag.
+//! A [`Feedforward`] in place of [`Uncorrected`] leads the command by what the axes lag.
 //!
 //! # Main names
 //!
@@ -43,7 +43,7 @@
 //! | The path | [`KnotSource`], [`Knot`], [`Window`], [`Register`], [`Preview`] |
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`] |
-//! | Members | [`OpenLoop`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`RecedingHorizon`], [`LqgPreview`] |
+//! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`RecedingHorizon`], [`LqgPreview`] |
 //! | Safety layer | [`Bounds`], [`State`], [`Fade`], [`Cause`] |
 //! | Model of an axis | [`AxisLaw`], [`AxisState`], [`Parameters`], [`AxisKnowledge`], [`AxisInverse`] |
 //! | Trained models | [`ContourIdentifier`], [`ServoIdentifier`], [`IdentifiedAxes`], [`ModelBlock`] |
@@ -102,11 +102,11 @@ pub use axis::{AxisLaw, AxisState, Parameters, Periods, friction_signs};
 pub use contour_error::{ContourError, Estimator, MAX_ENTRIES, carried, locate};
 pub use controller::feedforward::{Feedforward, MAX_PREVIEW, preview};
 pub use controller::inverting::{INVERTING_FEED_PERIOD_S, InvertingSettings};
-pub use controller::lqg_preview::{IDENTIFIED_PRICE, LqgGains, LqgPreview, LqgSettings, OffsetBounds};
+pub use controller::lqg_preview::{IDENTIFIED_WEIGHT, LqgGains, LqgPreview, LqgSettings, OffsetBounds};
 pub use controller::magnitude_only::MagnitudeOnly;
-pub use controller::open_loop::OpenLoop;
 pub use controller::receding_horizon::{RECEDING_HORIZON_FEED_PERIOD_S, RecedingHorizon, RecedingHorizonSettings};
 pub use controller::two_dimensional::TwoDimensional;
+pub use controller::uncorrected::Uncorrected;
 pub use controller::{Command, Controller, Measured, Schedule};
 pub use horizon::gauss_newton::GaussNewton;
 pub use horizon::problem::{END_WEIGHT, HorizonProblem};

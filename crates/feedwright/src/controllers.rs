@@ -15,7 +15,7 @@ mod make;
 mod rows;
 mod setup;
 
-use feedwright_control::{Controller, IdentifierKind, OpenLoop};
+use feedwright_control::{Controller, IdentifierKind, Uncorrected};
 use feedwright_gcode::suggestion::nearest;
 use feedwright_ident::Model;
 use serde::{Deserialize, Serialize};
@@ -24,7 +24,7 @@ pub use make::{correction_limits, offset_bounds};
 pub use parameters::{Parameter, ParameterKind, Setting, SettingError, Values};
 pub use rows::{ACCELERATION_GAIN, FRICTION_GAIN, KNOTS, PLAN_PERIOD_S, RATE_WEIGHT, VELOCITY_GAIN};
 use rows::{
-    CHANGE_WEIGHT, ETA, FORESEEN_MM, IDENTIFIED_PRICE, INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S,
+    CHANGE_WEIGHT, ETA, FORESEEN_MM, IDENTIFIED_WEIGHT, INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S,
     INVERSION_STEPS, LAST_WEIGHT, LEARNING_STEP, ON_RAPIDS, RHO, SOLVER_STEPS, TANGENTIAL_WEIGHT,
 };
 pub use setup::{ModelMisfit, NothingIdentified, Setup};
@@ -98,14 +98,14 @@ macro_rules! controller {
 }
 
 /// The programmed path at the planned feed.
-pub static OPEN_LOOP: Entry = controller!(
-    "open-loop",
+pub static UNCORRECTED: Entry = controller!(
+    "uncorrected",
     "the programmed path at the planned feed",
     "what every open-source control does",
     Nothing,
     laps: 1,
     [],
-    |_setup, _values| Box::new(OpenLoop)
+    |_setup, _values| Box::new(Uncorrected)
 );
 
 /// Velocity, acceleration and friction feedforward with the exact model of the machine.
@@ -170,7 +170,7 @@ pub static LQG_IDENTIFIED: Entry = controller!(
     "Anderson and Moore (1990); Gautier, Janot and Vandanjon (2013)",
     Identified(Axes),
     laps: 1,
-    [IDENTIFIED_PRICE],
+    [IDENTIFIED_WEIGHT],
     |setup, values| make::lqg_identified(setup, values)
 );
 
@@ -178,14 +178,14 @@ pub static LQG_IDENTIFIED: Entry = controller!(
 pub const CONTROLLERS: Controllers = Controllers::new(&ROWS);
 
 static ROWS: [&Entry; 6] =
-    [&OPEN_LOOP, &FEEDFORWARD, &MAGNITUDE_ONLY, &TWO_DIMENSIONAL, &RECEDING_HORIZON, &LQG_IDENTIFIED];
+    [&UNCORRECTED, &FEEDFORWARD, &MAGNITUDE_ONLY, &TWO_DIMENSIONAL, &RECEDING_HORIZON, &LQG_IDENTIFIED];
 
 /// The default.
 pub const BEST: &str = "lqg-identified";
 /// Needs nothing but a recording, and adapts while cutting.
 pub const HORIZON: &str = "receding-horizon";
 /// What others are compared with.
-pub const BASELINE: &str = "open-loop";
+pub const BASELINE: &str = "uncorrected";
 
 /// A table of controllers, in the order in which they are listed.
 #[derive(Debug, Clone, Copy)]

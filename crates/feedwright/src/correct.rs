@@ -119,7 +119,7 @@ impl CorrectJob {
         let of_run = |error| JobError::of_run(&self.program, error);
         let parts = parts(&source.steps);
         let found = rounds(&on(&nominal), &parts, self.target).map_err(of_run)?;
-        watch.begin("cutting the original", 1);
+        watch.begin("cutting the uncorrected program", 1);
         let uncorrected = on(&self.machine).figures(&original).map_err(of_run)?;
         let written = self.written(&source, &parts, &found);
         let (written, unwritten) = match written {
@@ -135,7 +135,7 @@ impl CorrectJob {
             planner: stages.planner.name,
             refusal: refusal(&uncorrected, corrected.as_ref(), changed, unwritten.as_ref()),
             hint: unwritten.and_then(|fault| fault.hint()),
-            original: uncorrected,
+            uncorrected,
             corrected: corrected.unwrap_or(uncorrected),
             stretches: stretches(&parts).count(),
             stretches_changed: changed,

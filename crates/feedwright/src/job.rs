@@ -31,7 +31,7 @@ use feedwright_plan::{AlignedPaths, Constraints, PlanSink, Step, Steps};
 use feedwright_sim::{Machine, Outcome, Row, Run, RunError, Sink, StageSteps, Stages, Watch, path_steps};
 use serde::{Deserialize, Serialize};
 
-use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, NothingIdentified, OPEN_LOOP, Setup};
+use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, NothingIdentified, Setup, UNCORRECTED};
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
 use crate::fastest::{FastestError, FastestPlan, fastest, with_tolerance};
@@ -108,7 +108,7 @@ pub struct JobOutcome {
     pub report: Report,
     /// What the reader warned of.
     pub warnings: Vec<feedwright_gcode::Diagnostic>,
-    /// Controllers that cut open loop, because nothing was identified that they could go by.
+    /// Controllers that cut uncorrected, because nothing was identified that they could go by.
     pub without_identification: Vec<NothingIdentified>,
     /// What was guessed or noticed of the log.
     pub log_findings: Vec<LogFinding>,
@@ -116,7 +116,7 @@ pub struct JobOutcome {
     pub exported: Option<CorrectOutcome>,
     /// The plan of least time, where that was asked for.
     pub fastest: Option<FastestPlan>,
-    /// In what the correction is worse than open loop; nothing where it is compared with something else.
+    /// In what the correction is worse than uncorrected; nothing where it is compared with something else.
     pub harm: Vec<Harm>,
     /// Whether the command of the controller may be used: it was cut to its end, and does no harm.
     pub is_of_use: bool,
@@ -141,7 +141,7 @@ impl Job {
             machine,
             machine_file: None,
             controller: &LQG_IDENTIFIED,
-            against: &OPEN_LOOP,
+            against: &UNCORRECTED,
             feed_mm_s: None,
             choices: Choices::default(),
             model: None,

@@ -38,7 +38,7 @@ pub use worst::WorstPlace;
 
 pub(crate) use feedwright_sim::{FadedOut, Outcome};
 
-/// In place of a controller: the run of a corrected program, cut open loop by another control.
+/// In place of a controller: the run of a corrected program, cut without feedback by another control.
 pub(crate) const AS_EXPORTED: &str = "as exported";
 
 /// Everything that the page shows.

@@ -22,7 +22,7 @@ fn machine(folder: &Folder, name: &str, replacements: &[(&str, &str)]) {
 /// Runs and checks that it is refused with all of `says`, and that the folder is as it was.
 fn refuses<S: AsRef<OsStr> + std::fmt::Debug>(folder: &Folder, arguments: &[S], says: &[&str]) {
     let before = folder.content();
-    folder.run_open_loop(arguments).refused(says);
+    folder.run_uncorrected(arguments).refused(says);
     assert_eq!(before, folder.content(), "{arguments:?} left something");
 }
 
@@ -175,7 +175,7 @@ fn a_parameter_that_cannot_be_set() {
     refuses("knots=30", &["1 to 20, whole", "its default is 20"]);
     refuses("knots=nan", &["1 to 20, whole"]);
     refuses("rho=0.01", &["receding-horizon has no parameter 'rho'", "feedwright controllers receding-horizon"]);
-    refuses("two-dimensional.rho=0.01", &["two-dimensional does not take part", "receding-horizon, open-loop"]);
+    refuses("two-dimensional.rho=0.01", &["two-dimensional does not take part", "receding-horizon, uncorrected"]);
     refuses("two-dimensionl.rho=1", &["no controller is called 'two-dimensionl'", "did you mean 'two-dimensional'?"]);
     let twice = ["--set", "knots=10", "--set", "receding-horizon.knots=12"];
     folder
@@ -250,7 +250,7 @@ fn a_file_that_grows_too_large() {
     // Blocks of 512 bytes; the signal that comes with the limit is ignored, so that the write fails.
     command.args([
         "-c",
-        "trap '' XFSZ; ulimit -f 200; exec \"$0\" run circle.ngc --controller open-loop --trace t.csv --out s.csv",
+        "trap '' XFSZ; ulimit -f 200; exec \"$0\" run circle.ngc --controller uncorrected --trace t.csv --out s.csv",
     ]);
     command.arg(env!("CARGO_BIN_EXE_feedwright")).current_dir(folder.path());
     Ran::from(command.output().unwrap()).refused(&["t.csv", "File too large"]);
@@ -270,7 +270,7 @@ fn a_full_disk() {
     }
     let before = folder.content();
     let arguments = [&["circle.ngc", "--trace", "disk/t.csv"], &OUTPUTS[..]].concat();
-    let ran = folder.run_open_loop(&arguments);
+    let ran = folder.run_uncorrected(&arguments);
     let after = folder.content();
     let unmounted = Command::new("umount").arg(&disk).status();
     assert!(unmounted.is_ok_and(|status| status.success()));
@@ -314,7 +314,7 @@ fn arguments_that_are_none() {
 fn names_with_spaces_work() {
     let folder = Folder::new();
     folder.file("my part.ngc", crate::command::CIRCLE);
-    folder.run_open_loop(&["my part.ngc", "--trace", "the trace.csv"]).succeeded();
+    folder.run_uncorrected(&["my part.ngc", "--trace", "the trace.csv"]).succeeded();
     assert!(folder.text("the trace.csv").starts_with("t_s,"));
     assert!(folder.text("my part.report.html").contains("my part.ngc"));
 }
@@ -335,7 +335,7 @@ fn names_that_are_no_text_work() {
         OsStr::new("--json"),
         name(b"fr\xe4se.json"),
     ];
-    folder.run_open_loop(&arguments).succeeded();
+    folder.run_uncorrected(&arguments).succeeded();
     for written in [&b"fr\xe4se.report.html"[..], b"fr\xe4se.json"] {
         assert!(folder.path().join(OsStr::from_bytes(written)).is_file());
     }
@@ -350,7 +350,7 @@ fn a_machine_that_diverges_is_a_result() {
         "wild.toml",
         &[("kp_1_s = 50", "kp_1_s = 1e5"), ("torque_limit_nm = 30", "torque_limit_nm = 1e6")],
     );
-    for controller in ["open-loop", "magnitude-only", "two-dimensional"] {
+    for controller in ["uncorrected", "magnitude-only", "two-dimensional"] {
         let outputs = ["--json", "r.json", "--trace", "t.csv", "--out", "s.csv", "--report", "r.html"];
         let ran = folder.run(
             &[&["run", "circle.ngc", "--machine", "wild.toml", "--controller", controller], &outputs[..]].concat(),

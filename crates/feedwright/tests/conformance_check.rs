@@ -104,7 +104,7 @@ fn every_dialect_can_be_chosen_and_is_told() {
             assert!(is_told, "{command} {name}: {ran:?}");
         }
     }
-    let ran = folder.run_open_loop(&["own.ngc", "--dialect", "fanuc", "--json", "r.json"]).succeeded();
+    let ran = folder.run_uncorrected(&["own.ngc", "--dialect", "fanuc", "--json", "r.json"]).succeeded();
     assert!(folder.text("r.json").contains("Fanuc/Haas mill: as was asked for"), "{ran:?}");
     let ran = folder.run(&["canon", "circle.ngc", "--dialect", AUTO]).succeeded();
     assert_eq!(ran.stderr, "circle.ngc: read as LinuxCNC: nothing points to another control\n");
@@ -133,8 +133,8 @@ fn endless_programs_end_at_the_limits_given() {
     let says_moves = ["moves.ngc", "more than 300 motions", "--max-motions"];
     folder.run(&["check", "idle.ngc", "--max-idle-lines", "400"]).faulty(&says_idle);
     folder.run(&["check", "moves.ngc", "--max-motions", "300"]).faulty(&says_moves);
-    folder.run_open_loop(&["idle.ngc", "--max-idle-lines", "400"]).refused(&says_idle);
-    folder.run_open_loop(&["moves.ngc", "--max-motions", "300"]).refused(&says_moves);
+    folder.run_uncorrected(&["idle.ngc", "--max-idle-lines", "400"]).refused(&says_idle);
+    folder.run_uncorrected(&["moves.ngc", "--max-motions", "300"]).refused(&says_moves);
     let canon = folder.run(&["canon", "moves.ngc", "--max-motions", "300"]);
     assert_eq!(canon.code, Some(2));
     assert!(canon.stderr.contains("more than 300 motions"), "{}", canon.stderr);
@@ -196,5 +196,5 @@ fn faults_of_a_tool_table_have_their_places() {
     folder.run(&["check", "circle.ngc", "--tool-unit", "inch"]).refused(&["--tool-table"]);
     folder.file("fine.tbl", "T1 D3\n");
     let says = ["fine.tbl", "which this run reads"];
-    folder.run_open_loop(&["circle.ngc", "--tool-table", "fine.tbl", "--json", "fine.tbl"]).refused(&says);
+    folder.run_uncorrected(&["circle.ngc", "--tool-table", "fine.tbl", "--json", "fine.tbl"]).refused(&says);
 }

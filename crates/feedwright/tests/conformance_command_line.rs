@@ -39,16 +39,16 @@ const TNV40: &str = include_str!("../../sim/machines/tnv40.toml");
 #[test]
 fn a_dash_is_the_standard_input_wherever_a_file_is_read() {
     let folder = Folder::new();
-    let open_loop = ["--controller", "open-loop"];
-    let ran = fed(&folder, &[&["run", "-"], &open_loop[..]].concat(), crate::command::CIRCLE.as_bytes()).succeeded();
+    let uncorrected = ["--controller", "uncorrected"];
+    let ran = fed(&folder, &[&["run", "-"], &uncorrected[..]].concat(), crate::command::CIRCLE.as_bytes()).succeeded();
     assert!(ran.stdout.contains("wrote stdin.report.html"), "{}", ran.stdout);
-    let named = folder.run_open_loop(&["circle.ngc", "--json", "named.json"]).succeeded();
+    let named = folder.run_uncorrected(&["circle.ngc", "--json", "named.json"]).succeeded();
     assert!(named.stdout.contains("wrote named.json"));
     for (arguments, input) in [
         (&["plan", "-"][..], crate::command::CIRCLE),
         (&["check", "-"], crate::command::CIRCLE),
         (&["canon", "-"], crate::command::CIRCLE),
-        (&["run", "circle.ngc", "--machine", "-", "--controller", "open-loop"], TNV40),
+        (&["run", "circle.ngc", "--machine", "-", "--controller", "uncorrected"], TNV40),
         (&["plan", "circle.ngc", "--machine", "-"], TNV40),
         (&["excite", "--machine", "-", "--out", "excite.ngc"], TNV40),
         (&["check", "circle.ngc", "--tool-table", "-"], "T1 P1 Z25.4 D6\n"),
@@ -64,19 +64,19 @@ fn a_dash_is_the_standard_input_wherever_a_file_is_read() {
 fn a_dash_is_the_standard_output_wherever_a_file_is_written() {
     let folder = Folder::new();
     let before = folder.content();
-    let ran = folder.run_open_loop(&["circle.ngc", "--json", "-", "--report", "/dev/null"]).succeeded();
+    let ran = folder.run_uncorrected(&["circle.ngc", "--json", "-", "--report", "/dev/null"]).succeeded();
     let json: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!((json["simulated"].as_bool(), json["assumed"]["law"].as_str()), (Some(true), Some("none")));
     // The table is on stderr then.
     assert!(ran.stderr.contains("RMS um") && !ran.stderr.contains("wrote r"), "{}", ran.stderr);
-    let ran = folder.run_open_loop(&["circle.ngc", "--trace", "-", "--report", "/dev/null"]).succeeded();
+    let ran = folder.run_uncorrected(&["circle.ngc", "--trace", "-", "--report", "/dev/null"]).succeeded();
     assert!(ran.stdout.starts_with("t_s,") && ran.stdout.lines().count() > 500);
     let ran = folder.run(&["excite", "--machine", "tnv40", "--out", "-"]).succeeded();
     assert!(ran.stdout.contains("G21") && ran.stderr.contains("axes"), "{ran:?}");
     let ran = folder.run(&["plan", "circle.ngc", "--json", "-"]).succeeded();
     assert!(serde_json::from_str::<serde_json::Value>(&ran.stdout).is_ok());
     folder
-        .run_open_loop(&["circle.ngc", "--json", "-", "--trace", "-"])
+        .run_uncorrected(&["circle.ngc", "--json", "-", "--trace", "-"])
         .refused(&["another output of this run goes there"]);
     assert_eq!(folder.content(), before);
 }
@@ -103,12 +103,12 @@ fn a_full_disk_behind_the_standard_output_is_told() {
 fn a_feedrate_has_a_unit() {
     let folder = Folder::new();
     let time_s = |feed: &str| {
-        folder.run_open_loop(&["circle.ngc", "--feed", feed, "--json", "r.json"]).succeeded();
+        folder.run_uncorrected(&["circle.ngc", "--feed", feed, "--json", "r.json"]).succeeded();
         let json: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
         json["runs"][0]["time_s"].as_f64().unwrap().to_bits()
     };
     assert_eq!(time_s("600mm/min"), time_s("10 mm/s"));
-    let ran = folder.run_open_loop(&["circle.ngc", "--feed", "50"]);
+    let ran = folder.run_uncorrected(&["circle.ngc", "--feed", "50"]);
     ran.refused(&["'50'", "--feed", "50mm/min is 0.833 mm/s", "50mm/s is 3000 mm/min"]);
 }
 
@@ -134,7 +134,7 @@ fn everything_fits_eighty_columns_where_there_is_no_terminal() {
     }
     let ran = folder.run(&[&["run", "circle.ngc", "--controller", "feedforward"], &machine[..]].concat());
     for says in [
-        "Simulated, feedforward against open-loop: RMS contour error",
+        "Simulated, feedforward against uncorrected: RMS contour error",
         "peak torque of",
         "beside the program",
         "uncut um",
@@ -146,7 +146,7 @@ fn everything_fits_eighty_columns_where_there_is_no_terminal() {
         folder
             .command()
             .env("COLUMNS", "44")
-            .args(["run", "circle.ngc", "--controller", "open-loop"])
+            .args(["run", "circle.ngc", "--controller", "uncorrected"])
             .output()
             .unwrap(),
     );
@@ -209,7 +209,7 @@ fn shells_get_completions_and_man_its_pages() {
 fn what_a_killed_run_left_is_cleaned_up() {
     let folder = Folder::new();
     folder.file(".feedwright-Ab12Cd.part", "half of a trace");
-    folder.run_open_loop(&["circle.ngc"]).succeeded();
+    folder.run_uncorrected(&["circle.ngc"]).succeeded();
     assert!(!folder.path().join(".feedwright-Ab12Cd.part").exists());
 }
 

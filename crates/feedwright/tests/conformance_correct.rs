@@ -40,10 +40,10 @@ fn end(text: &str) -> [f64; 3] {
 }
 
 #[test]
-fn a_circle_is_cut_open_loop_with_a_twentieth_of_its_error_for_every_control() {
+fn a_circle_is_cut_uncorrected_with_a_twentieth_of_its_error_for_every_control() {
     for target in TARGETS {
         let outcome = corrected("G21 G90 G64\nG0 X0 Y0\nG2 X0 Y0 I6 J0 F2400\nM2\n", target);
-        let (was, is) = (outcome.original, outcome.corrected);
+        let (was, is) = (outcome.uncorrected, outcome.corrected);
         let name = target.name;
         assert_eq!(outcome.refusal, None, "{name}");
         // Steps of 1 um are as large as what is left.
@@ -68,7 +68,7 @@ fn lines_that_need_no_change_stay_and_what_they_say_still_holds() {
                 N70 G3 X1 Y0 I-5 J0 F2400 (around)\nN80 G3 X1 Y0 I-5 J0 M8\nN90 Z5 I-5 J0\nN95 M9\nN100 G81 X20 Y5 Z-3 R1 F200\nN110 G80 G0 Z20\nN120 M30\n%\n";
     let outcome = corrected(text, &TARGETS[0]);
     let program = outcome.program().unwrap();
-    assert!(!outcome.expanded && outcome.corrected.rms_um < 0.5 * outcome.original.rms_um, "{outcome:?}");
+    assert!(!outcome.expanded && outcome.corrected.rms_um < 0.5 * outcome.uncorrected.rms_um, "{outcome:?}");
     for kept in [
         "(part)",
         "N10 G21 G17 G90 G94 G64 S900",
@@ -96,7 +96,7 @@ fn units_distances_and_offsets_of_the_place_are_kept() {
     assert!(program.contains("\nG90\n") && program.contains("\nG91\n"), "{program}");
     let gap = (0..3).map(|i| (end(program)[i] - end(inches)[i]).abs()).fold(0.0, f64::max);
     assert!(gap < 1e-4, "{gap}\n{program}");
-    assert!(outcome.corrected.rms_um < 0.2 * outcome.original.rms_um, "{outcome:?}");
+    assert!(outcome.corrected.rms_um < 0.2 * outcome.uncorrected.rms_um, "{outcome:?}");
 }
 
 #[test]
@@ -105,7 +105,7 @@ fn a_loop_is_written_out_and_says_so() {
     let outcome = corrected(text, &TARGETS[0]);
     let program = outcome.program().unwrap();
     assert!(outcome.expanded && program.contains("(expanded:") && !program.contains("while"), "{program}");
-    assert!(outcome.corrected.rms_um < 0.1 * outcome.original.rms_um);
+    assert!(outcome.corrected.rms_um < 0.1 * outcome.uncorrected.rms_um);
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn a_program_that_is_written_out_stays_in_the_coordinates_of_its_places() {
                 o1 endwhile\nG55 G0 X1 Y1\nG2 X1 Y1 I6 J0\nG92 X0\nG1 X3\nM2\n";
     let outcome = corrected(text, &TARGETS[0]);
     let program = outcome.program().unwrap();
-    assert!(outcome.expanded && outcome.corrected.rms_um < 0.1 * outcome.original.rms_um);
+    assert!(outcome.expanded && outcome.corrected.rms_um < 0.1 * outcome.uncorrected.rms_um);
     for words in ["\nG10 L2 P1 X5 Y-3\n", "\nG10 L2 P2 X50\n", "\nG54\n", "\nG55\n", "\nG92 X0\n", "\nG0 X1.0 Y1.0"] {
         assert!(program.contains(words), "{words} in\n{program}");
     }
@@ -203,7 +203,7 @@ fn a_rapid_that_overruns_its_end_goes_there_slowly() {
     let mut job = job("G21 G90 G64\nG0 X30 Y0\nG3 X30 Y0 I-8 J0 F3000\nM2\n", &TARGETS[0]);
     job.machine = Machine::load("stiff".as_ref()).unwrap();
     let outcome = job.run(&()).unwrap();
-    let (was, is, program) = (outcome.original, outcome.corrected, outcome.program().unwrap());
+    let (was, is, program) = (outcome.uncorrected, outcome.corrected, outcome.program().unwrap());
     assert!(was.max_um > 15.0 && is.max_um < 0.35 * was.max_um, "{is:?} {was:?}");
     let at = program.lines().position(|line| line.starts_with("G0 X29.")).unwrap();
     assert!(program.lines().nth(at + 1).unwrap().starts_with("G1 X30.0 F"), "{program}");

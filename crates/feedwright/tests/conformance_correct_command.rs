@@ -12,7 +12,7 @@ fn what_is_told_is_that_of_the_file_and_decides_the_tolerance() {
     assert!(ran.stdout.contains("as exported") && ran.stdout.contains("within tolerance"), "{}", ran.stdout);
     let results: Value = serde_json::from_slice(&folder.read("p.json")).unwrap();
     let number = |side: &str, key: &str| results[side][key].as_f64().unwrap();
-    assert!(number("as_exported", "rms_um") < 0.1 * number("original", "rms_um"), "{results}");
+    assert!(number("as_exported", "rms_um") < 0.1 * number("uncorrected", "rms_um"), "{results}");
     assert!(number("as_exported", "max_um") <= 2.0 && number("as_exported", "uncut_um") < 3.0, "{results}");
     assert_eq!(results["written"], true);
     assert!(folder.text("p.ngc").starts_with("(corrected by feedwright for the machine tnv40, control generic)\n"));
@@ -39,7 +39,7 @@ fn run_writes_the_program_that_correct_writes_and_its_cut_is_the_last() {
     let folder = Folder::new();
     folder.run(&["correct", "circle.ngc", "--machine", "tnv40", "--out", "p.ngc"]).succeeded();
     let run = ["circle.ngc", "--machine", "tnv40", "--out", "r.ngc", "--json", "r.json", "--tolerance", "2"];
-    let ran = folder.run_open_loop(&run).succeeded();
+    let ran = folder.run_uncorrected(&run).succeeded();
     assert!(ran.stdout.contains("\nas exported ") && ran.told().contains("within tolerance"), "{}", ran.stdout);
     assert_eq!(folder.text("r.ngc"), folder.text("p.ngc"));
     let results: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
@@ -50,7 +50,7 @@ fn run_writes_the_program_that_correct_writes_and_its_cut_is_the_last() {
     }
     // The largest of all cuts stands in the rows that the page shows.
     assert_eq!(last["worst"][0]["error_um"].as_f64().map(f64::abs), last["max_um"].as_f64(), "{last}");
-    assert!(exported["original"]["rms_um"].as_f64() > Some(10.0) && exported["control"] == "generic", "{exported}");
+    assert!(exported["uncorrected"]["rms_um"].as_f64() > Some(10.0) && exported["control"] == "generic", "{exported}");
     let text = folder.text("r.ngc");
     let line = last["worst"][0]["line"].as_u64().unwrap() as usize;
     assert_eq!(last["worst"][0]["text"].as_str(), text.lines().nth(line - 1), "{last}");
@@ -60,7 +60,7 @@ fn run_writes_the_program_that_correct_writes_and_its_cut_is_the_last() {
 fn run_writes_no_program_that_is_no_better_and_the_exit_code_says_so() {
     let folder = Folder::new();
     folder.file("line.ngc", "G21 G90 G64\nG1 X40 F300\nM2\n");
-    let ran = folder.run_open_loop(&["line.ngc", "--machine", "tnv40", "--out", "p.ngc", "--tolerance", "100"]);
+    let ran = folder.run_uncorrected(&["line.ngc", "--machine", "tnv40", "--out", "p.ngc", "--tolerance", "100"]);
     assert_eq!(ran.code, Some(1));
     assert!(ran.stdout.contains("no corrected program:") && !ran.stdout.contains("wrote p.ngc"), "{}", ran.stdout);
     assert!(!folder.path().join("p.ngc").exists() && folder.path().join("line.report.html").exists());
@@ -95,7 +95,7 @@ fn a_program_is_measured_to_another_and_half_a_program_does_not_win() {
     folder.file("beside.ngc", "G21 G90 G61 F1200\nG1 X10\nY10.1\nX0\nY0\nM2\n");
     let uncut_and_max = |part: &str| {
         let arguments = [part, "--machine", "tnv40", "--reference", "square.ngc", "--json", "r.json"];
-        folder.run_open_loop(&arguments).succeeded();
+        folder.run_uncorrected(&arguments).succeeded();
         let results: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
         assert_eq!(results["reference"], "square.ngc");
         ["uncut_um", "max_um"].map(|key| results["runs"][0][key].as_f64().unwrap())

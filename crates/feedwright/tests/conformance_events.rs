@@ -20,7 +20,7 @@ takes_s = 0
 /// Machining time of a program without a controller, s.
 fn time_s(folder: &Folder, program: &str, machine: &str) -> f64 {
     folder.file("part.ngc", program);
-    folder.run_open_loop(&["part.ngc", "--machine", machine, "--json", "r.json"]).succeeded();
+    folder.run_uncorrected(&["part.ngc", "--machine", machine, "--json", "r.json"]).succeeded();
     let results: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
     results["runs"][0]["time_s"].as_f64().unwrap()
 }
@@ -82,8 +82,8 @@ fn an_axis_that_turns_alone_takes_its_time_and_is_told() {
     // 400 mm/s.
     assert!((turned("G0 U400\nG1") - 1.0).abs() < 0.002);
     folder.file("part.ngc", program("A36 C10"));
-    let ran = folder.run_open_loop(&["part.ngc"]).succeeded();
+    let ran = folder.run_uncorrected(&["part.ngc"]).succeeded();
     let told = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(told.contains("part.ngc: line 3: A, C moves; only X, Y and Z are simulated and controlled"), "{told}");
-    assert_eq!(folder.run_open_loop(&["circle.ngc"]).succeeded().stderr, "");
+    assert_eq!(folder.run_uncorrected(&["circle.ngc"]).succeeded().stderr, "");
 }

@@ -15,7 +15,7 @@ fn folder(axes_have: &str) -> Folder {
 
 fn fastest(folder: &Folder, arguments: &[&str]) -> Ran {
     let all: Vec<&str> = ["circle.ngc", "--machine", "m.toml", "--fastest"].iter().chain(arguments).copied().collect();
-    folder.run_open_loop(&all)
+    folder.run_uncorrected(&all)
 }
 
 /// The number behind a word.
@@ -56,7 +56,7 @@ fn what_no_speed_brings_within_the_tolerance_is_told_with_its_line_and_nothing_i
     let folder = folder("encoder_noise_um = 20\n");
     folder.file("small.ngc", "G21 G90 G64\nG0 X0 Y0\nG2 X0 Y0 I1 J0 F3000\nM2\n");
     let before = folder.content();
-    let ran = folder.run_open_loop(&["small.ngc", "--machine", "m.toml", "--fastest", "--tolerance", "5"]);
+    let ran = folder.run_uncorrected(&["small.ngc", "--machine", "m.toml", "--fastest", "--tolerance", "5"]);
     ran.faulty(&["small.ngc", "line 3", "5 um are allowed", "no matter of speed"]);
     assert_eq!(folder.content(), before);
 }
@@ -64,7 +64,7 @@ fn what_no_speed_brings_within_the_tolerance_is_told_with_its_line_and_nothing_i
 #[test]
 fn it_needs_limits_of_the_axes_and_a_tolerance() {
     let folder = folder("");
-    let run = |arguments: &[&str]| folder.run_open_loop(&[&["circle.ngc", "--fastest"], arguments].concat());
+    let run = |arguments: &[&str]| folder.run_uncorrected(&[&["circle.ngc", "--fastest"], arguments].concat());
     run(&["--machine", "tnv40", "--tolerance", "10"]).refused(&["tnv40", "no limits of their own", "max_jerk_mm_s3"]);
     run(&["--machine", "m.toml"]).refused(&["--tolerance"]);
 }

@@ -46,7 +46,7 @@ fn logs_become_a_machine_file_numbers_and_a_page() {
     let product = json["axes"]["x"]["parameters"]["kp_kv_over_j_1_s2"]["value"].as_f64().unwrap();
     assert!((product / 9708.7 - 1.0).abs() < 0.03, "{product}");
     assert!(folder.text("i.html").contains("</html>"));
-    folder.run_open_loop(&["circle.ngc", "--machine", "mine.toml", "--tolerance", "1000"]).succeeded();
+    folder.run_uncorrected(&["circle.ngc", "--machine", "mine.toml", "--tolerance", "1000"]).succeeded();
 }
 
 #[test]

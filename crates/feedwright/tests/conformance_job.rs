@@ -114,8 +114,8 @@ fn a_job_tells_its_stages_and_never_more_than_their_steps() {
     let names: Vec<&str> = stages.iter().map(|(name, ..)| name.as_str()).collect();
     let expected = [
         "reading the program",
-        "identifying for open-loop",
-        "cutting, open-loop",
+        "identifying for uncorrected",
+        "cutting, uncorrected",
         "identifying for two-dimensional",
         "cutting, two-dimensional",
     ];
@@ -153,7 +153,7 @@ fn a_text_is_cut_as_the_file_is() {
 
 #[test]
 fn jobs_beside_each_other_share_nothing() {
-    let jobs: Vec<Job> = ["feedforward", BEST, "open-loop"].map(|name| job("tnv40", name)).into();
+    let jobs: Vec<Job> = ["feedforward", BEST, "uncorrected"].map(|name| job("tnv40", name)).into();
     let summary = |job: &Job| {
         let mut summary = job.run(&()).unwrap().report.runs.pop().unwrap().summary;
         // Times of ticks are the clock's.

@@ -84,7 +84,7 @@ fn every_key_of_a_result_is_documented_and_every_documented_key_is_there() {
         folder.text("result.json")
     };
     holds("run", &json(&["run", "circle.ngc", "--controller", "feedforward", "--out", "new.ngc", "--tolerance", "10"]));
-    holds("run", &json(&["run", "circle.ngc", "--against", "feedforward", "--controller", "open-loop"]));
+    holds("run", &json(&["run", "circle.ngc", "--against", "feedforward", "--controller", "uncorrected"]));
     holds("correct", &json(&["correct", "circle.ngc", "--machine", "tnv40", "--for", "generic"]));
     holds("advise", &json(&["advise", "circle.ngc", "--controller", "feedforward", "--tolerance", "10"]));
     holds("advise", &json(&["advise", "circle.ngc", "--controller", "feedforward", "--tolerance", "0.01"]));

@@ -20,7 +20,7 @@ fn tnv40() -> Machine {
     Machine::load("tnv40".as_ref()).unwrap()
 }
 
-/// The part, cut open loop: its rows, and what the run said.
+/// The part, cut uncorrected: its rows, and what the run said.
 fn cut(name: &str) -> (Vec<Row>, Statistics, RunResult) {
     let machine = tnv40();
     let choices = Choices::default();

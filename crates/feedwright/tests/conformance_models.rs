@@ -71,8 +71,8 @@ fn a_model_that_does_not_suit_is_refused_with_what_does() {
         assert_eq!(folder.content(), before, "{arguments:?}");
     };
     refused(
-        &["circle.ngc", "--controller", "open-loop"],
-        &["open-loop uses no trained identifier", "leave --model out"],
+        &["circle.ngc", "--controller", "uncorrected"],
+        &["uncorrected uses no trained identifier", "leave --model out"],
     );
     refused(
         &["circle.ngc", "--controller", "two-dimensional"],
@@ -127,7 +127,7 @@ fn identify_writes_nothing_where_it_cannot_or_must_not() {
         folder.run(&[&["identify"], arguments].concat()).refused(texts);
         assert_eq!(folder.content(), before, "{arguments:?}");
     };
-    refused(&["--controller", "open-loop", "--out", "m.model.toml"], &["open-loop uses no trained identifier"]);
+    refused(&["--controller", "uncorrected", "--out", "m.model.toml"], &["uncorrected uses no trained identifier"]);
     refused(&["--machine", "mine.toml", "--out", "mine.toml"], &["mine.toml"]);
     refused(&["--machine", "flat.toml", "--axes", "3", "--out", "m.model.toml"], &["has 2 axes, and a model for 3"]);
     refused(&["--out", "none/m.model.toml"], &["none"]);
@@ -176,7 +176,7 @@ fn axes_that_do_not_show_are_told_of() {
     folder.run(&[&["identify", "--out", "m.model.toml"], &same[..]].concat()).refused(&said);
     assert_eq!(folder.content(), before);
     let ran = folder.run(&[&["run", "circle.ngc", "--against", "lqg-identified"], &same[..]].concat());
-    assert!(ran.stderr.contains("lqg-identified cuts open loop: the axes of `"), "{}", ran.stderr);
+    assert!(ran.stderr.contains("lqg-identified cuts uncorrected: the axes of `"), "{}", ran.stderr);
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn an_interrupt_leaves_no_file() {
         let before = folder.content();
         let outputs = ["--trace", "t.csv", "--out", "o.ngc", "--json", "r.json", "--report", "r.html"];
         let mut command = folder.command();
-        command.args(["run", "long.ngc", "--controller", "open-loop"]).args(outputs);
+        command.args(["run", "long.ngc", "--controller", "uncorrected"]).args(outputs);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let files = || std::fs::read_dir(folder.path()).unwrap().count();
         // A process gives no other sign of having begun its files than the files.

@@ -58,9 +58,9 @@ fn a_cut_takes_the_planner_of_its_machine() {
     let planned_s = planned(&folder, &["--machine", "m.toml"])["time_s"].as_f64().unwrap();
     folder.run(&["run", "two.ngc", "--machine", "m.toml", "--json", "r.json"]).succeeded();
     let results: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
-    let open_loop_s = results["runs"][0]["time_s"].as_f64().unwrap();
+    let uncorrected_s = results["runs"][0]["time_s"].as_f64().unwrap();
     // The cut ends when the tool has settled behind the plan.
-    assert!(open_loop_s >= planned_s - 1e-3 && open_loop_s < planned_s + 1.0, "{open_loop_s} {planned_s}");
+    assert!(uncorrected_s >= planned_s - 1e-3 && uncorrected_s < planned_s + 1.0, "{uncorrected_s} {planned_s}");
 }
 
 #[test]

@@ -8,7 +8,7 @@ use crate::cut::cut;
 use crate::sweep::part_or_whole;
 use feedwright::{BASELINE, BEST, CONTROLLERS};
 
-/// RMS of the joints' contour error over open loop's.
+/// RMS of the joints' contour error over the uncorrected one.
 fn ratio(machine: &str, part: &str) -> f64 {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let (part, machine) =
@@ -22,7 +22,7 @@ fn ratio(machine: &str, part: &str) -> f64 {
 }
 
 #[test]
-fn the_loops_of_workshop_and_stiff_leave_a_part_of_what_open_loop_leaves() {
+fn the_loops_of_workshop_and_stiff_leave_a_part_of_what_uncorrected_leaves() {
     let cases = [("workshop", "circle.ngc", 0.25), ("workshop", "star.ngc", 0.2), ("stiff", "star.ngc", 0.4)];
     for &(machine, part, bound) in &cases[part_or_whole(1, 0)..] {
         let ratio = ratio(machine, part);

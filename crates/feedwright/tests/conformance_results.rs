@@ -20,7 +20,7 @@ fn results(folder: &Folder) -> Value {
 #[test]
 fn the_exit_code_says_whether_the_part_is_within_tolerance() {
     let folder = Folder::new();
-    let run = |tolerance: &str| folder.run_open_loop(&["circle.ngc", "--json", "r.json", "--tolerance", tolerance]);
+    let run = |tolerance: &str| folder.run_uncorrected(&["circle.ngc", "--json", "r.json", "--tolerance", tolerance]);
     run("1e6").succeeded();
     let max_um = results(&folder)["runs"][0]["max_um"].as_f64().unwrap();
     assert!(max_um > 1.0, "{max_um}");
@@ -76,7 +76,7 @@ fn the_trace_has_the_documented_columns_and_a_row_a_servo_period() {
     let folder = Folder::new();
     folder.file("space.ngc", "G21 G90 G64\nG1 X1 Y1 Z1 F600\nX2 Z0\nM2\n");
     for (part, axes) in [("circle.ngc", &["x", "y"][..]), ("space.ngc", &["x", "y", "z"])] {
-        folder.run_open_loop(&[part, "--trace", "t.csv", "--out", "s.csv", "--json", "r.json"]).succeeded();
+        folder.run_uncorrected(&[part, "--trace", "t.csv", "--out", "s.csv", "--json", "r.json"]).succeeded();
         let mut columns = ["t_s", "s_mm", "line", "feed_plan_mm_s"].map(str::to_owned).to_vec();
         for axis in axes {
             columns.extend(["path", "cmd", "act"].map(|what| format!("{what}_{axis}_mm")));
@@ -138,7 +138,7 @@ fn two_runs_leave_the_same_bytes_whatever_the_locale() {
 #[test]
 fn the_report_needs_nothing_but_itself() {
     let folder = Folder::new();
-    folder.run_open_loop(&["circle.ngc"]).succeeded();
+    folder.run_uncorrected(&["circle.ngc"]).succeeded();
     let page = folder.text("circle.report.html");
     assert!(page.trim_start().to_lowercase().starts_with("<!doctype html>") && page.trim_end().ends_with("</html>"));
     for attribute in ["src", "href"] {
@@ -154,16 +154,16 @@ fn the_report_needs_nothing_but_itself() {
 #[test]
 fn a_controller_compared_against_itself_is_cut_once() {
     let folder = Folder::new();
-    let ran = folder.run_open_loop(&["circle.ngc", "--against", "open-loop", "--json", "r.json"]).succeeded();
+    let ran = folder.run_uncorrected(&["circle.ngc", "--against", "uncorrected", "--json", "r.json"]).succeeded();
     assert_eq!(results(&folder)["runs"].as_array().unwrap().len(), 1);
-    assert_eq!(ran.stdout.matches("\nopen-loop ").count(), 1, "{ran:?}");
+    assert_eq!(ran.stdout.matches("\nuncorrected ").count(), 1, "{ran:?}");
 }
 
 #[test]
 fn a_higher_feed_takes_less_time() {
     let folder = Folder::new();
     let time_s = |feed: &[&str]| {
-        folder.run_open_loop(&[&["circle.ngc", "--json", "r.json"], feed].concat()).succeeded();
+        folder.run_uncorrected(&[&["circle.ngc", "--json", "r.json"], feed].concat()).succeeded();
         results(&folder)["runs"][0]["time_s"].as_f64().unwrap()
     };
     let (slow, programmed, fast) = (time_s(&["--feed", "5mm/s"]), time_s(&[]), time_s(&["--feed", "40 mm/s"]));
@@ -179,7 +179,7 @@ fn output_that_goes_to_no_terminal_has_no_escape_codes() {
     for colors in [("NO_COLOR", "1"), ("CLICOLOR", "0"), ("TERM", "xterm-256color")] {
         for part in ["circle.ngc", "bad.ngc"] {
             let mut command = folder.command();
-            command.args(["run", part, "--controller", "open-loop"]).env(colors.0, colors.1);
+            command.args(["run", part, "--controller", "uncorrected"]).env(colors.0, colors.1);
             let ran = Ran::from(command.output().unwrap());
             assert!(!ran.stdout.contains('\u{1b}') && !ran.stderr.contains('\u{1b}'), "{ran:?}");
             assert!(part == "bad.ngc" || ran.stderr.is_empty(), "{ran:?}");
@@ -234,12 +234,12 @@ fn a_reader_that_goes_away_is_no_error() {
         &["machines"][..],
         &["controllers"],
         &["check", "circle.ngc"],
-        &["run", "circle.ngc", "--controller", "open-loop"],
+        &["run", "circle.ngc", "--controller", "uncorrected"],
     ] {
         let ran = reader_gone(arguments);
         assert_eq!((ran.code, &ran.stderr[..]), (Some(0), ""), "{arguments:?}");
     }
-    let ran = reader_gone(&["run", "circle.ngc", "--controller", "open-loop", "--tolerance", "0.1"]);
+    let ran = reader_gone(&["run", "circle.ngc", "--controller", "uncorrected", "--tolerance", "0.1"]);
     assert_eq!((ran.code, &ran.stderr[..]), (Some(1), ""));
 }
 
@@ -263,7 +263,7 @@ fn an_interrupted_run_leaves_nothing() {
         folder.file("r.json", "of yesterday");
         let before = folder.content();
         let mut command = folder.command();
-        command.args(["run", "long.ngc", "--controller", "open-loop"]).args(ALL_OUTPUTS);
+        command.args(["run", "long.ngc", "--controller", "uncorrected"]).args(ALL_OUTPUTS);
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let writes = wait_until_it_writes(&mut child, &folder);
         let id = child.id().to_string();
@@ -311,5 +311,5 @@ fn a_controller_that_makes_it_worse_is_named() {
     let results = results(&folder);
     let of = |run: usize, key: &str| results["runs"][run][key].as_f64().unwrap();
     let worse = of(1, "rms_um") > of(0, "rms_um") && of(1, "max_um") > of(0, "max_um");
-    assert_eq!(ran.told().contains("two-dimensional is worse than open-loop"), worse, "{ran:?}");
+    assert_eq!(ran.told().contains("two-dimensional is worse than uncorrected"), worse, "{ran:?}");
 }

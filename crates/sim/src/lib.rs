@@ -6,7 +6,7 @@
 //! a circle without a correction.
 //!
 //! ```
-//! use feedwright_control::OpenLoop;
+//! use feedwright_control::Uncorrected;
 //! use feedwright_gcode::{Reader, Settings};
 //! use feedwright_sim::{Machine, Outcome, Row, Run, path_steps};
 //!
@@ -17,7 +17,7 @@
 //! let steps = path_steps(canon).collect::<Result<Vec<_>, _>>()?;
 //!
 //! let mut rows: Vec<Row> = Vec::new();
-//! let result = Run::on(&machine).cut_steps::<2>(&steps, &mut OpenLoop, &mut [&mut rows])?;
+//! let result = Run::on(&machine).cut_steps::<2>(&steps, &mut Uncorrected, &mut [&mut rows])?;
 //! assert_eq!(result.outcome, Outcome::Completed);
 //!
 //! let cutting = rows.iter().filter(|row| row.cutting);

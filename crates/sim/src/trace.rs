@@ -82,7 +82,7 @@ pub enum Outcome {
     },
 }
 
-/// The safety layer took the controller out of the loop: the rest was cut open loop.
+/// The safety layer took the controller out of the loop: the rest was cut uncorrected.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FadedOut {
     /// When, s.

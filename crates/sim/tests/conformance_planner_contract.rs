@@ -2,7 +2,7 @@
 //! beside the programmed one. A planner of constant jerk and a blend that rounds corners are made here and run through the chain.
 
 use crate::programs::{BLEND, polyline};
-use feedwright_control::{Controller, OpenLoop};
+use feedwright_control::{Controller, Uncorrected};
 use feedwright_gcode::canon::{Canon, Motion, Plane, Shape};
 use feedwright_plan::{
     BlendMember, BlendedStep, BlendedSteps, Constraints, FEED_PLANNERS, FeedMember, FeedPlanner, Piece, PlannedPiece,
@@ -182,7 +182,7 @@ fn the_tool_follows_the_planned_path_and_is_measured_to_the_programmed_one() {
     let stages = Stages { blend: &ROUNDED, ..Stages::default() };
     let mut rows = Vec::<Row>::new();
     let machine = machine();
-    let controller: &mut dyn Controller<2> = &mut OpenLoop;
+    let controller: &mut dyn Controller<2> = &mut Uncorrected;
     Run::on(&machine).stages(stages).cut_steps(&steps, controller, &mut [&mut rows]).unwrap();
     let mut largest_mm: f64 = 0.0;
     for row in &rows {

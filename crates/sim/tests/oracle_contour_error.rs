@@ -72,7 +72,7 @@ impl Controller<3> for Recorder {
 
 /// Where the tool is.
 enum Tool {
-    /// Where an open loop leaves it.
+    /// Where an uncorrected cut leaves it.
     Machine(Box<Plant<3>>),
     /// Wandering at random beside the lagging reference.
     Random(Xoshiro256PlusPlus),
@@ -177,7 +177,7 @@ const SCHEDULES: [Schedule; 2] =
     [Schedule { servo_periods: 10, preview: 0 }, Schedule { servo_periods: 5, preview: 20 }];
 
 #[test]
-fn a_tool_in_open_loop_is_where_the_estimate_says() {
+fn a_tool_in_uncorrected_is_where_the_estimate_says() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
     for part in &parts() {
         let program = Reader::open(part, Settings::default()).unwrap().map(Result::unwrap);

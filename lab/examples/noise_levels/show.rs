@@ -8,7 +8,7 @@ use feedwright_lab::{Comparison, LIMIT};
 
 use crate::levels::{BASE, KINDS, NoiseKind};
 
-/// Open loop, two peers, what is ours, and the limit.
+/// Uncorrected, two peers, what is ours, and the limit.
 pub(crate) const CONTROLLERS: [&str; 6] =
     [BASELINE, "feedforward-cross-coupled", "kalman-disturbance", "receding-horizon", "lqg-identified", LIMIT];
 /// The comparison as it is kept, without plots and claims.

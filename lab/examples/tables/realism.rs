@@ -9,7 +9,7 @@ use super::{Result, heading};
 
 /// Controllers that are shown, in this order.
 const SHOWN: &[&str] = &[
-    "open-loop",
+    "uncorrected",
     "feedforward-as-delivered",
     "contour-compensation",
     "cross-coupled",

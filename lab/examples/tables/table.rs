@@ -86,7 +86,7 @@ impl Place {
 
 /// Controllers that the README shows.
 const SHOWN: &[&str] = &[
-    "open-loop",
+    "uncorrected",
     "two-dimensional",
     "contour-compensation",
     "cross-coupled",
@@ -144,7 +144,7 @@ fn machines(comparison: &Comparison) -> Result<String> {
     };
     let unseen = format!("{HORIZON}{}", Knowledge::Unseen.suffix());
     let mut table = String::new();
-    let columns = ["open-loop", "best of those without model", HORIZON, "the same, identified on tnv40"];
+    let columns = ["uncorrected", "best of those without model", HORIZON, "the same, identified on tnv40"];
     heading(&mut table, "RMS over all contours, \u{b5}m", &columns)?;
     for machine in comparison.machines() {
         let mut peers = Vec::new();
@@ -164,7 +164,7 @@ fn machines(comparison: &Comparison) -> Result<String> {
 /// What the searches came to.
 fn tuned(comparison: &Comparison) -> Result<String> {
     let mut table = String::from(
-        "| controller | machine | evaluations | RMS, \u{b5}m | open loop, \u{b5}m | values |\n|---|---|--:|--:|--:|---|\n",
+        "| controller | machine | evaluations | RMS, \u{b5}m | uncorrected, \u{b5}m | values |\n|---|---|--:|--:|--:|---|\n",
     );
     for tuned in &comparison.tuned {
         let (controller, machine, words) = (&tuned.controller, &tuned.machine, tuned.words());
@@ -200,12 +200,12 @@ fn claims(comparison: &Comparison) -> Result<String> {
     Ok(table)
 }
 
-/// Machining time at equal tolerance, against open loop.
+/// Machining time at equal tolerance, against uncorrected.
 fn tolerance(comparison: &Comparison) -> Result<String> {
     let rows = &comparison.at_tolerance;
     let contours = each_once(rows.iter().map(|row| &row.contour));
     let mut table = String::new();
-    heading(&mut table, "feedrate in mm/s, time against open loop", &contours)?;
+    heading(&mut table, "feedrate in mm/s, time against uncorrected", &contours)?;
     for controller in each_once(rows.iter().map(|row| &row.controller)) {
         write!(table, "| {controller} |")?;
         for contour in &contours {
@@ -223,12 +223,12 @@ fn tolerance(comparison: &Comparison) -> Result<String> {
 fn paper() -> Result<String> {
     let paper = experiment(&Machine::load(MACHINE.as_ref())?, &(1..=SEEDS).collect::<Vec<_>>(), &())?;
     let mut table = String::from(
-        "| seed | fit | open loop | magnitude only, same time | magnitude only, same rho | two-dimensional | RMS ratio | max ratio \
+        "| seed | fit | uncorrected | magnitude only, same time | magnitude only, same rho | two-dimensional | RMS ratio | max ratio \
          | time ratio | exact gradient |\n|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|\n",
     );
     let cell = |n: &Numbers| format!("{:.3} s, {:.1} / {:.1}", n.time_s, n.rms_um, n.max_um);
     for s in &paper.seeds {
-        let (open, magnitude, both) = (&s.open_loop, &s.magnitude_only, &s.two_dimensional);
+        let (open, magnitude, both) = (&s.uncorrected, &s.magnitude_only, &s.two_dimensional);
         writeln!(
             table,
             "| {} | {:.1} | {} | {} | {} | {} | {:.3} | {:.3} | {:.3} | {} |",

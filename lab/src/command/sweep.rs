@@ -1,4 +1,4 @@
-//! What the commands share that compare a controller with open loop on many cuts: the journal, the bar, the table.
+//! What the commands share that compare a controller with the uncorrected cut on many cuts: the journal, the bar, the table.
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -13,7 +13,7 @@ use miette::{IntoDiagnostic, Result, WrapErr};
 use crate::command::args::sweep::SweepArgs;
 use crate::journal::Journal;
 use crate::never_worse::cut::{Figures, SweepRow};
-use crate::never_worse::summary::{Judged, OPEN_LOOP_UM, Quantiles, SweepSummary};
+use crate::never_worse::summary::{Judged, Quantiles, SweepSummary, UNCORRECTED_UM};
 use crate::never_worse::{SweepJob, SweepOptions, Swept, journal_path, sweep};
 use crate::peers::CONTROLLERS;
 
@@ -95,13 +95,13 @@ impl Done {
         let mut table = ConsoleTable::new(vec![
             TableColumn::new("RMS / max um"),
             TableColumn::new("machine"),
-            TableColumn::new("open loop"),
+            TableColumn::new("uncorrected"),
             TableColumn::new("corrected"),
             TableColumn::new("worse in"),
         ]);
         for Judged { row, faults, .. } in &failures {
             let names: Vec<&str> = faults.iter().map(|fault| fault.name()).collect();
-            let [before, after] = [&row.open_loop, &row.corrected].map(figures);
+            let [before, after] = [&row.uncorrected, &row.corrected].map(figures);
             table.row(vec![row.program.clone(), row.machine.clone(), before, after, names.join(", ")]);
             if let Some(why) = &row.corrected.lost {
                 table.remark(why.clone());
@@ -111,9 +111,9 @@ impl Done {
             table.print(out)?;
         }
         let by_fault: Vec<String> = by_fault.iter().map(|(fault, cuts)| format!("{} {cuts}", fault.name())).collect();
-        writeln!(out, "{worse} of {judged} cuts worse than open loop ({})", by_fault.join(", "))?;
+        writeln!(out, "{worse} of {judged} cuts worse than uncorrected ({})", by_fault.join(", "))?;
         if *not_judged > 0 {
-            writeln!(out, "not judged, because open loop itself is lost: {not_judged}")?;
+            writeln!(out, "not judged, because the uncorrected cut itself is lost: {not_judged}")?;
         }
         self.print_numbers(out)
     }
@@ -123,7 +123,7 @@ impl Done {
         let mut quantiles = |what: &str, ratios: &Option<Quantiles>| match ratios {
             Some(Quantiles { cuts, median, p90, p99, largest }) => {
                 let text = format!(
-                    "RMS against open loop, {what}: median {median:.3}, 90 % {p90:.3}, 99 % {p99:.3}, largest {largest:.3} ({cuts} cuts)"
+                    "RMS against uncorrected, {what}: median {median:.3}, 90 % {p90:.3}, 99 % {p99:.3}, largest {largest:.3} ({cuts} cuts)"
                 );
                 writeln!(out, "{}", wrapped(&text, 2))
             }
@@ -131,7 +131,7 @@ impl Done {
         };
         quantiles("all cuts", rms_ratio)?;
         quantiles(
-            &format!("rigid machines without encoder steps and delay, open loop above {OPEN_LOOP_UM} um"),
+            &format!("rigid machines without encoder steps and delay, uncorrected above {UNCORRECTED_UM} um"),
             rms_ratio_rigid,
         )?;
         if let Some(share) = engaged_share {

@@ -1,6 +1,6 @@
 //! Who competes: a controller, and what it is given of the machine that it cuts on.
 use feedwright::{Choices, Entry, Knows, Make, Setup};
-use feedwright_control::{Controller, IdentifierKind, OpenLoop};
+use feedwright_control::{Controller, IdentifierKind, Uncorrected};
 use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};
 
@@ -90,7 +90,7 @@ impl Competitor {
     }
 
     /// Makes it for a machine. Recordings for an identification are made with the noise seed that the machine has here. One whose
-    /// parameters cannot be identified there stays open loop.
+    /// parameters cannot be identified there stays uncorrected.
     pub(super) fn make(
         &self,
         machine: &Machine,
@@ -108,7 +108,7 @@ impl Competitor {
             Knowledge::TwentyPercentOff => {
                 setup.known = setup.known.misjudged(INERTIA_BELIEVED, FRICTION_BELIEVED);
             }
-            Knowledge::Identified if setup.identify_parameters::<2>().is_err() => return Box::new(OpenLoop),
+            Knowledge::Identified if setup.identify_parameters::<2>().is_err() => return Box::new(Uncorrected),
             // What a drive is set to is read off it, wherever its axis was identified.
             Knowledge::Unseen if self.entry.identifier == Some(IdentifierKind::Axes) => setup.known = machine.known(),
             Knowledge::Own | Knowledge::Identified | Knowledge::Unseen => {}
@@ -135,6 +135,6 @@ mod tests {
         }
         let nominal = Competitor::all(&controllers, &Knowledge::ALL, true);
         assert!(nominal.iter().all(|competitor| competitor.knowledge != Knowledge::Unseen));
-        assert!(Competitor::find("open-loop+30%off").is_none());
+        assert!(Competitor::find("uncorrected+30%off").is_none());
     }
 }

@@ -28,7 +28,7 @@ pub struct ComparisonOptions {
     pub nominal: Machine,
     /// Machines to cut on.
     pub machines: Vec<Machine>,
-    /// Controllers, open loop among them: the ratios are against it.
+    /// Controllers, uncorrected among them: the ratios are against it.
     pub controllers: Vec<&'static Entry>,
     /// What they are given of the machines: a row for each kind that suits a controller.
     pub knowledge: Vec<Knowledge>,

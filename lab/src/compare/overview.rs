@@ -78,7 +78,7 @@ impl Comparison {
         each_once(self.verdicts.iter().map(|verdict| &verdict.claim)).into_iter().map(of_claim).collect()
     }
 
-    /// The feedrate at which a controller just holds the tolerance, mm/s, and its time there against open loop; none where it
+    /// The feedrate at which a controller just holds the tolerance, mm/s, and its time there against uncorrected; none where it
     /// never does.
     pub fn just_holding(&self, contour: &str, controller: &str) -> Option<(f64, f64)> {
         let is_it = |row: &&AtTolerance| row.contour == contour && row.controller == controller;

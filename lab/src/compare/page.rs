@@ -217,10 +217,10 @@ fn write_at_tolerance(out: &mut impl Write, comparison: &Comparison) -> io::Resu
 /// The values that the peers were cut with.
 fn write_tuned(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let searched = comparison.tuned.iter().filter(|tuned| tuned.cuts > 0);
-    let open = "Evaluations, RMS over what was searched on, and that of open loop. A value at an end of its range may have a better one \
+    let open = "Evaluations, RMS over what was searched on, and that of the uncorrected cut. A value at an end of its range may have a better one \
                 beyond; a correction that is switched off is no better than none.";
     writeln!(out, "<p>{open}</p>")?;
-    write_table_head(out, ["controller", "machine", "evaluations", "RMS, µm", "open loop, µm", "values"])?;
+    write_table_head(out, ["controller", "machine", "evaluations", "RMS, µm", "uncorrected, µm", "values"])?;
     for tuned in searched {
         let names = [&tuned.controller, &tuned.machine].map(|name| escaped(name));
         let at_end = tuned.switched_off || tuned.values.iter().any(|value| value.at_end.is_some());

@@ -1,4 +1,4 @@
-//! The table: one row for each workpiece, machine and controller, with ratios against open loop.
+//! The table: one row for each workpiece, machine and controller, with ratios against uncorrected.
 
 use feedwright::{BASELINE, Knows};
 use feedwright_ident::median_and_spread;
@@ -58,11 +58,11 @@ pub struct ComparisonRow {
     pub accel_mm_s2: f64,
     /// Largest torque of any axis, N m. Of all seeds.
     pub peak_torque_nm: f64,
-    /// Machining time against open loop on the same machine.
+    /// Machining time against uncorrected on the same machine.
     pub time_ratio: f64,
-    /// RMS against open loop.
+    /// RMS against uncorrected.
     pub rms_ratio: f64,
-    /// Largest error against open loop.
+    /// Largest error against uncorrected.
     pub max_ratio: f64,
     /// Noise seeds that it was cut with.
     pub seeds: u32,

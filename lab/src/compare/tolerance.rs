@@ -30,7 +30,7 @@ pub struct AtTolerance {
     pub feed_mm_s: Option<f64>,
     /// Machining time there, s.
     pub time_s: Option<f64>,
-    /// Machining time against open loop.
+    /// Machining time against uncorrected.
     pub time_ratio: Option<f64>,
 }
 

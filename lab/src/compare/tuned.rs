@@ -101,7 +101,7 @@ impl Tuned {
         };
         let mut words: Vec<String> = self.values.iter().map(value).collect();
         if self.switched_off {
-            words.push("switched off: no better than open loop".to_owned());
+            words.push("switched off: no better than uncorrected".to_owned());
         }
         words.join(", ")
     }

@@ -35,7 +35,7 @@ const TIME_PRICE: f64 = 10.0;
 
 /// A value that is nearer to an end of its range, as a part of it, is at the end.
 const AT_END: f64 = 0.01;
-/// A search that gains less than this part of open loop's cost has switched the correction off.
+/// A search that gains less than this part of the uncorrected cost has switched the correction off.
 const LEAST_GAIN: f64 = 0.01;
 
 /// Tunes a controller on the machine.
@@ -226,7 +226,7 @@ mod tests {
     fn a_search_finds_values_that_cost_less_than_the_defaults() {
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let workpieces = Workpiece::tuning();
-        // Its defaults take a third longer than open loop, which the search may not.
+        // Its defaults take a third longer than uncorrected, which the search may not.
         let entry = CONTROLLERS.find("fuzzy-feedrate").unwrap();
         let nothing = Evaluation { rms_um: f64::INFINITY, time_s: f64::INFINITY, sound: true };
         let evaluate = |entry: &'static Entry, settings: &[Setting]| {

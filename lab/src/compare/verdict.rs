@@ -64,8 +64,8 @@ const SAME_TIME: f64 = 1.0 + 1e-9;
 struct Claim(&'static str, f64, &'static str);
 
 // On the nominal machine, contours without corners.
-const RMS_OPEN_LOOP: Claim = Claim("RMS against open loop", 0.045, "");
-const MAX_OPEN_LOOP: Claim = Claim("max against open loop", 0.10, "");
+const RMS_UNCORRECTED: Claim = Claim("RMS against uncorrected", 0.045, "");
+const MAX_UNCORRECTED: Claim = Claim("max against uncorrected", 0.10, "");
 const RMS_BEST_PEER: Claim = Claim("RMS against the best peer without model", 0.25, "");
 const RMS_EXACT_MODEL: Claim = Claim("RMS against the exact model", 1.2, "");
 // On the nominal machine, the square.
@@ -82,7 +82,7 @@ const NOISY_LIMIT: Claim = Claim("RMS under noise against the limit", 2.0, "");
 // On held-out work.
 const HELD_OUT_RMS: Claim = Claim("held-out: RMS above that of", RMS_UM, "um");
 const HELD_OUT_MAX: Claim = Claim("held-out: max above that of", MAX_UM, "um");
-const HELD_OUT_UNCUT: Claim = Claim("held-out: uncut path above that of open loop", UNCUT_UM, "um");
+const HELD_OUT_UNCUT: Claim = Claim("held-out: uncut path above uncorrected", UNCUT_UM, "um");
 const HELD_OUT_LOST: Claim = Claim("held-out: lost", 0.0, "seeds");
 // Everywhere.
 const PEAK_TORQUE: Claim = Claim("peak torque against the baseline", 1.25, "");
@@ -184,8 +184,10 @@ impl<'a> RowsHere<'a> {
     }
 
     fn without_corners(&self, ours: &ComparisonRow) -> Vec<Verdict> {
-        let mut verdicts =
-            vec![RMS_OPEN_LOOP.of(ours, BASELINE, ours.rms_ratio), MAX_OPEN_LOOP.of(ours, BASELINE, ours.max_ratio)];
+        let mut verdicts = vec![
+            RMS_UNCORRECTED.of(ours, BASELINE, ours.rms_ratio),
+            MAX_UNCORRECTED.of(ours, BASELINE, ours.max_ratio),
+        ];
         verdicts.extend(self.best_without_model().map(|peer| RMS_BEST_PEER.rms(ours, peer)));
         verdicts.extend(self.named(NOISELESS_LIMIT).map(|bound| RMS_EXACT_MODEL.rms(ours, bound)));
         verdicts
@@ -230,7 +232,7 @@ impl<'a> RowsHere<'a> {
         })
     }
 
-    /// The best of these, open loop among them; none where open loop is alone.
+    /// The best of these, uncorrected among them; none where the uncorrected cut is alone.
     fn best(&self, known: &[Knows]) -> Option<&'a ComparisonRow> {
         self.peers(known).find(|row| row.controller != BASELINE)?;
         self.peers(known).min_by(|a, b| a.controlled_rms_um().total_cmp(&b.controlled_rms_um()))

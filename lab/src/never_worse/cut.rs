@@ -1,4 +1,4 @@
-//! One program on one machine: open loop, and with the controller that was made for the machine.
+//! One program on one machine: uncorrected, and with the controller that was made for the machine.
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
@@ -35,11 +35,11 @@ pub struct Figures {
 impl Figures {
     /// What the verdict looks at, of all that a run says about itself: the one place that knows where it stands.
     fn of(run: &RunResult, statistics: &Statistics, entry: &Entry) -> Self {
-        // Open loop has nothing that could be taken out of the loop.
+        // The uncorrected cut has nothing that could be taken out of the loop.
         let left = run.faded_out.filter(|_| entry.name != BASELINE && !run.engaged_at_end);
         let lost = match (run.outcome, left) {
             (Outcome::Diverged { at_s }, _) => Some(format!("the loop diverged at {at_s:.3} s")),
-            (Outcome::Completed, Some(left)) => Some(format!("open loop from {:.3} s on: {}", left.at_s, left.cause)),
+            (Outcome::Completed, Some(left)) => Some(format!("uncorrected from {:.3} s on: {}", left.at_s, left.cause)),
             (Outcome::Completed, None) => None,
         };
         let [rms_um, max_um] = [statistics.rms_um(), statistics.max_um()];
@@ -58,7 +58,7 @@ impl Figures {
     }
 }
 
-/// A program on a machine, open loop and corrected.
+/// A program on a machine, uncorrected and corrected.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepRow {
     /// Program.
@@ -67,8 +67,8 @@ pub struct SweepRow {
     pub machine: String,
     /// Whether the machine is rigid, without encoder steps and without delay: no noise, nothing that comes late.
     pub rigid: bool,
-    /// Open loop.
-    pub open_loop: Figures,
+    /// Uncorrected.
+    pub uncorrected: Figures,
     /// With the controller.
     pub corrected: Figures,
 }
@@ -110,17 +110,17 @@ impl Cutter {
     /// An end from outside.
     pub fn row(&mut self, program: &SweepProgram, watch: &dyn Watch) -> Result<SweepRow, Cancelled> {
         let (machine, options) = (&self.machine, &self.options);
-        let [open_loop, corrected] = match program.axes {
+        let [uncorrected, corrected] = match program.axes {
             2 => both(machine, options, &mut self.plane, program, watch)?,
             _ if machine.axis_count() < 3 => [Figures::failed("the machine has no Z"), Figures::default()],
             _ => both(machine, options, &mut self.space, program, watch)?,
         };
         let (program, machine_name) = (program.name.clone(), machine.name.clone());
-        Ok(SweepRow { program, machine: machine_name, rigid: is_rigid(machine), open_loop, corrected })
+        Ok(SweepRow { program, machine: machine_name, rigid: is_rigid(machine), uncorrected, corrected })
     }
 }
 
-/// Open loop first.
+/// Uncorrected first.
 fn both<const N: usize>(
     machine: &Machine,
     options: &SweepOptions,
@@ -176,7 +176,7 @@ mod tests {
         };
         let row = Cutter::new(&machine, &options).row(&program, &()).expect("nobody ends it");
         assert!(row.rigid);
-        assert!(row.corrected.rms_um < 0.1 * row.open_loop.rms_um, "{row:?}");
+        assert!(row.corrected.rms_um < 0.1 * row.uncorrected.rms_um, "{row:?}");
         assert_eq!((row.corrected.lost, row.corrected.engaged_share), (None, Some(1.0)));
     }
 }

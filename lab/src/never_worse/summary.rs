@@ -5,8 +5,8 @@ use serde::Serialize;
 use super::cut::SweepRow;
 use super::verdict::Failure;
 
-/// Ratios to open loop mean something above this RMS of open loop, um.
-pub const OPEN_LOOP_UM: f64 = 1.0;
+/// Ratios to the uncorrected cut mean something above this uncorrected RMS error, um.
+pub const UNCORRECTED_UM: f64 = 1.0;
 
 /// Quantiles of a number over many cuts.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -47,7 +47,7 @@ pub struct Judged {
     pub row: SweepRow,
     /// In what it is worse.
     pub faults: Vec<Failure>,
-    /// Largest excess over open loop, in what is allowed.
+    /// Largest excess over uncorrected, in what is allowed.
     pub severity: f64,
 }
 
@@ -56,15 +56,15 @@ pub struct Judged {
 pub struct SweepSummary {
     /// Cuts that were judged.
     pub judged: usize,
-    /// Cuts whose open loop is lost itself.
+    /// Cuts whose uncorrected cut is lost itself.
     pub not_judged: usize,
     /// Cuts that are worse in any way.
     pub worse: usize,
     /// Cuts that are worse in each way.
     pub by_fault: Vec<(Failure, usize)>,
-    /// RMS contour error over open loop's, all judged cuts.
+    /// RMS contour error over the uncorrected one, all judged cuts.
     pub rms_ratio: Option<Quantiles>,
-    /// The same on rigid machines without encoder steps and delay, where open loop is above [`OPEN_LOOP_UM`].
+    /// The same on rigid machines without encoder steps and delay, where the uncorrected cut is above [`UNCORRECTED_UM`].
     pub rms_ratio_rigid: Option<Quantiles>,
     /// Median of the part of the time during which the controller was in the loop.
     pub engaged_share: Option<f64>,
@@ -79,7 +79,7 @@ impl SweepSummary {
     pub fn of(rows: Vec<SweepRow>) -> Self {
         let judge = |row: SweepRow| Judged { faults: row.faults(), severity: row.severity(), row };
         let mut rows: Vec<Judged> = rows.into_iter().map(judge).collect();
-        let machining_s = rows.iter().map(|judged| judged.row.open_loop.time_s).sum();
+        let machining_s = rows.iter().map(|judged| judged.row.uncorrected.time_s).sum();
         // Stable: equals stay in order.
         rows.sort_by(|a, b| {
             let by_severity =
@@ -99,7 +99,7 @@ impl SweepSummary {
             worse: judged.iter().filter(|judged| !judged.faults.is_empty()).count(),
             by_fault: Failure::ALL.map(|fault| (fault, having(fault))).to_vec(),
             rms_ratio: ratios(&|_| true),
-            rms_ratio_rigid: ratios(&|row| row.rigid && row.open_loop.rms_um > OPEN_LOOP_UM),
+            rms_ratio_rigid: ratios(&|row| row.rigid && row.uncorrected.rms_um > UNCORRECTED_UM),
             engaged_share: Quantiles::of(shares.collect()).map(|quantiles| quantiles.median),
             machining_s,
             rows,

@@ -1,4 +1,4 @@
-//! Whether a cut is worse than open loop, by the rule of [`feedwright::harm`].
+//! Whether a cut is worse than uncorrected, by the rule of [`feedwright::harm`].
 use feedwright::ErrorChange;
 use serde::{Deserialize, Serialize};
 
@@ -34,9 +34,9 @@ impl Failure {
 }
 
 impl SweepRow {
-    /// Whether there is an open loop to compare with: one that came to its end.
+    /// Whether there is an uncorrected cut to compare with: one that came to its end.
     pub fn is_judged(&self) -> bool {
-        self.open_loop.lost.is_none()
+        self.uncorrected.lost.is_none()
     }
 
     /// In what it is worse; nothing where it is not judged.
@@ -51,9 +51,9 @@ impl SweepRow {
         if self.is_judged() { Failure::ALL.into_iter().filter(is_fault).collect() } else { Vec::new() }
     }
 
-    /// RMS error, largest error and uncut path, compared with open loop.
+    /// RMS error, largest error and uncut path, compared with the uncorrected cut.
     fn changes(&self) -> [ErrorChange; 3] {
-        self.corrected.errors().compared_with(&self.open_loop.errors())
+        self.corrected.errors().compared_with(&self.uncorrected.errors())
     }
 
     /// How bad it is: the largest of the excesses, at least 1 where it is lost.
@@ -62,11 +62,11 @@ impl SweepRow {
         self.changes().iter().map(ErrorChange::excess).fold(lost, f64::max)
     }
 
-    /// RMS contour error over open loop's.
+    /// RMS contour error over the uncorrected one.
     pub fn rms_ratio(&self) -> f64 {
-        /// An open loop below this is as good as none, um.
+        /// An uncorrected RMS error below this counts as this, um.
         const MIN_UM: f64 = 1e-3;
-        self.corrected.rms_um / self.open_loop.rms_um.max(MIN_UM)
+        self.corrected.rms_um / self.uncorrected.rms_um.max(MIN_UM)
     }
 }
 
@@ -82,7 +82,7 @@ pub(super) mod tests {
             program: "p".to_owned(),
             machine: "m".to_owned(),
             rigid: true,
-            open_loop: figures(open),
+            uncorrected: figures(open),
             corrected: figures(corrected),
         }
     }
@@ -100,18 +100,18 @@ pub(super) mod tests {
         let mut uncut = row([10.0, 20.0], [1.0, 2.0]);
         uncut.corrected.uncut_um = Some(400.0);
         assert_eq!(uncut.faults(), []);
-        uncut.open_loop.uncut_um = Some(20.0);
+        uncut.uncorrected.uncut_um = Some(20.0);
         assert_eq!(uncut.faults(), [Failure::Uncut]);
         assert!((uncut.severity() - 380.0).abs() < 1e-9);
     }
 
     #[test]
-    fn lost_is_worse_however_small_the_error_and_is_not_judged_where_open_loop_is_lost() {
+    fn lost_is_worse_however_small_the_error_and_is_not_judged_where_uncorrected_is_lost() {
         let mut lost = row([10.0, 20.0], [1.0, 2.0]);
         lost.corrected.lost = Some("faded".to_owned());
         assert_eq!(lost.faults(), [Failure::Lost]);
         assert!(lost.severity() >= 1.0);
-        lost.open_loop.lost = Some("diverged".to_owned());
+        lost.uncorrected.lost = Some("diverged".to_owned());
         assert_eq!(lost.faults(), []);
     }
 }

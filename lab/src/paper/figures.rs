@@ -1,7 +1,7 @@
 //! Figures 7 to 10 of Lee, Cho and Jeon (2005), from cuts of the circle with the identifier of one seed.
 
 use feedwright::{COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline};
-use feedwright_control::{Controller, Gradient, InvertingSettings, OpenLoop, TwoDimensional};
+use feedwright_control::{Controller, Gradient, InvertingSettings, TwoDimensional, Uncorrected};
 use feedwright_sim::{Machine, RunError, Watch};
 
 use super::curves::Curves;
@@ -34,7 +34,7 @@ pub fn figures(machine: &Machine, seed: u64, watch: &dyn Watch) -> Result<Vec<Ca
         let numbers = bench.cut(controller, &mut [&mut curves], rho)?;
         Ok::<_, RunError>(Drawn { curves, numbers })
     };
-    let open = draw(&mut OpenLoop, 0.0)?;
+    let open = draw(&mut Uncorrected, 0.0)?;
     let both = draw(&mut TwoDimensional::new(net.clone(), settings), rho)?;
     let same_time = bench.rho_for_time(&net, both.numbers.time_s)?;
     let magnitude = draw(&mut magnitude_only(&net, same_time), same_time)?;
@@ -80,7 +80,7 @@ fn figure_7(magnitude: &Drawn, time_only: &[Drawn]) -> CaptionedFigure {
 fn figure_8(open: &Drawn, magnitude: &Drawn, same_rho: &Drawn, both: &Drawn) -> CaptionedFigure {
     let curves = |magnitude: &Drawn, label: &str| {
         vec![
-            error("open loop", open, 3, LineStyle::Dotted),
+            error("uncorrected", open, 3, LineStyle::Dotted),
             error(label, magnitude, 1, LineStyle::Dashed),
             error("two-dimensional", both, 2, LineStyle::Solid),
         ]
@@ -112,7 +112,7 @@ fn figure_9(open: &Drawn, magnitude: &Drawn, both: &Drawn) -> CaptionedFigure {
             "Time [s]",
             "Feedrate [mm/s]",
             vec![
-                feed("open loop", open, 3, LineStyle::Dotted),
+                feed("uncorrected", open, 3, LineStyle::Dotted),
                 feed("magnitude only", magnitude, 1, LineStyle::Dashed),
                 feed("two-dimensional", both, 2, LineStyle::Solid),
             ],

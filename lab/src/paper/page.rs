@@ -35,16 +35,16 @@ fn write_seeds(out: &mut impl Write, paper: &Paper) -> io::Result<()> {
     writeln!(
         out,
         "<p>Machining time, RMS and largest contour error of each training. In the worst of them two-dimensional control leaves {:.3} of the \
-         RMS and {:.3} of the largest error of control of the magnitude only in the same time, and takes {:.3} of the time of open loop.</p>",
+         RMS and {:.3} of the largest error of control of the magnitude only in the same time, and takes {:.3} of the time of the uncorrected cut.</p>",
         paper.worst_rms_ratio, paper.worst_max_ratio, paper.worst_time_ratio
     )?;
-    let cuts = ["open loop", "magnitude only", "magnitude only, same ρ", "two-dimensional"];
+    let cuts = ["uncorrected", "magnitude only", "magnitude only, same ρ", "two-dimensional"];
     let heads = cuts.iter().flat_map(|cut| ["s", "RMS µm", "max µm"].map(|unit| format!("{cut}, {unit}")));
     let heads: Vec<String> = std::iter::once("seed".to_owned()).chain(heads).collect();
     write_table_head(out, heads.iter().map(String::as_str))?;
     for seed in &paper.seeds {
         write!(out, "<tr><td>{}</td>", seed.seed)?;
-        let cuts = [seed.open_loop, seed.magnitude_only, seed.magnitude_only_same_rho, seed.two_dimensional];
+        let cuts = [seed.uncorrected, seed.magnitude_only, seed.magnitude_only_same_rho, seed.two_dimensional];
         for Numbers { time_s, rms_um, max_um, .. } in cuts {
             write!(out, "<td>{time_s:.3}</td><td>{}</td><td>{}</td>", number(rms_um), number(max_um))?;
         }

@@ -82,7 +82,7 @@ impl<const N: usize> Controller<N> for ContourCompensation<N> {
 pub(super) mod tests {
     use super::*;
     use crate::peers::cross_coupled::tests::cut;
-    use feedwright_control::{Knot, KnotSource, OpenLoop};
+    use feedwright_control::{Knot, KnotSource, Uncorrected};
 
     /// The circle of eq. 11 at 50 mm/s.
     pub(crate) struct Circle;
@@ -102,7 +102,7 @@ pub(super) mod tests {
     #[test]
     fn the_droop_of_a_circle_is_one_constant_error_and_vanishes() {
         // Radius of a first-order lag with the time constant T at the angular speed w: R / sqrt(1 + (w T)^2).
-        let open = droop_mm(OpenLoop);
+        let open = droop_mm(Uncorrected);
         assert!((open - (10.0 / libm::sqrt(1.01) - 10.0)).abs() < 1e-3, "{open}");
         let compensated = droop_mm(ContourCompensation::new(Settings::DEFAULT));
         assert!(compensated.abs() < 2e-4, "{compensated}");

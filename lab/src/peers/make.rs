@@ -69,7 +69,7 @@ fn full_feedforward<const N: usize>(setup: &Setup<'_>, values: &Values) -> Feedf
 }
 
 /// The part of it that controls have as they are delivered: it is set by the inertia and the gains of the loops, and knows of no
-/// delay, integral or filter. A drive that feeds forward by itself was delivered with that, and gets no more: there this is open loop.
+/// delay, integral or filter. A drive that feeds forward by itself was delivered with that, and gets no more: there this is uncorrected.
 pub(super) fn feedforward_as_delivered<const N: usize>(
     setup: &mut Setup<'_>,
     values: &Values,
@@ -202,8 +202,11 @@ pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &V
 }
 
 pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
-    let settings =
-        LqgSettings { price_s2: values.number("price_s2"), bounds: offset_bounds(&setup.known), learns: false };
+    let settings = LqgSettings {
+        control_weight_s2: values.number("control_weight_s2"),
+        bounds: offset_bounds(&setup.known),
+        learns: false,
+    };
     Box::new(LqgPreview::new(setup.truth::<N>(), settings))
 }
 

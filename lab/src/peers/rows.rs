@@ -7,12 +7,12 @@ use super::kalman_disturbance::AxisNoise;
 use super::{cross_coupled, cross_coupled_feedrate, input_shaping};
 
 // Of the limit.
-pub(super) const PRICE: Parameter = Parameter::number(
-    "price_s2",
-    LqgSettings::DEFAULT.price_s2,
+pub(super) const CONTROL_WEIGHT: Parameter = Parameter::number(
+    "control_weight_s2",
+    LqgSettings::DEFAULT.control_weight_s2,
     [1e-12, 1e-2],
     Some([1e-11, 1e-3]),
-    "price of the reference speed beside the error: low rings between servo periods, high leaves the error as it is",
+    "weight of the reference speed against the error, s^2: a low one rings between servo periods, a high one leaves the error",
 );
 // Of cross-coupled control. Beyond the gains that the reasons name the loop is still stable on smooth paths, but catches the tool in
 // acute corners; what a machine can bear differs.

@@ -2,7 +2,7 @@
 
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 use feedwright_control::{
-    IDENTIFIED_PRICE, InvertingSettings, LqgPreview, LqgSettings, MagnitudeOnly, OffsetBounds, TwoDimensional,
+    IDENTIFIED_WEIGHT, InvertingSettings, LqgPreview, LqgSettings, MagnitudeOnly, OffsetBounds, TwoDimensional,
 };
 
 use crate::machine::{LinkModel, TrainedContour};
@@ -56,7 +56,7 @@ impl<const N: usize> LiveController<N> {
     pub fn new(model: &LinkModel<N>, servo_s: f64) -> Self {
         match model {
             LinkModel::Axes(identified) => {
-                let settings = LqgSettings::identified(IDENTIFIED_PRICE, servo_s, OffsetBounds::NONE);
+                let settings = LqgSettings::identified(IDENTIFIED_WEIGHT, servo_s, OffsetBounds::NONE);
                 Self::Regulator(LqgPreview::new(identified.axes, settings))
             }
             LinkModel::Contour(contour) => Self::Inversion(Inversion::new(contour)),

@@ -61,7 +61,7 @@ use one_step::OneStep;
 use regulated_axis::AxisLqg;
 use validity::{Shown, Validity};
 
-pub use control_weight::{IDENTIFIED_PRICE, LqgSettings, OffsetBounds};
+pub use control_weight::{IDENTIFIED_WEIGHT, LqgSettings, OffsetBounds};
 pub use regulated_axis::LqgGains;
 
 /// Servo periods beyond the command that the inverse looks at.

@@ -1,13 +1,13 @@
-//! Open loop: the path as planned. The null member of the family.
+//! Uncorrected: the path as planned. The null member of the family.
 
 use super::{Command, Controller, Measured, Schedule};
 use crate::window::Window;
 
 /// Commands the programmed path at the planned feed.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct OpenLoop;
+pub struct Uncorrected;
 
-impl<const N: usize> Controller<N> for OpenLoop {
+impl<const N: usize> Controller<N> for Uncorrected {
     fn schedule(&self) -> Schedule {
         Schedule { servo_periods: 1, preview: 0 }
     }

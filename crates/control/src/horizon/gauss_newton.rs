@@ -167,7 +167,7 @@ mod tests {
     }
 
     /// q/2 sum |o|^2 + d/2 sum |T a|^2 of a plan, rolled out.
-    fn price(window: &Window<'_, 2>, accelerations: &Accelerations<2>, periods: usize) -> f64 {
+    fn cost(window: &Window<'_, 2>, accelerations: &Accelerations<2>, periods: usize) -> f64 {
         let problem = HorizonProblem::new(&Deaf, window, accelerations, periods, &SETTINGS);
         let squares = |all: &mut dyn Iterator<Item = f64>| all.map(|x| x * x).sum::<f64>();
         let offsets = squares(&mut problem.ends[..KNOTS].iter().flat_map(|end| end.offset_mm));
@@ -185,13 +185,13 @@ mod tests {
             let mut accelerations = [[0.0; 2]; MAX_KNOTS];
             let problem = HorizonProblem::new(&Deaf, &window, &accelerations, periods, &SETTINGS);
             GaussNewton::default().improve(&problem, &mut accelerations);
-            let least = price(&window, &accelerations, periods);
+            let least = cost(&window, &accelerations, periods);
             for knot in 0..KNOTS {
                 for axis in 0..2 {
                     for step in [-1.0, 1.0] {
                         let mut other = accelerations;
                         other[knot][axis] += step;
-                        assert!(price(&window, &other, periods) > least, "{periods} {knot} {axis}");
+                        assert!(cost(&window, &other, periods) > least, "{periods} {knot} {axis}");
                     }
                 }
             }

@@ -2,7 +2,7 @@
 
 use feedwright_control::{
     Controller, CorrectionLimits, Feedforward, Gains, Gradient, HorizonSettings, InvertingSettings, LqgPreview,
-    LqgSettings, MagnitudeOnly, OffsetBounds, OpenLoop, RecedingHorizon, RecedingHorizonSettings, TwoDimensional,
+    LqgSettings, MagnitudeOnly, OffsetBounds, RecedingHorizon, RecedingHorizonSettings, TwoDimensional, Uncorrected,
 };
 use feedwright_sim::Known;
 
@@ -17,10 +17,10 @@ pub(super) fn feedforward<const N: usize>(setup: &mut Setup<'_>, values: &Values
 
 pub(super) fn lqg_identified<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let bounds = offset_bounds(&setup.known);
-    let settings = LqgSettings::identified(values.number("price"), setup.known.period.servo_s, bounds);
+    let settings = LqgSettings::identified(values.number("control_weight"), setup.known.period.servo_s, bounds);
     match setup.axes::<N>() {
         Some(identified) => Box::new(LqgPreview::new(identified.axes, settings)),
-        None => Box::new(OpenLoop),
+        None => Box::new(Uncorrected),
     }
 }
 

@@ -221,7 +221,7 @@ mod tests {
     fn what_cannot_be_set_is_told_with_a_remedy() {
         assert_eq!(told("knots"), "--set knots: the value is missing; write --set knots=VALUE");
         assert!(told("knot=3").contains("has no parameter 'knot'; did you mean 'knots'?"));
-        assert!(told("open-loop.kp=3").contains("nothing of it can be set"));
+        assert!(told("uncorrected.kp=3").contains("nothing of it can be set"));
         assert!(told("feedforwrd.kp=3").contains("did you mean 'feedforward'?"));
         assert!(told("knots=ten").contains("'ten' is no number; knots is 1 to 20, whole"));
         for value in ["21", "0", "2.5", "nan", "-1", "1e400"] {

@@ -49,12 +49,12 @@ pub(super) const LEARNING_STEP: Parameter = Parameter::number(
     "step of back-propagation while cutting: 0 keeps what was trained, large ones forget it",
 );
 // Of the same by an identified model, which is to bear what that does not know.
-pub(super) const IDENTIFIED_PRICE: Parameter = Parameter::number(
-    "price",
-    feedwright_control::IDENTIFIED_PRICE,
+pub(super) const IDENTIFIED_WEIGHT: Parameter = Parameter::number(
+    "control_weight",
+    feedwright_control::IDENTIFIED_WEIGHT,
     [1e-6, 1e4],
     None,
-    "price of the reference speed beside the error, in squares of the servo period, near the reference: high leaves the error as it is",
+    "weight of the reference speed against the error, in servo periods squared, near the reference: a high one leaves the error",
 );
 // Of those that plan over a horizon.
 /// Weight of the speed of the offset.

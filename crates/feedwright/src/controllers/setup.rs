@@ -105,9 +105,9 @@ pub enum ModelMisfit {
     },
 }
 
-/// A controller that cuts open loop, because nothing was identified that it could go by.
+/// A controller that cuts uncorrected, because nothing was identified that it could go by.
 #[derive(Debug, Clone, PartialEq, Error, Diagnostic)]
-#[error("{controller} cuts open loop: the axes of `{machine}` cannot be identified: {cause}")]
+#[error("{controller} cuts uncorrected: the axes of `{machine}` cannot be identified: {cause}")]
 #[diagnostic(severity(Warning))]
 pub struct NothingIdentified {
     /// Its name.
@@ -181,7 +181,7 @@ impl<'a> Setup<'a> {
         Self { progress: Some(progress), ..self }
     }
 
-    /// What is to be told of a controller that was made from this: where nothing was identified it cuts open loop.
+    /// What is to be told of a controller that was made from this: where nothing was identified it cuts uncorrected.
     pub fn remark(&self, entry: &Entry) -> Option<NothingIdentified> {
         let Some(Err(cause)) = &self.found else { return None };
         Some(NothingIdentified { controller: entry.name, machine: self.machine.name.clone(), cause: *cause })
@@ -355,7 +355,7 @@ mod tests {
     }
 
     #[test]
-    fn where_nothing_is_identified_the_training_fails_and_the_controller_tells_that_it_cuts_open_loop() {
+    fn where_nothing_is_identified_the_training_fails_and_the_controller_tells_that_it_cuts_uncorrected() {
         let mut machine = Machine::load("tnv40".as_ref()).unwrap();
         // The loop takes longer to settle than the excitation lasts; with long servo periods its recording is short.
         machine.axes.iter_mut().for_each(|axis| axis.kp_1_s = 0.1);
@@ -368,6 +368,6 @@ mod tests {
         assert_eq!(setup.remark(entry), None);
         let _ = super::super::Make::<2>::make(entry, &mut setup);
         let told = setup.remark(entry).unwrap().to_string();
-        assert!(told.starts_with("lqg-identified cuts open loop: the axes of `tnv40` cannot"), "{told}");
+        assert!(told.starts_with("lqg-identified cuts uncorrected: the axes of `tnv40` cannot"), "{told}");
     }
 }

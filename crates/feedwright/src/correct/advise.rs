@@ -46,9 +46,9 @@ pub struct AdviseJob {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CutWay {
-    /// As it is, open loop.
+    /// As it is, without feedback.
     Uncorrected,
-    /// Corrected for that feedrate, open loop.
+    /// Corrected for that feedrate, without feedback.
     Corrected,
     /// With a controller.
     Controlled,

@@ -1,8 +1,8 @@
-//! A program as the other control would cut it: planned as it plans, open loop, measured against the original.
+//! A program as the other control would cut it: planned as it plans, without feedback, measured against the original.
 //!
 //! What disturbs has another phase, and noise other random numbers, each time a part is cut. So it is cut several times, with a rest before the start
 //! that is another part of a period of the disturbance, and with other seeds.
-use feedwright_control::OpenLoop;
+use feedwright_control::Uncorrected;
 use feedwright_gcode::canon::{Event, EventKind};
 use feedwright_plan::vector::{Vector, sub};
 use feedwright_plan::{AlignedPaths, Step};
@@ -15,7 +15,7 @@ use crate::report::harm::CutErrors;
 /// Cuts of a machine that disturbs or has noise.
 const CUTS: u32 = 4;
 
-/// What a program comes to, cut open loop.
+/// What a program comes to, cut without feedback.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct ExportedFigures {
     /// Contour error against the original: quadratic mean of the RMS over the cuts, um.
@@ -224,8 +224,8 @@ impl ExportedCut<'_> {
         let aligned = AlignedPaths::new(self.original, program);
         let run = Run::on(self.machine).stages(self.stages).watched(self.watch);
         match self.axes {
-            2 => run.cut_aligned::<2>(&aligned, &mut OpenLoop, sinks),
-            _ => run.cut_aligned::<3>(&aligned, &mut OpenLoop, sinks),
+            2 => run.cut_aligned::<2>(&aligned, &mut Uncorrected, sinks),
+            _ => run.cut_aligned::<3>(&aligned, &mut Uncorrected, sinks),
         }
     }
 }

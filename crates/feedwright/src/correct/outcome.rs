@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::expanded_text::UnwritableLine;
 use super::exported::ExportedFigures;
 
-/// A corrected program whose RMS error is not smaller by this share is no better than the original. A smaller gain does not
+/// A corrected program whose RMS error is not smaller by this share is no better than the uncorrected program. A smaller gain does not
 /// pay for a longer program.
 const LEAST_GAIN: f64 = 0.02;
 
@@ -26,8 +26,8 @@ pub struct CorrectOutcome {
     /// A remedy, where there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hint: Option<String>,
-    /// The original as the control cuts it.
-    pub original: ExportedFigures,
+    /// The uncorrected program as the control cuts it.
+    pub uncorrected: ExportedFigures,
     /// The corrected program as the control cuts it, read from its own text.
     #[serde(rename = "as_exported")]
     pub corrected: ExportedFigures,
@@ -107,9 +107,9 @@ impl CorrectOutcome {
     }
 }
 
-/// Why a corrected program is not to be used: by the figures of the original and of its text, or by what keeps it from being written.
+/// Why a corrected program is not to be used: by the figures of the uncorrected program and of its text, or by what keeps it from being written.
 pub(super) fn refusal(
-    original: &ExportedFigures,
+    uncorrected: &ExportedFigures,
     corrected: Option<&ExportedFigures>,
     changed: usize,
     unwritten: Option<&UnwrittenProgram>,
@@ -124,23 +124,23 @@ pub(super) fn refusal(
     if !corrected.completed {
         return Some("the servo loop is unstable".to_owned());
     }
-    let worse = harm(&original.errors(), &corrected.errors());
+    let worse = harm(&uncorrected.errors(), &corrected.errors());
     if !worse.is_empty() {
-        return Some(format!("it is worse than the original ({})", listed(&worse)));
+        return Some(format!("it is worse than the uncorrected program ({})", listed(&worse)));
     }
-    is_no_better(original, corrected).then(|| {
+    is_no_better(uncorrected, corrected).then(|| {
         format!(
-            "it is no better than the original: RMS {:.2} um for {:.2}, and the gain must be at least {} %",
+            "it is no better than the uncorrected program: RMS {:.2} um for {:.2}, and the gain must be at least {} %",
             corrected.rms_um,
-            original.rms_um,
+            uncorrected.rms_um,
             100.0 * LEAST_GAIN
         )
     })
 }
 
-/// Whether a corrected program gains too little to replace the original, though it need not be worse.
-fn is_no_better(original: &ExportedFigures, corrected: &ExportedFigures) -> bool {
-    corrected.rms_um > (1.0 - LEAST_GAIN) * original.rms_um
+/// Whether a corrected program gains too little to replace the uncorrected, though it need not be worse.
+fn is_no_better(uncorrected: &ExportedFigures, corrected: &ExportedFigures) -> bool {
+    corrected.rms_um > (1.0 - LEAST_GAIN) * uncorrected.rms_um
 }
 
 #[cfg(test)]
@@ -162,10 +162,13 @@ mod tests {
     fn a_program_that_is_worse_in_any_error_is_refused() {
         assert_eq!(refused([1.0, 40.9, 2.9]), None);
         for (corrected, why) in [
-            ([10.1, 4.0, 0.0], "it is worse than the original (RMS 10.10 um for 10.00)"),
-            ([1.0, 41.1, 0.0], "it is worse than the original (max 41.10 um for 40.00)"),
-            ([1.0, 4.0, 3.1], "it is worse than the original (uncut 3.10 um for 2.00)"),
-            ([1.0, 41.1, f64::NAN], "it is worse than the original (max 41.10 um for 40.00, uncut NaN um for 2.00)"),
+            ([10.1, 4.0, 0.0], "it is worse than the uncorrected program (RMS 10.10 um for 10.00)"),
+            ([1.0, 41.1, 0.0], "it is worse than the uncorrected program (max 41.10 um for 40.00)"),
+            ([1.0, 4.0, 3.1], "it is worse than the uncorrected program (uncut 3.10 um for 2.00)"),
+            (
+                [1.0, 41.1, f64::NAN],
+                "it is worse than the uncorrected program (max 41.10 um for 40.00, uncut NaN um for 2.00)",
+            ),
         ] {
             assert_eq!(refused(corrected).as_deref(), Some(why));
         }
@@ -174,7 +177,8 @@ mod tests {
     #[test]
     fn a_program_that_gains_less_than_two_percent_is_refused_as_no_better() {
         assert_eq!(refused([9.79, 40.0, 2.0]), None);
-        let why = "it is no better than the original: RMS 9.81 um for 10.00, and the gain must be at least 2 %";
+        let why =
+            "it is no better than the uncorrected program: RMS 9.81 um for 10.00, and the gain must be at least 2 %";
         assert_eq!(refused([9.81, 40.0, 2.0]).as_deref(), Some(why));
     }
 

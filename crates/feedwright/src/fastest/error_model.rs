@@ -70,10 +70,10 @@ fn lag_of_axes(grid: &PathGrid, places: &[CutPlace], squares: &[f64]) -> [f64; 3
         matrix += row * row.transpose();
         right += place.error_mm * row;
     }
-    // Deviations from what all have in common cost: c = m (1, 1, 1) + d, with a price on d.
+    // Deviations from what all have in common cost: c = m (1, 1, 1) + d, with a weight on d.
     let information = ALIKE * matrix.trace();
     let ones = Vector3::repeat(1.0);
     let apart = Matrix3::identity() - ones * ones.transpose() / 3.0;
-    let priced = matrix + information * apart;
-    priced.lu().solve(&right).map_or([0.0; 3], |found| [found.x, found.y, found.z])
+    let regularized = matrix + information * apart;
+    regularized.lu().solve(&right).map_or([0.0; 3], |found| [found.x, found.y, found.z])
 }

@@ -11,7 +11,7 @@
 use super::error_model::{ErrorModel, at};
 
 /// P: at the end the time that an error saves is worth `1 / 2` of its part, so that what is allowed is exceeded by `1 / 4P` of it.
-const PRICE: f64 = 100.0;
+const EXCESS_WEIGHT: f64 = 100.0;
 
 /// W at the least of a place where something else than a bound of ours holds the speed down: it is not raised in vain.
 const HELD: f64 = 2.0;
@@ -94,13 +94,13 @@ impl SpeedProfile<'_> {
     fn cost_s(&self, q: &[f64]) -> f64 {
         let speeds: Vec<f64> = q.iter().map(|q| q.sqrt()).collect();
         let time_s: f64 = speeds.windows(2).map(|pair| 2.0 * self.spacing_mm / (pair[0] + pair[1])).sum();
-        let prices: f64 = (0..q.len())
+        let penalties: f64 = (0..q.len())
             .map(|i| {
                 let (beyond, moved) = (self.beyond(i, q), q[i] / self.base(i) - 1.0);
-                self.time_s(i) * (PRICE * beyond * beyond + self.near(i, q[i]) * moved * moved)
+                self.time_s(i) * (EXCESS_WEIGHT * beyond * beyond + self.near(i, q[i]) * moved * moved)
             })
             .sum();
-        time_s + prices
+        time_s + penalties
     }
 
     /// Matrix and right side of a Newton step.
@@ -142,7 +142,7 @@ impl SpeedProfile<'_> {
         if beyond == 0.0 {
             return;
         }
-        let weight = 2.0 * PRICE * self.time_s(i) / self.aims_mm[i];
+        let weight = 2.0 * EXCESS_WEIGHT * self.time_s(i) / self.aims_mm[i];
         let change = &self.model.changes[i];
         let at = |part: usize| (i + part).saturating_sub(1).min(q.len() - 1);
         for first in 0..3 {

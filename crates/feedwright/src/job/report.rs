@@ -79,7 +79,7 @@ impl Job {
         })
     }
 
-    /// Whether the command of the controller that is asked for may be used: it was cut to its end, and is not worse than open loop.
+    /// Whether the command of the controller that is asked for may be used: it was cut to its end, and is not worse than uncorrected.
     pub(super) fn is_of_use(&self, report: &Report) -> bool {
         let mut runs = report.runs.iter().map(|run| &run.summary);
         let cut = runs.any(|run| run.controller == self.controller.name && run.outcome == Outcome::Completed);

@@ -81,8 +81,8 @@ impl Report {
         runs.rev().find(|run| !run.measured && run.controller != AS_EXPORTED)
     }
 
-    /// The errors of the controller that was asked for that are worse than those of open loop. Empty without a run in open
-    /// loop that reached its end.
+    /// The errors of the controller that was asked for that are worse than the uncorrected errors. Empty without an uncorrected
+    /// run that reached its end.
     pub fn harm(&self) -> Vec<Harm> {
         let baseline = self.runs.iter().map(|run| &run.summary).find(|run| run.controller == BASELINE);
         match (baseline, self.controlled()) {
@@ -252,7 +252,7 @@ mod tests {
         ReportedRun { summary, series: Series::new(), spectrum: Vec::new(), roundness: Vec::new(), events: Vec::new() }
     }
 
-    fn open_loop() -> ReportedRun {
+    fn uncorrected() -> ReportedRun {
         run(BASELINE, [10.0, 40.0, 5.0], [1.0, 0.5])
     }
 
@@ -282,8 +282,8 @@ mod tests {
     #[test]
     fn it_compares_the_last_run_with_the_first() {
         assert_eq!(
-            text(vec![open_loop(), controlled()], None),
-            "Simulated, two-dimensional against open-loop: RMS contour error 10.0 µm → 1.00 µm (−90 %), \
+            text(vec![uncorrected(), controlled()], None),
+            "Simulated, two-dimensional against uncorrected: RMS contour error 10.0 µm → 1.00 µm (−90 %), \
              largest 40.0 µm → 4.00 µm (−90 %), uncut path 5.00 µm → 5.00 µm (±0 %), machining time 2.00 s → 2.00 s (±0 %). \
              Cost: peak torque of Y, which rises most, 0.50 N m → 0.75 N m (+50 %), \
              command beside the program by up to 12.0 µm, its largest acceleration 1.50 m/s² → 1.50 m/s² (±0 %)."
@@ -292,12 +292,12 @@ mod tests {
 
     #[test]
     fn a_run_alone_is_compared_with_nothing_and_a_log_is_no_run_to_compare_with() {
-        let alone = text(vec![open_loop()], None);
-        assert!(alone.starts_with("Simulated, open-loop: RMS contour error 10.0 µm, largest 40.0 µm,"), "{alone}");
+        let alone = text(vec![uncorrected()], None);
+        assert!(alone.starts_with("Simulated, uncorrected: RMS contour error 10.0 µm, largest 40.0 µm,"), "{alone}");
         assert!(alone.contains("peak torque of X, the largest, 1.00 N m,"), "{alone}");
         let mut log = run("measured", [12.0, 50.0, 5.0], [0.0; 2]);
         (log.summary.measured, log.summary.peak_torque_nm) = (true, None);
-        let beside_a_log = text(vec![log, open_loop()], None);
+        let beside_a_log = text(vec![log, uncorrected()], None);
         let measured = " Measured on the machine: RMS contour error 12.0 µm, largest 50.0 µm.";
         assert_eq!(beside_a_log, alone + measured);
     }
@@ -308,13 +308,13 @@ mod tests {
             (4.0, "; within tolerance: max 4.00 µm, allowed 4 µm."),
             (3.5, "; out of tolerance: max 4.00 µm, allowed 3.5 µm."),
         ] {
-            let text = text(vec![open_loop(), controlled()], Some(tolerance_um));
+            let text = text(vec![uncorrected(), controlled()], Some(tolerance_um));
             assert!(text.contains(said), "{text}");
         }
-        assert!(!text(vec![open_loop(), controlled()], None).contains("tolerance"));
+        assert!(!text(vec![uncorrected(), controlled()], None).contains("tolerance"));
         let mut lost = controlled();
         lost.summary.outcome = Outcome::Diverged { at_s: 0.5 };
-        let lost = report(vec![open_loop(), lost], Some(100.0));
+        let lost = report(vec![uncorrected(), lost], Some(100.0));
         assert!(!lost.is_within_tolerance());
         assert_eq!(headline(&lost).to_string(), "two-dimensional diverged at 0.50 s: the tool ran away from the path.");
     }
@@ -322,7 +322,7 @@ mod tests {
     #[test]
     fn the_torque_is_that_of_the_axis_on_which_it_rises_most() {
         let torque = |peaks_nm: [f64; 2]| {
-            let text = text(vec![open_loop(), run("two-dimensional", [1.0; 3], peaks_nm)], None);
+            let text = text(vec![uncorrected(), run("two-dimensional", [1.0; 3], peaks_nm)], None);
             let (_, rest) = text.split_once("peak torque of ").unwrap_or_default();
             rest.split_once(", command").unwrap_or_default().0.to_owned()
         };
@@ -335,14 +335,14 @@ mod tests {
     #[test]
     fn a_correction_that_is_worse_is_named_and_a_corrected_program_does_not_hide_it() {
         let worse = || run("two-dimensional", [10.1, 30.0, 9.0], [1.0; 2]);
-        let said = "two-dimensional is worse than open-loop for this part on this machine \
+        let said = "two-dimensional is worse than uncorrected for this part on this machine \
                     (RMS 10.10 µm for 10.00, uncut 9.00 µm for 5.00): do not use its command.";
         let exported = || run(AS_EXPORTED, [1.0; 3], [1.0; 2]);
-        for runs in [vec![open_loop(), worse()], vec![open_loop(), worse(), exported()]] {
+        for runs in [vec![uncorrected(), worse()], vec![uncorrected(), worse(), exported()]] {
             let text = text(runs, None);
             assert!(text.contains(said), "{text}");
         }
-        assert!(!text(vec![open_loop(), controlled()], None).contains("worse"));
+        assert!(!text(vec![uncorrected(), controlled()], None).contains("worse"));
         assert!(!text(vec![run("cross-coupled", [0.1; 3], [1.0; 2]), worse()], None).contains("worse"));
     }
 }

@@ -74,8 +74,8 @@ impl Folder {
     }
 
     /// Cuts without a controller, which needs no training.
-    pub(crate) fn run_open_loop<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Ran {
-        let mut all: Vec<OsString> = ["run", "--controller", "open-loop"].map(OsString::from).to_vec();
+    pub(crate) fn run_uncorrected<S: AsRef<OsStr>>(&self, arguments: &[S]) -> Ran {
+        let mut all: Vec<OsString> = ["run", "--controller", "uncorrected"].map(OsString::from).to_vec();
         all.extend(arguments.iter().map(|argument| argument.as_ref().to_owned()));
         self.run(&all)
     }

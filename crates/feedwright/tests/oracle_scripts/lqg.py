@@ -1,6 +1,6 @@
 """Gains and closed-loop error of a linear-quadratic-Gaussian controller of one axis, from a machine file alone.
 
-    python3 lqg.py MACHINE.toml axis price_s2
+    python3 lqg.py MACHINE.toml axis control_weight_s2
 
 prints, as JSON, the stationary gains of the Kalman filter and of the regulator, and the RMS of the position in the closed loop, um, at the
 servo periods. Written from the equations; it shares nothing with the program, which iterates the Riccati equation of eight states by
@@ -157,7 +157,7 @@ class Axis:
         return q
 
     def sampled(self, drift):
-        """Over a servo period: A, b, Q, and the cost's W, n, m without the price."""
+        """Over a servo period: A, b, Q, and the cost's W, n, m without the control weight."""
         a, b = self.substep()
         states, inputs, q = eye(self.size), zeros(self.size, 1), zeros(self.size, self.size)
         w, cross, m = zeros(self.size, self.size), zeros(self.size, 1), 0.0
@@ -171,10 +171,10 @@ class Axis:
         return states, inputs, q, w, cross, m
 
 
-def main(path, name, price_s2):
+def main(path, name, control_weight_s2):
     axis = Axis(load(path), name)
     a, b, q, w, cross, m = axis.sampled(drift=True)
-    m += float(price_s2)
+    m += float(control_weight_s2)
     variance = axis.noise_rad**2
     c = [[float(i == 0)] for i in range(axis.size)]
     # The filter: the same equation of the transposed system.

@@ -85,7 +85,7 @@ fn circle<const N: usize>(excitation: &Excitation, lap: u32, rng: &mut Rng) -> M
     }
 }
 
-/// Open loop with random offsets; records.
+/// Uncorrected with random offsets; records.
 struct ExcitationController<'a, const N: usize> {
     excitation: &'a Excitation,
     servo_periods: u32,

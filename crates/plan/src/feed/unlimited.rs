@@ -1,7 +1,7 @@
 //! The null member: no bound on the tangential acceleration.
 //!
 //! Every section is passed at its own bound, `v^2` straight over arc length from one end to the other, and joints cost
-//! nothing: a stop takes no time. No plan is faster; what a real planner needs beyond this is the price of acceleration.
+//! nothing: a stop takes no time. No plan is faster; what a real planner needs beyond this is the cost of acceleration.
 
 use super::Span;
 use super::sections::{Section, SectionPlanner};

@@ -9,12 +9,12 @@ use crate::compare::{Knowledge, MAX_SEEDS, Shard};
 
 /// Compare all controllers on contours and machines
 ///
-/// One table: errors, time, torque, and how they compare with open loop.
+/// One table: errors, time, torque, and how they compare with the uncorrected cut.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Examples:
   feedwright-lab compare --only workshop --html compare.html
-  feedwright-lab compare --only circle,star,tnv40,open-loop,lqg-identified")]
+  feedwright-lab compare --only circle,star,tnv40,uncorrected,lqg-identified")]
 pub(crate) struct CompareArgs {
     /// Only these contours, machines and controllers; what is not named in its kind is left out.
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
@@ -32,8 +32,8 @@ pub(crate) struct CompareArgs {
     /// several times; `feedwright-lab controllers NAME` lists them.
     #[arg(long, value_name = "NAME.PARAMETER=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Where the values of the controllers' parameters come from: earlier searches that are kept with the program (where there is none,
-    /// a new search), a search for each controller and machine (an hour and more), or the defaults.
+    /// Where the values of the controllers' parameters come from: stored searches (a new search
+    /// if none is stored), a search for each controller and machine (an hour and more), or the defaults.
     #[arg(long, value_name = "SOURCE", value_enum, default_value_t = TuningSource::Recorded)]
     tuning: TuningSource,
     /// As --tuning defaults.
@@ -79,7 +79,7 @@ pub(crate) struct CompareArgs {
 /// Where values of parameters come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum TuningSource {
-    /// Earlier searches that are kept with the program; a search where there is none.
+    /// Stored searches; a new search if none is stored.
     Recorded,
     /// A search.
     Search,

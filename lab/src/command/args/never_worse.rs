@@ -9,7 +9,7 @@ use super::sweep::{SweepArgs, at_least_one};
 
 /// Find programs and machines where a correction does harm
 ///
-/// Each program is cut on each machine, open loop and corrected.
+/// Each program is cut on each machine, uncorrected and corrected.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
 Example:
@@ -29,7 +29,7 @@ pub(crate) struct NeverWorseArgs {
     /// Cut no more of a program than this time of machining on tnv40, s.
     #[arg(long, value_name = "S", default_value_t = 600.0)]
     pub(crate) limit_s: f64,
-    /// Cut so many of all pairs of program and machine, drawn by the seed.
+    /// Cut N of all pairs of program and machine, drawn by the seed.
     #[arg(long, value_name = "N", value_parser = at_least_one)]
     pub(crate) sample: Option<usize>,
     #[command(flatten)]

@@ -1,4 +1,4 @@
-//! Options of the commands that compare a controller with open loop on many machines.
+//! Options of the commands that compare a controller with the uncorrected cut on many machines.
 
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ pub(super) fn at_least_one(text: &str) -> Result<usize, String> {
     }
 }
 
-/// How a controller is compared with open loop.
+/// How a controller is compared with the uncorrected cut.
 #[derive(Debug, Args)]
 pub(crate) struct SweepArgs {
     /// Controller; `feedwright-lab controllers` lists them.

@@ -1,4 +1,4 @@
-//! `feedwright-lab held-out`: random programs on random machines, open loop and corrected, and the smallest case of what fails.
+//! `feedwright-lab held-out`: random programs on random machines, uncorrected and corrected, and the smallest case of what fails.
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
@@ -58,7 +58,7 @@ fn write_smallest<'a>(
         write(&program, &case.text(), &bar)?;
         write(&machine, &case.machine.text(), &bar)?;
         let figures = row.map_or(String::new(), |row| {
-            let (before, after) = (row.open_loop, row.corrected);
+            let (before, after) = (row.uncorrected, row.corrected);
             format!(", {:.2} / {:.1} -> {:.2} / {:.1} um", before.rms_um, before.max_um, after.rms_um, after.max_um)
         });
         let (lines, changes) = (case.lines.len(), case.machine.changes.len());

@@ -1,4 +1,4 @@
-//! `feedwright-lab never-worse`: programs on many machines, open loop and corrected.
+//! `feedwright-lab never-worse`: programs on many machines, uncorrected and corrected.
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 

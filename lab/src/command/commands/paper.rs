@@ -49,17 +49,17 @@ fn write(folder: &Path, paper: &Paper, figures: &[CaptionedFigure], watch: &dyn 
 
 fn print(folder: &Path, paper: &Paper) -> std::io::Result<()> {
     let mut out = std::io::stdout().lock();
-    writeln!(out, "{:>4} {:>24} {:>24} {:>24}", "", "open loop", "magnitude only", "two-dimensional")?;
+    writeln!(out, "{:>4} {:>24} {:>24} {:>24}", "", "uncorrected", "magnitude only", "two-dimensional")?;
     writeln!(out, "{:>4}{}", "seed", format!("  {:>8} {:>7} {:>7}", "time s", "RMS um", "max um").repeat(3))?;
     for seed in &paper.seeds {
         write!(out, "{:>4}", seed.seed)?;
-        for cut in [seed.open_loop, seed.magnitude_only, seed.two_dimensional] {
+        for cut in [seed.uncorrected, seed.magnitude_only, seed.two_dimensional] {
             write!(out, " {:>8.3} {:>7.2} {:>7.2}", cut.time_s, cut.rms_um, cut.max_um)?;
         }
         writeln!(out)?;
     }
     let text = format!(
-        "worst seed, two-dimensional against magnitude only: RMS x {:.3}, max x {:.3}; time against open loop x {:.3}",
+        "worst seed, two-dimensional against magnitude only: RMS x {:.3}, max x {:.3}; time against uncorrected x {:.3}",
         paper.worst_rms_ratio, paper.worst_max_ratio, paper.worst_time_ratio
     );
     writeln!(out, "{}", wrapped(&text, 2))?;

@@ -14,7 +14,7 @@ use crate::compare::table::{ComparisonRow, knows};
 /// A ratio that is coloured: further from 1 than this.
 const NOTABLE: f64 = 0.02;
 
-/// Its heading, and what open loop and the default come to there; `machines` is how many there are in the comparison.
+/// Its heading, and what the uncorrected cut and the default come to there; `machines` is how many there are in the comparison.
 pub(super) fn part(index: usize, rows: &[ComparisonRow], folded: bool, machines: usize) -> PagePart {
     let rms =
         |name: &str| rows.iter().find(|row| row.controller == name).map(|row| format!("{name} {}", number(row.rms_um)));
@@ -80,7 +80,7 @@ fn rounded_up(most: f64) -> [f64; 2] {
     [-end, end]
 }
 
-/// Error over the cut: open loop, the best peer that knows no model, and the default, each on its own scale.
+/// Error over the cut: uncorrected, the best peer that knows no model, and the default, each on its own scale.
 fn errors(rows: &[ComparisonRow]) -> Figure {
     let peers = rows.iter().filter(|row| {
         let blind = matches!(knows(row), Some(Knows::Nothing | Knows::Identified));

@@ -25,7 +25,7 @@ fn row(contour: &str, machine: &str, controller: &str, [rms_um, max_um]: [f64; 2
         accel_mm_s2: 0.0,
         peak_torque_nm: 1.0,
         time_ratio: 1.0,
-        // Of every open loop below.
+        // Of every uncorrected cut below.
         rms_ratio: rms_um / 10.0,
         max_ratio: max_um / 20.0,
         seeds: 1,
@@ -140,7 +140,7 @@ fn under_noise_the_best_peer_has_the_exact_model_and_geometry_does_not_count() {
 }
 
 #[test]
-fn held_out_work_may_nowhere_be_worse_than_open_loop_or_the_baseline() {
+fn held_out_work_may_nowhere_be_worse_than_uncorrected_or_the_baseline() {
     let mut options = options();
     options.workpieces[0].held_out = true;
     let mut rows = vec![

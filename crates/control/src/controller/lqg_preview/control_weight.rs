@@ -20,7 +20,7 @@ impl OffsetBounds {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LqgSettings {
     /// Price of the reference speed beside the error of the position, s^2, near the reference.
-    pub price_s2: f64,
+    pub control_weight_s2: f64,
     /// What the offset is held to.
     pub bounds: OffsetBounds,
     /// Whether law and statistics may be wrong: statistics are learnt, and a wrong law is not followed. Else both are exact.
@@ -29,27 +29,27 @@ pub struct LqgSettings {
 
 /// Price that serves by an identified model, in squares of the servo period. With 1 there is half as much again left on workshop; as long as the law is
 /// not trusted, it is 256 times as high.
-pub const IDENTIFIED_PRICE: f64 = 0.01;
+pub const IDENTIFIED_WEIGHT: f64 = 0.01;
 /// By a law that may be wrong a screw that gives is regulated in no less than so many radians of its resonance: backlash is not in the law of the
 /// regulator. On soft 2 leaves 0.6 of what 0 leaves on star, circle and square, and 0.1 on pocket.
 const SCREW_RAD: f64 = 2.0;
 
 impl LqgSettings {
     /// A tenth of the travel of a servo period, squared.
-    pub const DEFAULT: Self = Self { price_s2: 1e-8, bounds: OffsetBounds::NONE, learns: false };
+    pub const DEFAULT: Self = Self { control_weight_s2: 1e-8, bounds: OffsetBounds::NONE, learns: false };
 
     /// For an identified model: a price in squares of a servo period of `servo_s`.
-    pub fn identified(price: f64, servo_s: f64, bounds: OffsetBounds) -> Self {
-        Self { price_s2: price * servo_s * servo_s, bounds, learns: true }
+    pub fn identified(control_weight: f64, servo_s: f64, bounds: OffsetBounds) -> Self {
+        Self { control_weight_s2: control_weight * servo_s * servo_s, bounds, learns: true }
     }
 
     /// Near the reference, for an axis with this screw.
-    pub(super) fn lowest_price_s2(&self, screw: &TransmissionParameters) -> f64 {
+    pub(super) fn lowest_control_weight_s2(&self, screw: &TransmissionParameters) -> f64 {
         if self.learns && screw.resonance_rad_s > 0.0 {
             let slow_s = SCREW_RAD / screw.resonance_rad_s;
-            self.price_s2.max(slow_s * slow_s)
+            self.control_weight_s2.max(slow_s * slow_s)
         } else {
-            self.price_s2
+            self.control_weight_s2
         }
     }
 }

@@ -15,7 +15,7 @@
 use crate::axis::AxisLaw;
 use crate::vector::{bounded, smooth_step};
 
-/// h, s. With 4 ms a drive that is just strong enough for its plan leaves as much as open loop at the corners of a square, with 10 and 20 ms a fifth.
+/// h, s. With 4 ms a drive that is just strong enough for its plan leaves as much as uncorrected at the corners of a square, with 10 and 20 ms a fifth.
 const AVERAGED_S: f64 = 0.01;
 /// Part of the torque that is there for the reference.
 const FOR_REFERENCE: f64 = 0.9;

@@ -130,8 +130,8 @@ impl LinearAxis {
     }
 
     /// Mean square of the table's position over the servo period, and a price for the input.
-    pub(super) fn cost(&self, price_s2: f64) -> PeriodCost<STATES> {
-        let mut cost = PeriodCost { states: [[0.0; STATES]; STATES], cross: [0.0; STATES], input: price_s2 };
+    pub(super) fn cost(&self, control_weight_s2: f64) -> PeriodCost<STATES> {
+        let mut cost = PeriodCost { states: [[0.0; STATES]; STATES], cross: [0.0; STATES], input: control_weight_s2 };
         let (mut states, mut input): (StateMatrix<STATES>, _) = (core::array::from_fn(unit), [0.0; STATES]);
         let share = 1.0 / f64::from(self.substeps);
         for _ in 0..self.substeps {

@@ -14,9 +14,9 @@
 //! four times later each time that it was found out. Of a force that nobody foresees the test does not tell it: such a force is answered by the slow
 //! part alone.
 //!
-//! By the law of tnv40 on tnv40 with drives that are 1 and 2 ms late the circle was cut with 31 and 32 um RMS where open loop leaves 13 and 9; now with
+//! By the law of tnv40 on tnv40 with drives that are 1 and 2 ms late the circle was cut with 31 and 32 um RMS where the uncorrected cut leaves 13 and 9; now with
 //! 0.9 and 1.8, and the square with jumps at its corners with 0.3 of 2.1 and 0.8 of 1.7. With 0.8 p it leaves 4.0 um of 5.3 on the circle with twice
-//! the inertia, with 1.5 p 0.6; with 2 p the square 2 ms late is worse than open loop.
+//! the inertia, with 1.5 p 0.6; with 2 p the square 2 ms late is worse than uncorrected.
 //!
 //! Source: the mean square of innovations against what is predicted for it is the usual test of a filter, Bar-Shalom, Li and Kirubarajan (2001),
 //! Estimation with Applications to Tracking and Navigation, section 5.4; p, and what follows from it, are our own.

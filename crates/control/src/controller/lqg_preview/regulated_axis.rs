@@ -6,7 +6,7 @@ use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::mechanics::MechanicsState;
 use crate::axis::{AxisLaw, AxisState, Parameters};
 
-use super::approach::{self, PricedGains, Room, Trusted};
+use super::approach::{self, Room, Trusted, WeightedGains};
 use super::control_weight::{LqgSettings, OffsetBounds};
 use super::estimate::{AxisModel, Estimate, KEPT_PERIODS, Learnt, Sent};
 use super::linear::{self, LinearAxis};
@@ -30,7 +30,7 @@ pub(super) struct AxisLqg {
     model: AxisModel,
     inverse: AxisInverse,
     twist: Option<ScrewTwist>,
-    regulator: PricedGains,
+    regulator: WeightedGains,
     bounds: OffsetBounds,
     known: AxisKnowledge,
     state: Option<Running>,
@@ -118,13 +118,13 @@ impl AxisLqg {
         let model = AxisModel::new(&known, settings.learns);
         let screw = model.mechanics.transmission();
         let regulated = LinearAxis::new(&law, &DriveParameters::default(), screw, &statistics);
-        let lowest_s2 = settings.lowest_price_s2(&transmission);
+        let lowest_s2 = settings.lowest_control_weight_s2(&transmission);
         let (states, input, _) = regulated.sampled();
         Self {
             inverse: AxisInverse::new(law, drive, friction, delays),
             twist: screw.map(|screw| ScrewTwist::new(&law, screw)),
-            regulator: PricedGains::new(lowest_s2, |price_s2| {
-                riccati::regulator(&states, &input, &regulated.cost(price_s2))
+            regulator: WeightedGains::new(lowest_s2, |control_weight_s2| {
+                riccati::regulator(&states, &input, &regulated.cost(control_weight_s2))
             }),
             bounds: settings.bounds,
             known,

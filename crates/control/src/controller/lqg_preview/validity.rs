@@ -18,11 +18,11 @@
 //! With all of it from the beginning, the way back behind a lost position takes up to 44,000 mm/s^2 on tnv40, and by the law of another machine
 //! three of 28 cuts are worse, one five times.
 //!
-//! Of 134 cuts on machines whose inertia, friction and gains are up to three times larger or smaller, that are late, or soft, 120 were worse than open loop by
+//! Of 134 cuts on machines whose inertia, friction and gains are up to three times larger or smaller, that are late, or soft, 120 were worse than uncorrected by
 //! the law of another machine, by up to 1.4 mm; now two are, by 2.1 times at the most. With 15 times as long four are, by 2.8.
 //!
 //! Against g, the way by which the offset has moved the tool by the law, in place of f: with g / 2 a law with gains, inertia and friction 10 %
-//! off, which leaves a tenth of the error of open loop, counts as wrong. With f / 10 a drive that is 2 ms late is found at the second corner of a square
+//! off, which leaves a tenth of the error of the uncorrected cut, counts as wrong. With f / 10 a drive that is 2 ms late is found at the second corner of a square
 //! and not at the start, and an offset that fades in a corner leads the tool off; the same with the sum of m^2 over the axes, which is more in a corner
 //! than at a start. Over 5 ms references that are up to 1 ms late by chance make a law wrong, and leave 1.2 um in place of 0.3. With the f of the moment a law counts as wrong where an axis comes to rest.
 //!

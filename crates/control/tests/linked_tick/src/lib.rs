@@ -6,7 +6,7 @@
 #![no_std]
 
 use core::panic::PanicInfo;
-use feedwright_control::{Feedforward, Knot, KnotSource, LqgPreview, MagnitudeOnly, ModelBlock, OpenLoop, RecedingHorizon, Tick, TwoDimensional};
+use feedwright_control::{Feedforward, Knot, KnotSource, LqgPreview, MagnitudeOnly, ModelBlock, Uncorrected, RecedingHorizon, Tick, TwoDimensional};
 
 unsafe extern "C" {
     fn a_panic_is_left_in_the_tick() -> !;
@@ -48,8 +48,8 @@ macro_rules! servo_periods {
 }
 
 servo_periods! {
-    open_loop_2: OpenLoop, 2;
-    open_loop_3: OpenLoop, 3;
+    uncorrected_2: Uncorrected, 2;
+    uncorrected_3: Uncorrected, 3;
     receding_horizon_2: RecedingHorizon<2>, 2;
     receding_horizon_3: RecedingHorizon<3>, 3;
     lqg_preview_2: LqgPreview<2>, 2;

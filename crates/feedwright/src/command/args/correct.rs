@@ -16,7 +16,7 @@ use super::reader::ReaderArgs;
 Example:
   feedwright correct part.ngc --machine mine.toml --for linuxcnc --out corrected.ngc
 
-Exit codes: 0 done; 1 out of --tolerance, or no better than the original: nothing is written then; 2 an error.")]
+Exit codes: 0 done; 1 out of --tolerance, or no better than uncorrected: nothing is written then; 2 an error.")]
 pub(crate) struct CorrectArgs {
     /// G-code program.
     pub(crate) part: PathBuf,
@@ -26,7 +26,7 @@ pub(crate) struct CorrectArgs {
     /// Control that the corrected program is for: how it plans the speed, and what its blocks may hold.
     #[arg(long = "for", value_name = "CONTROL", default_value = crate::correct::TARGETS[0].name, long_help = controls("Control that the corrected program is for: how it plans the speed, and what its blocks may hold."))]
     pub(crate) target: String,
-    /// Place of the corrected program; it is written only where it is better than the original, else the exit code is 1.
+    /// Place of the corrected program; it is written only if it is better than the uncorrected program; otherwise the exit code is 1.
     #[arg(long, value_name = "FILE.ngc")]
     pub(crate) out: Option<PathBuf>,
     /// Largest contour error allowed of the corrected program as the control cuts it, um: exit code 1 where it is exceeded.

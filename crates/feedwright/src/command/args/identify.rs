@@ -74,8 +74,8 @@ pub(crate) struct LogArgs {
     /// itself: two samples are 0.002 at 1 kHz. Positions do not tell it.
     #[arg(long, value_name = "S", requires = "log", value_parser = positive)]
     pub(crate) speed_window: Option<f64>,
-    /// By how much the log has the actual position later than the command, s: 0 where both were sampled at the same moment, as by
-    /// halsampler. Without it a delay of the drive counts as one of the record.
+    /// Delay of the recorded actual position behind the recorded command, s: 0 if both are sampled at the same moment, as halsampler
+    /// does. Without it, a delay of the drive counts as a delay of the record.
     #[arg(long, value_name = "S", requires = "log", allow_negative_numbers = true)]
     pub(crate) record_delay: Option<f64>,
     /// Write a page: numbers, measured against predicted, what is left.

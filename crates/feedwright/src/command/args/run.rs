@@ -11,7 +11,7 @@ use super::reader::ReaderArgs;
 
 /// Cut a part on a simulated machine, and show its contour error
 ///
-/// The program is cut twice, open loop and with a controller that corrects the command, and both are written into a report
+/// The program is cut twice, uncorrected and with a controller that corrects the command, and both are written into a report
 /// (PART.report.html, one file that any browser shows). Nothing moves: all figures are those of a simulation of the machine file.
 #[derive(Debug, Args)]
 #[command(after_long_help = "\
@@ -21,7 +21,7 @@ Examples:
   feedwright run part.ngc --machine mine.toml --log cut.csv
   cat part.ngc | feedwright run - --json - | jq '.runs[].max_um'
 
-Exit codes: 0 done; 1 out of --tolerance, or the correction is worse than open loop: --out is not written then; 2 an error.")]
+Exit codes: 0 done; 1 out of --tolerance, or the correction is worse than uncorrected: --out is not written then; 2 an error.")]
 pub struct RunArgs {
     /// G-code program.
     pub(crate) part: PathBuf,

@@ -105,7 +105,7 @@ fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result
     table.print(out)?;
     let notes = [
         "feed: of the programmed; mm/min: where F is the largest of the program; each: each stretch at the feed that it holds".to_owned(),
-        format!("uncorrected, corrected: cut open loop as {control} plans (planner {planner}); corrected: for that feed"),
+        format!("uncorrected, corrected: cut without feedback as {control} plans (planner {planner}); corrected: for that feed"),
     ];
     notes.iter().try_for_each(|note| writeln!(out, "{}", wrapped(note, 2)))?;
     print_stretches(out, advice)?;

@@ -72,7 +72,7 @@ fn results(args: &CorrectArgs, job: &CorrectJob, outcome: &CorrectOutcome, withi
 
 fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io::Result<()> {
     let mut out = tables([args.out.as_deref(), args.json.as_deref()]);
-    let CorrectOutcome { original, corrected, .. } = outcome;
+    let CorrectOutcome { uncorrected, corrected, .. } = outcome;
     let mut table = ConsoleTable::new(vec![
         TableColumn::new(""),
         TableColumn::new("time s"),
@@ -81,14 +81,14 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
         TableColumn::optional("uncut um", 1),
         TableColumn::optional("blocks", 2),
     ]);
-    for (name, figures) in [("original", original), ("as exported", corrected)] {
+    for (name, figures) in [("uncorrected", uncorrected), ("as exported", corrected)] {
         let ExportedFigures { rms_um, max_um, uncut_um, time_s, blocks, .. } = figures;
         let errors = [rms_um, max_um, uncut_um].map(|um| format!("{um:.2}"));
         let cells = std::iter::once(format!("{time_s:.3}")).chain(errors).chain([blocks.to_string()]);
         table.row(std::iter::once(name.to_owned()).chain(cells).collect());
     }
     table.print(&mut *out)?;
-    let note = "both cut open loop, as the control plans them; errors are those to the original path";
+    let note = "both cut without feedback, as the control plans them; errors are distances to the programmed path";
     writeln!(out, "{}", wrapped(note, 2))?;
     print_correction(&mut *out, outcome)?;
     if let Some(tolerance_um) = args.tolerance {

@@ -76,7 +76,7 @@ impl Advice {
     /// Where `out` takes no more.
     pub fn write_page(&self, out: &mut impl Write, part: &str, machine: &str) -> io::Result<()> {
         let introduction = format!(
-            "Simulated. Feedrates at which the largest contour error stays within {} µm: of the program as it is and of a corrected program, both cut open loop as \
+            "Simulated. Feedrates at which the largest contour error stays within {} µm: of the program as it is and of a corrected program, both cut without feedback as \
              the control plans them ({}, planner {}), and with the controller {}. A corrected program is made for its feedrate.",
             number(self.tolerance_um),
             self.control,

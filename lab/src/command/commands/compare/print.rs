@@ -31,7 +31,7 @@ pub(super) fn tuned(tuned: &[Tuned]) -> String {
         // Writing to a string cannot fail.
         let _ = writeln!(
             text,
-            "tuned {controller} on {machine}: {} ({cuts} evaluations, {rms_um:.3} um where open loop has {open_um:.3})",
+            "tuned {controller} on {machine}: {} ({cuts} evaluations, {rms_um:.3} um where the uncorrected cut has {open_um:.3})",
             tuned.words()
         );
     }

@@ -100,15 +100,15 @@ fn assumed(assumed: &Assumptions, measured: bool) -> String {
     format!("assumed: {}. {}", sentences.join("; "), Assumptions::cut_sentence(measured))
 }
 
-/// What the corrected program is, beside the original as its control cuts it.
+/// What the corrected program is, beside the uncorrected program as its control cuts it.
 fn print_exported(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
-    let ExportedFigures { rms_um, max_um, time_s, .. } = outcome.original;
+    let ExportedFigures { rms_um, max_um, time_s, .. } = outcome.uncorrected;
     let CorrectOutcome { control, planner, .. } = outcome;
     let text = format!(
-        "{AS_EXPORTED}: the corrected program, cut open loop as its control plans it ({control}, planner {planner})"
+        "{AS_EXPORTED}: the corrected program, cut without feedback as its control plans it ({control}, planner {planner})"
     );
     writeln!(out, "{}", wrapped(&text, 2))?;
-    let text = format!("the original, cut in the same way: {time_s:.3} s, RMS {rms_um:.2}, max {max_um:.2} um");
+    let text = format!("uncorrected, cut in the same way: {time_s:.3} s, RMS {rms_um:.2}, max {max_um:.2} um");
     writeln!(out, "{}", wrapped(&text, 2))?;
     print_correction(out, outcome)
 }
@@ -138,7 +138,11 @@ fn print_written(out: &mut dyn Write, outputs: &Outputs, outcome: &JobOutcome) -
     match (outputs.out.as_deref(), &outcome.exported) {
         // Why there is no program is told above.
         (Some(path), None) if !is_good => {
-            let why = if outcome.harm.is_empty() { "the cut did not come to its end" } else { "open loop is better" };
+            let why = if outcome.harm.is_empty() {
+                "the cut did not come to its end"
+            } else {
+                "the uncorrected cut is better"
+            };
             writeln!(out, "{}", wrapped(&format!("{} was not written: {why}", path.display()), 2))
         }
         _ => Ok(()),
