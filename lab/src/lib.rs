@@ -3,6 +3,8 @@
 //! Nothing in the product depends on it. The command `feedwright-lab` starts from here, and the examples and studies of the
 //! repository use it.
 
+#![warn(clippy::disallowed_methods)]
+
 pub mod peers;
 pub mod butterfly;
 pub mod contour;

@@ -156,7 +156,7 @@ impl Bench<'_> {
         let mut rho = 0.0;
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            rho = 10_f64.powf(middle);
+            rho = libm::pow(10_f64, middle);
             let ratio = self.cut_magnitude_only(net, rho)?.time_s / time_s;
             if (ratio - 1.0).abs() <= SAME_TIME {
                 break;

@@ -75,6 +75,7 @@
 //! `horizon` compute corrections, `controller` has the controllers, `safety` bounds them, and
 //! `tick` joins all of it.
 #![no_std]
+#![warn(clippy::disallowed_methods)]
 
 pub mod vector;
 mod activation;

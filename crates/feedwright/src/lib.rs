@@ -83,6 +83,8 @@
 //! plans, `controllers` is the table of controllers, `report` makes figures and the page, and
 //! `correct`, `job` and `log_job` are the jobs of the command line.
 
+#![warn(clippy::disallowed_methods)]
+
 pub use feedwright_control as control;
 pub use feedwright_gcode as gcode;
 pub use feedwright_ident as ident;

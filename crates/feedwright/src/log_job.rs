@@ -253,7 +253,7 @@ pub(crate) fn digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
-    let before_the_point = value.abs().log10().floor() as i32;
+    let before_the_point = libm::log10(value.abs()).floor() as i32;
     match before_the_point {
         -4..=5 => format!("{value:.*}", (3 - before_the_point).max(0) as usize),
         _ => format!("{value:.3e}"),

@@ -74,6 +74,8 @@
 //! `motion` what moves, `dialects` what other controls mean by the same words, and `flow` decides which line comes next and carries
 //! it out. `program` is where a program comes from. Plain G0 and G1, nearly all lines of a long program, take the short way of `flow/reader/plain`.
 
+#![warn(clippy::disallowed_methods)]
+
 mod text;
 
 pub mod canon;

@@ -228,7 +228,7 @@ impl MoveWriter {
         let way_mm = rounded(0.25 * travel_mm);
         let feed_mm_s = fastest_mm_s.min((self.accel_mm_s2 * way_mm).sqrt());
         for [x, y] in [[1.0, 1.0], [-2.0, -2.0], [1.0, 1.0], [1.0, -1.0], [-2.0, 2.0], [1.0, -1.0]] {
-            let length_mm = way_mm * f64::hypot(x, y);
+            let length_mm = way_mm * libm::hypot(x, y);
             self.straight(format_args!("X{} Y{}", x * way_mm, y * way_mm), length_mm, feed_mm_s);
         }
         self.rest();

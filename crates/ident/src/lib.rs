@@ -64,6 +64,8 @@
 //! `average` and `spectrum` are numerical helpers, `log` reads logs, `excite` writes the program
 //! that excites a machine, `identify` fits, and `model` reads and writes model files.
 
+#![warn(clippy::disallowed_methods)]
+
 mod average;
 mod spectrum;
 mod log;

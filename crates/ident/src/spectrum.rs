@@ -37,7 +37,7 @@ pub(crate) fn power([a, b]: Phasor) -> f64 {
 /// e^(i x).
 #[inline]
 pub(crate) fn turned(angle_rad: f64) -> Phasor {
-    let (sin, cos) = angle_rad.sin_cos();
+    let (sin, cos) = libm::sincos(angle_rad);
     [cos, sin]
 }
 
@@ -119,7 +119,7 @@ impl SpectrumSegments {
     pub fn new(length: usize) -> Self {
         let middle = 0.5 * length as f64;
         let deviation = middle / WINDOW_DEVIATIONS;
-        let gauss = |k: usize| (-0.5 * ((k as f64 + 0.5 - middle) / deviation).powi(2)).exp();
+        let gauss = |k: usize| libm::exp(-0.5 * ((k as f64 + 0.5 - middle) / deviation).powi(2));
         Self { window: (0..length).map(gauss).collect(), deviation, sum: vec![0.0; length / 2 + 1], weight: 0.0 }
     }
 

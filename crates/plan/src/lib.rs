@@ -67,6 +67,8 @@
 //! `plc` says how long events take, `constraints` what the machine allows, `path` makes curves of
 //! motions, `blend` makes the planned path of the programmed one, and `feed` plans the speed.
 
+#![warn(clippy::disallowed_methods)]
+
 pub mod vector;
 mod plc;
 mod constraints;

@@ -19,5 +19,5 @@ pub fn cross(a: Vector, b: Vector) -> Vector {
 
 /// Angle between two directions, 0 to pi; accurate at both ends, where an arc cosine is not.
 pub fn angle(a: Vector, b: Vector) -> f64 {
-    norm(cross(a, b)).atan2(dot(a, b))
+    libm::atan2(norm(cross(a, b)), dot(a, b))
 }

@@ -44,7 +44,7 @@ impl<const N: usize> GeometricErrors<N> {
         let skew_mm = [xy * y_mm + xz * z_mm, yz * z_mm, 0.0];
         std::array::from_fn(|i| {
             let (AxisErrors { scale, pitch_mm, pitch_rad_per_mm }, at_mm) = (self.axes[i], joints_mm[i]);
-            at_mm + scale * at_mm + pitch_mm * (pitch_rad_per_mm * at_mm).sin() + skew_mm.get(i).unwrap_or(&0.0)
+            at_mm + scale * at_mm + pitch_mm * libm::sin(pitch_rad_per_mm * at_mm) + skew_mm.get(i).unwrap_or(&0.0)
         })
     }
 }

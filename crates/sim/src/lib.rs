@@ -66,6 +66,8 @@
 //! `machine` reads machine files, `reference` looks the plan up by time, `plant` is the simulated
 //! machine, `trace` takes the rows, `simulate` closes the loop, and `pipeline` joins all stages.
 
+#![warn(clippy::disallowed_methods)]
+
 mod watch;
 mod number;
 pub mod toml_file;

@@ -232,7 +232,7 @@ impl<const N: usize> Plant<N> {
 
 /// cos and sin of an angle.
 fn cos_sin(angle_rad: f64) -> [f64; 2] {
-    let (sin, cos) = angle_rad.sin_cos();
+    let (sin, cos) = libm::sincos(angle_rad);
     [cos, sin]
 }
 

@@ -128,8 +128,9 @@ mod tests {
 
     #[test]
     fn no_setting_has_changed_since_the_seeds_were_drawn() {
-        assert!(
-            HeldOutSeeds::recorded().settings == settings_fingerprint(),
+        assert_eq!(
+            HeldOutSeeds::recorded().settings,
+            settings_fingerprint(),
             "a default, a range or a recorded value is another than when the held-out work was drawn; hint: when all settings are \
              final, `cargo run --release -p feedwright-lab --example draw_held_out` draws new seeds"
         );

@@ -98,10 +98,10 @@ fn fastest(
         return Ok(Some(at_highest));
     }
     let Some(mut best) = holding(SLOWEST_MM_S)? else { return Ok(None) };
-    let (mut low, mut high) = (SLOWEST_MM_S.ln(), highest.ln());
+    let (mut low, mut high) = (libm::log(SLOWEST_MM_S), libm::log(highest));
     for _ in 0..HALVINGS {
         let middle = 0.5 * (low + high);
-        match holding(middle.exp())? {
+        match holding(libm::exp(middle))? {
             Some(faster) => (low, best) = (middle, faster),
             None => high = middle,
         }

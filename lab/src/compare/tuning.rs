@@ -154,12 +154,12 @@ impl Trial<'_> {
 
 /// The value at a place from 0 to 1 of a range.
 fn value_at([low, high]: [f64; 2], at: f64) -> f64 {
-    if low > 0.0 { low * (high / low).powf(at) } else { low + at * (high - low) }
+    if low > 0.0 { low * libm::pow(high / low, at) } else { low + at * (high - low) }
 }
 
 /// The place of a value.
 fn place([low, high]: [f64; 2], value: f64) -> f64 {
-    if low > 0.0 { (value / low).ln() / (high / low).ln() } else { (value - low) / (high - low) }
+    if low > 0.0 { libm::log(value / low) / libm::log(high / low) } else { (value - low) / (high - low) }
 }
 
 /// The end of its range at which a place is.

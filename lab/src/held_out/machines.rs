@@ -83,7 +83,7 @@ fn draw(random: &mut Random, seed: u64, class: Class) -> Variant {
         axis.viscous_friction_nm_s = rounded(axis.viscous_friction_nm_s * friction[0]);
         axis.coulomb_friction_nm = rounded(axis.coulomb_friction_nm * friction[1]);
         [axis.disturbance_nm, axis.disturbance_hz] = disturbance;
-        let needed_nm = torque_of_plan_nm(&axis, &base, along.hypot(across));
+        let needed_nm = torque_of_plan_nm(&axis, &base, libm::hypot(along, across));
         variant = variant
             .with(table, "kp_1_s", axis.kp_1_s)
             .with(table, "inertia_kg_m2", axis.inertia_kg_m2)

@@ -96,7 +96,7 @@ impl ProgramWriter {
         let [end_x, end_y] = if is_whole { [x, y] } else { [x + i + turned[0], y + j + turned[1]] };
         let code = if sweep_rad > 0.0 { "G3" } else { "G2" };
         self.travel(code, [end_x, end_y, z + rise_mm], &format!(" I{i} J{j}"));
-        self.spend((i.hypot(j) * sweep_rad).hypot(rise_mm));
+        self.spend(libm::hypot(libm::hypot(i, j) * sweep_rad, rise_mm));
     }
 
     /// The program, ended.

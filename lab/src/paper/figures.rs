@@ -158,7 +158,7 @@ fn enlarged(points: &[[f64; 2]]) -> Vec<[f64; 2]> {
         .iter()
         .map(|&[x, y]| {
             let (dx, dy) = (x - RADIUS_MM, y);
-            let radius = dx.hypot(dy);
+            let radius = libm::hypot(dx, dy);
             let drawn = RADIUS_MM + ENLARGEMENT * (radius - RADIUS_MM);
             [RADIUS_MM + dx / radius * drawn, dy / radius * drawn]
         })

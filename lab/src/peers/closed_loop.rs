@@ -28,7 +28,7 @@
 //! Symbols: as in [`feedwright_control::axis::drive`]. Polynomials are in ascending powers of z^-1.
 use feedwright_control::{AxisLaw, AxisState, DriveLaw, DriveParameters, DriveReference, DriveState, Parameters};
 use feedwright_sim::{KnownAxis, Period};
-use nalgebra::{DMatrix, SMatrix, Schur};
+use nalgebra::{ComplexField, DMatrix, SMatrix, Schur};
 
 use crate::peers::zero_phase::Filter;
 
@@ -54,7 +54,7 @@ pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period)
     let last = numerator.iter().rposition(is_there)?;
     let zeros = zeros(&numerator[late..=last])?;
     let (cancelled, mirrored): (Vec<Complex>, Vec<Complex>) = zeros.into_iter().partition(|zero| {
-        let size = zero.norm();
+        let size = zero.modulus();
         size <= SOON_GONE || (size < 1.0 && zero.re > 0.0)
     });
     // B-(z) has the coefficients of B-(1/z) in reverse order, one period ahead for each zero.
@@ -275,7 +275,7 @@ mod tests {
             let (numerator, denominator) = ClosedAxis::new(axis, &axis.nominal, &known.period).transfer(&axis.nominal);
             // The first command is where the axis rests: before it nothing was commanded.
             let commands_rad: Vec<f64> =
-                (0..200).map(|n| if n == 0 { 0.0 } else { (0.37 * f64::from(n * n)).sin() }).collect();
+                (0..200).map(|n| if n == 0 { 0.0 } else { libm::sin(0.37 * f64::from(n * n)) }).collect();
             let positions_rad = stepped_rad(&known, &commands_rad);
             let back = |values: &[f64], k: usize, j: usize| k.checked_sub(j).map_or(0.0, |at| values[at]);
             for k in 0..commands_rad.len() {
@@ -296,7 +296,7 @@ mod tests {
         let wanted = wanted.map(|[re, im]| Complex::new(re, im));
         let found = zeros(&with_zeros(&wanted)).unwrap();
         for zero in wanted {
-            let nearest = found.iter().map(|other| (zero - other).norm()).fold(f64::MAX, f64::min);
+            let nearest = found.iter().map(|other| (zero - other).modulus()).fold(f64::MAX, f64::min);
             assert!(nearest < TOLERANCE, "{zero:?}: {found:?}");
         }
     }

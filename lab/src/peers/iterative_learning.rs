@@ -157,7 +157,7 @@ fn smooth<const N: usize>(values: &mut [[f64; N]], cut_off: f64) {
     if cut_off >= HIGHEST_CUT_OFF {
         return;
     }
-    let k = (std::f64::consts::PI * cut_off).tan();
+    let k = libm::tan(std::f64::consts::PI * cut_off);
     let root = std::f64::consts::SQRT_2 * k;
     let scale = 1.0 / (1.0 + root + k * k);
     let (b, a1, a2) = (k * k * scale, 2.0 * (k * k - 1.0) * scale, (1.0 - root + k * k) * scale);
@@ -190,7 +190,7 @@ mod tests {
         fn knot(&mut self, tau_s: f64) -> Knot<2> {
             let s = (tau_s / PROGRAM_S).clamp(0.0, 1.0);
             let angle = 10.0 * s * s * (3.0 - 2.0 * s);
-            let (sin, cos) = angle.sin_cos();
+            let (sin, cos) = libm::sincos(angle);
             let feed_mm_s = 10.0 * 10.0 * 6.0 * s * (1.0 - s) / PROGRAM_S;
             Knot { position_mm: [10.0 * (1.0 - cos), 10.0 * sin], tangent: [sin, cos], feed_mm_s, cutting: true }
         }
@@ -205,9 +205,9 @@ mod tests {
         for _ in 0..periods {
             let command_mm = tick.step(&mut Circle, controller, tool_mm).command_mm;
             for (i, loop_1_s) in [50.0_f64, 45.0].into_iter().enumerate() {
-                tool_mm[i] += (1.0 - (-loop_1_s * SERVO_S).exp()) * (command_mm[i] - tool_mm[i]);
+                tool_mm[i] += (1.0 - libm::exp(-loop_1_s * SERVO_S)) * (command_mm[i] - tool_mm[i]);
             }
-            squares += ((tool_mm[0] - 10.0).hypot(tool_mm[1]) - 10.0).powi(2);
+            squares += (libm::hypot(tool_mm[0] - 10.0, tool_mm[1]) - 10.0).powi(2);
         }
         (squares / f64::from(periods)).sqrt()
     }
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn the_low_pass_leaves_half_at_its_cut_off_and_turns_no_phase() {
         for (hz, part) in [(0.0, 1.0), (20.0, 0.5), (200.0, 0.0)] {
-            let wave = |k: usize| (std::f64::consts::TAU * hz * (k as f64 - 1000.0) * SERVO_S).cos();
+            let wave = |k: usize| libm::cos(std::f64::consts::TAU * hz * (k as f64 - 1000.0) * SERVO_S);
             let mut values: Vec<[f64; 1]> = (0..2001).map(|k| [wave(k)]).collect();
             smooth(&mut values, 20.0 * SERVO_S);
             for k in 500..1500 {

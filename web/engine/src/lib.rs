@@ -29,9 +29,16 @@ struct Request {
     controller: Option<String>,
     /// Largest contour error that is allowed, um.
     tolerance_um: Option<f64>,
+    /// Seed of the recording that a controller identifies the machine from; 1 as in the command.
+    #[serde(default = "first_seed")]
+    seed: u64,
     /// Whether the rows are wanted.
     #[serde(default)]
     rows: bool,
+}
+
+const fn first_seed() -> u64 {
+    1
 }
 
 struct Buffers {
@@ -94,6 +101,7 @@ fn answer(input: &[u8]) -> Result<[Vec<u8>; 2], Box<dyn std::error::Error>> {
     };
     let mut job = Job::new(Program::from_text(request.name, request.program), machine);
     job.tolerance_um = request.tolerance_um;
+    job.choices.seed = request.seed;
     if let Some(name) = &request.controller {
         job.controller = CONTROLLERS.find(name).ok_or_else(|| format!("no controller is called '{name}'"))?;
     }

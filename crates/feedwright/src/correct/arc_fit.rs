@@ -189,7 +189,7 @@ impl<'a> ArcFit<'a> {
         let normal = [-tangent[1], tangent[0]];
         let (aside, along, square) = (dot(way, normal), dot(way, tangent), dot(way, way));
         let radius_mm = square / (2.0 * aside);
-        let sweep_rad = 2.0 * aside.atan2(along);
+        let sweep_rad = 2.0 * libm::atan2(aside, along);
         if !(square > NO_WAY_MM * NO_WAY_MM
             && (POINT_MM..STRAIGHT_MM).contains(&radius_mm.abs())
             && sweep_rad.abs() > 1e-9)
@@ -197,7 +197,7 @@ impl<'a> ArcFit<'a> {
             return FitArc::straight(start_mm, end_mm);
         }
         let center_mm = [start_mm[0] + radius_mm * normal[0], start_mm[1] + radius_mm * normal[1]];
-        let length_mm = (radius_mm * sweep_rad).hypot(end_mm[2] - start_mm[2]);
+        let length_mm = libm::hypot(radius_mm * sweep_rad, end_mm[2] - start_mm[2]);
         FitArc { start_mm, end_mm, radius_mm: Some(radius_mm), center_mm, sweep_rad, length_mm }
     }
 
@@ -246,10 +246,10 @@ impl FitArc {
     fn end_tangent(&self, tangent: [f64; 2]) -> [f64; 2] {
         if self.radius_mm.is_none() {
             let way = [self.end_mm[0] - self.start_mm[0], self.end_mm[1] - self.start_mm[1]];
-            let length = way[0].hypot(way[1]);
+            let length = libm::hypot(way[0], way[1]);
             return if length > NO_WAY_MM { way.map(|x| x / length) } else { tangent };
         }
-        let (sin, cos) = self.sweep_rad.sin_cos();
+        let (sin, cos) = libm::sincos(self.sweep_rad);
         [tangent[0] * cos - tangent[1] * sin, tangent[0] * sin + tangent[1] * cos]
     }
 
@@ -269,7 +269,7 @@ impl FitArc {
             self.end_mm
         } else {
             let [x, y] = from_center(point_mm);
-            let scale = radius_mm.abs() / x.hypot(y);
+            let scale = radius_mm.abs() / libm::hypot(x, y);
             let z_mm = self.start_mm[2] + part * (self.end_mm[2] - self.start_mm[2]);
             [self.center_mm[0] + scale * x, self.center_mm[1] + scale * y, z_mm]
         };
@@ -279,7 +279,7 @@ impl FitArc {
 
 /// Angle from one direction to another, -pi to pi.
 fn turn_rad(a: [f64; 2], b: [f64; 2]) -> f64 {
-    (a[0] * b[1] - a[1] * b[0]).atan2(dot(a, b))
+    libm::atan2(a[0] * b[1] - a[1] * b[0], dot(a, b))
 }
 
 #[cfg(test)]
@@ -291,7 +291,7 @@ mod tests {
         (0..=count)
             .map(|k| {
                 let part = k as f64 / count as f64;
-                let (sin, cos) = (part * std::f64::consts::TAU).sin_cos();
+                let (sin, cos) = libm::sincos(part * std::f64::consts::TAU);
                 FitPoint { at_mm: [5.0 * cos, 5.0 * sin, rise_mm * part], tangent: [-sin, cos], feed_mm_s: 10.0 }
             })
             .collect()

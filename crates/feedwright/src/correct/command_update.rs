@@ -42,7 +42,7 @@ fn smoothed(values: &[Vector], sigma: f64) -> Vec<Vector> {
     if reach < 1 || values.is_empty() {
         return values.to_vec();
     }
-    let weights: Vec<f64> = (-reach..=reach).map(|k| (-0.5 * (k as f64 / sigma).powi(2)).exp()).collect();
+    let weights: Vec<f64> = (-reach..=reach).map(|k| libm::exp(-0.5 * (k as f64 / sigma).powi(2))).collect();
     let sum: f64 = weights.iter().sum();
     let last = values.len() as isize - 1;
     (0..=last)

@@ -22,9 +22,9 @@ const MOST: f64 = 6.0;
 pub(super) fn steepness(before: &[CutPlace], now: &[CutPlace], tolerance_mm: f64) -> Option<f64> {
     let logarithms = before.iter().zip(now).filter_map(|(before, now)| {
         let counts = before.error_mm.max(now.error_mm) > ERROR_PART * tolerance_mm;
-        let of_q = 2.0 * (now.speed_mm_s / before.speed_mm_s).ln();
+        let of_q = 2.0 * libm::log(now.speed_mm_s / before.speed_mm_s);
         let error = |place: &CutPlace| place.error_mm.max(LEAST_PART * tolerance_mm);
-        (counts && of_q.is_finite() && of_q.abs() > CHANGED).then(|| (of_q, (error(now) / error(before)).ln()))
+        (counts && of_q.is_finite() && of_q.abs() > CHANGED).then(|| (of_q, libm::log(error(now) / error(before))))
     });
     let [both, square] = logarithms.fold([0.0; 2], |[both, square], (q, e)| [both + q * e, square + q * q]);
     (square > 0.0).then(|| (both / square).clamp(1.0, MOST))
@@ -38,7 +38,7 @@ mod tests {
 
     /// A cut at these speeds whose errors grow with the square of the speed to a power, and are the tolerance at 50 mm/s.
     fn cut(speeds_mm_s: impl Iterator<Item = f64>, power: f64) -> Vec<CutPlace> {
-        let error_mm = |speed_mm_s: f64| TOLERANCE_MM * (speed_mm_s / 50.0).powf(2.0 * power);
+        let error_mm = |speed_mm_s: f64| TOLERANCE_MM * libm::pow(speed_mm_s / 50.0, 2.0 * power);
         speeds_mm_s
             .map(|speed_mm_s| CutPlace { speed_mm_s, error_mm: error_mm(speed_mm_s), ..CutPlace::default() })
             .collect()

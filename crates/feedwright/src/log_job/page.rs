@@ -220,7 +220,7 @@ fn spectrum(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Figure {
             .map(|n| {
                 let hz = spectrum.at(n) / log.sample_time_s;
                 let um = (spectrum.power[n] * 2.0 * log.sample_time_s).sqrt();
-                [hz.log10(), um.max(1e-9).log10()]
+                [libm::log10(hz), libm::log10(um.max(1e-9))]
             })
             .collect()
     };

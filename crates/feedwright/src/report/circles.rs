@@ -82,7 +82,7 @@ impl FullCircle {
         (across[first], across[second]) = (from_center[first], from_center[second]);
         let radius_mm = norm(across);
         let off_mm = norm(sub(from_center, across)).max((radius_mm - self.radius_mm).abs());
-        let turn = across[second].atan2(across[first]) / TAU;
+        let turn = libm::atan2(across[second], across[first]) / TAU;
         (off_mm < SAME_MM).then(|| (turn.rem_euclid(1.0), across.map(|x| x / radius_mm)))
     }
 }
@@ -191,7 +191,7 @@ impl Sink for RadialDeviations<'_> {
 fn roundness(bins_mm: &[Option<f64>], [least_mm, most_mm]: [f64; 2]) -> Option<Roundness> {
     let angle = |i: usize| (i as f64 + 0.5) / bins_mm.len() as f64 * TAU;
     let places: Vec<([f64; 3], f64)> = (0..bins_mm.len())
-        .filter_map(|i| bins_mm[i].map(|radial_mm| ([1.0, angle(i).cos(), angle(i).sin()], radial_mm)))
+        .filter_map(|i| bins_mm[i].map(|radial_mm| ([1.0, libm::cos(angle(i)), libm::sin(angle(i))], radial_mm)))
         .collect();
     let quarters: [bool; 4] = std::array::from_fn(|q| {
         bins_mm[q * bins_mm.len() / 4..(q + 1) * bins_mm.len() / 4].iter().any(Option::is_some)
@@ -279,9 +279,9 @@ mod tests {
         let mut recorded = RadialDeviations::of(&circles);
         for k in 0..4000 {
             let angle = TAU * f64::from(k) / 4000.0;
-            let outward = [angle.cos(), angle.sin(), 0.0];
+            let outward = [libm::cos(angle), libm::sin(angle), 0.0];
             let foot_mm = add_scaled([10.0, 0.0, 0.0], 10.0, outward);
-            let radial_mm = 0.005 + 0.004 * angle.cos() + 0.003 * (2.0 * angle).cos();
+            let radial_mm = 0.005 + 0.004 * libm::cos(angle) + 0.003 * libm::cos(2.0 * angle);
             let act_mm = add_scaled(foot_mm, radial_mm, outward);
             let s_mm = circles[0].s_mm[0] + 10.0 * angle + 0.5;
             recorded.row(&Row { foot_mm, act_mm, s_mm, ..row(f64::from(k)) }).unwrap();

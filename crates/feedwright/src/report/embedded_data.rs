@@ -74,7 +74,7 @@ fn meta(report: &Report) -> serde_json::Value {
 /// What a count of an error stands for, mm: a thousandth to a ten-thousandth of the largest, so that the drawing of a small one has no steps.
 fn error_unit_mm(summary: &RunSummary) -> f64 {
     let largest_mm = (1e-3 * summary.max_um).clamp(1e-6, 1.0);
-    10_f64.powi(largest_mm.log10().floor() as i32 - 3).min(units::ERROR_MM)
+    10_f64.powi(libm::log10(largest_mm).floor() as i32 - 3).min(units::ERROR_MM)
 }
 
 fn run_meta(run: &ReportedRun) -> serde_json::Value {
@@ -127,7 +127,7 @@ fn digits(value: f64) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return 0.0;
     }
-    let unit = 10_f64.powi(3 - value.abs().log10().floor() as i32);
+    let unit = 10_f64.powi(3 - libm::log10(value.abs()).floor() as i32);
     (value * unit).round() / unit
 }
 

@@ -190,7 +190,7 @@ mod tests {
     #[test]
     fn a_vibration_is_found_at_its_frequency_with_its_size() {
         for (axes, rows, hz) in [(2, 20_000, 43.0), (3, 20_000, 43.0), (2, 1757, 120.0), (2, 400, 80.0)] {
-            let found = bands(axes, rows, |t_s| 2.0 * (TAU * hz * t_s).sin());
+            let found = bands(axes, rows, |t_s| 2.0 * libm::sin(TAU * hz * t_s));
             let near = |band: &&SpectrumBand| band.from_hz < 1.1 * hz && band.to_hz > 0.9 * hz;
             let line_um = rms_um(&found.iter().filter(near).copied().collect::<Vec<_>>());
             assert!((line_um / 2.0_f64.sqrt() - 1.0).abs() < 0.01, "{axes} axes, {rows} rows: {line_um}");
@@ -213,7 +213,7 @@ mod tests {
         for k in 0..12_000 {
             let n = if k > 6000 { k + 9000 } else { k };
             let (t_s, cutting) = (f64::from(n) * SERVO_S, k % 3000 < 2000);
-            let mm = if cutting { 1e-3 * (TAU * 50.0 * t_s).sin() } else { 7.0 };
+            let mm = if cutting { 1e-3 * libm::sin(TAU * 50.0 * t_s) } else { 7.0 };
             spectrum.row(&Row { contour_error_mm: mm, cutting, ..row(t_s) }).unwrap();
         }
         assert!((rms_um(&spectrum.bands()) * 2.0_f64.sqrt() - 1.0).abs() < 0.02);

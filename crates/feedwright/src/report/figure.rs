@@ -126,7 +126,7 @@ mod tests {
     use super::*;
 
     fn sine() -> Figure {
-        let points = (0..=100).map(|k| [f64::from(k) * 0.02, 30.0 * (f64::from(k) * 0.1).sin()]).collect();
+        let points = (0..=100).map(|k| [f64::from(k) * 0.02, 30.0 * libm::sin(f64::from(k) * 0.1)]).collect();
         let curve = Polyline { label: "a <b>".to_owned(), points, color: COLORS[0].to_owned(), ..Polyline::default() };
         Figure { panels: vec![Panel { curves: vec![curve], ..Panel::default() }], ..Figure::default() }
     }
@@ -149,7 +149,8 @@ mod tests {
 
     #[test]
     fn equal_axes_draw_a_circle_round() {
-        let circle = (0..=360).map(|k| [f64::from(k).to_radians().cos(), f64::from(k).to_radians().sin()]).collect();
+        let circle =
+            (0..=360).map(|k| [libm::cos(f64::from(k).to_radians()), libm::sin(f64::from(k).to_radians())]).collect();
         let mut figure = sine();
         figure.panels[0].curves[0].points = circle;
         figure.panels[0].equal_axes = true;

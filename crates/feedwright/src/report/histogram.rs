@@ -95,7 +95,7 @@ mod tests {
 
     #[test]
     fn the_histogram_agrees_with_counting_by_hand() {
-        let errors_um: Vec<f64> = (0..4000).map(|k| 37.0 * (f64::from(k) * 0.7).sin() - 5.0).collect();
+        let errors_um: Vec<f64> = (0..4000).map(|k| 37.0 * libm::sin(f64::from(k) * 0.7) - 5.0).collect();
         let mut counts = Counts::new();
         errors_um.iter().for_each(|error_um| counts.add(*error_um));
         let histogram = counts.histogram();

@@ -117,7 +117,7 @@ mod tests {
         // A rosette: curved everywhere, so that nothing thins out for free.
         let at = |k: u32| {
             let a = f64::from(k) * 2e-3;
-            [50.0 * (1.01 * a).cos(), 50.0 * a.sin(), 0.0]
+            [50.0 * libm::cos(1.01 * a), 50.0 * libm::sin(a), 0.0]
         };
         for k in 0..200_000 {
             outline.push(Vertex { point_mm: at(k), cutting: true });

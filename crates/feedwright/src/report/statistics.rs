@@ -135,7 +135,7 @@ impl Statistics {
             return;
         }
         let second: [f64; 3] = std::array::from_fn(|k| command_mm[k] - 2.0 * last_mm[k] + before_mm[k]);
-        let accel_mm_s2 = second[0].hypot(second[1]).hypot(second[2]) / (dt_s * dt_s);
+        let accel_mm_s2 = libm::hypot(libm::hypot(second[0], second[1]), second[2]) / (dt_s * dt_s);
         self.max_command_accel_mm_s2 = self.max_command_accel_mm_s2.max(accel_mm_s2);
     }
 
@@ -165,7 +165,7 @@ impl Sink for Statistics {
             self.peak_torque_nm[k] = self.peak_torque_nm[k].max(row.torque_nm[k].abs());
         }
         let (c, p) = (row.cmd_mm, row.path_mm);
-        let deviation_mm = (c[0] - p[0]).hypot(c[1] - p[1]).hypot(c[2] - p[2]);
+        let deviation_mm = libm::hypot(libm::hypot(c[0] - p[0], c[1] - p[1]), c[2] - p[2]);
         self.max_deviation_mm = self.max_deviation_mm.max(deviation_mm);
         self.command(row.t_s, c);
         if row.cutting {
@@ -191,7 +191,8 @@ mod tests {
 
     #[test]
     fn rms_of_a_sine_is_its_amplitude_over_root_two() {
-        let sine: Vec<f64> = (0..1000).map(|k| 10.0 * (f64::from(k) * std::f64::consts::TAU / 1000.0).sin()).collect();
+        let sine: Vec<f64> =
+            (0..1000).map(|k| 10.0 * libm::sin(f64::from(k) * std::f64::consts::TAU / 1000.0)).collect();
         let statistics = statistics_of(&sine);
         assert!((statistics.rms_um() - 10.0 / 2f64.sqrt()).abs() < 1e-9);
         assert!((statistics.max_um() - 10.0).abs() < 1e-12);
@@ -203,7 +204,7 @@ mod tests {
         let (radius_mm, speed_mm_s) = (10.0, 50.0);
         let at = |t_s: f64| {
             let angle: f64 = speed_mm_s / radius_mm * t_s;
-            [radius_mm * angle.cos(), radius_mm * angle.sin(), 0.0]
+            [radius_mm * libm::cos(angle), radius_mm * libm::sin(angle), 0.0]
         };
         let mut statistics = Statistics::new();
         for t_s in (0..100).map(|k| f64::from(k) * 1e-3) {

@@ -24,7 +24,7 @@ pub(crate) fn cross(a: PlanePoint, b: PlanePoint) -> f64 {
 }
 
 pub(crate) fn length(a: PlanePoint) -> f64 {
-    a[0].hypot(a[1])
+    libm::hypot(a[0], a[1])
 }
 
 /// The vector at length 1; zero stays zero.
@@ -203,7 +203,7 @@ pub(crate) fn sweep(start: PlanePoint, end: PlanePoint, center: PlanePoint, turn
 /// The same from 0.
 fn sweep_within(start: PlanePoint, end: PlanePoint, center: PlanePoint, turn: f64) -> f64 {
     let (a, b) = (minus(start, center), minus(end, center));
-    let angle = turn * cross(a, b).atan2(dot(a, b));
+    let angle = turn * libm::atan2(cross(a, b), dot(a, b));
     if angle < -SLACK_RAD { angle + std::f64::consts::TAU } else { angle.max(0.0) }
 }
 

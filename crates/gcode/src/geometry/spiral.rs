@@ -33,14 +33,14 @@ impl Spiral {
         let center = [center[first], center[second]];
         let from = [start[first] - center[0], start[second] - center[1]];
         let to = [end[first] - center[0], end[second] - center[1]];
-        let radius = [from[0].hypot(from[1]), to[0].hypot(to[1])];
+        let radius = [libm::hypot(from[0], from[1]), libm::hypot(to[0], to[1])];
         let sense = f64::from(turns.signum());
-        let mut sweep = sense * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
+        let mut sweep = sense * libm::atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
         if sweep * radius[0].min(radius[1]) <= FULL_TURN_WITHIN_MM {
             sweep += TAU;
         }
         sweep += TAU * (f64::from(turns).abs() - 1.0).max(0.0);
-        let angle = from[1].atan2(from[0]);
+        let angle = libm::atan2(from[1], from[0]);
         Self { axes, center, radius, height: [start[normal], end[normal]], angle, sense, sweep }
     }
 
@@ -49,14 +49,14 @@ impl Spiral {
     pub(crate) fn length_mm(&self) -> f64 {
         let ([r0, r1], sweep) = (self.radius, self.sweep);
         let change = r1 - r0;
-        let straight = change.hypot(self.height[1] - self.height[0]);
-        let [v0, v1] = [r0, r1].map(|r| (r * sweep).hypot(straight));
+        let straight = libm::hypot(change, self.height[1] - self.height[0]);
+        let [v0, v1] = [r0, r1].map(|r| libm::hypot(r * sweep, straight));
         if v0 == 0.0 || v1 == 0.0 {
             return straight;
         }
         let round = (r0 + r1) * (sweep * sweep * (r0 * r0 + r1 * r1) + straight * straight) / (r1 * v1 + r0 * v0);
         let slope = sweep * (r0 + r1) / (r1 * v0 + r0 * v1);
-        let bend = if change == 0.0 { slope } else { (slope * change).asinh() / change };
+        let bend = if change == 0.0 { slope } else { libm::asinh(slope * change) / change };
         0.5 * (round + straight * straight / sweep * bend)
     }
 
@@ -80,7 +80,7 @@ impl Spiral {
             let (mut turned, mut too_far) = (to_axis - FRAC_PI_2, to_axis);
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (turned + too_far);
-                if middle + (shrinks / radius_after(middle)).atan() <= to_axis {
+                if middle + libm::atan(shrinks / radius_after(middle)) <= to_axis {
                     turned = middle;
                 } else {
                     too_far = middle;
@@ -92,7 +92,7 @@ impl Spiral {
             if !(0.0..=spiral.sweep).contains(&turned) {
                 return None;
             }
-            let (sin, cos) = (angle + sense * turned).sin_cos();
+            let (sin, cos) = libm::sincos(angle + sense * turned);
             let mut point = start;
             point[spiral.axes[0]] = spiral.center[0] + radius_after(turned) * cos;
             point[spiral.axes[1]] = spiral.center[1] + radius_after(turned) * sin;
@@ -115,7 +115,7 @@ mod tests {
         (0..=count).map(move |number| {
             let share = f64::from(number) / f64::from(count);
             let even = |[from, to]: [f64; 2]| from + (to - from) * share;
-            let (sin, cos) = (spiral.angle + spiral.sense * spiral.sweep * share).sin_cos();
+            let (sin, cos) = libm::sincos(spiral.angle + spiral.sense * spiral.sweep * share);
             let mut point = [0.0; 3];
             point[spiral.axes[0]] = spiral.center[0] + even(spiral.radius) * cos;
             point[spiral.axes[1]] = spiral.center[1] + even(spiral.radius) * sin;
@@ -137,7 +137,7 @@ mod tests {
     #[test]
     fn equal_radii_are_a_helix() {
         let spiral = Spiral::new([10.0, 0.0, 0.0], [0.0, 10.0, 3.0], [0.0; 3], Plane::Xy, 2);
-        assert!((spiral.length_mm() - (2.5 * std::f64::consts::PI * 10.0).hypot(3.0)).abs() < 1e-12);
+        assert!((spiral.length_mm() - libm::hypot(2.5 * std::f64::consts::PI * 10.0, 3.0)).abs() < 1e-12);
     }
 
     /// Length and box of the spiral against those of 20,000 chords.
@@ -152,8 +152,8 @@ mod tests {
         let [first, second, normal] = plane.axes();
         let at = |radius: f64, angle: f64, height: f64| {
             let mut point = [0.0; 3];
-            point[first] = 3.0 + radius * angle.cos();
-            point[second] = -2.0 + radius * angle.sin();
+            point[first] = 3.0 + radius * libm::cos(angle);
+            point[second] = -2.0 + radius * libm::sin(angle);
             point[normal] = height;
             point
         };

@@ -179,7 +179,7 @@ impl Interpreter {
                 None => {}
             }
         }
-        let radius_to = |point: &Position| (point[plane[0]] - center[0]).hypot(point[plane[1]] - center[1]);
+        let radius_to = |point: &Position| libm::hypot(point[plane[0]] - center[0], point[plane[1]] - center[1]);
         let (at_start, at_end) = (radius_to(&self.at), radius_to(target));
         let difference = (at_start - at_end).abs();
         let largest = at_start.max(at_end);
@@ -217,7 +217,7 @@ impl Interpreter {
             return Err(self.too_far(block, b'r', radius));
         }
         let chord = [target[first] - self.at[first], target[second] - self.at[second]];
-        let length = chord[0].hypot(chord[1]);
+        let length = libm::hypot(chord[0], chord[1]);
         if length == 0.0 {
             return Err(LineFault::new("gcode::arc_radius", at, "an arc with R must end elsewhere than it starts")
                 .hint("write a full circle with I J K"));
@@ -256,20 +256,20 @@ fn bezier_points(from: &Position, to: &Position, round: PlaneArc, axes: [usize; 
     let out = |point: &Position| [point[first] - round.center[0], point[second] - round.center[1]];
     let (a, b) = (out(from), out(to));
     let sense = f64::from(round.turns.signum());
-    let (start_radius, end_radius) = (a[0].hypot(a[1]), b[0].hypot(b[1]));
-    let mut sweep = sense * (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1]);
+    let (start_radius, end_radius) = (libm::hypot(a[0], a[1]), libm::hypot(b[0], b[1]));
+    let mut sweep = sense * libm::atan2(a[0] * b[1] - a[1] * b[0], a[0] * b[0] + a[1] * b[1]);
     if sweep * start_radius < FULL_TURN_WITHIN_MM {
         sweep += TAU;
     }
     sweep += TAU * f64::from(round.turns.abs() - 1);
     let pieces = (sweep / PIECE_RAD).ceil().max(1.0);
     let step = sweep / pieces;
-    let reach = 4.0 / 3.0 * (0.25 * step).tan();
-    let begin = a[1].atan2(a[0]);
+    let reach = 4.0 / 3.0 * libm::tan(0.25 * step);
+    let begin = libm::atan2(a[1], a[0]);
     // The point at an angle along the way, and its change with the angle.
     let at = |angle: f64| {
         let share = angle / sweep;
-        let (sin, cos) = (begin + sense * angle).sin_cos();
+        let (sin, cos) = libm::sincos(begin + sense * angle);
         let radius = start_radius + (end_radius - start_radius) * share;
         let slope = (end_radius - start_radius) / sweep;
         let (mut point, mut change) = ([0.0; 3], [0.0; 3]);

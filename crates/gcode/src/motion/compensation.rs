@@ -222,7 +222,7 @@ impl Interpreter {
             self.release();
             return Ok(next.start());
         };
-        let angle = cross(*before_along, along).atan2(dot(*before_along, along)) * compensation.side;
+        let angle = libm::atan2(cross(*before_along, along), dot(*before_along, along)) * compensation.side;
         let reverses = angle.abs() > std::f64::consts::PI - FLAT_WITHIN_RAD;
         // Back the way it came: which side is inner shows in how the curves bend beside each other.
         let is_inner = if reverses { compensation.side * (before.bend() + next.bend()) < 0.0 } else { angle > 0.0 };
@@ -352,7 +352,7 @@ fn check_entry(block: &Block, way: f64, radius: f64) -> Read<()> {
 
 /// How far the end of one offset curve lies within the other's distance, where the contour turns by an angle: r (1 - cos).
 fn cut_mm(radius_mm: f64, angle: f64) -> f64 {
-    2.0 * radius_mm * (0.5 * angle).sin().powi(2)
+    2.0 * radius_mm * libm::sin(0.5 * angle).powi(2)
 }
 
 #[cold]

@@ -57,14 +57,14 @@ impl Interpreter {
         for [from, to] in ends {
             let sign = if from + to < 0.0 { -1.0 } else { 1.0 };
             let [a, b] = [from.abs().max(least), to.abs().max(least)];
-            let pieces = ((a / b).ln().abs() / CHANGE.ln()).ceil();
+            let pieces = (libm::log(a / b).abs() / libm::log(CHANGE)).ceil();
             let mut piece = 1.0;
             // The stretch where the bound holds is a piece of its own.
             if from.abs() < least && to.abs() > least {
                 shares.push(share_of(sign * least));
             }
             while piece < pieces {
-                shares.push(share_of(sign * a * (b / a).powf(piece / pieces)));
+                shares.push(share_of(sign * a * libm::pow(b / a, piece / pieces)));
                 piece += 1.0;
             }
             if to.abs() < least && from.abs() > least {

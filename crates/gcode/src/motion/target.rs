@@ -82,7 +82,8 @@ impl Interpreter {
             return Err(LineFault::new("gcode::polar", at, "polar coordinates @ and ^ exclude X and Y"));
         }
         let [first, second, _] = self.modal.plane.axes();
-        let (old_radius, old_angle) = (self.at[0].hypot(self.at[1]), self.at[1].atan2(self.at[0]).to_degrees());
+        let (old_radius, old_angle) =
+            (libm::hypot(self.at[0], self.at[1]), libm::atan2(self.at[1], self.at[0]).to_degrees());
         if [first, second] != [0, 1] {
             return Err(LineFault::new("gcode::polar", at, "polar coordinates need the XY plane G17"));
         }
@@ -96,7 +97,7 @@ impl Interpreter {
         } else {
             (radius.unwrap_or(old_radius), angle.unwrap_or(old_angle))
         };
-        let (sin, cos) = angle.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(angle.to_radians());
         [target[0], target[1]] = [radius * cos, radius * sin];
         Ok(())
     }
@@ -114,12 +115,12 @@ impl Interpreter {
             )
             .hint("write the radius in G90; the angle may be a distance"));
         }
-        let old_radius = self.at[0].hypot(self.at[1]);
+        let old_radius = libm::hypot(self.at[0], self.at[1]);
         let radius = match block.get(b'x') {
             Some(value) => self.length(block, b'x', 1, value)?,
             None => old_radius,
         };
-        let old_angle = self.at[1].atan2(self.at[0]).to_degrees();
+        let old_angle = libm::atan2(self.at[1], self.at[0]).to_degrees();
         let angle = match block.get(b'y') {
             Some(angle) if self.modal.incremental => old_angle + angle,
             Some(angle) => angle,
@@ -133,7 +134,7 @@ impl Interpreter {
             }
             None => old_angle,
         };
-        let (sin, cos) = angle.to_radians().sin_cos();
+        let (sin, cos) = libm::sincos(angle.to_radians());
         (target[0], target[1]) = (radius * cos, radius * sin);
         Ok(())
     }

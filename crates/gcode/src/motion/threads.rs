@@ -153,7 +153,7 @@ impl Interpreter {
             full,
             taper,
             taper_at,
-            tangent: angle.to_radians().tan(),
+            tangent: libm::tan(angle.to_radians()),
             start: self.at,
             end_z: target[2],
         };
@@ -164,7 +164,7 @@ impl Interpreter {
             if pass > MAX_PASSES {
                 return bad(b'j', "the thread needs too many passes");
             }
-            depth = first * f64::from(pass).powf(1.0 / degression);
+            depth = first * libm::pow(f64::from(pass), 1.0 / degression);
         }
         for _ in 0..=springs {
             self.thread_pass(block, &thread, full)?;
@@ -183,7 +183,7 @@ impl Interpreter {
         let safe_x = thread.start[0] - inward * (thread.full - depth);
         let bottom = thread.start[0] + thread.offset + inward * depth;
         let top = bottom - inward * thread.full;
-        let taper_pitch = thread.pitch * thread.taper.hypot(thread.full) / thread.taper.max(f64::MIN_POSITIVE);
+        let taper_pitch = thread.pitch * libm::hypot(thread.taper, thread.full) / thread.taper.max(f64::MIN_POSITIVE);
         let (first_taper, last_taper) =
             (thread.taper > 0.0 && thread.taper_at & 1 != 0, thread.taper > 0.0 && thread.taper_at & 2 != 0);
 

@@ -12,7 +12,7 @@ pub(crate) struct Turn {
 
 impl Turn {
     pub(super) fn of(&self, [x, y]: [f64; 2], sense: f64) -> [f64; 2] {
-        let (sin, cos) = (sense * self.angle_deg).to_radians().sin_cos();
+        let (sin, cos) = libm::sincos((sense * self.angle_deg).to_radians());
         let (x, y) = (x - self.center[0], y - self.center[1]);
         [self.center[0] + cos * x - sin * y, self.center[1] + sin * x + cos * y]
     }
@@ -64,7 +64,7 @@ impl Frame {
         if self.rotation_deg == 0.0 {
             return [x, y];
         }
-        let (sin, cos) = (sense * self.rotation_deg).to_radians().sin_cos();
+        let (sin, cos) = libm::sincos((sense * self.rotation_deg).to_radians());
         [cos * x - sin * y, sin * x + cos * y]
     }
 }

@@ -205,7 +205,7 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         }
         let argument = without_vacancy(self.bracketed()?);
         let value = if name == b"atan" && self.values.is_fanuc() && self.cursor.peek() != b'/' {
-            argument.atan().to_degrees()
+            libm::atan(argument).to_degrees()
         } else if name == b"atan" {
             if !self.cursor.eat(b'/') {
                 let message = "atan needs two arguments: a `/` and a second bracket are missing";
@@ -213,7 +213,7 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
                     LineFault::new("gcode::expression", start..self.cursor.at, message).hint("write atan[y]/[x]")
                 );
             }
-            argument.atan2(self.bracketed()?).to_degrees()
+            libm::atan2(argument, self.bracketed()?).to_degrees()
         } else {
             apply_function(name, argument)
                 .map_err(|message| LineFault::new("gcode::expression", start..self.cursor.at, message))?

@@ -325,7 +325,7 @@ mod tests {
         let known = known();
         let settings = DriveSettings::of(known.axis(0), &known.period);
         let refused = |recording: &Recording<1>| identify_axis(recording, 0, &settings).unwrap_err();
-        let sine = |k: usize| (0.01 * k as f64).sin();
+        let sine = |k: usize| libm::sin(0.01 * k as f64);
         // Five time constants of 1/120 s are 84 servo periods.
         assert!(matches!(refused(&recording(80, 5, sine)), NotIdentified::TooShort { stretches: 0, .. }));
         assert!(matches!(refused(&recording(200, 1, sine)), NotIdentified::TooShort { stretches: 1, .. }));

@@ -72,7 +72,7 @@ fn circle<const N: usize>(excitation: &Excitation, lap: u32, rng: &mut Rng) -> M
     let [slow, fast] = excitation.feed_mm_s;
     let angle: f64 = rng.random_range(0.0..std::f64::consts::TAU);
     let mut center_mm = [0.0; 3];
-    (center_mm[first], center_mm[second]) = (radius * angle.cos(), radius * angle.sin());
+    (center_mm[first], center_mm[second]) = (radius * libm::cos(angle), radius * libm::sin(angle));
     Motion {
         line: lap + 1,
         kind: MotionKind::Feed,

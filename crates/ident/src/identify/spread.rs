@@ -14,7 +14,6 @@
 //! Source: cascaded servo loops and their sampling as in Åström and Wittenmark (1997), chapter 2; no machine file is asked.
 
 use feedwright_control::{FEED_SCALE_MM_S, FOLLOWING_SCALE_MM, INPUTS, ServoIdentifier, Spread, UNKNOWNS};
-use nalgebra::Matrix3;
 
 /// Factors of bandwidths and friction within a kind, evenly spaced in their logarithm.
 const FACTORS: [f64; 5] = [0.35, 0.6, 1.0, 1.7, 2.85];
@@ -63,10 +62,11 @@ impl Bandwidths {
     fn of(linear: &[f64; INPUTS], period_s: f64) -> Option<Self> {
         let trace = 1.0 + linear[3] / FOLLOWING_SCALE_MM;
         let determinant = -linear[4] / FOLLOWING_SCALE_MM;
-        let speed_1_s = -determinant.ln() / period_s;
+        let speed_1_s = -libm::log(determinant) / period_s;
         // The poles are exp(-a T/2) times exp(+-q T), where q is real (cosh) or imaginary (cos).
         let turn = 0.5 * trace / determinant.sqrt();
-        let square = if turn >= 1.0 { turn.acosh().powi(2) } else { -turn.acos().powi(2) } / (period_s * period_s);
+        let square =
+            if turn >= 1.0 { libm::acosh(turn).powi(2) } else { -libm::acos(turn).powi(2) } / (period_s * period_s);
         let position_1_s = (0.25 * speed_1_s * speed_1_s - square) / speed_1_s;
         // Not a number is not above zero either.
         (speed_1_s > 0.0 && position_1_s > 0.0 && speed_1_s.is_finite() && position_1_s.is_finite())
@@ -76,15 +76,23 @@ impl Bandwidths {
     /// The linear connection of such a servo.
     fn connection(self, period_s: f64) -> [f64; INPUTS] {
         let Self { speed_1_s: a, position_1_s: k } = self;
-        // The feedrate is a third state, which stands still.
-        let all = (Matrix3::new(0.0, -1.0, 1.0, a * k, -a, 0.0, 0.0, 0.0, 0.0) * period_s).exp();
-        let (phi, gamma) = (all.fixed_view::<2, 2>(0, 0), [all[(0, 2)], all[(1, 2)]]);
+        // Φ = exp(A T) = exp(-a T/2) (even I + odd T (A + a/2 I)) with A = [0 -1; a k -a] and poles -a/2 ± q.
+        let square = 0.25 * a * a - a * k;
+        let x = square.abs().sqrt() * period_s;
+        let (even, odd) = if square > 0.0 { (libm::cosh(x), libm::sinh(x)) } else { (libm::cos(x), libm::sin(x)) };
+        let odd = if x == 0.0 { 1.0 } else { odd / x };
+        let keep = libm::exp(-0.5 * a * period_s);
+        let half = 0.5 * a * period_s * odd;
+        let phi =
+            [[keep * (even + half), -keep * odd * period_s], [keep * odd * a * k * period_s, keep * (even - half)]];
+        // The input integral is A⁻¹ (Φ - I) [1 0]ᵀ.
+        let gamma = [(phi[1][0] + a * (1.0 - phi[0][0])) / (a * k), 1.0 - phi[0][0]];
         [
             FEED_SCALE_MM_S * gamma[0],
-            FEED_SCALE_MM_S * (phi[(0, 1)] * gamma[1] - phi[(1, 1)] * gamma[0]),
+            FEED_SCALE_MM_S * (phi[0][1] * gamma[1] - phi[1][1] * gamma[0]),
             0.0,
-            FOLLOWING_SCALE_MM * (phi.trace() - 1.0),
-            -FOLLOWING_SCALE_MM * phi.determinant(),
+            FOLLOWING_SCALE_MM * (2.0 * keep * even - 1.0),
+            -FOLLOWING_SCALE_MM * keep * keep,
         ]
     }
 }

@@ -106,12 +106,12 @@ mod tests {
         let of = |f: &dyn Fn(usize) -> f64| (0..3000).map(f).collect::<Vec<f64>>();
         let columns = [
             of(&|k| k as f64),
-            of(&|k| 10.0 * angle(k, 7.5).cos()),
-            of(&|k| 10.0 * angle(k, 0.0).cos()),
-            of(&|k| 10.0 * angle(k, 3.0).sin()),
-            of(&|k| 10.0 * angle(k, 3.0).sin()),
-            of(&|k| 10.0 * angle(k, 9.0).sin()),
-            of(&|k| 0.1 * angle(k, 9.0).cos()),
+            of(&|k| 10.0 * libm::cos(angle(k, 7.5))),
+            of(&|k| 10.0 * libm::cos(angle(k, 0.0))),
+            of(&|k| 10.0 * libm::sin(angle(k, 3.0))),
+            of(&|k| 10.0 * libm::sin(angle(k, 3.0))),
+            of(&|k| 10.0 * libm::sin(angle(k, 9.0))),
+            of(&|k| 0.1 * libm::cos(angle(k, 9.0))),
             of(&|_| 5.0),
         ];
         let borrowed: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();

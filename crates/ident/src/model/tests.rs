@@ -17,7 +17,7 @@ fn filled<const N: usize, I: Identifier<N>>() -> I {
     let (mut net, mut number) = (I::NULL, 0.1_f64);
     net.weights(&mut |_, group| {
         for weight in group {
-            number = (7.0 * number + 0.3).sin();
+            number = libm::sin(7.0 * number + 0.3);
             *weight = number / 3.0;
         }
     });
@@ -46,7 +46,7 @@ fn axes<const N: usize>() -> Model {
     for axis in &mut identified.axes {
         for of in AxisKnowledge::NUMBERS {
             let [least, most] = of.range;
-            number = (7.0 * number + 0.3).sin();
+            number = libm::sin(7.0 * number + 0.3);
             *(of.of)(axis) = least + (0.2 + 0.1 * number / 3.0) * (most.min(1.0) - least);
         }
     }

@@ -46,7 +46,7 @@ pub(crate) fn joint_cap(before: &JointSide, after: &JointSide, corner: Corner, l
         Corner::ExactStop => 0.0,
         _ if theta < TANGENT_TOLERANCE_RAD => f64::INFINITY,
         Corner::ExactPath => 0.0,
-        Corner::Continuous { .. } => (limits.corner_jump_mm_s / (2.0 * (0.5 * theta).sin())).powi(2),
+        Corner::Continuous { .. } => (limits.corner_jump_mm_s / (2.0 * libm::sin(0.5 * theta))).powi(2),
     };
     let (l1, l2) = (before.length_mm, after.length_mm);
     let length_mm = 0.5 * (l1.min(LENGTH_RATIO * l2) + l2.min(LENGTH_RATIO * l1));
@@ -69,14 +69,14 @@ mod tests {
     const BLEND: Corner = Corner::Continuous { tolerance_mm: None, merge_mm: None };
 
     fn side(direction: f64, length_mm: f64) -> JointSide {
-        JointSide { tangent: [direction.cos(), direction.sin(), 0.0], curvature_1_mm: 0.0, length_mm }
+        JointSide { tangent: [libm::cos(direction), libm::sin(direction), 0.0], curvature_1_mm: 0.0, length_mm }
     }
 
     #[test]
     fn the_velocity_jumps_by_no_more_than_allowed() {
         for theta in [0.3, FRAC_PI_2, 2.5, PI] {
             let v = joint_cap(&side(0.2, 100.0), &side(0.2 + theta, 100.0), BLEND, &LIMITS).sqrt();
-            let jump = v * (theta.cos() - 1.0).hypot(theta.sin());
+            let jump = v * libm::hypot(libm::cos(theta) - 1.0, libm::sin(theta));
             assert!((jump - 8.0).abs() < 1e-12, "{theta} {jump}");
         }
     }
@@ -96,7 +96,7 @@ mod tests {
         let radius: f64 = 10.0;
         // Angles at the centre of two neighbouring chords.
         for (a, b) in [(1e-4, 1e-4), (0.01, 0.02), (0.01, 0.03)] {
-            let chord = |angle: f64| 2.0 * radius * (0.5 * angle).sin();
+            let chord = |angle: f64| 2.0 * radius * libm::sin(0.5 * angle);
             let cap = joint_cap(&side(0.0, chord(a)), &side(0.5 * (a + b), chord(b)), BLEND, &LIMITS);
             assert!((cap / (400.0 * radius) - 1.0).abs() < 1e-4, "{a} {b} {cap}");
         }

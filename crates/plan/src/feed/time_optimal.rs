@@ -208,7 +208,7 @@ impl TimeOptimal {
 
     fn step_s(&self) -> f64 {
         let jerk = self.caps.axes.iter().map(|limits| limits.jerk_mm_s3).fold(0.0, f64::max);
-        let step_s = STEP * (self.tolerance_mm / jerk).cbrt();
+        let step_s = STEP * libm::cbrt(self.tolerance_mm / jerk);
         step_s.clamp(STEPS_S[0], STEPS_S[1]).max(LEAST_WAY * self.tolerance_mm / self.feed_mm_s)
     }
 

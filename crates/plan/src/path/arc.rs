@@ -41,7 +41,7 @@ impl Arc {
     /// `rise_mm`.
     pub(super) fn new(start_mm: Vector, to_center_mm: [f64; 2], plane: Plane, sweep_rad: f64, rise_mm: f64) -> Self {
         let [first, second, normal] = plane.axes();
-        let radius_mm = to_center_mm[0].hypot(to_center_mm[1]);
+        let radius_mm = libm::hypot(to_center_mm[0], to_center_mm[1]);
         let inward = [to_center_mm[0] / radius_mm, to_center_mm[1] / radius_mm];
         let sense = sweep_rad.signum();
 
@@ -54,7 +54,7 @@ impl Arc {
         tangent0[second] = -sense * inward[0];
 
         let flat_mm = radius_mm * sweep_rad.abs();
-        let length_mm = flat_mm.hypot(rise_mm);
+        let length_mm = libm::hypot(flat_mm, rise_mm);
         let in_plane = flat_mm / length_mm;
         let mut rise = [0.0; 3];
         rise[normal] = rise_mm / length_mm;
@@ -108,7 +108,7 @@ impl Arc {
     /// Position and tangent at `s_mm`.
     #[inline]
     pub fn at(&self, s_mm: f64) -> Point {
-        let (half_sin, half_cos) = (0.5 * self.turn_rad_mm * s_mm).sin_cos();
+        let (half_sin, half_cos) = libm::sincos(0.5 * self.turn_rad_mm * s_mm);
         let sin = 2.0 * half_sin * half_cos;
         let versine = 2.0 * half_sin * half_sin;
         let across = self.radius_mm * sin;
@@ -127,7 +127,7 @@ impl Arc {
 
     /// Derivatives at `s_mm`: with `phi' = k`, `p'' = R k^2 (cos(phi) n0 - sin(phi) t0)`, `p''' = -R k^3 (cos(phi) t0 + sin(phi) n0)`.
     pub fn derivatives(&self, s_mm: f64) -> Derivatives {
-        let (sin, cos) = (self.turn_rad_mm * s_mm).sin_cos();
+        let (sin, cos) = libm::sincos(self.turn_rad_mm * s_mm);
         let along = add_scaled(scale(cos, self.tangent0), sin, self.normal0);
         let inward = add_scaled(scale(cos, self.normal0), -sin, self.tangent0);
         let curvature = self.curvature();
@@ -145,11 +145,11 @@ impl Arc {
         // In the frame of the start, the circle's point at angle phi is R (sin(phi), 1 - cos(phi)).
         let across = dot(from_start, self.tangent0);
         let outward = self.radius_mm - dot(from_start, self.normal0);
-        let bearing = across.atan2(outward);
+        let bearing = libm::atan2(across, outward);
         let s_mm = if self.rise == [0.0; 3] {
             nearest_angle(bearing, self.turn_rad_mm * lo_mm, self.turn_rad_mm * hi_mm) / self.turn_rad_mm
         } else {
-            self.nearest_on_helix(point_mm, bearing, across.hypot(outward), lo_mm, hi_mm)
+            self.nearest_on_helix(point_mm, bearing, libm::hypot(across, outward), lo_mm, hi_mm)
         };
         s_mm.min(hi_mm).max(lo_mm)
     }
@@ -217,13 +217,13 @@ fn nearest_angle(bearing: f64, lo: f64, hi: f64) -> f64 {
 /// left of the root and converges monotonically. Beyond the crest there are only maxima.
 fn turn_minimum(pull: f64, level: f64) -> Option<f64> {
     let target = level.abs();
-    let crest = if pull > 1.0 { (-1.0 / pull).acos() } else { PI };
-    if target > crest + pull * crest.sin() {
+    let crest = if pull > 1.0 { libm::acos(-1.0 / pull) } else { PI };
+    if target > crest + pull * libm::sin(crest) {
         return None;
     }
     let mut x = 0.0;
     for _ in 0..MAX_NEWTON_STEPS {
-        let (sin, cos) = f64::sin_cos(x);
+        let (sin, cos) = libm::sincos(x);
         let slope = 1.0 + pull * cos;
         let next = if slope > 0.0 { x + (target - x - pull * sin) / slope } else { crest };
         let next = next.min(crest);
@@ -239,12 +239,12 @@ fn turn_minimum(pull: f64, level: f64) -> Option<f64> {
 /// Centre of a circle through both ends of `chord` that turns by at most half a turn in `sense`, as near as possible to
 /// `to_center`; both relative to the start of the chord. Returns the new centre and the sweep.
 pub(super) fn recenter(chord: [f64; 2], to_center: [f64; 2], sense: f64) -> ([f64; 2], f64) {
-    let length = chord[0].hypot(chord[1]);
+    let length = libm::hypot(chord[0], chord[1]);
     // Unit normal of the chord on the side of the centre.
     let side = [-sense * chord[1] / length, sense * chord[0] / length];
     let height = (to_center[0] - 0.5 * chord[0]) * side[0] + (to_center[1] - 0.5 * chord[1]) * side[1];
     let center = [0.5 * chord[0] + height * side[0], 0.5 * chord[1] + height * side[1]];
-    (center, sense * 2.0 * (0.5 * length).atan2(height))
+    (center, sense * 2.0 * libm::atan2(0.5 * length, height))
 }
 
 #[cfg(test)]
@@ -256,7 +256,7 @@ mod tests {
     fn recentering_puts_both_ends_on_the_circle() {
         // Quarter circle of radius 10 whose centre misses by 0.01 mm.
         let (center, sweep) = recenter([-10.0, 10.0], [-10.01, 0.003], 1.0);
-        assert!((center[0].hypot(center[1]) - (center[0] + 10.0).hypot(center[1] - 10.0)).abs() < 1e-14);
+        assert!((libm::hypot(center[0], center[1]) - libm::hypot(center[0] + 10.0, center[1] - 10.0)).abs() < 1e-14);
         assert!((sweep - PI / 2.0).abs() < 2e-3);
         let arc = Arc::new([10.0, 0.0, 0.0], center, Plane::Xy, sweep, 0.0);
         assert!(arc.end_error_mm([0.0, 10.0, 0.0]) < 1e-14);
@@ -276,7 +276,7 @@ mod tests {
     fn a_turn_minimum_is_a_root() {
         for (pull, level) in [(0.3, 1.0), (5.0, 2.0), (40.0, -3.0), (1.0, 3.1), (1e-9, -2.0), (1e6, 0.0)] {
             let x = turn_minimum(pull, level).unwrap();
-            assert!((x + pull * x.sin() - level).abs() < 1e-9 * (1.0 + pull), "{pull} {level} {x}");
+            assert!((x + pull * libm::sin(x) - level).abs() < 1e-9 * (1.0 + pull), "{pull} {level} {x}");
         }
         assert!(turn_minimum(0.5, 4.0).is_none());
     }

@@ -57,13 +57,13 @@ pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
     }
     let [first, second, normal] = plane.axes();
     let [from, to] = [start_mm, end_mm].map(|at| [at[first] - center_mm[first], at[second] - center_mm[second]]);
-    let [radius_from, radius_to] = [from, to].map(|at| at[0].hypot(at[1]));
+    let [radius_from, radius_to] = [from, to].map(|at| libm::hypot(at[0], at[1]));
     let radius_mm = radius_from.min(radius_to);
     if radius_mm < MIN_LENGTH_MM {
         return Err(PathError::ArcRadius { line, radius_mm });
     }
     let sense = f64::from(turns.signum());
-    let between = sense * (from[0] * to[1] - from[1] * to[0]).atan2(from[0] * to[0] + from[1] * to[1]);
+    let between = sense * libm::atan2(from[0] * to[1] - from[1] * to[0], from[0] * to[0] + from[1] * to[1]);
     let last_turn = if between * radius_mm > FULL_TURN_MM { between } else { between + TAU };
     let whole_turns = f64::from(turns.unsigned_abs() - 1);
     let sweep = last_turn + TAU * whole_turns;
@@ -94,7 +94,7 @@ pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
         let next = if number == count {
             end_mm
         } else {
-            let (sin, cos) = (sense * share * left).sin_cos();
+            let (sin, cos) = libm::sincos(sense * share * left);
             let scale = 1.0 + share * change_mm / radius_from;
             let mut point = center_mm;
             point[first] += scale * (from[0] * cos - from[1] * sin);
@@ -114,9 +114,9 @@ pub(super) fn arcs(request: &Request) -> Result<Vec<(Vector, Arc)>, PathError> {
 /// Number of arcs for a spiral whose radius changes by `change_mm`: see the head of this file.
 fn arcs_of_spiral(change_mm: f64, sweep_rad: f64, radius_mm: f64, rise_per_rad: f64) -> u32 {
     let change_mm = change_mm.abs();
-    let by_sine = (change_mm * sweep_rad * sweep_rad / (72.0 * 3.0f64.sqrt() * SPIRAL_WITHIN_MM)).cbrt();
+    let by_sine = libm::cbrt(change_mm * sweep_rad * sweep_rad / (72.0 * 3.0f64.sqrt() * SPIRAL_WITHIN_MM));
     let by_center = change_mm * (8.0 * radius_mm * SPIRAL_WITHIN_MM).sqrt().recip();
-    let pitch_sine = rise_per_rad.abs() / rise_per_rad.hypot(radius_mm);
+    let pitch_sine = rise_per_rad.abs() / libm::hypot(rise_per_rad, radius_mm);
     let by_pitch = (change_mm * sweep_rad * pitch_sine / (8.0 * SPIRAL_WITHIN_MM)).sqrt();
     let by_kink = (change_mm * sweep_rad / (6.0 * radius_mm * SPIRAL_KINK_RAD)).sqrt();
     // An arc that is re-centred turns by half a turn at most.
@@ -148,7 +148,7 @@ mod tests {
     fn turns_add_whole_turns() {
         let arcs = arcs(&request([10.0, 0.0, 0.0], [0.0, 10.0, 6.5], [0.0; 3], 3)).unwrap();
         let length: f64 = arcs.iter().map(|(_, arc)| arc.length_mm()).sum();
-        assert!((length - (10.0 * 4.5 * PI).hypot(6.5)).abs() < 1e-12);
+        assert!((length - libm::hypot(10.0 * 4.5 * PI, 6.5)).abs() < 1e-12);
     }
 
     #[test]
@@ -162,14 +162,14 @@ mod tests {
         let [first, second, normal] = request.plane.axes();
         let polar = |point: Vector| {
             let (x, y) = (point[first] - request.center_mm[first], point[second] - request.center_mm[second]);
-            (x.hypot(y), y.atan2(x))
+            (libm::hypot(x, y), libm::atan2(y, x))
         };
         let ((radius_from, angle_from), (radius_to, _)) = (polar(request.start_mm), polar(request.end_mm));
         let sense = f64::from(request.turns.signum());
         let (mut turned, mut worst) = (0.0, 0.0f64);
         // A height that is off counts as the distance from the helix.
         let flat = radius_from * sweep;
-        let pitch_cosine = flat / flat.hypot(request.end_mm[normal] - request.start_mm[normal]);
+        let pitch_cosine = flat / libm::hypot(flat, request.end_mm[normal] - request.start_mm[normal]);
         for (_, arc) in arcs {
             for number in 0..=16 {
                 let point = arc.at(arc.length_mm() * f64::from(number) / 16.0).position_mm;
@@ -190,17 +190,17 @@ mod tests {
     fn unequal_radii_make_the_spiral_of_linuxcnc() {
         // The two arcs measured on LinuxCNC: a quarter, and two turns nearly complete with a rise.
         let quarter = request([10.0, 0.0, 0.0], [0.0, 10.02, 0.0], [-0.01, 0.003, 0.0], 1);
-        let sweep = 10.017f64.atan2(0.01) + 0.003f64.atan2(10.01);
+        let sweep = libm::atan2(10.017f64, 0.01) + libm::atan2(0.003f64, 10.01);
         assert!(off_the_spiral_mm(&arcs(&quarter).unwrap(), &quarter, sweep) < 3e-7);
         let helix = request([1.0, 0.0, 0.0], [1.02, -0.01, 3.0], [0.0; 3], 2);
-        let sweep = 2.0 * TAU - 0.01f64.atan2(1.02);
+        let sweep = 2.0 * TAU - libm::atan2(0.01f64, 1.02);
         assert!(off_the_spiral_mm(&arcs(&helix).unwrap(), &helix, sweep) < 3e-7);
     }
 
     #[test]
     fn a_tiny_spiral_and_a_million_turns_are_bounded() {
         let tiny = request([-0.01, -0.003, 0.0], [0.0, 0.017, 0.0], [0.0; 3], 1);
-        let sweep = 1.5 * PI - 0.003f64.atan2(0.01);
+        let sweep = 1.5 * PI - libm::atan2(0.003f64, 0.01);
         assert!(off_the_spiral_mm(&arcs(&tiny).unwrap(), &tiny, sweep) < 3e-7);
         let many = request([10.0, 0.0, 0.0], [0.0, 10.02, 1.0], [0.0; 3], 1_000_000);
         assert!(arcs(&many).unwrap().len() < 100);
@@ -220,8 +220,8 @@ mod tests {
             let [first, second, normal] = plane.axes();
             let at = |radius: f64, angle: f64, rise: f64| {
                 let mut point = center;
-                point[first] += radius * angle.cos();
-                point[second] += radius * angle.sin();
+                point[first] += radius * libm::cos(angle);
+                point[second] += radius * libm::sin(angle);
                 point[normal] += rise;
                 point
             };
@@ -237,7 +237,7 @@ mod tests {
                 length += arc.length_mm();
                 for i in 0..=20 {
                     let point = arc.at(arc.length_mm() * f64::from(i) / 20.0).position_mm;
-                    let distance = (point[first] - center[first]).hypot(point[second] - center[second]);
+                    let distance = libm::hypot(point[first] - center[first], point[second] - center[second]);
                     prop_assert!((distance - radius).abs() <= miss.abs() + 1e-6, "{} {}", distance, radius);
                 }
             }
@@ -245,7 +245,7 @@ mod tests {
             let turned = sweep + TAU * (f64::from(turns).abs() - 1.0);
             let request = Request { line: 1, start_mm, end_mm, plane, center_mm: center, turns };
             prop_assert!(off_the_spiral_mm(&arcs, &request, turned) < 3e-7);
-            prop_assert!((length - (radius * turned).hypot(rise)).abs() < 2e-3 * (turned + 1.0));
+            prop_assert!((length - libm::hypot(radius * turned, rise)).abs() < 2e-3 * (turned + 1.0));
         }
     }
 }

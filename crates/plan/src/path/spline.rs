@@ -247,8 +247,8 @@ mod tests {
             let s_mm = curve.length_mm() * f64::from(i) / 100.0;
             let angle = s_mm / 10.0;
             let at = curve.at(s_mm);
-            assert!(distance(at.position_mm, [10.0 * angle.cos(), 10.0 * angle.sin(), 0.0]) < 1e-9);
-            assert!(distance(at.tangent, [-angle.sin(), angle.cos(), 0.0]) < 1e-10);
+            assert!(distance(at.position_mm, [10.0 * libm::cos(angle), 10.0 * libm::sin(angle), 0.0]) < 1e-9);
+            assert!(distance(at.tangent, [-libm::sin(angle), libm::cos(angle), 0.0]) < 1e-10);
             assert!((curve.curvature(s_mm) - 0.1).abs() < 1e-12);
         }
     }

@@ -47,7 +47,7 @@ impl Encoder {
     pub(super) fn read(&self, angle_rad: f64, counter: u64) -> f64 {
         let mut shown_rad = angle_rad;
         if self.error_rad > 0.0 {
-            shown_rad += self.error_rad * (self.signal_per_rad * angle_rad).sin();
+            shown_rad += self.error_rad * libm::sin(self.signal_per_rad * angle_rad);
         }
         if self.noise_rad > 0.0 {
             shown_rad += self.noise_rad * self.stream.normal(counter);

@@ -43,10 +43,10 @@ impl MotorTorque {
     pub(super) fn at_nm(&self, drive_nm: f64, angle_rad: f64) -> f64 {
         let mut torque_nm = drive_nm;
         if self.ripple > 0.0 {
-            torque_nm *= 1.0 + self.ripple * (self.ripple_per_rev * angle_rad).sin();
+            torque_nm *= 1.0 + self.ripple * libm::sin(self.ripple_per_rev * angle_rad);
         }
         if self.cogging_nm > 0.0 {
-            torque_nm += self.cogging_nm * (self.cogging_per_rev * angle_rad).sin();
+            torque_nm += self.cogging_nm * libm::sin(self.cogging_per_rev * angle_rad);
         }
         torque_nm
     }
@@ -90,8 +90,8 @@ impl Wander {
     /// A servo period begins at t: cos and sin of the phase there, and of the angle by which it turns in a mechanics period.
     pub(super) fn servo_period(&mut self, period: u64, t_s: f64) -> [[f64; 2]; 2] {
         let faster_rad_s = self.nominal_rad_s * self.noise.next(period);
-        let (sin, cos) = (self.nominal_rad_s * t_s + self.ahead_rad).sin_cos();
-        let (turn_sin, turn_cos) = ((self.nominal_rad_s + faster_rad_s) * self.mechanics_s).sin_cos();
+        let (sin, cos) = libm::sincos(self.nominal_rad_s * t_s + self.ahead_rad);
+        let (turn_sin, turn_cos) = libm::sincos((self.nominal_rad_s + faster_rad_s) * self.mechanics_s);
         self.ahead_rad += faster_rad_s * self.servo_s;
         [[cos, sin], [turn_cos, turn_sin]]
     }
@@ -136,13 +136,13 @@ mod tests {
         let (mut last, mut square, periods) = (None, 0.0, 400_000_u64);
         for n in 0..periods {
             let [[cos, sin], [turn_cos, turn_sin]] = wander.servo_period(n, n as f64 * servo_s);
-            let part = turn_sin.atan2(turn_cos) / mechanics_s / (TAU * 25.0) - 1.0;
+            let part = libm::atan2(turn_sin, turn_cos) / mechanics_s / (TAU * 25.0) - 1.0;
             square += part * part / periods as f64;
             if let Some(expected) = last {
-                let off: f64 = sin.atan2(cos) - expected;
-                assert!(off.sin().abs() < 1e-6 && off.cos() > 0.0, "{n}: the phase has no steps");
+                let off: f64 = libm::atan2(sin, cos) - expected;
+                assert!(libm::sin(off).abs() < 1e-6 && libm::cos(off) > 0.0, "{n}: the phase has no steps");
             }
-            last = Some(sin.atan2(cos) + 10.0 * turn_sin.atan2(turn_cos));
+            last = Some(libm::atan2(sin, cos) + 10.0 * libm::atan2(turn_sin, turn_cos));
         }
         // 400 s are 200 independent values: 5 % for the deviation, four times that is allowed.
         assert!((square.sqrt() - 0.02).abs() < 0.2 * 0.02, "{}", square.sqrt());

@@ -89,7 +89,7 @@ impl FootTracker {
         Self {
             passed_mm: VecDeque::new(),
             periods: settled_periods(machine),
-            left_mm: (-SETTLED_TIME_CONSTANTS).exp() * machine.limits.rapid_mm_s / slowest_1_s,
+            left_mm: libm::exp(-SETTLED_TIME_CONSTANTS) * machine.limits.rapid_mm_s / slowest_1_s,
             furthest_mm: 0.0,
             tool_mm: start_mm,
         }

@@ -20,7 +20,7 @@ impl Default for TickTimes {
 
 impl TickTimes {
     pub(super) fn add(&mut self, ns: u128) {
-        let octaves = (ns.max(1) as f64).log2();
+        let octaves = libm::log2(ns.max(1) as f64);
         let bucket = (octaves * BUCKETS_AN_OCTAVE as f64) as usize;
         self.counts[bucket.min(self.counts.len() - 1)] += 1;
         self.total += 1;
@@ -33,7 +33,7 @@ impl TickTimes {
         for (bucket, count) in self.counts.iter().enumerate() {
             seen += count;
             if *count > 0 && seen as f64 >= wanted {
-                return ((bucket as f64 + 0.5) / BUCKETS_AN_OCTAVE as f64).exp2() * 1e-3;
+                return libm::exp2((bucket as f64 + 0.5) / BUCKETS_AN_OCTAVE as f64) * 1e-3;
             }
         }
         0.0

@@ -182,7 +182,7 @@ mod tests {
         for (lag, wobble) in [(0, 0.0), (7, 1e-3), (20, 0.02), (90, 0.1), (150, 0.3)] {
             let tool = |n: usize| {
                 let phase = n as f64 * 0.3;
-                add_scaled(path[n.saturating_sub(lag)], wobble, [phase.sin(), (1.7 * phase).cos(), 0.0])
+                add_scaled(path[n.saturating_sub(lag)], wobble, [libm::sin(phase), libm::cos(1.7 * phase), 0.0])
             };
             for periods in [1, 20, 100] {
                 let (found, wanted) = (uncut(&path, tool, periods), by_definition(&path, tool, periods));

@@ -75,7 +75,7 @@ fn spread(row: &ComparisonRow, [low, high]: [f64; 2]) -> String {
 
 /// A range from minus to plus one, two or five times a power of ten: its ends have ticks.
 fn rounded_up(most: f64) -> [f64; 2] {
-    let power = 10_f64.powf(most.log10().floor());
+    let power = libm::pow(10_f64, libm::log10(most).floor());
     let end = [1.0, 2.0, 5.0, 10.0].map(|lead| lead * power).into_iter().find(|&end| end >= most).unwrap_or(most);
     [-end, end]
 }

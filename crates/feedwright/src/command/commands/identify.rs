@@ -93,7 +93,7 @@ fn three_digits(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{value}");
     }
-    let before_the_point = value.abs().log10().floor() as i32;
+    let before_the_point = libm::log10(value.abs()).floor() as i32;
     match before_the_point {
         -4..=2 => format!("{value:.*}", (2 - before_the_point) as usize),
         _ => format!("{value:.2e}"),

@@ -223,9 +223,9 @@ fn held(points: &[FactorPoint], tolerance_um: f64) -> Option<f64> {
         return points[beyond..].iter().find(as_fast).map(|point| point.factor);
     };
     let from = &points[at];
-    let part = (tolerance_um / from.error_um).ln() / (to.error_um / from.error_um).ln();
+    let part = libm::log(tolerance_um / from.error_um) / libm::log(to.error_um / from.error_um);
     // An error that is no number, or none, has no place between.
-    Some(if part.is_finite() { from.factor * (to.factor / from.factor).powf(part) } else { from.factor })
+    Some(if part.is_finite() { from.factor * libm::pow(to.factor / from.factor, part) } else { from.factor })
 }
 
 #[cfg(test)]

@@ -24,7 +24,7 @@ impl Advice {
     /// Largest error over the feedrate, for each way, and the feedrates that hold, stretch by stretch.
     pub fn figure(&self) -> Figure {
         let [_, largest_mm_s] = self.programmed_mm_s;
-        let log = |x: f64| x.max(1e-9).log10();
+        let log = |x: f64| libm::log10(x.max(1e-9));
         let curve = |label: &str, color: &str, line: LineStyle, points: Vec<[f64; 2]>| Polyline {
             label: label.to_owned(),
             points,

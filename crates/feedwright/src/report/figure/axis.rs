@@ -18,14 +18,14 @@ pub(super) fn range(values: impl Iterator<Item = f64>, margin: f64) -> [f64; 2] 
 /// Ticks at multiples of 1, 2 or 5 times a power of ten, about `wanted` of them, with their texts.
 pub(super) fn ticks([low, high]: [f64; 2], wanted: f64) -> Vec<(f64, String)> {
     let raw = (high - low) / wanted.max(1.0);
-    let power = 10f64.powf(raw.log10().floor());
+    let power = libm::pow(10f64, libm::log10(raw).floor());
     let step = match raw / power {
         x if x < 1.5 => power,
         x if x < 3.5 => 2.0 * power,
         x if x < 7.5 => 5.0 * power,
         _ => 10.0 * power,
     };
-    let decimals = (-(step.log10() + 1e-9).floor()).clamp(0.0, 12.0) as usize;
+    let decimals = (-(libm::log10(step) + 1e-9).floor()).clamp(0.0, 12.0) as usize;
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;
     (first..=last)
@@ -42,7 +42,7 @@ pub(super) fn ticks_of_powers([low, high]: [f64; 2], wanted: f64) -> Vec<(f64, S
     let at = |digits: &[f64]| -> Vec<(f64, String)> {
         let numbers = powers.clone().flat_map(|power| digits.iter().map(move |digit| (*digit, power)));
         numbers
-            .map(|(digit, power)| (f64::from(power) + digit.log10(), digit * 10f64.powi(power), power))
+            .map(|(digit, power)| (f64::from(power) + libm::log10(digit), digit * 10f64.powi(power), power))
             .filter(|(place, ..)| (low - 1e-9..=high + 1e-9).contains(place))
             .map(|(place, number, power)| {
                 (place, crate::report::text::fixed(number, usize::try_from(-power).unwrap_or(0)))
@@ -71,6 +71,6 @@ mod tests {
         assert_eq!(texts([-2.0, 0.5], 5.0), ["0.01", "0.02", "0.05", "0.1", "0.2", "0.5", "1", "2"]);
         assert_eq!(texts([-1.5, 3.0], 4.0), ["0.1", "1", "10", "100", "1000"]);
         let places = ticks_of_powers([0.0, 0.4], 5.0).into_iter().map(|t| t.0).collect::<Vec<_>>();
-        assert_eq!(places, [0.0, 2f64.log10()]);
+        assert_eq!(places, [0.0, libm::log10(2f64)]);
     }
 }

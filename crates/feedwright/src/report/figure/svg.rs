@@ -170,7 +170,7 @@ fn path_data(curve: &Polyline, area: &Area) -> String {
             last = None;
             continue;
         }
-        let near = last.is_some_and(|[u, v]| (x - u).hypot(y - v) < THIN_PX);
+        let near = last.is_some_and(|[u, v]| libm::hypot(x - u, y - v) < THIN_PX);
         if near && i + 1 < curve.points.len() {
             continue;
         }

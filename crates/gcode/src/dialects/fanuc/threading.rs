@@ -88,7 +88,7 @@ impl Interpreter {
             height,
             taper,
             run_out: first.run_out * self.modal.feed,
-            tangent: (0.5 * first.angle_deg).to_radians().tan(),
+            tangent: libm::tan((0.5 * first.angle_deg).to_radians()),
             outward,
             ahead,
         };
@@ -157,7 +157,7 @@ impl Interpreter {
 
     fn thread_line(&mut self, block: &Block, target: Position) -> Read<()> {
         let way = [0, 2].map(|axis| (target[axis] - self.at[axis]).abs());
-        let lead = self.modal.feed * way[0].hypot(way[1]) / way[0].max(way[1]).max(f64::MIN_POSITIVE);
+        let lead = self.modal.feed * libm::hypot(way[0], way[1]) / way[0].max(way[1]).max(f64::MIN_POSITIVE);
         self.paced(block, target, lead)
     }
 }

@@ -116,7 +116,7 @@ impl Interpreter {
         if longer == 0.0 {
             return Ok(());
         }
-        let lead_mm = self.modal.feed * way[0].hypot(way[1]) / longer;
+        let lead_mm = self.modal.feed * libm::hypot(way[0], way[1]) / longer;
         self.event(EventKind::SpindleSync { pitch_mm: Some(self.modal.feed) });
         self.paced(block, target, lead_mm)?;
         self.event(EventKind::SpindleSync { pitch_mm: None });

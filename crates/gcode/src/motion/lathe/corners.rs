@@ -39,7 +39,7 @@ impl CornerCut {
     pub(crate) fn cut(&self, before: &mut PlaneCurve, behind: &mut PlaneCurve) -> Option<Option<PlaneCurve>> {
         let corner = behind.start();
         let (from, to) = (before.direction(corner), behind.direction(corner));
-        let bend = cross(from, to).atan2(dot(from, to));
+        let bend = libm::atan2(cross(from, to), dot(from, to));
         if bend.abs() <= SMOOTH_RAD {
             return Some(None);
         }

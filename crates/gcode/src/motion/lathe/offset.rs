@@ -46,7 +46,7 @@ impl Profile {
             let corner = curve.start();
             let to = curve.direction(corner);
             if let Some(from) = before.map(|before| before.direction(corner)) {
-                let bend = cross(from, to).atan2(dot(from, to));
+                let bend = libm::atan2(cross(from, to), dot(from, to));
                 // A wall that is its own way back has no side to be at a distance from.
                 above.is_lost |= bend.abs() > std::f64::consts::PI - REVERSAL_RAD;
                 let [start, end] = [from, to].map(|along| add(corner, scaled(left_of(along), distance_mm)));

@@ -53,7 +53,7 @@ impl Operator {
             Self::Power if left < 0.0 && right.fract() != 0.0 => {
                 Err(format!("{base} cannot be raised to {power}: a negative base needs an integer exponent"))
             }
-            Self::Power => Ok(left.powf(right)),
+            Self::Power => Ok(libm::pow(left, right)),
             Self::Times => Ok(left * right),
             Self::Over | Self::Modulo if right == 0.0 => Err(format!("{base} is divided by zero")),
             Self::Over => Ok(left / right),
@@ -81,19 +81,19 @@ pub(super) fn apply_function(name: &[u8], x: f64) -> Result<f64, String> {
     match name {
         b"abs" => Ok(x.abs()),
         b"acos" | b"asin" if x.abs() > 1.0 => outside("between -1 and 1"),
-        b"acos" => Ok(x.acos().to_degrees()),
-        b"asin" => Ok(x.asin().to_degrees()),
-        b"cos" => Ok(x.to_radians().cos()),
-        b"exp" => Ok(x.exp()),
+        b"acos" => Ok(libm::acos(x).to_degrees()),
+        b"asin" => Ok(libm::asin(x).to_degrees()),
+        b"cos" => Ok(libm::cos(x.to_radians())),
+        b"exp" => Ok(libm::exp(x)),
         b"fix" => Ok(x.floor()),
         b"fup" => Ok(x.ceil()),
         b"ln" if x <= 0.0 => outside("positive"),
-        b"ln" => Ok(x.ln()),
+        b"ln" => Ok(libm::log(x)),
         b"round" => Ok(x.round()),
-        b"sin" => Ok(x.to_radians().sin()),
+        b"sin" => Ok(libm::sin(x.to_radians())),
         b"sqrt" if x < 0.0 => outside("zero or positive"),
         b"sqrt" => Ok(x.sqrt()),
-        _ => Ok(x.to_radians().tan()),
+        _ => Ok(libm::tan(x.to_radians())),
     }
 }
 

@@ -79,7 +79,7 @@ fn is_less(with_screw: &FitState, rigid: &FitState) -> bool {
 
 /// Whether the second of pairs of squares is below the first, beyond doubt. A stretch in which the axis stands still leaves nothing, and says nothing.
 fn is_below(pairs_mm2: impl Iterator<Item = (f64, f64)>) -> bool {
-    let less: Vec<f64> = pairs_mm2.map(|(a, b)| (a / b).ln()).filter(|less| less.is_finite()).collect();
+    let less: Vec<f64> = pairs_mm2.map(|(a, b)| libm::log(a / b)).filter(|less| less.is_finite()).collect();
     let n = less.len() as f64;
     let mean = less.iter().sum::<f64>() / n;
     let variance = less.iter().map(|less| (less - mean).powi(2)).sum::<f64>() / (n - 1.0);

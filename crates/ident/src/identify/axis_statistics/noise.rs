@@ -61,14 +61,14 @@ pub(super) struct NoiseFit {
 impl NoiseFit {
     /// Expected spectrum at a frequency, Hz, of responses whose power is given; `window_hz` widens the line.
     pub(super) fn at(&self, hz: f64, [load, encoder]: [f64; 2], servo_s: f64, window_hz: f64) -> f64 {
-        let keep = (-servo_s / self.torque_s.max(1e-9)).exp();
+        let keep = libm::exp(-servo_s / self.torque_s.max(1e-9));
         let broad_nm2 = self.torque_nm * self.torque_nm * (1.0 - keep * keep)
-            / (1.0 - 2.0 * keep * (TAU * hz * servo_s).cos() + keep * keep);
-        let width_hz = self.wander_hz.hypot(window_hz);
+            / (1.0 - 2.0 * keep * libm::cos(TAU * hz * servo_s) + keep * keep);
+        let width_hz = libm::hypot(self.wander_hz, window_hz);
         let off = (hz - self.line_hz) / width_hz;
         // Beyond, it is nothing beside the rest.
         let line_nm2 = if off.abs() < 8.0 {
-            0.25 * self.line_nm * self.line_nm * (-0.5 * off * off).exp() / (width_hz * servo_s * TAU.sqrt())
+            0.25 * self.line_nm * self.line_nm * libm::exp(-0.5 * off * off) / (width_hz * servo_s * TAU.sqrt())
         } else {
             0.0
         };
@@ -114,7 +114,7 @@ impl Seen {
     fn cost(&self, noise: &NoiseFit) -> f64 {
         let at = |(&hz, &responses)| noise.at(hz, responses, self.servo_s, self.window_hz);
         let expected = self.hz.iter().zip(&self.responses).map(at);
-        let terms = expected.zip(&self.power).zip(&self.counts).map(|((s, i), count)| count * (s.ln() + i / s));
+        let terms = expected.zip(&self.power).zip(&self.counts).map(|((s, i), count)| count * (libm::log(s) + i / s));
         self.weight * terms.sum::<f64>()
     }
 
@@ -168,8 +168,8 @@ impl Seen {
             self.power[upper.clone()].iter().zip(&self.responses[upper]).map(|(i, [_, n])| i / n).collect();
         let encoder_rad2 = middle_of(&mut shares).max(least_rad2());
         let start = NoiseFit { encoder_rad2, left_rad2: self.left_rad2, ..NoiseFit::default() };
-        let made = |[r]: &[f64; 1]| NoiseFit { encoder_rad2: r.exp() + least_rad2(), ..start };
-        let ([r], _) = least([start.encoder_rad2.ln()], [0.3], |at| self.cost(&made(at)));
+        let made = |[r]: &[f64; 1]| NoiseFit { encoder_rad2: libm::exp(*r) + least_rad2(), ..start };
+        let ([r], _) = least([libm::log(start.encoder_rad2)], [0.3], |at| self.cost(&made(at)));
         made(&[r])
     }
 
@@ -203,12 +203,12 @@ impl Seen {
     fn refined(&self, start: NoiseFit, broad: bool) -> (NoiseFit, f64) {
         let Self { servo_s, window_hz, .. } = *self;
         let made = |[r, s, t, d, f, v]: &[f64; 6]| NoiseFit {
-            encoder_rad2: r.exp() + least_rad2(),
-            torque_nm: if broad { s.exp() } else { 0.0 },
-            torque_s: if broad { t.exp() } else { 0.0 },
-            line_nm: if start.line_nm > 0.0 { d.exp() } else { 0.0 },
+            encoder_rad2: libm::exp(*r) + least_rad2(),
+            torque_nm: if broad { libm::exp(*s) } else { 0.0 },
+            torque_s: if broad { libm::exp(*t) } else { 0.0 },
+            line_nm: if start.line_nm > 0.0 { libm::exp(*d) } else { 0.0 },
             line_hz: if start.line_nm > 0.0 { start.line_hz + window_hz * f } else { 0.0 },
-            wander_hz: if start.line_nm > 0.0 { v.exp() } else { 0.0 },
+            wander_hz: if start.line_nm > 0.0 { libm::exp(*v) } else { 0.0 },
             left_rad2: start.left_rad2,
         };
         let reach_hz = BESIDE as f64 * window_hz;
@@ -221,10 +221,10 @@ impl Seen {
                         && noise.wander_hz < WIDEST * noise.line_hz);
             if is_within { self.cost(&noise) } else { f64::INFINITY }
         };
-        let log = |x: f64, least: f64| x.max(least).ln();
+        let log = |x: f64, least: f64| libm::log(x.max(least));
         let NoiseFit { encoder_rad2, torque_nm, torque_s, line_nm, wander_hz, .. } = start;
         let from = [
-            encoder_rad2.ln(),
+            libm::log(encoder_rad2),
             log(torque_nm, 1e-15),
             log(torque_s, servo_s),
             log(line_nm, 1e-15),

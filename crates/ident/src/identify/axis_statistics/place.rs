@@ -41,12 +41,12 @@ pub(super) struct Wave {
 impl Wave {
     /// Amplitude.
     pub(super) fn amplitude(&self) -> f64 {
-        self.cos.hypot(self.sin)
+        libm::hypot(self.cos, self.sin)
     }
 
     /// Phase of A sin(n theta + phase), rad.
     pub(super) fn phase_rad(&self) -> f64 {
-        self.cos.atan2(self.sin)
+        libm::atan2(self.cos, self.sin)
     }
 }
 
@@ -164,7 +164,7 @@ impl<'a> Weighed<'a> {
 
     /// The best candidate itself, where it is beyond chance and above `least`.
     fn best(&self, through: Through, candidates: Vec<(f64, f64)>, looked_at: f64, least: f64) -> Option<(Wave, f64)> {
-        let least_gain = 2.0 * (looked_at / CHANCE).ln();
+        let least_gain = 2.0 * libm::log(looked_at / CHANCE);
         let error = self.innovations_transformed();
         best_of(candidates, TRIED)
             .into_iter()
@@ -221,7 +221,7 @@ impl<'a> Weighed<'a> {
                 // The mean over a servo period at constant speed; a torque of the motor is no load.
                 let spans = self.innovations.angle_rad.windows(2).map(|pair| 0.5 * per_rad * (pair[1] - pair[0]));
                 let mean = |(middle, half): (f64, f64)| {
-                    let share = if half.abs() < 1e-4 { 1.0 } else { half.sin() / half };
+                    let share = if half.abs() < 1e-4 { 1.0 } else { libm::sin(half) / half };
                     turned(per_rad * middle).map(|x| -share * x)
                 };
                 self.middles().zip(spans).map(mean).collect()

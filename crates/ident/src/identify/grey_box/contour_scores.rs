@@ -50,7 +50,7 @@ impl ContourScores {
         let contour = |k: usize, at: &dyn Fn(usize) -> Option<f64>| -> Option<f64> {
             let [u, v] = plane.map(|i| speeds[i][k]);
             let [x, y] = [at(plane[0])?, at(plane[1])?];
-            Some((u * y - v * x) / u.hypot(v))
+            Some((u * y - v * x) / libm::hypot(u, v))
         };
         let measured = |i: usize, k: usize| records[i].actual_mm[k] - records[i].command_mm[k];
         let missed = |of: &dyn Fn(usize, usize) -> Option<f64>| {

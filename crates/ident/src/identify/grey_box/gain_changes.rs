@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn formula_and_simulation_agree_on_a_slow_motion_and_feedforward_takes_the_lag_away() {
-        let command_mm: Vec<f64> = (0..4000).map(|k| 20.0 * (f64::from(k) * 1e-3).sin()).collect();
+        let command_mm: Vec<f64> = (0..4000).map(|k| 20.0 * libm::sin(f64::from(k) * 1e-3)).collect();
         let whole = 0..4000;
         let record = AxisRecord {
             name: "x",

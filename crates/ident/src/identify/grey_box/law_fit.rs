@@ -188,7 +188,7 @@ fn resolve(
         (LawTerm::Coulomb, half(found.coulomb_error_mm_s2)),
     ]);
     if let Some(drive) = &drive {
-        let damping = (scale * drive.speed_gain_1_s).hypot(half(found.viscous_error_1_s));
+        let damping = libm::hypot(scale * drive.speed_gain_1_s, half(found.viscous_error_1_s));
         half_intervals.extend([(LawTerm::LoopGain, scale * drive.loop_gain_1_s2), (LawTerm::Damping, damping)]);
     }
     Some(ResolvedLaw { values: fitted.values, half_intervals, torque: Some(found), drive, fit_um: 1e3 * fitted.rms_mm })

@@ -88,21 +88,21 @@ fn moved(values: &TermValues, correlation_s: f64, lag_s: f64) -> [f64; 2] {
         let imaginary = damping * w - loop_gain * integral / w;
         real * real + imaginary * imaginary
     };
-    let step = (FREQUENCIES_RAD_S[1] / FREQUENCIES_RAD_S[0]).ln() / (FREQUENCIES - 1) as f64;
+    let step = libm::log(FREQUENCIES_RAD_S[1] / FREQUENCIES_RAD_S[0]) / (FREQUENCIES - 1) as f64;
     let (mut all, mut later) = (0.0, 0.0);
     for w in spaced(FREQUENCIES_RAD_S, FREQUENCIES) {
         let load = 2.0 * inverse_s / (inverse_s * inverse_s + w * w) / std::f64::consts::PI;
         // dw = w d(ln w).
         let power = load / stiffness(w) * w * step;
         all += power;
-        later += power * (w * lag_s).cos();
+        later += power * libm::cos(w * lag_s);
     }
     [all, later / all]
 }
 
 /// Values that grow evenly in their logarithm.
 fn spaced([from, to]: [f64; 2], count: usize) -> impl Iterator<Item = f64> {
-    (0..count).map(move |i| from * (to / from).powf(i as f64 / (count - 1) as f64))
+    (0..count).map(move |i| from * libm::pow(to / from, i as f64 / (count - 1) as f64))
 }
 
 #[cfg(test)]

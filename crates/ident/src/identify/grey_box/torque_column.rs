@@ -146,7 +146,7 @@ impl Regressors {
                 let sign = if presliding > 0.0 && coulomb > 0.0 {
                     ((state.presliding_mm_s2() - values.get(LawTerm::Offset)) / coulomb).clamp(-1.0, 1.0)
                 } else {
-                    (mean / smoothing_mm_s).tanh()
+                    libm::tanh(mean / smoothing_mm_s)
                 };
                 rows[k] = [(after - before) / record.sample_s, mean, sign, 1.0];
             }

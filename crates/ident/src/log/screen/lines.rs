@@ -91,12 +91,12 @@ fn line(spectrum: &Spectrum, motion: &Spectrum, sample_time_s: f64) -> Option<(f
         return None;
     }
     // Between the values, where the parabola through their logarithms has its top: the window is Gaussian.
-    let [a, b, c] = [n - 1, n, n + 1].map(|n| power[n].max(f64::MIN_POSITIVE).ln());
+    let [a, b, c] = [n - 1, n, n + 1].map(|n| libm::log(power[n].max(f64::MIN_POSITIVE)));
     let beside = if 2.0 * b > a + c { 0.5 * (c - a) / (2.0 * b - a - c) } else { 0.0 };
     let turns = 0.5 * (n as f64 + beside) / (power.len() - 1) as f64;
     // A line of amplitude a has a^2 / 2 of mean square, spread over both halves of all frequencies.
     let mean_square = sum / (power.len() - 1) as f64;
-    let gain = 2.0 * (PI * turns).sin();
+    let gain = 2.0 * libm::sin(PI * turns);
     Some((turns / sample_time_s, (2.0 * mean_square).sqrt() / gain))
 }
 
@@ -107,7 +107,7 @@ mod tests {
     #[test]
     fn a_line_is_found_with_its_frequency_and_amplitude() {
         let n = 20_000;
-        let position = |k: usize| 20.0 * (0.002 * k as f64).sin();
+        let position = |k: usize| 20.0 * libm::sin(0.002 * k as f64);
         let moving: Vec<f64> = (0..n).map(position).collect();
         for (frequency_hz, amplitude) in [(25.0, 3.0), (118.3, 0.5)] {
             let mut noise = 1_u64;
@@ -116,7 +116,7 @@ mod tests {
                     noise = noise.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
                     let hiss = (noise >> 40) as f64 / (1 << 24) as f64 - 0.5;
                     position(k)
-                        + amplitude * (std::f64::consts::TAU * frequency_hz * 1e-3 * k as f64).sin()
+                        + amplitude * libm::sin(std::f64::consts::TAU * frequency_hz * 1e-3 * k as f64)
                         + 0.05 * hiss
                 })
                 .collect();

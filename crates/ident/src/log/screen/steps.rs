@@ -47,13 +47,13 @@ pub(super) fn step(values: &[f64]) -> f64 {
 pub(super) fn too_coarse(axis: &LogAxis) -> Option<Refusal> {
     let values = &axis.actual_mm;
     let rounded = |value: f64| {
-        let scale = 10_f64.powi(DIGITS - 1 - value.abs().log10().floor() as i32);
+        let scale = 10_f64.powi(DIGITS - 1 - libm::log10(value.abs()).floor() as i32);
         let scaled = value * scale;
         (scaled - scaled.round()).abs() < 1e-6
     };
     let has_few_digits = values.iter().all(|&value| value == 0.0 || rounded(value));
     let largest_mm = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-    let step_mm = 10_f64.powi(largest_mm.max(f64::MIN_POSITIVE).log10().floor() as i32 - (DIGITS - 1));
+    let step_mm = 10_f64.powi(libm::log10(largest_mm.max(f64::MIN_POSITIVE)).floor() as i32 - (DIGITS - 1));
     // An encoder with coarse steps over a short way has few digits, too; but the same step everywhere.
     let smallest = changes(values).first().copied().unwrap_or(0.0);
     let grows = smallest < 0.5 * step_mm || step_mm >= 1.0;
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn steps_are_found_where_there_are_any() {
-        let smooth: Vec<f64> = (0..5000).map(|k| 10.0 * (0.003 * f64::from(k)).sin()).collect();
+        let smooth: Vec<f64> = (0..5000).map(|k| 10.0 * libm::sin(0.003 * f64::from(k))).collect();
         assert_eq!(step(&smooth), 0.0);
         for size in [0.01, 0.001, 25.4 / 4096.0, 1e-4] {
             let coarse: Vec<f64> = smooth.iter().map(|value| (value / size).round() * size).collect();

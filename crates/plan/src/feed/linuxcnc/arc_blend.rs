@@ -195,7 +195,7 @@ impl BlendCorner {
             self.directions[i] = scale(1.0 / norm(secant).max(f64::MIN_POSITIVE), secant);
             self.theta = self.theta.min(theta - 0.25 * most);
         }
-        let length_mm = radius_mm * if curves_in { (0.25 * most).sin() } else { most };
+        let length_mm = radius_mm * if curves_in { libm::sin(0.25 * most) } else { most };
         // A spiral counts as the circle that touches it.
         let touching = CircleShape { center_mm, radius_mm, ..*circle };
         Some(CornerSide { circle: Some((touching, curves_in, most)), length_mm })
@@ -222,27 +222,27 @@ impl BlendCorner {
         let axes_mm_s = if straight { plane_mm_s.max(self.altitude_mm_s(before, after)) } else { plane_mm_s };
         let goal_mm_s = before.overridden_mm_s().max(after.overridden_mm_s()).min(axes_mm_s);
 
-        let by_tolerance_mm = theta.cos() * tolerance_mm / (1.0 - theta.sin());
+        let by_tolerance_mm = libm::cos(theta) * tolerance_mm / (1.0 - libm::sin(theta));
         let room_mm = sides[0].length_mm.min(sides[1].length_mm).min(by_tolerance_mm);
-        let most_mm = theta.tan() * room_mm;
+        let most_mm = libm::tan(theta) * room_mm;
         let planned_mm_s = (normal_mm_s2 * most_mm).sqrt().min(goal_mm_s);
         // As long as a parabolic blend would take.
         let parabolic_mm_s2 = 0.5 * accel_mm_s2;
         let blend_s = (2.0 * parabolic_mm_s2 * room_mm).sqrt().min(planned_mm_s) / parabolic_mm_s2;
         let radius_mm = (planned_mm_s * planned_mm_s / normal_mm_s2).max((blend_s * planned_mm_s / turn).min(most_mm));
         let is_arc = radius_mm > NO_DISTANCE_MM && radius_mm * turn > SHORTEST_MM;
-        let touches_mm = radius_mm / theta.tan();
+        let touches_mm = radius_mm / libm::tan(theta);
         is_arc.then_some(BlendSize { tolerance_mm, radius_mm, touches_mm, feed_mm_s, planned_mm_s, accel_mm_s2 })
     }
 
     /// The least speed between two velocities on their way from one to the other: the altitude of the triangle that they make.
     fn altitude_mm_s(&self, before: &MotionSegment, after: &MotionSegment) -> f64 {
         let turn = PI - 2.0 * self.theta;
-        let cos = turn.min(0.49 * PI).cos();
+        let cos = libm::cos(turn.min(0.49 * PI));
         let first = before.highest_mm_s.min(after.highest_mm_s / cos);
         let second = after.highest_mm_s.min(before.highest_mm_s / cos);
         let base = norm(sub(scale(second, self.directions[1]), scale(first, self.directions[0])));
-        first * second * turn.sin() / base.max(f64::MIN_POSITIVE)
+        first * second * libm::sin(turn) / base.max(f64::MIN_POSITIVE)
     }
 
     fn center(&self, sides: &[CornerSide; 2], size: &BlendSize) -> Option<Vector> {
@@ -250,7 +250,7 @@ impl BlendCorner {
             circle.radius_mm + if curves_in { -size.radius_mm } else { size.radius_mm }
         };
         match (sides[0].circle, sides[1].circle) {
-            (None, None) => Some(add_scaled(self.point_mm, size.radius_mm / self.theta.sin(), self.inward)),
+            (None, None) => Some(add_scaled(self.point_mm, size.radius_mm / libm::sin(self.theta), self.inward)),
             (Some((first, in_1, _)), Some((second, in_2, _))) => {
                 self.between(&first, reach(&first, in_1), &second, reach(&second, in_2))
             }

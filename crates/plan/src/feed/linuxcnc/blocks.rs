@@ -167,7 +167,7 @@ impl BlockMaker {
     fn finish_arc(&mut self) {
         let ArcParts { parts, s_mm, end_mm, .. } = std::mem::take(&mut self.arcs);
         let (Some(circle), Some(mode)) = (CircleShape::spiral(&parts), self.mode) else { return };
-        let away_mm = circle.radius_mm * (1.0 - (0.5 * circle.angle).cos());
+        let away_mm = circle.radius_mm * (1.0 - libm::cos(0.5 * circle.angle));
         if circle.normal[2].abs() > IN_XY && away_mm < mode.joins_within_mm() {
             let middle = CircleShape { growth: 0.0, ..circle }.at(0.5 * circle.angle);
             self.see(&mode, middle, 0.5 * (s_mm[0] + s_mm[1]));
@@ -238,11 +238,11 @@ impl BlockMaker {
     fn circle(&mut self, circle: CircleShape, mode: &BlockMode, s_mm: [f64; 2]) {
         let [axes_mm_s, axes_mm_s2] = self.limits.of_plane(circle.normal);
         let least_mm = circle.radius_mm.min(circle.end_radius_mm());
-        let round_mm_s = (NORMAL_RATIO * axes_mm_s2 * least_mm.hypot(circle.growth_mm())).sqrt();
+        let round_mm_s = (NORMAL_RATIO * axes_mm_s2 * libm::hypot(least_mm, circle.growth_mm())).sqrt();
         let chord = sub(circle.at(circle.angle), circle.at(0.0));
         let of_chord = |limits: [f64; 3]| (0..3).map(|k| chord[k].abs() / limits[k]).fold(0.0, f64::max);
-        let flat_mm = (least_mm * circle.angle).hypot(circle.growth * circle.radius_mm);
-        let way_mm = flat_mm.hypot(norm(circle.rise_mm));
+        let flat_mm = libm::hypot(least_mm * circle.angle, circle.growth * circle.radius_mm);
+        let way_mm = libm::hypot(flat_mm, norm(circle.rise_mm));
         let highest_mm_s = way_mm / (flat_mm / axes_mm_s.min(round_mm_s)).max(of_chord(self.limits.velocity_mm_s));
         let accel_mm_s2 = way_mm / (flat_mm / axes_mm_s2).max(of_chord(self.limits.accel_mm_s2));
         let length_mm = circle.length_mm();

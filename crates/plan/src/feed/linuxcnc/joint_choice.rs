@@ -123,8 +123,8 @@ pub(super) fn blend_speeds_mm_s(before: &MotionSegment, after: &MotionSegment, w
     let reached: [f64; 2] = std::array::from_fn(|i| peak_mm_s(both[i]).min(wanted_mm_s[i]));
     let longest_s = (0..2).map(|i| both[i].length_mm / reached[i]).fold(f64::INFINITY, f64::min);
     let blend_s = (0..2).map(|i| reached[i] / accel[i]).fold(0.0, f64::max).min(longest_s);
-    let cos = half_angle([before.shape.tangents()[1], begins(after)]).cos();
-    let by_tolerance = if before.tolerance_mm > 0.0 && cos > FLAT.sin() {
+    let cos = libm::cos(half_angle([before.shape.tangents()[1], begins(after)]));
+    let by_tolerance = if before.tolerance_mm > 0.0 && cos > libm::sin(FLAT) {
         2.0 * (accel[0] * before.tolerance_mm / cos).sqrt()
     } else {
         f64::INFINITY
@@ -136,6 +136,6 @@ pub(super) fn blend_speeds_mm_s(before: &MotionSegment, after: &MotionSegment, w
 fn net_blend_mm_s(before: &MotionSegment, after: &MotionSegment, limits: &DirectionLimits) -> f64 {
     let wanted = [before, after].map(|segment| segment.overridden_mm_s().min(limits.path_mm_s));
     let speeds = blend_speeds_mm_s(before, after, wanted);
-    let sin = half_angle([before.shape.tangents()[1], begins(after)]).sin();
+    let sin = libm::sin(half_angle([before.shape.tangents()[1], begins(after)]));
     0.5 * sin * (speeds[0] + speeds[1])
 }

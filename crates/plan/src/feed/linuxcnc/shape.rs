@@ -128,7 +128,7 @@ impl CircleShape {
         let start_mm = first.at(0.0);
         let seen = |point: Vector| frame.map(|axis| dot(sub(point, start_mm), axis));
         let (middle, end) = (seen(joint.at(0.0)), seen(last.at(last.angle)));
-        let turn = |angle: f64, size: f64| [size * angle.cos(), size * angle.sin()];
+        let turn = |angle: f64, size: f64| [size * libm::cos(angle), size * libm::sin(angle)];
         let back = turn((share - 1.0) * angle, share);
         let there = turn(share * angle, 1.0 - share);
         let divisor = [1.0 - there[0] - back[0], -there[1] - back[1]];
@@ -137,7 +137,7 @@ impl CircleShape {
         let center_mm = add_scaled(add_scaled(start_mm, center[0], frame[0]), center[1], frame[1]);
         let first_mm = sub(start_mm, center_mm);
         let radius_mm = norm(first_mm);
-        let end_radius_mm = (end[0] - center[0]).hypot(end[1] - center[1]);
+        let end_radius_mm = libm::hypot(end[0] - center[0], end[1] - center[1]);
         let second_mm = cross(first.normal, first_mm);
         let growth = end_radius_mm / radius_mm - 1.0;
         let shape = Self { center_mm, first_mm, second_mm, radius_mm, angle, growth, rise_mm, ..*first };
@@ -154,7 +154,7 @@ impl CircleShape {
 
     /// From the axis to a point of it.
     pub(super) fn radial_mm(&self, angle: f64) -> Vector {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         scale(1.0 + self.growth * angle / self.angle, add_scaled(scale(cos, self.first_mm), sin, self.second_mm))
     }
 
@@ -178,12 +178,12 @@ impl CircleShape {
 
     /// Length.
     pub(super) fn length_mm(&self) -> f64 {
-        self.flat_mm().hypot(norm(self.rise_mm))
+        libm::hypot(self.flat_mm(), norm(self.rise_mm))
     }
 
     /// Ways in a radian at both ends; between them LinuxCNC takes them to change evenly.
     fn slopes_mm(&self) -> [f64; 2] {
-        [self.radius_mm, self.end_radius_mm()].map(|mm| mm.hypot(self.growth_mm()))
+        [self.radius_mm, self.end_radius_mm()].map(|mm| libm::hypot(mm, self.growth_mm()))
     }
 
     /// Length without the rise.
@@ -255,7 +255,7 @@ impl BlendShape {
         let ends_mm = [sub(start_mm, center_mm), sub(end_mm, center_mm)];
         let radii_mm = ends_mm.map(norm);
         let cos = dot(ends_mm[0], ends_mm[1]) / (radii_mm[0] * radii_mm[1]);
-        let angle = cos.clamp(-1.0, 1.0).acos();
+        let angle = libm::acos(cos.clamp(-1.0, 1.0));
         let is_arc = radii_mm.iter().all(|mm| *mm > NO_DISTANCE_MM) && angle > 1e-9;
         is_arc.then_some(Self { start_mm, tangent, line_mm, center_mm, ends_mm, radius_mm: radii_mm[0], angle })
     }
@@ -272,7 +272,7 @@ impl BlendShape {
             return add_scaled(self.start_mm, on_arc_mm, self.tangent);
         }
         let angle = on_arc_mm / self.radius_mm;
-        let parts = [(self.angle - angle).sin(), angle.sin()].map(|sin| sin / self.angle.sin());
+        let parts = [libm::sin(self.angle - angle), libm::sin(angle)].map(|sin| sin / libm::sin(self.angle));
         std::array::from_fn(|k| self.center_mm[k] + parts[0] * self.ends_mm[0][k] + parts[1] * self.ends_mm[1][k])
     }
 }

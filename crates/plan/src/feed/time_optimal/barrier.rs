@@ -197,7 +197,7 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
             if feed <= 0.0 {
                 return f64::NAN;
             }
-            sum += (0..D).fold(feed * (u[D] - LEAST_STEP), |product, k| product * (1.0 - u[k] * u[k])).ln();
+            sum += libm::log((0..D).fold(feed * (u[D] - LEAST_STEP), |product, k| product * (1.0 - u[k] * u[k])));
         }
         for (i, x) in at.x.iter().enumerate() {
             let [moves, offset] = self.is_bounded(i);
@@ -210,7 +210,7 @@ impl<'a, const D: usize, const N: usize, const M: usize> WindowIterate<'a, D, N,
             if offset {
                 product *= tube_slack(self.problem.radius[i], x);
             }
-            sum += product.ln();
+            sum += libm::log(product);
         }
         sum
     }

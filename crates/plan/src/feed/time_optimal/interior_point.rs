@@ -172,7 +172,7 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
     /// The next lower barrier.
     fn lower_barrier(&mut self, last_mu: f64) {
         let mu = self.iterate.mu;
-        self.iterate.mu = (0.2 * mu).min(mu.powf(1.5)).max(last_mu);
+        self.iterate.mu = (0.2 * mu).min(libm::pow(mu, 1.5)).max(last_mu);
         self.filter.clear();
     }
 
@@ -228,8 +228,9 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         for _ in 0..12 {
             self.try_step(step);
             let trial = self.merit(&self.trial);
-            let descends =
-                slope < 0.0 && merit.theta <= 1e-4 * first_theta && step * (-slope).powf(2.3) > merit.theta.powf(1.1);
+            let descends = slope < 0.0
+                && merit.theta <= 1e-4 * first_theta
+                && step * libm::pow(-slope, 2.3) > libm::pow(merit.theta, 1.1);
             let good = if descends {
                 trial.phi <= merit.phi + 1e-4 * step * slope + rounding
             } else {

@@ -15,7 +15,7 @@ fn phases(length_mm: f64, v: f64, a: f64, j: f64) -> [(f64, f64); 7] {
     let mut cruise_s = (length_mm - way(jerk_s, hold_s)) / v;
     if cruise_s < 0.0 {
         cruise_s = 0.0;
-        jerk_s = (length_mm / (2.0 * j)).cbrt().min(a / j);
+        jerk_s = libm::cbrt(length_mm / (2.0 * j)).min(a / j);
         // j T (T + H) (2 T + H) = L, solved for H.
         let rest = length_mm / (j * jerk_s);
         hold_s = (0.5 * ((jerk_s * jerk_s + 4.0 * rest).sqrt() - 3.0 * jerk_s)).max(0.0);

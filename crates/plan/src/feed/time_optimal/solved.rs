@@ -163,7 +163,7 @@ impl MeshProblem<'_> {
         } else {
             0.0
         };
-        (0.5 * turn).cos().max(LEAST_COS)
+        libm::cos(0.5 * turn).max(LEAST_COS)
     }
 
     fn steps_of<const D: usize, const N: usize, const M: usize>(

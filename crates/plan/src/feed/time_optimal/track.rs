@@ -233,10 +233,10 @@ impl Track {
             let turn = turn[k].abs();
             if turn > 1e-9 {
                 cap_mm_s = cap_mm_s.min((limits.accel_mm_s2 * used_mm / turn).sqrt());
-                cap_mm_s = cap_mm_s.min((limits.jerk_mm_s3 / (bend * bend)).cbrt());
+                cap_mm_s = cap_mm_s.min(libm::cbrt(limits.jerk_mm_s3 / (bend * bend)));
             }
             if corner > 1e-9 {
-                cap_mm_s = cap_mm_s.min((limits.jerk_mm_s3 * used_mm * used_mm / corner).cbrt());
+                cap_mm_s = cap_mm_s.min(libm::cbrt(limits.jerk_mm_s3 * used_mm * used_mm / corner));
             }
         }
         let at_cap_s =

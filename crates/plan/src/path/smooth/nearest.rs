@@ -66,7 +66,7 @@ impl Smooth {
         let cells = &self.cells[self.cell_of(lo_mm)..=self.cell_of(hi_mm)];
         let sharpest = cells.iter().fold(0.0, |k: f64, cell| k.max(cell.curvature_1_mm));
         let curvature = CURVATURE_MARGIN * sharpest;
-        curvature * reach_mm < FRAC_PI_2 && (curvature * reach_mm).cos() > curvature * distance_mm
+        curvature * reach_mm < FRAC_PI_2 && libm::cos(curvature * reach_mm) > curvature * distance_mm
     }
 
     #[cold]

@@ -67,7 +67,7 @@ fn following() -> impl FnMut(&mut Reference<'_>, f64) -> Vector {
     move |reference, t_s| {
         let to_mm = sub(reference.at(t_s).position_mm, tool_mm);
         for k in 0..3 {
-            tool_mm[k] += (1.0 - (-50.0 * SERVO_S).exp()) * to_mm[k];
+            tool_mm[k] += (1.0 - libm::exp(-50.0 * SERVO_S)) * to_mm[k];
         }
         tool_mm
     }
@@ -124,14 +124,14 @@ fn a_line_there_and_back_may_be_cut_short_at_its_tip_but_not_further() {
 #[test]
 fn right_angles_and_spikes_are_passed_where_the_legs_are_equally_near() {
     for degrees in [20.0_f64, 60.0, 90.0, 150.0] {
-        let (sin, cos) = (0.5 * degrees).to_radians().sin_cos();
+        let (sin, cos) = libm::sincos((0.5 * degrees).to_radians());
         let (before, behind) = ([-5.0 * cos, -5.0 * sin, 0.0], [-5.0 * cos, 5.0 * sin, 0.0]);
         let corners = [before, [0.0; 3], behind];
         let mut tool = following();
         let from = |reference: &mut Reference<'_>, t_s: f64| {
             // The loop starts where the path does.
             let at = tool(reference, t_s);
-            let settled = (-50.0 * t_s).exp();
+            let settled = libm::exp(-50.0 * t_s);
             [0, 1, 2].map(|k| at[k] + settled * before[k])
         };
         let mut at = Vec::new();
@@ -177,7 +177,7 @@ fn vibration_along_the_path_does_not_carry_the_progress_on() {
     let mut at = Vec::new();
     let feet = feet(lines(&[[0.0, 0.0, 0.0], [20.0, 0.0, 0.0]]), |reference, t_s| {
         let x = reference.at(t_s - 0.03).position_mm[0];
-        let tool_mm = [x + 4e-3 * (900.0 * t_s).sin(), 1e-3, 0.0];
+        let tool_mm = [x + 4e-3 * libm::sin(900.0 * t_s), 1e-3, 0.0];
         at.push(tool_mm[0]);
         tool_mm
     });
