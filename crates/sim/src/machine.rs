@@ -185,6 +185,11 @@ impl Machine {
     /// # Errors
     /// Every fault found in the text, in one go.
     pub fn parse(file: &str, text: &str) -> Result<Self, MachineError> {
+        Self::parse_upon(file, text, &[])
+    }
+
+    /// The same for the base of a base; `chain` has the files that build upon it.
+    fn parse_upon(file: &str, text: &str, chain: &[&str]) -> Result<Self, MachineError> {
         let invalid = |faults| MachineError::File(FileError::invalid(&KIND, file, text, faults));
         let document = toml_file::document(text).map_err(invalid)?;
         layout::of_this_format(&document).map_err(invalid)?;
@@ -193,13 +198,11 @@ impl Machine {
         };
         // The base is a machine of its own: its faults are reported in its own text.
         let (base_file, base_text) = Self::base_text(file, &base)?;
-        let invalid_base = |faults| MachineError::File(FileError::invalid(&KIND, &base_file, &base_text, faults));
-        let base_document = toml_file::document(&base_text).map_err(invalid_base)?;
-        layout::of_this_format(&base_document).map_err(invalid_base)?;
-        if layout::base(&base_document).is_ok_and(|base| base.is_some()) {
-            return Err(invalid(vec![layout::chained(&document, &base)]));
+        if chain.len() == MAX_BASES || chain.contains(&base_file.as_str()) || base_file == file {
+            return Err(invalid(vec![layout::circular(&document, &base)]));
         }
-        layout::machine(&base_document, None).map_err(invalid_base)?;
+        let whole = Self::parse_upon(&base_file, &base_text, &[chain, &[file]].concat())?.text();
+        let base_document = toml_file::document(&whole).map_err(invalid)?;
         layout::machine(&document, Some(&base_document)).map_err(invalid)
     }
 
@@ -307,6 +310,9 @@ impl Machine {
         blake3::hash(content.to_string().as_bytes()).to_hex().to_string()
     }
 }
+
+/// Bases of bases up to which a file is read; a longer chain leads around by other names of the same files.
+const MAX_BASES: usize = 16;
 
 /// Whether `--machine` means a file, or the standard input, rather than the name of a built-in machine.
 pub fn is_machine_path(name_or_path: &Path) -> bool {

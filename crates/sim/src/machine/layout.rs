@@ -44,13 +44,13 @@ pub(super) fn base(document: &Document<'_>) -> Result<Option<String>, Vec<Fault>
     if faults.is_empty() { Ok(name) } else { Err(faults) }
 }
 
-/// The base builds upon another machine.
-pub(super) fn chained(document: &Document<'_>, base: &str) -> Fault {
+/// The base builds upon this file.
+pub(super) fn circular(document: &Document<'_>, base: &str) -> Fault {
     Fault {
         at: document.get_ref().get("base").map_or(0..0, toml::Spanned::span),
-        label: "has a base itself",
-        message: format!("base: '{base}' builds upon another machine itself"),
-        hint: Some("name that machine, and repeat here what differs".to_owned()),
+        label: "leads back to this file",
+        message: format!("base: '{base}' builds upon this machine in turn"),
+        hint: Some("name a machine that does not build upon this one".to_owned()),
     }
 }
 
