@@ -75,6 +75,11 @@ const FEWEST: usize = 24;
 /// Part of a tolerance that a node's offset may use: the rest is for what lies between nodes.
 const RADIUS_PART: f64 = 0.9;
 
+/// Part of the time that an offset at the edge of the tube costs; it falls with the square of the offset. So the tolerance is used only
+/// where it saves time. With 0.02, 13 programs within 10 um take 0 to 0.36 % longer, 0.1 % in the median; at 0.1 up to 0.6 %. At 0
+/// smooth curves use the whole tube for nothing.
+const OFFSET_COST: f64 = 0.02;
+
 /// How often a window is solved again with what it exceeded tightened.
 const ROUNDS: usize = 5;
 
@@ -341,7 +346,19 @@ impl TimeOptimal {
         for &(slower, first_mu) in guesses {
             let settings = SolverSettings { first_mu, last_mu: LAST_MU, most_iterations: self.most_iterations() };
             let (track, caps, tolerance_mm) = (&self.track, &self.caps, self.tolerance_mm);
-            let problem = MeshProblem { track, caps, nodes, step_s, tolerance_mm, feed_parts, ends, slower, settings };
+            let offset_cost = if self.at_nodes { 0.0 } else { OFFSET_COST };
+            let problem = MeshProblem {
+                track,
+                caps,
+                nodes,
+                step_s,
+                tolerance_mm,
+                feed_parts,
+                ends,
+                offset_cost,
+                slower,
+                settings,
+            };
             self.counts.solutions += 1;
             if let Some((steps, iterations)) = problem.solve() {
                 self.counts.iterations += u64::from(iterations);

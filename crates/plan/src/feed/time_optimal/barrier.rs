@@ -76,10 +76,16 @@ fn feed_slope<const D: usize, const N: usize, const M: usize>(
     -2.0 * (0..D).map(along).sum::<f64>()
 }
 
+/// `sum o^2`.
+#[inline]
+pub(super) fn offset_square<const N: usize>(x: &[f64; N]) -> f64 {
+    (0..N / 3).map(|k| x[3 * k] * x[3 * k]).sum::<f64>()
+}
+
 /// `r^2 - sum o^2`.
 #[inline]
 pub(super) fn tube_slack<const N: usize>(r: f64, x: &[f64; N]) -> f64 {
-    r * r - (0..N / 3).map(|k| x[3 * k] * x[3 * k]).sum::<f64>()
+    r * r - offset_square(x)
 }
 
 /// WindowUnknowns of a window with the multipliers of their bounds and of the steps.

@@ -5,7 +5,7 @@
 //! "On the implementation of an interior-point filter line-search algorithm for large-scale nonlinear programming", sections 2 and 3,
 //! without its restoration and its second-order correction: a search that fails ends in a short step, and too many of them in `None`.
 
-use super::barrier::{LEAST_STEP, WindowIterate, control, feed_slack, larger, tube_slack};
+use super::barrier::{LEAST_STEP, WindowIterate, control, feed_slack, larger, offset_square, tube_slack};
 use super::riccati::{NewtonStep, Stage};
 use super::window::{StepOfAxis, WindowProblem, WindowUnknowns};
 
@@ -268,7 +268,7 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         for (i, u) in at.u.iter().enumerate() {
             let end = problem.end(&self.steps, i, &at.x[i], u);
             (0..N).for_each(|s| add(end[s] - at.x[i + 1][s]));
-            cost += u[D];
+            cost += u[D] + problem.offset_weight(i + 1) * offset_square(&at.x[i + 1]);
         }
         let last = &at.x[at.u.len()];
         (0..N).filter(|&s| problem.is_given(s)).for_each(|s| add(last[s]));
@@ -323,12 +323,13 @@ impl<const D: usize, const N: usize, const M: usize> InteriorPoint<'_, D, N, M> 
         }
         if offset {
             let slack = tube_slack(problem.radius[i], x);
+            let weight = problem.offset_weight(i);
             error = larger(error, (z.tube * slack - mu).abs());
             for k in 0..D {
                 let row = 3 * k;
-                stage.q[row][row] += 2.0 * z.tube;
-                stage.gx[row] += 2.0 * mu / slack * x[row];
-                residual[row] += 2.0 * z.tube * x[row];
+                stage.q[row][row] += 2.0 * (z.tube + weight);
+                stage.gx[row] += 2.0 * (mu / slack + weight) * x[row];
+                residual[row] += 2.0 * (z.tube + weight) * x[row];
                 let curved = 4.0 * z.tube / slack * x[row];
                 (0..D).for_each(|l| stage.q[row][3 * l] += curved * x[3 * l]);
             }

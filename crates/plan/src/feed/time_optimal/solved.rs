@@ -38,6 +38,8 @@ pub(super) struct MeshProblem<'a> {
     /// Factor on the feedrate of each step.
     pub(super) feed_parts: &'a [f64],
     pub(super) ends: bool,
+    /// See [`WindowProblem::offset_cost`].
+    pub(super) offset_cost: f64,
     /// With `Some(f)`, the first guess is a motion along the chords, `f` times slower. With `None`,
     /// it is the motion of the nodes.
     pub(super) slower: Option<f64>,
@@ -107,6 +109,7 @@ impl MeshProblem<'_> {
                 .collect(),
             radius: self.nodes.iter().map(|node| node.radius_mm / units.offset_mm).collect(),
             feed_mm_s: (0..n).map(|i| self.feed_mm_s(i)).collect(),
+            offset_cost: self.offset_cost,
             first: x[0],
             exact_end: self.ends,
         };

@@ -30,6 +30,8 @@ pub(super) struct WindowProblem<const D: usize, const N: usize> {
     pub(super) radius: Vec<f64>,
     /// Largest length of the control velocity of each step, mm/s.
     pub(super) feed_mm_s: Vec<f64>,
+    /// Time that an offset at the edge of the tube costs at a node, as a part of the unit of durations.
+    pub(super) offset_cost: f64,
     /// State of the first node.
     pub(super) first: [f64; N],
     /// Whether the last node has no offset.
@@ -104,6 +106,11 @@ impl<const D: usize, const N: usize> WindowProblem<D, N> {
     /// Weights `w` of the squares of control velocities, `sum w c^2 <= 1` in a step.
     pub(super) fn feed_weights(&self, i: usize) -> [f64; D] {
         std::array::from_fn(|k| (self.units.velocity_mm_s[k] / self.feed_mm_s[i]).powi(2))
+    }
+
+    /// Cost of the square of the offset at a node, in units.
+    pub(super) fn offset_weight(&self, i: usize) -> f64 {
+        self.offset_cost / (self.radius[i] * self.radius[i])
     }
 
     /// Whether a component of the last state is given: it rests.
