@@ -10,9 +10,6 @@ use feedwright::BASELINE;
 use feedwright_lab::{CONTROLLERS, Comparison, ComparisonOptions, Journal, Knowledge, Tuning, Workpiece, compare};
 use feedwright_sim::Machine;
 
-/// Rounding of another platform's sine, after thousands of servo periods with feedback.
-const SAME_RATIO: f64 = 1e-3;
-
 fn text(file: &str) -> String {
     let study = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/05_noise"));
     std::fs::read_to_string(study.join(file)).unwrap()
@@ -76,7 +73,7 @@ fn the_kept_comparison_is_what_the_program_makes() {
     for row in &made.rows {
         let was = kept.row(&row.contour, &row.machine, &row.controller).unwrap();
         for (was, is) in [(was.rms_um, row.rms_um), (was.max_um, row.max_um), (was.time_s, row.time_s)] {
-            assert!((was - is).abs() <= SAME_RATIO * was, "{was} is {is}; hint: `just noise-levels`\n{row:?}");
+            assert_eq!(was, is, "hint: `just noise-levels`\n{row:?}");
         }
     }
 }

@@ -52,9 +52,6 @@ fn the_tables_of_results_are_those_of_the_kept_comparison() {
     }
 }
 
-/// Rounding of another platform's sine, after thousands of servo periods with feedback.
-const SAME_RATIO: f64 = 1e-3;
-
 /// Whether these rows of a kept comparison are what the program makes.
 fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], machines: &[&str], controllers: &[&str]) {
     let kept: Comparison = crate::table::comparison(file).unwrap();
@@ -78,7 +75,7 @@ fn cut_anew(file: &str, workpieces: Vec<Workpiece>, knowledge: &[Knowledge], mac
         };
         let was = kept.rows.iter().find(place).unwrap();
         for (was, is) in [(was.rms_um, row.rms_um), (was.max_um, row.max_um), (was.time_s, row.time_s)] {
-            assert!((was - is).abs() <= SAME_RATIO * was, "{was} is {is}; hint: `just tables`\n{row:?}");
+            assert_eq!(was, is, "hint: `just tables`\n{row:?}");
         }
     }
 }

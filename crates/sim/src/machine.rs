@@ -198,10 +198,11 @@ impl Machine {
         };
         // The base is a machine of its own: its faults are reported in its own text.
         let (base_file, base_text) = Self::base_text(file, &base)?;
-        if chain.len() == MAX_BASES || chain.contains(&base_file.as_str()) || base_file == file {
+        let chain = [chain, &[file]].concat();
+        if chain.len() > MAX_BASES || chain.contains(&base_file.as_str()) {
             return Err(invalid(vec![layout::circular(&document, &base)]));
         }
-        let whole = Self::parse_upon(&base_file, &base_text, &[chain, &[file]].concat())?.text();
+        let whole = Self::parse_upon(&base_file, &base_text, &chain)?.text();
         let base_document = toml_file::document(&whole).map_err(invalid)?;
         layout::machine(&document, Some(&base_document)).map_err(invalid)
     }

@@ -217,7 +217,7 @@ fn write_at_tolerance(out: &mut impl Write, comparison: &Comparison) -> io::Resu
 /// The values that the peers were cut with.
 fn write_tuned(out: &mut impl Write, comparison: &Comparison) -> io::Result<()> {
     let searched = comparison.tuned.iter().filter(|tuned| tuned.cuts > 0);
-    let open = "Evaluations, RMS over what was searched on, and that of the uncorrected cut. A value at an end of its range may have a better one \
+    let open = "Evaluations, RMS of the work that was searched on, and its uncorrected RMS. A value at an end of its range may have a better one \
                 beyond; a correction that is switched off is no better than none.";
     writeln!(out, "<p>{open}</p>")?;
     write_table_head(out, ["controller", "machine", "evaluations", "RMS, µm", "uncorrected, µm", "values"])?;

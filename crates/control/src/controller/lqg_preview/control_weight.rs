@@ -19,7 +19,7 @@ impl OffsetBounds {
 /// Settings of the controller.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LqgSettings {
-    /// Price of the reference speed beside the error of the position, s^2, near the reference.
+    /// Weight of the reference speed against the position error near the reference, s^2.
     pub control_weight_s2: f64,
     /// What the offset is held to.
     pub bounds: OffsetBounds,
@@ -27,8 +27,8 @@ pub struct LqgSettings {
     pub learns: bool,
 }
 
-/// Price that serves by an identified model, in squares of the servo period. With 1 there is half as much again left on workshop; as long as the law is
-/// not trusted, it is 256 times as high.
+/// Control weight used with an identified model, in servo periods squared. A weight of 1 leaves 50 % more error on workshop. While
+/// the model is not followed, the weight is 256 times as high.
 pub const IDENTIFIED_WEIGHT: f64 = 0.01;
 /// By a law that may be wrong a screw that gives is regulated in no less than so many radians of its resonance: backlash is not in the law of the
 /// regulator. On soft 2 leaves 0.6 of what 0 leaves on star, circle and square, and 0.1 on pocket.
@@ -38,7 +38,7 @@ impl LqgSettings {
     /// A tenth of the travel of a servo period, squared.
     pub const DEFAULT: Self = Self { control_weight_s2: 1e-8, bounds: OffsetBounds::NONE, learns: false };
 
-    /// For an identified model: a price in squares of a servo period of `servo_s`.
+    /// Settings for an identified model; `control_weight` is in servo periods squared, with a servo period of `servo_s`.
     pub fn identified(control_weight: f64, servo_s: f64, bounds: OffsetBounds) -> Self {
         Self { control_weight_s2: control_weight * servo_s * servo_s, bounds, learns: true }
     }

@@ -6,7 +6,7 @@
 #![no_std]
 
 use core::panic::PanicInfo;
-use feedwright_control::{Feedforward, Knot, KnotSource, LqgPreview, MagnitudeOnly, ModelBlock, Uncorrected, RecedingHorizon, Tick, TwoDimensional};
+use feedwright_control::{Feedforward, Knot, KnotSource, LqgPreview, MagnitudeOnly, ModelBlock, RecedingHorizon, Tick, TwoDimensional, Uncorrected};
 
 unsafe extern "C" {
     fn a_panic_is_left_in_the_tick() -> !;
