@@ -238,10 +238,11 @@ impl Machine {
         text
     }
 
-    /// Name and text of a base: a built-in machine, or a file beside the one that names it.
+    /// Name and text of a base: a built-in machine, or a file beside the one that names it. The name of a built-in machine
+    /// is not that of a file: a file `tnv40.toml` may build upon it.
     fn base_text(file: &str, base: &str) -> Result<(String, String), MachineError> {
         if let Some((name, text)) = BUILT_IN_MACHINES.iter().find(|(name, _)| *name == base) {
-            return Ok((format!("{name}.toml"), (*text).to_owned()));
+            return Ok((format!("built-in {name}"), (*text).to_owned()));
         }
         if !is_machine_path(Path::new(base)) {
             return Err(MachineError::unknown_name(base, false));

@@ -115,6 +115,10 @@ fn a_file_upon_a_base_has_what_it_does_not_say() {
     let words = "name = \"a\"\ndescription = \"b\"\nsource = \"c\"\n";
     let chained = Machine::parse("x.toml", &format!("base = \"heavy\"\n{words}")).unwrap();
     assert_eq!((&chained.axes, &chained.limits), (&heavy.axes, &heavy.limits));
+    for name in ["heavy.toml", "heavy", "tnv40.toml"] {
+        let named_as_its_base = Machine::parse(name, &format!("base = \"heavy\"\n{words}")).unwrap();
+        assert_eq!(named_as_its_base.axes, heavy.axes, "{name}");
+    }
     let unknown = faults(&format!("base = \"tnv4\"\n{words}"));
     assert_eq!(unknown.to_string().split(';').next(), Some("no machine is called 'tnv4'"));
     let fast = faults(&format!(
