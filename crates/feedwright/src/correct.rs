@@ -114,7 +114,7 @@ impl CorrectJob {
         let path_error = |fault| JobError::Path { part: self.program.name(), fault };
         let original = steps_of(&source.steps).map_err(path_error)?;
         let nominal = deterministic(self.believed.as_ref().unwrap_or(&self.machine));
-        let stages = self.target.suits(&self.machine)?;
+        let stages = self.target.stages(&self.machine);
         let on = |machine| ExportedCut { machine, stages, original: &original, axes, watch };
         let of_run = |error| JobError::of_run(&self.program, error);
         let parts = parts(&source.steps);

@@ -14,6 +14,7 @@
 //! | `fastest/speed_profile.rs` | speeds of least time by that model |
 //! | `fastest/tightening.rs` | bounds for the next cut |
 //! | `fastest/remaining_error.rs` | whether lower speeds help |
+//! | `fastest/path_share.rs` | the tolerance of the path alone, at the programmed speeds |
 
 mod path_grid;
 mod cut_places;
@@ -22,6 +23,7 @@ mod error_model;
 mod speed_profile;
 mod tightening;
 mod remaining_error;
+mod path_share;
 
 use std::sync::Arc;
 
@@ -35,6 +37,7 @@ use thiserror::Error;
 use crate::cycle_time::{CycleTime, cycle_time_within};
 use cut_places::CutPlaces;
 use path_grid::PathGrid;
+pub use path_share::{TolerancePlan, plan_within};
 use remaining_error::RemainingError;
 use tightening::{LOWEST_MM_S, Tightening};
 
@@ -95,15 +98,6 @@ pub struct FastestPlan {
 /// Why [`fastest`] finds no plan.
 #[derive(Debug, Error, miette::Diagnostic)]
 pub enum FastestError {
-    /// Not planned axis by axis.
-    #[error(
-        "the least time within a tolerance is planned axis by axis, and the axes of {machine} have no limits of their own: \
-         give each max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3"
-    )]
-    NoLimits {
-        /// Name of the machine.
-        machine: String,
-    },
     /// The tool is too far away however slow it is.
     #[error("line {line}: the tool is {error_um:.2} um away, and {tolerance_um} um are allowed; {reason}")]
     Impossible {
@@ -134,10 +128,8 @@ pub fn fastest<'p, const N: usize>(
     laps: u32,
     watch: &dyn Watch,
 ) -> Result<FastestPlan, FastestError> {
-    let mut search = Search::new(machine, tolerance_um, PathGrid::of(steps().map_err(RunError::from)?, SPACING_MM));
-    if !search.planned(1.0).has_axis_limits() {
-        return Err(FastestError::NoLimits { machine: machine.name.clone() });
-    }
+    let grid = PathGrid::of(steps().map_err(RunError::from)?, SPACING_MM);
+    let mut search = Search::new(machine, tolerance_um, grid, "looking for the least time");
     let mut cut = |search: &mut Search<'_>, share: f64| search.cut(share, &mut steps, controller, laps, watch);
     let first = cut(&mut search, FIRST_SHARE)?;
     let error = first.worst().0 / tolerance_um;
@@ -164,6 +156,8 @@ struct Search<'a> {
     machine: &'a Machine,
     tolerance_um: f64,
     grid: PathGrid,
+    /// What it is called while it goes on.
+    stage: &'static str,
     tightening: Tightening,
     caps: Arc<SpeedCaps>,
     /// Part of the time in which the speed is bounded by something else than the error.
@@ -179,8 +173,9 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(machine: &'a Machine, tolerance_um: f64, grid: PathGrid) -> Self {
+    fn new(machine: &'a Machine, tolerance_um: f64, grid: PathGrid, stage: &'static str) -> Self {
         Self {
+            stage,
             machine,
             tolerance_um,
             tightening: Tightening::new(1e-3 * tolerance_um, grid.len()),
@@ -198,9 +193,7 @@ impl<'a> Search<'a> {
 
     /// The machine, with a share of the tolerance for the path.
     fn planned(&self, share: f64) -> Machine {
-        let mut machine = self.machine.clone();
-        machine.limits.path_tolerance_um = Some(share * self.tolerance_um);
-        machine
+        self.machine.planned_by_axes(share * self.tolerance_um)
     }
 
     fn best_s(&self) -> f64 {
@@ -218,7 +211,7 @@ impl<'a> Search<'a> {
     ) -> Result<CutPlaces, FastestError> {
         watch.check().map_err(RunError::from)?;
         self.rounds += 1;
-        watch.begin(&format!("looking for the least time, cut {}", self.rounds), 1);
+        watch.begin(&format!("{}, cut {}", self.stage, self.rounds), 1);
         let planned = self.planned(share);
         let mut places = CutPlaces::new(self.grid.spacing_mm, self.grid.len());
         let path_mm = 1e-3 * share * self.tolerance_um;

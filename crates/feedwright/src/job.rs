@@ -23,18 +23,20 @@ mod listing;
 mod results;
 mod stored;
 
+use std::sync::Arc;
+
 use feedwright_control::Controller;
 use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_gcode::{self, Program, ReadError, Summary};
 use feedwright_ident::{Log, LogFinding, Model};
-use feedwright_plan::{AlignedPaths, Constraints, PlanSink, Step, Steps};
+use feedwright_plan::{AlignedPaths, Constraints, PlanSink, SpeedCaps, Step, Steps};
 use feedwright_sim::{Machine, Outcome, Row, Run, RunError, Sink, StageSteps, Stages, Watch, path_steps};
 use serde::{Deserialize, Serialize};
 
 use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, NothingIdentified, Setup, UNCORRECTED};
 use crate::correct::{CorrectOutcome, TargetControl};
 use crate::cycle_time::CycleTimeOfCut;
-use crate::fastest::{FastestError, FastestPlan, fastest, with_tolerance};
+use crate::fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within, with_tolerance};
 pub use crate::job_error::JobError;
 use crate::job_error::axes_that_move;
 use crate::measured::{MeasuredRun, measured};
@@ -69,7 +71,8 @@ pub struct Job {
     /// A model for the controller that is asked for, in place of a training.
     #[serde(with = "stored::model")]
     pub model: Option<Model>,
-    /// Largest contour error that is allowed, um.
+    /// Largest contour error that is allowed, um. Where the machine is planned axis by axis, the planned path uses what the predicted error
+    /// of the machine leaves of it.
     pub tolerance_um: Option<f64>,
     /// The control, without feedback, that a corrected program is made for.
     #[serde(with = "stored::target")]
@@ -116,6 +119,8 @@ pub struct JobOutcome {
     pub exported: Option<CorrectOutcome>,
     /// The plan of least time, where that was asked for.
     pub fastest: Option<FastestPlan>,
+    /// Tolerance of the planned path, um, where it is a part of the tolerance of the tool.
+    pub path_um: Option<f64>,
     /// In what the correction is worse than uncorrected; nothing where it is compared with something else.
     pub harm: Vec<Harm>,
     /// Whether the command of the controller may be used: it was cut to its end, and does no harm.
@@ -185,6 +190,18 @@ impl CheckedJob<'_> {
         self.axes
     }
 
+    /// The plan whose path uses what the machine leaves of the job's tolerance; `None` without a tolerance, on a machine that is not planned
+    /// axis by axis, and where the machine needs all of it.
+    ///
+    /// # Errors
+    /// As [`CheckedJob::run`].
+    pub fn tolerance_plan(&self, watch: &dyn Watch) -> Result<Option<TolerancePlan>, JobError> {
+        match self.axes {
+            2 => self.job.tolerance_plan::<2>(watch),
+            _ => self.job.tolerance_plan::<3>(watch),
+        }
+    }
+
     /// Cuts it; the sinks get the rows of the controller that is asked for.
     ///
     /// # Errors
@@ -209,11 +226,16 @@ impl Job {
     {
         let aligned = self.aligned()?;
         let fastest = self.fastest_plan::<N>(watch)?;
+        let within = self.tolerance_plan::<N>(watch)?;
+        let planned = fastest.as_ref().map(|plan| &plan.machine).or(within.as_ref().map(|plan| &plan.machine));
+        let machine = planned.unwrap_or(&self.machine);
         let circles = self.circles()?;
-        let constraints = Constraints::from(&self.machine);
+        let constraints = Constraints::from(machine);
         let looked_at = self.looks_at_cut(fastest.as_ref(), aligned.as_ref(), &constraints);
         let plan = PlannedCut {
-            fastest: fastest.as_ref(),
+            machine,
+            path_um: planned.and_then(|machine| machine.limits.path_tolerance_um),
+            caps: fastest.as_ref().map(|plan| &plan.caps),
             aligned: aligned.as_ref(),
             circles: &circles,
             looked_at: looked_at.as_ref().map(|cycle| cycle as &dyn PlanSink),
@@ -223,7 +245,7 @@ impl Job {
         let cycle = looked_at.filter(|_| completed).map(CycleTimeOfCut::finish);
         let log_findings = self.insert_measured(&mut runs, N, &circles, watch)?;
         let exported = self.push_exported(&mut runs, &circles, watch)?;
-        let limits = self.limit_band(fastest.as_ref().map(|plan| &plan.cycle).or(cycle.as_ref()), watch)?;
+        let limits = self.limit_band(machine, fastest.as_ref().map(|plan| &plan.cycle).or(cycle.as_ref()), watch)?;
         let report = Report { limits, ..self.report(N, summary, circles, runs, &without_identification)? };
         let exported_well = exported.as_ref().is_none_or(|outcome| outcome.refusal.is_none());
         Ok(JobOutcome {
@@ -236,6 +258,7 @@ impl Job {
             log_findings,
             exported,
             fastest,
+            path_um: within.map(|plan| plan.path_um),
         })
     }
 
@@ -271,17 +294,45 @@ impl Job {
             return Ok(None);
         };
         watch.begin("planning the least time", 1);
-        let mut setup = Setup::new(&self.machine, &self.choices);
-        let mut controller = match &self.model {
-            Some(model) => self.controller.make_with::<N>(setup, model)?,
-            None => Make::<N>::make(self.controller, &mut setup),
-        };
+        let mut controller = self.own_controller::<N>()?;
         let steps = || Ok(path_steps(self.steps()?));
         let found = fastest(&self.machine, tolerance_um, steps, &mut *controller, self.controller.laps, watch);
-        found.map(Some).map_err(|error| match error {
+        found.map(Some).map_err(|error| self.of_search(error))
+    }
+
+    /// The plan whose path uses what the machine leaves of the tolerance, where the machine is planned axis by axis.
+    fn tolerance_plan<const N: usize>(&self, watch: &dyn Watch) -> Result<Option<TolerancePlan>, JobError>
+    where
+        Entry: Make<N>,
+    {
+        let shares = !self.fastest && self.reference.is_none() && Stages::of(&self.machine).planner.needs_axes;
+        let Some(tolerance_um) = self.tolerance_um.filter(|_| shares) else {
+            return Ok(None);
+        };
+        watch.begin("looking for the tolerance of the path", 1);
+        let mut controller = self.own_controller::<N>()?;
+        let steps = || Ok(path_steps(self.steps()?));
+        let found = plan_within(&self.machine, tolerance_um, steps, &mut *controller, self.controller.laps, watch);
+        found.map_err(|error| self.of_search(error))
+    }
+
+    /// The controller that is asked for, for a search beside the cut.
+    fn own_controller<const N: usize>(&self) -> Result<Box<dyn Controller<N>>, JobError>
+    where
+        Entry: Make<N>,
+    {
+        let mut setup = Setup::new(&self.machine, &self.choices);
+        Ok(match &self.model {
+            Some(model) => self.controller.make_with::<N>(setup, model)?,
+            None => Make::<N>::make(self.controller, &mut setup),
+        })
+    }
+
+    fn of_search(&self, error: FastestError) -> JobError {
+        match error {
             FastestError::Run(error) => JobError::of_run(&self.program, error),
             error => JobError::Fastest { part: self.program.name(), error },
-        })
+        }
     }
 
     /// One run for each controller, and for which of them nothing was identified.
@@ -322,7 +373,7 @@ impl Job {
         summary: &Summary,
         entry: &Entry,
         controller: &mut dyn Controller<N>,
-        PlannedCut { fastest, aligned, circles, looked_at }: PlannedCut<'_>,
+        PlannedCut { machine, path_um, caps, aligned, circles, looked_at }: PlannedCut<'_>,
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<ReportedRun, JobError> {
@@ -335,15 +386,14 @@ impl Job {
         for sink in rows {
             sinks.push(&mut **sink);
         }
-        let machine = fastest.map_or(&self.machine, |plan| &plan.machine);
         let steps = || {
             let steps = path_steps(self.steps()?);
-            Ok(match fastest.and_then(|plan| plan.machine.limits.path_tolerance_um) {
+            Ok(match path_um {
                 Some(path_um) => with_tolerance(steps, 1e-3 * path_um),
                 None => steps,
             })
         };
-        let run = Run::on(machine).capped(fastest.map(|plan| &plan.caps)).laps(entry.laps).watched(watch);
+        let run = Run::on(machine).capped(caps).laps(entry.laps).watched(watch);
         let run = run.planned_to(looked_at);
         let run = match aligned {
             Some(aligned) => run.cut_aligned(aligned, controller, &mut sinks),
@@ -404,10 +454,15 @@ impl Job {
     }
 }
 
-/// What a cut is made by, besides machine and controller.
+/// What a cut is made by, besides the controller.
 #[derive(Clone, Copy)]
 struct PlannedCut<'a> {
-    fastest: Option<&'a FastestPlan>,
+    /// The machine of the job, perhaps with another tolerance of the path.
+    machine: &'a Machine,
+    /// Tolerance of the path in place of the program's, um.
+    path_um: Option<f64>,
+    /// Bounds on the speed along the path.
+    caps: Option<&'a Arc<SpeedCaps>>,
     aligned: Option<&'a AlignedPaths>,
     circles: &'a [FullCircle],
     /// Who is told of the plan.

@@ -49,17 +49,6 @@ pub enum JobError {
         /// The program.
         part: String,
     },
-    /// A control plans by limits that the machine file does not have.
-    #[error("{control} plans by the limits of each axis, and the machine `{machine}` has none")]
-    #[diagnostic(help(
-        "give each [axis.*] of the machine file max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3, the first two as in the control"
-    ))]
-    NoAxisLimits {
-        /// The control.
-        control: &'static str,
-        /// The machine.
-        machine: String,
-    },
     /// The model does not suit.
     #[error(transparent)]
     #[diagnostic(transparent)]

@@ -41,7 +41,7 @@
 //! |---|---|
 //! | Predict and compare | [`Job`], [`JobOutcome`], [`JobError`] |
 //! | Corrected program for another control | [`CorrectJob`], [`CorrectOutcome`], [`TARGETS`] |
-//! | Feedrate that holds a tolerance | [`AdviseJob`], [`Advice`], [`fastest()`], [`FastestPlan`] |
+//! | Feedrate that holds a tolerance | [`AdviseJob`], [`Advice`], [`fastest()`], [`FastestPlan`], [`plan_within`], [`TolerancePlan`] |
 //! | Cycle time | [`cycle_time()`], [`CycleTime`] |
 //! | Real machine, from a log | [`LogJob`], [`LogIdentified`], [`measured()`] |
 //! | Controllers | [`CONTROLLERS`], [`Entry`], [`Setup`], [`Make`], [`Choices`], [`Setting`], [`controller!`] |
@@ -122,7 +122,7 @@ pub use correct::arc_fit::{ArcFit, FitPoint};
 pub use correct::exported::{ExportedCut, ExportedFigures};
 pub use correct::{CorrectJob, CorrectOutcome, MacroLanguage, TARGETS, TargetControl, deterministic};
 pub use cycle_time::{CycleTime, cycle_time, cycle_time_by, cycle_time_within};
-pub use fastest::{FastestError, FastestPlan, fastest};
+pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
 #[cfg(feature = "files")]
 pub use identifier_cache::files::folder as cache_folder;
 pub use identifier_cache::{identified, key_of, trained};

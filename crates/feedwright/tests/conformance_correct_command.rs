@@ -72,7 +72,6 @@ fn run_writes_no_program_that_is_no_better_and_the_exit_code_says_so() {
         (&["--out", "p.ngc", "--reference", "circle.ngc"], &["no corrected program", "--reference", "original"]),
         (&["--out", "p.ngc", "--for", "grpl"], &["--for", "did you mean 'grbl'?"]),
         (&["--out", "p.csv", "--for", "grbl"], &["--for", "p.csv", "setpoints"]),
-        (&["--out", "p.ngc", "--for", "linuxcnc"], &["limits of each axis"]),
     ] {
         folder.run(&[&["run", "line.ngc", "--machine", "tnv40"], arguments].concat()).refused(told);
     }

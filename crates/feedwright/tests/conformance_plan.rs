@@ -1,6 +1,7 @@
 //! `feedwright plan`: the cycle time of a program, on machines with and without limits of their axes.
 
 use crate::command::Folder;
+use feedwright_plan::FEED_PLANNERS;
 use serde_json::Value;
 
 const LIMITS: &str = "max_velocity_mm_s = 200\nmax_accel_mm_s2 = 2000\nmax_jerk_mm_s3 = 50000\n";
@@ -41,12 +42,21 @@ fn the_cycle_time_is_that_of_its_parts() {
 }
 
 #[test]
-fn a_larger_tolerance_is_faster_and_needs_limits_of_the_axes() {
+fn a_larger_tolerance_is_faster_and_works_on_every_machine() {
     let folder = folder();
     let time = |um: &str| planned(&folder, &["--machine", "m.toml", "--tolerance", um])["time_s"].as_f64().unwrap();
     assert!(time("100") < time("1"));
-    let tolerance = ["plan", "two.ngc", "--machine", "tnv40", "--tolerance", "10"];
-    folder.run(&tolerance).refused(&["--tolerance", "max_jerk_mm_s3"]);
+    for machine in ["tnv40", "workshop", "stiff", "router"] {
+        let found = planned(&folder, &["--machine", machine, "--tolerance", "1000"]);
+        assert_eq!(
+            (found["planner"].as_str(), found["path_tolerance_um"].as_f64()),
+            (Some("time-optimal"), Some(100.0))
+        );
+    }
+    let too_small = ["plan", "two.ngc", "--machine", "workshop", "--tolerance", "0.02"];
+    assert!(folder.run(&too_small).succeeded().remarked().contains("more than 0.02 um for its own error"));
+    let other = ["plan", "two.ngc", "--machine", "m.toml", "--tolerance", "10", "--planner", "linuxcnc"];
+    folder.run(&other).refused(&["--tolerance", "time-optimal", "G64 P"]);
     folder.run(&["plan", "two.ngc", "--machine", "m.toml", "--tolerance", "-1"]).refused(&["--tolerance", "-1"]);
     let found = planned(&folder, &["--machine", "tnv40"]);
     assert_eq!((found["planner"].as_str(), found["bound_s"].as_f64()), (Some("trapezoid"), None));
@@ -73,9 +83,14 @@ fn a_planner_is_taken_by_name() {
     assert_eq!(planner("trapezoid")["planner"], "trapezoid");
     let unknown = ["plan", "two.ngc", "--machine", "m.toml", "--planner", "grbl"];
     folder.run(&unknown).refused(&["grbl", "time-optimal, linuxcnc"]);
-    // Its axes need limits of their own.
-    let without = ["plan", "two.ngc", "--machine", "tnv40", "--planner", "linuxcnc"];
-    folder.run(&without).refused(&["max_velocity_mm_s"]);
+    for machine in ["tnv40", "workshop", "stiff", "router", "emps"] {
+        for planner in FEED_PLANNERS {
+            let found = planned(&folder, &["--machine", machine, "--planner", planner.name]);
+            assert_eq!(found["planner"], planner.name, "{machine}");
+        }
+    }
+    let assumed = folder.run(&["plan", "two.ngc", "--machine", "tnv40", "--planner", "linuxcnc"]).succeeded();
+    assert!(assumed.remarked().contains("400 mm/s, 100 mm/s2 and 2500 mm/s3"), "{assumed:?}");
 }
 
 #[test]
@@ -99,5 +114,5 @@ fn an_override_and_a_hold_change_the_time_of_the_plan() {
     }
     folder.run(&["plan", "two.ngc", "--machine", "m.toml", "--hold-at", "-1"]).refused(&["--hold-at", "-1"]);
     let without = ["plan", "two.ngc", "--machine", "tnv40", "--override", "50"];
-    folder.run(&without).refused(&["trapezoid", "max_jerk_mm_s3"]);
+    folder.run(&without).refused(&["trapezoid", "--planner time-optimal"]);
 }

@@ -267,12 +267,12 @@ impl Machine {
         std::array::from_fn(|i| AxisLaw::new(self.axis(i).parameters(), self.period.periods()))
     }
 
-    /// Whether each axis has limits of its own, and the path a tolerance: then it is planned axis by axis.
+    /// Whether each axis has limits of its own: then it is planned axis by axis.
     pub fn has_axis_limits(&self) -> bool {
         let limited = |axis: &Axis| {
             axis.max_velocity_mm_s.is_some() && axis.max_accel_mm_s2.is_some() && axis.max_jerk_mm_s3.is_some()
         };
-        self.limits.path_tolerance_um.is_some() && self.axes.iter().all(limited)
+        self.axes.iter().all(limited)
     }
 
     /// The lowest gain of a position loop, 1/s.

@@ -3,6 +3,7 @@
 use std::io;
 use std::process::ExitCode;
 
+use feedwright_sim::{Machine, Stages};
 use miette::{GraphicalReportHandler, GraphicalTheme, Report, Result, ThemeCharacters, ThemeStyles, miette};
 
 use crate::command::terminal::{is_stderr_colored, shows_unicode, text_columns, wrapped};
@@ -41,6 +42,13 @@ pub fn printed(result: io::Result<()>, code: ExitCode) -> Result<ExitCode> {
 /// Tells something that is no warning.
 pub fn remark(text: &str) {
     eprintln!("{}", wrapped(text, 2));
+}
+
+/// Tells which limits of the axes are assumed, where a planner needs some that the machine file does not have.
+pub(crate) fn tell_assumed_limits(machine: &Machine, stages: Stages) {
+    if let Some(text) = machine.assumed_axis_limits().filter(|_| stages.planner.needs_axes) {
+        remark(&text);
+    }
 }
 
 /// Shows a warning.

@@ -176,7 +176,6 @@ impl AdviseJob {
         watch.begin("reading the program", 1);
         let summary = self.program.check(self.reader.clone())?;
         let axes = axes_that_move(&self.program, &summary, &self.machine)?;
-        self.target.suits(&self.machine)?;
         let source = SourceProgram::read(&self.program, &self.reader, None)?;
         let warnings = summary.warnings.iter().cloned().chain(summary.uncontrolled()).collect();
         let found = match axes {

@@ -8,8 +8,6 @@ use feedwright_gcode::canon::Corner;
 use feedwright_plan::feed_planner;
 use feedwright_sim::{Machine, Stages};
 
-use crate::job_error::JobError;
-
 /// A row of [`TARGETS`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TargetControl {
@@ -93,18 +91,6 @@ impl TargetControl {
         let planner = self.planner.and_then(feed_planner);
         let own = Stages::of(machine);
         Stages { planner: planner.unwrap_or(own.planner), ..own }
-    }
-
-    /// The same, where the machine has what the control plans by.
-    ///
-    /// # Errors
-    /// A control that plans by the limits of each axis, and a machine without.
-    pub fn suits(&self, machine: &Machine) -> Result<Stages, JobError> {
-        let stages = self.stages(machine);
-        if stages.planner.needs_axes && !machine.has_axis_limits() {
-            return Err(JobError::NoAxisLimits { control: self.name, machine: machine.name.clone() });
-        }
-        Ok(stages)
     }
 
     /// Whether it runs loops, subroutines and parameters as a program of a dialect has them.

@@ -107,6 +107,7 @@ impl Job {
     /// this function makes a plan.
     pub(super) fn limit_band(
         &self,
+        machine: &Machine,
         known: Option<&CycleTime>,
         watch: &dyn Watch,
     ) -> Result<Option<LimitBand>, JobError> {
@@ -117,7 +118,7 @@ impl Job {
             Some(cycle) => cycle.along.clone(),
             None => {
                 watch.begin("looking at what binds", 1);
-                let found = cycle_time(&self.machine, false, || Ok(path_steps(self.steps()?)), watch);
+                let found = cycle_time(machine, false, || Ok(path_steps(self.steps()?)), watch);
                 found.map_err(|error| JobError::of_run(&self.program, error))?.along
             }
         };

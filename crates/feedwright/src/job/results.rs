@@ -22,6 +22,8 @@ struct Results<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     reference: Option<String>,
     tolerance_um: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    path_tolerance_um: Option<f64>,
     within_tolerance: bool,
     simulated: bool,
     assumed: &'a Assumptions,
@@ -46,6 +48,7 @@ impl JobOutcome {
             part: &report.part,
             reference: job.reference.as_ref().map(Program::name),
             tolerance_um: job.tolerance_um,
+            path_tolerance_um: self.path_um,
             within_tolerance: self.within_tolerance,
             simulated: true,
             assumed: &report.assumed,

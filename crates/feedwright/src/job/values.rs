@@ -21,8 +21,7 @@ impl Job {
             let hint = Some("the unit is um: 0.01 mm is --tolerance 10");
             return Err(JobError::Value { name: "--tolerance", value, unit: " um", bounds, hint });
         }
-        if let Some(target) = self.target {
-            target.suits(&self.machine)?;
+        if self.target.is_some() {
             let other = self.fastest.then_some("--fastest").or_else(|| self.reference.as_ref().map(|_| "--reference"));
             if let Some(option) = other {
                 return Err(JobError::NoProgramWith { option });

@@ -111,6 +111,11 @@ impl Ran {
         self.stdout.split_whitespace().collect::<Vec<_>>().join(" ")
     }
 
+    /// What it says on stderr, as one line.
+    pub(crate) fn remarked(&self) -> String {
+        self.stderr.split_whitespace().collect::<Vec<_>>().join(" ")
+    }
+
     /// It ended with an error that says all of `says`, and printed nothing else.
     pub(crate) fn refused(&self, says: &[&str]) {
         self.ended(2, says);

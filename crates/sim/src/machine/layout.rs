@@ -105,7 +105,7 @@ fn tolerance_with_axes(machine: &Machine, at: Range<usize>, faults: &mut Vec<Fau
 }
 
 /// The limits of an axis: all or none.
-const AXIS_LIMITS: [&str; 3] = ["max_velocity_mm_s", "max_accel_mm_s2", "max_jerk_mm_s3"];
+pub(super) const AXIS_LIMITS: [&str; 3] = ["max_velocity_mm_s", "max_accel_mm_s2", "max_jerk_mm_s3"];
 
 fn period(mut table: Table<'_, '_>, faults: &mut Vec<Fault>) -> Period {
     let Period { servo_s, mechanics_s, .. } = read(keys::PERIOD, &mut table, faults);

@@ -20,8 +20,8 @@ pub(crate) struct PlanArgs {
     /// Machine: one that is built in (`feedwright machines` lists them), or a machine file (.toml).
     #[arg(long, value_name = "NAME|FILE.toml", default_value = feedwright_sim::DEFAULT_MACHINE)]
     pub(crate) machine: OsString,
-    /// Distance of the planned path from the programmed one where the program says none, um, in place of the machine's
-    /// path_tolerance_um.
+    /// Largest distance of the tool from the programmed path, um: deviation of the plan and predicted error of the machine together. The
+    /// machine is simulated for it.
     #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
     /// Planner in place of the one that suits the machine: trapezoid, time-optimal, unlimited, or linuxcnc, which plans as LinuxCNC 2.9 does.

@@ -41,7 +41,8 @@ pub struct RunArgs {
     /// `feedwright controllers NAME` lists them.
     #[arg(long, value_name = "PARAMETER=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Largest contour error allowed, um: exit code 1 where it is exceeded. Where --out is a program, that program decides.
+    /// Largest contour error allowed, um: the planned path uses what the predicted error of the machine leaves of it. Exit code 1 where it is
+    /// exceeded. Where --out is a program, that program decides.
     #[arg(long, value_name = "UM", allow_negative_numbers = true)]
     pub(crate) tolerance: Option<f64>,
     /// Measure errors and uncut path to this program in place of PART: what another program for the same part comes to.

@@ -11,7 +11,7 @@ use crate::command::args::advise::AdviseArgs;
 use crate::command::console::Console;
 use crate::command::controllers::find;
 use crate::command::controls::{check_tolerance, control};
-use crate::command::message::{OUT_OF_TOLERANCE, printed, warn};
+use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::wrapped;
@@ -29,6 +29,7 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
     let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
     inputs.check(console)?;
     let machine = Machine::load(&args.machine)?;
+    tell_assumed_limits(&machine, target.stages(&machine));
     let mut files = inputs.outputs();
     let report = args.report.as_deref().map(|path| files.start(path)).transpose()?;
     let figure = args.figure.as_deref().map(|path| files.start(path)).transpose()?;

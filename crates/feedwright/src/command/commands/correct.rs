@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use crate::command::args::correct::CorrectArgs;
 use crate::command::console::Console;
 use crate::command::controls::{check_tolerance, control, print_correction};
-use crate::command::message::{OUT_OF_TOLERANCE, printed, warn};
+use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::command::table::{ConsoleTable, TableColumn};
 use crate::command::terminal::wrapped;
@@ -29,6 +29,7 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let mut out = args.out.as_deref().map(|path| files.start(path)).transpose()?;
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
     let reader = args.reader.settings()?;
+    tell_assumed_limits(&machine, target.stages(&machine));
     let job = CorrectJob { reader, ..CorrectJob::new(Program::in_file(&args.part), machine, target) };
     let bar = console.bar(0);
     let outcome = job.run(&bar)?;

@@ -12,11 +12,12 @@ use serde_json::json;
 
 use crate::command::args::plan::PlanArgs;
 use crate::command::console::Console;
-use crate::command::message::{printed, warn};
+use crate::command::message::{printed, remark, tell_assumed_limits, warn};
+use crate::command::progress::Bar;
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::cycle_time::along::BindingStretch;
 use crate::cycle_time::{CycleTime, cycle_time_by, limit_names};
-use crate::job::JobError;
+use crate::job::{Job, JobError};
 use crate::output::OutputFile;
 use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
 use crate::results_format::stamped;
@@ -35,9 +36,11 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
         warn(warning.into());
     }
     let bar = console.bar(0);
+    let (machine, path_um) = within_tolerance(args, machine, &program, &settings, &bar)?;
     let begun = Instant::now();
     // The program was checked from end to end before: a mistake here means that the file changed, and ends it.
     let steps = || Ok(path_steps(program.reader(settings.clone())?.map_while(std::result::Result::ok)));
+    tell_assumed_limits(&machine, stages);
     let constraints = Constraints::from(&machine);
     let plan = |bound: bool| cycle_time_by(stages, &machine, &constraints, bound, steps, &bar);
     let found = plan(false)?;
@@ -58,7 +61,8 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
         let mut value = serde_json::to_value(&found).into_diagnostic()?;
         value["part"] = json!(args.part.display().to_string());
         value["machine"] = json!(machine.name);
-        value["path_tolerance_um"] = json!(machine.limits.path_tolerance_um);
+        value["path_tolerance_um"] =
+            json!(stages.planner.needs_axes.then_some(constraints.path_tolerance_mm).flatten().map(|mm| 1e3 * mm));
         value["blocks_per_s"] = json!(found.blocks as f64 / took_s);
         if let Some(operated) = &operated {
             value["override"] = json!(operated);
@@ -68,7 +72,7 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
         writeln!(file).into_diagnostic()?;
         OutputFile::commit_all(vec![file], &bar)?;
     }
-    printed(print(args, &found, operated.as_ref(), took_s), ExitCode::SUCCESS)
+    printed(print(args, &found, path_um, operated.as_ref(), took_s), ExitCode::SUCCESS)
 }
 
 /// Stretches of the motion that are written, and that are shown.
@@ -106,30 +110,49 @@ fn print_along(out: &mut impl Write, found: &CycleTime) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The machine, with the tolerance of the arguments.
+/// The machine; with a tolerance, as a planner takes it that plans axis by axis.
 fn machine(args: &PlanArgs) -> Result<Machine> {
-    let mut machine = Machine::load(&args.machine)?;
+    let machine = Machine::load(&args.machine)?;
     let Some(tolerance_um) = args.tolerance else {
         return Ok(machine);
     };
     if !(LEAST_UM..=MOST_UM).contains(&tolerance_um) {
-        let help = "the unit is um: 0.01 mm is --tolerance 10";
-        let tolerance_um = shown(tolerance_um);
         return Err(miette!(
-            help = help,
-            "--tolerance is {tolerance_um} um; it must be from {LEAST_UM} to {MOST_UM} um"
+            help = "the unit is um: 0.01 mm is --tolerance 10",
+            "--tolerance is {} um; it must be from {LEAST_UM} to {MOST_UM} um",
+            shown(tolerance_um)
         ));
     }
-    if !machine.has_axis_limits() {
-        return Err(miette!(
-            help =
-                "give its axes max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3, and [limits] path_tolerance_um",
-            "--tolerance {tolerance_um} um: {} has no limits of its axes, and is planned on the programmed path",
-            machine.name
-        ));
+    let path_um = machine.limits.path_tolerance_um.unwrap_or(MOST_UM).min(tolerance_um);
+    Ok(machine.planned_by_axes(path_um.min(MOST_UM)))
+}
+
+/// With a tolerance of the tool, the machine whose path uses what the machine leaves of it, and the tolerance of that path, um. The default
+/// controller is simulated for it.
+fn within_tolerance(
+    args: &PlanArgs,
+    machine: Machine,
+    program: &Program,
+    settings: &feedwright_gcode::Settings,
+    bar: &Bar,
+) -> Result<(Machine, Option<f64>)> {
+    let Some(tolerance_um) = args.tolerance else {
+        return Ok((machine, None));
+    };
+    let mut job = Job::new(program.clone(), machine.clone());
+    (job.tolerance_um, job.reader) = (Some(tolerance_um), settings.clone());
+    let found = job.check()?.tolerance_plan(bar)?;
+    bar.clear();
+    if let Some(plan) = found {
+        return Ok((plan.machine, Some(plan.path_um)));
     }
-    machine.limits.path_tolerance_um = Some(tolerance_um);
-    Ok(machine)
+    let path_um = machine.limits.path_tolerance_um.unwrap_or(tolerance_um);
+    remark(&format!(
+        "{} is predicted to need more than {tolerance_um} um for its own error at these feedrates: the path is planned within {path_um} um. \
+         To slow down where that helps: feedwright run --fastest",
+        machine.name
+    ));
+    Ok((machine, Some(path_um)))
 }
 
 /// The stages that suit the machine, with the planner of the arguments.
@@ -138,6 +161,13 @@ fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
     let Some(name) = &args.planner else {
         return Ok(stages);
     };
+    if args.tolerance.is_some() && *name != stages.planner.name {
+        return Err(miette!(
+            help = "leave --planner out, or --tolerance; LinuxCNC's tolerance stands in the program, as G64 P",
+            "--tolerance is for the planner {}, and --planner is {name}",
+            stages.planner.name
+        ));
+    }
     let planner = feed_planner(name).ok_or_else(|| {
         let names: Vec<&str> = FEED_PLANNERS.iter().map(|member| member.name).collect();
         let near = nearest(name, &names).map_or_else(String::new, |near| format!("did you mean '{near}'? "));
@@ -168,8 +198,7 @@ fn request(args: &PlanArgs, stages: Stages) -> Result<Option<OperatorRequest>> {
     }
     if !stages.planner.limits_jerk {
         return Err(miette!(
-            help =
-                "give its axes max_velocity_mm_s, max_accel_mm_s2 and max_jerk_mm_s3, and [limits] path_tolerance_um",
+            help = "--planner time-optimal plans with them",
             "--override and --hold-at need a plan with limits of the jerk of each axis; {} plans without",
             stages.planner.name
         ));
@@ -184,7 +213,13 @@ const MOST_HOLD_S: f64 = 3.2e7;
 const LEAST_UM: f64 = 0.01;
 const MOST_UM: f64 = 1e4;
 
-fn print(args: &PlanArgs, found: &CycleTime, operated: Option<&OverrideTime>, took_s: f64) -> std::io::Result<()> {
+fn print(
+    args: &PlanArgs,
+    found: &CycleTime,
+    path_um: Option<f64>,
+    operated: Option<&OverrideTime>,
+    took_s: f64,
+) -> std::io::Result<()> {
     let json = args.json.as_deref();
     let mut out = tables([json]);
     let CycleTime { time_s, cutting_s, rapid_s, waiting_s, blocks, .. } = found;
@@ -206,6 +241,9 @@ fn print(args: &PlanArgs, found: &CycleTime, operated: Option<&OverrideTime>, to
     if let Some(violation) = found.largest_violation {
         writeln!(out, "{:<28} {violation:>12.6} of its limit", "largest use of a limit")?;
         writeln!(out, "{:<28} {:>12.3} um", "largest deviation", found.largest_deviation_um)?;
+    }
+    if let Some(path_um) = path_um {
+        writeln!(out, "{:<28} {path_um:>12.3} um", "tolerance of the path")?;
     }
     if !found.binding.is_empty() {
         writeln!(out, "what limits the speed")?;

@@ -10,14 +10,14 @@ use std::str::FromStr;
 use feedwright_gcode::Program;
 use feedwright_gcode::input::{self, is_standard_input};
 use feedwright_ident::{Columns, Log, Model};
-use feedwright_sim::{Machine, Watch, is_machine_path};
+use feedwright_sim::{Machine, Stages, Watch, is_machine_path};
 use miette::{Result, miette};
 
 use crate::command::args::run::RunArgs;
 use crate::command::console::Console;
 use crate::command::controllers::{find, settings};
 use crate::command::controls::control;
-use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell, warn};
+use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::{check_inputs, tables};
 use crate::controllers::{Choices, Controllers};
@@ -90,9 +90,11 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     let (controller, against) = (find(&args.controller, table)?, find(&args.against, table)?);
     let target = target(args.target.as_deref(), outputs.out.as_deref())?;
     let set = settings(&args.set, table, Some(controller), &[controller, against])?;
-    let mut machine = Machine::load(&args.machine)?;
-    if args.fastest && machine.limits.path_tolerance_um.is_none() {
-        machine.limits.path_tolerance_um = args.tolerance;
+    let machine = Machine::load(&args.machine)?;
+    if args.fastest {
+        tell_assumed_limits(&machine, Stages::of(&machine.planned_by_axes(1.0)));
+    } else if outputs.is_program()? {
+        tell_assumed_limits(&machine, target.stages(&machine));
     }
     let mut job = Job::new(Program::in_file(&args.part), machine);
     job.machine_file = machine_file.as_deref().map(input::name);

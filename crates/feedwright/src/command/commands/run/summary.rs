@@ -44,6 +44,9 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
     if let Some(plan) = &outcome.fastest {
         print_fastest(out, plan)?;
     }
+    if let Some(path_um) = outcome.path_um {
+        say(out, &path_share(path_um))?;
+    }
     print_written(out, outputs, outcome)
 }
 
@@ -113,6 +116,11 @@ fn print_exported(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<(
     print_correction(out, outcome)
 }
 
+/// What the planned path has of a tolerance of the tool.
+pub(in crate::command) fn path_share(path_um: f64) -> String {
+    format!("of the tolerance, {path_um:.2} um are the path's")
+}
+
 fn print_fastest(out: &mut dyn Write, plan: &FastestPlan) -> io::Result<()> {
     let FastestPlan { cycle, largest_um, rounds, machine, .. } = plan;
     let moving_s = cycle.cutting_s + cycle.rapid_s;
@@ -122,7 +130,7 @@ fn print_fastest(out: &mut dyn Write, plan: &FastestPlan) -> io::Result<()> {
         writeln!(out, "  {bound_s:.3} s for a tool without error, motion {:.4} times that", moving_s / bound_s)?;
     }
     if let Some(path_um) = machine.limits.path_tolerance_um {
-        writeln!(out, "  of the tolerance, {path_um:.2} um are the path's")?;
+        writeln!(out, "  {}", path_share(path_um))?;
     }
     for binding in &cycle.binding {
         writeln!(out, "  {:<16} binds {:>5.1} % of the motion", binding.limit, 100.0 * binding.share)?;
