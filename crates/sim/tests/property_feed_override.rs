@@ -67,7 +67,8 @@ fn check(name: &str, plan: &PublishedPlan, step: &ScaledStep, most_mm_s: f64) {
             assert!(motion.accel_mm_s2[k].abs() <= (1.0 + OVER) * AXIS.accel_mm_s2, "{name}: {motion:?} {step:?}");
             assert!(motion.jerk_mm_s3[k].abs() <= (1.0 + OVER) * AXIS.jerk_mm_s3, "{name}: {motion:?} {step:?}");
         }
-        assert!(distance(motion.velocity_mm_s, [0.0; 3]) <= (1.0 + OVER) * most_mm_s, "{name}: {motion:?}");
+        let speed_mm_s = distance(motion.velocity_mm_s, [0.0; 3]);
+        assert!(speed_mm_s <= (1.0 + OVER) * most_mm_s, "{name}: {speed_mm_s} of {most_mm_s} mm/s, {now:?}");
     }
 }
 
@@ -191,4 +192,76 @@ fn after_a_hold_the_motion_goes_on_to_the_end() {
         assert!(time_s < 10.0, "does not end: {:?}", scaling.now());
     }
     assert!(time_s > plan.end_s() + 0.2);
+}
+
+/// Sequences of overrides and holds at random moments, and those of the sweep.
+const SEQUENCES: u64 = 16;
+const MANY_SEQUENCES: u64 = 1000;
+
+/// What a sequence came to: ways of holds from 100 % over the ways that the axes need, each by itself.
+fn sequence(name: &str, plan: &PublishedPlan, feed_mm_s: f64, seed: u64) -> Vec<f64> {
+    let mut random = Random(seed);
+    let mut scaling = TimeScaling::new(plan, limits());
+    let (mut override_of_feeds, mut hold, mut until_s, mut time_s, mut holds) = (1.0, false, 0.0, 0.0, Vec::new());
+    let (mut most, mut began): (f64, Option<(f64, f64)>) = (1.0, None);
+    while !scaling.has_ended() {
+        if time_s >= until_s {
+            // From the twentieth second on it is let go, so that it ends.
+            let goes_on = time_s > 20.0;
+            hold = !goes_on && random.between(0.0, 1.0) < 0.3;
+            let is_whole = goes_on || random.between(0.0, 1.0) < 0.3;
+            override_of_feeds = if is_whole { 1.0 } else { random.between(0.0, 2.0) };
+            until_s = time_s + random.between(0.0, 0.3);
+            most = most.max(override_of_feeds);
+            let now = scaling.now();
+            let steady = now.rate == 1.0 && now.slope_1_s == 0.0;
+            began = (hold && steady).then(|| (now.tau_s, shortest_stop_mm(plan, &[AXIS; 3], now.tau_s)));
+        }
+        let step = scaling.step(override_of_feeds, hold);
+        check(name, plan, &step, feed_mm_s * most);
+        time_s += step.duration_s;
+        if let Some((tau_s, least_mm)) = began.filter(|_| stops(&scaling)) {
+            let way_mm = plan.length_mm(tau_s, scaling.now().tau_s);
+            holds.push(way_mm / least_mm);
+            began = None;
+        }
+        assert!(time_s < 200.0, "{name}, seed {seed}: does not end: {:?}", scaling.now());
+    }
+    holds
+}
+
+fn sequences(count: u64) {
+    let mut holds = Vec::new();
+    for seed in 1..=count {
+        let mut random = Random(1000 + seed);
+        let feed_mm_s = random.between(5.0, 200.0);
+        let plan = match seed % 4 {
+            0 => square(feed_mm_s),
+            1 => circle(feed_mm_s),
+            2 => {
+                let points: Vec<[f64; 3]> = (0..8).map(|_| [0, 1, 2].map(|_| random.between(0.0, 9.0))).collect();
+                published(polyline(&points, feed_mm_s, BLEND))
+            }
+            _ => {
+                let zigzag: Vec<[f64; 3]> = (0..12).map(|i| [f64::from(i), f64::from(i % 2) * 0.7, 0.0]).collect();
+                published(polyline(&zigzag, feed_mm_s, BLEND))
+            }
+        };
+        holds.extend(sequence("random", &plan, feed_mm_s, seed));
+    }
+    holds.sort_by(f64::total_cmp);
+    let parts = [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| holds[(part * (holds.len() - 1) as f64) as usize]);
+    eprintln!("{count} sequences, {} holds, ways over the least: {parts:.3?} (least, quartiles, largest)", holds.len());
+    assert!(parts[0] > 0.99, "no way is shorter than the least: {parts:?}");
+}
+
+#[test]
+fn overrides_and_holds_at_random_moments_keep_the_path_and_the_limits() {
+    sequences(SEQUENCES);
+}
+
+#[test]
+#[ignore = "a sweep, minutes: just sweep"]
+fn a_thousand_sequences_of_overrides_and_holds_keep_the_path_and_the_limits() {
+    sequences(MANY_SEQUENCES);
 }

@@ -25,7 +25,7 @@ pub use published::{PublishedPlan, PublishedSpan};
 use super::AxisMotion;
 use crate::constraints::AxisLimits;
 use crate::vector::norm;
-use landing::{Landing, bounded, keeps, landing, landing_anywhere, step};
+use landing::{Landing, bounded, keeps, landing, landing_anywhere, landing_within, step};
 
 /// Largest override.
 pub const MOST_OVERRIDE: f64 = 2.0;
@@ -39,6 +39,9 @@ const STILL_MM_S2: f64 = 1e-3;
 
 /// Rates are the same up to this.
 const ROUNDING: f64 = 1e-9;
+
+/// Most periods of a way to an override above 1 that ends without a slope.
+const SETTLING: u32 = 16;
 
 /// So often the interval between a choice that can be taken and one that cannot is halved.
 const HALVINGS: u32 = 6;
@@ -194,15 +197,22 @@ impl<'a> TimeScaling<'a> {
             // Where nothing faster is found, straight to what is wanted.
             self.safe = landing(self.plan, &self.limits, &self.now, wanted, 1.0 + ROUNDING).unwrap_or_default();
         }
+        // Where the override was lowered on the way up, the rate is above it for a while: no higher than it was going to be.
+        let most = wanted.max(1.0).max(self.now.rate).max(self.safe.highest()) + ROUNDING;
+        if wanted > 1.0
+            && let Some((step, behind)) = self.settling(wanted, towards, most)
+        {
+            self.safe = behind;
+            return step;
+        }
         let safe = self.safe.steps.pop_front();
         let mut good = safe.unwrap_or_else(|| step(self.plan, &self.limits, &self.now, 0.0));
-        let most = towards * MOST_BEND_1_S2;
-        let mut bad = bounded(self.plan, &self.limits, &self.now, most, good.bend_1_s2);
+        let mut bad = bounded(self.plan, &self.limits, &self.now, towards * MOST_BEND_1_S2, good.bend_1_s2);
         if (bad - good.bend_1_s2) * towards > 0.0 {
             let mut bend = bad;
             for _ in 0..HALVINGS {
                 let tried = step(self.plan, &self.limits, &self.now, bend);
-                if let Some(found) = self.way_behind(&tried, wanted, towards) {
+                if let Some(found) = self.way_behind(&tried, wanted, towards, most) {
                     (good, self.safe) = (tried, found);
                 } else {
                     bad = bend;
@@ -213,19 +223,25 @@ impl<'a> TimeScaling<'a> {
         good
     }
 
-    /// The way from behind a step to a rate that can stay, that does not pass the one that is wanted.
-    fn way_behind(&self, tried: &ScaledStep, wanted: f64, towards: f64) -> Option<Landing> {
+    /// The first step of a way of few periods to an override above 1, without a slope there, and the way behind that step: near the override
+    /// the fastest change would go up and down from period to period.
+    fn settling(&self, wanted: f64, towards: f64, most: f64) -> Option<(ScaledStep, Landing)> {
+        let way = landing_within(self.plan, &self.limits, &self.now, wanted, most, SETTLING)?;
+        let first = way.steps.front().copied().unwrap_or_else(|| step(self.plan, &self.limits, &self.now, 0.0));
+        Some((first, self.way_behind(&first, wanted, towards, most)?))
+    }
+
+    /// The way from behind a step to a rate that can stay, that does not pass the one that is wanted and rises to no more than `most`.
+    fn way_behind(&self, tried: &ScaledStep, wanted: f64, towards: f64, most: f64) -> Option<Landing> {
         if !keeps(self.plan, &self.limits, tried) {
             return None;
         }
         let next = tried.after(tried.duration_s);
-        if next.rate < 0.0 || (wanted - next.rate) * towards < 0.0 {
+        if next.rate < 0.0 || next.rate > most || (wanted - next.rate) * towards < 0.0 {
             return None;
         }
-        // Where the override was lowered on the way up, the rate is above it for a while.
-        let most = if next.rate > wanted.max(1.0) { f64::INFINITY } else { wanted.max(1.0) + ROUNDING };
         if wanted <= 1.0 {
-            let found = landing_anywhere(self.plan, &self.limits, &next, wanted, towards);
+            let found = landing_anywhere(self.plan, &self.limits, &next, wanted, towards, most);
             return found.or_else(|| landing(self.plan, &self.limits, &next, wanted, most));
         }
         // Above 1 no rate can stay but 1.

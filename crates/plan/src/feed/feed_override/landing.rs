@@ -54,6 +54,11 @@ impl Landing {
         self.steps.is_empty()
     }
 
+    /// The highest rate on it.
+    pub(super) fn highest(&self) -> f64 {
+        self.steps.iter().map(|step| step.after(step.duration_s).rate).fold(0.0, f64::max)
+    }
+
     /// The rate that can stay, where a way has ended with `found`.
     pub(super) fn rate(&self, found: f64) -> f64 {
         self.rate.unwrap_or(found).max(0.0)
@@ -117,6 +122,11 @@ fn interval(plan: &PublishedPlan, limits: &ScalingLimits, from: &ScaledTime, abo
 
 /// Whether all limits are kept in a step.
 pub(super) fn keeps(plan: &PublishedPlan, limits: &ScalingLimits, step: &ScaledStep) -> bool {
+    // Plan time does not run back, between moments either: the rate is a parabola.
+    let lowest_s = -step.from.slope_1_s / step.bend_1_s2;
+    if step.bend_1_s2 > 0.0 && (0.0..step.duration_s).contains(&lowest_s) && step.after(lowest_s).rate < -1e-12 {
+        return false;
+    }
     (0..=MOMENTS).all(|m| {
         let now = step.after(step.duration_s * f64::from(m) / f64::from(MOMENTS));
         if now.rate < -1e-12 {
@@ -143,11 +153,23 @@ pub(super) fn landing(
     rate: f64,
     most: f64,
 ) -> Option<Landing> {
+    landing_within(plan, limits, from, rate, most, u32::MAX)
+}
+
+/// The same in a number of periods at most.
+pub(super) fn landing_within(
+    plan: &PublishedPlan,
+    limits: &ScalingLimits,
+    from: &ScaledTime,
+    rate: f64,
+    most: f64,
+    periods: u32,
+) -> Option<Landing> {
     let t = limits.period_s;
     if from.slope_1_s == 0.0 && from.rate == rate {
         return Some(Landing { steps: VecDeque::new(), rate: Some(rate) });
     }
-    PERIODS.iter().find_map(|&n| {
+    PERIODS.iter().take_while(|&&n| n <= periods).find_map(|&n| {
         // Sum of the bends: -slope / T; their moment about the end: what is missing of the rate.
         let count = f64::from(n);
         let mean = -from.slope_1_s / (t * count);
@@ -175,13 +197,15 @@ pub(super) fn landing(
     })
 }
 
-/// The way to a rate without slope, from 0 to 1, that takes the slope away as fast as limits let it, without passing the rate that is wanted.
+/// The way to a rate without slope, from 0 to 1, that takes the slope away as fast as limits let it, without passing the rate that is wanted
+/// and without rising to more than `most`.
 pub(super) fn landing_anywhere(
     plan: &PublishedPlan,
     limits: &ScalingLimits,
     from: &ScaledTime,
     wanted: f64,
     towards: f64,
+    most: f64,
 ) -> Option<Landing> {
     let (mut steps, mut now) = (VecDeque::new(), *from);
     for _ in 0..MOST_STEPS {
@@ -199,7 +223,7 @@ pub(super) fn landing_anywhere(
         }
         now = next.after(next.duration_s);
         steps.push_back(next);
-        if now.rate < 0.0 || (wanted - now.rate) * towards < 0.0 {
+        if now.rate < 0.0 || now.rate > most || (wanted - now.rate) * towards < 0.0 {
             return None;
         }
     }
