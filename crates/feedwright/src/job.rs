@@ -30,7 +30,7 @@ use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_gcode::{self, Program, ReadError, Summary};
 use feedwright_ident::{Log, LogFinding, Model};
 use feedwright_plan::{AlignedPaths, Constraints, PlanSink, SpeedCaps, Step, Steps};
-use feedwright_sim::{Machine, Outcome, Row, Run, RunError, Sink, StageSteps, Stages, Watch, path_steps};
+use feedwright_sim::{Machine, Outcome, PlanCache, Row, Run, RunError, Sink, StageSteps, Stages, Watch, path_steps};
 use serde::{Deserialize, Serialize};
 
 use crate::controllers::{Choices, Entry, LQG_IDENTIFIED, Make, NothingIdentified, Setup, UNCORRECTED};
@@ -347,6 +347,7 @@ impl Job {
         Entry: Make<N>,
     {
         let (mut runs, mut without_identification) = (Vec::new(), Vec::new());
+        let kept = PlanCache::default();
         for entry in self.controllers() {
             watch.check()?;
             let mut steps = StageSteps::begin(watch, &format!("identifying for {}", entry.name));
@@ -363,7 +364,7 @@ impl Job {
             };
             let rows: &mut [&mut dyn Sink] = if judged { &mut *rows } else { &mut [] };
             let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), ..plan };
-            runs.push(self.cut_once(summary, entry, &mut *controller, plan, rows, watch)?);
+            runs.push(self.cut_once(summary, entry, &mut *controller, plan, &kept, rows, watch)?);
         }
         Ok((runs, without_identification))
     }
@@ -374,6 +375,7 @@ impl Job {
         entry: &Entry,
         controller: &mut dyn Controller<N>,
         PlannedCut { machine, path_um, caps, aligned, circles, looked_at }: PlannedCut<'_>,
+        kept: &PlanCache,
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<ReportedRun, JobError> {
@@ -393,7 +395,7 @@ impl Job {
                 None => steps,
             })
         };
-        let run = Run::on(machine).capped(caps).laps(entry.laps).watched(watch);
+        let run = Run::on(machine).capped(caps).laps(entry.laps).sharing(kept).watched(watch);
         let run = run.planned_to(looked_at);
         let run = match aligned {
             Some(aligned) => run.cut_aligned(aligned, controller, &mut sinks),

@@ -83,7 +83,7 @@ pub use constraints::{AxisLimits, Constraints, LimitsError, PathLimits};
 pub use feed::feed_override::{
     MOST_OVERRIDE, PublishedPlan, PublishedSpan, ScaledStep, ScalingLimits, TimeScaling, shortest_stop_mm,
 };
-pub use feed::plan::{Plan, PlanSink, Planned};
+pub use feed::plan::{KeptPlan, Plan, PlanSink, Planned};
 pub use feed::sections::{Section, SectionPlanner};
 pub use feed::time_optimal::{PlanCounts, TimeOptimal};
 pub use feed::trapezoid::Trapezoid;

@@ -87,7 +87,7 @@ pub use machine::{
     MachineError, Noise, Period, Squareness, Transmission, is_machine_path,
 };
 pub use number::{shown, to_four_digits};
-pub use pipeline::{Run, RunError, Stages, path_steps};
+pub use pipeline::{PlanCache, Run, RunError, Stages, path_steps};
 pub use plant::{Measurement, Plant};
 pub use reference::{Foot, Reference, Sample};
 pub use simulate::foot::settled_s;

@@ -7,14 +7,14 @@
 //! Whatever cuts goes through [`Run`]: the main job, the comparison, the experiments of the paper, the excitation of an
 //! identification, tests.
 
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use feedwright_control::Controller;
 use feedwright_gcode::ReadError;
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::{
-    AlignedPaths, BLENDS, BlendMember, BlendedSteps, Constraints, FEED_PLANNERS, FeedMember, LimitsError, PathError,
-    Pieces, Plan, PlanSink, Plc, SpeedCaps, Step, Steps,
+    AlignedPaths, BLENDS, BlendMember, BlendedSteps, Constraints, FEED_PLANNERS, FeedMember, KeptPlan, LimitsError,
+    PathError, Pieces, Plan, PlanSink, Plc, SpeedCaps, Step, Steps,
 };
 use thiserror::Error;
 
@@ -65,7 +65,7 @@ impl Stages {
         machine: &Machine,
         constraints: &Constraints,
     ) -> Result<Reference<'p>, LimitsError> {
-        self.reference_of(self.blended(steps, constraints), machine, constraints, None)
+        Ok(Reference::new(self.plan_of(self.blended(steps, constraints), machine, constraints)?))
     }
 
     /// The planned path beside the programmed one.
@@ -73,15 +73,14 @@ impl Stages {
         (self.blend.make)(steps, constraints)
     }
 
-    /// The reference of two paths that are there already.
-    fn reference_of<'p>(
+    /// The plan of two paths that are there already.
+    fn plan_of<'p>(
         self,
         blended: BlendedSteps<'p>,
         machine: &Machine,
         constraints: &Constraints,
-        sink: Option<&'p dyn PlanSink>,
-    ) -> Result<Reference<'p>, LimitsError> {
-        Ok(Reference::new(Plan::new(blended, constraints, self.planner, Plc::from(machine))?.told_to(sink)))
+    ) -> Result<Plan<'p>, LimitsError> {
+        Plan::new(blended, constraints, self.planner, Plc::from(machine))
     }
 }
 
@@ -103,7 +102,24 @@ pub struct Run<'a> {
     stages: Stages,
     laps: u32,
     plan_sink: Option<&'a dyn PlanSink>,
+    memory: Option<&'a PlanCache>,
     watch: &'a dyn Watch,
+}
+
+/// The plan of one path within one set of limits, for all cuts along it: the first that comes to its end leaves it here.
+#[derive(Debug, Default)]
+pub struct PlanCache(Mutex<Option<KeptPlan>>);
+
+impl PlanCache {
+    fn get(&self) -> Option<KeptPlan> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    fn keep(&self, plan: Option<KeptPlan>) {
+        if plan.is_some() {
+            *self.0.lock().unwrap_or_else(PoisonError::into_inner) = plan;
+        }
+    }
 }
 
 /// Why a cut was not made to its end.
@@ -151,7 +167,7 @@ impl From<Stopped> for RunError {
 impl<'a> Run<'a> {
     /// One lap on a machine, by the stages that suit it.
     pub fn on(machine: &'a Machine) -> Self {
-        Self { machine, caps: None, stages: Stages::of(machine), laps: 1, plan_sink: None, watch: &() }
+        Self { machine, caps: None, stages: Stages::of(machine), laps: 1, plan_sink: None, memory: None, watch: &() }
     }
 
     /// Sets the number of laps. All but the last are practice; only the last lap gives rows and the
@@ -177,6 +193,12 @@ impl<'a> Run<'a> {
     #[must_use]
     pub const fn planned_to(self, plan_sink: Option<&'a dyn PlanSink>) -> Self {
         Self { plan_sink, ..self }
+    }
+
+    /// With the plan of other cuts along the same path and within the same limits, which is not made again.
+    #[must_use]
+    pub const fn sharing(self, memory: &'a PlanCache) -> Self {
+        Self { memory: Some(memory), ..self }
     }
 
     /// Ended by this one.
@@ -218,16 +240,18 @@ impl<'a> Run<'a> {
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
+        let of_laps = PlanCache::default();
+        let memory = self.memory.or((self.laps > 1).then_some(&of_laps));
         controller.reset();
         for lap in 1..self.laps {
             // Noise differs from lap to lap, so a controller cannot gain from learning it.
             let seed = self.machine.noise.seed.wrapping_add(u64::from(lap) << LAP_SEED_SHIFT);
             let practice = self.machine.with_noise_seed(seed);
-            let practising = Run { machine: &practice, plan_sink: None, ..*self };
-            practising.lap(blended(&practising)?, controller, &mut [])?;
+            let practising = Run { machine: &practice, plan_sink: None, memory, ..*self };
+            practising.lap(&mut blended, controller, &mut [])?;
             controller.next_lap();
         }
-        self.lap(blended(self)?, controller, sinks)
+        Run { memory, ..*self }.lap(&mut blended, controller, sinks)
     }
 
     /// As [`Run::cut`], along the path of another program, with errors to the programmed one.
@@ -253,18 +277,28 @@ impl<'a> Run<'a> {
         self.stages.blended(steps, &self.constraints())
     }
 
-    fn lap<const N: usize>(
+    fn lap<'p, const N: usize>(
         &self,
-        blended: BlendedSteps<'_>,
+        blended: &mut impl FnMut(&Run<'_>) -> Result<BlendedSteps<'p>, ReadError>,
         controller: &mut dyn Controller<N>,
         sinks: &mut [&mut dyn Sink],
     ) -> Result<RunResult, RunError> {
-        let mut reference = self.stages.reference_of(blended, self.machine, &self.constraints(), self.plan_sink)?;
+        let plan = match self.memory.and_then(PlanCache::get) {
+            Some(kept) => Plan::again(&kept),
+            None => {
+                let plan = self.stages.plan_of(blended(self)?, self.machine, &self.constraints())?;
+                if self.memory.is_some() { plan.keeping() } else { plan }
+            }
+        };
+        let mut reference = Reference::new(plan.told_to(self.plan_sink));
         let result = simulate(self.machine, &mut reference, controller, sinks, self.watch)?;
-        match reference.fault() {
-            Some(fault) => Err(fault.clone().into()),
-            None => Ok(result),
+        if let Some(fault) = reference.fault() {
+            return Err(fault.clone().into());
         }
+        if let Some(memory) = self.memory {
+            memory.keep(reference.into_kept());
+        }
+        Ok(result)
     }
 }
 

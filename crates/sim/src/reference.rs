@@ -14,8 +14,8 @@ mod kept;
 use feedwright_gcode::canon::Canon;
 use feedwright_plan::vector::sub;
 use feedwright_plan::{
-    BLENDS, Constraints, FEED_PLANNERS, LimitsError, PathError, Phase, Piece, Pieces, Plan, Planned, Plc, Step, Steps,
-    TimedEvent, signed_distance_mm,
+    BLENDS, Constraints, FEED_PLANNERS, KeptPlan, LimitsError, PathError, Phase, Piece, Pieces, Plan, Planned, Plc,
+    Step, Steps, TimedEvent, signed_distance_mm,
 };
 use kept::KeptPath;
 use std::collections::VecDeque;
@@ -80,6 +80,11 @@ impl<'p> Reference<'p> {
     /// The reference of a plan.
     pub fn new(plan: Plan<'p>) -> Self {
         Self { plan, kept: KeptPath::default(), events: VecDeque::new(), planned_s: 0.0, ended: false }
+    }
+
+    /// All of the plan, where it was [kept](Plan::keeping) and read to its end.
+    pub fn into_kept(self) -> Option<KeptPlan> {
+        self.plan.into_kept()
     }
 
     /// Reference of a program, without a PLC, from the first member of [`BLENDS`] and of

@@ -2,7 +2,7 @@
 
 use feedwright::Statistics;
 use feedwright_control::Controller;
-use feedwright_sim::{Machine, Outcome, Row, Run, RunError, RunResult, Sink, Watch};
+use feedwright_sim::{Machine, Outcome, PlanCache, Row, Run, RunError, RunResult, Sink, Watch};
 
 use super::competitor::Competitor;
 use super::noise;
@@ -67,13 +67,14 @@ pub(super) fn row(
     competitor: &Competitor,
     controller: &mut dyn Controller<2>,
     seeds: &[u64],
+    plan: &PlanCache,
     watch: &dyn Watch,
 ) -> Result<ComparisonRow, RunError> {
     let mut errors = Errors::default();
     let mut measured = Vec::with_capacity(seeds.len());
     for (k, &seed) in seeds.iter().enumerate() {
         let machine = machine.with_noise_seed(seed);
-        let run = Run::on(&machine).laps(competitor.entry.laps).watched(watch);
+        let run = Run::on(&machine).laps(competitor.entry.laps).sharing(plan).watched(watch);
         let plotted: &mut [&mut dyn Sink] = if k == 0 { &mut [&mut errors] } else { &mut [] };
         let cut = cut(workpiece, controller, run, plotted)?;
         measured.push(CutNumbers::of(&cut));

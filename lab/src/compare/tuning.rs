@@ -12,7 +12,7 @@
 //! The search uses the noise seed of the machine file. No reported cut of a noisy machine uses it.
 use feedwright::{BASELINE, Choices, Entry, Make, Parameter, Setting, Setup};
 use feedwright_ident::quadratic_mean;
-use feedwright_sim::{Machine, Run, RunError, Watch};
+use feedwright_sim::{Machine, PlanCache, Run, RunError, Watch};
 use rayon::prelude::*;
 
 use super::cut::cut;
@@ -46,14 +46,18 @@ pub fn search(entry: &'static Entry, machine: &Machine, seed: u64, watch: &dyn W
     let workpieces = Workpiece::tuning();
     let base = CONTROLLERS.find(BASELINE).expect("the baseline is in the table");
     let open = Evaluation { rms_um: f64::INFINITY, time_s: f64::INFINITY, sound: true };
-    let open = Trial { entry: base, machine, workpieces: &workpieces, seed, watch, open }.evaluate(&[])?;
-    Trial { entry, machine, workpieces: &workpieces, seed, watch, open }.search()
+    let plans: Vec<_> = workpieces.iter().map(|_| PlanCache::default()).collect();
+    let (workpieces, plans) = (&workpieces, &plans);
+    let open = Trial { entry: base, machine, workpieces, plans, seed, watch, open }.evaluate(&[])?;
+    Trial { entry, machine, workpieces, plans, seed, watch, open }.search()
 }
 
 struct Trial<'a> {
     entry: &'static Entry,
     machine: &'a Machine,
     workpieces: &'a [Workpiece],
+    /// The plan of each.
+    plans: &'a [PlanCache],
     seed: u64,
     watch: &'a dyn Watch,
     open: Evaluation,
@@ -131,8 +135,8 @@ impl Trial<'_> {
         let mut controller = Make::<2>::make(self.entry, &mut Setup::new(self.machine, &choices));
         let run = Run::on(self.machine).laps(self.entry.laps).watched(self.watch);
         let (mut each_um, mut time_s, mut sound) = (Vec::with_capacity(self.workpieces.len()), 0.0, true);
-        for workpiece in self.workpieces {
-            let cut = cut(workpiece, &mut *controller, run, &mut [])?;
+        for (workpiece, plan) in self.workpieces.iter().zip(self.plans) {
+            let cut = cut(workpiece, &mut *controller, run.sharing(plan), &mut [])?;
             each_um.push(cut.joint_rms_um());
             time_s += cut.run.time_s;
             sound &= cut.is_sound();

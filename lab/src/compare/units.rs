@@ -1,10 +1,12 @@
 //! The work of a comparison in units: the cuts of a competitor on a machine, or the raising of the feed of a controller on a contour.
 //! A shard is every n-th unit. What a journal holds is not done again, and a comparison can be put together from journals alone.
 
+use std::collections::HashMap;
 use std::str::FromStr;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use feedwright::Entry;
-use feedwright_sim::{Machine, RunError, Watch};
+use feedwright_sim::{Machine, PlanCache, RunError, Watch};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -143,13 +145,16 @@ pub fn work_on(
     let units = shard.of(WorkUnit::all(options));
     let tuned = tune(options, &units, journal, watch)?;
     watch.begin("cutting", units.iter().map(|unit| unit.steps(options) as u64).sum());
+    let plans = Plans::default();
     let parts: Result<Vec<UnitResults>, RunError> = units
         .par_iter()
         .map(|unit| {
             let (on, entry) = unit.tuned_on(options);
             let values = tuned.iter().find(|tuned| tuned.machine == on.name && tuned.controller == entry.name);
             match unit {
-                WorkUnit::Cuts(machine, competitor) => cuts(options, machine, competitor, values, journal, watch),
+                WorkUnit::Cuts(machine, competitor) => {
+                    cuts(options, machine, competitor, values, journal, &plans, watch)
+                }
                 WorkUnit::Tolerance(machine, contour, entry) => {
                     raised(options, machine, contour, entry, values, journal, watch)
                 }
@@ -276,6 +281,17 @@ fn tune(
         .collect()
 }
 
+/// The plan of each workpiece on each machine, for all controllers that cut it there.
+#[derive(Default)]
+struct Plans(Mutex<HashMap<[String; 2], Arc<PlanCache>>>);
+
+impl Plans {
+    fn of(&self, workpiece: &Workpiece, machine: &Machine) -> Arc<PlanCache> {
+        let key = [workpiece.name.clone(), machine.name.clone()];
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).entry(key).or_default().clone()
+    }
+}
+
 /// The rows of a competitor on a machine: one for each workpiece.
 fn cuts(
     options: &ComparisonOptions,
@@ -283,6 +299,7 @@ fn cuts(
     competitor: &Competitor,
     tuned: Option<&Tuned>,
     journal: &Journal<Finished>,
+    plans: &Plans,
     watch: &dyn Watch,
 ) -> Result<UnitResults, RunError> {
     let seeds = cut::seeds(machine, options);
@@ -295,7 +312,8 @@ fn cuts(
             _ => {
                 let controller =
                     controller.get_or_insert_with(|| competitor.make(machine, &options.nominal, options.seed, tuned));
-                let row = cut::row(workpiece, machine, competitor, &mut **controller, &seeds, watch)?;
+                let plan = plans.of(workpiece, machine);
+                let row = cut::row(workpiece, machine, competitor, &mut **controller, &seeds, &plan, watch)?;
                 journal.add(&key, &Finished::Row(row.clone()));
                 row
             }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use feedwright::CutErrors;
 use feedwright::{BASELINE, Choices, Entry, Make, Setup, Statistics};
 use feedwright_control::Controller;
-use feedwright_sim::{Cancelled, Machine, Outcome, Run, RunError, RunResult, Watch};
+use feedwright_sim::{Cancelled, Machine, Outcome, PlanCache, Run, RunError, RunResult, Watch};
 use serde::{Deserialize, Serialize};
 
 use super::SweepOptions;
@@ -139,9 +139,10 @@ where
             entries.map(|entry| Make::make(entry, &mut Setup::new(machine, &choices)))
         });
         let [first, second] = controllers;
+        let plan = PlanCache::default();
         let one = |controller: &mut dyn Controller<N>, entry: &Entry| {
             let mut statistics = Statistics::new();
-            let run = Run::on(machine).laps(entry.laps).watched(watch);
+            let run = Run::on(machine).laps(entry.laps).sharing(&plan).watched(watch);
             match run.cut_steps(&program.steps, controller, &mut [&mut statistics]) {
                 Ok(run) => Ok(Figures::of(&run, &statistics, entry)),
                 Err(RunError::Cancelled(cancelled)) => Err(cancelled),

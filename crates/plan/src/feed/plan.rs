@@ -9,6 +9,7 @@ use crate::path::pieces::ArcLength;
 use crate::path::{MAX_REST_S, PathError, Piece, Rest};
 use crate::plc::Plc;
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// M-codes that take effect with the next motion and so do not interrupt it: digital and analogue outputs synchronised with
 /// motion.
@@ -33,8 +34,30 @@ pub trait PlanSink: Sync {
     fn planned(&self, planned: &Planned);
 }
 
+/// Most of what a plan hands out that is kept, 30 MB.
+const MOST_KEPT: usize = 100_000;
+
+/// A plan that was made, for more cuts of the same path within the same limits: all that it handed out.
+#[derive(Debug, Clone)]
+pub struct KeptPlan(Arc<[Planned]>);
+
 /// The plan of a path, made as it is read; `None` when all has been handed out.
 pub struct Plan<'p> {
+    source: PlanSource<'p>,
+    /// All that was handed out, where it is kept.
+    keeps: Option<Vec<Planned>>,
+    sink: Option<&'p dyn PlanSink>,
+}
+
+/// Where a plan comes from.
+enum PlanSource<'p> {
+    Made(Box<PlanInMaking<'p>>),
+    /// From this place on.
+    Kept(KeptPlan, usize),
+}
+
+/// A plan that is being made.
+struct PlanInMaking<'p> {
     steps: BlendedSteps<'p>,
     rapid_mm_s: f64,
     plc: Plc,
@@ -50,7 +73,6 @@ pub struct Plan<'p> {
     ready: VecDeque<Planned>,
     fault: Option<PathError>,
     finished: bool,
-    sink: Option<&'p dyn PlanSink>,
 }
 
 /// Something between two pieces.
@@ -82,7 +104,7 @@ impl<'p> Plan<'p> {
         if planner.needs_axes {
             constraints.check_axes()?;
         }
-        Ok(Self {
+        let made = PlanInMaking {
             steps,
             rapid_mm_s: constraints.path.rapid_mm_s,
             plc,
@@ -95,8 +117,26 @@ impl<'p> Plan<'p> {
             ready: VecDeque::new(),
             fault: None,
             finished: false,
-            sink: None,
-        })
+        };
+        Ok(Self { source: PlanSource::Made(Box::new(made)), keeps: None, sink: None })
+    }
+
+    /// The same plan once more, without planning.
+    pub fn again(kept: &KeptPlan) -> Self {
+        Self { source: PlanSource::Kept(kept.clone(), 0), keeps: None, sink: None }
+    }
+
+    /// Keeps what it hands out, for [`Plan::into_kept`].
+    #[must_use]
+    pub fn keeping(self) -> Self {
+        Self { keeps: Some(Vec::new()), ..self }
+    }
+
+    /// All that it handed out, where it came to its end without a fault and was not too long to be kept.
+    pub fn into_kept(self) -> Option<KeptPlan> {
+        let PlanSource::Made(made) = self.source else { return None };
+        let ended = made.finished && made.ready.is_empty() && made.between.is_empty() && made.fault.is_none();
+        self.keeps.filter(|_| ended).map(|all| KeptPlan(all.into()))
     }
 
     /// With one who is told of what it hands out.
@@ -107,9 +147,14 @@ impl<'p> Plan<'p> {
 
     /// Why the path ends early, if it does; known once the plan has ended.
     pub const fn fault(&self) -> Option<&PathError> {
-        self.fault.as_ref()
+        match &self.source {
+            PlanSource::Made(made) => made.fault.as_ref(),
+            PlanSource::Kept(..) => None,
+        }
     }
+}
 
+impl PlanInMaking<'_> {
     fn read_step(&mut self) {
         match self.steps.next() {
             Some(Ok(BlendedStep::Programmed(piece))) => self.ready.push_back(Planned::Programmed(piece)),
@@ -130,7 +175,6 @@ impl<'p> Plan<'p> {
         self.pieces += 1;
         self.last_mm = planned.piece.length_mm;
         self.ready.push_back(Planned::Piece(planned));
-        self.take_spans();
     }
 
     fn rest(&mut self, rest: Rest) {
@@ -160,23 +204,17 @@ impl<'p> Plan<'p> {
     }
 
     fn finish(&mut self) {
-        if !self.finished {
-            self.finished = true;
-            self.planner.finish();
-            self.take_spans();
-            self.happen_before(u64::MAX);
-        }
+        self.finished = true;
+        self.planner.finish();
     }
 
-    fn take_spans(&mut self) {
-        while let Some(span) = self.planner.pop() {
-            self.happen_before(span.piece);
-            let Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, jerk_mm_s3, motion } = span;
-            let tau_s = self.clock.advance(duration_s);
-            let phase =
-                Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, jerk_mm_s3, motion, rest: None };
-            self.ready.push_back(Planned::Phase(phase));
-        }
+    fn span(&mut self, span: Span) {
+        self.happen_before(span.piece);
+        let Span { piece, from_mm, duration_s, speed_mm_s, accel_mm_s2, jerk_mm_s3, motion } = span;
+        let tau_s = self.clock.advance(duration_s);
+        let phase =
+            Phase { tau_s, duration_s, piece, from_mm, speed_mm_s, accel_mm_s2, jerk_mm_s3, motion, rest: None };
+        self.ready.push_back(Planned::Phase(phase));
     }
 
     /// Hands out what comes before a planned piece.
@@ -217,17 +255,42 @@ impl Iterator for Plan<'_> {
     type Item = Planned;
 
     fn next(&mut self) -> Option<Planned> {
+        let planned = match &mut self.source {
+            PlanSource::Made(made) => made.next(),
+            PlanSource::Kept(kept, next) => {
+                *next += 1;
+                kept.0.get(*next - 1).cloned()
+            }
+        }?;
+        if let Some(all) = &mut self.keeps {
+            all.push(planned.clone());
+            if all.len() > MOST_KEPT {
+                self.keeps = None;
+            }
+        }
+        if let Some(sink) = self.sink {
+            sink.planned(&planned);
+        }
+        Some(planned)
+    }
+}
+
+impl PlanInMaking<'_> {
+    fn next(&mut self) -> Option<Planned> {
         loop {
             if let Some(planned) = self.ready.pop_front() {
-                if let Some(sink) = self.sink {
-                    sink.planned(&planned);
-                }
                 return Some(planned);
             }
-            if self.finished {
+            // One span at a time: a long block is planned while it is handed out.
+            if let Some(span) = self.planner.pop() {
+                self.span(span);
+            } else if !self.finished {
+                self.read_step();
+            } else if self.between.is_empty() {
                 return None;
+            } else {
+                self.happen_before(u64::MAX);
             }
-            self.read_step();
         }
     }
 }

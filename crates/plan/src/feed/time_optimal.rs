@@ -230,24 +230,41 @@ impl TimeOptimal {
     fn end_track(&mut self) {
         self.track.ended = true;
         self.track.look(&self.caps);
-        let only = self.track.only().filter(|_| self.from.s_mm == 0.0).filter(|piece| piece.curve.is_straight());
-        if let Some(piece) = only {
-            let (length_mm, feed_mm_s) = (piece.length_mm, self.track.least_mm_s(0.0, piece.length_mm));
-            let to_mm = piece.curve.at(length_mm).position_mm;
-            let steps = straight(self.from.motion.position_mm, to_mm, [0.0, length_mm], feed_mm_s, &self.caps);
-            self.hand_out(&steps);
-        } else {
-            while self.from.s_mm < self.track.end_mm {
-                self.plan_window();
-            }
-        }
+    }
+
+    /// The next track begins, where everything of this one is planned.
+    fn begin_track(&mut self) {
         self.track = Track::new(self.constraints.speed_caps.clone());
         self.tail.clear();
         (self.tolerance_mm, self.feed_mm_s) = (f64::INFINITY, 0.0);
     }
 
+    /// Whether enough is known for the next window.
+    fn is_due(&self) -> bool {
+        if self.track.ended {
+            return self.from.s_mm < self.track.end_mm;
+        }
+        !self.track.is_empty() && self.track.ahead_s(self.from.s_mm) > self.window() as f64 * self.step_s()
+    }
+
+    /// Plans what is due.
+    fn plan_due(&mut self) {
+        while self.is_due() {
+            self.plan_window();
+        }
+    }
+
     /// Commits the next part of the motion.
     fn plan_window(&mut self) {
+        let only = self.track.only().filter(|_| self.track.ended && self.from.s_mm == 0.0);
+        if let Some(piece) = only.filter(|piece| piece.curve.is_straight()) {
+            let (length_mm, feed_mm_s) = (piece.length_mm, self.track.least_mm_s(0.0, piece.length_mm));
+            let to_mm = piece.curve.at(length_mm).position_mm;
+            let steps = straight(self.from.motion.position_mm, to_mm, [0.0, length_mm], feed_mm_s, &self.caps);
+            self.hand_out(&steps);
+            self.from.s_mm = self.track.end_mm;
+            return;
+        }
         let rests = self.tail.is_empty();
         let left_mm = self.track.end_mm - self.from.s_mm;
         if rests && self.track.ended && left_mm < 2.0 * self.tolerance_mm {
@@ -488,8 +505,12 @@ impl FeedPlanner for TimeOptimal {
                 Some((tangent, Corner::ExactPath)) => angle(tangent, begin.tangent) > CORNER_RAD,
                 Some((_, Corner::Continuous { .. })) => false,
             };
+        // What is due is planned before more is known, however calls are spread.
+        self.plan_due();
         if rests && !self.track.is_empty() {
             self.end_track();
+            self.plan_due();
+            self.begin_track();
         }
         if self.track.is_empty() {
             let motion = AxisMotion { position_mm: begin.position_mm, ..AxisMotion::REST };
@@ -503,9 +524,6 @@ impl FeedPlanner for TimeOptimal {
         self.tolerance_mm = self.tolerance_mm.min(tolerance_mm);
         self.feed_mm_s = self.feed_mm_s.max(feed_mm_s);
         self.track.look(&self.caps);
-        while self.track.ahead_s(self.from.s_mm) > self.window() as f64 * self.step_s() {
-            self.plan_window();
-        }
     }
 
     fn finish(&mut self) {
@@ -515,6 +533,9 @@ impl FeedPlanner for TimeOptimal {
     }
 
     fn pop(&mut self) -> Option<Span> {
+        while self.ready.is_empty() && self.is_due() {
+            self.plan_window();
+        }
         self.ready.pop_front()
     }
 }
