@@ -13,7 +13,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use feedwright::{cycle_time, cycle_time_by};
+use feedwright::{CycleTimeOptions, cycle_time, cycle_time_by};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_plan::{Constraints, FeedPlanner, Piece, PlanCounts, Step, Steps, TimeOptimal, feed_planner};
 use feedwright_sim::{Machine, Stages, path_steps};
@@ -65,7 +65,7 @@ fn row(program: &Path, machine: &Machine) -> Result<(), Box<dyn std::error::Erro
     let steps = || Ok(Box::new(read.iter().cloned().map(Ok)) as Steps<'_>);
     let found = cycle_time(machine, true, steps, &())?;
     let stages = Stages { planner: feed_planner("linuxcnc").ok_or("no linuxcnc")?, ..Stages::of(machine) };
-    let linuxcnc = cycle_time_by(stages, machine, &constraints, false, steps, &())?;
+    let linuxcnc = cycle_time_by(stages, machine, &constraints, CycleTimeOptions::default(), steps, &())?;
     let whole_s = planned(&mut TimeOptimal::whole_within(&constraints), &read);
     let alone = Alone::of(&constraints, &read);
     let bound_s = found.bound_s.unwrap_or(f64::NAN);

@@ -5,16 +5,17 @@
 
 pub(crate) mod along;
 
-use std::collections::VecDeque;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, PoisonError};
 
 use feedwright_gcode::ReadError;
 use feedwright_gcode::canon::{Corner, EventKind};
-use feedwright_plan::vector::{distance, norm};
+use feedwright_plan::vector::{distance, dot, norm, sub};
 use feedwright_plan::{
-    AxisLimits, AxisMotion, Constraints, Phase, Piece, Plan, PlanSink, Planned, Plc, Steps, WHOLE_PROGRAM, feed_mm_s,
+    AxisLimits, AxisMotion, Constraints, FeedMember, PathLimits, Phase, Piece, Plan, PlanSink, Planned, Plc, Steps,
+    WHOLE_PROGRAM, feed_mm_s,
 };
-use feedwright_sim::{AXIS_NAMES, Machine, RunError, Stages, Watch};
+use feedwright_sim::{AXIS_NAMES, Cancelled, Machine, RunError, StageSteps, Stages, Watch};
 use serde::Serialize;
 
 use along::{BindingAlong, BindingStretch, LIMITS};
@@ -31,6 +32,16 @@ const TOLERANCE_BINDS: f64 = 0.8;
 /// A cap on the speed, which holds roughly, binds where so much of it is used.
 const CAP_BINDS: f64 = 0.98;
 
+/// A cut below this part of the programmed feedrate is slow: chips get thin, and a tool that only rubs wears.
+const SLOW: f64 = 0.8;
+
+/// Parts of the acceleration of the axes that LinuxCNC has along the path and across it where the path turns.
+const TANGENTIAL: f64 = 0.5;
+const NORMAL: f64 = 0.866;
+
+/// First of the limits along the path, in the order of [`limit_names`].
+const OF_PATH: usize = LIMITS - 3;
+
 /// The search for the nearest point covers this many tolerances of path to either side.
 const WAY: f64 = 10.0;
 /// Most pieces that the search for the nearest point covers to either side.
@@ -43,6 +54,28 @@ pub struct ToolTime {
     pub tool: u32,
     /// Motion and rests with it, s.
     pub time_s: f64,
+}
+
+/// Time of one line of the program.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LineTime {
+    /// Number of the line.
+    pub line: u32,
+    /// Motion and rests that it asks for, s, however often it runs.
+    pub time_s: f64,
+    /// Rests alone, s.
+    pub waiting_s: f64,
+}
+
+/// What is looked for beside the cycle time.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct CycleTimeOptions {
+    /// Plan once more for the bound of the motion.
+    pub bound: bool,
+    /// Keep the time of each line.
+    pub lines: bool,
+    /// Length of the path, mm, for the progress; 0 where it is not known.
+    pub length_mm: f64,
 }
 
 /// A limit with the part of the moving time in which it binds.
@@ -77,8 +110,13 @@ pub struct CycleTime {
     pub largest_deviation_um: f64,
     /// Time of each tool, in the order of use.
     pub tools: Vec<ToolTime>,
+    /// Part of the cutting time in which the planned speed is below 0.8 of the programmed feedrate.
+    pub slow_share: f64,
     /// What binds, the most frequent first; nothing that never does.
     pub binding: Vec<BindingShare>,
+    /// Time of each line in their order, where that was asked for.
+    #[serde(skip)]
+    pub lines: Vec<LineTime>,
     /// What binds where.
     #[serde(skip)]
     pub along: BindingAlong,
@@ -88,7 +126,9 @@ pub struct CycleTime {
 pub(crate) fn limit_names() -> Vec<String> {
     let of_axis = |name: &str| ["velocity", "acceleration", "jerk"].map(|limit| format!("{name} {limit}"));
     let axes = AXIS_NAMES.iter().flat_map(|name| of_axis(name));
-    ["feedrate", "tolerance"].map(str::to_owned).into_iter().chain(axes).collect()
+    let first = ["feedrate", "tolerance"].map(str::to_owned);
+    let of_path = ["acceleration along the path", "acceleration across the path", "corners"].map(str::to_owned);
+    first.into_iter().chain(axes).chain(of_path).collect()
 }
 
 /// Plans a program by the stages that suit a machine, `steps` once, and once more for the bound where `bound` asks for it.
@@ -116,10 +156,11 @@ pub fn cycle_time_within<'p>(
     steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
     watch: &dyn Watch,
 ) -> Result<CycleTime, RunError> {
-    cycle_time_by(Stages::of(machine), machine, constraints, bound, steps, watch)
+    let options = CycleTimeOptions { bound, ..CycleTimeOptions::default() };
+    cycle_time_by(Stages::of(machine), machine, constraints, options, steps, watch)
 }
 
-/// The same by stages of one's own choice.
+/// The same by stages of one's own choice, with more of it.
 ///
 /// # Errors
 /// As [`cycle_time`].
@@ -127,33 +168,54 @@ pub fn cycle_time_by<'p>(
     stages: Stages,
     machine: &Machine,
     constraints: &Constraints,
-    bound: bool,
+    options: CycleTimeOptions,
     mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
     watch: &dyn Watch,
 ) -> Result<CycleTime, RunError> {
     let mut plan =
         Plan::new((stages.blend.make)(steps()?, constraints), constraints, stages.planner, Plc::from(machine))?;
-    let mut sampler = Sampler::new(constraints, stages.planner.name);
+    let mut sampler = Sampler::new(constraints, stages.planner);
+    sampler.lines = options.lines.then(BTreeMap::new);
+    let mut progress = (options.length_mm > 0.0).then(|| StageSteps::begin(watch, "planning"));
     for planned in plan.by_ref() {
         watch.check()?;
         sampler.take(&planned);
+        if let Some(progress) = &mut progress {
+            progress.reach(sampler.sample.to_mm / options.length_mm);
+        }
     }
     if let Some(fault) = plan.fault() {
         return Err(fault.clone().into());
     }
     let mut result = sampler.finish();
-    if bound && stages.planner.needs_axes {
-        let blended = (stages.blend.make)(steps()?, constraints);
+    if options.bound && stages.planner.needs_axes {
         let mut time_s = 0.0;
-        for planned in Plan::new(blended, constraints, &WHOLE_PROGRAM, Plc::default())? {
-            watch.check()?;
-            if let Planned::Phase(Phase { duration_s, rest: None, .. }) = planned {
-                time_s += duration_s;
-            }
-        }
+        bound_of_motion(constraints, steps, |phase| {
+            time_s += phase.duration_s;
+            watch.check()
+        })?;
         result.bound_s = Some(time_s);
     }
     Ok(result)
+}
+
+/// Plans each path from rest to rest as a whole, and hands out the phases of motion of each path once it is planned: what no plan can be
+/// faster than by much.
+///
+/// # Errors
+/// As [`cycle_time`].
+pub(crate) fn bound_of_motion<'p>(
+    constraints: &Constraints,
+    mut steps: impl FnMut() -> Result<Steps<'p>, ReadError>,
+    mut moves: impl FnMut(&Phase) -> Result<(), Cancelled>,
+) -> Result<(), RunError> {
+    let blended = (Stages::default().blend.make)(steps()?, constraints);
+    for planned in Plan::new(blended, constraints, &WHOLE_PROGRAM, Plc::default())? {
+        if let Planned::Phase(phase @ Phase { rest: None, .. }) = &planned {
+            moves(phase)?;
+        }
+    }
+    Ok(())
 }
 
 /// The same of a plan that is made in any case, for a cut: it is told of it.
@@ -161,8 +223,8 @@ pub fn cycle_time_by<'p>(
 pub(crate) struct CycleTimeOfCut<'a>(Mutex<Sampler<'a>>);
 
 impl<'a> CycleTimeOfCut<'a> {
-    /// Of a plan within constraints, by a planner with this name.
-    pub(crate) fn new(constraints: &'a Constraints, planner: &str) -> Self {
+    /// Of a plan within constraints, by a planner.
+    pub(crate) fn new(constraints: &'a Constraints, planner: &'static FeedMember) -> Self {
         Self(Mutex::new(Sampler::new(constraints, planner)))
     }
 
@@ -185,6 +247,8 @@ struct PiecePlace {
     index: usize,
     s_mm: f64,
     line: u32,
+    /// F, where it cuts.
+    programmed_mm_s: Option<f64>,
     feed_mm_s: f64,
     tolerance_mm: f64,
 }
@@ -193,6 +257,7 @@ struct PiecePlace {
 #[derive(Debug)]
 struct Sampler<'a> {
     constraints: &'a Constraints,
+    planner: &'static FeedMember,
     result: CycleTime,
     pieces: VecDeque<Piece>,
     /// Number of the first piece that is kept.
@@ -201,24 +266,31 @@ struct Sampler<'a> {
     selected: u32,
     /// Time in which each limit binds, in the order of [`limit_names`].
     bound_s: [f64; LIMITS],
+    /// Time of each line, where it is kept.
+    lines: Option<BTreeMap<u32, LineTime>>,
+    /// Cutting time below [`SLOW`] of the programmed feedrate, s.
+    slow_s: f64,
     /// The sample under way.
     sample: BindingStretch,
 }
 
 impl<'a> Sampler<'a> {
-    fn new(constraints: &'a Constraints, planner: &str) -> Self {
+    fn new(constraints: &'a Constraints, planner: &'static FeedMember) -> Self {
         let result = CycleTime {
-            planner: planner.to_owned(),
+            planner: planner.name.to_owned(),
             tools: vec![ToolTime { tool: 0, time_s: 0.0 }],
             ..CycleTime::default()
         };
         Self {
             constraints,
+            planner,
             result,
             pieces: VecDeque::new(),
             first: 0,
             selected: 0,
             bound_s: [0.0; LIMITS],
+            lines: None,
+            slow_s: 0.0,
             sample: BindingStretch::default(),
         }
     }
@@ -247,8 +319,9 @@ impl<'a> Sampler<'a> {
         if let Some(tool) = self.result.tools.last_mut() {
             tool.time_s += duration_s;
         }
-        if phase.rest.is_some() {
+        if let Some(line) = phase.rest {
             self.result.waiting_s += duration_s;
+            self.line_takes(line, duration_s, duration_s);
             return;
         }
         while self.first + (MOST_PIECES as u64) < phase.piece && self.pieces.len() > 1 {
@@ -268,9 +341,11 @@ impl<'a> Sampler<'a> {
             index,
             s_mm: piece.s_mm,
             line: piece.line,
+            programmed_mm_s: piece.cutting.then_some(piece.feed_mm_s),
             feed_mm_s: feed_mm_s(piece, self.constraints),
             tolerance_mm: self.tolerance_mm(piece),
         };
+        self.line_takes(at.line, duration_s, 0.0);
         let count = (duration_s / SAMPLE_S).ceil().max(1.0);
         for i in 0..count as u32 {
             self.look_at(phase, at, duration_s * (f64::from(i) + 0.5) / count, duration_s / count);
@@ -283,7 +358,7 @@ impl<'a> Sampler<'a> {
 
     /// Looks at a moment of a phase, which stands for so much time.
     fn look_at(&mut self, phase: &Phase, at: PiecePlace, t: f64, time_s: f64) {
-        let PiecePlace { index, s_mm, line, feed_mm_s, tolerance_mm } = at;
+        let PiecePlace { index, s_mm, line, programmed_mm_s, feed_mm_s, tolerance_mm } = at;
         let to_mm = s_mm + phase.place_mm(t);
         let way_mm = phase.speed_mm_s(t) * time_s;
         self.sample = BindingStretch { duration_s: time_s, to_mm, way_mm, lines: [line, line], ..Default::default() };
@@ -299,10 +374,61 @@ impl<'a> Sampler<'a> {
             // Where the speed is held down for the tool to stay within the tolerance, it is the tolerance that binds.
             let used = if speed_mm_s >= CAP_BINDS * cap_mm_s { 1.0 } else { away_mm / tolerance_mm };
             self.binds(1, used, TOLERANCE_BINDS, time_s);
+            if !self.planner.limits_jerk {
+                let (along, across) = self.shares_of_acceleration(&motion);
+                self.path([speed_mm_s / feed_mm_s, along / TANGENTIAL, across / NORMAL], time_s);
+            }
         } else {
-            self.binds(0, phase.speed_mm_s(t) / feed_mm_s, BINDS, time_s);
+            let PathLimits { tangential_accel_mm_s2, normal_accel_mm_s2, .. } = self.constraints.path;
+            let (speed_mm_s, accel_mm_s2) = (phase.speed_mm_s(t), phase.accel_mm_s2 + phase.jerk_mm_s3 * t);
+            let curvature_1_mm = self.pieces[index].curve.curvature(phase.place_mm(t));
+            let feedrate = speed_mm_s / feed_mm_s;
+            let across = speed_mm_s * speed_mm_s * curvature_1_mm / normal_accel_mm_s2;
+            self.binds(0, feedrate, BINDS, time_s);
+            self.path([feedrate, accel_mm_s2.abs() / tangential_accel_mm_s2, across], time_s);
+        }
+        if programmed_mm_s.is_some_and(|feed_mm_s| self.sample.way_mm < SLOW * feed_mm_s * time_s) {
+            self.slow_s += time_s;
         }
         self.result.along.push(&self.sample);
+    }
+
+    /// What binds a planner that keeps limits along and across the path, by the use of feedrate and of both: what is slower than the
+    /// feedrate, and neither speeds up nor turns as fast as it may, is held down by a corner.
+    fn path(&mut self, [feedrate, along, across]: [f64; 3], time_s: f64) {
+        self.binds(OF_PATH, along, BINDS, time_s);
+        self.binds(OF_PATH + 1, across, BINDS, time_s);
+        if feedrate.max(along).max(across) < BINDS {
+            self.binds(OF_PATH + 2, 1.0, BINDS, time_s);
+        }
+    }
+
+    /// The acceleration along and across the motion, each over what the axes can in its direction.
+    fn shares_of_acceleration(&self, motion: &AxisMotion) -> (f64, f64) {
+        let AxisMotion { velocity_mm_s, accel_mm_s2, .. } = motion;
+        let speed_mm_s = norm(*velocity_mm_s);
+        if speed_mm_s == 0.0 {
+            return (0.0, 0.0);
+        }
+        let tangent = velocity_mm_s.map(|part| part / speed_mm_s);
+        let along_mm_s2 = dot(*accel_mm_s2, tangent);
+        let along = tangent.map(|part| along_mm_s2 * part);
+        let axes = &self.constraints.axes;
+        let used = |part: [f64; 3]| {
+            let ratio = |(k, part_mm_s2): (usize, f64)| {
+                axes.get(k).or(axes.last()).map_or(0.0, |limits| part_mm_s2.abs() / limits.accel_mm_s2)
+            };
+            part.into_iter().enumerate().map(ratio).fold(0.0, f64::max)
+        };
+        (used(along), used(sub(*accel_mm_s2, along)))
+    }
+
+    fn line_takes(&mut self, line: u32, time_s: f64, waiting_s: f64) {
+        if let Some(lines) = &mut self.lines {
+            let of_line = lines.entry(line).or_insert(LineTime { line, time_s: 0.0, waiting_s: 0.0 });
+            of_line.time_s += time_s;
+            of_line.waiting_s += waiting_s;
+        }
     }
 
     fn tolerance_mm(&self, piece: &Piece) -> f64 {
@@ -381,6 +507,8 @@ impl<'a> Sampler<'a> {
             .collect();
         result.binding.sort_by(|a, b| b.share.total_cmp(&a.share));
         result.tools.retain(|tool| tool.time_s > 0.0);
+        result.slow_share = self.slow_s / result.cutting_s.max(f64::MIN_POSITIVE);
+        result.lines = self.lines.unwrap_or_default().into_values().collect();
         result
     }
 }

@@ -121,7 +121,7 @@ pub use correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
 pub use correct::arc_fit::{ArcFit, FitPoint};
 pub use correct::exported::{ExportedCut, ExportedFigures};
 pub use correct::{CorrectJob, CorrectOutcome, MacroLanguage, TARGETS, TargetControl, deterministic};
-pub use cycle_time::{CycleTime, cycle_time, cycle_time_by, cycle_time_within};
+pub use cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time, cycle_time_by, cycle_time_within};
 pub use fastest::{FastestError, FastestPlan, TolerancePlan, fastest, plan_within};
 #[cfg(feature = "files")]
 pub use identifier_cache::files::folder as cache_folder;

@@ -109,6 +109,7 @@ impl OutputFile {
         for file in &mut files {
             file.out.flush().map_err(|error| OutputError::from_io(error, &file.shown))?;
         }
+        let _decided = part_files::held();
         watch.check()?;
         // What can still be refused goes first.
         let (beside, elsewhere): (Vec<_>, Vec<_>) =
@@ -134,6 +135,15 @@ impl OutputFile {
             },
         }
     }
+}
+
+/// Ends the process with an exit code, without the files under way. Waits for files that take their places already.
+pub(crate) fn exit_without_files(code: u8) -> ! {
+    for path in part_files::held().iter() {
+        // One that took its place is no longer there.
+        let _ = fs::remove_file(path);
+    }
+    std::process::exit(code.into())
 }
 
 /// Whether a target is the standard output; `./-` is a file of that name.

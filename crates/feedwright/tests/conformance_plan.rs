@@ -1,6 +1,10 @@
 //! `feedwright plan`: the cycle time of a program, on machines with and without limits of their axes.
 
-use crate::command::Folder;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use crate::command::{Folder, Ran};
+use feedwright::TARGETS;
 use feedwright_plan::FEED_PLANNERS;
 use serde_json::Value;
 
@@ -115,4 +119,65 @@ fn an_override_and_a_hold_change_the_time_of_the_plan() {
     folder.run(&["plan", "two.ngc", "--machine", "m.toml", "--hold-at", "-1"]).refused(&["--hold-at", "-1"]);
     let without = ["plan", "two.ngc", "--machine", "tnv40", "--override", "50"];
     folder.run(&without).refused(&["trapezoid", "--planner time-optimal"]);
+}
+
+#[test]
+fn the_time_of_each_line_adds_up_under_every_control() {
+    let folder = folder();
+    for target in TARGETS {
+        let found = planned(&folder, &["--machine", "m.toml", "--for", target.name, "--lines", "l.csv"]);
+        let lines = found["lines"].as_array().unwrap();
+        let sum = |key: &str| lines.iter().map(|line| line[key].as_f64().unwrap()).sum::<f64>();
+        assert!((sum("time_s") - found["time_s"].as_f64().unwrap()).abs() < 1e-9, "{}: {found}", target.name);
+        assert!((sum("waiting_s") - found["waiting_s"].as_f64().unwrap()).abs() < 1e-9, "{}: {found}", target.name);
+        let dwell = lines.iter().find(|line| line["line"] == 5).unwrap();
+        assert_eq!(dwell["waiting_s"], 0.5);
+        let text = folder.text("l.csv");
+        assert!(text.starts_with("line,time_s,waiting_s,text\n") && text.contains(",\"G1 X10\"\n"), "{text}");
+    }
+    folder.file("quote.ngc", "G21 F600\nG1 X1 (a \"b\")\nM2\n");
+    folder.run(&["plan", "quote.ngc", "--machine", "m.toml", "--lines", "l.csv"]).succeeded();
+    assert!(folder.text("l.csv").contains("\"G1 X1 (a \"\"b\"\")\"\n"), "{}", folder.text("l.csv"));
+    let both = ["plan", "two.ngc", "--machine", "m.toml", "--for", "grbl", "--planner", "linuxcnc"];
+    assert_eq!(folder.run(&both).code, Some(2));
+}
+
+#[test]
+fn what_binds_is_named_under_every_planner() {
+    let folder = folder();
+    let star = concat!(env!("CARGO_MANIFEST_DIR"), "/../../parts/star.ngc");
+    for machine in ["tnv40", "workshop"] {
+        for planner in FEED_PLANNERS {
+            let ran = folder.run(&["plan", star, "--machine", machine, "--planner", planner.name]).succeeded();
+            assert!(!ran.stdout.contains("no limit binds"), "{machine}, {}: {}", planner.name, ran.stdout);
+        }
+    }
+    // From rest to rest over 1 mm at 100 mm/s2 nothing but the acceleration binds.
+    folder.file("short.ngc", "G21 F6000\nG1 X1\nM2\n");
+    folder.run(&["plan", "short.ngc", "--machine", "tnv40", "--json", "p.json"]).succeeded();
+    let found: Value = serde_json::from_slice(&folder.read("p.json")).unwrap();
+    assert_eq!(found["binding"][0]["limit"], "acceleration along the path");
+    assert!((found["binding"][0]["share"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{found}");
+    assert!(found["slow_share"].as_f64().unwrap() > 1.0 - 1e-9, "{found}");
+}
+
+#[test]
+#[cfg(unix)]
+fn an_interrupt_ends_a_long_solution_at_once_and_leaves_no_file() {
+    let folder = folder();
+    // One path of thousands of windows: as a whole it is one step of the search for the bound.
+    let points: String = (0..4000).map(|i| format!("X{} Y{}\n", i % 7 * i % 11, i % 5 * i % 13)).collect();
+    folder.file("long.ngc", format!("G21 G64 F6000\nG1 X0 Y0\n{points}M2\n"));
+    let before = folder.content();
+    let mut command = folder.command();
+    command.args(["plan", "long.ngc", "--machine", "workshop", "--bound", "--json", "p.json"]);
+    let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_secs(2));
+    let sent = Command::new("kill").arg("-INT").arg(child.id().to_string()).status().unwrap();
+    let begun = Instant::now();
+    let ran = Ran::from(child.wait_with_output().unwrap());
+    assert!(sent.success() && ran.code == Some(130), "{ran:?}");
+    // A second, and what a busy machine adds.
+    assert!(begun.elapsed() < Duration::from_secs(5), "{:?}", begun.elapsed());
+    assert_eq!(folder.content(), before);
 }

@@ -1,7 +1,7 @@
 //! Programs that no planner likes: axes that move along, events and dwells between, ends in the middle, very many very short blocks.
 
 use crate::sweep::part_or_whole;
-use feedwright::{CycleTime, cycle_time, cycle_time_by};
+use feedwright::{CycleTime, CycleTimeOptions, cycle_time, cycle_time_by};
 use feedwright_gcode::{Reader, Settings};
 use feedwright_plan::{Constraints, feed_planner};
 use feedwright_sim::{Machine, Stages, path_steps};
@@ -133,7 +133,9 @@ fn limits_that_are_none_are_refused_by_name() {
             };
             let stages = Stages { planner: feed_planner("time-optimal").unwrap(), ..Stages::default() };
             let constraints = Constraints::from(&machine);
-            let refused = cycle_time_by(stages, &machine, &constraints, false, steps, &()).unwrap_err().to_string();
+            let refused = cycle_time_by(stages, &machine, &constraints, CycleTimeOptions::default(), steps, &())
+                .unwrap_err()
+                .to_string();
             assert!(refused.contains(name), "{name} = {value}: {refused}");
         }
     }

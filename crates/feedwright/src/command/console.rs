@@ -4,11 +4,15 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::command::message::INTERRUPTED;
+use crate::command::message::{INTERRUPTED, interrupted as tell_interrupted};
 use crate::command::progress::Bar;
+use crate::output::exit_without_files;
 
 /// Signals that follow each other faster are one: some shells send it to the process and to its group.
 const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Time in which work that was interrupted may end by itself.
+const GRACE: Duration = Duration::from_millis(700);
 
 /// The terminal of a command.
 pub struct Console {
@@ -22,13 +26,19 @@ impl Console {
         Self { quiet, interrupted: Arc::default() }
     }
 
-    /// From here on Ctrl-C, or a request to terminate, ends the work at the next chance, so that no file is left half-written;
-    /// another one, [`PATIENCE`] later or more, ends the process.
+    /// From here on Ctrl-C, or a request to terminate, ends the work at the next chance, so that no file is left half-written. Work that
+    /// has no such chance within [`GRACE`] ends with the process; so does all work at another signal, [`PATIENCE`] later or more.
     pub(crate) fn listen(&self) {
         let interrupted = self.interrupted.clone();
         let mut first: Option<Instant> = None;
         let listening = ctrlc::set_handler(move || {
-            interrupted.store(true, Ordering::Relaxed);
+            if !interrupted.swap(true, Ordering::Relaxed) {
+                std::thread::spawn(|| {
+                    std::thread::sleep(GRACE);
+                    tell_interrupted();
+                    exit_without_files(INTERRUPTED);
+                });
+            }
             if first.get_or_insert_with(Instant::now).elapsed() > PATIENCE {
                 std::process::exit(INTERRUPTED.into());
             }

@@ -10,8 +10,9 @@ const MOST: usize = 2000;
 /// Time of a stretch at first, s.
 const FIRST_S: f64 = 1e-3;
 
-/// Number of limits: feedrate, tolerance, and velocity, acceleration and jerk of three axes.
-pub(crate) const LIMITS: usize = 11;
+/// Number of limits: feedrate, tolerance, velocity, acceleration and jerk of three axes, and acceleration along the path, across it, and
+/// corners.
+pub(crate) const LIMITS: usize = 14;
 
 /// A stretch of the motion.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]

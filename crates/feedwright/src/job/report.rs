@@ -99,7 +99,7 @@ impl Job {
         constraints: &'a Constraints,
     ) -> Option<CycleTimeOfCut<'a>> {
         let cut = self.shows_limits() && fastest.is_none() && aligned.is_none();
-        cut.then(|| CycleTimeOfCut::new(constraints, Stages::of(&self.machine).planner.name))
+        cut.then(|| CycleTimeOfCut::new(constraints, Stages::of(&self.machine).planner))
     }
 
     /// The limits that bind along the path; `None` if the page does not show them. `known` has them

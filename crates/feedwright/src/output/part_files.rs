@@ -7,7 +7,8 @@
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::TempPath;
 
@@ -16,6 +17,14 @@ const SUFFIX: &str = ".part";
 /// Attempts to create a file. An attempt fails if another process removes the file before it is
 /// locked.
 const ATTEMPTS: usize = 8;
+
+/// The files that this process began. Whoever holds the lock decides what becomes of them.
+static BEGUN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+/// Keeps the files under way as they are until the guard is dropped.
+pub(super) fn held() -> MutexGuard<'static, Vec<PathBuf>> {
+    BEGUN.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// A file under way.
 pub(super) struct PartFile {
@@ -33,6 +42,7 @@ impl PartFile {
             let lock = file.try_clone()?;
             hold(&lock);
             if path.exists() {
+                held().push(path.to_path_buf());
                 return Ok((file, Self { path, _lock: lock }));
             }
         }

@@ -27,6 +27,12 @@ pub(crate) struct PlanArgs {
     /// Planner in place of the one that suits the machine: trapezoid, time-optimal, unlimited, or linuxcnc, which plans as LinuxCNC 2.9 does.
     #[arg(long, value_name = "NAME")]
     pub(crate) planner: Option<String>,
+    /// Plan as this control does, and list the time of each line: generic, linuxcnc, grbl or fanuc.
+    #[arg(long = "for", value_name = "CONTROL", conflicts_with = "planner")]
+    pub(crate) target: Option<String>,
+    /// Write the time of each line as a table: line, time_s, waiting_s and its text.
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) lines: Option<PathBuf>,
     /// Plan each path from rest to rest as a whole too, and tell its time: what no plan can be faster than by much.
     #[arg(long)]
     pub(crate) bound: bool,

@@ -1,22 +1,24 @@
 //! `feedwright plan`: the cycle time of a program, and what binds it.
-use std::io::Write;
+use std::io::{BufRead, Write};
 use std::process::ExitCode;
-use std::time::Instant;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::{Duration, Instant};
 
 use feedwright_gcode::Program;
 use feedwright_gcode::suggestion::nearest;
 use feedwright_plan::{Constraints, FEED_PLANNERS, MOST_OVERRIDE, feed_planner};
-use feedwright_sim::{Machine, Stages, path_steps, shown};
+use feedwright_sim::{Cancelled, Machine, Stages, Watch, path_steps, shown};
 use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
 
 use crate::command::args::plan::PlanArgs;
 use crate::command::console::Console;
+use crate::command::controls::control;
 use crate::command::message::{printed, remark, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::cycle_time::along::BindingStretch;
-use crate::cycle_time::{CycleTime, cycle_time_by, limit_names};
+use crate::cycle_time::{CycleTime, CycleTimeOptions, LineTime, bound_of_motion, cycle_time_by, limit_names};
 use crate::job::{Job, JobError};
 use crate::output::OutputFile;
 use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
@@ -30,6 +32,7 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let request = request(args, stages)?;
     let mut files = inputs.outputs();
     let json = args.json.as_deref().map(|path| files.start(path)).transpose()?;
+    let lines = args.lines.as_deref().map(|path| files.start(path)).transpose()?;
     let (program, settings) = (Program::in_file(&args.part), args.reader.settings()?);
     let summary = program.check(settings.clone()).map_err(JobError::from)?;
     for warning in summary.warnings {
@@ -42,21 +45,26 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let steps = || Ok(path_steps(program.reader(settings.clone())?.map_while(std::result::Result::ok)));
     tell_assumed_limits(&machine, stages);
     let constraints = Constraints::from(&machine);
-    let plan = |bound: bool| cycle_time_by(stages, &machine, &constraints, bound, steps, &bar);
-    let found = plan(false)?;
+    let options = CycleTimeOptions {
+        bound: false,
+        lines: args.lines.is_some() || args.target.is_some(),
+        length_mm: summary.feed_mm + summary.rapid_mm,
+    };
+    let mut found = cycle_time_by(stages, &machine, &constraints, options, steps, &bar)?;
     let took_s = begun.elapsed().as_secs_f64();
     // The bound is no part of what planning takes.
-    let found = if args.bound {
-        let bound_s = plan(true)?.bound_s;
-        CycleTime { bound_s, ..found }
+    let bound = if args.bound && stages.planner.needs_axes {
+        Some(bound(&program, &settings, constraints.clone(), &bar)?)
     } else {
-        found
+        None
     };
+    found.bound_s = bound.as_ref().filter(|bound| bound.is_whole).map(|bound| bound.time_s);
     let operated = match request {
         Some(request) => override_time(&machine, stages, steps()?, request, &bar)?,
         None => None,
     };
     bar.clear();
+    let mut complete = Vec::new();
     if let Some(mut file) = json {
         let mut value = serde_json::to_value(&found).into_diagnostic()?;
         value["part"] = json!(args.part.display().to_string());
@@ -68,11 +76,89 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
             value["override"] = json!(operated);
         }
         value["along"] = along(&found);
+        if options.lines {
+            value["lines"] = json!(found.lines);
+        }
         serde_json::to_writer_pretty(&mut file, &stamped(value)).into_diagnostic()?;
         writeln!(file).into_diagnostic()?;
-        OutputFile::commit_all(vec![file], &bar)?;
+        complete.push(file);
     }
-    printed(print(args, &found, path_um, operated.as_ref(), took_s), ExitCode::SUCCESS)
+    if let Some(mut file) = lines {
+        write_lines(&mut file, &program, &found.lines).into_diagnostic()?;
+        complete.push(file);
+    }
+    OutputFile::commit_all(complete, &bar)?;
+    printed(print(args, &found, bound.as_ref(), path_um, operated.as_ref(), took_s), ExitCode::SUCCESS)
+}
+
+/// Longest search for the bound, s.
+const MOST_BOUND_S: u64 = 60;
+
+/// The bound of the motion, as far as it was found in [`MOST_BOUND_S`].
+#[derive(Debug, Clone, Copy, Default)]
+struct Bound {
+    /// Time of the motion with each path from rest to rest planned as a whole, s.
+    time_s: f64,
+    /// Motions of the program that this is for.
+    motions: u64,
+    is_whole: bool,
+}
+
+/// Looks for the bound. One long path is one step of that, which nothing ends from outside: it is left to itself when the time is over.
+fn bound(
+    program: &Program,
+    settings: &feedwright_gcode::Settings,
+    constraints: Constraints,
+    bar: &Bar,
+) -> Result<Bound> {
+    bar.begin("planning each path as a whole", 1);
+    let (sender, receiver) = mpsc::channel();
+    let (program, settings) = (program.clone(), settings.clone());
+    std::thread::spawn(move || {
+        let mut so_far = Bound::default();
+        let steps = || Ok(path_steps(program.reader(settings.clone())?.map_while(std::result::Result::ok)));
+        let all = bound_of_motion(&constraints, steps, |phase| {
+            so_far = Bound { time_s: so_far.time_s + phase.duration_s, motions: phase.piece + 1, is_whole: false };
+            // Nobody listens any more: the time is over.
+            sender.send(Ok(so_far)).map_err(|_| Cancelled)
+        });
+        let _ = sender.send(all.map(|()| Bound { is_whole: true, ..so_far }));
+    });
+    let mut found = Bound::default();
+    let until = bar.clock() + Duration::from_secs(MOST_BOUND_S);
+    while !found.is_whole && bar.clock() < until {
+        bar.check()?;
+        match receiver.recv_timeout(Duration::from_millis(100)) {
+            Ok(next) => found = next?,
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => break,
+        }
+    }
+    Ok(found)
+}
+
+/// The time of each line with its text.
+fn write_lines(out: &mut impl Write, program: &Program, lines: &[LineTime]) -> std::io::Result<()> {
+    writeln!(out, "line,time_s,waiting_s,text")?;
+    let (text, _) = program.text()?;
+    let mut texts = text.split(b'\n').zip(1_u32..);
+    for LineTime { line, time_s, waiting_s } in lines {
+        let text = texts.find(|(_, number)| number == line).map_or(Ok(Vec::new()), |(text, _)| text)?;
+        let text = String::from_utf8_lossy(&text).trim().replace('"', "\"\"");
+        writeln!(out, "{line},{time_s:.6},{waiting_s:.6},\"{text}\"")?;
+    }
+    Ok(())
+}
+
+/// Lines that take longest, and how many of them are listed.
+fn print_lines(out: &mut impl Write, found: &CycleTime) -> std::io::Result<()> {
+    let mut lines: Vec<&LineTime> = found.lines.iter().collect();
+    lines.sort_by(|a, b| b.time_s.total_cmp(&a.time_s));
+    writeln!(out, "lines that take longest, of {}", lines.len())?;
+    for LineTime { line, time_s, .. } in lines.into_iter().take(SHOWN) {
+        writeln!(out, "  {:<26} {time_s:>12.3} s", format!("line {line}"))?;
+    }
+    Ok(())
 }
 
 /// Stretches of the motion that are written, and that are shown.
@@ -158,13 +244,14 @@ fn within_tolerance(
 /// The stages that suit the machine, with the planner of the arguments.
 fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
     let stages = Stages::of(machine);
-    let Some(name) = &args.planner else {
+    let target = args.target.as_deref().map(control).transpose()?;
+    let Some(name) = args.planner.as_deref().or(target.and_then(|target| target.planner)) else {
         return Ok(stages);
     };
-    if args.tolerance.is_some() && *name != stages.planner.name {
+    if args.tolerance.is_some() && name != stages.planner.name {
         return Err(miette!(
-            help = "leave --planner out, or --tolerance; LinuxCNC's tolerance stands in the program, as G64 P",
-            "--tolerance is for the planner {}, and --planner is {name}",
+            help = "leave --tolerance out; LinuxCNC's tolerance stands in the program, as G64 P",
+            "--tolerance is for the planner {}, and this one is {name}",
             stages.planner.name
         ));
     }
@@ -216,12 +303,13 @@ const MOST_UM: f64 = 1e4;
 fn print(
     args: &PlanArgs,
     found: &CycleTime,
+    bound: Option<&Bound>,
     path_um: Option<f64>,
     operated: Option<&OverrideTime>,
     took_s: f64,
 ) -> std::io::Result<()> {
-    let json = args.json.as_deref();
-    let mut out = tables([json]);
+    let files = || [args.json.as_deref(), args.lines.as_deref()];
+    let mut out = tables(files());
     let CycleTime { time_s, cutting_s, rapid_s, waiting_s, blocks, .. } = found;
     writeln!(out, "{:<28} {time_s:>12.3} s, planned by {}", "cycle time", found.planner)?;
     for (name, part_s) in [("cutting", cutting_s), ("rapids", rapid_s), ("waiting", waiting_s)] {
@@ -238,6 +326,10 @@ fn print(
             (cutting_s + rapid_s) / bound_s
         )?;
     }
+    if let Some(Bound { time_s, motions, .. }) = bound.filter(|bound| !bound.is_whole) {
+        let name = format!("bound after {MOST_BOUND_S} s");
+        writeln!(out, "{name:<28} {time_s:>12.3} s for {motions} of {blocks} motions; no more was found")?;
+    }
     if let Some(violation) = found.largest_violation {
         writeln!(out, "{:<28} {violation:>12.6} of its limit", "largest use of a limit")?;
         writeln!(out, "{:<28} {:>12.3} um", "largest deviation", found.largest_deviation_um)?;
@@ -251,12 +343,16 @@ fn print(
     for binding in &found.binding {
         writeln!(out, "  {:<26} {:>12.1} % of the motion", binding.limit, 100.0 * binding.share)?;
     }
+    writeln!(out, "{:<28} {:>12.1} % of the cutting time", "below 0.8 of F", 100.0 * found.slow_share)?;
     print_along(&mut out, found)?;
+    if !found.lines.is_empty() {
+        print_lines(&mut out, found)?;
+    }
     writeln!(out, "{:<28} {:>12.0} blocks/s", "planned", *blocks as f64 / took_s)?;
     if let Some(operated) = operated {
         print_operated(args, operated, &mut *out)?;
     }
-    tell_written(&mut *out, [json])
+    tell_written(&mut *out, files())
 }
 
 fn print_operated(args: &PlanArgs, operated: &OverrideTime, out: &mut dyn Write) -> std::io::Result<()> {
