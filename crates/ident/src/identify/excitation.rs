@@ -4,7 +4,7 @@
 use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
 use feedwright_plan::vector::{add_scaled, sub};
-use feedwright_sim::{Machine, Run, path_steps};
+use feedwright_sim::{Machine, Run, Stages, path_steps};
 use rand::RngExt;
 
 use super::recording::{RecordedKnot, Recording};
@@ -29,7 +29,7 @@ pub(super) fn record<const N: usize>(machine: &Machine, excitation: &Excitation,
                 lap: Vec::new(),
             };
             // A lap that diverges simply ends.
-            Run::on(machine)
+            cut_on(machine)
                 .cut(|| Ok(path_steps([Canon::Motion(motion.clone())])), &mut excitation, &mut [])
                 .expect("a circle on a machine that was checked, no sinks");
             excitation.lap
@@ -37,6 +37,11 @@ pub(super) fn record<const N: usize>(machine: &Machine, excitation: &Excitation,
         .collect();
     let (servo_s, feed_period_s) = (machine.period.servo_s, excitation.period_s(machine));
     Recording { servo_s, feed_period_s, stretches }
+}
+
+/// Planned with constant accelerations on every machine: offsets excite the axes more than any plan, and a circle is planned in no time.
+fn cut_on(machine: &Machine) -> Run<'_> {
+    Run::on(machine).stages(Stages::default())
 }
 
 /// Cuts all laps one after the other, with offsets in all of them.
@@ -52,7 +57,7 @@ pub(super) fn record_in_one<const N: usize>(machine: &Machine, excitation: &Exci
         to_mm: [0.0; N],
         lap: Vec::new(),
     };
-    Run::on(machine)
+    cut_on(machine)
         .cut(|| Ok(path_steps(motions.clone())), &mut excitation_controller, &mut [])
         .expect("circles on a machine that was checked, no sinks");
     let (servo_s, feed_period_s) = (machine.period.servo_s, excitation.period_s(machine));
