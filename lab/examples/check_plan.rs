@@ -194,7 +194,7 @@ fn bound_s(canon: Vec<Canon>, machine: &Machine) -> f64 {
     let machine = machine.clone();
     std::thread::spawn(move || {
         let constraints = Constraints::from(&machine);
-        let steps = (Stages::of(&machine).blend.make)(path_steps(canon.into_iter()), &constraints);
+        let steps = (Stages::of(&machine).blend.make)(path_steps(canon), &constraints);
         let plan = Plan::new(steps, &constraints, &WHOLE_PROGRAM, Plc::default());
         let time_s = plan.map(|plan| plan.filter_map(|planned| moving(&planned)).map(|phase| phase.duration_s).sum());
         // The other end is gone where the time was over.

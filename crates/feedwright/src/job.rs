@@ -232,7 +232,9 @@ impl Job {
         let circles = self.circles()?;
         let constraints = Constraints::from(machine);
         let looked_at = self.looks_at_cut(fastest.as_ref(), aligned.as_ref(), &constraints);
+        let kept = PlanCache::default();
         let plan = PlannedCut {
+            kept: &kept,
             machine,
             path_um: planned.and_then(|machine| machine.limits.path_tolerance_um),
             caps: fastest.as_ref().map(|plan| &plan.caps),
@@ -347,7 +349,6 @@ impl Job {
         Entry: Make<N>,
     {
         let (mut runs, mut without_identification) = (Vec::new(), Vec::new());
-        let kept = PlanCache::default();
         for entry in self.controllers() {
             watch.check()?;
             let mut steps = StageSteps::begin(watch, &format!("identifying for {}", entry.name));
@@ -364,7 +365,7 @@ impl Job {
             };
             let rows: &mut [&mut dyn Sink] = if judged { &mut *rows } else { &mut [] };
             let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), ..plan };
-            runs.push(self.cut_once(summary, entry, &mut *controller, plan, &kept, rows, watch)?);
+            runs.push(self.cut_once(summary, entry, &mut *controller, plan, rows, watch)?);
         }
         Ok((runs, without_identification))
     }
@@ -374,8 +375,7 @@ impl Job {
         summary: &Summary,
         entry: &Entry,
         controller: &mut dyn Controller<N>,
-        PlannedCut { machine, path_um, caps, aligned, circles, looked_at }: PlannedCut<'_>,
-        kept: &PlanCache,
+        PlannedCut { machine, path_um, caps, kept, aligned, circles, looked_at }: PlannedCut<'_>,
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
     ) -> Result<ReportedRun, JobError> {
@@ -465,6 +465,8 @@ struct PlannedCut<'a> {
     path_um: Option<f64>,
     /// Bounds on the speed along the path.
     caps: Option<&'a Arc<SpeedCaps>>,
+    /// The plan, for all controllers.
+    kept: &'a PlanCache,
     aligned: Option<&'a AlignedPaths>,
     circles: &'a [FullCircle],
     /// Who is told of the plan.

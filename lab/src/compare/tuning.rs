@@ -233,8 +233,10 @@ mod tests {
         // Its defaults take a third longer than uncorrected, which the search may not.
         let entry = CONTROLLERS.find("fuzzy-feedrate").unwrap();
         let nothing = Evaluation { rms_um: f64::INFINITY, time_s: f64::INFINITY, sound: true };
+        let plans: Vec<_> = workpieces.iter().map(|_| PlanCache::default()).collect();
         let evaluate = |entry: &'static Entry, settings: &[Setting]| {
-            let trial = Trial { entry, machine: &machine, workpieces: &workpieces, seed: 1, watch: &(), open: nothing };
+            let (machine, workpieces, plans) = (&machine, &workpieces, &plans);
+            let trial = Trial { entry, machine, workpieces, plans, seed: 1, watch: &(), open: nothing };
             trial.evaluate(settings).unwrap()
         };
         let open = evaluate(CONTROLLERS.find(BASELINE).unwrap(), &[]);
