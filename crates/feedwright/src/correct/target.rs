@@ -15,8 +15,8 @@ pub struct TargetControl {
     pub name: &'static str,
     /// What it stands for, for lists.
     pub about: &'static str,
-    /// FeedMember of the family of feed planners; none is the one that suits the machine.
-    pub planner: Option<&'static str>,
+    /// Name of its feed planner.
+    pub planner: &'static str,
     /// How blocks of a corrected stretch meet; none is as in the program, and without exact stops.
     pub corner: Option<Corner>,
     /// Most characters of a line.
@@ -44,8 +44,8 @@ pub enum MacroLanguage {
 pub const TARGETS: &[TargetControl] = &[
     TargetControl {
         name: "generic",
-        about: "any control with look-ahead and arcs: the planner that suits the machine",
-        planner: None,
+        about: "any control with look-ahead and arcs: constant acceleration along the path",
+        planner: "trapezoid",
         corner: None,
         columns: 120,
         decimals: 5,
@@ -54,7 +54,7 @@ pub const TARGETS: &[TargetControl] = &[
     TargetControl {
         name: "linuxcnc",
         about: "LinuxCNC 2.9: its own planner, with the limits that the machine file has of each axis",
-        planner: Some("linuxcnc"),
+        planner: "linuxcnc",
         corner: Some(Corner::Continuous { tolerance_mm: Some(0.001), merge_mm: Some(0.0) }),
         columns: 120,
         decimals: 5,
@@ -63,7 +63,7 @@ pub const TARGETS: &[TargetControl] = &[
     TargetControl {
         name: "grbl",
         about: "grbl: constant acceleration along the path, lines of 80 characters",
-        planner: Some("trapezoid"),
+        planner: "trapezoid",
         corner: None,
         columns: 80,
         decimals: 4,
@@ -72,7 +72,7 @@ pub const TARGETS: &[TargetControl] = &[
     TargetControl {
         name: "fanuc",
         about: "Fanuc and its relatives: constant acceleration along the path, steps of 1 um",
-        planner: Some("trapezoid"),
+        planner: "trapezoid",
         corner: None,
         columns: 120,
         decimals: 3,
@@ -88,9 +88,8 @@ impl TargetControl {
 
     /// How it plans on a machine.
     pub fn stages(&self, machine: &Machine) -> Stages {
-        let planner = self.planner.and_then(feed_planner);
         let own = Stages::of(machine);
-        Stages { planner: planner.unwrap_or(own.planner), ..own }
+        Stages { planner: feed_planner(self.planner).unwrap_or(own.planner), ..own }
     }
 
     /// Whether it runs loops, subroutines and parameters as a program of a dialect has them.

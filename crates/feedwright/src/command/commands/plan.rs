@@ -245,7 +245,7 @@ fn within_tolerance(
 fn stages(args: &PlanArgs, machine: &Machine) -> Result<Stages> {
     let stages = Stages::of(machine);
     let target = args.target.as_deref().map(control).transpose()?;
-    let Some(name) = args.planner.as_deref().or(target.and_then(|target| target.planner)) else {
+    let Some(name) = args.planner.as_deref().or(target.map(|target| target.planner)) else {
         return Ok(stages);
     };
     if args.tolerance.is_some() && name != stages.planner.name {
