@@ -12,7 +12,7 @@ fn corrected(text: &str, target: &'static TargetControl) -> CorrectOutcome {
 fn job(text: &str, target: &'static TargetControl) -> CorrectJob {
     // LinuxCNC plans by the limits of each axis.
     let machine =
-        if target.planner == Some("linuxcnc") { with_axis_limits() } else { Machine::load("tnv40".as_ref()).unwrap() };
+        if target.planner == "linuxcnc" { with_axis_limits() } else { Machine::load("tnv40".as_ref()).unwrap() };
     CorrectJob::new(Program::from_text("part.ngc", text), machine, target)
 }
 

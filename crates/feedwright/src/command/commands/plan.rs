@@ -210,7 +210,9 @@ fn machine(args: &PlanArgs) -> Result<Machine> {
         ));
     }
     let path_um = machine.limits.path_tolerance_um.unwrap_or(MOST_UM).min(tolerance_um);
-    Ok(machine.planned_by_axes(path_um.min(MOST_UM)))
+    let planned = machine.planned_by_axes(path_um.min(MOST_UM));
+    tell_assumed_limits(&machine, Stages::of(&planned));
+    Ok(planned)
 }
 
 /// With a tolerance of the tool, the machine whose path uses what the machine leaves of it, and the tolerance of that path, um. The default
