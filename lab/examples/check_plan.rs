@@ -4,7 +4,7 @@
 //!     cargo run --release -p feedwright-lab --example check_plan -- [--machine NAME] [--tolerance UM] [--bound] [--seed S --count N] [PROGRAM...]
 //!
 //! A row for each program, and the largest and median values behind them. `use` is the largest share of a limit; `off um` the largest
-//! distance of the plan from the path, `uncut um` of the path from the plan. Programs come from files, and from the generator of the sweeps
+//! distance of the plan from the path, `uncut um` of the path from the plan, `of it` the first over the tolerance there. Programs come from files, and from the generator of the sweeps
 //! with `--seed`. A long program is shortened to its first motions of 60 s. Programs that are not read, or have splines or rotary axes,
 //! are named and left out.
 
@@ -63,8 +63,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         programs.extend(drawn.into_iter().map(|made| (made.job.program.name.clone(), made.case.text())));
     }
     let machine = machine.planned_by_axes(tolerance_um);
-    println!("| Program | motions | time s | / bound | use | of | off um | uncut um | x real time | blocks/s |");
-    println!("|---|--:|--:|--:|--:|---|--:|--:|--:|--:|");
+    println!(
+        "| Program | motions | time s | / bound | use | of | off um | of it | uncut um | x real time | blocks/s |"
+    );
+    println!("|---|--:|--:|--:|--:|---|--:|--:|--:|--:|--:|");
     let mut rows = Vec::new();
     for (name, text) in programs {
         match Row::of(&name, &text, &machine, bound) {
@@ -90,6 +92,7 @@ fn summary(rows: &[Row]) {
         ("time / bound", (|row| row.time_s / row.bound_s) as fn(&Row) -> f64),
         ("use of a limit", |row| row.used),
         ("off, um", |row| 1e3 * row.off_mm),
+        ("off / tolerance", |row| row.off_share),
         ("uncut, um", |row| 1e3 * row.uncut_mm),
         ("x real time", |row| row.time_s / row.took_s),
         ("blocks/s", |row| row.motions as f64 / row.took_s),
@@ -109,6 +112,7 @@ struct Row {
     /// Limit that is used most.
     limit: String,
     off_mm: f64,
+    off_share: f64,
     uncut_mm: f64,
     took_s: f64,
 }
@@ -136,14 +140,14 @@ impl Row {
         let mut ruler = Ruler::new(&path, &constraints);
         runs(&phases, |positions| ruler.run(positions));
         let uncut_mm = ruler.uncut_mm();
-        let Ruler { used, limit, off_mm, .. } = ruler;
-        Ok(Self { motions, time_s, bound_s, used, limit, off_mm, uncut_mm, took_s })
+        let Ruler { used, limit, off_mm, off_share, .. } = ruler;
+        Ok(Self { motions, time_s, bound_s, used, limit, off_mm, off_share, uncut_mm, took_s })
     }
 
     fn print(&self, name: &str) {
-        let Self { motions, time_s, bound_s, used, limit, off_mm, uncut_mm, took_s } = self;
+        let Self { motions, time_s, bound_s, used, limit, off_mm, off_share, uncut_mm, took_s } = self;
         println!(
-            "| {name} | {motions} | {time_s:.3} | {:.4} | {used:.6} | {limit} | {:.3} | {:.3} | {:.1} | {:.0} |",
+            "| {name} | {motions} | {time_s:.3} | {:.4} | {used:.6} | {limit} | {:.3} | {off_share:.4} | {:.3} | {:.1} | {:.0} |",
             time_s / bound_s,
             1e3 * off_mm,
             1e3 * uncut_mm,
@@ -304,6 +308,8 @@ struct Ruler<'a> {
     used: f64,
     limit: String,
     off_mm: f64,
+    /// The largest distance over the tolerance there.
+    off_share: f64,
     /// Least distance of each point of the path from the plan.
     reached_mm: Vec<f64>,
 }
@@ -311,7 +317,17 @@ struct Ruler<'a> {
 impl<'a> Ruler<'a> {
     fn new(path: &'a WantedPath, constraints: &'a Constraints) -> Self {
         let reached_mm = vec![f64::INFINITY; path.points.len()];
-        Self { path, constraints, nearest: 0, at_mm: 0.0, used: 0.0, limit: String::new(), off_mm: 0.0, reached_mm }
+        Self {
+            path,
+            constraints,
+            nearest: 0,
+            at_mm: 0.0,
+            used: 0.0,
+            limit: String::new(),
+            off_mm: 0.0,
+            off_share: 0.0,
+            reached_mm,
+        }
     }
 
     fn uses(&mut self, share: f64, limit: impl FnOnce() -> String) {
@@ -346,7 +362,8 @@ impl<'a> Ruler<'a> {
     fn place(&mut self, point: Point, next: Point) -> f64 {
         let WantedPath { points, at_mm, motion, motions } = self.path;
         let machine_mm = self.constraints.path_tolerance_mm.unwrap_or(0.01);
-        let window_mm = WINDOW * machine_mm + 2.0 * distance(point, next);
+        let tolerance_mm = |chord: usize| motions[motion[(chord + 1).min(motion.len() - 1)]].1.unwrap_or(machine_mm);
+        let window_mm = WINDOW * tolerance_mm(self.nearest).max(machine_mm) + 2.0 * distance(point, next);
         let from_mm = self.at_mm;
         let first = at_mm.partition_point(|at| *at < from_mm - window_mm).saturating_sub(1);
         let (mut least, mut nearest) = (f64::INFINITY, self.nearest);
@@ -368,7 +385,8 @@ impl<'a> Ruler<'a> {
         }
         self.nearest = nearest;
         self.off_mm = self.off_mm.max(least);
-        let tolerance_mm = motions[motion[(nearest + 1).min(motion.len() - 1)]].1.unwrap_or(machine_mm);
+        let tolerance_mm = tolerance_mm(nearest);
+        self.off_share = self.off_share.max(least / tolerance_mm);
         let [lo, hi] = [-1.0, 1.0].map(|side| {
             let at = at_mm[nearest] + side * (4.0 * tolerance_mm + distance(points[nearest], point));
             at_mm.partition_point(|place| *place < at).min(motion.len() - 1)

@@ -527,6 +527,7 @@ impl FeedPlanner for TimeOptimal {
     }
 
     fn finish(&mut self) {
+        self.plan_due();
         if !self.track.is_empty() {
             self.end_track();
         }

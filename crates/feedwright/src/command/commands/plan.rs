@@ -1,13 +1,15 @@
 //! `feedwright plan`: the cycle time of a program, and what binds it.
+
+mod bound;
+
 use std::io::{BufRead, Write};
 use std::process::ExitCode;
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use feedwright_gcode::Program;
 use feedwright_gcode::suggestion::nearest;
 use feedwright_plan::{Constraints, FEED_PLANNERS, MOST_OVERRIDE, feed_planner};
-use feedwright_sim::{Cancelled, Machine, Stages, Watch, path_steps, shown};
+use feedwright_sim::{Machine, Stages, path_steps, shown};
 use miette::{IntoDiagnostic, Result, miette};
 use serde_json::json;
 
@@ -18,11 +20,12 @@ use crate::command::message::{printed, remark, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::{ProgramInputs, tables, tell_written};
 use crate::cycle_time::along::BindingStretch;
-use crate::cycle_time::{CycleTime, CycleTimeOptions, LineTime, bound_of_motion, cycle_time_by, limit_names};
+use crate::cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time_by, limit_names};
 use crate::job::{Job, JobError};
 use crate::output::OutputFile;
 use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
 use crate::results_format::stamped;
+use bound::{Bound, MOST_BOUND_S, bound};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let inputs = ProgramInputs::of(&args.part, &args.machine, &args.reader);
@@ -53,88 +56,40 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let mut found = cycle_time_by(stages, &machine, &constraints, options, steps, &bar)?;
     let took_s = begun.elapsed().as_secs_f64();
     // The bound is no part of what planning takes.
-    let bound = if args.bound && stages.planner.needs_axes {
-        Some(bound(&program, &settings, constraints.clone(), &bar)?)
-    } else {
-        None
-    };
+    let searched = args.bound && stages.planner.needs_axes;
+    let bound = searched.then(|| bound(&program, &settings, constraints.clone(), &bar)).transpose()?;
     found.bound_s = bound.as_ref().filter(|bound| bound.is_whole).map(|bound| bound.time_s);
     let operated = match request {
         Some(request) => override_time(&machine, stages, steps()?, request, &bar)?,
         None => None,
     };
     bar.clear();
+    let planned_um = stages.planner.needs_axes.then_some(constraints.path_tolerance_mm).flatten().map(|mm| 1e3 * mm);
+    let outcome = PlanOutcome { found, bound, operated, path_um, planned_um, took_s };
     let mut complete = Vec::new();
     if let Some(mut file) = json {
-        let mut value = serde_json::to_value(&found).into_diagnostic()?;
-        value["part"] = json!(args.part.display().to_string());
-        value["machine"] = json!(machine.name);
-        value["path_tolerance_um"] =
-            json!(stages.planner.needs_axes.then_some(constraints.path_tolerance_mm).flatten().map(|mm| 1e3 * mm));
-        value["blocks_per_s"] = json!(found.blocks as f64 / took_s);
-        if let Some(operated) = &operated {
-            value["override"] = json!(operated);
-        }
-        value["along"] = along(&found);
-        if options.lines {
-            value["lines"] = json!(found.lines);
-        }
-        serde_json::to_writer_pretty(&mut file, &stamped(value)).into_diagnostic()?;
+        serde_json::to_writer_pretty(&mut file, &outcome.results(args, &machine)?).into_diagnostic()?;
         writeln!(file).into_diagnostic()?;
         complete.push(file);
     }
     if let Some(mut file) = lines {
-        write_lines(&mut file, &program, &found.lines).into_diagnostic()?;
+        write_lines(&mut file, &program, &outcome.found.lines).into_diagnostic()?;
         complete.push(file);
     }
     OutputFile::commit_all(complete, &bar)?;
-    printed(print(args, &found, bound.as_ref(), path_um, operated.as_ref(), took_s), ExitCode::SUCCESS)
+    printed(outcome.print(args), ExitCode::SUCCESS)
 }
 
-/// Longest search for the bound, s.
-const MOST_BOUND_S: u64 = 60;
-
-/// The bound of the motion, as far as it was found in [`MOST_BOUND_S`].
-#[derive(Debug, Clone, Copy, Default)]
-struct Bound {
-    /// Time of the motion with each path from rest to rest planned as a whole, s.
-    time_s: f64,
-    /// Motions of the program that this is for.
-    motions: u64,
-    is_whole: bool,
-}
-
-/// Looks for the bound. One long path is one step of that, which nothing ends from outside: it is left to itself when the time is over.
-fn bound(
-    program: &Program,
-    settings: &feedwright_gcode::Settings,
-    constraints: Constraints,
-    bar: &Bar,
-) -> Result<Bound> {
-    bar.begin("planning each path as a whole", 1);
-    let (sender, receiver) = mpsc::channel();
-    let (program, settings) = (program.clone(), settings.clone());
-    std::thread::spawn(move || {
-        let mut so_far = Bound::default();
-        let steps = || Ok(path_steps(program.reader(settings.clone())?.map_while(std::result::Result::ok)));
-        let all = bound_of_motion(&constraints, steps, |phase| {
-            so_far = Bound { time_s: so_far.time_s + phase.duration_s, motions: phase.piece + 1, is_whole: false };
-            // Nobody listens any more: the time is over.
-            sender.send(Ok(so_far)).map_err(|_| Cancelled)
-        });
-        let _ = sender.send(all.map(|()| Bound { is_whole: true, ..so_far }));
-    });
-    let mut found = Bound::default();
-    let until = bar.clock() + Duration::from_secs(MOST_BOUND_S);
-    while !found.is_whole && bar.clock() < until {
-        bar.check()?;
-        match receiver.recv_timeout(Duration::from_millis(100)) {
-            Ok(next) => found = next?,
-            Err(RecvTimeoutError::Timeout) => {}
-            Err(RecvTimeoutError::Disconnected) => break,
-        }
-    }
-    Ok(found)
+/// What planning came to.
+struct PlanOutcome {
+    found: CycleTime,
+    bound: Option<Bound>,
+    operated: Option<OverrideTime>,
+    /// Tolerance of the path, um, where it is a part of that of the tool.
+    path_um: Option<f64>,
+    /// Tolerance that the path was planned with, um.
+    planned_um: Option<f64>,
+    took_s: f64,
 }
 
 /// The time of each line with its text.
@@ -298,64 +253,78 @@ fn request(args: &PlanArgs, stages: Stages) -> Result<Option<OperatorRequest>> {
 /// A year.
 const MOST_HOLD_S: f64 = 3.2e7;
 
+impl PlanOutcome {
+    /// All results.
+    fn results(&self, args: &PlanArgs, machine: &Machine) -> Result<serde_json::Value> {
+        let Self { found, operated, planned_um, took_s, .. } = self;
+        let mut value = serde_json::to_value(found).into_diagnostic()?;
+        value["part"] = json!(args.part.display().to_string());
+        value["machine"] = json!(machine.name);
+        value["path_tolerance_um"] = json!(planned_um);
+        value["blocks_per_s"] = json!(found.blocks as f64 / took_s);
+        if let Some(operated) = operated {
+            value["override"] = json!(operated);
+        }
+        value["along"] = along(found);
+        if !found.lines.is_empty() {
+            value["lines"] = json!(found.lines);
+        }
+        Ok(stamped(value))
+    }
+
+    fn print(&self, args: &PlanArgs) -> std::io::Result<()> {
+        let Self { found, bound, operated, path_um, took_s, .. } = self;
+        let files = || [args.json.as_deref(), args.lines.as_deref()];
+        let mut out = tables(files());
+        let CycleTime { time_s, cutting_s, rapid_s, waiting_s, blocks, .. } = found;
+        writeln!(out, "{:<28} {time_s:>12.3} s, planned by {}", "cycle time", found.planner)?;
+        for (name, part_s) in [("cutting", cutting_s), ("rapids", rapid_s), ("waiting", waiting_s)] {
+            writeln!(out, "  {name:<26} {part_s:>12.3} s")?;
+        }
+        for tool in found.tools.iter().filter(|_| found.tools.len() > 1) {
+            writeln!(out, "  {:<26} {:>12.3} s", format!("tool {}", tool.tool), tool.time_s)?;
+        }
+        if let Some(bound_s) = found.bound_s {
+            writeln!(
+                out,
+                "{:<28} {bound_s:>12.3} s, motion {:.4} times that",
+                "bound of motion",
+                (cutting_s + rapid_s) / bound_s
+            )?;
+        }
+        if let Some(Bound { time_s, motions, .. }) = bound.filter(|bound| !bound.is_whole) {
+            let name = format!("bound after {MOST_BOUND_S} s");
+            writeln!(out, "{name:<28} {time_s:>12.3} s for {motions} of {blocks} motions; no more was found")?;
+        }
+        if let Some(violation) = found.largest_violation {
+            writeln!(out, "{:<28} {violation:>12.6} of its limit", "largest use of a limit")?;
+            writeln!(out, "{:<28} {:>12.3} um", "largest deviation", found.largest_deviation_um)?;
+        }
+        if let Some(path_um) = path_um {
+            writeln!(out, "{:<28} {path_um:>12.3} um", "tolerance of the path")?;
+        }
+        if !found.binding.is_empty() {
+            writeln!(out, "what limits the speed")?;
+        }
+        for binding in &found.binding {
+            writeln!(out, "  {:<26} {:>12.1} % of the motion", binding.limit, 100.0 * binding.share)?;
+        }
+        writeln!(out, "{:<28} {:>12.1} % of the cutting time", "below 0.8 of F", 100.0 * found.slow_share)?;
+        print_along(&mut out, found)?;
+        if !found.lines.is_empty() {
+            print_lines(&mut out, found)?;
+        }
+        writeln!(out, "{:<28} {:>12.0} blocks/s", "planned", *blocks as f64 / took_s)?;
+        if let Some(operated) = operated {
+            print_operated(args, operated, &mut *out)?;
+        }
+        tell_written(&mut *out, files())
+    }
+}
+
 /// As in a machine file.
 const LEAST_UM: f64 = 0.01;
 const MOST_UM: f64 = 1e4;
-
-fn print(
-    args: &PlanArgs,
-    found: &CycleTime,
-    bound: Option<&Bound>,
-    path_um: Option<f64>,
-    operated: Option<&OverrideTime>,
-    took_s: f64,
-) -> std::io::Result<()> {
-    let files = || [args.json.as_deref(), args.lines.as_deref()];
-    let mut out = tables(files());
-    let CycleTime { time_s, cutting_s, rapid_s, waiting_s, blocks, .. } = found;
-    writeln!(out, "{:<28} {time_s:>12.3} s, planned by {}", "cycle time", found.planner)?;
-    for (name, part_s) in [("cutting", cutting_s), ("rapids", rapid_s), ("waiting", waiting_s)] {
-        writeln!(out, "  {name:<26} {part_s:>12.3} s")?;
-    }
-    for tool in found.tools.iter().filter(|_| found.tools.len() > 1) {
-        writeln!(out, "  {:<26} {:>12.3} s", format!("tool {}", tool.tool), tool.time_s)?;
-    }
-    if let Some(bound_s) = found.bound_s {
-        writeln!(
-            out,
-            "{:<28} {bound_s:>12.3} s, motion {:.4} times that",
-            "bound of motion",
-            (cutting_s + rapid_s) / bound_s
-        )?;
-    }
-    if let Some(Bound { time_s, motions, .. }) = bound.filter(|bound| !bound.is_whole) {
-        let name = format!("bound after {MOST_BOUND_S} s");
-        writeln!(out, "{name:<28} {time_s:>12.3} s for {motions} of {blocks} motions; no more was found")?;
-    }
-    if let Some(violation) = found.largest_violation {
-        writeln!(out, "{:<28} {violation:>12.6} of its limit", "largest use of a limit")?;
-        writeln!(out, "{:<28} {:>12.3} um", "largest deviation", found.largest_deviation_um)?;
-    }
-    if let Some(path_um) = path_um {
-        writeln!(out, "{:<28} {path_um:>12.3} um", "tolerance of the path")?;
-    }
-    if !found.binding.is_empty() {
-        writeln!(out, "what limits the speed")?;
-    }
-    for binding in &found.binding {
-        writeln!(out, "  {:<26} {:>12.1} % of the motion", binding.limit, 100.0 * binding.share)?;
-    }
-    writeln!(out, "{:<28} {:>12.1} % of the cutting time", "below 0.8 of F", 100.0 * found.slow_share)?;
-    print_along(&mut out, found)?;
-    if !found.lines.is_empty() {
-        print_lines(&mut out, found)?;
-    }
-    writeln!(out, "{:<28} {:>12.0} blocks/s", "planned", *blocks as f64 / took_s)?;
-    if let Some(operated) = operated {
-        print_operated(args, operated, &mut *out)?;
-    }
-    tell_written(&mut *out, files())
-}
 
 fn print_operated(args: &PlanArgs, operated: &OverrideTime, out: &mut dyn Write) -> std::io::Result<()> {
     let percent = args.override_percent.unwrap_or(100.0);
