@@ -85,12 +85,14 @@ fn a_circle_takes_as_long_as_at_the_speed_of_its_error() {
 }
 
 #[test]
-fn a_machine_without_limits_of_its_axes_is_refused() {
+fn a_missing_jerk_is_the_one_that_reaches_the_acceleration_in_40_ms() {
     let steps =
         contour("circle").unwrap().steps(200.0, Corner::Continuous { tolerance_mm: None, merge_mm: None }).unwrap();
     let all = || Ok(Box::new(steps.iter().cloned().map(Ok)) as Steps<'_>);
     let mut bare = linear();
-    bare.axes[1].max_jerk_mm_s3 = None;
-    let error = fastest::<2>(&bare, 10.0, all, &mut Uncorrected, 1, &()).unwrap_err();
-    assert!(error.to_string().contains("no limits of their own"), "{error}");
+    let jerk_mm_s3 = bare.axes[1].max_jerk_mm_s3.take().unwrap();
+    assert_eq!(jerk_mm_s3, bare.axes[1].max_accel_mm_s2.unwrap() / 0.04);
+    let [found, known] =
+        [bare, linear()].map(|machine| fastest::<2>(&machine, 10.0, all, &mut Uncorrected, 1, &()).unwrap());
+    assert_eq!(found.cycle, known.cycle);
 }
