@@ -28,6 +28,11 @@ bench-plan *programs:
     cargo run --release -p feedwright-lab --example bench_plan -- {{ programs }}
     cargo run --release -p feedwright-lab --features copp --example fixed_path_peer
 
+# Plans of any programs by finite differences of their positions, beside the bound: limits, deviation, time and speed.
+# `just check-plan --bound --seed 1 --count 50`, `just check-plan --tolerance 1 part.ngc`.
+check-plan *options:
+    cargo run --release -p feedwright-lab --example check_plan -- {{ options }}
+
 # A corner as the time-optimal planner has it: the figure of examples/04_planner.
 corner-figure out="examples/04_planner/corner.svg":
     cargo run --release -p feedwright-lab --example corner_figure -- {{ out }}

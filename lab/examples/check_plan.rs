@@ -27,9 +27,6 @@ const CHORD_MM: f64 = 1e-5;
 /// Way along the path that the nearest point is looked for in, in tolerances, beside the way of a step.
 const WINDOW: f64 = 20.0;
 
-/// Of places that are nearly as near, mm, the last is that of the tool: where a path goes back on itself, the tool goes on.
-const NEARLY_MM: f64 = 1e-5;
-
 /// Most motion of a program, s.
 const MOST_S: f64 = 60.0;
 
@@ -366,20 +363,34 @@ impl<'a> Ruler<'a> {
         let window_mm = WINDOW * tolerance_mm(self.nearest).max(machine_mm) + 2.0 * distance(point, next);
         let from_mm = self.at_mm;
         let first = at_mm.partition_point(|at| *at < from_mm - window_mm).saturating_sub(1);
-        let (mut least, mut nearest) = (f64::INFINITY, self.nearest);
+        let (mut least, mut places) = (f64::INFINITY, Vec::new());
         let mut i = first;
         while i + 1 < points.len() && at_mm[i] <= from_mm + window_mm {
-            let (away, part) = from_segment(point, points[i], points[i + 1]);
-            if away < least + NEARLY_MM {
-                (least, nearest) = (least.min(away), i);
-                self.at_mm = at_mm[i] + part * (at_mm[i + 1] - at_mm[i]);
-            }
-            let (reached, _) = from_segment(points[i], point, next);
+            // Only what lies in the window: a long chord may pass near the tool elsewhere.
+            let length = (at_mm[i + 1] - at_mm[i]).max(f64::MIN_POSITIVE);
+            let parts = [-1.0, 1.0].map(|side| ((from_mm + side * window_mm - at_mm[i]) / length).clamp(0.0, 1.0));
+            let (away, part) = from_segment(point, points[i], points[i + 1], parts);
+            least = least.min(away);
+            places.push((away, i, at_mm[i] + part * length));
+            let (reached, _) = from_segment(points[i], point, next, [0.0, 1.0]);
             self.reached_mm[i] = self.reached_mm[i].min(reached);
             i += 1;
         }
+        // Where a path goes back on itself, several places are within the tolerance: the tool is where its way since the last place that
+        // was the only one leads to.
+        let near_mm = tolerance_mm(self.nearest);
+        places.retain(|(away, ..)| *away <= least.max(near_mm));
+        let expected = |(_, _, at): &(f64, usize, f64)| (at - from_mm).abs();
+        let Some(&(.., about)) = places.iter().min_by(|a, b| expected(a).total_cmp(&expected(b))) else {
+            return f64::INFINITY;
+        };
+        let step_mm = distance(point, next);
+        let is_there = |(.., at): &&(f64, usize, f64)| (at - about).abs() < 4.0 * (step_mm + near_mm);
+        let there = places.iter().filter(is_there).min_by(|a, b| a.0.total_cmp(&b.0));
+        let (_, nearest, at) = there.copied().unwrap_or((0.0, self.nearest, from_mm));
+        self.at_mm = step_mm + if places.iter().all(|place| is_there(&place)) { at } else { from_mm };
         if let (Some(last), true) = (points.last(), i + 1 >= points.len()) {
-            let (reached, _) = from_segment(*last, point, next);
+            let (reached, _) = from_segment(*last, point, next, [0.0, 1.0]);
             let end = self.reached_mm.len() - 1;
             self.reached_mm[end] = self.reached_mm[end].min(reached);
         }
@@ -404,11 +415,11 @@ fn distance(a: Point, b: Point) -> f64 {
     (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt()
 }
 
-/// Distance of a point from a segment, and the part of the segment at which it is nearest.
-fn from_segment(point: Point, a: Point, b: Point) -> (f64, f64) {
+/// Distance of a point from a segment between two parts of it, and the part at which it is nearest.
+fn from_segment(point: Point, a: Point, b: Point, [first, last]: [f64; 2]) -> (f64, f64) {
     let along: [f64; 3] = std::array::from_fn(|k| b[k] - a[k]);
     let square: f64 = along.iter().map(|part| part * part).sum();
     let dot: f64 = (0..3).map(|k| along[k] * (point[k] - a[k])).sum();
-    let part = if square > 0.0 { (dot / square).clamp(0.0, 1.0) } else { 0.0 };
+    let part = if square > 0.0 { (dot / square).clamp(first, last) } else { first };
     (distance(point, std::array::from_fn(|k| a[k] + part * along[k])), part)
 }

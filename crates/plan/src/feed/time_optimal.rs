@@ -338,6 +338,10 @@ impl TimeOptimal {
             if self.at_nodes {
                 return Some((steps, ends));
             }
+            // The solver's rounding over steps of a fraction of a microsecond, in a window that hardly moves.
+            if steps.iter().any(|step| !self.caps.keeps_jerk(step)) {
+                return None;
+            }
             let soon = if ends { steps.len() } else { self.soon(&steps) };
             let mut excesses = path_deviation::excesses(&self.track, &self.caps, &steps, soon);
             if round + 1 == ROUNDS {

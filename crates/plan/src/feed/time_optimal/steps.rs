@@ -4,6 +4,9 @@ use crate::constraints::AxisLimits;
 use crate::feed::AxisMotion;
 use crate::vector::dot;
 
+/// Part by which rounding may exceed a jerk.
+const JERK_OVER: f64 = 1e-4;
+
 /// Limits of the three axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AxisCaps {
@@ -16,6 +19,12 @@ impl AxisCaps {
     pub(super) fn along(&self, direction: [f64; 3], of: impl Fn(&AxisLimits) -> f64) -> f64 {
         let parts = self.axes.iter().zip(direction).filter(|(_, part)| part.abs() > 1e-12);
         parts.map(|(limits, part)| of(limits) / part.abs()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Whether each axis keeps its jerk in a step, up to rounding.
+    pub(super) fn keeps_jerk(&self, step: &PlannedStep) -> bool {
+        let mut axes = self.axes.iter().zip(step.motion.jerk_mm_s3);
+        axes.all(|(limits, jerk_mm_s3)| jerk_mm_s3.abs() <= (1.0 + JERK_OVER) * limits.jerk_mm_s3)
     }
 
     /// How long the slowest axis takes to stop from a speed: `v / a + a / j`.
