@@ -37,8 +37,9 @@ const NEWTON: u32 = 6;
 /// A slope of the rate below this counts as zero, 1/s.
 const NO_SLOPE_1_S: f64 = 1e-9;
 
-/// Moments of a period at which limits are looked at.
-const MOMENTS: u32 = 4;
+/// Moments of a step at which limits are looked at, and the last of them before its end: at the end of a plan the axes rest already.
+const MOMENTS: u32 = 8;
+const BEFORE_END: f64 = 0.999;
 
 /// A way: its steps, and the rate behind it.
 #[derive(Debug, Clone, Default)]
@@ -127,8 +128,9 @@ pub(super) fn keeps(plan: &PublishedPlan, limits: &ScalingLimits, step: &ScaledS
     if step.bend_1_s2 > 0.0 && (0.0..step.duration_s).contains(&lowest_s) && step.after(lowest_s).rate < -1e-12 {
         return false;
     }
-    (0..=MOMENTS).all(|m| {
-        let now = step.after(step.duration_s * f64::from(m) / f64::from(MOMENTS));
+    let parts = (0..=MOMENTS).map(|m| f64::from(m) / f64::from(MOMENTS));
+    parts.chain([BEFORE_END]).all(|part| {
+        let now = step.after(step.duration_s * part);
         if now.rate < -1e-12 {
             return false;
         }
