@@ -354,8 +354,8 @@ impl<'a> Ruler<'a> {
         }
     }
 
-    /// Where a position is on the path: notes its distance, and that of the path from the step behind it; returns the highest feedrate that
-    /// is programmed within a tolerance of there, mm/s.
+    /// Finds a position on the path and records its distance from the path, and the distance of the path from the step behind it.
+    /// Returns the highest feedrate programmed within a tolerance of that place, mm/s.
     fn place(&mut self, point: Point, next: Point) -> f64 {
         let WantedPath { points, at_mm, motion, motions } = self.path;
         let machine_mm = self.constraints.path_tolerance_mm.unwrap_or(0.01);

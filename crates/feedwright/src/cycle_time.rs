@@ -413,10 +413,9 @@ impl<'a> Sampler<'a> {
         let tangent = velocity_mm_s.map(|part| part / speed_mm_s);
         let along_mm_s2 = dot(*accel_mm_s2, tangent);
         let along = tangent.map(|part| along_mm_s2 * part);
-        let axes = &self.constraints.axes;
         let used = |part: [f64; 3]| {
             let ratio = |(k, part_mm_s2): (usize, f64)| {
-                axes.get(k).or(axes.last()).map_or(0.0, |limits| part_mm_s2.abs() / limits.accel_mm_s2)
+                self.constraints.axis(k).map_or(0.0, |limits| part_mm_s2.abs() / limits.accel_mm_s2)
             };
             part.into_iter().enumerate().map(ratio).fold(0.0, f64::max)
         };
@@ -452,8 +451,7 @@ impl<'a> Sampler<'a> {
 
     fn axes(&mut self, motion: &AxisMotion, time_s: f64) {
         for k in 0..AXIS_NAMES.len() {
-            let axes = &self.constraints.axes;
-            let Some(&AxisLimits { velocity_mm_s, accel_mm_s2, jerk_mm_s3 }) = axes.get(k).or(axes.last()) else {
+            let Some(AxisLimits { velocity_mm_s, accel_mm_s2, jerk_mm_s3 }) = self.constraints.axis(k) else {
                 return;
             };
             let ratios = [

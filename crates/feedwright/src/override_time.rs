@@ -94,7 +94,7 @@ pub(crate) fn override_time(
     if let Some(fault) = plan.fault() {
         return Err(fault.clone().into());
     }
-    let limits = |k: usize| constraints.axes.get(k).or(constraints.axes.last()).copied().unwrap_or(AxisLimits::NONE);
+    let limits = |k: usize| constraints.axis(k).unwrap_or(AxisLimits::NONE);
     let limits = ScalingLimits {
         axes: [limits(0), limits(1), limits(2)],
         speed_mm_s: constraints.path.max_feed_mm_s,

@@ -72,6 +72,11 @@ impl From<&PathLimits> for Constraints {
 }
 
 impl Constraints {
+    /// Limits of the k-th axis; an axis without is like the last that has some. `None` where no axis has any.
+    pub fn axis(&self, k: usize) -> Option<AxisLimits> {
+        self.axes.get(k).or(self.axes.last()).copied()
+    }
+
     /// Checks that every limit is of use.
     ///
     /// # Errors

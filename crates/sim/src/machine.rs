@@ -238,8 +238,8 @@ impl Machine {
         text
     }
 
-    /// Name and text of a base: a built-in machine, or a file beside the one that names it. The name of a built-in machine
-    /// is not that of a file: a file `tnv40.toml` may build upon it.
+    /// Name and text of a base: a built-in machine, or a file beside the one that names it. The name that a built-in machine gets here
+    /// is no file name, so a file `tnv40.toml` may build upon `tnv40`.
     fn base_text(file: &str, base: &str) -> Result<(String, String), MachineError> {
         if let Some((name, text)) = BUILT_IN_MACHINES.iter().find(|(name, _)| *name == base) {
             return Ok((format!("built-in {name}"), (*text).to_owned()));

@@ -167,8 +167,7 @@ pub struct TimeOptimal {
 impl TimeOptimal {
     /// At rest before the first piece. An axis without limits of its own is like the last that has some.
     pub fn new(constraints: &Constraints) -> Self {
-        let limits =
-            |k: usize| constraints.axes.get(k).or(constraints.axes.last()).copied().unwrap_or(AxisLimits::NONE);
+        let limits = |k: usize| constraints.axis(k).unwrap_or(AxisLimits::NONE);
         Self {
             constraints: constraints.clone(),
             caps: AxisCaps { axes: [limits(0), limits(1), limits(2)] },

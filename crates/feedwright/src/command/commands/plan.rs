@@ -85,7 +85,7 @@ struct PlanOutcome {
     found: CycleTime,
     bound: Option<Bound>,
     operated: Option<OverrideTime>,
-    /// Tolerance of the path, um, where it is a part of that of the tool.
+    /// Path tolerance, um, if `--tolerance` was divided between the path and the machine.
     path_um: Option<f64>,
     /// Tolerance that the path was planned with, um.
     planned_um: Option<f64>,
@@ -105,7 +105,7 @@ fn write_lines(out: &mut impl Write, program: &Program, lines: &[LineTime]) -> s
     Ok(())
 }
 
-/// Lines that take longest, and how many of them are listed.
+/// The lines that take longest.
 fn print_lines(out: &mut impl Write, found: &CycleTime) -> std::io::Result<()> {
     let mut lines: Vec<&LineTime> = found.lines.iter().collect();
     lines.sort_by(|a, b| b.time_s.total_cmp(&a.time_s));

@@ -42,7 +42,7 @@ pub(super) struct DirectionLimits {
 impl DirectionLimits {
     /// Those of a machine. An axis without limits of its own is like the last that has some.
     pub(super) fn new(constraints: &Constraints) -> Self {
-        let axis = |k: usize| constraints.axes.get(k).or(constraints.axes.last()).copied().unwrap_or(AxisLimits::NONE);
+        let axis = |k: usize| constraints.axis(k).unwrap_or(AxisLimits::NONE);
         let path = &constraints.path;
         let bounded = |value: f64| value.min(1e12);
         Self {
