@@ -141,6 +141,7 @@ fn row(
         s_mm,
         line: 4 + (foot_s_mm / job.block_mm) as u32,
         feed_plan_mm_s: job.feed_mm_s,
+        programmed_mm_s: 0.0,
         cutting: s_mm > 0.04 * job.length_mm.min(200.0),
         commanded: Commanded::Cut,
         path_mm,

@@ -23,8 +23,10 @@ use benefit::Benefit;
 use disengagement::Engagement;
 pub use disengagement::{Cause, Fade, State};
 
-/// Slowest and fastest that any controller may run the plan: a program always ends, and no command leaps.
-const RATE_RANGE: [f64; 2] = [0.1, 3.0];
+/// Slowest that any controller may run the plan: a program always ends.
+const SLOWEST: f64 = 0.1;
+/// Fastest where nobody says otherwise: no command leaps.
+const FASTEST: f64 = 3.0;
 /// Time in which the correction may take up the highest speed it is allowed, s. Feedforward of the exact model takes as
 /// little at a corner; of what leaps more, no machine could follow any.
 const TAKE_UP_S: f64 = 0.001;
@@ -57,13 +59,21 @@ pub struct Bounds {
     pub acceleration_mm_s2: f64,
     /// Acceleration of an offset that fades, mm/s2.
     pub fade_mm_s2: f64,
+    /// Fastest that a controller may run the plan, as a part of its speed.
+    pub fastest: f64,
 }
 
 impl Bounds {
     /// For a machine whose rapid motions run at `rapid_mm_s` and whose corrections accelerate by `correction_mm_s2`.
     pub fn new(deviation_mm: f64, rapid_mm_s: f64, correction_mm_s2: f64) -> Self {
         let acceleration_mm_s2 = rapid_mm_s / TAKE_UP_S;
-        Self { deviation_mm, speed_mm_s: rapid_mm_s, acceleration_mm_s2, fade_mm_s2: correction_mm_s2 }
+        let fade_mm_s2 = correction_mm_s2;
+        Self { deviation_mm, speed_mm_s: rapid_mm_s, acceleration_mm_s2, fade_mm_s2, fastest: FASTEST }
+    }
+
+    /// With at most `percent` above the planned feedrate.
+    pub fn feed_rise(self, percent: Option<f64>) -> Self {
+        Self { fastest: percent.map_or(FASTEST, |percent| 1.0 + percent / 100.0), ..self }
     }
 }
 
@@ -228,7 +238,7 @@ impl<const N: usize> Guard<N> {
         };
         let velocity = limit_norm(velocity, longer * speed_mm_s);
         let step = acceleration_mm_s2 * period_s / window.now().feed_mm_s.max(f64::MIN_POSITIVE);
-        let rate = bounded(bounded(wanted.rate, RATE_RANGE[0], RATE_RANGE[1]), self.rate - step, self.rate + step);
+        let rate = bounded(bounded(wanted.rate, SLOWEST, self.bounds.fastest), self.rate - step, self.rate + step);
         // Where nothing binds, the offset is the controller's to the bit.
         let free = add_scaled(window.offset_mm, period_s, velocity);
         let same = norm(sub(free, wanted.offset_mm)) <= SAME_MM;

@@ -12,7 +12,7 @@ const FEED_PERIOD_S: f64 = 0.005;
 const RADIUS_MM: f64 = 10.0;
 const FEED_MM_S: f64 = 50.0;
 const BOUNDS: Bounds =
-    Bounds { deviation_mm: 0.2, speed_mm_s: 200.0, acceleration_mm_s2: 5000.0, fade_mm_s2: FADE_MM_S2 };
+    Bounds { deviation_mm: 0.2, speed_mm_s: 200.0, acceleration_mm_s2: 5000.0, fade_mm_s2: FADE_MM_S2, fastest: 3.0 };
 /// Acceleration of a fade, mm/s2.
 const FADE_MM_S2: f64 = 400.0;
 /// The layer knows the path as chords between knots, behind at up to three times the planned spacing, and expects the next
@@ -241,4 +241,22 @@ fn a_correction_that_makes_it_worse_leaves_the_loop() {
     for fade in [run(3000, as_it_is, steady, |_| 0.0).fade, run(3000, as_it_is, swinging, |_| 0.0).fade] {
         assert_eq!(fade.map(|fade| fade.cause), Some(Cause::Harmful));
     }
+}
+
+/// A controller that wants three times the feed, under a rise of 20 %: the plan never runs faster than 1.2 times, and comes to that.
+#[test]
+fn the_feed_rises_by_no_more_than_it_may() {
+    let mut controller =
+        Script { command: |_| Command::straight(3.0, [0.0; 2]), prediction_error_mm: |_| 0.0, decision: 0 };
+    let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS.feed_rise(Some(20.0)));
+    let (mut tool_mm, mut last_s, mut fastest) = ([0.0; 2], 0.0, 0.0_f64);
+    for _ in 0..500 {
+        let setpoint = tick.step(&mut Circle, &mut controller, tool_mm);
+        fastest = fastest.max((setpoint.tau_s - last_s) / SERVO_S);
+        last_s = setpoint.tau_s;
+        for axis in 0..2 {
+            tool_mm[axis] += SERVO_S / LAG_S * (setpoint.command_mm[axis] - tool_mm[axis]);
+        }
+    }
+    assert!((fastest - 1.2).abs() < 1e-9, "{fastest}");
 }

@@ -395,6 +395,7 @@ impl MeasuredCut {
             s_mm: commanded.s_mm,
             line: commanded.line,
             feed_plan_mm_s: way_mm / self.sample_s,
+            programmed_mm_s: 0.0,
             cutting: foot.cutting && !arrived,
             commanded: match (rests, commanded.cutting) {
                 (true, _) => Commanded::Rest,

@@ -26,6 +26,7 @@ fn rows(spikes: &[(usize, f64)], rapids: &[(usize, usize)]) -> Vec<Row> {
                 s_mm: 10.0 * t_s,
                 line: 1 + k as u32 / 500,
                 feed_plan_mm_s: 10.0,
+                programmed_mm_s: 0.0,
                 cutting: !rapids.iter().any(|&(start, length)| (start..start + length).contains(&k)),
                 commanded: Commanded::Cut,
                 path_mm,

@@ -137,6 +137,9 @@ pub struct Limits {
     pub corner_jump_mm_s: f64,
     /// Largest distance of the corrected command from the programmed path, mm.
     pub max_deviation_mm: f64,
+    /// How far a correction may raise the feedrate above the planned one, %; none is 200.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub max_feed_rise_percent: Option<f64>,
     /// Largest distance of the planned path from the programmed one where the program says none (G64 without P), um; none is a planner
     /// that keeps to the programmed path.
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -61,6 +61,8 @@ pub struct Foot {
     pub signed_mm: f64,
     /// Whether the motion cuts.
     pub cutting: bool,
+    /// Programmed feedrate, mm/s; of a rapid 0.
+    pub programmed_mm_s: f64,
 }
 
 /// The plan of a program, looked up by plan time.
@@ -226,5 +228,6 @@ fn foot(piece: &Piece, local_mm: f64, point_mm: [f64; 3]) -> Foot {
         distance_mm: signed_mm.abs(),
         signed_mm,
         cutting: piece.cutting,
+        programmed_mm_s: if piece.cutting { piece.feed_mm_s } else { 0.0 },
     }
 }

@@ -148,7 +148,9 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let slowest_s = 1.0 / machine.slowest_kp_1_s();
         let start_mm = joints_of(reference.at(0.0).position_mm);
         let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
-        let bounds = Bounds::new(machine.limits.max_deviation_mm, machine.limits.rapid_mm_s, fade_mm_s2);
+        let limits = &machine.limits;
+        let bounds = Bounds::new(limits.max_deviation_mm, limits.rapid_mm_s, fade_mm_s2);
+        let bounds = bounds.feed_rise(limits.max_feed_rise_percent);
         let plant = Plant::new(machine, start_mm);
         Self {
             machine,
@@ -294,6 +296,7 @@ fn row<const N: usize>(
         s_mm: sample.s_mm,
         line: sample.line,
         feed_plan_mm_s: sample.feed_mm_s,
+        programmed_mm_s: foot.programmed_mm_s,
         cutting: foot.cutting && !(sample.resting && arrived),
         commanded: match (sample.resting, sample.cutting) {
             (true, _) => Commanded::Rest,

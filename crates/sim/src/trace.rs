@@ -28,6 +28,8 @@ pub struct Row {
     pub line: u32,
     /// Planned feedrate at `s_mm`, mm/s.
     pub feed_plan_mm_s: f64,
+    /// Programmed feedrate at the foot, mm/s; 0 on a rapid, and where it is not known. No column of `--trace`.
+    pub programmed_mm_s: f64,
     /// Whether the tool is where the program cuts: not on a rapid, and not at rest where it has arrived.
     pub cutting: bool,
     /// What the command does.
@@ -55,6 +57,7 @@ impl Row {
         s_mm: 0.0,
         line: 1,
         feed_plan_mm_s: 0.0,
+        programmed_mm_s: 0.0,
         cutting: true,
         commanded: Commanded::Cut,
         path_mm: [0.0; 3],

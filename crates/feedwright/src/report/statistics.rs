@@ -6,6 +6,7 @@
 //! - Largest acceleration of the command: the largest |c(k) - 2 c(k-1) + c(k-2)| / dt^2 over rows
 //!   at equal intervals. It does not count across the part of a rest that was left out.
 //! - Peak torque: the largest |torque| of each axis over all rows.
+//! - Feedrate: the way of the tool from row to row by its time, beside the programmed feedrate at its foot, over the rows that cut.
 //! - Cutting length and time: the sum of the steps in arc length and time to the rows that cut.
 //!
 //! The statistics skip a row with a number that is not finite. Only a run that diverged has such
@@ -13,14 +14,49 @@
 
 use std::io;
 
+use feedwright_plan::vector::distance;
 use feedwright_sim::{Row, Sink};
 
 use super::histogram::Counts;
-use super::summary::{RunFacts, RunSummary};
+use super::summary::{FeedShares, RunFacts, RunSummary};
 use super::worst::WorstFinder;
 
 /// Periods that differ by less are the same: times are rounded.
 const SAME_PERIOD: f64 = 1e-3;
+
+/// Parts of the programmed feedrate that a tool is slow below and fast above: the chip is then a fifth thinner or thicker than it was
+/// programmed.
+const SLOW_AND_FAST: [f64; 2] = [0.8, 1.2];
+
+/// Times in which the tool is slower and faster than its program says.
+#[derive(Debug, Clone, Copy, Default)]
+struct FeedMeter {
+    time_s: f64,
+    slow_s: f64,
+    fast_s: f64,
+    largest: f64,
+}
+
+impl FeedMeter {
+    fn add(&mut self, way_mm: f64, time_s: f64, programmed_mm_s: f64) {
+        if programmed_mm_s <= 0.0 || time_s <= 0.0 {
+            return;
+        }
+        let part = way_mm / time_s / programmed_mm_s;
+        self.time_s += time_s;
+        if part < SLOW_AND_FAST[0] {
+            self.slow_s += time_s;
+        } else if part > SLOW_AND_FAST[1] {
+            self.fast_s += time_s;
+        }
+        self.largest = self.largest.max(part);
+    }
+
+    fn shares(self) -> Option<FeedShares> {
+        let Self { time_s, slow_s, fast_s, largest } = self;
+        (time_s > 0.0).then(|| FeedShares { slow_share: slow_s / time_s, fast_share: fast_s / time_s, largest })
+    }
+}
 
 /// Streaming statistics of a run.
 #[derive(Debug, Clone)]
@@ -36,7 +72,8 @@ pub struct Statistics {
     peak_torque_nm: [f64; 3],
     cutting_length_mm: f64,
     cutting_time_s: f64,
-    previous: Option<(f64, f64)>,
+    previous: Option<Row>,
+    feed: FeedMeter,
     counts: Counts,
     worst: WorstFinder,
 }
@@ -62,6 +99,7 @@ impl Statistics {
             cutting_length_mm: 0.0,
             cutting_time_s: 0.0,
             previous: None,
+            feed: FeedMeter::default(),
             counts: Counts::new(),
             worst: WorstFinder::default(),
         }
@@ -88,6 +126,7 @@ impl Statistics {
             max_deviation_um: self.max_deviation_mm * 1e3,
             max_command_accel_mm_s2: self.max_command_accel_mm_s2,
             peak_torque_nm: (!facts.measured).then_some(self.peak_torque_nm),
+            feed: self.feed.shares(),
             cutting_length_mm: self.cutting_length_mm,
             cutting_time_s: self.cutting_time_s,
             rows: self.rows,
@@ -145,9 +184,10 @@ impl Statistics {
         self.square_sum_mm2 += error_mm * error_mm;
         self.max_mm = self.max_mm.max(error_mm.abs());
         self.worst.row(row);
-        if let Some((t_s, s_mm)) = self.previous {
-            self.cutting_time_s += row.t_s - t_s;
-            self.cutting_length_mm += (row.s_mm - s_mm).max(0.0);
+        if let Some(last) = self.previous {
+            self.cutting_time_s += row.t_s - last.t_s;
+            self.cutting_length_mm += (row.s_mm - last.s_mm).max(0.0);
+            self.feed.add(distance(row.act_mm, last.act_mm), row.t_s - last.t_s, row.programmed_mm_s);
         }
         self.counts.add(error_mm * 1e3);
     }
@@ -171,7 +211,7 @@ impl Sink for Statistics {
         if row.cutting {
             self.cut(row);
         }
-        self.previous = Some((row.t_s, row.s_mm));
+        self.previous = Some(*row);
         Ok(())
     }
 }
@@ -215,6 +255,24 @@ mod tests {
         let facts = RunFacts { axes: 2, ..RunFacts::default() };
         let accel_mm_s2 = statistics.summary(facts, |_| String::new()).max_command_accel_mm_s2;
         assert!((accel_mm_s2 / (speed_mm_s * speed_mm_s / radius_mm) - 1.0).abs() < 1e-4, "{accel_mm_s2}");
+    }
+
+    /// F is 10 mm/s: a second each at 5, 10, 13 and 8.5 mm/s, and a rapid that does not count.
+    #[test]
+    fn feed_shares_are_those_of_the_time_outside_a_fifth_of_f() {
+        let mut statistics = Statistics::new();
+        let (mut t_s, mut x_mm) = (0.0, 0.0);
+        for (speed_mm_s, programmed_mm_s) in [(5.0, 10.0), (10.0, 10.0), (13.0, 10.0), (8.5, 10.0), (90.0, 0.0)] {
+            for _ in 0..100 {
+                statistics.row(&Row { act_mm: [0.0, x_mm, 0.0], programmed_mm_s, ..row(t_s) }).unwrap();
+                (t_s, x_mm) = (t_s + 0.01, x_mm + 0.01 * speed_mm_s);
+            }
+        }
+        let facts = RunFacts { axes: 2, ..RunFacts::default() };
+        let feed = statistics.summary(facts, |_| String::new()).feed.unwrap();
+        // Each row has the speed of the interval before it, and the first row has none.
+        assert!((feed.slow_share - 0.25).abs() < 0.01 && (feed.fast_share - 0.25).abs() < 0.01, "{feed:?}");
+        assert!((feed.largest - 1.3).abs() < 1e-9, "{feed:?}");
     }
 
     /// 3, 4 and 12 um in the three axes are 13 um.

@@ -23,6 +23,17 @@ pub struct RunFacts {
     pub run: RunResult,
 }
 
+/// How the speed of the tool leaves the programmed feedrate F, over the time that it cuts.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct FeedShares {
+    /// Share of the time below 0.8 of F.
+    pub slow_share: f64,
+    /// Share of the time above 1.2 of F.
+    pub fast_share: f64,
+    /// Largest speed, as a part of F.
+    pub largest: f64,
+}
+
 /// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSummary {
@@ -66,6 +77,9 @@ pub struct RunSummary {
     /// Largest torque of each axis, N m; none of a log: torques of logs are not read.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub peak_torque_nm: Option<[f64; 3]>,
+    /// The speed of the tool beside the programmed feedrate; none where that is not known, as of a log.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub feed: Option<FeedShares>,
     /// Arc length that was cut, mm.
     pub cutting_length_mm: f64,
     /// Time during which the tool cut, s.

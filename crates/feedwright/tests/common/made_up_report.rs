@@ -29,6 +29,7 @@ fn made_up_run(controller: &str, axes: usize, rows: usize, size_mm: f64) -> Repo
             s_mm: 40.0 * t_s,
             line: 10 + k as u32 / 100,
             feed_plan_mm_s: 40.0,
+            programmed_mm_s: 0.0,
             cutting: k > rows / 50,
             commanded: Commanded::Cut,
             path_mm,

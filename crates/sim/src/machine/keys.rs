@@ -23,6 +23,7 @@ pub const LIMITS: &[Key<Limits>] = &[
     key!(normal_accel_mm_s2, "mm/s2", 0.1, 1e6),
     key!(corner_jump_mm_s, "mm/s", 0.0, 1e4),
     key!(max_deviation_mm, "mm", 0.0, 100.0),
+    key!(optional max_feed_rise_percent, "%", 0.0, 200.0),
     key!(optional path_tolerance_um, "um", 0.01, 1e4),
 ];
 

@@ -259,6 +259,7 @@ impl Foot {
             distance_mm: signed_mm.abs(),
             signed_mm,
             cutting: false,
+            programmed_mm_s: 0.0,
         }
     }
 }

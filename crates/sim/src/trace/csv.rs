@@ -149,6 +149,7 @@ mod tests {
             s_mm: values[1],
             line,
             feed_plan_mm_s: values[2],
+            programmed_mm_s: 0.0,
             cutting,
             commanded: Commanded::Cut,
             path_mm: triple(0),

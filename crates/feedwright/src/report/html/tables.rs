@@ -18,6 +18,7 @@ pub(super) fn write_summary(out: &mut impl Write, report: &Report) -> io::Result
           <thead role=\"rowgroup\"><tr role=\"row\"><th scope=\"col\">Controller</th><th scope=\"col\">RMS error<i>\xc2\xb5m</i></th>\
           <th scope=\"col\">Largest error<i>\xc2\xb5m</i></th><th scope=\"col\">Uncut path<i>\xc2\xb5m</i></th>\
           <th scope=\"col\">Machining time</th>\
+          <th scope=\"col\">Outside \xc2\xb120 % of F<i>%</i></th>\
           <th scope=\"col\">Command deviation<i>\xc2\xb5m</i></th>\
           <th scope=\"col\">Command acceleration<i>m/s\xc2\xb2</i></th>",
     )?;
@@ -73,6 +74,9 @@ fn write_summary_row(
     cell("Largest error, µm", max, |r, _| r.max_um, 0)?;
     cell("Uncut path, µm", number(run.uncut_um), |r, _| r.uncut_um, 0)?;
     cell("Machining time", duration(run.time_s), |r, _| r.time_s, 0)?;
+    let outside =
+        |r: &RunSummary, _: usize| r.feed.map_or(f64::NAN, |feed| 100.0 * (feed.slow_share + feed.fast_share));
+    cell("Outside ±20 % of F, %", number(outside(run, 0)), outside, 0)?;
     cell("Command deviation, µm", number(run.max_deviation_um), |r, _| r.max_deviation_um, 0)?;
     let accel_m_s2 = |r: &RunSummary, _: usize| if r.measured { f64::NAN } else { r.max_command_accel_mm_s2 * 1e-3 };
     cell("Command acceleration, m/s²", number(accel_m_s2(run, 0)), accel_m_s2, 0)?;

@@ -33,6 +33,9 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
             "measured: from the first cut on, so its time is without the way there; a log has no torque, and digits that make accelerations of it too large",
         )?;
     }
+    if let Some(text) = chip_load(runs) {
+        say(out, &text)?;
+    }
     writeln!(out)?;
     say(out, &assumed(&outcome.report.assumed, measured))?;
     if let Some(reference) = &job.reference {
@@ -48,6 +51,18 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
         say(out, &path_share(path_um))?;
     }
     print_written(out, outputs, outcome)
+}
+
+/// How the last run leaves the programmed feedrate.
+fn chip_load(runs: &[ReportedRun]) -> Option<String> {
+    let RunSummary { controller, feed, .. } = &runs.last()?.summary;
+    let feed = feed.as_ref()?;
+    let [slow, fast] = [feed.slow_share, feed.fast_share].map(|share| 100.0 * share);
+    Some(format!(
+        "feedrate of {controller}: {slow:.1} % of the cutting time below 0.8 of the programmed one, {fast:.1} % above 1.2, \
+         at most {:.3} of it",
+        feed.largest
+    ))
 }
 
 /// The largest torque of all axes, N m.
