@@ -14,6 +14,9 @@ const AXIS: AxisLimits = AxisLimits { velocity_mm_s: 200.0, accel_mm_s2: 2000.0,
 /// What a limit may be exceeded by: 0.1 %.
 const OVER: f64 = 1e-3;
 
+/// The shortest way of a hold that a ratio is taken of. Next to rest the way is a rounding error.
+const LEAST_WAY_MM: f64 = 1e-3;
+
 fn limits() -> ScalingLimits {
     ScalingLimits { axes: [AXIS; 3], speed_mm_s: 200.0, period_s: 1e-3 }
 }
@@ -197,8 +200,9 @@ fn after_a_hold_the_motion_goes_on_to_the_end() {
 /// Sequences of overrides and holds at random moments, and those of the sweep.
 const SEQUENCES: u64 = 16;
 const MANY_SEQUENCES: u64 = 1000;
-/// Seeds of sequences that once exceeded a jerk between two moments, at the end of a plan.
-const ONCE_BEYOND: [u64; 2] = [606, 678];
+/// Seeds of sequences that once exceeded a jerk between two moments, at the end of a plan, and that of one whose least way was
+/// taken of an axis that stands.
+const ONCE_BEYOND: [u64; 3] = [606, 678, 504];
 
 /// What a sequence came to: ways of holds from 100 % over the ways that the axes need, each by itself.
 fn sequence(name: &str, plan: &PublishedPlan, feed_mm_s: f64, seed: u64) -> Vec<f64> {
@@ -217,12 +221,15 @@ fn sequence(name: &str, plan: &PublishedPlan, feed_mm_s: f64, seed: u64) -> Vec<
             most = most.max(override_of_feeds);
             let now = scaling.now();
             let steady = now.rate == 1.0 && now.slope_1_s == 0.0;
-            began = (hold && steady).then(|| (now.tau_s, shortest_stop_mm(plan, &[AXIS; 3], now.tau_s)));
+            began = (hold && steady)
+                .then(|| (now.tau_s, shortest_stop_mm(plan, &[AXIS; 3], now.tau_s)))
+                .filter(|&(_, least_mm)| least_mm > LEAST_WAY_MM);
         }
         let step = scaling.step(override_of_feeds, hold);
         check(name, plan, &step, feed_mm_s * most);
         time_s += step.duration_s;
-        if let Some((tau_s, least_mm)) = began.filter(|_| stops(&scaling)) {
+        // A hold that the end of the plan overtakes has no way of its own.
+        if let Some((tau_s, least_mm)) = began.filter(|_| stops(&scaling) && !scaling.has_ended()) {
             let way_mm = plan.length_mm(tau_s, scaling.now().tau_s);
             holds.push(way_mm / least_mm);
             began = None;
@@ -254,7 +261,11 @@ fn sequences(seeds: impl Iterator<Item = u64>) {
     }
     holds.sort_by(f64::total_cmp);
     let parts = [0.0, 0.25, 0.5, 0.75, 1.0].map(|part| holds[(part * (holds.len() - 1) as f64) as usize]);
-    eprintln!("{count} sequences, {} holds, ways over the least: {parts:.3?} (least, quartiles, largest)", holds.len());
+    eprintln!(
+        "{count} sequences, {} holds, {} of them above 1.05, ways over the least: {parts:.3?} (least, quartiles, largest)",
+        holds.len(),
+        holds.iter().filter(|&&ratio| ratio > 1.05).count()
+    );
     assert!(parts[0] > 0.99, "no way is shorter than the least: {parts:?}");
 }
 

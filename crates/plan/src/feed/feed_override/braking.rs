@@ -30,7 +30,8 @@ pub fn shortest_stop_mm(plan: &PublishedPlan, axes: &[AxisLimits; 3], tau_s: f64
     for k in 0..3 {
         let sign = begin.velocity_mm_s[k].signum();
         let (v, a) = (sign * begin.velocity_mm_s[k], sign * begin.accel_mm_s2[k]);
-        let Some(way_mm) = braking_mm(v, a, &axes[k]) else {
+        // An axis that stands moves by rounding errors, and may wait for the next corner to do so.
+        let Some(way_mm) = braking_mm(v, a, &axes[k]).filter(|way_mm| *way_mm > NO_WAY_MM) else {
             continue;
         };
         let mut at_s = tau_s;
@@ -48,6 +49,9 @@ pub fn shortest_stop_mm(plan: &PublishedPlan, axes: &[AxisLimits; 3], tau_s: f64
     }
     plan.length_mm(tau_s, (until_s - STEP_S).max(tau_s))
 }
+
+/// A way of less than this is a rounding error, mm.
+const NO_WAY_MM: f64 = 1e-9;
 
 /// Plan time is looked through in steps of this, s.
 const STEP_S: f64 = 5e-5;
