@@ -180,6 +180,9 @@ impl LogIdentified {
         let mut advice = vec![];
         for axis in &self.machine.axes {
             let name = &axis.name;
+            if axis.unseen.is_open() {
+                advice.push(format!("axis {name}: the log leaves open what other motion would show. Record the program that feedwright excite writes: both directions, creeping, reversals, short strokes"));
+            }
             if axis.inertia().2 == NumberSource::Assumed {
                 advice.push(format!("axis {name}: positions do not tell the inertia. Give --inertia, or record the torque and give --torque-gain; until then torques in the machine file have a scale that is assumed"));
             }

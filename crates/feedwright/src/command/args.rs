@@ -87,7 +87,7 @@ pub(crate) enum CommandArgs {
     Advise(AdviseArgs),
     Plan(PlanArgs),
     Check(CheckArgs),
-    Identify(IdentifyArgs),
+    Identify(Box<IdentifyArgs>),
     Excite(ExciteArgs),
     /// List the built-in machines
     Machines,

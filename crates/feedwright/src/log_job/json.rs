@@ -80,6 +80,12 @@ fn axis(found: &FoundAxis, verdict: String) -> Value {
             "free_run_correlation": scores.residual_correlation,
         },
         "parameters": parameters,
+        "unseen_motion": {
+            "uncertain_um": found.unseen.uncertain_um,
+            "left_um": found.unseen.left_um,
+            "open": found.unseen.is_open(),
+            "parameters": found.unseen.terms.iter().map(|term| term.key()).collect::<Vec<_>>(),
+        },
         "verdict": verdict,
     })
 }

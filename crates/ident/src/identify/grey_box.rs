@@ -10,9 +10,11 @@
 //! | `grey_box/sample_split.rs` | which samples are fitted, and which are kept to judge by |
 //! | `grey_box/terms.rs` | the numbers that positions determine |
 //! | `grey_box/axis_run.rs` | free runs |
+//! | `grey_box/priors.rs` | what is known before the record |
 //! | `grey_box/output_error.rs` | least squares over free runs |
 //! | `grey_box/admission.rs` | which terms there are |
 //! | `grey_box/standard_errors.rs` | intervals where what is left is coloured |
+//! | `grey_box/unseen_motion.rs` | what a record leaves open |
 //! | `grey_box/torque_column.rs` | what a torque column tells beside |
 //! | `grey_box/linear_arx.rs`, `grey_box/start_filter.rs`, `grey_box/free_run_scores.rs` | how far predictions miss |
 //! | `grey_box/residual_noise.rs` | what free runs leave, as a load |
@@ -26,6 +28,7 @@ pub(crate) mod axis_facts;
 mod axis_run;
 mod output_error;
 mod standard_errors;
+pub(crate) mod unseen_motion;
 mod admission;
 pub(crate) mod torque_column;
 pub(crate) mod linear_arx;
@@ -35,6 +38,7 @@ pub(crate) mod residual_noise;
 pub(crate) mod gain_changes;
 pub(crate) mod found_axis;
 mod law_fit;
+pub(crate) mod priors;
 pub(crate) mod contour_scores;
 pub(crate) mod verdict;
 

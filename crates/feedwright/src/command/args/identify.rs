@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::Args;
+use feedwright_ident::Known;
 
 /// Identify a machine from its log, and write its machine file
 ///
@@ -14,6 +15,7 @@ use clap::Args;
 Examples:
   feedwright identify cut.csv --out mine.toml --report mine.html
   feedwright identify today.csv --update mine.toml
+  feedwright identify log.txt --kp 50±5% --integral-time 0.02±10% --out mine.toml
   feedwright identify --machine workshop --out workshop.model.toml")]
 pub(crate) struct IdentifyArgs {
     /// Log of commanded and actual positions of a real machine: halsampler, halscope, MATLAB v5, Sinumerik Edge, or a table of text.
@@ -70,6 +72,22 @@ pub(crate) struct LogArgs {
     /// Torque, N m, for a unit of the torque column; without --lead force, N.
     #[arg(long, value_name = "N_M|N", requires = "log", value_parser = positive)]
     pub(crate) torque_gain: Option<f64>,
+    /// Position gain of the drive, 1/s. With ± it is known within that standard deviation, and the log corrects it; without, it is
+    /// taken as it is.
+    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
+    pub(crate) kp: Option<Known>,
+    /// Integral time of the speed loop, s, as --kp; 0 is a loop without integral.
+    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
+    pub(crate) integral_time: Option<Known>,
+    /// Part of the commanded speed that is fed forward, as --kp.
+    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
+    pub(crate) velocity_feedforward: Option<Known>,
+    /// Part of the commanded acceleration that is fed forward, as --kp.
+    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
+    pub(crate) acceleration_feedforward: Option<Known>,
+    /// Delay from the control to the drive, s, as --kp.
+    #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
+    pub(crate) drive_delay: Option<Known>,
     /// Time over which the drive takes the speed from positions, s, of one that closes its loops at the rate of the log and recorded it
     /// itself: two samples are 0.002 at 1 kHz. Positions do not tell it.
     #[arg(long, value_name = "S", requires = "log", value_parser = positive)]

@@ -1,11 +1,12 @@
-//! Which terms the law of an axis has: admitted one by one, by samples that were not fitted.
+//! Which terms the law of an axis has, and where the last fit begins.
 //!
-//! Every axis begins with the four products, the lateness of the record, and a speed loop with or without an integral part. Each
-//! further term is first tried with one step of all numbers; those that promise most are fitted, and the one that leaves least of the inner
-//! validation samples is admitted, where it leaves enough less and is told from the others, or is many times its standard error. What was admitted is left out again where it turns out to do nothing.
+//! Every axis begins with the four products, the lateness of the record, and one of six drives, each from several starts. Among
+//! drives, with friction that slides at once or after a deflection and with a limit of the speed, the simplest is taken that predicts held-out samples as well as the best: Wilcoxon's signed-rank test of the likelihoods
+//! of short blocks. Each further term is tried with one step of all numbers; those that promise most are fitted, and one is
+//! admitted that is above zero by its standard error, and makes held-out samples likelier by what it costs (Schwarz 1978).
 //!
-//! Source: forward selection as in Draper and Smith (1998), Applied Regression Analysis, chapter 15, with held-out samples in place of
-//! the F test, since residuals are coloured.
+//! Source: Wilcoxon (1945), Individual comparisons by ranking methods; Schwarz (1978), Estimating the dimension of a model; forward selection as in Draper and Smith (1998), Applied
+//! Regression Analysis, chapter 15.
 
 use std::f64::consts::TAU;
 
@@ -14,7 +15,8 @@ use rayon::prelude::*;
 
 use super::axis_facts::AxisFacts;
 use super::axis_record::AxisRecord;
-use super::output_error::{Fitted, NEARLY_DONE, OutputErrors};
+use super::output_error::{NEARLY_DONE, OutputErrors, square};
+use super::priors::Prior;
 use super::standard_errors::StandardErrors;
 use super::terms::{LawTerm, TERMS, TermValues};
 
@@ -25,27 +27,46 @@ pub(super) struct Admitted {
     pub(super) values: TermValues,
 }
 
-/// Numbers that every axis has: where it is known how late the record is, what else is late is the drive.
-fn base(facts: &AxisFacts) -> [LawTerm; 5] {
+/// Terms that every axis has: where it is known how late the record is, what else is late is the drive.
+fn base(facts: &AxisFacts) -> Vec<LawTerm> {
     let late = if facts.record_delay_s.is_some() { LawTerm::LoopDelay } else { LawTerm::RecordDelay };
-    [LawTerm::LoopGain, LawTerm::Damping, LawTerm::Coulomb, LawTerm::Offset, late]
+    let mut base = vec![LawTerm::LoopGain, LawTerm::Damping, LawTerm::Coulomb, LawTerm::Offset, late];
+    if facts.known(LawTerm::LoopDelay).is_some() && late != LawTerm::LoopDelay {
+        base.push(LawTerm::LoopDelay);
+    }
+    base
 }
 
-/// Part of the RMS of the inner validation by which a term has to lower it, and what this is more in a second of motion: little motion
-/// tells little.
-const GAINED: f64 = 0.02;
-const GAINED_S: f64 = 0.02;
+/// What a drive may have beside, simple ones first.
+const DRIVES: [&[LawTerm]; 6] = [
+    &[],
+    &[LawTerm::Integral],
+    &[LawTerm::VelocityFeedforward],
+    &[LawTerm::Integral, LawTerm::VelocityFeedforward],
+    &[LawTerm::VelocityFeedforward, LawTerm::AccelerationFeedforward],
+    &[LawTerm::Integral, LawTerm::VelocityFeedforward, LawTerm::AccelerationFeedforward],
+];
+
+/// Standard errors that a further term is above zero: one in a thousand that are zero is.
+const QUANTILE: f64 = 3.09;
+/// The same of the test between drives, and by which a further term makes held-out samples likelier: of simple drives that are right,
+/// one in twenty is taken for another.
+const AS_GOOD: f64 = 1.645;
+/// Length of a block, s: of those that are ranked, and of those that are summed up, which what is left is not correlated over.
+const RANKED_S: f64 = 0.02;
+const SUMMED_S: f64 = 0.25;
 /// Starts and terms that are followed up after a first look.
-const FOLLOWED_STARTS: usize = 3;
+const FOLLOWED_STARTS: usize = 2;
 const FOLLOWED_TERMS: usize = 4;
 /// Steps of fits: of starts, and of terms.
 const START_STEPS: usize = 10;
 const TERM_STEPS: usize = 8;
 const MOST_TERMS: usize = 8;
-/// Gains of loops that a fit begins with: of the speed loop over the inertia, of the position loop, and 1 / Ti, 1/s.
+/// Gains of loops that a fit begins with: of the speed loop over the inertia, of the position loop, 1 / Ti, 1/s, and feedforward.
 const SPEED_GAINS_1_S: [f64; 4] = [30.0, 100.0, 300.0, 900.0];
 const POSITION_GAINS_1_S: [f64; 3] = [20.0, 60.0, 150.0];
-const INTEGRALS_1_S: [f64; 2] = [0.0, 40.0];
+const INTEGRALS: [f64; 2] = [0.0, 0.25];
+const FEEDFORWARDS: [[f64; 2]; 3] = [[0.0, 0.0], [0.95, 0.0], [0.99, 0.7]];
 /// Most that a position loop is of its speed loop.
 const LOOPS_APART: f64 = 0.6;
 
@@ -59,75 +80,130 @@ struct TermCandidate {
 pub(super) fn admit(
     record: &AxisRecord<'_>,
     [train, valid]: [&[bool]; 2],
-    moving_s: f64,
     facts: &AxisFacts,
+    priors: &[Prior],
     mut tell: impl FnMut(f64) -> bool,
 ) -> Option<Admitted> {
-    let on = |counts| OutputErrors { record, counts };
-    let (train, valid) = (on(train), on(valid));
-    let gained = 1.0 - GAINED - GAINED_S / moving_s.max(GAINED_S);
-    let first = begin(record, &train, gained, facts);
-    let mut terms = first.0;
-    let mut at = first.1;
-    let mut left_mm = valid.rms_mm(&at);
+    let deviation_mm = record.following_mm(train);
+    let [train, valid] = [train, valid].map(|counts| OutputErrors { record, counts, deviation_mm, priors });
+    let (mut terms, mut at) = begin(record, [&train, &valid], facts);
     for round in 0..MOST_TERMS {
         if !tell((round + 1) as f64 / (MOST_TERMS + 1) as f64) {
             return None;
         }
-        let Some(best) = best_term(record, [&train, &valid], &terms, &at, gained * left_mm) else { break };
+        let train = train.scaled_by(&at);
+        let valid = OutputErrors { deviation_mm: train.deviation_mm, ..valid };
+        let Some(best) = best_term(candidates(record, facts, &terms, &at), [&train, &valid], &terms, &at) else {
+            break;
+        };
         terms.extend(best.terms);
-        (at, left_mm) = (best.values, best.valid_mm);
+        at = best.values;
     }
     Some(Admitted { terms, values: at })
 }
 
-/// The base, with an integral part where that leaves less. What an earlier record told stands from the beginning on.
-fn begin(
-    record: &AxisRecord<'_>,
-    train: &OutputErrors<'_>,
-    gained: f64,
-    facts: &AxisFacts,
-) -> (Vec<LawTerm>, TermValues) {
-    let base = base(facts);
-    if let Some(before) = facts.before {
-        let all = base.iter().chain((before.get(LawTerm::Integral) > 0.0).then_some(&LawTerm::Integral));
-        let terms: Vec<LawTerm> = all.copied().collect();
-        let before = before.with(LawTerm::RecordDelay, facts.record_delay_s.unwrap_or(0.0));
-        return (terms.clone(), train.least(&before, &terms, START_STEPS, NEARLY_DONE).values);
-    }
-    let of_kind = |integral: f64| {
-        let mut terms = base.to_vec();
-        if integral > 0.0 {
-            terms.push(LawTerm::Integral);
-        }
-        let late_s = facts.record_delay_s.unwrap_or(0.0);
-        let starts = starts(record, train.counts, integral);
-        let mut ranked: Vec<(f64, TermValues)> = starts
-            .par_iter()
-            .map(|at| at.with(LawTerm::RecordDelay, late_s))
-            .map(|at| (train.rms_mm(&at), at))
+/// What a drive has beside that only all samples that are fitted tell, and not windows of them.
+pub(super) fn admit_more(errors: &OutputErrors<'_>, facts: &AxisFacts, admitted: Admitted) -> Admitted {
+    let Admitted { mut terms, values: mut at } = admitted;
+    for _ in 0..MOST_TERMS {
+        at = errors.scaled_by(&at).least(&at, &terms, START_STEPS, NEARLY_DONE).values;
+        let errors = errors.scaled_by(&at);
+        let of_drive = candidates(errors.record, facts, &terms, &at)
+            .into_iter()
+            .filter(|candidate| OPTIONAL.contains(&candidate.terms[0]) || candidate.terms[0] == LawTerm::Backlash)
             .collect();
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let fits: Vec<Fitted> = ranked
-            .par_iter()
-            .take(FOLLOWED_STARTS)
-            .map(|(_, at)| train.least(at, &terms, START_STEPS, NEARLY_DONE))
-            .collect();
-        let best = fits.into_iter().min_by(|a, b| a.rms_mm.total_cmp(&b.rms_mm));
-        best.map(|best| (terms, best))
-    };
-    let [plain, integral] = INTEGRALS_1_S.map(of_kind);
-    match (plain, integral) {
-        (Some(plain), Some(integral)) if integral.1.rms_mm > gained * plain.1.rms_mm => (plain.0, plain.1.values),
-        (_, Some(integral)) => (integral.0, integral.1.values),
-        (Some(plain), None) => (plain.0, plain.1.values),
-        // There is a start whatever the record.
-        (None, None) => (base.to_vec(), TermValues([0.0; TERMS])),
+        let Some(best) = best_term(of_drive, [&errors, &errors], &terms, &at) else { break };
+        terms.extend(best.terms);
+        at = best.values;
     }
+    Admitted { terms, values: at }
 }
 
+/// The base and the simplest drive that predicts held-out samples as well as the best, from the best of several starts; from
+/// what an earlier record told where there is one.
+fn begin(
+    record: &AxisRecord<'_>,
+    [train, valid]: [&OutputErrors<'_>; 2],
+    facts: &AxisFacts,
+) -> (Vec<LawTerm>, TermValues) {
+    let starts: Vec<TermValues> = match facts.before {
+        Some(before) => vec![before],
+        None => starts(record, train.counts),
+    };
+    let starts: Vec<(f64, TermValues)> =
+        starts.par_iter().map(|at| facts.start(*at)).map(|at| (train.rms_mm(&at), at)).collect();
+    let fits: Vec<(Vec<LawTerm>, TermValues, f64)> = DRIVES
+        .into_par_iter()
+        .filter(|drive| {
+            // A part that is known to be there is there, and one that is known to be zero is not.
+            let is = |term| facts.known(term).is_none_or(|known| drive.contains(&term) == (known.value != 0.0));
+            OPTIONAL.into_iter().all(is)
+        })
+        .filter_map(|drive| {
+            let mut terms = base(facts);
+            terms.extend(drive);
+            let without =
+                |at: &TermValues| OPTIONAL.into_iter().all(|term| drive.contains(&term) || at.get(term) == 0.0);
+            let mut ranked: Vec<(f64, TermValues)> =
+                starts.iter().filter(|(_, at)| facts.before.is_some() || without(at)).copied().collect();
+            ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let train = train.scaled_by(&ranked.first()?.1);
+            let fitted = ranked.par_iter().take(FOLLOWED_STARTS).map(|(_, at)| {
+                let values = train.least(at, &terms, START_STEPS, NEARLY_DONE).values;
+                (train.rms_mm(&values), values)
+            });
+            let (left_mm, values) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            Some((terms, values, left_mm))
+        })
+        .collect();
+    let Some(best) = fits.iter().min_by(|a, b| a.2.total_cmp(&b.2)).cloned() else {
+        return (base(facts), TermValues([0.0; TERMS]));
+    };
+    let fastest_mm_s = record.slopes(record.actual_mm, 3).iter().fold(0.0_f64, |most, speed| most.max(speed.abs()));
+    let fits: Vec<(Vec<LawTerm>, TermValues)> = fits
+        .into_iter()
+        .filter(|fit| fit.2 < FAR * best.2)
+        .flat_map(|(terms, values, _)| {
+            let with = |term: LawTerm, value: f64| {
+                (terms.iter().copied().chain([term]).collect::<Vec<_>>(), values.with(term, value))
+            };
+            let others = [with(LawTerm::Presliding, PRESLIDING_MM), with(LawTerm::SpeedLimit, AT_LIMIT * fastest_mm_s)];
+            std::iter::once((terms.clone(), values)).chain(others).collect::<Vec<_>>()
+        })
+        .collect();
+    let train = train.scaled_by(&best.1);
+    let valid = OutputErrors { deviation_mm: train.deviation_mm, ..*valid };
+    let mut fits: Vec<(Vec<LawTerm>, TermValues, Vec<f64>)> = fits
+        .into_par_iter()
+        .map(|(terms, values)| {
+            let values = train.least(&values, &terms, TERM_STEPS, NEARLY_DONE).values;
+            (terms, values, valid.residuals(&values))
+        })
+        .collect();
+    fits.sort_by_key(|fit| fit.0.len());
+    let best =
+        fits.iter().map(|fit| &fit.2).min_by(|a, b| square(a).total_cmp(&square(b))).cloned().unwrap_or_default();
+    // Few blocks tell no drive from another: then it is the best.
+    let is_as_good = |residuals: &[f64]| {
+        let gains = gains(&valid, residuals, &best, RANKED_S);
+        gains.len() >= LEAST_RANKED && certainty(gains) < AS_GOOD
+    };
+    let chosen = fits.into_iter().find(|fit| fit.2 == best || is_as_good(&fit.2));
+    chosen.map_or((base(facts), TermValues([0.0; TERMS])), |(terms, values, _)| (terms, values))
+}
+
+/// A drive that leaves so many times what the best leaves is left out.
+const FAR: f64 = 2.0;
+/// Where a fit of the deflection before friction slides begins, mm.
+const PRESLIDING_MM: f64 = 0.005;
+/// Where a fit of a limit of the speed begins, part of the highest speed.
+const AT_LIMIT: f64 = 0.97;
+/// Terms that a drive may have.
+pub(super) const OPTIONAL: [LawTerm; 3] =
+    [LawTerm::Integral, LawTerm::VelocityFeedforward, LawTerm::AccelerationFeedforward];
+
 /// Values before anything is known: gains on a grid, and with the lag that the following error has by the speed.
-fn starts(record: &AxisRecord<'_>, counts: &[bool], integral: f64) -> Vec<TermValues> {
+fn starts(record: &AxisRecord<'_>, counts: &[bool]) -> Vec<TermValues> {
     let speed_mm_s = record.command_speed_mm_s();
     let (mut squares, mut products) = (Matrix3::zeros(), Vector3::zeros());
     for k in (0..speed_mm_s.len()).filter(|&k| counts[k]) {
@@ -141,13 +217,17 @@ fn starts(record: &AxisRecord<'_>, counts: &[bool], integral: f64) -> Vec<TermVa
     for damping in SPEED_GAINS_1_S {
         let of_lag = (lag_s > 1e-3).then(|| 1.0 / lag_s);
         for kp_1_s in POSITION_GAINS_1_S.into_iter().chain(of_lag).filter(|kp_1_s| *kp_1_s < LOOPS_APART * damping) {
-            let start = TermValues([0.0; TERMS])
-                .with(LawTerm::LoopGain, kp_1_s * damping)
-                .with(LawTerm::Damping, damping)
-                .with(LawTerm::Coulomb, 10.0)
-                .with(LawTerm::StribeckSpeed, 2.0)
-                .with(LawTerm::Integral, integral);
-            starts.push(start);
+            for (integral, [speed, acceleration]) in INTEGRALS.into_iter().flat_map(|i| FEEDFORWARDS.map(|f| (i, f))) {
+                let start = TermValues([0.0; TERMS])
+                    .with(LawTerm::LoopGain, kp_1_s * damping)
+                    .with(LawTerm::Damping, damping)
+                    .with(LawTerm::Coulomb, 10.0)
+                    .with(LawTerm::StribeckSpeed, 2.0)
+                    .with(LawTerm::VelocityFeedforward, speed)
+                    .with(LawTerm::AccelerationFeedforward, acceleration)
+                    .with(LawTerm::Integral, integral * damping);
+                starts.push(start);
+            }
         }
     }
     starts
@@ -157,79 +237,107 @@ fn starts(record: &AxisRecord<'_>, counts: &[bool], integral: f64) -> Vec<TermVa
 struct FollowedTerm {
     terms: Vec<LawTerm>,
     values: TermValues,
-    /// RMS that it leaves of the inner validation, mm.
-    valid_mm: f64,
+    /// By how much it makes held-out samples likelier, beside what it costs: twice the logarithm of their likelihood.
+    gain: f64,
 }
 
-/// The term that leaves least of the inner validation, less than a bound, mm, of those that are told from the others or many times their
-/// standard error.
+/// Of the terms that are above zero with certainty, the one that makes held-out samples likeliest; none where none makes them likelier.
 fn best_term(
-    record: &AxisRecord<'_>,
+    candidates: Vec<TermCandidate>,
     [train, valid]: [&OutputErrors<'_>; 2],
     terms: &[LawTerm],
     at: &TermValues,
-    clearly_mm: f64,
 ) -> Option<FollowedTerm> {
     let slopes = train.slopes(at, terms);
     let now_mm = train.rms_mm(at);
-    let mut looked: Vec<(f64, TermCandidate, TermValues)> = candidates(record, terms, at)
+    let mut looked: Vec<(f64, TermCandidate, TermValues)> = candidates
         .into_par_iter()
         .filter_map(|candidate| {
             // A start that loses the run is no start.
             let lost = train.rms_mm(&candidate.start) > LOST * now_mm;
             let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
             let step = (!lost).then(|| train.one_step(&candidate.start, &all, &slopes))?;
-            Some((step.rms_mm, candidate, step.values))
+            Some((step.cost, candidate, step.values))
         })
         .collect();
     looked.sort_by(|a, b| a.0.total_cmp(&b.0));
     looked.truncate(FOLLOWED_TERMS);
+    let before = valid.residuals(at);
     let followed = looked.into_par_iter().filter_map(|(_, candidate, start)| {
         let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
         let values = train.least(&start, &all, TERM_STEPS, NEARLY_DONE).values;
-        let valid_mm = valid.rms_mm(&values);
-        if valid_mm >= clearly_mm {
-            return None;
-        }
-        let is_told = train.told_apart(&values, &all) > LEAST_TOLD || {
-            let errors = StandardErrors::of(train, &values, &all).errors;
-            errors.get(terms.len()).is_some_and(|error| values.get(candidate.terms[0]) > CERTAIN * error)
-        };
-        is_told.then_some(FollowedTerm { terms: candidate.terms, values, valid_mm })
+        let [gain, error] = sum_and_error(&gains(valid, &before, &valid.residuals(&values), SUMMED_S));
+        let first = all.len() - candidate.terms.len();
+        let certainty = || values.get(candidate.terms[0]) / StandardErrors::of(train, &values, &all).errors[first];
+        let gain = gain - candidate.terms.len() as f64 * libm::log(before.len() as f64);
+        (gain > AS_GOOD * error && is_screw_or_none(&values) && certainty() > QUANTILE).then_some(FollowedTerm {
+            terms: candidate.terms,
+            values,
+            gain,
+        })
     });
-    // One number before two: a screw of two can stand for much that one number is.
-    followed.min_by(|a, b| a.terms.len().cmp(&b.terms.len()).then(a.valid_mm.total_cmp(&b.valid_mm)))
+    followed.max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
+/// By how much samples are likelier with some residuals than with others, in blocks: twice the logarithm.
+fn gains(valid: &OutputErrors<'_>, before: &[f64], after: &[f64], block_s: f64) -> Vec<f64> {
+    let samples = before.len() - valid.priors.len();
+    let block = ((block_s / valid.record.sample_s).ceil() as usize).clamp(1, samples.div_ceil(LEAST_BLOCKS).max(1));
+    let gain = |from: usize| {
+        let to = (from + block).min(samples);
+        before[from..to].iter().zip(&after[from..to]).map(|(before, after)| before * before - after * after).sum()
+    };
+    (0..samples).step_by(block).map(gain).collect()
+}
+
+/// By how many standard errors more blocks are likelier than are not, by rank.
+fn certainty(mut gains: Vec<f64>) -> f64 {
+    gains.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let ranks = gains.iter().enumerate().map(|(rank, gain)| if *gain > 0.0 { (rank + 1) as f64 } else { 0.0 });
+    let n = gains.len() as f64;
+    (ranks.sum::<f64>() - 0.25 * n * (n + 1.0)) / (n * (n + 1.0) * (2.0 * n + 1.0) / 24.0).sqrt()
+}
+
+/// The sum of gains, and its standard error.
+fn sum_and_error(gains: &[f64]) -> [f64; 2] {
+    let (n, sum) = (gains.len() as f64, gains.iter().sum::<f64>());
+    [sum, gains.iter().map(|gain| (gain - sum / n) * (gain - sum / n)).sum::<f64>().sqrt()]
+}
+
+/// Fewest blocks that are ranked with a meaning: 0.8 s of motion.
+const LEAST_RANKED: usize = 40;
+/// Fewest blocks.
+const LEAST_BLOCKS: usize = 10;
 /// A resonance of 20 Hz and more shows in samples of less than this, s: five and more in a period.
 const SLOWEST_FOR_RESONANCE_S: f64 = 0.005;
-/// Least part of what a number does to the position that no other number does as well.
-const LEAST_TOLD: f64 = 1e-3;
-/// Standard errors that a number is, of whatever size its effect.
-const CERTAIN: f64 = 6.0;
+/// Whether values have a screw that a machine may have, or a rigid one.
+pub(super) fn is_screw_or_none(values: &TermValues) -> bool {
+    values.get(LawTerm::Resonance) == 0.0 || (SHARES[0]..SHARES[1]).contains(&values.get(LawTerm::TableShare))
+}
 
+/// Parts of the inertia that a table behind a screw has: at an end of them a screw stands for something else.
+const SHARES: [f64; 2] = [0.08, 0.92];
 /// A start that leaves so many times more than the fit is lost.
 const LOST: f64 = 30.0;
 
 /// Terms that the law does not have yet.
-fn candidates(record: &AxisRecord<'_>, terms: &[LawTerm], at: &TermValues) -> Vec<TermCandidate> {
+fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at: &TermValues) -> Vec<TermCandidate> {
     let sample_s = record.sample_s;
     let most = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let speed_mm_s = record.slopes(record.actual_mm, 3);
     let acceleration_mm_s2 = most(&record.slopes(&speed_mm_s, 3));
-    let of_damping = 0.1 * at.get(LawTerm::Damping);
-    let starts: [(LawTerm, &[f64]); 13] = [
+    let of_damping = 0.03 * at.get(LawTerm::Damping);
+    let starts: [(LawTerm, &[f64]); 12] = [
         (LawTerm::Integral, &[10.0, 60.0]),
         (LawTerm::VelocityFeedforward, &[0.3, 0.95]),
         (LawTerm::AccelerationFeedforward, &[0.5]),
         (LawTerm::LoopDelay, &[0.5 * sample_s, 2.0 * sample_s]),
         (LawTerm::FilterTime, &[0.2 * sample_s, sample_s]),
-        (LawTerm::SpeedWindow, &[sample_s, 2.5 * sample_s]),
+        (LawTerm::Viscous, &[of_damping]),
         (LawTerm::Presliding, &[0.003, 0.03]),
         (LawTerm::Stribeck, &[0.3]),
-        (LawTerm::SpeedLimit, &[0.97 * most(&speed_mm_s)]),
+        (LawTerm::SpeedLimit, &[AT_LIMIT * most(&speed_mm_s)]),
         (LawTerm::AccelerationLimit, &[0.9 * acceleration_mm_s2]),
-        (LawTerm::Viscous, &[of_damping]),
         (LawTerm::Resonance, &[1.0 / (TAU * 40.0), 1.0 / (TAU * 90.0)]),
         (LawTerm::Backlash, &[0.003, 0.02]),
     ];
@@ -237,14 +345,14 @@ fn candidates(record: &AxisRecord<'_>, terms: &[LawTerm], at: &TermValues) -> Ve
     for (term, values) in starts {
         // Without an integral the two parts of the damping are the same to the position.
         let is_told = match term {
-            LawTerm::Viscous => terms.contains(&LawTerm::Integral),
-            // Within a rigid screw there is none that the motor's encoder sees.
+            LawTerm::Viscous => terms.contains(&LawTerm::Integral) && at.get(term) == 0.0,
             // What swings faster than a fifth of the rate does not show, and what swings below 20 Hz is no screw of a machine tool.
             LawTerm::Resonance => sample_s < SLOWEST_FOR_RESONANCE_S,
+            // Within a rigid screw there is none that the motor's encoder sees.
             LawTerm::Backlash => terms.contains(&LawTerm::Resonance),
             _ => true,
         };
-        if terms.contains(&term) || !is_told {
+        if terms.contains(&term) || !is_told || facts.known(term).is_some() {
             continue;
         }
         for value in values {
@@ -254,6 +362,10 @@ fn candidates(record: &AxisRecord<'_>, terms: &[LawTerm], at: &TermValues) -> Ve
                 LawTerm::Resonance => (vec![term, LawTerm::TableShare], start.with(LawTerm::TableShare, 0.5)),
                 _ => (vec![term], start),
             };
+            if term == LawTerm::Resonance {
+                let terms = terms.iter().copied().chain([LawTerm::Backlash]).collect();
+                candidates.push(TermCandidate { terms, start: start.with(LawTerm::Backlash, 0.005) });
+            }
             candidates.push(TermCandidate { terms, start });
         }
     }

@@ -2,7 +2,8 @@
 
 use feedwright_sim::Axis;
 
-use super::terms::TermValues;
+use super::priors::Known;
+use super::terms::{LawTerm, TermValues};
 
 /// What is known of the machine beside the record.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -21,11 +22,53 @@ pub struct AxisFacts {
     /// By how much the record has the actual position later than the command, s: zero where both were taken at the same moment. What else is
     /// late is then the drive.
     pub record_delay_s: Option<f64>,
+    /// Position gain, 1/s.
+    pub kp_1_s: Option<Known>,
+    /// 1 / Ti of the speed loop, 1/s; 0 is a loop without integral.
+    pub inverse_integral_1_s: Option<Known>,
+    /// Part of the command's speed that is fed forward.
+    pub velocity_feedforward: Option<Known>,
+    /// Part of the command's acceleration that is fed forward.
+    pub acceleration_feedforward: Option<Known>,
+    /// Delay from the position loop to the drive, s.
+    pub drive_delay_s: Option<Known>,
     /// Its law as an earlier log told it: what this one does not tell stays.
     pub before: Option<TermValues>,
 }
 
 impl AxisFacts {
+    /// B / J, 1/s, where both are given.
+    pub(super) fn viscous_1_s(&self) -> Option<f64> {
+        Some(self.viscous? / self.inertia?)
+    }
+
+    /// What is known of a term of the drive.
+    pub(super) fn known(&self, term: LawTerm) -> Option<Known> {
+        match term {
+            LawTerm::Integral => self.inverse_integral_1_s,
+            LawTerm::VelocityFeedforward => self.velocity_feedforward,
+            LawTerm::AccelerationFeedforward => self.acceleration_feedforward,
+            LawTerm::LoopDelay => self.drive_delay_s,
+            _ => None,
+        }
+    }
+
+    /// Values to begin a fit with: those that are known, and others.
+    pub(super) fn start(&self, mut at: TermValues) -> TermValues {
+        if self.before.is_none()
+            && let Some(viscous_1_s) = self.viscous_1_s()
+        {
+            at = at.with(LawTerm::Viscous, viscous_1_s);
+        }
+        for term in
+            [LawTerm::Integral, LawTerm::VelocityFeedforward, LawTerm::AccelerationFeedforward, LawTerm::LoopDelay]
+        {
+            at = self.known(term).map_or(at, |known| at.with(term, known.value));
+        }
+        at = self.kp_1_s.map_or(at, |kp| at.with(LawTerm::LoopGain, kp.value * at.speed_gain_1_s()));
+        at.with(LawTerm::RecordDelay, self.record_delay_s.unwrap_or(0.0))
+    }
+
     /// What nobody said is that of an axis of a machine file.
     #[must_use]
     pub fn or_of(self, axis: &Axis) -> Self {

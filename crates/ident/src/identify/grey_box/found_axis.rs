@@ -7,6 +7,7 @@ use super::gain_changes::GainChange;
 use super::residual_noise::ResidualNoise;
 use super::terms::{LawTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
+use super::unseen_motion::UnseenMotion;
 
 /// Where a number comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,6 +73,8 @@ pub struct FoundAxis {
     pub fit_um: f64,
     /// How well it predicts.
     pub scores: AxisScores,
+    /// How certain predictions are of motion that the record does not have.
+    pub unseen: UnseenMotion,
     /// What its free run leaves, as a load; none where that is no more than the encoder shows.
     pub residual: Option<ResidualNoise>,
     /// What other settings of its drive would bring.

@@ -1,24 +1,26 @@
 //! The law of one axis, from its record to its scores.
 
 use super::NotFound;
-use super::admission::admit;
+use super::admission::{OPTIONAL, admit, admit_more, is_screw_or_none};
 use super::axis_facts::AxisFacts;
 use super::axis_record::AxisRecord;
 use super::axis_run::periods;
 use super::found_axis::{FoundAxis, ResolvedLaw};
 use super::free_run_scores::{AxisScores, score};
 use super::gain_changes::GainChange;
-use super::output_error::{DONE, OutputErrors};
+use super::output_error::{DONE, NEARLY_DONE, OutputErrors, square};
+use super::priors::Prior;
 use super::residual_noise::ResidualNoise;
 use super::sample_split::SampleSplit;
 use super::standard_errors::StandardErrors;
 use super::terms::{LawTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
+use super::unseen_motion::UnseenMotion;
 use crate::average::middle_of;
 
 /// Samples that terms are admitted with: windows of the record where it has more.
-const ADMISSION_SAMPLES: usize = 15_000;
-const WINDOW_SAMPLES: usize = 1500;
+const ADMISSION_SAMPLES: usize = 12_000;
+const WINDOW_SAMPLES: usize = 1000;
 /// Beginning of a window that does not count, s.
 const SETTLING_S: f64 = 0.2;
 /// Steps of the last fit.
@@ -46,31 +48,30 @@ pub(super) fn find(
     let thinned = AxisRecord { stretches: &windows, ..*record };
     let [train, valid] =
         [train, valid].map(|counts| behind_starts(&thinned, &counts, windows.len() != record.stretches.len()));
+    let priors = Prior::all(&facts);
     let admitted =
-        admit(&thinned, [&train, &valid], moving_s, &facts, |part| tell(PARTS[0] * part)).ok_or(NotFound::Ended)?;
-    let errors = OutputErrors { record, counts: &split.fit };
-    let fitted = errors.least(&admitted.values, &admitted.terms, STEPS, DONE);
-    go_on(tell(PARTS[1]))?;
-    is_law(record, &split.fit, fitted.rms_mm)?;
-    // What came to nothing is not there.
-    let mut terms = admitted.terms;
-    terms.retain(|term| *term <= LawTerm::RecordDelay || fitted.values.get(*term) > 0.0);
-    let mut values = fitted.values;
-    if let (Some(viscous), Some(inertia)) = (facts.viscous, facts.inertia)
-        && !terms.contains(&LawTerm::Viscous)
-        && facts.before.is_none()
-    {
-        values = values.with(LawTerm::Viscous, viscous / inertia);
-    }
+        admit(&thinned, [&train, &valid], &facts, &priors, |part| tell(PARTS[0] * part)).ok_or(NotFound::Ended)?;
+    let errors =
+        OutputErrors { record, counts: &split.fit, deviation_mm: record.following_mm(&split.fit), priors: &priors };
+    let admitted = admit_more(&errors, &facts, admitted);
+    let errors = errors.scaled_by(&admitted.values);
+    let (terms, values) = without_doubtful(&errors, &facts, &admitted.values, admitted.terms);
+    let errors = errors.weighed_by(&values);
+    let values = errors.least(&values, &terms, STEPS, DONE).values;
     let certain = StandardErrors::of(&errors, &values, &terms);
+    let rms_mm = errors.rms_mm(&values);
+    go_on(tell(PARTS[1]))?;
+    is_law(record, &split.fit, rms_mm)?;
     let half_intervals = certain.errors.iter().map(|error| certain.factor * error).collect();
     let resolved = match facts.speed_window_s {
-        Some(window_s) => with_window(&errors, window_s, &values, &terms, fitted.rms_mm),
-        None => torque.and_then(|torque| resolve(&errors, torque, &values, &terms, &facts, fitted.rms_mm)),
+        Some(window_s) => with_window(&errors, window_s, &values, &terms, rms_mm),
+        None => torque.and_then(|torque| resolve(&errors, torque, &values, &terms, &facts, rms_mm)),
     };
     go_on(tell(0.5 * (PARTS[1] + 1.0)))?;
     let scores = score(record, &values, &split.fit, &split.score);
     let noise_um = noise_um(record);
+    let most = FoundAxis::most(record);
+    let unseen = UnseenMotion::of(&errors, &values, &terms, rms_mm, most);
     let residual = residual(record, &values, &scores, noise_um);
     let gain_changes = GainChange::find(record, &values, &split.score);
     go_on(tell(1.0))?;
@@ -81,15 +82,63 @@ pub(super) fn find(
         half_intervals,
         resolved,
         facts,
-        fit_um: 1e3 * fitted.rms_mm,
+        fit_um: 1e3 * rms_mm,
         scores,
+        unseen,
         residual,
         gain_changes,
         noise_um,
         step_um: 1e3 * record.step_mm,
-        most: FoundAxis::most(record),
+        most,
     })
 }
+
+/// Terms that stay, and a fit of them. Terms beside the base that may as well be zero are left out, one after the other, and those of the drive without which
+/// the record is as likely but for what they cost (Schwarz 1978).
+fn without_doubtful(
+    errors: &OutputErrors<'_>,
+    facts: &AxisFacts,
+    start: &TermValues,
+    mut terms: Vec<LawTerm>,
+) -> (Vec<LawTerm>, TermValues) {
+    let mut at = *start;
+    loop {
+        at = errors.least(&at, &terms, STEPS, NEARLY_DONE).values;
+        let certain = StandardErrors::of(errors, &at, &terms);
+        let doubtful = (0..terms.len())
+            .filter(|&i| terms[i] > LawTerm::RecordDelay && facts.known(terms[i]).is_none())
+            .filter(|&i| !matches!(terms[i], LawTerm::StribeckSpeed | LawTerm::TableShare))
+            .map(|i| {
+                let stands_for_another = terms[i] == LawTerm::Resonance && !is_screw_or_none(&at);
+                let size = at.get(terms[i]) / certain.errors[i].max(f64::MIN_POSITIVE);
+                (if stands_for_another { 0.0 } else { size }, i)
+            })
+            .filter(|(size, _)| *size < DOUBTFUL)
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let needless = || {
+            let of_all = errors.residuals(&at);
+            let may_go = |&i: &usize| OPTIONAL.contains(&terms[i]) && facts.known(terms[i]).is_none();
+            (0..terms.len()).filter(may_go).find(|&i| {
+                let others: Vec<LawTerm> = terms.iter().copied().filter(|term| *term != terms[i]).collect();
+                let without = errors.least(&at.with(terms[i], 0.0), &others, WITHOUT_STEPS, NEARLY_DONE).values;
+                square(&errors.residuals(&without)) - square(&of_all) < libm::log(of_all.len() as f64)
+            })
+        };
+        let Some(i) = doubtful.map(|(_, i)| i).or_else(needless) else { return (terms, at) };
+        let term = terms[i];
+        at = at.with(term, 0.0);
+        terms.retain(|other| {
+            *other != term
+                && (term != LawTerm::Stribeck || *other != LawTerm::StribeckSpeed)
+                && (term != LawTerm::Resonance || !matches!(other, LawTerm::TableShare | LawTerm::Backlash))
+        });
+    }
+}
+
+/// Steps of a fit without a term.
+const WITHOUT_STEPS: usize = 8;
+/// Standard errors below which a term is as well zero: the two-sided test at one in twenty.
+const DOUBTFUL: f64 = 1.96;
 
 /// Whether a fit that leaves so much is a law at all.
 fn is_law(record: &AxisRecord<'_>, fit: &[bool], left_mm: f64) -> Result<(), NotFound> {
@@ -131,12 +180,13 @@ fn with_window(
     let start = told.into_iter().fold(start, |start, term| start.with(term, 0.0));
     let start = start.with(LawTerm::SpeedWindow, window_s).with(LawTerm::SpeedHold, servo_s);
     let fitted = errors.least(&start, &free, STEPS, DONE);
-    if fitted.rms_mm.is_nan() || fitted.rms_mm > HOLDS * rms_mm {
+    let left_mm = errors.rms_mm(&fitted.values);
+    if left_mm.is_nan() || left_mm > HOLDS * rms_mm {
         return None;
     }
     let certain = StandardErrors::of(errors, &fitted.values, &free);
     let half_intervals = free.into_iter().zip(certain.errors.iter().map(|error| certain.factor * error)).collect();
-    Some(ResolvedLaw { values: fitted.values, half_intervals, torque: None, drive: None, fit_um: 1e3 * fitted.rms_mm })
+    Some(ResolvedLaw { values: fitted.values, half_intervals, torque: None, drive: None, fit_um: 1e3 * left_mm })
 }
 
 /// Friction by the torque column, and the law with it.
@@ -175,7 +225,8 @@ fn resolve(
     free.push(LawTerm::SpeedWindow);
     let start = start.with(LawTerm::LoopDelay, 0.0).with(LawTerm::SpeedWindow, 2.0 * record.sample_s);
     let fitted = errors.least(&start, &free, STEPS, DONE);
-    if fitted.rms_mm.is_nan() || fitted.rms_mm > HOLDS * rms_mm {
+    let left_mm = errors.rms_mm(&fitted.values);
+    if left_mm.is_nan() || left_mm > HOLDS * rms_mm {
         return None;
     }
     let certain = StandardErrors::of(errors, &fitted.values, &free);
@@ -191,7 +242,7 @@ fn resolve(
         let damping = libm::hypot(scale * drive.speed_gain_1_s, half(found.viscous_error_1_s));
         half_intervals.extend([(LawTerm::LoopGain, scale * drive.loop_gain_1_s2), (LawTerm::Damping, damping)]);
     }
-    Some(ResolvedLaw { values: fitted.values, half_intervals, torque: Some(found), drive, fit_um: 1e3 * fitted.rms_mm })
+    Some(ResolvedLaw { values: fitted.values, half_intervals, torque: Some(found), drive, fit_um: 1e3 * left_mm })
 }
 
 /// Turn of the motor for a travel, rad/mm; of a linear axis one.

@@ -1,7 +1,7 @@
 //! How certain the numbers of an axis are, where what is left is coloured.
 //!
 //! ```text
-//! cov p = H^-1 (sum_blocks g g^T) H^-1 n / (n - 1),   H = S^T S,   g = S^T r over a block
+//! cov p = H^-1 (n / (n - 1) sum_blocks g g^T + P) H^-1,   H = S^T S,   g = S^T r over a block,   P priors' part of H
 //! ```
 //!
 //! r what a free run leaves, S its derivatives. What is left of a real axis is correlated over tenths of a second: a block of that length
@@ -26,11 +26,14 @@ const RIDGE: f64 = 1e-10;
 pub(super) struct StandardErrors {
     pub(super) errors: Vec<f64>,
     pub(super) factor: f64,
+    /// Their covariance, over the changes that differences are made with.
+    pub(super) covariance: DMatrix<f64>,
 }
 
 impl StandardErrors {
     pub(super) fn of(errors: &OutputErrors<'_>, values: &TermValues, terms: &[LawTerm]) -> Self {
-        let left = errors.left_mm(values);
+        let left = errors.residuals(values);
+        let samples = left.len() - errors.priors.len();
         let slopes = errors.slopes(values, terms);
         let n = terms.len();
         let (curvature, _) = normal_equations(&slopes, &left);
@@ -39,26 +42,35 @@ impl StandardErrors {
         let scaled =
             DMatrix::from_fn(n, n, |i, j| curvature[(i, j)] / (sizes[i] * sizes[j]) + if i == j { RIDGE } else { 0.0 });
         let Some(inverse) = scaled.cholesky().map(|cholesky| cholesky.inverse()) else {
-            return Self { errors: vec![f64::INFINITY; n], factor: 1.645 };
+            let covariance = DMatrix::from_diagonal_element(n, n, f64::INFINITY);
+            return Self { errors: vec![f64::INFINITY; n], factor: 1.645, covariance };
         };
         let shortest = (BLOCK_S / errors.record.sample_s).ceil() as usize;
-        let block = shortest.max(left.len() / MOST_BLOCKS).min(left.len() / LEAST_BLOCKS).max(1);
+        let block = shortest.max(samples / MOST_BLOCKS).min(samples / LEAST_BLOCKS).max(1);
         let mut scatter = DMatrix::<f64>::zeros(n, n);
         let mut blocks = 0.0;
-        for from in (0..left.len()).step_by(block) {
-            let to = (from + block).min(left.len());
+        for from in (0..samples).step_by(block) {
+            let to = (from + block).min(samples);
             let g = DMatrix::from_fn(n, 1, |i, _| {
                 slopes[i][from..to].iter().zip(&left[from..to]).map(|(s, r)| s * r).sum::<f64>() / sizes[i]
             });
             scatter += &g * g.transpose();
             blocks += 1.0;
         }
-        let covariance = &inverse * scatter * &inverse * (blocks / (blocks - 1.0_f64).max(1.0));
+        scatter *= blocks / (blocks - 1.0_f64).max(1.0);
+        // What was known before is as certain as its spread says.
+        scatter += DMatrix::from_fn(n, n, |i, j| {
+            slopes[i][samples..].iter().zip(&slopes[j][samples..]).map(|(a, b)| a * b).sum::<f64>()
+                / (sizes[i] * sizes[j])
+        });
+        let covariance = &inverse * scatter * &inverse;
         // What a number that moves nothing is, nobody can say.
         let moves = |i: usize| curvature[(i, i)] > 0.0;
         let size = |i: usize| covariance[(i, i)].max(0.0).sqrt() / sizes[i] * change(values, terms[i]);
         let error = |i: usize| if moves(i) { size(i) } else { f64::INFINITY };
-        Self { errors: (0..n).map(error).collect(), factor: student(blocks - 1.0) }
+        let errors = (0..n).map(error).collect();
+        let covariance = DMatrix::from_fn(n, n, |i, j| covariance[(i, j)] / (sizes[i] * sizes[j]));
+        Self { errors, factor: student(blocks - 1.0), covariance }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::found_axis::FoundAxis;
 use super::free_run_scores::FreeRunErrors;
+use super::unseen_motion::UnseenMotion;
 
 /// What an identification came to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,6 +15,8 @@ pub enum LawVerdict {
     LinearIsBetter,
     /// Too much is left to predict with it.
     TooMuchLeft,
+    /// The record leaves open what other motion would show.
+    Open,
 }
 
 /// A linear model that leaves no more than this of what the law leaves does as well.
@@ -39,6 +42,8 @@ impl LawVerdict {
         let signs_help = best.whole_um < SIGNS_HELP * linear.whole_um || best.at_um[2] < SIGNS_HELP * linear.at_um[2];
         if grey_box.whole_um > TOO_MUCH * scores.following_um {
             Self::TooMuchLeft
+        } else if axis.unseen.is_open() {
+            Self::Open
         } else if grey_box.at_um[2] > WORSE * scores.best_arx().at_um[2] {
             Self::LinearIsBetter
         } else if apart < AS_GOOD || (apart < NEAR && linear.whole_um < SMALL * scores.following_um && !signs_help) {
@@ -70,8 +75,29 @@ impl LawVerdict {
                 "a linear model is better: {missed}; {against}. Something moves this axis that the law does not have"
             ),
             Self::TooMuchLeft => format!("not good enough for control: {missed}; {against}"),
+            Self::Open => format!("open: {}; {missed}; {against}", open(&axis.unseen)),
         }
     }
+}
+
+/// What a record does not tell, and by how much predictions may be off for it.
+fn open(unseen: &UnseenMotion) -> String {
+    let names: Vec<&str> = unseen.terms.iter().map(|term| term.row().name).collect();
+    let untold = match names.as_slice() {
+        [] => "the log does not tell the parameters apart".to_owned(),
+        [one] => format!("the log does not tell {one}"),
+        [first @ .., last] => format!("the log does not tell {} and {last} apart", first.join(", ")),
+    };
+    let why = match unseen.never {
+        Some(way) if way < 0 => ", since the axis never moves in the negative direction",
+        Some(_) => ", since the axis never moves in the positive direction",
+        None => "",
+    };
+    format!(
+        "{untold}{why}. On other motion up to its speed and acceleration the position is uncertain by {} um RMS, where the law leaves {} um",
+        um(unseen.uncertain_um),
+        um(unseen.left_um)
+    )
 }
 
 /// With three digits.
