@@ -86,8 +86,8 @@ identification-figure log fit score shown out="docs/identification.svg":
     cargo run --release -p feedwright-lab --example identification_figure -- {{ log }} {{ fit }} {{ score }} {{ shown }} {{ out }}
 
 # Simulated machines cut the program of `excite` and are identified from the log: the table of docs/identification.md.
-identification-sweep repeats="5" machines="tnv40 heavy sticky soft coarse sliding":
-    cargo run --release -p feedwright-lab --example identification_sweep -- {{ repeats }} {{ machines }}
+identification-sweep logs="5" machines="tnv40 heavy sticky soft coarse sliding workshop stiff router":
+    cargo run --release -p feedwright-lab --example identification_sweep -- {{ logs }} {{ machines }}
 
 # Random programs on random machines against open loop: `just held-out 20261 2000 --failures target/failures`. Seeds of a
 # verdict are drawn after the settings are frozen.

@@ -83,7 +83,7 @@ pub use identify::grey_box::axis_facts::AxisFacts;
 pub use identify::grey_box::axis_record::AxisRecord;
 pub use identify::grey_box::found_axis::{FoundAxis, NumberSource};
 pub use identify::grey_box::free_run_scores::{FreeRunErrors, HORIZONS};
-pub use identify::grey_box::priors::Known;
+pub use identify::grey_box::known_value::KnownValue;
 pub use identify::grey_box::terms::{LawTerm, TermValues};
 pub use identify::grey_box::unseen_motion::UnseenMotion;
 pub use identify::grey_box::verdict::LawVerdict;

@@ -10,7 +10,7 @@
 //! | `grey_box/sample_split.rs` | which samples are fitted, and which are kept to judge by |
 //! | `grey_box/terms.rs` | the numbers that positions determine |
 //! | `grey_box/axis_run.rs` | free runs |
-//! | `grey_box/priors.rs` | what is known before the record |
+//! | `grey_box/known_value.rs`, `grey_box/priors.rs` | what is known before the record |
 //! | `grey_box/output_error.rs` | least squares over free runs |
 //! | `grey_box/admission.rs` | which terms there are |
 //! | `grey_box/standard_errors.rs` | intervals where what is left is coloured |
@@ -24,12 +24,14 @@
 pub(crate) mod axis_record;
 pub(crate) mod sample_split;
 pub(crate) mod terms;
+pub(crate) mod known_value;
 pub(crate) mod axis_facts;
+mod priors;
 mod axis_run;
 mod output_error;
 mod standard_errors;
-pub(crate) mod unseen_motion;
 mod admission;
+pub(crate) mod unseen_motion;
 pub(crate) mod torque_column;
 pub(crate) mod linear_arx;
 mod start_filter;
@@ -38,7 +40,6 @@ pub(crate) mod residual_noise;
 pub(crate) mod gain_changes;
 pub(crate) mod found_axis;
 mod law_fit;
-pub(crate) mod priors;
 pub(crate) mod contour_scores;
 pub(crate) mod verdict;
 

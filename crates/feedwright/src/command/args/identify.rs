@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::Args;
-use feedwright_ident::Known;
+use feedwright_ident::KnownValue;
 
 /// Identify a machine from its log, and write its machine file
 ///
@@ -75,19 +75,19 @@ pub(crate) struct LogArgs {
     /// Position gain of the drive, 1/s. With ± it is known within that standard deviation, and the log corrects it; without, it is
     /// taken as it is.
     #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
-    pub(crate) kp: Option<Known>,
+    pub(crate) kp: Option<KnownValue>,
     /// Integral time of the speed loop, s, as --kp; 0 is a loop without integral.
     #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
-    pub(crate) integral_time: Option<Known>,
+    pub(crate) integral_time: Option<KnownValue>,
     /// Part of the commanded speed that is fed forward, as --kp.
     #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
-    pub(crate) velocity_feedforward: Option<Known>,
+    pub(crate) velocity_feedforward: Option<KnownValue>,
     /// Part of the commanded acceleration that is fed forward, as --kp.
     #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
-    pub(crate) acceleration_feedforward: Option<Known>,
+    pub(crate) acceleration_feedforward: Option<KnownValue>,
     /// Delay from the control to the drive, s, as --kp.
     #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
-    pub(crate) drive_delay: Option<Known>,
+    pub(crate) drive_delay: Option<KnownValue>,
     /// Time over which the drive takes the speed from positions, s, of one that closes its loops at the rate of the log and recorded it
     /// itself: two samples are 0.002 at 1 kHz. Positions do not tell it.
     #[arg(long, value_name = "S", requires = "log", value_parser = positive)]

@@ -61,6 +61,9 @@ const FOLLOWED_TERMS: usize = 4;
 /// Steps of fits: of starts, and of terms.
 const START_STEPS: usize = 10;
 const TERM_STEPS: usize = 8;
+/// Steps of a fit of a drive, and the part of its squares that a step gains at least: a delay and the damping trade places slowly.
+const DRIVE_STEPS: usize = 30;
+const DRIVE_DONE: f64 = 1e-5;
 const MOST_TERMS: usize = 8;
 /// Gains of loops that a fit begins with: of the speed loop over the inertia, of the position loop, 1 / Ti, 1/s, and feedforward.
 const SPEED_GAINS_1_S: [f64; 4] = [30.0, 100.0, 300.0, 900.0];
@@ -126,72 +129,86 @@ fn begin(
     [train, valid]: [&OutputErrors<'_>; 2],
     facts: &AxisFacts,
 ) -> (Vec<LawTerm>, TermValues) {
-    let starts: Vec<TermValues> = match facts.before {
-        Some(before) => vec![before],
-        None => starts(record, train.counts),
-    };
-    let starts: Vec<(f64, TermValues)> =
-        starts.par_iter().map(|at| facts.start(*at)).map(|at| (train.rms_mm(&at), at)).collect();
-    let fits: Vec<(Vec<LawTerm>, TermValues, f64)> = DRIVES
-        .into_par_iter()
-        .filter(|drive| {
-            // A part that is known to be there is there, and one that is known to be zero is not.
-            let is = |term| facts.known(term).is_none_or(|known| drive.contains(&term) == (known.value != 0.0));
-            OPTIONAL.into_iter().all(is)
-        })
-        .filter_map(|drive| {
-            let mut terms = base(facts);
-            terms.extend(drive);
-            let without =
-                |at: &TermValues| OPTIONAL.into_iter().all(|term| drive.contains(&term) || at.get(term) == 0.0);
-            let mut ranked: Vec<(f64, TermValues)> =
-                starts.iter().filter(|(_, at)| facts.before.is_some() || without(at)).copied().collect();
-            ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let train = train.scaled_by(&ranked.first()?.1);
-            let fitted = ranked.par_iter().take(FOLLOWED_STARTS).map(|(_, at)| {
-                let values = train.least(at, &terms, START_STEPS, NEARLY_DONE).values;
-                (train.rms_mm(&values), values)
-            });
-            let (left_mm, values) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
-            Some((terms, values, left_mm))
-        })
-        .collect();
-    let Some(best) = fits.iter().min_by(|a, b| a.2.total_cmp(&b.2)).cloned() else {
-        return (base(facts), TermValues([0.0; TERMS]));
-    };
-    let fastest_mm_s = record.slopes(record.actual_mm, 3).iter().fold(0.0_f64, |most, speed| most.max(speed.abs()));
-    let fits: Vec<(Vec<LawTerm>, TermValues)> = fits
-        .into_iter()
-        .filter(|fit| fit.2 < FAR * best.2)
-        .flat_map(|(terms, values, _)| {
-            let with = |term: LawTerm, value: f64| {
-                (terms.iter().copied().chain([term]).collect::<Vec<_>>(), values.with(term, value))
-            };
-            let others = [with(LawTerm::Presliding, PRESLIDING_MM), with(LawTerm::SpeedLimit, AT_LIMIT * fastest_mm_s)];
-            std::iter::once((terms.clone(), values)).chain(others).collect::<Vec<_>>()
-        })
-        .collect();
-    let train = train.scaled_by(&best.1);
+    let nothing = (base(facts), TermValues([0.0; TERMS]));
+    let drives = drives(record, train, facts);
+    let Some(least_mm) = drives.iter().map(|drive| drive.left_mm).min_by(f64::total_cmp) else { return nothing };
+    let train = OutputErrors { deviation_mm: least_mm.max(f64::MIN_POSITIVE), ..*train };
     let valid = OutputErrors { deviation_mm: train.deviation_mm, ..*valid };
-    let mut fits: Vec<(Vec<LawTerm>, TermValues, Vec<f64>)> = fits
+    let near = drives.into_iter().filter(|drive| drive.left_mm < FAR * least_mm);
+    let near: Vec<(Vec<LawTerm>, TermValues)> = near.flat_map(|drive| variants(record, drive)).collect();
+    let mut fits: Vec<(Vec<LawTerm>, TermValues, Vec<f64>)> = near
         .into_par_iter()
         .map(|(terms, values)| {
-            let values = train.least(&values, &terms, TERM_STEPS, NEARLY_DONE).values;
+            let values = train.least(&values, &terms, DRIVE_STEPS, DRIVE_DONE).values;
             (terms, values, valid.residuals(&values))
         })
         .collect();
     fits.sort_by_key(|fit| fit.0.len());
-    let best =
-        fits.iter().map(|fit| &fit.2).min_by(|a, b| square(a).total_cmp(&square(b))).cloned().unwrap_or_default();
+    let best = fits.iter().map(|fit| &fit.2).min_by(|a, b| square(a).total_cmp(&square(b)));
+    let best = best.cloned().unwrap_or_default();
     // Few blocks tell no drive from another: then it is the best.
     let is_as_good = |residuals: &[f64]| {
         let gains = gains(&valid, residuals, &best, RANKED_S);
         gains.len() >= LEAST_RANKED && certainty(gains) < AS_GOOD
     };
     let chosen = fits.into_iter().find(|fit| fit.2 == best || is_as_good(&fit.2));
-    chosen.map_or((base(facts), TermValues([0.0; TERMS])), |(terms, values, _)| (terms, values))
+    chosen.map_or(nothing, |(terms, values, _)| (terms, values))
 }
 
+/// A drive, fitted.
+struct FittedDrive {
+    terms: Vec<LawTerm>,
+    values: TermValues,
+    left_mm: f64,
+}
+
+/// Each drive that may be there, from its best starts.
+fn drives(record: &AxisRecord<'_>, train: &OutputErrors<'_>, facts: &AxisFacts) -> Vec<FittedDrive> {
+    let starts: Vec<TermValues> = facts.before.map_or_else(|| starts(record, train.counts), |before| vec![before]);
+    let starts: Vec<(f64, TermValues)> =
+        starts.par_iter().map(|at| facts.start(*at)).map(|at| (train.rms_mm(&at), at)).collect();
+    // A part that is known to be there is there, and one that is known to be zero is not.
+    let may_be = |drive: &&[LawTerm]| {
+        let is = |term| facts.known(term).is_none_or(|known| drive.contains(&term) == (known.value != 0.0));
+        OPTIONAL.into_iter().all(is)
+    };
+    let fit = |drive: &[LawTerm]| {
+        let terms: Vec<LawTerm> = base(facts).into_iter().chain(drive.iter().copied()).collect();
+        let is_of = |at: &TermValues| OPTIONAL.into_iter().all(|term| drive.contains(&term) || at.get(term) == 0.0);
+        let mut ranked: Vec<(f64, TermValues)> =
+            starts.iter().filter(|(_, at)| facts.before.is_some() || is_of(at)).copied().collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let train = train.scaled_by(&ranked.first()?.1);
+        let fitted = ranked.par_iter().take(FOLLOWED_STARTS).map(|(_, at)| {
+            let values = train.least(at, &terms, START_STEPS, NEARLY_DONE).values;
+            (train.rms_mm(&values), values)
+        });
+        let (left_mm, values) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(FittedDrive { terms, values, left_mm })
+    };
+    DRIVES.into_par_iter().filter(may_be).filter_map(fit).collect()
+}
+
+/// A drive as it is, with friction that slides after a deflection, and with a limit of the speed where the command is faster than the axis.
+fn variants(
+    record: &AxisRecord<'_>,
+    FittedDrive { terms, values, .. }: FittedDrive,
+) -> Vec<(Vec<LawTerm>, TermValues)> {
+    let most = |speeds: Vec<f64>| speeds.into_iter().fold(0.0_f64, |most, speed| most.max(speed.abs()));
+    let fastest_mm_s = most(record.slopes(record.actual_mm, SPEED_REACH));
+    let with =
+        |term: LawTerm, value: f64| (terms.iter().copied().chain([term]).collect::<Vec<_>>(), values.with(term, value));
+    let mut variants = vec![(terms.clone(), values), with(LawTerm::Presliding, PRESLIDING_MM)];
+    if most(record.command_speed_mm_s()) > FASTER * fastest_mm_s {
+        variants.push(with(LawTerm::SpeedLimit, AT_LIMIT * fastest_mm_s));
+    }
+    variants
+}
+
+/// Samples to each side that a speed is taken over.
+const SPEED_REACH: usize = 3;
+/// A command that is faster than the axis by this factor may run into a limit.
+const FASTER: f64 = 1.02;
 /// A drive that leaves so many times what the best leaves is left out.
 const FAR: f64 = 2.0;
 /// Where a fit of the deflection before friction slides begins, mm.

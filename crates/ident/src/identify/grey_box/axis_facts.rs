@@ -2,7 +2,7 @@
 
 use feedwright_sim::Axis;
 
-use super::priors::Known;
+use super::known_value::KnownValue;
 use super::terms::{LawTerm, TermValues};
 
 /// What is known of the machine beside the record.
@@ -23,15 +23,15 @@ pub struct AxisFacts {
     /// late is then the drive.
     pub record_delay_s: Option<f64>,
     /// Position gain, 1/s.
-    pub kp_1_s: Option<Known>,
+    pub kp_1_s: Option<KnownValue>,
     /// 1 / Ti of the speed loop, 1/s; 0 is a loop without integral.
-    pub inverse_integral_1_s: Option<Known>,
+    pub inverse_integral_1_s: Option<KnownValue>,
     /// Part of the command's speed that is fed forward.
-    pub velocity_feedforward: Option<Known>,
+    pub velocity_feedforward: Option<KnownValue>,
     /// Part of the command's acceleration that is fed forward.
-    pub acceleration_feedforward: Option<Known>,
+    pub acceleration_feedforward: Option<KnownValue>,
     /// Delay from the position loop to the drive, s.
-    pub drive_delay_s: Option<Known>,
+    pub drive_delay_s: Option<KnownValue>,
     /// Its law as an earlier log told it: what this one does not tell stays.
     pub before: Option<TermValues>,
 }
@@ -43,7 +43,7 @@ impl AxisFacts {
     }
 
     /// What is known of a term of the drive.
-    pub(super) fn known(&self, term: LawTerm) -> Option<Known> {
+    pub(super) fn known(&self, term: LawTerm) -> Option<KnownValue> {
         match term {
             LawTerm::Integral => self.inverse_integral_1_s,
             LawTerm::VelocityFeedforward => self.velocity_feedforward,

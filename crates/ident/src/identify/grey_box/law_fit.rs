@@ -106,7 +106,11 @@ fn without_doubtful(
         at = errors.least(&at, &terms, STEPS, NEARLY_DONE).values;
         let certain = StandardErrors::of(errors, &at, &terms);
         let doubtful = (0..terms.len())
-            .filter(|&i| terms[i] > LawTerm::RecordDelay && facts.known(terms[i]).is_none())
+            .filter(|&i| {
+                // No actual position comes before its command.
+                let is_early = terms[i] == LawTerm::RecordDelay && at.get(terms[i]) < 0.0;
+                is_early || (terms[i] > LawTerm::RecordDelay && facts.known(terms[i]).is_none())
+            })
             .filter(|&i| !matches!(terms[i], LawTerm::StribeckSpeed | LawTerm::TableShare))
             .map(|i| {
                 let stands_for_another = terms[i] == LawTerm::Resonance && !is_screw_or_none(&at);

@@ -111,10 +111,10 @@ impl OutputErrors<'_> {
     /// The same by differences to one side, from residuals that are known: enough for a step that is not the last.
     fn rough_slopes(&self, values: &TermValues, residuals: &[f64], terms: &[LawTerm]) -> Vec<Vec<f64>> {
         let slope = |&term: &LawTerm| {
-            let (value, by) = (values.get(term), change(values, term));
+            let (value, by) = (values.get(term), ONE_SIDED * change(values, term));
             let above = values.with(term, value + by);
             let other = if above.get(term) > value { above } else { values.with(term, value - by) };
-            difference(residuals, &self.residuals(&other), (other.get(term) - value) / by)
+            difference(residuals, &self.residuals(&other), ONE_SIDED * (other.get(term) - value) / by)
         };
         terms.par_iter().map(slope).collect()
     }
@@ -175,6 +175,9 @@ fn correlated_samples(left: &[f64], sample_s: f64) -> f64 {
 
 /// A residual is taken to be correlated over no more than this, s.
 const CORRELATED_S: f64 = 0.25;
+
+/// Part of a change that a difference to one side is made with: its error grows with it, and misleads where numbers trade places.
+const ONE_SIDED: f64 = 0.1;
 
 /// What residuals lose from one place to another, over the part of a change between them.
 fn difference(from: &[f64], to: &[f64], apart: f64) -> Vec<f64> {

@@ -4,59 +4,14 @@
 //! given, what axes of machine tools are, with spreads so wide that a record that tells anything outweighs them.
 
 use super::axis_facts::AxisFacts;
+use super::known_value::KnownValue;
 use super::terms::{LawTerm, TermValues};
-
-/// A value that is known within a spread.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Known {
-    /// Value.
-    pub value: f64,
-    /// Standard deviation.
-    pub spread: f64,
-}
-
-impl Known {
-    /// Standard deviation of what is given without one, part of it.
-    const EXACT: f64 = 1e-3;
-
-    /// The same of 1 / the value, 0 of 0.
-    #[must_use]
-    pub fn inverse(self) -> Self {
-        if self.value == 0.0 {
-            return self;
-        }
-        Self { value: 1.0 / self.value, spread: self.spread / (self.value * self.value) }
-    }
-}
-
-/// `50`, `50±5`, `50±10%`; `+-` is as good as `±`.
-impl std::str::FromStr for Known {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|value| value.is_finite() && *value >= 0.0);
-        let parts = text.split_once('±').or_else(|| text.split_once("+-"));
-        let (value, spread) = match parts {
-            None => number(text).map(|value| (value, Self::EXACT * value)),
-            Some((value, spread)) => number(value).and_then(|value| {
-                let of_value = spread.trim().strip_suffix('%').map(number);
-                let spread = of_value.map_or_else(|| number(spread), |part| Some(0.01 * part? * value))?;
-                Some((value, spread))
-            }),
-        }
-        .ok_or("write a value, or a value and its standard deviation, as in 50, 50±5 or 50±10%")?;
-        Ok(Self { value, spread: spread.max(LEAST_SPREAD) })
-    }
-}
-
-/// A spread that nothing is divided by: of what is given as exactly zero.
-const LEAST_SPREAD: f64 = 1e-9;
 
 /// A function of the numbers of an axis, what it is expected to be, and its standard deviation.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Prior {
     of: fn(&TermValues) -> f64,
-    known: Known,
+    known: KnownValue,
 }
 
 impl Prior {
@@ -69,9 +24,10 @@ impl Prior {
     pub(super) fn all(facts: &AxisFacts) -> Vec<Self> {
         let log = |value: f64| libm::log(value.max(LEAST));
         let of_size =
-            |of, typical: f64, factor: f64| Self { of, known: Known { value: log(typical), spread: log(factor) } };
-        let about = |of, value, spread| Self { of, known: Known { value, spread } };
-        let given = |of, known: Option<Known>, otherwise: Self| known.map_or(otherwise, |known| Self { of, known });
+            |of, typical: f64, factor: f64| Self { of, known: KnownValue { value: log(typical), spread: log(factor) } };
+        let about = |of, value, spread| Self { of, known: KnownValue { value, spread } };
+        let given =
+            |of, known: Option<KnownValue>, otherwise: Self| known.map_or(otherwise, |known| Self { of, known });
         vec![
             of_size(|v| libm::log(v.get(LawTerm::Damping)), 150.0, 5.0),
             of_size(|v| libm::log(v.get(LawTerm::Coulomb).max(LEAST)), 50.0, 30.0),
@@ -104,28 +60,3 @@ impl Prior {
 
 /// Below this a size has no logarithm to speak of.
 const LEAST: f64 = 1e-3;
-
-#[cfg(test)]
-mod tests {
-    use super::Known;
-
-    #[test]
-    fn a_value_is_known_with_a_spread_of_its_unit_or_in_per_cent() {
-        for (text, value, spread) in [
-            ("50", 50.0, 0.05),
-            ("50±5", 50.0, 5.0),
-            ("50 ± 10%", 50.0, 5.0),
-            ("0.95+-0.02", 0.95, 0.02),
-            ("0", 0.0, 1e-9),
-        ] {
-            let known: Known = text.parse().unwrap();
-            assert!((known.value - value).abs() < 1e-12 && (known.spread - spread).abs() < 1e-12, "{text}: {known:?}");
-        }
-        for text in ["", "x", "50±", "50±x%", "-1", "50±-1", "nan", "inf±1"] {
-            assert!(text.parse::<Known>().is_err(), "{text}");
-        }
-        let time: Known = "0.02±10%".parse().unwrap();
-        let inverse = time.inverse();
-        assert!((inverse.value - 50.0).abs() < 1e-9 && (inverse.spread - 5.0).abs() < 1e-9, "{inverse:?}");
-    }
-}

@@ -148,7 +148,7 @@ impl LawTerm {
             Self::Damping => row("(Kv + B) / J", "1/s", [0.1, 1e5], [0.01, 0.0]),
             Self::Coulomb => row("Fc / J", "mm/s2", [0.0, 1e6], [0.02, 1.0]),
             Self::Offset => row("offset / J", "mm/s2", [-1e6, 1e6], [0.0, 1.0]),
-            Self::RecordDelay => row("delay of the record", "s", [0.0, 0.1], [0.0, 5e-5]),
+            Self::RecordDelay => row("delay of the record", "s", [-0.05, 0.1], [0.0, 5e-5]),
             Self::LoopDelay => row("delay within the loop", "s", [0.0, 0.02], [0.0, 1e-4]),
             Self::VelocityFeedforward => row("velocity feedforward", "", [0.0, 2.0], [0.0, 0.01]),
             Self::AccelerationFeedforward => row("acceleration feedforward", "", [0.0, 2.0], [0.0, 0.02]),

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright_gcode::input;
-use feedwright_ident::{AxisFacts, Known, Log, LogError};
+use feedwright_ident::{AxisFacts, KnownValue, Log, LogError};
 use feedwright_sim::{Machine, Watch};
 use miette::{IntoDiagnostic, Result};
 
@@ -86,7 +86,7 @@ fn job(name: String, args: &LogArgs) -> LogJob {
         speed_window_s: speed_window,
         record_delay_s: record_delay.filter(|late_s| late_s.is_finite()),
         kp_1_s: args.kp,
-        inverse_integral_1_s: args.integral_time.map(Known::inverse),
+        inverse_integral_1_s: args.integral_time.map(KnownValue::inverse),
         velocity_feedforward: args.velocity_feedforward,
         acceleration_feedforward: args.acceleration_feedforward,
         drive_delay_s: args.drive_delay,
