@@ -1,12 +1,15 @@
 //! Which terms the law of an axis has, and where the last fit begins.
 //!
-//! Every axis begins with the four products, the lateness of the record, and one of six drives, each from several starts. Among
-//! drives, with friction that slides at once or after a deflection and with a limit of the speed, the simplest is taken that predicts held-out samples as well as the best: Wilcoxon's signed-rank test of the likelihoods
-//! of short blocks. Each further term is tried with one step of all numbers; those that promise most are fitted, and one is
-//! admitted that is above zero by its standard error, and makes held-out samples likelier by what it costs (Schwarz 1978).
+//! Every axis begins with the four products, the delay of the record, and one of six drives, each from several starts. Each drive
+//! is fitted with friction that slides at once, with friction that slides after a deflection, and with a limit of the speed where
+//! the command is faster than the axis. The simplest is taken that predicts held-out samples as well as the best: Wilcoxon's
+//! signed-rank test of the likelihoods of short blocks.
 //!
-//! Source: Wilcoxon (1945), Individual comparisons by ranking methods; Schwarz (1978), Estimating the dimension of a model; forward selection as in Draper and Smith (1998), Applied
-//! Regression Analysis, chapter 15.
+//! Each further term is tried with one step of all numbers. Those that promise most are fitted. One is admitted that is above zero
+//! by its standard error, and makes held-out samples likelier by more than it costs (Schwarz).
+//!
+//! Source: Wilcoxon (1945), Individual comparisons by ranking methods; Schwarz (1978), Estimating the dimension of a model; forward
+//! selection as in Draper and Smith (1998), Applied Regression Analysis, chapter 15.
 
 use std::f64::consts::TAU;
 
