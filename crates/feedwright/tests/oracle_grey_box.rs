@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::identification_log::{commands_mm, log_of};
+use crate::identification_log::{commands_mm, log_of, logged};
 use feedwright::{LogIdentified, LogJob, machine_text};
 use feedwright_ident::{AxisFacts, Columns, FoundAxis, LawTerm, LawVerdict, Log, NumberSource};
 use feedwright_sim::{Machine, Plant};
@@ -72,6 +72,62 @@ fn gains_that_are_given_scale_the_machine_file_and_nothing_else() {
     assert_near(axis.kv_nm_s_per_rad, is.kv_nm_s_per_rad, PRODUCT, "Kv");
     assert_near(axis.coulomb_friction_nm, is.coulomb_friction_nm, FRICTION, "Fc");
     assert_eq!(mine.axes[1], axis, "a machine has two axes");
+}
+
+/// Integral, full feedforward of the speed and most of the acceleration: admitted one by one, terms once ended in 11 times the loop gain.
+#[test]
+fn a_drive_with_integral_and_feedforward_is_found_whole() {
+    let machine = Machine::load("stiff".as_ref()).unwrap();
+    let facts = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
+    let mut log = log_of(&machine, 12.0, 0.01, 4);
+    log.axes.truncate(1);
+    let found = identified(log, LogJob { facts, ..LogJob::default() });
+    let (axis, is) = (&found.machine.axes[0], &machine.axes[0]);
+    let j = is.inertia_kg_m2;
+    let gain = number(axis, "kp_kv_over_j_1_s2") / (is.kp_1_s * is.kv_nm_s_per_rad / j);
+    let damping = number(axis, "kv_plus_b_over_j_1_s") / ((is.kv_nm_s_per_rad + is.viscous_friction_nm_s) / j);
+    assert!((0.7..1.4).contains(&gain) && (0.7..1.4).contains(&damping), "{gain} {damping}");
+    assert!((number(axis, "velocity_feedforward") - is.velocity_feedforward).abs() < 0.01);
+}
+
+#[test]
+fn a_log_that_moves_one_way_is_open_until_the_other_is_recorded() {
+    let machine = Machine::load("tnv40".as_ref()).unwrap();
+    let both = commands_mm(0.001, 10.0, 31);
+    let mut at_mm = 0.0;
+    let one_way: Vec<f64> = std::iter::once(0.0)
+        .chain(both.windows(2).map(|pair| {
+            at_mm += (pair[1] - pair[0]).abs();
+            at_mm
+        }))
+        .collect();
+    let facts = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
+    let of = |commands: Vec<f64>, facts: AxisFacts| {
+        let mut log = logged(&machine, [commands.clone(), commands], 1.0, 31);
+        log.axes.truncate(1);
+        identified(log, LogJob { facts, ..LogJob::default() })
+    };
+    let open = of(one_way, facts);
+    assert_eq!(LawVerdict::of(&open.machine.axes[0]), LawVerdict::Open, "{:?}", open.machine.axes[0].unseen);
+    let words = open.verdict(0);
+    assert!(words.contains("offset / J") && words.contains("never moves in the negative direction"), "{words}");
+    let closed = of(both, facts);
+    assert_eq!(LawVerdict::of(&closed.machine.axes[0]), LawVerdict::LawHolds, "{:?}", closed.machine.axes[0].unseen);
+}
+
+#[test]
+fn what_is_known_stands_where_a_log_does_not_tell_it() {
+    let machine = Machine::load("tnv40".as_ref()).unwrap();
+    // At a constant speed the following error tells Kp and feedforward together.
+    let steady: Vec<f64> = (0..6000).map(|k| 0.02 * f64::from(k)).collect();
+    let mut log = logged(&machine, [steady.clone(), steady], 1.0, 8);
+    log.axes.truncate(1);
+    let known = |text: &str| Some(text.parse().unwrap());
+    let facts = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
+    let facts = AxisFacts { kp_1_s: known("50±1%"), velocity_feedforward: known("0"), ..facts };
+    let found = identified(log, LogJob { facts, ..LogJob::default() });
+    assert_near(found.machine.axes[0].values.kp_1_s(), 50.0, 0.03, "Kp");
+    assert_eq!(found.machine.axes[0].values.get(LawTerm::VelocityFeedforward), 0.0);
 }
 
 #[test]
