@@ -125,8 +125,7 @@ pub(super) fn admit_more(errors: &OutputErrors<'_>, facts: &AxisFacts, admitted:
     Admitted { terms, values: at }
 }
 
-/// The base and the simplest drive that predicts held-out samples as well as the best, from the best of several starts; from
-/// what an earlier record told where there is one.
+/// The base and the simplest drive that predicts held-out samples as well as the best, from the best of several starts.
 fn begin(
     record: &AxisRecord<'_>,
     [train, valid]: [&OutputErrors<'_>; 2],
@@ -165,9 +164,15 @@ struct FittedDrive {
     left_mm: f64,
 }
 
-/// Each drive that may be there, from its best starts.
+/// Each drive that may be there, from its best starts. What an earlier record told stands but for the loops, which may be others.
 fn drives(record: &AxisRecord<'_>, train: &OutputErrors<'_>, facts: &AxisFacts) -> Vec<FittedDrive> {
-    let starts: Vec<TermValues> = facts.before.map_or_else(|| starts(record, train.counts), |before| vec![before]);
+    let mut starts = starts(record, train.counts);
+    if let Some(before) = facts.before {
+        let loops = |at: TermValues| {
+            [LawTerm::LoopGain, LawTerm::Damping].into_iter().fold(before, |kept, term| kept.with(term, at.get(term)))
+        };
+        starts = std::iter::once(before).chain(starts.into_iter().map(loops)).collect();
+    }
     let starts: Vec<(f64, TermValues)> =
         starts.par_iter().map(|at| facts.start(*at)).map(|at| (train.rms_mm(&at), at)).collect();
     // A part that is known to be there is there, and one that is known to be zero is not.
