@@ -74,22 +74,6 @@ fn gains_that_are_given_scale_the_machine_file_and_nothing_else() {
     assert_eq!(mine.axes[1], axis, "a machine has two axes");
 }
 
-/// Integral, full feedforward of the speed and most of the acceleration: admitted one by one, terms once ended in 11 times the loop gain.
-#[test]
-fn a_drive_with_integral_and_feedforward_is_found_whole() {
-    let machine = Machine::load("stiff".as_ref()).unwrap();
-    let facts = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
-    let mut log = log_of(&machine, 12.0, 0.01, 4);
-    log.axes.truncate(1);
-    let found = identified(log, LogJob { facts, ..LogJob::default() });
-    let (axis, is) = (&found.machine.axes[0], &machine.axes[0]);
-    let j = is.inertia_kg_m2;
-    let gain = number(axis, "kp_kv_over_j_1_s2") / (is.kp_1_s * is.kv_nm_s_per_rad / j);
-    let damping = number(axis, "kv_plus_b_over_j_1_s") / ((is.kv_nm_s_per_rad + is.viscous_friction_nm_s) / j);
-    assert!((0.7..1.4).contains(&gain) && (0.7..1.4).contains(&damping), "{gain} {damping}");
-    assert!((number(axis, "velocity_feedforward") - is.velocity_feedforward).abs() < 0.01);
-}
-
 #[test]
 fn a_log_that_moves_one_way_is_open_until_the_other_is_recorded() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();
