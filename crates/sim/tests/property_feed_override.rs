@@ -200,8 +200,8 @@ fn after_a_hold_the_motion_goes_on_to_the_end() {
 /// Sequences of overrides and holds at random moments, and those of the sweep.
 const SEQUENCES: u64 = 16;
 const MANY_SEQUENCES: u64 = 1000;
-/// Seeds of sequences that once exceeded a jerk between two moments, at the end of a plan, and that of one whose least way was
-/// taken of an axis that stands.
+/// Regression seeds: 606 and 678 once exceeded a jerk limit at the end of a plan; in 504 the least way was once that of an axis at
+/// rest.
 const ONCE_BEYOND: [u64; 3] = [606, 678, 504];
 
 /// What a sequence came to: ways of holds from 100 % over the ways that the axes need, each by itself.

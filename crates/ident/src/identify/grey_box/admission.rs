@@ -202,22 +202,24 @@ fn variants(
     record: &AxisRecord<'_>,
     FittedDrive { terms, values, .. }: FittedDrive,
 ) -> Vec<(Vec<LawTerm>, TermValues)> {
-    let most = |speeds: Vec<f64>| speeds.into_iter().fold(0.0_f64, |most, speed| most.max(speed.abs()));
-    let fastest_mm_s = most(record.slopes(record.actual_mm, SPEED_REACH));
+    let fastest_mm_s = largest(&record.actual_speed_mm_s());
     let with =
         |term: LawTerm, value: f64| (terms.iter().copied().chain([term]).collect::<Vec<_>>(), values.with(term, value));
     let mut variants = vec![(terms.clone(), values), with(LawTerm::Presliding, PRESLIDING_MM)];
-    if most(record.command_speed_mm_s()) > FASTER * fastest_mm_s {
+    if largest(&record.command_speed_mm_s()) > FASTER * fastest_mm_s {
         variants.push(with(LawTerm::SpeedLimit, AT_LIMIT * fastest_mm_s));
     }
     variants
 }
 
-/// Samples to each side that a speed is taken over.
-const SPEED_REACH: usize = 3;
+/// The largest size of values.
+fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
+}
+
 /// A command that is faster than the axis by this factor may run into a limit.
 const FASTER: f64 = 1.02;
-/// A drive that leaves so many times what the best leaves is left out.
+/// Drives whose residual exceeds that of the best by this factor are not considered.
 const FAR: f64 = 2.0;
 /// Where a fit of the deflection before friction slides begins, mm.
 const PRESLIDING_MM: f64 = 0.005;
@@ -262,7 +264,7 @@ fn starts(record: &AxisRecord<'_>, counts: &[bool]) -> Vec<TermValues> {
 struct FollowedTerm {
     terms: Vec<LawTerm>,
     values: TermValues,
-    /// By how much it makes held-out samples likelier, beside what it costs: twice the logarithm of their likelihood.
+    /// Gain in twice the log-likelihood of the held-out samples, less the cost of its parameters.
     gain: f64,
 }
 
@@ -304,7 +306,7 @@ fn best_term(
     followed.max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
-/// By how much samples are likelier with some residuals than with others, in blocks: twice the logarithm.
+/// Gain in twice the log-likelihood from one set of residuals to another, for each block.
 fn gains(valid: &OutputErrors<'_>, before: &[f64], after: &[f64], block_s: f64) -> Vec<f64> {
     let samples = before.len() - valid.priors.len();
     let block = ((block_s / valid.record.sample_s).ceil() as usize).clamp(1, samples.div_ceil(LEAST_BLOCKS).max(1));
@@ -335,7 +337,7 @@ const LEAST_RANKED: usize = 40;
 const LEAST_BLOCKS: usize = 10;
 /// A resonance of 20 Hz and more shows in samples of less than this, s: five and more in a period.
 const SLOWEST_FOR_RESONANCE_S: f64 = 0.005;
-/// Whether values have a screw that a machine may have, or a rigid one.
+/// Whether the screw is rigid, or compliant with a possible share of the table.
 pub(super) fn is_screw_or_none(values: &TermValues) -> bool {
     values.get(LawTerm::Resonance) == 0.0 || (SHARES[0]..SHARES[1]).contains(&values.get(LawTerm::TableShare))
 }
@@ -348,9 +350,8 @@ const LOST: f64 = 30.0;
 /// Terms that the law does not have yet.
 fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at: &TermValues) -> Vec<TermCandidate> {
     let sample_s = record.sample_s;
-    let most = |values: &[f64]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    let speed_mm_s = record.slopes(record.actual_mm, 3);
-    let acceleration_mm_s2 = most(&record.slopes(&speed_mm_s, 3));
+    let speed_mm_s = record.actual_speed_mm_s();
+    let acceleration_mm_s2 = largest(&record.slopes(&speed_mm_s, 3));
     let of_damping = 0.03 * at.get(LawTerm::Damping);
     let starts: [(LawTerm, &[f64]); 12] = [
         (LawTerm::Integral, &[10.0, 60.0]),
@@ -361,7 +362,7 @@ fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at:
         (LawTerm::Viscous, &[of_damping]),
         (LawTerm::Presliding, &[0.003, 0.03]),
         (LawTerm::Stribeck, &[0.3]),
-        (LawTerm::SpeedLimit, &[AT_LIMIT * most(&speed_mm_s)]),
+        (LawTerm::SpeedLimit, &[AT_LIMIT * largest(&speed_mm_s)]),
         (LawTerm::AccelerationLimit, &[0.9 * acceleration_mm_s2]),
         (LawTerm::Resonance, &[1.0 / (TAU * 40.0), 1.0 / (TAU * 90.0)]),
         (LawTerm::Backlash, &[0.003, 0.02]),
@@ -373,7 +374,7 @@ fn candidates(record: &AxisRecord<'_>, facts: &AxisFacts, terms: &[LawTerm], at:
             LawTerm::Viscous => terms.contains(&LawTerm::Integral) && at.get(term) == 0.0,
             // What swings faster than a fifth of the rate does not show, and what swings below 20 Hz is no screw of a machine tool.
             LawTerm::Resonance => sample_s < SLOWEST_FOR_RESONANCE_S,
-            // Within a rigid screw there is none that the motor's encoder sees.
+            // Backlash shows at the motor's encoder only where the screw is compliant.
             LawTerm::Backlash => terms.contains(&LawTerm::Resonance),
             _ => true,
         };

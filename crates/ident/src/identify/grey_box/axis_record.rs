@@ -31,6 +31,11 @@ impl AxisRecord<'_> {
         self.slopes(self.command_mm, SPEED_REACH)
     }
 
+    /// Speed of the actual position at each sample, mm/s.
+    pub(super) fn actual_speed_mm_s(&self) -> Vec<f64> {
+        self.slopes(self.actual_mm, SPEED_REACH)
+    }
+
     /// Acceleration of the command at each sample, mm/s2.
     pub(super) fn command_acceleration_mm_s2(&self) -> Vec<f64> {
         self.slopes(&self.slopes(self.command_mm, ACCELERATION_REACH), ACCELERATION_REACH)

@@ -93,8 +93,8 @@ pub(super) fn find(
     })
 }
 
-/// Terms that stay, and a fit of them. Terms beside the base that may as well be zero are left out, one after the other, and those of the drive without which
-/// the record is as likely but for what they cost (Schwarz 1978).
+/// Terms that stay, and a fit of them. Terms that do not differ from zero are dropped one after the other. So are terms of the drive
+/// whose gain in likelihood is below their cost (Schwarz 1978).
 fn without_doubtful(
     errors: &OutputErrors<'_>,
     facts: &AxisFacts,

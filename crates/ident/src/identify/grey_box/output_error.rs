@@ -5,15 +5,16 @@
 //! (S^T S + l diag(S^T S)) dp = S^T r,   S = -dr / dp by differences
 //! ```
 //!
-//! y actual position, c commands, y_s free run on the commands alone, from the beginning of each stretch, s what the last fit left, times the root of
-//! the samples that this is correlated over;
-//! g, m, d from [`super::priors`]. What is noise of the encoder or of the load does not depend on the command, and leaves the
+//! y is the actual position, c are the commands, and y_s is a free run on the commands alone from the beginning of each stretch. s is
+//! the RMS residual of the last fit, times the square root of its correlation length in samples where priors are weighed. g, m and
+//! d are from [`super::priors`]. What is noise of the encoder or of the load does not depend on the command, and leaves the
 //! minimum where it is (see [`super::super::axis_parameters`]).
 //!
-//! Weighted by the inverse of its spectrum, what is left would tell more where the law is that of the axis, and less where it is not:
-//! on the bench EMPS a fit with 40 lags misses 3.5 um in place of 1.6. So the fit weights all frequencies the same.
+//! All frequencies have the same weight. Weighting by the inverse spectrum of the residual is more efficient where the model is
+//! complete, and worse where it is not: on the bench EMPS a whitening filter of 40 lags gave 3.5 um in place of 1.6.
 //!
-//! Source: Geyer (1992), Practical Markov chain Monte Carlo, for the sum of correlations; Levenberg (1944), Marquardt (1963) for the damped step; the output error as in [`super::super::axis_parameters`].
+//! Source: Levenberg (1944), Marquardt (1963) for the damped step; Geyer (1992), Practical Markov chain Monte Carlo, for the sum of
+//! correlations; the output error as in [`super::super::axis_parameters`].
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -161,7 +162,7 @@ impl OutputErrors<'_> {
     }
 }
 
-/// Samples that a residual is correlated over: 1 + 2 sum of its correlations, up to the first that is none.
+/// Correlation length of a residual in samples: 1 + 2 sum of its autocorrelations, up to the first that is not positive.
 fn correlated_samples(left: &[f64], sample_s: f64) -> f64 {
     let covariance = |lag: usize| left.iter().zip(&left[lag.min(left.len())..]).map(|(a, b)| a * b).sum::<f64>();
     let variance = covariance(0);

@@ -80,7 +80,7 @@ impl LawVerdict {
     }
 }
 
-/// What a record does not tell, and by how much predictions may be off for it.
+/// Names the parameters that the record leaves open, and the uncertainty that follows.
 fn open(unseen: &UnseenMotion) -> String {
     let names: Vec<&str> = unseen.terms.iter().map(|term| term.row().name).collect();
     let untold = match names.as_slice() {
