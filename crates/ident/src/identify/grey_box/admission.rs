@@ -297,11 +297,8 @@ fn best_term(
         let first = all.len() - candidate.terms.len();
         let certainty = || values.get(candidate.terms[0]) / StandardErrors::of(train, &values, &all).errors[first];
         let gain = gain - candidate.terms.len() as f64 * libm::log(before.len() as f64);
-        (gain > AS_GOOD * error && is_screw_or_none(&values) && certainty() > QUANTILE).then_some(FollowedTerm {
-            terms: candidate.terms,
-            values,
-            gain,
-        })
+        (gain > AS_GOOD * error && is_screw_or_none(&values, train.record.sample_s) && certainty() > QUANTILE)
+            .then_some(FollowedTerm { terms: candidate.terms, values, gain })
     });
     followed.max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
@@ -337,9 +334,13 @@ const LEAST_RANKED: usize = 40;
 const LEAST_BLOCKS: usize = 10;
 /// A resonance of 20 Hz and more shows in samples of less than this, s: five and more in a period.
 const SLOWEST_FOR_RESONANCE_S: f64 = 0.005;
-/// Whether the screw is rigid, or compliant with a possible share of the table.
-pub(super) fn is_screw_or_none(values: &TermValues) -> bool {
-    values.get(LawTerm::Resonance) == 0.0 || (SHARES[0]..SHARES[1]).contains(&values.get(LawTerm::TableShare))
+/// Samples of a period that a swing shows in.
+const LEAST_OF_PERIOD: f64 = 5.0;
+/// Whether the screw is rigid, or compliant with a possible share of the table and a swing that shows in the samples.
+pub(super) fn is_screw_or_none(values: &TermValues, sample_s: f64) -> bool {
+    let period_s = TAU * values.get(LawTerm::Resonance);
+    period_s == 0.0
+        || period_s >= LEAST_OF_PERIOD * sample_s && (SHARES[0]..SHARES[1]).contains(&values.get(LawTerm::TableShare))
 }
 
 /// Parts of the inertia that a table behind a screw has: at an end of them a screw stands for something else.

@@ -127,9 +127,11 @@ impl RunState {
         self.axis.angle_rad
     }
 
-    /// Speed, mm/s.
-    pub(super) fn speed_mm_s(&self) -> f64 {
-        self.axis.speed_rad_s
+    /// Speed of the mass as a whole, which a torque accelerates, and of the part that slides, mm/s.
+    pub(super) fn of_whole_and_sliding_mm_s(&self, table_share: Option<f64>) -> [f64; 2] {
+        let motor_mm_s = self.axis.speed_rad_s;
+        let Some(share) = table_share else { return [motor_mm_s; 2] };
+        [motor_mm_s + share * (self.table[1] - motor_mm_s), self.table[1]]
     }
 
     /// Friction of the presliding spring, mm/s2.
@@ -211,6 +213,11 @@ impl AxisRun {
     #[inline]
     fn command_mm(&self, commands: &Commands<'_>, samples: f64) -> f64 {
         commands.at_mm(samples - self.late_samples)
+    }
+
+    /// Part of the mass that is behind a compliant screw.
+    pub(super) fn table_share(&self) -> Option<f64> {
+        self.screw.as_ref().map(|_| self.values.get(LawTerm::TableShare))
     }
 
     /// One sample of the record goes by.

@@ -113,7 +113,8 @@ fn without_doubtful(
             })
             .filter(|&i| !matches!(terms[i], LawTerm::StribeckSpeed | LawTerm::TableShare))
             .map(|i| {
-                let stands_for_another = terms[i] == LawTerm::Resonance && !is_screw_or_none(&at);
+                let stands_for_another =
+                    terms[i] == LawTerm::Resonance && !is_screw_or_none(&at, errors.record.sample_s);
                 let size = at.get(terms[i]) / certain.errors[i].max(f64::MIN_POSITIVE);
                 (if stands_for_another { 0.0 } else { size }, i)
             })

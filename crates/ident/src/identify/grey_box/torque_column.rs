@@ -121,7 +121,7 @@ impl DriveColumn {
     }
 }
 
-/// Acceleration, speed and direction of a free run, mean over each sample.
+/// Acceleration of the whole mass, speed and direction of the part that slides: of a free run, mean over each sample.
 struct Regressors {
     rows: Vec<[f64; 4]>,
 }
@@ -139,10 +139,10 @@ impl Regressors {
             let [mm, mm_s] = record.start(stretch, stretch.start);
             let mut state = run.state(&commands, 0, mm, mm_s);
             for k in stretch.start..=last {
-                let before = state.speed_mm_s();
+                let [before, sliding_before] = state.of_whole_and_sliding_mm_s(run.table_share());
                 run.step(&commands, k - stretch.start, &mut state);
-                let after = state.speed_mm_s();
-                let mean = 0.5 * (before + after);
+                let [after, sliding_after] = state.of_whole_and_sliding_mm_s(run.table_share());
+                let mean = 0.5 * (sliding_before + sliding_after);
                 let sign = if presliding > 0.0 && coulomb > 0.0 {
                     ((state.presliding_mm_s2() - values.get(LawTerm::Offset)) / coulomb).clamp(-1.0, 1.0)
                 } else {
