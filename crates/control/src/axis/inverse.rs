@@ -134,6 +134,13 @@ impl AxisInverse {
         }
     }
 
+    /// Inverts another law from now on, with what it remembers.
+    pub fn follow(&mut self, law: AxisLaw, drive: DriveParameters, friction: FrictionParameters, delays: LoopDelays) {
+        let Self { friction, filter_lag_s, .. } = Self::new(law, drive, friction, delays);
+        (self.law, self.drive, self.delays) = (law, drive, delays);
+        (self.friction, self.filter_lag_s) = (friction, filter_lag_s);
+    }
+
     /// Of an axis that has nothing beside its law.
     pub fn plain(law: AxisLaw) -> Self {
         Self::new(law, DriveParameters::default(), FrictionParameters::default(), LoopDelays::default())

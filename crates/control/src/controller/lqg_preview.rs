@@ -27,6 +27,7 @@
 //! | `lqg_preview/outliers.rs` | measurements that cannot be true |
 //! | `lqg_preview/whiteness.rs` | how much of what is measured the filter believes |
 //! | `lqg_preview/estimate.rs` | the filter |
+//! | `lqg_preview/learning.rs` | what the law gets wrong, learned while the axis moves |
 //! | `lqg_preview/proof.rs` | what a law that was wrong has to hold through |
 //! | `lqg_preview/validity.rs` | whether the law is that of the axis |
 //! | `lqg_preview/regulated_axis.rs` | an axis: filter, regulator and inverse |
@@ -46,6 +47,7 @@ mod one_step;
 mod outliers;
 mod whiteness;
 mod estimate;
+mod learning;
 mod proof;
 mod validity;
 mod regulated_axis;
@@ -53,7 +55,7 @@ mod regulated_axis;
 use super::feedforward::preview;
 use super::{Command, Controller, Measured, Schedule};
 use crate::axis::knowledge::AxisKnowledge;
-use crate::vector::{add_scaled, norm, scale, sub};
+use crate::vector::{norm, scale, sub};
 use crate::window::Window;
 use approach::Trusted;
 use feasible::Feasibility;
@@ -132,7 +134,7 @@ impl<const N: usize> LqgPreview<N> {
     fn foresee(&mut self, window: &Window<'_, N>) {
         self.lost_s += window.feed_period_s;
         if self.lost_s > FORESEEN_S {
-            self.reset();
+            self.begin_anew();
             return;
         }
         let here_mm = window.now().position_mm;
@@ -140,6 +142,18 @@ impl<const N: usize> LqgPreview<N> {
             axis.foresee(offset_mm, here_mm);
         }
         self.asked_mm = [0.0; N];
+    }
+
+    /// Begins anew where the position was lost.
+    fn begin_anew(&mut self) {
+        self.axes.iter_mut().for_each(AxisLqg::begin_anew);
+        self.know_nothing();
+    }
+
+    /// Forgets what was known of the laws, and of the reference.
+    fn know_nothing(&mut self) {
+        self.validity.iter_mut().for_each(Validity::forget);
+        (self.feasibility, self.asked_mm, self.lost_s) = (Feasibility::FOLLOWED, [0.0; N], 0.0);
     }
 
     /// By how much the last position was not expected, mm.
@@ -177,8 +191,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
 
     fn reset(&mut self) {
         self.axes.iter_mut().for_each(AxisLqg::forget);
-        self.validity.iter_mut().for_each(Validity::forget);
-        (self.feasibility, self.asked_mm, self.lost_s) = (Feasibility::FOLLOWED, [0.0; N], 0.0);
+        self.know_nothing();
     }
 
     /// Without a position for longer than it can be foreseen it begins anew: what the tool does meanwhile nobody knows.
@@ -191,18 +204,27 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         let begins = self.axes.iter().any(AxisLqg::begins);
         let speed_mm_s = if begins { self.lagging_mm_s(window) } else { [0.0; N] };
         let measured_axes = window.offset_mm.into_iter().zip(position_mm).zip(speed_mm_s);
+        let mut turned = false;
         for (axis, ((offset_mm, position_mm), speed_mm_s)) in self.axes.iter_mut().zip(measured_axes) {
-            axis.observe(offset_mm, position_mm, speed_mm_s);
+            turned |= axis.observe(offset_mm, position_mm, speed_mm_s);
         }
         if core::mem::replace(&mut self.lost_s, 0.0) > 0.0 && self.missed_mm() > FORESEEN_MM {
-            self.reset();
+            self.begin_anew();
             return;
         }
         if let Some(validity) = &mut self.validity {
+            if turned {
+                validity.begin_law();
+            }
             let missed_mm = self.axes.each_ref().map(AxisLqg::law_missed_mm);
             let path_mm = window.now().position_mm;
-            let following_mm = sub(add_scaled(path_mm, 1.0, window.offset_mm), position_mm);
-            let shown = Shown { missed_mm, following_mm, position_mm, path_mm };
+            let mut open_mm = [0.0; N];
+            for (i, (axis, open_mm)) in self.axes.iter().zip(&mut open_mm).enumerate() {
+                let at_mm = |late_s: f64| window.at(-self.lag_s - late_s).position_mm.get(i).copied().unwrap_or(0.0);
+                *open_mm = axis.open_off_mm(at_mm);
+            }
+            let by_noise_mm2 = self.axes.iter().map(AxisLqg::by_noise_mm2).sum();
+            let shown = Shown { missed_mm, open_mm, by_noise_mm2, position_mm, path_mm };
             let followed = norm(sub(window.offset_mm, self.asked_mm)) <= FOLLOWED_MM;
             validity.take_in_step(OneStep::sum(self.axes.iter().map(AxisLqg::step)), window.feed_period_s);
             validity.take_in(&shown, followed, window.feed_period_s);

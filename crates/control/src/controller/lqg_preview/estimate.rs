@@ -18,10 +18,10 @@ use crate::axis::{self, AxisLaw};
 use crate::sine::sin;
 
 use super::linear::{LinearAxis, STATES, measured_rad2};
-use super::one_step::OneStep;
+use super::one_step::{OneStep, run_periods};
 use super::outliers::{self, Outliers};
-use super::riccati::filter;
-use super::whiteness::{GainTable, Whiteness};
+use super::riccati::{StateMatrix, applied, filter};
+use super::whiteness::{GainTable, LEVELS, Whiteness};
 
 /// References that are kept, servo periods: 20 ms each way at 1 ms, the most of a machine file, and some.
 pub(super) const KEPT_PERIODS: usize = 48;
@@ -43,8 +43,10 @@ pub(super) struct AxisModel {
     pub(super) drive: DriveLaw,
     pub(super) mechanics: MechanicsLaw,
     statistics: AxisStatistics,
-    linear: LinearAxis,
+    pub(super) linear: LinearAxis,
     gains: GainTable,
+    /// Mean square of what a free run misses by white innovations of unit variance, for each level of the gains.
+    amplified: [f64; LEVELS],
     /// Variance of the measurement as given, rad^2.
     measured_rad2: f64,
     /// Innovations that are smaller are not learnt from, and those that are larger are believed in part, rad.
@@ -64,8 +66,14 @@ pub(super) struct Estimate {
 }
 
 impl Estimate {
+    /// What acts on it, N m.
+    pub(super) fn load_nm(&self) -> f64 {
+        let [broadband, disturbance, _, drift] = self.acting_nm;
+        broadband + disturbance + drift
+    }
+
     /// What the filter finds them to be higher.
-    fn correct(&mut self, corrections: [f64; STATES]) {
+    pub(super) fn correct(&mut self, corrections: [f64; STATES]) {
         let [x, w, i, y, n, p, q, d, xt, wt] = corrections;
         let MechanicsState { motor, table, .. } = &mut self.masses;
         motor.angle_rad += x;
@@ -100,6 +108,10 @@ pub(super) struct Innovation {
     pub(super) expected_rad2: f64,
     /// By how much the torque has moved the axis, beside its speed, rad.
     pub(super) pushed_rad: f64,
+    /// Friction by the law, N m.
+    pub(super) friction_nm: f64,
+    /// What each state was corrected by, for a rad of innovation.
+    pub(super) gains: [f64; STATES],
 }
 
 impl Innovation {
@@ -116,10 +128,30 @@ impl Innovation {
 /// What was sent to the drive, the newest first.
 pub(super) type Sent = [DriveReference; KEPT_PERIODS];
 
+/// Mechanics periods by which a measurement and a drive are late.
+fn late(AxisKnowledge { delays, periods, .. }: &AxisKnowledge) -> [u32; 2] {
+    let longest = (KEPT_PERIODS as u32 - 2) / 2 * periods.mechanics_per_servo;
+    // A float that is not a number saturates to zero here.
+    [delays.measurement_s, delays.drive_s].map(|s| (libm::round(s / periods.mechanics_s) as u32).min(longest))
+}
+
+/// Mean square of the angle that white innovations of unit variance make of a free run through gains.
+///
+/// What a free run misses at its end is the sum of the innovations since its start, each carried on from where the filter took it in.
+fn amplified(states: &StateMatrix<STATES>, gains: [f64; STATES], servo_s: f64) -> f64 {
+    let (mut carried, mut sum) = (gains, 1.0);
+    for _ in 1..run_periods(servo_s) {
+        carried = applied(states, &carried);
+        let [angle, ..] = carried;
+        sum += angle * angle;
+    }
+    sum
+}
+
 impl AxisModel {
     /// Of an axis; where it `learns`, with gains for other statistics, too.
     pub(super) fn new(known: &AxisKnowledge, learns: bool) -> Self {
-        let AxisKnowledge { drive, friction, transmission, delays, statistics, .. } = *known;
+        let AxisKnowledge { drive, friction, transmission, statistics, .. } = *known;
         let law = known.law();
         let mechanics = MechanicsLaw::new(&law, friction, transmission);
         let linear = LinearAxis::new(&law, &drive, mechanics.transmission(), &statistics);
@@ -128,24 +160,20 @@ impl AxisModel {
         measured[0] = 1.0;
         let gains = |variance_rad2: f64| filter(&states, &noise, &measured, variance_rad2);
         let measured_rad2 = measured_rad2(&statistics);
-        let longest = (KEPT_PERIODS as u32 - 2) / 2 * law.periods.mechanics_per_servo;
-        // A float that is not a number saturates to zero here.
-        let late = |delay_s: f64| (libm::round(delay_s / law.periods.mechanics_s) as u32).min(longest);
+        let gains =
+            if learns { GainTable::new(measured_rad2, gains) } else { GainTable::constant(gains(measured_rad2)) };
         Self {
             law,
             drive: DriveLaw::new(&law, drive),
             mechanics,
             statistics,
             linear,
-            gains: if learns {
-                GainTable::new(measured_rad2, gains)
-            } else {
-                GainTable::constant(gains(measured_rad2))
-            },
+            amplified: gains.levels().map(|gains| amplified(&states, gains, law.periods.servo_s)),
+            gains,
             measured_rad2,
             least_rad: LEAST_SHARE * libm::sqrt(measured_rad2),
             believed_rad: outliers::believed_rad(&law, measured_rad2),
-            late: [delays.measurement_s, delays.drive_s].map(late),
+            late: late(known),
         }
     }
 
@@ -180,6 +208,12 @@ impl AxisModel {
         self.linear.spread_rad2(&self.statistics, periods) + measured_rad2(&self.statistics)
     }
 
+    /// Mean square of what a free run misses by the innovations that were told, if they are white, rad^2.
+    pub(super) fn by_noise_rad2(&self, told: &Innovation, learnt: &Learnt) -> f64 {
+        let amplified = self.amplified.get(learnt.whiteness.level()).copied().unwrap_or(1.0);
+        told.missed_rad * told.missed_rad * amplified
+    }
+
     /// What the encoder shows, rad.
     pub(super) fn shown_rad(&self, estimate: &Estimate) -> f64 {
         let AxisStatistics { interpolation_rad, interpolation_phase_rad, signal_per_rad, .. } = self.statistics;
@@ -209,14 +243,45 @@ impl AxisModel {
         let expected_rad2 = learnt.whiteness.variance() * self.measured_rad2 / (1.0 - of_angle).max(LEAST_SHARE_LEFT);
         // A frozen encoder is for the safety layer to see: it tells nothing of the predictions.
         let missed_rad = if taken_rad == 0.0 { 0.0 } else { missed_rad };
-        Innovation { missed_rad, measured_rad: shown_rad + taken_rad, expected_rad2, pushed_rad }
+        let believed = if missed_rad == 0.0 { 1.0 } else { taken_rad / missed_rad };
+        let gains = gains.map(|gain| believed * gain);
+        let friction_nm = self.friction_nm(&estimate.masses);
+        Innovation { missed_rad, measured_rad: shown_rad + taken_rad, expected_rad2, pushed_rad, friction_nm, gains }
+    }
+
+    /// Friction of the table, N m.
+    fn friction_nm(&self, masses: &MechanicsState) -> f64 {
+        let speed_rad_s = masses.table.speed_rad_s;
+        let [sign] = axis::friction_signs(&[self.law], [speed_rad_s]);
+        let viscous_nm = self.law.friction_nm(speed_rad_s, 0.0);
+        if masses.presliding_nm == 0.0 {
+            self.law.friction_nm(speed_rad_s, sign)
+        } else {
+            viscous_nm + masses.presliding_nm
+        }
+    }
+
+    /// The age of the newest reference that acts before a measurement, servo periods, and the part of the time in which the one before
+    /// it does.
+    pub(super) fn acting(&self) -> (usize, f64) {
+        let [measured_late, drive_late] = self.late;
+        let (late, per_servo) = (measured_late + drive_late, self.law.periods.mechanics_per_servo);
+        let age = late.checked_div(per_servo).unwrap_or(0);
+        (age as usize, f64::from(late - age * per_servo) / f64::from(per_servo))
+    }
+
+    /// Goes by this knowledge of the axis from now on. Its filter stays.
+    pub(super) fn follow(&mut self, known: &AxisKnowledge) {
+        self.law = known.law();
+        self.drive = DriveLaw::new(&self.law, known.drive);
+        self.mechanics = MechanicsLaw::new(&self.law, known.friction, known.transmission);
+        self.late = late(known);
     }
 
     /// Whether there can be such a load. One that is larger is a law that is not that of the axis: other gains, another inertia.
     pub(super) fn is_possible(&self, estimate: &Estimate) -> bool {
-        let [broadband, disturbance, _, drift] = estimate.acting_nm;
         // What is not a number is none.
-        (broadband + disturbance + drift).abs() <= LARGEST_LOAD * self.law.parameters.torque_limit_nm
+        estimate.load_nm().abs() <= LARGEST_LOAD * self.law.parameters.torque_limit_nm
     }
 
     /// As it will be when what is sent now begins to act.

@@ -29,6 +29,8 @@ pub(super) const STATES: usize = 10;
 /// Loads among them: the broadband torque, the disturbance, and then its quadrature.
 const BROADBAND: usize = 4;
 const DISTURBANCE: usize = 5;
+/// What is left.
+const DRIFT: usize = 7;
 /// The table's angle: it is what cuts.
 const TABLE: usize = 8;
 /// Longest time for which the oscillator remembers its phase, s: one that remembers longer takes longer to find it at the start. On tnv40
@@ -45,11 +47,21 @@ const LEAST_NOISE_RAD: f64 = 6e-7;
 pub(super) struct LinearAxis {
     /// Over a mechanics period.
     substep: StateMatrix<STATES>,
-    /// What a reference speed of 1 rad/s adds in it.
+    /// What a reference speed of 1 rad/s adds in it, and what a torque beside the speed loop of 1 N m does.
     substep_input: [f64; STATES],
+    substep_torque: [f64; STATES],
     /// Noise that comes in it, covariance.
     substep_noise: StateMatrix<STATES>,
     substeps: u32,
+}
+
+/// What a unit that is held over a servo period adds to each state: of reference speed, rad/s, of torque beside the speed loop and of
+/// load, N m.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PeriodInputs {
+    pub(super) reference: [f64; STATES],
+    pub(super) torque: [f64; STATES],
+    pub(super) load: [f64; STATES],
 }
 
 impl LinearAxis {
@@ -64,12 +76,12 @@ impl LinearAxis {
         let kv = parameters.kv_nm_s_per_rad;
         let integral = if drive.speed_integral_s > 0.0 { kv * dt_s / drive.speed_integral_s } else { 0.0 };
         let filter = dt_s / (dt_s + drive.filter_lag_s(dt_s));
-        // Columns: what becomes of a unit of each state; the last is the reference.
-        let after = |state: [f64; STATES], reference_rad_s: f64| {
+        // Columns: what becomes of a unit of each state; the last are those of what goes to the drive.
+        let after = |state: [f64; STATES], [reference_rad_s, torque_nm]: [f64; 2]| {
             let [x, w, i, y, n, p, q, d, xt, wt] = state;
             let error_rad_s = reference_rad_s - w;
             let i = i + integral * error_rad_s;
-            let y = y + filter * (kv * error_rad_s + i - y);
+            let y = y + filter * (kv * error_rad_s + torque_nm + i - y);
             let viscous_nm_s = parameters.viscous_friction_nm_s;
             let [[x, w], [xt, wt]] = match screw {
                 Some(screw) => {
@@ -91,10 +103,11 @@ impl LinearAxis {
                 if statistics.torque_noise_s > 0.0 { libm::exp(-dt_s / statistics.torque_noise_s) } else { 0.0 };
             [x, w, i, y, forget * n, keep * (cos * p + sin * q), keep * (cos * q - sin * p), d, xt, wt]
         };
-        let columns: StateMatrix<STATES> = core::array::from_fn(|j| after(unit(j), 0.0));
+        let columns: StateMatrix<STATES> = core::array::from_fn(|j| after(unit(j), [0.0; 2]));
         Self {
             substep: transposed(&columns),
-            substep_input: after([0.0; STATES], 1.0),
+            substep_input: after([0.0; STATES], [1.0, 0.0]),
+            substep_torque: after([0.0; STATES], [0.0, 1.0]),
             substep_noise: noise(law, statistics),
             substeps: law.periods.mechanics_per_servo,
         }
@@ -112,6 +125,17 @@ impl LinearAxis {
             covariance = sum(&spread, &self.substep_noise);
         }
         (states, input, covariance)
+    }
+
+    /// What is held over a servo period makes of the states.
+    pub(super) fn inputs(&self) -> PeriodInputs {
+        let (states, reference, _) = self.sampled();
+        let torque = (0..self.substeps).fold([0.0; STATES], |input, _| {
+            let carried = applied(&self.substep, &input);
+            core::array::from_fn(|i| carried[i] + self.substep_torque[i])
+        });
+        let load = core::array::from_fn(|i| if i == DRIFT { 0.0 } else { states[i][DRIFT] });
+        PeriodInputs { reference, torque, load }
     }
 
     /// Variance of the motor's angle after so many servo periods, of which nothing but the state at their start is known: no load, no noise, rad^2.

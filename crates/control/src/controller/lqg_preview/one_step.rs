@@ -24,18 +24,25 @@
 use crate::vector::{bounded, smooth_step};
 
 /// What may always be unexpected, mm^2 (0.1 um): the filter does not know the loads yet where it begins.
-const LEAST_MM2: f64 = 1e-8;
+pub(super) const LEAST_MM2: f64 = 1e-8;
 /// Standard deviations of what the statistics say, and the part of p.
 const DEVIATIONS: f64 = 4.0;
 const PUSHED_SHARE: f64 = 1.5;
 /// Time over which squares are averaged, s.
 const MEMORY_S: f64 = 0.005;
+/// Time of a free run, s: about the time constant of a usual position loop.
+pub(super) const RUN_S: f64 = 0.03;
 /// Time after which a law is not trusted at all, s.
 pub(super) const TO_DOUBT_S: f64 = 0.005;
 /// Time of the contrary after which it is in full, s: so many times longer each time that loads were let go, up to the longest.
 const TO_TRUST_S: f64 = 0.3;
 const LONGER: f64 = 4.0;
 const LONGEST_S: f64 = 20.0;
+
+/// Servo periods of a free run.
+pub(super) fn run_periods(servo_s: f64) -> u32 {
+    libm::ceil(RUN_S / servo_s) as u32
+}
 
 /// n^2, S and p^2, mm^2.
 #[derive(Debug, Clone, Copy, PartialEq)]

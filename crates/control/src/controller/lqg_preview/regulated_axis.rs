@@ -8,12 +8,13 @@ use crate::axis::{AxisLaw, AxisState, Parameters};
 
 use super::approach::{self, Room, Trusted, WeightedGains};
 use super::control_weight::{LqgSettings, OffsetBounds};
-use super::estimate::{AxisModel, Estimate, KEPT_PERIODS, Learnt, Sent};
+use super::estimate::{AxisModel, Estimate, Innovation, KEPT_PERIODS, Learnt, Sent};
+use super::learning::{LawChoice, Learner, Learning};
 use super::linear::{self, LinearAxis};
-use super::one_step::OneStep;
+use super::one_step::{OneStep, run_periods};
 use super::riccati;
 use super::screw::{ScrewTwist, TwistCourse};
-use super::validity::{self, LawTrial};
+use super::validity::LawTrial;
 
 /// Stationary gains of an axis: by state, as in `lqg_preview/linear.rs`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -33,37 +34,47 @@ pub(super) struct AxisLqg {
     regulator: WeightedGains,
     bounds: OffsetBounds,
     known: AxisKnowledge,
+    /// What finds where the law is wrong, of a law that may be.
+    learner: Option<Learner>,
+    /// The law that stands beside it: the one that is learned until that is followed, the nominal one then.
+    other: AxisModel,
+    other_known: AxisKnowledge,
+    may_learn: bool,
     state: Option<Running>,
 }
 
 /// What an axis remembers while it runs.
 #[derive(Debug, Clone, Copy)]
 struct Running {
-    /// As it is, and as it would be without any offset, under the same load.
-    real: Tracked,
+    /// As the law that is followed has it, and as the other one has it: the learned law until that is followed, the nominal one then.
+    real: LawRun,
+    beside: LawRun,
+    /// As it would be without any offset, under the same load.
     open: Tracked,
     /// Where the path was at the last decision, mm; the command was an offset beside it.
     path_mm: Option<f64>,
     /// What was measured beyond what was expected, rad.
     missed_rad: f64,
-    /// How the last servo period went.
+    /// How the last servo period went, and what its innovation makes of a free run, if it is noise, rad^2.
     step: OneStep,
-    learnt: Learnt,
-    trial: LawTrial,
+    by_noise_rad2: f64,
+    /// What is learned of a law that may be wrong.
+    learning: Option<Learning>,
 }
 
 impl Running {
     /// Where nothing is known yet but an angle and a speed.
-    fn at(model: &AxisModel, angle_rad: f64, speed_rad_s: f64) -> Self {
+    fn at(model: &AxisModel, learning: Option<Learning>, angle_rad: f64, speed_rad_s: f64) -> Self {
         let moving = Tracked::moving(model, angle_rad, speed_rad_s);
         Self {
-            real: moving,
+            real: LawRun::from(moving),
+            beside: LawRun::from(moving),
             open: moving,
             path_mm: None,
             missed_rad: 0.0,
             step: OneStep::NONE,
-            learnt: Learnt::NOTHING,
-            trial: LawTrial::from(&moving.estimate),
+            by_noise_rad2: 0.0,
+            learning,
         }
     }
 }
@@ -110,6 +121,36 @@ impl Tracked {
     }
 }
 
+/// An axis as a law has it: its filter, and a free run beside that.
+#[derive(Debug, Clone, Copy)]
+struct LawRun {
+    tracked: Tracked,
+    learnt: Learnt,
+    trial: LawTrial,
+}
+
+impl LawRun {
+    fn from(tracked: Tracked) -> Self {
+        Self { tracked, learnt: Learnt::NOTHING, trial: LawTrial::from(&tracked.estimate) }
+    }
+
+    /// A servo period by a command, and what was measured at its end.
+    fn go_on(&mut self, model: &AxisModel, command_rad: f64, measured_rad: f64) -> Innovation {
+        let Self { tracked, learnt, trial } = self;
+        tracked.send(model, command_rad);
+        let told = model.correct(&mut tracked.estimate, &tracked.sent, measured_rad, learnt);
+        tracked.measured_rad = told.measured_rad;
+        trial.go_on(model, &tracked.sent, measured_rad, &tracked.estimate);
+        told
+    }
+
+    /// A servo period by a command and the law alone.
+    fn foresee(&mut self, model: &AxisModel, command_rad: f64) {
+        self.tracked.foresee(model, command_rad);
+        self.trial = LawTrial::from(&self.tracked.estimate);
+    }
+}
+
 impl AxisLqg {
     /// Of an axis of which this is known.
     pub(super) fn new(known: AxisKnowledge, settings: LqgSettings) -> Self {
@@ -128,6 +169,10 @@ impl AxisLqg {
             }),
             bounds: settings.bounds,
             known,
+            learner: settings.learns.then(|| Learner::new(known, &model.linear)),
+            other: model.clone(),
+            other_known: known,
+            may_learn: true,
             state: None,
             model,
         }
@@ -153,9 +198,21 @@ impl AxisLqg {
         self.bounds = bounds;
     }
 
+    /// Begins anew where the position was lost. If the law seems to be another one from there on, it is the position that is: nothing more
+    /// is learned.
+    pub(super) fn begin_anew(&mut self) {
+        (self.state, self.may_learn) = (None, false);
+    }
+
     /// Forgets all that came.
     pub(super) fn forget(&mut self) {
-        self.state = None;
+        (self.state, self.may_learn) = (None, true);
+        let Some(learner) = &self.learner else { return };
+        let nominal = learner.nominal();
+        (self.known, self.other_known) = (nominal, nominal);
+        self.model.follow(&nominal);
+        self.other.follow(&nominal);
+        self.inverse.follow(self.model.law, nominal.drive, nominal.friction, nominal.delays);
     }
 
     /// Whether nothing has come yet.
@@ -179,51 +236,122 @@ impl AxisLqg {
         (1.0 + friction - drive.velocity_feedforward) / parameters.kp_1_s
     }
 
-    /// What was commanded in the last servo period, as an offset from the path, has led to this position. Where it begins it has about this speed.
-    pub(super) fn observe(&mut self, offset_mm: f64, position_mm: f64, speed_mm_s: f64) {
+    /// What was commanded in the last servo period, as an offset from the path, has led to this position. Where it begins it has about this
+    /// speed. Whether another law is followed from now on.
+    pub(super) fn observe(&mut self, offset_mm: f64, position_mm: f64, speed_mm_s: f64) -> bool {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let measured_rad = position_mm * rad_per_mm;
-        let running = self.state.get_or_insert_with(|| Running::at(&self.model, measured_rad, speed_mm_s * rad_per_mm));
-        let Running { real, open, path_mm, missed_rad, step, learnt, trial } = running;
-        let Some(path_mm) = *path_mm else {
-            real.measured_rad = measured_rad;
-            return;
+        let learning = || self.learner.as_ref().filter(|_| self.may_learn).map(Learner::begin);
+        let begins = || Running::at(&self.model, learning(), measured_rad, speed_mm_s * rad_per_mm);
+        let running = self.state.get_or_insert_with(begins);
+        let Some(path_mm) = running.path_mm else {
+            running.real.tracked.measured_rad = measured_rad;
+            running.beside.tracked.measured_rad = measured_rad;
+            return false;
         };
-        real.send(&self.model, (path_mm + offset_mm) * rad_per_mm);
-        let told = self.model.correct(&mut real.estimate, &real.sent, measured_rad, learnt);
-        *step = told.step(1.0 / rad_per_mm);
-        real.measured_rad = told.measured_rad;
-        trial.go_on(&self.model, &real.sent, measured_rad, &real.estimate);
-        let possible = self.model.is_possible(&real.estimate);
+        let command_rad = (path_mm + offset_mm) * rad_per_mm;
+        let from_rad = running.real.tracked.measured_rad;
+        let told = running.real.go_on(&self.model, command_rad, measured_rad);
+        running.step = told.step(1.0 / rad_per_mm);
+        running.by_noise_rad2 = self.model.by_noise_rad2(&told, &running.real.learnt);
+        let turned = self.learn(&told, [command_rad, from_rad, measured_rad]);
+        let Some(Running { real, open, missed_rad, .. }) = &mut self.state else { return false };
+        let possible = self.model.is_possible(&real.tracked.estimate);
         *missed_rad = if possible { told.missed_rad } else { f64::INFINITY };
-        open.estimate.acting_nm = real.estimate.acting_nm;
+        open.estimate.acting_nm = real.tracked.estimate.acting_nm;
         open.foresee(&self.model, path_mm * rad_per_mm);
+        turned
+    }
+
+    /// Learns of a servo period, in which the law that is followed was told this, a command went out at one angle, and another was
+    /// measured. Whether another law is followed from now on.
+    fn learn(&mut self, told: &Innovation, [command_rad, from_rad, measured_rad]: [f64; 3]) -> bool {
+        let (Some(learner), Some(Running { real, beside, learning: Some(learning), .. })) =
+            (&self.learner, &mut self.state)
+        else {
+            return false;
+        };
+        let beside_from_rad = beside.tracked.measured_rad;
+        let beside_told = beside.go_on(&self.other, command_rad, measured_rad);
+        let missed_rad = [&*real, &*beside].map(|run| run.trial.missed_rad());
+        let followed = learning.is_followed();
+        let (run, model, known) = if followed {
+            (&mut *real, &mut self.model, &mut self.known)
+        } else {
+            (&mut *beside, &mut self.other, &mut self.other_known)
+        };
+        let (told, from_rad) = if followed { (told, from_rad) } else { (&beside_told, beside_from_rad) };
+        learner.sent(learning, command_rad, from_rad);
+        learner.take_in(learning, model, &run.tracked.sent, told);
+        if let Some(moved) = learner.apply(learning) {
+            *known = learner.known(learning);
+            model.follow(known);
+            run.tracked.estimate.correct(moved);
+        }
+        let LawChoice { turns, begins_anew } = learner.compare(learning, missed_rad);
+        if turns {
+            core::mem::swap(&mut self.model, &mut self.other);
+            core::mem::swap(&mut self.known, &mut self.other_known);
+            core::mem::swap(real, beside);
+        }
+        if begins_anew {
+            self.other_known = learner.nominal();
+            self.other.follow(&self.other_known);
+            *beside = *real;
+        }
+        if followed || turns {
+            let AxisKnowledge { drive, friction, delays, .. } = self.known;
+            self.inverse.follow(self.model.law, drive, friction, delays);
+        }
+        turns
     }
 
     /// What was commanded in the last servo period, as an offset from the path, which is at a place now, has led to where the law says.
     pub(super) fn foresee(&mut self, offset_mm: f64, here_mm: f64) {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let Some(running) = &mut self.state else { return };
-        let Running { real, open, path_mm, missed_rad, step, trial, .. } = running;
+        let Running { real, beside, open, path_mm, missed_rad, step, .. } = running;
         let before_mm = path_mm.replace(here_mm).unwrap_or(here_mm);
         real.foresee(&self.model, (before_mm + offset_mm) * rad_per_mm);
-        open.estimate.acting_nm = real.estimate.acting_nm;
+        beside.foresee(&self.other, (before_mm + offset_mm) * rad_per_mm);
+        open.estimate.acting_nm = real.tracked.estimate.acting_nm;
         open.foresee(&self.model, before_mm * rad_per_mm);
-        (*missed_rad, *step, *trial) = (0.0, OneStep::NONE, LawTrial::from(&real.estimate));
+        (*missed_rad, *step) = (0.0, OneStep::NONE);
     }
 
     /// By how much the offset has moved it, and what was measured beyond what was expected, mm.
     pub(super) fn moved_and_missed_mm(&self) -> [f64; 2] {
         let mm = 1.0 / self.model.law.parameters.rad_per_mm;
         self.state.as_ref().map_or([0.0; 2], |Running { real, open, missed_rad, .. }| {
-            let [with_rad, without_rad] = [real, open].map(|tracked| tracked.estimate.masses.table.angle_rad);
+            let [with_rad, without_rad] = [&real.tracked, open].map(|tracked| tracked.estimate.masses.table.angle_rad);
             [with_rad - without_rad, *missed_rad].map(|rad| rad * mm)
         })
     }
 
     /// By how much the law has missed what was measured, mm.
     pub(super) fn law_missed_mm(&self) -> f64 {
-        self.state.as_ref().map_or(0.0, |running| running.trial.missed_rad() / self.model.law.parameters.rad_per_mm)
+        self.state
+            .as_ref()
+            .map_or(0.0, |running| running.real.trial.missed_rad() / self.model.law.parameters.rad_per_mm)
+    }
+
+    /// By how much it would be measured off the reference without any offset, mm; `at_mm` is the reference so long before now. What loads
+    /// make of that does not count: a law that is wrong finds them.
+    pub(super) fn open_off_mm(&self, at_mm: impl Fn(f64) -> f64) -> f64 {
+        let Some(Running { open, .. }) = &self.state else { return 0.0 };
+        let Parameters { kp_1_s, kv_nm_s_per_rad, rad_per_mm, .. } = self.model.law.parameters;
+        let off_mm = open.measured_rad / rad_per_mm - at_mm(self.known.delays.measurement_s);
+        // The integral of a speed loop takes up what is constant.
+        let takes_up = self.known.drive.speed_integral_s > 0.0;
+        let by_loads_mm =
+            if takes_up { 0.0 } else { open.estimate.load_nm() / (kv_nm_s_per_rad * kp_1_s * rad_per_mm) };
+        (off_mm.abs() - by_loads_mm.abs()).max(0.0)
+    }
+
+    /// Mean square of what a free run misses by the last innovation, if it is noise, mm^2.
+    pub(super) fn by_noise_mm2(&self) -> f64 {
+        let Parameters { rad_per_mm, .. } = self.model.law.parameters;
+        self.state.as_ref().map_or(0.0, |running| running.by_noise_rad2) / (rad_per_mm * rad_per_mm)
     }
 
     /// How the last servo period went.
@@ -234,7 +362,7 @@ impl AxisLqg {
     /// What noise and loads that nobody foresees make it miss, mm^2.
     pub(super) fn unforeseen_mm2(&self) -> f64 {
         let Parameters { rad_per_mm, .. } = self.model.law.parameters;
-        self.model.unforeseen_rad2(validity::run_periods(self.model.law.periods.servo_s)) / (rad_per_mm * rad_per_mm)
+        self.model.unforeseen_rad2(run_periods(self.model.law.periods.servo_s)) / (rad_per_mm * rad_per_mm)
     }
 
     /// The offset of the command in this servo period, by a law that is `trusted` so far; `at_mm` is the reference so many seconds from its start, in whose
@@ -242,7 +370,7 @@ impl AxisLqg {
     pub(super) fn offset_mm(&mut self, here_mm: f64, trusted: Trusted, open: f64, at_mm: impl Fn(f64) -> f64) -> f64 {
         let Some(running) = &mut self.state else { return 0.0 };
         running.path_mm = Some(here_mm);
-        let ahead = self.model.ahead(&running.real.estimate, &running.real.sent);
+        let ahead = self.model.ahead(&running.real.tracked.estimate, &running.real.tracked.sent);
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let inner = [ahead.drive.integral_nm(), ahead.masses.presliding_nm];
         let acts_s = self.known.delays.drive_s;
@@ -331,7 +459,7 @@ impl AxisLqg {
     fn solved_mm(&self, here_mm: f64, wanted_rad_s: f64) -> f64 {
         let Some(running) = &self.state else { return 0.0 };
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
-        let asked = |command_mm: f64| running.real.asked_rad_s(&self.model, command_mm * rad_per_mm);
+        let asked = |command_mm: f64| running.real.tracked.asked_rad_s(&self.model, command_mm * rad_per_mm);
         // It is linear.
         let (here, beyond) = (asked(here_mm), asked(here_mm + 1.0));
         (wanted_rad_s - here) / (beyond - here)

@@ -22,7 +22,7 @@ use super::linear::STATES;
 const LOWEST: i32 = 0;
 const HIGHEST: i32 = 6;
 /// How many there are.
-const LEVELS: usize = (HIGHEST - LOWEST + 1) as usize;
+pub(super) const LEVELS: usize = (HIGHEST - LOWEST + 1) as usize;
 /// Step of the power for innovations that are alike.
 const STEP: f64 = 0.01;
 
@@ -37,6 +37,11 @@ impl GainTable {
     pub(super) fn new(given_rad2: f64, gains: impl Fn(f64) -> [f64; STATES]) -> Self {
         let at = |level: usize| gains(given_rad2 * libm::exp2(2.0 * f64::from(LOWEST + level as i32)));
         Self { gains: core::array::from_fn(at) }
+    }
+
+    /// By each level.
+    pub(super) fn levels(&self) -> &[[f64; STATES]; LEVELS] {
+        &self.gains
     }
 
     /// For a measurement whose variance is as given.
@@ -75,6 +80,12 @@ impl Whiteness {
     /// Gains of the filter.
     pub(super) fn gains(&self, table: &GainTable) -> [f64; STATES] {
         table.at(self.power)
+    }
+
+    /// Of a whole number of levels, the one that is next.
+    pub(super) fn level(&self) -> usize {
+        // A float that is not a number saturates to zero here.
+        (libm::round(self.power - f64::from(LOWEST)) as usize).min(LEVELS - 1)
     }
 
     /// A measurement and the innovation in it; innovations below `least_rad` are rounding.

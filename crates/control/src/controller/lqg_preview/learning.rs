@@ -1,0 +1,443 @@
+//! What the law gets wrong, learned while the axis moves.
+//!
+//! Beside the filter of the nominal law runs another one, of a law that is learned. The differences theta between the two are constant, or
+//! nearly so. To first order they add to the error of the filter:
+//!
+//! ```text
+//! s_i <- A s_i + b phi_i        before a measurement: what a unit of difference i has made of the state since the last one
+//! s_i <- s_i - K h s_i          after it; K is what the filter added of the innovation, h s_i is the angle of the motor in s_i
+//! nu   = sum_i h s_i (theta_i - applied_i) + w
+//! ```
+//!
+//! nu is the innovation of the filter that is learned, w what noise makes of it. Theta is found by recursive least squares, whether the
+//! correction is in the loop or not. They forget in the direction of what is measured only (Kulhavy): a long straight line, which tells of
+//! few differences, leaves the others as they are. A difference beyond its bounds is put on them, and the others where
+//! they are likeliest then. What is found is applied at once, and the estimate moves by s_i with it: filter and least squares together are
+//! the filter that has theta among its states.
+//!
+//! | i | Difference | phi |
+//! |---|---|---|
+//! | 0 | position gain, part of it | reference speed that the gain asks for |
+//! | 1 | velocity feedforward | commanded speed, as reference speed |
+//! | 2 | delay of the drive, servo periods | change of the reference over a servo period, reversed |
+//! | 3 | inertia, part of it | J a, as a load |
+//! | 4 | friction, part of it | friction by the law, as a load |
+//! | 5 | constant load, N m | 1; it is left to the filter, and only kept apart from the others |
+//! | 6 | acceleration feedforward | torque for the commanded acceleration |
+//!
+//! Free runs decide which of the two laws is followed. Both begin where their filters are, and miss what is measured by m:
+//!
+//! ```text
+//! l <- l + ln (<m^2> + e^2) / (<m_learned^2> + e^2)        over 10 ms each; e^2 = (0.1 um)^2 + 16 variances of the measurement
+//! ```
+//!
+//! The learned law is followed from l = 6.9 on, and no more below 0: of nominal laws that are right, one in a thousand is taken for wrong
+//! (Wald). l counts up to 13.8 (Page), so that a change is noticed. A learned law that is certainly worse is begun anew. A nominal law that
+//! misses no more than its encoder explains stays as it is to the bit.
+//!
+//! What was tried: innovations in place of free runs took laws for wrong that were right, since steps of an encoder are not white noise. One
+//! filter with the nominal law whose innovations would have been is no judge: its own first order says that they are large. Least squares on
+//! the innovations of the nominal filter go astray where those are bounded as outliers.
+//!
+//! Source: Friedland (1969), Treatment of bias in recursive filtering, IEEE Trans. Automatic Control 14(4), for the two filters; Kulhavy
+//! (1987), Restricted exponential forgetting in real-time identification, Automatica 23(5); Wald (1947), Sequential Analysis, and Page (1954),
+//! Continuous inspection schemes, Biometrika 41, for the test.
+
+use crate::axis::drive::DriveReference;
+use crate::axis::knowledge::AxisKnowledge;
+use crate::vector::bounded;
+
+use super::estimate::{AxisModel, Innovation, KEPT_PERIODS, Sent};
+use super::linear::{LinearAxis, PeriodInputs, STATES, measured_rad2};
+use super::one_step::LEAST_MM2;
+use super::riccati::{StateMatrix, applied as carried};
+
+/// How many differences there are.
+pub(super) const DIFFERENCES: usize = 7;
+/// Standard deviations of differences before anything is known, and their bounds.
+const PRIORS: [f64; DIFFERENCES] = [0.1, 0.1, 0.5, 0.3, 0.6, 0.1, 0.3];
+const BOUNDS: [[f64; 2]; DIFFERENCES] =
+    [[-0.5, 1.0], [-0.3, 0.3], [-2.0, 3.0], [-0.7, 2.0], [-0.9, 3.0], [-1e3, 1e3], [-1.0, 1.0]];
+/// The constant load among them.
+const LOAD: usize = 5;
+/// Time over which what was measured is forgotten, s.
+const DRIFT_S: f64 = 100.0;
+/// The variance of what is left counts so many times: it is not white.
+const COLOURED: f64 = 4.0;
+/// Time over which what is left is averaged, s.
+const LEFT_S: f64 = 0.25;
+/// Part of what differences do that their first order leaves.
+const FIRST_ORDER: f64 = 0.3;
+/// Standard deviations of an innovation that are believed.
+const BELIEVED: f64 = 3.0;
+/// An axis that moves more slowly shows its friction at rest, mm/s.
+const SLOWEST_MM_S: f64 = 1.0;
+/// l from which on the learned law is followed: of nominal laws that are right one in a thousand is taken for wrong.
+const CERTAIN: f64 = 6.9;
+/// Most that l counts, and most that it changes by at once.
+const MOST_CERTAIN: f64 = 2.0 * CERTAIN;
+const MOST_OF_RUN: f64 = 5.0;
+/// Standard deviations of the measurement that the encoder explains.
+const DEVIATIONS: f64 = 4.0;
+/// Time over which what free runs miss is compared, s.
+const COMPARED_S: f64 = 0.01;
+
+/// Differences between a machine and its model.
+pub(super) type Differences = [f64; DIFFERENCES];
+
+/// What an axis is with these differences.
+pub(super) fn with(nominal: &AxisKnowledge, differences: &Differences) -> AxisKnowledge {
+    let [position_gain, velocity, delay, inertia, friction, _, acceleration] = *differences;
+    let mut known = *nominal;
+    let servo_s = nominal.periods.servo_s;
+    known.parameters.kp_1_s *= 1.0 + position_gain;
+    known.drive.velocity_feedforward = (known.drive.velocity_feedforward + velocity).max(0.0);
+    known.delays.drive_s = (known.delays.drive_s + delay * servo_s).max(0.0);
+    known.parameters.inertia_kg_m2 *= 1.0 + inertia;
+    // The torque that the drive adds does not know of another inertia.
+    let of_nominal = (known.drive.acceleration_feedforward + acceleration).max(0.0);
+    known.drive.acceleration_feedforward = of_nominal / (1.0 + inertia);
+    for friction_nm in [
+        &mut known.parameters.viscous_friction_nm_s,
+        &mut known.parameters.coulomb_friction_nm,
+        &mut known.friction.coulomb_asymmetry_nm,
+        &mut known.friction.stribeck_nm,
+    ] {
+        *friction_nm *= 1.0 + friction;
+    }
+    known
+}
+
+/// What does not change of the learning of an axis.
+#[derive(Debug, Clone)]
+pub(super) struct Learner {
+    nominal: AxisKnowledge,
+    states: StateMatrix<STATES>,
+    inputs: PeriodInputs,
+    priors: Differences,
+    bounds: [[f64; 2]; DIFFERENCES],
+    /// What the encoder explains of the squares of a time, rad^2.
+    noise_rad2: f64,
+}
+
+/// What free runs by the two laws have missed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Runs {
+    /// Squares by the law that is followed, and by the other, rad^2, and over which time, s.
+    missed_rad2: [f64; 2],
+    for_s: f64,
+    /// l.
+    learned: f64,
+}
+
+impl Runs {
+    const NONE: Self = Self { missed_rad2: [0.0; 2], for_s: 0.0, learned: 0.0 };
+
+    /// A time has ended, in which the learned law was followed or not; what the encoder explains is `noise_rad2`.
+    fn end(&mut self, is_followed: bool, noise_rad2: f64) {
+        self.for_s = 0.0;
+        let [followed, other] = core::mem::replace(&mut self.missed_rad2, [0.0; 2]).map(|rad2| rad2 + noise_rad2);
+        let likelier = libm::log(if is_followed { other / followed } else { followed / other });
+        let likelier = if likelier.is_nan() { -MOST_OF_RUN } else { bounded(likelier, -MOST_OF_RUN, MOST_OF_RUN) };
+        self.learned = bounded(self.learned + likelier, -CERTAIN, MOST_CERTAIN);
+    }
+}
+
+/// What a comparison of the two laws came to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct LawChoice {
+    /// Whether the other law is followed from now on.
+    pub(super) turns: bool,
+    /// Whether the learned law is the nominal one again.
+    pub(super) begins_anew: bool,
+}
+
+/// What is learned of an axis, and what that takes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Learning {
+    sensitivities: [[f64; STATES]; DIFFERENCES],
+    found: Differences,
+    covariance: [[f64; DIFFERENCES]; DIFFERENCES],
+    applied: Differences,
+    is_followed: bool,
+    moves: bool,
+    /// Mean square of what is left, rad^2.
+    left_rad2: f64,
+    runs: Runs,
+    /// Commanded speeds and errors of the position, rad/s and rad, the newest first.
+    commanded_rad_s: [f64; KEPT_PERIODS],
+    error_rad: [f64; KEPT_PERIODS],
+    command_rad: Option<f64>,
+}
+
+impl Learner {
+    /// Of an axis by its model.
+    pub(super) fn new(nominal: AxisKnowledge, linear: &LinearAxis) -> Self {
+        let (states, ..) = linear.sampled();
+        let mut priors = PRIORS;
+        if nominal.drive.acceleration_feedforward == 0.0 {
+            priors[6] = 0.0;
+        }
+        priors[LOAD] = nominal.parameters.coulomb_friction_nm.max(1e-3 * nominal.parameters.torque_limit_nm);
+        let mut bounds = BOUNDS;
+        let [_, velocity, delay, .., acceleration] = &mut bounds;
+        // No feedforward and no delay is negative.
+        velocity[0] = -nominal.drive.velocity_feedforward;
+        delay[0] = -nominal.delays.drive_s / nominal.periods.servo_s;
+        acceleration[0] = -nominal.drive.acceleration_feedforward;
+        let periods = COMPARED_S / nominal.periods.servo_s;
+        let rad_per_mm = nominal.parameters.rad_per_mm;
+        let least_rad2 = LEAST_MM2 * rad_per_mm * rad_per_mm;
+        let noise_rad2 = periods * (least_rad2 + DEVIATIONS * DEVIATIONS * measured_rad2(&nominal.statistics));
+        Self { nominal, states, inputs: linear.inputs(), priors, bounds, noise_rad2 }
+    }
+
+    /// Before anything was measured.
+    pub(super) fn begin(&self) -> Learning {
+        let mut covariance = [[0.0; DIFFERENCES]; DIFFERENCES];
+        covariance.iter_mut().enumerate().for_each(|(i, row)| row[i] = self.priors[i] * self.priors[i]);
+        Learning {
+            sensitivities: [[0.0; STATES]; DIFFERENCES],
+            found: [0.0; DIFFERENCES],
+            covariance,
+            applied: [0.0; DIFFERENCES],
+            is_followed: false,
+            moves: false,
+            left_rad2: 0.0,
+            runs: Runs::NONE,
+            commanded_rad_s: [0.0; KEPT_PERIODS],
+            error_rad: [0.0; KEPT_PERIODS],
+            command_rad: None,
+        }
+    }
+
+    /// A command was sent while a position was measured, rad.
+    pub(super) fn sent(&self, learning: &mut Learning, command_rad: f64, measured_rad: f64) {
+        let servo_s = self.nominal.periods.servo_s;
+        let before_rad = learning.command_rad.replace(command_rad).unwrap_or(command_rad);
+        for (kept, newest) in [
+            (&mut learning.commanded_rad_s, (command_rad - before_rad) / servo_s),
+            (&mut learning.error_rad, command_rad - measured_rad),
+        ] {
+            kept.copy_within(..KEPT_PERIODS - 1, 1);
+            kept[0] = newest;
+        }
+    }
+
+    /// What was measured behind it.
+    pub(super) fn take_in(&self, learning: &mut Learning, model: &AxisModel, sent: &Sent, told: &Innovation) {
+        let speed_rad_s = self.predict(learning, model, sent, told);
+        let slowest_rad_s = SLOWEST_MM_S * self.nominal.parameters.rad_per_mm;
+        learning.moves = speed_rad_s.abs() > slowest_rad_s;
+        if learning.moves && told.missed_rad.is_finite() {
+            self.learn(learning, told);
+        }
+        for sensitivity in &mut learning.sensitivities {
+            let [angle, ..] = *sensitivity;
+            sensitivity.iter_mut().zip(told.gains).for_each(|(state, gain)| *state -= gain * angle);
+        }
+    }
+
+    /// A servo period of the sensitivities. The commanded speed that acted in it, rad/s.
+    fn predict(&self, learning: &mut Learning, model: &AxisModel, sent: &Sent, told: &Innovation) -> f64 {
+        let (age, older) = model.acting();
+        let mean = |of: &dyn Fn(usize) -> f64| of(age) + older * (of(age + 1) - of(age));
+        let reference = |age: usize| sent.get(age).copied().unwrap_or_default();
+        let kept = |kept: &[f64; KEPT_PERIODS], age: usize| kept.get(age).copied().unwrap_or(0.0);
+        let (speeds, errors) = (learning.commanded_rad_s, learning.error_rad);
+        let parameters = &self.nominal.parameters;
+        let speed_rad_s = mean(&|age| kept(&speeds, age));
+        let asked_rad_s = parameters.kp_1_s * mean(&|age| kept(&errors, age));
+        let later = |of: &dyn Fn(DriveReference) -> f64| -mean(&|age| of(reference(age)) - of(reference(age + 1)));
+        let per_s = parameters.inertia_kg_m2 / self.nominal.periods.servo_s;
+        let added_nm = per_s * mean(&|age| kept(&speeds, age) - kept(&speeds, age + 1));
+        let inputs = [
+            [asked_rad_s, 0.0, 0.0],
+            [speed_rad_s, 0.0, 0.0],
+            [later(&|sent| sent.speed_rad_s), later(&|sent| sent.torque_nm), 0.0],
+            [
+                0.0,
+                0.0,
+                parameters.inertia_kg_m2 * told.pushed_rad
+                    / (self.nominal.periods.servo_s * self.nominal.periods.servo_s),
+            ],
+            [0.0, 0.0, told.friction_nm],
+            [0.0, 0.0, 1.0],
+            [0.0, added_nm, 0.0],
+        ];
+        let PeriodInputs { reference, torque, load } = &self.inputs;
+        for (sensitivity, [by_reference, by_torque, by_load]) in learning.sensitivities.iter_mut().zip(inputs) {
+            let after = carried(&self.states, sensitivity);
+            *sensitivity = core::array::from_fn(|state| {
+                after[state] + by_reference * reference[state] + by_torque * torque[state] + by_load * load[state]
+            });
+        }
+        speed_rad_s
+    }
+
+    /// A step of recursive least squares.
+    fn learn(&self, learning: &mut Learning, told: &Innovation) {
+        let servo_s = self.nominal.periods.servo_s;
+        let shows: Differences = learning.sensitivities.map(|[angle, ..]| angle);
+        let of_nominal_rad = told.missed_rad + dot(&shows, &learning.applied);
+        let left_rad = of_nominal_rad - dot(&shows, &learning.found);
+        let spreads: Differences = learning.covariance.map(|row| dot(&row, &shows));
+        let second_rad = FIRST_ORDER * of_nominal_rad;
+        let noise_rad2 = COLOURED * told.expected_rad2.max(learning.left_rad2) + second_rad * second_rad;
+        let variance_rad2 = noise_rad2 + dot(&shows, &spreads);
+        let believed_rad = BELIEVED * libm::sqrt(variance_rad2);
+        let left_rad = bounded(left_rad, -believed_rad, believed_rad);
+        if !(variance_rad2 > noise_rad2 && left_rad.is_finite()) {
+            return;
+        }
+        let shown = dot(&shows, &spreads) / noise_rad2;
+        // What is known along what is shown is forgotten over DRIFT_S, and nothing else.
+        let forgets = (servo_s / DRIFT_S).min(1.0);
+        let kept = (1.0 - forgets) * shown - forgets;
+        let narrows = kept / (noise_rad2 * shown * (1.0 + kept));
+        for (i, spread) in spreads.iter().enumerate() {
+            learning.found[i] += spread / variance_rad2 * left_rad;
+            for (j, other) in spreads.iter().enumerate() {
+                learning.covariance[i][j] -= narrows * spread * other;
+            }
+        }
+        self.bound(learning);
+        learning.left_rad2 += (servo_s / LEFT_S).min(1.0) * (left_rad * left_rad - learning.left_rad2);
+    }
+
+    /// The likeliest differences within the bounds, one bound after the other.
+    fn bound(&self, learning: &mut Learning) {
+        for i in 0..DIFFERENCES {
+            let [lowest, highest] = self.bounds[i];
+            let beyond = learning.found[i] - bounded(learning.found[i], lowest, highest);
+            let variance = learning.covariance[i][i];
+            if beyond != 0.0 && variance > 0.0 {
+                for j in 0..DIFFERENCES {
+                    learning.found[j] -= beyond * learning.covariance[j][i] / variance;
+                }
+            }
+        }
+    }
+
+    /// Of what is found what can be applied.
+    fn wanted(&self, found: &Differences) -> Differences {
+        core::array::from_fn(|i| {
+            let [lowest, highest] = self.bounds[i];
+            if i == LOAD { 0.0 } else { bounded(found[i], lowest, highest) }
+        })
+    }
+
+    /// Applies what is found to the learned law. By how much its estimate is to move, where that is not what was applied before.
+    pub(super) fn apply(&self, learning: &mut Learning) -> Option<[f64; STATES]> {
+        let wanted = self.wanted(&learning.found);
+        if wanted == learning.applied {
+            return None;
+        }
+        let moved = moved(learning, &wanted);
+        learning.applied = wanted;
+        Some(moved)
+    }
+
+    /// What free runs by the law that is followed and by the other missed in a servo period, rad.
+    pub(super) fn compare(&self, learning: &mut Learning, missed_rad: [f64; 2]) -> LawChoice {
+        let was_followed = learning.is_followed;
+        let runs = &mut learning.runs;
+        let [followed_rad, other_rad] = missed_rad;
+        if !(if was_followed { followed_rad } else { other_rad }).is_finite() {
+            runs.learned = -CERTAIN;
+        } else if learning.moves {
+            runs.missed_rad2.iter_mut().zip(missed_rad).for_each(|(sum, rad)| *sum += rad * rad);
+            runs.for_s += self.nominal.periods.servo_s;
+            if runs.for_s >= COMPARED_S {
+                runs.end(was_followed, self.noise_rad2);
+            }
+        }
+        learning.is_followed = runs.learned > if was_followed { 0.0 } else { CERTAIN };
+        let turns = was_followed != learning.is_followed;
+        let begins_anew = was_followed && turns || learning.runs.learned <= -CERTAIN;
+        if begins_anew {
+            let Learning { commanded_rad_s, error_rad, command_rad, .. } = *learning;
+            *learning = Learning { commanded_rad_s, error_rad, command_rad, ..self.begin() };
+        }
+        LawChoice { turns, begins_anew }
+    }
+
+    /// The axis without any difference.
+    pub(super) fn nominal(&self) -> AxisKnowledge {
+        self.nominal
+    }
+
+    /// The axis with what is applied.
+    pub(super) fn known(&self, learning: &Learning) -> AxisKnowledge {
+        with(&self.nominal, &learning.applied)
+    }
+}
+
+impl Learning {
+    /// Whether the learned law is followed.
+    pub(super) fn is_followed(&self) -> bool {
+        self.is_followed
+    }
+}
+
+/// By how much the estimate differs with these differences from what it is with those that are applied.
+fn moved(learning: &Learning, differences: &Differences) -> [f64; STATES] {
+    let mut moved = [0.0; STATES];
+    for ((sensitivity, wanted), applied) in learning.sensitivities.iter().zip(differences).zip(learning.applied) {
+        moved.iter_mut().zip(sensitivity).for_each(|(state, of)| *state += (wanted - applied) * of);
+    }
+    moved
+}
+
+fn dot(a: &Differences, b: &Differences) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// l after so many times in which the nominal law missed by one angle and the learned one by another, rad, with noise of 1 rad.
+    fn after(times: u32, [nominal_rad, learned_rad]: [f64; 2]) -> f64 {
+        let mut runs = Runs::NONE;
+        for _ in 0..times {
+            runs.missed_rad2 = [nominal_rad * nominal_rad, learned_rad * learned_rad];
+            runs.end(false, 1.0);
+        }
+        runs.learned
+    }
+
+    #[test]
+    fn two_laws_that_differ_by_what_noise_explains_are_not_told_apart_soon() {
+        assert!(after(10, [0.5, 0.1]) < CERTAIN);
+        assert_eq!(after(100, [1.0, 1.0]), 0.0);
+        assert!(after(2, [100.0, 1.0]) > CERTAIN, "two runs are enough where it is beyond doubt");
+        assert_eq!(after(1, [100.0, 0.0]), MOST_OF_RUN, "and one is not");
+        assert_eq!(after(100, [1.0, 100.0]), -CERTAIN);
+        assert_eq!(after(2, [1.0, f64::NAN]), -CERTAIN);
+        assert_eq!(after(100, [100.0, 1.0]), MOST_CERTAIN);
+    }
+
+    #[test]
+    fn a_learned_law_that_is_followed_is_judged_the_other_way_round() {
+        let mut runs = Runs { missed_rad2: [1e4, 0.0], ..Runs::NONE };
+        runs.end(true, 1.0);
+        assert_eq!((runs.learned, runs.missed_rad2), (-MOST_OF_RUN, [0.0; 2]));
+    }
+
+    #[test]
+    fn differences_make_an_axis_that_a_machine_can_have() {
+        let mut nominal = AxisKnowledge::NOTHING;
+        nominal.parameters.inertia_kg_m2 = 0.01;
+        nominal.parameters.kp_1_s = 50.0;
+        nominal.parameters.coulomb_friction_nm = 0.2;
+        nominal.drive.acceleration_feedforward = 0.8;
+        let axis = with(&nominal, &[0.1, -0.2, -1.0, 0.6, 0.5, 0.3, 0.0]);
+        assert!((axis.parameters.kp_1_s - 55.0).abs() < 1e-12);
+        assert_eq!((axis.drive.velocity_feedforward, axis.delays.drive_s), (0.0, 0.0));
+        assert!((axis.parameters.coulomb_friction_nm - 0.3).abs() < 1e-12);
+        let added = |axis: &AxisKnowledge| axis.drive.acceleration_feedforward * axis.parameters.inertia_kg_m2;
+        assert!((added(&axis) - added(&nominal)).abs() < 1e-12, "the drive adds what it was set to");
+        assert_eq!(with(&nominal, &[0.0; DIFFERENCES]), nominal);
+    }
+}
