@@ -94,6 +94,16 @@ identification-sweep logs="5" machines="tnv40 heavy sticky soft coarse sliding w
 held-out seed count *options:
     cargo run --release -p feedwright-lab -- held-out {{ seed }} {{ count }} {{ options }}
 
+# By models of machines, on machines that differ from them: `just mismatch 7 --gross`. Seeds of a verdict are drawn after the settings are
+# frozen.
+mismatch seed *options:
+    #!/usr/bin/env bash
+    set -euo pipefail
+    programs=(parts/star.ngc parts/circle.ngc parts/pocket.ngc parts/slot.ngc)
+    if [ -d ../shared/cases/mismatch ]; then programs+=(../shared/cases/mismatch); else echo "no foreign programs: they are not cut" >&2; fi
+    cargo build --release --quiet -p feedwright-lab
+    target/release/feedwright-lab mismatch "${programs[@]}" --drawn 4 --seed {{ seed }} {{ options }}
+
 # The identifier beside FANN (Debian: libfann-dev, valgrind), on one core.
 bench-fann:
     taskset --cpu-list 1 cargo bench --package feedwright-control --bench fann

@@ -27,6 +27,7 @@ fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
         CommandArgs::Compare(args) => commands::compare::run(&args, console),
         CommandArgs::NeverWorse(args) => commands::never_worse::run(&args, console),
         CommandArgs::HeldOut(args) => commands::held_out::run(&args, console),
+        CommandArgs::Mismatch(args) => commands::mismatch::run(&args, console),
         CommandArgs::Paper(args) => commands::paper::run(&args, console),
         CommandArgs::ExportContour(args) => commands::export_contour::run(&args, console),
     }

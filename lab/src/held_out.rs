@@ -12,7 +12,7 @@
 //! | `held_out/shrink.rs` | makes a failing case smaller |
 
 pub mod variant;
-mod random;
+pub(crate) mod random;
 pub mod machines;
 pub mod contours;
 mod program_writer;

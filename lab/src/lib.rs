@@ -14,6 +14,7 @@ pub mod paper;
 pub mod held_out;
 pub mod compare;
 pub mod never_worse;
+pub mod mismatch;
 pub mod command;
 
 pub use compare::held_out_work::HeldOutSeeds;

@@ -2,7 +2,7 @@
 //!
 //! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than the uncorrected cut's by the rule
 //! of [`feedwright::harm`], or where the controller is not in the loop any more at the end. Each controller is made for the
-//! machine that it cuts on. Cuts depend on nothing but program, machine and seed: the rows are the same for any number
+//! machine that it cuts on, or for another one (`mismatch.rs`). Cuts depend on nothing but program, machine and seed: the rows are the same for any number
 //! of threads, and those that a [`Journal`] holds are not cut again.
 //!
 //! | File | What |
@@ -42,6 +42,8 @@ pub struct SweepJob {
     pub program: Arc<SweepProgram>,
     /// On what.
     pub machine: Arc<Machine>,
+    /// The machine that the controller is made for.
+    pub model: Arc<Machine>,
 }
 
 /// What the jobs have in common.
@@ -64,7 +66,11 @@ pub fn jobs(programs: Vec<SweepProgram>, machines: Vec<Machine>) -> Vec<SweepJob
     programs.sort_by(|a, b| b.machining_s.total_cmp(&a.machining_s).then_with(|| a.name.cmp(&b.name)));
     let on = |machine: Machine| {
         let machine = Arc::new(machine);
-        programs.iter().map(move |program| SweepJob { program: program.clone(), machine: machine.clone() })
+        programs.iter().map(move |program| SweepJob {
+            program: program.clone(),
+            machine: machine.clone(),
+            model: machine.clone(),
+        })
     };
     machines.into_iter().flat_map(on).collect()
 }
@@ -83,7 +89,11 @@ fn key(job: &SweepJob, options: &SweepOptions) -> String {
     let machine = serde_json::json!(*job.machine).to_string();
     let SweepOptions { controller, set, seed, .. } = options;
     let (seed, set_json) = (seed.to_le_bytes(), serde_json::json!(set).to_string());
+    let model = serde_json::json!(*job.model).to_string();
     let mut parts = vec![job.program.key.as_bytes(), machine.as_bytes(), controller.name.as_bytes(), &seed];
+    if model != machine {
+        parts.push(model.as_bytes());
+    }
     if !set.is_empty() {
         parts.push(set_json.as_bytes());
     }
@@ -143,10 +153,10 @@ pub fn sweep(
                 }
                 None => {
                     let cutter = match &mut cutter {
-                        Some(cutter) if cutter.is_for(&job.machine) => cutter,
-                        other => other.insert(Cutter::new(&job.machine, options)),
+                        Some(cutter) if cutter.is_for(&job.model) => cutter,
+                        other => other.insert(Cutter::new(&job.model, options)),
                     };
-                    let Ok(row) = cutter.row(&job.program, watch) else { break };
+                    let Ok(row) = cutter.row(&job.program, &job.machine, watch) else { break };
                     journal.add(&key, &row);
                     row
                 }

@@ -52,7 +52,7 @@ fn random_programs_on_random_machines_are_cut_no_worse_than_uncorrected() {
     for of_machine in generated.chunks(FOR_EACH) {
         let mut cutter = Cutter::new(&of_machine[0].job.machine, &options);
         for made in of_machine {
-            let row = cutter.row(&made.job.program, &()).unwrap();
+            let row = cutter.row(&made.job.program, &made.job.machine, &()).unwrap();
             assert!(row.is_judged(), "the uncorrected cut is lost: {row:?}");
             if row.program == KNOWN {
                 let more = row.corrected.uncut_um.unwrap() / row.uncorrected.uncut_um.unwrap();
@@ -128,8 +128,8 @@ fn holes() -> &'static str {
 fn judged(name: &str, text: &str, variant: &Variant) -> SweepRow {
     let machine = Arc::new(variant.machine().unwrap());
     let length = Length { machine: &machine, limit_s: 60.0 };
-    let row =
-        Cutter::new(&machine, &options()).row(&SweepProgram::from_text(name, text, length).unwrap(), &()).unwrap();
+    let program = SweepProgram::from_text(name, text, length).unwrap();
+    let row = Cutter::new(&machine, &options()).row(&program, &machine, &()).unwrap();
     eprintln!("{}", told(&row));
     row
 }

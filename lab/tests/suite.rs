@@ -51,6 +51,7 @@ mod oracle_feed;
 mod oracle_lqg;
 mod oracle_resimulation;
 mod property_feed;
+mod property_mismatch;
 mod property_never_worse;
 mod property_path;
 mod property_reference;

@@ -2,6 +2,7 @@
 
 pub(crate) mod sweep;
 pub(crate) mod compare;
+pub(crate) mod mismatch;
 pub(crate) mod never_worse;
 pub(crate) mod held_out;
 pub(crate) mod paper;
@@ -13,6 +14,7 @@ use feedwright::command::{COLUMNS, CommonArgs, RunArgs};
 use compare::CompareArgs;
 use export_contour::ExportContourArgs;
 use held_out::HeldOutArgs;
+use mismatch::MismatchArgs;
 use never_worse::NeverWorseArgs;
 use paper::PaperArgs;
 
@@ -38,6 +40,7 @@ pub(crate) enum CommandArgs {
     Compare(CompareArgs),
     NeverWorse(NeverWorseArgs),
     HeldOut(HeldOutArgs),
+    Mismatch(MismatchArgs),
     Paper(PaperArgs),
     Run(Box<RunArgs>),
     /// List all controllers, or the parameters of one

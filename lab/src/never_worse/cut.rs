@@ -85,45 +85,51 @@ pub fn is_rigid(machine: &Machine) -> bool {
 /// The two controllers of a number of axes, made where they are needed.
 type Pair<const N: usize> = Option<[Box<dyn Controller<N>>; 2]>;
 
-/// Cuts on one machine, with what was identified on it.
+/// Cuts with what was identified on one machine.
 pub struct Cutter {
-    machine: Arc<Machine>,
+    model: Arc<Machine>,
     options: SweepOptions,
     plane: Pair<2>,
     space: Pair<3>,
 }
 
 impl Cutter {
-    /// For a machine; nothing is identified yet.
-    pub fn new(machine: &Arc<Machine>, options: &SweepOptions) -> Self {
-        Self { machine: machine.clone(), options: options.clone(), plane: None, space: None }
+    /// By a machine; nothing is identified yet.
+    pub fn new(model: &Arc<Machine>, options: &SweepOptions) -> Self {
+        Self { model: model.clone(), options: options.clone(), plane: None, space: None }
     }
 
-    /// Whether it is for this machine.
-    pub(super) fn is_for(&self, machine: &Arc<Machine>) -> bool {
-        Arc::ptr_eq(&self.machine, machine)
+    /// Whether it is by this machine.
+    pub(super) fn is_for(&self, model: &Arc<Machine>) -> bool {
+        Arc::ptr_eq(&self.model, model)
     }
 
-    /// Cuts a program both ways.
+    /// Cuts a program on a machine both ways.
     ///
     /// # Errors
     /// An end from outside.
-    pub fn row(&mut self, program: &SweepProgram, watch: &dyn Watch) -> Result<SweepRow, Cancelled> {
-        let (machine, options) = (&self.machine, &self.options);
+    pub fn row(&mut self, program: &SweepProgram, machine: &Machine, watch: &dyn Watch) -> Result<SweepRow, Cancelled> {
+        let options = MadeFor { model: &self.model, options: &self.options };
         let [uncorrected, corrected] = match program.axes {
-            2 => both(machine, options, &mut self.plane, program, watch)?,
+            2 => both(machine, &options, &mut self.plane, program, watch)?,
             _ if machine.axis_count() < 3 => [Figures::failed("the machine has no Z"), Figures::default()],
-            _ => both(machine, options, &mut self.space, program, watch)?,
+            _ => both(machine, &options, &mut self.space, program, watch)?,
         };
         let (program, machine_name) = (program.name.clone(), machine.name.clone());
         Ok(SweepRow { program, machine: machine_name, rigid: is_rigid(machine), uncorrected, corrected })
     }
 }
 
+/// What controllers are made for.
+struct MadeFor<'a> {
+    model: &'a Machine,
+    options: &'a SweepOptions,
+}
+
 /// Uncorrected first.
 fn both<const N: usize>(
     machine: &Machine,
-    options: &SweepOptions,
+    &MadeFor { model, options }: &MadeFor<'_>,
     pair: &mut Pair<N>,
     program: &SweepProgram,
     watch: &dyn Watch,
@@ -136,7 +142,7 @@ where
     let done = catch_unwind(AssertUnwindSafe(|| {
         let controllers = pair.get_or_insert_with(|| {
             let choices = Choices { seed: options.seed, set: options.set.clone() };
-            entries.map(|entry| Make::make(entry, &mut Setup::new(machine, &choices)))
+            entries.map(|entry| Make::make(entry, &mut Setup::new(model, &choices)))
         });
         let [first, second] = controllers;
         let plan = PlanCache::default();
@@ -175,7 +181,7 @@ mod tests {
             seed: 1,
             threads: 1,
         };
-        let row = Cutter::new(&machine, &options).row(&program, &()).expect("nobody ends it");
+        let row = Cutter::new(&machine, &options).row(&program, &machine, &()).expect("nobody ends it");
         assert!(row.rigid);
         assert!(row.corrected.rms_um < 0.1 * row.uncorrected.rms_um, "{row:?}");
         assert_eq!((row.corrected.lost, row.corrected.engaged_share), (None, Some(1.0)));

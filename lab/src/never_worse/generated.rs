@@ -44,7 +44,7 @@ pub fn draw(seed: u64, count: usize, for_each: usize, class: Class) -> Result<Ve
             let length = Length { machine: &machine, limit_s: LIMIT_S };
             let program = Arc::new(SweepProgram::from_text(&drawn.name, &drawn.text, length)?);
             let case = Case::new(&drawn.text, variant.clone());
-            all.push(Generated { case, job: SweepJob { program, machine: machine.clone() } });
+            all.push(Generated { case, job: SweepJob { program, machine: machine.clone(), model: machine.clone() } });
         }
     }
     all.truncate(count);
@@ -66,14 +66,14 @@ impl<'a> Trials<'a> {
 
     /// What a case comes to; nothing where it is no program, no stable machine, or ended from outside.
     pub fn row(&mut self, case: &Case) -> Option<SweepRow> {
-        let machine = case.machine.machine().ok().filter(machines::is_stable)?;
+        let machine = Arc::new(case.machine.machine().ok().filter(machines::is_stable)?);
         let length = Length { machine: &machine, limit_s: LIMIT_S };
         let program = SweepProgram::from_text("smallest", &case.text(), length).ok()?;
         let is_other = self.cutter.as_ref().is_none_or(|(changes, _)| *changes != case.machine.changes);
         if is_other {
-            self.cutter = Some((case.machine.changes.clone(), Cutter::new(&Arc::new(machine), self.options)));
+            self.cutter = Some((case.machine.changes.clone(), Cutter::new(&machine, self.options)));
         }
-        self.cutter.as_mut()?.1.row(&program, self.watch).ok()
+        self.cutter.as_mut()?.1.row(&program, &machine, self.watch).ok()
     }
 }
 

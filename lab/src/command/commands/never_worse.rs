@@ -20,16 +20,14 @@ const PACE: &str = "tnv40";
 const MAX_S: f64 = 7.0 * 24.0 * 3600.0;
 
 pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> {
-    if !(args.limit_s > 0.0 && args.limit_s <= MAX_S) {
-        let help = "600 is the first ten minutes of machining";
-        return Err(miette!(help = help, "--limit-s is {} s; it must lie above 0 and up to {MAX_S} s", args.limit_s));
-    }
+    checked(args.limit_s)?;
     let machines = machines_of(args)?;
     let files = files(args)?;
     let machine_files = args.machine.iter().map(PathBuf::from).collect::<Vec<_>>();
     let inputs: Vec<&Path> = files.iter().chain(&machine_files).map(PathBuf::as_path).collect();
     let sweep = Sweep::new(&args.sweep, &inputs)?;
-    let programs = read(&files, &args.reader.settings()?, args.limit_s, console)?;
+    let pace = Machine::load(PACE.as_ref())?;
+    let programs = read(&files, &args.reader.settings()?, &pace, args.limit_s, console)?;
     let jobs = jobs(programs, machines);
     let jobs = match args.sample {
         Some(count) => sample(jobs, count, args.sweep.seed),
@@ -40,6 +38,15 @@ pub(crate) fn run(args: &NeverWorseArgs, console: &Console) -> Result<ExitCode> 
     printed(done.print(), done.code())
 }
 
+/// A time of machining that can be cut, s.
+pub(super) fn checked(limit_s: f64) -> Result<()> {
+    if limit_s > 0.0 && limit_s <= MAX_S {
+        return Ok(());
+    }
+    let help = "600 is the first ten minutes of machining";
+    Err(miette!(help = help, "--limit-s is {limit_s} s; it must lie above 0 and up to {MAX_S} s"))
+}
+
 fn machines_of(args: &NeverWorseArgs) -> Result<Vec<Machine>> {
     if args.machine.is_empty() {
         return Ok(machines::machines()?);
@@ -47,32 +54,43 @@ fn machines_of(args: &NeverWorseArgs) -> Result<Vec<Machine>> {
     Ok(args.machine.iter().map(|machine| Machine::load(machine)).collect::<Result<_, _>>()?)
 }
 
-/// The programs that are asked for.
-fn files(args: &NeverWorseArgs) -> Result<Vec<PathBuf>> {
-    if let Some(missing) = args.programs.iter().find(|path| !path.exists()) {
+/// The programs in these places.
+pub(super) fn found(places: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    if let Some(missing) = places.iter().find(|path| !path.exists()) {
         return Err(miette!(
             help = "name programs, or folders that hold some",
             "{}: there is no such file or folder",
             missing.display()
         ));
     }
-    let found = FilesToCheck::find(&args.programs);
+    let found = FilesToCheck::find(places);
     if let Some(fault) = found.faults.first() {
         return Err(miette!("{fault}"));
     }
-    let Some(only) = &args.only else { return Ok(found.files) };
+    Ok(found.files)
+}
+
+/// The programs that are asked for.
+fn files(args: &NeverWorseArgs) -> Result<Vec<PathBuf>> {
+    let found = found(&args.programs)?;
+    let Some(only) = &args.only else { return Ok(found) };
     let pattern = Pattern::new(only).map_err(|error| miette!("--only {only}: {error}"))?;
-    let files: Vec<PathBuf> = found.files.into_iter().filter(|file| pattern.matches_path(file)).collect();
+    let files: Vec<PathBuf> = found.into_iter().filter(|file| pattern.matches_path(file)).collect();
     if files.is_empty() {
         return Err(miette!(help = "the pattern is for the whole path: '*circle*'", "--only {only}: no program fits"));
     }
     Ok(files)
 }
 
-/// Reads all programs; those with mistakes are counted and left out.
-fn read(files: &[PathBuf], settings: &Settings, limit_s: f64, console: &Console) -> Result<Vec<SweepProgram>> {
-    let pace = Machine::load(PACE.as_ref())?;
-    let length = Length { machine: &pace, limit_s };
+/// Reads all programs, and shortens long ones by their time on a machine; those with mistakes are counted and left out.
+pub(super) fn read(
+    files: &[PathBuf],
+    settings: &Settings,
+    pace: &Machine,
+    limit_s: f64,
+    console: &Console,
+) -> Result<Vec<SweepProgram>> {
+    let length = Length { machine: pace, limit_s };
     let bar = console.bar(0);
     bar.begin("reading the programs", files.len() as u64);
     let read = |file: &PathBuf| {
