@@ -10,12 +10,14 @@
 //! where that is so in two free runs in a row, or in one by twice as much. One alone may have begun with a speed that the steps of an encoder
 //! made: a law that is wrong misses in each.
 //!
-//! s is what noise and loads that nobody foresees move the axis by in a free run, by the statistics. Where innovations are larger
-//! than that, an encoder is coarser than it is known to be: what they make of m, if they are white, is added with three deviations. A law that misses more than what it is
-//! to correct leaves more than no correction would; one that misses less leaves less. As long as the law has shown nothing, little is
-//! risked: the correction comes in over the first way, 25 times as long as what may be missed. A wrong inertia shows where the speed
-//! changes, and not on the straight line behind: a law that was wrong is wrong until it has held while the commanded speed changed as much
-//! as then (`proof.rs`). A law that was learned (`learning.rs`) takes the place of the nominal one without the record of that.
+//! s is what noise and loads that nobody foresees move the axis by in a free run, by the statistics. Where innovations are larger than that,
+//! an encoder is coarser than it is known to be: what they make of m, if they are white, is added with three deviations.
+//!
+//! A law that misses more than it is to correct leaves more than no correction would; one that misses less leaves less. As long as the law
+//! has shown nothing, little is risked: the correction comes in over the first way, 25 times as long as what may be missed. A wrong inertia
+//! shows where the speed changes, and not on the straight line behind: a law that was wrong is wrong until it has held while the commanded
+//! speed changed as much as then (`proof.rs`). A law that was learned (`learning.rs`) takes the place of the nominal one without the record
+//! of that.
 //!
 //! A law that has begun just now, that is not followed, that is wrong, or by which servo periods do not go (`one_step.rs`) is
 //! not trusted, and asks for little; trust takes 0.3 s.
@@ -142,6 +144,8 @@ impl<const N: usize> Validity<N> {
     /// The laws are others from now on: what the ones before them missed says nothing of them.
     pub(super) fn begin_law(&mut self) {
         (self.missed_mm2, self.beyond, self.proof) = (0.0, [false; 2], Proof::NOT_NEEDED);
+        // Where the tool is by then, it is led back gently.
+        self.near = 0.0;
     }
 
     /// How a servo period went within itself, before [`Self::take_in`].
@@ -238,6 +242,13 @@ mod tests {
             assert_eq!(validity.is_wrong(), wrong, "{missed_mm} {open_mm} {unforeseen_mm2}");
         }
         assert!(!Validity::<2>::unknown(0.0).is_wrong());
+    }
+
+    #[test]
+    fn one_free_run_that_misses_may_be_chance_and_two_are_not() {
+        let [once, twice, by_far] = [(25, 0.003), (45, 0.003), (25, 0.008)];
+        let is_wrong = |(periods, missed_mm)| after(periods, [missed_mm, 0.0], 0.0).is_wrong();
+        assert_eq!([once, twice, by_far].map(is_wrong), [false, true, true]);
     }
 
     #[test]
