@@ -2,8 +2,8 @@
 //!
 //! A cut is worse where its RMS or its largest contour error, or the uncut path, is worse than the uncorrected cut's by the rule
 //! of [`feedwright::harm`], or where the controller is not in the loop any more at the end. Each controller is made for the
-//! machine that it cuts on, or for another one (`mismatch.rs`). Cuts depend on nothing but program, machine and seed: the rows are the same for any number
-//! of threads, and those that a [`Journal`] holds are not cut again.
+//! machine that it cuts on, or for another one (`mismatch.rs`). Cuts depend on nothing but program, machines and seed: the rows are the
+//! same for any number of threads, and those that a [`Journal`] holds are not cut again.
 //!
 //! | File | What |
 //! |---|---|
@@ -89,9 +89,10 @@ fn key(job: &SweepJob, options: &SweepOptions) -> String {
     let machine = serde_json::json!(*job.machine).to_string();
     let SweepOptions { controller, set, seed, .. } = options;
     let (seed, set_json) = (seed.to_le_bytes(), serde_json::json!(set).to_string());
-    let model = serde_json::json!(*job.model).to_string();
+    let model: String;
     let mut parts = vec![job.program.key.as_bytes(), machine.as_bytes(), controller.name.as_bytes(), &seed];
-    if model != machine {
+    if !Arc::ptr_eq(&job.model, &job.machine) {
+        model = serde_json::json!(*job.model).to_string();
         parts.push(model.as_bytes());
     }
     if !set.is_empty() {

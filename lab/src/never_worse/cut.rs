@@ -109,27 +109,22 @@ impl Cutter {
     /// # Errors
     /// An end from outside.
     pub fn row(&mut self, program: &SweepProgram, machine: &Machine, watch: &dyn Watch) -> Result<SweepRow, Cancelled> {
-        let options = MadeFor { model: &self.model, options: &self.options };
+        let (model, options) = (&self.model, &self.options);
         let [uncorrected, corrected] = match program.axes {
-            2 => both(machine, &options, &mut self.plane, program, watch)?,
+            2 => both(machine, model, options, &mut self.plane, program, watch)?,
             _ if machine.axis_count() < 3 => [Figures::failed("the machine has no Z"), Figures::default()],
-            _ => both(machine, &options, &mut self.space, program, watch)?,
+            _ => both(machine, model, options, &mut self.space, program, watch)?,
         };
         let (program, machine_name) = (program.name.clone(), machine.name.clone());
         Ok(SweepRow { program, machine: machine_name, rigid: is_rigid(machine), uncorrected, corrected })
     }
 }
 
-/// What controllers are made for.
-struct MadeFor<'a> {
-    model: &'a Machine,
-    options: &'a SweepOptions,
-}
-
 /// Uncorrected first.
 fn both<const N: usize>(
     machine: &Machine,
-    &MadeFor { model, options }: &MadeFor<'_>,
+    model: &Machine,
+    options: &SweepOptions,
     pair: &mut Pair<N>,
     program: &SweepProgram,
     watch: &dyn Watch,

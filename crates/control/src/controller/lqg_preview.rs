@@ -29,7 +29,7 @@
 //! | `lqg_preview/estimate.rs` | the filter |
 //! | `lqg_preview/learning.rs` | what the law gets wrong, learned while the axis moves |
 //! | `lqg_preview/proof.rs` | what a law that was wrong has to hold through |
-//! | `lqg_preview/validity.rs` | whether the law is that of the axis |
+//! | `lqg_preview/validity.rs` | whether the law is good enough for the loop |
 //! | `lqg_preview/regulated_axis.rs` | an axis: filter, regulator and inverse |
 //!
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),

@@ -23,7 +23,7 @@ pub struct LqgSettings {
     pub control_weight_s2: f64,
     /// What the offset is held to.
     pub bounds: OffsetBounds,
-    /// Whether law and statistics may be wrong: statistics are learnt, and a wrong law is not followed. Else both are exact.
+    /// Whether law and statistics may be wrong: both are learned, and a wrong law is not followed. Otherwise both are exact.
     pub learns: bool,
 }
 

@@ -108,8 +108,6 @@ pub(super) struct Innovation {
     pub(super) expected_rad2: f64,
     /// By how much the torque has moved the axis, beside its speed, rad.
     pub(super) pushed_rad: f64,
-    /// Friction by the law, N m.
-    pub(super) friction_nm: f64,
     /// What each state was corrected by, for a rad of innovation.
     pub(super) gains: [f64; STATES],
 }
@@ -245,20 +243,17 @@ impl AxisModel {
         let missed_rad = if taken_rad == 0.0 { 0.0 } else { missed_rad };
         let believed = if missed_rad == 0.0 { 1.0 } else { taken_rad / missed_rad };
         let gains = gains.map(|gain| believed * gain);
-        let friction_nm = self.friction_nm(&estimate.masses);
-        Innovation { missed_rad, measured_rad: shown_rad + taken_rad, expected_rad2, pushed_rad, friction_nm, gains }
+        Innovation { missed_rad, measured_rad: shown_rad + taken_rad, expected_rad2, pushed_rad, gains }
     }
 
-    /// Friction of the table, N m.
-    fn friction_nm(&self, masses: &MechanicsState) -> f64 {
-        let speed_rad_s = masses.table.speed_rad_s;
-        let [sign] = axis::friction_signs(&[self.law], [speed_rad_s]);
-        let viscous_nm = self.law.friction_nm(speed_rad_s, 0.0);
-        if masses.presliding_nm == 0.0 {
-            self.law.friction_nm(speed_rad_s, sign)
-        } else {
-            viscous_nm + masses.presliding_nm
+    /// Friction of the table by the law, N m.
+    pub(super) fn friction_nm(&self, estimate: &Estimate) -> f64 {
+        let MechanicsState { table, presliding_nm, .. } = estimate.masses;
+        if presliding_nm != 0.0 {
+            return self.law.friction_nm(table.speed_rad_s, 0.0) + presliding_nm;
         }
+        let [sign] = axis::friction_signs(&[self.law], [table.speed_rad_s]);
+        self.law.friction_nm(table.speed_rad_s, sign)
     }
 
     /// The age of the newest reference that acts before a measurement, servo periods, and the part of the time in which the one before

@@ -47,7 +47,7 @@ use crate::axis::drive::DriveReference;
 use crate::axis::knowledge::AxisKnowledge;
 use crate::vector::bounded;
 
-use super::estimate::{AxisModel, Innovation, KEPT_PERIODS, Sent};
+use super::estimate::{AxisModel, Estimate, Innovation, KEPT_PERIODS, Sent};
 use super::linear::{LinearAxis, PeriodInputs, STATES, measured_rad2};
 use super::one_step::LEAST_MM2;
 use super::riccati::{StateMatrix, applied as carried};
@@ -62,13 +62,13 @@ const BOUNDS: [[f64; 2]; DIFFERENCES] =
 const LOAD: usize = 5;
 /// Time over which what was measured is forgotten, s.
 const DRIFT_S: f64 = 100.0;
-/// The variance of what is left counts so many times: it is not white.
+/// Factor on the variance of the residual, which is not white.
 const COLOURED: f64 = 4.0;
 /// Time over which what is left is averaged, s.
 const LEFT_S: f64 = 0.25;
-/// Part of what differences do that their first order leaves.
+/// Error of the first order, as a part of what the differences do.
 const FIRST_ORDER: f64 = 0.3;
-/// Standard deviations of an innovation that are believed.
+/// A residual counts up to this many standard deviations.
 const BELIEVED: f64 = 3.0;
 /// An axis that moves more slowly shows its friction at rest, mm/s.
 const SLOWEST_MM_S: f64 = 1.0;
@@ -225,8 +225,14 @@ impl Learner {
     }
 
     /// What was measured behind it.
-    pub(super) fn take_in(&self, learning: &mut Learning, model: &AxisModel, sent: &Sent, told: &Innovation) {
-        let speed_rad_s = self.predict(learning, model, sent, told);
+    pub(super) fn take_in(
+        &self,
+        learning: &mut Learning,
+        model: &AxisModel,
+        run: (&Estimate, &Sent),
+        told: &Innovation,
+    ) {
+        let speed_rad_s = self.predict(learning, model, run, told);
         let slowest_rad_s = SLOWEST_MM_S * self.nominal.parameters.rad_per_mm;
         learning.moves = speed_rad_s.abs() > slowest_rad_s;
         if learning.moves && told.missed_rad.is_finite() {
@@ -239,7 +245,13 @@ impl Learner {
     }
 
     /// A servo period of the sensitivities. The commanded speed that acted in it, rad/s.
-    fn predict(&self, learning: &mut Learning, model: &AxisModel, sent: &Sent, told: &Innovation) -> f64 {
+    fn predict(
+        &self,
+        learning: &mut Learning,
+        model: &AxisModel,
+        (estimate, sent): (&Estimate, &Sent),
+        told: &Innovation,
+    ) -> f64 {
         let (age, older) = model.acting();
         let mean = |of: &dyn Fn(usize) -> f64| of(age) + older * (of(age + 1) - of(age));
         let reference = |age: usize| sent.get(age).copied().unwrap_or_default();
@@ -261,7 +273,7 @@ impl Learner {
                 parameters.inertia_kg_m2 * told.pushed_rad
                     / (self.nominal.periods.servo_s * self.nominal.periods.servo_s),
             ],
-            [0.0, 0.0, told.friction_nm],
+            [0.0, 0.0, model.friction_nm(estimate)],
             [0.0, 0.0, 1.0],
             [0.0, added_nm, 0.0],
         ];
@@ -327,7 +339,7 @@ impl Learner {
         })
     }
 
-    /// Applies what is found to the learned law. By how much its estimate is to move, where that is not what was applied before.
+    /// Applies what is found to the learned law. Returns the change of its estimate, if anything changed.
     pub(super) fn apply(&self, learning: &mut Learning) -> Option<[f64; STATES]> {
         let wanted = self.wanted(&learning.found);
         if wanted == learning.applied {
@@ -380,7 +392,7 @@ impl Learning {
     }
 }
 
-/// By how much the estimate differs with these differences from what it is with those that are applied.
+/// Change of the estimate from the applied differences to these.
 fn moved(learning: &Learning, differences: &Differences) -> [f64; STATES] {
     let mut moved = [0.0; STATES];
     for ((sensitivity, wanted), applied) in learning.sensitivities.iter().zip(differences).zip(learning.applied) {
@@ -397,7 +409,7 @@ fn dot(a: &Differences, b: &Differences) -> f64 {
 mod tests {
     use super::*;
 
-    /// l after so many times in which the nominal law missed by one angle and the learned one by another, rad, with noise of 1 rad.
+    /// l after a number of comparisons. The nominal law misses by the first angle, the learned one by the second, rad; noise is 1 rad.
     fn after(times: u32, [nominal_rad, learned_rad]: [f64; 2]) -> f64 {
         let mut runs = Runs::NONE;
         for _ in 0..times {

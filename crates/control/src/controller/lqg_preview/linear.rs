@@ -116,24 +116,27 @@ impl LinearAxis {
     /// Over a servo period with a reference speed that is held: the states, the input, the covariance of the noise.
     pub(super) fn sampled(&self) -> (StateMatrix<STATES>, [f64; STATES], StateMatrix<STATES>) {
         let mut states = core::array::from_fn(unit);
-        let (mut input, mut covariance) = ([0.0; STATES], [[0.0; STATES]; STATES]);
+        let mut covariance = [[0.0; STATES]; STATES];
         for _ in 0..self.substeps {
             states = product(&self.substep, &states);
-            let carried = applied(&self.substep, &input);
-            input = core::array::from_fn(|i| carried[i] + self.substep_input[i]);
             let spread = product(&product(&self.substep, &covariance), &transposed(&self.substep));
             covariance = sum(&spread, &self.substep_noise);
         }
-        (states, input, covariance)
+        (states, self.held(&self.substep_input), covariance)
     }
 
-    /// What is held over a servo period makes of the states.
+    /// What an input that adds this in each mechanics period makes of the states over a servo period.
+    fn held(&self, substep_input: &[f64; STATES]) -> [f64; STATES] {
+        (0..self.substeps).fold([0.0; STATES], |input, _| {
+            let carried = applied(&self.substep, &input);
+            core::array::from_fn(|i| carried[i] + substep_input[i])
+        })
+    }
+
+    /// What each input makes of the states where it is held over a servo period.
     pub(super) fn inputs(&self) -> PeriodInputs {
         let (states, reference, _) = self.sampled();
-        let torque = (0..self.substeps).fold([0.0; STATES], |input, _| {
-            let carried = applied(&self.substep, &input);
-            core::array::from_fn(|i| carried[i] + self.substep_torque[i])
-        });
+        let torque = self.held(&self.substep_torque);
         let load = core::array::from_fn(|i| if i == DRIFT { 0.0 } else { states[i][DRIFT] });
         PeriodInputs { reference, torque, load }
     }

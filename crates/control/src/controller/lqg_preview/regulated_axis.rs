@@ -282,7 +282,7 @@ impl AxisLqg {
         };
         let (told, from_rad) = if followed { (told, from_rad) } else { (&beside_told, beside_from_rad) };
         learner.sent(learning, command_rad, from_rad);
-        learner.take_in(learning, model, &run.tracked.sent, told);
+        learner.take_in(learning, model, (&run.tracked.estimate, &run.tracked.sent), told);
         if let Some(moved) = learner.apply(learning) {
             *known = learner.known(learning);
             model.follow(known);
