@@ -247,19 +247,21 @@ fn a_damaged_cache_is_found_and_an_empty_name_is_none() {
 #[cfg(unix)]
 #[test]
 fn the_laboratory_is_started_where_it_is_installed() {
-    use std::os::unix::fs::PermissionsExt;
-
+    // A shell writes what is run: a file that this process had open for writing may be open still in a child that
+    // another test is just starting, and such a file cannot be run.
     let folder = Folder::new();
+    let shell = |script: &str| {
+        let status = Command::new("sh").args(["-c", script]).current_dir(folder.path()).status().unwrap();
+        assert!(status.success(), "{script}");
+    };
+    shell(concat!("cp '", env!("CARGO_BIN_EXE_feedwright"), "' feedwright"));
     let binary = folder.path().join("feedwright");
-    std::fs::copy(env!("CARGO_BIN_EXE_feedwright"), &binary).unwrap();
     let run = || {
         let arguments = ["lab", "compare", "--only", "circle", "--help"];
         Ran::from(Command::new(&binary).args(arguments).env("PATH", folder.path().join("none")).output().unwrap())
     };
     run().refused(&["the laboratory is not installed", "cargo install --path lab"]);
-    let laboratory = folder.path().join("feedwright-lab");
-    std::fs::write(&laboratory, "#!/bin/sh\necho \"$@\"\nexit 7\n").unwrap();
-    std::fs::set_permissions(&laboratory, std::fs::Permissions::from_mode(0o755)).unwrap();
+    shell("printf '#!/bin/sh\\necho \"$@\"\\nexit 7\\n' > feedwright-lab && chmod +x feedwright-lab");
     let ran = run();
     assert_eq!((ran.code, ran.stdout.as_str()), (Some(7), "compare --only circle --help\n"), "{ran:?}");
 }
