@@ -25,11 +25,18 @@
 //! systems with friction, eqs 1 to 4; Armstrong-Hélouvry, Dupont and Canudas de Wit (1994), a survey, for asymmetry and the
 //! Stribeck curve; the linearly implicit step is Rosenbrock's, Hairer and Wanner (1996), section IV.7.
 
+use core::array::from_fn;
+
 use super::AxisLaw;
 use crate::activation::{exp, tanh};
 
 /// Least level as a part of Fc + Fs: an asymmetry as large as the Coulomb friction leaves none, by which nothing can be divided.
 const LEAST_LEVEL: f64 = 1e-9;
+/// Beyond this e^-x is nothing beside 1; what it is there.
+const FORGOTTEN: f64 = 40.0;
+const LEAST_DECAY: f64 = 4.248_354_255_291_589e-18;
+/// Beyond this tanh is 1 to the last bit.
+const SATURATED: f64 = 20.0;
 
 /// Friction beside the Coulomb and viscous friction of [`super::Parameters`]; zero is without.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -83,28 +90,55 @@ impl FrictionLaw {
         speed_rad_s: f64,
         presliding_nm: &mut f64,
     ) -> f64 {
-        let step = self.dt_s * inverse_inertia;
-        let left_nm = forces_nm - self.viscous_nm_s * speed_rad_s;
-        if self.stiffness_nm_rad == 0.0 {
-            let [sign] = tanh([speed_rad_s * self.inverse_smoothing_s]);
-            return speed_rad_s + step * (left_nm - sign * self.level_nm(speed_rad_s, sign));
+        let presliding_nm = core::array::from_mut(presliding_nm);
+        let [after] = Self::speeds_after_rad_s(&[self], [forces_nm], [inverse_inertia], [speed_rad_s], presliding_nm);
+        after
+    }
+
+    /// The same of several masses at once: a processor has the exponentials of two or four of them in the time of one.
+    #[inline]
+    pub fn speeds_after_rad_s<const L: usize>(
+        laws: &[&Self; L],
+        forces_nm: [f64; L],
+        inverse_inertia: [f64; L],
+        speeds: [f64; L],
+        presliding_nm: &mut [f64; L],
+    ) -> [f64; L] {
+        let steps: [f64; L] = from_fn(|i| laws[i].dt_s * inverse_inertia[i]);
+        let left_nm: [f64; L] = from_fn(|i| forces_nm[i] - laws[i].viscous_nm_s * speeds[i]);
+        let slides_at_once = laws.map(|law| law.stiffness_nm_rad == 0.0);
+        if slides_at_once.iter().all(|at_once| *at_once) {
+            let signs = signs(from_fn(|i| speeds[i] * laws[i].inverse_smoothing_s));
+            let levels_nm = Self::levels_nm(laws, &speeds, &signs);
+            return from_fn(|i| speeds[i] + steps[i] * (left_nm[i] - signs[i] * levels_nm[i]));
         }
-        let free_rad_s = speed_rad_s + step * (left_nm - *presliding_nm);
-        let direction = f64::copysign(1.0, free_rad_s);
-        let level_nm = self.level_nm(speed_rad_s, direction).max(self.least_nm);
-        let to_go = (1.0 - *presliding_nm * direction / level_nm).max(0.0);
-        let after_rad_s = free_rad_s / (1.0 + step * self.dt_s * self.stiffness_nm_rad * to_go);
-        let slid = self.stiffness_nm_rad * after_rad_s.abs() * self.dt_s / level_nm;
-        let sliding_nm = direction * level_nm;
-        *presliding_nm = sliding_nm + (*presliding_nm - sliding_nm) * decay(slid);
-        after_rad_s
+        if slides_at_once.iter().any(|at_once| *at_once) {
+            return from_fn(|i| {
+                laws[i].speed_after_rad_s(forces_nm[i], inverse_inertia[i], speeds[i], &mut presliding_nm[i])
+            });
+        }
+        let free: [f64; L] = from_fn(|i| speeds[i] + steps[i] * (left_nm[i] - presliding_nm[i]));
+        let directions = free.map(|rad_s| f64::copysign(1.0, rad_s));
+        let levels_nm = Self::levels_nm(laws, &free, &directions);
+        let levels_nm: [f64; L] = from_fn(|i| levels_nm[i].max(laws[i].least_nm));
+        let after: [f64; L] = from_fn(|i| {
+            let to_go = (1.0 - presliding_nm[i] * directions[i] / levels_nm[i]).max(0.0);
+            free[i] / (1.0 + steps[i] * laws[i].dt_s * laws[i].stiffness_nm_rad * to_go)
+        });
+        let sliding_nm: [f64; L] = from_fn(|i| directions[i] * levels_nm[i]);
+        if *presliding_nm != sliding_nm {
+            let left: [f64; L] =
+                decays(from_fn(|i| laws[i].stiffness_nm_rad * after[i].abs() * laws[i].dt_s / levels_nm[i]));
+            *presliding_nm = from_fn(|i| sliding_nm[i] + (presliding_nm[i] - sliding_nm[i]) * left[i]);
+        }
+        after
     }
 
     /// The mean of the friction without its viscous part over a time at a constant speed that is forced upon the axis, N m.
     #[inline]
     pub fn along_nm(&self, speed_rad_s: f64, time_s: f64, presliding_nm: &mut f64) -> f64 {
         if self.stiffness_nm_rad == 0.0 {
-            let [sign] = tanh([speed_rad_s * self.inverse_smoothing_s]);
+            let [sign] = signs([speed_rad_s * self.inverse_smoothing_s]);
             return sign * self.level_nm(speed_rad_s, sign);
         }
         let direction = f64::copysign(1.0, speed_rad_s);
@@ -121,24 +155,53 @@ impl FrictionLaw {
     /// Level at a speed, in a direction from -1 to 1, N m.
     #[inline]
     fn level_nm(&self, speed_rad_s: f64, direction: f64) -> f64 {
-        let ratio = speed_rad_s * self.inverse_stribeck_s;
-        let stribeck_nm = self.parameters.stribeck_nm;
-        let low_nm = if stribeck_nm > 0.0 { stribeck_nm * decay(ratio * ratio) } else { 0.0 };
-        self.coulomb_nm + self.parameters.coulomb_asymmetry_nm * direction + low_nm
+        let [level_nm] = Self::levels_nm(&[self], &[speed_rad_s], &[direction]);
+        level_nm
     }
+
+    #[inline]
+    fn levels_nm<const L: usize>(laws: &[&Self; L], speeds_rad_s: &[f64; L], directions: &[f64; L]) -> [f64; L] {
+        let stribeck_nm = laws.map(|law| law.parameters.stribeck_nm);
+        let mut low_nm = [0.0; L];
+        if stribeck_nm.iter().any(|nm| *nm > 0.0) {
+            let ratios: [f64; L] = from_fn(|i| speeds_rad_s[i] * laws[i].inverse_stribeck_s);
+            let left = decays(ratios.map(|ratio| ratio * ratio));
+            low_nm = from_fn(|i| if stribeck_nm[i] > 0.0 { stribeck_nm[i] * left[i] } else { 0.0 });
+        }
+        from_fn(|i| laws[i].coulomb_nm + laws[i].parameters.coulomb_asymmetry_nm * directions[i] + low_nm[i])
+    }
+}
+
+/// tanh(x), which most of the time is 1 or -1 to the last bit.
+#[inline]
+fn signs<const L: usize>(x: [f64; L]) -> [f64; L] {
+    if x.iter().all(|x| x.abs() >= SATURATED) { x.map(|x| f64::copysign(1.0, x)) } else { tanh(x) }
 }
 
 /// e^-x of what is not negative.
 #[inline]
+fn decays<const L: usize>(x: [f64; L]) -> [f64; L] {
+    if x.iter().all(|x| *x >= FORGOTTEN) { [LEAST_DECAY; L] } else { x.map(|x| exp(-x.min(FORGOTTEN))) }
+}
+
+#[inline]
 fn decay(x: f64) -> f64 {
-    // Beyond, it is nothing beside 1.
-    exp(-x.min(40.0))
+    let [left] = decays([x]);
+    left
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::{Parameters, Periods};
     use super::*;
+
+    #[test]
+    fn what_is_not_computed_is_what_would_be_computed() {
+        assert_eq!(LEAST_DECAY.to_bits(), exp(-FORGOTTEN).to_bits());
+        for x in [SATURATED, 21.7, 1e3, f64::INFINITY] {
+            assert_eq!(signs([x, -x]), tanh([x, -x]));
+        }
+    }
 
     const J: f64 = 0.01;
 

@@ -173,8 +173,8 @@ fn drives(record: &AxisRecord<'_>, train: &OutputErrors<'_>, facts: &AxisFacts) 
         };
         starts = std::iter::once(before).chain(starts.into_iter().map(loops)).collect();
     }
-    let starts: Vec<(f64, TermValues)> =
-        starts.par_iter().map(|at| facts.start(*at)).map(|at| (train.rms_mm(&at), at)).collect();
+    let starts: Vec<TermValues> = starts.into_iter().map(|at| facts.start(at)).collect();
+    let starts: Vec<(f64, TermValues)> = train.all_rms_mm(&starts).into_iter().zip(starts).collect();
     // A part that is known to be there is there, and one that is known to be zero is not.
     let may_be = |drive: &&[LawTerm]| {
         let is = |term| facts.known(term).is_none_or(|known| drive.contains(&term) == (known.value != 0.0));

@@ -4,6 +4,8 @@
 //! servo periods, a servo period [`MECHANICS_PER_SERVO`] mechanics periods. Delays and the window of the speed are fractions of these, by
 //! linear interpolation, so that they can be fitted.
 
+use std::array::from_fn;
+
 use feedwright_control::{
     AxisLaw, AxisState, DriveLaw, DriveReference, DriveState, FrictionLaw, Periods, TransmissionLaw,
     TransmissionParameters,
@@ -95,6 +97,9 @@ pub(super) struct AxisRun {
     late_samples: f64,
     /// Delay within the loop, mechanics periods.
     loop_late: f64,
+    /// Ages of the two references that act in each mechanics period of a servo period, and the part of the older.
+    arrive: [[usize; 2]; MECHANICS_PER_SERVO as usize],
+    loop_part: f64,
     /// Window of the speed, mechanics periods; none is the speed itself.
     window: Option<f64>,
     /// Motor and table, where the screw is not rigid.
@@ -155,6 +160,8 @@ impl AxisRun {
         let (periods, servo_per_sample) = periods(sample_s);
         let law = AxisLaw::new(values.parameters(periods.mechanics_s), periods);
         let window = values.get(LawTerm::SpeedWindow) / periods.mechanics_s;
+        let loop_late = values.get(LawTerm::LoopDelay) / periods.mechanics_s;
+        let age = |late: f64| (late / f64::from(MECHANICS_PER_SERVO)).ceil().max(0.0) as usize;
         Self {
             values: *values,
             law,
@@ -162,7 +169,9 @@ impl AxisRun {
             friction: FrictionLaw::new(&law, values.friction()),
             servo_per_sample,
             late_samples: values.get(LawTerm::RecordDelay) / sample_s,
-            loop_late: values.get(LawTerm::LoopDelay) / periods.mechanics_s,
+            loop_late,
+            arrive: from_fn(|substep| [0.0, 1.0].map(|more| age(loop_late.floor() + more - substep as f64))),
+            loop_part: loop_late.fract(),
             window: (window > 1.0).then_some(window),
             screw: screw_law(values, periods.mechanics_s),
             holds: values.get(LawTerm::SpeedHold) > 0.0,
@@ -223,38 +232,65 @@ impl AxisRun {
     /// One sample of the record goes by.
     #[inline]
     pub(super) fn step(&self, commands: &Commands<'_>, sample: usize, state: &mut RunState) {
-        for servo in 0..self.servo_per_sample {
-            let at = sample as f64 + servo as f64 / self.servo_per_sample as f64;
-            let command_mm = self.command_mm(commands, at);
-            let position_mm = state.axis.angle_rad;
-            let reference =
-                self.drive.position_loop(&self.law, command_mm, position_mm, &mut state.axis, &mut state.drive);
-            state.sent.push(reference);
-            for substep in 0..self.law.periods.mechanics_per_servo {
-                self.advance(f64::from(substep), state);
+        Self::step_abreast(&[self], commands, sample, std::array::from_mut(state));
+    }
+
+    /// The same for several runs. They take turns: while one waits for its friction, the processor works on the others.
+    #[inline]
+    pub(super) fn step_abreast<const L: usize>(
+        runs: &[&Self; L],
+        commands: &Commands<'_>,
+        sample: usize,
+        states: &mut [RunState; L],
+    ) {
+        let [first, ..] = &runs[..] else { return };
+        let (servo_per_sample, substeps) = (first.servo_per_sample, first.law.periods.mechanics_per_servo);
+        for servo in 0..servo_per_sample {
+            let at = sample as f64 + servo as f64 / servo_per_sample as f64;
+            for (run, state) in runs.iter().zip(&mut *states) {
+                run.refer(run.command_mm(commands, at), state);
+            }
+            for substep in 0..substeps {
+                let (mut forces, mut inverse, mut speeds) = ([0.0; L], [1.0; L], [0.0; L]);
+                for (i, (run, state)) in runs.iter().zip(&mut *states).enumerate() {
+                    run.push(substep as usize, state, [&mut forces[i], &mut inverse[i], &mut speeds[i]]);
+                }
+                let mut presliding: [f64; L] = from_fn(|i| states[i].presliding);
+                let frictions = runs.map(|run| &run.friction);
+                let after = FrictionLaw::speeds_after_rad_s(&frictions, forces, inverse, speeds, &mut presliding);
+                for (i, (run, state)) in runs.iter().zip(&mut *states).enumerate() {
+                    state.presliding = presliding[i];
+                    run.advance(after[i], state);
+                }
             }
         }
     }
 
+    /// The position loop sends its reference.
+    #[inline]
+    fn refer(&self, command_mm: f64, state: &mut RunState) {
+        let position_mm = state.axis.angle_rad;
+        let reference = self.drive.position_loop(&self.law, command_mm, position_mm, &mut state.axis, &mut state.drive);
+        state.sent.push(reference);
+    }
+
     /// The reference that has arrived within a servo period, between two of them where the delay ends within a mechanics period.
     #[inline]
-    fn arrived(&self, substep: f64, state: &RunState) -> DriveReference {
+    fn arrived(&self, substep: usize, state: &RunState) -> DriveReference {
         if self.loop_late <= 0.0 {
             return state.sent.before(0);
         }
-        let per_servo = f64::from(self.law.periods.mechanics_per_servo);
-        let at = |late: f64| state.sent.before((((late - substep) / per_servo).ceil().max(0.0)) as usize);
-        let (whole, part) = (self.loop_late.floor(), self.loop_late.fract());
-        let (newer, older) = (at(whole), at(whole + 1.0));
+        let [newer, older] = self.arrive[substep].map(|age| state.sent.before(age));
+        let part = self.loop_part;
         DriveReference {
             speed_rad_s: newer.speed_rad_s + part * (older.speed_rad_s - newer.speed_rad_s),
             torque_nm: newer.torque_nm + part * (older.torque_nm - newer.torque_nm),
         }
     }
 
-    /// One mechanics period.
+    /// What pushes a mass before there is friction, one over the mass, and its speed: the table, and the motor where the screw is rigid.
     #[inline]
-    fn advance(&self, substep: f64, state: &mut RunState) {
+    fn push(&self, substep: usize, state: &mut RunState, [forces, inverse, speed]: [&mut f64; 3]) {
         let reference = self.arrived(substep, state);
         let dt_s = self.law.periods.mechanics_s;
         let taken_mm_s = match self.window {
@@ -266,23 +302,31 @@ impl AxisRun {
             }
             None => state.axis.speed_rad_s,
         };
-        if !self.holds || substep == 0.0 {
+        if !self.holds || substep == 0 {
             state.taken_mm_s = taken_mm_s;
         }
         let drive = self.drive.torque_nm(&self.law, reference, state.taken_mm_s, &mut state.drive);
         match &self.screw {
-            None => {
-                let forces = drive - state.load;
-                state.axis.speed_rad_s =
-                    self.friction.speed_after_rad_s(forces, 1.0, state.axis.speed_rad_s, &mut state.presliding);
-            }
+            None => (*forces, *speed) = (drive - state.load, state.axis.speed_rad_s),
             Some(screw) => {
-                let [table_mm, table_mm_s] = &mut state.table;
-                let through = screw.torque_nm(state.axis.angle_rad - *table_mm, state.axis.speed_rad_s - *table_mm_s);
+                let [table_mm, table_mm_s] = state.table;
+                let through = screw.torque_nm(state.axis.angle_rad - table_mm, state.axis.speed_rad_s - table_mm_s);
                 state.axis.speed_rad_s += dt_s * screw.inverse_motor_inertia * (drive - through);
-                let (forces, inverse) = (through - state.load, screw.inverse_table_inertia);
-                *table_mm_s = self.friction.speed_after_rad_s(forces, inverse, *table_mm_s, &mut state.presliding);
-                *table_mm += dt_s * *table_mm_s;
+                (*forces, *inverse, *speed) = (through - state.load, screw.inverse_table_inertia, table_mm_s);
+            }
+        }
+    }
+
+    /// A mechanics period on, at the end of which what was pushed has a speed.
+    #[inline]
+    fn advance(&self, after_mm_s: f64, state: &mut RunState) {
+        let dt_s = self.law.periods.mechanics_s;
+        match &self.screw {
+            None => state.axis.speed_rad_s = after_mm_s,
+            Some(_) => {
+                let [table_mm, table_mm_s] = &mut state.table;
+                *table_mm_s = after_mm_s;
+                *table_mm += dt_s * after_mm_s;
             }
         }
         state.axis.angle_rad += dt_s * state.axis.speed_rad_s;

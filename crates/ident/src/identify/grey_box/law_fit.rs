@@ -122,11 +122,13 @@ fn without_doubtful(
             .min_by(|a, b| a.0.total_cmp(&b.0));
         let needless = || {
             let of_all = errors.residuals(&at);
-            let may_go = |&i: &usize| OPTIONAL.contains(&terms[i]) && facts.known(terms[i]).is_none();
+            let cost = libm::log(of_all.len() as f64);
+            let is_sure = |i: usize| (at.get(terms[i]) / certain.errors[i]).powi(2) > SURE * cost;
+            let may_go = |&i: &usize| OPTIONAL.contains(&terms[i]) && facts.known(terms[i]).is_none() && !is_sure(i);
             (0..terms.len()).filter(may_go).find(|&i| {
                 let others: Vec<LawTerm> = terms.iter().copied().filter(|term| *term != terms[i]).collect();
                 let without = errors.least(&at.with(terms[i], 0.0), &others, WITHOUT_STEPS, NEARLY_DONE).values;
-                square(&errors.residuals(&without)) - square(&of_all) < libm::log(of_all.len() as f64)
+                square(&errors.residuals(&without)) - square(&of_all) < cost
             })
         };
         let Some(i) = doubtful.map(|(_, i)| i).or_else(needless) else { return (terms, at) };
@@ -142,6 +144,8 @@ fn without_doubtful(
 
 /// Steps of a fit without a term.
 const WITHOUT_STEPS: usize = 8;
+/// Times its cost that a term gains by its standard error which is not tried without.
+const SURE: f64 = 10.0;
 /// Standard errors below which a term is as well zero: the two-sided test at one in twenty.
 const DOUBTFUL: f64 = 1.96;
 

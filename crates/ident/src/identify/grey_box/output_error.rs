@@ -51,6 +51,8 @@ const LARGEST_FACTOR: f64 = 2.5;
 /// Part of V below which a step gains nothing: where the fit is to be the last, and where it only chooses.
 pub(super) const DONE: f64 = 1e-6;
 pub(super) const NEARLY_DONE: f64 = 1e-4;
+/// Free runs that take turns on a processor.
+const ABREAST: usize = 4;
 
 impl OutputErrors<'_> {
     /// The same with the deviation of what a law leaves.
@@ -68,18 +70,25 @@ impl OutputErrors<'_> {
 
     /// What free runs leave at the samples that count, mm.
     pub(super) fn left_mm(&self, values: &TermValues) -> Vec<f64> {
-        let run = AxisRun::new(values, self.record.sample_s);
-        let mut left = vec![];
+        let [left] = self.left_abreast_mm(&[values]);
+        left
+    }
+
+    fn left_abreast_mm<const L: usize>(&self, values: &[&TermValues; L]) -> [Vec<f64>; L] {
+        let runs = values.map(|values| AxisRun::new(values, self.record.sample_s));
+        let runs = runs.each_ref();
+        let mut left = [const { vec![] }; L];
         for stretch in self.record.stretches {
             let Some(last) = stretch.clone().rev().find(|&k| self.counts[k]) else { continue };
             let commands = Commands::new(&self.record.command_mm[stretch.clone()]);
             let [mm, mm_s] = self.record.start(stretch, stretch.start);
-            let mut state = run.state(&commands, 0, mm, mm_s);
+            let mut states = runs.map(|run| run.state(&commands, 0, mm, mm_s));
             for k in stretch.start..=last {
                 if self.counts[k] {
-                    left.push(self.record.actual_mm[k] - state.position_mm());
+                    let actual_mm = self.record.actual_mm[k];
+                    left.iter_mut().zip(&states).for_each(|(left, state)| left.push(actual_mm - state.position_mm()));
                 }
-                run.step(&commands, k - stretch.start, &mut state);
+                AxisRun::step_abreast(&runs, &commands, k - stretch.start, &mut states);
             }
         }
         left
@@ -92,32 +101,66 @@ impl OutputErrors<'_> {
 
     /// What free runs leave, in standard deviations; behind the samples a row for each prior.
     pub(super) fn residuals(&self, values: &TermValues) -> Vec<f64> {
-        let mut residuals = self.left_mm(values);
-        residuals.iter_mut().for_each(|left| *left /= self.deviation_mm);
-        residuals.extend(self.priors.iter().map(|prior| prior.residual(values)));
-        residuals
+        self.scaled(self.left_mm(values), values)
+    }
+
+    /// The same of several.
+    fn residuals_of(&self, values: &[TermValues]) -> Vec<Vec<f64>> {
+        self.all_left_mm(values).into_iter().zip(values).map(|(left, values)| self.scaled(left, values)).collect()
+    }
+
+    /// RMS of what free runs by several leave, mm.
+    pub(super) fn all_rms_mm(&self, values: &[TermValues]) -> Vec<f64> {
+        self.all_left_mm(values).iter().map(|left| root_mean_square(left)).collect()
+    }
+
+    fn all_left_mm(&self, values: &[TermValues]) -> Vec<Vec<f64>> {
+        let abreast = |values: &[TermValues]| match values {
+            [a, b, c, d] => self.left_abreast_mm(&[a, b, c, d]).into(),
+            [a, b, c] => {
+                let [a, b, c, _] = self.left_abreast_mm(&[a, b, c, c]);
+                vec![a, b, c]
+            }
+            [a, b] => self.left_abreast_mm(&[a, b]).into(),
+            _ => values.iter().map(|values| self.left_mm(values)).collect::<Vec<_>>(),
+        };
+        values.par_chunks(ABREAST).flat_map(abreast).collect()
+    }
+
+    fn scaled(&self, mut left_mm: Vec<f64>, values: &TermValues) -> Vec<f64> {
+        left_mm.iter_mut().for_each(|left| *left /= self.deviation_mm);
+        left_mm.extend(self.priors.iter().map(|prior| prior.residual(values)));
+        left_mm
     }
 
     /// Derivatives of the residuals by differences to both sides, a column for each term, over the change that it was made with.
     pub(super) fn slopes(&self, values: &TermValues, terms: &[LawTerm]) -> Vec<Vec<f64>> {
-        let slope = |&term: &LawTerm| {
+        let sides = |&term: &LawTerm| {
             let (value, by) = (values.get(term), change(values, term));
-            let [above, below] = [value + by, value - by].map(|at| values.with(term, at));
-            let (of_above, of_below) = rayon::join(|| self.residuals(&above), || self.residuals(&below));
-            difference(&of_below, &of_above, (above.get(term) - below.get(term)) / by)
+            [value + by, value - by].map(|at| values.with(term, at))
         };
-        terms.par_iter().map(slope).collect()
+        let places: Vec<TermValues> = terms.iter().flat_map(sides).collect();
+        let residuals = self.residuals_of(&places);
+        let slope = |i: usize, term: LawTerm| {
+            let apart = (places[2 * i].get(term) - places[2 * i + 1].get(term)) / change(values, term);
+            difference(&residuals[2 * i + 1], &residuals[2 * i], apart)
+        };
+        terms.iter().enumerate().map(|(i, &term)| slope(i, term)).collect()
     }
 
     /// The same by differences to one side, from residuals that are known: enough for a step that is not the last.
     fn rough_slopes(&self, values: &TermValues, residuals: &[f64], terms: &[LawTerm]) -> Vec<Vec<f64>> {
-        let slope = |&term: &LawTerm| {
+        let place = |&term: &LawTerm| {
             let (value, by) = (values.get(term), ONE_SIDED * change(values, term));
             let above = values.with(term, value + by);
-            let other = if above.get(term) > value { above } else { values.with(term, value - by) };
-            difference(residuals, &self.residuals(&other), ONE_SIDED * (other.get(term) - value) / by)
+            if above.get(term) > value { above } else { values.with(term, value - by) }
         };
-        terms.par_iter().map(slope).collect()
+        let places: Vec<TermValues> = terms.iter().map(place).collect();
+        let slope = |(&term, (place, at_place)): (&LawTerm, (&TermValues, &Vec<f64>))| {
+            let apart = ONE_SIDED * (place.get(term) - values.get(term)) / (ONE_SIDED * change(values, term));
+            difference(residuals, at_place, apart)
+        };
+        terms.iter().zip(places.iter().zip(&self.residuals_of(&places))).map(slope).collect()
     }
 
     /// One step of all terms from a start, with slopes that are known of the first of them.
