@@ -20,6 +20,7 @@ pub(crate) mod magnitude_only;
 pub(crate) mod two_dimensional;
 pub(crate) mod receding_horizon;
 
+use crate::axis::knowledge::AxisKnowledge;
 use crate::contour_error::ContourError;
 use crate::vector::{add_scaled, scale, sub};
 use crate::window::Window;
@@ -91,6 +92,15 @@ impl<const N: usize> Command<N> {
     }
 }
 
+/// What was found, and from where on it is a fault, mm.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evidence {
+    /// What was found.
+    pub found_mm: f64,
+    /// What it may be.
+    pub limit_mm: f64,
+}
+
 /// The contract. A controller is admitted by the conformance tests of the library: rest stays rest, the same input gives
 /// the same bits, a reset is complete, a measurement that is not a number gives a command that is.
 pub trait Controller<const N: usize> {
@@ -112,6 +122,18 @@ pub trait Controller<const N: usize> {
     /// it after each decision.
     fn prediction_error_mm(&self) -> f64 {
         0.0
+    }
+    /// Why [`Self::prediction_error_mm`] is infinite, where that rests on a comparison.
+    fn doubt(&self) -> Option<Evidence> {
+        None
+    }
+    /// The axes as it knows them now, if it goes by such knowledge: one that learns knows others than it was made with.
+    fn known(&self) -> Option<[AxisKnowledge; N]> {
+        None
+    }
+    /// Which axes it follows by what it learned while they moved.
+    fn learned(&self) -> [bool; N] {
+        [false; N]
     }
     /// Displacement of the tool by the offset, mm, as the controller's model predicts it. `None`
     /// without such a model.

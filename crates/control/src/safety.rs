@@ -16,7 +16,7 @@ mod fade;
 pub(crate) mod feedback;
 
 use crate::contour_error::locate;
-use crate::controller::{Command, Controller, Measured};
+use crate::controller::{Command, Controller, Evidence, Measured};
 use crate::vector::{add_scaled, bounded, dot, limit_norm, norm, scale, smooth_step, sub};
 use crate::window::Window;
 use benefit::Benefit;
@@ -134,7 +134,7 @@ impl<const N: usize> Guard<N> {
     {
         let (wanted, bad) = if lost {
             controller.observe(window, None);
-            (Command::AS_PLANNED, Some(Cause::LostFeedback))
+            (Command::AS_PLANNED, Some((Cause::LostFeedback, None)))
         } else {
             controller.observe(window, Some(measured));
             let wanted = controller.command(window, measured);
@@ -166,14 +166,14 @@ impl<const N: usize> Guard<N> {
         if part < 1.0 { Command::straight(wanted.rate, scale(smooth_step(part), wanted.offset_mm)) } else { wanted }
     }
 
-    /// Why a controller must not be followed. It hears how well it did.
+    /// Why a controller must not be followed, and what that rests on. It hears how well it did.
     fn judge<C>(
         &mut self,
         controller: &mut C,
         window: &Window<'_, N>,
         measured: &Measured<N>,
         wanted: &Command<N>,
-    ) -> Option<Cause>
+    ) -> Option<(Cause, Option<Evidence>)>
     where
         C: Controller<N> + ?Sized,
     {
@@ -185,18 +185,24 @@ impl<const N: usize> Guard<N> {
             _ => 0,
         };
         let [with_mm2, without_mm2] = controller.foreseen_mm2();
-        let foreseen = with_mm2 > FORESEEN_MM2 + FORESEEN * without_mm2;
+        let allowed_mm2 = FORESEEN_MM2 + FORESEEN * without_mm2;
+        let foreseen = with_mm2 > allowed_mm2;
         self.foreseen = if foreseen { self.foreseen + 1 } else { 0 };
         // Where nothing that is predicted can be true, neither can what an offset is said to have done.
-        let harm = prediction_error_mm < f64::INFINITY
-            && self.benefit.is_harm(window, measured.position_mm, &measured.contour, controller.moved_mm());
+        let harm = if prediction_error_mm < f64::INFINITY {
+            self.benefit.harm(window, measured.position_mm, &measured.contour, controller.moved_mm())
+        } else {
+            None
+        };
         controller.judged(self.benefit.overdone());
         if !sum.is_finite() {
-            Some(Cause::NotANumber)
+            Some((Cause::NotANumber, None))
         } else if self.wrong >= WRONG_DECISIONS {
-            Some(Cause::WrongPredictions)
-        } else if controller.corrects() && (harm || self.foreseen >= FORESEEN_DECISIONS) {
-            Some(Cause::Harmful)
+            let missed = Evidence { found_mm: prediction_error_mm, limit_mm: self.wrong_mm() };
+            Some((Cause::WrongPredictions, controller.doubt().or(Some(missed))))
+        } else if controller.corrects() && (harm.is_some() || self.foreseen >= FORESEEN_DECISIONS) {
+            let foreseen = Evidence { found_mm: libm::sqrt(with_mm2), limit_mm: libm::sqrt(allowed_mm2) };
+            Some((Cause::Harmful, harm.or(Some(foreseen))))
         } else {
             None
         }

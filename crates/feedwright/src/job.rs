@@ -25,10 +25,10 @@ mod stored;
 
 use std::sync::Arc;
 
-use feedwright_control::Controller;
+use feedwright_control::{Controller, IdentifiedAxes};
 use feedwright_gcode::canon::{Canon, MotionKind};
 use feedwright_gcode::{self, Program, ReadError, Summary};
-use feedwright_ident::{Log, LogFinding, Model};
+use feedwright_ident::{Log, LogFinding, Model, Origin};
 use feedwright_plan::{AlignedPaths, Constraints, PlanSink, SpeedCaps, Step, Steps};
 use feedwright_sim::{Machine, Outcome, PlanCache, Row, Run, RunError, Sink, StageSteps, Stages, Watch, path_steps};
 use serde::{Deserialize, Serialize};
@@ -71,6 +71,9 @@ pub struct Job {
     /// A model for the controller that is asked for, in place of a training.
     #[serde(with = "stored::model")]
     pub model: Option<Model>,
+    /// The day, year-month-day, on which the model that the controller learns is written; `None` where none is wanted.
+    #[serde(skip)]
+    pub learned_on: Option<String>,
     /// Largest contour error that is allowed, um. Where the machine is planned axis by axis, the planned path uses what the predicted error
     /// of the machine leaves of it.
     pub tolerance_um: Option<f64>,
@@ -115,6 +118,8 @@ pub struct JobOutcome {
     pub without_identification: Vec<NothingIdentified>,
     /// What was guessed or noticed of the log.
     pub log_findings: Vec<LogFinding>,
+    /// The model that the controller had at the end of the cut, where it was given one and that was asked for.
+    pub learned: Option<Model>,
     /// The corrected program for another control, where one was asked for; its run is the last.
     pub exported: Option<CorrectOutcome>,
     /// The plan of least time, where that was asked for.
@@ -150,6 +155,7 @@ impl Job {
             feed_mm_s: None,
             choices: Choices::default(),
             model: None,
+            learned_on: None,
             tolerance_um: None,
             target: None,
             reference: None,
@@ -242,7 +248,7 @@ impl Job {
             circles: &circles,
             looked_at: looked_at.as_ref().map(|cycle| cycle as &dyn PlanSink),
         };
-        let (mut runs, without_identification) = self.cut_with_each::<N>(summary, plan, rows, watch)?;
+        let Cuts { mut runs, without_identification, learned } = self.cut_with_each::<N>(summary, plan, rows, watch)?;
         let completed = runs.last().is_some_and(|run| run.summary.outcome == Outcome::Completed);
         let cycle = looked_at.filter(|_| completed).map(CycleTimeOfCut::finish);
         let log_findings = self.insert_measured(&mut runs, N, &circles, watch)?;
@@ -258,6 +264,7 @@ impl Job {
             report,
             without_identification,
             log_findings,
+            learned,
             exported,
             fastest,
             path_um: within.map(|plan| plan.path_um),
@@ -337,18 +344,18 @@ impl Job {
         }
     }
 
-    /// One run for each controller, and for which of them nothing was identified.
+    /// One run for each controller.
     fn cut_with_each<const N: usize>(
         &self,
         summary: &Summary,
         plan: PlannedCut<'_>,
         rows: &mut [&mut dyn Sink],
         watch: &dyn Watch,
-    ) -> Result<(Vec<ReportedRun>, Vec<NothingIdentified>), JobError>
+    ) -> Result<Cuts, JobError>
     where
         Entry: Make<N>,
     {
-        let (mut runs, mut without_identification) = (Vec::new(), Vec::new());
+        let mut cuts = Cuts::default();
         for entry in self.controllers() {
             watch.check()?;
             let mut steps = StageSteps::begin(watch, &format!("identifying for {}", entry.name));
@@ -359,15 +366,26 @@ impl Job {
                 Some(model) => entry.make_with::<N>(setup, model)?,
                 None => {
                     let controller = Make::<N>::make(entry, &mut setup);
-                    without_identification.extend(setup.remark(entry));
+                    cuts.without_identification.extend(setup.remark(entry));
                     controller
                 }
             };
             let rows: &mut [&mut dyn Sink] = if judged { &mut *rows } else { &mut [] };
             let plan = PlannedCut { looked_at: plan.looked_at.filter(|_| judged), ..plan };
-            runs.push(self.cut_once(summary, entry, &mut *controller, plan, rows, watch)?);
+            cuts.runs.push(self.cut_once(summary, entry, &mut *controller, plan, rows, watch)?);
+            if let (Some(model), Some(date)) = (self.model.as_ref().filter(|_| judged), &self.learned_on) {
+                cuts.learned = self.learned(model, &*controller, date);
+            }
         }
-        Ok((runs, without_identification))
+        Ok(cuts)
+    }
+
+    /// A model with the axes as a controller knows them now; `None` of one that does not learn.
+    fn learned<const N: usize>(&self, model: &Model, controller: &dyn Controller<N>, date: &str) -> Option<Model> {
+        let axes = IdentifiedAxes { mechanics_s: self.machine.period.mechanics_s, axes: controller.known()? };
+        let (given, part) = (&model.about().source, self.program.file_name());
+        let source = format!("{given}; learned while {} cut {part}", self.machine.name);
+        model.with_axes(axes, Origin { source, date: date.to_owned() })
     }
 
     fn cut_once<const N: usize>(
@@ -454,6 +472,15 @@ impl Job {
             step
         }))
     }
+}
+
+/// What the cuts of all controllers came to.
+#[derive(Default)]
+struct Cuts {
+    runs: Vec<ReportedRun>,
+    /// For which controllers nothing was identified.
+    without_identification: Vec<NothingIdentified>,
+    learned: Option<Model>,
 }
 
 /// What a cut is made by, besides the controller.

@@ -29,6 +29,67 @@ fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit()
     }
 }
 
+const STAR: &str = include_str!("../../../parts/star.ngc");
+/// A machine whose position gain is a tenth below that of workshop.
+const SLOW: &str =
+    "base = \"workshop\"\nname = \"slow\"\n[axis.x]\nkp_1_s = 45\n[axis.y]\nkp_1_s = 45\n[axis.z]\nkp_1_s = 45\n";
+
+#[test]
+fn what_was_learned_of_a_machine_that_differs_from_its_model_is_written() {
+    let folder = Folder::new();
+    folder.file("slow.toml", SLOW);
+    folder.file("star.ngc", STAR);
+    folder.run(&["identify", "--machine", "workshop", "--out", "given.model.toml"]).succeeded();
+    let cut = ["run", "star.ngc", "--machine", "slow.toml", "--json", "r.json", "--learned", "learned.model.toml"];
+    folder.run(&[&cut[..], &["--model", "given.model.toml"]].concat()).succeeded();
+    let result: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    let [uncorrected, corrected] = [0, 1].map(|run| result["runs"][run]["joint_rms_um"].as_f64().unwrap());
+    assert!(corrected < 0.03 * uncorrected, "{corrected} of {uncorrected}");
+    let transitions = result["runs"][1]["transitions"].as_array().unwrap();
+    let learned = |axis: &str| transitions.iter().find(|t| t["change"] == "learned" && t["axis"] == axis).unwrap();
+    for axis in ["x", "y"] {
+        let (at_s, line) = (learned(axis)["at_s"].as_f64().unwrap(), learned(axis)["line"].as_u64().unwrap());
+        assert!(at_s < 0.5 && line > 0, "{transitions:?}");
+    }
+    let text = folder.text("learned.model.toml");
+    let gains = text.lines().skip_while(|line| !line.starts_with("kp_1_s")).nth(1).unwrap();
+    for gain_1_s in gains.split(',').filter_map(|number| number.trim().parse::<f64>().ok()) {
+        assert!((gain_1_s / 45.0 - 1.0).abs() < 0.05, "{gains}");
+    }
+    let told = folder.run(&["check", "learned.model.toml"]).succeeded().stdout;
+    assert!(told.contains("learned while slow cut star.ngc"), "{told}");
+}
+
+#[test]
+fn a_correction_that_leaves_most_of_the_cut_to_itself_ends_with_exit_code_1_and_says_why() {
+    let folder = Folder::new();
+    folder.file("star.ngc", STAR);
+    folder.run(&["identify", "--machine", "workshop", "--out", "w.model.toml"]).succeeded();
+    let cut =
+        ["run", "star.ngc", "--machine", "router", "--model", "w.model.toml", "--json", "r.json", "--report", "r.html"];
+    let ran = folder.run(&cut);
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    let said = ran.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("for good. At ") && said.contains("the model does not fit this machine"), "{said}");
+    let result: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+    let transitions = result["runs"][1]["transitions"].as_array().unwrap();
+    assert!(transitions.iter().any(|t| t["change"] == "left" && t["cause"].is_string()), "{transitions:?}");
+    assert!(folder.text("r.html").contains("out of the loop, because"));
+}
+
+#[test]
+fn a_controller_that_learns_no_axes_writes_none() {
+    let folder = Folder::new();
+    folder
+        .run(&["identify", "--controller", "receding-horizon", "--machine", "tnv40", "--out", "m.model.toml"])
+        .succeeded();
+    let cut =
+        ["run", "circle.ngc", "--machine", "tnv40", "--controller", "receding-horizon", "--learned", "l.model.toml"];
+    let ran = folder.run(&[&cut[..], &["--model", "m.model.toml"]].concat());
+    ran.refused(&["receding-horizon learns no model of the axes", "--controller lqg-identified"]);
+    assert!(!folder.path().join("l.model.toml").exists());
+}
+
 #[test]
 fn the_same_identification_writes_the_same_bytes() {
     let folder = Folder::new();

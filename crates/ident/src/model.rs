@@ -203,6 +203,15 @@ impl Model {
         Self::sealed(IdentifierKind::Axes, recording, fit, Weights::of_axes(identified.axes), origin)
     }
 
+    /// This model of axes with other numbers of them; `None` of another kind, and for another number of axes.
+    pub fn with_axes<const N: usize>(&self, axes: IdentifiedAxes<N>, Origin { source, date }: Origin) -> Option<Self> {
+        self.identified_axes::<N>()?;
+        let about = About { written_by: version(), source, date, ..self.about.clone() };
+        let mut model = Self { about, weights: Weights::of_axes(axes), ..self.clone() };
+        model.about.checksum = model.checksum();
+        Some(model)
+    }
+
     fn sealed<const N: usize>(
         kind: IdentifierKind,
         recording: &Recording<N>,

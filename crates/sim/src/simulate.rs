@@ -25,7 +25,7 @@ use crate::kinematics::{joints_of, tool_of};
 use crate::machine::Machine;
 use crate::plant::{Measurement, Plant};
 use crate::reference::{Foot, Reference, Sample};
-use crate::trace::{Commanded, FadedOut, Outcome, Row, Sink};
+use crate::trace::{Change, Commanded, FadedOut, Outcome, Row, Sink, Transition};
 use crate::watch::{Cancelled, Watch};
 use foot::{FootTracker, settled_periods, settled_s};
 pub use joints::JointError;
@@ -55,6 +55,8 @@ pub struct RunResult {
     pub outcome: Outcome,
     /// When the safety layer took the controller out of the loop last.
     pub faded_out: Option<FadedOut>,
+    /// All that changed of what corrects the command, in order.
+    pub transitions: Vec<Transition>,
     /// Part of the cutting time in which the controller was in the loop, and whether it was at the end.
     pub engaged_share: f64,
     /// See above.
@@ -136,7 +138,10 @@ struct ClosedLoop<'a, const N: usize> {
     /// When the command has ended.
     ended_s: Option<f64>,
     last_tau_s: f64,
+    /// What corrects the command: the last fade, whether the controller is in the loop, and of which axes it goes by what it learned.
     fade: Option<Fade>,
+    engaged: bool,
+    learned: [bool; N],
     /// Servo periods that cut: without the controller in the loop, and with it.
     cut: [u64; 2],
 }
@@ -168,6 +173,8 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
             ended_s: None,
             last_tau_s: 0.0,
             fade: None,
+            engaged: true,
+            learned: [false; N],
             cut: [0; 2],
         }
     }
@@ -237,10 +244,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         if setpoint.decided {
             self.run.ticks.add(watch.clock().saturating_sub(began).as_nanos());
             self.run.most_entries = self.run.most_entries.max(self.tick.contour().entries);
-            if self.tick.fade() != self.fade {
-                self.fade = self.tick.fade();
-                self.run.faded_out = self.fade.map(|fade| FadedOut { at_s: t_s, cause: fade.cause.words() });
-            }
+            self.note_changes(t_s, setpoint.tau_s, reference, controller);
         }
         if self.ended_s.is_none()
             && let Some(end_s) = reference.end_s()
@@ -251,6 +255,34 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         }
         self.last_tau_s = setpoint.tau_s;
         setpoint
+    }
+
+    /// Notes what has changed of what corrects the command.
+    fn note_changes(&mut self, t_s: f64, tau_s: f64, reference: &mut Reference<'_>, controller: &dyn Controller<N>) {
+        let (fade, engaged, learned) = (self.tick.fade(), self.tick.state() == State::Engaged, controller.learned());
+        if (fade, engaged, learned) == (self.fade, self.engaged, self.learned) {
+            return;
+        }
+        let line = reference.at(tau_s).line;
+        let of =
+            |change| Transition { at_s: t_s, line, change, axis: None, cause: None, found_um: None, limit_um: None };
+        if let Some(left) = fade.filter(|_| fade != self.fade) {
+            let cause = left.cause.words();
+            self.run.faded_out = Some(FadedOut { at_s: t_s, cause });
+            let [found_um, limit_um] = [left.evidence.map(|e| e.found_mm), left.evidence.map(|e| e.limit_mm)]
+                .map(|mm| mm.map(|mm| 1e3 * mm).filter(|um| um.is_finite()));
+            self.run.transitions.push(Transition { cause: Some(cause), found_um, limit_um, ..of(Change::Left) });
+        }
+        if engaged && !self.engaged {
+            self.run.transitions.push(of(Change::Returned));
+        }
+        for (axis, (now, before)) in ['x', 'y', 'z'].into_iter().zip(learned.into_iter().zip(self.learned)) {
+            if now != before {
+                let change = if now { Change::Learned } else { Change::Given };
+                self.run.transitions.push(Transition { axis: Some(axis), ..of(change) });
+            }
+        }
+        (self.fade, self.engaged, self.learned) = (fade, engaged, learned);
     }
 
     /// Whether the tool does not follow any more; then the run ends here.

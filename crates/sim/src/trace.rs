@@ -94,6 +94,62 @@ pub struct FadedOut {
     pub cause: &'static str,
 }
 
+/// A change of what corrects the command.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Transition {
+    /// When, s.
+    pub at_s: f64,
+    /// Line of the program that was commanded then.
+    pub line: u32,
+    /// What changed.
+    pub change: Change,
+    /// The axis whose model changed, x, y or z; none where that is not what changed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub axis: Option<char>,
+    /// Why, in words; none where nothing has to be said.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cause: Option<&'static str>,
+    /// What was found, and from where on it is a fault, um; none where nothing was compared.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub found_um: Option<f64>,
+    /// See above.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub limit_um: Option<f64>,
+}
+
+/// What changed of what corrects the command.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Change {
+    /// The controller left the loop.
+    Left,
+    /// It is in the loop again.
+    Returned,
+    /// It goes by the model that it learned of an axis.
+    Learned,
+    /// It goes by the model that it was given of the axis again.
+    Given,
+}
+
+impl Transition {
+    /// In words, without the time.
+    pub fn words(&self) -> String {
+        let because = |cause: &str| match (self.found_um, self.limit_um) {
+            (Some(found_um), Some(limit_um)) => {
+                format!(", because {cause}: {found_um:.1} um where {limit_um:.1} are allowed")
+            }
+            _ => format!(", because {cause}"),
+        };
+        let because = self.cause.map(because).unwrap_or_default();
+        match self.change {
+            Change::Left => format!("out of the loop{because}"),
+            Change::Returned => "in the loop again".to_owned(),
+            Change::Learned => format!("goes by what it learned of {}", self.axis.unwrap_or_default()),
+            Change::Given => format!("goes by the given model of {} again", self.axis.unwrap_or_default()),
+        }
+    }
+}
+
 /// Takes the rows of a run in order.
 pub trait Sink {
     /// Takes one row.

@@ -53,7 +53,7 @@ mod validity;
 mod regulated_axis;
 
 use super::feedforward::preview;
-use super::{Command, Controller, Measured, Schedule};
+use super::{Command, Controller, Evidence, Measured, Schedule};
 use crate::axis::knowledge::AxisKnowledge;
 use crate::vector::{norm, scale, sub};
 use crate::window::Window;
@@ -237,6 +237,18 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             return f64::INFINITY;
         }
         self.missed_mm()
+    }
+
+    fn doubt(&self) -> Option<Evidence> {
+        self.validity.as_ref().and_then(Validity::doubt)
+    }
+
+    fn known(&self) -> Option<[AxisKnowledge; N]> {
+        Some(self.axes.each_ref().map(AxisLqg::known))
+    }
+
+    fn learned(&self) -> [bool; N] {
+        self.axes.each_ref().map(AxisLqg::is_learned)
     }
 
     fn moved_mm(&self) -> Option<[f64; N]> {

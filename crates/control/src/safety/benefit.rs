@@ -19,6 +19,7 @@
 //! good, and negative where more would have been better.
 
 use crate::contour_error::{ContourError, locate};
+use crate::controller::Evidence;
 use crate::vector::{add_scaled, dot, norm, scale, sub};
 use crate::window::Window;
 
@@ -69,14 +70,15 @@ impl<const N: usize> Benefit<N> {
         overdone_mm2 / (changed_mm2 + CHANGED_MM2)
     }
 
-    /// Takes in the error at a decision; `moved_mm` is g, where the controller knows it.
-    pub(super) fn is_harm(
+    /// Takes in the error at a decision; `moved_mm` is g, where the controller knows it. What is harm, if anything is: the root mean square, or a
+    /// single error.
+    pub(super) fn harm(
         &mut self,
         window: &Window<'_, N>,
         tool_mm: [f64; N],
         contour: &ContourError<N>,
         moved_mm: Option<[f64; N]>,
-    ) -> bool {
+    ) -> Option<Evidence> {
         let g_mm = moved_mm.unwrap_or_else(|| self.guessed_mm(window, contour));
         let open_mm = sub(tool_mm, g_mm);
         let reach = contour.index.saturating_neg();
@@ -94,11 +96,16 @@ impl<const N: usize> Benefit<N> {
         self.square_mm2 += part * (square - self.square_mm2);
         self.open_square_mm2 += part * (open_square - self.open_square_mm2);
         self.open_peak_mm = (self.open_peak_mm * (1.0 - 0.5 * part)).max(open_peak_mm);
-        if moved_mm.is_none() {
-            return self.square_mm2 > GUESSED_MM2 + GUESSED * self.open_square_mm2;
+        let [least_mm2, times] = if moved_mm.is_none() { [GUESSED_MM2, GUESSED] } else { [MIN_MM2, CERTAIN] };
+        let allowed_mm2 = least_mm2 + times * self.open_square_mm2;
+        let (error_mm, peak_mm) = (norm(vector_mm), MIN_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm);
+        if self.square_mm2 > allowed_mm2 {
+            Some(Evidence { found_mm: libm::sqrt(self.square_mm2), limit_mm: libm::sqrt(allowed_mm2) })
+        } else if moved_mm.is_some() && error_mm > peak_mm {
+            Some(Evidence { found_mm: error_mm, limit_mm: peak_mm })
+        } else {
+            None
         }
-        self.square_mm2 > MIN_MM2 + CERTAIN * self.open_square_mm2
-            || norm(vector_mm) > MIN_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm
     }
 
     fn guessed_mm(&mut self, window: &Window<'_, N>, contour: &ContourError<N>) -> [f64; N] {
@@ -145,7 +152,7 @@ mod tests {
                 let window = Window { register, preview, tau_s, feed_period_s: PERIOD_S, offset_mm, offset_mm_s };
                 let tool_mm = [50.0 * tau_s, error_mm];
                 let contour = ContourError { vector_mm: [0.0, -error_mm], index: 0, ..ContourError::NONE };
-                harm = benefit.is_harm(&window, tool_mm, &contour, Some([0.0, moved_mm]));
+                harm = benefit.harm(&window, tool_mm, &contour, Some([0.0, moved_mm])).is_some();
             }
         }
         (benefit, harm)

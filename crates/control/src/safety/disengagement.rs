@@ -9,6 +9,8 @@
 //! harm, for `GOOD_S` in a row. The first wait after a fault is `FIRST_WAIT_S`; each further one of the same making takes
 //! twice as long, and a correction that has held for `FORGIVEN_S` begins anew.
 
+use crate::controller::Evidence;
+
 /// Predictions that hold for so long in a row are good, s.
 const GOOD_S: f64 = 0.1;
 /// The least time out of the loop, s, at first and at the most.
@@ -58,6 +60,8 @@ impl Cause {
 pub struct Fade {
     /// Why.
     pub cause: Cause,
+    /// What that rests on; none where nothing was compared.
+    pub evidence: Option<Evidence>,
     /// Decisions made before it.
     pub decision: u64,
 }
@@ -93,13 +97,19 @@ impl Engagement {
         self.fade.map(|_| self.for_s)
     }
 
-    /// Goes on by a decision: `bad` is why the controller must not be followed, `good` whether it may be followed again, and
+    /// Goes on by a decision: `bad` is why the controller must not be followed, and what that rests on; `good` whether it may be followed again, and
     /// `over` whether its offset has come to rest.
-    pub(super) fn go_on(&mut self, bad: Option<Cause>, good: bool, over: bool, period_s: f64) -> State {
+    pub(super) fn go_on(
+        &mut self,
+        bad: Option<(Cause, Option<Evidence>)>,
+        good: bool,
+        over: bool,
+        period_s: f64,
+    ) -> State {
         self.for_s += period_s;
         self.good_s = if good && bad.is_none() { self.good_s + period_s } else { 0.0 };
         match (self.state, bad) {
-            (State::Engaged, Some(cause)) => self.leave(cause),
+            (State::Engaged, Some((cause, evidence))) => self.leave(cause, evidence),
             (State::Engaged, None) if self.for_s > FORGIVEN_S => self.wait_s = FIRST_WAIT_S,
             (State::Engaged, None) => {}
             _ if self.for_s >= self.wait_s && self.good_s >= GOOD_S => {
@@ -112,12 +122,12 @@ impl Engagement {
         self.state
     }
 
-    fn leave(&mut self, cause: Cause) {
+    fn leave(&mut self, cause: Cause, evidence: Option<Evidence>) {
         // A lost position is not the controller's fault.
         if self.fade.is_some() && cause != Cause::LostFeedback {
             self.wait_s = (2.0 * self.wait_s).min(LONGEST_WAIT_S);
         }
-        self.fade = Some(Fade { cause, decision: self.decisions });
+        self.fade = Some(Fade { cause, evidence, decision: self.decisions });
         (self.state, self.for_s, self.good_s) = (State::Fading, 0.0, 0.0);
     }
 }
@@ -136,9 +146,9 @@ mod tests {
     #[test]
     fn it_leaves_at_once_and_is_back_within_a_second_of_a_first_fault() {
         let mut engagement = Engagement::START;
-        assert_eq!(engagement.go_on(Some(Cause::LostFeedback), false, false, PERIOD_S), State::Fading);
+        assert_eq!(engagement.go_on(Some((Cause::LostFeedback, None)), false, false, PERIOD_S), State::Fading);
         for _ in 0..30 {
-            assert_eq!(engagement.go_on(Some(Cause::LostFeedback), false, false, PERIOD_S), State::Fading);
+            assert_eq!(engagement.go_on(Some((Cause::LostFeedback, None)), false, false, PERIOD_S), State::Fading);
         }
         assert_eq!(engagement.go_on(None, true, true, PERIOD_S), State::Shadow);
         assert!(f64::from(until_back(&mut engagement)) * PERIOD_S < 0.5);
@@ -149,7 +159,7 @@ mod tests {
         let mut engagement = Engagement::START;
         let mut waits = [0; 8];
         for wait in &mut waits {
-            engagement.go_on(Some(Cause::Harmful), false, true, PERIOD_S);
+            engagement.go_on(Some((Cause::Harmful, None)), false, true, PERIOD_S);
             *wait = until_back(&mut engagement);
         }
         assert!(waits.is_sorted() && waits[7] > 10 * waits[0], "{waits:?}");
@@ -157,14 +167,14 @@ mod tests {
         for _ in 0..2000 {
             engagement.go_on(None, true, true, PERIOD_S);
         }
-        engagement.go_on(Some(Cause::Harmful), false, true, PERIOD_S);
+        engagement.go_on(Some((Cause::Harmful, None)), false, true, PERIOD_S);
         assert!(until_back(&mut engagement) <= 2 * waits[0]);
     }
 
     #[test]
     fn what_is_good_only_now_and_then_stays_out() {
         let mut engagement = Engagement::START;
-        engagement.go_on(Some(Cause::WrongPredictions), false, true, PERIOD_S);
+        engagement.go_on(Some((Cause::WrongPredictions, None)), false, true, PERIOD_S);
         for n in 0..5000 {
             assert_ne!(engagement.go_on(None, n % 10 != 0, true, PERIOD_S), State::Engaged);
         }

@@ -81,6 +81,11 @@ impl Report {
         runs.rev().find(|run| !run.measured && run.controller != AS_EXPORTED)
     }
 
+    /// Whether the controller that was asked for left most of the part uncorrected, or its end.
+    pub fn is_mostly_uncorrected(&self) -> bool {
+        self.controlled().is_some_and(RunSummary::is_mostly_uncorrected)
+    }
+
     /// The errors of the controller that was asked for that are worse than the uncorrected errors. Empty without an uncorrected
     /// run that reached its end.
     pub fn harm(&self) -> Vec<Harm> {
@@ -194,6 +199,9 @@ impl Headline {
         self.text(&format!(
             " was in the loop for {share} % of the cut; the safety layer took it out last at {from}, because {cause}."
         ));
+        if judged.is_mostly_uncorrected() {
+            self.text(" Most of the part, or its end, is as good as uncorrected.");
+        }
     }
 
     /// What a log shows, if there is one.

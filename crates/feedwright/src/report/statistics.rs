@@ -115,6 +115,7 @@ impl Statistics {
             measured: facts.measured,
             outcome: facts.run.outcome,
             faded_out: facts.run.faded_out,
+            transitions: facts.run.transitions,
             engaged_share: facts.run.engaged_share,
             engaged_at_end: facts.run.engaged_at_end,
             time_s: facts.run.time_s,

@@ -1,6 +1,6 @@
 //! The numbers of one run, as the page's tables and `--json` give them.
 
-use feedwright_sim::{FadedOut, Outcome, RunResult};
+use feedwright_sim::{FadedOut, Outcome, RunResult, Transition};
 use serde::Serialize;
 
 use super::histogram::Histogram;
@@ -34,6 +34,16 @@ pub struct FeedShares {
     pub largest: f64,
 }
 
+impl RunSummary {
+    /// Whether most of the part was cut without the correction, or its end.
+    pub fn is_mostly_uncorrected(&self) -> bool {
+        self.faded_out.is_some() && (self.engaged_share < LEAST_SHARE || !self.engaged_at_end)
+    }
+}
+
+/// Part of the cutting time in which a correction is to be in the loop at least.
+const LEAST_SHARE: f64 = 0.5;
+
 /// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSummary {
@@ -52,6 +62,9 @@ pub struct RunSummary {
     /// When and why the safety layer took the controller out of the loop last.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub faded_out: Option<FadedOut>,
+    /// All that changed of what corrects the command, in order.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub transitions: Vec<Transition>,
     /// Part of the cutting time in which the controller was in the loop.
     pub engaged_share: f64,
     /// Whether it was at the end.

@@ -182,6 +182,16 @@ impl AxisLqg {
         &self.model.law
     }
 
+    /// What is known of it now.
+    pub(super) fn known(&self) -> AxisKnowledge {
+        self.known
+    }
+
+    /// Whether the law that is followed was learned.
+    pub(super) fn is_learned(&self) -> bool {
+        self.state.as_ref().and_then(|state| state.learning.as_ref()).is_some_and(Learning::is_followed)
+    }
+
     /// Near the reference.
     pub(super) fn gains(&self) -> LqgGains {
         LqgGains { filter: self.model.gains_as_given(), regulator: self.regulator.near() }

@@ -31,6 +31,7 @@
 //!
 //! Source: the free run as in Ljung (1999), System Identification, section 16.6, where models are validated by simulation; the rule is our own.
 
+use super::super::Evidence;
 use crate::vector::{bounded, dot, norm, smooth_step, sub};
 
 use super::approach::Trusted;
@@ -182,9 +183,13 @@ impl<const N: usize> Validity<N> {
 
     /// Whether so many times more is missed than noise and what there is to correct; what is not a number is.
     fn is_beyond(&self, times: f64) -> bool {
-        let noise_mm2 = self.always_mm2 + SHOWN_DEVIATIONS * SHOWN_DEVIATIONS * self.by_noise_mm2;
-        let holds = self.missed_mm2 <= times * times * (noise_mm2 + self.largest_open_mm2);
+        let holds = self.missed_mm2 <= times * times * self.allowed_mm2();
         !holds
+    }
+
+    /// What may be missed, mm^2: what noise makes, and what there is to correct.
+    fn allowed_mm2(&self) -> f64 {
+        self.always_mm2 + SHOWN_DEVIATIONS * SHOWN_DEVIATIONS * self.by_noise_mm2 + self.largest_open_mm2
     }
 
     /// How far the laws are followed.
@@ -195,6 +200,12 @@ impl<const N: usize> Validity<N> {
     /// Whether the laws are wrong.
     pub(super) fn is_wrong(&self) -> bool {
         self.misses() || self.proof.is_needed()
+    }
+
+    /// What is missed, and what may be, where that is too much.
+    pub(super) fn doubt(&self) -> Option<Evidence> {
+        let [found_mm, limit_mm] = [self.missed_mm2, self.allowed_mm2()].map(libm::sqrt);
+        self.misses().then_some(Evidence { found_mm, limit_mm })
     }
 
     /// The part of the correction that is followed.

@@ -21,7 +21,8 @@ Examples:
   feedwright run part.ngc --machine mine.toml --log cut.csv
   cat part.ngc | feedwright run - --json - | jq '.runs[].max_um'
 
-Exit codes: 0 done; 1 out of --tolerance, or the correction is worse than uncorrected: --out is not written then; 2 an error.")]
+Exit codes: 0 done; 1 out of --tolerance, the correction is worse than uncorrected (--out is not written then), or it was out of the loop for \
+most of the cut or at its end; 2 an error.")]
 pub struct RunArgs {
     /// G-code program.
     pub(crate) part: PathBuf,
@@ -73,6 +74,10 @@ pub struct RunArgs {
     /// Identified model for the controller, in place of identifying the machine anew; `feedwright identify` writes one.
     #[arg(long, value_name = "FILE.model.toml")]
     pub(crate) model: Option<PathBuf>,
+    /// Place of the model that the controller has at the end of the cut, with what it learned of the machine: next time the beginning is
+    /// corrected as well.
+    #[arg(long, value_name = "FILE.model.toml", requires = "model")]
+    pub(crate) learned: Option<PathBuf>,
     /// Log of commanded and actual positions, recorded while a machine cut this program: the contour error measured is shown beside those
     /// predicted.
     #[arg(long, value_name = "LOG")]

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::str::FromStr;
 
+use feedwright_control::IdentifierKind;
 use feedwright_gcode::Program;
 use feedwright_gcode::input::{self, is_standard_input};
 use feedwright_ident::{Columns, Log, Model};
@@ -17,10 +18,11 @@ use crate::command::args::run::RunArgs;
 use crate::command::console::Console;
 use crate::command::controllers::{find, settings};
 use crate::command::controls::control;
+use crate::command::date::today;
 use crate::command::message::{OUT_OF_TOLERANCE, printed, remark, tell, tell_assumed_limits, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::{check_inputs, tables};
-use crate::controllers::{Choices, Controllers};
+use crate::controllers::{BEST, Choices, Controllers};
 use crate::correct::{TARGETS, TargetControl};
 use crate::fastest::FastestError;
 use crate::job::{Job, JobError, MeasuredLog};
@@ -68,10 +70,11 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     }
     outcome.log_findings.iter().for_each(|finding| remark(&finding.to_string()));
     // Where a program for another control was asked for, that program decides.
-    let is_good = outcome.within_tolerance && (outcome.harm.is_empty() || outcome.exported.is_some());
+    let corrects = outcome.harm.is_empty() && !outcome.report.is_mostly_uncorrected();
+    let is_good = outcome.within_tolerance && (corrects || outcome.exported.is_some());
     let code = if is_good { ExitCode::SUCCESS } else { ExitCode::from(OUT_OF_TOLERANCE) };
-    let Outputs { report, json, trace, out } = &outputs;
-    let mut table = tables([report, json, trace, out].map(Option::as_deref));
+    let Outputs { report, json, trace, learned, out } = &outputs;
+    let mut table = tables([report, json, trace, learned, out].map(Option::as_deref));
     printed(summary::print(&mut *table, &job, &outputs, &outcome), code)
 }
 
@@ -86,8 +89,16 @@ struct Asked {
 fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     let machine_file = Some(PathBuf::from(&args.machine)).filter(|path| is_machine_path(path));
     let report = args.report.unwrap_or_else(|| report_of(&args.part));
-    let outputs = Outputs { report: Some(report), json: args.json, trace: args.trace, out: args.out };
+    let outputs =
+        Outputs { report: Some(report), json: args.json, trace: args.trace, learned: args.learned, out: args.out };
     let (controller, against) = (find(&args.controller, table)?, find(&args.against, table)?);
+    if outputs.learned.is_some() && controller.identifier != Some(IdentifierKind::Axes) {
+        return Err(miette!(
+            help = format!("leave --learned out, or choose --controller {BEST}"),
+            "{} learns no model of the axes",
+            controller.name
+        ));
+    }
     let target = target(args.target.as_deref(), outputs.out.as_deref())?;
     let set = settings(&args.set, table, Some(controller), &[controller, against])?;
     let machine = Machine::load(&args.machine)?;
@@ -102,6 +113,7 @@ fn asked(args: RunArgs, table: Controllers, bar: &Bar) -> Result<Asked> {
     job.feed_mm_s = args.feed;
     job.choices = Choices { seed: args.seed, set };
     job.model = args.model.as_deref().map(Model::read).transpose()?;
+    job.learned_on = outputs.learned.is_some().then(today).transpose()?;
     job.tolerance_um = args.tolerance;
     job.target = outputs.is_program()?.then_some(target);
     job.reference = args.reference.as_ref().map(Program::in_file);

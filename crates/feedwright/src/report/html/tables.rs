@@ -33,6 +33,7 @@ pub(super) fn write_summary(out: &mut impl Write, report: &Report) -> io::Result
     out.write_all(b"</tbody></table></div>\n")?;
     for (i, run) in report.runs.iter().enumerate() {
         write_events(out, i, run)?;
+        write_transitions(out, i, &run.summary)?;
     }
     out.write_all(b"</section>\n")
 }
@@ -96,6 +97,30 @@ pub(super) fn swatch(index: usize) -> String {
 const SHOWN_ROWS: usize = 24;
 
 /// The events of a run on strips as long as the run, one for each unit of the machine, and as a list.
+/// When and why the correction came into the loop and left it.
+fn write_transitions(out: &mut impl Write, index: usize, run: &RunSummary) -> io::Result<()> {
+    let transitions = &run.transitions;
+    if transitions.is_empty() {
+        return Ok(());
+    }
+    let (count, name) = (transitions.len(), escaped(&run.controller));
+    let changes = if count == 1 { "change" } else { "changes" };
+    write!(
+        out,
+        "<details class=\"events\"><summary>{}<span>{count} {changes} of the correction, {name}</span>",
+        swatch(index)
+    )?;
+    out.write_all(b"</summary><ol>")?;
+    for transition in transitions.iter().take(SHOWN_EVENTS) {
+        let (at_s, line, words) = (transition.at_s, transition.line, escaped(&transition.words()));
+        write!(out, "<li data-t=\"{at_s:.5}\">{}, line {line}: {words}</li>", duration(at_s))?;
+    }
+    if let Some(more) = count.checked_sub(SHOWN_EVENTS).filter(|&n| n > 0) {
+        write!(out, "<li>and {more} more</li>")?;
+    }
+    out.write_all(b"</ol></details>\n")
+}
+
 fn write_events(out: &mut impl Write, index: usize, run: &ReportedRun) -> io::Result<()> {
     if run.events.is_empty() {
         return Ok(());

@@ -19,6 +19,8 @@ pub(super) struct Outputs {
     pub(super) json: Option<PathBuf>,
     /// One row per servo period of the last run.
     pub(super) trace: Option<PathBuf>,
+    /// The model that came of the cut.
+    pub(super) learned: Option<PathBuf>,
     /// Setpoints of the controller's cut (`.csv`), or the corrected program for a control without feedback (`.ngc`).
     pub(super) out: Option<PathBuf>,
 }
@@ -59,6 +61,7 @@ pub(super) struct Files {
     report: Option<OutputFile>,
     json: Option<OutputFile>,
     trace: Option<TraceWriter<OutputFile>>,
+    learned: Option<OutputFile>,
     setpoints: Option<SetpointWriter<OutputFile>>,
     program: Option<OutputFile>,
 }
@@ -81,6 +84,7 @@ impl Files {
         Ok(Self {
             report,
             json,
+            learned: start(outputs.learned.as_ref())?,
             trace: trace.map(|output| TraceWriter::new(output, axes)).transpose().map_err(of_io)?,
             setpoints: setpoints.map(|output| SetpointWriter::new(output, axes)).transpose().map_err(of_io)?,
             program: start(out(Form::Gcode))?,
@@ -104,6 +108,10 @@ impl Files {
             complete.push(output);
         }
         complete.extend(self.trace.map(TraceWriter::finish).transpose().map_err(of_rows)?);
+        if let (Some(mut output), Some(model)) = (self.learned, &outcome.learned) {
+            output.write_all(model.text().as_bytes()).map_err(named(output.path()))?;
+            complete.push(output);
+        }
         if outcome.is_of_use {
             complete.extend(self.setpoints.map(SetpointWriter::finish).transpose().map_err(of_rows)?);
         }

@@ -8,7 +8,7 @@ use crate::correct::CorrectOutcome;
 use crate::correct::exported::ExportedFigures;
 use crate::fastest::FastestPlan;
 use crate::job::{Job, JobOutcome, MEASURED};
-use crate::report::{AS_EXPORTED, Assumptions, Outcome as Ending, ReportedRun, RunSummary};
+use crate::report::{AS_EXPORTED, Assumptions, Change, Outcome as Ending, ReportedRun, RunSummary};
 
 use super::files::Outputs;
 use crate::command::controls::print_correction;
@@ -38,6 +38,9 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
     }
     writeln!(out)?;
     say(out, &assumed(&outcome.report.assumed, measured))?;
+    if outcome.report.is_mostly_uncorrected() && outcome.exported.is_none() {
+        say(out, MOSTLY_UNCORRECTED)?;
+    }
     if let Some(reference) = &job.reference {
         say(out, &format!("errors and uncut path are those to {}", reference.name()))?;
     }
@@ -52,6 +55,10 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
     }
     print_written(out, outputs, outcome)
 }
+
+/// Said where the correction was out of the loop for most of the cutting time, or at its end.
+const MOSTLY_UNCORRECTED: &str = "most of the part, or its end, is as good as uncorrected: the model does not fit this machine. Record it anew with \
+     `feedwright excite`, and identify it with `feedwright identify`";
 
 /// How the last run leaves the programmed feedrate.
 fn chip_load(runs: &[ReportedRun]) -> Option<String> {
@@ -100,12 +107,15 @@ fn table(runs: &[ReportedRun]) -> ConsoleTable {
         if let Ending::Diverged { at_s } = now.outcome {
             table.remark(format!("diverged at {at_s:.3} s: the servo loop of this machine is unstable"));
         }
-        if let Some(faded) = now.faded_out {
-            let share = 100.0 * now.engaged_share;
-            let last = if now.engaged_at_end { "last left it" } else { "left it for good" };
+        let left = now.transitions.iter().filter(|transition| transition.change == Change::Left);
+        if let Some(last) = left.clone().next_back() {
+            let (share, times) = (100.0 * now.engaged_share, left.count());
+            let times = if times == 1 { "once".to_owned() } else { format!("{times} times") };
+            let back = if now.engaged_at_end { "" } else { ", for good" };
+            let words = last.words();
             table.remark(format!(
-                "in the loop for {share:.1} % of the cut; {last} at {:.3} s, because {}",
-                faded.at_s, faded.cause
+                "in the loop for {share:.1} % of the cut; left it {times}{back}. At {:.3} s, line {}: {words}",
+                last.at_s, last.line
             ));
         }
     }
@@ -157,7 +167,8 @@ fn print_fastest(out: &mut dyn Write, plan: &FastestPlan) -> io::Result<()> {
 fn print_written(out: &mut dyn Write, outputs: &Outputs, outcome: &JobOutcome) -> io::Result<()> {
     let is_good = outcome.exported.as_ref().map_or(outcome.is_of_use, |program| program.refusal.is_none());
     let written = outputs.out.as_deref().filter(|_| is_good);
-    tell_written(out, [outputs.report.as_deref(), outputs.json.as_deref(), outputs.trace.as_deref(), written])?;
+    let Outputs { report, json, trace, learned, .. } = outputs;
+    tell_written(out, [report.as_deref(), json.as_deref(), trace.as_deref(), learned.as_deref(), written])?;
     match (outputs.out.as_deref(), &outcome.exported) {
         // Why there is no program is told above.
         (Some(path), None) if !is_good => {
