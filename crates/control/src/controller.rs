@@ -94,7 +94,7 @@ impl<const N: usize> Command<N> {
 
 /// What was found, and from where on it is a fault, mm.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Evidence {
+pub struct FaultEvidence {
     /// What was found.
     pub found_mm: f64,
     /// What it may be.
@@ -124,7 +124,7 @@ pub trait Controller<const N: usize> {
         0.0
     }
     /// Why [`Self::prediction_error_mm`] is infinite, where that rests on a comparison.
-    fn doubt(&self) -> Option<Evidence> {
+    fn doubt(&self) -> Option<FaultEvidence> {
         None
     }
     /// The axes as it knows them now, if it goes by such knowledge: one that learns knows others than it was made with.

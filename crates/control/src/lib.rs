@@ -44,7 +44,7 @@
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`] |
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`RecedingHorizon`], [`LqgPreview`] |
-//! | Safety layer | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`Evidence`] |
+//! | Safety layer | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`FaultEvidence`] |
 //! | Model of an axis | [`AxisLaw`], [`AxisState`], [`Parameters`], [`AxisKnowledge`], [`AxisInverse`] |
 //! | Trained models | [`ContourIdentifier`], [`ServoIdentifier`], [`IdentifiedAxes`], [`ModelBlock`] |
 //!
@@ -108,7 +108,7 @@ pub use controller::magnitude_only::MagnitudeOnly;
 pub use controller::receding_horizon::{RECEDING_HORIZON_FEED_PERIOD_S, RecedingHorizon, RecedingHorizonSettings};
 pub use controller::two_dimensional::TwoDimensional;
 pub use controller::uncorrected::Uncorrected;
-pub use controller::{Command, Controller, Evidence, Measured, Schedule};
+pub use controller::{Command, Controller, FaultEvidence, Measured, Schedule};
 pub use horizon::gauss_newton::GaussNewton;
 pub use horizon::problem::{END_WEIGHT, HorizonProblem};
 pub use horizon::{

@@ -16,7 +16,7 @@ mod fade;
 pub(crate) mod feedback;
 
 use crate::contour_error::locate;
-use crate::controller::{Command, Controller, Evidence, Measured};
+use crate::controller::{Command, Controller, FaultEvidence, Measured};
 use crate::vector::{add_scaled, bounded, dot, limit_norm, norm, scale, smooth_step, sub};
 use crate::window::Window;
 use benefit::Benefit;
@@ -173,7 +173,7 @@ impl<const N: usize> Guard<N> {
         window: &Window<'_, N>,
         measured: &Measured<N>,
         wanted: &Command<N>,
-    ) -> Option<(Cause, Option<Evidence>)>
+    ) -> Option<(Cause, Option<FaultEvidence>)>
     where
         C: Controller<N> + ?Sized,
     {
@@ -198,10 +198,10 @@ impl<const N: usize> Guard<N> {
         if !sum.is_finite() {
             Some((Cause::NotANumber, None))
         } else if self.wrong >= WRONG_DECISIONS {
-            let missed = Evidence { found_mm: prediction_error_mm, limit_mm: self.wrong_mm() };
+            let missed = FaultEvidence { found_mm: prediction_error_mm, limit_mm: self.wrong_mm() };
             Some((Cause::WrongPredictions, controller.doubt().or(Some(missed))))
         } else if controller.corrects() && (harm.is_some() || self.foreseen >= FORESEEN_DECISIONS) {
-            let foreseen = Evidence { found_mm: libm::sqrt(with_mm2), limit_mm: libm::sqrt(allowed_mm2) };
+            let foreseen = FaultEvidence { found_mm: libm::sqrt(with_mm2), limit_mm: libm::sqrt(allowed_mm2) };
             Some((Cause::Harmful, harm.or(Some(foreseen))))
         } else {
             None

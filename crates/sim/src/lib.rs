@@ -34,7 +34,7 @@
 //! | Topic | Names |
 //! |---|---|
 //! | Run | [`Run`], [`RunResult`], [`RunError`], [`Stages`], [`path_steps`] |
-//! | Rows | [`Sink`], [`Row`], [`Commanded`], [`Outcome`], [`FadedOut`], [`Transition`], [`Change`] |
+//! | Rows | [`Sink`], [`Row`], [`Commanded`], [`Outcome`], [`FadedOut`], [`Transition`], [`CorrectionChange`] |
 //! | CSV | [`TraceWriter`], [`SetpointWriter`] |
 //! | Machine files | [`Machine`], [`Axis`], [`Limits`], [`Period`], [`Transmission`], [`Noise`], [`MachineError`] |
 //! | Built-in machines | [`BUILT_IN_MACHINES`], [`DEFAULT_MACHINE`] |
@@ -94,5 +94,5 @@ pub use simulate::foot::settled_s;
 pub use simulate::uncut::Uncut;
 pub use simulate::{JointError, RunResult, Stopped, TickTimes};
 pub use trace::csv::{SetpointWriter, TraceWriter};
-pub use trace::{Change, Commanded, FadedOut, Outcome, Row, Sink, Transition};
+pub use trace::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
 pub use watch::{Cancelled, StageSteps, Watch};

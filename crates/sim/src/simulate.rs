@@ -25,7 +25,7 @@ use crate::kinematics::{joints_of, tool_of};
 use crate::machine::Machine;
 use crate::plant::{Measurement, Plant};
 use crate::reference::{Foot, Reference, Sample};
-use crate::trace::{Change, Commanded, FadedOut, Outcome, Row, Sink, Transition};
+use crate::trace::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
 use crate::watch::{Cancelled, Watch};
 use foot::{FootTracker, settled_periods, settled_s};
 pub use joints::JointError;
@@ -271,14 +271,19 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
             self.run.faded_out = Some(FadedOut { at_s: t_s, cause });
             let [found_um, limit_um] = [left.evidence.map(|e| e.found_mm), left.evidence.map(|e| e.limit_mm)]
                 .map(|mm| mm.map(|mm| 1e3 * mm).filter(|um| um.is_finite()));
-            self.run.transitions.push(Transition { cause: Some(cause), found_um, limit_um, ..of(Change::Left) });
+            self.run.transitions.push(Transition {
+                cause: Some(cause),
+                found_um,
+                limit_um,
+                ..of(CorrectionChange::Left)
+            });
         }
         if engaged && !self.engaged {
-            self.run.transitions.push(of(Change::Returned));
+            self.run.transitions.push(of(CorrectionChange::Returned));
         }
         for (axis, (now, before)) in ['x', 'y', 'z'].into_iter().zip(learned.into_iter().zip(self.learned)) {
             if now != before {
-                let change = if now { Change::Learned } else { Change::Given };
+                let change = if now { CorrectionChange::Learned } else { CorrectionChange::Given };
                 self.run.transitions.push(Transition { axis: Some(axis), ..of(change) });
             }
         }

@@ -102,7 +102,7 @@ pub struct Transition {
     /// Line of the program that was commanded then.
     pub line: u32,
     /// What changed.
-    pub change: Change,
+    pub change: CorrectionChange,
     /// The axis whose model changed, x, y or z; none where that is not what changed.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub axis: Option<char>,
@@ -120,7 +120,7 @@ pub struct Transition {
 /// What changed of what corrects the command.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Change {
+pub enum CorrectionChange {
     /// The controller left the loop.
     Left,
     /// It is in the loop again.
@@ -142,10 +142,10 @@ impl Transition {
         };
         let because = self.cause.map(because).unwrap_or_default();
         match self.change {
-            Change::Left => format!("out of the loop{because}"),
-            Change::Returned => "in the loop again".to_owned(),
-            Change::Learned => format!("goes by what it learned of {}", self.axis.unwrap_or_default()),
-            Change::Given => format!("goes by the given model of {} again", self.axis.unwrap_or_default()),
+            CorrectionChange::Left => format!("out of the loop{because}"),
+            CorrectionChange::Returned => "in the loop again".to_owned(),
+            CorrectionChange::Learned => format!("goes by what it learned of {}", self.axis.unwrap_or_default()),
+            CorrectionChange::Given => format!("goes by the given model of {} again", self.axis.unwrap_or_default()),
         }
     }
 }

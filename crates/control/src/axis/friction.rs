@@ -119,7 +119,7 @@ impl FrictionLaw {
         }
         let free: [f64; L] = from_fn(|i| speeds[i] + steps[i] * (left_nm[i] - presliding_nm[i]));
         let directions = free.map(|rad_s| f64::copysign(1.0, rad_s));
-        let levels_nm = Self::levels_nm(laws, &free, &directions);
+        let levels_nm = Self::levels_nm(laws, &speeds, &directions);
         let levels_nm: [f64; L] = from_fn(|i| levels_nm[i].max(laws[i].least_nm));
         let after: [f64; L] = from_fn(|i| {
             let to_go = (1.0 - presliding_nm[i] * directions[i] / levels_nm[i]).max(0.0);

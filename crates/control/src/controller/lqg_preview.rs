@@ -53,7 +53,7 @@ mod validity;
 mod regulated_axis;
 
 use super::feedforward::preview;
-use super::{Command, Controller, Evidence, Measured, Schedule};
+use super::{Command, Controller, FaultEvidence, Measured, Schedule};
 use crate::axis::knowledge::AxisKnowledge;
 use crate::vector::{norm, scale, sub};
 use crate::window::Window;
@@ -224,7 +224,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
                 *open_mm = axis.open_off_mm(at_mm);
             }
             let by_noise_mm2 = self.axes.iter().map(AxisLqg::by_noise_mm2).sum();
-            let shown = Shown { missed_mm, open_mm, by_noise_mm2, position_mm, path_mm };
+            let shown = Shown { missed_mm, open_mm, by_noise_mm2, path_mm };
             let followed = norm(sub(window.offset_mm, self.asked_mm)) <= FOLLOWED_MM;
             validity.take_in_step(OneStep::sum(self.axes.iter().map(AxisLqg::step)), window.feed_period_s);
             validity.take_in(&shown, followed, window.feed_period_s);
@@ -239,7 +239,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         self.missed_mm()
     }
 
-    fn doubt(&self) -> Option<Evidence> {
+    fn doubt(&self) -> Option<FaultEvidence> {
         self.validity.as_ref().and_then(Validity::doubt)
     }
 
@@ -258,8 +258,7 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
         let here_mm = window.now().position_mm;
         let (mut offset_mm, lag_s) = ([0.0; N], self.lag_s);
-        let (taken_up, trusted) =
-            self.validity.as_ref().map_or((1.0, Trusted::FULLY), |validity| (validity.taken_up(), validity.trusted()));
+        let trusted = self.validity.as_ref().map_or(Trusted::FULLY, Validity::trusted);
         self.look_ahead(window);
         let open = self.feasibility.open();
         for (i, (axis, offset_mm)) in self.axes.iter_mut().zip(&mut offset_mm).enumerate() {
@@ -269,6 +268,6 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             *offset_mm = axis.offset_mm(of_axis(here_mm), trusted, open, at_mm);
         }
         self.asked_mm = offset_mm;
-        Command::straight(1.0, scale(taken_up, offset_mm))
+        Command::straight(1.0, offset_mm)
     }
 }

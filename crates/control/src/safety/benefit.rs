@@ -19,7 +19,7 @@
 //! good, and negative where more would have been better.
 
 use crate::contour_error::{ContourError, locate};
-use crate::controller::Evidence;
+use crate::controller::FaultEvidence;
 use crate::vector::{add_scaled, dot, norm, scale, sub};
 use crate::window::Window;
 
@@ -78,7 +78,7 @@ impl<const N: usize> Benefit<N> {
         tool_mm: [f64; N],
         contour: &ContourError<N>,
         moved_mm: Option<[f64; N]>,
-    ) -> Option<Evidence> {
+    ) -> Option<FaultEvidence> {
         let g_mm = moved_mm.unwrap_or_else(|| self.guessed_mm(window, contour));
         let open_mm = sub(tool_mm, g_mm);
         let reach = contour.index.saturating_neg();
@@ -100,9 +100,9 @@ impl<const N: usize> Benefit<N> {
         let allowed_mm2 = least_mm2 + times * self.open_square_mm2;
         let (error_mm, peak_mm) = (norm(vector_mm), MIN_PEAK_MM + CERTAIN_PEAK * self.open_peak_mm);
         if self.square_mm2 > allowed_mm2 {
-            Some(Evidence { found_mm: libm::sqrt(self.square_mm2), limit_mm: libm::sqrt(allowed_mm2) })
+            Some(FaultEvidence { found_mm: libm::sqrt(self.square_mm2), limit_mm: libm::sqrt(allowed_mm2) })
         } else if moved_mm.is_some() && error_mm > peak_mm {
-            Some(Evidence { found_mm: error_mm, limit_mm: peak_mm })
+            Some(FaultEvidence { found_mm: error_mm, limit_mm: peak_mm })
         } else {
             None
         }

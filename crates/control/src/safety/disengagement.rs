@@ -9,7 +9,7 @@
 //! harm, for `GOOD_S` in a row. The first wait after a fault is `FIRST_WAIT_S`; each further one of the same making takes
 //! twice as long, and a correction that has held for `FORGIVEN_S` begins anew.
 
-use crate::controller::Evidence;
+use crate::controller::FaultEvidence;
 
 /// Predictions that hold for so long in a row are good, s.
 const GOOD_S: f64 = 0.1;
@@ -61,7 +61,7 @@ pub struct Fade {
     /// Why.
     pub cause: Cause,
     /// What that rests on; none where nothing was compared.
-    pub evidence: Option<Evidence>,
+    pub evidence: Option<FaultEvidence>,
     /// Decisions made before it.
     pub decision: u64,
 }
@@ -101,7 +101,7 @@ impl Engagement {
     /// `over` whether its offset has come to rest.
     pub(super) fn go_on(
         &mut self,
-        bad: Option<(Cause, Option<Evidence>)>,
+        bad: Option<(Cause, Option<FaultEvidence>)>,
         good: bool,
         over: bool,
         period_s: f64,
@@ -122,7 +122,7 @@ impl Engagement {
         self.state
     }
 
-    fn leave(&mut self, cause: Cause, evidence: Option<Evidence>) {
+    fn leave(&mut self, cause: Cause, evidence: Option<FaultEvidence>) {
         // A lost position is not the controller's fault.
         if self.fade.is_some() && cause != Cause::LostFeedback {
             self.wait_s = (2.0 * self.wait_s).min(LONGEST_WAIT_S);

@@ -28,12 +28,14 @@
 //! Free runs decide which of the two laws is followed. Both begin where their filters are, and miss what is measured by m:
 //!
 //! ```text
-//! l <- l + ln (<m^2> + e^2) / (<m_learned^2> + e^2)        over 10 ms each; e^2 = (0.1 um)^2 + 16 variances of the measurement
+//! l <- l + ln (<m^2> + e^2) / (<m_learned^2> + e^2)        over a free run
+//! e^2 = (0.1 um)^2 + 16 variances of the measurement + the mean square that loads nobody foresees make of a free run
 //! ```
 //!
 //! The learned law is followed from l = 6.9 on, and no more below 0: of nominal laws that are right, one in a thousand is taken for wrong
-//! (Wald). l counts up to 13.8 (Page), so that a change is noticed. A learned law that is certainly worse is begun anew. A nominal law that
-//! misses no more than its encoder explains stays as it is to the bit.
+//! (Wald). A run counts once, however long: what it misses at its end stems from its beginning. It is looked at every 4 ms, since where
+//! the learned law is beyond doubt by it alone waiting costs. l counts up to 13.8 (Page), so that a change is noticed. A learned law that is certainly worse is begun anew. A nominal law that
+//! misses no more than noise explains stays as it is to the bit.
 //!
 //! What was tried: innovations in place of free runs took laws for wrong that were right, since steps of an encoder are not white noise. One
 //! filter with the nominal law whose innovations would have been is no judge: its own first order says that they are large. Least squares on
@@ -49,7 +51,7 @@ use crate::vector::bounded;
 
 use super::estimate::{AxisModel, Estimate, Innovation, KEPT_PERIODS, Sent};
 use super::linear::{LinearAxis, PeriodInputs, STATES, measured_rad2};
-use super::one_step::LEAST_MM2;
+use super::one_step::{LEAST_MM2, run_periods};
 use super::riccati::{StateMatrix, applied as carried};
 
 /// How many differences there are.
@@ -76,11 +78,11 @@ const SLOWEST_MM_S: f64 = 1.0;
 const CERTAIN: f64 = 6.9;
 /// Most that l counts, and most that it changes by at once.
 const MOST_CERTAIN: f64 = 2.0 * CERTAIN;
-const MOST_OF_RUN: f64 = 5.0;
+const MOST_OF_RUN: f64 = 7.0;
 /// Standard deviations of the measurement that the encoder explains.
 const DEVIATIONS: f64 = 4.0;
-/// Time over which what free runs miss is compared, s.
-const COMPARED_S: f64 = 0.01;
+/// What free runs miss is compared every so often, servo periods of them: time, s.
+const COMPARED_S: f64 = 0.004;
 
 /// Differences between a machine and its model.
 pub(super) type Differences = [f64; DIFFERENCES];
@@ -116,30 +118,38 @@ pub(super) struct Learner {
     inputs: PeriodInputs,
     priors: Differences,
     bounds: [[f64; 2]; DIFFERENCES],
-    /// What the encoder explains of the squares of a time, rad^2.
+    /// What the encoder and loads that nobody foresees explain of the square of a servo period, rad^2.
     noise_rad2: f64,
+    compared_periods: u32,
 }
 
 /// What free runs by the two laws have missed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Runs {
-    /// Squares by the law that is followed, and by the other, rad^2, and over which time, s.
+    /// Squares by the law that is followed, and by the other, rad^2, and for how long these runs go, servo periods.
     missed_rad2: [f64; 2],
-    for_s: f64,
-    /// l.
+    periods: u32,
+    /// l before these runs, and with what they have shown.
+    before: f64,
     learned: f64,
 }
 
 impl Runs {
-    const NONE: Self = Self { missed_rad2: [0.0; 2], for_s: 0.0, learned: 0.0 };
+    const NONE: Self = Self { missed_rad2: [0.0; 2], periods: 0, before: 0.0, learned: 0.0 };
 
-    /// A time has ended, in which the learned law was followed or not; what the encoder explains is `noise_rad2`.
-    fn end(&mut self, is_followed: bool, noise_rad2: f64) {
-        self.for_s = 0.0;
-        let [followed, other] = core::mem::replace(&mut self.missed_rad2, [0.0; 2]).map(|rad2| rad2 + noise_rad2);
+    /// Looks at what the runs have missed, in which the learned law was followed or not; what noise explains of a servo period is
+    /// `noise_rad2`. As long as they go on they count only where they alone are beyond doubt.
+    fn look(&mut self, is_followed: bool, noise_rad2: f64, is_over: bool) {
+        let explained_rad2 = f64::from(self.periods) * noise_rad2;
+        let [followed, other] = self.missed_rad2.map(|rad2| rad2 + explained_rad2);
         let likelier = libm::log(if is_followed { other / followed } else { followed / other });
         let likelier = if likelier.is_nan() { -MOST_OF_RUN } else { bounded(likelier, -MOST_OF_RUN, MOST_OF_RUN) };
-        self.learned = bounded(self.learned + likelier, -CERTAIN, MOST_CERTAIN);
+        if is_over || likelier >= CERTAIN {
+            self.learned = bounded(self.before + likelier, -CERTAIN, MOST_CERTAIN);
+        }
+        if is_over {
+            (self.missed_rad2, self.periods, self.before) = ([0.0; 2], 0, self.learned);
+        }
     }
 }
 
@@ -185,11 +195,13 @@ impl Learner {
         velocity[0] = -nominal.drive.velocity_feedforward;
         delay[0] = -nominal.delays.drive_s / nominal.periods.servo_s;
         acceleration[0] = -nominal.drive.acceleration_feedforward;
-        let periods = COMPARED_S / nominal.periods.servo_s;
         let rad_per_mm = nominal.parameters.rad_per_mm;
         let least_rad2 = LEAST_MM2 * rad_per_mm * rad_per_mm;
-        let noise_rad2 = periods * (least_rad2 + DEVIATIONS * DEVIATIONS * measured_rad2(&nominal.statistics));
-        Self { nominal, states, inputs: linear.inputs(), priors, bounds, noise_rad2 }
+        let loads_rad2 = linear.spread_rad2(&nominal.statistics, run_periods(nominal.periods.servo_s));
+        let noise_rad2 = least_rad2 + loads_rad2 + DEVIATIONS * DEVIATIONS * measured_rad2(&nominal.statistics);
+        // A float that is too large, or not a number, saturates here.
+        let compared_periods = (libm::round(COMPARED_S / nominal.periods.servo_s) as u32).max(1);
+        Self { nominal, states, inputs: linear.inputs(), priors, bounds, noise_rad2, compared_periods }
     }
 
     /// Before anything was measured.
@@ -359,9 +371,10 @@ impl Learner {
             runs.learned = -CERTAIN;
         } else if learning.moves {
             runs.missed_rad2.iter_mut().zip(missed_rad).for_each(|(sum, rad)| *sum += rad * rad);
-            runs.for_s += self.nominal.periods.servo_s;
-            if runs.for_s >= COMPARED_S {
-                runs.end(was_followed, self.noise_rad2);
+            runs.periods += 1;
+            let is_over = runs.periods >= run_periods(self.nominal.periods.servo_s);
+            if is_over || runs.periods.is_multiple_of(self.compared_periods) {
+                runs.look(was_followed, self.noise_rad2, is_over);
             }
         }
         learning.is_followed = runs.learned > if was_followed { 0.0 } else { CERTAIN };
@@ -413,8 +426,8 @@ mod tests {
     fn after(times: u32, [nominal_rad, learned_rad]: [f64; 2]) -> f64 {
         let mut runs = Runs::NONE;
         for _ in 0..times {
-            runs.missed_rad2 = [nominal_rad * nominal_rad, learned_rad * learned_rad];
-            runs.end(false, 1.0);
+            (runs.missed_rad2, runs.periods) = ([nominal_rad * nominal_rad, learned_rad * learned_rad], 1);
+            runs.look(false, 1.0, true);
         }
         runs.learned
     }
@@ -423,8 +436,8 @@ mod tests {
     fn two_laws_that_differ_by_what_noise_explains_are_not_told_apart_soon() {
         assert!(after(10, [0.5, 0.1]) < CERTAIN);
         assert_eq!(after(100, [1.0, 1.0]), 0.0);
-        assert!(after(2, [100.0, 1.0]) > CERTAIN, "two runs are enough where it is beyond doubt");
-        assert_eq!(after(1, [100.0, 0.0]), MOST_OF_RUN, "and one is not");
+        assert!(after(1, [100.0, 0.0]) > CERTAIN, "one run is enough where it is beyond doubt");
+        assert!(after(1, [20.0, 0.0]) < CERTAIN && after(2, [20.0, 0.0]) > CERTAIN, "and two are soon");
         assert_eq!(after(100, [1.0, 100.0]), -CERTAIN);
         assert_eq!(after(2, [1.0, f64::NAN]), -CERTAIN);
         assert_eq!(after(100, [100.0, 1.0]), MOST_CERTAIN);
@@ -432,9 +445,9 @@ mod tests {
 
     #[test]
     fn a_learned_law_that_is_followed_is_judged_the_other_way_round() {
-        let mut runs = Runs { missed_rad2: [1e4, 0.0], ..Runs::NONE };
-        runs.end(true, 1.0);
-        assert_eq!((runs.learned, runs.missed_rad2), (-MOST_OF_RUN, [0.0; 2]));
+        let mut runs = Runs { missed_rad2: [1e4, 0.0], periods: 1, ..Runs::NONE };
+        runs.look(true, 1.0, true);
+        assert_eq!(runs.learned, -CERTAIN);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use crate::correct::CorrectOutcome;
 use crate::correct::exported::ExportedFigures;
 use crate::fastest::FastestPlan;
 use crate::job::{Job, JobOutcome, MEASURED};
-use crate::report::{AS_EXPORTED, Assumptions, Change, Outcome as Ending, ReportedRun, RunSummary};
+use crate::report::{AS_EXPORTED, Assumptions, CorrectionChange, Outcome as Ending, ReportedRun, RunSummary};
 
 use super::files::Outputs;
 use crate::command::controls::print_correction;
@@ -107,7 +107,7 @@ fn table(runs: &[ReportedRun]) -> ConsoleTable {
         if let Ending::Diverged { at_s } = now.outcome {
             table.remark(format!("diverged at {at_s:.3} s: the servo loop of this machine is unstable"));
         }
-        let left = now.transitions.iter().filter(|transition| transition.change == Change::Left);
+        let left = now.transitions.iter().filter(|transition| transition.change == CorrectionChange::Left);
         if let Some(last) = left.clone().next_back() {
             let (share, times) = (100.0 * now.engaged_share, left.count());
             let times = if times == 1 { "once".to_owned() } else { format!("{times} times") };
