@@ -196,6 +196,25 @@ mod tests {
     use super::*;
 
     #[test]
+    fn several_masses_at_once_are_each_as_it_is_alone() {
+        let stribeck = FrictionParameters { stribeck_nm: 0.1, stribeck_rad_s: 1.0, ..DAHL };
+        let sliding = FrictionParameters { presliding_rad: 0.0, ..stribeck };
+        for parameters in [[DAHL, stribeck], [sliding, FrictionParameters::default()], [stribeck, sliding]] {
+            let laws = parameters.map(|parameters| friction(0.2, 1e-4, parameters));
+            let (mut speeds, mut presliding) = ([0.0, 3.0], [0.0, 0.1]);
+            for step in 0..5000_u32 {
+                let forces = [0.5, 0.3].map(|nm| nm * libm::sin(0.003 * f64::from(step)));
+                let mut alone = presliding;
+                let each: [f64; 2] =
+                    from_fn(|i| laws[i].speed_after_rad_s(forces[i], 1.0 / J, speeds[i], &mut alone[i]));
+                let laws = laws.each_ref();
+                speeds = FrictionLaw::speeds_after_rad_s(&laws, forces, [1.0 / J; 2], speeds, &mut presliding);
+                assert_eq!((speeds, presliding), (each, alone), "{step}");
+            }
+        }
+    }
+
+    #[test]
     fn what_is_not_computed_is_what_would_be_computed() {
         assert_eq!(LEAST_DECAY.to_bits(), exp(-FORGOTTEN).to_bits());
         for x in [SATURATED, 21.7, 1e3, f64::INFINITY] {

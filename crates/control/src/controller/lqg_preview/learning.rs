@@ -34,8 +34,8 @@
 //!
 //! The learned law is followed from l = 6.9 on, and no more below 0: of nominal laws that are right, one in a thousand is taken for wrong
 //! (Wald). A run counts once, however long: what it misses at its end stems from its beginning. It is looked at every 4 ms, since where
-//! the learned law is beyond doubt by it alone waiting costs. l counts up to 13.8 (Page), so that a change is noticed. A learned law that is certainly worse is begun anew. A nominal law that
-//! misses no more than noise explains stays as it is to the bit.
+//! the learned law is beyond doubt by it alone waiting costs. l counts up to 13.8 (Page), so that a change is noticed. A learned law that is
+//! certainly worse is begun anew. A nominal law that misses no more than noise explains stays as it is to the bit.
 //!
 //! What was tried: innovations in place of free runs took laws for wrong that were right, since steps of an encoder are not white noise. One
 //! filter with the nominal law whose innovations would have been is no judge: its own first order says that they are large. Least squares on
@@ -81,7 +81,7 @@ const MOST_CERTAIN: f64 = 2.0 * CERTAIN;
 const MOST_OF_RUN: f64 = 7.0;
 /// Standard deviations of the measurement that the encoder explains.
 const DEVIATIONS: f64 = 4.0;
-/// What free runs miss is compared every so often, servo periods of them: time, s.
+/// Time between two looks at what free runs miss, s.
 const COMPARED_S: f64 = 0.004;
 
 /// Differences between a machine and its model.

@@ -15,8 +15,8 @@
 //!
 //! A law that misses more than it is to correct leaves more than no correction would; one that misses less leaves less. The first motion
 //! is corrected in full: a correction that came in over the first 50 um left 13.8 um of the figure of eight on workshop in place of 0.4, and
-//! took 21 N m in place of 10.5. A wrong inertia shows where the speed changes, and not on the straight line behind: a law that was wrong is wrong until it has held while the commanded
-//! speed changed as much as then (`proof.rs`). A law that was learned (`learning.rs`) takes the place of the nominal one without the record
+//! took 21 N m in place of 10.5. A wrong inertia shows where the speed changes, and not on the straight line behind: a law that was wrong is
+//! wrong until it has held while the commanded speed changed as much as then (`proof.rs`). A law that was learned (`learning.rs`) takes the place of the nominal one without the record
 //! of that.
 //!
 //! A law that has begun just now, that is not followed, that is wrong, or by which servo periods do not go (`one_step.rs`) is
