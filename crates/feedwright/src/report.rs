@@ -36,7 +36,7 @@ pub use statistics::Statistics;
 pub use summary::{RunFacts, RunSummary};
 pub use worst::WorstPlace;
 
-pub(crate) use feedwright_sim::{CorrectionChange, FadedOut, Outcome};
+pub(crate) use feedwright_sim::{CorrectionChange, FadedOut, Outcome, Transition};
 
 /// In place of a controller: the run of a corrected program, cut without feedback by another control.
 pub(crate) const AS_EXPORTED: &str = "as exported";

@@ -33,8 +33,8 @@
 //! ```
 //!
 //! The learned law is followed from l = 6.9 on, and no more below 0: of nominal laws that are right, one in a thousand is taken for wrong
-//! (Wald). A run counts once, however long: what it misses at its end stems from its beginning. It is looked at every 4 ms, since where
-//! the learned law is beyond doubt by it alone waiting costs. l counts up to 13.8 (Page), so that a change is noticed. A learned law that is
+//! (Wald). A run counts once, however long: what it misses at its end stems from its beginning. Every 4 ms it is
+//! looked at: a run that proves the learned law by itself is not waited for. l counts up to 13.8 (Page), so that a change is noticed. A learned law that is
 //! certainly worse is begun anew. A nominal law that misses no more than noise explains stays as it is to the bit.
 //!
 //! What was tried: innovations in place of free runs took laws for wrong that were right, since steps of an encoder are not white noise. One
@@ -138,7 +138,7 @@ impl Runs {
     const NONE: Self = Self { missed_rad2: [0.0; 2], periods: 0, before: 0.0, learned: 0.0 };
 
     /// Looks at what the runs have missed, in which the learned law was followed or not; what noise explains of a servo period is
-    /// `noise_rad2`. As long as they go on they count only where they alone are beyond doubt.
+    /// `noise_rad2`. Runs that go on count only where they prove the learned law by themselves.
     fn look(&mut self, is_followed: bool, noise_rad2: f64, is_over: bool) {
         let explained_rad2 = f64::from(self.periods) * noise_rad2;
         let [followed, other] = self.missed_rad2.map(|rad2| rad2 + explained_rad2);

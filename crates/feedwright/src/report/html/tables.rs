@@ -3,7 +3,7 @@
 use std::io::{self, Write};
 
 use crate::report::text::{change, duration, escaped, fixed, number, signed};
-use crate::report::{FadedOut, Outcome, Report, ReportedRun, RunSummary, TimelineEvent, WorstPlace};
+use crate::report::{FadedOut, Outcome, Report, ReportedRun, RunSummary, TimelineEvent, Transition, WorstPlace};
 
 const AXES: [&str; 3] = ["X", "Y", "Z"];
 
@@ -110,12 +110,18 @@ fn write_transitions(out: &mut impl Write, index: usize, run: &RunSummary) -> io
         "<details class=\"events\"><summary>{}<span>{count} {changes} of the correction, {name}</span>",
         swatch(index)
     )?;
+    let text = |t: &Transition| format!("{}, line {}: {}", duration(t.at_s), t.line, t.words());
+    write_moments(out, transitions.iter().map(|transition| (transition.at_s, text(transition))))
+}
+
+/// Ends the heading of a list of moments, and writes the first of them.
+fn write_moments(out: &mut impl Write, moments: impl ExactSizeIterator<Item = (f64, String)>) -> io::Result<()> {
+    let more = moments.len().saturating_sub(SHOWN_EVENTS);
     out.write_all(b"</summary><ol>")?;
-    for transition in transitions.iter().take(SHOWN_EVENTS) {
-        let (at_s, line, words) = (transition.at_s, transition.line, escaped(&transition.words()));
-        write!(out, "<li data-t=\"{at_s:.5}\">{}, line {line}: {words}</li>", duration(at_s))?;
+    for (at_s, text) in moments.take(SHOWN_EVENTS) {
+        write!(out, "<li data-t=\"{at_s:.5}\">{}</li>", escaped(&text))?;
     }
-    if let Some(more) = count.checked_sub(SHOWN_EVENTS).filter(|&n| n > 0) {
+    if more > 0 {
         write!(out, "<li>and {more} more</li>")?;
     }
     out.write_all(b"</ol></details>\n")
@@ -137,15 +143,7 @@ fn write_events(out: &mut impl Write, index: usize, run: &ReportedRun) -> io::Re
         escaped(&run.summary.controller)
     )?;
     write_rows(out, run, percent)?;
-    out.write_all(b"</summary>")?;
-    out.write_all(b"<ol>")?;
-    for event in run.events.iter().take(SHOWN_EVENTS) {
-        write!(out, "<li data-t=\"{:.5}\">{}</li>", event.t_s, escaped(&event_text(event)))?;
-    }
-    if let Some(more) = run.events.len().checked_sub(SHOWN_EVENTS).filter(|&n| n > 0) {
-        write!(out, "<li>and {more} more</li>")?;
-    }
-    out.write_all(b"</ol></details>\n")
+    write_moments(out, run.events.iter().map(|event| (event.t_s, event_text(event))))
 }
 
 /// A strip for each unit of the machine that has events, in the order in which they first come.
