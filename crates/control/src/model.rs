@@ -35,7 +35,7 @@ use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
 /// What a block begins with.
 pub(crate) const MAGIC: [u8; 8] = *b"FWMODEL\0";
 /// The format that is read and written. It is raised whenever the layout or the meaning of a number changes.
-pub const BLOCK_FORMAT: u32 = 1;
+pub const BLOCK_FORMAT: u32 = 2;
 /// Servo periods that a machine can have, s: as a machine file bounds them.
 pub const SERVO_PERIODS_S: [f64; 2] = [1e-5, 0.1];
 /// Periods of the speed loop that it can have, s.

@@ -16,7 +16,7 @@ use std::fmt::Write as _;
 use std::ops::Range;
 
 use feedwright_ident::{
-    AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, LawVerdict, Log, NotFound, NumberSource,
+    AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, LawTerm, LawVerdict, Log, NotFound, NumberSource,
     identify_machine,
 };
 use feedwright_sim::{Cancelled, Machine, StageSteps, Watch};
@@ -108,9 +108,10 @@ impl LogJob {
         let places = places(&names);
         let of_axis = |i: usize| {
             let place = places.iter().position(|place| *place == Some(i))?;
-            self.before.as_ref()?.axes.get(place)
+            let before = self.before.as_ref()?;
+            Some(self.facts.or_of(before.axes.get(place)?, before.period.servo_s))
         };
-        (0..names.len()).map(|i| of_axis(i).map_or(self.facts, |axis| self.facts.or_of(axis))).collect()
+        (0..names.len()).map(|i| of_axis(i).unwrap_or(self.facts)).collect()
     }
 }
 
@@ -189,7 +190,7 @@ impl LogIdentified {
             if axis.gains_source() == NumberSource::Assumed {
                 advice.push(format!("axis {name}: positions do not tell Kp, Kv and B apart; B is taken as zero. Give --inertia and --viscous, or record the torque"));
             }
-            if axis.resolved.is_none() {
+            if axis.law().get(LawTerm::SpeedWindow) == 0.0 {
                 advice.push(format!("axis {name}: the drive is taken to know the speed exactly. One that takes it from positions over some samples looks like a smaller inertia: the products may be too large by 10 % and more. --speed-window says it, a torque column tells"));
             }
             if axis.scores.beyond.is_some() {

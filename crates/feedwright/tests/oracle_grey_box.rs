@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::identification_log::{commands_mm, log_of, logged};
-use feedwright::{LogIdentified, LogJob, machine_text};
+use feedwright::{LogIdentified, LogJob, machine_text, updated_text};
 use feedwright_ident::{AxisFacts, Columns, FoundAxis, LawTerm, LawVerdict, Log, NumberSource};
 use feedwright_sim::{Machine, Plant};
 
@@ -114,6 +114,99 @@ fn what_is_known_stands_where_a_log_does_not_tell_it() {
     assert_eq!(found.machine.axes[0].values.get(LawTerm::VelocityFeedforward), 0.0);
 }
 
+/// The machine of the file that is written, without noise.
+fn as_written(found: &LogIdentified) -> Machine {
+    let mut machine = Machine::parse("mine.toml", &machine_text(found, "mine")).unwrap();
+    for axis in &mut machine.axes {
+        (axis.torque_noise_nm, axis.encoder_noise_um, axis.encoder_step_um) = (0.0, 0.0, 0.0);
+    }
+    machine
+}
+
+/// RMS by which that machine misses the samples of an axis that were scored, um, and that by which the free run does. What comes in the
+/// first half second of a stretch does not count: the machine starts at rest.
+fn missed_um(found: &LogIdentified, i: usize) -> [f64; 2] {
+    let (machine, axis, log) = (as_written(found), &found.machine.axes[i], &found.log.axes[i]);
+    let late = axis.law().get(LawTerm::RecordDelay) / found.log.sample_time_s;
+    let (mut squares, mut samples) = ([0.0; 2], 0.0);
+    for stretch in &found.log.stretches {
+        let (first, last) = (stretch.start as f64, (stretch.end - 1) as f64);
+        let mut plant = Plant::<2>::new(&machine, [log.actual_mm[stretch.start]; 2]);
+        let mut now_mm = log.actual_mm[stretch.start];
+        for k in stretch.clone() {
+            let at = (k as f64 - late).clamp(first, last);
+            let (before, part) = (at as usize, at.fract());
+            let after = (before + 1).min(stretch.end - 1);
+            let is_settled = k >= stretch.start + (0.5 / found.log.sample_time_s) as usize;
+            if let Some(Some(free_mm)) = axis.scores.simulated_mm.get(k).filter(|_| is_settled) {
+                squares[0] += (log.actual_mm[k] - now_mm).powi(2);
+                squares[1] += (log.actual_mm[k] - free_mm).powi(2);
+                samples += 1.0;
+            }
+            let command_mm = log.command_mm[before] + part * (log.command_mm[after] - log.command_mm[before]);
+            now_mm = plant.step([command_mm; 2]).measured_mm[i];
+        }
+    }
+    squares.map(|square: f64| 1e3 * (square / samples).sqrt())
+}
+
+/// Strokes of 0.1 mm there and back, in 20 ms to 0.2 s each, and rests between them, mm.
+fn pulses_mm(servo_s: f64) -> Vec<f64> {
+    let mut way_mm = vec![];
+    for reached_s in [0.01, 0.015, 0.02, 0.03, 0.05, 0.1] {
+        let steps = (reached_s / servo_s) as usize;
+        let up = (0..=2 * steps).map(|k| {
+            let part = k as f64 / (2.0 * steps as f64);
+            if part < 0.5 { 2.0 * part * part } else { 1.0 - 2.0 * (1.0 - part) * (1.0 - part) }
+        });
+        let up: Vec<f64> = up.collect();
+        let down: Vec<f64> = up.iter().rev().copied().collect();
+        for sign in [1.0, -1.0] {
+            way_mm.extend(up.iter().chain(&down).map(|part| sign * 0.1 * part));
+            way_mm.extend(std::iter::repeat_n(0.0, (0.1 / servo_s) as usize));
+        }
+    }
+    way_mm
+}
+
+/// RMS by which the first axes of two machines differ under pulses, um.
+fn differ_um(machines: [&Machine; 2]) -> f64 {
+    let pulses = pulses_mm(machines[0].period.servo_s);
+    let mut plants = machines.map(|machine| Plant::<2>::new(machine, [0.0; 2]));
+    let square = |mm: &f64| {
+        let [a, b] = plants.each_mut().map(|plant| plant.step([*mm; 2]).position_mm[0]);
+        (a - b).powi(2)
+    };
+    1e3 * (pulses.iter().map(square).sum::<f64>() / pulses.len() as f64).sqrt()
+}
+
+#[test]
+fn a_window_of_the_speed_goes_into_the_machine_file_and_holds_on_pulses() {
+    let mut machine = Machine::load("tnv40".as_ref()).unwrap();
+    for axis in &mut machine.axes {
+        (axis.speed_window_s, axis.speed_held, axis.disturbance_nm) = (0.002, true, 0.0);
+    }
+    let commands = [41, 42].map(|seed| commands_mm(0.001, 8.0, seed));
+    let mut log = logged(&machine, commands, 0.2, 4);
+    log.axes.truncate(1);
+    let given = AxisFacts { speed_window_s: Some(0.002), record_delay_s: Some(0.0), ..AxisFacts::default() };
+    let of = |facts, before| identified(log.clone(), LogJob { facts, before, ..LogJob::default() });
+    let found = of(given, None);
+    let mine = as_written(&found);
+    assert_eq!((mine.axes[0].speed_window_s, mine.axes[0].speed_held), (0.002, true));
+    let facts = AxisFacts { speed_window_s: None, ..given };
+    let [with, without] = [mine, as_written(&of(facts, None))].map(|mine| differ_um([&machine, &mine]));
+    assert!(with < 0.2 * without, "{with} um, and {without} um without the window");
+    // What the log does not tell stays, and the fit goes by it.
+    let text = machine_text(&found, "mine");
+    let kept = of(facts, Some(Machine::parse("mine.toml", &text).unwrap()));
+    assert_eq!(kept.machine.axes[0].law().get(LawTerm::SpeedWindow), 0.002);
+    let updated = Machine::parse("mine.toml", &updated_text(&kept, &text).unwrap()).unwrap();
+    assert_eq!((updated.axes[0].speed_window_s, updated.axes[0].speed_held), (0.002, true));
+    let still = differ_um([&machine, &updated]);
+    assert!(still < 0.5 * without, "{still} um by a file that was updated, and {without} um without the window");
+}
+
 #[test]
 fn the_public_bench_is_what_was_published_of_it() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/corpus/logs/emps.mat");
@@ -139,5 +232,7 @@ fn the_public_bench_is_what_was_published_of_it() {
     let m_per_rad = 0.01 / std::f64::consts::TAU;
     assert_near(inertia / (m_per_rad * m_per_rad), 95.11, 0.01, "M");
     assert_eq!(source, NumberSource::TorqueColumn);
+    let [written_um, free_um] = missed_um(&found, 0);
+    assert!((written_um / free_um - 1.0).abs() < 0.1, "{written_um} um by the machine file, {free_um} um by the fit");
     assert!(axis.values.get(LawTerm::LoopGain) > 15_000.0, "without the torque the drive seems to know the speed");
 }

@@ -25,6 +25,8 @@ const ALL: &[(&str, f64)] = &[
     ("torque_filter_hz", 400.0),
     ("speed_limit_mm_s", 40.0),
     ("speed_from_encoder", 1.0),
+    ("speed_window_s", 0.00073),
+    ("speed_held", 1.0),
     ("encoder_step_um", 0.02),
     ("encoder_noise_um", 0.05),
     ("interpolation_error_um", 0.2),
@@ -111,7 +113,8 @@ fn the_script_gets_the_same_tool_with_everything_that_there_is() {
     agrees(python, &part("star"), &whole, entry(BASELINE));
     // The same with a scale on the table; and with none of what takes the place of something else.
     agrees(python, &part("circle"), &table, entry(BASELINE));
-    let plain = without(&["presliding_um", "speed_from_encoder", "measurement_delay_s", "jitter_s", "torque_noise_s"]);
+    let instead = ["presliding_um", "speed_from_encoder", "speed_held", "measurement_delay_s", "jitter_s"];
+    let plain = without(&[&instead[..], &["torque_noise_s"]].concat());
     agrees(python, &part("square"), &text(&plain, "[noise]\nseed = 1\n"), entry(BASELINE));
 }
 
@@ -154,7 +157,8 @@ fn a_machine_that_is_another_in_one_value_is_found_out() {
             values[i].1 = value;
             text(&values, GEOMETRY)
         };
-        is_found(&with(if *key == "speed_from_encoder" { 0.0 } else { 1.5 * value }), key);
+        let is_flag = ["speed_from_encoder", "speed_held"].contains(key);
+        is_found(&with(if is_flag { 0.0 } else { 1.5 * value }), key);
     }
     is_found(&text(&values, &GEOMETRY.replace("xy_urad = 20", "xy_urad = 21")), "squareness");
     is_found(&text(&values, &format!("{GEOMETRY}[noise]\nseed = 1\n")), "seed");

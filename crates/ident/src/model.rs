@@ -92,7 +92,7 @@ pub(crate) struct Weights {
     pub(crate) output: Vec<f64>,
     pub(crate) spread: Vec<f64>,
     pub(crate) mechanics_s: f64,
-    /// Each of [`AxisKnowledge::NUMBERS`], axis by axis.
+    /// Each of [`AxisKnowledge::NUMBERS`], axis by axis; one that is optional and zero on all axes is empty.
     pub(crate) axes: Vec<Vec<f64>>,
 }
 
@@ -113,7 +113,11 @@ impl Weights {
     }
 
     fn of_axes<const N: usize>(mut identified: IdentifiedAxes<N>) -> Self {
-        let of = |number: &Number| identified.axes.iter_mut().map(|axis| *(number.of)(axis)).collect();
+        let of = |number: &Number| -> Vec<f64> {
+            let values: Vec<f64> = identified.axes.iter_mut().map(|axis| *(number.of)(axis)).collect();
+            let is_there = !number.optional || values.iter().any(|value| *value != 0.0);
+            if is_there { values } else { Vec::new() }
+        };
         let axes = AxisKnowledge::NUMBERS.iter().map(of).collect();
         Self { mechanics_s: identified.mechanics_s, axes, ..Self::default() }
     }
@@ -314,7 +318,7 @@ impl Model {
         let mut identified = IdentifiedAxes::<N> { mechanics_s: *mechanics_s, ..IdentifiedAxes::NULL };
         let mut fits = self.is(IdentifierKind::Axes, N) && axes.len() == AxisKnowledge::NUMBERS.len();
         for (number, values) in AxisKnowledge::NUMBERS.iter().zip(axes) {
-            fits &= values.len() == N;
+            fits &= values.len() == N || (number.optional && values.is_empty());
             identified.axes.iter_mut().zip(values).for_each(|(axis, value)| *(number.of)(axis) = *value);
         }
         identified.with_periods(self.period.servo_s).filter(|_| fits)

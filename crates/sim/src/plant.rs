@@ -31,7 +31,8 @@ use feedwright_control::{AxisLaw, AxisState, Periods, friction_signs};
 
 use crate::kinematics::{AxisErrors, GeometricErrors};
 use crate::machine::{Axis, Machine};
-use nonideal::{Moment, NonidealAxis};
+use encoder::Moment;
+use nonideal::NonidealAxis;
 
 /// What the machine did in one servo period.
 #[derive(Debug, Clone, Copy, PartialEq)]

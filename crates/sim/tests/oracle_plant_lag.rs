@@ -89,6 +89,24 @@ fn acceleration_feedforward_takes_its_part_of_what_the_inertia_costs() {
 }
 
 #[test]
+fn a_window_of_the_speed_takes_what_the_speed_is_seen_late_by_from_the_lag() {
+    // The loop sees w - L a: lag = (v + (J / Kv - L) a) / Kp, with L half of what the window is longer than a mechanics period.
+    let acceleration_mm_s2 = 30.0;
+    let lags = |window_s: f64, is_held: bool| {
+        let machine = machine(|axis| (axis.speed_window_s, axis.speed_held) = (window_s, is_held));
+        lags_um(&machine, |t_s| 0.5 * acceleration_mm_s2 * t_s * t_s)
+    };
+    let (kp_1_s, without) = (machine(|_| ()).axes[0].kp_1_s, lags(0.0, false));
+    for (window_s, is_held, late_s) in [(0.00305, false, 0.001_475), (0.002, true, 0.0014), (0.0, true, 0.000_45)] {
+        let wanted_um = 1e3 * acceleration_mm_s2 * late_s / kp_1_s;
+        for (with, without) in lags(window_s, is_held).iter().zip(&without) {
+            let taken: Vec<f64> = without.iter().zip(with).map(|(without, with)| without - with).collect();
+            near(&taken, wanted_um, 0.01 * wanted_um);
+        }
+    }
+}
+
+#[test]
 fn the_speed_limit_is_the_speed_and_the_lag_grows() {
     let limited = machine(|axis| axis.speed_limit_mm_s = 15.0);
     for lags in at_speed_um(&limited) {

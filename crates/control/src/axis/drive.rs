@@ -1,9 +1,10 @@
-//! What a servo drive has beside the P speed loop: an integral part, feedforward, a speed limit, a torque filter.
+//! What a servo drive has beside the P speed loop: an integral part, feedforward, a speed limit, a torque filter, a window of the speed.
 //!
 //! ```text
 //! w_ref = Kp e + Kd (e - e_prev) / Ts + fv v                    position loop, once a servo period Ts
 //! u_ff  = fa J (v - v_prev) / Ts,   v = (c - c_prev) / Ts       beside it, from the command's differences
-//! s     = w_ref within -W, W;   d = s - w
+//! s     = w_ref within -W, W;   d = s - w'
+//! w'   += dt / (dt + L) (w - w'),   L = (T - dt) / 2            the speed as the drive sees it
 //! I    += Kv d dt / Ti                                          once a mechanics period dt
 //! u     = Kv d + I + u_ff within -Tmax, Tmax                    PI speed loop
 //! y    += (1 - exp(-2 pi f dt)) (u - y)                         torque filter: y reaches the motor
@@ -13,7 +14,11 @@
 //! control to the drive, as velocity offset and torque offset do. What is zero is not there.
 //!
 //! Symbols: c command at the motor, rad; fv, fa parts of the nominal feedforward, 1 being all of it; W speed limit, rad/s; Ti
-//! integral time, s; f corner of the filter, Hz; the others as in [`super`].
+//! integral time, s; f corner of the filter, Hz; T window of the speed, s; the others as in [`super`].
+//!
+//! A drive that takes the speed from positions, (x(t) - x(t - T)) / T, sees its mean over the window, late by L. A lag of first order that
+//! is as late stands in for the mean, which would need as many positions as the window has mechanics periods. Both see a speed that grows
+//! evenly the same.
 //!
 //! Source: PI loop and clamping as in Åström and Hägglund (2006), Advanced PID Control, sections 3.2 and 3.5; feedforward as in
 //! Altintas (2012), Manufacturing Automation, section 5; offsets as in IEC 61800-7-201 (CiA 402), objects 60B1h and 60B2h; the
@@ -36,9 +41,16 @@ pub struct DriveParameters {
     pub torque_filter_hz: f64,
     /// Highest reference speed, rad/s.
     pub speed_limit_rad_s: f64,
+    /// Time over which the drive takes the speed from positions, s; no more than a mechanics period is the speed itself.
+    pub speed_window_s: f64,
 }
 
 impl DriveParameters {
+    /// How late the speed loop sees the speed, s.
+    pub fn speed_late_s(&self, mechanics_s: f64) -> f64 {
+        (0.5 * (self.speed_window_s - mechanics_s)).max(0.0)
+    }
+
     /// Delay that the torque filter adds to a slow change of the torque, s; 0 without a filter. It
     /// follows from y' - y = k (u - y), which gives u = y + (1/k - 1) (y' - y).
     pub fn filter_lag_s(&self, mechanics_s: f64) -> f64 {
@@ -74,11 +86,14 @@ pub struct DriveState {
     integral_nm: f64,
     /// Behind the filter, N m.
     filtered_nm: f64,
+    /// Speed as the drive sees it, rad/s, where that is late; none before it has seen one.
+    seen_rad_s: Option<f64>,
 }
 
 impl DriveState {
     /// Before the first command.
-    pub const AT_REST: Self = Self { commanded_rad: None, commanded_rad_s: 0.0, integral_nm: 0.0, filtered_nm: 0.0 };
+    pub const AT_REST: Self =
+        Self { commanded_rad: None, commanded_rad_s: 0.0, integral_nm: 0.0, filtered_nm: 0.0, seen_rad_s: None };
 
     /// Integral of the speed loop, N m.
     pub fn integral_nm(&self) -> f64 {
@@ -109,6 +124,8 @@ pub struct DriveLaw {
     integral_gain: f64,
     /// Part of the way that the filter goes in one mechanics period.
     filter: f64,
+    /// The same of the speed as the drive sees it; none where it sees the speed itself.
+    seeing: Option<f64>,
 }
 
 impl DriveLaw {
@@ -117,12 +134,14 @@ impl DriveLaw {
         let dt_s = law.periods.mechanics_s;
         let DriveParameters { speed_integral_s: time_s, torque_filter_hz, .. } = parameters;
         let gain = law.parameters.kv_nm_s_per_rad;
+        let late_s = parameters.speed_late_s(dt_s);
         Self {
             parameters,
             plain: parameters == DriveParameters::default(),
             torque_for_change: parameters.acceleration_feedforward * law.parameters.inertia_kg_m2 / law.periods.servo_s,
             integral_gain: if time_s > 0.0 { gain * dt_s / time_s } else { 0.0 },
             filter: filter_part(torque_filter_hz, dt_s),
+            seeing: (late_s > 0.0).then(|| dt_s / (dt_s + late_s)),
         }
     }
 
@@ -132,7 +151,7 @@ impl DriveLaw {
         let integral_nm = if integrates { torque_nm } else { 0.0 };
         let missing_rad_s = (torque_nm - integral_nm) / law.parameters.kv_nm_s_per_rad;
         let state =
-            DriveState { commanded_rad: None, commanded_rad_s: speed_rad_s, integral_nm, filtered_nm: torque_nm };
+            DriveState { commanded_rad_s: speed_rad_s, integral_nm, filtered_nm: torque_nm, ..DriveState::AT_REST };
         (state, DriveReference { speed_rad_s: speed_rad_s + missing_rad_s, torque_nm: 0.0 })
     }
 
@@ -160,7 +179,7 @@ impl DriveLaw {
         }
     }
 
-    /// One mechanics period of the speed loop at a measured speed: the torque that reaches the motor, N m. Not a number stays none.
+    /// One mechanics period of the speed loop at a speed of the motor: the torque that reaches the motor, N m. Not a number stays none.
     #[inline]
     pub fn torque_nm(&self, law: &AxisLaw, reference: DriveReference, speed_rad_s: f64, state: &mut DriveState) -> f64 {
         if self.plain {
@@ -175,7 +194,7 @@ impl DriveLaw {
         let most_rad_s = self.parameters.speed_limit_rad_s;
         let wanted_rad_s =
             if most_rad_s > 0.0 { within(reference.speed_rad_s, most_rad_s) } else { reference.speed_rad_s };
-        let error_rad_s = wanted_rad_s - speed_rad_s;
+        let error_rad_s = wanted_rad_s - self.seen_rad_s(speed_rad_s, state);
         let proportional_nm = law.parameters.kv_nm_s_per_rad * error_rad_s + reference.torque_nm;
         let limit_nm = law.parameters.torque_limit_nm;
         let integral_nm = state.integral_nm + self.integral_gain * error_rad_s;
@@ -186,6 +205,16 @@ impl DriveLaw {
         let limited_nm = within(proportional_nm + state.integral_nm, limit_nm);
         state.filtered_nm += self.filter * (limited_nm - state.filtered_nm);
         state.filtered_nm
+    }
+
+    /// The speed as the drive sees it.
+    #[inline]
+    fn seen_rad_s(&self, speed_rad_s: f64, state: &mut DriveState) -> f64 {
+        let Some(part) = self.seeing else { return speed_rad_s };
+        let seen_rad_s =
+            state.seen_rad_s.map_or(speed_rad_s, |seen_rad_s| seen_rad_s + part * (speed_rad_s - seen_rad_s));
+        state.seen_rad_s = Some(seen_rad_s);
+        seen_rad_s
     }
 }
 
@@ -283,6 +312,22 @@ mod tests {
                 assert!((reference.torque_nm - 0.5 * 0.01 * 40.0).abs() < 1e-9, "{n}");
             }
         }
+    }
+
+    #[test]
+    fn a_speed_that_grows_evenly_is_seen_late_by_half_the_window() {
+        let law = law();
+        let drive = DriveLaw::new(&law, DriveParameters { speed_window_s: 0.003, ..DriveParameters::default() });
+        let mut state = DriveState::default();
+        let (at_rest, dt_s) = (DriveReference::default(), law.periods.mechanics_s);
+        let mut torque_nm = 0.0;
+        for n in 0..30_000_u32 {
+            torque_nm = drive.torque_nm(&law, at_rest, -(3.0 + 100.0 * dt_s * f64::from(n)), &mut state);
+        }
+        let late_s = (3.0 + 100.0 * dt_s * 29_999.0 - 0.5 * torque_nm) / 100.0;
+        assert!((late_s - 0.5 * (0.003 - dt_s)).abs() < 1e-9, "{late_s}");
+        let (moving, _) = drive.moving(&law, 3.0, 0.0);
+        assert_eq!(drive.torque_nm(&law, at_rest, 3.0, &mut { moving }), -6.0, "it has gone at that speed for long");
     }
 
     #[test]

@@ -6,11 +6,11 @@
 //! motor that is on the reference r at both ends of that time has the mean speed
 //! w = (r(m+1) - r(m)) / Ts. Its mean acceleration a follows from the change of the central
 //! differences (r(m+1) - r(m-1)) / 2 Ts. Both are evaluated d later. At the end of each mechanics
-//! period the speed loop acts on the speed at the start of the period, so it sees w - a dt. With
-//! o = 0 the loops do not supply these parts:
+//! period the speed loop acts on the speed at the start of the period, so it sees w - a (dt + l),
+//! where l is how late the drive sees the speed. With o = 0 the loops do not supply these parts:
 //!
 //! ```text
-//! M_w = g_v (w - kp (r - y) - kd (r - y)' - fv r') - g_a a dt       reference speed
+//! M_w = g_v (w - kp (r - y) - kd (r - y)' - fv r') - g_a a (dt + l)   reference speed
 //! M_t = [ g_a (J a - B a dt - fa J r'') + g_v B w + g_f F + L ] / Kv
 //!                                                                   torque, as a reference speed
 //! ```
@@ -106,6 +106,8 @@ pub struct AxisInverse {
     friction: Option<FrictionLaw>,
     /// Delay of the torque filter, s.
     filter_lag_s: f64,
+    /// How late the drive sees the speed, s.
+    speed_late_s: f64,
     /// Friction of the presliding spring, N m.
     presliding_nm: f64,
     /// Friction that was last made up for, mm/s of reference speed.
@@ -126,6 +128,7 @@ impl AxisInverse {
             delays,
             friction: (friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, friction)),
             filter_lag_s: drive.filter_lag_s(law.periods.mechanics_s),
+            speed_late_s: drive.speed_late_s(law.periods.mechanics_s),
             presliding_nm: 0.0,
             friction_mm_s: 0.0,
             integral_mm_s: 0.0,
@@ -136,9 +139,9 @@ impl AxisInverse {
 
     /// Inverts another law from now on, with what it remembers.
     pub fn follow(&mut self, law: AxisLaw, drive: DriveParameters, friction: FrictionParameters, delays: LoopDelays) {
-        let Self { friction, filter_lag_s, .. } = Self::new(law, drive, friction, delays);
+        let Self { friction, filter_lag_s, speed_late_s, .. } = Self::new(law, drive, friction, delays);
         (self.law, self.drive, self.delays) = (law, drive, delays);
-        (self.friction, self.filter_lag_s) = (friction, filter_lag_s);
+        (self.friction, self.filter_lag_s, self.speed_late_s) = (friction, filter_lag_s, speed_late_s);
     }
 
     /// Of an axis that has nothing beside its law.
@@ -262,7 +265,8 @@ impl AxisInverse {
         let (parameters, mechanics_s) = (self.law.parameters, self.law.periods.mechanics_s);
         let turning = self.motion(at_mm, self.delays.drive_s);
         let torque = if self.filter_lag_s > 0.0 { self.motion(at_mm, self.ahead_s()) } else { turning };
-        let early_mm_s = gains.acceleration * mechanics_s * turning.acceleration_mm_s2;
+        let late_s = mechanics_s + self.speed_late_s;
+        let early_mm_s = gains.acceleration * late_s * turning.acceleration_mm_s2;
         let inertia_kg_m2 = parameters.inertia_kg_m2 - parameters.viscous_friction_nm_s * mechanics_s;
         self.friction_mm_s =
             gains.friction * self.friction_nm(torque) / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm);

@@ -49,6 +49,7 @@ impl AxisKnowledge {
             acceleration_feedforward: 0.0,
             torque_filter_hz: 0.0,
             speed_limit_rad_s: 0.0,
+            speed_window_s: 0.0,
         },
         friction: FrictionParameters {
             coulomb_asymmetry_nm: 0.0,
@@ -79,6 +80,7 @@ impl AxisKnowledge {
         Number::within("acceleration_feedforward", "", 0.0, 1e3, |axis| &mut axis.drive.acceleration_feedforward),
         Number::or_none("torque_filter_hz", "Hz", 1e-3, 1e5, |axis| &mut axis.drive.torque_filter_hz),
         Number::or_none("speed_limit_rad_s", "rad/s", 1e-5, 1e7, |axis| &mut axis.drive.speed_limit_rad_s),
+        Number::newer("speed_window_s", "s", 0.2, |axis| &mut axis.drive.speed_window_s),
         Number::within("drive_delay_s", "s", 0.0, 0.02, |axis| &mut axis.delays.drive_s),
         Number::within("measurement_delay_s", "s", 0.0, 0.02, |axis| &mut axis.delays.measurement_s),
         Number::within("inertia_kg_m2", "kg m2", 1e-9, 1e3, |axis| &mut axis.parameters.inertia_kg_m2),
@@ -133,6 +135,8 @@ pub struct Number {
     /// this part. Other values below the range are rejected, so that nothing is divided by a tiny
     /// number.
     pub or_none: bool,
+    /// Whether a model file may leave it out, as those do that were written before there was such a number. It is zero then.
+    pub optional: bool,
     /// The field.
     pub of: fn(&mut AxisKnowledge) -> &mut f64,
 }
@@ -141,11 +145,15 @@ type Field = fn(&mut AxisKnowledge) -> &mut f64;
 
 impl Number {
     const fn within(name: &'static str, unit: &'static str, least: f64, most: f64, of: Field) -> Self {
-        Self { name, unit, range: [least, most], or_none: false, of }
+        Self { name, unit, range: [least, most], or_none: false, optional: false, of }
     }
 
     const fn or_none(name: &'static str, unit: &'static str, least: f64, most: f64, of: Field) -> Self {
         Self { or_none: true, ..Self::within(name, unit, least, most, of) }
+    }
+
+    const fn newer(name: &'static str, unit: &'static str, most: f64, of: Field) -> Self {
+        Self { optional: true, ..Self::within(name, unit, 0.0, most, of) }
     }
 
     /// Whether it may have this value. What is not a number it may not have.

@@ -79,19 +79,8 @@ fn noise(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
 }
 
 fn remarks(found: &FoundAxis) -> Vec<String> {
-    let mut remarks = vec![];
-    if let Some(resolved) = &found.resolved {
-        let window = digits(resolved.values.get(LawTerm::SpeedWindow));
-        let told = if resolved.torque.is_some() { "by the torque column" } else { "as given," };
-        remarks.push(format!(
-            "{told} the drive takes the speed over {window} s; the gains here have that in them, as no key does"
-        ));
-    }
-    let late = digits(found.values.get(LawTerm::RecordDelay));
-    remarks.push(format!(
-        "the log has actual positions {late} s later than the commands; no machine shows that of itself"
-    ));
-    remarks
+    let late = digits(found.law().get(LawTerm::RecordDelay));
+    vec![format!("the log has actual positions {late} s later than the commands; no machine shows that of itself")]
 }
 
 /// Torque at the shaft for an acceleration of the table of 1 mm/s2, N m.
@@ -102,14 +91,14 @@ fn nm_per_mm_s2(found: &FoundAxis) -> f64 {
 /// Inertia and friction.
 fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     let ((lead, of_lead), (inertia, _, of_inertia)) = (found.lead(), found.inertia());
-    let (get, nm) = (|term| found.values.get(term), nm_per_mm_s2(found));
+    let (get, nm) = (|term| found.law().get(term), nm_per_mm_s2(found));
     keys.push(by_source("lead_mm_per_rev", lead, of_lead));
     keys.push(by_source("inertia_kg_m2", inertia.clamp(1e-9, 1e3), of_inertia));
     let viscous = get(LawTerm::Viscous);
     let of_viscous = if viscous > 0.0 { found.gains_source() } else { NumberSource::Assumed };
     keys.push(by_source("viscous_friction_nm_s", inertia * viscous, of_viscous));
     keys.push(told("coulomb_friction_nm", nm * get(LawTerm::Coulomb), interval(found, LawTerm::Coulomb, nm)));
-    let smoothing = found.values.smoothing_at_mm_s(mechanics_s) * TAU / lead;
+    let smoothing = found.law().smoothing_at_mm_s(mechanics_s) * TAU / lead;
     keys.push(assumed("coulomb_smoothing_rad_s", smoothing.max(LEAST_SMOOTHING_RAD_S), "assumed"));
     let (offset, most) = (get(LawTerm::Offset), MOST_ASYMMETRY * get(LawTerm::Coulomb));
     let held = if offset.abs() > most { "; held within the Coulomb friction" } else { "" };
@@ -121,14 +110,14 @@ fn mechanics(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
 
 /// Gains and limits of the loops.
 fn loops(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
-    let (get, nm) = (|term| found.values.get(term), nm_per_mm_s2(found));
+    let (get, nm) = (|term| found.law().get(term), nm_per_mm_s2(found));
     let apart = match found.gains_source() {
         NumberSource::Assumed => "from Kp Kv / J and (Kv + B) / J, B being assumed",
         _ => "from Kp Kv / J and (Kv + B) / J",
     };
-    keys.push(told("kp_1_s", found.values.kp_1_s(), apart));
+    keys.push(told("kp_1_s", found.law().kp_1_s(), apart));
     keys.push(assumed("kd", 0.0, "assumed"));
-    keys.push(told("kv_nm_s_per_rad", found.inertia().0 * found.values.speed_gain_1_s(), apart));
+    keys.push(told("kv_nm_s_per_rad", found.inertia().0 * found.law().speed_gain_1_s(), apart));
     let limit = get(LawTerm::AccelerationLimit);
     if limit > 0.0 {
         keys.push(told("torque_limit_nm", nm * limit, interval(found, LawTerm::AccelerationLimit, nm)));
@@ -141,7 +130,7 @@ fn loops(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
 
 /// What an axis may have beside.
 fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
-    let get = |term| found.values.get(term);
+    let get = |term| found.law().get(term);
     let whole = (get(LawTerm::LoopDelay) / mechanics_s).round() * mechanics_s;
     optional(keys, found, "drive_delay_s", LawTerm::LoopDelay, whole, 1.0);
     let integral = get(LawTerm::Integral);
@@ -158,10 +147,19 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     ] {
         optional(keys, found, name, term, get(term), 1.0);
     }
+    if let Some(resolved) = &found.resolved {
+        let fitted = interval(found, LawTerm::SpeedWindow, 1.0);
+        let of_window = if resolved.torque.is_some() { fitted } else { "given".to_owned() };
+        keys.push(told("speed_window_s", get(LawTerm::SpeedWindow), of_window));
+        let is_held = if get(LawTerm::SpeedHold) > 0.0 { 1.0 } else { 0.0 };
+        optional(keys, found, "speed_held", LawTerm::SpeedHold, is_held, 1.0);
+    }
     let filter = get(LawTerm::FilterTime);
     if filter > 0.0 {
         let comment = format!("a time constant of {} s", interval(found, LawTerm::FilterTime, 1.0));
         keys.push(told("torque_filter_hz", (1.0 / (TAU * filter)).min(1e5), comment));
+    } else {
+        optional(keys, found, "torque_filter_hz", LawTerm::FilterTime, 0.0, 1.0);
     }
     optional(keys, found, "presliding_um", LawTerm::Presliding, 1e3 * get(LawTerm::Presliding), 1e3);
     let stribeck = get(LawTerm::Stribeck);
@@ -176,21 +174,22 @@ fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
 /// The interval of a term in the unit of its key.
 fn interval(found: &FoundAxis, term: LawTerm, scale: f64) -> String {
     found.half_interval(term).map_or_else(String::new, |half| {
-        let value = scale * found.values.get(term);
+        let value = scale * found.law().get(term);
         format!("{} to {}", digits(value - scale * half), digits(value + scale * half))
     })
 }
 
-/// A key of a term that the axis may not have.
+/// A key of a term that the axis may not have. A machine file that is updated may have had it before.
 fn optional(keys: &mut Vec<AxisKey>, found: &FoundAxis, name: &'static str, term: LawTerm, value: f64, scale: f64) {
-    if value > 0.0 {
+    let was = found.facts.before.map_or(0.0, |before| before.get(term));
+    if value > 0.0 || was > 0.0 {
         keys.push(told(name, value, interval(found, term, scale)));
     }
 }
 
 /// Motor and table as two masses, where the log shows them.
 fn transmission(found: &FoundAxis, mechanics_s: f64) -> Vec<AxisKey> {
-    let Some(screw) = found.values.transmission(mechanics_s) else { return vec![] };
+    let Some(screw) = found.law().transmission(mechanics_s) else { return vec![] };
     let seconds = interval(found, LawTerm::Resonance, 1.0);
     vec![
         told("table_share", screw.table_share, interval(found, LawTerm::TableShare, 1.0)),

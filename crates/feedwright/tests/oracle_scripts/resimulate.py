@@ -241,8 +241,11 @@ class Measuring:
         self.on_table = bool(screw) and screw.get("scale_on_table", 0) > 0.5
         self.of_motor = Encoder(axis, Stream(seed, index, MOTOR_ENCODER)) if self.on_table else self.encoder
         self.late = round(axis.get("measurement_delay_s", 0) / self.dt)
-        self.by_difference = axis.get("speed_from_encoder", 0) > 0.5
-        self.start, self.taken, self.last = start, {}, None
+        self.by_encoder = axis.get("speed_from_encoder", 0) > 0.5
+        self.held = axis.get("speed_held", 0) > 0.5
+        self.periods = max(1.0, axis.get("speed_window_s", 0) / self.dt)
+        self.substeps = round(period["servo_s"] / self.dt)
+        self.start, self.taken, self.shown, self.seen = start, {}, {}, 0.0
 
     def position(self, n, substeps, motor, table, moment):
         """For the control at the start of the n-th servo period that is simulated."""
@@ -254,11 +257,18 @@ class Measuring:
         """For the drive; and what is to reach the control is taken."""
         if self.late:
             self.taken[now] = self.encoder.read(table if self.on_table else motor, moment)
-        if not self.by_difference:
+        if not self.by_encoder and not self.held and self.periods == 1.0:
             return speed
-        shown = self.of_motor.read(motor, moment)
-        moved, self.last = 0.0 if self.last is None else shown - self.last, shown
-        return moved / self.dt
+        self.shown[now] = self.of_motor.read(motor, moment) if self.by_encoder else motor
+        if not self.held or now % self.substeps == 0:
+            self.seen = (self.shown[now] - self.shown_at(now - self.periods)) / (self.periods * self.dt)
+        return self.seen
+
+    def shown_at(self, now):
+        """To the drive, between two mechanics periods too; the axis stands before the first."""
+        at = lambda n: self.shown[max(n, 0)]
+        before = math.floor(now)
+        return at(before) + (now - before) * (at(before + 1) - at(before))
 
 
 def cut(axis, index, period, seed, times_s, start_mm, commands_mm, finer):

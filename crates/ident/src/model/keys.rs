@@ -62,7 +62,7 @@ macro_rules! axes_keys {
     }};
 }
 const AXES: &[Key<Weights>] = &axes_keys!(
-    0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36
+    0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29 30 31 32 33 34 35 36 37
 );
 
 const fn of_axes<const INDEX: usize>() -> Key<Weights> {
@@ -73,7 +73,7 @@ const fn of_axes<const INDEX: usize>() -> Key<Weights> {
         unit: number.unit,
         // What may be zero or no less than its least is looked at as a whole, once it is read.
         range: [if number.or_none { 0.0 } else { least }, most],
-        optional: false,
+        optional: number.optional,
         value: Value::Numbers {
             get: |weights| weights.axes.get(INDEX).map_or(&[], Vec::as_slice),
             set: |weights, numbers| weights.set_of_axes(INDEX, numbers),

@@ -114,7 +114,8 @@ fn weights(kind: IdentifierKind, axes: u64, table: &mut Table<'_, '_>, faults: &
     ];
     // A number for each axis.
     let of_axes = keys::weights(IdentifierKind::Axes).iter().filter(|key| key.name != "mechanics_s");
-    let of_axes = of_axes.zip(&weights.axes).map(|(key, found)| (key.name, found, n));
+    let of_axes = of_axes.zip(&weights.axes).filter(|(key, found)| !(key.optional && found.is_empty()));
+    let of_axes = of_axes.map(|(key, found)| (key.name, found, n));
     for (key, found, expected) in expected.into_iter().chain(of_axes) {
         if found.len() != expected {
             faults.push(Fault {

@@ -112,6 +112,12 @@ pub struct Axis {
     /// Amplitude of the error within a turn of the screw, um.
     #[serde(skip_serializing_if = "is_zero")]
     pub pitch_error_um: f64,
+    /// Time over which the drive takes the speed from positions, s; no more than a mechanics period is the speed itself.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub speed_window_s: f64,
+    /// Whether the drive takes the speed at the start of each servo period, and holds it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub speed_held: bool,
     /// Whether the speed loop takes the speed from differences of the encoder.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub speed_from_encoder: bool,
@@ -161,6 +167,7 @@ impl Axis {
             acceleration_feedforward: self.acceleration_feedforward,
             torque_filter_hz: self.torque_filter_hz,
             speed_limit_rad_s: self.speed_limit_mm_s * self.rad_per_mm(),
+            speed_window_s: self.speed_window_s,
         }
     }
 

@@ -59,6 +59,8 @@ pub const AXIS: &[Key<Axis>] = &[
     key!(torque_filter_hz or zero, "Hz", 0.0, 1e5),
     key!(speed_limit_mm_s or zero, "mm/s", 0.0, 1e4),
     key!(flag speed_from_encoder),
+    key!(speed_window_s or zero, "s", 0.0, 0.02),
+    key!(flag speed_held),
     key!(encoder_noise_um or zero, "um", 0.0, 1e3),
     key!(interpolation_error_um or zero, "um", 0.0, 1e3),
     key!(signal_period_um or zero, "um", 0.0, 1e5),

@@ -118,7 +118,7 @@ impl Machine {
         let axis = |(i, axis): (usize, &super::Axis)| KnownAxis {
             lead_mm_per_rev: axis.lead_mm_per_rev,
             nominal: axis.parameters(),
-            drive: axis.drive(),
+            drive: DriveParameters { speed_window_s: self.seen_over_s(axis), ..axis.drive() },
             friction: axis.friction(),
             transmission: TransmissionParameters::RIGID,
             scale_on_table: axis.transmission.is_some_and(|screw| screw.scale_on_table),
@@ -127,6 +127,17 @@ impl Machine {
             spare_torque_nm: (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0),
         };
         Known { period: self.period, limits: self.limits, axes: self.axes.iter().enumerate().map(axis).collect() }
+    }
+
+    /// Window in which a drive sees the speed as late as this axis's does, s. A speed that is held for a servo period is later by half
+    /// of what it is held beyond the first mechanics period.
+    fn seen_over_s(&self, axis: &super::Axis) -> f64 {
+        let Period { servo_s, mechanics_s, .. } = self.period;
+        if axis.speed_held {
+            axis.speed_window_s.max(mechanics_s) + (servo_s - mechanics_s)
+        } else {
+            axis.speed_window_s
+        }
     }
 }
 

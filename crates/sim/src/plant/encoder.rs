@@ -6,8 +6,14 @@
 //!
 //! x angle at the encoder, rad at the motor shaft; A and P amplitude and signal period of the interpolation error; s RMS of the noise,
 //! n(c) as in `noise.rs`; q step; what is zero is not there. The control has of y what it was a latency ago, in whole mechanics
-//! periods, and before the start where the axis stood. The speed that a drive takes from the encoder is (y(c) - y(c - 1)) / dt, with
-//! no latency: the encoder's cable ends in the drive.
+//! periods, and before the start where the axis stood. The speed that a drive takes from positions is
+//!
+//! ```text
+//! (y(c) - y(c - n)) / (n dt)      n = T / dt, and 1 where the window T is shorter; y is linear between two mechanics periods
+//! ```
+//!
+//! with no latency: the encoder's cable ends in the drive. From an ideal encoder y is x, and the speed over one mechanics period the
+//! speed itself. A drive may take the speed at the start of each servo period only, and hold it.
 //!
 //! Source: Heydemann (1981), Determination and correction of quadrature fringe measurement errors in interferometers, for the error
 //! of offset signals, once a signal period; quantisation and difference of positions as in Franklin, Powell and Workman (1998), chapters
@@ -15,9 +21,18 @@
 
 use std::f64::consts::TAU;
 
+use feedwright_control::AxisState;
+
 use super::drive::in_steps;
 use super::noise::{RandomStream, RandomUse};
 use crate::machine::{Axis, Period};
+
+/// A mechanics period: its number within the servo period, and since the start of the machine.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Moment {
+    pub(super) substep: u32,
+    pub(super) counter: u64,
+}
 
 /// An encoder.
 #[derive(Debug, Clone, Copy)]
@@ -56,30 +71,65 @@ impl Encoder {
     }
 }
 
-/// The motor's speed by its encoder.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct SpeedByDifference {
-    encoder: Encoder,
-    last_rad: Option<f64>,
+/// The motor's speed, as the drive takes it from positions.
+#[derive(Debug, Clone)]
+pub(super) struct DriveSpeed {
+    /// None is an ideal one.
+    encoder: Option<Encoder>,
+    /// Window, mechanics periods: whole ones, and the part beyond.
+    window: (usize, f64),
+    /// Positions of the last mechanics periods, a ring, rad; nothing before the first.
+    course_rad: Vec<f64>,
+    newest: usize,
+    is_held: bool,
+    taken_rad_s: f64,
 }
 
-impl SpeedByDifference {
-    /// Where the drive takes the speed from the encoder. Where the position is measured at the table, the motor has an encoder of
-    /// the same kind of its own.
-    pub(super) fn new(axis: &Axis, encoder: Encoder, seed: u64, index: usize) -> Option<Self> {
+impl DriveSpeed {
+    /// None where the drive has the speed itself all the time. Where the position is measured at the table, the motor has an encoder
+    /// of the same kind of its own.
+    pub(super) fn new(axis: &Axis, encoder: Encoder, mechanics_s: f64, seed: u64, index: usize) -> Option<Self> {
         let of_its_own = axis.transmission.is_some_and(|transmission| transmission.scale_on_table);
         let stream = RandomStream::new(seed, index, RandomUse::MotorEncoder);
         let encoder = if of_its_own { Encoder { stream, ..encoder } } else { encoder };
-        axis.speed_from_encoder.then_some(Self { encoder, last_rad: None })
+        let periods = (axis.speed_window_s / mechanics_s).max(1.0);
+        let is_needed = axis.speed_from_encoder || axis.speed_held || periods > 1.0;
+        is_needed.then(|| Self {
+            encoder: axis.speed_from_encoder.then_some(encoder),
+            window: (periods as usize, periods.fract()),
+            course_rad: Vec::new(),
+            newest: 0,
+            is_held: axis.speed_held,
+            taken_rad_s: 0.0,
+        })
     }
 
-    /// Over the last mechanics period.
+    /// Over the window that ends with this mechanics period.
     #[inline]
-    pub(super) fn speed_rad_s(&mut self, angle_rad: f64, counter: u64, dt_s: f64) -> f64 {
-        let shown_rad = self.encoder.read(angle_rad, counter);
-        let moved_rad = self.last_rad.map_or(0.0, |last_rad| shown_rad - last_rad);
-        self.last_rad = Some(shown_rad);
-        moved_rad / dt_s
+    pub(super) fn speed_rad_s(&mut self, motor: &AxisState, moment: Moment, dt_s: f64) -> f64 {
+        let shown_rad = self.encoder.map_or(motor.angle_rad, |encoder| encoder.read(motor.angle_rad, moment.counter));
+        let (whole, part) = self.window;
+        if self.course_rad.is_empty() {
+            // Before it was switched on, the axis went on as it does.
+            let moved_rad = if self.encoder.is_none() { dt_s * motor.speed_rad_s } else { 0.0 };
+            self.course_rad = (0..whole + 2).rev().map(|age| shown_rad - age as f64 * moved_rad).collect();
+            self.newest = whole;
+        }
+        self.newest = (self.newest + 1) % self.course_rad.len();
+        self.course_rad[self.newest] = shown_rad;
+        if !self.is_held || moment.substep == 0 {
+            let [newer_rad, older_rad] = [whole, whole + 1].map(|age| self.before_rad(age));
+            let moved_rad = shown_rad - newer_rad + part * (newer_rad - older_rad);
+            self.taken_rad_s = moved_rad / ((whole as f64 + part) * dt_s);
+        }
+        self.taken_rad_s
+    }
+
+    /// The position so many mechanics periods before the newest.
+    #[inline]
+    fn before_rad(&self, age: usize) -> f64 {
+        let length = self.course_rad.len();
+        self.course_rad[(self.newest + length - age) % length]
     }
 }
 
@@ -166,13 +216,49 @@ mod tests {
     fn the_speed_is_the_difference_of_whole_steps() {
         let axis = Axis { encoder_step_um: 1.0, speed_from_encoder: true, ..axis() };
         let encoder = Encoder::new(&axis, RandomStream::new(0, 0, RandomUse::Encoder));
-        let mut speed = SpeedByDifference::new(&axis, encoder, 0, 0).unwrap();
+        let mut speed = DriveSpeed::new(&axis, encoder, 1e-4, 0, 0).unwrap();
         let step_rad = 1e-3 * TAU / axis.lead_mm_per_rev;
         // 0.3 steps a period: 0, 0, 1, 1, 1, 2 (rounded), differences of whole steps whose mean is the speed.
-        let speeds: Vec<f64> = (0..1001_u64).map(|c| speed.speed_rad_s(0.3 * step_rad * c as f64, c, 1e-4)).collect();
+        let at = |counter: u64| AxisState { angle_rad: 0.3 * step_rad * counter as f64, ..AxisState::default() };
+        let speeds: Vec<f64> =
+            (0..1001).map(|counter| speed.speed_rad_s(&at(counter), Moment { substep: 0, counter }, 1e-4)).collect();
         assert!(speeds.iter().all(|s| (s * 1e-4 / step_rad - (s * 1e-4 / step_rad).round()).abs() < 1e-9));
         let mean = speeds.iter().sum::<f64>() / 1000.0;
         assert!((mean * 1e-4 / step_rad - 0.3).abs() < 1e-3, "{mean}");
+    }
+
+    /// Speeds that a drive takes of a motor that has gone at 2 rad/s and accelerates by 30 rad/s2.
+    fn taken_rad_s(axis: &Axis) -> Vec<f64> {
+        let encoder = Encoder::new(axis, RandomStream::new(0, 0, RandomUse::Encoder));
+        let mut speed = DriveSpeed::new(axis, encoder, 1e-4, 0, 0).unwrap();
+        let mut motor = AxisState { speed_rad_s: 2.0, ..AxisState::default() };
+        let mut take = |counter: u64| {
+            let taken = speed.speed_rad_s(&motor, Moment { substep: (counter % 10) as u32, counter }, 1e-4);
+            motor.speed_rad_s += 1e-4 * 30.0;
+            motor.angle_rad += 1e-4 * motor.speed_rad_s;
+            taken
+        };
+        (0..1000).map(&mut take).collect()
+    }
+
+    #[test]
+    fn a_speed_over_a_window_is_late_by_half_of_it_and_one_that_is_held_by_half_a_servo_period_more() {
+        // So late: half of what the window is longer than a mechanics period, and of what it is held beyond one.
+        for (speed_window_s, speed_held, late_s) in
+            [(0.002_868, false, 0.001_384), (0.0003, false, 0.0001), (0.002, true, 0.001_4), (0.0, true, 0.000_45)]
+        {
+            let taken = taken_rad_s(&Axis { speed_window_s, speed_held, ..axis() });
+            assert!((taken[0] - 2.0).abs() < 1e-9, "{}: it begins with what it moves at", taken[0]);
+            let late: f64 =
+                (500..1000).map(|c| 2.0 + 30.0 * 1e-4 * f64::from(c) - taken[c as usize]).sum::<f64>() / 500.0;
+            // Between two mechanics periods a parabola is taken for a line.
+            assert!((late / 30.0 - late_s).abs() < 1e-6, "{speed_window_s} {speed_held}: {} s", late / 30.0);
+            let changes = taken[500..].windows(2).filter(|pair| pair[0] != pair[1]).count();
+            assert_eq!(changes, if speed_held { 49 } else { 499 }, "{speed_window_s}");
+        }
+        let encoder = Encoder::new(&axis(), RandomStream::new(0, 0, RandomUse::Encoder));
+        let within_one = Axis { speed_window_s: 1e-4, ..axis() };
+        assert!(DriveSpeed::new(&within_one, encoder, 1e-4, 0, 0).is_none(), "that is the speed itself");
     }
 
     #[test]

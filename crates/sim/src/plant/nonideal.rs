@@ -12,7 +12,7 @@ use feedwright_control::{
 };
 
 use super::drive::{Delay, in_steps, torque_step_nm};
-use super::encoder::{Encoder, Latency, SpeedByDifference};
+use super::encoder::{DriveSpeed, Encoder, Latency, Moment};
 use super::noise::{CorrelatedNoise, RandomStream, RandomUse};
 use super::torque::{MotorTorque, Wander, broadband};
 use crate::machine::{Axis, Machine};
@@ -26,7 +26,7 @@ pub(super) struct NonidealAxis {
     torque_step_nm: f64,
     encoder: Encoder,
     latency: Option<Latency>,
-    speed: Option<SpeedByDifference>,
+    speed: Option<DriveSpeed>,
     /// Whether there is any of the two.
     is_sensed: bool,
     motor: Option<MotorTorque>,
@@ -38,21 +38,15 @@ pub(super) struct NonidealAxis {
     masses: MechanicsState,
 }
 
-/// A mechanics period: its number within the servo period, and since the start of the machine.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Moment {
-    pub(super) substep: u32,
-    pub(super) counter: u64,
-}
-
 impl NonidealAxis {
     pub(super) fn new(machine: &Machine, index: usize, law: &AxisLaw, angle_rad: f64, seed: u64) -> Self {
         let (axis, period) = (machine.axis(index), &machine.period);
         let encoder = Encoder::new(axis, RandomStream::new(seed, index, RandomUse::Encoder));
         let latency = Latency::new(axis, period, angle_rad);
-        let speed = SpeedByDifference::new(axis, encoder, seed, index);
+        let speed = DriveSpeed::new(axis, encoder, period.mechanics_s, seed, index);
         Self {
-            drive: DriveLaw::new(law, axis.drive()),
+            // What it sees of the speed is simulated as it is.
+            drive: DriveLaw::new(law, DriveParameters { speed_window_s: 0.0, ..axis.drive() }),
             drive_state: DriveState::default(),
             delay: Delay::new(axis, period, seed),
             torque_step_nm: torque_step_nm(axis),
@@ -85,6 +79,7 @@ impl NonidealAxis {
         ];
         absent.iter().all(|value| *value == 0.0)
             && !axis.speed_from_encoder
+            && !axis.speed_held
             && axis.torque_bits.is_none()
             && axis.transmission.is_none()
             && axis.drive() == DriveParameters::default()
@@ -167,7 +162,7 @@ impl NonidealAxis {
             }
         }
         match &mut self.speed {
-            Some(speed) => speed.speed_rad_s(motor.angle_rad, moment.counter, law.periods.mechanics_s),
+            Some(speed) => speed.speed_rad_s(motor, moment, law.periods.mechanics_s),
             None => motor.speed_rad_s,
         }
     }

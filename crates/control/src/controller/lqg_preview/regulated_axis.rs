@@ -158,7 +158,8 @@ impl AxisLqg {
         let law = known.law();
         let model = AxisModel::new(&known, settings.learns);
         let screw = model.mechanics.transmission();
-        let regulated = LinearAxis::new(&law, &DriveParameters::default(), screw, &statistics);
+        let without_integral = DriveParameters { speed_window_s: drive.speed_window_s, ..DriveParameters::default() };
+        let regulated = LinearAxis::new(&law, &without_integral, screw, &statistics);
         let lowest_s2 = settings.lowest_control_weight_s2(&transmission);
         let (states, input, _) = regulated.sampled();
         Self {

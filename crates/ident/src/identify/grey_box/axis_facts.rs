@@ -69,16 +69,16 @@ impl AxisFacts {
         at.with(LawTerm::RecordDelay, self.record_delay_s.unwrap_or(0.0))
     }
 
-    /// What nobody said is that of an axis of a machine file.
+    /// What nobody said is that of an axis of a machine file with this servo period.
     #[must_use]
-    pub fn or_of(self, axis: &Axis) -> Self {
+    pub fn or_of(self, axis: &Axis, servo_s: f64) -> Self {
         let is_same_unit = self.lead_mm_per_rev.is_some() || (self.inertia.is_none() && self.viscous.is_none());
         let kept = |given: Option<f64>, axis: f64| given.or_else(|| is_same_unit.then_some(axis));
         Self {
             inertia: kept(self.inertia, axis.inertia_kg_m2),
             viscous: kept(self.viscous, axis.viscous_friction_nm_s),
             lead_mm_per_rev: kept(self.lead_mm_per_rev, axis.lead_mm_per_rev),
-            before: Some(TermValues::of_axis(axis)),
+            before: Some(TermValues::of_axis(axis, servo_s)),
             ..self
         }
     }

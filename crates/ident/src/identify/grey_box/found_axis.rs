@@ -59,7 +59,7 @@ pub struct FoundNumber {
 pub struct FoundAxis {
     /// Its name in the log.
     pub name: String,
-    /// Values of its law.
+    /// Values of its law, by positions alone.
     pub values: TermValues,
     /// Terms that were fitted.
     pub terms: Vec<LawTerm>,
@@ -156,15 +156,23 @@ impl FoundAxis {
         (ASSUMED_INERTIA_KG_M2, None, NumberSource::Assumed)
     }
 
-    /// Half of the interval of a fitted term.
+    /// Values of its law as far as it is told: with the window of the speed, where that is.
+    pub fn law(&self) -> &TermValues {
+        self.resolved.as_ref().map_or(&self.values, |resolved| &resolved.values)
+    }
+
+    /// Half of the interval of a term of this law.
     pub fn half_interval(&self, term: LawTerm) -> Option<f64> {
-        let at = self.terms.iter().position(|fitted| *fitted == term)?;
-        Some(self.half_intervals[at]).filter(|half| half.is_finite())
+        let half = match &self.resolved {
+            Some(resolved) => resolved.half_intervals.iter().find(|(of, _)| *of == term).map(|(_, half)| *half),
+            None => self.terms.iter().position(|fitted| *fitted == term).map(|at| self.half_intervals[at]),
+        };
+        half.filter(|half| half.is_finite())
     }
 
     /// All numbers, those that positions determine first.
     pub fn numbers(&self) -> Vec<FoundNumber> {
-        let told = self.resolved.as_ref().map_or(&self.values, |resolved| &resolved.values);
+        let told = self.law();
         let mut numbers: Vec<FoundNumber> = LawTerm::ALL
             .into_iter()
             .filter(|term| {
@@ -193,18 +201,15 @@ impl FoundAxis {
 
     fn number(&self, term: LawTerm, value: f64) -> FoundNumber {
         let row = term.row();
-        let (half, source) = match &self.resolved {
-            Some(resolved) => {
-                let half = resolved.half_intervals.iter().find(|(of, _)| *of == term).map(|(_, half)| *half);
-                (half, resolved.source(term))
-            }
-            None if self.terms.contains(&term) => (self.half_interval(term), NumberSource::Identified),
-            None if self.facts.before.is_some() => (None, NumberSource::Kept),
-            None if term == LawTerm::Viscous || term == LawTerm::RecordDelay => (None, NumberSource::Given),
-            None => (None, NumberSource::Assumed),
+        let source = match &self.resolved {
+            Some(resolved) => resolved.source(term),
+            None if self.terms.contains(&term) => NumberSource::Identified,
+            None if self.facts.before.is_some() => NumberSource::Kept,
+            None if term == LawTerm::Viscous || term == LawTerm::RecordDelay => NumberSource::Given,
+            None => NumberSource::Assumed,
         };
         let [least, most] = row.range;
-        let interval = half.map(|half| [(value - half).max(least), (value + half).min(most)]);
+        let interval = self.half_interval(term).map(|half| [(value - half).max(least), (value + half).min(most)]);
         FoundNumber { key: term.key(), name: row.name, unit: row.unit, value, interval, source }
     }
 

@@ -174,8 +174,8 @@ impl LawTerm {
 pub struct TermValues(pub [f64; TERMS]);
 
 impl TermValues {
-    /// Those of an axis of a machine file. Of its torque limit nothing is said: the log comes to it or does not.
-    pub fn of_axis(axis: &Axis) -> Self {
+    /// Those of an axis of a machine file with this servo period. Of its torque limit nothing is said: the log comes to it or does not.
+    pub fn of_axis(axis: &Axis, servo_s: f64) -> Self {
         let j = axis.inertia_kg_m2;
         let per_mm = j * axis.rad_per_mm();
         let inverse = |value: f64| if value > 0.0 { 1.0 / value } else { 0.0 };
@@ -191,6 +191,8 @@ impl TermValues {
             .with(LawTerm::Integral, inverse(axis.speed_integral_s))
             .with(LawTerm::FilterTime, inverse(axis.torque_filter_hz) / std::f64::consts::TAU)
             .with(LawTerm::SpeedLimit, axis.speed_limit_mm_s)
+            .with(LawTerm::SpeedWindow, axis.speed_window_s)
+            .with(LawTerm::SpeedHold, if axis.speed_held { servo_s } else { 0.0 })
             .with(LawTerm::Presliding, 1e-3 * axis.presliding_um)
             .with(LawTerm::Stribeck, axis.stribeck_nm * inverse(axis.coulomb_friction_nm))
             .with(LawTerm::StribeckSpeed, axis.stribeck_mm_s);
@@ -263,6 +265,8 @@ impl TermValues {
             acceleration_feedforward: self.get(LawTerm::AccelerationFeedforward),
             torque_filter_hz: inverse(self.get(LawTerm::FilterTime)) / std::f64::consts::TAU,
             speed_limit_rad_s: self.get(LawTerm::SpeedLimit),
+            // A free run has the positions of the window.
+            speed_window_s: 0.0,
         }
     }
 
