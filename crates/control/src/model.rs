@@ -420,7 +420,7 @@ mod tests {
     #[test]
     fn the_layout_is_what_the_table_says() {
         let bytes = block(&servo::<2>());
-        assert_eq!(bytes[..24], *b"FWMODEL\0\x01\0\0\0\x02\0\0\0\x02\0\0\0\xec\0\0\0");
+        assert_eq!(bytes[..24], *b"FWMODEL\0\x02\0\0\0\x02\0\0\0\x02\0\0\0\xec\0\0\0");
         assert_eq!(bytes[24..32], 0.001_f64.to_le_bytes());
         assert_eq!(bytes[32..40], 0.003_f64.to_le_bytes());
         let Trained::Servo(net, spread) = servo::<2>().trained else { panic!("a servo") };
@@ -478,7 +478,7 @@ mod tests {
             bytes[at..at + 4].copy_from_slice(&whole.to_le_bytes());
             ModelBlock::<2>::from_bytes(&sealed(bytes))
         };
-        assert_eq!(with_whole(8, 2), Err(BlockError::Format(2)));
+        assert_eq!(with_whole(8, 1), Err(BlockError::Format(1)));
         assert_eq!(with_whole(12, 4), Err(BlockError::Kind(4)));
         assert_eq!(with_whole(12, 3), Err(BlockError::Length));
         assert_eq!(with_whole(16, 3), Err(BlockError::Axes(3)));
