@@ -7,6 +7,7 @@
 //! What is computed is in [`feedwright_ident::identify::grey_box`].
 
 mod axis_keys;
+mod next_motion;
 mod machine_text;
 mod update;
 mod json;
@@ -182,7 +183,7 @@ impl LogIdentified {
         for axis in &self.machine.axes {
             let name = &axis.name;
             if axis.unseen.is_open() {
-                advice.push(format!("axis {name}: the log leaves open what other motion would show. Record the program that feedwright excite writes: both directions, creeping, reversals, short strokes"));
+                advice.push(format!("axis {name}: the log leaves open what other motion would show. Record the program that --excite-next writes, or the one of feedwright excite: both directions, creeping, reversals, short strokes"));
             }
             if axis.inertia().2 == NumberSource::Assumed {
                 advice.push(format!("axis {name}: positions do not tell the inertia. Give --inertia, or record the torque and give --torque-gain; until then torques in the machine file have a scale that is assumed"));

@@ -5,6 +5,8 @@
 //! two axes together   circles from large to small at v = sqrt(a r), so that w = sqrt(a / r) grows past the position loop; a diagonal
 //! ```
 //!
+//! A log that has some of this already needs the rest alone: [`next_excitation`] writes that.
+//!
 //! Creeping shows friction and its asymmetry, where inertia counts for nothing; strokes and small circles show the loops and the
 //! inertia, where friction counts for little; standstills show noise and offset. All moves are relative to where the machine stands,
 //! and stay within half of the travel on each side of it.
@@ -25,6 +27,63 @@ pub struct ExciteOptions {
 impl Default for ExciteOptions {
     fn default() -> Self {
         Self { travel_mm: TRAVEL_MM }
+    }
+}
+
+/// A kind of motion of one axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum MotionPart {
+    /// Slow motion there and back.
+    Creeping,
+    /// Constant speeds there and back, from a tenth of the highest to that.
+    Reversals,
+    /// Short strokes that accelerate all the way.
+    Strokes,
+}
+
+impl MotionPart {
+    /// All, in the order of a program.
+    pub const ALL: [Self; 3] = [Self::Creeping, Self::Reversals, Self::Strokes];
+
+    /// Name in a sentence and in files.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Creeping => "creeping",
+            Self::Reversals => "reversals",
+            Self::Strokes => "strokes",
+        }
+    }
+
+    /// What it is for.
+    fn purpose(self) -> &'static str {
+        match self {
+            Self::Creeping => "creeping there and back, for friction, its asymmetry, presliding and backlash",
+            Self::Reversals => {
+                "reversals at constant speeds, for Coulomb and viscous friction, Kp and velocity feedforward"
+            }
+            Self::Strokes => "short strokes and pulses, for inertia, delays, integral and acceleration feedforward",
+        }
+    }
+}
+
+/// What an axis does in a program, and the bounds that it keeps.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AxisMotion {
+    /// Its place among x, y and z.
+    pub axis: usize,
+    /// Positions that it may go to, mm: it begins in their middle.
+    pub range_mm: [f64; 2],
+    /// Highest programmed speed, mm/s.
+    pub fastest_mm_s: f64,
+    /// Acceleration that the control is taken to move it with, mm/s2.
+    pub accel_mm_s2: f64,
+    /// Kinds of motion that it needs.
+    pub parts: Vec<MotionPart>,
+}
+
+impl AxisMotion {
+    fn travel_mm(&self) -> f64 {
+        self.range_mm[1] - self.range_mm[0]
     }
 }
 
@@ -82,23 +141,47 @@ pub fn excitation_program(machine: &Machine, options: ExciteOptions) -> Result<E
         return Err(ExciteError::Travel { travel_mm });
     }
     let limits = &machine.limits;
+    let motion = |axis| AxisMotion {
+        axis,
+        range_mm: [-0.5 * travel_mm, 0.5 * travel_mm],
+        fastest_mm_s: fastest_mm_s(machine, axis),
+        accel_mm_s2: limits.tangential_accel_mm_s2,
+        parts: MotionPart::ALL.to_vec(),
+    };
+    let axes: Vec<AxisMotion> = (0..machine.axis_count()).map(motion).collect();
+    Ok(program(&axes, limits.normal_accel_mm_s2, |takes_s, max_feed_mm_s| {
+        head(machine, travel_mm, takes_s, max_feed_mm_s)
+    }))
+}
+
+/// The program that lets axes make the motion that a log lacks. Where each of them needs every kind of motion it is the whole excitation.
+/// None where nothing is needed.
+pub fn next_excitation(axes: &[AxisMotion]) -> Option<ExciteProgram> {
+    let axes: Vec<AxisMotion> = axes.iter().filter(|axis| !axis.parts.is_empty()).cloned().collect();
+    let accel_mm_s2 = axes.iter().map(|axis| axis.accel_mm_s2).fold(f64::INFINITY, f64::min);
+    (!axes.is_empty()).then(|| program(&axes, accel_mm_s2, |takes_s, max_mm_s| next_head(&axes, takes_s, max_mm_s)))
+}
+
+/// Each axis alone, and x and y together where both make all kinds of motion. The head is made of the time that it takes and of the highest
+/// feed, s and mm/s.
+fn program(axes: &[AxisMotion], normal_accel_mm_s2: f64, head: impl Fn(f64, f64) -> String) -> ExciteProgram {
     let mut moves = MoveWriter {
         text: String::new(),
         takes_s: 0.0,
         max_feed_mm_s: 0.0,
-        accel_mm_s2: limits.tangential_accel_mm_s2,
-        normal_accel_mm_s2: limits.normal_accel_mm_s2,
+        accel_mm_s2: axes.iter().map(|axis| axis.accel_mm_s2).fold(f64::INFINITY, f64::min),
+        normal_accel_mm_s2,
     };
-    let speeds: Vec<f64> = (0..machine.axis_count()).map(|axis| fastest_mm_s(machine, axis)).collect();
-    for (axis, &fastest_mm_s) in speeds.iter().enumerate() {
-        moves.axis_alone(axis, fastest_mm_s, travel_mm);
+    axes.iter().for_each(|axis| moves.axis_alone(axis));
+    let plane: Vec<&AxisMotion> =
+        axes.iter().filter(|axis| axis.axis < 2 && axis.parts.len() == MotionPart::ALL.len()).collect();
+    if let [x, y] = plane.as_slice() {
+        moves.two_together(x.fastest_mm_s.min(y.fastest_mm_s), x.travel_mm().min(y.travel_mm()));
     }
-    let slower_mm_s = speeds[..2].iter().copied().fold(f64::INFINITY, f64::min);
-    moves.two_together(slower_mm_s, travel_mm);
     let MoveWriter { text: body, takes_s, max_feed_mm_s, .. } = moves;
-    let head = head(machine, travel_mm, takes_s, max_feed_mm_s);
+    let head = head(takes_s, max_feed_mm_s);
     let text = format!("{head}G21 G17 G40 G49 G80 G91 G91.1 G94 G61\n{body}G90\nM2\n");
-    Ok(ExciteProgram { text, takes_s, max_feed_mm_s })
+    ExciteProgram { text, takes_s, max_feed_mm_s }
 }
 
 /// The highest speed that is programmed for an axis, mm/s.
@@ -141,6 +224,33 @@ fn head(machine: &Machine, travel_mm: f64, takes_s: f64, max_feed_mm_s: f64) -> 
     lines.push("then run this program, end halsampler with Ctrl-C, and".to_owned());
     lines.push("  feedwright identify log.txt --out mine.toml --report ident.html".to_owned());
     lines.push(String::new());
+    comments(&lines)
+}
+
+/// The same for the motion that a log lacks.
+fn next_head(axes: &[AxisMotion], takes_s: f64, max_feed_mm_s: f64) -> String {
+    let each = |of: &dyn Fn(&AxisMotion) -> String| axes.iter().map(of).collect::<Vec<_>>().join(", ");
+    let name = |axis: &AxisMotion| AXIS_NAMES[axis.axis];
+    let middle_mm = |axis: &AxisMotion| rounded(0.5 * (axis.range_mm[0] + axis.range_mm[1]));
+    let start = each(&|axis| format!("{} = {} mm", name(axis), middle_mm(axis)));
+    // Rounded down: it is not to exceed what is allowed.
+    let within = each(&|axis| format!("{:.3} mm in {}", (500.0 * axis.travel_mm()).floor() * 1e-3, name(axis)));
+    comments(&[
+        "Motion that a log lacks; written by feedwright identify --excite-next.".to_owned(),
+        format!("About {} s, at most {} mm/s.", takes_s.round(), to_four_digits(max_feed_mm_s)),
+        String::new(),
+        "Check first".to_owned(),
+        format!("- the axes stand at {start}: the middle of what the log covers, in its coordinates"),
+        format!("- free travel on each side: {within}"),
+        "- spindle off, no tool that can touch anything, no workpiece".to_owned(),
+        "- feed override at 100 %, emergency stop in reach; a first run at 10 % shows where it goes".to_owned(),
+        String::new(),
+        "Record as the log before was recorded, and give both logs to feedwright identify.".to_owned(),
+        String::new(),
+    ])
+}
+
+fn comments(lines: &[String]) -> String {
     lines.iter().map(|line| format!("; {line}").trim_end().to_owned() + "\n").collect()
 }
 
@@ -185,29 +295,48 @@ impl MoveWriter {
         }
     }
 
-    fn axis_alone(&mut self, axis: usize, fastest_mm_s: f64, travel_mm: f64) {
-        self.line(format_args!("; {} alone", AXIS_NAMES[axis]));
+    fn axis_alone(&mut self, axis: &AxisMotion) {
+        self.accel_mm_s2 = axis.accel_mm_s2;
+        self.line(format_args!("; {} alone", AXIS_NAMES[axis.axis]));
         self.rest();
-        let half_mm = 0.5 * travel_mm;
-        for (creep_mm_s, way_mm) in CREEPS {
-            self.there_and_back(axis, way_mm.min(half_mm), creep_mm_s.min(fastest_mm_s));
+        for part in axis.parts.iter().copied() {
+            let (before, before_s) = (std::mem::take(&mut self.text), self.takes_s);
+            match part {
+                MotionPart::Creeping => self.creeping(axis),
+                MotionPart::Reversals => self.reversals(axis),
+                MotionPart::Strokes => self.strokes(axis),
+            }
+            self.rest();
+            let seconds = to_four_digits((10.0 * (self.takes_s - before_s)).round() / 10.0);
+            self.text = format!("{before}; {}: {seconds} s\n{}", part.purpose(), self.text);
         }
-        self.rest();
+    }
+
+    fn creeping(&mut self, motion: &AxisMotion) {
+        for (creep_mm_s, way_mm) in CREEPS {
+            self.there_and_back(motion.axis, way_mm.min(0.5 * motion.travel_mm()), creep_mm_s.min(motion.fastest_mm_s));
+        }
+    }
+
+    fn reversals(&mut self, motion: &AxisMotion) {
+        let travel_mm = motion.travel_mm();
         // What can be reached within the travel: half of it to speed up, half to slow down.
-        let reached_mm_s = fastest_mm_s.min((self.accel_mm_s2 * travel_mm).sqrt());
+        let reached_mm_s = motion.fastest_mm_s.min((self.accel_mm_s2 * travel_mm).sqrt());
         for part in SPEEDS {
             let feed_mm_s = part * reached_mm_s;
             // Ways of a quarter of a second at that speed, and what it takes to come to it.
             let way_mm = 0.5 * (0.25 * feed_mm_s + feed_mm_s * feed_mm_s / self.accel_mm_s2);
-            self.there_and_back(axis, way_mm.clamp(0.5, half_mm), feed_mm_s);
+            self.there_and_back(motion.axis, way_mm.max(0.5).min(0.5 * travel_mm), feed_mm_s);
         }
-        self.rest();
+    }
+
+    fn strokes(&mut self, motion: &AxisMotion) {
         for (way_mm, times) in STROKES {
             for _ in 0..times {
-                self.there_and_back(axis, 0.5 * way_mm, fastest_mm_s);
+                let half_mm = 0.5 * way_mm.min(motion.travel_mm());
+                self.there_and_back(motion.axis, half_mm, motion.fastest_mm_s);
             }
         }
-        self.rest();
     }
 
     fn two_together(&mut self, fastest_mm_s: f64, travel_mm: f64) {

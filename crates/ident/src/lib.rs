@@ -74,7 +74,9 @@ mod identify;
 mod model;
 
 pub use average::{median_and_spread, quadratic_mean};
-pub use excite::{ExciteError, ExciteOptions, excitation_program};
+pub use excite::{
+    AxisMotion, ExciteError, ExciteOptions, ExciteProgram, MotionPart, excitation_program, next_excitation,
+};
 pub use identify::axes::{AxisRecordings, TrainedAxes, train_axes};
 pub use identify::axis_parameters::{AxisEstimate, AxisParameters, DriveSettings, NotIdentified, identify_axis};
 pub use identify::axis_statistics::axis_statistics;

@@ -2,7 +2,8 @@
 
 use std::io;
 
-use feedwright_ident::{FoundAxis, FreeRunErrors, HORIZONS, NumberSource};
+use feedwright_ident::{AxisMotion, FoundAxis, FreeRunErrors, HORIZONS, NumberSource};
+use feedwright_sim::AXIS_NAMES;
 use serde_json::{Map, Value, json};
 
 use super::LogIdentified;
@@ -37,11 +38,19 @@ pub fn write(out: &mut impl io::Write, identified: &LogIdentified) -> io::Result
         "findings": identified.log.findings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "advice": identified.advice(),
         "improvements": identified.improvements(),
+        "next_motion": next_motion(identified),
         "contour": contour,
         "axes": axes,
     });
     serde_json::to_writer_pretty(&mut *out, &stamped(value))?;
     out.write_all(b"\n")
+}
+
+/// Kinds of motion that would settle what is open, by axis of the machine file.
+fn next_motion(identified: &LogIdentified) -> Map<String, Value> {
+    let parts = |motion: &AxisMotion| motion.parts.iter().map(|part| part.word()).collect::<Vec<_>>();
+    let motions = identified.next_motion();
+    motions.iter().map(|motion| (AXIS_NAMES[motion.axis].to_owned(), json!(parts(motion)))).collect()
 }
 
 fn axis(found: &FoundAxis, verdict: String) -> Value {

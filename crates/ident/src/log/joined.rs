@@ -19,7 +19,7 @@ impl Log {
         let Some((first_path, mut all)) = logs.next() else {
             return Err(LogError::apart(PathBuf::new(), "no log was given".to_owned(), "name one or more"));
         };
-        for (path, log) in logs {
+        for (path, mut log) in logs {
             if (log.sample_time_s / all.sample_time_s - 1.0).abs() > SAME_CLOCK {
                 let message = format!(
                     "a sample is {} s here, and {} s in {}",
@@ -30,6 +30,8 @@ impl Log {
                 let hint = "logs of one machine have one servo period: identify them one by one";
                 return Err(LogError::apart(path, message, hint));
             }
+            all.take_up(&log);
+            log.take_up(&all);
             let names = |log: &Self| log.axes.iter().map(|axis| axis.name.clone()).collect::<Vec<_>>();
             let [here, there] = [names(&log), names(&all)];
             if here.len() != there.len() || there.iter().any(|name| !here.contains(name)) {
@@ -47,6 +49,12 @@ impl Log {
         Ok(all)
     }
 
+    /// Axes that stand still here and move in the other log become axes of this one.
+    fn take_up(&mut self, other: &Self) {
+        let moves = |axis: &mut LogAxis| other.axes.iter().any(|other| other.name == axis.name);
+        self.axes.extend(self.still.extract_if(.., moves));
+    }
+
     /// Another one with the same axes.
     fn append(&mut self, path: String, log: Self) {
         let samples = self.time_s.len();
@@ -60,7 +68,7 @@ impl Log {
                 axis.append(other);
             }
         }
-        // What stands still in one may move in another.
+        // What stands still in all of them is of no one length.
         self.still.clear();
         self.findings.push(LogFinding::Joined { path, from_s });
         self.findings.extend(log.findings);
@@ -121,6 +129,24 @@ mod tests {
         assert!(joined.time_s.windows(2).all(|pair| pair[1] > pair[0]), "{:?}", joined.time_s);
         assert_eq!((joined.axes[0].command_mm.len(), &joined.axes[0].torque), (6, &None));
         assert_eq!(joined.findings[0].to_string(), "a.csv is joined at 6.001 s of the time");
+    }
+
+    #[test]
+    fn an_axis_that_stands_still_in_one_log_is_an_axis_of_all() {
+        let both = || {
+            let (path, mut both) = log("x", 0.001, true);
+            let (_, mut resting) = log("y", 0.001, true);
+            resting.axes[0].command_mm = vec![7.0; 3];
+            both.still = resting.axes;
+            (path, both)
+        };
+        let (path, mut moving) = both();
+        moving.axes.append(&mut moving.still);
+        for logs in [vec![both(), (path.clone(), moving.clone())], vec![(path, moving), both()]] {
+            let joined = Log::joined(logs).unwrap();
+            let lengths: Vec<_> = joined.axes.iter().map(|axis| (axis.name.as_str(), axis.actual_mm.len())).collect();
+            assert_eq!(lengths, [("x", 6), ("y", 6)]);
+        }
     }
 
     #[test]

@@ -15,6 +15,7 @@ use feedwright_ident::KnownValue;
 Examples:
   feedwright identify cut.csv --out mine.toml --report mine.html
   feedwright identify today.csv --update mine.toml
+  feedwright identify cut.csv --out mine.toml --excite-next next.ngc
   feedwright identify log.txt --kp 50±5% --integral-time 0.02±10% --out mine.toml
   feedwright identify --machine workshop --out workshop.model.toml")]
 pub(crate) struct IdentifyArgs {
@@ -96,6 +97,10 @@ pub(crate) struct LogArgs {
     /// does. Without it, a delay of the drive counts as a delay of the record.
     #[arg(long, value_name = "S", requires = "log", allow_negative_numbers = true)]
     pub(crate) record_delay: Option<f64>,
+    /// Write the program that moves the axes as the log did not, and as it would take to settle what is open. Where nothing is open, none is
+    /// written.
+    #[arg(long, value_name = "FILE.ngc", requires = "log")]
+    pub(crate) excite_next: Option<PathBuf>,
     /// Write a page: numbers, measured against predicted, what is left.
     #[arg(long, value_name = "FILE.html", requires = "log")]
     pub(crate) report: Option<PathBuf>,

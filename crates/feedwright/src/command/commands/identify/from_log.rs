@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright_gcode::input;
-use feedwright_ident::{AxisFacts, KnownValue, Log, LogError};
-use feedwright_sim::{Machine, Watch};
+use feedwright_ident::{AxisFacts, AxisMotion, KnownValue, Log, LogError, next_excitation};
+use feedwright_sim::{AXIS_NAMES, Machine, Watch};
 use miette::{IntoDiagnostic, Result};
 
 use crate::command::args::identify::{IdentifyArgs, LogArgs};
@@ -27,6 +27,7 @@ pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> 
     let start = |files: &mut OutputFiles, path: &Path| files.start(path);
     let mut machine = start(&mut files, out)?;
     let mut json = of_log.json.as_deref().map(|path| start(&mut files, path)).transpose()?;
+    let next = of_log.excite_next.as_deref().map(|path| start(&mut files, path)).transpose()?;
     let mut page = of_log.report.as_deref().map(|path| start(&mut files, path)).transpose()?;
     let bar = console.bar(0);
     let log = read(paths, of_log, &bar)?;
@@ -50,11 +51,44 @@ pub(super) fn run(paths: &[PathBuf], args: &IdentifyArgs, console: &Console) -> 
     if let Some(file) = &mut page {
         write_page(file, &identified).map_err(|error| written(error, file))?;
     }
-    let all: Vec<OutputFile> = [Some(machine), json, page].into_iter().flatten().collect();
+    let motions = identified.next_motion();
+    let next = next.map(|file| Next::write(file, &motions)).transpose()?;
+    let (next, said) = next.map_or((None, None), |next| (next.file, Some(next.said)));
+    let all: Vec<OutputFile> = [Some(machine), json, page, next].into_iter().flatten().collect();
     let places: Vec<PathBuf> = all.iter().map(|file| file.path().to_owned()).collect();
     bar.clear();
     OutputFile::commit_all(all, &bar)?;
-    printed(print(&identified, &places), ExitCode::SUCCESS)
+    printed(print(&identified, said, &places), ExitCode::SUCCESS)
+}
+
+/// The program of the motion that is missing, and what to say of it. Without a program, its file is not written.
+struct Next {
+    file: Option<OutputFile>,
+    said: String,
+}
+
+impl Next {
+    fn write(mut file: OutputFile, motions: &[AxisMotion]) -> Result<Self, OutputError> {
+        let Some(program) = next_excitation(motions) else {
+            let said =
+                format!("nothing is open that other motion would settle: {} is not written", file.path().display());
+            return Ok(Self { file: None, said });
+        };
+        file.write_all(program.text.as_bytes()).map_err(|error| OutputError::from_io(error, file.path()))?;
+        let words = |motion: &AxisMotion| {
+            let parts: Vec<&str> = motion.parts.iter().map(|part| part.word()).collect();
+            format!("{} of {}", parts.join(", "), AXIS_NAMES[motion.axis])
+        };
+        let needed: Vec<String> = motions.iter().filter(|motion| !motion.parts.is_empty()).map(words).collect();
+        let said = format!(
+            "what is open would be settled by {}: about {:.0} s, at most {:.1} mm/s; {} has it",
+            needed.join("; "),
+            program.takes_s,
+            program.max_feed_mm_s,
+            file.path().display()
+        );
+        Ok(Self { file: Some(file), said })
+    }
 }
 
 /// The logs, one behind the other.
@@ -100,11 +134,11 @@ fn stem(path: &Path) -> String {
     path.file_stem().map_or_else(|| "mine".to_owned(), |stem| stem.to_string_lossy().into_owned())
 }
 
-fn print(identified: &LogIdentified, places: &[PathBuf]) -> std::io::Result<()> {
+fn print(identified: &LogIdentified, next: Option<String>, places: &[PathBuf]) -> std::io::Result<()> {
     let places = || places.iter().map(|path| Some(path.as_path()));
     let mut out = tables(places());
     write!(out, "{}", identified.table())?;
-    for line in identified.improvements().into_iter().chain(identified.advice()) {
+    for line in identified.improvements().into_iter().chain(identified.advice()).chain(next) {
         writeln!(out, "{}", wrapped(&line, 2))?;
     }
     tell_written(&mut *out, places())
