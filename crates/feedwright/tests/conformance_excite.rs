@@ -70,7 +70,8 @@ fn what_a_log_leaves_open_is_named_written_as_a_program_and_closed_by_its_log() 
     assert!(text.contains("; reversals at constant speeds, for ") && !text.contains("; y alone"), "{text}");
     let json = std::fs::read_to_string(folder.path().join("mine.json")).unwrap();
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    assert!(json["next_motion"]["x"].as_array().unwrap().contains(&"reversals".into()), "{}", json["next_motion"]);
+    let next = &json["axes"]["x"]["next_motion"];
+    assert!(next.as_array().unwrap().contains(&"reversals".into()), "{next}");
     log_of_x(&folder, "next.ngc", "two.txt");
     let both = ["identify", "one.txt", "two.txt"];
     let told = folder.run(&[&both, &identify[..], &["again.ngc"]].concat()).succeeded().stdout;

@@ -68,7 +68,7 @@ impl MotionPart {
 
 /// What an axis does in a program, and the bounds that it keeps.
 #[derive(Debug, Clone, PartialEq)]
-pub struct AxisMotion {
+pub struct AxisExcitation {
     /// Its place among x, y and z.
     pub axis: usize,
     /// Positions that it may go to, mm: it begins in their middle.
@@ -81,7 +81,7 @@ pub struct AxisMotion {
     pub parts: Vec<MotionPart>,
 }
 
-impl AxisMotion {
+impl AxisExcitation {
     fn travel_mm(&self) -> f64 {
         self.range_mm[1] - self.range_mm[0]
     }
@@ -141,14 +141,14 @@ pub fn excitation_program(machine: &Machine, options: ExciteOptions) -> Result<E
         return Err(ExciteError::Travel { travel_mm });
     }
     let limits = &machine.limits;
-    let motion = |axis| AxisMotion {
+    let motion = |axis| AxisExcitation {
         axis,
         range_mm: [-0.5 * travel_mm, 0.5 * travel_mm],
         fastest_mm_s: fastest_mm_s(machine, axis),
         accel_mm_s2: limits.tangential_accel_mm_s2,
         parts: MotionPart::ALL.to_vec(),
     };
-    let axes: Vec<AxisMotion> = (0..machine.axis_count()).map(motion).collect();
+    let axes: Vec<AxisExcitation> = (0..machine.axis_count()).map(motion).collect();
     Ok(program(&axes, limits.normal_accel_mm_s2, |takes_s, max_feed_mm_s| {
         head(machine, travel_mm, takes_s, max_feed_mm_s)
     }))
@@ -156,15 +156,15 @@ pub fn excitation_program(machine: &Machine, options: ExciteOptions) -> Result<E
 
 /// The program that lets axes make the motion that a log lacks. Where each of them needs every kind of motion it is the whole excitation.
 /// None where nothing is needed.
-pub fn next_excitation(axes: &[AxisMotion]) -> Option<ExciteProgram> {
-    let axes: Vec<AxisMotion> = axes.iter().filter(|axis| !axis.parts.is_empty()).cloned().collect();
+pub fn next_excitation(axes: &[AxisExcitation]) -> Option<ExciteProgram> {
+    let axes: Vec<AxisExcitation> = axes.iter().filter(|axis| !axis.parts.is_empty()).cloned().collect();
     let accel_mm_s2 = axes.iter().map(|axis| axis.accel_mm_s2).fold(f64::INFINITY, f64::min);
     (!axes.is_empty()).then(|| program(&axes, accel_mm_s2, |takes_s, max_mm_s| next_head(&axes, takes_s, max_mm_s)))
 }
 
 /// Each axis alone, and x and y together where both make all kinds of motion. The head is made of the time that it takes and of the highest
 /// feed, s and mm/s.
-fn program(axes: &[AxisMotion], normal_accel_mm_s2: f64, head: impl Fn(f64, f64) -> String) -> ExciteProgram {
+fn program(axes: &[AxisExcitation], normal_accel_mm_s2: f64, head: impl Fn(f64, f64) -> String) -> ExciteProgram {
     let mut moves = MoveWriter {
         text: String::new(),
         takes_s: 0.0,
@@ -173,7 +173,7 @@ fn program(axes: &[AxisMotion], normal_accel_mm_s2: f64, head: impl Fn(f64, f64)
         normal_accel_mm_s2,
     };
     axes.iter().for_each(|axis| moves.axis_alone(axis));
-    let plane: Vec<&AxisMotion> =
+    let plane: Vec<&AxisExcitation> =
         axes.iter().filter(|axis| axis.axis < 2 && axis.parts.len() == MotionPart::ALL.len()).collect();
     if let [x, y] = plane.as_slice() {
         moves.two_together(x.fastest_mm_s.min(y.fastest_mm_s), x.travel_mm().min(y.travel_mm()));
@@ -228,10 +228,10 @@ fn head(machine: &Machine, travel_mm: f64, takes_s: f64, max_feed_mm_s: f64) -> 
 }
 
 /// The same for the motion that a log lacks.
-fn next_head(axes: &[AxisMotion], takes_s: f64, max_feed_mm_s: f64) -> String {
-    let each = |of: &dyn Fn(&AxisMotion) -> String| axes.iter().map(of).collect::<Vec<_>>().join(", ");
-    let name = |axis: &AxisMotion| AXIS_NAMES[axis.axis];
-    let middle_mm = |axis: &AxisMotion| rounded(0.5 * (axis.range_mm[0] + axis.range_mm[1]));
+fn next_head(axes: &[AxisExcitation], takes_s: f64, max_feed_mm_s: f64) -> String {
+    let each = |of: &dyn Fn(&AxisExcitation) -> String| axes.iter().map(of).collect::<Vec<_>>().join(", ");
+    let name = |axis: &AxisExcitation| AXIS_NAMES[axis.axis];
+    let middle_mm = |axis: &AxisExcitation| rounded(0.5 * (axis.range_mm[0] + axis.range_mm[1]));
     let start = each(&|axis| format!("{} = {} mm", name(axis), middle_mm(axis)));
     // Rounded down: it is not to exceed what is allowed.
     let within = each(&|axis| format!("{:.3} mm in {}", (500.0 * axis.travel_mm()).floor() * 1e-3, name(axis)));
@@ -295,7 +295,7 @@ impl MoveWriter {
         }
     }
 
-    fn axis_alone(&mut self, axis: &AxisMotion) {
+    fn axis_alone(&mut self, axis: &AxisExcitation) {
         self.accel_mm_s2 = axis.accel_mm_s2;
         self.line(format_args!("; {} alone", AXIS_NAMES[axis.axis]));
         self.rest();
@@ -312,13 +312,13 @@ impl MoveWriter {
         }
     }
 
-    fn creeping(&mut self, motion: &AxisMotion) {
+    fn creeping(&mut self, motion: &AxisExcitation) {
         for (creep_mm_s, way_mm) in CREEPS {
             self.there_and_back(motion.axis, way_mm.min(0.5 * motion.travel_mm()), creep_mm_s.min(motion.fastest_mm_s));
         }
     }
 
-    fn reversals(&mut self, motion: &AxisMotion) {
+    fn reversals(&mut self, motion: &AxisExcitation) {
         let travel_mm = motion.travel_mm();
         // What can be reached within the travel: half of it to speed up, half to slow down.
         let reached_mm_s = motion.fastest_mm_s.min((self.accel_mm_s2 * travel_mm).sqrt());
@@ -330,7 +330,7 @@ impl MoveWriter {
         }
     }
 
-    fn strokes(&mut self, motion: &AxisMotion) {
+    fn strokes(&mut self, motion: &AxisExcitation) {
         for (way_mm, times) in STROKES {
             for _ in 0..times {
                 let half_mm = 0.5 * way_mm.min(motion.travel_mm());

@@ -75,7 +75,7 @@ mod model;
 
 pub use average::{median_and_spread, quadratic_mean};
 pub use excite::{
-    AxisMotion, ExciteError, ExciteOptions, ExciteProgram, MotionPart, excitation_program, next_excitation,
+    AxisExcitation, ExciteError, ExciteOptions, ExciteProgram, MotionPart, excitation_program, next_excitation,
 };
 pub use identify::axes::{AxisRecordings, TrainedAxes, train_axes};
 pub use identify::axis_parameters::{AxisEstimate, AxisParameters, DriveSettings, NotIdentified, identify_axis};

@@ -3,7 +3,7 @@
 
 use feedwright_gcode::canon::{Canon, Motion, Shape};
 use feedwright_gcode::{Reader, Settings};
-use feedwright_ident::{AxisMotion, ExciteError, ExciteOptions, MotionPart, excitation_program, next_excitation};
+use feedwright_ident::{AxisExcitation, ExciteError, ExciteOptions, MotionPart, excitation_program, next_excitation};
 use feedwright_sim::{BUILT_IN_MACHINES, Machine};
 
 /// Rounding of the positions in a program, mm.
@@ -115,7 +115,7 @@ fn what_is_missing_everywhere_is_the_whole_excitation_and_what_is_not_is_left_ou
     // A log does not tell the two apart.
     machine.limits.normal_accel_mm_s2 = machine.limits.tangential_accel_mm_s2;
     let limits = &machine.limits;
-    let whole = |axis| AxisMotion {
+    let whole = |axis| AxisExcitation {
         axis,
         range_mm: [90.0, 110.0],
         fastest_mm_s: 0.8 * limits.max_feed_mm_s,
@@ -127,9 +127,9 @@ fn what_is_missing_everywhere_is_the_whole_excitation_and_what_is_not_is_left_ou
     let excitation = excitation_program(&machine, ExciteOptions { travel_mm: 20.0 }).unwrap();
     assert_eq!(lines(&program.text), lines(&excitation.text));
     assert!(program.text.contains("the axes stand at x = 100 mm, y = 100 mm, z = 100 mm"), "{}", program.text);
-    let none = AxisMotion { parts: vec![], ..whole(0) };
+    let none = AxisExcitation { parts: vec![], ..whole(0) };
     assert_eq!(next_excitation(&[none.clone(), none.clone()]), None);
-    let reversals = AxisMotion { parts: vec![MotionPart::Reversals], ..whole(1) };
+    let reversals = AxisExcitation { parts: vec![MotionPart::Reversals], ..whole(1) };
     let moves = motions_of(next_excitation(&[none, reversals]).unwrap().text);
     assert!(!moves.is_empty() && moves.iter().all(|motion| motion.end_mm[0] == 0.0 && motion.end_mm[2] == 0.0));
     assert!(moves.iter().any(|motion| motion.end_mm[1] > 0.0) && moves.iter().any(|motion| motion.end_mm[1] < 0.0));
@@ -139,7 +139,7 @@ fn what_is_missing_everywhere_is_the_whole_excitation_and_what_is_not_is_left_ou
 fn what_is_missing_keeps_to_what_the_log_had() {
     for (range_mm, fastest_mm_s) in [([0.0, 0.3], 5.0), ([-7.0, 61.2345], 44.4), ([3.0, 900.0], 400.0)] {
         for part in MotionPart::ALL {
-            let axis = AxisMotion { axis: 0, range_mm, fastest_mm_s, accel_mm_s2: 800.0, parts: vec![part] };
+            let axis = AxisExcitation { axis: 0, range_mm, fastest_mm_s, accel_mm_s2: 800.0, parts: vec![part] };
             let program = next_excitation(&[axis]).unwrap();
             assert!(program.takes_s > 0.0 && program.max_feed_mm_s <= fastest_mm_s);
             for motion in motions_of(program.text) {

@@ -2,8 +2,7 @@
 
 use std::io;
 
-use feedwright_ident::{AxisMotion, FoundAxis, FreeRunErrors, HORIZONS, NumberSource};
-use feedwright_sim::AXIS_NAMES;
+use feedwright_ident::{FoundAxis, FreeRunErrors, HORIZONS, NumberSource};
 use serde_json::{Map, Value, json};
 
 use super::LogIdentified;
@@ -19,7 +18,7 @@ pub fn write(out: &mut impl io::Write, identified: &LogIdentified) -> io::Result
         .axes
         .iter()
         .enumerate()
-        .map(|(i, found)| (found.name.clone(), axis(found, identified.verdict(i))))
+        .map(|(i, found)| (found.name.clone(), axis(identified, i, found)))
         .collect();
     let contour = identified.machine.contour.as_ref().map(|contour| {
         json!({
@@ -38,7 +37,6 @@ pub fn write(out: &mut impl io::Write, identified: &LogIdentified) -> io::Result
         "findings": identified.log.findings.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "advice": identified.advice(),
         "improvements": identified.improvements(),
-        "next_motion": next_motion(identified),
         "contour": contour,
         "axes": axes,
     });
@@ -46,14 +44,7 @@ pub fn write(out: &mut impl io::Write, identified: &LogIdentified) -> io::Result
     out.write_all(b"\n")
 }
 
-/// Kinds of motion that would settle what is open, by axis of the machine file.
-fn next_motion(identified: &LogIdentified) -> Map<String, Value> {
-    let parts = |motion: &AxisMotion| motion.parts.iter().map(|part| part.word()).collect::<Vec<_>>();
-    let motions = identified.next_motion();
-    motions.iter().map(|motion| (AXIS_NAMES[motion.axis].to_owned(), json!(parts(motion)))).collect()
-}
-
-fn axis(found: &FoundAxis, verdict: String) -> Value {
+fn axis(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Value {
     let scores = &found.scores;
     let arx: Vec<Value> = scores
         .arx
@@ -95,7 +86,11 @@ fn axis(found: &FoundAxis, verdict: String) -> Value {
             "open": found.unseen.is_open(),
             "parameters": found.unseen.terms.iter().map(|term| term.key()).collect::<Vec<_>>(),
         },
-        "verdict": verdict,
+        "next_motion": identified
+            .next_motion_of(i)
+            .map(|motion| motion.parts.iter().map(|part| part.word()).collect::<Vec<_>>())
+            .unwrap_or_default(),
+        "verdict": identified.verdict(i),
     })
 }
 

@@ -4,7 +4,7 @@
 //! speed, strokes for what goes with the acceleration. Axes keep to positions, speeds and accelerations that the log has, or to the limits
 //! of the machine file that is updated where those are higher. What no motion tells (inertia, the scale of torques) asks for none.
 
-use feedwright_ident::{AxisMotion, FoundAxis, LawTerm, MotionPart};
+use feedwright_ident::{AxisExcitation, FoundAxis, LawTerm, MotionPart};
 use feedwright_sim::Machine;
 
 use super::LogIdentified;
@@ -15,23 +15,24 @@ const FEED_PART: f64 = 0.8;
 const REACHED_S: f64 = 0.05;
 
 impl LogIdentified {
-    /// What each axis is to move, in the order of the log.
-    pub fn next_motion(&self) -> Vec<AxisMotion> {
-        let places = self.places();
-        let motion = |i: usize| {
-            let axis = places.iter().position(|place| *place == Some(i))?;
-            let found = &self.machine.axes[i];
-            let command_mm = &self.log.axes.get(i)?.command_mm;
-            let ends = [f64::min, f64::max].map(|end| command_mm.iter().copied().fold(f64::NAN, end));
-            let limits = self.job.before.as_ref().map(|machine| machine_limits(machine, axis));
-            let [speed_mm_s, accel_mm_s2] = limits.unwrap_or([0.0; 2]);
-            let fastest_mm_s = found.most[0].max(speed_mm_s);
-            let accel_mm_s2 = found.most[1].max(accel_mm_s2);
-            let accel_mm_s2 = if accel_mm_s2 > 0.0 { accel_mm_s2 } else { fastest_mm_s / REACHED_S };
-            let is_one_sided = self.machine.split.one_sided.iter().any(|(of, _)| *of == i);
-            Some(AxisMotion { axis, range_mm: ends, fastest_mm_s, accel_mm_s2, parts: parts(found, is_one_sided) })
-        };
-        (0..self.machine.axes.len()).filter_map(motion).collect()
+    /// What each axis is to move, in the order of the log; one that no machine file has is left out.
+    pub fn next_motion(&self) -> Vec<AxisExcitation> {
+        (0..self.machine.axes.len()).filter_map(|i| self.next_motion_of(i)).collect()
+    }
+
+    /// What an axis of the log is to move; none where no machine file has it.
+    pub(super) fn next_motion_of(&self, i: usize) -> Option<AxisExcitation> {
+        let axis = self.places().iter().position(|place| *place == Some(i))?;
+        let found = self.machine.axes.get(i)?;
+        let command_mm = &self.log.axes.get(i)?.command_mm;
+        let range_mm = [f64::min, f64::max].map(|end| command_mm.iter().copied().fold(f64::NAN, end));
+        let limits = self.job.before.as_ref().map(|machine| machine_limits(machine, axis));
+        let [speed_mm_s, accel_mm_s2] = limits.unwrap_or([0.0; 2]);
+        let fastest_mm_s = found.most[0].max(speed_mm_s);
+        let accel_mm_s2 = found.most[1].max(accel_mm_s2);
+        let accel_mm_s2 = if accel_mm_s2 > 0.0 { accel_mm_s2 } else { fastest_mm_s / REACHED_S };
+        let is_one_sided = self.machine.split.one_sided.iter().any(|(of, _)| *of == i);
+        Some(AxisExcitation { axis, range_mm, fastest_mm_s, accel_mm_s2, parts: parts(found, is_one_sided) })
     }
 }
 

@@ -261,14 +261,13 @@ class Measuring:
             return speed
         self.shown[now] = self.of_motor.read(motor, moment) if self.by_encoder else motor
         if not self.held or now % self.substeps == 0:
-            self.seen = (self.shown[now] - self.shown_at(now - self.periods)) / (self.periods * self.dt)
+            # The axis stands before the first; rounding as in the program, since steps of the encoder make much of little.
+            at = lambda age: self.shown[max(now - age, 0)]
+            whole = int(self.periods)
+            part = self.periods - whole
+            moved = at(0) - at(whole) + part * (at(whole) - at(whole + 1))
+            self.seen = moved / ((whole + part) * self.dt)
         return self.seen
-
-    def shown_at(self, now):
-        """To the drive, between two mechanics periods too; the axis stands before the first."""
-        at = lambda n: self.shown[max(n, 0)]
-        before = math.floor(now)
-        return at(before) + (now - before) * (at(before + 1) - at(before))
 
 
 def cut(axis, index, period, seed, times_s, start_mm, commands_mm, finer):

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use feedwright_gcode::input;
-use feedwright_ident::{AxisFacts, AxisMotion, KnownValue, Log, LogError, next_excitation};
+use feedwright_ident::{AxisExcitation, AxisFacts, KnownValue, Log, LogError, next_excitation};
 use feedwright_sim::{AXIS_NAMES, Machine, Watch};
 use miette::{IntoDiagnostic, Result};
 
@@ -68,14 +68,14 @@ struct Next {
 }
 
 impl Next {
-    fn write(mut file: OutputFile, motions: &[AxisMotion]) -> Result<Self, OutputError> {
+    fn write(mut file: OutputFile, motions: &[AxisExcitation]) -> Result<Self, OutputError> {
         let Some(program) = next_excitation(motions) else {
             let said =
                 format!("nothing is open that other motion would settle: {} is not written", file.path().display());
             return Ok(Self { file: None, said });
         };
         file.write_all(program.text.as_bytes()).map_err(|error| OutputError::from_io(error, file.path()))?;
-        let words = |motion: &AxisMotion| {
+        let words = |motion: &AxisExcitation| {
             let parts: Vec<&str> = motion.parts.iter().map(|part| part.word()).collect();
             format!("{} of {}", parts.join(", "), AXIS_NAMES[motion.axis])
         };
