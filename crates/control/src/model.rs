@@ -434,7 +434,8 @@ mod tests {
         let count = AxisKnowledge::NUMBERS.len();
         assert_eq!((bytes[12], at(0), bytes.len()), (3, 1e-4, 40 + 8 * (1 + 3 * count) + 4));
         assert_eq!(at(1), identified.axes[0].parameters.rad_per_mm);
-        assert_eq!(at(1 + count + 12), identified.axes[1].parameters.inertia_kg_m2);
+        assert_eq!(at(1 + 10), identified.axes[0].drive.speed_window_s);
+        assert_eq!(at(1 + count + 13), identified.axes[1].parameters.inertia_kg_m2);
         assert_eq!(at(3 * count), identified.axes[2].statistics.cogging_per_rev);
     }
 
