@@ -28,6 +28,7 @@ fn run(command: CommandArgs, console: &Console) -> Result<ExitCode> {
         CommandArgs::NeverWorse(args) => commands::never_worse::run(&args, console),
         CommandArgs::HeldOut(args) => commands::held_out::run(&args, console),
         CommandArgs::Mismatch(args) => commands::mismatch::run(&args, console),
+        CommandArgs::Independent(args) => commands::independent::run(&args, console),
         CommandArgs::Paper(args) => commands::paper::run(&args, console),
         CommandArgs::ExportContour(args) => commands::export_contour::run(&args, console),
     }

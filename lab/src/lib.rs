@@ -12,9 +12,11 @@ pub mod contour_program;
 pub mod journal;
 pub mod paper;
 pub mod held_out;
+pub mod independent_plant;
 pub mod compare;
 pub mod never_worse;
 pub mod mismatch;
+pub mod independent;
 pub mod command;
 
 pub use compare::held_out_work::HeldOutSeeds;

@@ -39,7 +39,7 @@
 //! | Machine files | [`Machine`], [`Axis`], [`Limits`], [`Period`], [`Transmission`], [`Noise`], [`MachineError`] |
 //! | Built-in machines | [`BUILT_IN_MACHINES`], [`DEFAULT_MACHINE`] |
 //! | What a controller may know | [`Known`], [`KnownAxis`] |
-//! | Plant | [`Plant`], [`Measurement`] |
+//! | Plant | [`Plant`], [`Measurement`]; another one in its place: [`Mechanism`], [`PlantMaker`] |
 //! | Reference | [`Reference`], [`Sample`], [`Foot`] |
 //! | Progress and cancellation | [`Watch`], [`StageSteps`], [`Cancelled`] |
 //!
@@ -88,11 +88,11 @@ pub use machine::{
 };
 pub use number::{shown, to_four_digits};
 pub use pipeline::{PlanCache, Run, RunError, Stages, path_steps};
-pub use plant::{Measurement, Plant};
+pub use plant::{Measurement, Mechanism, Plant};
 pub use reference::{Foot, Reference, Sample};
 pub use simulate::foot::settled_s;
 pub use simulate::uncut::Uncut;
-pub use simulate::{JointError, RunResult, Stopped, TickTimes};
+pub use simulate::{JointError, PlantMaker, RunResult, Stopped, TickTimes};
 pub use trace::csv::{SetpointWriter, TraceWriter};
 pub use trace::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
 pub use watch::{Cancelled, StageSteps, Watch};

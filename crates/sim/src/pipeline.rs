@@ -20,7 +20,7 @@ use thiserror::Error;
 
 use crate::machine::Machine;
 use crate::reference::Reference;
-use crate::simulate::{RunResult, Stopped, simulate};
+use crate::simulate::{PlantMaker, RunResult, Stopped, simulate};
 use crate::trace::Sink;
 use crate::watch::{Cancelled, Watch};
 
@@ -98,6 +98,7 @@ const LAP_SEED_SHIFT: u32 = 32;
 #[derive(Clone, Copy)]
 pub struct Run<'a> {
     machine: &'a Machine,
+    plant: Option<PlantMaker<'a>>,
     caps: Option<&'a Arc<SpeedCaps>>,
     stages: Stages,
     laps: u32,
@@ -167,7 +168,14 @@ impl From<Stopped> for RunError {
 impl<'a> Run<'a> {
     /// One lap on a machine, by the stages that suit it.
     pub fn on(machine: &'a Machine) -> Self {
-        Self { machine, caps: None, stages: Stages::of(machine), laps: 1, plan_sink: None, memory: None, watch: &() }
+        let stages = Stages::of(machine);
+        Self { machine, plant: None, caps: None, stages, laps: 1, plan_sink: None, memory: None, watch: &() }
+    }
+
+    /// Cuts with another plant in place of the machine's own. Plan, limits and periods stay those of the machine.
+    #[must_use]
+    pub const fn plant(self, plant: PlantMaker<'a>) -> Self {
+        Self { plant: Some(plant), ..self }
     }
 
     /// Sets the number of laps. All but the last are practice; only the last lap gives rows and the
@@ -291,7 +299,7 @@ impl<'a> Run<'a> {
             }
         };
         let mut reference = Reference::new(plan.told_to(self.plan_sink));
-        let result = simulate(self.machine, &mut reference, controller, sinks, self.watch)?;
+        let result = simulate(self.machine, self.plant, &mut reference, controller, sinks, self.watch)?;
         if let Some(fault) = reference.fault() {
             return Err(fault.clone().into());
         }

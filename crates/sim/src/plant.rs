@@ -29,7 +29,7 @@ use std::f64::consts::TAU;
 
 use feedwright_control::{AxisLaw, AxisState, Periods, friction_signs};
 
-use crate::kinematics::{AxisErrors, GeometricErrors};
+use crate::kinematics::{AxisErrors, GeometricErrors, joints_of, tool_of};
 use crate::machine::{Axis, Machine};
 use encoder::Moment;
 use nonideal::NonidealAxis;
@@ -46,6 +46,46 @@ pub struct Measurement<const N: usize> {
     pub measured_mm: [f64; N],
     /// Motor torque at the end of the servo period, N m.
     pub torque_nm: [f64; N],
+}
+
+impl<const N: usize> Measurement<N> {
+    /// The same of the first M axes; an axis that is not there is at zero.
+    pub(crate) fn of_axes<const M: usize>(&self) -> Measurement<M> {
+        let of = |values: [f64; N]| joints_of(tool_of(values));
+        Measurement {
+            position_mm: of(self.position_mm),
+            joint_mm: of(self.joint_mm),
+            measured_mm: of(self.measured_mm),
+            torque_nm: of(self.torque_nm),
+        }
+    }
+}
+
+/// What the closed loop moves: a [`Plant`], or a machine of other equations in its place. It has three axes; a run of two uses the
+/// first two.
+pub trait Mechanism {
+    /// One servo period at the position command `command_mm`.
+    fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3>;
+
+    /// Lets `periods` servo periods pass in which the command rests.
+    fn skip(&mut self, periods: u64);
+
+    /// Whether the tool is elsewhere than the encoders say.
+    fn has_geometry(&self) -> bool;
+}
+
+impl<const N: usize> Mechanism for Plant<N> {
+    fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
+        Plant::step(self, joints_of(command_mm)).of_axes()
+    }
+
+    fn skip(&mut self, periods: u64) {
+        Plant::skip(self, periods);
+    }
+
+    fn has_geometry(&self) -> bool {
+        Plant::has_geometry(self)
+    }
 }
 
 /// N axes and their state.

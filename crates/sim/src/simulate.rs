@@ -23,7 +23,7 @@ use feedwright_plan::vector::distance;
 
 use crate::kinematics::{joints_of, tool_of};
 use crate::machine::Machine;
-use crate::plant::{Measurement, Plant};
+use crate::plant::{Measurement, Mechanism, Plant};
 use crate::reference::{Foot, Reference, Sample};
 use crate::trace::{Commanded, CorrectionChange, FadedOut, Outcome, Row, Sink, Transition};
 use crate::watch::{Cancelled, Watch};
@@ -96,6 +96,9 @@ impl From<Cancelled> for Stopped {
     }
 }
 
+/// Makes the machine of a lap, at rest with its joints at the given place, mm, and with random numbers by the given seed.
+pub type PlantMaker<'a> = &'a dyn Fn([f64; 3], u64) -> Box<dyn Mechanism>;
+
 /// Cuts the whole reference, one lap; every row goes to every sink. The controller is as the caller has it: at its beginning, or
 /// with what it learnt in the laps before.
 ///
@@ -103,12 +106,13 @@ impl From<Cancelled> for Stopped {
 /// What a sink says when it takes no more, or an end from outside.
 pub(crate) fn simulate<const N: usize>(
     machine: &Machine,
+    plant: Option<PlantMaker<'_>>,
     reference: &mut Reference<'_>,
     controller: &mut dyn Controller<N>,
     sinks: &mut [&mut dyn Sink],
     watch: &dyn Watch,
 ) -> Result<RunResult, Stopped> {
-    let mut lap = ClosedLoop::new(machine, reference, controller);
+    let mut lap = ClosedLoop::new(machine, plant, reference, controller);
     let (mut n, mut rows) = (0_u64, 0_u64);
     while let Some(periods) = lap.servo_period(n, reference, controller, sinks, watch)? {
         n += periods;
@@ -128,7 +132,7 @@ struct ClosedLoop<'a, const N: usize> {
     lost_mm: f64,
     feed_periods: u32,
     tick: Tick<N>,
-    plant: Plant<N>,
+    plant: Box<dyn Mechanism>,
     foot: FootTracker,
     joint_error: Option<JointErrorMeter>,
     uncut: Uncut,
@@ -148,7 +152,12 @@ struct ClosedLoop<'a, const N: usize> {
 
 impl<'a, const N: usize> ClosedLoop<'a, N> {
     /// At rest at the start of the path.
-    fn new(machine: &'a Machine, reference: &mut Reference<'_>, controller: &dyn Controller<N>) -> Self {
+    fn new(
+        machine: &'a Machine,
+        plant: Option<PlantMaker<'_>>,
+        reference: &mut Reference<'_>,
+        controller: &dyn Controller<N>,
+    ) -> Self {
         let servo_s = machine.period.servo_s;
         let slowest_s = 1.0 / machine.slowest_kp_1_s();
         let start_mm = joints_of(reference.at(0.0).position_mm);
@@ -156,7 +165,10 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let limits = &machine.limits;
         let bounds = Bounds::new(limits.max_deviation_mm, limits.rapid_mm_s, fade_mm_s2);
         let bounds = bounds.feed_rise(limits.max_feed_rise_percent);
-        let plant = Plant::new(machine, start_mm);
+        let plant: Box<dyn Mechanism> = match plant {
+            Some(make) => make(tool_of(start_mm), machine.noise.seed),
+            None => Box::new(Plant::<N>::new(machine, start_mm)),
+        };
         Self {
             machine,
             servo_s,
@@ -191,7 +203,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
     ) -> std::io::Result<Option<u64>> {
         let t_s = n as f64 * self.servo_s;
         let setpoint = self.command(t_s, reference, controller, watch);
-        let measurement = self.plant.step(setpoint.command_mm);
+        let measurement: Measurement<N> = self.plant.step(tool_of(setpoint.command_mm)).of_axes();
         self.seen_mm = measurement.measured_mm;
         if self.is_lost(t_s, distance(measurement.position_mm, setpoint.command_mm)) {
             return Ok(None);

@@ -3,6 +3,7 @@
 pub(crate) mod sweep;
 pub(crate) mod compare;
 pub(crate) mod mismatch;
+pub(crate) mod independent;
 pub(crate) mod never_worse;
 pub(crate) mod held_out;
 pub(crate) mod paper;
@@ -14,6 +15,7 @@ use feedwright::command::{COLUMNS, CommonArgs, RunArgs};
 use compare::CompareArgs;
 use export_contour::ExportContourArgs;
 use held_out::HeldOutArgs;
+use independent::IndependentArgs;
 use mismatch::MismatchArgs;
 use never_worse::NeverWorseArgs;
 use paper::PaperArgs;
@@ -41,6 +43,7 @@ pub(crate) enum CommandArgs {
     NeverWorse(NeverWorseArgs),
     HeldOut(HeldOutArgs),
     Mismatch(MismatchArgs),
+    Independent(IndependentArgs),
     Paper(PaperArgs),
     Run(Box<RunArgs>),
     /// List all controllers, or the parameters of one

@@ -16,11 +16,11 @@ impl Random {
     }
 
     /// Evenly spread in its logarithm, to three digits.
-    pub(super) fn by_ratio(&mut self, [low, high]: [f64; 2]) -> f64 {
+    pub(crate) fn by_ratio(&mut self, [low, high]: [f64; 2]) -> f64 {
         rounded(low * libm::exp(self.between([0.0, libm::log(high / low)])))
     }
 
-    pub(super) fn whole(&mut self, low: u32, high: u32) -> u32 {
+    pub(crate) fn whole(&mut self, low: u32, high: u32) -> u32 {
         self.0.random_range(low..=high)
     }
 
@@ -28,7 +28,7 @@ impl Random {
         if self.one_in(2) { 1.0 } else { -1.0 }
     }
 
-    pub(super) fn one_in(&mut self, count: u32) -> bool {
+    pub(crate) fn one_in(&mut self, count: u32) -> bool {
         self.0.random_range(0..count) == 0
     }
 }

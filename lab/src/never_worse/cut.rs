@@ -34,7 +34,7 @@ pub struct Figures {
 
 impl Figures {
     /// What the verdict looks at, of all that a run says about itself: the one place that knows where it stands.
-    fn of(run: &RunResult, statistics: &Statistics, entry: &Entry) -> Self {
+    pub(crate) fn of(run: &RunResult, statistics: &Statistics, entry: &Entry) -> Self {
         // The uncorrected cut has nothing that could be taken out of the loop.
         let left = run.faded_out.filter(|_| entry.name != BASELINE && !run.engaged_at_end);
         let lost = match (run.outcome, left) {
@@ -53,7 +53,7 @@ impl Figures {
     }
 
     /// A cut that did not end.
-    fn failed(why: &str) -> Self {
+    pub(crate) fn failed(why: &str) -> Self {
         Self { lost: Some(why.to_owned()), ..Self::default() }
     }
 }

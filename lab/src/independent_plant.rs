@@ -1,0 +1,178 @@
+//! An independent plant: a machine of other equations than the one that feedwright simulates and assumes.
+//!
+//! Identification and controllers assume the law of [`feedwright_control::axis`], and [`feedwright_sim::Plant`] has the same. Here they are
+//! scored on a machine that they were not written for. It uses nothing of that law or that plant, and nothing is ever tuned on it.
+//!
+//! | File | What | Unlike the simulated machine |
+//! |---|---|---|
+//! | `independent_plant/lugre.rs` | LuGre friction at motor and table | bristles with damping; levels by direction and weight |
+//! | `independent_plant/ball_screw.rs` | screw between motor and table | hardens; flanks come to bear smoothly |
+//! | `independent_plant/mechanics.rs` | winding, motor, table; trapezoidal rule | current, back electromotive force, mass by position |
+//! | `independent_plant/position_sensor.rs` | encoder or scale | phase by homing; late by drive periods |
+//! | `independent_plant/cascade.rs` | the drive | position, speed and current loop sampled each for itself; delay of the bus |
+//! | `independent_plant/linearization.rs` | gains and delays for small motions | |
+//! | `independent_plant/machines.rs` | three machines, and others drawn around them | |
+//!
+//! The tool is where the table is and, with the lead error of the screw, A (sin(2 pi x / lead + p) - sin p), which no encoder sees. As
+//! joint counts what the position loop sees, without steps and errors of the encoder.
+
+pub mod lugre;
+pub mod ball_screw;
+pub mod mechanics;
+pub mod position_sensor;
+pub mod cascade;
+pub mod linearization;
+pub mod machines;
+
+use std::f64::consts::TAU;
+
+use feedwright_sim::{Measurement, Mechanism};
+use serde::Serialize;
+
+use cascade::{CascadeState, DriveCascade, DriveInput};
+use mechanics::{FeedAxis, FeedState};
+use position_sensor::{Late, PositionSensor};
+
+/// Integration steps in a period of the current loop.
+const STEPS: u32 = 2;
+
+/// An axis with its drive and its encoders.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct IndependentAxis {
+    /// Motor, screw and table.
+    pub feed: FeedAxis,
+    /// The drive.
+    pub cascade: DriveCascade,
+    /// Encoder at the motor, in mm of travel.
+    pub encoder: PositionSensor,
+    /// Scale on the table that the position loop uses; none is the motor's encoder.
+    pub scale: Option<PositionSensor>,
+    /// Lead error of the screw: amplitude, mm, and phase, rad.
+    pub lead_error: [f64; 2],
+}
+
+/// An axis under way.
+#[derive(Debug, Clone)]
+struct RunningAxis {
+    axis: IndependentAxis,
+    state: FeedState,
+    drive: CascadeState,
+    /// What comes from the sensors, in mm: of the position loop, and of the motor.
+    sensors: [Late<f64>; 2],
+    seen_mm: [f64; 2],
+    command_mm: f64,
+    /// What the table is ahead of the encoder at rest at the start, mm: it was zeroed there.
+    table_zero_mm: f64,
+}
+
+/// A machine of these axes.
+#[derive(Debug, Clone)]
+pub struct IndependentPlant {
+    axes: [RunningAxis; 3],
+}
+
+impl IndependentPlant {
+    /// At rest with the encoders at `start_mm`.
+    pub fn new(axes: &[IndependentAxis; 3], start_mm: [f64; 3]) -> Self {
+        Self { axes: std::array::from_fn(|i| RunningAxis::new(axes[i], start_mm[i])) }
+    }
+
+    /// State of an axis.
+    pub fn state(&self, axis: usize) -> &FeedState {
+        &self.axes[axis].state
+    }
+}
+
+impl Mechanism for IndependentPlant {
+    fn step(&mut self, command_mm: [f64; 3]) -> Measurement<3> {
+        self.axes.iter_mut().zip(command_mm).for_each(|(axis, command_mm)| axis.servo_period(command_mm));
+        let each = |value: fn(&RunningAxis) -> f64| [0, 1, 2].map(|i| value(&self.axes[i]));
+        Measurement {
+            position_mm: each(RunningAxis::tool_mm),
+            joint_mm: each(|axis| axis.places_mm()[0]),
+            measured_mm: each(|axis| axis.seen_mm[0]),
+            torque_nm: each(|axis| axis.axis.feed.motor.torque_nm(&axis.state)),
+        }
+    }
+
+    /// Friction creeps and integrals go on in a rest: it is simulated as a whole.
+    fn skip(&mut self, periods: u64) {
+        for _ in 0..periods {
+            self.axes.iter_mut().for_each(|axis| axis.servo_period(axis.command_mm));
+        }
+    }
+
+    fn has_geometry(&self) -> bool {
+        true
+    }
+}
+
+impl RunningAxis {
+    fn new(axis: IndependentAxis, start_mm: f64) -> Self {
+        let state = axis.feed.at_rest(1e-3 * start_mm, axis.scale.is_some());
+        let mut running = Self {
+            axis,
+            state,
+            drive: CascadeState::at_rest(&axis.cascade, 0.0, 0.0, 0.0, &axis.feed.motor),
+            sensors: [Late::new(0, 0.0), Late::new(0, 0.0)],
+            seen_mm: [start_mm; 2],
+            command_mm: start_mm,
+            table_zero_mm: 0.0,
+        };
+        let places_mm = running.places_mm();
+        running.table_zero_mm = 1e3 * state.table_m - start_mm;
+        let sensors = running.position_sensors();
+        running.seen_mm = [0, 1].map(|i| sensors[i].shown_mm(places_mm[i]));
+        running.sensors = [0, 1].map(|i| Late::new(sensors[i].late_periods, running.seen_mm[i]));
+        let [command_rad, motor_rad] = [start_mm, running.seen_mm[1]].map(|mm| mm * running.rad_per_mm());
+        running.drive = CascadeState::at_rest(&axis.cascade, command_rad, motor_rad, state.current_a, &axis.feed.motor);
+        running
+    }
+
+    fn rad_per_mm(&self) -> f64 {
+        1e-3 / self.axis.feed.screw.travel_m_rad
+    }
+
+    /// Sensors of the position loop, and of the speed loop.
+    fn position_sensors(&self) -> [PositionSensor; 2] {
+        [self.axis.scale.unwrap_or(self.axis.encoder), self.axis.encoder]
+    }
+
+    /// Where these are, mm.
+    fn places_mm(&self) -> [f64; 2] {
+        let motor_mm = self.state.motor_rad / self.rad_per_mm();
+        [if self.axis.scale.is_some() { 1e3 * self.state.table_m } else { motor_mm }, motor_mm]
+    }
+
+    fn tool_mm(&self) -> f64 {
+        let at_mm = 1e3 * self.state.table_m - self.table_zero_mm;
+        let [error_mm, phase_rad] = self.axis.lead_error;
+        let lead_mm = TAU / self.rad_per_mm();
+        at_mm + error_mm * (libm::sin(TAU * at_mm / lead_mm + phase_rad) - libm::sin(phase_rad))
+    }
+
+    fn servo_period(&mut self, command_mm: f64) {
+        let IndependentAxis { feed, cascade, .. } = self.axis;
+        let [current_periods, drive_periods] = cascade.periods;
+        let rad_per_mm = self.rad_per_mm();
+        let from_mm = std::mem::replace(&mut self.command_mm, command_mm);
+        let speed_rad_s = (command_mm - from_mm) / cascade.servo_s() * rad_per_mm;
+        let sensors = self.position_sensors();
+        for period in 1..=drive_periods {
+            let part = if cascade.interpolates { f64::from(period) / f64::from(drive_periods) } else { 1.0 };
+            let line_rad = (from_mm + part * (command_mm - from_mm)) * rad_per_mm;
+            let seen_rad = self.seen_mm.map(|mm| mm * rad_per_mm);
+            self.drive.drive_period(&cascade, DriveInput { command: [line_rad, speed_rad_s], seen_rad });
+            for _ in 0..current_periods {
+                let volts = self.drive.volts(&cascade, &feed.motor, self.state.current_a);
+                for _ in 0..STEPS {
+                    self.state = feed.step(&self.state, volts, cascade.current_s / f64::from(STEPS));
+                }
+            }
+            let places_mm = self.places_mm();
+            for i in 0..2 {
+                self.seen_mm[i] = self.sensors[i].pass(sensors[i].shown_mm(places_mm[i]));
+            }
+        }
+    }
+}
