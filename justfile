@@ -104,6 +104,10 @@ mismatch seed *options:
     cargo build --release --quiet -p feedwright-lab
     target/release/feedwright-lab mismatch "${programs[@]}" --drawn 4 --seed {{ seed }} {{ options }}
 
+# On machines of other equations, identified from their logs: `just independent --random 6 --seed 1`. Nothing is tuned on them.
+independent *options:
+    cargo run --release -p feedwright-lab -- independent {{ options }}
+
 # The identifier beside FANN (Debian: libfann-dev, valgrind), on one core.
 bench-fann:
     taskset --cpu-list 1 cargo bench --package feedwright-control --bench fann

@@ -14,7 +14,7 @@ use std::path::Path;
 use std::rc::Rc;
 
 use feedwright::{
-    BASELINE, BEST, Choices, Entry, LogIdentified, LogJob, LogJobError, Make, ModelMisfit, Setup, Statistics,
+    BEST, Choices, Entry, LogIdentified, LogJob, LogJobError, Make, ModelMisfit, Setup, Statistics, UNCORRECTED,
     machine_text,
 };
 use feedwright_control::{Controller, Uncorrected};
@@ -35,7 +35,6 @@ use crate::independent_plant::machines::IndependentMachine;
 use crate::never_worse::cut::{Figures, SweepRow};
 use crate::never_worse::program::{Length, SweepProgram};
 use crate::never_worse::verdict::Failure;
-use crate::peers::CONTROLLERS;
 
 /// Programs that are cut where none is named.
 pub const PROGRAMS: [(&str, &str); 4] = [
@@ -83,6 +82,8 @@ struct Identified {
     axes: Vec<IdentifiedAxis>,
     /// The machine file from its log, with the limits of its control.
     file: Machine,
+    /// Models of two and of three axes, where a cut takes them.
+    models: [Option<Result<Model, ModelMisfit>>; 2],
 }
 
 /// A cut of a program by the independent plant.
@@ -254,16 +255,17 @@ impl Identified {
             axis.max_jerk_mm_s3 = of_sheet.max_jerk_mm_s3;
         }
         let axes = (0..identified.machine.axes.len()).map(|i| IdentifiedAxis::of(&identified, i, machine)).collect();
-        Ok(Self { machine: machine.clone(), axes, file })
+        Ok(Self { machine: machine.clone(), axes, file, models: [None, None] })
     }
 
-    /// The model of so many axes, as `feedwright identify --machine` makes it.
-    ///
-    /// # Errors
-    /// Axes that the recording of the identified machine does not tell.
-    fn model(&self, choices: &Choices, axes: usize) -> Result<Model, ModelMisfit> {
-        let best = CONTROLLERS.find(BEST).expect("the table has it");
-        Setup::new(&self.file, choices).train(best, axes, String::new())
+    /// Trains the models that the cuts of programs take, as `feedwright identify --machine` does.
+    fn train(&mut self, programs: &[SweepProgram], options: &IndependentOptions) {
+        let Some(best) = options.controllers.iter().find(|entry| entry.name == BEST) else { return };
+        for (axes, model) in (2..).zip(&mut self.models) {
+            if programs.iter().any(|program| program.axes == axes) {
+                *model = Some(Setup::new(&self.file, &options.choices).train(best, axes, String::new()));
+            }
+        }
     }
 }
 
@@ -330,12 +332,11 @@ where
     Entry: Make<N>,
 {
     let plan = PlanCache::default();
-    let model = identified.model(choices, N);
     let cut = |entry: &'static Entry| {
-        let made = controller::<N>(entry, &identified.file, &model, choices);
+        let made = controller::<N>(entry, identified, choices);
         cut_once(identified, program, entry, made, (&plan, watch))
     };
-    let base = cut(CONTROLLERS.find(BASELINE).expect("the table has it"))?;
+    let base = cut(&UNCORRECTED)?;
     let with = |entry: &&'static Entry| {
         let CutOnce { tool, encoders_um, without_model } = cut(entry)?;
         let row = SweepRow {
@@ -354,18 +355,22 @@ where
 /// A controller by the machine file, and why there is no model for it.
 fn controller<const N: usize>(
     entry: &Entry,
-    file: &Machine,
-    model: &Result<Model, ModelMisfit>,
+    Identified { file, models, .. }: &Identified,
     choices: &Choices,
 ) -> (Box<dyn Controller<N>>, Option<String>)
 where
     Entry: Make<N>,
 {
-    let with_model = |model| entry.make_with::<N>(Setup::new(file, choices), model).ok();
-    let takes_it = entry.name == BEST;
-    let without_model = model.as_ref().err().filter(|_| takes_it).map(ToString::to_string);
-    let made = model.as_ref().ok().filter(|_| takes_it).and_then(with_model);
-    (made.unwrap_or_else(|| entry.make(&mut Setup::new(file, choices))), without_model)
+    let setup = || Setup::new(file, choices);
+    let made = match models.get(N - 2).and_then(Option::as_ref).filter(|_| entry.name == BEST) {
+        Some(Ok(model)) => entry.make_with::<N>(setup(), model),
+        Some(Err(cause)) => return (Box::new(Uncorrected), Some(cause.to_string())),
+        None => Ok(entry.make(&mut setup())),
+    };
+    match made {
+        Ok(controller) => (controller, None),
+        Err(cause) => (Box::new(Uncorrected), Some(cause.to_string())),
+    }
 }
 
 fn cut_once<const N: usize>(
@@ -407,7 +412,7 @@ pub fn independent(
         watch.begin(&format!("recording {}", machine.name), 1);
         let log = recorded(machine, options, watch);
         let identified = log.and_then(|log| Identified::of(machine, &log, options.record_delay_s, watch));
-        let identified = match identified {
+        let mut identified = match identified {
             Ok(identified) => identified,
             Err(error) if !error.is_refusal() => return Err(error),
             Err(error) => {
@@ -417,6 +422,8 @@ pub fn independent(
             }
         };
         let programs = programs(&machine.sheet()?)?;
+        watch.begin(&format!("identifying {} for {BEST}", machine.name), 1);
+        identified.train(&programs, options);
         watch.begin(&format!("cutting on {}", machine.name), programs.len() as u64);
         let cut = |program: &SweepProgram| {
             let cuts = cut_program(&identified, program, options, watch);

@@ -89,7 +89,7 @@ impl Mechanism for IndependentPlant {
         let each = |value: fn(&RunningAxis) -> f64| [0, 1, 2].map(|i| value(&self.axes[i]));
         Measurement {
             position_mm: each(RunningAxis::tool_mm),
-            joint_mm: each(|axis| axis.places_mm()[0]),
+            joint_mm: each(|axis| axis.axis.places_mm(&axis.state)[0]),
             measured_mm: each(|axis| axis.seen_mm[0]),
             torque_nm: each(|axis| axis.axis.feed.motor.torque_nm(&axis.state)),
         }
@@ -107,57 +107,59 @@ impl Mechanism for IndependentPlant {
     }
 }
 
-impl RunningAxis {
-    fn new(axis: IndependentAxis, start_mm: f64) -> Self {
-        let state = axis.feed.at_rest(1e-3 * start_mm, axis.scale.is_some());
-        let mut running = Self {
-            axis,
-            state,
-            drive: CascadeState::at_rest(&axis.cascade, 0.0, 0.0, 0.0, &axis.feed.motor),
-            sensors: [Late::new(0, 0.0), Late::new(0, 0.0)],
-            seen_mm: [start_mm; 2],
-            command_mm: start_mm,
-            table_zero_mm: 0.0,
-        };
-        let places_mm = running.places_mm();
-        running.table_zero_mm = 1e3 * state.table_m - start_mm;
-        let sensors = running.position_sensors();
-        running.seen_mm = [0, 1].map(|i| sensors[i].shown_mm(places_mm[i]));
-        running.sensors = [0, 1].map(|i| Late::new(sensors[i].late_periods, running.seen_mm[i]));
-        let [command_rad, motor_rad] = [start_mm, running.seen_mm[1]].map(|mm| mm * running.rad_per_mm());
-        running.drive = CascadeState::at_rest(&axis.cascade, command_rad, motor_rad, state.current_a, &axis.feed.motor);
-        running
-    }
-
+impl IndependentAxis {
+    /// Turn of the motor for a travel, rad/mm.
     fn rad_per_mm(&self) -> f64 {
-        1e-3 / self.axis.feed.screw.travel_m_rad
+        1e-3 / self.feed.screw.travel_m_rad
     }
 
     /// Sensors of the position loop, and of the speed loop.
-    fn position_sensors(&self) -> [PositionSensor; 2] {
-        [self.axis.scale.unwrap_or(self.axis.encoder), self.axis.encoder]
+    fn sensors(&self) -> [PositionSensor; 2] {
+        [self.scale.unwrap_or(self.encoder), self.encoder]
     }
 
     /// Where these are, mm.
-    fn places_mm(&self) -> [f64; 2] {
-        let motor_mm = self.state.motor_rad / self.rad_per_mm();
-        [if self.axis.scale.is_some() { 1e3 * self.state.table_m } else { motor_mm }, motor_mm]
+    fn places_mm(&self, state: &FeedState) -> [f64; 2] {
+        let motor_mm = state.motor_rad / self.rad_per_mm();
+        [if self.scale.is_some() { 1e3 * state.table_m } else { motor_mm }, motor_mm]
+    }
+
+    /// What the sensors show, mm.
+    fn shown_mm(&self, state: &FeedState) -> [f64; 2] {
+        let (sensors, places_mm) = (self.sensors(), self.places_mm(state));
+        [0, 1].map(|i| sensors[i].shown_mm(places_mm[i]))
+    }
+}
+
+impl RunningAxis {
+    fn new(axis: IndependentAxis, start_mm: f64) -> Self {
+        let state = axis.feed.at_rest(1e-3 * start_mm, axis.scale.is_some());
+        let (sensors, seen_mm) = (axis.sensors(), axis.shown_mm(&state));
+        let [command_rad, motor_rad] = [start_mm, seen_mm[1]].map(|mm| mm * axis.rad_per_mm());
+        Self {
+            axis,
+            state,
+            drive: CascadeState::at_rest(&axis.cascade, command_rad, motor_rad, state.current_a, &axis.feed.motor),
+            sensors: [0, 1].map(|i| Late::new(sensors[i].late_periods, seen_mm[i])),
+            seen_mm,
+            command_mm: start_mm,
+            table_zero_mm: 1e3 * state.table_m - start_mm,
+        }
     }
 
     fn tool_mm(&self) -> f64 {
         let at_mm = 1e3 * self.state.table_m - self.table_zero_mm;
         let [error_mm, phase_rad] = self.axis.lead_error;
-        let lead_mm = TAU / self.rad_per_mm();
+        let lead_mm = TAU / self.axis.rad_per_mm();
         at_mm + error_mm * (libm::sin(TAU * at_mm / lead_mm + phase_rad) - libm::sin(phase_rad))
     }
 
     fn servo_period(&mut self, command_mm: f64) {
         let IndependentAxis { feed, cascade, .. } = self.axis;
         let [current_periods, drive_periods] = cascade.periods;
-        let rad_per_mm = self.rad_per_mm();
+        let rad_per_mm = self.axis.rad_per_mm();
         let from_mm = std::mem::replace(&mut self.command_mm, command_mm);
         let speed_rad_s = (command_mm - from_mm) / cascade.servo_s() * rad_per_mm;
-        let sensors = self.position_sensors();
         for period in 1..=drive_periods {
             let part = if cascade.interpolates { f64::from(period) / f64::from(drive_periods) } else { 1.0 };
             let line_rad = (from_mm + part * (command_mm - from_mm)) * rad_per_mm;
@@ -169,10 +171,8 @@ impl RunningAxis {
                     self.state = feed.step(&self.state, volts, cascade.current_s / f64::from(STEPS));
                 }
             }
-            let places_mm = self.places_mm();
-            for i in 0..2 {
-                self.seen_mm[i] = self.sensors[i].pass(sensors[i].shown_mm(places_mm[i]));
-            }
+            let shown_mm = self.axis.shown_mm(&self.state);
+            self.seen_mm = [0, 1].map(|i| self.sensors[i].pass(shown_mm[i]));
         }
     }
 }

@@ -317,6 +317,7 @@ mod tests {
     use feedwright_gcode::{Reader, Settings};
 
     use super::*;
+    use crate::plant::{Mechanism, Plant};
 
     /// Adds up what it measures in each lap.
     #[derive(Default)]
@@ -360,5 +361,26 @@ mod tests {
         assert!(a == b && b == c, "{a} {b} {c}");
         let [a, b, c] = laps(&noisy).try_into().unwrap();
         assert!(a != b && b != c && a != c, "{a} {b} {c}");
+    }
+
+    #[test]
+    fn a_plant_that_is_given_takes_the_place_of_the_machines_own_and_gets_the_seed_of_each_lap() {
+        let circle =
+            Reader::from_text("circle.ngc", "G17 G21 G90 G61 F3000\nG2 X0 Y0 I10 J0\nM2\n", Settings::default());
+        let steps = path_steps(circle.unwrap().map(Result::unwrap)).collect::<Result<Vec<_>, _>>().unwrap();
+        let mut machine = Machine::load("tnv40".as_ref()).unwrap();
+        machine.axes[0].encoder_noise_um = 1.0;
+        let laps = |run: Run<'_>| {
+            let mut seen = Seen::default();
+            run.laps(2).cut_steps(&steps, &mut seen, &mut []).unwrap();
+            seen.0
+        };
+        let heavy = Machine::load("heavy".as_ref()).unwrap();
+        let of = |machine: &Machine, start_mm: [f64; 3], seed: u64| -> Box<dyn Mechanism> {
+            Box::new(Plant::<2>::with_seed(machine, [start_mm[0], start_mm[1]], seed))
+        };
+        let own = laps(Run::on(&machine));
+        assert_eq!(own, laps(Run::on(&machine).plant(&|start_mm, seed| of(&machine, start_mm, seed))));
+        assert_ne!(own, laps(Run::on(&machine).plant(&|start_mm, seed| of(&heavy, start_mm, seed))));
     }
 }

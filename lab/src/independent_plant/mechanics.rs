@@ -108,23 +108,13 @@ fn wave([amplitude, per_unit, phase_rad]: [f64; 3], at: f64) -> [f64; 2] {
 impl WoundMotor {
     /// Torque constant at an angle, N m/A, and its derivative by the angle.
     fn constant(&self, angle_rad: f64) -> [f64; 2] {
-        wave(self.ripple, angle_rad).map(|value| self.torque_nm_a * value).plus([self.torque_nm_a, 0.0])
+        let [ripple, slope] = wave(self.ripple, angle_rad);
+        [self.torque_nm_a * (1.0 + ripple), self.torque_nm_a * slope]
     }
 
     /// Torque at a current, N m.
     pub(super) fn torque_nm(&self, state: &FeedState) -> f64 {
         self.constant(state.motor_rad)[0] * state.current_a
-    }
-}
-
-/// Sums of pairs.
-trait Plus {
-    fn plus(self, other: Self) -> Self;
-}
-
-impl Plus for [f64; 2] {
-    fn plus(self, other: Self) -> Self {
-        [self[0] + other[0], self[1] + other[1]]
     }
 }
 
