@@ -30,7 +30,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use crate::independent_plant::IndependentPlant;
-use crate::independent_plant::linearization::LinearAxis;
+use crate::independent_plant::linearization::LinearPart;
 use crate::independent_plant::machines::IndependentMachine;
 use crate::never_worse::cut::{Figures, SweepRow};
 use crate::never_worse::program::{Length, SweepProgram};
@@ -69,9 +69,9 @@ pub struct IdentifiedAxis {
     /// The verdict, in words.
     pub verdict: String,
     /// Linear part of what was found. Its delays are one, within the loop.
-    pub found: LinearAxis,
+    pub found: LinearPart,
     /// Linear part of the plant.
-    pub plant: LinearAxis,
+    pub plant: LinearPart,
     /// RMS that a free run leaves of what was not fitted, and of the following error there, um.
     pub left_um: [f64; 2],
 }
@@ -278,21 +278,21 @@ impl IdentifiedAxis {
             name: found.name.clone(),
             verdict: identified.verdict(axis),
             found: linear(found),
-            plant: place.map(|place| LinearAxis::of(&machine.axes[place])).unwrap_or_default(),
+            plant: place.map(|place| LinearPart::of(&machine.axes[place])).unwrap_or_default(),
             left_um: [scores.grey_box.whole_um, scores.following_um],
         }
     }
 }
 
 /// Linear part of a found law.
-fn linear(found: &FoundAxis) -> LinearAxis {
+fn linear(found: &FoundAxis) -> LinearPart {
     let values = found.resolved.as_ref().map_or(&found.values, |resolved| &resolved.values);
     let get = |term: LawTerm| values.get(term);
     let (product, speed_loop) = (get(LawTerm::LoopGain), get(LawTerm::Damping));
     let feedforward = get(LawTerm::VelocityFeedforward);
     // Without an integral the loop carries its viscous friction by an error.
     let carried = if get(LawTerm::Integral) > 0.0 { values.speed_gain_1_s() } else { speed_loop };
-    LinearAxis {
+    LinearPart {
         gain_product_1_s2: product,
         speed_loop_1_s: speed_loop,
         velocity_feedforward: feedforward,

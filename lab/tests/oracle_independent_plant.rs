@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use feedwright_lab::independent_plant::IndependentPlant;
 use feedwright_lab::independent_plant::ball_screw::BallScrew;
-use feedwright_lab::independent_plant::linearization::LinearAxis;
+use feedwright_lab::independent_plant::linearization::LinearPart;
 use feedwright_lab::independent_plant::lugre::LuGre;
 use feedwright_lab::independent_plant::machines::{INDEPENDENT_MACHINES, IndependentMachine};
 use feedwright_lab::independent_plant::mechanics::{FeedAxis, FeedState, GuidedTable, WoundMotor};
@@ -178,7 +178,7 @@ fn on_a_long_straight_the_following_error_is_that_of_the_loops_and_delays() {
         // What is measured at the end of a servo period stands beside the command of the next.
         for (axis, seen_mm) in [(0, seen_mm[0]), (1, -seen_mm[1])] {
             let found_s = (command_mm + speed_mm_s * servo_s - seen_mm) / speed_mm_s;
-            let wanted_s = LinearAxis::of(&machine.axes[axis]).lag_s;
+            let wanted_s = LinearPart::of(&machine.axes[axis]).lag_s;
             assert!((found_s - wanted_s).abs() < 2e-6, "{name}, axis {axis}: {found_s} {wanted_s} s");
         }
     }

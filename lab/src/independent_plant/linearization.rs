@@ -15,7 +15,7 @@ use super::IndependentAxis;
 
 /// Linear part of an axis.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct LinearAxis {
+pub struct LinearPart {
     /// Kp Kv / J, 1/s2.
     pub gain_product_1_s2: f64,
     /// (Kv + B) / J, 1/s.
@@ -30,7 +30,7 @@ pub struct LinearAxis {
     pub lag_s: f64,
 }
 
-impl LinearAxis {
+impl LinearPart {
     /// Of an axis.
     pub fn of(axis: &IndependentAxis) -> Self {
         let IndependentAxis { feed, cascade, encoder, scale, .. } = axis;

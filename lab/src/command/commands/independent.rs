@@ -13,7 +13,7 @@ use crate::command::args::independent::IndependentArgs;
 use crate::independent::{
     DEFAULT_CONTROLLERS, IndependentError, IndependentOptions, IndependentResult, PROGRAMS, independent,
 };
-use crate::independent_plant::linearization::LinearAxis;
+use crate::independent_plant::linearization::LinearPart;
 use crate::independent_plant::machines::{INDEPENDENT_MACHINES, IndependentMachine};
 use crate::never_worse::program::{Length, SweepProgram};
 use crate::peers::CONTROLLERS;
@@ -100,7 +100,7 @@ fn print(result: &IndependentResult, out: &mut dyn Write) -> io::Result<()> {
     let columns = ["found / plant", "Kp Kv/J 1/s2", "(Kv+B)/J 1/s", "feedforward", "delay ms", "lag ms"];
     let mut table = ConsoleTable::new(columns.into_iter().map(TableColumn::new).collect());
     for axis in &result.axes {
-        let pair = |digits: usize, of: fn(&LinearAxis) -> f64| {
+        let pair = |digits: usize, of: fn(&LinearPart) -> f64| {
             format!("{:.digits$} / {:.digits$}", of(&axis.found), of(&axis.plant))
         };
         table.row(vec![
