@@ -1,6 +1,6 @@
 //! An independent plant: a machine of other equations than the one that feedwright simulates and assumes.
 //!
-//! Identification and controllers assume the law of [`feedwright_control::axis`], and [`feedwright_sim::Plant`] has the same. Here they are
+//! Identification and controllers assume the law of `crates/control/src/axis.rs`, and [`feedwright_sim::Plant`] has the same. Here they are
 //! scored on a machine that they were not written for. It uses nothing of that law or that plant, and nothing is ever tuned on it.
 //!
 //! | File | What | Unlike the simulated machine |

@@ -7,7 +7,7 @@
 //! lag                          (1 - f) / Kp + command delay: following error over speed, as recorded, where the integral has settled
 //! ```
 //!
-//! Delays are absolute; the law of [`feedwright_control::axis`] holds its reference for a servo period beside its delay.
+//! Delays are absolute; the law of `crates/control/src/axis.rs` holds its reference for a servo period beside its delay.
 
 use serde::Serialize;
 
