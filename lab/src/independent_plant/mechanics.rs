@@ -109,7 +109,7 @@ impl WoundMotor {
     /// Torque constant at an angle, N m/A, and its derivative by the angle.
     fn constant(&self, angle_rad: f64) -> [f64; 2] {
         let [ripple, slope] = wave(self.ripple, angle_rad);
-        [self.torque_nm_a * (1.0 + ripple), self.torque_nm_a * slope]
+        [self.torque_nm_a * ripple + self.torque_nm_a, self.torque_nm_a * slope]
     }
 
     /// Torque at a current, N m.
