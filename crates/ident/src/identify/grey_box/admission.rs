@@ -1,15 +1,16 @@
 //! Which terms the law of an axis has, and where the last fit begins.
 //!
-//! Every axis begins with the four products, the delay of the record, and one of six drives, each from several starts. Each drive
-//! is fitted with friction that slides at once, with friction that slides after a deflection, and with a limit of the speed where
-//! the command is faster than the axis. The simplest is taken that predicts held-out samples as well as the best: Wilcoxon's
-//! signed-rank test of the likelihoods of short blocks.
+//! Every axis begins with the four products, the delay of the record, and one of six drives. Each drive is fitted from several
+//! starts, and from the fits of drives that have less. The delay stays where it starts until the gains are near: far from the
+//! minimum the two trade places. Then each is fitted with friction that slides at once, with friction that slides after a
+//! deflection, and with a limit of the speed where the command is faster than the axis. The one is taken that makes held-out samples
+//! likeliest, less the cost of its terms (Schwarz), where as many samples as the residual is correlated over count as one.
 //!
 //! Each further term is tried with one step of all numbers. Those that promise most are fitted. One is admitted that is above zero
 //! by its standard error, and makes held-out samples likelier by more than it costs (Schwarz).
 //!
-//! Source: Wilcoxon (1945), Individual comparisons by ranking methods; Schwarz (1978), Estimating the dimension of a model; forward
-//! selection as in Draper and Smith (1998), Applied Regression Analysis, chapter 15.
+//! Source: Schwarz (1978), Estimating the dimension of a model; forward selection as in Draper and Smith (1998), Applied Regression
+//! Analysis, chapter 15.
 
 use std::f64::consts::TAU;
 
@@ -52,11 +53,9 @@ const DRIVES: [&[LawTerm]; 6] = [
 
 /// Standard errors that a further term is above zero: one in a thousand that are zero is.
 const QUANTILE: f64 = 3.09;
-/// The same of the test between drives, and by which a further term makes held-out samples likelier: of simple drives that are right,
-/// one in twenty is taken for another.
-const AS_GOOD: f64 = 1.645;
-/// Length of a block, s: of those that are ranked, and of those that are summed up, which what is left is not correlated over.
-const RANKED_S: f64 = 0.02;
+/// The same by which a further term makes held-out samples likelier: of those that are none, one in twenty is taken.
+const LIKELIER: f64 = 1.645;
+/// Length of a block over which likelihoods are summed up, s: what is left is not correlated over more.
 const SUMMED_S: f64 = 0.25;
 /// Starts and terms that are followed up after a first look.
 const FOLLOWED_STARTS: usize = 2;
@@ -68,10 +67,12 @@ const TERM_STEPS: usize = 8;
 const DRIVE_STEPS: usize = 30;
 const DRIVE_DONE: f64 = 1e-5;
 const MOST_TERMS: usize = 8;
-/// Gains of loops that a fit begins with: of the speed loop over the inertia, of the position loop, 1 / Ti, 1/s, and feedforward.
+/// Gains of loops that a fit begins with: of the speed loop over the inertia, of the position loop, 1/s, and 1 / Ti as a part of the first;
+/// the least friction; and feedforward of speed and acceleration.
 const SPEED_GAINS_1_S: [f64; 4] = [30.0, 100.0, 300.0, 900.0];
 const POSITION_GAINS_1_S: [f64; 3] = [20.0, 60.0, 150.0];
 const INTEGRALS: [f64; 2] = [0.0, 0.25];
+const LEAST_COULOMB_MM_S2: f64 = 10.0;
 const FEEDFORWARDS: [[f64; 2]; 3] = [[0.0, 0.0], [0.95, 0.0], [0.99, 0.7]];
 /// Most that a position loop is of its speed loop.
 const LOOPS_APART: f64 = 0.6;
@@ -125,7 +126,7 @@ pub(super) fn admit_more(errors: &OutputErrors<'_>, facts: &AxisFacts, admitted:
     Admitted { terms, values: at }
 }
 
-/// The base and the simplest drive that predicts held-out samples as well as the best, from the best of several starts.
+/// The base and the drive that makes held-out samples likeliest for what it has.
 fn begin(
     record: &AxisRecord<'_>,
     [train, valid]: [&OutputErrors<'_>; 2],
@@ -133,38 +134,36 @@ fn begin(
 ) -> (Vec<LawTerm>, TermValues) {
     let nothing = (base(facts), TermValues([0.0; TERMS]));
     let drives = drives(record, train, facts);
-    let Some(least_mm) = drives.iter().map(|drive| drive.left_mm).min_by(f64::total_cmp) else { return nothing };
-    let train = OutputErrors { deviation_mm: least_mm.max(f64::MIN_POSITIVE), ..*train };
+    let Some(least) = drives.iter().min_by(|a, b| a.left_mm.total_cmp(&b.left_mm)) else { return nothing };
+    let train = train.weighed_by(&least.values);
     let valid = OutputErrors { deviation_mm: train.deviation_mm, ..*valid };
-    let near = drives.into_iter().filter(|drive| drive.left_mm < FAR * least_mm);
+    let near = drives.iter().filter(|drive| drive.left_mm < FAR * least.left_mm);
     let near: Vec<(Vec<LawTerm>, TermValues)> = near.flat_map(|drive| variants(record, drive)).collect();
-    let mut fits: Vec<(Vec<LawTerm>, TermValues, Vec<f64>)> = near
+    let fits: Vec<(Vec<LawTerm>, TermValues, f64)> = near
         .into_par_iter()
         .map(|(terms, values)| {
             let values = train.least(&values, &terms, DRIVE_STEPS, DRIVE_DONE).values;
-            (terms, values, valid.residuals(&values))
+            (terms, values, square(&valid.residuals(&values)))
         })
         .collect();
-    fits.sort_by_key(|fit| fit.0.len());
-    let best = fits.iter().map(|fit| &fit.2).min_by(|a, b| square(a).total_cmp(&square(b)));
-    let best = best.cloned().unwrap_or_default();
-    // Few blocks tell no drive from another: then it is the best.
-    let is_as_good = |residuals: &[f64]| {
-        let gains = gains(&valid, residuals, &best, RANKED_S);
-        gains.len() >= LEAST_RANKED && certainty(gains) < AS_GOOD
-    };
-    let chosen = fits.into_iter().find(|fit| fit.2 == best || is_as_good(&fit.2));
-    chosen.map_or(nothing, |(terms, values, _)| (terms, values))
+    // In these units the least square is the number of samples that are independent.
+    let independent = fits.iter().map(|fit| fit.2).fold(f64::INFINITY, f64::min);
+    let cost = |fit: &(Vec<LawTerm>, TermValues, f64)| fit.2 + fit.0.len() as f64 * libm::log(independent.max(1.0));
+    let likeliest = fits.into_iter().min_by(|a, b| cost(a).total_cmp(&cost(b)));
+    likeliest.map_or(nothing, |(terms, values, _)| (terms, values))
 }
 
 /// A drive, fitted.
 struct FittedDrive {
+    /// What it has beside the base.
+    has: &'static [LawTerm],
     terms: Vec<LawTerm>,
     values: TermValues,
     left_mm: f64,
 }
 
-/// Each drive that may be there, from its best starts. What an earlier record told stands but for the loops, which may be others.
+/// Each drive that may be there, from its best starts and from the drives that have less. What an earlier record told stands but for the
+/// loops, which may be others.
 fn drives(record: &AxisRecord<'_>, train: &OutputErrors<'_>, facts: &AxisFacts) -> Vec<FittedDrive> {
     let mut starts = starts(record, train.counts);
     if let Some(before) = facts.before {
@@ -173,39 +172,89 @@ fn drives(record: &AxisRecord<'_>, train: &OutputErrors<'_>, facts: &AxisFacts) 
         };
         starts = std::iter::once(before).chain(starts.into_iter().map(loops)).collect();
     }
-    let starts: Vec<TermValues> = starts.into_iter().map(|at| facts.start(at)).collect();
-    let starts: Vec<(f64, TermValues)> = train.all_rms_mm(&starts).into_iter().zip(starts).collect();
+    let ranked = |starts: Vec<TermValues>| {
+        let mut ranked: Vec<(f64, TermValues)> = train.all_rms_mm(&starts).into_iter().zip(starts).collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        ranked
+    };
+    let starts = ranked(starts.into_iter().map(|at| facts.start(at)).collect());
     // A part that is known to be there is there, and one that is known to be zero is not.
     let may_be = |drive: &&[LawTerm]| {
         let is = |term| facts.known(term).is_none_or(|known| drive.contains(&term) == (known.value != 0.0));
         OPTIONAL.into_iter().all(is)
     };
-    let fit = |drive: &[LawTerm]| {
-        let terms: Vec<LawTerm> = base(facts).into_iter().chain(drive.iter().copied()).collect();
-        let is_of = |at: &TermValues| OPTIONAL.into_iter().all(|term| drive.contains(&term) || at.get(term) == 0.0);
-        let mut ranked: Vec<(f64, TermValues)> =
-            starts.iter().filter(|(_, at)| facts.before.is_some() || is_of(at)).copied().collect();
-        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let train = train.scaled_by(&ranked.first()?.1);
-        let fitted = ranked.par_iter().take(FOLLOWED_STARTS).map(|(_, at)| {
-            let values = train.least(at, &terms, START_STEPS, NEARLY_DONE).values;
-            (train.rms_mm(&values), values)
-        });
-        let (left_mm, values) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some(FittedDrive { terms, values, left_mm })
+    let fit = |has: &'static [LawTerm]| {
+        let is_of = |at: &TermValues| OPTIONAL.into_iter().all(|term| has.contains(&term) || at.get(term) == 0.0);
+        let of_drive = starts.iter().filter(|(_, at)| facts.before.is_some() || is_of(at));
+        fit_drive(train, facts, has, &of_each_speed_gain(of_drive))
     };
-    DRIVES.into_par_iter().filter(may_be).filter_map(fit).collect()
+    let mut fitted: Vec<FittedDrive> = DRIVES.into_par_iter().filter(may_be).filter_map(fit).collect();
+    for i in 0..fitted.len() {
+        let has = fitted[i].has;
+        let less =
+            fitted.iter().filter(|less| less.has.len() < has.len() && less.has.iter().all(|term| has.contains(term)));
+        let starts = ranked(less.map(|less| with_more(less, has)).collect());
+        if let Some(other) = fit_drive(train, facts, has, &starts).filter(|other| other.left_mm < fitted[i].left_mm) {
+            fitted[i] = other;
+        }
+    }
+    fitted
 }
+
+/// The best start with each gain of the speed loop: two that differ in it end in different minima.
+fn of_each_speed_gain<'a>(ranked: impl Iterator<Item = &'a (f64, TermValues)>) -> Vec<(f64, TermValues)> {
+    let mut best: Vec<(f64, TermValues)> = vec![];
+    for (left_mm, at) in ranked {
+        if best.iter().all(|(_, other)| other.get(LawTerm::Damping) != at.get(LawTerm::Damping)) {
+            best.push((*left_mm, *at));
+        }
+    }
+    best
+}
+
+/// A drive from the best of its starts, the delay as it is there.
+fn fit_drive(
+    train: &OutputErrors<'_>,
+    facts: &AxisFacts,
+    has: &'static [LawTerm],
+    ranked: &[(f64, TermValues)],
+) -> Option<FittedDrive> {
+    let terms: Vec<LawTerm> = base(facts).into_iter().chain(has.iter().copied()).collect();
+    let is_delay = |term: &LawTerm| matches!(term, LawTerm::RecordDelay | LawTerm::LoopDelay);
+    let on_time: Vec<LawTerm> = terms.iter().copied().filter(|term| !is_delay(term)).collect();
+    let train = OutputErrors { deviation_mm: ranked.first()?.0.max(f64::MIN_POSITIVE), ..*train };
+    let fitted = ranked.par_iter().take(FOLLOWED_STARTS).map(|(_, at)| {
+        let values = train.least(at, &on_time, START_STEPS, NEARLY_DONE).values;
+        (train.rms_mm(&values), values)
+    });
+    let (left_mm, values) = fitted.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(FittedDrive { has, terms, values, left_mm })
+}
+
+/// A drive that was fitted with what another has beside: with the same lag at constant speed.
+fn with_more(less: &FittedDrive, has: &[LawTerm]) -> TermValues {
+    has.iter().filter(|term| !less.has.contains(term)).fold(less.values, |at, &term| match term {
+        LawTerm::Integral => at.with(term, INTEGRALS[1] * at.get(LawTerm::Damping)),
+        LawTerm::VelocityFeedforward => [LawTerm::LoopGain, LawTerm::Coulomb]
+            .into_iter()
+            .fold(at.with(term, FED), |at, term| at.with(term, (1.0 - FED) * at.get(term))),
+        _ => at.with(term, FED_ACCELERATION),
+    })
+}
+
+/// Feedforward that a drive begins with where one without it was fitted before.
+const FED: f64 = 0.9;
+const FED_ACCELERATION: f64 = 0.5;
 
 /// A drive as it is, with friction that slides after a deflection, and with a limit of the speed where the command is faster than the axis.
 fn variants(
     record: &AxisRecord<'_>,
-    FittedDrive { terms, values, .. }: FittedDrive,
+    FittedDrive { terms, values, .. }: &FittedDrive,
 ) -> Vec<(Vec<LawTerm>, TermValues)> {
     let fastest_mm_s = largest(&record.actual_speed_mm_s());
     let with =
         |term: LawTerm, value: f64| (terms.iter().copied().chain([term]).collect::<Vec<_>>(), values.with(term, value));
-    let mut variants = vec![(terms.clone(), values), with(LawTerm::Presliding, PRESLIDING_MM)];
+    let mut variants = vec![(terms.clone(), *values), with(LawTerm::Presliding, PRESLIDING_MM)];
     if largest(&record.command_speed_mm_s()) > FASTER * fastest_mm_s {
         variants.push(with(LawTerm::SpeedLimit, AT_LIMIT * fastest_mm_s));
     }
@@ -229,7 +278,8 @@ const AT_LIMIT: f64 = 0.97;
 pub(super) const OPTIONAL: [LawTerm; 3] =
     [LawTerm::Integral, LawTerm::VelocityFeedforward, LawTerm::AccelerationFeedforward];
 
-/// Values before anything is known: gains on a grid, and with the lag that the following error has by the speed.
+/// Values before anything is known: gains on a grid, and with the lag that the following error has by the speed; friction by what it has by
+/// the direction.
 fn starts(record: &AxisRecord<'_>, counts: &[bool]) -> Vec<TermValues> {
     let speed_mm_s = record.command_speed_mm_s();
     let (mut squares, mut products) = (Matrix3::zeros(), Vector3::zeros());
@@ -239,7 +289,10 @@ fn starts(record: &AxisRecord<'_>, counts: &[bool]) -> Vec<TermValues> {
         squares += row * row.transpose();
         products += row * (record.command_mm[k] - record.actual_mm[k]);
     }
-    let lag_s = squares.cholesky().map_or(0.0, |squares| squares.solve(&products)[0]);
+    let [lag_s, sign_mm] = squares.cholesky().map_or([0.0; 2], |squares| {
+        let found = squares.solve(&products);
+        [found[0], found[1]]
+    });
     let mut starts = vec![];
     for damping in SPEED_GAINS_1_S {
         let of_lag = (lag_s > 1e-3).then(|| 1.0 / lag_s);
@@ -248,7 +301,7 @@ fn starts(record: &AxisRecord<'_>, counts: &[bool]) -> Vec<TermValues> {
                 let start = TermValues([0.0; TERMS])
                     .with(LawTerm::LoopGain, kp_1_s * damping)
                     .with(LawTerm::Damping, damping)
-                    .with(LawTerm::Coulomb, 10.0)
+                    .with(LawTerm::Coulomb, (sign_mm * kp_1_s * damping).max(LEAST_COULOMB_MM_S2))
                     .with(LawTerm::StribeckSpeed, 2.0)
                     .with(LawTerm::VelocityFeedforward, speed)
                     .with(LawTerm::AccelerationFeedforward, acceleration)
@@ -293,33 +346,25 @@ fn best_term(
     let followed = looked.into_par_iter().filter_map(|(_, candidate, start)| {
         let all: Vec<LawTerm> = terms.iter().chain(&candidate.terms).copied().collect();
         let values = train.least(&start, &all, TERM_STEPS, NEARLY_DONE).values;
-        let [gain, error] = sum_and_error(&gains(valid, &before, &valid.residuals(&values), SUMMED_S));
+        let [gain, error] = sum_and_error(&gains(valid, &before, &valid.residuals(&values)));
         let first = all.len() - candidate.terms.len();
         let certainty = || values.get(candidate.terms[0]) / StandardErrors::of(train, &values, &all).errors[first];
         let gain = gain - candidate.terms.len() as f64 * libm::log(before.len() as f64);
-        (gain > AS_GOOD * error && is_screw_or_none(&values, train.record.sample_s) && certainty() > QUANTILE)
+        (gain > LIKELIER * error && is_screw_or_none(&values, train.record.sample_s) && certainty() > QUANTILE)
             .then_some(FollowedTerm { terms: candidate.terms, values, gain })
     });
     followed.max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
 /// Gain in twice the log-likelihood from one set of residuals to another, for each block.
-fn gains(valid: &OutputErrors<'_>, before: &[f64], after: &[f64], block_s: f64) -> Vec<f64> {
+fn gains(valid: &OutputErrors<'_>, before: &[f64], after: &[f64]) -> Vec<f64> {
     let samples = before.len() - valid.priors.len();
-    let block = ((block_s / valid.record.sample_s).ceil() as usize).clamp(1, samples.div_ceil(LEAST_BLOCKS).max(1));
+    let block = ((SUMMED_S / valid.record.sample_s).ceil() as usize).clamp(1, samples.div_ceil(LEAST_BLOCKS).max(1));
     let gain = |from: usize| {
         let to = (from + block).min(samples);
         before[from..to].iter().zip(&after[from..to]).map(|(before, after)| before * before - after * after).sum()
     };
     (0..samples).step_by(block).map(gain).collect()
-}
-
-/// By how many standard errors more blocks are likelier than are not, by rank.
-fn certainty(mut gains: Vec<f64>) -> f64 {
-    gains.sort_by(|a, b| a.abs().total_cmp(&b.abs()));
-    let ranks = gains.iter().enumerate().map(|(rank, gain)| if *gain > 0.0 { (rank + 1) as f64 } else { 0.0 });
-    let n = gains.len() as f64;
-    (ranks.sum::<f64>() - 0.25 * n * (n + 1.0)) / (n * (n + 1.0) * (2.0 * n + 1.0) / 24.0).sqrt()
 }
 
 /// The sum of gains, and its standard error.
@@ -328,8 +373,6 @@ fn sum_and_error(gains: &[f64]) -> [f64; 2] {
     [sum, gains.iter().map(|gain| (gain - sum / n) * (gain - sum / n)).sum::<f64>().sqrt()]
 }
 
-/// Fewest blocks that are ranked with a meaning: 0.8 s of motion.
-const LEAST_RANKED: usize = 40;
 /// Fewest blocks.
 const LEAST_BLOCKS: usize = 10;
 /// A resonance of 20 Hz and more shows in samples of less than this, s: five and more in a period.

@@ -93,8 +93,8 @@ pub(super) fn find(
     })
 }
 
-/// Terms that stay, and a fit of them. Terms that do not differ from zero are dropped one after the other. So are terms of the drive
-/// whose gain in likelihood is below their cost (Schwarz 1978).
+/// Terms that stay, and a fit of them. Dropped one after the other are terms that do not differ from zero by their standard error, and
+/// terms of the drive, where their gain in likelihood is below their cost (Schwarz 1978).
 fn without_doubtful(
     errors: &OutputErrors<'_>,
     facts: &AxisFacts,
@@ -105,33 +105,29 @@ fn without_doubtful(
     loop {
         at = errors.least(&at, &terms, STEPS, NEARLY_DONE).values;
         let certain = StandardErrors::of(errors, &at, &terms);
-        let doubtful = (0..terms.len())
-            .filter(|&i| {
-                // No actual position comes before its command.
-                let is_early = terms[i] == LawTerm::RecordDelay && at.get(terms[i]) < 0.0;
-                is_early || (terms[i] > LawTerm::RecordDelay && facts.known(terms[i]).is_none())
-            })
-            .filter(|&i| !matches!(terms[i], LawTerm::StribeckSpeed | LawTerm::TableShare))
-            .map(|i| {
-                let stands_for_another =
-                    terms[i] == LawTerm::Resonance && !is_screw_or_none(&at, errors.record.sample_s);
-                let size = at.get(terms[i]) / certain.errors[i].max(f64::MIN_POSITIVE);
-                (if stands_for_another { 0.0 } else { size }, i)
-            })
-            .filter(|(size, _)| *size < DOUBTFUL)
-            .min_by(|a, b| a.0.total_cmp(&b.0));
-        let needless = || {
-            let of_all = errors.residuals(&at);
-            let cost = libm::log(of_all.len() as f64);
-            let is_sure = |i: usize| (at.get(terms[i]) / certain.errors[i]).powi(2) > SURE * cost;
-            let may_go = |&i: &usize| OPTIONAL.contains(&terms[i]) && facts.known(terms[i]).is_none() && !is_sure(i);
-            (0..terms.len()).filter(may_go).find(|&i| {
-                let others: Vec<LawTerm> = terms.iter().copied().filter(|term| *term != terms[i]).collect();
-                let without = errors.least(&at.with(terms[i], 0.0), &others, WITHOUT_STEPS, NEARLY_DONE).values;
-                square(&errors.residuals(&without)) - square(&of_all) < cost
-            })
+        let size = |i: usize| at.get(terms[i]) / certain.errors[i].max(f64::MIN_POSITIVE);
+        let stands_for_another = |&i: &usize| match terms[i] {
+            // No actual position comes before its command.
+            LawTerm::RecordDelay => at.get(LawTerm::RecordDelay) < 0.0,
+            LawTerm::Resonance => !is_screw_or_none(&at, errors.record.sample_s),
+            _ => false,
         };
-        let Some(i) = doubtful.map(|(_, i)| i).or_else(needless) else { return (terms, at) };
+        let is_open = |i: usize| facts.known(terms[i]).is_none();
+        let is_shape = |i: usize| matches!(terms[i], LawTerm::StribeckSpeed | LawTerm::TableShare);
+        let mut doubtful: Vec<usize> = (0..terms.len())
+            .filter(|&i| terms[i] > LawTerm::RecordDelay && is_open(i) && !is_shape(i) && size(i) < DOUBTFUL)
+            .collect();
+        doubtful.sort_by(|&a, &b| size(a).total_cmp(&size(b)));
+        let independent = errors.weighed_by(&at);
+        let is_needless = |&i: &usize| is_needless(&independent, &at, &terms, i);
+        let cost = || libm::log(errors.residuals(&at).len() as f64);
+        let is_sure = |i: usize| size(i).powi(2) > SURE * cost();
+        let of_drive = |&i: &usize| OPTIONAL.contains(&terms[i]) && is_open(i) && !is_sure(i);
+        let dropped = (0..terms.len())
+            .find(stands_for_another)
+            .or_else(|| doubtful.into_iter().find(is_needless))
+            .or_else(|| (0..terms.len()).filter(of_drive).find(|&i| self::is_needless(errors, &at, &terms, i)));
+        let Some(i) = dropped else { return (terms, at) };
         let term = terms[i];
         at = at.with(term, 0.0);
         terms.retain(|other| {
@@ -140,6 +136,15 @@ fn without_doubtful(
                 && (term != LawTerm::Resonance || !matches!(other, LawTerm::TableShare | LawTerm::Backlash))
         });
     }
+}
+
+/// Whether a fit without a term loses less likelihood than the term costs.
+fn is_needless(errors: &OutputErrors<'_>, at: &TermValues, terms: &[LawTerm], i: usize) -> bool {
+    let of_all = square(&errors.residuals(at));
+    let others: Vec<LawTerm> = terms.iter().copied().filter(|term| *term != terms[i]).collect();
+    let without = errors.least(&at.with(terms[i], 0.0), &others, WITHOUT_STEPS, NEARLY_DONE).values;
+    // In units of what is left the square is the number of samples that are independent.
+    square(&errors.residuals(&without)) - of_all < libm::log(of_all.max(1.0))
 }
 
 /// Steps of a fit without a term.
