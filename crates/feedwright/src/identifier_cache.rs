@@ -91,6 +91,24 @@ pub(crate) fn identified_axes<const N: usize>(
     Ok(trained.axes)
 }
 
+/// What this program kept of a content; `None` where it kept nothing, or that is damaged.
+pub(crate) fn kept_text(content: &str) -> Option<String> {
+    checked(&files::read(&name_of(content)?)?)
+}
+
+/// Keeps a JSON object by the content that it follows from.
+pub(crate) fn keep_text(content: &str, object: &str) {
+    if let Some(name) = name_of(content) {
+        files::write(&name, &with_check(object));
+    }
+}
+
+/// The name of a file of this program, where there is a cache.
+fn name_of(content: &str) -> Option<String> {
+    let program = files::program()?;
+    Some(format!("{}.json", key_of(&[program.as_bytes(), content.as_bytes()])))
+}
+
 /// A name for what depends on these parts.
 pub fn key_of(parts: &[&[u8]]) -> String {
     let mut hasher = blake3::Hasher::new();

@@ -181,7 +181,14 @@ impl Job {
     /// A value out of its range, a program with mistakes, more axes than the machine has, and a model that does not suit.
     pub fn check(&self) -> Result<CheckedJob<'_>, JobError> {
         self.check_values()?;
-        let summary = self.program.check(self.reader.clone())?;
+        self.check_read(self.program.check(self.reader.clone())?)
+    }
+
+    /// The same where the program was read to its end before.
+    ///
+    /// # Errors
+    /// Axes that the machine does not have, or a model that does not suit.
+    pub fn check_read(&self, summary: Summary) -> Result<CheckedJob<'_>, JobError> {
         let axes = axes_that_move(&self.program, &summary, &self.machine)?;
         if let Some(model) = &self.model {
             self.controller.suits(model, &self.machine.known(), axes, &self.choices)?;
@@ -194,6 +201,11 @@ impl CheckedJob<'_> {
     /// Axes that are controlled: two where the program stays in the XY plane, else three.
     pub const fn axes(&self) -> usize {
         self.axes
+    }
+
+    /// What the reading of the program came to.
+    pub fn into_summary(self) -> Summary {
+        self.summary
     }
 
     /// The plan whose path uses what the machine leaves of the job's tolerance; `None` without a tolerance, on a machine that is not planned

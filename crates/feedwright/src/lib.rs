@@ -107,6 +107,7 @@ mod job_error;
 mod correct;
 mod job;
 mod log_job;
+mod recorded_model;
 #[cfg(feature = "command")]
 pub mod command;
 
@@ -134,6 +135,7 @@ pub use log_job::{
 pub use measured::{MeasuredError, measured};
 #[cfg(feature = "files")]
 pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
+pub use recorded_model::{RecordedModel, RecordedModelError, recorded_machine, recorded_model};
 pub use report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page, write_figure_part,
 };

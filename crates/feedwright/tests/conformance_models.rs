@@ -20,13 +20,39 @@ fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit()
         let folder = Folder::new();
         let same = ["--controller", controller, "--machine", machine, "--seed", seed];
         folder.run(&[&["identify", "--out", "m.model.toml"], &same[..]].concat()).succeeded();
-        let trained = cut(&folder, &same);
+        let exact = ["--exact-settings"];
+        let trained = cut(&folder, &[&same[..], &exact[..]].concat());
         // Another seed: nothing may be trained.
         let other = ["--controller", controller, "--machine", machine, "--seed", "99"];
         let read = cut(&folder, &[&other[..], &["--model", "m.model.toml"]].concat());
         assert!(trained == read, "{controller}");
-        assert!(trained != cut(&folder, &other), "{controller}");
+        assert!(trained != cut(&folder, &[&other[..], &exact[..]].concat()), "{controller}");
     }
+}
+
+#[test]
+fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() {
+    let folder = Folder::new();
+    let cut = ["run", "circle.ngc", "--machine", "workshop", "--json", "r.json", "--report", "r.html"];
+    let first = folder.run(&cut).succeeded();
+    let said = first.stdout.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("from the model: simulated excitation of workshop by its log, seed 1"), "{said}");
+    let ratio = |folder: &Folder| {
+        let result: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+        let joint_um = |run: usize| result["runs"][run]["joint_rms_um"].as_f64().unwrap();
+        joint_um(1) / joint_um(0)
+    };
+    let of_log = ratio(&folder);
+    let began = std::time::Instant::now();
+    folder.run(&cut).succeeded();
+    assert!(began.elapsed().as_secs_f64() < 5.0, "nothing is identified again: {:?}", began.elapsed());
+    assert_eq!(ratio(&folder).to_bits(), of_log.to_bits());
+    folder.run(&[&cut[..], &["--exact-settings"]].concat()).succeeded();
+    let exact = ratio(&folder);
+    assert!(of_log != exact && of_log < 1.5 * exact + 0.01, "{of_log} {exact}");
+    folder
+        .run(&[&cut[..], &["--exact-settings", "--model", "m.toml"]].concat())
+        .refused(&["--exact-settings", "--model"]);
 }
 
 const STAR: &str = include_str!("../../../parts/star.ngc");
@@ -236,7 +262,8 @@ fn axes_that_do_not_show_are_told_of() {
     let same = ["--controller", "lqg-identified", "--machine", "slow.toml"];
     folder.run(&[&["identify", "--out", "m.model.toml"], &same[..]].concat()).refused(&said);
     assert_eq!(folder.content(), before);
-    let ran = folder.run(&[&["run", "circle.ngc", "--against", "lqg-identified"], &same[..]].concat());
+    let against = ["run", "circle.ngc", "--against", "lqg-identified", "--exact-settings"];
+    let ran = folder.run(&[&against, &same[..]].concat());
     assert!(ran.stderr.contains("lqg-identified cuts uncorrected: the axes of `"), "{}", ran.stderr);
 }
 
@@ -248,7 +275,7 @@ fn a_block_is_of_a_model_or_of_a_machine_and_nothing_is_written_where_neither_is
         .run(&["identify", "--controller", "lqg-identified", "--machine", "tnv40", "--out", "m.model.toml"])
         .succeeded();
     let told = folder.run(&["block", "m.model.toml", "--out", "found.fwmodel"]).succeeded().stdout;
-    assert!(told.contains("the model of kind 'axes', 2 axes: 644 bytes"), "{told}");
+    assert!(told.contains("the model of kind 'axes', 2 axes: 660 bytes"), "{told}");
     let before = folder.content();
     for (arguments, texts) in [
         (

@@ -70,7 +70,7 @@ fn a_larger_tolerance_is_faster_and_works_on_every_machine() {
 fn a_cut_takes_the_planner_of_its_machine() {
     let folder = folder();
     let planned_s = planned(&folder, &["--machine", "m.toml"])["time_s"].as_f64().unwrap();
-    folder.run(&["run", "two.ngc", "--machine", "m.toml", "--json", "r.json"]).succeeded();
+    folder.run(&["run", "two.ngc", "--machine", "m.toml", "--json", "r.json", "--exact-settings"]).succeeded();
     let results: Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
     let uncorrected_s = results["runs"][0]["time_s"].as_f64().unwrap();
     // The cut ends when the tool has settled behind the plan.

@@ -54,7 +54,7 @@ fn the_terminal_begins_with_the_headline_of_the_page() {
 #[test]
 fn the_json_has_the_documented_numbers_of_every_run() {
     let folder = Folder::new();
-    folder.run(&["run", "circle.ngc", "--json", "r.json"]).succeeded();
+    folder.run(&["run", "circle.ngc", "--json", "r.json", "--exact-settings"]).succeeded();
     let results = results(&folder);
     let runs = results["runs"].as_array().unwrap();
     let names: Vec<&str> = runs.iter().map(|run| run["controller"].as_str().unwrap()).collect();
@@ -118,7 +118,7 @@ fn numbers(line: &str) -> Vec<f64> {
 #[test]
 fn two_runs_leave_the_same_bytes_whatever_the_locale() {
     let (first, second) = (Folder::new(), Folder::new());
-    let arguments = [&["run", "circle.ngc"], &ALL_OUTPUTS[..]].concat();
+    let arguments = [&["run", "circle.ngc", "--exact-settings"], &ALL_OUTPUTS[..]].concat();
     first.run(&arguments).succeeded();
     let mut command = second.command();
     command.args(&arguments).env("LC_ALL", "de_DE.UTF-8").env("LANG", "tr_TR.UTF-8").env("TZ", "Asia/Tokyo");
@@ -309,7 +309,9 @@ fn a_controller_that_makes_it_worse_is_named() {
     let folder = Folder::new();
     let text = include_str!("../../sim/machines/tnv40.toml").replace("kp_1_s = 50", "kp_1_s = 150");
     folder.file("stiff.toml", text);
-    let ran = folder.run(&["run", "circle.ngc", "--machine", "stiff.toml", "--json", "r.json"]).succeeded();
+    let ran = folder
+        .run(&["run", "circle.ngc", "--machine", "stiff.toml", "--json", "r.json", "--exact-settings"])
+        .succeeded();
     let results = results(&folder);
     let of = |run: usize, key: &str| results["runs"][run][key].as_f64().unwrap();
     let worse = of(1, "rms_um") > of(0, "rms_um") && of(1, "max_um") > of(0, "max_um");

@@ -11,6 +11,8 @@
 //! inertia, where friction counts for little; standstills show noise and offset. All moves are relative to where the machine stands,
 //! and stay within half of the travel on each side of it.
 
+pub(crate) mod recorded;
+
 use std::fmt::Write;
 
 use feedwright_sim::{AXIS_NAMES, Machine, to_four_digits};

@@ -60,7 +60,7 @@ impl Job {
             return (LawKnowledge::None, "nothing could be identified".to_owned());
         }
         if let Some(about) = self.model.as_ref().map(|model| model.about()) {
-            return (LawKnowledge::Identified, format!("the model file: {}, {}", about.source, about.date));
+            return (LawKnowledge::Identified, format!("the model: {}, {}", about.source, about.date));
         }
         match self.controller.knows {
             Knows::Nothing => (LawKnowledge::None, "it needs none".to_owned()),

@@ -71,9 +71,14 @@ pub struct RunArgs {
     /// Seed of the recording that the machine is identified from.
     #[arg(long, default_value_t = 1)]
     pub(crate) seed: u64,
-    /// Identified model for the controller, in place of identifying the machine anew; `feedwright identify` writes one.
+    /// Identified model for the controller; `feedwright identify` writes one. Without it, the simulated machine cuts the program of
+    /// `feedwright excite`, and is identified from what its encoders show, as a real one would be.
     #[arg(long, value_name = "FILE.model.toml")]
     pub(crate) model: Option<PathBuf>,
+    /// Give the controller the settings of the drives as the machine file has them, and identify only inertia and friction. Nobody knows a
+    /// real machine so well.
+    #[arg(long, conflicts_with = "model")]
+    pub(crate) exact_settings: bool,
     /// Place of the model that the controller has at the end of the cut, with what it learned of the machine: next time the beginning is
     /// corrected as well.
     #[arg(long, value_name = "FILE.model.toml", requires = "model")]

@@ -27,6 +27,7 @@ use crate::correct::{TARGETS, TargetControl};
 use crate::fastest::FastestError;
 use crate::job::{Job, JobError, MeasuredLog};
 use crate::output::OutputError;
+use crate::recorded_model::{RecordedModel, recorded_model};
 use files::{Files, Outputs};
 
 /// Cuts a part with controllers of a table.
@@ -43,10 +44,14 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
         ],
     )?;
     let bar = console.bar(0);
-    let Asked { job, inputs, outputs } = asked(args, table, &bar)?;
+    let exact_settings = args.exact_settings;
+    let Asked { mut job, inputs, outputs } = asked(args, table, &bar)?;
     bar.begin("reading the program", 1);
-    let checked = job.check()?;
-    let mut files = Files::create(&outputs, inputs.iter().map(PathBuf::as_path), checked.axes())?;
+    let read = job.check()?;
+    let (axes, summary) = (read.axes(), read.into_summary());
+    let mut files = Files::create(&outputs, inputs.iter().map(PathBuf::as_path), axes)?;
+    let doubts = if exact_settings { vec![] } else { take_recorded_model(&mut job, axes, &bar)? };
+    let checked = job.check_read(summary)?;
     let outcome = match checked.run(&mut [&mut files], &bar) {
         Ok(outcome) => outcome,
         // That nothing is fast enough is what the answer is, and no mistake of what was asked for.
@@ -68,6 +73,7 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     for remark in outcome.without_identification.iter().cloned() {
         warn(remark.into());
     }
+    doubts.iter().for_each(|doubt| remark(doubt));
     outcome.log_findings.iter().for_each(|finding| remark(&finding.to_string()));
     // Where a program for another control was asked for, that program decides.
     let corrects = outcome.harm.is_empty() && !outcome.report.is_mostly_uncorrected();
@@ -76,6 +82,17 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     let Outputs { report, json, trace, learned, out } = &outputs;
     let mut table = tables([report, json, trace, learned, out].map(Option::as_deref));
     printed(summary::print(&mut *table, &job, &outputs, &outcome), code)
+}
+
+/// Gives the controller the model that a log of the machine tells, where it goes by one and has none; returns what is to be said of it.
+fn take_recorded_model(job: &mut Job, axes: usize, bar: &Bar) -> Result<Vec<String>> {
+    if job.model.is_some() || job.controller.identifier != Some(IdentifierKind::Axes) {
+        return Ok(vec![]);
+    }
+    let RecordedModel { model, doubts } =
+        recorded_model(&job.machine, axes, (job.controller, &job.choices), today()?, bar)?;
+    job.model = Some(model);
+    Ok(doubts)
 }
 
 /// What the arguments ask for.

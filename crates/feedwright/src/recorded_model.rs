@@ -1,0 +1,157 @@
+//! The model that a user has of a machine: identified from a log, and from nothing else.
+//!
+//! ```text
+//! program of excite -> cut uncorrected -> log of commands and encoders -> law of each axis -> machine file -> model
+//! ```
+//!
+//! It is kept by content: the same program and the same machine find the same model.
+
+use std::path::Path;
+
+use feedwright_gcode::Program;
+use feedwright_ident::{AxisFacts, Columns, ExciteOptions, LawVerdict, Log, Model, excitation_program, recorded_log};
+use feedwright_sim::{Cancelled, Machine, Watch};
+use miette::Diagnostic;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::controllers::{Choices, Entry, Setup};
+use crate::identifier_cache::{keep_text, kept_text};
+use crate::log_job::{LogIdentified, LogJob, LogJobError, machine_text};
+
+/// A model that was identified from a log of a simulated machine.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RecordedModel {
+    /// The model.
+    pub model: Model,
+    /// Axes that the log does not tell well enough, in words.
+    pub doubts: Vec<String>,
+}
+
+/// Why there is none.
+#[derive(Debug, Error, Diagnostic)]
+pub enum RecordedModelError {
+    /// The log does not tell the law of an axis.
+    #[error("a log of {machine} tells no model: {cause}")]
+    #[diagnostic(help(
+        "give a model with --model, take the settings of the drives from the machine file with --exact-settings, or cut without \
+         a correction: --controller uncorrected"
+    ))]
+    NotTold {
+        /// Name of the machine.
+        machine: String,
+        /// Why.
+        cause: String,
+    },
+    /// It was ended from outside.
+    #[error(transparent)]
+    #[diagnostic(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// A text that follows from a log, and the doubts about it.
+#[derive(Serialize, Deserialize)]
+struct Told {
+    text: String,
+    doubts: Vec<String>,
+}
+
+impl Told {
+    /// What is kept for a content; made anew where there is none.
+    fn of(content: &str, make: impl FnOnce() -> Result<Self, RecordedModelError>) -> Result<Self, RecordedModelError> {
+        if let Some(kept) = kept_text(content).and_then(|text| serde_json::from_str(&text).ok()) {
+            return Ok(kept);
+        }
+        let made = make()?;
+        if let Ok(text) = serde_json::to_string(&made) {
+            keep_text(content, &text);
+        }
+        Ok(made)
+    }
+}
+
+/// The model of the first axes of a machine, two or three, for a controller that goes by one: the machine cuts the program of `excite`
+/// uncorrected, and its log tells the rest. `date` becomes the date in the model file.
+///
+/// # Errors
+/// A log that tells no model, or an end from outside.
+pub fn recorded_model(
+    machine: &Machine,
+    axes: usize,
+    (entry, choices): (&Entry, &Choices),
+    date: String,
+    watch: &dyn Watch,
+) -> Result<RecordedModel, RecordedModelError> {
+    let content = format!("model {axes} {} {choices:?} {machine:?}", entry.name);
+    let told = Told::of(&content, || {
+        let (told, doubts) = recorded_machine(machine, axes, choices.seed, watch)?;
+        watch.begin("identifying from the log", 1);
+        let model = Setup::new(&told, choices).train(entry, axes, date);
+        Ok(Told { text: model.map_err(|error| not_told(machine, &error))?.text(), doubts })
+    })?;
+    let model = Model::parse("the model of the log", &told.text).map_err(|error| not_told(machine, &error))?;
+    Ok(RecordedModel { model, doubts: told.doubts })
+}
+
+/// The first axes of a machine as their log tells them, and what the log does not tell well enough.
+///
+/// # Errors
+/// A log that does not tell the law of an axis, or an end from outside.
+pub fn recorded_machine(
+    machine: &Machine,
+    axes: usize,
+    seed: u64,
+    watch: &dyn Watch,
+) -> Result<(Machine, Vec<String>), RecordedModelError> {
+    let content = format!("machine {axes} {seed} {machine:?}");
+    let told = Told::of(&content, || {
+        let identified = identified(machine, axes, seed, watch)?;
+        let text = machine_text(&identified, &format!("{} by its log", machine.name));
+        Ok(Told { text, doubts: doubts(&identified) })
+    })?;
+    let read = Machine::parse("the machine file of the log", &told.text);
+    Ok((read.map_err(|error| not_told(machine, &error))?, told.doubts))
+}
+
+/// Records the log, and identifies the axes.
+fn identified(
+    machine: &Machine,
+    axes: usize,
+    seed: u64,
+    watch: &dyn Watch,
+) -> Result<LogIdentified, RecordedModelError> {
+    // What is random in the log is not what is random in the cut.
+    let recorder = Machine { axes: machine.axes.iter().take(axes).cloned().collect(), ..machine.clone() };
+    let recorder = recorder.with_noise_seed(machine.noise.seed.wrapping_add(seed));
+    watch.begin("recording a log of the machine", 1);
+    let excitation = excitation_program(&recorder, ExciteOptions::default());
+    let program = Program::from_text("excite.ngc", excitation.map_err(|error| not_told(machine, &error))?.text);
+    let text = match axes {
+        2 => recorded_log::<2>(&recorder, &program),
+        _ => recorded_log::<3>(&recorder, &program),
+    };
+    let text = text.map_err(|error| not_told(machine, &error))?;
+    let name = Path::new("the log of excite");
+    let log = Log::from_reader(name, text.as_bytes(), text.len() as u64, &Columns::default(), watch);
+    let facts = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
+    let job = LogJob { name: format!("a log of {}", machine.name), facts, ..LogJob::default() };
+    job.run(log.map_err(|error| not_told(machine, &error))?, watch).map_err(|error| match error {
+        LogJobError::Cancelled(cancelled) => RecordedModelError::Cancelled(cancelled),
+        error => not_told(machine, &error),
+    })
+}
+
+fn not_told(machine: &Machine, cause: &dyn Diagnostic) -> RecordedModelError {
+    let reasons = cause.related().into_iter().flatten().map(|reason| format!("; {reason}"));
+    RecordedModelError::NotTold {
+        machine: machine.name.clone(),
+        cause: format!("{cause}{}", reasons.collect::<String>()),
+    }
+}
+
+/// Axes whose law is not good enough for a correction, or is open.
+fn doubts(identified: &LogIdentified) -> Vec<String> {
+    let is_sound = |verdict| matches!(verdict, LawVerdict::LawHolds | LawVerdict::LinearSuffices);
+    let axes = identified.machine.axes.iter().enumerate().filter(|(_, axis)| !is_sound(LawVerdict::of(axis)));
+    axes.map(|(i, axis)| format!("axis {}, by its simulated log: {}", axis.name, identified.verdict(i))).collect()
+}
