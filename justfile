@@ -50,7 +50,7 @@ shown := "contour-compensation,cross-coupled,disturbance-observer,kalman-disturb
 
 # The table of README.md: held-out work on machines with noise.
 held-out-table out="target/held_out":
-    cargo run --release -p feedwright-lab -- compare --work held-out --only workshop,stiff,router,{{ shown }} --knowledge own,identified,20%off --json {{ out }}.json --html {{ out }}.html
+    cargo run --release -p feedwright-lab -- compare --work held-out --only workshop,stiff,router,{{ shown }} --knowledge own,identified,20%off,log --json {{ out }}.json --html {{ out }}.html
 
 # What each imperfection costs each controller: the table of examples/03_realism. Each peer is tuned on each machine first.
 imperfections out="target/imperfections":

@@ -20,7 +20,9 @@ const SHOWN: &[&str] = &[
     "feedforward-cross-coupled+identified",
     "feedforward-cross-coupled+20%off",
     "receding-horizon",
+    "feedforward-cross-coupled+log",
     "lqg-identified",
+    "lqg-identified+log",
     "lqg-preview",
 ];
 
@@ -34,6 +36,8 @@ fn shown(comparison: &Comparison) -> Vec<&'static str> {
 struct OverAll {
     /// Half of the workpieces have a lower RMS.
     median_um: f64,
+    /// The same at the tool.
+    tool_um: f64,
     /// Quadratic mean of the RMS.
     rms_um: f64,
     /// Largest error.
@@ -47,27 +51,31 @@ fn over_all(
     controller: &str,
     [rms, max]: [fn(&ComparisonRow) -> f64; 2],
 ) -> Option<OverAll> {
-    let mut each_um = comparison.on_contours(machine, controller, rms)?;
-    each_um.sort_by(f64::total_cmp);
+    let each_um = comparison.on_contours(machine, controller, rms)?;
+    let median = |mut each_um: Vec<f64>| {
+        each_um.sort_by(f64::total_cmp);
+        each_um.get(each_um.len() / 2).copied()
+    };
     Some(OverAll {
-        median_um: *each_um.get(each_um.len() / 2)?,
+        median_um: median(each_um.clone())?,
+        tool_um: median(comparison.on_contours(machine, controller, |row| row.rms_um)?)?,
         rms_um: quadratic_mean(each_um),
         max_um: comparison.on_contours(machine, controller, max)?.into_iter().fold(0.0, f64::max),
     })
 }
 
-/// One line for each controller, one column for each machine: errors by encoders, over all work.
+/// One line for each controller, one column for each machine: errors by encoders over all work, and the median at the tool.
 pub(super) fn held_out(comparison: &Comparison) -> Result<String> {
     let machines = comparison.machines();
     let mut table = String::new();
-    heading(&mut table, "median RMS / RMS of all / max, \u{b5}m", &machines)?;
+    heading(&mut table, "median RMS / at the tool / RMS of all / max, \u{b5}m", &machines)?;
     for controller in shown(comparison) {
         write!(table, "| {controller} |")?;
         for machine in &machines {
             let numbers = [ComparisonRow::controlled_rms_um, ComparisonRow::controlled_max_um];
             match over_all(comparison, machine, controller, numbers) {
-                Some(OverAll { median_um, rms_um, max_um }) => {
-                    write!(table, " {median_um:.2} / {rms_um:.2} / {max_um:.1} |")?;
+                Some(OverAll { median_um, tool_um, rms_um, max_um }) => {
+                    write!(table, " {median_um:.2} / {tool_um:.2} / {rms_um:.2} / {max_um:.1} |")?;
                 }
                 None => write!(table, " lost |")?,
             }

@@ -1,5 +1,5 @@
 //! Who competes: a controller, and what it is given of the machine that it cuts on.
-use feedwright::{Choices, Entry, Knows, Make, Setup};
+use feedwright::{Choices, Entry, Knows, Make, Setup, recorded_machine};
 use feedwright_control::{Controller, IdentifierKind, Uncorrected};
 use feedwright_sim::Machine;
 use serde::{Deserialize, Serialize};
@@ -19,6 +19,8 @@ pub enum Knowledge {
     TwentyPercentOff,
     /// An identification on the nominal machine, and the values that are tuned there.
     Unseen,
+    /// What a log of the machine tells, the settings of its drives too; values that are tuned with the exact ones.
+    Log,
 }
 
 /// Inertia that is believed where parameters are 20 % off, as a part of the true one. Opposite to friction, so that the two errors
@@ -29,7 +31,7 @@ const FRICTION_BELIEVED: f64 = 1.2;
 
 impl Knowledge {
     /// All kinds, in the order of the table.
-    pub const ALL: [Self; 4] = [Self::Own, Self::Identified, Self::TwentyPercentOff, Self::Unseen];
+    pub const ALL: [Self; 5] = [Self::Own, Self::Identified, Self::TwentyPercentOff, Self::Unseen, Self::Log];
 
     /// What stands behind the name of the controller.
     pub const fn suffix(self) -> &'static str {
@@ -38,6 +40,7 @@ impl Knowledge {
             Self::Identified => "+identified",
             Self::TwentyPercentOff => "+20%off",
             Self::Unseen => "+unseen",
+            Self::Log => "+log",
         }
     }
 
@@ -47,6 +50,7 @@ impl Knowledge {
             Self::Own => true,
             Self::Identified | Self::TwentyPercentOff => entry.knows == Knows::ExactModel,
             Self::Unseen => entry.knows == Knows::Identified,
+            Self::Log => entry.knows == Knows::ExactModel || entry.identifier == Some(IdentifierKind::Axes),
         }
     }
 }
@@ -102,7 +106,12 @@ impl Competitor {
         let choices = Choices { seed, set };
         // The periods of the control are never a secret.
         let unseen = Machine { period: machine.period, ..nominal.clone() };
-        let known = if self.knowledge == Knowledge::Unseen { &unseen } else { machine };
+        let told = match self.knowledge {
+            Knowledge::Log => recorded_machine(machine, 2, seed, &()).map(|(told, _)| told),
+            Knowledge::Unseen => Ok(unseen),
+            _ => Ok(machine.clone()),
+        };
+        let Ok(known) = &told else { return Box::new(Uncorrected) };
         let mut setup = Setup::new(known, &choices);
         match self.knowledge {
             Knowledge::TwentyPercentOff => {
@@ -111,7 +120,7 @@ impl Competitor {
             Knowledge::Identified if setup.identify_parameters::<2>().is_err() => return Box::new(Uncorrected),
             // What a drive is set to is read off it, wherever its axis was identified.
             Knowledge::Unseen if self.entry.identifier == Some(IdentifierKind::Axes) => setup.known = machine.known(),
-            Knowledge::Own | Knowledge::Identified | Knowledge::Unseen => {}
+            Knowledge::Own | Knowledge::Identified | Knowledge::Unseen | Knowledge::Log => {}
         }
         Make::<2>::make(self.entry, &mut setup)
     }

@@ -110,6 +110,8 @@ pub enum Given {
     TwentyPercentOff,
     /// An identification on tnv40.
     Unseen,
+    /// What a log of the machine tells, the settings of its drives too.
+    Log,
 }
 
 impl From<Given> for Knowledge {
@@ -119,6 +121,7 @@ impl From<Given> for Knowledge {
             Given::Identified => Self::Identified,
             Given::TwentyPercentOff => Self::TwentyPercentOff,
             Given::Unseen => Self::Unseen,
+            Given::Log => Self::Log,
         }
     }
 }
