@@ -128,7 +128,7 @@ pub use model::{
     BLOCK_FORMAT, BlockError, IdentifiedAxes, MAX_MECHANICS_PER_SERVO, MAX_SPREAD, MAX_WEIGHT, MECHANICS_PERIODS_S,
     ModelBlock, SERVO_PERIODS_S, Trained,
 };
-pub use safety::{Bounds, Cause, Fade, State};
+pub use safety::{Bounds, Cause, Fade, State, fade_acceleration};
 pub use sine::sin;
 pub use tick::{Setpoint, Tick};
 pub use window::{Knot, KnotSource, Preview, REGISTER_KNOTS, Register, Window};

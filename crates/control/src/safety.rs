@@ -22,6 +22,7 @@ use crate::window::Window;
 use benefit::Benefit;
 use disengagement::Engagement;
 pub use disengagement::{Cause, Fade, State};
+pub use fade::fade_acceleration;
 
 /// Slowest that any controller may run the plan: a program always ends.
 const SLOWEST: f64 = 0.1;
@@ -107,6 +108,11 @@ impl<const N: usize> Guard<N> {
     /// What the command is held to.
     pub(crate) fn bounds(&self) -> &Bounds {
         &self.bounds
+    }
+
+    /// Holds the commands to other bounds from the next decision on.
+    pub(crate) fn hold_to(&mut self, bounds: Bounds) {
+        self.bounds = bounds;
     }
 
     /// When and why the controller was taken out of the loop last.
@@ -222,7 +228,7 @@ impl<const N: usize> Guard<N> {
             if at_once {
                 *speed_mm_s = fade::begins_mm_s(offset_mm, *speed_mm_s, most_mm_s2);
             }
-            *acceleration_mm_s2 = fade::acceleration(offset_mm, *speed_mm_s, window.feed_period_s, most_mm_s2);
+            *acceleration_mm_s2 = fade_acceleration(offset_mm, *speed_mm_s, window.feed_period_s, most_mm_s2);
         }
         Command::accelerated(window, speed_mm_s, acceleration_mm_s2)
     }

@@ -129,6 +129,12 @@ impl<const N: usize> Tick<N> {
         self.time = PlanTime { periods: self.time.periods.saturating_add(periods), ..self.time };
     }
 
+    /// Holds the commands to other bounds from the next decision on. A smaller deviation is reached within one step: the caller changes it
+    /// no faster than the offset may move.
+    pub fn hold_to(&mut self, bounds: Bounds) {
+        self.guard.hold_to(bounds);
+    }
+
     /// The contour error at the last decision.
     pub fn contour(&self) -> &ContourError<N> {
         &self.contour

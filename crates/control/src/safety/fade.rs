@@ -17,9 +17,9 @@ const MARGIN: f64 = 1.2;
 const NONE_MM: f64 = 1e-6;
 const NONE_MM_S: f64 = 1e-3;
 
-/// The acceleration of the next period, mm/s^2, of an offset in one axis.
+/// The acceleration of the next period, mm/s^2, of an offset in one axis that fades to zero: `offset_mm` with `offset_mm_s`, of at most `most_mm_s2`.
 #[inline]
-pub(super) fn acceleration(offset_mm: f64, offset_mm_s: f64, period_s: f64, most_mm_s2: f64) -> f64 {
+pub fn fade_acceleration(offset_mm: f64, offset_mm_s: f64, period_s: f64, most_mm_s2: f64) -> f64 {
     let wanted_mm_s = wanted_mm_s(offset_mm, most_mm_s2);
     bounded((wanted_mm_s - offset_mm_s) / period_s, -most_mm_s2, most_mm_s2)
 }
@@ -60,7 +60,7 @@ mod tests {
             assert_eq!(begins_mm_s(offset, 0.5 * wanted, most), 0.5 * wanted);
             let (mut o, mut v): (f64, f64) = (offset, begins_mm_s(offset, 300.0 * offset.signum(), most));
             for _ in 0..2000 {
-                let a = acceleration(o, v, 0.001, most);
+                let a = fade_acceleration(o, v, 0.001, most);
                 (o, v) = (o + 0.001 * (v + 0.0005 * a), v + 0.001 * a);
                 assert!(o.abs() <= offset.abs(), "{offset}: {o}");
             }
@@ -77,7 +77,7 @@ mod tests {
                 let (mut o, mut v) = (offset, speed);
                 let mut farthest = 0.0_f64;
                 for _ in 0..1000 {
-                    let a = acceleration(o, v, period_s, most);
+                    let a = fade_acceleration(o, v, period_s, most);
                     assert!(a.abs() <= most);
                     o += period_s * (v + 0.5 * period_s * a);
                     v += period_s * a;
