@@ -12,7 +12,8 @@ The command is delayed by \\fBdelay\\fR, so that the correction sees ahead, and 
 back to joint.N.motor-pos-fb is the command now and the following error of the drive, so that FERROR and MIN_FERROR keep their meaning.
 
 There is no delay and no correction while the machine jogs, homes or probes, while a spindle is followed (G33, G33.1, G76), and
-wherever \\fBdirect\\fR is set. The delay is taken up and given up where the command rests.
+wherever \\fBdirect\\fR is set. The delay is taken up and given up where the command rests. So that it is given up before a program probes
+or follows a spindle, connect \\fBfeed-inhibit\\fR to motion.feed-inhibit and \\fBspindle-at-speed\\fR to spindle.0.at-speed.
 
 While \\fBpowered\\fR is off, drives and LinuxCNC get the actual position.
 
@@ -54,25 +55,29 @@ pin in bit powered "Whether the amplifiers are on, from joint.0.amp-enable-out";
 pin in bit enable "Whether the correction is wanted";
 pin in bit coordinated = 1 "Whether a program or MDI moves the machine, from motion.coord-mode; otherwise there is no delay";
 pin in s32 motion-type "From motion.motion-type: a rapid is not corrected for harm, a probing motion is not delayed";
+pin in bit at_speed = 1 "Whether the spindle is at speed, for \\fBspindle-at-speed\\fR";
+pin out bit spindle_at_speed "To spindle.0.at-speed: \\fBat-speed\\fR, once a motion that follows the spindle would be without delay";
+pin out bit feed_inhibit "To motion.feed-inhibit: holds a probing motion until the delay is given up, 0.02 s, and the motion behind it until it is taken up, 0.1 s";
 pin in bit spindle-index "From spindle.0.index-enable: the motion behind it is not delayed";
 pin in bit direct "No delay and no correction, from outside";
 pin in bit speed_alone "With a model for the paper's controllers: the feedrate alone is changed, the geometry stays on the path; taken over where the command rests";
 
 pin in float delay = 0.010 "Delay of the command, 0.008 to 0.015 s; taken over where the command rests";
-pin in float deviation-limit = 0.5 "Largest distance of the drive's command from the path, mm";
-pin in float speed-limit = 400 "Highest speed of the machine, mm/s: actual positions that leap by more are no positions";
-pin in float correction-acceleration = 400 "Acceleration with which an offset fades, mm/s^2; 0 is without limit";
+pin in float deviation-limit = 0.5 "Largest distance of the drive's command from the path, 0 to 10 mm; a change takes effect within 0.2 s, also in the cut";
+pin in float speed-limit = 400 "Highest speed of the machine, 1 to 10,000 mm/s: actual positions that leap by more are no positions";
+pin in float correction-acceleration = 400 "Acceleration with which an offset fades, 1 to 1,000,000 mm/s^2; 0 is without limit";
 
 pin out float contour-error "Distance of the actual position from the path, mm";
 pin out float contour-error-without "What it would be without the correction, by a model of axes, mm";
 pin out float adaptive-feed = 1 """To motion.adaptive-feed, which heeds it in programs with M52 P1: \\fBadaptive-scale\\fR times the feedrate that a controller asks for,
 as a multiple of that of now; within 0 and 1. The paper's controllers ask for 0.5 to 1.2, lqg-identified for 1""";
-param rw float adaptive-scale = 1 "0.5 where the feed override stands at 200 %: LinuxCNC takes no more than 1, and only so a cut can be sooner than programmed";
+param rw float adaptive-scale = 1 "0.1 to 1: 0.5 where the feed override stands at 200 %: LinuxCNC takes no more than 1, and only so a cut can be sooner than programmed";
 pin out bit saturated "A limit holds the correction";
 pin out u32 state "0 amplifiers off, 1 without delay, 2 delayed, without correction, 3 the correction fades, 4 it is in the loop";
-pin out bit fault "There is no correction, for the reason in \\fBcause\\fR; it clears itself";
-pin out u32 cause """Why there was no correction last: 1 to 7 model file, 8 servo period, 9 the correction was not a number, 10 actual position
-lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside, 15 the machine does not move as the model says""";
+pin out bit fault "There is no correction, or a setting is refused, for the reason in \\fBcause\\fR; it clears itself";
+pin out u32 cause """What was wrong last: 1 to 7 model file, 8 servo period, 9 the correction was not a number, 10 actual position
+lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside, 15 the machine does not move as the model says; out of range, so that the last good value stays in force and the correction goes on:
+16 delay, 17 deviation-limit, 18 speed-limit, 19 correction-acceleration, 20 adaptive-scale; 21 a motion that probes or follows a spindle is delayed""";
 pin out u32 faults "How often there was a fault";
 pin out u32 delay-periods "Servo periods of delay now";
 pin out bit heartbeat "Changes in each servo period";
@@ -95,8 +100,7 @@ license "MIT OR Apache-2.0";
 author "The feedwright contributors";
 ;;
 
-#include "faults.h"
-#include "load.h"
+#include "guarded.h"
 #include "record.h"
 
 static char *model = "";
@@ -108,15 +112,15 @@ RTAPI_MP_INT(record, "seconds of which inputs and outputs are kept");
 static char *recording = "";
 RTAPI_MP_STRING(recording, "file that they are written to");
 
-static feedwright_servo *servo;
+static guarded link_;
 static uint8_t model_bytes[FEEDWRIGHT_MODEL_BYTES];
 static size_t model_length;
-static bool begun, failed;
+static bool begun;
 
 static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extra_arg)
 {
     size_t bytes = feedwright_servo_bytes();
-    uint32_t fault = 0;
+    uint32_t fault;
     (void)__comp_inst;
     (void)extra_arg;
     if (joints != 2 && joints != 3) {
@@ -127,15 +131,13 @@ static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extr
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: the library is of another version than the component\n", prefix);
         return -EINVAL;
     }
-    servo = library_memory(bytes);
-    if (!servo || !record_start(record)) {
+    link_.servo = library_memory(bytes);
+    if (!link_.servo || !record_start(record)) {
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: no memory\n", prefix);
         return -ENOMEM;
     }
     model_length = read_model(prefix, model, model_bytes);
-    if (!CONTAINED(fault = feedwright_servo_new(servo, bytes, (uint32_t)joints, model_bytes, model_length)))
-        fault = FEEDWRIGHT_FAILED;
-    failed = fault == FEEDWRIGHT_FAILED;
+    fault = guarded_new(&link_, bytes, (uint32_t)joints, model_bytes, model_length);
     if (fault)
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: %s: %s; commands are passed on as they are\n", prefix, model, feedwright_fault(fault));
     rtapi_print_msg(RTAPI_MSG_INFO, "%s: state of %lu bytes, model of %lu\n", prefix, (unsigned long)bytes, (unsigned long)model_length);
@@ -145,25 +147,15 @@ static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extr
 static void extra_cleanup(void)
 {
     record_write(recording, joints, model_bytes, model_length);
-    free(servo);
-}
-
-/* The period of the thread is known in its first servo period. */
-static void begin(long period)
-{
-    uint32_t fault = 0;
-    begun = true;
-    if (!failed && !CONTAINED(fault = feedwright_servo_runs_at(servo, period * 1e-9)))
-        failed = true;
-    record_period(period);
+    free(link_.servo);
 }
 
 static uint32_t flags(const struct __comp_state *c)
 {
-    bool direct = *c->direct || !*c->coordinated || *c->motion_type == 5;
+    bool direct = *c->direct || !*c->coordinated;
     return (*c->powered ? FEEDWRIGHT_POWERED : 0) | (*c->enable ? FEEDWRIGHT_ENABLED : 0) | (direct ? FEEDWRIGHT_DIRECT : 0) |
            (*c->spindle_index ? FEEDWRIGHT_SPINDLE : 0) | (*c->motion_type != 1 ? FEEDWRIGHT_CUTTING : 0) |
-           (*c->speed_alone ? FEEDWRIGHT_SPEED_ALONE : 0);
+           (*c->speed_alone ? FEEDWRIGHT_SPEED_ALONE : 0) | (*c->motion_type == 5 ? FEEDWRIGHT_PROBING : 0);
 }
 
 #define FUNCTION(name) static void name(struct __comp_state *__comp_inst, long period)
@@ -176,23 +168,23 @@ FUNCTION(_)
         .deviation_mm = *c->deviation_limit,
         .speed_mm_s = *c->speed_limit,
         .correction_mm_s2 = *c->correction_acceleration,
+        .adaptive_scale = c->adaptive_scale,
         .flags = flags(c),
     };
-    feedwright_outputs out = { .fault = FEEDWRIGHT_FAILED, .state = 1, .rate = 1 };
-    double adaptive;
+    feedwright_outputs out;
     uint32_t last_cause = *c->fault ? *c->cause : 0;
     int i;
     for (i = 0; i < 3; i++) {
         bool there = i < joints;
         in.command_mm[i] = there ? *c->command[i] : 0;
         in.actual_mm[i] = there ? *c->actual[i] : 0;
-        out.drive_mm[i] = *c->powered ? in.command_mm[i] : in.actual_mm[i];
-        out.feedback_mm[i] = in.actual_mm[i];
     }
-    if (!begun)
-        begin(period);
-    if (!failed && !CONTAINED(feedwright_servo_step(servo, &in, &out)))
-        failed = true;
+    if (!begun) {
+        begun = true;
+        guarded_begin(&link_, period * 1e-9);
+        record_period(period);
+    }
+    guarded_step(&link_, &in, &out);
     for (i = 0; i < joints; i++) {
         *c->drive[i] = out.drive_mm[i];
         *c->feedback[i] = out.feedback_mm[i];
@@ -200,8 +192,9 @@ FUNCTION(_)
     }
     *c->contour_error = out.contour_error_mm;
     *c->contour_error_without = out.without_mm;
-    adaptive = c->adaptive_scale * out.rate;
-    *c->adaptive_feed = adaptive > 0 ? (adaptive < 1 ? adaptive : 1) : 0;
+    *c->adaptive_feed = out.adaptive_feed;
+    *c->feed_inhibit = out.holds_feed != 0;
+    *c->spindle_at_speed = *c->at_speed && out.is_settled;
     *c->saturated = out.saturated != 0;
     *c->state = out.state;
     *c->fault = out.fault != 0;

@@ -26,6 +26,15 @@
 // A controller that changes the feedrate leaves the geometry on the path.
 #define FEEDWRIGHT_SPEED_ALONE 32
 
+// This motion probes.
+#define FEEDWRIGHT_PROBING 64
+
+// What [`feedwright_servo_new`] returns where it made nothing.
+#define FEEDWRIGHT_NOT_MADE 255
+
+// The fault of a link that failed: known to the caller alone.
+#define FEEDWRIGHT_FAILED 14
+
 // The simulated machine.
 typedef struct feedwright_plant feedwright_plant;
 
@@ -38,7 +47,7 @@ typedef struct {
     double command_mm[3];
     // Actual positions.
     double actual_mm[3];
-    // Delay of the command, 0.008 to 0.015.
+    // Delay of the command, 0.008 to 0.015. A setting out of its range is refused; the last good one stays in force.
     double delay_s;
     // Largest distance of the drive's command from the path.
     double deviation_mm;
@@ -46,6 +55,8 @@ typedef struct {
     double speed_mm_s;
     // Acceleration of an offset that fades; 0 is without limit.
     double correction_mm_s2;
+    // What 1 of the requested feedrate stands for, 0.1 to 1.
+    double adaptive_scale;
     // The sum of FEEDWRIGHT_POWERED and so on.
     uint32_t flags;
     // Nothing.
@@ -64,8 +75,8 @@ typedef struct {
     double contour_error_mm;
     // The same without the correction, by the model.
     double without_mm;
-    // Feedrate that the control is asked for, as a multiple of its own.
-    double rate;
+    // Feedrate that the control is asked for, as a multiple of its own in the scale that is set, 0 to 1.
+    double adaptive_feed;
     // 0 amplifiers off, 1 without delay, 2 delayed, 3 the correction fades, 4 it is in the loop.
     uint32_t state;
     // Why there is no correction, 0 for nothing; faults.h has words for it.
@@ -74,6 +85,10 @@ typedef struct {
     uint32_t saturated;
     // Servo periods of delay.
     uint32_t delay_periods;
+    // Whether the control is to hold its feed.
+    uint32_t holds_feed;
+    // Whether a motion that follows a spindle would be without delay.
+    uint32_t is_settled;
 } feedwright_outputs;
 
 // The caller's: where a panic ends. It must not return.
@@ -85,7 +100,7 @@ size_t feedwright_servo_bytes(void);
 // Sizes of inputs and outputs, for the caller to compare with its own.
 size_t feedwright_servo_layout(void);
 
-// A new link of two or three joints, with or without a model; the fault that it begins with, or the largest number where the memory is
+// A new link of two or three joints, with or without a model; the fault that it begins with, or [`FEEDWRIGHT_NOT_MADE`] where the memory is
 // none for it.
 //
 // # Safety
@@ -103,6 +118,12 @@ uint32_t feedwright_servo_runs_at(feedwright_servo *servo, double servo_s);
 // # Safety
 // `servo` was made by [`feedwright_servo_new`]; the others are what they are declared to be.
 void feedwright_servo_step(feedwright_servo *servo, const feedwright_inputs *inputs, feedwright_outputs *outputs);
+
+// One servo period in place of [`feedwright_servo_step`], once that has panicked: plays out its delay, without a correction.
+//
+// # Safety
+// `servo` was made by [`feedwright_servo_new`]; the others are what they are declared to be.
+void feedwright_servo_play_out(feedwright_servo *servo, const feedwright_inputs *inputs, feedwright_outputs *outputs);
 
 // Bytes that a machine needs.
 size_t feedwright_plant_bytes(void);

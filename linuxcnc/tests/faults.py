@@ -16,6 +16,7 @@ import zlib
 import headless
 import measure
 import paths
+import programs
 import scenarios
 
 # Farthest that the drive's command may go in a servo period, mm: the machine's 200 mm/s along each axis, and as much again for a corner.
@@ -28,7 +29,8 @@ SAME_UM = 1.0
 NO_WORSE_UM = measure.NO_WORSE_UM
 ZERO_VECTOR = (0.0, 0.0, 0.0)
 
-QUICK = ("enabled_in_mid_cut", "emergency_stop", "feedback_wire_pulled", "feedback_not_a_number", "model_damaged", "machine_of_another_inertia", "probing")
+QUICK = ("enabled_in_mid_cut", "emergency_stop", "feedback_wire_pulled", "feedback_not_a_number", "model_damaged", "machine_of_another_inertia", "probing",
+         "probing_in_a_program", "threading_in_a_program", "feed_is_not_held", "pins_out_of_range", "deviation_lowered_in_mid_cut")
 
 PROBE = """loadrt comp names=probed
 addf probed servo-thread
@@ -44,11 +46,10 @@ net {axis}-home-switch {axis}-switch.out => joint.{i}.home-sw-in
 """ for i, (axis, place) in enumerate([("x", 5), ("y", 3), ("z", 4)]))
 SPINDLE = """loadrt sim_spindle names=spindle
 addf spindle servo-thread
-setp spindle.scale 100
+setp spindle.scale 0.0166666667
 net spindle-speed spindle.0.speed-out => spindle.velocity-cmd
 net spindle-revs spindle.position-fb => spindle.0.revs
 net spindle-index spindle.index-enable
-setp spindle.0.at-speed 1
 """
 
 
@@ -207,6 +208,76 @@ class Cases:
         travels = [speed / 60 for speed in scenarios.PROBE_MM_MIN]
         assert all(um <= SAME_UM + travel for um, travel in zip(apart, travels)), (trips, apart)
         return f"trips at {[f'{trip:.4f}' for trip in trips[1]]} mm, {[f'{um:.2f}' for um in apart]} um from those without"
+
+    def case_probing_in_a_program(self):
+        program = scenarios.probing_program()
+        direct, on = (self.run("logged", {"program": program, "params": {"feedwright.direct": int(direct)}}, hal=PROBE) for direct in (True, False))
+        trips = list(zip(direct.result["trips"], on.result["trips"]))
+        assert len(trips) >= 36 and len(direct.result["trips"]) == len(on.result["trips"]), (direct.result, on.result)
+        # Towards the plane from above it is deeper below it, and away from it above.
+        deeper = [(abs(b - scenarios.PLANE_MM) - abs(a - scenarios.PLANE_MM)) / (mm_min / 60 * 1e-3) for (mm_min, a), (_, b) in trips]
+        probed = [row for row in on.rows if row.motion_type == 5]
+        late = sum(row.state > 1 for row in probed)
+        # While the delay is given up the motion is held, but for the servo periods that braking takes.
+        crept = max((math.dist(a.command, b.command) for a, b in zip(probed, probed[1:]) if b.state > 1 and a.state > 1 and
+                     math.dist(a.command, b.command) < 0.1), default=0.0)
+        assert max(deeper) <= 1.0, f"deeper by {max(deeper):.2f} servo periods of travel: {trips}"
+        assert late <= 25 * len(trips) and crept < 0.005, (late, len(trips), crept)
+        assert not faults(on.rows), faults(on.rows)
+        return (f"{len(trips)} trips, at most {max(deeper):.2f} servo periods of travel deeper than with direct; {late / len(trips):.1f} servo periods held "
+                f"for each, with steps of {crept * 1e3:.1f} um; {self.quiet(on)}")
+
+    def threads(self, hal=""):
+        recording = self.run("cut", {"program": scenarios.THREADING}, hal=SPINDLE + hal)
+        # What feeds along Z follows the spindle.
+        follows = [b for a, b in zip(recording.rows, recording.rows[1:]) if abs(b.command[2] - a.command[2]) > 1e-6 and b.motion_type != 1]
+        assert len(follows) > 2000, (len(follows), recording.result)
+        return recording, len(follows), sum(row.state > 1 for row in follows)
+
+    def case_threading_in_a_program(self):
+        recording, periods, late = self.threads()
+        assert late == 0 and not faults(recording.rows), (late, periods, faults(recording.rows))
+        return f"G33, G33.1, G76: {late} of {periods} servo periods delayed; {self.quiet(recording)}"
+
+    def case_feed_is_not_held(self):
+        cut = "unlinkp motion.feed-inhibit\nunlinkp spindle.0.at-speed\nsetp spindle.0.at-speed 1\n"
+        threads, periods, late = self.threads(cut)
+        probes = self.run("logged", {"program": scenarios.probing_program(3)}, hal=PROBE + cut)
+        told = [faults(recording.rows) for recording in (threads, probes)]
+        assert late > 0 and all(21 in causes for causes in told), (late, told)
+        return f"cause 21; {late} of {periods} servo periods of threading delayed"
+
+    def case_pins_out_of_range(self):
+        pins = {"delay": (-1, "nan"), "deviation-limit": (-1, "nan"), "speed-limit": (-400, "inf"), "correction-acceleration": (-400, "nan"),
+                "adaptive-scale": (0, "nan")}
+        good = self.run("in_mid_cut", {"at_s": 1.5, "changes": {}})
+        came_to = []
+        for k, (pin, values) in enumerate(pins.items()):
+            for value in values:
+                recording = self.run("in_mid_cut", {"at_s": 1.0, "changes": {f"feedwright.{pin}": value}})
+                assert faults(recording.rows) == [16 + k], (pin, value, faults(recording.rows))
+                assert all(math.isfinite(x) for row in recording.rows for x in (*row.drive, *row.feedback)), (pin, value)
+                assert 4 in states(recording.rows[-1000:]), (pin, value)
+                error_um = [max(row.contour_error for row in run.rows if row.motion_type == 3) * 1e3 for run in (good, recording)]
+                assert error_um[1] <= error_um[0] + SAME_UM, (pin, value, error_um)
+                came_to.append(self.quiet(recording))
+        return f"refused with causes 16 to 20; {came_to[0]}"
+
+    def case_deviation_lowered_in_mid_cut(self):
+        star, limit_mm = programs.part("star", "G64 P0.01"), 0.01
+        free, lowered = (self.run("in_mid_cut", {"at_s": 1.5, "changes": changes, "program": star})
+                         for changes in ({}, {"feedwright.deviation-limit": limit_mm}))
+
+        def off_mm(recording, begin):
+            commands = [row.command for row in recording.rows]
+            return max(paths.to_commands(commands, row.drive, i)[0] for i, row in enumerate(recording.rows) if i >= begin)
+        # It was set at about 1.5 s of the recording; the pin is not recorded. By 2.0 s it is in force.
+        off = [off_mm(recording, 2000) for recording in (free, lowered)]
+        assert off[0] > 5 * limit_mm, f"the limit does not bind: {off}"
+        assert off[1] <= limit_mm + ROUND_MM, off
+        steps_um = [steps(recording.rows)[1] * 1e3 for recording in (free, lowered)]
+        assert steps_um[1] <= steps_um[0] + 20, steps_um
+        return f"off the path by {off[0] * 1e3:.0f} um before, {off[1] * 1e3:.1f} um after; steps of the correction {steps_um[0]:.0f} and {steps_um[1]:.0f} um"
 
     def case_thread(self):
         recording = self.run("thread", hal=SPINDLE)

@@ -14,8 +14,8 @@ import programs
 
 # Smaller recordings than this hold no cut, servo periods.
 LEAST_PERIODS = 2000
-# As of feedwright.h: ten numbers and the flags; twelve numbers, four whole ones.
-INPUT_BYTES, PERIOD_BYTES = 88, 200
+# As of feedwright.h: eleven numbers and the flags; twelve numbers, six whole ones.
+INPUT_BYTES, PERIOD_BYTES = 96, 216
 
 
 def main():

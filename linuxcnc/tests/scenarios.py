@@ -1,4 +1,5 @@
 """What is done with LinuxCNC in a run: each function is one, and gets the machine of headless.py."""
+import random
 
 
 # A program may take so long, s.
@@ -140,6 +141,51 @@ def probe(machine, enable):
         trips.append(machine.status.probed_position[2])
         machine.mdi("G1 Z0 F3000")
     return {"trips": trips}
+
+
+PLANE_MM = -10
+
+
+def probing_program(count=36, seed=1):
+    """Probing motions behind cuts, rapids and each other, in one program: each trip goes to a file. The tool touches a plane at PLANE_MM."""
+    pick = random.Random(seed)
+    lines = ["G21 G17 G90 G94 G64", "(LOGOPEN,TRIPS)", "G1 X0 Y0 Z0 F3000"]
+    for k in range(count):
+        mm_min = pick.choice((100, 300, 600, 1500))
+        lines += [f"{pick.choice(('G1', 'G1', 'G0'))} X{pick.uniform(0, 10):.3f} Y{pick.uniform(0, 10):.3f} "
+                  f"Z{PLANE_MM + mm_min / 150 + pick.uniform(0, 1):.3f} F3000",
+                  f"{pick.choice(('G38.2', 'G38.3'))} Z-20 F{mm_min}", f"(LOG,{mm_min} #5063)"]
+        if k % 3 == 2:
+            lines += [f"{pick.choice(('G38.4', 'G38.5'))} Z0 F{mm_min}", f"(LOG,{mm_min} #5063)"]
+    return "\n".join(lines + ["(LOGCLOSE)", "G1 Z0 F3000", "M2"]) + "\n"
+
+
+def logged(machine, program, params=None):
+    """A program that logs to the file TRIPS; what it logged."""
+    file = machine.folder / "trips.txt"
+    cut(machine, program.replace("TRIPS", str(file)), params=params)
+    return {"trips": [tuple(map(float, line.split())) for line in file.read_text().splitlines()]}
+
+
+# Threads behind cuts, in one program: only motion that follows the spindle feeds along Z. The index comes within 10 ms, sooner than the delay.
+THREADING = """G21 G18 G90 G94 G64
+M3 S6000
+G1 X5 Z0 F3000
+G33 Z-10 K0.25
+G0 X8
+G0 Z0
+G1 X5 F3000
+G33 Z-5 K0.5
+G33 Z-8 K0.25
+G0 Z0
+G1 X5 Y5 F3000
+G33.1 Z-10 K0.25
+G1 X6 F3000
+G76 P0.25 Z-8 I-1 J0.4 K1.2 R1 Q29.5 H1
+G1 X0 F3000
+M5
+M2
+"""
 
 
 def thread(machine):

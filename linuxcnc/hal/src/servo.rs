@@ -1,8 +1,10 @@
 //! The link between command and drive.
 
 use feedwright_control::{BlockError, Cause, State};
+use feedwright_servo::limits::{LinkLimits, Setting};
 use feedwright_servo::machine::{Refused, model_of};
-use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkLimits, LinkOutputs, Servo};
+use feedwright_servo::play_out::PlayOut;
+use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
 
 use crate::memory::{TwoOrThree, first, model, put, three};
 
@@ -18,6 +20,12 @@ pub const FEEDWRIGHT_SPINDLE: u32 = 8;
 pub const FEEDWRIGHT_CUTTING: u32 = 16;
 /// A controller that changes the feedrate leaves the geometry on the path.
 pub const FEEDWRIGHT_SPEED_ALONE: u32 = 32;
+/// This motion probes.
+pub const FEEDWRIGHT_PROBING: u32 = 64;
+/// What [`feedwright_servo_new`] returns where it made nothing.
+pub const FEEDWRIGHT_NOT_MADE: u32 = 255;
+/// The fault of a link that failed: known to the caller alone.
+pub const FEEDWRIGHT_FAILED: u32 = 14;
 
 /// What comes from the control and the drives in a servo period.
 #[repr(C)]
@@ -26,7 +34,7 @@ pub struct CInputs {
     command_mm: [f64; 3],
     /// Actual positions.
     actual_mm: [f64; 3],
-    /// Delay of the command, 0.008 to 0.015.
+    /// Delay of the command, 0.008 to 0.015. A setting out of its range is refused; the last good one stays in force.
     delay_s: f64,
     /// Largest distance of the drive's command from the path.
     deviation_mm: f64,
@@ -34,6 +42,8 @@ pub struct CInputs {
     speed_mm_s: f64,
     /// Acceleration of an offset that fades; 0 is without limit.
     correction_mm_s2: f64,
+    /// What 1 of the requested feedrate stands for, 0.1 to 1.
+    adaptive_scale: f64,
     /// The sum of FEEDWRIGHT_POWERED and so on.
     flags: u32,
     /// Nothing.
@@ -53,8 +63,8 @@ pub struct COutputs {
     contour_error_mm: f64,
     /// The same without the correction, by the model.
     without_mm: f64,
-    /// Feedrate that the control is asked for, as a multiple of its own.
-    rate: f64,
+    /// Feedrate that the control is asked for, as a multiple of its own in the scale that is set, 0 to 1.
+    adaptive_feed: f64,
     /// 0 amplifiers off, 1 without delay, 2 delayed, 3 the correction fades, 4 it is in the loop.
     state: u32,
     /// Why there is no correction, 0 for nothing; faults.h has words for it.
@@ -63,10 +73,20 @@ pub struct COutputs {
     saturated: u32,
     /// Servo periods of delay.
     delay_periods: u32,
+    /// Whether the control is to hold its feed.
+    holds_feed: u32,
+    /// Whether a motion that follows a spindle would be without delay.
+    is_settled: u32,
 }
 
 /// The link between command and drives.
-pub struct CServo(TwoOrThree<Servo<2>, Servo<3>>);
+pub struct CServo(TwoOrThree<Guarded<2>, Guarded<3>>);
+
+/// A link, and what stands in for it where it fails.
+struct Guarded<const N: usize> {
+    servo: Servo<N>,
+    play_out: PlayOut<N>,
+}
 
 /// Bytes that a link needs.
 #[unsafe(no_mangle)]
@@ -80,7 +100,7 @@ pub extern "C" fn feedwright_servo_layout() -> usize {
     size_of::<CInputs>() << 16 | size_of::<COutputs>()
 }
 
-/// A new link of two or three joints, with or without a model; the fault that it begins with, or the largest number where the memory is
+/// A new link of two or three joints, with or without a model; the fault that it begins with, or [`FEEDWRIGHT_NOT_MADE`] where the memory is
 /// none for it.
 ///
 /// # Safety
@@ -98,17 +118,19 @@ pub unsafe extern "C" fn feedwright_servo_new(
     let mut fault = 0;
     let make = || {
         CServo(if joints == 2 {
-            let model = model_of(bytes);
-            fault = model.as_ref().err().map_or(0, |refused| number(LinkFault::Model(*refused)));
-            TwoOrThree::Two(Servo::new(model))
+            TwoOrThree::Two(made(bytes, &mut fault))
         } else {
-            let model = model_of(bytes);
-            fault = model.as_ref().err().map_or(0, |refused| number(LinkFault::Model(*refused)));
-            TwoOrThree::Three(Servo::new(model))
+            TwoOrThree::Three(made(bytes, &mut fault))
         })
     };
     // SAFETY: as the caller promises.
-    if unsafe { put(memory, memory_bytes, make) } { fault } else { u32::MAX }
+    if unsafe { put(memory, memory_bytes, make) } { fault } else { FEEDWRIGHT_NOT_MADE }
+}
+
+fn made<const N: usize>(bytes: &[u8], fault: &mut u32) -> Guarded<N> {
+    let model = model_of(bytes);
+    *fault = model.as_ref().err().map_or(0, |refused| number(LinkFault::Model(*refused)));
+    Guarded { servo: Servo::new(model), play_out: PlayOut::new() }
 }
 
 /// Tells the servo period of the thread, before the first step; the fault that there is then.
@@ -118,8 +140,8 @@ pub unsafe extern "C" fn feedwright_servo_new(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn feedwright_servo_runs_at(servo: &mut CServo, servo_s: f64) -> u32 {
     number(match &mut servo.0 {
-        TwoOrThree::Two(servo) => servo.runs_at(servo_s),
-        TwoOrThree::Three(servo) => servo.runs_at(servo_s),
+        TwoOrThree::Two(guarded) => guarded.runs_at(servo_s),
+        TwoOrThree::Three(guarded) => guarded.runs_at(servo_s),
     })
 }
 
@@ -130,37 +152,91 @@ pub unsafe extern "C" fn feedwright_servo_runs_at(servo: &mut CServo, servo_s: f
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn feedwright_servo_step(servo: &mut CServo, inputs: &CInputs, outputs: &mut COutputs) {
     *outputs = match &mut servo.0 {
-        TwoOrThree::Two(servo) => step(servo, inputs),
-        TwoOrThree::Three(servo) => step(servo, inputs),
+        TwoOrThree::Two(guarded) => guarded.step(inputs),
+        TwoOrThree::Three(guarded) => guarded.step(inputs),
     };
 }
 
-fn step<const N: usize>(servo: &mut Servo<N>, inputs: &CInputs) -> COutputs {
-    let is = |flag: u32| inputs.flags & flag != 0;
-    let of = LinkInputs {
-        command_mm: first(inputs.command_mm),
-        actual_mm: first(inputs.actual_mm),
-        powered: is(FEEDWRIGHT_POWERED),
-        enabled: is(FEEDWRIGHT_ENABLED),
-        direct: is(FEEDWRIGHT_DIRECT),
-        spindle: is(FEEDWRIGHT_SPINDLE),
-        cutting: is(FEEDWRIGHT_CUTTING),
+/// One servo period in place of [`feedwright_servo_step`], once that has panicked: plays out its delay, without a correction.
+///
+/// # Safety
+/// `servo` was made by [`feedwright_servo_new`]; the others are what they are declared to be.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn feedwright_servo_play_out(servo: &mut CServo, inputs: &CInputs, outputs: &mut COutputs) {
+    *outputs = match &mut servo.0 {
+        TwoOrThree::Two(guarded) => guarded.play_out(inputs),
+        TwoOrThree::Three(guarded) => guarded.play_out(inputs),
     };
-    let CInputs { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, .. } = *inputs;
-    let limits =
-        LinkLimits { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, speed_alone: is(FEEDWRIGHT_SPEED_ALONE) };
-    let outputs = servo.step(&of, &limits);
-    COutputs {
-        drive_mm: three(outputs.drive_mm),
-        feedback_mm: three(outputs.feedback_mm),
-        correction_mm: three(outputs.correction_mm),
-        contour_error_mm: outputs.contour_error_mm,
-        without_mm: outputs.without_mm,
-        rate: outputs.rate,
-        state: state(&outputs),
-        fault: number(outputs.fault),
-        saturated: u32::from(outputs.saturated),
-        delay_periods: outputs.delay_periods,
+}
+
+impl CInputs {
+    fn is(&self, flag: u32) -> bool {
+        self.flags & flag != 0
+    }
+}
+
+impl<const N: usize> Guarded<N> {
+    fn runs_at(&mut self, servo_s: f64) -> LinkFault {
+        self.play_out.runs_at(servo_s);
+        self.servo.runs_at(servo_s)
+    }
+
+    fn step(&mut self, inputs: &CInputs) -> COutputs {
+        let of = LinkInputs {
+            command_mm: first(inputs.command_mm),
+            actual_mm: first(inputs.actual_mm),
+            powered: inputs.is(FEEDWRIGHT_POWERED),
+            enabled: inputs.is(FEEDWRIGHT_ENABLED),
+            direct: inputs.is(FEEDWRIGHT_DIRECT),
+            probing: inputs.is(FEEDWRIGHT_PROBING),
+            spindle: inputs.is(FEEDWRIGHT_SPINDLE),
+            cutting: inputs.is(FEEDWRIGHT_CUTTING),
+        };
+        let CInputs { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, adaptive_scale, .. } = *inputs;
+        let speed_alone = inputs.is(FEEDWRIGHT_SPEED_ALONE);
+        let limits = LinkLimits { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, adaptive_scale, speed_alone };
+        let outputs = self.servo.step(&of, &limits);
+        self.play_out.keep(of.command_mm, of.powered, outputs.drive_mm, outputs.delay_periods);
+        COutputs {
+            drive_mm: three(outputs.drive_mm),
+            feedback_mm: three(outputs.feedback_mm),
+            correction_mm: three(outputs.correction_mm),
+            contour_error_mm: outputs.contour_error_mm,
+            without_mm: outputs.without_mm,
+            adaptive_feed: outputs.adaptive_feed,
+            state: state(&outputs),
+            fault: number(outputs.fault),
+            saturated: u32::from(outputs.saturated),
+            delay_periods: outputs.delay_periods,
+            holds_feed: u32::from(outputs.holds_feed),
+            is_settled: u32::from(outputs.is_settled),
+        }
+    }
+
+    fn play_out(&mut self, inputs: &CInputs) -> COutputs {
+        let powered = inputs.is(FEEDWRIGHT_POWERED);
+        let out = self.play_out.step(first(inputs.command_mm), first(inputs.actual_mm), powered);
+        let is_settled = out.delay_periods == 0;
+        COutputs {
+            drive_mm: three(out.drive_mm),
+            feedback_mm: three(out.feedback_mm),
+            correction_mm: three(out.correction_mm),
+            contour_error_mm: 0.0,
+            without_mm: 0.0,
+            adaptive_feed: 1.0,
+            state: if !powered {
+                0
+            } else if is_settled {
+                1
+            } else {
+                2
+            },
+            fault: FEEDWRIGHT_FAILED,
+            saturated: 0,
+            delay_periods: out.delay_periods,
+            holds_feed: u32::from(inputs.is(FEEDWRIGHT_PROBING) && !is_settled),
+            is_settled: u32::from(is_settled),
+        }
     }
 }
 
@@ -196,5 +272,11 @@ fn number(fault: LinkFault) -> u32 {
         LinkFault::Faded(Cause::Harmful) => 12,
         LinkFault::Command => 13,
         LinkFault::Unproven => 15,
+        LinkFault::Setting(Setting::Delay) => 16,
+        LinkFault::Setting(Setting::Deviation) => 17,
+        LinkFault::Setting(Setting::Speed) => 18,
+        LinkFault::Setting(Setting::CorrectionAcceleration) => 19,
+        LinkFault::Setting(Setting::AdaptiveScale) => 20,
+        LinkFault::NotHeld => 21,
     }
 }

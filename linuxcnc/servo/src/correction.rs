@@ -46,10 +46,14 @@ impl<const N: usize> Correction<N> {
         Self { controller, share: 0.0, followed: true, wanted_mm: [0.0; N], without_mm: 0.0, rate: 1.0, trust }
     }
 
-    /// Holds the offset to these bounds; `speed_alone` leaves the geometry of the paper's controllers on the path.
-    pub fn hold_to(&mut self, bounds: &Bounds, speed_alone: bool) {
+    /// Holds the offset to these bounds.
+    pub fn hold_to(&mut self, bounds: &Bounds) {
         let (largest_mm, fastest_mm_s) = (bounds.deviation_mm, bounds.speed_mm_s);
         self.controller.hold_to(OffsetBounds { largest_mm, fastest_mm_s });
+    }
+
+    /// Whether the paper's controllers leave the geometry on the path. Taken over at rest.
+    pub fn change_speed_alone(&mut self, speed_alone: bool) {
         self.controller.change_speed_alone(speed_alone);
     }
 

@@ -12,4 +12,7 @@ mod law_proof;
 pub mod trust;
 pub mod live_controller;
 pub mod correction;
+pub mod fading;
+pub mod limits;
+pub mod play_out;
 pub mod servo;

@@ -12,29 +12,34 @@
 //! model, or while the amplifier is off. With the amplifier off, drive and control get the actual
 //! position.
 //!
+//! Within a program, a probing motion begins sooner behind a cut than the delay. The link then asks
+//! the control to hold its feed ([`LinkOutputs::holds_feed`]) until the delay is given up, and again
+//! behind it until the delay is taken up. A motion that follows a spindle takes no hold: it has to
+//! wait for [`LinkOutputs::is_settled`].
+//!
 //! | Link | Drive gets |
 //! |---|---|
 //! | [`Link::Off`] | the actual position |
 //! | [`Link::Direct`] | the command, plus the remainder of an offset while it fades |
 //! | [`Link::Delayed`] | the delayed command, plus the offset that the safety layer passes |
 
-use feedwright_control::vector::{add_scaled, norm, scale, sub};
+use feedwright_control::vector::{add_scaled, bounded, norm, sub};
 use feedwright_control::{Bounds, Cause, State};
 use feedwright_control::{Schedule, Tick};
 
 use crate::correction::Correction;
+use crate::fading::Fading;
 use crate::history::{Delayed, History, NEWER};
+use crate::limits::{LinkLimits, Setting};
 use crate::machine::{self, LinkModel, Refused};
 
-/// Delays that can be set, s: below, the inverse of a drive that is late has nothing to look at; above, it sees no more that it needs.
-pub const DELAYS_S: [f64; 2] = [0.008, 0.015];
-/// Time constant with which a remaining offset decays when there is no correction, s. A fade of the
-/// safety layer has the same one.
-const RESIDUAL_S: f64 = 0.03;
 /// A spindle is followed until the command has rested for so long since its index was awaited, s: it begins to move with the index.
 const FOLLOWED_S: f64 = 0.5;
-/// What stands for no limit of the correction's acceleration, mm/s2: a leap within a servo period of 1 ms at the speed of a rapid.
-const UNLIMITED_MM_S2: f64 = 1e6;
+/// The delay is taken up behind a probing motion once the command has rested for longer than this, s: five time constants of a usual position
+/// loop. After 0.013 s, an axis that stopped from 25 mm/s still moves by 84 um, which its model takes for a wrong prediction.
+const SETTLES_S: f64 = 0.1;
+/// A command that still moves so long after its feed was to be held will not be held, s: braking from 100 mm/s within 2,000 mm/s2.
+const HELD_S: f64 = 0.05;
 /// Servo period where there is no model, s; nothing but the time of rest depends on it.
 const WITHOUT_MODEL_S: f64 = 0.001;
 /// An offset nearer to what was asked for is that, mm.
@@ -60,27 +65,14 @@ pub struct LinkInputs<const N: usize> {
     pub powered: bool,
     /// Whether the correction is wanted.
     pub enabled: bool,
-    /// Whether no delay is wanted: jog, homing, probing, or asked for from outside.
+    /// Whether no delay is wanted: jog, homing, or asked for from outside.
     pub direct: bool,
+    /// Whether this motion probes.
+    pub probing: bool,
     /// Whether the spindle is about to be followed.
     pub spindle: bool,
     /// Whether this motion cuts; a rapid does not.
     pub cutting: bool,
-}
-
-/// What can be set. All but [`Self::delay_s`] is taken over where the delay is taken up.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LinkLimits {
-    /// Delay of the command, s.
-    pub delay_s: f64,
-    /// Distance of the command from the path, mm.
-    pub deviation_mm: f64,
-    /// Highest speed of the machine and of the offset, mm/s.
-    pub speed_mm_s: f64,
-    /// Acceleration with which an offset fades, mm/s2; 0 is without limit.
-    pub correction_mm_s2: f64,
-    /// Whether a controller that changes the feedrate leaves the geometry on the path.
-    pub speed_alone: bool,
 }
 
 /// How the drive is connected to the command.
@@ -107,6 +99,10 @@ pub enum LinkFault {
     Unproven,
     /// The command was not a number; the last that was one is held.
     Command,
+    /// This number is out of its range; the last one that was not stays in force, and so does the correction.
+    Setting(Setting),
+    /// A motion that probes or follows a spindle is delayed: the control did not hold its feed, or did not wait.
+    NotHeld,
 }
 
 /// What goes to the drive and to the control, and what is told.
@@ -124,6 +120,8 @@ pub struct LinkOutputs<const N: usize> {
     pub without_mm: f64,
     /// Feedrate that the control is asked for, as a multiple of its own.
     pub rate: f64,
+    /// The same in the scale that is set, 0 to 1.
+    pub adaptive_feed: f64,
     /// How the drive is connected.
     pub link: Link,
     /// Whether the correction is in the loop, as the safety layer sees it.
@@ -134,6 +132,10 @@ pub struct LinkOutputs<const N: usize> {
     pub fault: LinkFault,
     /// Servo periods of delay.
     pub delay_periods: u32,
+    /// Whether the control is to hold its feed until the delay has been given up, or taken up.
+    pub holds_feed: bool,
+    /// Whether a motion that follows a spindle would be without delay.
+    pub is_settled: bool,
 }
 
 /// The link and its state.
@@ -147,11 +149,20 @@ pub struct Servo<const N: usize> {
     /// Servo periods of delay, and the number of the command at which the tick began.
     delay: u32,
     first: u64,
-    /// Remaining offset that decays without a correction, mm.
-    residual_mm: [f64; N],
+    /// What is in force of the settings.
+    limits: LinkLimits,
+    /// By how much the offset is held to more than the deviation that is set, or to less: it follows a change within the acceleration of a fade.
+    excess: Fading<1>,
+    /// Remaining offset that fades without a correction.
+    residual: Fading<N>,
+    /// Whether the delay was given up for a motion that probes, and servo periods in which the command has moved although it was to be held.
+    yielded: bool,
+    not_held: u64,
     actual_mm: [f64; N],
     command_mm: [f64; N],
     drive_mm: [f64; N],
+    /// How large the offset of the correction was in the last servo period, mm.
+    offset_mm: f64,
     /// Whether the motion follows a spindle, and servo periods since it was about to.
     follows: bool,
     unasked: u64,
@@ -174,10 +185,15 @@ impl<const N: usize> Servo<N> {
             link: Link::Off,
             delay: 0,
             first: 0,
-            residual_mm: [0.0; N],
+            limits: LinkLimits::DEFAULT,
+            excess: Fading::NONE,
+            residual: Fading::NONE,
+            yielded: false,
+            not_held: 0,
             actual_mm: [0.0; N],
             command_mm: [0.0; N],
             drive_mm: [0.0; N],
+            offset_mm: 0.0,
             follows: false,
             unasked: 0,
             heard: false,
@@ -197,6 +213,7 @@ impl<const N: usize> Servo<N> {
 
     /// One servo period.
     pub fn step(&mut self, inputs: &LinkInputs<N>, limits: &LinkLimits) -> LinkOutputs<N> {
+        let refused = self.take_over(limits);
         let told = norm(inputs.command_mm).is_finite();
         if norm(inputs.actual_mm).is_finite() {
             self.actual_mm = inputs.actual_mm;
@@ -204,37 +221,85 @@ impl<const N: usize> Servo<N> {
         self.since_leap = self.since_leap.saturating_add(1);
         if told {
             let step_mm = norm(sub(inputs.command_mm, self.command_mm));
-            if self.heard && step_mm > LEAP * limits.speed_mm_s * self.servo_s {
+            if self.heard && step_mm > LEAP * self.limits.speed_mm_s * self.servo_s {
                 self.since_leap = 0;
             }
             (self.command_mm, self.heard) = (inputs.command_mm, true);
         }
-        let outputs = if inputs.powered && self.heard { self.on(inputs, limits, told) } else { self.off(told) };
+        let mut outputs = if inputs.powered && self.heard { self.on(inputs, told) } else { self.off(told) };
+        outputs.adaptive_feed = bounded(self.limits.adaptive_scale * outputs.rate, 0.0, 1.0);
+        // What takes the correction away is told first.
+        if let (LinkFault::None, Some(setting)) = (outputs.fault, refused) {
+            outputs.fault = LinkFault::Setting(setting);
+        }
         self.drive_mm = outputs.drive_mm;
         outputs
     }
 
-    fn on(&mut self, inputs: &LinkInputs<N>, limits: &LinkLimits, told: bool) -> LinkOutputs<N> {
-        self.choose(inputs, limits);
+    /// Takes over what is set. A deviation that changes is reached within the acceleration of a fade; a lower one from where the offset is.
+    fn take_over(&mut self, limits: &LinkLimits) -> Option<Setting> {
+        let (last_mm, before_mm) = (self.limits.deviation_mm, self.deviation_mm());
+        let refused = self.limits.take_over(limits);
+        let set_mm = self.limits.deviation_mm;
+        let from_mm = if set_mm < last_mm { before_mm.min(self.offset_mm.max(set_mm)) } else { before_mm };
+        if self.link == Link::Delayed {
+            self.excess.shift([(from_mm - set_mm) - (before_mm - last_mm)]);
+        } else {
+            self.excess = Fading::NONE;
+        }
+        self.excess.step(self.servo_s, self.limits.correction_mm_s2);
+        refused
+    }
+
+    /// What the offset is held to now, mm.
+    fn deviation_mm(&self) -> f64 {
+        let [excess_mm] = self.excess.value_mm();
+        (self.limits.deviation_mm + excess_mm).max(0.0)
+    }
+
+    fn bounds(&self) -> Bounds {
+        let LinkLimits { speed_mm_s, correction_mm_s2: fade_mm_s2, .. } = self.limits;
+        Bounds { fade_mm_s2, ..Bounds::new(self.deviation_mm(), speed_mm_s, 0.0) }
+    }
+
+    fn on(&mut self, inputs: &LinkInputs<N>, told: bool) -> LinkOutputs<N> {
+        self.choose(inputs);
         self.history.push(self.command_mm, inputs.cutting);
-        let decay = (self.servo_s / RESIDUAL_S).min(1.0);
-        self.residual_mm = scale(1.0 - decay, self.residual_mm);
+        self.residual.step(self.servo_s, self.limits.correction_mm_s2);
         let mut outputs = match self.link {
             Link::Delayed => self.delayed(inputs),
             Link::Off | Link::Direct => self.direct(),
         };
+        self.hold(inputs, &mut outputs);
         if !told {
             outputs.fault = LinkFault::Command;
         }
         outputs
     }
 
+    /// Whether the control is to hold its feed, and whether it does.
+    fn hold(&mut self, inputs: &LinkInputs<N>, outputs: &mut LinkOutputs<N>) {
+        let is_delayed = self.link == Link::Delayed;
+        let rested = self.history.at_rest();
+        outputs.is_settled = !is_delayed || rested > u64::from(self.delay) + NEWER;
+        let gives_up = is_delayed && inputs.probing && !inputs.direct;
+        let takes_up = self.link == Link::Direct && self.yielded && !(inputs.probing || inputs.direct || self.follows);
+        outputs.holds_feed = gives_up || takes_up;
+        self.not_held = if !outputs.holds_feed { 0 } else { self.not_held + u64::from(rested == 0) };
+        let late = self.not_held as f64 * self.servo_s > HELD_S;
+        // Without a hold there is no rest to take it up in.
+        self.yielded &= !(takes_up && late);
+        if (gives_up && late) || (is_delayed && self.follows && rested == 0) {
+            outputs.fault = LinkFault::NotHeld;
+        }
+    }
+
     /// The amplifier is off: the drive is told to be where it is, and so is the control.
     fn off(&mut self, told: bool) -> LinkOutputs<N> {
         self.link = Link::Off;
         self.history.clear();
-        self.residual_mm = [0.0; N];
-        self.follows = false;
+        self.residual = Fading::NONE;
+        (self.follows, self.yielded, self.not_held) = (false, false, 0);
         if let Ok(correction) = &mut self.correction {
             correction.restart();
             correction.forgive();
@@ -244,48 +309,48 @@ impl<const N: usize> Servo<N> {
     }
 
     /// Takes the delay up or gives it up, where that can be.
-    fn choose(&mut self, inputs: &LinkInputs<N>, limits: &LinkLimits) {
+    fn choose(&mut self, inputs: &LinkInputs<N>) {
         let rested = self.history.at_rest();
         self.unasked = if inputs.spindle { 0 } else { self.unasked.saturating_add(1) };
         self.follows =
             inputs.spindle || (self.follows && (rested.min(self.unasked) as f64) * self.servo_s < FOLLOWED_S);
-        let wanted =
-            if inputs.direct || self.follows || self.correction.is_err() { Link::Direct } else { Link::Delayed };
-        match (self.link, wanted) {
+        let is_direct = inputs.direct || inputs.probing || self.follows || self.correction.is_err();
+        match (self.link, if is_direct { Link::Direct } else { Link::Delayed }) {
             // What was commanded before is not the past of this motion.
             (Link::Off, _) => {
                 self.link = Link::Direct;
                 self.history.clear();
             }
-            (Link::Direct, Link::Delayed) if rested > self.periods(limits.delay_s) + NEWER => self.take_up(limits),
+            (Link::Direct, Link::Delayed) if rested > self.rest_to_take_up() => self.take_up(),
             (Link::Delayed, Link::Direct) if rested > u64::from(self.delay) + NEWER => {
-                self.residual_mm = sub(self.drive_mm, self.history.position_mm(self.history.newest()));
+                let path_mm = self.history.position_mm(self.history.newest());
+                self.residual = Fading::from_rest(sub(self.drive_mm, path_mm));
                 self.link = Link::Direct;
+                self.yielded = inputs.probing;
             }
             _ => {}
         }
     }
 
-    /// Servo periods in a delay within [`DELAYS_S`], and no fewer than the controller looks ahead.
-    fn periods(&self, delay_s: f64) -> u64 {
-        let [least_s, most_s] = DELAYS_S;
-        // Not a number is the least.
-        let delay_s = delay_s.max(least_s).min(most_s);
-        let looks_ahead = self.correction.as_ref().map_or(0, Correction::looks_ahead);
-        (libm::round(delay_s / self.servo_s) as u64).max(looks_ahead + NEWER + 1).min(MOST_PERIODS)
+    /// Servo periods of rest before the delay is taken up.
+    fn rest_to_take_up(&self) -> u64 {
+        let settles = if self.yielded { libm::round(SETTLES_S / self.servo_s) as u64 } else { 0 };
+        (self.periods() + NEWER).max(settles)
     }
 
-    fn take_up(&mut self, limits: &LinkLimits) {
-        let delay = self.periods(limits.delay_s);
-        let bounds = Bounds {
-            fade_mm_s2: if limits.correction_mm_s2 > 0.0 { limits.correction_mm_s2 } else { UNLIMITED_MM_S2 },
-            ..Bounds::new(limits.deviation_mm, limits.speed_mm_s, 0.0)
-        };
+    /// Servo periods in the delay that is set, and no fewer than the controller looks ahead.
+    fn periods(&self) -> u64 {
+        let looks_ahead = self.correction.as_ref().map_or(0, Correction::looks_ahead);
+        (libm::round(self.limits.delay_s / self.servo_s) as u64).max(looks_ahead + NEWER + 1).min(MOST_PERIODS)
+    }
+
+    fn take_up(&mut self) {
+        let (delay, bounds) = (self.periods(), self.bounds());
         // The command that is pushed next is the newest; the preview looks a knot further than it is asked to.
         let ahead = (delay - NEWER - 1) as u32;
         let schedule = match &mut self.correction {
             Ok(correction) => {
-                correction.hold_to(&bounds, limits.speed_alone);
+                correction.change_speed_alone(self.limits.speed_alone);
                 correction.schedule_within(ahead)
             }
             Err(_) => AT_REST,
@@ -293,7 +358,7 @@ impl<const N: usize> Servo<N> {
         self.tick = Tick::new(self.servo_s, schedule, bounds);
         self.delay = delay as u32;
         self.first = (self.history.newest() + 1).saturating_sub(delay);
-        self.link = Link::Delayed;
+        (self.link, self.yielded, self.offset_mm) = (Link::Delayed, false, 0.0);
     }
 
     /// That the model was refused, if it was.
@@ -310,11 +375,14 @@ impl<const N: usize> Servo<N> {
             contour_error_mm: 0.0,
             without_mm: 0.0,
             rate: 1.0,
+            adaptive_feed: 1.0,
             link: self.link,
             state: State::Shadow,
             saturated: false,
             fault: LinkFault::None,
             delay_periods: 0,
+            holds_feed: false,
+            is_settled: true,
         }
     }
 
@@ -323,11 +391,11 @@ impl<const N: usize> Servo<N> {
         if let Ok(correction) = &mut self.correction {
             correction.restart();
         }
-        let drive_mm = add_scaled(self.command_mm, 1.0, self.residual_mm);
+        let correction_mm = self.residual.value_mm();
         LinkOutputs {
-            drive_mm,
+            drive_mm: add_scaled(self.command_mm, 1.0, correction_mm),
             feedback_mm: self.actual_mm,
-            correction_mm: self.residual_mm,
+            correction_mm,
             link: Link::Direct,
             fault,
             ..self.nothing()
@@ -335,7 +403,10 @@ impl<const N: usize> Servo<N> {
     }
 
     fn delayed(&mut self, inputs: &LinkInputs<N>) -> LinkOutputs<N> {
+        let bounds = self.bounds();
         let Ok(correction) = &mut self.correction else { return self.direct() };
+        correction.hold_to(&bounds);
+        self.tick.hold_to(bounds);
         // Until no part of it is ahead any more: what no machine can follow says nothing of the law.
         if self.since_leap <= u64::from(self.delay) {
             correction.restart();
@@ -345,6 +416,7 @@ impl<const N: usize> Servo<N> {
         let setpoint = self.tick.step(&mut path, correction, inputs.actual_mm);
         let path_mm = setpoint.path.position_mm;
         let offset_mm = sub(setpoint.command_mm, path_mm);
+        self.offset_mm = norm(offset_mm);
         let state = self.tick.state();
         let held = norm(sub(correction.wanted_mm(), offset_mm)) > SAME_MM;
         let state = match state {
@@ -359,17 +431,20 @@ impl<const N: usize> Servo<N> {
             faded => faded.map_or(LinkFault::None, LinkFault::Faded),
         };
         LinkOutputs {
-            drive_mm: add_scaled(setpoint.command_mm, 1.0, self.residual_mm),
+            drive_mm: add_scaled(setpoint.command_mm, 1.0, self.residual.value_mm()),
             feedback_mm: add_scaled(self.command_mm, 1.0, sub(self.actual_mm, path_mm)),
-            correction_mm: add_scaled(offset_mm, 1.0, self.residual_mm),
+            correction_mm: add_scaled(offset_mm, 1.0, self.residual.value_mm()),
             contour_error_mm: known(norm(self.tick.contour().vector_mm)),
             without_mm: known(correction.without_mm()),
             rate: correction.rate(),
+            adaptive_feed: 1.0,
             link: Link::Delayed,
             state,
             saturated: held && state == State::Engaged,
             fault,
             delay_periods: self.delay,
+            holds_feed: false,
+            is_settled: false,
         }
     }
 }

@@ -4,8 +4,9 @@
 mod common;
 
 use feedwright_control::{ContourIdentifier, Identifier};
+use feedwright_servo::limits::LinkLimits;
 use feedwright_servo::machine::{LinkModel, TrainedContour};
-use feedwright_servo::servo::{Link, LinkInputs, LinkLimits, LinkOutputs, Servo};
+use feedwright_servo::servo::{Link, LinkInputs, LinkOutputs, Servo};
 
 use common::{LIMITS, SERVO_S, cutting};
 

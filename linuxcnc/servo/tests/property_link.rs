@@ -4,78 +4,20 @@
 mod axis;
 #[path = "common/inputs.rs"]
 mod common;
+#[path = "common/turn.rs"]
+mod turning;
 
-use std::f64::consts::TAU;
-
-use feedwright_control::{BlockError, Cause, IdentifiedAxes};
+use feedwright_control::{BlockError, Cause};
+use feedwright_servo::limits::LinkLimits;
 use feedwright_servo::machine::{LinkModel, Refused};
 use feedwright_servo::plant::SimulatedMachine;
-use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkLimits, LinkOutputs, Servo};
+use feedwright_servo::servo::{Link, LinkFault, LinkOutputs, Servo};
 
-use axis::axis;
-use common::{LIMITS, SERVO_S, cutting};
+use common::{LIMITS, SERVO_S};
+use turning::{Period, SETTLE, TURN, machine, turn, turn_on};
 
-/// Servo periods until the link has settled, and of a turn of the circle.
-const SETTLE: usize = 400;
-const TURN: usize = 1257;
 /// Of the contour error without the correction: as a sweep in a real control has it.
 const LEFT: f64 = 0.05;
-
-/// Two axes alike, with the numbers of the machine of Lee, Cho and Jeon (2005).
-fn machine() -> IdentifiedAxes<2> {
-    let (axis, mut slower) = (axis(), axis());
-    slower.parameters.inertia_kg_m2 = 0.012;
-    slower.parameters.coulomb_friction_nm = 0.3;
-    IdentifiedAxes { mechanics_s: axis.periods.mechanics_s, axes: [axis, slower] }
-}
-
-/// Rest, a turn of a circle of 10 mm at 50 mm/s with soft ends, rest.
-fn command_mm(n: usize) -> [f64; 2] {
-    let part = (n.saturating_sub(SETTLE) as f64 / (1.25 * TURN as f64)).min(1.0);
-    // A fifth of the time to take up the speed, and a fifth to give it up.
-    let ramp = 0.2;
-    let gone = |t: f64| if t < ramp { t * t / (2.0 * ramp) } else { t - 0.5 * ramp };
-    let whole = gone(1.0) - 0.5 * ramp;
-    let way = if part > 1.0 - ramp { whole - (1.0 - part).powi(2) / (2.0 * ramp) } else { gone(part) };
-    let angle = TAU * way / whole;
-    [10.0 - 10.0 * angle.cos(), 10.0 * angle.sin()]
-}
-
-/// What happened in a servo period.
-struct Period {
-    inputs: LinkInputs<2>,
-    outputs: LinkOutputs<2>,
-    tool_mm: [f64; 2],
-}
-
-/// A turn, with inputs that are changed on the way.
-fn turn(
-    model: Result<IdentifiedAxes<2>, Refused>,
-    limits: &LinkLimits,
-    change: impl FnMut(usize, &mut LinkInputs<2>),
-) -> Vec<Period> {
-    turn_on(&machine(), model, limits, change)
-}
-
-/// A turn on a machine that may differ from the model.
-fn turn_on(
-    real: &IdentifiedAxes<2>,
-    model: Result<IdentifiedAxes<2>, Refused>,
-    limits: &LinkLimits,
-    mut change: impl FnMut(usize, &mut LinkInputs<2>),
-) -> Vec<Period> {
-    let (mut plant, mut servo) = (SimulatedMachine::new(real, 1), Servo::new(model.map(LinkModel::Axes)));
-    assert!(matches!(servo.runs_at(SERVO_S), LinkFault::None | LinkFault::Model(_)));
-    let mut periods = Vec::new();
-    for n in 0..SETTLE + 2 * TURN {
-        let mut inputs = cutting(command_mm(n), plant.measured_mm());
-        change(n, &mut inputs);
-        let outputs = servo.step(&inputs, limits);
-        plant.step(outputs.drive_mm, inputs.powered, 1.0);
-        periods.push(Period { inputs, outputs, tool_mm: plant.position_mm() });
-    }
-    periods
-}
 
 /// RMS of the distance of the tool from the circle while it goes round, mm.
 fn rms_mm(periods: &[Period]) -> f64 {
@@ -100,8 +42,8 @@ fn by_a_model_that_is_wrong_nothing_is_corrected_and_it_is_told() {
     for late_s in [0.002, 0.003, 0.005] {
         let mut real = machine();
         real.axes.iter_mut().for_each(|axis| axis.delays.drive_s += late_s);
-        let without = rms_mm(&turn_on(&real, Ok(machine()), &LIMITS, |_, inputs| inputs.enabled = false));
-        let periods = turn_on(&real, Ok(machine()), &LIMITS, |_, _| {});
+        let without = rms_mm(&turn_on(&real, Ok(machine()), |_| LIMITS, |_, inputs| inputs.enabled = false));
+        let periods = turn_on(&real, Ok(machine()), |_| LIMITS, |_, _| {});
         assert!(rms_mm(&periods) <= without, "{late_s}: {} {without}", rms_mm(&periods));
         assert!(periods.iter().all(|period| period.outputs.correction_mm == [0.0; 2]), "{late_s}");
         assert!(periods.iter().any(|period| period.outputs.fault == LinkFault::Unproven), "{late_s}: nothing was told");
@@ -217,11 +159,16 @@ fn behind_a_short_loss_of_the_position_drives_with_an_integral_part_are_known_ag
     machine.axes.iter_mut().for_each(|axis| axis.drive.speed_integral_s = 0.02);
     for from in [700, 900, 1100] {
         let lost = from..from + 4;
-        let periods = turn_on(&machine, Ok(machine), &LIMITS, |n, inputs| {
-            if lost.contains(&n) {
-                inputs.actual_mm[1] = f64::NAN;
-            }
-        });
+        let periods = turn_on(
+            &machine,
+            Ok(machine),
+            |_| LIMITS,
+            |n, inputs| {
+                if lost.contains(&n) {
+                    inputs.actual_mm[1] = f64::NAN;
+                }
+            },
+        );
         let told = |n: usize| periods[n].outputs.fault;
         assert_eq!(told(from + 100), LinkFault::Faded(Cause::LostFeedback), "{from}");
         assert_eq!(told(from + 500), LinkFault::None, "{from}");

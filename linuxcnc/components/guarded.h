@@ -1,0 +1,65 @@
+/* The link, with what stands in for it where it could not be made, or failed. */
+#ifndef FEEDWRIGHT_GUARDED_H
+#define FEEDWRIGHT_GUARDED_H
+
+#include <math.h>
+
+#include "faults.h"
+#include "load.h"
+
+typedef struct {
+    feedwright_servo *servo;
+    /* Whether there is a link, and whether it runs. */
+    bool made, runs;
+    /* The last outputs. */
+    feedwright_outputs last;
+} guarded;
+
+/* Makes the link in memory that is there; the fault that it begins with. */
+static uint32_t guarded_new(guarded *g, size_t bytes, uint32_t joints, const uint8_t *model, size_t length)
+{
+    uint32_t fault = FEEDWRIGHT_NOT_MADE;
+    g->made = CONTAINED(fault = feedwright_servo_new(g->servo, bytes, joints, model, length)) && fault != FEEDWRIGHT_NOT_MADE;
+    g->runs = g->made;
+    return g->made ? fault : FEEDWRIGHT_FAILED;
+}
+
+/* The period of the thread is known in its first servo period. */
+static void guarded_begin(guarded *g, double servo_s)
+{
+    if (g->runs && !CONTAINED(feedwright_servo_runs_at(g->servo, servo_s)))
+        g->runs = false;
+}
+
+/* Commands as they are: there never was a delay. */
+static void guarded_pass(const feedwright_inputs *in, feedwright_outputs *out)
+{
+    bool powered = (in->flags & FEEDWRIGHT_POWERED) != 0;
+    *out = (feedwright_outputs){ .fault = FEEDWRIGHT_FAILED, .state = powered, .adaptive_feed = 1, .is_settled = 1 };
+    for (int i = 0; i < 3; i++) {
+        out->drive_mm[i] = powered ? in->command_mm[i] : in->actual_mm[i];
+        out->feedback_mm[i] = in->actual_mm[i];
+    }
+}
+
+/* One servo period. What goes to drives and LinuxCNC is always a number. */
+static void guarded_step(guarded *g, const feedwright_inputs *in, feedwright_outputs *out)
+{
+    if (g->runs && !CONTAINED(feedwright_servo_step(g->servo, in, out)))
+        g->runs = false;
+    if (!g->runs && !(g->made && CONTAINED(feedwright_servo_play_out(g->servo, in, out)))) {
+        g->made = false;
+        guarded_pass(in, out);
+    }
+    for (int i = 0; i < 3; i++) {
+        if (!isfinite(out->drive_mm[i])) {
+            out->drive_mm[i] = g->last.drive_mm[i];
+            out->fault = FEEDWRIGHT_FAILED;
+        }
+        if (!isfinite(out->feedback_mm[i]))
+            out->feedback_mm[i] = g->last.feedback_mm[i];
+    }
+    g->last = *out;
+}
+
+#endif

@@ -1,0 +1,121 @@
+//! What stands in for a link that failed: plays out its delay, without a correction.
+//!
+//! ```text
+//! drive = c(n - D) + o     o: the offset at the failure, which fades to zero
+//! ```
+//!
+//! The delay D ends where the command has rested for longer than it: nothing leaps. This state is apart from that of the link, so that a
+//! failure in the link leaves it whole.
+
+use feedwright_control::vector::{add_scaled, norm, sub};
+
+use crate::fading::Fading;
+use crate::history::{History, NEWER};
+
+/// Acceleration with which the offset fades, mm/s2: as a pin has it where none is set.
+const FADE_MM_S2: f64 = 400.0;
+
+/// Commands of a link, and where it left the drive.
+#[derive(Debug, Clone)]
+pub struct PlayOut<const N: usize> {
+    servo_s: f64,
+    history: History<N>,
+    /// Servo periods of delay.
+    delay: u64,
+    offset: Fading<N>,
+    has_failed: bool,
+    command_mm: [f64; N],
+    actual_mm: [f64; N],
+    drive_mm: [f64; N],
+}
+
+/// What goes to the drive and to the control.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PlayedOut<const N: usize> {
+    /// Command of the drive, mm.
+    pub drive_mm: [f64; N],
+    /// What the control takes for the actual position, mm.
+    pub feedback_mm: [f64; N],
+    /// Offset of the command from the path, mm.
+    pub correction_mm: [f64; N],
+    /// Servo periods of delay.
+    pub delay_periods: u32,
+}
+
+impl<const N: usize> Default for PlayOut<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl<const N: usize> PlayOut<N> {
+    /// Behind a link that has not run yet.
+    pub fn new() -> Self {
+        Self {
+            servo_s: 0.001,
+            history: History::EMPTY,
+            delay: 0,
+            offset: Fading::NONE,
+            has_failed: false,
+            command_mm: [0.0; N],
+            actual_mm: [0.0; N],
+            drive_mm: [0.0; N],
+        }
+    }
+
+    /// The servo period of the thread, s.
+    pub fn runs_at(&mut self, servo_s: f64) {
+        self.servo_s = servo_s;
+    }
+
+    /// Keeps what a servo period of the link came to: its command, its drive's command and its delay.
+    pub fn keep(&mut self, command_mm: [f64; N], powered: bool, drive_mm: [f64; N], delay_periods: u32) {
+        self.push(command_mm, powered);
+        (self.drive_mm, self.delay) = (drive_mm, u64::from(delay_periods));
+    }
+
+    fn push(&mut self, command_mm: [f64; N], powered: bool) {
+        if norm(command_mm).is_finite() {
+            self.command_mm = command_mm;
+        }
+        if powered {
+            self.history.push(self.command_mm, false);
+        } else {
+            self.history.clear();
+        }
+    }
+
+    /// One servo period in place of the link.
+    pub fn step(&mut self, command_mm: [f64; N], actual_mm: [f64; N], powered: bool) -> PlayedOut<N> {
+        if norm(actual_mm).is_finite() {
+            self.actual_mm = actual_mm;
+        }
+        if !self.has_failed && powered {
+            self.offset = Fading::from_rest(sub(self.drive_mm, self.path_mm()));
+        }
+        self.has_failed = true;
+        self.push(command_mm, powered);
+        if !powered {
+            (self.delay, self.offset) = (0, Fading::NONE);
+            return self.out(self.actual_mm, self.actual_mm);
+        }
+        if self.history.at_rest() > self.delay + NEWER {
+            self.delay = 0;
+        }
+        self.offset.step(self.servo_s, FADE_MM_S2);
+        let path_mm = self.path_mm();
+        let drive_mm = add_scaled(path_mm, 1.0, self.offset.value_mm());
+        self.out(drive_mm, add_scaled(self.command_mm, 1.0, sub(self.actual_mm, path_mm)))
+    }
+
+    fn path_mm(&self) -> [f64; N] {
+        if self.delay == 0 {
+            return self.command_mm;
+        }
+        self.history.position_mm(self.history.newest().saturating_sub(self.delay))
+    }
+
+    fn out(&self, drive_mm: [f64; N], feedback_mm: [f64; N]) -> PlayedOut<N> {
+        PlayedOut { drive_mm, feedback_mm, correction_mm: self.offset.value_mm(), delay_periods: self.delay as u32 }
+    }
+}

@@ -1,0 +1,94 @@
+//! Settings that change while the machine cuts: a number that is none has no effect, and a lower deviation takes effect at once.
+
+#[path = "common/axis.rs"]
+mod axis;
+#[path = "common/inputs.rs"]
+mod common;
+#[path = "common/turn.rs"]
+mod turning;
+
+use feedwright_servo::limits::{LinkLimits, Setting};
+use feedwright_servo::servo::LinkFault;
+
+use common::{LIMITS, SERVO_S};
+use turning::{Period, SETTLE, TURN, machine, turn, turn_on};
+
+/// In mid-cut, and within a turn from there.
+const CHANGED: usize = SETTLE + 300;
+/// Time in which a lower deviation is reached, s.
+const REACHED_S: f64 = 0.2;
+/// The drive's path of points is a polygon, mm.
+const ROUND_MM: f64 = 1e-4;
+
+/// A name, the setting that is refused, and how the numbers are spoilt.
+type Spoilt = (&'static str, Setting, fn(&mut LinkLimits, f64));
+
+const SPOILT: [Spoilt; 5] = [
+    ("delay", Setting::Delay, |limits, x| limits.delay_s = x),
+    ("deviation", Setting::Deviation, |limits, x| limits.deviation_mm = x),
+    ("speed", Setting::Speed, |limits, x| limits.speed_mm_s = x),
+    ("acceleration", Setting::CorrectionAcceleration, |limits, x| limits.correction_mm_s2 = x),
+    ("scale", Setting::AdaptiveScale, |limits, x| limits.adaptive_scale = x),
+];
+
+#[test]
+fn a_number_that_is_none_changes_nothing_and_is_told() {
+    let good = turn(Ok(machine()), &LIMITS, |_, _| {});
+    for (name, setting, spoil) in SPOILT {
+        for value in [-1.0, -400.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e300] {
+            for from in [0, CHANGED] {
+                let spoilt = from..CHANGED + 200;
+                let limits = |n: usize| {
+                    let mut limits = LIMITS;
+                    if spoilt.contains(&n) {
+                        spoil(&mut limits, value);
+                    }
+                    limits
+                };
+                let periods = turn_on(&machine(), Ok(machine()), limits, |_, _| {});
+                for (n, (period, good)) in periods.iter().zip(&good).enumerate() {
+                    let outputs = &period.outputs;
+                    let [came_to, good] = [period, good].map(|of| (of.inputs, of.outputs.drive_mm, of.tool_mm));
+                    assert_eq!(came_to, good, "{name} {value}, from {from}: {n}");
+                    assert_eq!(outputs.adaptive_feed, 1.0, "{name} {value}, from {from}: {n}");
+                    let told = if spoilt.contains(&n) { LinkFault::Setting(setting) } else { LinkFault::None };
+                    assert_eq!(outputs.fault, told, "{name} {value}, from {from}: {n}");
+                }
+            }
+        }
+    }
+}
+
+/// Distance of the drive's command from the circle, mm.
+fn off_mm(period: &Period) -> f64 {
+    let [x, y] = period.outputs.drive_mm;
+    ((x - 10.0).hypot(y) - 10.0).abs()
+}
+
+/// Largest change of the speed of the drive's command from one servo period to the next, mm/s.
+fn jolt_mm_s(periods: &[Period]) -> f64 {
+    let second = |three: &[Period], i: usize| {
+        let at = |k: usize| three[k].outputs.drive_mm[i];
+        (at(2) - 2.0 * at(1) + at(0)) / SERVO_S
+    };
+    periods.windows(3).map(|three| second(three, 0).hypot(second(three, 1))).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_lower_deviation_takes_effect_in_the_cut_and_nothing_leaps() {
+    let free = turn(Ok(machine()), &LIMITS, |_, _| {});
+    let cut = CHANGED..SETTLE + TURN;
+    let wanted_mm = free[cut.clone()].iter().map(off_mm).fold(0.0, f64::max);
+    for deviation_mm in [0.008, 0.004, 0.0] {
+        assert!(wanted_mm > 2.0 * deviation_mm, "the limit does not bind: {wanted_mm}");
+        let limits = |n: usize| if n < CHANGED { LIMITS } else { LinkLimits { deviation_mm, ..LIMITS } };
+        let periods = turn_on(&machine(), Ok(machine()), limits, |_, _| {});
+        let reached = CHANGED + (REACHED_S / SERVO_S) as usize;
+        let off_mm = periods[reached..cut.end].iter().map(off_mm).fold(0.0, f64::max);
+        assert!(off_mm <= deviation_mm + ROUND_MM, "{deviation_mm}: {off_mm}");
+        let [with, without] = [&periods, &free].map(|periods| jolt_mm_s(&periods[CHANGED - 10..reached]));
+        assert!(periods.iter().all(|period| period.outputs.fault == LinkFault::None), "{deviation_mm}");
+        println!("{deviation_mm}: {off_mm} of {wanted_mm}, speed changes by {with} of {without} mm/s");
+        assert!(with <= without + 2.0 * LIMITS.correction_mm_s2 * SERVO_S, "{deviation_mm}: {with} {without}");
+    }
+}
