@@ -23,7 +23,7 @@ rapid before a cut. By one that is not (loops, inertia or delays that are more t
 A correction that fails is faded out, and comes back when its predictions have held for a while: the machine then cuts as without it.
 \\fBenable\\fR fades it in within 0.07 s and out within 0.3 s, in motion as well.
 
-.B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
+.B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [max_velocity=\\fIV,V,V\\fB max_acceleration=\\fIA,A,A\\fB max_ferror=\\fIF,F,F\\fB min_ferror=\\fIM,M,M\\fB] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
 
 \\fBmodel\\fR is written by 'feedwright block'. A file that is missing, damaged, or for another machine raises \\fBfault\\fR; commands are
 then passed on as they are. \\fBrecord\\fR keeps the inputs and outputs of the first seconds in memory and writes them to
@@ -86,6 +86,10 @@ param rw s32 tick-max "Longest of them, ns";
 
 modparam dummy model """Model file""";
 modparam dummy joints """Number of joints, 2 or 3 (default: 3)""";
+modparam dummy max_velocity """MAX_VELOCITY of each joint, mm/s, separated by commas: with the following three, a MIN_FERROR that is too small is told at start""";
+modparam dummy max_acceleration """MAX_ACCELERATION of each joint, mm/s^2""";
+modparam dummy max_ferror """FERROR of each joint, mm""";
+modparam dummy min_ferror """MIN_FERROR of each joint, mm""";
 modparam dummy record """Seconds of which inputs and outputs are kept (default: 0)""";
 modparam dummy recording """File that they are written to when the component is unloaded""";
 
@@ -107,6 +111,11 @@ static char *model = "";
 RTAPI_MP_STRING(model, "model file");
 static int joints = 3;
 RTAPI_MP_INT(joints, "number of joints, 2 or 3");
+static char *max_velocity = "", *max_acceleration = "", *max_ferror = "", *min_ferror = "";
+RTAPI_MP_STRING(max_velocity, "MAX_VELOCITY of each joint");
+RTAPI_MP_STRING(max_acceleration, "MAX_ACCELERATION of each joint");
+RTAPI_MP_STRING(max_ferror, "FERROR of each joint");
+RTAPI_MP_STRING(min_ferror, "MIN_FERROR of each joint");
 static int record = 0;
 RTAPI_MP_INT(record, "seconds of which inputs and outputs are kept");
 static char *recording = "";
@@ -116,6 +125,34 @@ static guarded link_;
 static uint8_t model_bytes[FEEDWRIGHT_MODEL_BYTES];
 static size_t model_length;
 static bool begun;
+
+/* The next number of a list, or 0. */
+static double next_of(char **list)
+{
+    char *end;
+    double number = strtod(*list, &end);
+    *list = *end == ',' ? end + 1 : end;
+    return number;
+}
+
+/* Tells which joints LinuxCNC will stop with a following error. */
+static void check_ferror(const char *prefix)
+{
+    feedwright_joint limits[3] = { 0 };
+    double given_mm[3] = { 0 }, least_mm[3] = { 0 };
+    int i;
+    for (i = 0; i < joints; i++) {
+        limits[i] = (feedwright_joint){ next_of(&max_velocity), next_of(&max_acceleration), next_of(&max_ferror) };
+        given_mm[i] = next_of(&min_ferror);
+    }
+    if (!CONTAINED(feedwright_min_ferror(model_bytes, model_length, (uint32_t)joints, &limits, &least_mm)))
+        return;
+    for (i = 0; i < joints; i++)
+        if (given_mm[i] > 0 && given_mm[i] < least_mm[i])
+            rtapi_print_msg(RTAPI_MSG_ERR, "%s: MIN_FERROR of joint %d is %.2f mm: LinuxCNC stops with a following error where it brakes from %.0f mm/s. "
+                            "With FERROR = %.2f it has to be %.2f or more\n", prefix, i, given_mm[i], limits[i].speed_mm_s, limits[i].ferror_mm,
+                            ceil(100 * least_mm[i]) / 100);
+}
 
 static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extra_arg)
 {
@@ -140,6 +177,7 @@ static int extra_setup(struct __comp_state *__comp_inst, char *prefix, long extr
     fault = guarded_new(&link_, bytes, (uint32_t)joints, model_bytes, model_length);
     if (fault)
         rtapi_print_msg(RTAPI_MSG_ERR, "%s: %s: %s; commands are passed on as they are\n", prefix, model, feedwright_fault(fault));
+    check_ferror(prefix);
     rtapi_print_msg(RTAPI_MSG_INFO, "%s: state of %lu bytes, model of %lu\n", prefix, (unsigned long)bytes, (unsigned long)model_length);
     return 0;
 }

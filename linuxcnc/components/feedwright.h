@@ -91,6 +91,16 @@ typedef struct {
     uint32_t is_settled;
 } feedwright_outputs;
 
+// What the control allows a joint.
+typedef struct {
+    // MAX_VELOCITY.
+    double speed_mm_s;
+    // MAX_ACCELERATION, mm/s2.
+    double acceleration_mm_s2;
+    // FERROR.
+    double ferror_mm;
+} feedwright_joint;
+
 // The caller's: where a panic ends. It must not return.
 extern void feedwright_panicked(void) __attribute__((noreturn));
 
@@ -150,5 +160,15 @@ void feedwright_plant_step(feedwright_plant *plant,
                            double (*position_mm)[3],
                            double (*measured_mm)[3],
                            double (*torque_nm)[3]);
+
+// The least MIN_FERROR of each joint with the longest delay, by a model; 0 where it has no axes, or a joint no limits. Before the thread runs.
+//
+// # Safety
+// There are so many bytes at `bytes`; the others are what they are declared to be.
+void feedwright_min_ferror(const uint8_t *bytes,
+                           size_t length,
+                           uint32_t joints,
+                           const feedwright_joint (*limits)[3],
+                           double (*min_ferror_mm)[3]);
 
 #endif  /* FEEDWRIGHT_H */

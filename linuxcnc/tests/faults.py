@@ -8,6 +8,7 @@ Prints what came of each case. Exit code 1 where one is not as it should be.
 import argparse
 import math
 import pathlib
+import re
 import struct
 import sys
 import tempfile
@@ -30,7 +31,7 @@ NO_WORSE_UM = measure.NO_WORSE_UM
 ZERO_VECTOR = (0.0, 0.0, 0.0)
 
 QUICK = ("enabled_in_mid_cut", "emergency_stop", "feedback_wire_pulled", "feedback_not_a_number", "model_damaged", "machine_of_another_inertia", "probing",
-         "probing_in_a_program", "threading_in_a_program", "feed_is_not_held", "pins_out_of_range", "deviation_lowered_in_mid_cut")
+         "probing_in_a_program", "threading_in_a_program", "feed_is_not_held", "pins_out_of_range", "deviation_lowered_in_mid_cut", "min_ferror_too_small")
 
 PROBE = """loadrt comp names=probed
 addf probed servo-thread
@@ -278,6 +279,16 @@ class Cases:
         steps_um = [steps(recording.rows)[1] * 1e3 for recording in (free, lowered)]
         assert steps_um[1] <= steps_um[0] + 20, steps_um
         return f"off the path by {off[0] * 1e3:.0f} um before, {off[1] * 1e3:.1f} um after; steps of the correction {steps_um[0]:.0f} and {steps_um[1]:.0f} um"
+
+    def case_min_ferror_too_small(self):
+        program = "G21 G90 G61\nG0 X-2\nG4 P0.3\nG0 X60\nG4 P0.3\nM2\n"
+        shipped, small = (self.run("in_mid_cut", {"at_s": 0.1, "changes": {}, "enable": 0, "program": program}, ini=ini)
+                          for ini in (None, {"JOINT_0": {"MIN_FERROR": 0.5}}))
+        told = [re.search(r"MIN_FERROR of joint 0 is .*", recording.log) for recording in (shipped, small)]
+        stopped = [any("following error" in text for text in recording.result["messages"]) for recording in (shipped, small)]
+        assert told[0] is None and told[1] is not None, told
+        assert stopped == [False, True], (shipped.result, small.result)
+        return told[1][0]
 
     def case_thread(self):
         recording = self.run("thread", hal=SPINDLE)

@@ -9,6 +9,7 @@
 
 pub mod servo;
 pub mod plant;
+pub mod following;
 mod memory;
 
 use core::panic::PanicInfo;

@@ -8,6 +8,7 @@
 pub mod history;
 pub mod plant;
 pub mod machine;
+pub mod following;
 mod law_proof;
 pub mod trust;
 pub mod live_controller;

@@ -8,12 +8,13 @@ mod common;
 mod turning;
 
 use feedwright_control::{BlockError, Cause};
+use feedwright_servo::following::{JointLimits, least_min_ferror_mm};
 use feedwright_servo::limits::LinkLimits;
 use feedwright_servo::machine::{LinkModel, Refused};
 use feedwright_servo::plant::SimulatedMachine;
-use feedwright_servo::servo::{Link, LinkFault, LinkOutputs, Servo};
+use feedwright_servo::servo::{Link, LinkFault, LinkInputs, LinkOutputs, Servo};
 
-use common::{LIMITS, SERVO_S};
+use common::{LIMITS, SERVO_S, cutting};
 use turning::{Period, SETTLE, TURN, machine, turn, turn_on};
 
 /// Of the contour error without the correction: as a sweep in a real control has it.
@@ -172,5 +173,35 @@ fn behind_a_short_loss_of_the_position_drives_with_an_integral_part_are_known_ag
         let told = |n: usize| periods[n].outputs.fault;
         assert_eq!(told(from + 100), LinkFault::Faded(Cause::LostFeedback), "{from}");
         assert_eq!(told(from + 500), LinkFault::None, "{from}");
+    }
+}
+
+#[test]
+fn the_least_min_ferror_is_what_the_control_sees_of_the_link() {
+    // From rest to 200 mm/s, on for 0.2 s, and to rest again at 2,000 mm/s2.
+    let joint = JointLimits { speed_mm_s: 200.0, acceleration_mm_s2: 2000.0, ferror_mm: 10.0 };
+    let speed_mm_s = |n: usize| {
+        let n = n.saturating_sub(SETTLE) as f64;
+        (2.0 * n).min(2.0 * (400.0 - n)).clamp(0.0, 200.0)
+    };
+    for delay_s in [0.008, 0.015] {
+        let limits = LinkLimits { delay_s, ..LIMITS };
+        let (mut at_mm, mut seen_mm) = (0.0, 0.0_f64);
+        let (mut plant, mut servo) = (SimulatedMachine::new(&machine(), 1), Servo::new(Ok(LinkModel::Axes(machine()))));
+        servo.runs_at(SERVO_S);
+        for n in 0..SETTLE + 600 {
+            at_mm += 0.5 * SERVO_S * (speed_mm_s(n) + speed_mm_s(n + 1));
+            let inputs = LinkInputs { enabled: false, ..cutting([at_mm, 0.0], plant.measured_mm()) };
+            let outputs = servo.step(&inputs, &limits);
+            plant.step(outputs.drive_mm, true, 1.0);
+            let error_mm = (at_mm - outputs.feedback_mm[0]).abs();
+            if error_mm > joint.ferror_mm * speed_mm_s(n + 1) / joint.speed_mm_s {
+                seen_mm = seen_mm.max(error_mm);
+            }
+        }
+        let [least_mm, other_mm] = least_min_ferror_mm(&machine(), [joint, JointLimits::NONE], delay_s);
+        println!("{delay_s}: {least_mm} {seen_mm}");
+        assert!((least_mm - seen_mm).abs() < 0.02 * seen_mm, "{delay_s}: {least_mm} {seen_mm}");
+        assert_eq!(other_mm, 0.0);
     }
 }

@@ -59,6 +59,38 @@ fn a_number_that_is_none_changes_nothing_and_is_told() {
     }
 }
 
+/// Farthest that the drive's command goes in a servo period, mm: a correction within the widest limits of this test.
+const STEP_MM: f64 = 0.2;
+
+#[test]
+fn whatever_is_set_in_the_cut_the_drive_gets_numbers_that_do_not_leap() {
+    const DELAYS_S: [f64; 4] = [0.008, 0.015, f64::NAN, 0.0];
+    const DEVIATIONS_MM: [f64; 6] = [0.0, 0.001, 0.5, 10.0, -1.0, f64::INFINITY];
+    const SPEEDS_MM_S: [f64; 6] = [1.0, 60.0, 400.0, 1e4, -400.0, f64::NAN];
+    const ACCELERATIONS_MM_S2: [f64; 6] = [0.0, 1.0, 400.0, 1e6, -1.0, f64::NAN];
+    for seed in 0..24_usize {
+        // Another combination every 37 servo periods.
+        let limits = |n: usize| {
+            let k = n / 37 * 7 + seed * 31;
+            LinkLimits {
+                delay_s: DELAYS_S[k % 4],
+                deviation_mm: DEVIATIONS_MM[k / 4 % 6],
+                speed_mm_s: SPEEDS_MM_S[k / 3 % 6],
+                correction_mm_s2: ACCELERATIONS_MM_S2[k / 5 % 6],
+                ..LIMITS
+            }
+        };
+        let periods = turn_on(&machine(), Ok(machine()), limits, |_, _| {});
+        let finite = |period: &Period| period.outputs.drive_mm.iter().all(|mm| mm.is_finite());
+        assert!(periods.iter().all(finite), "{seed}");
+        for (n, pair) in periods.windows(2).enumerate() {
+            let [a, b] = [pair[0].outputs.drive_mm, pair[1].outputs.drive_mm];
+            let step_mm = (b[0] - a[0]).hypot(b[1] - a[1]);
+            assert!(step_mm < STEP_MM, "{seed}, {n}: {step_mm} {:?}", limits(n));
+        }
+    }
+}
+
 /// Distance of the drive's command from the circle, mm.
 fn off_mm(period: &Period) -> f64 {
     let [x, y] = period.outputs.drive_mm;
