@@ -6,7 +6,7 @@
 
 #include "feedwright.h"
 
-#define RECORDING_MAGIC "FWREPLAY"
+#define RECORDING_MAGIC "FWREPLY2"
 
 typedef struct {
     char magic[8];
