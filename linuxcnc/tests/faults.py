@@ -254,14 +254,14 @@ class Cases:
         good = self.run("in_mid_cut", {"at_s": 1.5, "changes": {}})
         came_to = []
         for k, (pin, values) in enumerate(pins.items()):
-            for value in values:
-                recording = self.run("in_mid_cut", {"at_s": 1.0, "changes": {f"feedwright.{pin}": value}})
-                assert faults(recording.rows) == [16 + k], (pin, value, faults(recording.rows))
-                assert all(math.isfinite(x) for row in recording.rows for x in (*row.drive, *row.feedback)), (pin, value)
-                assert 4 in states(recording.rows[-1000:]), (pin, value)
-                error_um = [max(row.contour_error for row in run.rows if row.motion_type == 3) * 1e3 for run in (good, recording)]
-                assert error_um[1] <= error_um[0] + SAME_UM, (pin, value, error_um)
-                came_to.append(self.quiet(recording))
+            first, second = ({f"feedwright.{pin}": value} for value in values)
+            recording = self.run("in_mid_cut", {"at_s": 1.0, "changes": first, "again_s": 0.4, "restore": second})
+            assert faults(recording.rows) == [16 + k], (pin, faults(recording.rows))
+            assert all(math.isfinite(x) for row in recording.rows for x in (*row.drive, *row.feedback)), pin
+            assert 4 in states(recording.rows[-1000:]), pin
+            error_um = [max(row.contour_error for row in run.rows if row.motion_type == 3) * 1e3 for run in (good, recording)]
+            assert error_um[1] <= error_um[0] + SAME_UM, (pin, error_um)
+            came_to.append(self.quiet(recording))
         return f"refused with causes 16 to 20; {came_to[0]}"
 
     def case_deviation_lowered_in_mid_cut(self):

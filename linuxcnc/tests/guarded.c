@@ -1,6 +1,7 @@
 /* guarded MODEL.fwmodel: what components/guarded.h does where the library cannot make a link, or fails in the cut.
  *
- * Linked with --wrap for the two functions of the library that fail here. Prints a line for each case; exit code 1 where one is not as it should be. */
+ * Linked with --wrap for the two functions of the library that fail here. Prints a line for each case; exit
+ * code 1 where one is not as it should be. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

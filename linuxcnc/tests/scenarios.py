@@ -167,7 +167,8 @@ def logged(machine, program, params=None):
     return {"trips": [tuple(map(float, line.split())) for line in file.read_text().splitlines()]}
 
 
-# Threads behind cuts, in one program: only motion that follows the spindle feeds along Z. The index comes within 10 ms, sooner than the delay.
+# Threads behind cuts, in one program: only motion that follows the spindle feeds along Z. The index comes
+# within 10 ms, sooner than the delay.
 THREADING = """G21 G18 G90 G94 G64
 M3 S6000
 G1 X5 Z0 F3000

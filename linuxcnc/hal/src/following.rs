@@ -18,7 +18,8 @@ pub struct CJoint {
     ferror_mm: f64,
 }
 
-/// The least MIN_FERROR of each joint with the longest delay, by a model; 0 where it has no axes, or a joint no limits. Before the thread runs.
+/// The least MIN_FERROR of each joint with the longest delay, by a model; 0 where it has no axes, or a
+/// joint no limits. Before the thread runs.
 ///
 /// # Safety
 /// There are so many bytes at `bytes`; the others are what they are declared to be.

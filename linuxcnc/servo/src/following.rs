@@ -1,4 +1,5 @@
-//! The following error that the control sees of a joint that speeds up to its highest speed and brakes to rest, by its model, without a correction.
+//! The following error that the control sees of a joint that speeds up to its highest speed and brakes
+//! to rest, by its model, without a correction.
 //!
 //! ```text
 //! e(n) = c(n - D) - a(n)           what the control compares with max(MIN_FERROR, FERROR |v(n)| / speed), v(n) of c(n)
@@ -29,7 +30,8 @@ pub struct JointLimits {
     pub ferror_mm: f64,
 }
 
-/// Returns the least MIN_FERROR of each joint with which it is not stopped, mm, with a command `delay_s` late; 0 for a joint without limits.
+/// Returns the least MIN_FERROR of each joint with which it is not stopped, mm, with a command `delay_s`
+/// late; 0 for a joint without limits.
 pub fn least_min_ferror_mm<const N: usize>(
     machine: &IdentifiedAxes<N>,
     joints: [JointLimits; N],

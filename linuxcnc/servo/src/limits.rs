@@ -12,7 +12,7 @@
 
 /// Delays that can be set, s: below, the inverse of a drive that is late has nothing to look at; above, it sees no more than it needs.
 pub const DELAYS_S: [f64; 2] = [0.008, 0.015];
-/// Ranges of the others. The largest deviation leads no tool through a part, and at the lowest speed and acceleration an offset of that size still fades.
+/// Ranges of the others. Wider ones serve no machine, and their squares stay far from overflow.
 const DEVIATIONS_MM: [f64; 2] = [0.0, 10.0];
 const SPEEDS_MM_S: [f64; 2] = [1.0, 1e4];
 const ACCELERATIONS_MM_S2: [f64; 2] = [1.0, UNLIMITED_MM_S2];

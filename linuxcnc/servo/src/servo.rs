@@ -35,8 +35,9 @@ use crate::machine::{self, LinkModel, Refused};
 
 /// A spindle is followed until the command has rested for so long since its index was awaited, s: it begins to move with the index.
 const FOLLOWED_S: f64 = 0.5;
-/// The delay is taken up behind a probing motion once the command has rested for longer than this, s: five time constants of a usual position
-/// loop. After 0.013 s, an axis that stopped from 25 mm/s still moves by 84 um, which its model takes for a wrong prediction.
+/// The delay is taken up behind a probing motion once the command has rested for longer than this, s:
+/// five time constants of a usual position loop. After 0.013 s, an axis of `tnv40` that stopped from
+/// 25 mm/s has 84 um to go, which the model takes for a wrong prediction.
 const SETTLES_S: f64 = 0.1;
 /// A command that still moves so long after its feed was to be held will not be held, s: braking from 100 mm/s within 2,000 mm/s2.
 const HELD_S: f64 = 0.05;
@@ -151,11 +152,12 @@ pub struct Servo<const N: usize> {
     first: u64,
     /// What is in force of the settings.
     limits: LinkLimits,
-    /// By how much the offset is held to more than the deviation that is set, or to less: it follows a change within the acceleration of a fade.
+    /// What the offset is held to, less the deviation that is set: a change fades.
     excess: Fading<1>,
     /// Remaining offset that fades without a correction.
     residual: Fading<N>,
-    /// Whether the delay was given up for a motion that probes, and servo periods in which the command has moved although it was to be held.
+    /// Whether the delay was given up for a motion that probes, and servo periods in which the command
+    /// has moved although it was to be held.
     yielded: bool,
     not_held: u64,
     actual_mm: [f64; N],

@@ -24,7 +24,8 @@ const HELD_AFTER: usize = 110;
 /// What the command may go while it is held, mm: two servo periods of speeding up, and braking from there.
 const CREPT_MM: f64 = 0.012;
 
-/// Farthest that the drive's command goes in a servo period, mm: the correction as it takes up 50 mm/s. A delay given up at that speed is 0.5 mm.
+/// Farthest that the drive's command goes in a servo period, mm: the correction as it takes up 50 mm/s.
+/// A delay given up at that speed is 0.5 mm.
 const STEP_MM: f64 = 0.15;
 
 /// A control that moves one axis by one block after another, with rests of two servo periods, and heeds a hold of the feed or does not.

@@ -17,7 +17,8 @@ const MARGIN: f64 = 1.2;
 const NONE_MM: f64 = 1e-6;
 const NONE_MM_S: f64 = 1e-3;
 
-/// The acceleration of the next period, mm/s^2, of an offset in one axis that fades to zero: `offset_mm` with `offset_mm_s`, of at most `most_mm_s2`.
+/// The acceleration of the next period, mm/s^2, at most `most_mm_s2`, of an offset in one axis that fades
+/// to zero.
 #[inline]
 pub fn fade_acceleration(offset_mm: f64, offset_mm_s: f64, period_s: f64, most_mm_s2: f64) -> f64 {
     let wanted_mm_s = wanted_mm_s(offset_mm, most_mm_s2);
