@@ -215,17 +215,19 @@ class Cases:
         direct, on = (self.run("logged", {"program": program, "params": {"feedwright.direct": int(direct)}}, hal=PROBE) for direct in (True, False))
         trips = list(zip(direct.result["trips"], on.result["trips"]))
         assert len(trips) >= 36 and len(direct.result["trips"]) == len(on.result["trips"]), (direct.result, on.result)
-        # Towards the plane from above it is deeper below it, and away from it above.
-        deeper = [(abs(b - scenarios.PLANE_MM) - abs(a - scenarios.PLANE_MM)) / (mm_min / 60 * 1e-3) for (mm_min, a), (_, b) in trips]
+        # How far behind that of the other run each trip is, along its motion, um, and the travel of a servo period.
+        deeper = [(math.copysign(1e3, mm_min) * (b - a), abs(mm_min) / 60) for (mm_min, a), (_, b) in trips]
         probed = [row for row in on.rows if row.motion_type == 5]
         late = sum(row.state > 1 for row in probed)
         # While the delay is given up the motion is held, but for the servo periods that braking takes.
         crept = max((math.dist(a.command, b.command) for a, b in zip(probed, probed[1:]) if b.state > 1 and a.state > 1 and
                      math.dist(a.command, b.command) < 0.1), default=0.0)
-        assert max(deeper) <= 1.0, f"deeper by {max(deeper):.2f} servo periods of travel: {trips}"
+        # As above: the phase of the servo periods, and of what disturbs the axes.
+        assert all(um <= travel + SAME_UM for um, travel in deeper), (deeper, trips)
         assert late <= 25 * len(trips) and crept < 0.005, (late, len(trips), crept)
         assert not faults(on.rows), faults(on.rows)
-        return (f"{len(trips)} trips, at most {max(deeper):.2f} servo periods of travel deeper than with direct; {late / len(trips):.1f} servo periods held "
+        most, largest = max(um / travel for um, travel in deeper), max(um for um, _ in deeper)
+        return (f"{len(trips)} trips, at most {most:.2f} servo periods of travel and {largest:.1f} um deeper than with direct; {late / len(trips):.1f} servo periods held "
                 f"for each, with steps of {crept * 1e3:.1f} um; {self.quiet(on)}")
 
     def threads(self, hal=""):

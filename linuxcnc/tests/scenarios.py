@@ -147,14 +147,15 @@ PLANE_MM = -10
 
 
 def probing_program(count=36, seed=1):
-    """Probing motions behind cuts, rapids and each other, in one program: each trip goes to a file. The tool touches a plane at PLANE_MM."""
+    """Probing motions behind cuts, rapids and each other, in one program: the speed along Z, mm/min, and the trip of each go to a file. The tool
+    touches a plane at PLANE_MM."""
     pick = random.Random(seed)
     lines = ["G21 G17 G90 G94 G64", "(LOGOPEN,TRIPS)", "G1 X0 Y0 Z0 F3000"]
     for k in range(count):
         mm_min = pick.choice((100, 300, 600, 1500))
         lines += [f"{pick.choice(('G1', 'G1', 'G0'))} X{pick.uniform(0, 10):.3f} Y{pick.uniform(0, 10):.3f} "
                   f"Z{PLANE_MM + mm_min / 150 + pick.uniform(0, 1):.3f} F3000",
-                  f"{pick.choice(('G38.2', 'G38.3'))} Z-20 F{mm_min}", f"(LOG,{mm_min} #5063)"]
+                  f"{pick.choice(('G38.2', 'G38.3'))} Z-20 F{mm_min}", f"(LOG,-{mm_min} #5063)"]
         if k % 3 == 2:
             lines += [f"{pick.choice(('G38.4', 'G38.5'))} Z0 F{mm_min}", f"(LOG,{mm_min} #5063)"]
     return "\n".join(lines + ["(LOGCLOSE)", "G1 Z0 F3000", "M2"]) + "\n"
