@@ -114,8 +114,8 @@ fn shards_merge_to_the_bytes_of_the_undivided_run_and_missing_rows_are_named() {
 #[test]
 fn rows_are_complete_and_ratios_are_against_uncorrected() {
     let (options, comparison) = (options(), compared());
-    // Parameters identified and 20 % off once on each machine; unseen on the one that is not nominal.
-    let rows = options.workpieces.len() * (options.machines.len() * (options.controllers.len() + 2) + 1);
+    // Parameters identified and 20 % off once on each machine, and two controllers by a log of it; unseen on the one that is not nominal.
+    let rows = options.workpieces.len() * (options.machines.len() * (options.controllers.len() + 4) + 1);
     assert_eq!(comparison.rows.len(), rows);
     for row in &comparison.rows {
         let base = comparison.rows.iter().find(|base| {
@@ -135,7 +135,7 @@ fn rows_are_complete_and_ratios_are_against_uncorrected() {
     let rms_um = |controller: &str| comparison.row("circle", "rough", controller).unwrap().rms_um;
     let [exact, identified, off] = ["", "+identified", "+20%off"].map(|given| rms_um(&format!("feedforward{given}")));
     assert!(exact < off && identified < off && identified != exact, "{exact} {identified} {off}");
-    assert!(rms_um(BEST) != rms_um(&format!("{BEST}+unseen")));
+    assert!(rms_um(BEST) != rms_um(&format!("{BEST}+unseen")) && rms_um(BEST) != rms_um(&format!("{BEST}+log")));
     let mut html = Vec::new();
     page::write(&mut html, comparison).unwrap();
     let html = String::from_utf8(html).unwrap();
