@@ -136,3 +136,29 @@ fn a_clock_that_varies_is_not_for_control() {
     };
     assert!(reason.contains("the time between samples varies from 3 to 6 ms"), "{reason}");
 }
+
+#[test]
+fn a_column_that_is_the_time_belongs_to_no_axis() {
+    let (command, actual) = axis(20.0, 1.0);
+    let text = rows(&[&time_s(), &command, &actual], ",");
+    for (columns, role) in [
+        ("t=0,x.cmd=0,x.act=1", "command"),
+        ("t=0,x.cmd=1,x.act=0", "actual position"),
+        ("t=0,x.cmd=1,x.act=2,x.torque=0", "torque"),
+    ] {
+        let refused = read(text.as_bytes(), columns).unwrap_err();
+        let LogError::Columns { message, hint, .. } = &refused else { panic!("{refused:?}") };
+        assert_eq!(*message, format!("column 0 is both the time and the {role} of x"));
+        assert!(hint.contains("t=COLUMN"), "{hint}");
+    }
+    // The time by its name, where only the axis is said.
+    let refused = read(format!("t,a,b\n{text}").as_bytes(), "x.cmd=t,x.act=a").unwrap_err();
+    assert!(refused.to_string().contains("column 't' is both the time and the command of x"), "{refused}");
+}
+
+#[test]
+fn a_column_may_be_the_torque_and_a_position() {
+    let (command, actual) = axis(20.0, 1.0);
+    let log = read(rows(&[&time_s(), &command, &actual], ",").as_bytes(), "t=0,x.cmd=1,x.act=2,x.torque=2").unwrap();
+    assert_eq!(log.axes[0].torque.as_deref(), Some(&log.axes[0].actual_mm[..]));
+}

@@ -35,7 +35,8 @@ pub(super) fn of_table(
     let unit = unit(table, roles, columns, clock, findings);
     let scale = unit.in_mm();
     let uses = |column: usize| {
-        roles.axes.iter().flat_map(|axis| [axis.command, axis.actual]).filter(|&used| used == column).count()
+        let used = roles.axes.iter().flat_map(|axis| [Some(axis.command), Some(axis.actual), axis.torque]);
+        used.filter(|&used| used == Some(column)).count()
     };
     let shared: Vec<bool> = (0..table.columns.len()).map(|column| uses(column) > 1).collect();
     let mut take = |column: usize, scale: f64| {

@@ -44,6 +44,12 @@ pub(super) struct AxisRoles {
 }
 
 impl AxisRoles {
+    /// What the axis takes from a column, if it takes anything.
+    fn role_of(&self, column: usize) -> Option<&'static str> {
+        let roles = [("command", Some(self.command)), ("actual position", Some(self.actual)), ("torque", self.torque)];
+        roles.into_iter().find_map(|(role, of)| (of == Some(column)).then_some(role))
+    }
+
     fn columns(&self) -> impl Iterator<Item = usize> {
         [Some(self.command), Some(self.actual), self.torque, self.velocity].into_iter().flatten()
     }
@@ -79,6 +85,7 @@ pub(super) fn find(
     let meanings = meanings(table);
     let mut time = time(table, columns, &meanings).map_err(fault)?;
     let mut axes = chosen(table, columns).map_err(fault)?;
+    not_the_time(path, table, time.as_ref(), &axes)?;
     let mut incomplete = Vec::new();
     let mut by_data = false;
     if axes.is_empty() {
@@ -124,6 +131,16 @@ pub(super) fn find(
         }
     }
     Ok(Roles { time, axes })
+}
+
+/// Refuses a column that is the time and belongs to an axis too.
+fn not_the_time(path: &Path, table: &LogTable, time: Option<&TimeColumn>, axes: &[AxisRoles]) -> Result<(), LogError> {
+    let Some(column) = time.map(|time| time.column) else { return Ok(()) };
+    let taken = axes.iter().find_map(|axis| Some((&axis.name, axis.role_of(column)?)));
+    let Some((axis, role)) = taken else { return Ok(()) };
+    let message = format!("column {} is both the time and the {role} of {axis}", table.label(column));
+    let hint = format!("name another column for one of the two (the time is t=COLUMN); {}", there_are(table));
+    Err(LogError::columns(path, message, hint))
 }
 
 /// Whether the name of an axis, or its unit, says that it turns.
