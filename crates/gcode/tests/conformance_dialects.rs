@@ -114,3 +114,76 @@ fn g40_1_of_mach3_is_g40() {
     assert!(faults.is_empty() && motions.len() == 1, "{faults:?}");
     assert!(warnings[0].message.contains("G40.1 is read as G40"), "{warnings:?}");
 }
+
+/// The line of each warning and what it says; none is an error.
+fn warned(text: &str) -> Vec<(u32, String)> {
+    let (_, faults, warnings) = read(text, None);
+    assert!(faults.is_empty(), "{text}: {faults:?}");
+    warnings.into_iter().map(|warning| (warning.line, warning.message)).collect()
+}
+
+/// LinuxCNC 2.9 remembers the break until the next do.
+#[test]
+fn a_do_behind_a_break_is_read_as_written_with_a_warning() {
+    const BROKEN: &str = "o1 while [1]\no1 break\no1 endwhile\n";
+    const DO: &str = "#2=0\no3 do\n#2=[#2+1]\nG0 Y#2\no3 while [#2 lt 3]\n";
+    assert_eq!(ends(&format!("{BROKEN}{DO}M2\n"), None).len(), 3);
+    let says = "LinuxCNC 2.9 ends this loop here, because `break` in line 2 has left a while before";
+    assert_eq!(warned(&format!("{BROKEN}{DO}M2\n")), [(8, says.to_owned())]);
+    // A condition that ends the do anyway, or the next do: LinuxCNC has forgotten the break.
+    assert!(warned(&format!("{BROKEN}o4 do\nG0 X1\no4 while [0]\n{DO}M2\n")).is_empty());
+    assert!(warned(&format!("{DO}G0 X1\nM2\n")).is_empty());
+    let repeat = warned("#1=0\no1 repeat [3]\nG0 X1\no1 continue\no1 endrepeat\nM2\n");
+    assert!(repeat[0].0 == 4 && repeat[0].1.contains("LinuxCNC refuses `continue` in a repeat"), "{repeat:?}");
+}
+
+#[test]
+fn exists_says_which_numbers_are_parameters() {
+    let text = "G0 X[exists[#99999]] Y[exists[#5602]] Z[exists[#5601]]\nG0 X[1+exists[#0]] Z2\nM2\n";
+    assert_eq!(ends(text, None), [[0.0, 0.0, 1.0], [1.0, 0.0, 2.0]]);
+    let (_, faults, _) = read("G0 X#5602\nM2\n", None);
+    assert!(faults[0].message.contains("#5602 does not exist: the numbers go from 1 to 5601"), "{faults:?}");
+}
+
+#[test]
+fn g50_alone_ends_a_scaling_that_is_not_there() {
+    let text = "G90 G54 G64 G50 G17 G40 G80 G94 G91.1 G49\nG0 X1\nM2\n";
+    assert_eq!(ends(text, None), [[1.0, 0.0, 0.0]]);
+    let warnings = warned(text);
+    assert!(warnings.len() == 1 && warnings[0].1.contains("G50 is left out"), "{warnings:?}");
+    for words in ["X0 Y0", "S2000"] {
+        let (_, faults, _) = read(&format!("G0 X1\nG50 {words}\nM2\n"), Some(Dialect::LinuxCnc));
+        assert!(faults[0].message.contains("G50 with words"), "{faults:?}");
+    }
+}
+
+#[test]
+fn g70_and_g71_alone_are_units_of_other_controls() {
+    for (line, says) in [("N140G71G91.1", "G71 means millimeters: write G21"), ("G70", "G70 means inches: write G20")] {
+        let (_, faults, _) = read(&format!("{line}\nG0 X1\nM2\n"), None);
+        let hint = faults[0].hint.as_deref().unwrap_or_default();
+        assert!(faults[0].line == 1 && hint.contains(says), "{faults:?}");
+    }
+}
+
+#[test]
+fn a_distance_in_polar_coordinates_has_no_direction_at_the_origin() {
+    let (_, faults, _) = read("G91 G0 @12.37 ^-118\nM2\n", None);
+    assert!(faults[0].message.contains("no direction at the origin"), "{faults:?}");
+    assert_eq!(ends("G0 X3\nG91 @2 ^0\nM2\n", None), [[3.0, 0.0, 0.0], [5.0, 0.0, 0.0]]);
+}
+
+#[test]
+fn a_dwell_that_may_be_in_milliseconds_is_asked_about() {
+    let warnings = warned("G0 X1\nG04 P500\nG0 X2\nM30\n");
+    assert!(warnings.len() == 1 && warnings[0].1.contains("P500 is read as 500 s"), "{warnings:?}");
+    for (text, dialect) in [
+        ("G0 X1\nG4 P2\nM30\n", None),
+        ("G0 X1\nG4 P500.5\nM30\n", None),
+        ("G0 X1\nG4 P500\nM30\n", Some(Dialect::LinuxCnc)),
+        ("O1\nG43 H1\nG0 X1.\nG4 P500\nM30\n", None),
+    ] {
+        let (_, _, warnings) = read(text, dialect);
+        assert!(!warnings.iter().any(|warning| warning.code == "gcode::dwell"), "{text}: {warnings:?}");
+    }
+}

@@ -56,6 +56,12 @@ fn examples() -> Vec<(&'static str, String)> {
             "points of splines where LinuxCNC's preview has not noticed Z of an arc",
             "G2 X2 Y0 I1 J0 Z3\nG5 X9 Y12 I1 J1 P-1 Q2\n",
         ),
+        ("break and continue in a repeat", "o1 repeat [2]\nG0 X1\no1 break\no1 endrepeat\n"),
+        (
+            "a do behind a while that was left by break",
+            "#2 = 0\no1 while [1]\no1 break\no1 endwhile\no3 do\n#2 = [#2 + 1]\nG1 Y#2\no3 while [#2 lt 3]\nG1 Z1\n",
+        ),
+        ("G50 without words", "G50\nG0 X1\n"),
         ("an O-word without its keyword in a subroutine", "o1 sub\nG0 X1\no1\no1 endsub\no1 call\n"),
     ];
     let mut examples: Vec<(&str, String)> =

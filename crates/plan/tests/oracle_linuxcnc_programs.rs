@@ -47,6 +47,9 @@ const DIFFERENCES: &[(&str, &str)] = &[
         "machinist/repeat_behind_do_continue",
         "LinuxCNC 2.9 carries out a repeat twice as often behind a do that was continued",
     ),
+    ("machinist/do_behind_break", "LinuxCNC 2.9 ends a do after one round behind a while that was left by break"),
+    ("machinist/break_in_repeat", "LinuxCNC 2.9 finds no label of a repeat to break"),
+    ("machinist/scaling_off", "G50 alone is left out"),
     ("machinist/rotation_under_g92", "LinuxCNC 2.9 forgets G92 when the rotation of the active system changes"),
     (
         "machinist/cycle_across_units",

@@ -51,19 +51,31 @@ impl Flow {
             Keyword::Repeat => self.begin_loop(head, value.round_ties_even() as u64)?,
             Keyword::EndWhile | Keyword::EndRepeat => return self.end_round(head),
             Keyword::Break => {
-                self.find_loop(head)?;
+                let kind = self.find_loop(head)?.kind;
+                self.leaves(head, kind);
+                self.broke = (kind == Keyword::While).then_some(line);
                 self.loops.pop();
                 self.pass(head, Purpose::EndOfLoop, line);
             }
             Keyword::Continue => {
-                let turn = self.find_loop(head)?;
-                if turn.kind == Keyword::While {
+                let kind = self.find_loop(head)?.kind;
+                self.leaves(head, kind);
+                if kind == Keyword::While {
                     return self.end_round(head);
                 }
                 self.pass(head, Purpose::NextRound, line);
             }
         }
         Ok(())
+    }
+
+    /// Warns of a `break` or `continue` of a `repeat`.
+    fn leaves(&mut self, head: &Head, kind: Keyword) {
+        if kind == Keyword::Repeat {
+            let message = format!("LinuxCNC refuses `{}` in a repeat: it has no such label", head.keyword.spelled());
+            let fault = LineFault::new("gcode::o_word", head.at.clone(), message);
+            self.warning = Some(fault.hint("write the loop with while"));
+        }
     }
 
     /// A branch or loop with a faulty condition begins all the same: its end is no fault. The branch is read, the loop passed over.
@@ -169,7 +181,9 @@ impl Flow {
     fn meet_while(&mut self, head: &Head, is_true: bool, line: u32) -> Read<()> {
         if self.ends_do(head) {
             let body = self.find_loop(head)?.body;
+            let broke = self.broke.take();
             if is_true {
+                self.warning = broke.map(|line| ends_early(head, line)).or_else(|| self.warning.take());
                 return self.jump(body, head);
             }
             self.loops.pop();
@@ -216,4 +230,12 @@ impl Flow {
     fn jump(&mut self, mark: Mark, head: &Head) -> Read<()> {
         self.source().jump(mark).map_err(|error| cannot_read(head.at.clone(), &error))
     }
+}
+
+/// LinuxCNC carries out another number of rounds.
+#[cold]
+fn ends_early(head: &Head, line: u32) -> Box<LineFault> {
+    let message = format!("LinuxCNC 2.9 ends this loop here, because `break` in line {line} has left a while before");
+    LineFault::new("gcode::o_word", head.at.clone(), message)
+        .hint("write this loop with while and endwhile, or the other one without break")
 }

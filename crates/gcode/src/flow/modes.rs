@@ -10,6 +10,9 @@ use crate::text::codes::fanuc::OWN;
 use crate::text::codes::{self, Group};
 use crate::text::diagnostic::{LineFault, Read, Short};
 
+/// From this time on a dwell of whole seconds may be meant in milliseconds: 0.1 s is a usual dwell, 100 s is not.
+const LONG_DWELL_S: f64 = 100.0;
+
 impl Interpreter {
     pub(super) fn feed_mode(&mut self, block: &Block) -> Read<()> {
         if let Some(word) = block.code(Group::FeedMode) {
@@ -124,6 +127,7 @@ impl Interpreter {
             Some(word) if word.number >= OWN => self.nose_compensation(word),
             _ => self.compensation_mode(block)?,
         }
+        self.scaling(block)?;
         self.tool_length(block)?;
         self.coordinate_system(block)?;
         if let Some(word) = block.code(Group::Corner) {
@@ -167,6 +171,30 @@ impl Interpreter {
         })
     }
 
+    /// G50 alone ends scaling on some controls, which nothing here begins; with words it means something else.
+    fn scaling(&mut self, block: &Block) -> Read<()> {
+        let Some(word) = block.code(Group::Scaling) else { return Ok(()) };
+        if block.has_axes() || block.has(b's') {
+            let message = "G50 with words is a scale, a speed or a shift on other controls, and is not read";
+            return Err(LineFault::new("gcode::unsupported", word.at(), message)
+                .hint("scale the part in the CAM system; on a lathe, D of G96 bounds the speed of the spindle"));
+        }
+        let message = "G50 is left out: it ends scaling on other controls (Tormach), and LinuxCNC does not know it";
+        self.output.warnings.push(*LineFault::new("gcode::unsupported", word.at(), message));
+        Ok(())
+    }
+
+    /// A time that looks as if it were in the milliseconds of Fanuc, in a program whose control is guessed.
+    fn check_seconds(&mut self, block: &Block, seconds: f64) {
+        let is_guessed = self.dialect == Dialect::LinuxCnc && self.settings.dialect.is_none();
+        if is_guessed && seconds >= LONG_DWELL_S && seconds.fract() == 0.0 {
+            let shown = Short(seconds);
+            let message = format!("the dwell P{shown} is read as {shown} s; Fanuc and others count milliseconds");
+            let fault = LineFault::new("gcode::dwell", block.at(b'p'), message);
+            self.output.warnings.push(*fault.hint("--dialect linuxcnc or fanuc says whose program it is"));
+        }
+    }
+
     fn dwell(&mut self, block: &Block, word: Word) -> Read<()> {
         let printer = self.dialect == Dialect::Printer;
         let seconds = match (block.get(b'p'), block.get(b's')) {
@@ -194,6 +222,7 @@ impl Interpreter {
                 format!("the dwell of {} s is negative; the smallest is 0 s", Short(seconds)),
             ));
         }
+        self.check_seconds(block, seconds);
         self.event(EventKind::Dwell { seconds });
         Ok(())
     }

@@ -103,6 +103,10 @@ pub(super) struct Flow {
     pub(super) frames: Vec<Call>,
     pub(super) loops: Vec<Loop>,
     pub(super) skip: Option<Skip>,
+    /// The line of a `break` that has left a `while`: LinuxCNC 2.9 ends the next do at its `while`, whatever its condition says.
+    pub(super) broke: Option<u32>,
+    /// What deserves a look in the line under way.
+    pub(super) warning: Option<Box<LineFault>>,
     pub(super) max_depth: usize,
     /// Lines of the branches and loops met so far, by file, subroutine and label; and room for such a key.
     pub(super) labels: HashMap<Vec<u8>, u32>,
@@ -122,6 +126,8 @@ impl Flow {
             frames: Vec::new(),
             loops: Vec::new(),
             skip: None,
+            broke: None,
+            warning: None,
             max_depth: settings.max_depth,
             labels: HashMap::new(),
             key: Vec::new(),

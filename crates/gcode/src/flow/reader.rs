@@ -179,6 +179,7 @@ impl Reader {
         self.interpreter.line = self.flow.source().line;
         let result = self.carry_out(range);
         let result = if self.interpreter.fanuc.capture.is_some() { self.end_own_profile(result) } else { result };
+        self.interpreter.output.warnings.extend(self.flow.warning.take().map(|warning| *warning));
         if !self.interpreter.output.warnings.is_empty() {
             self.take_warnings();
         }

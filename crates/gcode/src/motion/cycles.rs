@@ -7,7 +7,7 @@
 use crate::canon::{Corner, EventKind};
 use crate::motion::feed::Speed;
 use crate::state::Interpreter;
-use crate::state::carried_over::{Cycle, Pecks};
+use crate::state::carried_over::{Cycle, CycleLength, Pecks};
 use crate::state::modal::INCH_MM;
 use crate::text::block::Block;
 use crate::text::codes::{AXIS_LETTERS, bit, spelled};
@@ -63,8 +63,8 @@ impl Interpreter {
         }
         self.cycle_words(block, &mut kept, normal)?;
         let incremental = self.modal.incremental;
-        let clearance = if incremental { kept.began_at + kept.clearance } else { kept.clearance };
-        let bottom = if incremental { clearance + kept.bottom } else { kept.bottom };
+        let clearance = if incremental { kept.began_at + kept.clearance.mm } else { kept.clearance.mm };
+        let bottom = if incremental { clearance + kept.bottom.mm } else { kept.bottom.mm };
         if clearance < bottom {
             let message = format!("R = {clearance} mm lies below the bottom of the hole at {bottom} mm");
             return Err(LineFault::new("gcode::cycle", block.at_any(bit(b'r') | bit(letter)), message));
@@ -110,10 +110,10 @@ impl Interpreter {
         let letter = AXIS_LETTERS[normal];
         if let Some(value) = block.get(b'r') {
             // A distance along X, in G7, too: only X itself is a diameter.
-            kept.clearance = self.length(block, b'r', RADIAL, value)?;
+            kept.clearance = self.cycle_length(self.length(block, b'r', RADIAL, value)?, value);
         }
         if let Some(value) = block.get(letter) {
-            kept.bottom = self.length(block, letter, normal, value)?;
+            kept.bottom = self.cycle_length(self.length(block, letter, normal, value)?, value);
         }
         if let Some(value) = block.get(b'q') {
             if value <= 0.0 {
@@ -123,7 +123,7 @@ impl Interpreter {
                     format!("the depth of a peck Q{} must be above 0", Short(value)),
                 ));
             }
-            kept.peck = Some(value * self.modal.unit_mm);
+            kept.peck = Some(self.cycle_length(value * self.modal.unit_mm, value));
         }
         if let Some(value) = block.get(b'p') {
             if value < 0.0 {
@@ -144,13 +144,21 @@ impl Interpreter {
         Err(LineFault::new("gcode::cycle", block.whole(), format!("{missing} is missing for {}", spelled(kept.code))))
     }
 
+    fn cycle_length(&self, mm: f64, value: f64) -> CycleLength {
+        let unit_mm = self.modal.unit_mm;
+        // A diameter is written as twice the length.
+        let written = if value * unit_mm == mm { value } else { mm / unit_mm };
+        CycleLength { mm, written, unit_mm }
+    }
+
     fn drill_all(&mut self, block: &Block, hole: &Hole, plane: [usize; 2], repeats: i64) -> Read<()> {
         if self.carried.cycle.began_at < hole.clearance {
             self.along(block, hole.normal, hole.clearance, Speed::Rapid)?;
         }
-        let pecks = (hole.clearance - hole.bottom) / self.carried.cycle.peck.unwrap_or(f64::INFINITY) * repeats as f64;
+        let peck_mm = self.carried.cycle.peck.map_or(f64::INFINITY, |peck| peck.mm);
+        let pecks = (hole.clearance - hole.bottom) / peck_mm * repeats as f64;
         if matches!(self.carried.cycle.code, 730 | 830) && pecks > MAX_PECKS {
-            let step = Short(self.carried.cycle.peck.unwrap_or_default());
+            let step = Short(peck_mm);
             let message = format!("{pecks:.0} pecks of {step} mm in one line; it may have {MAX_PECKS}");
             let hint = "is Q, the depth of a peck, or L, the number of holes, a slip?";
             return Err(LineFault::new("gcode::cycle", block.at_any(bit(b'q') | bit(b'l')), message).hint(hint));
@@ -228,7 +236,6 @@ impl Interpreter {
     /// G83 retracts to R after each peck, G73 only breaks the chip.
     fn peck(&mut self, block: &Block, hole: &Hole) -> Read<()> {
         let &Hole { normal, bottom, clearance, .. } = hole;
-        let step = self.carried.cycle.peck.unwrap_or(clearance - bottom);
         let above = if self.modal.unit_mm == 1.0 { PECK_CLEARANCE[0] } else { PECK_CLEARANCE[1] * INCH_MM };
         if let Some(pecks) = self.fanuc.pecks {
             self.peck_smaller(block, normal, [clearance, bottom], above, pecks)?;
@@ -236,9 +243,12 @@ impl Interpreter {
             return Ok(());
         }
         // In the program's unit, as LinuxCNC counts: elsewhere rounding makes a last peck of nothing, or leaves one out.
-        let unit = self.modal.unit_mm;
-        let (step, last) = (step / unit, bottom / unit);
-        let mut counted = clearance / unit - step;
+        let (unit, cycle) = (self.modal.unit_mm, self.carried.cycle);
+        let [from, to] = [cycle.clearance, cycle.bottom].map(|length| length.in_unit(unit));
+        let from = if self.modal.incremental { cycle.began_at / unit + from } else { from };
+        let last = if self.modal.incremental { from + to } else { to };
+        let step = cycle.peck.map_or(from - last, |peck| peck.in_unit(unit));
+        let mut counted = from - step;
         while counted > last {
             let depth = counted * unit;
             self.along(block, normal, depth, Speed::Programmed)?;

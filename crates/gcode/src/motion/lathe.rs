@@ -43,6 +43,11 @@ impl Interpreter {
         if self.lathe.is_some() {
             return Err(fault(at, format!("{name} stands inside the profile of another lathe cycle")));
         }
+        if matches!(code, 700 | 710) && !block.has(b'q') && !block.has_axes() {
+            let unit = if code == 700 { "inches: write G20" } else { "millimeters: write G21" };
+            return Err(fault(at, format!("{name} without words is no cycle of a lathe"))
+                .hint(format!("as a unit of other controls, {name} means {unit}")));
+        }
         if self.modal.plane != Plane::Zx {
             return Err(fault(at, format!("{name} needs the plane G18 (ZX)")).hint("write G18 before it"));
         }

@@ -89,6 +89,10 @@ impl Interpreter {
         }
         let radius = block.get(b'@').map(|radius| radius * self.modal.unit_mm);
         let angle = block.get(b'^');
+        if self.modal.incremental && old_radius == 0.0 {
+            let message = "in G91, polar coordinates have no direction at the origin";
+            return Err(LineFault::new("gcode::polar", at, message).hint("write this motion in G90"));
+        }
         if angle.is_none() && old_radius == 0.0 {
             return Err(LineFault::new("gcode::polar", at, "at the origin the angle ^ is needed"));
         }

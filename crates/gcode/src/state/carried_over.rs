@@ -31,14 +31,30 @@ pub(crate) struct Compensation {
     pub(crate) last: Option<(PlaneCurve, PlanePoint)>,
 }
 
+/// A length of a cycle, in mm and as it was written.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct CycleLength {
+    pub(crate) mm: f64,
+    pub(crate) written: f64,
+    /// Unit of `written`, mm.
+    pub(crate) unit_mm: f64,
+}
+
+impl CycleLength {
+    /// In this unit: as written where that is its unit, which a way over mm would round.
+    pub(crate) fn in_unit(self, unit_mm: f64) -> f64 {
+        if unit_mm == self.unit_mm { self.written } else { self.mm / unit_mm }
+    }
+}
+
 /// What a cycle keeps for the next line, mm and seconds.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Cycle {
     /// The code; 0 before the first.
     pub(crate) code: u16,
-    pub(crate) bottom: f64,
-    pub(crate) clearance: f64,
-    pub(crate) peck: Option<f64>,
+    pub(crate) bottom: CycleLength,
+    pub(crate) clearance: CycleLength,
+    pub(crate) peck: Option<CycleLength>,
     pub(crate) dwell_s: Option<f64>,
     /// Height at which the series of cycles began (G98).
     pub(crate) began_at: f64,

@@ -1,4 +1,4 @@
-//! Parameters of a program: numbered `#1`-`#5602`, named `#<local>` and `#<_global>`.
+//! Parameters of a program: numbered `#1`-`#5601`, named `#<local>` and `#<_global>`.
 //!
 //! Numbers 1-30 and names without a leading underscore belong to the subroutine call; all others are global. The numbers
 //! with a meaning are those of RS-274/NGC (NISTIR 6556, section 3.2.1) as LinuxCNC extends them.

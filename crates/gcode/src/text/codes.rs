@@ -27,10 +27,12 @@ pub(crate) enum Group {
     Rotation,
     /// Fanuc: G15, G16.
     Polar,
+    /// G50 of Tormach and others.
+    Scaling,
 }
 
 /// Number of groups.
-pub(super) const GROUPS: usize = 16;
+pub(super) const GROUPS: usize = 17;
 
 /// Bit of a letter in a set of letters; `@`, `^` and `$` follow the alphabet.
 pub(crate) const fn bit(letter: u8) -> u32 {
@@ -96,7 +98,7 @@ pub(super) const fn axes(number: u16, group: Group, letters: &[u8]) -> Code {
 
 use Group::{
     ArcDistance, Coordinates, Corner, CutterCompensation, Diameter, Distance, FeedMode, Motion, NonModal, Plane,
-    Return, SpindleMode, ToolLength, Units,
+    Return, Scaling, SpindleMode, ToolLength, Units,
 };
 
 /// Every code.
@@ -139,6 +141,7 @@ pub(super) const CODES: &[Code] = &[
     axes(431, ToolLength, b""),
     axes(432, ToolLength, b"h"),
     code(490, ToolLength, b""),
+    code(500, Scaling, b""),
     axes(520, NonModal, b""),
     code(530, NonModal, b""),
     code(540, Coordinates, b""),

@@ -26,7 +26,7 @@ pub(crate) const INTEGER_WITHIN: f64 = 1e-4;
 
 /// Where parameter values come from.
 pub(crate) trait ParameterSource {
-    /// Value of `#index`, `index` from 1 to 5602.
+    /// Value of `#index`, `index` from 1 to 5601.
     fn numbered(&self, index: usize) -> f64;
     /// Value of `#<name>`, lower case without blanks.
     fn named(&self, name: &[u8]) -> Option<f64>;
@@ -250,16 +250,18 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         }
     }
 
-    /// `exists[#<name>]`: 1 or 0. A number always exists.
+    /// `exists[#<name>]`: 1 or 0. Of numbers those exist that a program may use.
     fn exists(&mut self) -> Read<f64> {
         let start = self.cursor.at;
-        if self.cursor.eat(b'[') && self.cursor.peek() == b'#' {
-            let target = self.target()?;
+        if self.cursor.eat(b'[') && self.cursor.eat(b'#') {
+            let exists = if self.cursor.eat(b'<') {
+                let name = self.name(start)?;
+                self.values.named(&name).is_some()
+            } else {
+                let number = self.parameter_number(start)?;
+                self.has_parameter(number)
+            };
             if self.cursor.eat(b']') {
-                let exists = match &target {
-                    Target::Named(name) => self.values.named(name).is_some(),
-                    Target::Numbered(_) => true,
-                };
                 return Ok(f64::from(u8::from(exists)));
             }
         }
@@ -274,23 +276,29 @@ impl<'a, V: ParameterSource> Evaluator<'a, V> {
         if self.cursor.eat(b'<') {
             return Ok(Target::Named(self.name(start)?));
         }
+        let number = self.parameter_number(start)?;
+        if !self.has_parameter(number) {
+            let message =
+                format!("parameter #{} does not exist: the numbers go from 1 to {}", Short(number), PARAMETERS - 1);
+            return Err(LineFault::new("gcode::parameter", start..self.cursor.at, message));
+        }
+        Ok(Target::Numbered(number as usize))
+    }
+
+    /// The whole number behind a `#`, which may be that of no parameter.
+    fn parameter_number(&mut self, start: usize) -> Read<f64> {
         let index = self.deeper(start, Self::value)?;
         let rounded = index.round();
-        let at = start..self.cursor.at;
         if (index - rounded).abs() > INTEGER_WITHIN {
-            return Err(LineFault::new(
-                "gcode::parameter",
-                at,
-                format!("parameter number {} is not an integer", Short(index)),
-            ));
+            let message = format!("parameter number {} is not an integer", Short(index));
+            return Err(LineFault::new("gcode::parameter", start..self.cursor.at, message));
         }
+        Ok(rounded)
+    }
+
+    fn has_parameter(&self, number: f64) -> bool {
         let first = if self.values.is_fanuc() { 0.0 } else { 1.0 };
-        if !(first..PARAMETERS as f64).contains(&rounded) {
-            let message =
-                format!("parameter #{} does not exist: the numbers go from 1 to {}", Short(rounded), PARAMETERS - 1);
-            return Err(LineFault::new("gcode::parameter", at, message));
-        }
-        Ok(Target::Numbered(rounded as usize))
+        (first..PARAMETERS as f64).contains(&number)
     }
 
     /// The name up to `>`, lower case without blanks.
@@ -359,7 +367,7 @@ fn text_of(byte: u8) -> String {
 }
 
 /// One more than the highest numbered parameter.
-pub(crate) const PARAMETERS: usize = 5603;
+pub(crate) const PARAMETERS: usize = 5602;
 
 #[cfg(test)]
 mod tests {
@@ -421,7 +429,7 @@ mod tests {
     fn impossible_values_are_explained() {
         assert!(message("[1/0]").contains("divided by zero"));
         assert!(message("sqrt[-1]").contains("zero or positive"));
-        assert!(message("#5603").contains("does not exist"));
+        assert!(message("#5602").contains("does not exist"));
         assert!(message("#1.5").contains("not an integer"));
         assert!(message("#<foo>").contains("no value"));
         assert!(message("[10**400]").contains("finite"));

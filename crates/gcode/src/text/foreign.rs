@@ -17,7 +17,7 @@ const CODES: &[(&[u16], &str, &str)] = &[
         "compensation for the length or radius of a tool that tilts",
         "let the CAM system write the motions of a machine with X, Y and Z",
     ),
-    (&[500, 510], "scaling", "scale the part in the CAM system; on a lathe, D of G96 bounds the speed of the spindle"),
+    (&[510], "scaling", "scale the part in the CAM system"),
     (&[501, 511], "a mirror image", "mirror the part in the CAM system, or negate the coordinates"),
     (&[470], "the engraving of Haas", "let the CAM system write the motions of the letters"),
     (&[1030], "the limit of Haas's look-ahead", "leave it out: it moves nothing"),

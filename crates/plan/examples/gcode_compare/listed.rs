@@ -211,6 +211,19 @@ const ROWS: &[Row] = &[
     ),
     row(
         THEY,
+        "no matching while/do label",
+        |case| case.line().contains(" BREAK") || case.line().contains(" CONTINUE"),
+        "break and continue in a repeat",
+    ),
+    row(
+        MOTION,
+        "theirs",
+        |case| case.lines[..case.at].iter().any(|line| line.contains(" BREAK")) && case.text.contains(" do"),
+        "a do behind a while that was left by break",
+    ),
+    row(THEY, "Unknown g code used", |case| case.has(&["G50"]), "G50 without words"),
+    row(
+        THEY,
         "Unexpected character after O-word",
         |case| case.line().contains(" ELSEIF "),
         "words behind an elseif that is not carried out",
