@@ -16,6 +16,7 @@ mod page;
 use std::fmt::Write as _;
 use std::ops::Range;
 
+use feedwright_gcode::visible;
 use feedwright_ident::{
     AxisFacts, AxisRecord, Fitness, FoundMachine, GreyBoxOptions, LawTerm, LawVerdict, Log, NotFound, NumberSource,
     identify_machine,
@@ -234,7 +235,7 @@ impl LogIdentified {
     pub fn table(&self) -> String {
         let mut text = String::new();
         for (i, axis) in self.machine.axes.iter().enumerate() {
-            let _ = writeln!(text, "axis {}: {}", axis.name, self.verdict(i));
+            let _ = writeln!(text, "axis {}: {}", visible(&axis.name), visible(&self.verdict(i)));
             for number in axis.numbers() {
                 let interval =
                     number.interval.map_or(String::new(), |[low, high]| format!("{} to {}", digits(low), digits(high)));

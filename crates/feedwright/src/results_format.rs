@@ -1,5 +1,7 @@
 //! What each JSON result says of itself: the format, and the version that wrote it.
 
+use feedwright_gcode::is_hidden;
+use serde::Serialize;
 use serde_json::Value;
 
 /// The format of the JSON results, as docs/json.md has it. It is raised whenever a key goes or changes its meaning; new keys may
@@ -11,4 +13,23 @@ pub(crate) fn stamped(mut result: Value) -> Value {
     result["format"] = RESULTS_FORMAT.into();
     result["version"] = env!("CARGO_PKG_VERSION").into();
     result
+}
+
+/// A value as JSON text, in which what [`is_hidden`] is spelled out: a terminal shows it, and a program reads it unchanged.
+pub(crate) fn json_text(value: &impl Serialize) -> serde_json::Result<String> {
+    serde_json::to_string_pretty(value).map(|text| spelled_out(&text))
+}
+
+/// JSON text with its hidden characters as escapes; line ends stand between values and stay.
+pub(crate) fn spelled_out(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        if c == '\n' || !is_hidden(c) {
+            out.push(c);
+        } else {
+            let mut units = [0; 2];
+            c.encode_utf16(&mut units).iter().for_each(|unit| out.push_str(&format!("\\u{unit:04x}")));
+        }
+    }
+    out
 }

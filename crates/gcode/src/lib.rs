@@ -101,3 +101,4 @@ pub use text::diagnostic::{Diagnostic, Severity};
 pub use text::input;
 pub use text::read_error::ReadError;
 pub use text::suggestion;
+pub use text::visible::{is_hidden, visible};

@@ -1,6 +1,7 @@
 //! A line of text as words with values, and what is said of one that cannot be read.
 
 pub mod suggestion;
+pub(crate) mod visible;
 pub(crate) mod diagnostic;
 pub(crate) mod read_error;
 pub(crate) mod characters;

@@ -19,6 +19,7 @@ use std::ffi::OsString;
 use std::io::{self, IsTerminal};
 
 use clap::{Args, ColorChoice, Command, CommandFactory, Parser, Subcommand, ValueEnum};
+use feedwright_gcode::visible;
 
 use advise::AdviseArgs;
 use block::BlockArgs;
@@ -118,8 +119,15 @@ impl CommandArgs {
 pub fn parse<T: Parser>() -> T {
     let color = color_said(std::env::args_os());
     set_color(color);
-    let matches = command::<T>(color).get_matches();
-    T::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+    let matches = command::<T>(color).try_get_matches().unwrap_or_else(|error| leave::<T>(color, error));
+    T::from_arg_matches(&matches).unwrap_or_else(|error| leave::<T>(color, error))
+}
+
+/// Ends the process with help, or with what is wrong with the command line: that of the same command line without what is hidden
+/// in it, because clap quotes its words.
+fn leave<T: CommandFactory>(color: ColorWhen, error: clap::Error) -> ! {
+    let arguments = std::env::args_os().map(|argument| visible(&argument.to_string_lossy()).into_owned());
+    command::<T>(color).try_get_matches_from(arguments).err().unwrap_or(error).exit()
 }
 
 /// The command with its help as the terminal shows it.

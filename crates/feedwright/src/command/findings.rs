@@ -1,6 +1,6 @@
 //! What `check` has found, for other programs: JSON, SARIF 2.1.0 for code scanning, and the annotations of GitHub's workflows.
 
-use feedwright_gcode::{Diagnostic, Severity};
+use feedwright_gcode::{Diagnostic, Severity, visible};
 use miette::Report;
 use serde_json::{Value, json};
 
@@ -42,6 +42,7 @@ impl Finding {
 
     /// An error that belongs to a file, or to none of its lines.
     pub(crate) fn of_file(file: &str, report: &Report) -> Self {
+        let shown = |text: String| visible(&text).into_owned();
         Self {
             file: file.to_owned(),
             is_error: true,
@@ -49,8 +50,8 @@ impl Finding {
             line: 0,
             column: 0,
             span: 0,
-            message: report.to_string(),
-            hint: report.help().map(|hint| hint.to_string()),
+            message: shown(report.to_string()),
+            hint: report.help().map(|hint| shown(hint.to_string())),
         }
     }
 
@@ -73,7 +74,7 @@ impl Finding {
 
     /// As a command of GitHub's workflows, which shows it beside the line.
     pub(crate) fn github(&self) -> String {
-        let mut place = format!("file={}", github_property(&self.file));
+        let mut place = format!("file={}", github_property(&visible(&self.file)));
         if self.line > 0 {
             place += &format!(",line={}", self.line);
         }

@@ -1,12 +1,15 @@
 //! Errors and warnings on stderr, and the exit codes that go with them.
 
+use std::fmt;
 use std::io;
 use std::process::ExitCode;
 
 use feedwright_sim::{Machine, Stages};
-use miette::{GraphicalReportHandler, GraphicalTheme, Report, Result, ThemeCharacters, ThemeStyles, miette};
+use miette::{
+    Diagnostic, GraphicalReportHandler, GraphicalTheme, Report, Result, ThemeCharacters, ThemeStyles, miette,
+};
 
-use crate::command::terminal::{is_stderr_colored, shows_unicode, text_columns, wrapped};
+use crate::command::terminal::{is_stderr_colored, shows_unicode, text_columns, without_hidden, wrapped};
 
 /// The result is out of tolerance.
 pub const OUT_OF_TOLERANCE: u8 = 1;
@@ -75,9 +78,98 @@ fn show(report: &Report) {
         handler = handler.without_cause_chain();
     }
     let mut text = String::new();
-    match handler.render_report(&mut text, report.as_ref()) {
+    match handler.render_report(&mut text, &VisibleReport::of(report.as_ref())) {
         Ok(()) => eprintln!("{}", with_hints(text.trim_end())),
-        Err(_) => eprintln!("error: {message}"),
+        Err(_) => eprintln!("error: {}", without_hidden(&message)),
+    }
+}
+
+/// A report without what is hidden in its texts; excerpts of files are made so by who reads them.
+#[derive(Debug)]
+struct VisibleReport<'a> {
+    of: &'a dyn Diagnostic,
+    cause: Option<Box<VisibleCause>>,
+    related: Vec<Self>,
+    inner: Option<Box<Self>>,
+}
+
+/// What a report is caused by, and what caused that.
+#[derive(Debug)]
+struct VisibleCause {
+    text: String,
+    cause: Option<Box<Self>>,
+}
+
+impl<'a> VisibleReport<'a> {
+    fn of(report: &'a dyn Diagnostic) -> Self {
+        Self {
+            of: report,
+            cause: VisibleCause::of(report.source()),
+            related: report.related().into_iter().flatten().map(Self::of).collect(),
+            inner: report.diagnostic_source().map(|inner| Box::new(Self::of(inner))),
+        }
+    }
+}
+
+impl VisibleCause {
+    fn of(cause: Option<&(dyn std::error::Error + 'static)>) -> Option<Box<Self>> {
+        let cause = cause?;
+        Some(Box::new(Self { text: without_hidden(&cause.to_string()), cause: Self::of(cause.source()) }))
+    }
+}
+
+impl fmt::Display for VisibleReport<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&without_hidden(&self.of.to_string()))
+    }
+}
+
+impl fmt::Display for VisibleCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+impl std::error::Error for VisibleReport<'_> {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.cause.as_deref().map(|cause| cause as _)
+    }
+}
+
+impl std::error::Error for VisibleCause {
+    fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
+        self.cause.as_deref().map(|cause| cause as _)
+    }
+}
+
+impl Diagnostic for VisibleReport<'_> {
+    fn code<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
+        self.of.code()
+    }
+
+    fn severity(&self) -> Option<miette::Severity> {
+        self.of.severity()
+    }
+
+    fn help<'b>(&'b self) -> Option<Box<dyn fmt::Display + 'b>> {
+        self.of.help().map(|help| Box::new(without_hidden(&help.to_string())) as Box<dyn fmt::Display>)
+    }
+
+    fn source_code(&self) -> Option<&dyn miette::SourceCode> {
+        self.of.source_code()
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = miette::LabeledSpan> + '_>> {
+        self.of.labels()
+    }
+
+    fn related<'b>(&'b self) -> Option<Box<dyn Iterator<Item = &'b dyn Diagnostic> + 'b>> {
+        let related = self.related.iter().map(|related| related as &dyn Diagnostic);
+        (!self.related.is_empty()).then(|| Box::new(related) as _)
+    }
+
+    fn diagnostic_source(&self) -> Option<&dyn Diagnostic> {
+        self.inner.as_deref().map(|inner| inner as _)
     }
 }
 

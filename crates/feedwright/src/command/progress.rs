@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
+use feedwright_gcode::visible;
 use feedwright_sim::Watch;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 
@@ -33,7 +34,7 @@ impl Bar {
     }
 
     pub fn say(&self, message: impl Into<String>) {
-        self.bar.set_message(message.into());
+        self.bar.set_message(visible(&message.into()).into_owned());
     }
 
     /// Does something that prints, with the bar out of the way.

@@ -3,7 +3,7 @@ use std::ffi::OsStr;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
-use feedwright_gcode::input::is_standard_input;
+use feedwright_gcode::input::{self, is_standard_input};
 use feedwright_sim::is_machine_path;
 use miette::{Result, miette};
 
@@ -82,5 +82,5 @@ pub fn tables<'a>(outputs: impl IntoIterator<Item = Option<&'a Path>>) -> Box<dy
 /// Tells which files there are now; what went to the standard output is no file.
 pub fn tell_written<'a>(out: &mut dyn Write, outputs: impl IntoIterator<Item = Option<&'a Path>>) -> io::Result<()> {
     let files = outputs.into_iter().flatten().filter(|path| !is_standard_output(path));
-    files.into_iter().try_for_each(|path| writeln!(out, "wrote {}", path.display()))
+    files.into_iter().try_for_each(|path| writeln!(out, "wrote {}", input::name(path)))
 }

@@ -2,6 +2,8 @@
 
 use std::io::{self, Write};
 
+use feedwright_gcode::visible;
+
 use crate::command::terminal::columns;
 
 /// A column: its heading, in one line or two, and how important it is; 0 is never left out.
@@ -39,6 +41,11 @@ enum TableRow {
     Section(String),
 }
 
+/// A number for a cell; `-` if it is not known.
+pub(crate) fn figure(value: f64, decimals: usize) -> String {
+    if value.is_finite() { format!("{value:.decimals$}") } else { "-".to_owned() }
+}
+
 /// Names are no longer; what is cut off is their beginning.
 const MOST_NAME: usize = 44;
 
@@ -50,7 +57,7 @@ impl ConsoleTable {
 
     /// Adds a row, a cell for each column.
     pub fn row(&mut self, cells: Vec<String>) {
-        self.rows.push(TableRow::Cells(cells));
+        self.rows.push(TableRow::Cells(cells.iter().map(|cell| visible(cell).into_owned()).collect()));
     }
 
     /// Adds a remark to the last row.
@@ -60,7 +67,7 @@ impl ConsoleTable {
 
     /// Begins a part of the table.
     pub fn section(&mut self, name: String) {
-        self.rows.push(TableRow::Section(name));
+        self.rows.push(TableRow::Section(visible(&name).into_owned()));
     }
 
     /// Prints it for the terminal.

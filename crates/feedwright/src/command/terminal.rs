@@ -4,6 +4,7 @@ use std::io::{self, IsTerminal};
 use std::sync::OnceLock;
 
 use clap::ValueEnum;
+use feedwright_gcode::visible;
 
 /// Columns where there is no terminal to ask.
 const COLUMNS: usize = 80;
@@ -70,15 +71,23 @@ pub(crate) fn columns() -> usize {
     if columns < LEAST_COLUMNS { COLUMNS } else { columns }
 }
 
+/// How reasons of the libraries begin the line of their remedy.
+const REMEDY: &str = "\n  hint: ";
+
+/// A message without what is hidden in it; the line of its remedy stays one.
+pub(super) fn without_hidden(text: &str) -> String {
+    text.split(REMEDY).map(visible).collect::<Vec<_>>().join(REMEDY)
+}
+
 /// Columns of text that is read line by line.
 pub(crate) fn text_columns() -> usize {
     columns().min(MOST_COLUMNS)
 }
 
 /// Wraps a text to the width of the terminal. Every line but the first begins with `indent` blanks.
-/// A number and its unit stay together.
+/// A number and its unit stay together, and nothing is hidden.
 pub fn wrapped(text: &str, indent: usize) -> String {
-    let text = &with_units(text);
+    let text = &with_units(&without_hidden(text));
     let blanks = " ".repeat(indent);
     let options = textwrap::Options::new(text_columns())
         .subsequent_indent(&blanks)

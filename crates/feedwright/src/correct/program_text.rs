@@ -7,8 +7,8 @@
 
 use std::collections::BTreeMap;
 
-use feedwright_gcode::ModesInForce;
 use feedwright_gcode::canon::{Canon, Corner, Motion, MotionKind, Plane, Shape};
+use feedwright_gcode::{ModesInForce, visible};
 
 use super::block_words::{BlockWords, dwell, feed_number};
 use super::source::SourceProgram;
@@ -209,7 +209,7 @@ impl TextParts<'_> {
             line.is_empty() || line.starts_with('%') || line.starts_with(['O', 'o']) && !line.contains(' ')
         };
         let at = text.iter().take_while(head).count();
-        let notes = self.notes.iter().map(|note| format!("({})", note.replace(['(', ')'], " ")));
+        let notes = self.notes.iter().map(|note| format!("({})", visible(note).replace(['(', ')'], " ")));
         text.splice(at..at, notes);
     }
 }

@@ -11,7 +11,7 @@ use super::{Job, JobOutcome};
 use crate::correct::CorrectOutcome;
 use crate::report::harm::Harm;
 use crate::report::{Assumptions, RunSummary};
-use crate::results_format::RESULTS_FORMAT;
+use crate::results_format::{RESULTS_FORMAT, json_text};
 
 /// All results: `runs` and what they were made with.
 #[derive(Serialize)]
@@ -58,7 +58,6 @@ impl JobOutcome {
             runs: report.runs.iter().map(|run| &run.summary).collect(),
             exported: self.exported.as_ref(),
         };
-        serde_json::to_writer_pretty(&mut *out, &results)?;
-        out.write_all(b"\n")
+        writeln!(out, "{}", json_text(&results)?)
     }
 }

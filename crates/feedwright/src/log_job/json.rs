@@ -6,7 +6,7 @@ use feedwright_ident::{FoundAxis, FreeRunErrors, HORIZONS, NumberSource};
 use serde_json::{Map, Value, json};
 
 use super::LogIdentified;
-use crate::results_format::stamped;
+use crate::results_format::{json_text, stamped};
 
 /// Writes it.
 ///
@@ -40,8 +40,7 @@ pub fn write(out: &mut impl io::Write, identified: &LogIdentified) -> io::Result
         "contour": contour,
         "axes": axes,
     });
-    serde_json::to_writer_pretty(&mut *out, &stamped(value))?;
-    out.write_all(b"\n")
+    writeln!(out, "{}", json_text(&stamped(value))?)
 }
 
 fn axis(identified: &LogIdentified, i: usize, found: &FoundAxis) -> Value {

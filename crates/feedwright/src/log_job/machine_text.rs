@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use feedwright_gcode::visible;
 use feedwright_ident::{FoundAxis, SERVO_MECHANICS, servo_period_s};
 use feedwright_sim::MACHINE_FORMAT;
 use feedwright_sim::toml_file::quoted;
@@ -40,13 +41,13 @@ fn head(identified: &LogIdentified, name: &str, servo_s: f64) -> String {
     let (speed_mm_s, accel_mm_s2) = (most(0).clamp(0.01, 1e4), most(1).clamp(0.1, 1e6));
     let mut text = String::new();
     // A name that breaks the line would not stay in its comment.
-    let log = &identified.job.name.replace(char::is_control, " ");
+    let log = visible(&identified.job.name);
     let _ = writeln!(
         text,
         "# Identified by feedwright from {log}. Values in comments are intervals of 90 %, the inertia taken as it stands."
     );
     for line in identified.advice() {
-        let _ = writeln!(text, "# {line}.");
+        let _ = writeln!(text, "# {}.", visible(&line));
     }
     let _ = writeln!(text, "\nformat = {MACHINE_FORMAT}\nname = {}", quoted(name));
     let _ = writeln!(text, "description = {}", quoted(&format!("axes identified from {log}")));

@@ -1,5 +1,6 @@
 //! A machine file with what a new log tells of it; everything else stays as it is, comments too.
 
+use feedwright_gcode::visible;
 use feedwright_sim::AXIS_NAMES;
 use miette::Diagnostic;
 use thiserror::Error;
@@ -41,7 +42,7 @@ pub fn updated_text(identified: &LogIdentified, before: &str) -> Result<String, 
             keys.transmission.iter().filter(|key| key.is_told || is_new).for_each(|key| set(transmission, key));
         }
     }
-    let log = identified.job.name.replace(char::is_control, " ");
+    let log = visible(&identified.job.name);
     let text = document.to_string();
     Ok(format!("# Updated by feedwright from {log}; intervals of 90 % beside what it told.\n{text}"))
 }

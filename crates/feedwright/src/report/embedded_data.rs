@@ -9,6 +9,7 @@ use serde_json::json;
 
 use super::series::SeriesPoint;
 use super::{FullCircle, ProgramLine, Report, ReportedRun, RunSummary};
+use crate::results_format::spelled_out;
 
 /// What one count of a column stands for.
 mod units {
@@ -43,13 +44,11 @@ pub(super) fn write(out: &mut impl Write, report: &Report) -> io::Result<()> {
 /// says the same.
 fn inert(value: &serde_json::Value) -> String {
     let mut out = String::new();
-    for c in value.to_string().chars() {
+    for c in spelled_out(&value.to_string()).chars() {
         match c {
             '<' => out.push_str("\\u003c"),
             '>' => out.push_str("\\u003e"),
             '&' => out.push_str("\\u0026"),
-            '\u{2028}' => out.push_str("\\u2028"),
-            '\u{2029}' => out.push_str("\\u2029"),
             c => out.push(c),
         }
     }
@@ -73,7 +72,8 @@ fn meta(report: &Report) -> serde_json::Value {
 
 /// What a count of an error stands for, mm: a thousandth to a ten-thousandth of the largest, so that the drawing of a small one has no steps.
 fn error_unit_mm(summary: &RunSummary) -> f64 {
-    let largest_mm = (1e-3 * summary.max_um).clamp(1e-6, 1.0);
+    // Of a run that diverged it is not known.
+    let largest_mm = if summary.max_um.is_finite() { (1e-3 * summary.max_um).clamp(1e-6, 1.0) } else { 1.0 };
     10_f64.powi(libm::log10(largest_mm).floor() as i32 - 3).min(units::ERROR_MM)
 }
 

@@ -2,18 +2,18 @@
 
 use std::fmt::Write as _;
 
-/// `text` with the characters that HTML gives a meaning replaced; for element content and quoted attributes.
+use feedwright_gcode::visible;
+
+/// `text` with the characters that HTML gives a meaning replaced, and nothing hidden; for element content and quoted attributes.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
+    for c in visible(text).chars() {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
             '\'' => out.push_str("&#39;"),
-            // A browser would drop or misread these; a program that has them still shows that there is something.
-            c if c.is_control() && c != '\t' => out.push('\u{fffd}'),
             c => out.push(c),
         }
     }

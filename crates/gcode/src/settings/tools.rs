@@ -54,7 +54,7 @@ impl ToolTable {
     /// A file that cannot be read, or the faults of all its lines.
     pub fn read(path: &Path, unit_mm: f64) -> Result<Self, ToolTableError> {
         let bytes = input::read(path).map_err(|cause| ToolTableError::Io { path: path.to_owned(), cause })?;
-        let file: Arc<str> = path.display().to_string().into();
+        let file: Arc<str> = input::name(path).into();
         let (mut table, mut faults) = (Self::default(), Vec::new());
         for (line, bytes) in (1..).zip(bytes.split(|&byte| byte == b'\n')) {
             if let Err(fault) = table.add_line(bytes, unit_mm) {

@@ -8,6 +8,8 @@ use std::sync::Arc;
 
 use miette::{LabeledSpan, MietteError, MietteSpanContents, SourceCode, SourceSpan, SpanContents};
 
+use crate::text::visible::visible;
+
 /// Longest excerpt of a line that a diagnostic keeps, bytes: a row of a terminal, so that the caret stands below its fault.
 const EXCERPT_BYTES: usize = 100;
 /// What stands where an excerpt is cut.
@@ -37,11 +39,11 @@ pub struct Diagnostic {
     pub column: u32,
     /// Length of the faulty text in characters.
     pub span: u32,
-    /// What is wrong, with value, limit and unit.
+    /// What is wrong, with value, limit and unit. What the program hides in its text shows here, as in the hint: see [`visible`].
     pub message: String,
     /// Likely remedy.
     pub hint: Option<String>,
-    /// Excerpt of the line, control characters replaced; empty where there is no line.
+    /// Excerpt of the line, likewise; empty where there is no line.
     pub text: String,
     /// The fault's bytes within `text`.
     mark: Range<usize>,
@@ -50,6 +52,7 @@ pub struct Diagnostic {
 impl Diagnostic {
     /// A fault of the file as a whole.
     pub(crate) fn of_file(severity: Severity, code: &'static str, file: Arc<str>, message: String) -> Self {
+        let message = visible(&message).into_owned();
         Self { severity, code, file, line: 0, column: 0, span: 0, message, hint: None, text: String::new(), mark: 0..0 }
     }
 
@@ -73,24 +76,24 @@ impl Diagnostic {
             line,
             column: u32::try_from(column).unwrap_or(u32::MAX),
             span: u32::try_from(span).unwrap_or(u32::MAX),
-            message: fault.message,
-            hint: fault.hint,
+            message: visible(&fault.message).into_owned(),
+            hint: fault.hint.map(|hint| visible(&hint).into_owned()),
             text: before + &inside + &after,
             mark,
         }
     }
 }
 
-/// The bytes as one row of text: what is not UTF-8 becomes U+FFFD, control characters become blanks.
+/// The bytes as one row of text: what is not UTF-8 becomes U+FFFD.
 fn printable(bytes: &[u8]) -> String {
-    String::from_utf8_lossy(bytes).chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+    visible(&String::from_utf8_lossy(bytes)).into_owned()
 }
 
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // Where there is no line to show, nothing else names the file.
         if self.line == 0 {
-            write!(f, "{}: ", self.file)?;
+            write!(f, "{}: ", visible(&self.file))?;
         }
         f.write_str(&self.message)
     }
@@ -139,7 +142,7 @@ impl SourceCode for Diagnostic {
         }
         // miette counts lines from 0 and shows the column of the contents' first byte.
         Ok(Box::new(MietteSpanContents::new_named(
-            self.file.to_string(),
+            visible(&self.file).into_owned(),
             self.text.as_bytes(),
             (0, self.text.len()).into(),
             self.line.saturating_sub(1) as usize,

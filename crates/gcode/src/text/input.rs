@@ -8,6 +8,8 @@ use std::io::{self, Read};
 use std::path::Path;
 use std::sync::OnceLock;
 
+use crate::text::visible::visible;
+
 /// What stands for the standard input.
 const STANDARD_INPUT: &str = "-";
 
@@ -19,9 +21,13 @@ pub fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == STANDARD_INPUT
 }
 
-/// A path as messages have it.
+/// A path as messages have it, without what is hidden in it.
 pub fn name(path: &Path) -> String {
-    if is_standard_input(path) { "standard input".to_owned() } else { path.display().to_string() }
+    if is_standard_input(path) {
+        "standard input".to_owned()
+    } else {
+        visible(&path.display().to_string()).into_owned()
+    }
 }
 
 /// All bytes of a file, or of the standard input.

@@ -4,6 +4,7 @@ use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+use feedwright_gcode::visible;
 use miette::{Diagnostic, LabeledSpan, NamedSource, SourceSpan};
 use thiserror::Error;
 
@@ -142,8 +143,13 @@ impl FileError {
     pub fn invalid(kind: &'static Kind, file: &str, text: &str, mut faults: Vec<Fault>) -> Self {
         faults.sort_by_key(|fault| (fault.at.start, fault.at.end));
         let problems = faults.into_iter().map(|fault| Problem::locate(kind, fault, text)).collect();
-        Self::Invalid { kind, text: NamedSource::new(file, text.to_owned()).with_language("toml"), problems }
+        Self::Invalid { kind, text: NamedSource::new(visible(file), shown(text)).with_language("toml"), problems }
     }
+}
+
+/// A text line for line, without what is hidden in it.
+fn shown(text: &str) -> String {
+    text.split('\n').map(visible).collect::<Vec<_>>().join("\n")
 }
 
 impl Problem {
@@ -152,12 +158,13 @@ impl Problem {
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
         Self {
             code: kind.code,
-            message: fault.message,
+            message: visible(&fault.message).into_owned(),
             line: before.matches('\n').count() + 1,
             column: before[line_start..].chars().count() + 1,
-            span: (fault.at.start, fault.at.len()).into(),
+            // In the text as it is shown.
+            span: (shown(before).len(), text.get(fault.at).map_or(0, |at| shown(at).len())).into(),
             label: fault.label,
-            hint: fault.hint,
+            hint: fault.hint.map(|hint| visible(&hint).into_owned()),
         }
     }
 }

@@ -2,7 +2,7 @@
 use std::io::Write;
 use std::process::ExitCode;
 
-use feedwright_gcode::Program;
+use feedwright_gcode::{Program, visible};
 use feedwright_sim::Machine;
 use miette::{IntoDiagnostic, Result};
 use serde_json::json;
@@ -18,7 +18,7 @@ use crate::command::terminal::wrapped;
 use crate::controllers::{CONTROLLERS, Choices};
 use crate::correct::advise::{Advice, AdviseJob, FeedCut, STRETCH_LEGEND, WayAdvice};
 use crate::output::OutputFile;
-use crate::results_format::stamped;
+use crate::results_format::{json_text, stamped};
 
 /// Stretches that are listed.
 const LISTED: usize = 12;
@@ -60,8 +60,7 @@ pub(crate) fn run(args: &AdviseArgs, console: &Console) -> Result<ExitCode> {
         let mut value = serde_json::to_value(&advice).into_diagnostic()?;
         value["part"] = json!(args.part.display().to_string());
         value["machine"] = json!(job.machine.name);
-        serde_json::to_writer_pretty(&mut file, &stamped(value)).into_diagnostic()?;
-        writeln!(file).into_diagnostic()?;
+        writeln!(file, "{}", json_text(&stamped(value)).into_diagnostic()?).into_diagnostic()?;
         complete.push(file);
     }
     OutputFile::commit_all(complete, &bar)?;
@@ -73,7 +72,11 @@ fn print(args: &AdviseArgs, job: &AdviseJob, advice: &Advice) -> std::io::Result
     let files = || [args.report.as_deref(), args.figure.as_deref(), args.json.as_deref()];
     let out = &mut *tables(files());
     let Advice { tolerance_um, control, planner, programmed_mm_s: [_, largest_mm_s], .. } = advice;
-    writeln!(out, "within {tolerance_um} um on {}: feed of the whole program, or of each stretch", job.machine.name)?;
+    writeln!(
+        out,
+        "within {tolerance_um} um on {}: feed of the whole program, or of each stretch",
+        visible(&job.machine.name)
+    )?;
     let mut table = ConsoleTable::new(vec![
         TableColumn::new(""),
         TableColumn::new("feed"),

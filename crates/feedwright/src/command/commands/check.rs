@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 
-use feedwright_gcode::{self, CheckError, Program, Settings, input};
+use feedwright_gcode::{self, CheckError, Program, Settings, ToolTableError, input, visible};
 use feedwright_ident::{Model, identifier_name};
 use feedwright_sim::toml_file::{FileError, Problem};
 use feedwright_sim::{Machine, MachineError, Watch};
@@ -24,7 +24,7 @@ use crate::command::findings::{Finding, sarif};
 use crate::command::message::{ERROR, MISTAKES, printed, tell, warn};
 use crate::command::progress::Bar;
 use crate::command::streams::check_inputs;
-use crate::results_format::stamped;
+use crate::results_format::{json_text, stamped};
 
 /// What came of one file, best first: the worst of all files is the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -75,13 +75,16 @@ struct CheckOutput {
 pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<ExitCode> {
     let files = args.files.iter().map(|file| ("a file", Some(file.as_path())));
     check_inputs(console, files.chain([("--tool-table", args.reader.tool_table.as_deref())]))?;
-    let settings = args.reader.settings()?;
+    let settings = match args.reader.settings() {
+        Ok(settings) => settings,
+        Err(report) => return tool_table(args, report),
+    };
     let found = FilesToCheck::find(&args.files);
     let bar = console.bar_unless(args.format != Format::Text, found.files.len() as u64);
     let mut output =
         CheckOutput { format: args.format, worst: FileOutcome::Fine, findings: Vec::new(), files: Vec::new() };
     for remark in &found.remarks {
-        eprintln!("{remark}");
+        crate::command::message::remark(remark);
     }
     for fault in &found.faults {
         tell(&miette!("{fault}"));
@@ -90,6 +93,23 @@ pub(crate) fn run(args: &CheckArgs, console: &Console) -> Result<ExitCode> {
     let result = print(&found.files, &settings, &bar, &mut output);
     bar.clear();
     printed(result, ExitCode::from(output.worst.code()))
+}
+
+/// Tells what is wrong with the tool table, in the format that is asked for; any other error is one of the command line.
+fn tool_table(args: &CheckArgs, report: Report) -> Result<ExitCode> {
+    let Some((error, table)) = report.downcast_ref::<ToolTableError>().zip(args.reader.tool_table.as_deref()) else {
+        return Err(report);
+    };
+    let findings = match error {
+        ToolTableError::Faults { faults, .. } => faults.iter().map(Finding::of).collect(),
+        ToolTableError::Io { .. } => vec![Finding::of_file(&input::name(table), &report)],
+    };
+    let checked = CheckedFile { outcome: FileOutcome::Unreadable, line: None, reports: vec![report], findings };
+    let mut output =
+        CheckOutput { format: args.format, worst: FileOutcome::Fine, findings: Vec::new(), files: Vec::new() };
+    let mut out = io::stdout().lock();
+    let result = output.tell(&mut out, table, checked).and_then(|()| output.end(&mut out));
+    printed(result, ExitCode::from(ERROR))
 }
 
 /// Checks all files and prints what is found in each as soon as those before it are printed.
@@ -131,17 +151,22 @@ fn print_in_order(
             next += 1;
         }
     }
-    match output.format {
-        Format::Text if files.len() > 1 => {
-            writeln!(out, "{} files: {} without mistakes, {faulty} with mistakes", files.len(), files.len() - faulty)
-        }
-        Format::Text | Format::Github => Ok(()),
-        Format::Json => writeln!(out, "{:#}", stamped(json!({ "files": output.files }))),
-        Format::Sarif => writeln!(out, "{:#}", sarif(&output.findings)),
+    if output.format == Format::Text && files.len() > 1 {
+        writeln!(out, "{} files: {} without mistakes, {faulty} with mistakes", files.len(), files.len() - faulty)?;
     }
+    output.end(&mut out)
 }
 
 impl CheckOutput {
+    /// Prints what was kept for the end.
+    fn end(&self, out: &mut impl Write) -> io::Result<()> {
+        match self.format {
+            Format::Text | Format::Github => Ok(()),
+            Format::Json => writeln!(out, "{}", json_text(&stamped(json!({ "files": self.files })))?),
+            Format::Sarif => writeln!(out, "{}", json_text(&sarif(&self.findings))?),
+        }
+    }
+
     /// Prints what was found in a file, or keeps it for the end.
     fn tell(&mut self, out: &mut impl Write, file: &Path, checked: CheckedFile) -> io::Result<()> {
         self.worst = self.worst.max(checked.outcome);
@@ -150,7 +175,7 @@ impl CheckOutput {
                 for report in checked.reports {
                     if checked.line.is_some() { warn(report) } else { tell(&report) }
                 }
-                checked.line.iter().try_for_each(|line| writeln!(out, "{}: {line}", input::name(file)))?;
+                checked.line.iter().try_for_each(|line| writeln!(out, "{}: {}", input::name(file), visible(line)))?;
             }
             Format::Github => {
                 checked.findings.iter().try_for_each(|finding| writeln!(out, "{}", finding.github()))?;
@@ -222,7 +247,7 @@ fn findings(file: &Path, error: &FileError) -> Vec<Finding> {
         return Vec::new();
     };
     let finding = |problem: &Problem| Finding {
-        file: file.display().to_string(),
+        file: input::name(file),
         is_error: true,
         code: problem.code.to_owned(),
         line: u32::try_from(problem.line).unwrap_or(u32::MAX),

@@ -12,12 +12,12 @@ use crate::command::console::Console;
 use crate::command::controls::{check_tolerance, control, print_correction};
 use crate::command::message::{OUT_OF_TOLERANCE, printed, tell_assumed_limits, warn};
 use crate::command::streams::{ProgramInputs, tables, tell_written};
-use crate::command::table::{ConsoleTable, TableColumn};
+use crate::command::table::{ConsoleTable, TableColumn, figure};
 use crate::command::terminal::wrapped;
 use crate::correct::exported::ExportedFigures;
 use crate::correct::{CorrectJob, CorrectOutcome};
 use crate::output::OutputFile;
-use crate::results_format::stamped;
+use crate::results_format::{json_text, stamped};
 
 pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     let target = control(&args.target)?;
@@ -37,7 +37,8 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     for warning in outcome.warnings.iter().cloned() {
         warn(warning.into());
     }
-    let within = args.tolerance.is_none_or(|tolerance_um| outcome.corrected.max_um <= tolerance_um);
+    let ExportedFigures { max_um, completed, .. } = outcome.corrected;
+    let within = completed && args.tolerance.is_none_or(|tolerance_um| max_um <= tolerance_um);
     let mut complete = Vec::new();
     match (outcome.program(), &mut out) {
         (Some(program), Some(file)) => file.write_all(program.as_bytes()).into_diagnostic()?,
@@ -45,9 +46,8 @@ pub(crate) fn run(args: &CorrectArgs, console: &Console) -> Result<ExitCode> {
     }
     complete.extend(out);
     if let Some(mut file) = json {
-        serde_json::to_writer_pretty(&mut file, &results(args, &job, &outcome, within).into_diagnostic()?)
-            .into_diagnostic()?;
-        writeln!(file).into_diagnostic()?;
+        let results = results(args, &job, &outcome, within).into_diagnostic()?;
+        writeln!(file, "{}", json_text(&results).into_diagnostic()?).into_diagnostic()?;
         complete.push(file);
     }
     OutputFile::commit_all(complete, &bar)?;
@@ -84,9 +84,12 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
     ]);
     for (name, figures) in [("uncorrected", uncorrected), ("as exported", corrected)] {
         let ExportedFigures { rms_um, max_um, uncut_um, time_s, blocks, .. } = figures;
-        let errors = [rms_um, max_um, uncut_um].map(|um| format!("{um:.2}"));
-        let cells = std::iter::once(format!("{time_s:.3}")).chain(errors).chain([blocks.to_string()]);
+        let errors = [rms_um, max_um, uncut_um].map(|um| figure(*um, 2));
+        let cells = std::iter::once(figure(*time_s, 3)).chain(errors).chain([blocks.to_string()]);
         table.row(std::iter::once(name.to_owned()).chain(cells).collect());
+        if !figures.completed {
+            table.remark("diverged: the servo loop of this machine is unstable".to_owned());
+        }
     }
     table.print(&mut *out)?;
     let note = "both cut without feedback, as the control plans them; errors are distances to the programmed path";
@@ -94,7 +97,7 @@ fn print(args: &CorrectArgs, outcome: &CorrectOutcome, within: bool) -> std::io:
     print_correction(&mut *out, outcome)?;
     if let Some(tolerance_um) = args.tolerance {
         let verdict = if within { "within" } else { "out of" };
-        writeln!(out, "{verdict} tolerance: max {:.2} um, allowed {tolerance_um} um", corrected.max_um)?;
+        writeln!(out, "{verdict} tolerance: max {} um, allowed {tolerance_um} um", figure(corrected.max_um, 2))?;
     }
     let written = args.out.as_deref().filter(|_| outcome.program().is_some());
     tell_written(&mut *out, [written, args.json.as_deref()])

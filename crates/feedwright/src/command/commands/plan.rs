@@ -6,8 +6,8 @@ use std::io::{BufRead, Write};
 use std::process::ExitCode;
 use std::time::Instant;
 
-use feedwright_gcode::Program;
 use feedwright_gcode::suggestion::nearest;
+use feedwright_gcode::{Program, visible};
 use feedwright_plan::{Constraints, FEED_PLANNERS, MOST_OVERRIDE, feed_planner};
 use feedwright_sim::{Machine, Stages, path_steps, shown};
 use miette::{IntoDiagnostic, Result, miette};
@@ -24,7 +24,7 @@ use crate::cycle_time::{CycleTime, CycleTimeOptions, LineTime, cycle_time_by, li
 use crate::job::{Job, JobError};
 use crate::output::OutputFile;
 use crate::override_time::{HoldStop, OperatorRequest, OverrideTime, override_time};
-use crate::results_format::stamped;
+use crate::results_format::{json_text, stamped};
 use bound::{Bound, MOST_BOUND_S, bound};
 
 pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
@@ -68,8 +68,8 @@ pub(crate) fn run(args: &PlanArgs, console: &Console) -> Result<ExitCode> {
     let outcome = PlanOutcome { found, bound, operated, path_um, planned_um, took_s };
     let mut complete = Vec::new();
     if let Some(mut file) = json {
-        serde_json::to_writer_pretty(&mut file, &outcome.results(args, &machine)?).into_diagnostic()?;
-        writeln!(file).into_diagnostic()?;
+        let text = json_text(&outcome.results(args, &machine)?).into_diagnostic()?;
+        writeln!(file, "{text}").into_diagnostic()?;
         complete.push(file);
     }
     if let Some(mut file) = lines {
@@ -100,7 +100,7 @@ fn write_lines(out: &mut impl Write, program: &Program, lines: &[LineTime]) -> s
     for LineTime { line, time_s, waiting_s } in lines {
         let text = texts.find(|(_, number)| number == line).map_or(Ok(Vec::new()), |(text, _)| text)?;
         let text = String::from_utf8_lossy(&text).trim().replace('"', "\"\"");
-        writeln!(out, "{line},{time_s:.6},{waiting_s:.6},\"{text}\"")?;
+        writeln!(out, "{line},{time_s:.6},{waiting_s:.6},\"{}\"", visible(&text))?;
     }
     Ok(())
 }

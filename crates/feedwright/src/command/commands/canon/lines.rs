@@ -8,6 +8,8 @@ use std::io;
 
 use feedwright_gcode::canon::{Canon, Corner, Motion, MotionKind, Shape};
 
+use crate::results_format::spelled_out;
+
 /// Bytes that no printed number exceeds.
 const NUMBER_BYTES: usize = 32;
 
@@ -55,6 +57,10 @@ impl Lines {
             match step {
                 Canon::Motion(motion) if matches!(motion.shape, Shape::Line) && motion.others.axes.is_none() => {
                     self.straight(motion)?;
+                }
+                // A message of the program, perhaps.
+                Canon::Event(_) => {
+                    self.text.extend_from_slice(spelled_out(&serde_json::to_string(step)?).as_bytes());
                 }
                 step => serde_json::to_writer(&mut self.text, step)?,
             }
