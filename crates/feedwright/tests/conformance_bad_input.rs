@@ -85,12 +85,22 @@ fn a_machine_that_is_none() {
     machine(&folder, "nan.toml", &[("servo_s = 0.001", "servo_s = nan"), ("rapid_mm_s = 400", "rapid_mm_s = inf")]);
     machine(&folder, "negative.toml", &[("inertia_kg_m2 = 0.0103", "inertia_kg_m2 = -0.0103")]);
     machine(&folder, "key.toml", &[("inertia_kg_m2 = 0.0103", "inertia_kgm2 = 0.0103")]);
+    machine(&folder, "stiff.toml", &[("viscous_friction_nm_s = 0.0336", "viscous_friction_nm_s = 1000")]);
     machine(&folder, "syntax.toml", &[("servo_s = 0.001", "servo_s = ")]);
     folder.file("latin.toml", b"name = \"Fr\xe4se\"\n");
     for (machine, says) in [
         ("nan.toml", &["2 faults", "servo_s is NaN", "nan.toml:12:11", "rapid_mm_s is inf", "mm/s", "finite"][..]),
         ("negative.toml", &["inertia_kg_m2 is -0.0103 kg m2", "1e-9 and 1000 kg m2", "negative.toml:25:17", "sign"]),
         ("key.toml", &["unknown key 'inertia_kgm2' in [axis.x]", "did you mean 'inertia_kg_m2'?", "key.toml:25:1"]),
+        (
+            "stiff.toml",
+            &[
+                "mechanics_s of 0.0001 s is too long for viscous_friction_nm_s of 1000",
+                "an inertia of 0.0103 kg m2: the speed fades within 1.03e-5 s",
+                "mechanics_s has to be 1.03e-5 s or less, or the friction 103 N m",
+                "stiff.toml:26:25",
+            ],
+        ),
         ("syntax.toml", &["not TOML", "syntax.toml:12"]),
         ("latin.toml", &["latin.toml", "e4"]),
         ("missing.toml", &["missing.toml", "No such file", "feedwright machines"]),
@@ -358,14 +368,41 @@ fn a_machine_that_diverges_is_a_result() {
         assert_eq!(ran.code, Some(1), "{ran:?}");
         assert!(ran.stdout.contains("diverged at 0.0") && ran.stdout.contains("unstable"), "{ran:?}");
         assert!(!ran.stdout.contains("NaN") && !ran.stdout.contains("inf"), "{ran:?}");
+        assert!(!ran.stdout.contains("RMS contour error"), "{ran:?}");
         let results: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
         for run in results["runs"].as_array().unwrap() {
             assert_eq!(run["outcome"]["kind"], "diverged");
+            assert_eq!(run["engaged_at_end"], false);
+            let unknown = ["time_s", "arrival_s", "rms_um", "max_um", "uncut_um"];
+            assert!(unknown.iter().all(|key| run[key].is_null()), "{run}");
             let text = run.to_string();
-            assert!(!text.contains("null") && !text.contains("NaN"), "{text}");
+            assert!(text.matches("null").count() == unknown.len() && !text.contains("NaN"), "{text}");
         }
         assert!(!folder.text("t.csv").contains("NaN") && !folder.text("t.csv").contains("inf"));
         assert!(ran.stdout.contains("s.csv was not written") && !folder.path().join("s.csv").exists(), "{ran:?}");
         assert!(!folder.text("r.html").contains("NaN"));
+    }
+}
+
+/// The figures of the beginning of a cut are not those of the cut.
+#[test]
+fn a_correction_of_a_machine_that_diverges_has_no_figures() {
+    let folder = Folder::new();
+    machine(
+        &folder,
+        "wild.toml",
+        &[("kp_1_s = 50", "kp_1_s = 1e5"), ("torque_limit_nm = 30", "torque_limit_nm = 1e6")],
+    );
+    let arguments = ["correct", "circle.ngc", "--machine", "wild.toml", "--json", "c.json", "--tolerance", "1e6"];
+    let ran = folder.run(&arguments);
+    assert_eq!(ran.code, Some(1), "{ran:?}");
+    assert!(ran.stdout.contains("no corrected program: the servo loop is unstable"), "{ran:?}");
+    assert!(ran.stdout.contains("out of tolerance: max - um") && !ran.stdout.contains("NaN"), "{ran:?}");
+    let results: serde_json::Value = serde_json::from_slice(&folder.read("c.json")).unwrap();
+    assert_eq!(results["within_tolerance"], false);
+    for program in ["uncorrected", "as_exported"] {
+        let figures = &results[program];
+        assert_eq!(figures["completed"], false);
+        assert!(["time_s", "rms_um", "max_um", "uncut_um"].iter().all(|key| figures[key].is_null()), "{figures}");
     }
 }

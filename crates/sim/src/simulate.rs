@@ -323,7 +323,7 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let [out, within] = self.cut;
         RunResult {
             engaged_share: if out + within == 0 { 1.0 } else { within as f64 / (out + within) as f64 },
-            engaged_at_end: self.tick.state() == State::Engaged,
+            engaged_at_end: self.run.outcome == Outcome::Completed && self.tick.state() == State::Engaged,
             joint_error: self.joint_error.as_ref().map(JointErrorMeter::finish),
             uncut_mm: self.uncut.finish(ARRIVED_MM),
             ..self.run

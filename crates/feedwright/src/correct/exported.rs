@@ -15,7 +15,7 @@ use crate::report::harm::CutErrors;
 /// Cuts of a machine that disturbs or has noise.
 const CUTS: u32 = 4;
 
-/// What a program comes to, cut without feedback.
+/// What a program comes to, cut without feedback. Errors and time of a cut that diverged are not a number, null in JSON.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct ExportedFigures {
     /// Contour error against the original: quadratic mean of the RMS over the cuts, um.
@@ -36,6 +36,14 @@ pub struct ExportedFigures {
 }
 
 impl ExportedFigures {
+    /// Without those of a cut that diverged: they would be those of its beginning.
+    const fn of_whole(mut self) -> Self {
+        if !self.completed {
+            (self.rms_um, self.max_um, self.uncut_um, self.time_s) = (f64::NAN, f64::NAN, f64::NAN, f64::NAN);
+        }
+        self
+    }
+
     /// The errors that decide whether one program is worse than another.
     pub(super) const fn errors(&self) -> CutErrors {
         CutErrors { rms_um: self.rms_um, max_um: self.max_um, uncut_um: Some(self.uncut_um) }
@@ -162,7 +170,7 @@ impl ExportedCut<'_> {
         for (phase, CutPhase { machine, wait_s }) in phases.iter().enumerate() {
             let now = ExportedCut { machine, ..*self }.once(program, *wait_s)?;
             square_sum_um2 += now.rms_um * now.rms_um;
-            if now.max_um > figures.max_um {
+            if now.max_um > figures.max_um || !now.completed {
                 (figures.max_um, figures.worst_phase) = (now.max_um, phase);
             }
             figures.uncut_um = figures.uncut_um.max(now.uncut_um);
@@ -170,7 +178,7 @@ impl ExportedCut<'_> {
             figures.time_s = now.time_s;
         }
         figures.rms_um = (square_sum_um2 / phases.len() as f64).sqrt();
-        Ok(figures)
+        Ok(figures.of_whole())
     }
 
     /// What differs from cut to cut.
@@ -208,7 +216,7 @@ impl ExportedCut<'_> {
     pub fn once(&self, program: &[Step], wait_s: f64) -> Result<ExportedFigures, RunError> {
         let mut statistics = Statistics::new();
         let run = self.cut(&waited(program, wait_s), &mut [&mut statistics])?;
-        Ok(ExportedFigures {
+        let figures = ExportedFigures {
             rms_um: statistics.rms_um(),
             max_um: statistics.max_um(),
             uncut_um: run.uncut_mm * 1e3,
@@ -216,7 +224,8 @@ impl ExportedCut<'_> {
             blocks: path_steps(program),
             completed: run.outcome == Outcome::Completed,
             worst_phase: 0,
-        })
+        };
+        Ok(figures.of_whole())
     }
 
     /// Cuts a program once; the rows go to sinks.

@@ -114,6 +114,9 @@ pub(super) fn refusal(
     changed: usize,
     unwritten: Option<&UnwrittenProgram>,
 ) -> Option<String> {
+    if !(uncorrected.completed && corrected.is_none_or(|corrected| corrected.completed)) {
+        return Some("the servo loop is unstable".to_owned());
+    }
     if changed == 0 {
         return Some("no stretch of the program gets better by another command".to_owned());
     }
@@ -121,9 +124,6 @@ pub(super) fn refusal(
         return Some(format!("the corrected program cannot be written: {fault}"));
     }
     let corrected = corrected?;
-    if !corrected.completed {
-        return Some("the servo loop is unstable".to_owned());
-    }
     let worse = harm(&uncorrected.errors(), &corrected.errors());
     if !worse.is_empty() {
         return Some(format!("it is worse than the uncorrected program ({})", listed(&worse)));
@@ -188,6 +188,7 @@ mod tests {
         lost.completed = false;
         let refused = |corrected, changed| refusal(&figures([10.0, 40.0, 2.0]), Some(corrected), changed, None);
         assert_eq!(refused(&lost, 1).as_deref(), Some("the servo loop is unstable"));
+        assert_eq!(refusal(&lost, None, 0, None).as_deref(), Some("the servo loop is unstable"));
         assert!(refused(&figures([1.0, 4.0, 2.0]), 0).is_some_and(|why| why.starts_with("no stretch")));
     }
 }

@@ -62,10 +62,10 @@ impl Report {
         self.runs.last().map(|run| &run.summary)
     }
 
-    /// The run that it is compared with: the first that was simulated, if there are two.
+    /// The run that it is compared with: the first that was simulated to its end, if there are two.
     fn compared(&self) -> Option<&RunSummary> {
         let (_, others) = self.runs.split_last()?;
-        others.iter().map(|run| &run.summary).find(|run| !run.measured)
+        others.iter().map(|run| &run.summary).find(|run| !run.measured && run.outcome == Outcome::Completed)
     }
 
     /// Whether the run that is judged reached its end within the tolerance. Without a tolerance the end is enough.
@@ -86,14 +86,13 @@ impl Report {
         self.controlled().is_some_and(RunSummary::is_mostly_uncorrected)
     }
 
-    /// The errors of the controller that was asked for that are worse than the uncorrected errors. Empty without an uncorrected
-    /// run that reached its end.
+    /// The errors of the controller that was asked for that are worse than the uncorrected errors. Empty if one of the two runs
+    /// is missing or diverged.
     pub fn harm(&self) -> Vec<Harm> {
+        let is_whole = |run: &&RunSummary| run.outcome == Outcome::Completed;
         let baseline = self.runs.iter().map(|run| &run.summary).find(|run| run.controller == BASELINE);
-        match (baseline, self.controlled()) {
-            (Some(before), Some(after)) if before.outcome == Outcome::Completed => {
-                harm(&CutErrors::of(before), &CutErrors::of(after))
-            }
+        match (baseline.filter(is_whole), self.controlled().filter(is_whole)) {
+            (Some(before), Some(after)) => harm(&CutErrors::of(before), &CutErrors::of(after)),
             _ => Vec::new(),
         }
     }
@@ -104,11 +103,11 @@ pub(crate) fn headline(report: &Report) -> Headline {
     let mut headline = Headline::default();
     match report.judged() {
         None => headline.text("No run was made."),
-        Some(RunSummary { controller, outcome: Outcome::Diverged { at_s }, .. }) => {
-            headline.name(controller);
-            headline.text(&format!(" diverged at {}: the tool ran away from the path.", duration(*at_s)));
-        }
-        Some(judged) => headline.completed(report, judged),
+        Some(judged) if judged.outcome == Outcome::Completed => headline.completed(report, judged),
+        Some(_) => {}
+    }
+    for run in report.runs.iter().map(|run| &run.summary) {
+        headline.diverged(run);
     }
     headline
 }
@@ -163,6 +162,16 @@ impl Headline {
         self.cost(runs, judged);
         self.faded(judged);
         self.measured(report);
+    }
+
+    /// That a run has no figures.
+    fn diverged(&mut self, run: &RunSummary) {
+        let Outcome::Diverged { at_s } = run.outcome else { return };
+        if !self.parts.is_empty() {
+            self.text(" ");
+        }
+        self.name(&run.controller);
+        self.text(&format!(" diverged at {}: the tool ran away from the path.", duration(at_s)));
     }
 
     /// That the correction is worse than none.
@@ -325,6 +334,11 @@ mod tests {
         let lost = report(vec![uncorrected(), lost], Some(100.0));
         assert!(!lost.is_within_tolerance());
         assert_eq!(headline(&lost).to_string(), "two-dimensional diverged at 0.50 s: the tool ran away from the path.");
+        let mut without = uncorrected();
+        without.summary.outcome = Outcome::Diverged { at_s: 0.5 };
+        let text = text(vec![without, controlled()], None);
+        assert!(text.starts_with("Simulated, two-dimensional: RMS contour error 1.00 µm, largest 4.00 µm,"), "{text}");
+        assert!(text.ends_with(" uncorrected diverged at 0.50 s: the tool ran away from the path."), "{text}");
     }
 
     #[test]

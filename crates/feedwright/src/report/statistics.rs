@@ -15,7 +15,7 @@
 use std::io;
 
 use feedwright_plan::vector::distance;
-use feedwright_sim::{Row, Sink};
+use feedwright_sim::{Outcome, Row, Sink};
 
 use super::histogram::Counts;
 use super::summary::{FeedShares, RunFacts, RunSummary};
@@ -105,8 +105,12 @@ impl Statistics {
         }
     }
 
-    /// The summary of the run; `text` gives the text of a program line.
+    /// The summary of the run; `text` gives the text of a program line. The errors and times of a cut that diverged are not
+    /// a number: they would be those of its beginning.
     pub fn summary(&self, facts: RunFacts, text: impl FnMut(u32) -> String) -> RunSummary {
+        let completed = facts.run.outcome == Outcome::Completed;
+        let of_whole = |value: f64| if completed { value } else { f64::NAN };
+        let joint_error = facts.run.joint_error.filter(|_| completed);
         RunSummary {
             controller: facts.controller,
             machine: facts.machine,
@@ -118,12 +122,12 @@ impl Statistics {
             transitions: facts.run.transitions,
             engaged_share: facts.run.engaged_share,
             engaged_at_end: facts.run.engaged_at_end,
-            time_s: facts.run.time_s,
-            rms_um: self.rms_um(),
-            max_um: self.max_um(),
-            joint_rms_um: facts.run.joint_error.map(|joints| joints.rms_mm * 1e3),
-            joint_max_um: facts.run.joint_error.map(|joints| joints.max_mm * 1e3),
-            uncut_um: facts.run.uncut_mm * 1e3,
+            time_s: of_whole(facts.run.time_s),
+            rms_um: of_whole(self.rms_um()),
+            max_um: of_whole(self.max_um()),
+            joint_rms_um: joint_error.map(|joints| joints.rms_mm * 1e3),
+            joint_max_um: joint_error.map(|joints| joints.max_mm * 1e3),
+            uncut_um: of_whole(facts.run.uncut_mm * 1e3),
             max_deviation_um: self.max_deviation_mm * 1e3,
             max_command_accel_mm_s2: self.max_command_accel_mm_s2,
             peak_torque_nm: (!facts.measured).then_some(self.peak_torque_nm),
@@ -131,7 +135,7 @@ impl Statistics {
             cutting_length_mm: self.cutting_length_mm,
             cutting_time_s: self.cutting_time_s,
             rows: self.rows,
-            arrival_s: facts.run.arrival_s,
+            arrival_s: of_whole(facts.run.arrival_s),
             tick_median_us: facts.run.ticks.quantile_us(0.5),
             tick_p999_us: facts.run.ticks.quantile_us(0.999),
             most_register_entries: facts.run.most_entries,

@@ -44,7 +44,8 @@ impl RunSummary {
 /// Part of the cutting time in which a correction is to be in the loop at least.
 const LEAST_SHARE: f64 = 0.5;
 
-/// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions.
+/// The numbers of one run. [`Statistics`](super::Statistics) has their exact definitions. Errors and times of a run that
+/// diverged are not a number, null in JSON.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct RunSummary {
     /// Name of the controller.

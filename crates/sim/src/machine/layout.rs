@@ -5,6 +5,7 @@ use std::ops::Range;
 use feedwright_plan::{Durations, PlcEvent};
 
 use super::{AXIS_NAMES, Axis, MACHINE_FORMAT, Machine, Noise, Period, Squareness, Transmission, keys};
+use crate::number::to_four_digits;
 use crate::toml_file::key::{read, read_all};
 use crate::toml_file::{Document, Fault, Table};
 
@@ -220,9 +221,39 @@ fn axis(mut table: Table<'_, '_>, period: Period, faults: &mut Vec<Fault>) -> Ax
     let transmission = table.optional_table("transmission", faults);
     let mut axis: Axis = read(keys::AXIS, &mut table, faults);
     axis.transmission = transmission.map(|table| self::transmission(table, period.mechanics_s, faults));
+    friction_within_step(&axis, period.mechanics_s, &table, faults);
     between_keys(&axis, &period, &table, faults);
     table.finish(faults);
     axis
+}
+
+/// Largest part of its speed that viscous friction may take from a mass in a mechanics period. Beyond, the explicit step of the
+/// integration turns the speed around, and from 2 on it grows without bound.
+const MAX_FRICTION_STEP: f64 = 1.0;
+
+/// Refuses viscous friction B of a mass J that a step dt of the mechanics cannot follow: B dt / J.
+fn friction_within_step(axis: &Axis, mechanics_s: f64, table: &Table<'_, '_>, faults: &mut Vec<Fault>) {
+    // Friction acts on the table, where the screw gives.
+    let mass_kg_m2 = axis.inertia_kg_m2 * axis.transmission.map_or(1.0, |screw| screw.table_share);
+    let friction_nm_s = axis.viscous_friction_nm_s;
+    let fades_s = mass_kg_m2 / friction_nm_s;
+    if mechanics_s > MAX_FRICTION_STEP * fades_s {
+        let most_nm_s = MAX_FRICTION_STEP * mass_kg_m2 / mechanics_s;
+        faults.push(Fault {
+            at: table.place("viscous_friction_nm_s"),
+            label: "too stiff for mechanics_s",
+            message: format!(
+                "mechanics_s of {mechanics_s} s is too long for viscous_friction_nm_s of {friction_nm_s} N m s/rad and an inertia \
+                 of {mass_kg_m2} kg m2: the speed fades within {} s",
+                to_four_digits(fades_s)
+            ),
+            hint: Some(format!(
+                "mechanics_s has to be {} s or less, or the friction {} N m s/rad or less",
+                to_four_digits(MAX_FRICTION_STEP * fades_s),
+                to_four_digits(most_nm_s)
+            )),
+        });
+    }
 }
 
 /// Longest delay, in servo periods: what is under way is kept.

@@ -13,7 +13,7 @@ use crate::report::{AS_EXPORTED, Assumptions, CorrectionChange, Outcome as Endin
 use super::files::Outputs;
 use crate::command::controls::print_correction;
 use crate::command::streams::tell_written;
-use crate::command::table::{ConsoleTable, TableColumn};
+use crate::command::table::{ConsoleTable, TableColumn, figure};
 use crate::command::terminal::wrapped;
 
 pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: &JobOutcome) -> io::Result<()> {
@@ -93,10 +93,10 @@ fn table(runs: &[ReportedRun]) -> ConsoleTable {
         let is_measured = now.controller == MEASURED;
         table.row(vec![
             if is_measured { format!("{MEASURED}, not simulated") } else { now.controller.clone() },
-            format!("{:.3}", now.time_s),
-            format!("{:.2}", now.rms_um),
-            format!("{:.2}", now.max_um),
-            format!("{:.2}", now.uncut_um),
+            figure(now.time_s, 3),
+            figure(now.rms_um, 2),
+            figure(now.max_um, 2),
+            figure(now.uncut_um, 2),
             if is_measured { "-".to_owned() } else { format!("{:.2}", peak_torque_nm(now)) },
             format!("{:.1}", now.max_deviation_um),
             if is_measured { "-".to_owned() } else { format!("{:.0}", now.max_command_accel_mm_s2) },
@@ -130,13 +130,15 @@ fn assumed(assumed: &Assumptions, measured: bool) -> String {
 
 /// What the corrected program is, beside the uncorrected program as its control cuts it.
 fn print_exported(out: &mut dyn Write, outcome: &CorrectOutcome) -> io::Result<()> {
-    let ExportedFigures { rms_um, max_um, time_s, .. } = outcome.uncorrected;
+    let ExportedFigures { rms_um, max_um, time_s, completed, .. } = outcome.uncorrected;
     let CorrectOutcome { control, planner, .. } = outcome;
     let text = format!(
         "{AS_EXPORTED}: the corrected program, cut without feedback as its control plans it ({control}, planner {planner})"
     );
     writeln!(out, "{}", wrapped(&text, 2))?;
-    let text = format!("uncorrected, cut in the same way: {time_s:.3} s, RMS {rms_um:.2}, max {max_um:.2} um");
+    let figures =
+        if completed { format!("{time_s:.3} s, RMS {rms_um:.2}, max {max_um:.2} um") } else { "diverged".to_owned() };
+    let text = format!("uncorrected, cut in the same way: {figures}");
     writeln!(out, "{}", wrapped(&text, 2))?;
     print_correction(out, outcome)
 }
