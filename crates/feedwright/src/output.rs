@@ -184,22 +184,39 @@ impl Write for Named {
     }
 }
 
-/// The real place of `path`, which need not exist yet.
+/// Most symbolic links that lead to a target, as Linux has it.
+const MOST_LINKS: usize = 40;
+
+/// The real place of `path`, which need not exist yet. Symbolic links are followed, to files that do not exist too.
 fn resolve(path: &Path) -> Result<PathBuf, OutputError> {
+    let mut place = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match (fs::canonicalize(&place), fs::read_link(&place)) {
+            (Err(_), Ok(link)) => place = place.parent().unwrap_or(Path::new("")).join(link),
+            _ => return resolve_once(path, &place),
+        }
+    }
+    let hint = Some("name another file, or mend the links: they lead in a circle".to_owned());
+    let source = io::Error::other("too many symbolic links");
+    Err(OutputError::Io { step: FileOperation::Create, path: path.to_owned(), free_bytes: None, source, hint })
+}
+
+/// The same of a path that is no link to a missing file; messages have `shown`.
+fn resolve_once(shown: &Path, path: &Path) -> Result<PathBuf, OutputError> {
     if fs::metadata(path).is_ok_and(|found| found.is_dir()) {
-        return Err(OutputError::IsDirectory { path: path.to_owned() });
+        return Err(OutputError::IsDirectory { path: shown.to_owned() });
     }
     if let Ok(target) = fs::canonicalize(path) {
         return Ok(target);
     }
     // A path such as "out/" or ".." names no file.
     let Some(name) = path.file_name().filter(|_| !path.as_os_str().as_encoded_bytes().ends_with(b"/")) else {
-        return Err(OutputError::IsDirectory { path: path.to_owned() });
+        return Err(OutputError::IsDirectory { path: shown.to_owned() });
     };
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match fs::canonicalize(folder) {
         Ok(folder) => Ok(folder.join(name)),
-        Err(error) => Err(OutputError::io(FileOperation::Create, path, folder, error)),
+        Err(error) => Err(OutputError::io(FileOperation::Create, shown, folder, error)),
     }
 }
 

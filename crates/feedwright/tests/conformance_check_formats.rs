@@ -85,3 +85,25 @@ fn subroutines_are_found_in_the_folders_that_are_named() {
     folder.run(&["check", "part.ngc", "--subroutines", "library"]).succeeded();
     folder.run(&["check", "part.ngc", "--subroutines", "none"]).refused(&["--subroutines none", "no folder"]);
 }
+
+/// A tool table is no program; what is wrong with it is told in the format all the same.
+#[test]
+fn a_faulty_tool_table_is_told_in_every_format() {
+    let folder = folder();
+    folder.file("bad.tbl", "T1 P1 D6\nT2 P2 Dx\n");
+    for (table, line, code) in [("bad.tbl", 2, "gcode::tool_table"), ("none.tbl", 0, "file")] {
+        let check = |format: &str| {
+            let ran = folder.run(&["check", "--format", format, "--tool-table", table, "circle.ngc"]);
+            assert_eq!(ran.code, Some(2), "{ran:?}");
+            ran.stdout
+        };
+        let document: Value = serde_json::from_str(&check("json")).unwrap();
+        let [file] = &document["files"].as_array().unwrap()[..] else { panic!("{document}") };
+        assert_eq!((&file["file"], &file["outcome"]), (&table.into(), &"unreadable".into()));
+        assert_eq!((&file["findings"][0]["line"], &file["findings"][0]["code"]), (&line.into(), &code.into()));
+        let log: Value = serde_json::from_str(&check("sarif")).unwrap();
+        assert_eq!(log["runs"][0]["results"][0]["ruleId"], code);
+        assert!(check("github").starts_with(&format!("::error file={table}")));
+        assert_eq!(check("text"), "");
+    }
+}

@@ -162,3 +162,37 @@ fn a_column_may_be_the_torque_and_a_position() {
     let log = read(rows(&[&time_s(), &command, &actual], ",").as_bytes(), "t=0,x.cmd=1,x.act=2,x.torque=2").unwrap();
     assert_eq!(log.axes[0].torque.as_deref(), Some(&log.axes[0].actual_mm[..]));
 }
+
+/// A MATLAB file with one matrix of zeros, deflated: numbers of a type with so many bytes.
+fn zeros(kind: u32, class: u32, count: usize, bytes: usize) -> Vec<u8> {
+    let element = |kind: u32, data: &[u8]| {
+        let size = u32::try_from(data.len()).unwrap();
+        [&kind.to_le_bytes()[..], &size.to_le_bytes(), data].concat()
+    };
+    let flags = [class.to_le_bytes(), [0; 4]].concat();
+    let dimensions = [u32::try_from(count).unwrap().to_le_bytes(), 1_u32.to_le_bytes()].concat();
+    let parts =
+        [element(6, &flags), element(5, &dimensions), element(1, b"zeroes__"), element(kind, &vec![0; count * bytes])];
+    let deflated = miniz_oxide::deflate::compress_to_vec_zlib(&element(14, &parts.concat()), 1);
+    let mut file = b"MATLAB 5.0 MAT-file".to_vec();
+    file.resize(124, b' ');
+    file.extend_from_slice(b"\0\x01IM");
+    file.extend(element(15, &deflated));
+    file
+}
+
+/// 12 million numbers are 96 MB, whatever the file has for them.
+#[test]
+fn a_small_file_does_not_fill_the_memory() {
+    for (kind, class, bytes) in [(9, 6, 8), (1, 8, 1)] {
+        let file = zeros(kind, class, 12_000_000, bytes);
+        assert!(file.len() < 1_000_000, "{}", file.len());
+        let refused = read(&file, "").unwrap_err().to_string();
+        assert!(
+            refused.contains("the numbers take more than") && refused.contains(&file.len().to_string()),
+            "{refused}"
+        );
+        let few = read(&zeros(kind, class, 7_000, bytes), "").unwrap_err().to_string();
+        assert!(few.contains("no two vectors of numbers of the same length"), "{few}");
+    }
+}

@@ -7,6 +7,8 @@ use feedwright_sim::Cancelled;
 use miette::Diagnostic;
 use thiserror::Error;
 
+use super::is_standard_output;
+
 /// An output file cannot be written.
 #[derive(Debug, Error, Diagnostic)]
 pub enum OutputError {
@@ -38,7 +40,7 @@ pub enum OutputError {
     #[diagnostic(transparent)]
     Cancelled(#[from] Cancelled),
     /// The operating system refuses.
-    #[error("cannot {step} {}: {source}{}", path.display(), room(*free_bytes))]
+    #[error("cannot {step} {}: {source}{}", target(path), room(*free_bytes))]
     Io {
         /// What was under way.
         step: FileOperation,
@@ -82,6 +84,9 @@ impl OutputError {
         match source.kind() {
             // Some folders exist and take no files.
             io::ErrorKind::NotFound if folder.is_dir() => {}
+            io::ErrorKind::StorageFull if is_standard_output(path) => {
+                hint = Some("make room where the standard output goes, or write to a file".to_owned());
+            }
             // A device has no room of its own, whatever is free around it.
             io::ErrorKind::StorageFull if path.exists() && !path.is_file() => {}
             io::ErrorKind::NotFound => {
@@ -115,6 +120,11 @@ impl OutputError {
             }
         }
     }
+}
+
+/// What messages call a target.
+fn target(path: &Path) -> String {
+    if is_standard_output(path) { "the standard output".to_owned() } else { path.display().to_string() }
 }
 
 fn room(free_bytes: Option<u64>) -> String {

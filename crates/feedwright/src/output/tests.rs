@@ -115,6 +115,28 @@ fn two_outputs_do_not_share_a_target() {
     assert!(matches!(files.start(&path).err(), Some(OutputError::Twice { .. })));
 }
 
+/// A link is followed whether its file exists or not.
+#[cfg(unix)]
+#[test]
+fn a_link_to_a_file_that_does_not_exist_is_followed() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    fs::create_dir(place("inner")).unwrap();
+    std::os::unix::fs::symlink("inner/next", place("link")).unwrap();
+    std::os::unix::fs::symlink("real", place("inner/next")).unwrap();
+    let mut file = start(&place("link"));
+    file.write_all(b"new").unwrap();
+    OutputFile::commit_all(vec![file], &()).unwrap();
+    assert_eq!(fs::read(place("inner/real")).unwrap(), b"new");
+    assert!(["link", "inner/next"].iter().all(|link| fs::symlink_metadata(place(link)).unwrap().is_symlink()));
+    for (from, to) in [("a", "b"), ("b", "a")] {
+        std::os::unix::fs::symlink(place(to), place(from)).unwrap();
+    }
+    assert!(refusal(&place("a"), &[]).to_string().contains("too many symbolic links"));
+    std::os::unix::fs::symlink("none/file", place("lost")).unwrap();
+    assert!(matches!(refusal(&place("lost"), &[]), OutputError::Io { hint: Some(hint), .. } if hint.contains("none")));
+}
+
 #[cfg(unix)]
 #[test]
 fn a_link_is_followed_and_permissions_are_kept() {

@@ -14,14 +14,18 @@ use std::io::Read;
 use std::path::Path;
 
 use feedwright_sim::{StageSteps, Watch};
-use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
+use miniz_oxide::inflate::{TINFLStatus, decompress_to_vec_zlib_with_limit};
 
 use super::table::{LineNumbers, LogColumn, LogTable};
 use super::{LogError, LogFormat};
 
 const HEADER_BYTES: usize = 128;
-/// Most bytes of one variable, inflated: 250 million numbers.
-const MAX_VARIABLE_BYTES: usize = 2_000_000_000;
+/// Bytes that the numbers of a file may take in memory: these, and so many for each byte of the file. Measured positions deflate to a
+/// quarter and more of their size; zeros to a thousandth, so that a small file could fill the memory.
+const FREE_BYTES: usize = 64 << 20;
+const BYTES_PER_BYTE: usize = 16;
+/// Bytes of a number in memory.
+const NUMBER_BYTES: usize = 8;
 /// Most columns that a matrix is taken apart into.
 const MAX_COLUMNS: usize = 64;
 /// Names of scalars that are the time between samples, s.
@@ -59,16 +63,31 @@ pub(super) fn read(
         Some(b"MI") => ByteOrder::Big,
         _ => return Err(fault("the header of the MATLAB file is not whole".to_owned())),
     };
-    let mut variables = Vec::new();
+    let mut variables: Vec<Variable> = Vec::new();
+    let most_bytes = FREE_BYTES + BYTES_PER_BYTE * bytes.len();
+    let mut left_bytes = most_bytes;
     let mut rest = &bytes[HEADER_BYTES..];
     while !rest.is_empty() {
         watch.check()?;
         let at = bytes.len() - rest.len();
         let element = Element::take(&mut rest, order)
             .ok_or_else(|| fault(format!("the MATLAB file is cut off: its variable at byte {at} is not whole")))?;
-        if let Some(variable) =
-            variable(element, order).map_err(|why| fault(format!("variable at byte {at}: {why}")))?
-        {
+        if let Some(variable) = variable(element, order, left_bytes).map_err(|why| match why {
+            VariableFault::Broken(why) => fault(format!("variable at byte {at}: {why}")),
+            VariableFault::TooLarge => {
+                let message = format!(
+                    "variable at byte {at}: the numbers take more than {most_bytes} bytes, though the file has only {}",
+                    bytes.len()
+                );
+                LogError::format(
+                    path,
+                    None,
+                    message,
+                    "save the columns of the log alone, or uncompressed: save(..., '-v6')",
+                )
+            }
+        })? {
+            left_bytes = left_bytes.saturating_sub(variable.bytes());
             variables.push(variable);
         }
         steps.reach(1.0 - rest.len() as f64 / bytes.len() as f64);
@@ -122,21 +141,44 @@ struct Variable {
     columns: Vec<Vec<f64>>,
 }
 
-/// The numbers of an element; none where it holds anything else.
-fn variable(element: Element<'_>, order: ByteOrder) -> Result<Option<Variable>, String> {
+impl Variable {
+    /// Bytes of its numbers.
+    fn bytes(&self) -> usize {
+        self.columns.iter().map(|column| NUMBER_BYTES * column.len()).sum()
+    }
+}
+
+/// Why a variable is not read.
+enum VariableFault {
+    Broken(String),
+    /// Its numbers take more memory than is left for them.
+    TooLarge,
+}
+
+impl From<&str> for VariableFault {
+    fn from(why: &str) -> Self {
+        Self::Broken(why.to_owned())
+    }
+}
+
+/// The numbers of an element, which may take so many bytes; none where it holds anything else.
+fn variable(element: Element<'_>, order: ByteOrder, most_bytes: usize) -> Result<Option<Variable>, VariableFault> {
     match element.kind {
         COMPRESSED => {
-            let inflated = decompress_to_vec_zlib_with_limit(element.data, MAX_VARIABLE_BYTES)
-                .map_err(|error| format!("cannot be inflated ({error})"))?;
+            let inflated =
+                decompress_to_vec_zlib_with_limit(element.data, most_bytes).map_err(|error| match error.status {
+                    TINFLStatus::HasMoreOutput => VariableFault::TooLarge,
+                    _ => VariableFault::Broken(format!("cannot be inflated ({error})")),
+                })?;
             let inner = Element::take(&mut inflated.as_slice(), order).ok_or("is not whole")?;
-            if inner.kind == MATRIX { matrix(inner.data, order) } else { Ok(None) }
+            if inner.kind == MATRIX { matrix(inner.data, order, most_bytes) } else { Ok(None) }
         }
-        MATRIX => matrix(element.data, order),
+        MATRIX => matrix(element.data, order, most_bytes),
         _ => Ok(None),
     }
 }
 
-fn matrix(mut data: &[u8], order: ByteOrder) -> Result<Option<Variable>, String> {
+fn matrix(mut data: &[u8], order: ByteOrder, most_bytes: usize) -> Result<Option<Variable>, VariableFault> {
     const CUT_OFF: &str = "is not whole";
     let mut next = || Element::take(&mut data, order).ok_or(CUT_OFF);
     let flags = u32_of(next()?.data.get(..4).ok_or(CUT_OFF)?, order).ok_or(CUT_OFF)?;
@@ -149,9 +191,12 @@ fn matrix(mut data: &[u8], order: ByteOrder) -> Result<Option<Variable>, String>
         next()?.data.chunks_exact(4).filter_map(|d| Some(u32_of(d, order)? as usize)).collect();
     let name = String::from_utf8_lossy(next()?.data).into_owned();
     let [rows, columns] = dimensions[..] else { return Ok(None) };
+    if rows.saturating_mul(columns).saturating_mul(NUMBER_BYTES) > most_bytes {
+        return Err(VariableFault::TooLarge);
+    }
     let values = numbers(next()?, order).ok_or("has numbers of an unknown type")?;
     if Some(values.len()) != rows.checked_mul(columns) {
-        return Err(format!("'{name}' has {} numbers, not {rows} x {columns}", values.len()));
+        return Err(VariableFault::Broken(format!("'{name}' has {} numbers, not {rows} x {columns}", values.len())));
     }
     let columns = match (rows, columns) {
         (0, _) | (_, 0) => Vec::new(),
