@@ -63,6 +63,9 @@ fn machine(choices: &[(u8, f64)], per_servo: u32, has_screw: bool, is_sound: boo
             transmission.resonance_hz = transmission.resonance_hz.min(0.005 / machine.period.mechanics_s).max(0.1);
             transmission
         });
+        // The mechanics period has to follow viscous friction, too.
+        let braked_kg_m2 = axis.inertia_kg_m2 * axis.transmission.map_or(1.0, |screw| screw.table_share);
+        axis.viscous_friction_nm_s = axis.viscous_friction_nm_s.min(0.999 * braked_kg_m2 / machine.period.mechanics_s);
     }
     set(keys::GEOMETRY, &mut machine.geometry, &choices[3..]);
     machine.noise.seed = choices[0].1.to_bits() >> 11;
