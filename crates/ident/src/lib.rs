@@ -32,7 +32,7 @@
 //!
 //! | Topic | Names |
 //! |---|---|
-//! | Program to cut, and its log on a simulated machine | [`excitation_program`], [`recorded_log`], [`NotRecorded`], [`ExciteOptions`], [`ExciteError`] |
+//! | Program to cut, and its log on a simulated machine | [`excitation_program`], [`recorded_log`], [`ExciteOptions`], [`ExciteError`] |
 //! | Logs | [`Log`], [`LogAxis`], [`LogFormat`], [`Columns`], [`LogFinding`], [`LogError`], [`Fitness`] |
 //! | Real machine, from a log | [`identify_machine`], [`GreyBoxOptions`], [`FoundMachine`], [`FoundAxis`], [`LawVerdict`] |
 //! | Simulated machine | [`Excitation`], [`Recording`], [`RecordedKnot`], [`Rng`] |
@@ -74,7 +74,7 @@ mod identify;
 mod model;
 
 pub use average::{median_and_spread, quadratic_mean};
-pub use excite::recorded::{NotRecorded, recorded_log};
+pub use excite::recorded::recorded_log;
 pub use excite::{
     AxisExcitation, ExciteError, ExciteOptions, ExciteProgram, MotionPart, excitation_program, next_excitation,
 };

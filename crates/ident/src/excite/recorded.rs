@@ -2,24 +2,8 @@
 
 use std::fmt::Write;
 
-use feedwright_gcode::{Program, ReadError, Settings};
-use feedwright_plan::LimitsError;
-use feedwright_sim::{AXIS_NAMES, Machine, Plant, Stages, joints_of, path_steps};
-use miette::Diagnostic;
-use thiserror::Error;
-
-/// Why there is no log.
-#[derive(Debug, Error, Diagnostic)]
-pub enum NotRecorded {
-    /// The program cannot be read.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Read(#[from] ReadError),
-    /// The machine has no plan of it.
-    #[error(transparent)]
-    #[diagnostic(transparent)]
-    Limits(#[from] LimitsError),
-}
+use feedwright_gcode::{Program, Settings};
+use feedwright_sim::{AXIS_NAMES, Machine, Plant, RunError, Stages, joints_of, path_steps};
 
 /// Rest that is recorded behind the end, s: what rings is seen to its end.
 const REST_S: f64 = 0.3;
@@ -29,7 +13,7 @@ const REST_S: f64 = 0.3;
 ///
 /// # Errors
 /// A program that cannot be read, or a machine without a plan.
-pub fn recorded_log<const N: usize>(machine: &Machine, program: &Program) -> Result<String, NotRecorded> {
+pub fn recorded_log<const N: usize>(machine: &Machine, program: &Program) -> Result<String, RunError> {
     let steps = program.reader(Settings::default())?.map_while(Result::ok);
     let mut reference = Stages::of(machine).reference(path_steps(steps), machine)?;
     let mut seen_mm: [f64; N] = joints_of(reference.at(0.0).position_mm);
