@@ -9,7 +9,7 @@ use feedwright_sim::{Machine, Row, Run, Sink};
 
 /// Deviation that the tick admits here, mm.
 const MAX_DEVIATION_MM: f64 = 0.2;
-/// Sagitta of the circle between two reference knots, mm: the accuracy with which the safety layer
+/// Sagitta of the circle between two reference knots, mm: the accuracy with which the supervisor
 /// knows the path.
 const SAGITTA_MM: f64 = 0.05 * 0.05 / (8.0 * 10.0);
 

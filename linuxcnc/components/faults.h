@@ -25,7 +25,7 @@ static inline const char *feedwright_fault(uint32_t fault)
         "the correction made the contour error larger",
         "the command was not a number",
         "the component failed inside: it plays out its delay and passes commands on",
-        "the machine does not move as the model says: identify it anew",
+        "not used",
         "delay is not within 0.008 and 0.015 s: the last good one stays",
         "deviation-limit is not within 0 and 10 mm: the last good one stays",
         "speed-limit is not within 1 and 10,000 mm/s: the last good one stays",

@@ -17,11 +17,13 @@ or follows a spindle, connect \\fBfeed-inhibit\\fR to motion.feed-inhibit and \\
 
 While \\fBpowered\\fR is off, drives and LinuxCNC get the actual position.
 
-Before anything is corrected by a model of axes, its law has to prove itself: 20 ms of motion that changes its speed do where it is right, such as the
-rapid before a cut. By one that is not (loops, inertia or delays that are more than some 10 % off) nothing is corrected, and \\fBcause\\fR is 15.
+After the amplifiers were off, a model of axes first has to show that it is of this machine: 20 ms of motion that changes its speed do, such as the rapid
+before a cut. What the model gets wrong (gains, feedforward, delay, inertia, friction) is then learned while the machine moves; \\fBlearned-0\\fR to
+\\fBlearned-2\\fR tell which joints go by that.
 
-A correction that fails is faded out, and comes back when its predictions have held for a while: the machine then cuts as without it.
-\\fBenable\\fR fades it in within 0.07 s and out within 0.3 s, in motion as well.
+A correction that fails is faded out, and comes back when its predictions have held for a while: the machine then cuts as without it. \\fBtimes-out\\fR counts
+that, and \\fBfound\\fR and \\fBallowed\\fR tell what was measured and from where on it is too much. \\fBenable\\fR fades the correction in and out in
+motion as well, within \\fBcorrection-acceleration\\fR.
 
 .B loadrt feedwright model=\\fIFILE.fwmodel\\fB [joints=2|3] [max_velocity=\\fIV,V,V\\fB max_acceleration=\\fIA,A,A\\fB max_ferror=\\fIF,F,F\\fB min_ferror=\\fIM,M,M\\fB] [record=\\fISECONDS\\fB recording=\\fIFILE\\fB]
 
@@ -76,9 +78,13 @@ pin out bit saturated "A limit holds the correction";
 pin out u32 state "0 amplifiers off, 1 without delay, 2 delayed, without correction, 3 the correction fades, 4 it is in the loop";
 pin out bit fault "There is no correction, or a setting is refused, for the reason in \\fBcause\\fR; it clears itself";
 pin out u32 cause """What was wrong last: 1 to 7 model file, 8 servo period, 9 the correction was not a number, 10 actual position
-lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside, 15 the machine does not move as the model says; out of range, so that the last good value stays in force and the correction goes on:
+lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside; out of range, so that the last good value stays in force and the correction goes on:
 16 delay, 17 deviation-limit, 18 speed-limit, 19 correction-acceleration, 20 adaptive-scale; 21 a motion that probes or follows a spindle is delayed""";
 pin out u32 faults "How often there was a fault";
+pin out u32 times-out "How often the correction was taken out of the loop since the delay was taken up";
+pin out float found "What was measured when it was taken out last: contour error or wrong prediction, mm; 0 where nothing is compared";
+pin out float allowed "From where on that is too much, mm";
+pin out bit learned-#[3] "The joint is corrected by what was learned while it moved";
 pin out u32 delay-periods "Servo periods of delay now";
 pin out bit heartbeat "Changes in each servo period";
 pin out s32 tick-time "Time of the last servo period in this component, ns";
@@ -227,6 +233,7 @@ FUNCTION(_)
         *c->drive[i] = out.drive_mm[i];
         *c->feedback[i] = out.feedback_mm[i];
         *c->correction[i] = out.correction_mm[i];
+        *c->learned[i] = (out.learned >> i & 1) != 0;
     }
     *c->contour_error = out.contour_error_mm;
     *c->contour_error_without = out.without_mm;
@@ -240,6 +247,9 @@ FUNCTION(_)
         *c->faults += 1;
     if (out.fault)
         *c->cause = out.fault;
+    *c->times_out = out.times_out;
+    *c->found = out.found_mm;
+    *c->allowed = out.limit_mm;
     *c->delay_periods = out.delay_periods;
     *c->heartbeat = !*c->heartbeat;
     record_period_of(&in, &out);

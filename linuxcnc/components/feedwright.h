@@ -77,6 +77,9 @@ typedef struct {
     double without_mm;
     // Feedrate that the control is asked for, as a multiple of its own in the scale that is set, 0 to 1.
     double adaptive_feed;
+    // What the supervisor found when it took the correction out of the loop last, and what it may be; 0 where nothing was compared.
+    double found_mm;
+    double limit_mm;
     // 0 amplifiers off, 1 without delay, 2 delayed, 3 the correction fades, 4 it is in the loop.
     uint32_t state;
     // Why there is no correction, 0 for nothing; faults.h has words for it.
@@ -89,6 +92,10 @@ typedef struct {
     uint32_t holds_feed;
     // Whether a motion that follows a spindle would be without delay.
     uint32_t is_settled;
+    // How often the supervisor has taken the correction out of the loop since the delay was taken up.
+    uint32_t times_out;
+    // Joints that are corrected by what was learned while they moved: 1, 2 and 4.
+    uint32_t learned;
 } feedwright_outputs;
 
 // What the control allows a joint.

@@ -6,7 +6,7 @@
 
 #include "feedwright.h"
 
-#define RECORDING_MAGIC "FWREPLY2"
+#define RECORDING_MAGIC "FWREPLY3"
 
 typedef struct {
     char magic[8];

@@ -95,7 +95,7 @@ pub(crate) enum Tool {
 const LAG_S: f64 = 0.02;
 const FOLLOWED: f64 = 0.001 / LAG_S;
 
-/// The whole run by hand: reference, contour error, controller under the safety layer, and a tool.
+/// The whole run by hand: reference, contour error, controller under the supervisor, and a tool.
 pub(crate) struct Rig<const N: usize, C> {
     tick: Tick<N>,
     controller: C,
@@ -128,9 +128,9 @@ impl<const N: usize, C: Controller<N>> Rig<N, C> {
         setpoint
     }
 
-    /// Stops the measurement where the safety layer has taken the controller out: its work would be missing.
+    /// Stops the measurement where the supervisor has taken the controller out: its work would be missing.
     pub(crate) fn expect_in_the_loop(&self) {
-        assert!(self.tick.fade().is_none(), "the safety layer took the controller out: {:?}", self.tick.fade());
+        assert!(self.tick.fade().is_none(), "the supervisor took the controller out: {:?}", self.tick.fade());
     }
 }
 

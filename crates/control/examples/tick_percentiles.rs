@@ -1,7 +1,7 @@
 //! Percentiles of the time of a decision of the receding horizon, and of the regulator, which decides in every servo period: `just tick`.
 //!
 //! `tick_percentiles TICKS RUNS`. Timed is the servo period in which the controller decides, whole: reference, register,
-//! preview, contour error, plan, safety layer, command. The tool follows the command, so that the plan and the adaptation
+//! preview, contour error, plan, supervisor, command. The tool follows the command, so that the plan and the adaptation
 //! work on what they did. Caches are warm, which after a sleep of 1 ms they are not.
 //!
 //! What else runs on the machine only ever makes a tick longer. Of several runs, the one with the least 99.9 % is

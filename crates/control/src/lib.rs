@@ -44,7 +44,7 @@
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`] |
 //! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`RecedingHorizon`], [`LqgPreview`] |
-//! | Safety layer | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`FaultEvidence`] |
+//! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`FaultEvidence`] |
 //! | Model of an axis | [`AxisLaw`], [`AxisState`], [`Parameters`], [`AxisKnowledge`], [`AxisInverse`] |
 //! | Trained models | [`ContourIdentifier`], [`ServoIdentifier`], [`IdentifiedAxes`], [`ModelBlock`] |
 //!
@@ -64,7 +64,7 @@
 //!   handler.
 //! - The time of a tick is bounded: the register, the preview and the horizon have fixed sizes.
 //! - The same input gives the same bits.
-//! - The safety layer keeps every command within [`Bounds`]. It disengages a controller whose
+//! - The supervisor keeps every command within [`Bounds`]. It disengages a controller whose
 //!   predictions fail, and the command returns to the path.
 //!
 //! # Layers
@@ -72,8 +72,8 @@
 //! The `mod` lines stand in the order in which data flows through a tick; each module uses only
 //! those above it. `axis` is the model of an axis, `window` holds the path behind and ahead,
 //! `contour_error` locates the tool on it, `identifier` and `model` predict, `inversion` and
-//! `horizon` compute corrections, `controller` has the controllers, `safety` bounds them, and
-//! `tick` joins all of it.
+//! `horizon` compute corrections, `supervisor` judges and bounds what controllers ask
+//! for, `controller` has them, and `tick` joins all of it.
 #![no_std]
 #![warn(clippy::disallowed_methods)]
 
@@ -88,8 +88,9 @@ mod identifier;
 mod model;
 mod inversion;
 mod horizon;
+mod command;
+mod supervisor;
 mod controller;
-mod safety;
 mod tick;
 
 pub use axis::drive::{DriveLaw, DriveParameters, DriveReference, DriveState};
@@ -100,6 +101,7 @@ pub use axis::mechanics::{MechanicsLaw, MechanicsState};
 pub use axis::statistics::AxisStatistics;
 pub use axis::transmission::{TableState, TransmissionLaw, TransmissionParameters};
 pub use axis::{AxisLaw, AxisState, Parameters, Periods, friction_signs};
+pub use command::{Command, FaultEvidence, Measured};
 pub use contour_error::{ContourError, Estimator, MAX_ENTRIES, carried, locate};
 pub use controller::feedforward::{Feedforward, MAX_PREVIEW, preview};
 pub use controller::inverting::{INVERTING_FEED_PERIOD_S, InvertingSettings};
@@ -108,7 +110,7 @@ pub use controller::magnitude_only::MagnitudeOnly;
 pub use controller::receding_horizon::{RECEDING_HORIZON_FEED_PERIOD_S, RecedingHorizon, RecedingHorizonSettings};
 pub use controller::two_dimensional::TwoDimensional;
 pub use controller::uncorrected::Uncorrected;
-pub use controller::{Command, Controller, FaultEvidence, Measured, Schedule};
+pub use controller::{Controller, Schedule};
 pub use horizon::gauss_newton::GaussNewton;
 pub use horizon::problem::{END_WEIGHT, HorizonProblem};
 pub use horizon::{
@@ -128,7 +130,7 @@ pub use model::{
     BLOCK_FORMAT, BlockError, IdentifiedAxes, MAX_MECHANICS_PER_SERVO, MAX_SPREAD, MAX_WEIGHT, MECHANICS_PERIODS_S,
     ModelBlock, SERVO_PERIODS_S, Trained,
 };
-pub use safety::{Bounds, Cause, Fade, State, fade_acceleration};
 pub use sine::sin;
+pub use supervisor::{Bounds, Cause, Fade, State, fade_acceleration};
 pub use tick::{Setpoint, Tick};
 pub use window::{Knot, KnotSource, Preview, REGISTER_KNOTS, Register, Window};

@@ -1,12 +1,13 @@
 //! The tick: from the reference and a measurement to the position command of one servo period.
 //!
 //! The same code runs around a simulated plant and in a servo thread. Once a feed period the controller observes and
-//! decides, under the safety layer; in every servo period the command moves on along the path and between the two offsets.
+//! decides, under the supervisor; in every servo period the command moves on along the path and between the two offsets.
 
+use crate::command::{Command, Measured};
 use crate::contour_error::{ContourError, Estimator};
-use crate::controller::{Command, Controller, Measured, Schedule};
-use crate::safety::feedback::Feedback;
-use crate::safety::{Bounds, Fade, Guard, State};
+use crate::controller::{Controller, Schedule};
+use crate::supervisor::feedback::Feedback;
+use crate::supervisor::{Bounds, Fade, SelfReport, State, Supervisor};
 use crate::vector::add_scaled;
 use crate::window::{Knot, KnotSource, Preview, Register, Window};
 
@@ -51,7 +52,7 @@ impl PlanTime {
 #[derive(Debug, Clone)]
 pub struct Tick<const N: usize> {
     servo_s: f64,
-    guard: Guard<N>,
+    supervisor: Supervisor<N>,
     schedule: Schedule,
     register: Register<N>,
     feedback: Feedback<N>,
@@ -74,7 +75,7 @@ impl<const N: usize> Tick<N> {
     pub fn new(servo_s: f64, schedule: Schedule, bounds: Bounds) -> Self {
         Self {
             servo_s,
-            guard: Guard::new(bounds),
+            supervisor: Supervisor::new(bounds),
             schedule: Schedule { servo_periods: schedule.servo_periods.max(1), ..schedule },
             register: Register::default(),
             feedback: Feedback::NONE,
@@ -108,7 +109,7 @@ impl<const N: usize> Tick<N> {
         let path = reference.knot(tau_s).or_as(self.register.knot(0));
         self.register.push(path);
         self.preview.fill(reference, tau_s, f64::from(self.schedule.preview) * self.feed_period_s());
-        let most_mm_s = self.guard.bounds().speed_mm_s;
+        let most_mm_s = self.supervisor.bounds().speed_mm_s;
         let last_mm = self.command_mm.unwrap_or(path.position_mm);
         self.feedback.take_in(tool_mm, last_mm, self.servo_s, most_mm_s);
         if decided {
@@ -132,7 +133,22 @@ impl<const N: usize> Tick<N> {
     /// Holds the commands to other bounds from the next decision on. A smaller deviation is reached within one step: the caller changes it
     /// no faster than the offset may move.
     pub fn hold_to(&mut self, bounds: Bounds) {
-        self.guard.hold_to(bounds);
+        self.supervisor.hold_to(bounds);
+    }
+
+    /// Whether a correction is wanted from the next decision on. One that is not fades; one that is again comes back as after a fault.
+    pub fn allow(&mut self, allowed: bool) {
+        self.supervisor.allow(allowed);
+    }
+
+    /// Whether the last command of a controller in the loop was held to a bound.
+    pub fn held(&self) -> bool {
+        self.supervisor.held()
+    }
+
+    /// Contour error that there would have been at the last decision without the correction, by the controller's model, mm.
+    pub fn without_mm(&self) -> f64 {
+        self.supervisor.without_mm()
     }
 
     /// The contour error at the last decision.
@@ -142,12 +158,12 @@ impl<const N: usize> Tick<N> {
 
     /// Whether the controller is in the loop.
     pub fn state(&self) -> State {
-        self.guard.state()
+        self.supervisor.state()
     }
 
-    /// When and why the safety layer took the controller out of the loop last.
+    /// When and why the supervisor took the controller out of the loop last.
     pub fn fade(&self) -> Option<Fade> {
-        self.guard.fade()
+        self.supervisor.fade()
     }
 
     fn decide<C: Controller<N> + ?Sized>(&mut self, controller: &mut C, tool_mm: [f64; N]) {
@@ -161,7 +177,21 @@ impl<const N: usize> Tick<N> {
         };
         self.contour = self.estimator.estimate(&window, tool_mm);
         let measured = Measured { position_mm: tool_mm, contour: self.contour };
-        self.command = self.guard.decide(controller, &window, &measured, self.feedback.take_lost());
+        let lost = self.feedback.take_lost();
+        controller.observe(&window, (!lost).then_some(&measured));
+        let wanted = (!lost).then(|| controller.command(&window, &measured));
+        let told = SelfReport {
+            prediction_error_mm: controller.prediction_error_mm(),
+            doubt: controller.doubt(),
+            moved_mm: controller.moved_mm(),
+            foreseen_mm2: controller.foreseen_mm2(),
+            corrects: controller.corrects(),
+            acts_at_once: controller.acts_at_once(),
+        };
+        self.command = self.supervisor.decide(&window, &measured, wanted, &told);
+        if !lost {
+            controller.judged(self.supervisor.overdone());
+        }
     }
 
     fn feed_period_s(&self) -> f64 {

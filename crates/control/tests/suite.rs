@@ -4,4 +4,4 @@
 
 mod conformance_panics;
 mod oracle_riccati;
-mod property_safety;
+mod property_supervisor;

@@ -53,7 +53,7 @@ const ROWS_BETWEEN_CHECKS: u64 = 1000;
 pub struct RunResult {
     /// How it ended.
     pub outcome: Outcome,
-    /// When the safety layer took the controller out of the loop last.
+    /// When the supervisor took the controller out of the loop last.
     pub faded_out: Option<FadedOut>,
     /// All that changed of what corrects the command, in order.
     pub transitions: Vec<Transition>,

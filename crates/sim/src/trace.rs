@@ -85,7 +85,7 @@ pub enum Outcome {
     },
 }
 
-/// The safety layer took the controller out of the loop: the rest was cut uncorrected.
+/// The supervisor took the controller out of the loop: the rest was cut uncorrected.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FadedOut {
     /// When, s.

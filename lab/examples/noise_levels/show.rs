@@ -26,7 +26,7 @@ const MARGIN: f64 = 0.06;
 /// What a controller leaves on a machine.
 struct Level {
     rms_um: f64,
-    /// Cuts in which the safety layer took it out of the loop.
+    /// Cuts in which the supervisor took it out of the loop.
     lost: u32,
 }
 

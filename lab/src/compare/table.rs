@@ -66,11 +66,11 @@ pub struct ComparisonRow {
     pub max_ratio: f64,
     /// Noise seeds that it was cut with.
     pub seeds: u32,
-    /// With how many of them it was not cut to its end, or the safety layer took the controller out of the loop.
+    /// With how many of them it was not cut to its end, or the supervisor took the controller out of the loop.
     pub lost: u32,
     /// Whether it was cut to its end with all of them.
     pub completed: bool,
-    /// Why the safety layer took the controller out of the loop, where it did, with the first of them.
+    /// Why the supervisor took the controller out of the loop, where it did, with the first of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub faded_out: Option<String>,
     /// Contour error along the cut with the first seed, um, for plots.

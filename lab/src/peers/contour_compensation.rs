@@ -14,7 +14,7 @@
 //! to the error leaves half of it; rate g and filter Tf are tuned; c and f turn with the path, so that the droop in a
 //! circle is one constant error and not a wave on two axes.
 //!
-//! Departure: while the safety layer holds the command back, the accumulation starts from what it let through.
+//! Departure: while the supervisor holds the command back, the accumulation starts from what it let through.
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{Window, carried};

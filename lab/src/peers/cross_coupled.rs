@@ -20,7 +20,7 @@
 //! Departures: Koren adds u to the velocity command behind the position controllers. Here the
 //! drives accept only position commands. With proportional position loops of equal gain, the two
 //! are equivalent if all three gains are divided by the loop gain. The derivative is filtered
-//! (`DERIVATIVE_S`). While the safety layer holds the command back, the integral does not grow. At
+//! (`DERIVATIVE_S`). While the supervisor holds the command back, the integral does not grow. At
 //! a corner the frame does not turn, because turning the integral by the corner makes the command
 //! leap. Only the component across the new side is kept. Kp, Ki and Kd are tuned; the sources
 //! derive them for their machines.
@@ -119,7 +119,7 @@ pub(super) mod tests {
 
     /// Returns the tool position after `periods` servo periods of 1 ms, mm. A constant load pushes
     /// the tool `load_mm` off its command. The position loops have a gain of 50 1/s, and there is
-    /// no safety layer.
+    /// no supervisor.
     pub(crate) fn cut<C: Controller<2>>(
         reference: &mut impl KnotSource<2>,
         controller: &mut C,

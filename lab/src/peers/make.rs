@@ -205,7 +205,7 @@ pub(super) fn lqg_preview<const N: usize>(setup: &mut Setup<'_>, values: &Values
     let settings = LqgSettings {
         control_weight_s2: values.number("control_weight_s2"),
         bounds: offset_bounds(&setup.known),
-        learns: false,
+        ..LqgSettings::DEFAULT
     };
     Box::new(LqgPreview::new(setup.truth::<N>(), settings))
 }

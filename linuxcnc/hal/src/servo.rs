@@ -65,6 +65,9 @@ pub struct COutputs {
     without_mm: f64,
     /// Feedrate that the control is asked for, as a multiple of its own in the scale that is set, 0 to 1.
     adaptive_feed: f64,
+    /// What the supervisor found when it took the correction out of the loop last, and what it may be; 0 where nothing was compared.
+    found_mm: f64,
+    limit_mm: f64,
     /// 0 amplifiers off, 1 without delay, 2 delayed, 3 the correction fades, 4 it is in the loop.
     state: u32,
     /// Why there is no correction, 0 for nothing; faults.h has words for it.
@@ -77,6 +80,10 @@ pub struct COutputs {
     holds_feed: u32,
     /// Whether a motion that follows a spindle would be without delay.
     is_settled: u32,
+    /// How often the supervisor has taken the correction out of the loop since the delay was taken up.
+    times_out: u32,
+    /// Joints that are corrected by what was learned while they moved: 1, 2 and 4.
+    learned: u32,
 }
 
 /// The link between command and drives.
@@ -196,6 +203,7 @@ impl<const N: usize> Guarded<N> {
         let speed_alone = inputs.is(FEEDWRIGHT_SPEED_ALONE);
         let limits = LinkLimits { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, adaptive_scale, speed_alone };
         let outputs = self.servo.step(&of, &limits);
+        let found = outputs.left.and_then(|left| left.evidence);
         self.play_out.keep(of.command_mm, of.powered, outputs.drive_mm, outputs.delay_periods);
         COutputs {
             drive_mm: three(outputs.drive_mm),
@@ -204,12 +212,16 @@ impl<const N: usize> Guarded<N> {
             contour_error_mm: outputs.contour_error_mm,
             without_mm: outputs.without_mm,
             adaptive_feed: outputs.adaptive_feed,
+            found_mm: found.map_or(0.0, |evidence| evidence.found_mm),
+            limit_mm: found.map_or(0.0, |evidence| evidence.limit_mm),
             state: state(&outputs),
             fault: number(outputs.fault),
             saturated: u32::from(outputs.saturated),
             delay_periods: outputs.delay_periods,
             holds_feed: u32::from(outputs.holds_feed),
             is_settled: u32::from(outputs.is_settled),
+            times_out: outputs.left.map_or(0, |left| left.count),
+            learned: outputs.learned.iter().rev().fold(0, |bits, learned| 2 * bits + u32::from(*learned)),
         }
     }
 
@@ -224,6 +236,8 @@ impl<const N: usize> Guarded<N> {
             contour_error_mm: 0.0,
             without_mm: 0.0,
             adaptive_feed: 1.0,
+            found_mm: 0.0,
+            limit_mm: 0.0,
             state: if !powered {
                 0
             } else if is_settled {
@@ -236,6 +250,8 @@ impl<const N: usize> Guarded<N> {
             delay_periods: out.delay_periods,
             holds_feed: u32::from(inputs.is(FEEDWRIGHT_PROBING) && !is_settled),
             is_settled: u32::from(is_settled),
+            times_out: 0,
+            learned: 0,
         }
     }
 }
@@ -271,7 +287,6 @@ fn number(fault: LinkFault) -> u32 {
         LinkFault::Faded(Cause::WrongPredictions) => 11,
         LinkFault::Faded(Cause::Harmful) => 12,
         LinkFault::Command => 13,
-        LinkFault::Unproven => 15,
         LinkFault::Setting(Setting::Delay) => 16,
         LinkFault::Setting(Setting::Deviation) => 17,
         LinkFault::Setting(Setting::Speed) => 18,

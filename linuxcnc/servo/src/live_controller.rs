@@ -1,15 +1,26 @@
 //! The controllers that can stand in the link, by the kind of the model: the regulator of identified axes, or the paper's two.
 
-use feedwright_control::{Command, Controller, Measured, Schedule, Window};
 use feedwright_control::{
-    IDENTIFIED_WEIGHT, InvertingSettings, LqgPreview, LqgSettings, MagnitudeOnly, OffsetBounds, TwoDimensional,
+    Bounds, Command, Controller, FaultEvidence, IDENTIFIED_WEIGHT, InvertingSettings, LqgPreview, LqgSettings,
+    MagnitudeOnly, Measured, OffsetBounds, Schedule, TwoDimensional, Window,
 };
 
 use crate::machine::{LinkModel, TrainedContour};
 
+/// A controller in the link, and the feedrate that it asks the control for.
+///
+/// A controller that changes the feedrate says so to the control, whose planner goes by it. Here time is what the control makes of it, and goes
+/// on as it is.
+#[derive(Debug, Clone)]
+pub struct LiveController<const N: usize> {
+    kind: Kind<N>,
+    /// Last requested feedrate, as a multiple of the present feedrate.
+    rate: f64,
+}
+
 /// One of them.
 #[derive(Debug, Clone)]
-pub enum LiveController<const N: usize> {
+enum Kind<const N: usize> {
     /// `lqg-identified`.
     Regulator(LqgPreview<N>),
     /// `two-dimensional` or `magnitude-only`.
@@ -18,7 +29,7 @@ pub enum LiveController<const N: usize> {
 
 /// The paper's controllers, with one identifier.
 #[derive(Debug, Clone)]
-pub struct Inversion<const N: usize> {
+struct Inversion<const N: usize> {
     both: TwoDimensional<N>,
     magnitude: MagnitudeOnly<N>,
     speed_alone: bool,
@@ -54,35 +65,50 @@ const MOST_PERIODS: u32 = 100;
 impl<const N: usize> LiveController<N> {
     /// By a model, with a servo period of `servo_s`.
     pub fn new(model: &LinkModel<N>, servo_s: f64) -> Self {
-        match model {
+        let kind = match model {
             LinkModel::Axes(identified) => {
                 let settings = LqgSettings::identified(IDENTIFIED_WEIGHT, servo_s, OffsetBounds::NONE);
-                Self::Regulator(LqgPreview::new(identified.axes, settings))
+                let settings = LqgSettings { is_known: false, ..settings };
+                Kind::Regulator(LqgPreview::new(identified.axes, settings))
             }
-            LinkModel::Contour(contour) => Self::Inversion(Inversion::new(contour)),
+            LinkModel::Contour(contour) => Kind::Inversion(Inversion::new(contour)),
+        };
+        Self { kind, rate: 1.0 }
+    }
+
+    /// Holds the offset to these bounds, where the supervisor alone does not.
+    pub fn hold_to(&mut self, bounds: &Bounds) {
+        if let Kind::Regulator(regulator) = &mut self.kind {
+            regulator.hold_to(OffsetBounds { largest_mm: bounds.deviation_mm, fastest_mm_s: bounds.speed_mm_s });
         }
     }
 
-    /// Holds the offset to these bounds, where the safety layer alone does not.
-    pub fn hold_to(&mut self, bounds: OffsetBounds) {
-        if let Self::Regulator(regulator) = self {
-            regulator.hold_to(bounds);
+    /// Another machine may be there.
+    pub fn forget_machine(&mut self) {
+        match &mut self.kind {
+            Kind::Regulator(regulator) => regulator.forget_machine(),
+            Kind::Inversion(_) => self.reset(),
         }
     }
 
     /// Whether the paper's controllers leave the geometry on the path. Taken over at rest.
     pub fn change_speed_alone(&mut self, speed_alone: bool) {
-        if let Self::Inversion(inversion) = self {
+        if let Kind::Inversion(inversion) = &mut self.kind {
             inversion.speed_alone = speed_alone;
         }
+    }
+
+    /// Returns the last requested feedrate, as a multiple of the present feedrate.
+    pub fn rate(&self) -> f64 {
+        self.rate
     }
 
     /// Servo periods of path that the controller needs ahead. The regulator needs one, and uses
     /// more if they are known.
     pub fn looks_ahead(&self) -> u64 {
-        match self {
-            Self::Regulator(_) => 1,
-            Self::Inversion(inversion) => {
+        match &self.kind {
+            Kind::Regulator(_) => 1,
+            Kind::Inversion(inversion) => {
                 let Schedule { servo_periods, preview } = inversion.chosen().schedule();
                 u64::from(servo_periods) * u64::from(preview)
             }
@@ -93,23 +119,23 @@ impl<const N: usize> LiveController<N> {
     /// periods ahead. The regulator previews all of it; the paper's controllers keep their own
     /// preview.
     pub fn schedule_within(&self, ahead: u32) -> Schedule {
-        match self {
-            Self::Regulator(_) => Schedule { servo_periods: 1, preview: ahead },
-            Self::Inversion(inversion) => inversion.chosen().schedule(),
+        match &self.kind {
+            Kind::Regulator(_) => Schedule { servo_periods: 1, preview: ahead },
+            Kind::Inversion(inversion) => inversion.chosen().schedule(),
         }
     }
 
     fn as_controller(&self) -> &dyn Controller<N> {
-        match self {
-            Self::Regulator(regulator) => regulator,
-            Self::Inversion(inversion) => inversion.chosen(),
+        match &self.kind {
+            Kind::Regulator(regulator) => regulator,
+            Kind::Inversion(inversion) => inversion.chosen(),
         }
     }
 
     fn as_controller_mut(&mut self) -> &mut dyn Controller<N> {
-        match self {
-            Self::Regulator(regulator) => regulator,
-            Self::Inversion(inversion) => inversion.chosen_mut(),
+        match &mut self.kind {
+            Kind::Regulator(regulator) => regulator,
+            Kind::Inversion(inversion) => inversion.chosen_mut(),
         }
     }
 }
@@ -121,6 +147,7 @@ impl<const N: usize> Controller<N> for LiveController<N> {
 
     fn reset(&mut self) {
         self.as_controller_mut().reset();
+        self.rate = 1.0;
     }
 
     fn observe(&mut self, window: &Window<'_, N>, measured: Option<&Measured<N>>) {
@@ -129,6 +156,14 @@ impl<const N: usize> Controller<N> for LiveController<N> {
 
     fn prediction_error_mm(&self) -> f64 {
         self.as_controller().prediction_error_mm()
+    }
+
+    fn doubt(&self) -> Option<FaultEvidence> {
+        self.as_controller().doubt()
+    }
+
+    fn learned(&self) -> [bool; N] {
+        self.as_controller().learned()
     }
 
     fn moved_mm(&self) -> Option<[f64; N]> {
@@ -152,6 +187,10 @@ impl<const N: usize> Controller<N> for LiveController<N> {
     }
 
     fn command(&mut self, window: &Window<'_, N>, measured: &Measured<N>) -> Command<N> {
-        self.as_controller_mut().command(window, measured)
+        let asked = self.as_controller_mut().command(window, measured);
+        let is_asked_for = asked.rate.is_finite();
+        self.rate = if is_asked_for { asked.rate } else { 1.0 };
+        // What is not a number is for the supervisor to see.
+        Command { rate: if is_asked_for { 1.0 } else { asked.rate }, ..asked }
     }
 }

@@ -21,16 +21,15 @@
 //! |---|---|
 //! | [`Link::Off`] | the actual position |
 //! | [`Link::Direct`] | the command, plus the remainder of an offset while it fades |
-//! | [`Link::Delayed`] | the delayed command, plus the offset that the safety layer passes |
+//! | [`Link::Delayed`] | the delayed command, plus the offset that the supervisor passes |
 
 use feedwright_control::vector::{add_scaled, bounded, norm, sub};
-use feedwright_control::{Bounds, Cause, State};
-use feedwright_control::{Schedule, Tick};
+use feedwright_control::{Bounds, Cause, Controller, Fade, Schedule, State, Tick};
 
-use crate::correction::Correction;
 use crate::fading::Fading;
 use crate::history::{Delayed, History, NEWER};
 use crate::limits::{LinkLimits, Setting};
+use crate::live_controller::LiveController;
 use crate::machine::{self, LinkModel, Refused};
 
 /// A spindle is followed until the command has rested for so long since its index was awaited, s: it begins to move with the index.
@@ -43,8 +42,6 @@ const SETTLES_S: f64 = 0.1;
 const HELD_S: f64 = 0.05;
 /// Servo period where there is no model, s; nothing but the time of rest depends on it.
 const WITHOUT_MODEL_S: f64 = 0.001;
-/// An offset nearer to what was asked for is that, mm.
-const SAME_MM: f64 = 1e-9;
 
 /// A command has leapt if it moves more in a servo period than this many times the travel at the
 /// highest speed of the machine.
@@ -94,10 +91,8 @@ pub enum LinkFault {
     None,
     /// The model.
     Model(Refused),
-    /// The safety layer took it out of the loop.
+    /// The supervisor took it out of the loop.
     Faded(Cause),
-    /// The machine does not move as the model says: the law has not proven itself.
-    Unproven,
     /// The command was not a number; the last that was one is held.
     Command,
     /// This number is out of its range; the last one that was not stays in force, and so does the correction.
@@ -125,12 +120,16 @@ pub struct LinkOutputs<const N: usize> {
     pub adaptive_feed: f64,
     /// How the drive is connected.
     pub link: Link,
-    /// Whether the correction is in the loop, as the safety layer sees it.
+    /// Whether the correction is in the loop, as the supervisor sees it.
     pub state: State,
     /// Whether a limit holds the offset.
     pub saturated: bool,
     /// Why there is no correction now.
     pub fault: LinkFault,
+    /// When, why and how often the supervisor has taken the correction out of the loop since the delay was taken up.
+    pub left: Option<Fade>,
+    /// Which axes are corrected by what was learned while they moved.
+    pub learned: [bool; N],
     /// Servo periods of delay.
     pub delay_periods: u32,
     /// Whether the control is to hold its feed until the delay has been given up, or taken up.
@@ -144,7 +143,7 @@ pub struct LinkOutputs<const N: usize> {
 pub struct Servo<const N: usize> {
     servo_s: f64,
     history: History<N>,
-    correction: Result<Correction<N>, Refused>,
+    controller: Result<LiveController<N>, Refused>,
     tick: Tick<N>,
     link: Link,
     /// Servo periods of delay, and the number of the command at which the tick began.
@@ -178,11 +177,11 @@ impl<const N: usize> Servo<N> {
     /// By this model, or without one.
     pub fn new(model: Result<LinkModel<N>, Refused>) -> Self {
         let servo_s = model.as_ref().map_or(WITHOUT_MODEL_S, LinkModel::servo_s);
-        let correction = model.map(|model| Correction::new(&model, servo_s));
+        let controller = model.map(|model| LiveController::new(&model, servo_s));
         Self {
             servo_s,
             history: History::EMPTY,
-            correction,
+            controller,
             tick: Tick::new(servo_s, AT_REST, Bounds::new(0.0, 0.0, 0.0)),
             link: Link::Off,
             delay: 0,
@@ -207,8 +206,8 @@ impl<const N: usize> Servo<N> {
     /// Rejects a model for another servo period. Returns the fault of a rejected model, or no
     /// fault.
     pub fn runs_at(&mut self, servo_s: f64) -> LinkFault {
-        if self.correction.is_ok() && !machine::fits(self.servo_s, servo_s) {
-            self.correction = Err(Refused::Period);
+        if self.controller.is_ok() && !machine::fits(self.servo_s, servo_s) {
+            self.controller = Err(Refused::Period);
         }
         self.refused()
     }
@@ -302,9 +301,8 @@ impl<const N: usize> Servo<N> {
         self.history.clear();
         self.residual = Fading::NONE;
         (self.follows, self.yielded, self.not_held) = (false, false, 0);
-        if let Ok(correction) = &mut self.correction {
-            correction.restart();
-            correction.forgive();
+        if let Ok(controller) = &mut self.controller {
+            controller.forget_machine();
         }
         let fault = if told || !self.heard { self.refused() } else { LinkFault::Command };
         LinkOutputs { drive_mm: self.actual_mm, feedback_mm: self.actual_mm, fault, ..self.nothing() }
@@ -316,7 +314,7 @@ impl<const N: usize> Servo<N> {
         self.unasked = if inputs.spindle { 0 } else { self.unasked.saturating_add(1) };
         self.follows =
             inputs.spindle || (self.follows && (rested.min(self.unasked) as f64) * self.servo_s < FOLLOWED_S);
-        let is_direct = inputs.direct || inputs.probing || self.follows || self.correction.is_err();
+        let is_direct = inputs.direct || inputs.probing || self.follows || self.controller.is_err();
         match (self.link, if is_direct { Link::Direct } else { Link::Delayed }) {
             // What was commanded before is not the past of this motion.
             (Link::Off, _) => {
@@ -342,7 +340,7 @@ impl<const N: usize> Servo<N> {
 
     /// Servo periods in the delay that is set, and no fewer than the controller looks ahead.
     fn periods(&self) -> u64 {
-        let looks_ahead = self.correction.as_ref().map_or(0, Correction::looks_ahead);
+        let looks_ahead = self.controller.as_ref().map_or(0, LiveController::looks_ahead);
         (libm::round(self.limits.delay_s / self.servo_s) as u64).max(looks_ahead + NEWER + 1).min(MOST_PERIODS)
     }
 
@@ -350,10 +348,10 @@ impl<const N: usize> Servo<N> {
         let (delay, bounds) = (self.periods(), self.bounds());
         // The command that is pushed next is the newest; the preview looks a knot further than it is asked to.
         let ahead = (delay - NEWER - 1) as u32;
-        let schedule = match &mut self.correction {
-            Ok(correction) => {
-                correction.change_speed_alone(self.limits.speed_alone);
-                correction.schedule_within(ahead)
+        let schedule = match &mut self.controller {
+            Ok(controller) => {
+                controller.change_speed_alone(self.limits.speed_alone);
+                controller.schedule_within(ahead)
             }
             Err(_) => AT_REST,
         };
@@ -365,7 +363,7 @@ impl<const N: usize> Servo<N> {
 
     /// That the model was refused, if it was.
     fn refused(&self) -> LinkFault {
-        self.correction.as_ref().err().map_or(LinkFault::None, |refused| LinkFault::Model(*refused))
+        self.controller.as_ref().err().map_or(LinkFault::None, |refused| LinkFault::Model(*refused))
     }
 
     /// No correction.
@@ -382,6 +380,8 @@ impl<const N: usize> Servo<N> {
             state: State::Shadow,
             saturated: false,
             fault: LinkFault::None,
+            left: None,
+            learned: [false; N],
             delay_periods: 0,
             holds_feed: false,
             is_settled: true,
@@ -390,8 +390,8 @@ impl<const N: usize> Servo<N> {
 
     fn direct(&mut self) -> LinkOutputs<N> {
         let fault = self.refused();
-        if let Ok(correction) = &mut self.correction {
-            correction.restart();
+        if let Ok(controller) = &mut self.controller {
+            controller.reset();
         }
         let correction_mm = self.residual.value_mm();
         LinkOutputs {
@@ -406,44 +406,36 @@ impl<const N: usize> Servo<N> {
 
     fn delayed(&mut self, inputs: &LinkInputs<N>) -> LinkOutputs<N> {
         let bounds = self.bounds();
-        let Ok(correction) = &mut self.correction else { return self.direct() };
-        correction.hold_to(&bounds);
+        let Ok(controller) = &mut self.controller else { return self.direct() };
+        controller.hold_to(&bounds);
         self.tick.hold_to(bounds);
+        self.tick.allow(inputs.enabled);
         // Until no part of it is ahead any more: what no machine can follow says nothing of the law.
         if self.since_leap <= u64::from(self.delay) {
-            correction.restart();
+            controller.reset();
         }
-        correction.fade(inputs.enabled, self.tick.state() == State::Engaged, self.servo_s);
         let mut path = Delayed { history: &self.history, first: self.first, servo_s: self.servo_s };
-        let setpoint = self.tick.step(&mut path, correction, inputs.actual_mm);
+        let setpoint = self.tick.step(&mut path, controller, inputs.actual_mm);
         let path_mm = setpoint.path.position_mm;
         let offset_mm = sub(setpoint.command_mm, path_mm);
         self.offset_mm = norm(offset_mm);
-        let state = self.tick.state();
-        let held = norm(sub(correction.wanted_mm(), offset_mm)) > SAME_MM;
-        let state = match state {
-            State::Engaged if correction.is_out() && norm(offset_mm) > 0.0 => State::Fading,
-            State::Engaged if correction.is_out() => State::Shadow,
-            state => state,
-        };
-        let faded = self.tick.fade().filter(|_| self.tick.state() != State::Engaged).map(|fade| fade.cause);
-        let faded = faded.or(correction.is_lost().then_some(Cause::Harmful));
-        let fault = match faded {
-            None | Some(Cause::WrongPredictions | Cause::Harmful) if correction.is_refuted() => LinkFault::Unproven,
-            faded => faded.map_or(LinkFault::None, LinkFault::Faded),
-        };
+        let (state, left) = (self.tick.state(), self.tick.fade());
+        let is_out = inputs.enabled && state != State::Engaged;
+        let cause = left.filter(|_| is_out).map(|left| left.cause);
         LinkOutputs {
             drive_mm: add_scaled(setpoint.command_mm, 1.0, self.residual.value_mm()),
             feedback_mm: add_scaled(self.command_mm, 1.0, sub(self.actual_mm, path_mm)),
             correction_mm: add_scaled(offset_mm, 1.0, self.residual.value_mm()),
             contour_error_mm: known(norm(self.tick.contour().vector_mm)),
-            without_mm: known(correction.without_mm()),
-            rate: correction.rate(),
+            without_mm: known(self.tick.without_mm()),
+            rate: if state == State::Engaged { controller.rate() } else { 1.0 },
             adaptive_feed: 1.0,
             link: Link::Delayed,
             state,
-            saturated: held && state == State::Engaged,
-            fault,
+            saturated: self.tick.held(),
+            fault: cause.map_or(LinkFault::None, LinkFault::Faded),
+            left,
+            learned: controller.learned(),
             delay_periods: self.delay,
             holds_feed: false,
             is_settled: false,

@@ -39,15 +39,16 @@ fn the_correction_takes_the_contour_error_away() {
 }
 
 #[test]
-fn by_a_model_that_is_wrong_nothing_is_corrected_and_it_is_told() {
-    for late_s in [0.002, 0.003, 0.005] {
+fn by_a_model_that_is_wrong_nothing_is_worse_and_it_is_told() {
+    for late_s in [0.001, 0.002, 0.003, 0.005] {
         let mut real = machine();
         real.axes.iter_mut().for_each(|axis| axis.delays.drive_s += late_s);
         let without = rms_mm(&turn_on(&real, Ok(machine()), |_| LIMITS, |_, inputs| inputs.enabled = false));
         let periods = turn_on(&real, Ok(machine()), |_| LIMITS, |_, _| {});
+        println!("{late_s}: {} {without}", rms_mm(&periods));
+        let told = |outputs: &LinkOutputs<2>| outputs.learned != [false; 2] || outputs.left.is_some();
+        assert!(periods.iter().any(|period| told(&period.outputs)), "{late_s}: nothing was told");
         assert!(rms_mm(&periods) <= without, "{late_s}: {} {without}", rms_mm(&periods));
-        assert!(periods.iter().all(|period| period.outputs.correction_mm == [0.0; 2]), "{late_s}");
-        assert!(periods.iter().any(|period| period.outputs.fault == LinkFault::Unproven), "{late_s}: nothing was told");
     }
 }
 

@@ -23,14 +23,15 @@
 //! Departures: the feedforward enters before the position loop instead of after it. The offset that it makes is mostly
 //! along the path, 1 mm at 50 mm/s and 50 1/s.
 
-use super::{Command, Controller, Measured, Schedule};
+use super::{Controller, Schedule};
 use crate::axis::inverse::AxisInverse;
 use crate::axis::inverse::Gains;
+use crate::command::{Command, Measured};
 use crate::window::Window;
 
 /// Preview behind the command of the next servo period that the differences need, servo periods.
 const DIFFERENCES: f64 = 3.0;
-/// The safety layer knows the path as far as the preview goes, and the command leads by the lag of the loop: this many
+/// The supervisor knows the path as far as the preview goes, and the command leads by the lag of the loop: this many
 /// lags leave room for a command that leads a slowing motion.
 const PREVIEW_LAGS: f64 = 3.0;
 /// Of the `PREVIEW_KNOTS`; the others reach behind.

@@ -17,7 +17,8 @@
 
 use core::marker::PhantomData;
 
-use super::{Command, Controller, Measured, Schedule};
+use super::{Controller, Schedule};
+use crate::command::{Command, Measured};
 use crate::identifier::contour::ContourIdentifier;
 use crate::identifier::{ContourModel, Delays, FEED_SCALE_MM_S, Inputs, seen_feed};
 use crate::inversion::{self, Gradient, MAX_KNOTS};

@@ -23,13 +23,10 @@
 //! | `lqg_preview/screw.rs` | where the motor has to be behind a ball screw that gives |
 //! | `lqg_preview/approach.rs` | the way back of a tool that is far off, with no more than there is for it |
 //! | `lqg_preview/feasible.rs` | whether there is torque for the reference ahead |
-//! | `lqg_preview/one_step.rs` | whether a servo period went as the law said |
 //! | `lqg_preview/outliers.rs` | measurements that cannot be true |
 //! | `lqg_preview/whiteness.rs` | how much of what is measured the filter believes |
 //! | `lqg_preview/estimate.rs` | the filter |
 //! | `lqg_preview/learning.rs` | what the law gets wrong, learned while the axis moves |
-//! | `lqg_preview/proof.rs` | what a law that was wrong has to hold through |
-//! | `lqg_preview/validity.rs` | whether the law is good enough for the loop |
 //! | `lqg_preview/regulated_axis.rs` | an axis: filter, regulator and inverse |
 //!
 //! Source: Anderson and Moore (1990), Optimal Control: Linear Quadratic Methods, chapters 7 and 8; Tomizuka and Rosenthal (1979),
@@ -43,25 +40,23 @@ mod linear;
 mod screw;
 mod approach;
 mod feasible;
-mod one_step;
 mod outliers;
 mod whiteness;
 mod estimate;
 mod learning;
-mod proof;
-mod validity;
 mod regulated_axis;
 
 use super::feedforward::preview;
-use super::{Command, Controller, FaultEvidence, Measured, Schedule};
+use super::{Controller, Schedule};
 use crate::axis::knowledge::AxisKnowledge;
-use crate::vector::{norm, scale, sub};
+use crate::command::{Command, FaultEvidence, Measured};
+use crate::supervisor::first_use::FirstUse;
+use crate::supervisor::one_step::OneStep;
+use crate::supervisor::validity::{Shown, Trusted, Validity};
+use crate::vector::{add_scaled, norm, scale, sub};
 use crate::window::Window;
-use approach::Trusted;
 use feasible::Feasibility;
-use one_step::OneStep;
 use regulated_axis::AxisLqg;
-use validity::{Shown, Validity};
 
 pub use control_weight::{IDENTIFIED_WEIGHT, LqgSettings, OffsetBounds};
 pub use regulated_axis::LqgGains;
@@ -85,6 +80,8 @@ pub struct LqgPreview<const N: usize> {
     preview: u32,
     /// Where the law may be wrong.
     validity: Option<Validity<N>>,
+    /// What the laws have yet to show on this machine.
+    first_use: Option<FirstUse>,
     feasibility: Feasibility,
     /// The offset that was asked for last, mm.
     asked_mm: [f64; N],
@@ -103,6 +100,7 @@ impl<const N: usize> LqgPreview<N> {
             lag_s,
             preview: longest + DIFFERENCES as u32,
             validity: settings.learns.then(|| Validity::unknown(axes.iter().map(AxisLqg::unforeseen_mm2).sum())),
+            first_use: (!settings.is_known).then(|| FirstUse::new(axes.iter().map(AxisLqg::unforeseen_mm2).sum())),
             feasibility: Feasibility::FOLLOWED,
             asked_mm: [0.0; N],
             lost_s: 0.0,
@@ -115,9 +113,22 @@ impl<const N: usize> LqgPreview<N> {
         self.axes.iter().map(AxisLqg::measured_lag_s).fold(0.0, f64::max)
     }
 
-    /// What noise and loads that nobody foresees make of a position, mm^2.
-    pub fn unforeseen_mm2(&self) -> f64 {
-        self.axes.iter().map(AxisLqg::unforeseen_mm2).sum()
+    /// Another machine may be there.
+    pub fn forget_machine(&mut self) {
+        self.reset();
+        let noise_mm2 = self.axes.iter().map(AxisLqg::unforeseen_mm2).sum();
+        self.first_use = self.first_use.map(|_| FirstUse::new(noise_mm2));
+    }
+
+    /// What the laws alone miss, and what there is to correct, mm^2, in motion.
+    fn seen_alone_mm2(&self, window: &Window<'_, N>, position_mm: [f64; N]) -> Option<[f64; 2]> {
+        let mut seen_mm2 = [0.0; 2];
+        for (i, (axis, position_mm)) in self.axes.iter().zip(position_mm).enumerate() {
+            let there_mm = window.at(-self.lag_s - axis.known().delays.measurement_s).position_mm;
+            let off_mm = [position_mm - axis.alone_mm(), position_mm - there_mm.get(i).copied().unwrap_or(0.0)];
+            seen_mm2 = add_scaled(seen_mm2, 1.0, off_mm.map(|mm| mm * mm));
+        }
+        (window.now().feed_mm_s > 0.0).then_some(seen_mm2)
     }
 
     /// Holds offsets to other bounds from now on.
@@ -205,12 +216,21 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         let speed_mm_s = if begins { self.lagging_mm_s(window) } else { [0.0; N] };
         let measured_axes = window.offset_mm.into_iter().zip(position_mm).zip(speed_mm_s);
         let mut turned = false;
+        let is_alone = self.first_use.as_ref().is_some_and(|first_use| !first_use.is_shown());
+        let is_likely = self.axes.iter().any(AxisLqg::is_learned);
         for (axis, ((offset_mm, position_mm), speed_mm_s)) in self.axes.iter_mut().zip(measured_axes) {
-            turned |= axis.observe(offset_mm, position_mm, speed_mm_s);
+            turned |= axis.observe(offset_mm, position_mm, speed_mm_s, [is_alone, is_likely]);
         }
         if core::mem::replace(&mut self.lost_s, 0.0) > 0.0 && self.missed_mm() > FORESEEN_MM {
             self.begin_anew();
             return;
+        }
+        let seen_mm2 = if is_alone { self.seen_alone_mm2(window, position_mm) } else { None };
+        if let Some(first_use) = &mut self.first_use {
+            first_use.take_in(seen_mm2, window.feed_period_s);
+            if turned {
+                first_use.begin_law();
+            }
         }
         if let Some(validity) = &mut self.validity {
             if turned {
@@ -268,6 +288,8 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
             *offset_mm = axis.offset_mm(of_axis(here_mm), trusted, open, at_mm);
         }
         self.asked_mm = offset_mm;
+        let share = self.first_use.as_ref().map_or(1.0, FirstUse::share);
+        let offset_mm = if share < 1.0 { scale(share, offset_mm) } else { offset_mm };
         Command::straight(1.0, offset_mm)
     }
 }

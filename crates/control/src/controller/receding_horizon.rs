@@ -25,7 +25,8 @@
 
 mod predictor;
 
-use super::{Command, Controller, Measured, Schedule};
+use super::{Controller, Schedule};
+use crate::command::{Command, Measured};
 use crate::horizon::gauss_newton::GaussNewton;
 use crate::horizon::missed::Missed;
 use crate::horizon::{self, LAGS_AHEAD, MAX_PERIODS, OffsetPlan, Solver};
@@ -198,7 +199,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
         self.delays.push(feed_now, scale(1.0 / D::ERROR_SCALE_MM, now_mm));
     }
 
-    /// Whether a position stands still while the command goes on. It is nothing to learn from before the safety layer, which has
+    /// Whether a position stands still while the command goes on. It is nothing to learn from before the supervisor, which has
     /// to wait for certainty, calls it lost.
     fn is_frozen(&self, command_mm: [f64; N], position_mm: [f64; N]) -> bool {
         let moved_mm = |last: LastDecision<N>| norm(sub(command_mm, last.command_mm));

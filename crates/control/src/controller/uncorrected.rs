@@ -1,6 +1,7 @@
 //! Uncorrected: the path as planned. The null member of the family.
 
-use super::{Command, Controller, Measured, Schedule};
+use super::{Controller, Schedule};
+use crate::command::{Command, Measured};
 use crate::window::Window;
 
 /// Commands the programmed path at the planned feed.

@@ -55,7 +55,7 @@ pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &V
     Box::new(controller)
 }
 
-/// Part of the largest deviation that a plan uses: the rest is for what it misses, before the safety layer acts.
+/// Part of the largest deviation that a plan uses: the rest is for what it misses, before the supervisor acts.
 const PLANNED_DEVIATION: f64 = 0.9;
 
 /// What a machine allows a correction.
@@ -68,7 +68,7 @@ pub fn correction_limits<const N: usize>(known: &Known) -> CorrectionLimits<N> {
     }
 }
 
-/// What the safety layer holds an offset to.
+/// What the supervisor holds an offset to.
 pub fn offset_bounds(known: &Known) -> OffsetBounds {
     let limits = known.limits;
     OffsetBounds { largest_mm: limits.max_deviation_mm, fastest_mm_s: limits.rapid_mm_s }

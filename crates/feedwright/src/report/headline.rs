@@ -206,7 +206,7 @@ impl Headline {
         self.text(" ");
         self.name(&judged.controller);
         self.text(&format!(
-            " was in the loop for {share} % of the cut; the safety layer took it out last at {from}, because {cause}."
+            " was in the loop for {share} % of the cut; the supervisor took it out last at {from}, because {cause}."
         ));
         if judged.is_mostly_uncorrected() {
             self.text(" Most of the part, or its end, is as good as uncorrected.");

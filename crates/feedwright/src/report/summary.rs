@@ -60,7 +60,7 @@ pub struct RunSummary {
     pub measured: bool,
     /// How the run ended.
     pub outcome: Outcome,
-    /// When and why the safety layer took the controller out of the loop last.
+    /// When and why the supervisor took the controller out of the loop last.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub faded_out: Option<FadedOut>,
     /// All that changed of what corrects the command, in order.

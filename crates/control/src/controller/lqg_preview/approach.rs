@@ -19,6 +19,8 @@
 //! Source: Wredenhagen and Belanger (1994), "Piecewise-linear LQ control for systems with input constraints", Automatica 30(3); the bound by the rate,
 //! and the way from one law to the next, are our own.
 
+use crate::supervisor::validity::Trusted;
+
 use super::linear::{self, STATES};
 use super::riccati::inner;
 
@@ -29,7 +31,7 @@ const LEAST_LEFT: f64 = 0.1;
 /// Prices, and the ratio of the time of one to that of the one before.
 const PRICES: usize = 12;
 const RATIO: f64 = 2.0;
-/// Time constants in which an error is closed. On router 1 leaves half as much again on the square, and 10 runs into the safety layer on the star;
+/// Time constants in which an error is closed. On router 1 leaves half as much again on the square, and 10 runs into the supervisor on the star;
 /// a double integrator whose input takes 20 ms from nothing to its most swings by 3 and not by 1, one that takes 5 ms by neither.
 const CLOSED: f64 = 3.0;
 /// The lowest price that counts where the law is not trusted, 4^k p, and by how much k is higher where loads are not taken up. By a law that does not
@@ -51,20 +53,6 @@ pub(super) struct Room {
     pub(super) most_rad_s: f64,
     /// R, rad/s^2.
     pub(super) change_rad_s2: f64,
-}
-
-/// How far a law is followed, both 0 to 1.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Trusted {
-    /// Its lowest price.
-    pub(super) near: f64,
-    /// Loads that the filter finds by it.
-    pub(super) loads: f64,
-}
-
-impl Trusted {
-    /// In everything.
-    pub(super) const FULLY: Self = Self { near: 1.0, loads: 1.0 };
 }
 
 /// Gains of the regulator by price, from the lowest on.

@@ -25,6 +25,8 @@ pub struct LqgSettings {
     pub bounds: OffsetBounds,
     /// Whether law and statistics may be wrong: both are learned, and a wrong law is not followed. Otherwise both are exact.
     pub learns: bool,
+    /// Whether it has been used on this machine before. Otherwise the laws have to show that they are of this machine before anything is corrected.
+    pub is_known: bool,
 }
 
 /// Control weight used with an identified model, in servo periods squared. A weight of 1 leaves 50 % more error on workshop. While
@@ -36,11 +38,12 @@ const SCREW_RAD: f64 = 2.0;
 
 impl LqgSettings {
     /// A tenth of the travel of a servo period, squared.
-    pub const DEFAULT: Self = Self { control_weight_s2: 1e-8, bounds: OffsetBounds::NONE, learns: false };
+    pub const DEFAULT: Self =
+        Self { control_weight_s2: 1e-8, bounds: OffsetBounds::NONE, learns: false, is_known: true };
 
     /// Settings for an identified model; `control_weight` is in servo periods squared, with a servo period of `servo_s`.
     pub fn identified(control_weight: f64, servo_s: f64, bounds: OffsetBounds) -> Self {
-        Self { control_weight_s2: control_weight * servo_s * servo_s, bounds, learns: true }
+        Self { control_weight_s2: control_weight * servo_s * servo_s, bounds, learns: true, is_known: true }
     }
 
     /// Near the reference, for an axis with this screw.

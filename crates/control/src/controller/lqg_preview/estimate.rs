@@ -16,9 +16,9 @@ use crate::axis::mechanics::{MechanicsLaw, MechanicsState};
 use crate::axis::statistics::AxisStatistics;
 use crate::axis::{self, AxisLaw};
 use crate::sine::sin;
+use crate::supervisor::one_step::{OneStep, RUN_S, run_periods};
 
 use super::linear::{LinearAxis, STATES, measured_rad2};
-use super::one_step::{OneStep, run_periods};
 use super::outliers::{self, Outliers};
 use super::riccati::{StateMatrix, applied, filter};
 use super::whiteness::{GainTable, LEVELS, Whiteness};
@@ -239,7 +239,7 @@ impl AxisModel {
         estimate.correct(gains.map(|gain| gain * taken_rad));
         let [of_angle, ..] = gains;
         let expected_rad2 = learnt.whiteness.variance() * self.measured_rad2 / (1.0 - of_angle).max(LEAST_SHARE_LEFT);
-        // A frozen encoder is for the safety layer to see: it tells nothing of the predictions.
+        // A frozen encoder is for the supervisor to see: it tells nothing of the predictions.
         let missed_rad = if taken_rad == 0.0 { 0.0 } else { missed_rad };
         let believed = if missed_rad == 0.0 { 1.0 } else { taken_rad / missed_rad };
         let gains = gains.map(|gain| believed * gain);
@@ -307,5 +307,35 @@ impl AxisModel {
         let [broadband, disturbance, _, drift] = *acting_nm;
         self.mechanics.advance(masses, motor_nm, broadband + disturbance + drift);
         *acting_nm = self.linear.acting_after(acting_nm);
+    }
+}
+
+/// A free run beside the filter, of an axis.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct LawTrial {
+    free: Estimate,
+    for_s: f64,
+    missed_rad: f64,
+}
+
+impl LawTrial {
+    /// From an estimate on.
+    pub(super) fn from(estimate: &Estimate) -> Self {
+        Self { free: *estimate, for_s: 0.0, missed_rad: 0.0 }
+    }
+
+    /// m, rad.
+    pub(super) fn missed_rad(&self) -> f64 {
+        self.missed_rad
+    }
+
+    /// One servo period on; `estimate` is that of the filter, which has taken in what was measured.
+    pub(super) fn go_on(&mut self, model: &AxisModel, sent: &Sent, measured_rad: f64, estimate: &Estimate) {
+        model.predict(&mut self.free, sent);
+        self.missed_rad = measured_rad - model.shown_rad(&self.free);
+        self.for_s += model.law.periods.servo_s;
+        if self.for_s >= RUN_S {
+            (self.free, self.for_s) = (*estimate, 0.0);
+        }
     }
 }

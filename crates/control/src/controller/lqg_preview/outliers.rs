@@ -1,11 +1,11 @@
-//! Measurements that cannot be true are believed in part: an encoder that is frozen, or that leaps by less than the safety layer sees.
+//! Measurements that cannot be true are believed in part: an encoder that is frozen, or that leaps by less than the supervisor sees.
 //!
 //! ```text
 //! |nu| <= 4 sigma + (Tmax / J) Ts^2 / 2
 //! ```
 //!
 //! is what an innovation nu is bounded to; of a measurement that repeats itself to the bit while the axis moves, nothing is believed. The bound is noise, and the way on which a force as large as the drive's own takes the axis in a servo period. Beyond,
-//! it is the encoder and not the axis, or the law is not that of the axis. The first does not last: the safety layer has found out by then.
+//! it is the encoder and not the axis, or the law is not that of the axis. The first does not last: the supervisor has found out by then.
 //! What is still there after [`LASTS_S`] is taken for the second, and believed.
 //!
 //! Source: bounded innovations as in Masreliez and Martin (1977), "Robust Bayesian estimation for the linear model and robustifying the Kalman
@@ -16,7 +16,7 @@ use crate::vector::bounded;
 
 /// Standard deviations of the measurement that are believed.
 const DEVIATIONS: f64 = 4.0;
-/// What lasts for so long is believed, s: the safety layer sees a frozen encoder within 20 ms.
+/// What lasts for so long is believed, s: the supervisor sees a frozen encoder within 20 ms.
 const LASTS_S: f64 = 0.025;
 
 /// Largest innovation that is believed in full, rad.

@@ -5,16 +5,16 @@ use crate::axis::inverse::AxisInverse;
 use crate::axis::knowledge::AxisKnowledge;
 use crate::axis::mechanics::MechanicsState;
 use crate::axis::{AxisLaw, AxisState, Parameters};
+use crate::supervisor::one_step::{OneStep, run_periods};
+use crate::supervisor::validity::Trusted;
 
-use super::approach::{self, Room, Trusted, WeightedGains};
+use super::approach::{self, Room, WeightedGains};
 use super::control_weight::{LqgSettings, OffsetBounds};
-use super::estimate::{AxisModel, Estimate, Innovation, KEPT_PERIODS, Learnt, Sent};
+use super::estimate::{AxisModel, Estimate, Innovation, KEPT_PERIODS, LawTrial, Learnt, Sent};
 use super::learning::{LawChoice, Learner, Learning};
 use super::linear::{self, LinearAxis};
-use super::one_step::{OneStep, run_periods};
 use super::riccati;
 use super::screw::{ScrewTwist, TwistCourse};
-use super::validity::LawTrial;
 
 /// Stationary gains of an axis: by state, as in `lqg_preview/linear.rs`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -248,8 +248,14 @@ impl AxisLqg {
     }
 
     /// What was commanded in the last servo period, as an offset from the path, has led to this position. Where it begins it has about this
-    /// speed. Whether another law is followed from now on.
-    pub(super) fn observe(&mut self, offset_mm: f64, position_mm: f64, speed_mm_s: f64) -> bool {
+    /// speed. `is_alone` leaves out of the axis by itself what loads the filter finds. Whether another law is followed from now on.
+    pub(super) fn observe(
+        &mut self,
+        offset_mm: f64,
+        position_mm: f64,
+        speed_mm_s: f64,
+        [is_alone, is_likely]: [bool; 2],
+    ) -> bool {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
         let measured_rad = position_mm * rad_per_mm;
         let learning = || self.learner.as_ref().filter(|_| self.may_learn).map(Learner::begin);
@@ -265,18 +271,21 @@ impl AxisLqg {
         let told = running.real.go_on(&self.model, command_rad, measured_rad);
         running.step = told.step(1.0 / rad_per_mm);
         running.by_noise_rad2 = self.model.by_noise_rad2(&told, &running.real.learnt);
-        let turned = self.learn(&told, [command_rad, from_rad, measured_rad]);
+        let turned = self.learn(&told, [command_rad, from_rad, measured_rad], is_likely);
         let Some(Running { real, open, missed_rad, .. }) = &mut self.state else { return false };
         let possible = self.model.is_possible(&real.tracked.estimate);
         *missed_rad = if possible { told.missed_rad } else { f64::INFINITY };
-        open.estimate.acting_nm = real.tracked.estimate.acting_nm;
+        if turned && is_alone {
+            *open = real.tracked;
+        }
+        open.estimate.acting_nm = if is_alone { [0.0; 4] } else { real.tracked.estimate.acting_nm };
         open.foresee(&self.model, path_mm * rad_per_mm);
         turned
     }
 
     /// Learns of a servo period, in which the law that is followed was told this, a command went out at one angle, and another was
     /// measured. Whether another law is followed from now on.
-    fn learn(&mut self, told: &Innovation, [command_rad, from_rad, measured_rad]: [f64; 3]) -> bool {
+    fn learn(&mut self, told: &Innovation, [command_rad, from_rad, measured_rad]: [f64; 3], is_likely: bool) -> bool {
         let (Some(learner), Some(Running { real, beside, learning: Some(learning), .. })) =
             (&self.learner, &mut self.state)
         else {
@@ -299,7 +308,7 @@ impl AxisLqg {
             model.follow(known);
             run.tracked.estimate.correct(moved);
         }
-        let LawChoice { turns, begins_anew } = learner.compare(learning, missed_rad);
+        let LawChoice { turns, begins_anew } = learner.compare(learning, missed_rad, is_likely);
         if turns {
             core::mem::swap(&mut self.model, &mut self.other);
             core::mem::swap(&mut self.known, &mut self.other_known);
@@ -344,6 +353,11 @@ impl AxisLqg {
         self.state
             .as_ref()
             .map_or(0.0, |running| running.real.trial.missed_rad() / self.model.law.parameters.rad_per_mm)
+    }
+
+    /// Where it would be measured without any offset, mm.
+    pub(super) fn alone_mm(&self) -> f64 {
+        self.state.as_ref().map_or(0.0, |running| running.open.measured_rad / self.model.law.parameters.rad_per_mm)
     }
 
     /// By how much it would be measured off the reference without any offset, mm; `at_mm` is the reference so long before now. What loads

@@ -1,4 +1,4 @@
-//! The safety layer around controllers that are wild, broken, blind, wrong or harmful.
+//! The supervisor around controllers that are wild, broken, blind, wrong or harmful.
 
 use feedwright_control::vector::{norm, sub};
 use feedwright_control::{
@@ -259,4 +259,87 @@ fn the_feed_rises_by_no_more_than_it_may() {
         }
     }
     assert!((fastest - 1.2).abs() < 1e-9, "{fastest}");
+}
+
+/// Harms as it likes, and knows what its offset does: the tool follows it with the lag of the machine.
+struct Wild {
+    /// Amplitude of each axis, mm, and frequency of each, Hz.
+    amplitude_mm: [f64; 2],
+    hz: [f64; 2],
+    moved_mm: [f64; 2],
+    period: u32,
+}
+
+impl Controller<2> for Wild {
+    fn schedule(&self) -> Schedule {
+        Schedule { servo_periods: 1, preview: 10 }
+    }
+
+    fn reset(&mut self) {
+        (self.moved_mm, self.period) = ([0.0; 2], 0);
+    }
+
+    fn observe(&mut self, window: &Window<'_, 2>, _: Option<&Measured<2>>) {
+        let change = sub(window.offset_mm, self.moved_mm);
+        self.moved_mm = std::array::from_fn(|i| self.moved_mm[i] + SERVO_S / LAG_S * change[i]);
+    }
+
+    fn moved_mm(&self) -> Option<[f64; 2]> {
+        Some(self.moved_mm)
+    }
+
+    fn acts_at_once(&self) -> bool {
+        true
+    }
+
+    fn command(&mut self, _: &Window<'_, 2>, _: &Measured<2>) -> Command<2> {
+        self.period += 1;
+        let t_s = SERVO_S * f64::from(self.period);
+        let swing = |i: usize| self.amplitude_mm[i] * (std::f64::consts::TAU * self.hz[i] * t_s).sin();
+        Command::straight(1.0, [swing(0), swing(1)])
+    }
+}
+
+/// Contour error of the tool in each servo period, mm, and the state.
+fn wild(mut controller: Wild, allowed: bool) -> Vec<(f64, State)> {
+    let mut tick = Tick::new(SERVO_S, controller.schedule(), BOUNDS);
+    tick.allow(allowed);
+    let mut tool_mm = [0.0; 2];
+    let period = |_| {
+        let setpoint = tick.step(&mut Circle, &mut controller, tool_mm);
+        for axis in 0..2 {
+            tool_mm[axis] += SERVO_S / LAG_S * (setpoint.command_mm[axis] - tool_mm[axis]);
+        }
+        (beside(tool_mm), tick.state())
+    };
+    (0..6000).map(period).collect()
+}
+
+/// An error beyond this many times the largest without the correction, and this much, mm, is harm.
+const HARM: [f64; 2] = [1.5, 0.03];
+/// Behind it the offset goes on moving the tool by this part of its bound, and for so long, servo periods.
+const GOES_ON: f64 = 0.5;
+const FOR_PERIODS: usize = 150;
+/// Mean square that is harm, times that without and mm^2.
+const HARM_SQUARE: [f64; 2] = [1.75, 2.5e-5];
+
+proptest! {
+    /// The bound of the harm: how far the tool goes, for how long, and on the whole.
+    #[test]
+    fn a_controller_that_harms_takes_the_tool_so_far_and_not_for_long(
+        amplitude_mm in prop::array::uniform2(-0.25..0.25_f64),
+        hz in prop::array::uniform2(0.2..25.0_f64),
+    ) {
+        let made = || Wild { amplitude_mm, hz, moved_mm: [0.0; 2], period: 0 };
+        let [with, without] = [true, false].map(|allowed| wild(made(), allowed));
+        let largest = |cut: &[(f64, State)]| cut.iter().map(|(error_mm, _)| *error_mm).fold(0.0, f64::max);
+        let square = |cut: &[(f64, State)]| cut.iter().map(|(mm, _)| mm * mm).sum::<f64>() / cut.len() as f64;
+        let harm_mm = HARM[0] * largest(&without) + HARM[1];
+        let found_mm = largest(&with);
+        prop_assert!(found_mm <= harm_mm + GOES_ON * BOUNDS.deviation_mm, "{found_mm} mm, where {harm_mm} is harm");
+        let for_periods = with.split(|(mm, _)| *mm <= harm_mm).map(<[_]>::len).max().unwrap_or(0);
+        prop_assert!(for_periods <= FOR_PERIODS, "for {for_periods} servo periods");
+        let most_mm2 = HARM_SQUARE[0] * square(&without) + HARM_SQUARE[1];
+        prop_assert!(square(&with) <= most_mm2, "{} mm^2, not {most_mm2}", square(&with));
+    }
 }

@@ -18,8 +18,8 @@
 //! over the last [`OVERDONE_S`] is 0 where neither more nor less would have been better, 1 where nothing would have been as
 //! good, and negative where more would have been better.
 
+use crate::command::FaultEvidence;
 use crate::contour_error::{ContourError, locate};
-use crate::controller::FaultEvidence;
 use crate::vector::{add_scaled, dot, norm, scale, sub};
 use crate::window::Window;
 
@@ -50,6 +50,8 @@ pub(super) struct Benefit<const N: usize> {
     square_mm2: f64,
     open_square_mm2: f64,
     open_peak_mm: f64,
+    /// Without the correction, at the last decision, mm.
+    open_mm: f64,
     /// Means of 2 <eps, c> and <c, c>, mm^2.
     overdone_mm2: [f64; 2],
 }
@@ -61,8 +63,14 @@ impl<const N: usize> Benefit<N> {
         square_mm2: 0.0,
         open_square_mm2: 0.0,
         open_peak_mm: 0.0,
+        open_mm: 0.0,
         overdone_mm2: [0.0; 2],
     };
+
+    /// Contour error that there would be without the correction, mm.
+    pub(super) fn open_mm(&self) -> f64 {
+        self.open_mm
+    }
 
     /// By how much the correction was overdone lately: see above.
     pub(super) fn overdone(&self) -> f64 {
@@ -91,7 +99,8 @@ impl<const N: usize> Benefit<N> {
         let lately = [2.0 * dot(vector_mm, changed_mm), dot(changed_mm, changed_mm)];
         self.overdone_mm2 = add_scaled(self.overdone_mm2, quick, sub(lately, self.overdone_mm2));
         let square = dot(vector_mm, vector_mm);
-        let open_peak_mm = norm(open.vector_mm) + DOUBT * norm(g_mm);
+        self.open_mm = norm(open.vector_mm);
+        let open_peak_mm = self.open_mm + DOUBT * norm(g_mm);
         let open_square = open_peak_mm * open_peak_mm;
         self.square_mm2 += part * (square - self.square_mm2);
         self.open_square_mm2 += part * (open_square - self.open_square_mm2);

@@ -24,40 +24,40 @@
 use crate::vector::{bounded, smooth_step};
 
 /// What may always be unexpected, mm^2 (0.1 um): the filter does not know the loads yet where it begins.
-pub(super) const LEAST_MM2: f64 = 1e-8;
+pub(crate) const LEAST_MM2: f64 = 1e-8;
 /// Standard deviations of what the statistics say, and the part of p.
 const DEVIATIONS: f64 = 4.0;
 const PUSHED_SHARE: f64 = 1.5;
 /// Time over which squares are averaged, s.
 const MEMORY_S: f64 = 0.005;
 /// Time of a free run, s: about the time constant of a usual position loop.
-pub(super) const RUN_S: f64 = 0.03;
+pub(crate) const RUN_S: f64 = 0.03;
 /// Time after which a law is not trusted at all, s.
-pub(super) const TO_DOUBT_S: f64 = 0.005;
+pub(crate) const TO_DOUBT_S: f64 = 0.005;
 /// Time of the contrary after which it is in full, s: so many times longer each time that loads were let go, up to the longest.
 const TO_TRUST_S: f64 = 0.3;
 const LONGER: f64 = 4.0;
 const LONGEST_S: f64 = 20.0;
 
 /// Servo periods of a free run.
-pub(super) fn run_periods(servo_s: f64) -> u32 {
+pub(crate) fn run_periods(servo_s: f64) -> u32 {
     libm::ceil(RUN_S / servo_s) as u32
 }
 
 /// n^2, S and p^2, mm^2.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct OneStep {
-    pub(super) missed_mm2: f64,
-    pub(super) expected_mm2: f64,
-    pub(super) pushed_mm2: f64,
+pub(crate) struct OneStep {
+    pub(crate) missed_mm2: f64,
+    pub(crate) expected_mm2: f64,
+    pub(crate) pushed_mm2: f64,
 }
 
 impl OneStep {
     /// Nothing.
-    pub(super) const NONE: Self = Self { missed_mm2: 0.0, expected_mm2: 0.0, pushed_mm2: 0.0 };
+    pub(crate) const NONE: Self = Self { missed_mm2: 0.0, expected_mm2: 0.0, pushed_mm2: 0.0 };
 
     /// Of all axes.
-    pub(super) fn sum(axes: impl Iterator<Item = Self>) -> Self {
+    pub(crate) fn sum(axes: impl Iterator<Item = Self>) -> Self {
         axes.fold(Self::NONE, |sum, axis| sum.with(1.0, axis))
     }
 
@@ -73,7 +73,7 @@ impl OneStep {
 
 /// How servo periods have gone.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Course {
+pub(crate) struct Course {
     mean: OneStep,
     /// How far loads are taken up, 0 to 1.
     loads: f64,
@@ -83,10 +83,10 @@ pub(super) struct Course {
 
 impl Course {
     /// Nothing is known to the contrary.
-    pub(super) const AS_SAID: Self = Self { mean: OneStep::NONE, loads: 1.0, to_trust_s: TO_TRUST_S };
+    pub(crate) const AS_SAID: Self = Self { mean: OneStep::NONE, loads: 1.0, to_trust_s: TO_TRUST_S };
 
     /// A servo period.
-    pub(super) fn take_in(&mut self, step: OneStep, servo_s: f64) {
+    pub(crate) fn take_in(&mut self, step: OneStep, servo_s: f64) {
         let part = (servo_s / MEMORY_S).min(1.0);
         self.mean = self.mean.with(part, step).with(-part, self.mean);
         let change = if self.is_as_said() { servo_s / self.to_trust_s } else { -servo_s / TO_DOUBT_S };
@@ -98,18 +98,18 @@ impl Course {
     }
 
     /// Whether it goes as the law says; what is not a number does not.
-    pub(super) fn is_as_said(&self) -> bool {
+    pub(crate) fn is_as_said(&self) -> bool {
         let OneStep { missed_mm2, expected_mm2, pushed_mm2 } = self.mean;
         missed_mm2 <= LEAST_MM2 + DEVIATIONS * DEVIATIONS * expected_mm2 + PUSHED_SHARE * PUSHED_SHARE * pushed_mm2
     }
 
     /// Time after which a law is trusted, s.
-    pub(super) fn trust_time_s(&self) -> f64 {
+    pub(crate) fn trust_time_s(&self) -> f64 {
         self.to_trust_s
     }
 
     /// The part of the loads that is taken up.
-    pub(super) fn loads(&self) -> f64 {
+    pub(crate) fn loads(&self) -> f64 {
         smooth_step(self.loads)
     }
 }

@@ -9,7 +9,7 @@
 //! harm, for `GOOD_S` in a row. The first wait after a fault is `FIRST_WAIT_S`; each further one of the same making takes
 //! twice as long, and a correction that has held for `FORGIVEN_S` begins anew.
 
-use crate::controller::FaultEvidence;
+use crate::command::FaultEvidence;
 
 /// Predictions that hold for so long in a row are good, s.
 const GOOD_S: f64 = 0.1;
@@ -64,6 +64,22 @@ pub struct Fade {
     pub evidence: Option<FaultEvidence>,
     /// Decisions made before it.
     pub decision: u64,
+    /// How often it has been taken out by then.
+    pub count: u32,
+}
+
+/// What a decision goes by.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Seen {
+    /// Whether a correction is wanted at all.
+    pub(super) allowed: bool,
+    /// Why the controller must not be followed, and what that rests on.
+    pub(super) bad: Option<(Cause, Option<FaultEvidence>)>,
+    /// Whether it may be followed again, and whether its offset has come to rest.
+    pub(super) good: bool,
+    pub(super) over: bool,
+    /// Time since the last decision, s.
+    pub(super) period_s: f64,
 }
 
 /// The state and what it follows.
@@ -71,8 +87,9 @@ pub struct Fade {
 pub(super) struct Engagement {
     state: State,
     decisions: u64,
-    /// The last fade.
+    /// The last fade, and whether there was one for whatever reason.
     fade: Option<Fade>,
+    has_left: bool,
     /// Time in the loop, or out of it, and how long everything has been good, s.
     for_s: f64,
     good_s: f64,
@@ -81,8 +98,15 @@ pub(super) struct Engagement {
 
 impl Engagement {
     /// At the start of a program: in the loop.
-    pub(super) const START: Self =
-        Self { state: State::Engaged, decisions: 0, fade: None, for_s: 0.0, good_s: 0.0, wait_s: FIRST_WAIT_S };
+    pub(super) const START: Self = Self {
+        state: State::Engaged,
+        decisions: 0,
+        fade: None,
+        has_left: false,
+        for_s: 0.0,
+        good_s: 0.0,
+        wait_s: FIRST_WAIT_S,
+    };
 
     pub(super) fn state(&self) -> State {
         self.state
@@ -94,25 +118,20 @@ impl Engagement {
 
     /// For how long it has been back in the loop, s; none of one that never left it.
     pub(super) fn back_for_s(&self) -> Option<f64> {
-        self.fade.map(|_| self.for_s)
+        self.has_left.then_some(self.for_s)
     }
 
-    /// Goes on by a decision: `bad` is why the controller must not be followed, and what that rests on; `good` whether it may be followed again, and
-    /// `over` whether its offset has come to rest.
-    pub(super) fn go_on(
-        &mut self,
-        bad: Option<(Cause, Option<FaultEvidence>)>,
-        good: bool,
-        over: bool,
-        period_s: f64,
-    ) -> State {
+    /// Goes on by a decision.
+    pub(super) fn go_on(&mut self, seen: &Seen) -> State {
+        let Seen { allowed, bad, good, over, period_s } = *seen;
         self.for_s += period_s;
         self.good_s = if good && bad.is_none() { self.good_s + period_s } else { 0.0 };
         match (self.state, bad) {
-            (State::Engaged, Some((cause, evidence))) => self.leave(cause, evidence),
+            (State::Engaged, Some((cause, evidence))) => self.fail(cause, evidence),
+            (State::Engaged, None) if !allowed => self.leave(),
             (State::Engaged, None) if self.for_s > FORGIVEN_S => self.wait_s = FIRST_WAIT_S,
             (State::Engaged, None) => {}
-            _ if self.for_s >= self.wait_s && self.good_s >= GOOD_S => {
+            _ if allowed && self.for_s >= self.wait_s && self.good_s >= GOOD_S => {
                 (self.state, self.for_s) = (State::Engaged, 0.0);
             }
             (State::Fading, _) if over => self.state = State::Shadow,
@@ -122,13 +141,19 @@ impl Engagement {
         self.state
     }
 
-    fn leave(&mut self, cause: Cause, evidence: Option<FaultEvidence>) {
+    fn fail(&mut self, cause: Cause, evidence: Option<FaultEvidence>) {
         // A lost position is not the controller's fault.
         if self.fade.is_some() && cause != Cause::LostFeedback {
             self.wait_s = (2.0 * self.wait_s).min(LONGEST_WAIT_S);
         }
-        self.fade = Some(Fade { cause, evidence, decision: self.decisions });
-        (self.state, self.for_s, self.good_s) = (State::Fading, 0.0, 0.0);
+        let count = self.fade.map_or(0, |fade| fade.count).saturating_add(1);
+        self.fade = Some(Fade { cause, evidence, decision: self.decisions, count });
+        self.leave();
+        self.good_s = 0.0;
+    }
+
+    fn leave(&mut self) {
+        (self.state, self.for_s, self.has_left) = (State::Fading, 0.0, true);
     }
 }
 
@@ -138,19 +163,25 @@ mod tests {
 
     const PERIOD_S: f64 = 0.003;
 
+    /// A decision with this fault of a controller whose offset has come to rest.
+    fn goes_on(engagement: &mut Engagement, cause: Option<Cause>, good: bool, over: bool) -> State {
+        let bad = cause.map(|cause| (cause, None));
+        engagement.go_on(&Seen { allowed: true, bad, good, over, period_s: PERIOD_S })
+    }
+
     /// Decisions until a controller that is good from now on is back.
     fn until_back(engagement: &mut Engagement) -> u32 {
-        (1..10_000).find(|_| engagement.go_on(None, true, true, PERIOD_S) == State::Engaged).expect("it comes back")
+        (1..10_000).find(|_| goes_on(engagement, None, true, true) == State::Engaged).expect("it comes back")
     }
 
     #[test]
     fn it_leaves_at_once_and_is_back_within_a_second_of_a_first_fault() {
         let mut engagement = Engagement::START;
-        assert_eq!(engagement.go_on(Some((Cause::LostFeedback, None)), false, false, PERIOD_S), State::Fading);
+        assert_eq!(goes_on(&mut engagement, Some(Cause::LostFeedback), false, false), State::Fading);
         for _ in 0..30 {
-            assert_eq!(engagement.go_on(Some((Cause::LostFeedback, None)), false, false, PERIOD_S), State::Fading);
+            assert_eq!(goes_on(&mut engagement, Some(Cause::LostFeedback), false, false), State::Fading);
         }
-        assert_eq!(engagement.go_on(None, true, true, PERIOD_S), State::Shadow);
+        assert_eq!(goes_on(&mut engagement, None, true, true), State::Shadow);
         assert!(f64::from(until_back(&mut engagement)) * PERIOD_S < 0.5);
     }
 
@@ -159,24 +190,36 @@ mod tests {
         let mut engagement = Engagement::START;
         let mut waits = [0; 8];
         for wait in &mut waits {
-            engagement.go_on(Some((Cause::Harmful, None)), false, true, PERIOD_S);
+            goes_on(&mut engagement, Some(Cause::Harmful), false, true);
             *wait = until_back(&mut engagement);
         }
         assert!(waits.is_sorted() && waits[7] > 10 * waits[0], "{waits:?}");
         assert!(f64::from(waits[7]) * PERIOD_S <= LONGEST_WAIT_S + PERIOD_S);
         for _ in 0..2000 {
-            engagement.go_on(None, true, true, PERIOD_S);
+            goes_on(&mut engagement, None, true, true);
         }
-        engagement.go_on(Some((Cause::Harmful, None)), false, true, PERIOD_S);
+        goes_on(&mut engagement, Some(Cause::Harmful), false, true);
         assert!(until_back(&mut engagement) <= 2 * waits[0]);
     }
 
     #[test]
     fn what_is_good_only_now_and_then_stays_out() {
         let mut engagement = Engagement::START;
-        engagement.go_on(Some((Cause::WrongPredictions, None)), false, true, PERIOD_S);
+        goes_on(&mut engagement, Some(Cause::WrongPredictions), false, true);
         for n in 0..5000 {
-            assert_ne!(engagement.go_on(None, n % 10 != 0, true, PERIOD_S), State::Engaged);
+            assert_ne!(goes_on(&mut engagement, None, n % 10 != 0, true), State::Engaged);
         }
+    }
+
+    #[test]
+    fn what_is_not_wanted_leaves_without_a_fault_and_comes_back_when_it_is() {
+        let mut engagement = Engagement::START;
+        let mut asked =
+            |allowed| engagement.go_on(&Seen { allowed, bad: None, good: true, over: true, period_s: PERIOD_S });
+        assert_eq!([true, false, false].map(&mut asked), [State::Engaged, State::Fading, State::Shadow]);
+        assert!((0..1000).all(|_| asked(false) == State::Shadow));
+        assert_eq!(asked(true), State::Engaged);
+        assert_eq!(engagement.fade(), None);
+        assert_eq!(engagement.back_for_s(), Some(0.0));
     }
 }

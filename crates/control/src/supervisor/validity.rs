@@ -16,7 +16,7 @@
 //! A law that misses more than it is to correct leaves more than no correction would; one that misses less leaves less. The first motion
 //! is corrected in full: a correction that came in over the first 50 um left 13.8 um of the figure of eight on workshop in place of 0.4, and
 //! took 21 N m in place of 10.5. A wrong inertia shows where the speed changes, and not on the straight line behind: a law that was wrong is
-//! wrong until it has held while the commanded speed changed as much as then (`proof.rs`). A law that was learned (`learning.rs`) takes the place of the nominal one without the record
+//! wrong until it has held while the commanded speed changed as much as then (`proof.rs`). A law that was learned (`controller/lqg_preview/learning.rs`) takes the place of the nominal one without the record
 //! of that.
 //!
 //! A law that has begun just now, that is not followed, that is wrong, or by which servo periods do not go (`one_step.rs`) is
@@ -31,11 +31,9 @@
 //!
 //! Source: the free run as in Ljung (1999), System Identification, section 16.6, where models are validated by simulation; the rule is our own.
 
-use super::super::FaultEvidence;
+use crate::command::FaultEvidence;
 use crate::vector::{bounded, dot, smooth_step};
 
-use super::approach::Trusted;
-use super::estimate::{AxisModel, Estimate, Sent};
 use super::one_step::{Course, OneStep, RUN_S, TO_DOUBT_S};
 use super::proof::Proof;
 
@@ -50,52 +48,36 @@ const SHOWN_DEVIATIONS: f64 = 3.0;
 /// Times what may be missed that are far more.
 const FAR: f64 = 2.0;
 
-/// A free run beside the filter, of an axis.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct LawTrial {
-    free: Estimate,
-    for_s: f64,
-    missed_rad: f64,
+/// How far a law is followed, both 0 to 1.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Trusted {
+    /// Its lowest price.
+    pub(crate) near: f64,
+    /// Loads that the filter finds by it.
+    pub(crate) loads: f64,
 }
 
-impl LawTrial {
-    /// From an estimate on.
-    pub(super) fn from(estimate: &Estimate) -> Self {
-        Self { free: *estimate, for_s: 0.0, missed_rad: 0.0 }
-    }
-
-    /// m, rad.
-    pub(super) fn missed_rad(&self) -> f64 {
-        self.missed_rad
-    }
-
-    /// One servo period on; `estimate` is that of the filter, which has taken in what was measured.
-    pub(super) fn go_on(&mut self, model: &AxisModel, sent: &Sent, measured_rad: f64, estimate: &Estimate) {
-        model.predict(&mut self.free, sent);
-        self.missed_rad = measured_rad - model.shown_rad(&self.free);
-        self.for_s += model.law.periods.servo_s;
-        if self.for_s >= RUN_S {
-            (self.free, self.for_s) = (*estimate, 0.0);
-        }
-    }
+impl Trusted {
+    /// In everything.
+    pub(crate) const FULLY: Self = Self { near: 1.0, loads: 1.0 };
 }
 
 /// What the axes showed in a servo period.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Shown<const N: usize> {
+pub(crate) struct Shown<const N: usize> {
     /// m, mm.
-    pub(super) missed_mm: [f64; N],
+    pub(crate) missed_mm: [f64; N],
     /// o, mm.
-    pub(super) open_mm: [f64; N],
+    pub(crate) open_mm: [f64; N],
     /// Mean square of m by the last innovations, if they are white, mm^2.
-    pub(super) by_noise_mm2: f64,
+    pub(crate) by_noise_mm2: f64,
     /// Position that the plan commands, mm.
-    pub(super) path_mm: [f64; N],
+    pub(crate) path_mm: [f64; N],
 }
 
 /// What is known of the laws of all axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Validity<const N: usize> {
+pub(crate) struct Validity<const N: usize> {
     /// What may always be missed, mm^2.
     always_mm2: f64,
     missed_mm2: f64,
@@ -113,7 +95,7 @@ pub(super) struct Validity<const N: usize> {
 
 impl<const N: usize> Validity<N> {
     /// Nothing yet, of laws that noise and loads that nobody foresees make miss by a mean square of `unforeseen_mm2`.
-    pub(super) fn unknown(unforeseen_mm2: f64) -> Self {
+    pub(crate) fn unknown(unforeseen_mm2: f64) -> Self {
         Self {
             always_mm2: LEAST_MM2 + DEVIATIONS * DEVIATIONS * unforeseen_mm2,
             missed_mm2: 0.0,
@@ -129,24 +111,24 @@ impl<const N: usize> Validity<N> {
     }
 
     /// Nothing any more.
-    pub(super) fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         *self = Self { always_mm2: self.always_mm2, ..Self::unknown(0.0) };
     }
 
     /// The laws are others from now on: what the ones before them missed says nothing of them.
-    pub(super) fn begin_law(&mut self) {
+    pub(crate) fn begin_law(&mut self) {
         (self.missed_mm2, self.beyond, self.proof) = (0.0, [false; 2], Proof::NOT_NEEDED);
         // Where the tool is by then, it is led back gently.
         self.near = 0.0;
     }
 
     /// How a servo period went within itself, before [`Self::take_in`].
-    pub(super) fn take_in_step(&mut self, step: OneStep, servo_s: f64) {
+    pub(crate) fn take_in_step(&mut self, step: OneStep, servo_s: f64) {
         self.course.take_in(step, servo_s);
     }
 
     /// A servo period.
-    pub(super) fn take_in(&mut self, shown: &Shown<N>, followed: bool, servo_s: f64) {
+    pub(crate) fn take_in(&mut self, shown: &Shown<N>, followed: bool, servo_s: f64) {
         let Shown { missed_mm, open_mm, by_noise_mm2, path_mm } = *shown;
         let part = (servo_s / MEMORY_S).min(1.0);
         self.missed_mm2 += part * (largest_square(missed_mm) - self.missed_mm2);
@@ -182,17 +164,17 @@ impl<const N: usize> Validity<N> {
     }
 
     /// How far the laws are followed.
-    pub(super) fn trusted(&self) -> Trusted {
+    pub(crate) fn trusted(&self) -> Trusted {
         Trusted { near: smooth_step(self.near), loads: self.course.loads() }
     }
 
     /// Whether the laws are wrong.
-    pub(super) fn is_wrong(&self) -> bool {
+    pub(crate) fn is_wrong(&self) -> bool {
         self.misses() || self.proof.is_needed()
     }
 
     /// What is missed, and what may be, where that is too much.
-    pub(super) fn doubt(&self) -> Option<FaultEvidence> {
+    pub(crate) fn doubt(&self) -> Option<FaultEvidence> {
         let [found_mm, limit_mm] = [self.missed_mm2, self.allowed_mm2()].map(libm::sqrt);
         self.misses().then_some(FaultEvidence { found_mm, limit_mm })
     }

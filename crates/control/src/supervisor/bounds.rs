@@ -1,0 +1,163 @@
+//! What every command is held to, whoever asks for it.
+//!
+//! | Bound | Of what | Value |
+//! |---|---|---|
+//! | deviation | distance of the command from the path; it goes before the others | of the machine |
+//! | speed | of the offset | that of a rapid motion |
+//! | acceleration | of the offset, and of the feed against the plan | the speed within [`TAKE_UP_S`] |
+//! | rate | of plan time | [`SLOWEST`] to [`FASTEST`], or what the feed may rise by |
+//!
+//! An offset along the path is none from the path. The path is known as chords between the knots of the window.
+
+use crate::command::Command;
+use crate::contour_error::locate;
+use crate::vector::{add_scaled, bounded, dot, limit_norm, norm, scale, sub};
+use crate::window::Window;
+
+/// Slowest that any controller may run the plan: a program always ends.
+const SLOWEST: f64 = 0.1;
+/// Fastest where nobody says otherwise: no command leaps.
+const FASTEST: f64 = 3.0;
+/// Time in which the correction may take up the highest speed it is allowed, s. Feedforward of the exact model takes as
+/// little at a corner; of what leaps more, no machine could follow any.
+const TAKE_UP_S: f64 = 0.001;
+/// Parts of the way of the offset in a feed period at which its deviation is looked at.
+const ON_THE_WAY: [f64; 3] = [0.75, 0.5, 0.25];
+/// The bound of the deviation may move the command by this many times the highest speed of the offset.
+const MAX_TAKEN_BACK: f64 = 2.0;
+/// Offsets closer than this differ by rounding only, mm.
+const SAME_MM: f64 = 1e-12;
+/// Looks at the path, of eight knots to either side each, before the nearest point counts as found.
+const MAX_LOOKS: usize = 8;
+
+/// What the command is held to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Distance of the command from the path, mm.
+    pub deviation_mm: f64,
+    /// Speed of the offset, mm/s.
+    pub speed_mm_s: f64,
+    /// Acceleration of the offset and, along the path, of the feed against the planned, mm/s2, of any controller. Its jerk is
+    /// bounded with it: the acceleration changes only from one feed period to the next, by no more than twice this.
+    pub acceleration_mm_s2: f64,
+    /// Acceleration of an offset that fades, mm/s2.
+    pub fade_mm_s2: f64,
+    /// Fastest that a controller may run the plan, as a part of its speed.
+    pub fastest: f64,
+}
+
+impl Bounds {
+    /// For a machine whose rapid motions run at `rapid_mm_s` and whose corrections accelerate by `correction_mm_s2`.
+    pub fn new(deviation_mm: f64, rapid_mm_s: f64, correction_mm_s2: f64) -> Self {
+        let acceleration_mm_s2 = rapid_mm_s / TAKE_UP_S;
+        let fade_mm_s2 = correction_mm_s2;
+        Self { deviation_mm, speed_mm_s: rapid_mm_s, acceleration_mm_s2, fade_mm_s2, fastest: FASTEST }
+    }
+
+    /// With at most `percent` above the planned feedrate.
+    pub fn feed_rise(self, percent: Option<f64>) -> Self {
+        Self { fastest: percent.map_or(FASTEST, |percent| 1.0 + percent / 100.0), ..self }
+    }
+
+    /// The command within the bounds, `last_rate` being the rate until now. An offset that is there at once is one from the path as it is now, any
+    /// other from where it leads to in a feed period.
+    pub(super) fn hold<const N: usize>(
+        &self,
+        window: &Window<'_, N>,
+        wanted: Command<N>,
+        last_rate: f64,
+        at_once: bool,
+    ) -> Command<N> {
+        let period_s = window.feed_period_s;
+        let Self { deviation_mm, speed_mm_s, acceleration_mm_s2, fastest, .. } = *self;
+        // One that acts at once may step as far in a shorter period as in the time in which a correction takes up its speed, and may stop
+        // at once.
+        let longer = if at_once { (TAKE_UP_S / period_s).max(1.0) } else { 1.0 };
+        let velocity = scale(1.0 / period_s, sub(wanted.offset_mm, window.offset_mm));
+        let velocity = if at_once && norm(velocity) <= norm(window.offset_mm_s) {
+            velocity
+        } else {
+            let change = limit_norm(sub(velocity, window.offset_mm_s), longer * longer * acceleration_mm_s2 * period_s);
+            add_scaled(window.offset_mm_s, 1.0, change)
+        };
+        let velocity = limit_norm(velocity, longer * speed_mm_s);
+        let step = acceleration_mm_s2 * period_s / window.now().feed_mm_s.max(f64::MIN_POSITIVE);
+        let rate = bounded(bounded(wanted.rate, SLOWEST, fastest), last_rate - step, last_rate + step);
+        // Where nothing binds, the offset is the controller's to the bit.
+        let free = add_scaled(window.offset_mm, period_s, velocity);
+        let same = norm(sub(free, wanted.offset_mm)) <= SAME_MM;
+        let offset_mm = if same { wanted.offset_mm } else { free };
+        let near_mm = if at_once {
+            near_the_path(window, 0.0, offset_mm, deviation_mm)
+        } else {
+            let end_mm = near_the_path(window, rate * period_s, offset_mm, deviation_mm);
+            self.near_on_the_way(window, rate * period_s, end_mm)
+        };
+        if same && near_mm == offset_mm {
+            return Command { rate, ..wanted };
+        }
+        // What the path takes back comes on top, but not without bound.
+        let step_mm = limit_norm(sub(near_mm, window.offset_mm), MAX_TAKEN_BACK * longer * speed_mm_s * period_s);
+        Command::straight(rate, add_scaled(window.offset_mm, 1.0, step_mm))
+    }
+
+    /// The offset moves along a line, the path perhaps not: on the way it may be too far where neither end is. Its end then
+    /// moves towards the path, and the step is no longer than it may be.
+    fn near_on_the_way<const N: usize>(&self, window: &Window<'_, N>, ahead_s: f64, end_mm: [f64; N]) -> [f64; N] {
+        let mut near_mm = end_mm;
+        for part in ON_THE_WAY {
+            let there_mm = add_scaled(window.offset_mm, part, sub(near_mm, window.offset_mm));
+            let back_mm = sub(near_the_path(window, part * ahead_s, there_mm, self.deviation_mm), there_mm);
+            if norm(back_mm) > 0.0 {
+                near_mm = add_scaled(near_mm, 1.0 / part, back_mm);
+            }
+        }
+        if near_mm == end_mm {
+            return end_mm;
+        }
+        let step_mm = limit_norm(sub(near_mm, window.offset_mm), self.speed_mm_s * window.feed_period_s);
+        let near_mm = add_scaled(window.offset_mm, 1.0, step_mm);
+        near_the_path(window, ahead_s, near_mm, self.deviation_mm)
+    }
+}
+
+/// The offset `ahead_s` from now in plan time, taken back towards the path where the command would be further from it than
+/// `limit_mm`. An offset along the path is none from the path.
+fn near_the_path<const N: usize>(window: &Window<'_, N>, ahead_s: f64, offset_mm: [f64; N], limit_mm: f64) -> [f64; N] {
+    if norm(offset_mm) <= limit_mm {
+        return offset_mm;
+    }
+    let next = window.preview.at(window.tau_s + ahead_s);
+    // Beyond the knots that the window holds nobody knows where the path is.
+    let [oldest, farthest] = window.range();
+    let known = window.knot(if dot(offset_mm, next.tangent) < 0.0 { oldest } else { farthest });
+    let known_mm = norm(sub(known.position_mm, next.position_mm));
+    let offset_mm = limit_norm(offset_mm, known_mm.max(limit_mm));
+    let command_mm = add_scaled(next.position_mm, 1.0, offset_mm);
+    let lead_s = dot(offset_mm, next.tangent) / next.feed_mm_s;
+    // Near rest the lead says nothing, and the point of the same instant is on the path, too: what is found must be nearer.
+    let guesses = [ahead_s + lead_s, ahead_s].map(|guess_s| way_to_the_path(window, command_mm, guess_s));
+    let nearer = |a: [f64; N], b: [f64; N]| if norm(b) < norm(a) { b } else { a };
+    let back_mm = guesses.into_iter().fold(scale(-1.0, offset_mm), nearer);
+    let too_far_mm = norm(back_mm) - limit_mm;
+    if too_far_mm <= 0.0 {
+        return offset_mm;
+    }
+    add_scaled(offset_mm, too_far_mm / norm(back_mm), back_mm)
+}
+
+/// From a command to the nearest point of the path, looked for from a time after now on.
+fn way_to_the_path<const N: usize>(window: &Window<'_, N>, command_mm: [f64; N], guess_s: f64) -> [f64; N] {
+    // A float that is too large, or not a number, saturates; the window clamps it.
+    let near = libm::round(guess_s / window.servo_s()) as i32;
+    let mut nearest = locate(window, command_mm, near, 0);
+    // Behind, the knots are as far apart as the rate made them, and the guess may be off.
+    for _ in 0..MAX_LOOKS {
+        let again = locate(window, command_mm, nearest.index, 0);
+        if again.index == nearest.index {
+            break;
+        }
+        nearest = again;
+    }
+    nearest.vector_mm
+}
