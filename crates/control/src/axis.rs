@@ -14,6 +14,7 @@
 //! | `axis/drive.rs` | integral of the speed loop, feedforward, speed limit, torque filter |
 //! | `axis/friction.rs` | asymmetry, Stribeck's curve, presliding |
 //! | `axis/transmission.rs` | motor and table as two masses: stiffness, damping, backlash of the ball screw |
+//! | `axis/delays.rs` | delays of commands, references and positions |
 //!
 //! `axis/mechanics.rs` steps motor, table and friction under given torques, `axis/inverse.rs` solves the law for the command, all of this included.
 //!
@@ -28,6 +29,7 @@ pub(crate) mod drive;
 pub(crate) mod friction;
 pub(crate) mod transmission;
 pub(crate) mod mechanics;
+pub(crate) mod delays;
 pub(crate) mod inverse;
 pub(crate) mod statistics;
 pub(crate) mod knowledge;

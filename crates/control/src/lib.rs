@@ -93,9 +93,10 @@ mod supervisor;
 mod controller;
 mod tick;
 
+pub use axis::delays::{CommandQueue, LoopDelays, MAX_COMMAND_PERIODS};
 pub use axis::drive::{DriveLaw, DriveParameters, DriveReference, DriveState};
 pub use axis::friction::{FrictionLaw, FrictionParameters};
-pub use axis::inverse::{AxisInverse, Gains, LoopDelays};
+pub use axis::inverse::{AxisInverse, Gains};
 pub use axis::knowledge::{AxisKnowledge, Number};
 pub use axis::mechanics::{MechanicsLaw, MechanicsState};
 pub use axis::statistics::AxisStatistics;

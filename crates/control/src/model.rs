@@ -4,7 +4,7 @@
 //! | Offset | Bytes | What |
 //! |---|---|---|
 //! | 0 | 8 | `FWMODEL` and a zero byte |
-//! | 8 | 4 | format: [`BLOCK_FORMAT`] |
+//! | 8 | 4 | format: 2, or 3 with a number that format 2 lacks |
 //! | 12 | 4 | kind of the identifier: 1 contour, 2 servo, 3 axes |
 //! | 16 | 4 | N, number of axes |
 //! | 20 | 4 | n, number of numbers that follow the periods |
@@ -16,7 +16,8 @@
 //! The numbers of a contour identifier are its weights, group by group in the order of
 //! [`Identifier::weights`]. A servo identifier has its spread after the weights, axis by axis and
 //! row by row. Axes have the mechanics period, s, and then [`AxisKnowledge::NUMBERS`], axis by
-//! axis.
+//! axis. [`Number::format`] is the first format that has a number; in an earlier block the number is
+//! missing and zero. A block has the lowest format that holds its model.
 //!
 //! Integers are unsigned; all other numbers are IEEE 754 double precision. Everything is
 //! little-endian. [`ModelBlock::from_bytes`] needs no memory beyond its result and never panics,
@@ -34,8 +35,10 @@ use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
 
 /// What a block begins with.
 pub(crate) const MAGIC: [u8; 8] = *b"FWMODEL\0";
-/// The format that is read and written. It is raised whenever the layout or the meaning of a number changes.
-pub const BLOCK_FORMAT: u32 = 2;
+/// The latest format that is read and written. It is raised whenever the layout or the meaning of a number changes.
+pub const BLOCK_FORMAT: u32 = 3;
+/// The earliest format that is read. Models without later numbers are still written in it.
+const EARLIEST_FORMAT: u32 = 2;
 /// Servo periods that a machine can have, s: as a machine file bounds them.
 pub const SERVO_PERIODS_S: [f64; 2] = [1e-5, 0.1];
 /// Periods of the speed loop that it can have, s.
@@ -146,7 +149,9 @@ impl fmt::Display for BlockError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NoModel => f.write_str("these bytes are no model"),
-            Self::Format(format) => write!(f, "the model is of format {format}, and format {BLOCK_FORMAT} is read"),
+            Self::Format(format) => {
+                write!(f, "the model is of format {format}, and formats {EARLIEST_FORMAT} to {BLOCK_FORMAT} are read")
+            }
             Self::Kind(kind) => write!(f, "no identifier is of kind {kind}"),
             Self::Axes(axes) => write!(f, "the model is for {axes} axes"),
             Self::Length => f.write_str("the model is cut off, or has something behind it"),
@@ -170,7 +175,7 @@ impl<const N: usize> ModelBlock<N> {
         }
         let mut whole = || rest.take().map(u32::from_le_bytes).ok_or(BlockError::Length);
         let (format, kind, axes, numbers) = (whole()?, whole()?, whole()?, whole()?);
-        if format != BLOCK_FORMAT {
+        if !(EARLIEST_FORMAT..=BLOCK_FORMAT).contains(&format) {
             return Err(BlockError::Format(format));
         }
         let mut trained = match kind {
@@ -183,7 +188,7 @@ impl<const N: usize> ModelBlock<N> {
             return Err(BlockError::Axes(axes));
         }
         let mut expected = 0_usize;
-        trained.numbers(&mut |_, group| expected += group.len());
+        trained.numbers_of(format, &mut |_, group| expected += group.len());
         let (content, checksum) = bytes.split_last_chunk().ok_or(BlockError::Length)?;
         // The periods are two numbers more.
         if numbers as usize != expected || rest.rest.len() != 8 * (expected + 2) + 4 {
@@ -195,7 +200,7 @@ impl<const N: usize> ModelBlock<N> {
         let servo_s = rest.number(&NumberBounds::within(SERVO_PERIODS_S))?;
         let feed_period_s = rest.number(&NumberBounds::within(FEED_PERIODS_S))?;
         let mut fault = None;
-        trained.numbers(&mut |bounds, group| {
+        trained.numbers_of(format, &mut |bounds, group| {
             for value in group {
                 match rest.number(bounds) {
                     Ok(number) => *value = number,
@@ -217,8 +222,14 @@ impl<const N: usize> ModelBlock<N> {
     /// Hands over the block that reads as this model, piece by piece.
     pub fn to_bytes(&self, mut put: impl FnMut(&[u8])) {
         let mut trained = self.trained.clone();
+        let mut format = EARLIEST_FORMAT;
+        trained.numbers(&mut |bounds, group| {
+            if group.iter().any(|number| *number != 0.0) {
+                format = format.max(bounds.format());
+            }
+        });
         let mut numbers = 0_u32;
-        trained.numbers(&mut |_, group| numbers += group.len() as u32);
+        trained.numbers_of(format, &mut |_, group| numbers += group.len() as u32);
         let kind = match self.trained.kind() {
             IdentifierKind::Contour => CONTOUR,
             IdentifierKind::Servo => SERVO,
@@ -230,13 +241,16 @@ impl<const N: usize> ModelBlock<N> {
             put(bytes);
         };
         put_counted(&MAGIC);
-        for whole in [BLOCK_FORMAT, kind, N as u32, numbers] {
+        for whole in [format, kind, N as u32, numbers] {
             put_counted(&whole.to_le_bytes());
         }
         for period_s in [self.servo_s, self.feed_period_s] {
             put_counted(&period_s.to_le_bytes());
         }
-        trained.numbers(&mut |_, group| group.iter().for_each(|number| put_counted(&number.to_le_bytes())));
+        let put_group = &mut |_: &NumberBounds, group: &mut [f64]| {
+            group.iter().for_each(|number| put_counted(&number.to_le_bytes()));
+        };
+        trained.numbers_of(format, put_group);
         put(&(!crc).to_le_bytes());
     }
 }
@@ -269,6 +283,15 @@ impl<const N: usize> Trained<N> {
         }
     }
 
+    /// The numbers that a block of this format has.
+    fn numbers_of(&mut self, format: u32, each: &mut impl FnMut(&NumberBounds, &mut [f64])) {
+        self.numbers(&mut |bounds, group| {
+            if bounds.format() <= format {
+                each(bounds, group);
+            }
+        });
+    }
+
     /// Whether its spread, where it has one, can be mean squares and products: no product is beyond what its squares allow.
     fn has_a_spread(&self) -> bool {
         let Self::Servo(_, spread) = self else { return true };
@@ -292,6 +315,14 @@ enum NumberBounds {
 impl NumberBounds {
     fn within([least, most]: [f64; 2]) -> Self {
         Self::Within(least, most)
+    }
+
+    /// Format of a block from which on the block has it.
+    fn format(&self) -> u32 {
+        match self {
+            Self::Within(..) => EARLIEST_FORMAT,
+            Self::Of(number) => number.format,
+        }
     }
 
     fn hold(&self, value: f64) -> bool {
@@ -436,7 +467,21 @@ mod tests {
         assert_eq!(at(1), identified.axes[0].parameters.rad_per_mm);
         assert_eq!(at(1 + 10), identified.axes[0].drive.speed_window_s);
         assert_eq!(at(1 + count + 13), identified.axes[1].parameters.inertia_kg_m2);
-        assert_eq!(at(3 * count), identified.axes[2].statistics.cogging_per_rev);
+        assert_eq!(at(3 * count), identified.axes[2].delays.command_s);
+    }
+
+    #[test]
+    fn a_block_without_command_delay_is_one_of_format_2() {
+        let mut model = axes::<2>();
+        let with = block(&model);
+        let Trained::Axes(identified) = &mut model.trained else { panic!("axes") };
+        identified.axes.iter_mut().for_each(|axis| axis.delays.command_s = 0.0);
+        let without = block(&model);
+        assert_eq!((with[8], without[8], with.len() - without.len()), (3, 2, 2 * 8));
+        assert_eq!(ModelBlock::<2>::from_bytes(&without), Ok(model));
+        let mut relabeled = without;
+        relabeled[8] = 3;
+        assert_eq!(ModelBlock::<2>::from_bytes(&sealed(relabeled)), Err(BlockError::Length));
     }
 
     #[test]

@@ -32,6 +32,7 @@ const ALL: &[(&str, f64)] = &[
     ("interpolation_error_um", 0.2),
     ("signal_period_um", 20.0),
     ("measurement_delay_s", 0.0013),
+    ("command_delay_s", 0.002),
     ("drive_delay_s", 0.0007),
     ("jitter_s", 0.0008),
     ("coulomb_asymmetry_nm", 0.02),

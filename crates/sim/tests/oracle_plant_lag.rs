@@ -175,3 +175,27 @@ fn slow_torque_noise_moves_the_tool_by_what_the_loop_yields() {
     let wanted = yields_um(&noisy.axes[0], 0.1);
     assert!((square.sqrt() - wanted).abs() < 0.14 * wanted, "{} {wanted}", square.sqrt());
 }
+
+/// A command that is late moves everything behind it by whole servo periods: the machine does to the bit what one without the delay does
+/// with a plan that is so much later. Disturbance, noise and encoder stay in their own time.
+#[test]
+fn a_late_command_is_a_plan_that_is_later_by_whole_servo_periods() {
+    let course_mm = |n: u32| {
+        let t_s = f64::from(n) * 0.001;
+        [40.0 * (3.0 * t_s).sin(), 25.0 * t_s * t_s]
+    };
+    for name in ["tnv40", "soft", "coarse", "workshop"] {
+        let prompt = Machine::load(name.as_ref()).unwrap();
+        for late in [1, 2, 3, 8] {
+            let mut machine = prompt.clone();
+            let delay_s = f64::from(late) * machine.period.servo_s;
+            machine.axes.iter_mut().for_each(|axis| axis.command_delay_s = delay_s);
+            let [mut delayed, mut plain] = [&machine, &prompt].map(|machine| Plant::<2>::new(machine, [0.0; 2]));
+            for n in 0_u32..600 {
+                let later_mm = n.checked_sub(late).map_or([0.0; 2], course_mm);
+                let (found, wanted) = (delayed.step(course_mm(n)), plain.step(later_mm));
+                assert_eq!(found, wanted, "{name}, {late} servo periods late, servo period {n}");
+            }
+        }
+    }
+}

@@ -53,6 +53,7 @@ fn machine(choices: &[(u8, f64)], per_servo: u32, has_screw: bool, is_sound: boo
         let most_nm = axis.coulomb_friction_nm;
         axis.coulomb_asymmetry_nm = axis.coulomb_asymmetry_nm.max(-most_nm).min(most_nm);
         (axis.jitter_s, axis.drive_delay_s) = (axis.jitter_s.min(servo_s), axis.drive_delay_s.min(50.0 * servo_s));
+        axis.command_delay_s = axis.command_delay_s.min(8.0 * servo_s);
         axis.measurement_delay_s = axis.measurement_delay_s.min(50.0 * servo_s);
         let needed =
             [&mut axis.signal_period_um, &mut axis.stribeck_mm_s, &mut axis.cogging_per_rev, &mut axis.ripple_per_rev];

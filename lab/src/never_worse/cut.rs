@@ -73,13 +73,12 @@ pub struct SweepRow {
     pub corrected: Figures,
 }
 
-/// Whether no axis has a compliant transmission, an encoder step or a drive delay. Encoder noise
+/// Whether no axis has a compliant transmission, an encoder step, command delay or drive delay. Encoder noise
 /// and measurement delay are not checked.
 pub fn is_rigid(machine: &Machine) -> bool {
-    machine
-        .axes
-        .iter()
-        .all(|axis| axis.transmission.is_none() && axis.encoder_step_um == 0.0 && axis.drive_delay_s == 0.0)
+    machine.axes.iter().all(|axis| {
+        axis.transmission.is_none() && axis.encoder_step_um == 0.0 && axis.drive_delay_s + axis.command_delay_s == 0.0
+    })
 }
 
 /// The two controllers of a number of axes, made where they are needed.

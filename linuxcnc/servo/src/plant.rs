@@ -14,7 +14,7 @@
 use core::f64::consts::TAU;
 
 use feedwright_control::{
-    AxisKnowledge, AxisLaw, AxisState, AxisStatistics, DriveLaw, DriveReference, DriveState, FrictionLaw,
+    AxisKnowledge, AxisLaw, AxisState, AxisStatistics, CommandQueue, DriveLaw, DriveReference, DriveState, FrictionLaw,
     FrictionParameters, IdentifiedAxes, friction_signs, sin,
 };
 
@@ -94,6 +94,8 @@ struct SimulatedAxis {
     broadband_nm: f64,
     /// Share of the broadband torque that is left after a mechanics period.
     kept: f64,
+    /// Commands on their way to the position loop, rad.
+    commands: CommandQueue,
     /// References on their way to the drive, the newest first.
     sent: [DriveReference; KEPT],
     /// Angles that the encoder has shown, the newest first, each at the moment from which it is there at the start of a servo period.
@@ -123,6 +125,7 @@ impl SimulatedAxis {
             torque_nm: 0.0,
             broadband_nm: 0.0,
             kept,
+            commands: CommandQueue::resting(known.delays.command_periods(known.periods.servo_s), 0.0),
             sent: [DriveReference::default(); KEPT],
             shown_rad: [0.0; KEPT],
             arrived_rad: 0.0,
@@ -138,6 +141,7 @@ impl SimulatedAxis {
         let angle_rad = position_mm * self.law.parameters.rad_per_mm;
         self.state = AxisState { angle_rad, ..AxisState::default() };
         (self.drive_state, self.presliding_nm, self.torque_nm) = (DriveState::AT_REST, 0.0, 0.0);
+        self.commands = CommandQueue::resting(self.commands.periods(), angle_rad);
         self.sent = [DriveReference::default(); KEPT];
         self.shown_rad = [angle_rad; KEPT];
         self.arrived_rad = angle_rad;
@@ -158,7 +162,7 @@ impl SimulatedAxis {
     fn turn(&mut self, command_mm: f64, inertia: f64, period: u64) {
         self.load(inertia);
         let periods = self.known.periods;
-        let command_rad = command_mm * self.law.parameters.rad_per_mm;
+        let command_rad = self.commands.pass(command_mm * self.law.parameters.rad_per_mm);
         let reference =
             self.drive.position_loop(&self.law, command_rad, self.arrived_rad, &mut self.state, &mut self.drive_state);
         self.sent.copy_within(..KEPT - 1, 1);

@@ -34,6 +34,9 @@
 //! The linear parts superpose: the leads for velocity alone and for friction alone, each with its
 //! own integral, sum to the lead for both.
 //!
+//! Where commands reach the position loop n servo periods late ([`super::delays`]), c(m) = r(m + n) + o(m + n): the same lead, over the
+//! reference n servo periods ahead.
+//!
 //! Symbols: r reference, o lead, mm; J inertia; B viscous friction; Kv, Ti speed loop; fv, fa
 //! feedforward of the drive; g gains of the parts, where 1 is full compensation; the others as in
 //! [`super`] and [`super::drive`].
@@ -47,6 +50,7 @@
 //! The inverse assumes that no motion needs more.
 
 use super::AxisLaw;
+use super::delays::LoopDelays;
 use super::drive::DriveParameters;
 use super::friction::{FrictionLaw, FrictionParameters};
 use crate::activation::tanh;
@@ -54,15 +58,6 @@ use crate::vector::bounded;
 
 /// Steps in a servo period along which friction that has a memory is taken: at 0.1 ms the breakaway over 10 um at 50 mm/s is two steps.
 const FRICTION_STEPS: u32 = 10;
-
-/// How late what goes to the drive and what comes from the encoder is, s.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct LoopDelays {
-    /// From the position loop to the speed loop.
-    pub drive_s: f64,
-    /// From the encoder to the position loop.
-    pub measurement_s: f64,
-}
 
 /// How much of each part is fed forward; 1 is the exact model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -167,14 +162,20 @@ impl AxisInverse {
         1.0 / parameters.kp_1_s + parameters.inertia_kg_m2 / parameters.kv_nm_s_per_rad
     }
 
-    /// How far beyond the command of a servo period the motion is looked at, s, but for the differences.
+    /// How far beyond the moment at which the position loop has a command the motion is looked at, s, but for the differences.
     pub fn ahead_s(&self) -> f64 {
         self.delays.drive_s + self.filter_lag_s
     }
 
+    /// How late the position loop has a command, s.
+    pub fn command_delay_s(&self) -> f64 {
+        let servo_s = self.law.periods.servo_s;
+        self.delays.command_periods(servo_s) as f64 * servo_s
+    }
+
     /// How long after the measured position it was last made up for, a friction acts, s.
     pub fn late_s(&self) -> f64 {
-        self.ahead_s() + self.delays.measurement_s
+        self.command_delay_s() + self.ahead_s() + self.delays.measurement_s
     }
 
     /// Friction that the last lead makes up for, mm/s of reference speed.
@@ -188,6 +189,20 @@ impl AxisInverse {
     /// the drive carries in addition, as a reference speed, mm/s.
     #[inline]
     pub fn lead_mm(&mut self, gains: Gains, at_mm: impl Fn(f64) -> f64, last_mm: f64, load_mm_s: f64) -> f64 {
+        let (late_s, servo_s) = (self.command_delay_s(), self.law.periods.servo_s);
+        if late_s == 0.0 {
+            return self.prompt_lead_mm(gains, at_mm, last_mm, load_mm_s);
+        }
+        // What the reference moves by until the position loop has the command: it grows with the speed.
+        let moves_mm = |from_s: f64| gains.velocity * (at_mm(from_s + late_s) - at_mm(from_s));
+        let last_mm = last_mm - moves_mm(-servo_s);
+        let lead_mm = self.prompt_lead_mm(gains, |after_s| at_mm(after_s + late_s), last_mm, load_mm_s);
+        lead_mm + moves_mm(0.0)
+    }
+
+    /// The same over the reference at the moment at which the position loop has the command.
+    #[inline]
+    fn prompt_lead_mm(&mut self, gains: Gains, at_mm: impl Fn(f64) -> f64, last_mm: f64, load_mm_s: f64) -> f64 {
         let servo_s = self.law.periods.servo_s;
         self.take_in(last_mm);
         let own = self.without_lead(&at_mm);

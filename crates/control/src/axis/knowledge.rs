@@ -2,9 +2,9 @@
 //!
 //! Where it comes from is another matter: a machine file, an identification, or the simulation itself.
 
+use super::delays::LoopDelays;
 use super::drive::DriveParameters;
 use super::friction::FrictionParameters;
-use super::inverse::LoopDelays;
 use super::statistics::AxisStatistics;
 use super::transmission::TransmissionParameters;
 use super::{AxisLaw, Parameters, Periods};
@@ -22,7 +22,7 @@ pub struct AxisKnowledge {
     pub friction: FrictionParameters,
     /// Its ball screw.
     pub transmission: TransmissionParameters,
-    /// How late the drive and the encoder are.
+    /// How late commands, the drive and the encoder are.
     pub delays: LoopDelays,
     /// Noise, and what depends on the angle of the motor.
     pub statistics: AxisStatistics,
@@ -58,7 +58,7 @@ impl AxisKnowledge {
             presliding_rad: 0.0,
         },
         transmission: TransmissionParameters::RIGID,
-        delays: LoopDelays { drive_s: 0.0, measurement_s: 0.0 },
+        delays: LoopDelays { command_s: 0.0, drive_s: 0.0, measurement_s: 0.0 },
         statistics: AxisStatistics::NOTHING,
     };
 
@@ -114,6 +114,7 @@ impl AxisKnowledge {
         Number::within("cogging_nm", "N m", 0.0, 1e5, |axis| &mut axis.statistics.cogging_nm),
         Number::within("cogging_phase_rad", "rad", -10.0, 10.0, |axis| &mut axis.statistics.cogging_phase_rad),
         Number::within("cogging_per_rev", "1/rev", 0.0, 1e4, |axis| &mut axis.statistics.cogging_per_rev),
+        Number { format: 3, ..Number::newer("command_delay_s", "s", 0.02, |axis| &mut axis.delays.command_s) },
     ];
 
     /// Whether each of its numbers is within its range.
@@ -137,6 +138,8 @@ pub struct Number {
     pub or_none: bool,
     /// Whether a model file may leave it out, as those do that were written before there was such a number. It is zero then.
     pub optional: bool,
+    /// Format of a model block from which on the block has this number. An earlier block leaves it zero.
+    pub format: u32,
     /// The field.
     pub of: fn(&mut AxisKnowledge) -> &mut f64,
 }
@@ -145,7 +148,7 @@ type Field = fn(&mut AxisKnowledge) -> &mut f64;
 
 impl Number {
     const fn within(name: &'static str, unit: &'static str, least: f64, most: f64, of: Field) -> Self {
-        Self { name, unit, range: [least, most], or_none: false, optional: false, of }
+        Self { name, unit, range: [least, most], or_none: false, optional: false, format: 2, of }
     }
 
     const fn or_none(name: &'static str, unit: &'static str, least: f64, most: f64, of: Field) -> Self {

@@ -1,5 +1,6 @@
 //! What a job assumes of its machine.
 
+use feedwright_control::LoopDelays;
 use feedwright_sim::Axis;
 
 use super::Job;
@@ -24,7 +25,7 @@ const DISTURBANCES: [(&str, Has); 8] = [
 /// What an axis may have besides loops, inertia, viscous and Coulomb friction, and whether it has it.
 const IMPERFECTIONS: [(&str, Has); 4] = [
     ("friction that sticks", |axis| axis.stribeck_nm > 0.0 || axis.presliding_um > 0.0),
-    ("late drives", |axis| axis.drive_delay_s > 0.0 || axis.measurement_delay_s > 0.0),
+    ("late drives", |axis| axis.loop_delays() != LoopDelays::default()),
     ("a ball screw that gives", |axis| axis.transmission.is_some()),
     ("errors of scale and pitch", |axis| axis.scale_um_m != 0.0 || axis.pitch_error_um > 0.0),
 ];

@@ -168,7 +168,7 @@ def settled(machine):
     """Kp of the slowest axis, and the servo periods in which a loop has followed."""
     axes = machine["axis"].values()
     kp = min(axis["kp_1_s"] for axis in axes)
-    seconds = SETTLED / kp + max(axis.get("drive_delay_s", 0) for axis in axes)
+    seconds = SETTLED / kp + max(axis.get("command_delay_s", 0) + axis.get("drive_delay_s", 0) for axis in axes)
     return kp, math.ceil(seconds / machine["period"]["servo_s"])
 
 

@@ -101,7 +101,7 @@ def lyapunov(f, q):
 class Axis:
     def __init__(self, machine, name):
         axis, period = machine["axis"][name], machine["period"]
-        assert not any(axis.get(key) for key in ("speed_integral_s", "torque_filter_hz", "drive_delay_s", "measurement_delay_s"))
+        assert not any(axis.get(key) for key in ("speed_integral_s", "torque_filter_hz", "command_delay_s", "drive_delay_s", "measurement_delay_s"))
         self.dt = period["mechanics_s"]
         self.substeps = round(period["servo_s"] / self.dt)
         self.rad = 2.0 * math.pi / axis["lead_mm_per_rev"]

@@ -6,8 +6,8 @@
 Prints the largest difference from the act columns in nm, per axis, with its limit; exit code 1 where it is above. Written
 from the laws below, not from the program's source. A key that a machine file leaves out is zero, and the term with it is not there.
 
-Once a servo period Ts, c the command and x the position as it is measured, both in rad of the motor, v = (c - c_prev) / Ts, 0 in the
-first:
+Once a servo period Ts, c the command that was sent round(command_delay_s / Ts) servo periods ago, the start before that, and x the
+position as it is measured, both in rad of the motor, v = (c - c_prev) / Ts, 0 in the first:
 
     e = c - x;  w_ref = Kp e + Kd (e - e_prev) / Ts + velocity_feedforward v
     u_ff = acceleration_feedforward J (v - v_prev) / Ts
@@ -295,12 +295,14 @@ def cut(axis, index, period, seed, times_s, start_mm, commands_mm, finer):
         Stream(seed, index, TORQUE), get("torque_noise_nm"), get("torque_noise_s"), period["mechanics_s"]
     )
     wander = Correlated(Stream(seed, index, WANDER), get("disturbance_wander"), WANDER_S, servo)
+    bus = round(get("command_delay_s") / servo)
     positions_mm = []
-    for n, (time_s, command_mm) in enumerate(zip(times_s, commands_mm)):
+    for n, time_s in enumerate(times_s):
         number = round(time_s / servo)
         start = number * servo
         measured = measuring.position(n, substeps, angle, tool, number * substeps)
-        drive.send(command_mm * per_mm, measured, n, number)
+        arrived_mm = commands_mm[n - bus] if n >= bus else start_mm
+        drive.send(arrived_mm * per_mm, measured, n, number)
         faster = turn * wander.next(number) if get("disturbance_wander") else 0.0
         for i in range(substeps):
             now, moment = n * substeps + i, number * substeps + i

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use feedwright_control::{DriveParameters, FrictionParameters, Parameters, TransmissionParameters};
+use feedwright_control::{DriveParameters, FrictionParameters, LoopDelays, Parameters, TransmissionParameters};
 use serde::Serialize;
 
 /// A servo axis: mechanics at the motor shaft and the two control loops.
@@ -34,6 +34,9 @@ pub struct Axis {
     /// [`super::Limits::normal_accel_mm_s2`].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correction_accel_mm_s2: Option<f64>,
+    /// Delay between the control and the position loop, s; rounded to whole servo periods.
+    #[serde(skip_serializing_if = "is_zero")]
+    pub command_delay_s: f64,
     /// Delay between the position loop and the drive, s.
     #[serde(skip_serializing_if = "is_zero")]
     pub drive_delay_s: f64,
@@ -168,6 +171,15 @@ impl Axis {
             torque_filter_hz: self.torque_filter_hz,
             speed_limit_rad_s: self.speed_limit_mm_s * self.rad_per_mm(),
             speed_window_s: self.speed_window_s,
+        }
+    }
+
+    /// How late commands, references and positions are.
+    pub fn loop_delays(&self) -> LoopDelays {
+        LoopDelays {
+            command_s: self.command_delay_s,
+            drive_s: self.drive_delay_s,
+            measurement_s: self.measurement_delay_s,
         }
     }
 

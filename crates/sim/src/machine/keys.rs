@@ -40,6 +40,7 @@ pub const AXIS: &[Key<Axis>] = &[
     key!(kd, "(no unit)", 0.0, 1e3),
     key!(kv_nm_s_per_rad, "N m s/rad", 1e-9, 1e6),
     key!(torque_limit_nm, "N m", 1e-6, 1e6),
+    key!(command_delay_s or zero, "s", 0.0, 0.02),
     key!(drive_delay_s or zero, "s", 0.0, 0.02),
     Key {
         name: "torque_bits",

@@ -122,7 +122,7 @@ impl Machine {
             friction: axis.friction(),
             transmission: TransmissionParameters::RIGID,
             scale_on_table: axis.transmission.is_some_and(|screw| screw.scale_on_table),
-            delays: LoopDelays { drive_s: axis.drive_delay_s, measurement_s: axis.measurement_delay_s },
+            delays: axis.loop_delays(),
             correction_accel_mm_s2: self.correction_accel_mm_s2(i),
             spare_torque_nm: (axis.torque_limit_nm - axis.coulomb_friction_nm - axis.disturbance_nm).max(0.0),
         };

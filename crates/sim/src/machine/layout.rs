@@ -2,6 +2,7 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
+use feedwright_control::MAX_COMMAND_PERIODS;
 use feedwright_plan::{Durations, PlcEvent};
 
 use super::{AXIS_NAMES, Axis, MACHINE_FORMAT, Machine, Noise, Period, Squareness, Transmission, keys};
@@ -310,9 +311,14 @@ fn between_keys(axis: &Axis, period: &Period, table: &Table<'_, '_>, faults: &mu
             hint: Some("it is half the difference of the friction torques of both directions".to_owned()),
         });
     }
-    for (delay_s, key) in [(axis.drive_delay_s, "drive_delay_s"), (axis.measurement_delay_s, "measurement_delay_s")] {
-        if delay_s > MAX_DELAY_PERIODS * period.servo_s {
-            let most_s = MAX_DELAY_PERIODS * period.servo_s;
+    for (delay_s, key, most_periods) in [
+        (axis.command_delay_s, "command_delay_s", MAX_COMMAND_PERIODS as f64),
+        (axis.drive_delay_s, "drive_delay_s", MAX_DELAY_PERIODS),
+        (axis.measurement_delay_s, "measurement_delay_s", MAX_DELAY_PERIODS),
+    ] {
+        let most_s = most_periods * period.servo_s;
+        // Rounding of decimal numbers is let pass.
+        if delay_s > (1.0 + WHOLE_RATIO_TOLERANCE) * most_s {
             faults.push(Fault {
                 at: table.place(key),
                 label: "too many servo periods",

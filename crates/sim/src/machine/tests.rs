@@ -280,9 +280,13 @@ fn values_of_an_axis_that_do_not_go_together_are_told() {
         assert!(fault.starts_with("32:") && fault.contains(says), "{fault}");
     }
     let text = TNV40.replacen("servo_s = 0.001", "servo_s = 0.0002", 1);
-    for key in ["drive_delay_s", "measurement_delay_s"] {
-        let fault = Machine::parse("fast.toml", &text.replacen("kd = 0 ", &format!("{key} = 0.0121\nkd = 0 "), 1));
-        assert!(format!("{:?}", fault.unwrap_err()).contains("it must be 0.012 s or less"), "{key}");
+    for (key, delay, most) in [
+        ("drive_delay_s", "0.0121", "0.012"),
+        ("measurement_delay_s", "0.0121", "0.012"),
+        ("command_delay_s", "0.0017", "0.0016"),
+    ] {
+        let fault = Machine::parse("fast.toml", &text.replacen("kd = 0 ", &format!("{key} = {delay}\nkd = 0 "), 1));
+        assert!(format!("{:?}", fault.unwrap_err()).contains(&format!("it must be {most} s or less")), "{key}");
     }
 }
 

@@ -1,14 +1,14 @@
 //! An axis with what real ones have, and one mechanics period of it.
 //!
 //! ```text
-//! reference that has arrived -> drive -> steps of the torque -> ripple, cogging -> motor [-> screw -> table] <- load, friction
+//! command -> [queue ->] position loop -> reference that has arrived -> drive -> steps of the torque -> ripple, cogging -> motor [-> screw -> table] <- load, friction
 //! ```
 //!
 //! What the machine file does not name is passed over, to the bit.
 
 use feedwright_control::{
-    AxisLaw, AxisState, DriveLaw, DriveParameters, DriveState, FrictionParameters, MechanicsLaw, MechanicsState,
-    TableState,
+    AxisLaw, AxisState, CommandQueue, DriveLaw, DriveParameters, DriveState, FrictionParameters, MechanicsLaw,
+    MechanicsState, TableState,
 };
 
 use super::drive::{Delay, in_steps, torque_step_nm};
@@ -20,6 +20,8 @@ use crate::machine::{Axis, Machine};
 /// What an axis has on top of the ideal one, and its state.
 #[derive(Debug, Clone)]
 pub(super) struct NonidealAxis {
+    /// Commands on their way to the position loop, rad.
+    commands: CommandQueue,
     drive: DriveLaw,
     drive_state: DriveState,
     delay: Delay,
@@ -45,6 +47,7 @@ impl NonidealAxis {
         let latency = Latency::new(axis, period, angle_rad);
         let speed = DriveSpeed::new(axis, encoder, period.mechanics_s, seed, index);
         Self {
+            commands: CommandQueue::resting(axis.loop_delays().command_periods(period.servo_s), angle_rad),
             // What it sees of the speed is simulated as it is.
             drive: DriveLaw::new(law, DriveParameters { speed_window_s: 0.0, ..axis.drive() }),
             drive_state: DriveState::default(),
@@ -70,6 +73,7 @@ impl NonidealAxis {
             axis.encoder_noise_um,
             axis.interpolation_error_um,
             axis.measurement_delay_s,
+            axis.command_delay_s,
             axis.drive_delay_s,
             axis.jitter_s,
             axis.cogging_nm,
@@ -86,12 +90,16 @@ impl NonidealAxis {
             && axis.friction() == FrictionParameters::default()
     }
 
-    /// The axis goes on as another one: where its parts are and how fast, what its drive has summed up, and the disturbance's phase.
+    /// The axis goes on as another one: where its parts are and how fast, its commands, what its drive has summed up, and the disturbance's phase.
     pub(super) fn take_over(&mut self, before: Option<&Self>, motor: &AxisState) {
+        let periods = self.commands.periods();
         let Some(before) = before else {
+            // The last command, but for the way of a servo period.
+            self.commands = CommandQueue::resting(periods, motor.angle_rad + motor.error_rad);
             self.masses.table = TableState { angle_rad: motor.angle_rad, speed_rad_s: motor.speed_rad_s };
             return;
         };
+        self.commands = before.commands.with_periods(periods);
         (self.masses, self.drive_state) = (before.masses, before.drive_state);
         if let (Some(wander), Some(before)) = (&mut self.wander, &before.wander) {
             wander.take_over(before);
@@ -128,7 +136,8 @@ impl NonidealAxis {
         counter: u64,
     ) {
         let measured_rad = self.measured_rad(motor, counter);
-        let reference = self.drive.position_loop(law, command_rad, measured_rad, motor, &mut self.drive_state);
+        let arrived_rad = self.commands.pass(command_rad);
+        let reference = self.drive.position_loop(law, arrived_rad, measured_rad, motor, &mut self.drive_state);
         self.delay.send(reference, period);
     }
 

@@ -51,7 +51,7 @@ pub fn settled_s(machine: &Machine) -> f64 {
     let delay_s = machine
         .axes
         .iter()
-        .map(|axis| axis.drive_delay_s + axis.measurement_delay_s + axis.jitter_s)
+        .map(|axis| axis.command_delay_s + axis.drive_delay_s + axis.measurement_delay_s + axis.jitter_s)
         .fold(0.0, f64::max);
     SETTLED_TIME_CONSTANTS / slowest_1_s + delay_s
 }

@@ -1,7 +1,7 @@
 //! The free run of an axis: what its law makes of the commands alone, with the drive's known settings and any parameters.
 //!
 //! It steps the law of [`feedwright_control::axis`] as the plant does, with the delays of the drive and of the measurement in whole
-//! mechanics periods, and takes nothing of the recording but the commands and where the axis starts: no measured position comes in, so
+//! mechanics periods, and takes nothing of the recording but the commands that the position loop had and where the axis starts: no measured position comes in, so
 //! neither does its noise.
 
 use feedwright_control::{AxisLaw, DriveLaw, DriveReference, DriveState, LoopDelays, MechanicsLaw, MechanicsState};
@@ -20,7 +20,7 @@ pub(super) struct FreeRun {
 impl FreeRun {
     pub(super) fn new(settings: &DriveSettings, axis: &AxisParameters) -> Self {
         let law = AxisLaw::new(axis.law(settings), settings.periods);
-        let LoopDelays { drive_s, measurement_s } = settings.delays;
+        let LoopDelays { drive_s, measurement_s, .. } = settings.delays;
         Self {
             law,
             drive: DriveLaw::new(&law, settings.drive_of(axis.inertia_kg_m2)),
