@@ -60,7 +60,7 @@ impl<const N: usize> Feedforward<N> {
     pub fn new(axes: [AxisInverse; N], gains: [Gains; N]) -> Self {
         let most = |of: fn(&AxisInverse) -> f64| axes.iter().map(of).fold(0.0, f64::max);
         let servo_s = axes.iter().map(|axis| axis.law().periods.servo_s).fold(f64::INFINITY, f64::min);
-        let late = libm::ceil(most(AxisInverse::ahead_s) / servo_s).min(MAX_PREVIEW);
+        let late = libm::ceil(most(|axis| axis.command_delay_s() + axis.ahead_s()) / servo_s).min(MAX_PREVIEW);
         // A float that is not a number saturates to zero here.
         let preview = (preview(most(AxisInverse::lag_s), servo_s) + late as u32).min(MAX_PREVIEW as u32);
         Self { axes, gains, preview, friction_mm_s: [[0.0; N]; KEPT_PERIODS] }

@@ -15,6 +15,10 @@
 //! and not in v_r. Where the ball screw gives, it is the table that is held on the reference: the motor's is ahead by the twist, and both masses
 //! are states.
 //!
+//! Where the position loop is in the drive, it has a command n servo periods late. The axis then first looks ahead by these n periods, by the
+//! law and the commands on their way, and decides for the moment at which the position loop has the command. The tool is behind the plan by
+//! n servo periods more, as it is without any correction.
+//!
 //! | File | What |
 //! |---|---|
 //! | `lqg_preview/control_weight.rs` | control weight and bounds of the offset |
@@ -284,7 +288,8 @@ impl<const N: usize> Controller<N> for LqgPreview<N> {
         for (i, (axis, offset_mm)) in self.axes.iter_mut().zip(&mut offset_mm).enumerate() {
             // There is an i-th axis; the compiler is not to leave a panic for where there is none.
             let of_axis = |position_mm: [f64; N]| position_mm.get(i).copied().unwrap_or(0.0);
-            let at_mm = |after_s: f64| of_axis(window.at(after_s - lag_s).position_mm);
+            let late_s = axis.command_delay_s();
+            let at_mm = |after_s: f64| of_axis(window.at(after_s + late_s - lag_s).position_mm);
             *offset_mm = axis.offset_mm(of_axis(here_mm), trusted, open, at_mm);
         }
         self.asked_mm = offset_mm;

@@ -283,12 +283,12 @@ pub fn identify_axis<const N: usize>(
     let settled_s = SETTLED_CONSTANTS / settings.kp_1_s;
     let settled = (settled_s / servo_s).ceil() as usize;
     let stretches: Vec<Stretch> = recording
-        .stretches
-        .iter()
-        .filter(|knots| knots.len() > settled + START_KNOTS)
-        .map(|knots| Stretch {
-            commands_mm: knots.iter().map(|knot| knot.command_mm[axis]).collect(),
-            measured_mm: knots.iter().map(|knot| knot.tool_mm[axis]).collect(),
+        .of_axis(axis, settings.delays.command_periods(servo_s))
+        .into_iter()
+        .filter(|rows| rows.len() > settled + START_KNOTS)
+        .map(|rows| {
+            let (commands_mm, measured_mm) = rows.into_iter().map(<(f64, f64)>::from).unzip();
+            Stretch { commands_mm, measured_mm }
         })
         .collect();
     if stretches.len() < LEAST_STRETCHES {

@@ -54,11 +54,9 @@ const STEPS_ALONE: f64 = 1.3;
 /// What a recording shows of the axes beside what is known of them. The recording is one at the servo period.
 pub fn axis_statistics<const N: usize>(recording: &Recording<N>, known: &Known) -> [AxisStatistics; N] {
     std::array::from_fn(|i| {
-        let stretch = |stretch: &Vec<super::recording::RecordedKnot<N>>| -> Vec<[f64; 2]> {
-            stretch.iter().map(|knot| [knot.command_mm[i], knot.tool_mm[i]]).collect()
-        };
-        let stretches: Vec<Vec<[f64; 2]>> = recording.stretches.iter().map(stretch).collect();
-        of_axis(&stretches, known.axis(i), &known.period)
+        let axis = known.axis(i);
+        let stretches = recording.of_axis(i, axis.delays.command_periods(known.period.servo_s));
+        of_axis(&stretches, axis, &known.period)
     })
 }
 

@@ -29,6 +29,16 @@ pub struct Recording<const N: usize> {
 }
 
 impl<const N: usize> Recording<N> {
+    /// Command and measured position of an axis, mm, stretch by stretch: each position with the command that the position loop has then,
+    /// sent `late` knots before. The first positions, whose commands are not recorded, are left out.
+    pub(super) fn of_axis(&self, axis: usize, late: usize) -> Vec<Vec<[f64; 2]>> {
+        let rows = |knots: &Vec<RecordedKnot<N>>| {
+            let then = knots.iter().skip(late).map(|knot| knot.tool_mm[axis]);
+            knots.iter().zip(then).map(|(sent, tool_mm)| [sent.command_mm[axis], tool_mm]).collect()
+        };
+        self.stretches.iter().map(rows).collect()
+    }
+
     /// A hash of its content: equal recordings give equal identifiers.
     pub fn hash(&self) -> String {
         let mut hasher = blake3::Hasher::new();

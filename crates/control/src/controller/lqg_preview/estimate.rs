@@ -52,6 +52,8 @@ pub(super) struct AxisModel {
     /// Innovations that are smaller are not learnt from, and those that are larger are believed in part, rad.
     least_rad: f64,
     believed_rad: f64,
+    /// Servo periods from a command until the position loop has it.
+    pub(super) command_periods: usize,
     /// Mechanics periods from a measurement until it is there, and from a reference until it acts.
     late: [u32; 2],
 }
@@ -171,6 +173,7 @@ impl AxisModel {
             measured_rad2,
             least_rad: LEAST_SHARE * libm::sqrt(measured_rad2),
             believed_rad: outliers::believed_rad(&law, measured_rad2),
+            command_periods: known.delays.command_periods(law.periods.servo_s),
             late: late(known),
         }
     }

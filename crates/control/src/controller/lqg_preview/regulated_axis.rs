@@ -1,5 +1,6 @@
 //! An axis: its filter, its regulator and its inverse, and the command that asks its drive for what they want.
 
+use crate::axis::delays::CommandQueue;
 use crate::axis::drive::{DriveParameters, DriveReference, DriveState};
 use crate::axis::inverse::AxisInverse;
 use crate::axis::knowledge::AxisKnowledge;
@@ -82,9 +83,11 @@ impl Running {
 /// An axis behind its position loop.
 #[derive(Debug, Clone, Copy)]
 struct Tracked {
+    /// Commands on their way to the position loop, rad.
+    commands: CommandQueue,
     estimate: Estimate,
     sent: Sent,
-    /// The position loop as it is in the control.
+    /// The position loop as the control or the drive has it.
     position_loop: (AxisState, DriveState),
     /// What is measured now, rad.
     measured_rad: f64,
@@ -93,7 +96,22 @@ struct Tracked {
 impl Tracked {
     fn moving(model: &AxisModel, measured_rad: f64, speed_rad_s: f64) -> Self {
         let (estimate, sent) = model.moving(measured_rad, speed_rad_s);
-        Self { position_loop: (AxisState::default(), estimate.drive), estimate, sent, measured_rad }
+        let commands = CommandQueue::resting(model.command_periods, measured_rad);
+        Self { commands, position_loop: (AxisState::default(), estimate.drive), estimate, sent, measured_rad }
+    }
+
+    /// As it will be when the position loop has the command that is sent now: by the commands on their way and the law alone.
+    fn at_position_loop(&self, model: &AxisModel) -> Self {
+        let mut later = *self;
+        // What is sent meanwhile does not arrive.
+        (0..self.commands.periods()).for_each(|_| later.foresee(model, 0.0));
+        later
+    }
+
+    /// Its commands so far were those of a path that is at an angle now, with the speed that it has.
+    fn commanded_along(&mut self, here_rad: f64, servo_s: f64) {
+        let change_rad = self.estimate.masses.motor.speed_rad_s * servo_s;
+        self.commands = CommandQueue::moving(self.commands.periods(), here_rad, change_rad);
     }
 
     /// The reference speed that the position loop makes of a command; torque beside it counts as that.
@@ -111,8 +129,9 @@ impl Tracked {
         self.measured_rad = self.estimate.masses.motor.angle_rad;
     }
 
-    /// What the position loop makes of a command goes to the drive.
+    /// A command is sent. What the position loop makes of the one that has arrived goes to the drive.
     fn send(&mut self, model: &AxisModel, command_rad: f64) {
+        let command_rad = self.commands.pass(command_rad);
         let (axis, drive) = &mut self.position_loop;
         axis.angle_rad = self.measured_rad;
         let reference = model.drive.position_loop(&model.law, command_rad, self.measured_rad, axis, drive);
@@ -238,6 +257,16 @@ impl AxisLqg {
 
     /// The same of its position as it is measured, s.
     pub(super) fn measured_lag_s(&self) -> f64 {
+        self.position_loop_lag_s() + self.command_delay_s()
+    }
+
+    /// How late the position loop has a command, s.
+    pub(super) fn command_delay_s(&self) -> f64 {
+        self.model.command_periods as f64 * self.model.law.periods.servo_s
+    }
+
+    /// How far the measured position is behind the command that the position loop has, at constant speed, s.
+    fn position_loop_lag_s(&self) -> f64 {
         let (parameters, AxisKnowledge { drive, .. }) = (self.model.law.parameters, self.known);
         let friction = if drive.speed_integral_s > 0.0 {
             0.0
@@ -301,7 +330,7 @@ impl AxisLqg {
             (&mut *beside, &mut self.other, &mut self.other_known)
         };
         let (told, from_rad) = if followed { (told, from_rad) } else { (&beside_told, beside_from_rad) };
-        learner.sent(learning, command_rad, from_rad);
+        learner.sent(learning, run.tracked.commands.arrived(), from_rad);
         learner.take_in(learning, model, (&run.tracked.estimate, &run.tracked.sent), told);
         if let Some(moved) = learner.apply(learning) {
             *known = learner.known(learning);
@@ -390,13 +419,19 @@ impl AxisLqg {
         self.model.unforeseen_rad2(run_periods(self.model.law.periods.servo_s)) / (rad_per_mm * rad_per_mm)
     }
 
-    /// The offset of the command in this servo period, by a law that is `trusted` so far; `at_mm` is the reference so many seconds from its start, in whose
+    /// The offset of the command in this servo period, by a law that is `trusted` so far; `at_mm` is the reference so many seconds after the
+    /// position loop has that command, in whose
     /// place the `open` loop is followed in part.
     pub(super) fn offset_mm(&mut self, here_mm: f64, trusted: Trusted, open: f64, at_mm: impl Fn(f64) -> f64) -> f64 {
         let Some(running) = &mut self.state else { return 0.0 };
-        running.path_mm = Some(here_mm);
-        let ahead = self.model.ahead(&running.real.tracked.estimate, &running.real.tracked.sent);
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
+        if running.path_mm.replace(here_mm).is_none() {
+            for tracked in [&mut running.real.tracked, &mut running.beside.tracked, &mut running.open] {
+                tracked.commanded_along(here_mm * rad_per_mm, self.model.law.periods.servo_s);
+            }
+        }
+        let tracked = running.real.tracked.at_position_loop(&self.model);
+        let ahead = self.model.ahead(&tracked.estimate, &tracked.sent);
         let inner = [ahead.drive.integral_nm(), ahead.masses.presliding_nm];
         let acts_s = self.known.delays.drive_s;
         let twist = self.twist.map_or(TwistCourse::NONE, |twist| twist.course(&at_mm, acts_s));
@@ -414,12 +449,13 @@ impl AxisLqg {
         let [_, off_rad_s, ..] = off;
         let reference_nm = kv_nm_s_per_rad * (reference_rad_s - (ahead.masses.motor.speed_rad_s - off_rad_s));
         let asked_rad_s = self.asked_rad_s(reference_nm, &off, trusted);
-        self.solved_mm(here_mm, reference_rad_s - asked_rad_s)
+        self.solved_mm(&tracked, here_mm, reference_rad_s - asked_rad_s)
     }
 
     /// The reference speed of the axis by itself, without any offset, and by how much the axis is off it.
     fn beside_open(&self, here_mm: f64, ahead: &Estimate) -> (f64, [f64; linear::STATES]) {
         let Some(Running { open, .. }) = &self.state else { return (0.0, [0.0; linear::STATES]) };
+        let open = open.at_position_loop(&self.model);
         let beside = self.model.ahead(&open.estimate, &open.sent);
         let Parameters { kv_nm_s_per_rad, rad_per_mm, .. } = self.model.law.parameters;
         let integral_rad_s = (beside.drive.integral_nm() - ahead.drive.integral_nm()) / kv_nm_s_per_rad;
@@ -480,11 +516,10 @@ impl AxisLqg {
         -mean_nm / (parameters.kv_nm_s_per_rad * parameters.rad_per_mm)
     }
 
-    /// The offset with which the position loop asks for a reference speed.
-    fn solved_mm(&self, here_mm: f64, wanted_rad_s: f64) -> f64 {
-        let Some(running) = &self.state else { return 0.0 };
+    /// The offset with which the position loop asks for a reference speed, once it has the command.
+    fn solved_mm(&self, tracked: &Tracked, here_mm: f64, wanted_rad_s: f64) -> f64 {
         let rad_per_mm = self.model.law.parameters.rad_per_mm;
-        let asked = |command_mm: f64| running.real.tracked.asked_rad_s(&self.model, command_mm * rad_per_mm);
+        let asked = |command_mm: f64| tracked.asked_rad_s(&self.model, command_mm * rad_per_mm);
         // It is linear.
         let (here, beyond) = (asked(here_mm), asked(here_mm + 1.0));
         (wanted_rad_s - here) / (beyond - here)
