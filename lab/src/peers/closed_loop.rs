@@ -7,10 +7,10 @@
 //! ```text
 //! x = (Nv v + Nu u) / D                    D the characteristic polynomial, N = D h, h the positions after one period of v or u
 //! v = K (c - xm) + fv (1 - z^-1) / Ts c,   u = fa J ((1 - z^-1) / Ts)^2 c,   K = kp + kd (1 - z^-1) / Ts
-//! x / c = B / A                            B = Nv (K + fv (1 - z^-1) / Ts) + Nu fa J ((1 - z^-1) / Ts)^2,   A = D + Nm K
+//! x / c = z^-n B / A                       B = Nv (K + fv (1 - z^-1) / Ts) + Nu fa J ((1 - z^-1) / Ts)^2,   A = D + Nm K
 //! ```
 //!
-//! xm is the position one measurement delay ago, and Nm is its N for v. The axis model itself is
+//! n is the number of servo periods by which the position loop has commands late. xm is the position one measurement delay ago, and Nm is its N for v. The axis model itself is
 //! simulated to find h. Zeros of B well inside the unit circle are canceled. So are zeros inside it
 //! with a positive real part, whose inverse does not ring. For the other zeros only the phase is
 //! canceled.
@@ -58,7 +58,7 @@ pub(super) fn inverting(axis: &KnownAxis, nominal: &Parameters, period: &Period)
         size <= SOON_GONE || (size < 1.0 && zero.re > 0.0)
     });
     // B-(z) has the coefficients of B-(1/z) in reverse order, one period ahead for each zero.
-    let ahead = late + mirrored.len();
+    let ahead = axis.delays.command_periods(period.servo_s) + late + mirrored.len();
     let mut mirror = with_zeros(&mirrored);
     mirror.reverse();
     Filter::of_loop(&times(&denominator, &mirror), u32::try_from(ahead).ok()?, &with_zeros(&cancelled))

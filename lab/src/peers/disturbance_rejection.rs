@@ -31,7 +31,7 @@
 //! Departures: the drive takes positions, so that the estimate acts through the position loop and not as a torque.
 use feedwright_control::Window;
 use feedwright_control::vector::{add_scaled, bounded, norm};
-use feedwright_control::{Command, Controller, Feedforward, Measured, Schedule};
+use feedwright_control::{Command, CommandQueue, Controller, Feedforward, Measured, Schedule};
 
 use super::zero_phase::SampledAxis;
 
@@ -49,6 +49,8 @@ pub struct ObservedDrive {
     pub speed_integral_s: f64,
     /// Delays of drive and encoder together, s.
     pub delay_s: f64,
+    /// Servo periods from a command until the position loop has it.
+    pub command_periods: usize,
 }
 
 /// What the observer of one axis is made from.
@@ -80,6 +82,8 @@ struct AxisObserver {
     position_mm: f64,
     speed_mm_s: f64,
     disturbance_mm_s: f64,
+    /// Commands on their way to the position loop, mm.
+    commands: CommandQueue,
     /// Error of the position loop at the last servo period, mm.
     error_mm: f64,
     /// Command and measured position of the last servo period, mm, and how far the command had moved.
@@ -100,6 +104,7 @@ impl AxisObserver {
             position_mm: 0.0,
             speed_mm_s: 0.0,
             disturbance_mm_s: 0.0,
+            commands: CommandQueue::resting(of.drive.command_periods, 0.0),
             error_mm: 0.0,
             last_mm: None,
             moved_mm: 0.0,
@@ -114,9 +119,13 @@ impl AxisObserver {
         *self = Self { position_mm: measured_mm, ..Self::new(self.of, self.servo_s) };
     }
 
-    /// Goes on by a servo period that begins with this command and this position, against this friction.
+    /// Goes on by a servo period that begins with sending this command and with this position, against this friction.
     fn go_on(&mut self, command_mm: f64, friction_mm_s: f64, measured_mm: f64) {
         let SampledAxis { alpha, beta, gamma_s, delta_s, .. } = self.of.axis;
+        if self.last_mm.is_none() {
+            self.commands = CommandQueue::resting(self.of.drive.command_periods, command_mm);
+        }
+        let command_mm = self.commands.pass(command_mm);
         self.send(command_mm, measured_mm);
         let SentReference { speed_mm_s: asked_mm_s, torque_mm_s } = self.arrived();
         let beside_mm_s = torque_mm_s + self.integrated(asked_mm_s, measured_mm);

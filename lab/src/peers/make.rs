@@ -172,6 +172,7 @@ fn observed_axes<const N: usize>(known: &Known, gains: impl Fn(&SampledAxis) -> 
             torque_1_s: fed_nm_s2 / (nominal.kv_nm_s_per_rad * known.period.servo_s * known.period.servo_s),
             speed_integral_s: drive.speed_integral_s,
             delay_s: delays.drive_s + delays.measurement_s,
+            command_periods: delays.command_periods(known.period.servo_s),
         };
         ObservedAxis { axis: axes[i], drive, limit_mm_s, gains: gains(&axes[i]) }
     })

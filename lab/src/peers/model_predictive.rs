@@ -11,9 +11,9 @@
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{
-    AxisLaw, AxisState, Command, CommandedPeriod, Controller, DisturbanceForecast, DriveLaw, DriveParameters,
-    DriveReference, DriveState, FrictionLaw, FrictionParameters, HorizonSettings, MAX_KNOTS, Measured, OffsetPlan,
-    Parameters, Predictor, Residual, ResidualSettings, Schedule, Sensitivity, Window, friction_signs,
+    AxisLaw, AxisState, Command, CommandQueue, CommandedPeriod, Controller, DisturbanceForecast, DriveLaw,
+    DriveParameters, DriveReference, DriveState, FrictionLaw, FrictionParameters, HorizonSettings, MAX_KNOTS, Measured,
+    OffsetPlan, Parameters, Predictor, Residual, ResidualSettings, Schedule, Sensitivity, Window, friction_signs,
 };
 use feedwright_sim::{Known, KnownAxis};
 
@@ -79,6 +79,7 @@ impl<const N: usize> ModelPredictive<N> {
                 let command_mm = add_scaled(window.now().position_mm, 1.0, window.offset_mm);
                 let error_mm = sub(command_mm, position_mm);
                 for (i, (axis, error_mm)) in self.model.axes.iter_mut().zip(error_mm).enumerate() {
+                    axis.state.commands = CommandQueue::resting(axis.state.commands.periods(), command_mm[i]);
                     axis.state.motor.angle_rad = position_mm[i] * axis.law.parameters.rad_per_mm;
                     axis.state.motor.error_rad = error_mm * axis.law.parameters.rad_per_mm;
                 }
@@ -218,6 +219,8 @@ const KEPT_PERIODS: usize = 48;
 /// What of an axis moves on: its motor, its drive, and references that are on their way, the newest first.
 #[derive(Debug, Clone, Copy)]
 struct Moving {
+    /// Commands on their way to the position loop, mm.
+    commands: CommandQueue,
     motor: AxisState,
     drive: DriveState,
     sent: [DriveReference; KEPT_PERIODS],
@@ -225,12 +228,16 @@ struct Moving {
 }
 
 impl Moving {
-    const AT_REST: Self = Self {
-        motor: AxisState { angle_rad: 0.0, speed_rad_s: 0.0, error_rad: 0.0 },
-        drive: DriveState::AT_REST,
-        sent: [DriveReference { speed_rad_s: 0.0, torque_nm: 0.0 }; KEPT_PERIODS],
-        presliding_nm: 0.0,
-    };
+    /// At rest at zero, with commands that are late by so many servo periods.
+    fn at_rest(command_periods: usize) -> Self {
+        Self {
+            commands: CommandQueue::resting(command_periods, 0.0),
+            motor: AxisState::default(),
+            drive: DriveState::AT_REST,
+            sent: [DriveReference::default(); KEPT_PERIODS],
+            presliding_nm: 0.0,
+        }
+    }
 }
 
 /// An axis: its state, and the derivative of that to the acceleration of each knot, per mm/s^2.
@@ -256,6 +263,7 @@ impl ExactAxis {
         let time_s = known.drive.speed_integral_s;
         let longest = (KEPT_PERIODS as u32 - 2) * law.periods.mechanics_per_servo;
         let late = (known.delays.drive_s + known.delays.measurement_s) / law.periods.mechanics_s;
+        let at_rest = Moving::at_rest(known.delays.command_periods(law.periods.servo_s));
         Self {
             drive: DriveLaw::new(&law, known.drive),
             friction: (known.friction != FrictionParameters::default()).then(|| FrictionLaw::new(&law, known.friction)),
@@ -264,8 +272,8 @@ impl ExactAxis {
             // A float that is not a number saturates to zero here.
             late: (late.round() as u32).min(longest),
             law,
-            state: Moving::AT_REST,
-            slopes: [Moving::AT_REST; MAX_KNOTS],
+            state: at_rest,
+            slopes: [at_rest; MAX_KNOTS],
         }
     }
 
@@ -281,6 +289,7 @@ impl ExactAxis {
     fn advance(&mut self, command_mm: f64, moved_s2: &[f64; MAX_KNOTS], knot: usize) {
         let rad_per_mm = self.law.parameters.rad_per_mm;
         let send = |law: &AxisLaw, drive: &DriveLaw, moved_mm: f64, state: &mut Moving| {
+            let moved_mm = state.commands.pass(moved_mm);
             let position_rad = state.motor.angle_rad;
             let reference =
                 drive.position_loop(law, moved_mm * rad_per_mm, position_rad, &mut state.motor, &mut state.drive);
