@@ -114,7 +114,7 @@ bench-fann:
 
 # The solver of the receding horizon: beside another exact one, the times of one tick, and the cuts.
 solvers:
-    taskset --cpu-list 1 cargo bench --package feedwright-control --bench solvers
+    taskset --cpu-list 1 cargo bench --package feedwright-lab --bench solvers
     cargo build --release --quiet --package feedwright-lab --example solvers
     taskset --cpu-list 1 target/release/examples/solvers
 
@@ -127,7 +127,7 @@ noise-levels out="examples/05_noise" levels="5":
 correction-acceleration out="target/correction_acceleration.svg":
     cargo run --release --quiet -p feedwright-lab --example correction_acceleration -- {{ out }}
 
-# Percentiles of the time of a whole decision of the receding horizon and of the regulator, on one core; counts on an idle machine only.
+# Percentiles of the time of a whole decision of the regulator, on one core; counts on an idle machine only.
 tick ticks="100000" runs="5":
     cargo build --release --quiet -p feedwright-control --example tick_percentiles
     taskset --cpu-list 1 target/release/examples/tick_percentiles {{ ticks }} {{ runs }}
@@ -159,7 +159,7 @@ instructions:
         valgrind --tool=callgrind --callgrind-out-file=/dev/null target/release/examples/instructions "$1" "$2" 2>&1 |
             sed -n 's/.*Collected : //p'
     }
-    for work in paper-tick horizon-tick horizon-20 servo-period horizon-period regulator-period screw-period learn; do
+    for work in paper-tick servo-period regulator-period screw-period learn; do
         few=$(counted "$work" 1000)
         many=$(counted "$work" 3000)
         printf '%-14s %8d instructions\n' "$work" $(((many - few) / 2000))

@@ -3,8 +3,8 @@
 //!
 //! `correction_acceleration FILE.svg` cuts contours on `tnv40` with `correction_accel_mm_s2` at each value, and uncorrected.
 
-use feedwright::{BASELINE, COLORS, Choices, Figure, HORIZON, LineStyle, Make, Panel, Polyline, Setup, Statistics};
-use feedwright_lab::{CONTROLLERS, Workpiece};
+use feedwright::{BASELINE, COLORS, Choices, Figure, LineStyle, Make, Panel, Polyline, Setup, Statistics};
+use feedwright_lab::{CONTROLLERS, HORIZON, Workpiece};
 use feedwright_sim::{Machine, Run};
 
 const CONTOURS: [&str; 4] = ["square", "circle", "star", "butterfly"];

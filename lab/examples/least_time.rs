@@ -5,9 +5,9 @@
 
 use std::time::Instant;
 
-use feedwright::{BASELINE, Choices, FastestError, HORIZON, Make, Setup, fastest};
+use feedwright::{BASELINE, Choices, FastestError, Make, Setup, fastest};
 use feedwright_gcode::canon::Corner;
-use feedwright_lab::{CONTROLLERS, contour};
+use feedwright_lab::{CONTROLLERS, HORIZON, contour};
 use feedwright_plan::Steps;
 use feedwright_sim::Machine;
 

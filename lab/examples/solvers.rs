@@ -5,13 +5,10 @@
 
 use std::time::{Duration, Instant};
 
-use feedwright::{Statistics, correction_limits, identified};
-use feedwright_control::{
-    Controller, Gradient, INVERTING_FEED_PERIOD_S, InvertingSettings, RECEDING_HORIZON_FEED_PERIOD_S, RecedingHorizon,
-    RecedingHorizonSettings, TwoDimensional,
-};
-use feedwright_ident::{Excitation, Training, train_servo};
-use feedwright_lab::Workpiece;
+use feedwright::{Statistics, identified};
+use feedwright_control::{Controller, Gradient, INVERTING_FEED_PERIOD_S, InvertingSettings, TwoDimensional};
+use feedwright_ident::{Excitation, SERVO_FEED_PERIOD_S, Training, train_servo};
+use feedwright_lab::{CorrectionLimits, RecedingHorizon, RecedingHorizonSettings, Workpiece};
 use feedwright_sim::{Machine, Run, RunResult, Watch};
 
 const CONTOURS: [&str; 3] = ["circle", "star", "square"];
@@ -56,8 +53,8 @@ fn row(steps: usize, machines: &[Machine], workpieces: &[&Workpiece]) -> Result<
         let known = Machine { period: machine.period, ..machines[0].clone() };
         let identified = train_servo::<2>(&Excitation::servo().record(&known, SEED).0);
         let mut settings = RecedingHorizonSettings { steps, ..RecedingHorizonSettings::DEFAULT };
-        settings.horizon.limits = correction_limits(&known.known());
-        settings.servo_periods = machine.period.servo_periods(RECEDING_HORIZON_FEED_PERIOD_S);
+        settings.horizon.limits = CorrectionLimits::of(&known.known());
+        settings.servo_periods = machine.period.servo_periods(SERVO_FEED_PERIOD_S);
         for workpiece in workpieces {
             let mut controller: RecedingHorizon<2> =
                 RecedingHorizon::new(identified.net.clone(), &identified.spread, settings);

@@ -37,7 +37,6 @@ pub use never_worse::cut::{Cutter, SweepRow};
 pub use never_worse::generated::{Generated, draw, smallest};
 pub use never_worse::program::{Length, SweepProgram};
 pub use paper::{Numbers, Paper, experiment};
-pub use peers::CONTROLLERS;
 pub use peers::contour_compensation::ContourCompensation;
 pub use peers::cross_coupled::CrossCoupled;
 pub use peers::cross_coupled_feedrate::CrossCoupledFeedrate;
@@ -45,5 +44,10 @@ pub use peers::disturbance_rejection::{DisturbanceRejection, ObservedAxis, Obser
 pub use peers::fuzzy_feedrate::FuzzyFeedrate;
 pub use peers::input_shaping::InputShaping;
 pub use peers::kalman_disturbance::AxisNoise;
+pub use peers::receding_horizon::{
+    Accelerations, CommandedPeriod, CorrectionLimits, END_WEIGHT, GaussNewton, HorizonProblem, HorizonSettings,
+    MAX_KNOTS, Predictor, RecedingHorizon, RecedingHorizonSettings, Sensitivity, Solver,
+};
 pub use peers::sum::Sum;
 pub use peers::zero_phase::{Filter, SampledAxis, ZeroPhase};
+pub use peers::{CONTROLLERS, HORIZON};

@@ -5,6 +5,7 @@
 //! | `peers/rows.rs` | the parameters of the rows |
 //! | `peers/closed_loop.rs` | the closed loop of an axis, for the filter that inverts it |
 //! | `peers/make.rs` | how each row is made from what is known of a machine |
+//! | `peers/receding_horizon/` | the horizon, its solver, and the identifier that it adapts |
 //! | `peers/model_predictive.rs`, `peers/iterative_learning.rs` | those that are not fit for a servo thread |
 
 pub mod cross_coupled;
@@ -18,6 +19,7 @@ pub mod disturbance_rejection;
 pub mod disturbance_observer;
 pub mod kalman_disturbance;
 pub mod iterative_learning;
+pub mod receding_horizon;
 pub mod model_predictive;
 #[cfg(test)]
 mod fixture;
@@ -26,13 +28,14 @@ mod make;
 mod rows;
 
 use feedwright::{
-    ACCELERATION_GAIN, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, KNOTS, LQG_IDENTIFIED, MAGNITUDE_ONLY,
-    PLAN_PERIOD_S, Parameter, RATE_WEIGHT, RECEDING_HORIZON, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, controller,
+    ACCELERATION_GAIN, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, LQG_IDENTIFIED, MAGNITUDE_ONLY, Parameter,
+    TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, controller,
 };
 use rows::{
-    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CONTROL_WEIGHT, CROSS_COUPLED_KD,
-    CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, INERTIA_SCALE, LAG_SCALE, SHAPED_DAMPING, SHAPED_FREQUENCY,
-    SHAPER_IMPULSES, TORQUE_NOISE,
+    ALLOWED, ALLOWED_FILTER, ALLOWED_SLOWEST, BEHIND_KD, BEHIND_KI, BEHIND_KP, CHANGE_WEIGHT, CONTROL_WEIGHT,
+    CROSS_COUPLED_KD, CROSS_COUPLED_KI, CROSS_COUPLED_KP, DRIFT, FORESEEN_MM, INERTIA_SCALE, INNOVATION_SCALE_MM,
+    KNOTS, LAG_SCALE, LAST_WEIGHT, ON_RAPIDS, PLAN_PERIOD_S, RATE_WEIGHT, SHAPED_DAMPING, SHAPED_FREQUENCY,
+    SHAPER_IMPULSES, SOLVER_STEPS, TANGENTIAL_WEIGHT, TORQUE_NOISE,
 };
 
 /// PID control of the contour error, added to the command across the path.
@@ -200,6 +203,28 @@ pub static KALMAN_DISTURBANCE: Entry = controller!(
     |setup, values| make::kalman_disturbance(setup, values)
 );
 
+/// Geometry planned over 20 knots ahead through an identified servo, speed as planned.
+pub static RECEDING_HORIZON: Entry = controller!(
+    "receding-horizon",
+    "geometry planned over 20 knots ahead through an identified servo, speed as planned",
+    "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
+    Identified(Servo),
+    laps: 1,
+    [
+        KNOTS,
+        PLAN_PERIOD_S,
+        RATE_WEIGHT,
+        CHANGE_WEIGHT,
+        TANGENTIAL_WEIGHT,
+        LAST_WEIGHT,
+        INNOVATION_SCALE_MM,
+        FORESEEN_MM,
+        SOLVER_STEPS,
+        ON_RAPIDS
+    ],
+    |setup, values| make::receding_horizon(setup, values)
+);
+
 /// Contouring over 20 knots ahead with the exact model of the machine, solved to convergence.
 pub static MODEL_PREDICTIVE: Entry = controller!(
     "model-predictive",
@@ -254,6 +279,9 @@ pub static ITERATIVE_LEARNING_10: Entry = controller!(
     iterative_learning::PARAMETERS,
     |setup, values| make::iterative_learning(setup, values)
 );
+
+/// Needs nothing but a recording, and adapts while cutting.
+pub const HORIZON: &str = "receding-horizon";
 
 /// All controllers: those that a machine runs, and the peers.
 pub const CONTROLLERS: Controllers = Controllers::new(&ROWS);

@@ -4,10 +4,10 @@
 //! What is asked for: the correction leaves the loop at once and gently, it comes back, and the cut is no worse than uncorrected.
 
 use crate::sweep::part_or_whole;
-use feedwright::{BASELINE, BEST, Choices, HORIZON, MAX_UM, Make, Setup};
+use feedwright::{BASELINE, BEST, Choices, MAX_UM, Make, Setup};
 use feedwright_control::vector::sub;
 use feedwright_control::{Bounds, Controller, Knot, State, Tick};
-use feedwright_lab::{CONTROLLERS, Workpiece};
+use feedwright_lab::{CONTROLLERS, HORIZON, Workpiece};
 use feedwright_plan::Step;
 use feedwright_sim::{Machine, Plant, Reference, Sample};
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! The default controller is no worse than uncorrected, however little or much the correction may accelerate.
 
-use feedwright::{BASELINE, Choices, CutErrors, HORIZON, Make, Setup, Statistics, harm};
-use feedwright_lab::{CONTROLLERS, Workpiece};
+use feedwright::{BASELINE, Choices, CutErrors, Make, Setup, Statistics, harm};
+use feedwright_lab::{CONTROLLERS, HORIZON, Workpiece};
 use feedwright_sim::{Machine, Run};
 use rayon::prelude::*;
 

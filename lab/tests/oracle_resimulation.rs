@@ -10,8 +10,8 @@ use std::process::{Command, Output};
 use crate::cut::cut;
 use crate::python::python;
 use crate::sweep::part_or_whole;
-use feedwright::{BASELINE, Entry, HORIZON};
-use feedwright_lab::CONTROLLERS;
+use feedwright::{BASELINE, Entry};
+use feedwright_lab::{CONTROLLERS, HORIZON};
 
 /// Lines of the pocket that are cut: tool change, dwell, rapids, the first helix and the first passes of a level.
 const POCKET_LINES: usize = 30;

@@ -6,9 +6,9 @@
 //! And on drives that are just strong enough for the plan.
 
 use crate::sweep::part_or_whole;
-use feedwright::{BASELINE, BEST, Choices, HORIZON, Make, RMS_UM, Setup, Statistics};
+use feedwright::{BASELINE, BEST, Choices, Make, RMS_UM, Setup, Statistics};
 use feedwright_control::Controller;
-use feedwright_lab::{CONTROLLERS, Workpiece};
+use feedwright_lab::{CONTROLLERS, HORIZON, Workpiece};
 use feedwright_sim::{Axis, Limits, Machine, Outcome, Run, RunResult, Transmission};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;

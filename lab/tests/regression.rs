@@ -1,9 +1,9 @@
 //! What went wrong once, as small as it could be made.
 
-use feedwright::{BEST, Choices, HORIZON, Make, Setup, Statistics};
+use feedwright::{BEST, Choices, Make, Setup, Statistics};
 use feedwright_gcode::canon::Canon;
 use feedwright_gcode::{Reader, Settings};
-use feedwright_lab::{CONTROLLERS, Workpiece};
+use feedwright_lab::{CONTROLLERS, HORIZON, Workpiece};
 use feedwright_sim::{Machine, Run};
 
 /// Found by mutation: each call made two more and an error, and the reader counted millions of them.

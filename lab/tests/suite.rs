@@ -30,6 +30,7 @@ mod sweep;
 #[path = "../examples/tables/table.rs"]
 mod table;
 
+mod conformance_adaptation;
 mod conformance_command;
 mod conformance_compare;
 mod conformance_compare_shards;
@@ -52,6 +53,7 @@ mod oracle_feed;
 mod oracle_independent_plant;
 mod oracle_lqg;
 mod oracle_resimulation;
+mod oracle_riccati;
 mod property_feed;
 mod property_mismatch;
 mod property_never_worse;

@@ -1,10 +1,9 @@
 //! What the benches and the instruction count share: a circle as the path, a lagging tool, and a network.
 
 use feedwright_control::{
-    AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator, IDENTIFIED_WEIGHT, Identifier,
-    Inputs, InvertingSettings, Knot, KnotSource, LqgPreview, LqgSettings, Measured, OffsetBounds, Parameters, Periods,
-    Preview, RecedingHorizon, RecedingHorizonSettings, Register, ServoIdentifier, Setpoint, Tick,
-    TransmissionParameters, TwoDimensional, UNKNOWNS, Window,
+    AxisKnowledge, Bounds, ContourError, ContourIdentifier, Controller, Estimator, IDENTIFIED_WEIGHT, Inputs,
+    InvertingSettings, Knot, KnotSource, LqgPreview, LqgSettings, Measured, OffsetBounds, Parameters, Periods, Preview,
+    Register, Setpoint, Tick, TransmissionParameters, TwoDimensional, Window,
 };
 
 /// The circle of eq. 11 at 50 mm/s.
@@ -36,18 +35,6 @@ pub(crate) fn network<const N: usize>() -> (ContourIdentifier<N>, Inputs<N>) {
 /// The paper's controller with an untrained network: the work does not depend on the weights.
 pub(crate) fn paper<const N: usize>() -> TwoDimensional<N> {
     TwoDimensional::new(network().0, InvertingSettings::DEFAULT)
-}
-
-/// The receding-horizon controller with `knots` knots over a servo model like the one of tnv40.
-/// Every axis has the linear weights that least squares give for one axis.
-pub(crate) fn horizon<const N: usize>(knots: usize) -> RecedingHorizon<N> {
-    let mut net = ServoIdentifier { hidden: network::<N>().0.hidden, ..ServoIdentifier::NULL };
-    for axis in 0..N {
-        net.linear[axis][axis] = [0.244, -0.101, -0.00186, 0.2785, -0.4166];
-    }
-    let mut settings = RecedingHorizonSettings::DEFAULT;
-    settings.horizon.knots = knots;
-    RecedingHorizon::new(net, &[[[0.0; UNKNOWNS]; UNKNOWNS]; N], settings)
 }
 
 /// The regulator of axes like those of tnv40 with quick speed loops, as the tool of a [`Rig`] follows, each with noise, a disturbance and, where

@@ -20,15 +20,6 @@ fn paper_tick<const N: usize>(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| rig::decide(&mut controller, black_box(&window), black_box(&measured)));
 }
 
-/// One Gauss-Newton step over the knots of the default and over the most.
-#[divan::bench(consts = [2, 3], args = [10, 20])]
-fn horizon_tick<const N: usize>(bencher: Bencher<'_, '_>, knots: usize) {
-    let surroundings = rig::Surroundings::<N>::new();
-    let (window, measured) = (surroundings.window(), surroundings.measured());
-    let mut controller = rig::horizon(knots);
-    bencher.bench_local(|| rig::decide(&mut controller, black_box(&window), black_box(&measured)));
-}
-
 /// Kalman filter, regulator and inverse of each axis; behind a ball screw that gives, too.
 #[divan::bench(consts = [2, 3], args = [false, true])]
 fn regulator_tick<const N: usize>(bencher: Bencher<'_, '_>, gives: bool) {
@@ -74,10 +65,10 @@ fn servo_period<const N: usize>(bencher: Bencher<'_, '_>) {
     rig.expect_in_the_loop();
 }
 
-/// The same with the receding horizon, which decides in every fifth.
-#[divan::bench(consts = [2, 3], args = [10, 20], sample_size = 1000)]
-fn servo_period_of_horizon<const N: usize>(bencher: Bencher<'_, '_>, knots: usize) {
-    let mut rig = rig::Rig::<N, _>::new(rig::horizon(knots), rig::Tool::Follows);
+/// The same with the regulator, which decides in every one.
+#[divan::bench(consts = [2, 3], args = [false, true], sample_size = 1000)]
+fn servo_period_of_regulator<const N: usize>(bencher: Bencher<'_, '_>, gives: bool) {
+    let mut rig = rig::Rig::<N, _>::new(rig::regulator(gives), rig::Tool::Follows);
     bencher.bench_local(|| rig.servo_period());
     rig.expect_in_the_loop();
 }

@@ -1,6 +1,6 @@
 //! Runs one kind of work a number of times, for counting its instructions with callgrind: see `just instructions`.
 //!
-//! `instructions paper-tick|horizon-tick|horizon-20|servo-period|horizon-period|regulator-period|screw-period|learn COUNT`. The difference of two counts divided by the difference of their
+//! `instructions paper-tick|servo-period|regulator-period|screw-period|learn COUNT`. The difference of two counts divided by the difference of their
 //! instructions leaves out what starting and ending a process costs.
 
 #![expect(clippy::unwrap_used, reason = "an example that only the recipe calls")]
@@ -15,10 +15,7 @@ fn main() {
     let (work, count) = (arguments.next().unwrap(), arguments.next().unwrap().parse::<u32>().unwrap());
     match work.as_str() {
         "paper-tick" => decide(&mut rig::paper(), count),
-        "horizon-tick" => decide(&mut rig::horizon(10), count),
-        "horizon-20" => decide(&mut rig::horizon(20), count),
         "servo-period" => live(rig::Rig::new(rig::paper(), rig::Tool::OnThePath), count),
-        "horizon-period" => live(rig::Rig::new(rig::horizon(10), rig::Tool::Follows), count),
         "regulator-period" => live(rig::Rig::new(rig::regulator(false), rig::Tool::Follows), count),
         "screw-period" => live(rig::Rig::new(rig::regulator(true), rig::Tool::Follows), count),
         "learn" => {

@@ -1,8 +1,8 @@
-//! Percentiles of the time of a decision of the receding horizon, and of the regulator, which decides in every servo period: `just tick`.
+//! Percentiles of the time of a decision of the regulator, which decides in every servo period: `just tick`.
 //!
 //! `tick_percentiles TICKS RUNS`. Timed is the servo period in which the controller decides, whole: reference, register,
-//! preview, contour error, plan, supervisor, command. The tool follows the command, so that the plan and the adaptation
-//! work on what they did. Caches are warm, which after a sleep of 1 ms they are not.
+//! preview, contour error, plan, supervisor, command. The tool follows the command, so that the observer works
+//! on what it did. Caches are warm, which after a sleep of 1 ms they are not.
 //!
 //! What else runs on the machine only ever makes a tick longer. Of several runs, the one with the least 99.9 % is
 //! therefore the nearest to an idle core; the maximum over all runs stands beside it.
@@ -28,11 +28,6 @@ fn main() {
     let (ticks, runs) = (arguments.next().unwrap(), arguments.next().unwrap());
     println!("{ticks} decisions, best of {runs} runs: us (share of a servo period of 1 ms)");
     println!("{:34}  median           99 %         99.9 %        maximum   maximum of all runs", "controller, axes");
-    for knots in [10, 20] {
-        let name = format!("horizon of {knots} knots");
-        report(&name, 2, &measure(|| rig::horizon::<2>(knots), ticks, runs));
-        report(&name, 3, &measure(|| rig::horizon::<3>(knots), ticks, runs));
-    }
     for (name, gives) in [("regulator", false), ("regulator, ball screw that gives", true)] {
         report(name, 2, &measure(|| rig::regulator::<2>(gives), ticks, runs));
         report(name, 3, &measure(|| rig::regulator::<3>(gives), ticks, runs));

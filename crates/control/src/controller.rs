@@ -8,7 +8,6 @@ pub(crate) mod lqg_preview;
 pub(crate) mod inverting;
 pub(crate) mod magnitude_only;
 pub(crate) mod two_dimensional;
-pub(crate) mod receding_horizon;
 
 use crate::axis::knowledge::AxisKnowledge;
 use crate::command::{Command, FaultEvidence, Measured};

@@ -3,20 +3,17 @@
 //! | Kind | What it predicts | Contract | Used by |
 //! |---|---|---|---|
 //! | contour | the contour error, as the paper does | [`ContourModel`] | [`crate::inversion`] |
-//! | servo | how the following error grows; the contour error is left to geometry | [`ServoModel`] | [`crate::horizon`] |
+//! | servo | how the following error grows; the contour error is left to geometry | [`ServoModel`] | the receding horizon of the laboratory |
 //! | axes | the motion of each axis, by its law | [`crate::axis::knowledge::AxisKnowledge`] | [`crate::controller::lqg_preview`] |
 //!
 //! All see the same inputs of each axis, from a shift register ([`Delays`]): F(k), F(k-1), F(k-2) and two delays of the error,
 //! where F(k) is the feedrate from knot k to knot k + 1. A controller takes any identifier of its kind; [`contour`] and [`servo`]
 //! hold the members there are. The null member of each, [`Identifier::NULL`], predicts nothing.
 //!
-//! What repeats with the place on the machine is no matter of an identifier, which does not see the place: it adds to the
-//! prediction where the window is at hand, in [`crate::horizon::Predictor::advance`].
+//! An identifier does not see the place on the machine: errors that repeat with the place are not part of its prediction.
 
 pub(crate) mod contour;
 pub(crate) mod servo;
-pub(crate) mod residual;
-pub(crate) mod adaptation;
 
 /// Hidden nodes.
 pub const HIDDEN: usize = 12;
@@ -92,7 +89,8 @@ pub trait ServoModel<const N: usize>: Identifier<N> {
     fn predict_with_slopes(&self, inputs: &Inputs<N>) -> ([f64; N], Inputs<N>);
     /// The linear part of an axis, of its own inputs, mm for an input of 1.
     fn own_linear(&self, axis: usize) -> &[f64; INPUTS];
-    /// Becomes in an axis what was trained, changed by this: see `adaptation`.
+    /// Becomes in an axis what was trained, changed by this: the linear part of the axis itself, and a factor on its hidden
+    /// nodes less 1.
     fn change(&mut self, trained: &Self, axis: usize, change: &[f64; UNKNOWNS]);
 }
 

@@ -43,7 +43,7 @@
 //! | The path | [`KnotSource`], [`Knot`], [`Window`], [`Register`], [`Preview`] |
 //! | Contour error | [`ContourError`], [`Estimator`], [`locate`] |
 //! | Controllers | [`Controller`], [`Schedule`], [`Measured`], [`Command`] |
-//! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`RecedingHorizon`], [`LqgPreview`] |
+//! | Members | [`Uncorrected`], [`Feedforward`], [`MagnitudeOnly`], [`TwoDimensional`], [`LqgPreview`] |
 //! | Supervisor | [`Bounds`], [`State`], [`Fade`], [`Cause`], [`FaultEvidence`] |
 //! | Model of an axis | [`AxisLaw`], [`AxisState`], [`Parameters`], [`AxisKnowledge`], [`AxisInverse`] |
 //! | Trained models | [`ContourIdentifier`], [`ServoIdentifier`], [`IdentifiedAxes`], [`ModelBlock`] |
@@ -62,7 +62,7 @@
 //! - A tick does not allocate, lock, read a clock or do I/O.
 //! - A tick does not panic. `tests/conformance_panics.rs` links every controller without a panic
 //!   handler.
-//! - The time of a tick is bounded: the register, the preview and the horizon have fixed sizes.
+//! - The time of a tick is bounded: the register and the preview have fixed sizes.
 //! - The same input gives the same bits.
 //! - The supervisor keeps every command within [`Bounds`]. It disengages a controller whose
 //!   predictions fail, and the command returns to the path.
@@ -71,23 +71,21 @@
 //!
 //! The `mod` lines stand in the order in which data flows through a tick; each module uses only
 //! those above it. `axis` is the model of an axis, `window` holds the path behind and ahead,
-//! `contour_error` locates the tool on it, `identifier` and `model` predict, `inversion` and
-//! `horizon` compute corrections, `supervisor` judges and bounds what controllers ask
-//! for, `controller` has them, and `tick` joins all of it.
+//! `contour_error` locates the tool on it, `identifier` and `model` predict, `inversion` computes
+//! corrections, `supervisor` judges and bounds what controllers ask for, `controller` has them,
+//! and `tick` joins all of it.
 #![no_std]
 #![warn(clippy::disallowed_methods)]
 
 pub mod vector;
 mod activation;
 mod sine;
-mod least_squares;
 mod axis;
 mod window;
 mod contour_error;
 mod identifier;
 mod model;
 mod inversion;
-mod horizon;
 mod command;
 mod supervisor;
 mod controller;
@@ -108,20 +106,11 @@ pub use controller::feedforward::{Feedforward, MAX_PREVIEW, preview};
 pub use controller::inverting::{INVERTING_FEED_PERIOD_S, InvertingSettings};
 pub use controller::lqg_preview::{IDENTIFIED_WEIGHT, LqgGains, LqgPreview, LqgSettings, OffsetBounds};
 pub use controller::magnitude_only::MagnitudeOnly;
-pub use controller::receding_horizon::{RECEDING_HORIZON_FEED_PERIOD_S, RecedingHorizon, RecedingHorizonSettings};
 pub use controller::two_dimensional::TwoDimensional;
 pub use controller::uncorrected::Uncorrected;
 pub use controller::{Controller, Schedule};
-pub use horizon::gauss_newton::GaussNewton;
-pub use horizon::problem::{END_WEIGHT, HorizonProblem};
-pub use horizon::{
-    Accelerations, CommandedPeriod, CorrectionLimits, HorizonSettings, MAX_KNOTS, OffsetPlan, Predictor, Sensitivity,
-    Solver,
-};
-pub use identifier::adaptation::Spread;
 pub use identifier::contour::ContourIdentifier;
-pub use identifier::residual::{DisturbanceForecast, LAGS, Residual, ResidualSettings};
-pub use identifier::servo::{FOLLOWING_SCALE_MM, ServoIdentifier};
+pub use identifier::servo::{FOLLOWING_SCALE_MM, ServoIdentifier, Spread};
 pub use identifier::{
     ContourModel, Delays, ERROR_SCALE_MM, FEED_PERIODS_S, FEED_SCALE_MM_S, HIDDEN, INPUTS, Identifier, IdentifierKind,
     Inputs, ServoModel, UNKNOWNS, seen_feed,
@@ -134,4 +123,4 @@ pub use model::{
 pub use sine::sin;
 pub use supervisor::{Bounds, Cause, Fade, State, fade_acceleration};
 pub use tick::{Setpoint, Tick};
-pub use window::{Knot, KnotSource, Preview, REGISTER_KNOTS, Register, Window};
+pub use window::{Knot, KnotSource, PREVIEW_KNOTS, Preview, REGISTER_KNOTS, Register, Window};

@@ -28,9 +28,8 @@ use core::{fmt, slice};
 use crate::axis::Periods;
 use crate::axis::knowledge::{AxisKnowledge, Number};
 use crate::identifier::UNKNOWNS;
-use crate::identifier::adaptation::Spread;
 use crate::identifier::contour::ContourIdentifier;
-use crate::identifier::servo::ServoIdentifier;
+use crate::identifier::servo::{ServoIdentifier, Spread};
 use crate::identifier::{FEED_PERIODS_S, Identifier, IdentifierKind};
 
 /// What a block begins with.

@@ -10,7 +10,7 @@ use crate::vector::{add_scaled, bounded, dot, norm, reject, sub};
 pub const REGISTER_KNOTS: usize = 256;
 /// Reference knots that the preview holds. At a servo period of 1 ms they reach as far ahead as the register reaches
 /// back, more than twice the settling time of such a loop.
-pub(crate) const PREVIEW_KNOTS: usize = 256;
+pub const PREVIEW_KNOTS: usize = 256;
 /// Grid points that the preview keeps: as many behind the current knot as ahead of it.
 const GRID_KNOTS: usize = 2 * PREVIEW_KNOTS;
 /// A plan time this near a grid point is at it, in parts of the grid's step: rounding is a millionth of that, and what the

@@ -3,5 +3,4 @@
 #![expect(clippy::unwrap_used, reason = "a test stops at what it did not expect")]
 
 mod conformance_panics;
-mod oracle_riccati;
 mod property_supervisor;

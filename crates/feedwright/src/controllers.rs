@@ -20,13 +20,10 @@ use feedwright_gcode::suggestion::nearest;
 use feedwright_ident::Model;
 use serde::{Deserialize, Serialize};
 
-pub use make::{correction_limits, offset_bounds};
+pub use make::offset_bounds;
 pub use parameters::{Parameter, ParameterKind, Setting, SettingError, Values};
-pub use rows::{ACCELERATION_GAIN, FRICTION_GAIN, KNOTS, PLAN_PERIOD_S, RATE_WEIGHT, VELOCITY_GAIN};
-use rows::{
-    CHANGE_WEIGHT, ETA, FORESEEN_MM, IDENTIFIED_WEIGHT, INNOVATION_SCALE_MM, INVERSION_KNOTS, INVERSION_PERIOD_S,
-    INVERSION_STEPS, LAST_WEIGHT, LEARNING_STEP, ON_RAPIDS, RHO, SOLVER_STEPS, TANGENTIAL_WEIGHT,
-};
+pub use rows::{ACCELERATION_GAIN, FRICTION_GAIN, VELOCITY_GAIN};
+use rows::{ETA, IDENTIFIED_WEIGHT, INVERSION_KNOTS, INVERSION_PERIOD_S, INVERSION_STEPS, LEARNING_STEP, RHO};
 pub use setup::{ModelMisfit, NothingIdentified, Setup};
 
 /// One row of the table.
@@ -141,28 +138,6 @@ pub static TWO_DIMENSIONAL: Entry = controller!(
     |setup, values| make::two_dimensional(setup, values)
 );
 
-/// Geometry planned over 20 knots ahead through an identified servo, speed as planned.
-pub static RECEDING_HORIZON: Entry = controller!(
-    "receding-horizon",
-    "geometry planned over 20 knots ahead through an identified servo, speed as planned",
-    "Lee, Cho and Jeon (2005), eq. 7 over a horizon; Gauss-Newton",
-    Identified(Servo),
-    laps: 1,
-    [
-        KNOTS,
-        PLAN_PERIOD_S,
-        RATE_WEIGHT,
-        CHANGE_WEIGHT,
-        TANGENTIAL_WEIGHT,
-        LAST_WEIGHT,
-        INNOVATION_SCALE_MM,
-        FORESEEN_MM,
-        SOLVER_STEPS,
-        ON_RAPIDS
-    ],
-    |setup, values| make::receding_horizon(setup, values)
-);
-
 /// Kalman filter and linear-quadratic regulator with preview, by an identified law of each axis.
 pub static LQG_IDENTIFIED: Entry = controller!(
     "lqg-identified",
@@ -177,13 +152,10 @@ pub static LQG_IDENTIFIED: Entry = controller!(
 /// The controllers that a machine runs.
 pub const CONTROLLERS: Controllers = Controllers::new(&ROWS);
 
-static ROWS: [&Entry; 6] =
-    [&UNCORRECTED, &FEEDFORWARD, &MAGNITUDE_ONLY, &TWO_DIMENSIONAL, &RECEDING_HORIZON, &LQG_IDENTIFIED];
+static ROWS: [&Entry; 5] = [&UNCORRECTED, &FEEDFORWARD, &MAGNITUDE_ONLY, &TWO_DIMENSIONAL, &LQG_IDENTIFIED];
 
 /// The default.
 pub const BEST: &str = "lqg-identified";
-/// Needs nothing but a recording, and adapts while cutting.
-pub const HORIZON: &str = "receding-horizon";
 /// What others are compared with.
 pub const BASELINE: &str = "uncorrected";
 

@@ -113,10 +113,9 @@ pub mod command;
 
 pub use checked_json::{checked, with_check};
 pub use controllers::{
-    ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, HORIZON,
-    KNOTS, Knows, LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit, NothingIdentified, PLAN_PERIOD_S,
-    Parameter, ParameterKind, RATE_WEIGHT, RECEDING_HORIZON, Setting, SettingError, Setup, TWO_DIMENSIONAL,
-    UNCORRECTED, VELOCITY_GAIN, Values, correction_limits, offset_bounds,
+    ACCELERATION_GAIN, BASELINE, BEST, CONTROLLERS, Choices, Controllers, Entry, FEEDFORWARD, FRICTION_GAIN, Knows,
+    LQG_IDENTIFIED, MAGNITUDE_ONLY, Make, Maker, ModelMisfit, NothingIdentified, Parameter, ParameterKind, Setting,
+    SettingError, Setup, TWO_DIMENSIONAL, UNCORRECTED, VELOCITY_GAIN, Values, offset_bounds,
 };
 pub use correct::advise::{Advice, AdviseJob, CutWay, ErrorPlace};
 pub use correct::arc_fit::{ArcFit, FitPoint};

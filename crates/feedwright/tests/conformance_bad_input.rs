@@ -177,20 +177,23 @@ fn a_parameter_that_cannot_be_set() {
     let refuses = |set: &str, says: &[&str]| {
         let before = folder.content();
         folder
-            .run(&["run", "circle.ngc", "--controller", "receding-horizon", "--set", set])
+            .run(&["run", "circle.ngc", "--controller", "two-dimensional", "--set", set])
             .refused(&[&["--set", set][..], says].concat());
         assert_eq!(before, folder.content());
     };
     refuses("knots", &["the value is missing", "--set knots=VALUE"]);
-    refuses("knots=30", &["1 to 20, whole", "its default is 20"]);
+    refuses("knots=30", &["1 to 20, whole", "its default is 1"]);
     refuses("knots=nan", &["1 to 20, whole"]);
-    refuses("rho=0.01", &["receding-horizon has no parameter 'rho'", "feedwright controllers receding-horizon"]);
-    refuses("two-dimensional.rho=0.01", &["two-dimensional does not take part", "receding-horizon, uncorrected"]);
+    refuses(
+        "control_weight=1",
+        &["two-dimensional has no parameter 'control_weight'", "feedwright controllers two-dimensional"],
+    );
+    refuses("magnitude-only.rho=0.01", &["magnitude-only does not take part", "two-dimensional, uncorrected"]);
     refuses("two-dimensionl.rho=1", &["no controller is called 'two-dimensionl'", "did you mean 'two-dimensional'?"]);
-    let twice = ["--set", "knots=10", "--set", "receding-horizon.knots=12"];
+    let twice = ["--set", "knots=10", "--set", "two-dimensional.knots=12"];
     folder
-        .run(&[&["run", "circle.ngc", "--controller", "receding-horizon"], &twice[..]].concat())
-        .refused(&["knots of receding-horizon is set twice"]);
+        .run(&[&["run", "circle.ngc", "--controller", "two-dimensional"], &twice[..]].concat())
+        .refused(&["knots of two-dimensional is set twice"]);
 }
 
 #[test]
@@ -310,6 +313,10 @@ fn arguments_that_are_none() {
         (
             &["run", "circle.ngc", "--controller", "cross-coupled"],
             &["no controller is called 'cross-coupled'", "feedwright lab controllers"],
+        ),
+        (
+            &["run", "circle.ngc", "--controller", "receding-horizon"],
+            &["no controller is called 'receding-horizon'", "feedwright lab controllers"],
         ),
         (&["check", "missing.ngc"], &["missing.ngc", "No such file"]),
         (&["canon", "missing.ngc"], &["missing.ngc", "No such file"]),

@@ -124,7 +124,7 @@ fn everything_fits_eighty_columns_where_there_is_no_terminal() {
         &["plan", "circle.ngc"],
         &["machines"],
         &["controllers"],
-        &["controllers", "receding-horizon"],
+        &["controllers", "two-dimensional"],
         &["run", "circle.ngc", "--controller", "no-such"],
         &["check", "bad.ngc"],
         &["--help"],

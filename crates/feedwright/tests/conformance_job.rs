@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use feedwright::{BEST, CONTROLLERS, Choices, HORIZON, Job, JobError, Make, Setting, Setup, TARGETS};
+use feedwright::{BEST, CONTROLLERS, Choices, Job, JobError, Make, Setting, Setup, TARGETS};
 use feedwright_gcode::{Dialect, Increment, Program, Settings};
 use feedwright_sim::{BUILT_IN_MACHINES, Machine, Row, Run, Watch, path_steps};
 
@@ -35,7 +35,7 @@ fn a_job_is_read_back_as_it_was_written_on_every_machine_with_every_controller()
 
 #[test]
 fn everything_that_can_be_asked_for_is_read_back() {
-    let setting = Setting::parse("receding-horizon.rate_weight_s2=3.3e-10", None, CONTROLLERS).unwrap();
+    let setting = Setting::parse("two-dimensional.eta=3.3e-10", None, CONTROLLERS).unwrap();
     let mut full = job("soft", BEST);
     full.feed_mm_s = Some(33.3);
     full.choices = Choices { seed: u64::MAX, set: vec![setting] };
@@ -51,10 +51,10 @@ fn everything_that_can_be_asked_for_is_read_back() {
 fn what_is_no_job_is_refused_with_the_reason() {
     let mut text = serde_json::to_value(job("tnv40", BEST)).unwrap();
     let refused = |text: &serde_json::Value| serde_json::from_value::<Job>(text.clone()).unwrap_err().to_string();
-    text["controller"] = "receding".into();
-    assert!(refused(&text).contains("no controller is called 'receding'"), "{}", refused(&text));
+    text["controller"] = "two".into();
+    assert!(refused(&text).contains("no controller is called 'two'"), "{}", refused(&text));
     text["controller"] = BEST.into();
-    text["choices"]["set"] = serde_json::json!([{ "controller": HORIZON, "name": "knots", "value": 21.0 }]);
+    text["choices"]["set"] = serde_json::json!([{ "controller": "two-dimensional", "name": "knots", "value": 21.0 }]);
     assert!(refused(&text).contains("knots is 1 to 20, whole"), "{}", refused(&text));
     text["choices"]["set"] = serde_json::json!([]);
     text["machine"] = "name = 'none'".into();

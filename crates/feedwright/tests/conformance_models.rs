@@ -11,12 +11,9 @@ fn cut(folder: &Folder, more: &[&str]) -> (String, String) {
 
 #[test]
 fn a_run_with_the_model_that_identify_wrote_is_that_with_a_training_to_the_bit() {
-    for (controller, seed, machine) in [
-        ("receding-horizon", "1", "tnv40"),
-        ("receding-horizon", "7", "tnv40"),
-        ("two-dimensional", "3", "tnv40"),
-        ("lqg-identified", "1", "workshop"),
-    ] {
+    for (controller, seed, machine) in
+        [("two-dimensional", "3", "tnv40"), ("lqg-identified", "1", "workshop"), ("lqg-identified", "7", "tnv40")]
+    {
         let folder = Folder::new();
         let same = ["--controller", controller, "--machine", machine, "--seed", seed];
         folder.run(&[&["identify", "--out", "m.model.toml"], &same[..]].concat()).succeeded();
@@ -107,12 +104,12 @@ fn a_correction_that_leaves_most_of_the_cut_to_itself_ends_with_exit_code_1_and_
 fn a_controller_that_learns_no_axes_writes_none() {
     let folder = Folder::new();
     folder
-        .run(&["identify", "--controller", "receding-horizon", "--machine", "tnv40", "--out", "m.model.toml"])
+        .run(&["identify", "--controller", "two-dimensional", "--machine", "tnv40", "--out", "m.model.toml"])
         .succeeded();
     let cut =
-        ["run", "circle.ngc", "--machine", "tnv40", "--controller", "receding-horizon", "--learned", "l.model.toml"];
+        ["run", "circle.ngc", "--machine", "tnv40", "--controller", "two-dimensional", "--learned", "l.model.toml"];
     let ran = folder.run(&[&cut[..], &["--model", "m.model.toml"]].concat());
-    ran.refused(&["receding-horizon learns no model of the axes", "--controller lqg-identified"]);
+    ran.refused(&["two-dimensional learns no model of the axes", "--controller lqg-identified"]);
     assert!(!folder.path().join("l.model.toml").exists());
 }
 
@@ -122,17 +119,7 @@ fn the_same_identification_writes_the_same_bytes() {
     for name in ["1", "2"] {
         let mut command = folder.command();
         command.env("SOURCE_DATE_EPOCH", "1700000000").env("LC_ALL", "de_DE.UTF-8");
-        command.args([
-            "identify",
-            "--controller",
-            "receding-horizon",
-            "--axes",
-            "3",
-            "--machine",
-            "heavy",
-            "--out",
-            &format!("{name}.model.toml"),
-        ]);
+        command.args(["identify", "--axes", "3", "--machine", "heavy", "--out", &format!("{name}.model.toml")]);
         assert!(command.output().unwrap().status.success());
     }
     let text = folder.text("1.model.toml");
@@ -140,7 +127,7 @@ fn the_same_identification_writes_the_same_bytes() {
     assert!(text.contains("date = \"2023-11-14\"") && text.contains("axes = 3"), "{text}");
     assert!(text.contains("source = \"simulated excitation of heavy, seed 1\""), "{text}");
     let told = folder.run(&["check", "1.model.toml"]).succeeded().stdout;
-    assert!(told.contains("servo model, 3 axes, simulated excitation of heavy, seed 1"), "{told}");
+    assert!(told.contains("axes model, 3 axes, simulated excitation of heavy, seed 1"), "{told}");
 }
 
 #[test]
@@ -151,7 +138,7 @@ fn a_model_that_does_not_suit_is_refused_with_what_does() {
         "half.toml",
         include_str!("../../sim/machines/tnv40.toml").replace("servo_s = 0.001", "servo_s = 0.0005"),
     );
-    folder.run(&["identify", "--controller", "receding-horizon", "--out", "m.model.toml"]).succeeded();
+    folder.run(&["identify", "--controller", "two-dimensional", "--out", "m.model.toml"]).succeeded();
     let before = folder.content();
     let refused = |arguments: &[&str], texts: &[&str]| {
         folder.run(&[&["run"], arguments, &["--model", "m.model.toml"]].concat()).refused(texts);
@@ -162,24 +149,20 @@ fn a_model_that_does_not_suit_is_refused_with_what_does() {
         &["uncorrected uses no trained identifier", "leave --model out"],
     );
     refused(
-        &["circle.ngc", "--controller", "two-dimensional"],
-        &["the model holds a servo identifier, and two-dimensional needs a contour identifier"],
-    );
-    refused(
         &["circle.ngc", "--controller", "lqg-identified"],
-        &["the model holds a servo identifier, and lqg-identified needs an axes identifier"],
+        &["the model holds a contour identifier, and lqg-identified needs an axes identifier"],
     );
     refused(
-        &["helix.ngc", "--controller", "receding-horizon"],
+        &["helix.ngc", "--controller", "two-dimensional"],
         &["the model is for 2 axes, and 3 are controlled", "--axes 3"],
     );
     refused(
-        &["circle.ngc", "--controller", "receding-horizon", "--machine", "half.toml"],
+        &["circle.ngc", "--controller", "two-dimensional", "--machine", "half.toml"],
         &["a servo period of 0.001 s, and that of the machine is 0.0005 s"],
     );
     refused(
-        &["circle.ngc", "--controller", "receding-horizon", "--set", "feed_period_s=0.005"],
-        &["a feed period of 0.003 s", "--set feed_period_s=0.003"],
+        &["circle.ngc", "--controller", "two-dimensional", "--set", "feed_period_s=0.005"],
+        &["a feed period of 0.01 s", "--set feed_period_s=0.01"],
     );
 }
 

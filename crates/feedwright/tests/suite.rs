@@ -23,7 +23,6 @@ mod source;
 #[path = "../../ident/tests/common/sweep.rs"]
 mod sweep;
 
-mod conformance_adaptation;
 mod conformance_advise;
 mod conformance_bad_input;
 mod conformance_check;

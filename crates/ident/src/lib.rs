@@ -95,7 +95,7 @@ pub use identify::grey_box::{
 };
 pub use identify::recording::{RecordedKnot, Recording};
 pub use identify::servo::{TrainedServo, train_servo};
-pub use identify::{Excitation, Rng};
+pub use identify::{Excitation, Rng, SERVO_FEED_PERIOD_S};
 pub use log::columns::{Columns, ColumnsError};
 pub use log::error::{Refusal, RefusalReason};
 pub use log::{Fitness, Log, LogAxis, LogError, LogFinding, LogFormat, MAX_AXES, TorqueUnit};

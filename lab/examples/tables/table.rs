@@ -7,8 +7,10 @@ use std::fmt::Write;
 use std::ops::Range;
 use std::path::PathBuf;
 
-use feedwright::{BASELINE, HORIZON, Knows};
-use feedwright_lab::{CONTROLLERS, Claimed, Comparison, ComparisonRow, Knowledge, Numbers, each_once, experiment};
+use feedwright::{BASELINE, Knows};
+use feedwright_lab::{
+    CONTROLLERS, Claimed, Comparison, ComparisonRow, HORIZON, Knowledge, Numbers, each_once, experiment,
+};
 use feedwright_sim::Machine;
 
 /// The machine of the paper.

@@ -14,13 +14,14 @@
 //!   than [`UNCUT_UM`]. The controller loses no cut.
 //! - All: peak torque compared with [`DELIVERED`].
 
-use feedwright::{BASELINE, BEST, HORIZON, Knows, MAX_UM, RMS_UM, UNCUT_UM};
+use feedwright::{BASELINE, BEST, Knows, MAX_UM, RMS_UM, UNCUT_UM};
 use feedwright_ident::quadratic_mean;
 use serde::{Deserialize, Serialize};
 
 use super::competitor::{Competitor, Knowledge};
 use super::options::ComparisonOptions;
 use super::table::{ComparisonRow, each_once, knows};
+use crate::peers::HORIZON;
 
 /// One claim on one workpiece of one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,10 +1,10 @@
 //! How each controller of the laboratory is made from what is known of a machine: one function for each row, or for several that
 //! differ in their laps alone.
 
-use feedwright::{Setup, Values, correction_limits, offset_bounds};
+use feedwright::{Setup, Values, offset_bounds};
 use feedwright_control::{
     AxisInverse, AxisLaw, AxisState, Controller, DriveParameters, Feedforward, Gains, LoopDelays, LqgPreview,
-    LqgSettings, Parameters, RecedingHorizonSettings,
+    LqgSettings, Parameters,
 };
 use feedwright_sim::{Known, KnownAxis, Period};
 
@@ -19,6 +19,7 @@ use super::input_shaping::{self, InputShaping};
 use super::iterative_learning::{self, IterativeLearning};
 use super::kalman_disturbance::{self, AxisNoise};
 use super::model_predictive::{self, ModelPredictive};
+use super::receding_horizon::{CorrectionLimits, HorizonSettings, RecedingHorizon, RecedingHorizonSettings};
 use super::sum::Sum;
 use super::zero_phase::{Filter, SampledAxis, ZeroPhase};
 
@@ -194,10 +195,30 @@ pub(super) fn sampled(axis: &Parameters, period: &Period) -> SampledAxis {
     SampledAxis { alpha, beta, gamma_s, delta_s, kp_1_s: axis.kp_1_s, kd: axis.kd }
 }
 
+pub(super) fn receding_horizon<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
+    let (net, spread) = setup.servo(values.number("feed_period_s"));
+    let mut settings = RecedingHorizonSettings::<N>::DEFAULT;
+    settings.servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
+    (settings.steps, settings.innovation_scale_mm, settings.foreseen_mm) =
+        (values.whole("steps"), values.number("innovation_scale_mm"), values.number("foreseen_mm"));
+    settings.horizon = HorizonSettings {
+        knots: values.whole("knots"),
+        rate_weight: values.number("rate_weight_s2"),
+        change_weight: values.number("change_weight_s2"),
+        tangential_weight: values.number("tangential_weight"),
+        last_weight: values.number("last_weight"),
+        on_rapids: values.is_on("on_rapids"),
+        limits: CorrectionLimits::of(&setup.known),
+        ..settings.horizon
+    };
+    let controller: RecedingHorizon<N> = RecedingHorizon::new(net, &spread, settings);
+    Box::new(controller)
+}
+
 pub(super) fn model_predictive<const N: usize>(setup: &mut Setup<'_>, values: &Values) -> Box<dyn Controller<N>> {
     let RecedingHorizonSettings::<N> { mut horizon, .. } = RecedingHorizonSettings::DEFAULT;
     (horizon.knots, horizon.rate_weight) = (values.whole("knots"), values.number("rate_weight_s2"));
-    horizon.limits = correction_limits(&setup.known);
+    horizon.limits = CorrectionLimits::of(&setup.known);
     let servo_periods = setup.known.period.servo_periods(values.number("feed_period_s"));
     Box::new(ModelPredictive::new(&setup.known, model_predictive::Settings { servo_periods, horizon }))
 }

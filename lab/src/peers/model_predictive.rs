@@ -1,6 +1,6 @@
 //! Model-predictive contouring with the exact model of the machine, solved to convergence.
 //!
-//! The horizon of `horizon` over a model that is the machine itself: its servo law, inertia, friction,
+//! The horizon of `receding_horizon` over a model that is the machine itself: its servo law, inertia, friction,
 //! period by period, with its drive, its delays and its friction. The model is as late as the encoder: its position is what is
 //! measured, and a reference acts on it both delays after it was sent. What is not known of a machine it does not know: the disturbance
 //! is predicted from what the model missed, as everywhere. It is what an identified model could reach if it were perfect and the control had all the time of
@@ -11,11 +11,15 @@
 
 use feedwright_control::vector::{add_scaled, norm, sub};
 use feedwright_control::{
-    AxisLaw, AxisState, Command, CommandQueue, CommandedPeriod, Controller, DisturbanceForecast, DriveLaw,
-    DriveParameters, DriveReference, DriveState, FrictionLaw, FrictionParameters, HorizonSettings, MAX_KNOTS, Measured,
-    OffsetPlan, Parameters, Predictor, Residual, ResidualSettings, Schedule, Sensitivity, Window, friction_signs,
+    AxisLaw, AxisState, Command, CommandQueue, Controller, DriveLaw, DriveParameters, DriveReference, DriveState,
+    FrictionLaw, FrictionParameters, Measured, Parameters, Schedule, Window, friction_signs,
 };
 use feedwright_sim::{Known, KnownAxis};
+
+use super::receding_horizon::{
+    CommandedPeriod, DisturbanceForecast, HorizonSettings, MAX_KNOTS, OffsetPlan, Predictor, Residual,
+    ResidualSettings, Sensitivity,
+};
 
 /// Steps of Gauss and Newton, at most.
 const MAX_STEPS: usize = 20;

@@ -19,6 +19,10 @@ use crate::vector::add_scaled;
 /// The following error that the network sees as 1: the lag of a 50 1/s position loop at 50 mm/s.
 pub const FOLLOWING_SCALE_MM: f64 = 1.0;
 
+/// How machines of a kind differ from the identified one: mean squares and products of what [`ServoModel::change`] takes, axis
+/// by axis.
+pub type Spread<const N: usize> = [[[f64; UNKNOWNS]; UNKNOWNS]; N];
+
 /// The weights. Feedrates are scaled by [`super::FEED_SCALE_MM_S`], following errors by [`FOLLOWING_SCALE_MM`]; the
 /// output is in mm.
 #[derive(Debug, Clone, PartialEq)]

@@ -219,7 +219,7 @@ impl<'a> Setup<'a> {
     }
 
     /// A servo identifier for decisions each `feed_period_s`, and how others of its kind differ.
-    pub(super) fn servo<const N: usize>(&mut self, feed_period_s: f64) -> (ServoIdentifier<N>, Spread<N>) {
+    pub fn servo<const N: usize>(&mut self, feed_period_s: f64) -> (ServoIdentifier<N>, Spread<N>) {
         self.model.and_then(Model::servo).unwrap_or_else(|| {
             let excitation = Excitation { feed_period_s, ..Excitation::servo() };
             let trained = train_servo(&excitation.record(self.machine, self.choices.seed).0);
@@ -327,11 +327,11 @@ mod tests {
     fn every_controller_that_was_identified_names_its_kind_and_trains_a_model_that_suits_it_and_no_other_kind() {
         let machine = Machine::load("tnv40".as_ref()).unwrap();
         let choices = Choices::default();
-        let servo =
-            Setup::new(&machine, &choices).train(CONTROLLERS.find("receding-horizon").unwrap(), 2, "today".to_owned());
+        let contour =
+            Setup::new(&machine, &choices).train(CONTROLLERS.find("two-dimensional").unwrap(), 2, "today".to_owned());
         let axes =
             Setup::new(&machine, &choices).train(CONTROLLERS.find("lqg-identified").unwrap(), 2, "today".to_owned());
-        for (model, kind) in [(servo.unwrap(), IdentifierKind::Servo), (axes.unwrap(), IdentifierKind::Axes)] {
+        for (model, kind) in [(contour.unwrap(), IdentifierKind::Contour), (axes.unwrap(), IdentifierKind::Axes)] {
             for entry in CONTROLLERS {
                 assert_eq!(entry.identifier.is_some(), entry.knows == Knows::Identified, "{}", entry.name);
                 let suits = entry.suits(&model, &machine.known(), 2, &choices);

@@ -14,7 +14,7 @@
 //! and Duin (1992); generalised least squares, Clarke (1967).
 
 use feedwright_control::{
-    Delays, FEED_SCALE_MM_S, FOLLOWING_SCALE_MM, HIDDEN, INPUTS, Identifier, Inputs, LAGS, ServoIdentifier, ServoModel,
+    Delays, FEED_SCALE_MM_S, FOLLOWING_SCALE_MM, HIDDEN, INPUTS, Identifier, Inputs, ServoIdentifier, ServoModel,
     Spread,
 };
 use feedwright_plan::vector::{scale, sub};
@@ -25,6 +25,9 @@ use super::spread::spread;
 
 /// r: keeps the equations regular where two inputs always move together, and is far below what tells any others apart.
 const RIDGE: f64 = 1e-9;
+
+/// Lags of the autoregression: three predict a constant and a sine of any frequency, more average noise out.
+const LAGS: usize = 6;
 
 /// A trained servo identifier and how well it fits.
 #[derive(Debug, Clone, PartialEq)]

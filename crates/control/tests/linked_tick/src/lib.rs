@@ -6,7 +6,7 @@
 #![no_std]
 
 use core::panic::PanicInfo;
-use feedwright_control::{Feedforward, Knot, KnotSource, LqgPreview, MagnitudeOnly, ModelBlock, RecedingHorizon, Tick, TwoDimensional, Uncorrected};
+use feedwright_control::{Feedforward, Knot, KnotSource, LqgPreview, MagnitudeOnly, ModelBlock, Tick, TwoDimensional, Uncorrected};
 
 unsafe extern "C" {
     fn a_panic_is_left_in_the_tick() -> !;
@@ -50,8 +50,6 @@ macro_rules! servo_periods {
 servo_periods! {
     uncorrected_2: Uncorrected, 2;
     uncorrected_3: Uncorrected, 3;
-    receding_horizon_2: RecedingHorizon<2>, 2;
-    receding_horizon_3: RecedingHorizon<3>, 3;
     lqg_preview_2: LqgPreview<2>, 2;
     lqg_preview_3: LqgPreview<3>, 3;
     magnitude_only_2: MagnitudeOnly<2>, 2;

@@ -18,9 +18,8 @@
 //! Source: Rao, Wright and Rawlings (1998), "Application of interior-point methods to model
 //! predictive control", section 3.
 
-use feedwright_control::{
-    Accelerations, END_WEIGHT, FEED_SCALE_MM_S, FOLLOWING_SCALE_MM, GaussNewton, HorizonProblem, INPUTS, MAX_KNOTS,
-};
+use feedwright_control::{FEED_SCALE_MM_S, FOLLOWING_SCALE_MM, INPUTS};
+use feedwright_lab::{Accelerations, END_WEIGHT, GaussNewton, HorizonProblem, MAX_KNOTS};
 
 use super::material::{Material, difference};
 use super::model::Slopes;

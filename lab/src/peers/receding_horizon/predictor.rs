@@ -6,12 +6,12 @@
 //! de/da  moves on along the slopes of f
 //! ```
 
-use crate::horizon::{CommandedPeriod, MAX_KNOTS, Predictor, Sensitivity};
-use crate::identifier::adaptation::Adaptation;
-use crate::identifier::residual::DisturbanceForecast;
-use crate::identifier::{Delays, FEED_SCALE_MM_S, Inputs, ServoModel};
-use crate::vector::{add_scaled, scale, sub};
-use crate::window::Window;
+use feedwright_control::vector::{add_scaled, scale, sub};
+use feedwright_control::{Delays, FEED_SCALE_MM_S, Inputs, ServoModel, Window};
+
+use super::adaptation::Adaptation;
+use super::horizon::{CommandedPeriod, MAX_KNOTS, Predictor, Sensitivity};
+use super::residual::DisturbanceForecast;
 
 /// The feedrate between two commands, scaled.
 #[inline]
@@ -107,10 +107,10 @@ impl<const N: usize, D: ServoModel<N>> Predictor<N> for IdentifiedPredictor<'_, 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identifier::adaptation;
-    use crate::identifier::servo::ServoIdentifier;
-    use crate::identifier::{Identifier, UNKNOWNS};
-    use crate::window::{Knot, KnotSource, Preview, Register};
+    use crate::peers::receding_horizon::adaptation;
+    use feedwright_control::{
+        HIDDEN, INPUTS, Identifier, Knot, KnotSource, Preview, Register, ServoIdentifier, UNKNOWNS,
+    };
 
     struct Line;
 
@@ -125,9 +125,9 @@ mod tests {
         let mut net = ServoIdentifier::NULL;
         for axis in 0..2 {
             net.linear[axis][axis] = [0.149, -0.082, 0.001, 0.49, -0.56];
-            for node in (axis..crate::identifier::HIDDEN).step_by(2) {
+            for node in (axis..HIDDEN).step_by(2) {
                 net.output[axis][node] = 1e-3 * (node as f64 - 5.0);
-                for input in 0..crate::identifier::INPUTS {
+                for input in 0..INPUTS {
                     net.hidden[axis][input][node] = 0.3 * libm::sin((7 * axis + 3 * input + node) as f64);
                 }
             }

@@ -6,9 +6,10 @@ use std::cell::RefCell;
 
 use feedwright_control::vector::{add_scaled, scale, sub};
 use feedwright_control::{
-    CommandedPeriod, Delays, FEED_SCALE_MM_S, FOLLOWING_SCALE_MM, HIDDEN, INPUTS, Identifier, Inputs, MAX_KNOTS,
-    Predictor, Sensitivity, ServoIdentifier, ServoModel, Window,
+    Delays, FEED_SCALE_MM_S, FOLLOWING_SCALE_MM, HIDDEN, INPUTS, Identifier, Inputs, ServoIdentifier, ServoModel,
+    Window,
 };
+use feedwright_lab::{CommandedPeriod, MAX_KNOTS, Predictor, Sensitivity};
 
 /// Derivative of the growth of the following error to the inputs, knot by knot, mm for an input of 1.
 pub(crate) type Slopes<const N: usize> = [Inputs<N>; MAX_KNOTS];

@@ -3,15 +3,16 @@
 use std::cell::RefCell;
 
 use feedwright_control::vector::add_scaled;
-use feedwright_control::{
-    Accelerations, CorrectionLimits, HorizonProblem, HorizonSettings, Knot, KnotSource, MAX_KNOTS, Preview,
-    RECEDING_HORIZON_FEED_PERIOD_S, RecedingHorizonSettings, Register, ServoIdentifier, Solver, Window,
+use feedwright_control::{Knot, KnotSource, Preview, Register, ServoIdentifier, Window};
+use feedwright_ident::SERVO_FEED_PERIOD_S;
+use feedwright_lab::{
+    Accelerations, CorrectionLimits, HorizonProblem, HorizonSettings, MAX_KNOTS, RecedingHorizonSettings, Solver,
 };
 
 use super::model::{Servo, Slopes, servo};
 
 /// Feed period, s, and servo period, s.
-const FEED_PERIOD_S: f64 = RECEDING_HORIZON_FEED_PERIOD_S;
+const FEED_PERIOD_S: f64 = SERVO_FEED_PERIOD_S;
 const SERVO_S: f64 = 0.001;
 /// Largest acceleration of the plan of the tick before, mm/s^2.
 const PLANNED_MM_S2: f64 = 100.0;

@@ -26,8 +26,9 @@
 //! limit. After a rapid that demands more, the tool is late for the cut, and a correction for the
 //! wrong position goes wrong.
 
+use feedwright_control::vector::fourth_power;
+
 use super::{CorrectionLimits, HorizonSettings};
-use crate::vector::fourth_power;
 
 /// q at the most.
 const MAX_OFFSET_WEIGHT: f64 = 10.0;

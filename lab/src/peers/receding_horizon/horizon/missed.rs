@@ -14,7 +14,7 @@
 //! Both sides exclude the effect of the offset, because the plan has changed since. Only the
 //! component of the difference across the path counts.
 
-use crate::vector::{norm, reject, sub};
+use feedwright_control::vector::{norm, reject, sub};
 
 /// M: knots ahead.
 pub(crate) const AHEAD_KNOTS: usize = 6;

@@ -1,8 +1,9 @@
 //! What controllers learn while cutting does no harm: not on a straight line of minutes, not with another seed of their training.
 
 use crate::sweep::part_or_whole;
-use feedwright::{CONTROLLERS, Choices, HORIZON, Make, Setup};
+use feedwright::{Choices, Make, Setup};
 use feedwright_gcode::canon::{AuxiliaryAxes, Canon, Corner, Motion, MotionKind, Plane, Shape};
+use feedwright_lab::{CONTROLLERS, HORIZON};
 use feedwright_sim::{Machine, Row, Run, Sink, path_steps};
 use rayon::prelude::*;
 

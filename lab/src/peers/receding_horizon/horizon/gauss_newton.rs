@@ -6,11 +6,12 @@
 //!
 //! Source: Gauss-Newton with a fixed number of steps a tick as in Diehl, Bock and Schloeder (2005).
 
+use feedwright_control::vector::add_scaled;
+
+use super::super::least_squares::BLOCK;
 use super::interior_point::Quadratic;
 use super::problem::{GradientRow, HorizonProblem};
 use super::{Accelerations, MAX_KNOTS, MAX_UNKNOWNS, Solver};
-use crate::least_squares::BLOCK;
-use crate::vector::add_scaled;
 
 /// The normal equations of a tick. Kept between ticks so that none has to clear what it does not use.
 #[derive(Debug, Clone, Default)]
@@ -119,8 +120,10 @@ impl GaussNewton {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::horizon::{CommandedPeriod, CorrectionLimits, HorizonSettings, Predictor, Sensitivity};
-    use crate::window::{Knot, KnotSource, Preview, Register, Window};
+    use crate::peers::receding_horizon::horizon::{
+        CommandedPeriod, CorrectionLimits, HorizonSettings, Predictor, Sensitivity,
+    };
+    use feedwright_control::{Knot, KnotSource, Preview, Register, Window};
 
     const KNOTS: usize = 6;
 

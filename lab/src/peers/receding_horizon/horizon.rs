@@ -44,8 +44,10 @@ pub(crate) mod problem;
 pub(crate) mod interior_point;
 pub(crate) mod gauss_newton;
 
-use crate::vector::{add_scaled, bounded, fourth_power, scale, sub};
-use crate::window::Window;
+use feedwright_control::Window;
+use feedwright_control::vector::{add_scaled, bounded, fourth_power, scale, sub};
+
+use feedwright_sim::Known;
 use gauss_newton::GaussNewton;
 use problem::HorizonProblem;
 use restraint::Restraint;
@@ -66,6 +68,9 @@ const RESTING_MM_S: f64 = 0.5;
 /// How many times the lag of the machine the horizon reaches ahead, or more: what is commanded later hardly moves the tool that is
 /// foreseen now.
 pub(crate) const LAGS_AHEAD: f64 = 3.6;
+
+/// Part of the largest deviation that a plan uses: the rest is for what it misses, before the safety layer acts.
+const PLANNED_DEVIATION: f64 = 0.9;
 
 /// Knots at the end of the horizon by which the tool has to be back at its time. Behind the horizon nothing is foreseen: a tool
 /// that is late or fast there when the path turns swings from one side of it to the other.
@@ -117,6 +122,16 @@ impl<const N: usize> CorrectionLimits<N> {
         deviation_mm: f64::INFINITY,
         drive_mm_s2: [f64::INFINITY; N],
     };
+
+    /// What a machine allows a correction.
+    pub fn of(known: &Known) -> Self {
+        Self {
+            acceleration_mm_s2: core::array::from_fn(|i| known.axis(i).correction_accel_mm_s2),
+            speed_mm_s: known.limits.rapid_mm_s,
+            deviation_mm: PLANNED_DEVIATION * known.limits.max_deviation_mm,
+            drive_mm_s2: core::array::from_fn(|i| known.axis(i).drive_mm_s2()),
+        }
+    }
 }
 
 /// The accelerations of a plan, knot by knot, mm/s^2.
@@ -195,7 +210,7 @@ impl<const N: usize> CommandedPeriod<N> {
         self.command_mm = [self.command_mm[1], add_scaled(path_mm, 1.0, to_mm)];
     }
 
-    /// How far the way of the offset is bent, mm: see [`crate::Command`].
+    /// How far the way of the offset is bent, mm: see [`feedwright_control::Command`].
     #[inline]
     pub fn bend_mm(&self) -> [f64; N] {
         scale(0.5 * self.period_s, sub(self.offset_mm_s[1], self.offset_mm_s[0]))

@@ -11,7 +11,7 @@ mod solvers {
 }
 
 use divan::{Bencher, black_box};
-use feedwright_control::{GaussNewton, HorizonProblem, Solver};
+use feedwright_lab::{GaussNewton, HorizonProblem, Solver};
 use solvers::material::Material;
 use solvers::riccati::{AGREEMENT, Riccati, apart_from_gauss_newton};
 

@@ -10,7 +10,7 @@ mod solvers {
 }
 
 use feedwright_control::vector::{add_scaled, dot, sub};
-use feedwright_control::{Accelerations, END_WEIGHT, GaussNewton, HorizonProblem, HorizonSettings};
+use feedwright_lab::{Accelerations, END_WEIGHT, GaussNewton, HorizonProblem, HorizonSettings};
 use solvers::material::{Material, difference};
 use solvers::riccati::{AGREEMENT, apart_from_gauss_newton};
 

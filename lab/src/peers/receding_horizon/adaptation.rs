@@ -8,7 +8,7 @@
 //!                                                      and the output of its hidden nodes
 //! ```
 //!
-//! Each model has its own [`super::residual`]. [`crate::least_squares`] fits delta to y and phi,
+//! Each model has its own [`super::residual`]. [`super::least_squares`] fits delta to y and phi,
 //! both filtered by the autoregression of the trained model's residual (generalized least squares).
 //! Without the filter, a vibration would pass for a change of the machine. The [`Spread`] of
 //! machines of a kind gives the prior of delta. Its mean is the mean delta of the other axes times
@@ -21,17 +21,14 @@
 //! population, Lindley and Smith (1972); switching between models by their recent predictions,
 //! Narendra and Balakrishnan (1997).
 
+use feedwright_control::{INPUTS, Inputs, ServoIdentifier, ServoModel, Spread, UNKNOWNS};
+
+use super::least_squares::{LeastSquares, inverse};
 use super::residual::{self, DisturbanceForecast, LAGS, Residual};
-use super::servo::ServoIdentifier;
-use super::{INPUTS, Inputs, ServoModel, UNKNOWNS};
-use crate::least_squares::{LeastSquares, inverse};
 
 /// The other model is believed where its mean square innovation is below this part of the present one's: no change of mind
 /// over noise.
 const CLEARLY_BETTER: f64 = 0.5;
-
-/// How machines of a kind differ from the identified: mean squares and products of delta, axis by axis.
-pub type Spread<const N: usize> = [[[f64; UNKNOWNS]; UNKNOWNS]; N];
 
 /// Settings.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -275,8 +272,7 @@ fn information(spread: &[[f64; UNKNOWNS]; UNKNOWNS], settings: &AdaptationSettin
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::identifier::Identifier;
-    use crate::identifier::servo::ServoIdentifier;
+    use feedwright_control::Identifier;
 
     /// A linear servo of two axes.
     fn servo(gain: f64) -> ServoIdentifier<2> {

@@ -2,7 +2,7 @@
 //! ahead.
 //!
 //! Each feed period the controller adapts the identifier to its last prediction error
-//! ([`crate::identifier::adaptation`]), improves the plan by one step of [`crate::horizon`], and
+//! ([`adaptation`]), improves the plan by one step of [`horizon`], and
 //! commands the first step of the plan. The weights of the plan follow the quality of the
 //! predictions:
 //!
@@ -19,27 +19,33 @@
 //!
 //! The controller thus corrects gently where the identifier cannot represent a resonance. On a
 //! machine that the identifier does not know it corrects less, down to nothing
-//! ([`crate::horizon::missed`], [`Controller::judged`]). Because of the fourth power, the small
+//! ([`horizon::missed`], [`Controller::judged`]). Because of the fourth power, the small
 //! innovations of friction hardly change the weights. A machine that lags far behind has longer
 //! knots, so that the plan reaches beyond the lag. The feedrate along the path stays as planned.
 
+mod least_squares;
+mod residual;
+mod adaptation;
+mod horizon;
 mod predictor;
 
-use super::{Controller, Schedule};
-use crate::command::{Command, Measured};
-use crate::horizon::gauss_newton::GaussNewton;
-use crate::horizon::missed::Missed;
-use crate::horizon::{self, LAGS_AHEAD, MAX_PERIODS, OffsetPlan, Solver};
-use crate::identifier::adaptation::{self, Adaptation, Spread};
-use crate::identifier::servo::ServoIdentifier;
-use crate::identifier::{Delays, ServoModel};
-use crate::vector::{add_scaled, fourth_power, norm, scale, sub};
-use crate::window::{PREVIEW_KNOTS, Window};
+use feedwright_control::vector::{add_scaled, fourth_power, norm, scale, sub};
+use feedwright_control::{
+    Command, Controller, Delays, Measured, PREVIEW_KNOTS, Schedule, ServoIdentifier, ServoModel, Spread, Window,
+};
+
+use adaptation::Adaptation;
+use horizon::missed::Missed;
+use horizon::{LAGS_AHEAD, MAX_PERIODS};
 use predictor::{IdentifiedPredictor, feed};
 
-/// Its feed period, s. Shorter foresees friction better, longer resonances: 2 ms is worse on a soft ball screw, 5 ms at every
-/// reversal.
-pub const RECEDING_HORIZON_FEED_PERIOD_S: f64 = 0.003;
+pub use horizon::gauss_newton::GaussNewton;
+pub use horizon::problem::{END_WEIGHT, HorizonProblem};
+pub use horizon::{
+    Accelerations, CommandedPeriod, CorrectionLimits, HorizonSettings, MAX_KNOTS, OffsetPlan, Predictor, Sensitivity,
+    Solver,
+};
+pub use residual::{DisturbanceForecast, Residual, ResidualSettings};
 
 /// Knots change their length where the wanted length is further than this from the present, in feed periods: no change of
 /// mind over noise.
@@ -74,7 +80,7 @@ pub struct RecedingHorizonSettings<const N: usize> {
     /// Servo periods in a feed period; 1 to 20.
     pub servo_periods: u32,
     /// The inversion.
-    pub horizon: horizon::HorizonSettings<N>,
+    pub horizon: HorizonSettings<N>,
     /// Steps of the solver in a tick; 1 is all that Gauss-Newton needs.
     pub steps: usize,
     /// Adaptation of the identifier.
@@ -89,7 +95,7 @@ impl<const N: usize> RecedingHorizonSettings<N> {
     /// Values that serve every shape and machine tried.
     pub const DEFAULT: Self = Self {
         servo_periods: 5,
-        horizon: horizon::HorizonSettings {
+        horizon: HorizonSettings {
             knots: 20,
             rate_weight: 3e-10,
             change_weight: 1e-10,
@@ -98,7 +104,7 @@ impl<const N: usize> RecedingHorizonSettings<N> {
             last_weight: 0.05,
             late_weight: 0.0,
             on_rapids: false,
-            limits: horizon::CorrectionLimits::NONE,
+            limits: CorrectionLimits::NONE,
         },
         steps: 1,
         adaptation: adaptation::AdaptationSettings::DEFAULT,
@@ -244,7 +250,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
     }
 
     /// The weights at the quality that the predictions have now.
-    fn weighted(&self) -> horizon::HorizonSettings<N> {
+    fn weighted(&self) -> HorizonSettings<N> {
         let blunter = 1.0 + fourth_power(self.net.innovation_mm() / self.settings.innovation_scale_mm);
         let mut horizon = self.settings.horizon;
         horizon.rate_weight *= blunter;

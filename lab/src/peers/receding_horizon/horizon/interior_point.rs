@@ -14,9 +14,10 @@
 //! Source: Mehrotra (1992), "On the implementation of a primal-dual interior point method"; for horizons, Rao, Wright and
 //! Rawlings (1998).
 
+use feedwright_control::vector::bounded;
+
+use super::super::least_squares::{BLOCK, add_products, cholesky, substitute};
 use super::MAX_UNKNOWNS;
-use crate::least_squares::{BLOCK, add_products, cholesky, substitute};
-use crate::vector::bounded;
 
 /// Iterations at the most.
 const MAX_ITERATIONS: usize = 12;

@@ -14,11 +14,12 @@
 //! used near points where the path turns back, and wherever the plan leaves much of the contour
 //! error. N more rows bring the offset back after the last knot.
 
+use feedwright_control::vector::{bounded, dot, norm, reject, scale, sub};
+use feedwright_control::{PREVIEW_KNOTS, Window};
+
 use super::{
     Accelerations, CommandedPeriod, HorizonSettings, MAX_AXES, MAX_KNOTS, MAX_UNKNOWNS, Predictor, Sensitivity,
 };
-use crate::vector::{bounded, dot, norm, reject, scale, sub};
-use crate::window::{PREVIEW_KNOTS, Window};
 
 /// Weight of what the offset moves the tool by on a rapid: less than an error of a cut, so that it is in place when the next
 /// one begins.

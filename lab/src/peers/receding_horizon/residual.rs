@@ -11,11 +11,12 @@
 //!
 //! Source: autoregressive disturbance models as in Ljung and Soederstroem (1983), section 3.6.
 
-use crate::least_squares::LeastSquares;
-use crate::vector::bounded;
+use feedwright_control::vector::bounded;
+
+use super::least_squares::LeastSquares;
 
 /// P: lags.
-pub const LAGS: usize = 6;
+pub(super) const LAGS: usize = 6;
 /// Innovations beyond this many times the usual count less.
 const USUAL: f64 = 3.0;
 /// Part by which the usual size follows each innovation.
