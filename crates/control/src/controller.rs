@@ -61,10 +61,6 @@ pub trait Controller<const N: usize> {
     fn moved_mm(&self) -> Option<[f64; N]> {
         None
     }
-    /// Mean squares of the contour error that the last decision foresees with its correction and without, mm^2.
-    fn foreseen_mm2(&self) -> [f64; 2] {
-        [0.0; 2]
-    }
     /// Called after every decision with the over-correction factor that was measured lately. The
     /// factor is 0 where neither more nor less correction would have been better, and 1 where no
     /// correction would have been as good. It is negative where more would have been better.

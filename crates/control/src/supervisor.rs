@@ -64,13 +64,6 @@ const WRONG_SHARE: f64 = 0.2;
 const MIN_WRONG_MM: f64 = 0.02;
 /// A prediction is good where it misses by less than this part of a wrong one.
 const GOOD_SHARE: f64 = 0.5;
-/// Decisions in a row in which harm is foreseen.
-const FORESEEN_DECISIONS: u32 = 8;
-/// Harm is foreseen where the mean square of the contour error over the horizon is beyond this many times that without the
-/// correction, and this much, mm^2 (10 um).
-const FORESEEN: f64 = 4.0;
-const FORESEEN_MM2: f64 = 1e-4;
-
 /// What a controller says of itself behind a decision.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct SelfReport<const N: usize> {
@@ -79,8 +72,6 @@ pub(crate) struct SelfReport<const N: usize> {
     pub(crate) doubt: Option<FaultEvidence>,
     /// By how much its offset has moved the tool, mm, where it knows.
     pub(crate) moved_mm: Option<[f64; N]>,
-    /// Mean squares of the contour error that it foresees with its correction and without, mm^2.
-    pub(crate) foreseen_mm2: [f64; 2],
     /// Whether it means to make the contour error smaller.
     pub(crate) corrects: bool,
     /// Whether its offset is there at once.
@@ -93,7 +84,6 @@ pub(crate) struct Supervisor<const N: usize> {
     bounds: Bounds,
     rate: f64,
     wrong: u32,
-    foreseen: u32,
     benefit: Benefit<N>,
     engagement: Engagement,
     /// Time in which a correction comes back, s.
@@ -110,7 +100,6 @@ impl<const N: usize> Supervisor<N> {
             bounds,
             rate: 1.0,
             wrong: 0,
-            foreseen: 0,
             benefit: Benefit::NONE,
             engagement: Engagement::START,
             take_up_s: LEAST_BACK_S,
@@ -218,9 +207,6 @@ impl<const N: usize> Supervisor<N> {
             wrong_mm if wrong_mm > self.wrong_mm() => self.wrong + 1,
             _ => 0,
         };
-        let [with_mm2, without_mm2] = told.foreseen_mm2;
-        let allowed_mm2 = FORESEEN_MM2 + FORESEEN * without_mm2;
-        self.foreseen = if with_mm2 > allowed_mm2 { self.foreseen + 1 } else { 0 };
         // Where nothing that is predicted can be true, neither can what an offset is said to have done.
         let harm = if told.prediction_error_mm < f64::INFINITY {
             self.benefit.harm(window, measured.position_mm, &measured.contour, told.moved_mm)
@@ -232,11 +218,8 @@ impl<const N: usize> Supervisor<N> {
         } else if self.wrong >= WRONG_DECISIONS {
             let missed = FaultEvidence { found_mm: told.prediction_error_mm, limit_mm: self.wrong_mm() };
             Some((Cause::WrongPredictions, told.doubt.or(Some(missed))))
-        } else if told.corrects && (harm.is_some() || self.foreseen >= FORESEEN_DECISIONS) {
-            let foreseen = FaultEvidence { found_mm: libm::sqrt(with_mm2), limit_mm: libm::sqrt(allowed_mm2) };
-            Some((Cause::Harmful, harm.or(Some(foreseen))))
         } else {
-            None
+            harm.filter(|_| told.corrects).map(|harm| (Cause::Harmful, Some(harm)))
         }
     }
 

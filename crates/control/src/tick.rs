@@ -184,7 +184,6 @@ impl<const N: usize> Tick<N> {
             prediction_error_mm: controller.prediction_error_mm(),
             doubt: controller.doubt(),
             moved_mm: controller.moved_mm(),
-            foreseen_mm2: controller.foreseen_mm2(),
             corrects: controller.corrects(),
             acts_at_once: controller.acts_at_once(),
         };

@@ -31,7 +31,8 @@ mod predictor;
 
 use feedwright_control::vector::{add_scaled, fourth_power, norm, scale, sub};
 use feedwright_control::{
-    Command, Controller, Delays, Measured, PREVIEW_KNOTS, Schedule, ServoIdentifier, ServoModel, Spread, Window,
+    Command, Controller, Delays, FaultEvidence, Measured, PREVIEW_KNOTS, Schedule, ServoIdentifier, ServoModel, Spread,
+    Window,
 };
 
 use adaptation::Adaptation;
@@ -48,6 +49,12 @@ pub use horizon::{
 pub use residual::{DisturbanceForecast, Residual, ResidualSettings};
 
 /// Knots change their length where the wanted length is further than this from the present, in feed periods: no change of
+/// Decisions in a row in which harm is foreseen.
+const FORESEEN_DECISIONS: u32 = 8;
+/// Harm is foreseen where the mean square of the contour error over the horizon is beyond this many times that without the
+/// correction, and this much, mm^2 (10 um).
+const FORESEEN: f64 = 4.0;
+const FORESEEN_MM2: f64 = 1e-4;
 /// mind over noise.
 const CLEARLY_OTHER: f64 = 0.7;
 
@@ -130,7 +137,10 @@ pub struct RecedingHorizon<const N: usize, S = GaussNewton, D = ServoIdentifier<
     outliers: u32,
     /// Whether the position has leapt, and stayed there.
     leapt: bool,
+    /// Mean squares of the contour error that the last plan foresees with its correction and without, mm^2, and decisions in a row in which that is
+    /// harm.
     foreseen_mm2: [f64; 2],
+    foreseen_harm: u32,
     /// Largest contour error over the horizon without any offset, mm.
     open_error_mm: f64,
     /// Over-correction factor measured lately: see [`Controller::judged`].
@@ -163,6 +173,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> RecedingHorizon<N, S, D> {
             outliers: 0,
             leapt: false,
             foreseen_mm2: [0.0; 2],
+            foreseen_harm: 0,
             open_error_mm: f64::INFINITY,
             overdone: 0.0,
             last: None,
@@ -296,7 +307,7 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> Controller<N> for RecedingH
         self.missed = Missed::NONE;
         self.outliers = 0;
         self.leapt = false;
-        self.foreseen_mm2 = [0.0; 2];
+        (self.foreseen_mm2, self.foreseen_harm) = ([0.0; 2], 0);
         self.open_error_mm = f64::INFINITY;
         self.overdone = 0.0;
         self.last = None;
@@ -318,12 +329,15 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> Controller<N> for RecedingH
         self.overdone = overdone;
     }
 
-    fn foreseen_mm2(&self) -> [f64; 2] {
-        self.foreseen_mm2
+    /// Infinite where harm is foreseen.
+    fn prediction_error_mm(&self) -> f64 {
+        if self.foreseen_harm < FORESEEN_DECISIONS { self.prediction_error_mm } else { f64::INFINITY }
     }
 
-    fn prediction_error_mm(&self) -> f64 {
-        self.prediction_error_mm
+    fn doubt(&self) -> Option<FaultEvidence> {
+        let [with_mm2, without_mm2] = self.foreseen_mm2;
+        let limit_mm = allowed_mm2(without_mm2).sqrt();
+        (self.foreseen_harm >= FORESEEN_DECISIONS).then(|| FaultEvidence { found_mm: with_mm2.sqrt(), limit_mm })
     }
 
     fn command(&mut self, window: &Window<'_, N>, _: &Measured<N>) -> Command<N> {
@@ -336,8 +350,15 @@ impl<const N: usize, S: Solver<N>, D: ServoModel<N>> Controller<N> for RecedingH
             step = self.plan.improve(&model, window, &horizon);
         }
         self.foreseen_mm2 = step.contour_mm2;
+        let [with_mm2, without_mm2] = step.contour_mm2;
+        self.foreseen_harm = if with_mm2 > allowed_mm2(without_mm2) { self.foreseen_harm + 1 } else { 0 };
         self.open_error_mm = step.open_error_mm;
         self.missed.foresee(self.periods, step.open_mm);
         Command::accelerated(window, window.offset_mm_s, step.acceleration_mm_s2)
     }
+}
+
+/// The mean square that is no harm yet, where so much is foreseen without the correction, mm^2.
+fn allowed_mm2(without_mm2: f64) -> f64 {
+    FORESEEN_MM2 + FORESEEN * without_mm2
 }

@@ -170,10 +170,6 @@ impl<const N: usize> Controller<N> for LiveController<N> {
         self.as_controller().moved_mm()
     }
 
-    fn foreseen_mm2(&self) -> [f64; 2] {
-        self.as_controller().foreseen_mm2()
-    }
-
     fn judged(&mut self, overdone: f64) {
         self.as_controller_mut().judged(overdone);
     }
