@@ -25,13 +25,14 @@ static inline const char *feedwright_fault(uint32_t fault)
         "the correction made the contour error larger",
         "the command was not a number",
         "the component failed inside: it plays out its delay and passes commands on",
-        "not used",
+        "the correction takes more acceleration than acceleration-limit",
         "delay is not within 0.008 and 0.015 s: the last good one stays",
         "deviation-limit is not within 0 and 10 mm: the last good one stays",
         "speed-limit is not within 1 and 10,000 mm/s: the last good one stays",
         "correction-acceleration is not 0, or within 1 and 1,000,000 mm/s^2: the last good one stays",
         "adaptive-scale is not within 0.1 and 1: the last good one stays",
         "a motion that probes or follows a spindle is delayed: connect feed-inhibit and spindle-at-speed",
+        "acceleration-limit is not 0, or within 1 and 1,000,000 mm/s^2: the last good one stays",
     };
     return fault < sizeof words / sizeof words[0] ? words[fault] : "unknown";
 }

@@ -68,6 +68,7 @@ pin in float delay = 0.010 "Delay of the command, 0.008 to 0.015 s; taken over w
 pin in float deviation-limit = 0.5 "Largest distance of the drive's command from the path, 0 to 10 mm; a change takes effect within 0.2 s, also in the cut";
 pin in float speed-limit = 400 "Highest speed of the machine, 1 to 10,000 mm/s: actual positions that leap by more are no positions";
 pin in float correction-acceleration = 400 "Acceleration with which an offset fades, 1 to 1,000,000 mm/s^2; 0 is without limit";
+pin in float acceleration-limit = 0 "Acceleration of the correction in the loop, of each joint, 1 to 1,000,000 mm/s^2; one that needs more leaves the loop; 0 is without limit";
 
 pin out float contour-error "Distance of the actual position from the path, mm";
 pin out float contour-error-without "What it would be without the correction, by a model of axes, mm";
@@ -78,8 +79,8 @@ pin out bit saturated "A limit holds the correction";
 pin out u32 state "0 amplifiers off, 1 without delay, 2 delayed, without correction, 3 the correction fades, 4 it is in the loop";
 pin out bit fault "There is no correction, or a setting is refused, for the reason in \\fBcause\\fR; it clears itself";
 pin out u32 cause """What was wrong last: 1 to 7 model file, 8 servo period, 9 the correction was not a number, 10 actual position
-lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside; out of range, so that the last good value stays in force and the correction goes on:
-16 delay, 17 deviation-limit, 18 speed-limit, 19 correction-acceleration, 20 adaptive-scale; 21 a motion that probes or follows a spindle is delayed""";
+lost, 11 predictions wrong, 12 contour error larger, 13 command not a number, 14 failed inside, 15 the correction takes more acceleration than acceleration-limit; out of range, so that the last good value stays in force and the correction goes on:
+16 delay, 17 deviation-limit, 18 speed-limit, 19 correction-acceleration, 20 adaptive-scale, 22 acceleration-limit; 21 a motion that probes or follows a spindle is delayed""";
 pin out u32 faults "How often there was a fault";
 pin out u32 times-out "How often the correction was taken out of the loop since the delay was taken up";
 pin out float found "What was measured when it was taken out last: contour error or wrong prediction, mm; 0 where nothing is compared";
@@ -212,6 +213,7 @@ FUNCTION(_)
         .deviation_mm = *c->deviation_limit,
         .speed_mm_s = *c->speed_limit,
         .correction_mm_s2 = *c->correction_acceleration,
+        .engaged_mm_s2 = *c->acceleration_limit,
         .adaptive_scale = c->adaptive_scale,
         .flags = flags(c),
     };

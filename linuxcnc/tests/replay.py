@@ -14,8 +14,8 @@ import programs
 
 # Smaller recordings than this hold no cut, servo periods.
 LEAST_PERIODS = 2000
-# As of feedwright.h: eleven numbers and the flags; fourteen numbers, eight whole ones.
-INPUT_BYTES, PERIOD_BYTES = 96, 240
+# As of feedwright.h: twelve numbers and the flags; fourteen numbers, eight whole ones.
+INPUT_BYTES, PERIOD_BYTES = 104, 248
 
 
 def main():

@@ -10,6 +10,7 @@
 //! | the law of the controller is wrong | free runs by it miss more than there is to correct, twice in a row or once by twice as much | out at once |
 //! | predictions are wrong | four in a row miss by a fifth of the largest deviation | out at once |
 //! | harm | the error is beyond 1.5 times that without the correction, and 5 um (mean square over 0.25 s) or 30 um (a single error) | out at once |
+//! | [`Bounds::engaged_mm_s2`] keeps the offset from what is asked for | by more than 5 um | out at once |
 //! | servo periods do not go as the law says | innovations, over 5 ms | it asks for less |
 //! | the command was held to a bound | | it asks for less |
 //! | nothing of this, for a while | 0.1 s, and twice as long out as the last time | back in, within 40 ms or more |
@@ -46,7 +47,7 @@ mod fade;
 pub(crate) mod engagement;
 
 use crate::command::{Command, FaultEvidence, Measured};
-use crate::vector::{bounded, norm, scale, smooth_step};
+use crate::vector::{bounded, norm, scale, smooth_step, sub};
 use crate::window::Window;
 use benefit::Benefit;
 pub use bounds::Bounds;
@@ -58,6 +59,8 @@ pub use fade::fade_acceleration;
 const LEAST_BACK_S: f64 = 0.04;
 /// Decisions in a row with a wrong prediction. One is a shock, which no model foresees.
 const WRONG_DECISIONS: u32 = 4;
+/// The owner's acceleration may keep the offset so far from what is asked for, mm: what is harm in the mean (`supervisor/benefit.rs`).
+const MOST_BEHIND_MM: f64 = 0.005;
 /// A prediction is wrong where it misses by this part of the largest deviation.
 const WRONG_SHARE: f64 = 0.2;
 /// A prediction that misses by less than this is not worth a word, mm, however small the largest deviation is.
@@ -91,6 +94,9 @@ pub(crate) struct Supervisor<const N: usize> {
     /// Whether a correction is wanted at all.
     allowed: bool,
     held: bool,
+    /// What was asked for last by a controller in the loop that acts at once, mm, and how far the owner's acceleration has kept the offset from it, mm.
+    asked_mm: [f64; N],
+    behind_mm: f64,
 }
 
 impl<const N: usize> Supervisor<N> {
@@ -105,6 +111,8 @@ impl<const N: usize> Supervisor<N> {
             take_up_s: LEAST_BACK_S,
             allowed: true,
             held: false,
+            asked_mm: [0.0; N],
+            behind_mm: 0.0,
         }
     }
 
@@ -171,7 +179,10 @@ impl<const N: usize> Supervisor<N> {
             period_s: window.feed_period_s,
         });
         let asked = match state {
-            State::Engaged if told.acts_at_once => self.taken_up(wanted, window.feed_period_s),
+            State::Engaged if told.acts_at_once => {
+                let asked = self.taken_up(wanted, window.feed_period_s);
+                self.accelerated(window, asked)
+            }
             State::Engaged => wanted,
             State::Shadow => Command::AS_PLANNED,
             State::Fading => self.faded(window, told.acts_at_once),
@@ -179,6 +190,9 @@ impl<const N: usize> Supervisor<N> {
         let command = self.bounds.hold(window, asked, self.rate, told.acts_at_once);
         self.held = state == State::Engaged && command != asked;
         self.rate = command.rate;
+        if state != State::Engaged {
+            (self.asked_mm, self.behind_mm) = (command.offset_mm, 0.0);
+        }
         command
     }
 
@@ -191,6 +205,14 @@ impl<const N: usize> Supervisor<N> {
         }
         let part = bounded(back_for_s / self.take_up_s, 0.0, 1.0);
         if part < 1.0 { Command::straight(wanted.rate, scale(smooth_step(part), wanted.offset_mm)) } else { wanted }
+    }
+
+    /// What was asked for, within the owner's acceleration.
+    fn accelerated(&mut self, window: &Window<'_, N>, asked: Command<N>) -> Command<N> {
+        let last_mm = core::mem::replace(&mut self.asked_mm, asked.offset_mm);
+        let offset_mm = self.bounds.accelerated_mm(window, asked.offset_mm, last_mm);
+        self.behind_mm = norm(sub(asked.offset_mm, offset_mm));
+        Command { offset_mm, ..asked }
     }
 
     /// Why a controller must not be followed, and what that rests on.
@@ -218,6 +240,8 @@ impl<const N: usize> Supervisor<N> {
         } else if self.wrong >= WRONG_DECISIONS {
             let missed = FaultEvidence { found_mm: told.prediction_error_mm, limit_mm: self.wrong_mm() };
             Some((Cause::WrongPredictions, told.doubt.or(Some(missed))))
+        } else if self.behind_mm > MOST_BEHIND_MM {
+            Some((Cause::TooQuick, Some(FaultEvidence { found_mm: self.behind_mm, limit_mm: MOST_BEHIND_MM })))
         } else {
             harm.filter(|_| told.corrects).map(|harm| (Cause::Harmful, Some(harm)))
         }

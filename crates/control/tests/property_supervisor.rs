@@ -11,8 +11,14 @@ const SERVO_PERIODS: u32 = 5;
 const FEED_PERIOD_S: f64 = 0.005;
 const RADIUS_MM: f64 = 10.0;
 const FEED_MM_S: f64 = 50.0;
-const BOUNDS: Bounds =
-    Bounds { deviation_mm: 0.2, speed_mm_s: 200.0, acceleration_mm_s2: 5000.0, fade_mm_s2: FADE_MM_S2, fastest: 3.0 };
+const BOUNDS: Bounds = Bounds {
+    deviation_mm: 0.2,
+    speed_mm_s: 200.0,
+    acceleration_mm_s2: 5000.0,
+    fade_mm_s2: FADE_MM_S2,
+    engaged_mm_s2: f64::INFINITY,
+    fastest: 3.0,
+};
 /// Acceleration of a fade, mm/s2.
 const FADE_MM_S2: f64 = 400.0;
 /// The layer knows the path as chords between knots, behind at up to three times the planned spacing, and expects the next

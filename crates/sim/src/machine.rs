@@ -293,12 +293,15 @@ impl Machine {
         &self.axes[i.min(self.axes.len() - 1)]
     }
 
-    /// Acceleration that a correction of the i-th axis may add to the plan's, mm/s2: as much as the plan itself has, where nothing else
-    /// is said.
+    /// Acceleration that a correction of the i-th axis may add to the plan's where it fades, mm/s2: as much as the plan itself has, where nothing
+    /// else is said.
     pub fn correction_accel_mm_s2(&self, i: usize) -> f64 {
         let axis = self.axis(i);
         let planned_mm_s2 = axis.max_accel_mm_s2.filter(|_| self.has_axis_limits());
-        axis.correction_accel_mm_s2.or(planned_mm_s2).unwrap_or(self.limits.normal_accel_mm_s2)
+        axis.correction_accel_mm_s2
+            .or(axis.fade_accel_mm_s2)
+            .or(planned_mm_s2)
+            .unwrap_or(self.limits.normal_accel_mm_s2)
     }
 
     /// Content of the machine as a hexadecimal key for caches: equal for machines whose axes move equally, whatever

@@ -164,7 +164,8 @@ impl<'a, const N: usize> ClosedLoop<'a, N> {
         let fade_mm_s2 = (0..N).map(|i| machine.correction_accel_mm_s2(i)).fold(f64::INFINITY, f64::min);
         let limits = &machine.limits;
         let bounds = Bounds::new(limits.max_deviation_mm, limits.rapid_mm_s, fade_mm_s2);
-        let bounds = bounds.feed_rise(limits.max_feed_rise_percent);
+        let owners_mm_s2 = (0..N).filter_map(|i| machine.axis(i).correction_accel_mm_s2).fold(f64::INFINITY, f64::min);
+        let bounds = Bounds { engaged_mm_s2: owners_mm_s2, ..bounds.feed_rise(limits.max_feed_rise_percent) };
         let plant: Box<dyn Mechanism> = match plant {
             Some(make) => make(tool_of(start_mm), machine.noise.seed),
             None => Box::new(Plant::<N>::new(machine, start_mm)),

@@ -42,6 +42,8 @@ pub struct CInputs {
     speed_mm_s: f64,
     /// Acceleration of an offset that fades; 0 is without limit.
     correction_mm_s2: f64,
+    /// Acceleration of an offset in the loop; 0 is without limit. A correction that needs more leaves the loop.
+    engaged_mm_s2: f64,
     /// What 1 of the requested feedrate stands for, 0.1 to 1.
     adaptive_scale: f64,
     /// The sum of FEEDWRIGHT_POWERED and so on.
@@ -199,9 +201,18 @@ impl<const N: usize> Guarded<N> {
             spindle: inputs.is(FEEDWRIGHT_SPINDLE),
             cutting: inputs.is(FEEDWRIGHT_CUTTING),
         };
-        let CInputs { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, adaptive_scale, .. } = *inputs;
+        let CInputs { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, engaged_mm_s2, adaptive_scale, .. } =
+            *inputs;
         let speed_alone = inputs.is(FEEDWRIGHT_SPEED_ALONE);
-        let limits = LinkLimits { delay_s, deviation_mm, speed_mm_s, correction_mm_s2, adaptive_scale, speed_alone };
+        let limits = LinkLimits {
+            delay_s,
+            deviation_mm,
+            speed_mm_s,
+            correction_mm_s2,
+            engaged_mm_s2,
+            adaptive_scale,
+            speed_alone,
+        };
         let outputs = self.servo.step(&of, &limits);
         let found = outputs.left.and_then(|left| left.evidence);
         self.play_out.keep(of.command_mm, of.powered, outputs.drive_mm, outputs.delay_periods);
@@ -286,12 +297,14 @@ fn number(fault: LinkFault) -> u32 {
         LinkFault::Faded(Cause::LostFeedback) => 10,
         LinkFault::Faded(Cause::WrongPredictions) => 11,
         LinkFault::Faded(Cause::Harmful) => 12,
+        LinkFault::Faded(Cause::TooQuick) => 15,
         LinkFault::Command => 13,
         LinkFault::Setting(Setting::Delay) => 16,
         LinkFault::Setting(Setting::Deviation) => 17,
         LinkFault::Setting(Setting::Speed) => 18,
         LinkFault::Setting(Setting::CorrectionAcceleration) => 19,
         LinkFault::Setting(Setting::AdaptiveScale) => 20,
+        LinkFault::Setting(Setting::Acceleration) => 22,
         LinkFault::NotHeld => 21,
     }
 }

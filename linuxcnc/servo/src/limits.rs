@@ -5,7 +5,7 @@
 //! | delay | 0.008 to 0.015 s |
 //! | deviation | 0 to 10 mm; 0 corrects nothing |
 //! | speed | 1 to 10,000 mm/s |
-//! | acceleration of the correction | 1 to 1,000,000 mm/s2; 0 is without limit |
+//! | acceleration of a correction that fades, and of one in the loop | 1 to 1,000,000 mm/s2; 0 is without limit |
 //! | scale of the feedrate that is asked for | 0.1 to 1 |
 //!
 //! A number out of its range is refused, and so is what is not a number: the last good one stays in force.
@@ -31,6 +31,8 @@ pub struct LinkLimits {
     pub speed_mm_s: f64,
     /// Acceleration with which an offset fades, mm/s2; 0 is without limit.
     pub correction_mm_s2: f64,
+    /// Acceleration of an offset in the loop, of each axis, mm/s2; 0 is without limit. A correction that needs more leaves the loop.
+    pub engaged_mm_s2: f64,
     /// Multiple of the feedrate of now that a request of 1 stands for.
     pub adaptive_scale: f64,
     /// Whether a controller that changes the feedrate leaves the geometry on the path.
@@ -48,6 +50,8 @@ pub enum Setting {
     Speed,
     /// [`LinkLimits::correction_mm_s2`].
     CorrectionAcceleration,
+    /// [`LinkLimits::engaged_mm_s2`].
+    Acceleration,
     /// [`LinkLimits::adaptive_scale`].
     AdaptiveScale,
 }
@@ -59,6 +63,7 @@ impl LinkLimits {
         deviation_mm: 0.5,
         speed_mm_s: 400.0,
         correction_mm_s2: 400.0,
+        engaged_mm_s2: 0.0,
         adaptive_scale: 1.0,
         speed_alone: false,
     };
@@ -80,6 +85,11 @@ impl LinkLimits {
         check(Setting::Speed, asked.speed_mm_s, SPEEDS_MM_S, &mut self.speed_mm_s);
         let asked_mm_s2 = if unlimited { UNLIMITED_MM_S2 } else { asked.correction_mm_s2 };
         check(Setting::CorrectionAcceleration, asked_mm_s2, ACCELERATIONS_MM_S2, &mut self.correction_mm_s2);
+        if asked.engaged_mm_s2 == 0.0 {
+            self.engaged_mm_s2 = 0.0;
+        } else {
+            check(Setting::Acceleration, asked.engaged_mm_s2, ACCELERATIONS_MM_S2, &mut self.engaged_mm_s2);
+        }
         check(Setting::AdaptiveScale, asked.adaptive_scale, ADAPTIVE_SCALES, &mut self.adaptive_scale);
         self.speed_alone = asked.speed_alone;
         refused
@@ -98,6 +108,7 @@ mod tests {
             Setting::Deviation => &mut limits.deviation_mm,
             Setting::Speed => &mut limits.speed_mm_s,
             Setting::CorrectionAcceleration => &mut limits.correction_mm_s2,
+            Setting::Acceleration => &mut limits.engaged_mm_s2,
             Setting::AdaptiveScale => &mut limits.adaptive_scale,
         };
         *number = value;
@@ -106,12 +117,13 @@ mod tests {
 
     #[test]
     fn a_number_out_of_its_range_is_refused_and_the_last_good_one_stays() {
-        use Setting::{AdaptiveScale, CorrectionAcceleration, Delay, Deviation, Speed};
+        use Setting::{Acceleration, AdaptiveScale, CorrectionAcceleration, Delay, Deviation, Speed};
         for (setting, good, bad) in [
             (Delay, 0.012, [0.0, 0.0079, 0.0151]),
             (Deviation, 0.0, [-1.0, -1e-9, 11.0]),
             (Speed, 200.0, [0.0, -400.0, 1e5]),
             (CorrectionAcceleration, 2000.0, [-400.0, 0.5, 1e7]),
+            (Acceleration, 2000.0, [-400.0, 0.5, 1e7]),
             (AdaptiveScale, 0.5, [0.0, -1.0, 1.1]),
         ] {
             let mut in_force = LinkLimits::DEFAULT;

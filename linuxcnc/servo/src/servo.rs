@@ -259,8 +259,9 @@ impl<const N: usize> Servo<N> {
     }
 
     fn bounds(&self) -> Bounds {
-        let LinkLimits { speed_mm_s, correction_mm_s2: fade_mm_s2, .. } = self.limits;
-        Bounds { fade_mm_s2, ..Bounds::new(self.deviation_mm(), speed_mm_s, 0.0) }
+        let LinkLimits { speed_mm_s, correction_mm_s2: fade_mm_s2, engaged_mm_s2, .. } = self.limits;
+        let engaged_mm_s2 = if engaged_mm_s2 == 0.0 { f64::INFINITY } else { engaged_mm_s2 };
+        Bounds { fade_mm_s2, engaged_mm_s2, ..Bounds::new(self.deviation_mm(), speed_mm_s, 0.0) }
     }
 
     fn on(&mut self, inputs: &LinkInputs<N>, told: bool) -> LinkOutputs<N> {

@@ -23,11 +23,12 @@ const ROUND_MM: f64 = 1e-4;
 /// A name, the setting that is refused, and how the numbers are spoilt.
 type Spoilt = (&'static str, Setting, fn(&mut LinkLimits, f64));
 
-const SPOILT: [Spoilt; 5] = [
+const SPOILT: [Spoilt; 6] = [
     ("delay", Setting::Delay, |limits, x| limits.delay_s = x),
     ("deviation", Setting::Deviation, |limits, x| limits.deviation_mm = x),
     ("speed", Setting::Speed, |limits, x| limits.speed_mm_s = x),
     ("acceleration", Setting::CorrectionAcceleration, |limits, x| limits.correction_mm_s2 = x),
+    ("acceleration in the loop", Setting::Acceleration, |limits, x| limits.engaged_mm_s2 = x),
     ("scale", Setting::AdaptiveScale, |limits, x| limits.adaptive_scale = x),
 ];
 
@@ -77,6 +78,7 @@ fn whatever_is_set_in_the_cut_the_drive_gets_numbers_that_do_not_leap() {
                 deviation_mm: DEVIATIONS_MM[k / 4 % 6],
                 speed_mm_s: SPEEDS_MM_S[k / 3 % 6],
                 correction_mm_s2: ACCELERATIONS_MM_S2[k / 5 % 6],
+                engaged_mm_s2: ACCELERATIONS_MM_S2[k / 2 % 6],
                 ..LIMITS
             }
         };

@@ -21,6 +21,8 @@ const FASTEST: f64 = 3.0;
 /// Time in which the correction may take up the highest speed it is allowed, s. Feedforward of the exact model takes as
 /// little at a corner; of what leaps more, no machine could follow any.
 const TAKE_UP_S: f64 = 0.001;
+/// An offset is braked with half of this part of the acceleration that is allowed: 2 is all of it.
+const BRAKES: f64 = 1.2;
 /// Parts of the way of the offset in a feed period at which its deviation is looked at.
 const ON_THE_WAY: [f64; 3] = [0.75, 0.5, 0.25];
 /// The bound of the deviation may move the command by this many times the highest speed of the offset.
@@ -42,6 +44,8 @@ pub struct Bounds {
     pub acceleration_mm_s2: f64,
     /// Acceleration of an offset that fades, mm/s2.
     pub fade_mm_s2: f64,
+    /// Acceleration of each axis of an offset in the loop that is there at once, mm/s2.
+    pub engaged_mm_s2: f64,
     /// Fastest that a controller may run the plan, as a part of its speed.
     pub fastest: f64,
 }
@@ -51,7 +55,38 @@ impl Bounds {
     pub fn new(deviation_mm: f64, rapid_mm_s: f64, correction_mm_s2: f64) -> Self {
         let acceleration_mm_s2 = rapid_mm_s / TAKE_UP_S;
         let fade_mm_s2 = correction_mm_s2;
-        Self { deviation_mm, speed_mm_s: rapid_mm_s, acceleration_mm_s2, fade_mm_s2, fastest: FASTEST }
+        Self {
+            deviation_mm,
+            speed_mm_s: rapid_mm_s,
+            acceleration_mm_s2,
+            fade_mm_s2,
+            engaged_mm_s2: f64::INFINITY,
+            fastest: FASTEST,
+        }
+    }
+
+    /// The next step towards an offset that is asked for, and was at `last_mm` a period ago, within the owner's acceleration: near it with its speed, further
+    /// away so that it can be braked there. What takes no more than that is followed to the bit.
+    pub(super) fn accelerated_mm<const N: usize>(
+        &self,
+        window: &Window<'_, N>,
+        asked_mm: [f64; N],
+        last_mm: [f64; N],
+    ) -> [f64; N] {
+        let period_s = window.feed_period_s;
+        let most_mm_s = self.engaged_mm_s2 * period_s;
+        let mut offset_mm = asked_mm;
+        let from = window.offset_mm.into_iter().zip(window.offset_mm_s).zip(last_mm);
+        for (offset_mm, ((from_mm, from_mm_s), last_mm)) in offset_mm.iter_mut().zip(from) {
+            let way_mm = *offset_mm - from_mm;
+            if (way_mm / period_s - from_mm_s).abs() > most_mm_s {
+                let closing_mm_s = libm::sqrt(BRAKES * self.engaged_mm_s2 * way_mm.abs()).min(way_mm.abs() / period_s);
+                let wanted_mm_s = (*offset_mm - last_mm) / period_s + libm::copysign(closing_mm_s, way_mm);
+                let change_mm_s = bounded(wanted_mm_s - from_mm_s, -most_mm_s, most_mm_s);
+                *offset_mm = from_mm + period_s * (from_mm_s + change_mm_s);
+            }
+        }
+        offset_mm
     }
 
     /// With at most `percent` above the planned feedrate.

@@ -39,8 +39,10 @@ pub enum Cause {
     LostFeedback,
     /// Its predictions were wrong for several decisions in a row.
     WrongPredictions,
-    /// It made the contour error larger than it would have been without, or was about to.
+    /// It made the contour error larger than it would have been without.
     Harmful,
+    /// It takes more acceleration than the owner allows.
+    TooQuick,
 }
 
 impl Cause {
@@ -51,6 +53,7 @@ impl Cause {
             Self::LostFeedback => "the measured position was lost",
             Self::WrongPredictions => "its predictions were wrong",
             Self::Harmful => "it made the contour error larger",
+            Self::TooQuick => "it takes more acceleration than correction_accel_mm_s2",
         }
     }
 }

@@ -30,10 +30,13 @@ pub struct Axis {
     pub kv_nm_s_per_rad: f64,
     /// Torque at which the drive saturates, N m.
     pub torque_limit_nm: f64,
-    /// Acceleration that a correction of the command may add to the plan's, mm/s2; none is the machine's
-    /// [`super::Limits::normal_accel_mm_s2`].
+    /// Acceleration that a correction of the command may add to the plan's, mm/s2; none is no limit in the loop, and the machine's
+    /// [`super::Limits::normal_accel_mm_s2`] for a correction that fades.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correction_accel_mm_s2: Option<f64>,
+    /// That of a correction that fades, of a machine that was planned by other limits in its file, mm/s2.
+    #[serde(skip)]
+    pub fade_accel_mm_s2: Option<f64>,
     /// Delay between the control and the position loop, s; rounded to whole servo periods.
     #[serde(skip_serializing_if = "is_zero")]
     pub command_delay_s: f64,

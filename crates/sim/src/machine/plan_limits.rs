@@ -47,7 +47,7 @@ impl Machine {
             let AxisLimits { velocity_mm_s, accel_mm_s2, jerk_mm_s3 } = self.axis_limits(i);
             let axis = &mut machine.axes[i];
             if axis.max_accel_mm_s2.is_none() {
-                axis.correction_accel_mm_s2 = Some(self.correction_accel_mm_s2(i));
+                axis.fade_accel_mm_s2 = Some(self.correction_accel_mm_s2(i));
             }
             axis.max_velocity_mm_s = Some(velocity_mm_s);
             axis.max_accel_mm_s2 = Some(accel_mm_s2);
