@@ -296,9 +296,9 @@ fn linear(found: &FoundAxis) -> LinearPart {
         gain_product_1_s2: product,
         speed_loop_1_s: speed_loop,
         velocity_feedforward: feedforward,
-        command_delay_s: get(LawTerm::RecordDelay),
+        command_delay_s: values.commands_late_s(),
         loop_delay_s: get(LawTerm::LoopDelay),
-        lag_s: (carried - feedforward * values.speed_gain_1_s()) / product + get(LawTerm::RecordDelay),
+        lag_s: (carried - feedforward * values.speed_gain_1_s()) / product + values.commands_late_s(),
     }
 }
 

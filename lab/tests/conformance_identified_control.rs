@@ -43,6 +43,30 @@ fn rms_um(controller: &str, file: &Machine, machine: &Machine, name: &str) -> f6
     (error.0[0] / error.0[1]).sqrt()
 }
 
+/// Most that a command delay costs a controller that knows it, as a multiple of the RMS error without the delay.
+const DELAYED: f64 = 2.0;
+
+#[test]
+fn a_known_command_delay_costs_no_more_than_as_much_again() {
+    let machine = Machine::load("tnv40".as_ref()).unwrap();
+    let late = |periods: u32| {
+        let mut late = machine.clone();
+        let delay_s = f64::from(periods) * machine.period.servo_s;
+        late.axes.iter_mut().for_each(|axis| axis.command_delay_s = delay_s);
+        late
+    };
+    let cases: Vec<(&str, u32)> =
+        ["lqg-identified", "feedforward"].into_iter().flat_map(|of| [1, 2, 3].map(|n| (of, n))).collect();
+    cases.par_iter().for_each(|&(controller, periods)| {
+        let [prompt_um, late_um] =
+            [0, periods].map(late).map(|machine| rms_um(controller, &machine, &machine, "circle"));
+        assert!(
+            late_um < DELAYED * prompt_um,
+            "{controller}, {periods}: {late_um} um, {prompt_um} um without the delay"
+        );
+    });
+}
+
 #[test]
 fn control_by_an_identified_file_is_nearly_that_by_the_true_one() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();

@@ -52,6 +52,34 @@ fn the_products_of_a_simulated_machine_are_found_from_positions_alone() {
     assert!(rms_um < 2.5, "{rms_um} um");
 }
 
+/// tnv40 without disturbance, whose commands are late by so many servo periods and whose drive by so many seconds.
+fn late_machine(periods: u32, drive_delay_s: f64) -> Machine {
+    let mut machine = Machine::load("tnv40".as_ref()).unwrap();
+    for axis in &mut machine.axes {
+        axis.command_delay_s = f64::from(periods) * machine.period.servo_s;
+        (axis.drive_delay_s, axis.disturbance_nm) = (drive_delay_s, 0.0);
+    }
+    machine
+}
+
+/// A delay before the position loop and one behind it differ in the second order only: a log without disturbance shows that.
+#[test]
+fn the_servo_periods_by_which_commands_are_late_are_found() {
+    for (periods, drive_delay_s) in [(0, 0.001), (1, 0.0), (2, 0.0005)] {
+        let machine = late_machine(periods, drive_delay_s);
+        let facts = AxisFacts { record_delay_s: Some(0.0), ..AxisFacts::default() };
+        let found = identified(log_of(&machine, 8.0, 0.0, 5), LogJob { facts, ..LogJob::default() });
+        let mine = Machine::parse("mine.toml", &machine_text(&found, "mine")).unwrap();
+        for (axis, written) in found.machine.axes.iter().zip(&mine.axes) {
+            let late_s = axis.law().get(LawTerm::CommandDelay);
+            assert!((late_s - f64::from(periods) * machine.period.servo_s).abs() < 1e-9, "{periods}: {late_s} s");
+            assert!((written.command_delay_s - late_s).abs() < 1e-9, "{} s is written", written.command_delay_s);
+            let loop_s = axis.law().get(LawTerm::LoopDelay);
+            assert!((loop_s - drive_delay_s).abs() < 1e-4, "{periods}: {loop_s} s, not {drive_delay_s} s");
+        }
+    }
+}
+
 #[test]
 fn gains_that_are_given_scale_the_machine_file_and_nothing_else() {
     let machine = Machine::load("tnv40".as_ref()).unwrap();

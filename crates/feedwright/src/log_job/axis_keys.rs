@@ -131,6 +131,10 @@ fn loops(keys: &mut Vec<AxisKey>, found: &FoundAxis) {
 /// What an axis may have beside.
 fn extras(keys: &mut Vec<AxisKey>, found: &FoundAxis, mechanics_s: f64) {
     let get = |term| found.law().get(term);
+    let late_s = get(LawTerm::CommandDelay);
+    if late_s > 0.0 {
+        keys.push(told("command_delay_s", late_s, "commands reach the position loop late, by whole servo periods"));
+    }
     let whole = (get(LawTerm::LoopDelay) / mechanics_s).round() * mechanics_s;
     optional(keys, found, "drive_delay_s", LawTerm::LoopDelay, whole, 1.0);
     let integral = get(LawTerm::Integral);

@@ -65,6 +65,7 @@ fn shown_by(term: LawTerm) -> &'static [MotionPart] {
         LawTerm::VelocityFeedforward | LawTerm::Viscous | LawTerm::SpeedLimit => &[Reversals],
         LawTerm::Presliding | LawTerm::Stribeck | LawTerm::StribeckSpeed | LawTerm::Backlash => &[Creeping],
         LawTerm::RecordDelay
+        | LawTerm::CommandDelay
         | LawTerm::LoopDelay
         | LawTerm::AccelerationFeedforward
         | LawTerm::Integral

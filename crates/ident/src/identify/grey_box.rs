@@ -13,6 +13,7 @@
 //! | `grey_box/known_value.rs`, `grey_box/priors.rs` | what is known before the record |
 //! | `grey_box/output_error.rs` | least squares over free runs |
 //! | `grey_box/admission.rs` | which terms there are |
+//! | `grey_box/command_delay.rs` | by how many servo periods the position loop has commands late |
 //! | `grey_box/standard_errors.rs` | intervals where what is left is coloured |
 //! | `grey_box/unseen_motion.rs` | what a record leaves open |
 //! | `grey_box/torque_column.rs` | what a torque column tells beside |
@@ -39,6 +40,7 @@ pub(crate) mod free_run_scores;
 pub(crate) mod residual_noise;
 pub(crate) mod gain_changes;
 pub(crate) mod found_axis;
+mod command_delay;
 mod law_fit;
 pub(crate) mod contour_scores;
 pub(crate) mod verdict;
@@ -134,6 +136,9 @@ pub fn servo_period_s(sample_s: f64) -> f64 {
 /// A torque column, in the unit of the file.
 pub(crate) type TorqueValues<'a> = Option<&'a [f64]>;
 
+/// Part of the work until it is known whether position loops have commands late.
+const WITHOUT_DELAY: f64 = 0.6;
+
 /// Identifies axes that were recorded together. `tell` is told which part of the work is done, 0 to 1, and
 /// answers whether to go on.
 ///
@@ -158,12 +163,24 @@ pub fn identify_machine(
             return Err(NotFound::TooFew { part, found, from_s: ends[0], to_s: ends[1] });
         }
     }
-    let mut axes = vec![];
-    for (i, record) in records.iter().enumerate() {
-        let facts = options.facts.get(i).copied().unwrap_or_default();
-        let torque = torques.get(i).copied().flatten();
-        let done = |part: f64| (i as f64 + part) / records.len() as f64;
-        axes.push(law_fit::find(record, torque, &split, facts, &mut |part| tell(done(part)))?);
+    let mut find = |facts: &[AxisFacts], from: f64, to: f64| -> Result<Vec<FoundAxis>, NotFound> {
+        let axis = |(i, record): (usize, &AxisRecord<'_>)| {
+            let facts = facts.get(i).copied().unwrap_or_default();
+            let torque = torques.get(i).copied().flatten();
+            let done = |part: f64| from + (to - from) * (i as f64 + part) / records.len() as f64;
+            law_fit::find(record, torque, &split, facts, &mut |part| tell(done(part)))
+        };
+        records.iter().enumerate().map(axis).collect()
+    };
+    let mut axes = find(&options.facts, 0.0, WITHOUT_DELAY)?;
+    if let Some(facts) = command_delay::shown(records, &axes, &split.fit) {
+        // Terms were admitted without the delay: others may be there with it.
+        let delayed = find(&facts, WITHOUT_DELAY, 1.0)?;
+        let left = |axes: &[FoundAxis]| axes.iter().map(|axis| libm::log(axis.fit_um)).sum::<f64>();
+        if left(&delayed) < left(&axes) {
+            let told = axes.iter().map(|axis| axis.facts).collect::<Vec<_>>();
+            axes = delayed.into_iter().zip(told).map(|(axis, facts)| FoundAxis { facts, ..axis }).collect();
+        }
     }
     let contour = ContourScores::of(records, &axes, &split.score);
     Ok(FoundMachine { axes, split, contour, sample_s: first.sample_s })

@@ -89,6 +89,10 @@ pub(crate) struct LogArgs {
     /// Delay from the control to the drive, s, as --kp.
     #[arg(long, value_name = "VALUE[±SPREAD[%]]", requires = "log")]
     pub(crate) drive_delay: Option<KnownValue>,
+    /// Delay from the control to a position loop in the drive, s: a whole number of servo periods. Without it the log tells the
+    /// delay, where --record-delay is given.
+    #[arg(long, value_name = "S", requires = "log", value_parser = command_delay)]
+    pub(crate) command_delay: Option<f64>,
     /// Time over which the drive takes the speed from positions, s, of one that closes its loops at the rate of the log and recorded it
     /// itself: two samples are 0.002 at 1 kHz. Positions do not tell it.
     #[arg(long, value_name = "S", requires = "log", value_parser = positive)]
@@ -114,6 +118,13 @@ fn positive(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
         _ => Err("it must be a number above 0".to_owned()),
+    }
+}
+
+fn command_delay(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=0.02).contains(&value) => Ok(value),
+        _ => Err("it must be 0 to 0.02 s".to_owned()),
     }
 }
 

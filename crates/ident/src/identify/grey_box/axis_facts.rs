@@ -22,6 +22,9 @@ pub struct AxisFacts {
     /// By how much the record has the actual position later than the command, s: zero where both were taken at the same moment. What else is
     /// late is then the drive.
     pub record_delay_s: Option<f64>,
+    /// Delay from the control to a position loop in the drive, s. Without it, the delay is looked for where [`Self::record_delay_s`] is
+    /// given; the log alone does not tell the two apart.
+    pub command_delay_s: Option<f64>,
     /// Position gain, 1/s.
     pub kp_1_s: Option<KnownValue>,
     /// 1 / Ti of the speed loop, 1/s; 0 is a loop without integral.
@@ -66,6 +69,7 @@ impl AxisFacts {
             at = self.known(term).map_or(at, |known| at.with(term, known.value));
         }
         at = self.kp_1_s.map_or(at, |kp| at.with(LawTerm::LoopGain, kp.value * at.speed_gain_1_s()));
+        at = self.command_delay_s.map_or(at, |delay_s| at.with(LawTerm::CommandDelay, delay_s));
         at.with(LawTerm::RecordDelay, self.record_delay_s.unwrap_or(0.0))
     }
 

@@ -93,7 +93,7 @@ pub(super) struct AxisRun {
     drive: DriveLaw,
     friction: FrictionLaw,
     servo_per_sample: usize,
-    /// Samples by which the record is late.
+    /// Samples by which the position loop has the commands of the record late.
     late_samples: f64,
     /// Delay within the loop, mechanics periods.
     loop_late: f64,
@@ -168,7 +168,7 @@ impl AxisRun {
             drive: DriveLaw::new(&law, values.drive()),
             friction: FrictionLaw::new(&law, values.friction()),
             servo_per_sample,
-            late_samples: values.get(LawTerm::RecordDelay) / sample_s,
+            late_samples: values.commands_late_s() / sample_s,
             loop_late,
             arrive: from_fn(|substep| [0.0, 1.0].map(|more| age(loop_late.floor() + more - substep as f64))),
             loop_part: loop_late.fract(),

@@ -202,6 +202,8 @@ impl FoundAxis {
     fn number(&self, term: LawTerm, value: f64) -> FoundNumber {
         let row = term.row();
         let source = match &self.resolved {
+            _ if term == LawTerm::CommandDelay && self.facts.command_delay_s.is_some() => NumberSource::Given,
+            _ if term == LawTerm::CommandDelay => NumberSource::Identified,
             Some(resolved) => resolved.source(term),
             None if self.terms.contains(&term) => NumberSource::Identified,
             None if self.facts.before.is_some() => NumberSource::Kept,

@@ -106,7 +106,7 @@ fn predicted_um(record: &AxisRecord<'_>, values: &TermValues, counts: &[bool]) -
         let sign = if speeds[k] == 0.0 { 0.0 } else { speeds[k].signum() };
         let friction = slides * (sign * get(LawTerm::Coulomb) + sign.abs() * get(LawTerm::Offset));
         let inertia = (1.0 - get(LawTerm::AccelerationFeedforward)) * accelerations[k];
-        (drag_1_s * speeds[k] + inertia + friction) / loop_gain + get(LawTerm::RecordDelay) * speeds[k]
+        (drag_1_s * speeds[k] + inertia + friction) / loop_gain + values.commands_late_s() * speeds[k]
     };
     1e3 * rms((0..counts.len()).filter(|&k| counts[k]).map(error_mm))
 }

@@ -13,6 +13,7 @@
 //! | Number | In the law of `crates/control/src/axis.rs` |
 //! |---|---|
 //! | lead | c(t - d): the record's actual positions are this much later than its commands |
+//! | command delay | c(t - d) as well, in whole servo periods: the position loop is in the drive and has commands late |
 //! | loop delay | between position loop and drive |
 //! | feedforward | parts of speed and acceleration |
 //! | integral | 1 / Ti |
@@ -71,10 +72,12 @@ pub enum LawTerm {
     Backlash,
     /// Servo period at which the drive takes the speed, s; zero is a drive that sees it all the time. Given, never fitted.
     SpeedHold,
+    /// Delay from the control to a position loop in the drive, s: whole servo periods. Chosen, never fitted.
+    CommandDelay,
 }
 
 /// How many there are.
-pub(crate) const TERMS: usize = 21;
+pub(crate) const TERMS: usize = 22;
 
 /// Range of a number, and by how much it is changed for a difference.
 #[derive(Debug, Clone, Copy)]
@@ -112,6 +115,7 @@ impl LawTerm {
         Self::TableShare,
         Self::Backlash,
         Self::SpeedHold,
+        Self::CommandDelay,
     ];
 
     /// Key in files.
@@ -138,6 +142,7 @@ impl LawTerm {
             Self::TableShare => "table_share",
             Self::Backlash => "backlash_mm",
             Self::SpeedHold => "speed_hold_s",
+            Self::CommandDelay => "command_delay_s",
         }
     }
 
@@ -165,6 +170,7 @@ impl LawTerm {
             Self::TableShare => row("part of J at the table", "", [0.05, 0.95], [0.0, 0.03]),
             Self::Backlash => row("backlash", "mm", [0.0, 0.2], [0.05, 2e-4]),
             Self::SpeedHold => row("the speed is taken every", "s", [0.0, 0.1], [0.0, 1e-4]),
+            Self::CommandDelay => row("delay before the position loop", "s", [0.0, 0.02], [0.0, 1e-4]),
         }
     }
 }
@@ -185,6 +191,7 @@ impl TermValues {
             .with(LawTerm::Viscous, axis.viscous_friction_nm_s / j)
             .with(LawTerm::Coulomb, axis.coulomb_friction_nm / per_mm)
             .with(LawTerm::Offset, axis.coulomb_asymmetry_nm / per_mm)
+            .with(LawTerm::CommandDelay, axis.loop_delays().command_periods(servo_s) as f64 * servo_s)
             .with(LawTerm::LoopDelay, axis.drive_delay_s)
             .with(LawTerm::VelocityFeedforward, axis.velocity_feedforward)
             .with(LawTerm::AccelerationFeedforward, axis.acceleration_feedforward)
@@ -222,6 +229,11 @@ impl TermValues {
         let damping = self.get(LawTerm::Damping);
         // Below, the speed loop would drive.
         (damping - self.get(LawTerm::Viscous)).max(1e-3 * damping)
+    }
+
+    /// How late the position loop has the commands of the record, s.
+    pub fn commands_late_s(&self) -> f64 {
+        self.get(LawTerm::RecordDelay) + self.get(LawTerm::CommandDelay)
     }
 
     /// Kp, 1/s.

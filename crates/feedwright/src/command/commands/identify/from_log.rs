@@ -111,7 +111,7 @@ fn file_name(path: &Path) -> String {
 
 fn job(name: String, args: &LogArgs) -> LogJob {
     let times_s = args.fit.clone().zip(args.score.clone()).map(|(fit, score)| [fit.0, score.0]);
-    let LogArgs { inertia, viscous, lead, torque_gain, speed_window, record_delay, .. } = *args;
+    let LogArgs { inertia, viscous, lead, torque_gain, speed_window, record_delay, command_delay, .. } = *args;
     let facts = AxisFacts {
         inertia,
         viscous,
@@ -119,6 +119,7 @@ fn job(name: String, args: &LogArgs) -> LogJob {
         torque_gain,
         speed_window_s: speed_window,
         record_delay_s: record_delay.filter(|late_s| late_s.is_finite()),
+        command_delay_s: command_delay,
         kp_1_s: args.kp,
         inverse_integral_1_s: args.integral_time.map(KnownValue::inverse),
         velocity_feedforward: args.velocity_feedforward,
