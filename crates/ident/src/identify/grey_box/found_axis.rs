@@ -1,13 +1,17 @@
 //! What was found of an axis: its law, numbers with intervals, scores, and what of it is assumed.
 
+use rand::{RngExt, SeedableRng};
+
 use super::axis_facts::AxisFacts;
 use super::axis_record::AxisRecord;
 use super::free_run_scores::AxisScores;
 use super::gain_changes::GainChange;
 use super::residual_noise::ResidualNoise;
+use super::standard_errors::HALF_INTERVAL;
 use super::terms::{LawTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
 use super::unseen_motion::UnseenMotion;
+use crate::identify::Rng;
 
 /// Where a number comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,6 +69,8 @@ pub struct FoundAxis {
     pub terms: Vec<LawTerm>,
     /// Half of the interval of 90 % of each, in the same order.
     pub half_intervals: Vec<f64>,
+    /// Lower triangle of a root of their covariance, in their units, row by row; `None` where the fit leaves a term open.
+    pub uncertain: Option<Vec<Vec<f64>>>,
     /// The law with what the drive does to the speed, where a torque column or a fact tells it.
     pub resolved: Option<ResolvedLaw>,
     /// What was given.
@@ -110,6 +116,40 @@ impl ResolvedLaw {
             Some(_) => NumberSource::TorqueColumn,
             None if is_fitted => NumberSource::Identified,
             None => NumberSource::Given,
+        }
+    }
+}
+
+/// Values of terms, drawn from a normal distribution about `values`; `uncertain` is the lower triangle of a root of its covariance. The
+/// delay of the loop goes to the next multiple of `step_s`, and the others by their regression on it.
+fn draw(
+    values: &TermValues,
+    terms: &[LawTerm],
+    uncertain: &[Vec<f64>],
+    step_s: f64,
+    mut normal: impl FnMut() -> f64,
+) -> TermValues {
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let normals: Vec<f64> = terms.iter().map(|_| normal()).collect();
+    let mut changes: Vec<f64> = uncertain.iter().map(|row| product(row, &normals)).collect();
+    if let Some(delay) = terms.iter().position(|term| *term == LawTerm::LoopDelay) {
+        let delay_s = values.get(LawTerm::LoopDelay) + changes[delay];
+        let moved_s = (delay_s / step_s).round() * step_s - delay_s;
+        let (of_delay, variance_s2) = (&uncertain[delay], product(&uncertain[delay], &uncertain[delay]));
+        for (change, row) in changes.iter_mut().zip(uncertain) {
+            *change += product(row, of_delay) / variance_s2 * moved_s;
+        }
+    }
+    terms.iter().zip(changes).fold(*values, |drawn, (term, change)| drawn.with(*term, values.get(*term) + change))
+}
+
+/// A standard normal number, by the polar method (Marsaglia and Bray 1964).
+fn standard_normal(rng: &mut Rng) -> f64 {
+    loop {
+        let [x, y]: [f64; 2] = [rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0)];
+        let square = x * x + y * y;
+        if square > 0.0 && square < 1.0 {
+            return x * libm::sqrt(-2.0 * libm::log(square) / square);
         }
     }
 }
@@ -170,6 +210,28 @@ impl FoundAxis {
         half.filter(|half| half.is_finite())
     }
 
+    /// The axis with a law that fits the record about as well: its terms are drawn from what the fit leaves open of them, and held
+    /// within their ranges. The delay of the loop is a whole multiple of `step_s`, as a machine file has it, and the other terms are those
+    /// that fit with it. The same seed draws the same axis. The terms of a law by a torque column or a given window are drawn one by
+    /// one, since their correlations are not known.
+    #[must_use]
+    pub fn drawn(&self, seed: u64, step_s: f64) -> Self {
+        let mut rng = Rng::seed_from_u64(seed);
+        let mut normal = || standard_normal(&mut rng);
+        let mut drawn = self.clone();
+        if let Some(resolved) = &mut drawn.resolved {
+            for (term, half) in resolved.half_intervals.iter().filter(|(_, half)| half.is_finite()) {
+                let value = resolved.values.get(*term) + half / HALF_INTERVAL * normal();
+                resolved.values = resolved.values.with(*term, value);
+            }
+            return drawn;
+        }
+        if let Some(uncertain) = &self.uncertain {
+            drawn.values = draw(&self.values, &self.terms, uncertain, step_s, normal);
+        }
+        drawn
+    }
+
     /// All numbers, those that positions determine first.
     pub fn numbers(&self) -> Vec<FoundNumber> {
         let told = self.law();
@@ -187,7 +249,7 @@ impl FoundAxis {
             .map(|term| self.number(term, told.get(term)))
             .collect();
         let (inertia, error, source) = self.inertia();
-        let interval = error.map(|error| [inertia - 1.645 * error, inertia + 1.645 * error]);
+        let interval = error.map(|error| [inertia - HALF_INTERVAL * error, inertia + HALF_INTERVAL * error]);
         let number =
             |key, name, unit, value, interval, source| FoundNumber { key, name, unit, value, interval, source };
         numbers.push(number("inertia_kg_m2", "inertia J at the shaft", "kg m2", inertia, interval, source));
@@ -232,5 +294,61 @@ impl FoundAxis {
     pub(super) fn most(record: &AxisRecord<'_>) -> [f64; 2] {
         [record.command_speed_mm_s(), record.command_acceleration_mm_s2()]
             .map(|values| values.iter().fold(0.0_f64, |most, value| most.max(value.abs())))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::terms::TERMS;
+    use super::*;
+
+    const TERMS_OF_TEST: [LawTerm; 3] = [LawTerm::LoopGain, LawTerm::Coulomb, LawTerm::LoopDelay];
+    const DRAWS: usize = 20_000;
+
+    fn values() -> TermValues {
+        let values = TermValues([0.0; TERMS]).with(LawTerm::LoopGain, 1e4).with(LawTerm::Coulomb, 30.0);
+        values.with(LawTerm::LoopDelay, 1.14e-3)
+    }
+
+    /// Changes of the terms in many draws, with delays in steps of `step_s`.
+    fn changes(step_s: f64) -> Vec<[f64; 3]> {
+        let root = [vec![200.0], vec![-3.0, 4.0], vec![2e-5, 0.0, 1e-5]];
+        let mut rng = Rng::seed_from_u64(1);
+        let change = |_| {
+            let drawn = draw(&values(), &TERMS_OF_TEST, &root, step_s, || standard_normal(&mut rng));
+            TERMS_OF_TEST.map(|term| drawn.get(term) - values().get(term))
+        };
+        (0..DRAWS).map(change).collect()
+    }
+
+    #[test]
+    fn draws_have_the_covariance_of_the_fit() {
+        let changes = changes(1e-12);
+        let mean = |of: &dyn Fn(&[f64; 3]) -> f64| changes.iter().map(of).sum::<f64>() / DRAWS as f64;
+        let near = |found: f64, wanted: f64, size: f64| {
+            // Four standard errors of a mean of products.
+            assert!((found - wanted).abs() < 4.0 * 1.5 * size / (DRAWS as f64).sqrt(), "{found} {wanted}");
+        };
+        near(mean(&|change| change[0]), 0.0, 200.0);
+        near(mean(&|change| change[0] * change[0]), 4e4, 4e4);
+        near(mean(&|change| change[0] * change[1]), -600.0, 200.0 * 5.0);
+        near(mean(&|change| change[1] * change[1]), 25.0, 25.0);
+        near(mean(&|change| change[0] * change[2]), 4e-3, 200.0 * 2.24e-5);
+    }
+
+    #[test]
+    fn a_delay_is_whole_and_what_goes_with_it_goes_along() {
+        let step_s = 1e-4;
+        for change in changes(step_s) {
+            let steps = (1.14e-3 + change[2]) / step_s;
+            assert!((steps - steps.round()).abs() < 1e-9, "{steps}");
+        }
+        // Of the variance of the gain the delay explains four fifths, and takes them along: what is left is 200^2 / 5.
+        let steps = |change: &[f64; 3]| ((1.14e-3 + change[2]) / step_s).round() as i64;
+        let same: Vec<f64> =
+            changes(step_s).iter().filter(|change| steps(change) == 11).map(|change| change[0]).collect();
+        let mean = same.iter().sum::<f64>() / same.len() as f64;
+        let variance = same.iter().map(|gain| (gain - mean).powi(2)).sum::<f64>() / same.len() as f64;
+        assert!(same.len() > DRAWS / 2 && (variance / 8e3 - 1.0).abs() < 0.1, "{} {variance}", same.len());
     }
 }

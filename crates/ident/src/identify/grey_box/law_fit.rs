@@ -12,7 +12,7 @@ use super::output_error::{DONE, NEARLY_DONE, OutputErrors, square};
 use super::priors::Prior;
 use super::residual_noise::ResidualNoise;
 use super::sample_split::SampleSplit;
-use super::standard_errors::StandardErrors;
+use super::standard_errors::{HALF_INTERVAL, StandardErrors};
 use super::terms::{LawTerm, TermValues};
 use super::torque_column::{DriveColumn, TorqueColumn};
 use super::unseen_motion::UnseenMotion;
@@ -63,6 +63,7 @@ pub(super) fn find(
     go_on(tell(PARTS[1]))?;
     is_law(record, &split.fit, rms_mm)?;
     let half_intervals = certain.errors.iter().map(|error| certain.factor * error).collect();
+    let uncertain = certain.root();
     let resolved = match facts.speed_window_s {
         Some(window_s) => with_window(&errors, window_s, &values, &terms, rms_mm),
         None => torque.and_then(|torque| resolve(&errors, torque, &values, &terms, &facts, rms_mm)),
@@ -80,6 +81,7 @@ pub(super) fn find(
         values,
         terms,
         half_intervals,
+        uncertain,
         resolved,
         facts,
         fit_um: 1e3 * rms_mm,
@@ -246,7 +248,7 @@ fn resolve(
     let certain = StandardErrors::of(errors, &fitted.values, &free);
     let mut half_intervals: Vec<(LawTerm, f64)> =
         free.iter().copied().zip(certain.errors.iter().map(|error| certain.factor * error)).collect();
-    let half = |error: f64| 1.645 * error;
+    let half = |error: f64| HALF_INTERVAL * error;
     let scale = half(found.units_error / found.units_per_mm_s2.abs());
     half_intervals.extend([
         (LawTerm::Viscous, half(found.viscous_error_1_s)),

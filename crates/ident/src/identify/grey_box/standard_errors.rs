@@ -21,6 +21,9 @@ const LEAST_BLOCKS: usize = 8;
 /// Part of a diagonal that is added to it: numbers that do the same to the position then share what is left.
 const RIDGE: f64 = 1e-10;
 
+/// Half an interval of 90 % of a normal distribution, in standard errors.
+pub(super) const HALF_INTERVAL: f64 = 1.645;
+
 /// Standard errors of the terms, and the factor that makes half an interval of 90 % of them.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct StandardErrors {
@@ -28,6 +31,8 @@ pub(super) struct StandardErrors {
     pub(super) factor: f64,
     /// Their covariance, over the changes that differences are made with.
     pub(super) covariance: DMatrix<f64>,
+    /// These changes, in the units of the terms.
+    changes: Vec<f64>,
 }
 
 impl StandardErrors {
@@ -41,9 +46,10 @@ impl StandardErrors {
             (0..n).map(|i| if curvature[(i, i)] > 0.0 { curvature[(i, i)].sqrt() } else { 1.0 }).collect();
         let scaled =
             DMatrix::from_fn(n, n, |i, j| curvature[(i, j)] / (sizes[i] * sizes[j]) + if i == j { RIDGE } else { 0.0 });
+        let changes: Vec<f64> = terms.iter().map(|term| change(values, *term)).collect();
         let Some(inverse) = scaled.cholesky().map(|cholesky| cholesky.inverse()) else {
             let covariance = DMatrix::from_diagonal_element(n, n, f64::INFINITY);
-            return Self { errors: vec![f64::INFINITY; n], factor: 1.645, covariance };
+            return Self { errors: vec![f64::INFINITY; n], factor: HALF_INTERVAL, covariance, changes };
         };
         let shortest = (BLOCK_S / errors.record.sample_s).ceil() as usize;
         let block = shortest.max(samples / MOST_BLOCKS).min(samples / LEAST_BLOCKS).max(1);
@@ -66,11 +72,20 @@ impl StandardErrors {
         let covariance = &inverse * scatter * &inverse;
         // What a number that moves nothing is, nobody can say.
         let moves = |i: usize| curvature[(i, i)] > 0.0;
-        let size = |i: usize| covariance[(i, i)].max(0.0).sqrt() / sizes[i] * change(values, terms[i]);
+        let size = |i: usize| covariance[(i, i)].max(0.0).sqrt() / sizes[i] * changes[i];
         let error = |i: usize| if moves(i) { size(i) } else { f64::INFINITY };
         let errors = (0..n).map(error).collect();
         let covariance = DMatrix::from_fn(n, n, |i, j| covariance[(i, j)] / (sizes[i] * sizes[j]));
-        Self { errors, factor: student(blocks - 1.0), covariance }
+        Self { errors, factor: student(blocks - 1.0), covariance, changes }
+    }
+
+    /// A root of the covariance in the units of the terms, row by row, widened so that its diagonal has the intervals of 90 % of a
+    /// normal distribution; none where a term moves nothing.
+    pub(super) fn root(&self) -> Option<Vec<Vec<f64>>> {
+        let root = self.covariance.clone().cholesky()?.l();
+        let wider = self.factor / HALF_INTERVAL;
+        let row = |i: usize| (0..=i).map(|j| wider * self.changes[i] * root[(i, j)]).collect();
+        self.errors.iter().all(|error| error.is_finite()).then(|| (0..self.changes.len()).map(row).collect())
     }
 }
 
