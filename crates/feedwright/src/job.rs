@@ -8,6 +8,7 @@
 //! | `job/assumed.rs` | what it assumes of its machine |
 //! | `job/values.rs` | which values it takes |
 //! | `job/record.rs` | what it keeps of the rows of a run |
+//! | `job/band.rs` | cuts on other machines that fit the recording of the model |
 //! | `job/exported.rs` | the corrected program for a control without feedback |
 //! | `job/report.rs` | what the page shows |
 //! | `job/listing.rs` | lines of the program for it |
@@ -17,6 +18,7 @@
 mod assumed;
 mod values;
 mod record;
+mod band;
 mod exported;
 mod report;
 mod listing;
@@ -71,6 +73,9 @@ pub struct Job {
     /// A model for the controller that is asked for, in place of a training.
     #[serde(with = "stored::model")]
     pub model: Option<Model>,
+    /// Machines that fit the recording of the model: each is cut with the controller too, and what they come to is the band of the report.
+    #[serde(skip)]
+    pub fitting: Vec<Machine>,
     /// The day, year-month-day, on which the model that the controller learns is written; `None` where none is wanted.
     #[serde(skip)]
     pub learned_on: Option<String>,
@@ -155,6 +160,7 @@ impl Job {
             feed_mm_s: None,
             choices: Choices::default(),
             model: None,
+            fitting: Vec::new(),
             learned_on: None,
             tolerance_um: None,
             target: None,
@@ -261,12 +267,13 @@ impl Job {
             looked_at: looked_at.as_ref().map(|cycle| cycle as &dyn PlanSink),
         };
         let Cuts { mut runs, without_identification, learned } = self.cut_with_each::<N>(summary, plan, rows, watch)?;
+        let band = runs.last().map_or(Ok(None), |run| self.band::<N>(plan, &run.summary, watch))?;
         let completed = runs.last().is_some_and(|run| run.summary.outcome == Outcome::Completed);
         let cycle = looked_at.filter(|_| completed).map(CycleTimeOfCut::finish);
         let log_findings = self.insert_measured(&mut runs, N, &circles, watch)?;
         let exported = self.push_exported(&mut runs, &circles, watch)?;
         let limits = self.limit_band(machine, fastest.as_ref().map(|plan| &plan.cycle).or(cycle.as_ref()), watch)?;
-        let report = Report { limits, ..self.report(N, summary, circles, runs, &without_identification)? };
+        let report = Report { limits, band, ..self.report(N, summary, circles, runs, &without_identification)? };
         let exported_well = exported.as_ref().is_none_or(|outcome| outcome.refusal.is_none());
         Ok(JobOutcome {
             harm: report.harm(),

@@ -134,7 +134,9 @@ pub use log_job::{
 pub use measured::{MeasuredError, measured};
 #[cfg(feature = "files")]
 pub use output::{FileOperation, OutputError, OutputFile, OutputFiles};
-pub use recorded_model::{RecordedModel, RecordedModelError, recorded_machine, recorded_model};
+pub use recorded_model::{
+    MOST_FITTING, RecordedModel, RecordedModelError, fitting_machines, recorded_machine, recorded_model,
+};
 pub use report::figure::{
     COLORS, CaptionedFigure, Figure, LineStyle, Panel, Polyline, figure_parts, write_figure_page, write_figure_part,
 };
@@ -142,8 +144,8 @@ pub use report::harm::{CutErrors, ErrorChange, Harm, MAX_UM, RMS_UM, UNCUT_UM, h
 pub use report::plain_page::{PagePart, write_foot, write_head, write_table_end, write_table_head};
 pub use report::text::{escaped, number};
 pub use report::{
-    Assumptions, ErrorSpectrum, FullCircle, Histogram, LawKnowledge, LimitBand, ProgramLine, Report, ReportedRun,
-    Roundness, RunFacts, RunSummary, Series, SeriesPoint, SpectrumBand, Statistics, TimelineEvent, WorstPlace,
-    write_html,
+    Assumptions, Band, BandErrors, ErrorSpectrum, FullCircle, Histogram, LawKnowledge, LimitBand, ProgramLine, Report,
+    ReportedRun, Roundness, RunFacts, RunSummary, Series, SeriesPoint, SpectrumBand, Statistics, TimelineEvent,
+    WorstPlace, write_html,
 };
 pub use results_format::RESULTS_FORMAT;

@@ -9,7 +9,10 @@
 use std::path::Path;
 
 use feedwright_gcode::Program;
-use feedwright_ident::{AxisFacts, Columns, ExciteOptions, LawVerdict, Log, Model, excitation_program, recorded_log};
+use feedwright_ident::{
+    AxisFacts, Columns, ExciteOptions, LawVerdict, Log, Model, SERVO_MECHANICS, excitation_program, recorded_log,
+    servo_period_s,
+};
 use feedwright_sim::{Cancelled, Machine, Watch};
 use miette::Diagnostic;
 use serde::{Deserialize, Serialize};
@@ -18,6 +21,11 @@ use thiserror::Error;
 use crate::controllers::{Choices, Entry, Setup};
 use crate::identifier_cache::{keep_text, kept_text};
 use crate::log_job::{LogIdentified, LogJob, LogJobError, machine_text};
+
+/// Machines that are drawn with a log at the most: their files stay with that of the machine.
+pub const MOST_FITTING: usize = 32;
+/// Bits by which the number of a draw is shifted before it is added to the seed of the log: seeds that are counted up draw apart.
+const SEED_SHIFT: u32 = 32;
 
 /// A model that was identified from a log of a simulated machine.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,6 +62,9 @@ pub enum RecordedModelError {
 struct Told {
     text: String,
     doubts: Vec<String>,
+    /// Further machine files that the log tells about as well.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    fitting: Vec<String>,
 }
 
 impl Told {
@@ -87,7 +98,8 @@ pub fn recorded_model(
         let (told, doubts) = recorded_machine(machine, axes, choices.seed, watch)?;
         watch.begin("identifying from the log", 1);
         let model = Setup::new(&told, choices).train(entry, axes, date);
-        Ok(Told { text: model.map_err(|error| not_told(machine, &error))?.text(), doubts })
+        let text = model.map_err(|error| not_told(machine, &error))?.text();
+        Ok(Told { text, doubts, fitting: vec![] })
     })?;
     let model = Model::parse("the model of the log", &told.text).map_err(|error| not_told(machine, &error))?;
     Ok(RecordedModel { model, doubts: told.doubts })
@@ -103,14 +115,44 @@ pub fn recorded_machine(
     seed: u64,
     watch: &dyn Watch,
 ) -> Result<(Machine, Vec<String>), RecordedModelError> {
-    let content = format!("machine {axes} {seed} {machine:?}");
-    let told = Told::of(&content, || {
-        let identified = identified(machine, axes, seed, watch)?;
-        let text = machine_text(&identified, &format!("{} by its log", machine.name));
-        Ok(Told { text, doubts: doubts(&identified) })
-    })?;
+    let told = told_machine(machine, axes, seed, watch)?;
     let read = Machine::parse("the machine file of the log", &told.text);
     Ok((read.map_err(|error| not_told(machine, &error))?, told.doubts))
+}
+
+/// Machines that fit the same log about as well, [`MOST_FITTING`] at the most: their laws are drawn from what the identification leaves
+/// open, and the same log gives the same machines.
+///
+/// # Errors
+/// As [`recorded_machine`].
+pub fn fitting_machines(
+    machine: &Machine,
+    axes: usize,
+    seed: u64,
+    number: usize,
+    watch: &dyn Watch,
+) -> Result<Vec<Machine>, RecordedModelError> {
+    let told = told_machine(machine, axes, seed, watch)?;
+    let read = |text: &String| Machine::parse("a machine file of the log", text);
+    told.fitting.iter().take(number).map(read).collect::<Result<_, _>>().map_err(|error| not_told(machine, &error))
+}
+
+/// The machine that the log tells, and those that fit as well.
+fn told_machine(machine: &Machine, axes: usize, seed: u64, watch: &dyn Watch) -> Result<Told, RecordedModelError> {
+    Told::of(&format!("machine and those that fit, {axes} {seed} {machine:?}"), || {
+        let mut identified = identified(machine, axes, seed, watch)?;
+        let (name, doubts) = (format!("{} by its log", machine.name), doubts(&identified));
+        let text = machine_text(&identified, &name);
+        let found = identified.machine.axes.clone();
+        let mechanics_s = servo_period_s(identified.machine.sample_s) / f64::from(SERVO_MECHANICS);
+        let draw = |number: u64| {
+            let seed = |axis: usize| seed.wrapping_add((MOST_FITTING as u64 * axis as u64 + number) << SEED_SHIFT);
+            identified.machine.axes =
+                found.iter().enumerate().map(|(i, axis)| axis.drawn(seed(i), mechanics_s)).collect();
+            machine_text(&identified, &name)
+        };
+        Ok(Told { text, doubts, fitting: (1..=MOST_FITTING as u64).map(draw).collect() })
+    })
 }
 
 /// Records the log, and identifies the axes.

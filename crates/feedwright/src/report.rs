@@ -23,8 +23,10 @@ mod circles;
 mod summary;
 mod statistics;
 mod assumptions;
+mod band;
 
 pub use assumptions::{Assumptions, LawKnowledge};
+pub use band::{Band, BandErrors};
 pub use circles::{FullCircle, Roundness};
 pub(crate) use circles::{RadialDeviations, full_circles};
 pub use error_spectrum::{ErrorSpectrum, SpectrumBand};
@@ -62,6 +64,8 @@ pub struct Report {
     pub tolerance_um: Option<f64>,
     /// What binds the plan along the path, where it is planned axis by axis.
     pub limits: Option<LimitBand>,
+    /// What other machines that fit the recording come to, where they were cut.
+    pub band: Option<Band>,
     /// One for each controller. The first is what the others are compared with; the last is the one that is judged.
     pub runs: Vec<ReportedRun>,
 }

@@ -167,3 +167,62 @@ fn jobs_beside_each_other_share_nothing() {
     });
     assert_eq!(alone, together);
 }
+
+#[test]
+fn the_band_of_the_machine_itself_is_its_cut_and_a_machine_that_differs_widens_it() {
+    let mut job = job("tnv40", "feedforward");
+    let mut heavy = job.machine.clone();
+    heavy.axes.iter_mut().for_each(|axis| axis.inertia_kg_m2 *= 1.5);
+    // Nothing is random on tnv40, and a recording knows no lead.
+    let mut other_lead = job.machine.clone();
+    for axis in &mut other_lead.axes {
+        axis.lead_mm_per_rev /= 2.0;
+        axis.coulomb_smoothing_rad_s *= 2.0;
+        for nm in [&mut axis.coulomb_friction_nm, &mut axis.torque_limit_nm] {
+            *nm *= 2.0;
+        }
+        axis.disturbance_nm = 0.0;
+    }
+    job.machine.axes.iter_mut().for_each(|axis| axis.disturbance_nm = 0.0);
+    let without = job.run(&()).unwrap();
+    assert_eq!(without.report.band, None);
+    let errors = |run: &feedwright::ReportedRun| [run.summary.rms_um, run.summary.max_um];
+    let own = errors(without.report.runs.last().unwrap());
+    job.fitting = vec![job.machine.clone(); 2];
+    let watch = Ending::after(u64::MAX);
+    let outcome = job.run(&watch).unwrap();
+    let band = outcome.report.band.unwrap();
+    assert_eq!([band.rms_um.median, band.max_um.median].map(f64::to_bits), own.map(f64::to_bits));
+    assert_eq!((band.machines, band.diverged, band.first_s, band.joint_rms_um), (2, 0, None, None));
+    let stages = watch.stages.into_inner().unwrap();
+    assert_eq!(stages.last().unwrap(), &("cutting on machines that fit the recording".to_owned(), 2, 2));
+    job.fitting = vec![other_lead];
+    let band = job.run(&()).unwrap().report.band.unwrap();
+    assert!((band.rms_um.median / own[0] - 1.0).abs() < 1e-9, "{band:?} {own:?}");
+    job.fitting = vec![job.machine.clone(), heavy];
+    let band = job.run(&()).unwrap().report.band.unwrap();
+    assert!(band.rms_um.p90 > 2.0 * own[0] && band.rms_um.median < band.rms_um.p90, "{band:?} {own:?}");
+}
+
+#[test]
+fn of_a_long_cut_the_band_has_the_beginning() {
+    let mut job = job("tnv40", "feedforward");
+    // The circle after the line is fast: its errors are not in the band.
+    job.program = Program::from_text("long.ngc", "G1 X31 F60\nG2 X31 Y0 I2 J0 F3000\nM2\n");
+    job.fitting = vec![job.machine.clone()];
+    let report = job.run(&()).unwrap().report;
+    let (band, whole) = (report.band.unwrap(), &report.runs.last().unwrap().summary);
+    assert!(whole.time_s > 31.0 && band.first_s == Some(30.0), "{} {band:?}", whole.time_s);
+    assert!(band.machines == 1 && band.max_um.median < 0.5 * whole.max_um, "{band:?} {}", whole.max_um);
+}
+
+#[test]
+fn a_machine_whose_loop_is_unstable_is_counted_and_left_out_of_the_band() {
+    let mut job = job("tnv40", "feedforward");
+    let mut unstable = job.machine.clone();
+    unstable.axes.iter_mut().for_each(|axis| axis.kp_1_s *= 30.0);
+    job.fitting = vec![unstable, job.machine.clone()];
+    let band = job.run(&()).unwrap().report.band.unwrap();
+    assert_eq!((band.machines, band.diverged), (1, 1));
+    assert!(band.sentence().contains("1 more fit the recording, and their servo loops are unstable"));
+}

@@ -39,13 +39,29 @@ fn a_run_without_a_model_goes_by_what_a_log_of_the_machine_tells_and_keeps_it() 
         let joint_um = |run: usize| result["runs"][run]["joint_rms_um"].as_f64().unwrap();
         joint_um(1) / joint_um(0)
     };
+    let band = |folder: &Folder| {
+        let result: serde_json::Value = serde_json::from_slice(&folder.read("r.json")).unwrap();
+        result["band"].clone()
+    };
     let of_log = ratio(&folder);
+    let first_band = band(&folder);
+    assert_eq!(first_band["machines"], 8, "{first_band}");
+    assert!(said.contains("band of 8 machines that fit the recording as well: RMS"), "{said}");
+    assert!(folder.text("r.html").contains("band of 8 machines that fit the recording as well"));
     let began = std::time::Instant::now();
     folder.run(&cut).succeeded();
     assert!(began.elapsed().as_secs_f64() < 5.0, "nothing is identified again: {:?}", began.elapsed());
     assert_eq!(ratio(&folder).to_bits(), of_log.to_bits());
+    assert_eq!(band(&folder), first_band);
+    folder.run(&[&cut[..], &["--band", "3"]].concat()).succeeded();
+    assert_eq!(band(&folder)["machines"], 3);
+    folder.run(&[&cut[..], &["--band", "0"]].concat()).succeeded();
+    assert!(band(&folder).is_null());
+    folder.run(&[&cut[..], &["--band", "33"]].concat()).refused(&["33 is not in 0..=32"]);
+    folder.run(&[&cut[..], &["--band", "3", "--exact-settings"]].concat()).refused(&["--band", "--exact-settings"]);
     folder.run(&[&cut[..], &["--exact-settings"]].concat()).succeeded();
     let exact = ratio(&folder);
+    assert!(band(&folder).is_null());
     assert!(of_log != exact && of_log < 1.5 * exact + 0.01, "{of_log} {exact}");
     folder
         .run(&[&cut[..], &["--exact-settings", "--model", "m.toml"]].concat())

@@ -75,6 +75,7 @@ impl Job {
             circles,
             tolerance_um: self.tolerance_um,
             limits: None,
+            band: None,
             runs,
         })
     }

@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{Job, JobOutcome};
 use crate::correct::CorrectOutcome;
 use crate::report::harm::Harm;
-use crate::report::{Assumptions, RunSummary};
+use crate::report::{Assumptions, Band, RunSummary};
 use crate::results_format::{RESULTS_FORMAT, json_text};
 
 /// All results: `runs` and what they were made with.
@@ -31,6 +31,8 @@ struct Results<'a> {
     settings: BTreeMap<&'a str, &'a str>,
     machine: &'a Machine,
     runs: Vec<&'a RunSummary>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    band: Option<&'a Band>,
     #[serde(skip_serializing_if = "Option::is_none")]
     exported: Option<&'a CorrectOutcome>,
 }
@@ -56,6 +58,7 @@ impl JobOutcome {
             settings: report.settings.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect(),
             machine: &job.machine,
             runs: report.runs.iter().map(|run| &run.summary).collect(),
+            band: report.band.as_ref(),
             exported: self.exported.as_ref(),
         };
         writeln!(out, "{}", json_text(&results)?)

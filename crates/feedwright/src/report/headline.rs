@@ -288,6 +288,7 @@ mod tests {
             circles: Vec::new(),
             tolerance_um,
             limits: None,
+            band: None,
             runs,
         }
     }

@@ -92,15 +92,23 @@ fn write_header(out: &mut impl Write, report: &Report) -> io::Result<()> {
 <h1>{title} <span class="badge">{how}</span></h1>
 <p class="subject"><span>Part <b>{part}</b></span> <span>Machine <b>{machine}</b></span></p>
 <p class="verdict">{verdict}</p>
-{assumed}</header>
+{band}{assumed}</header>
 "#,
         title = escaped(&report.title),
         part = escaped(&report.part),
         machine = escaped(machine),
         how = if measured { "simulated, beside a log" } else { "simulated" },
         verdict = verdict::verdict(report),
+        band = band(report),
         assumed = assumed(report),
     )
+}
+
+/// The band of the prediction, in one paragraph.
+fn band(report: &Report) -> String {
+    report.band.as_ref().map_or_else(String::new, |band| {
+        format!("<p class=\"assumed\"><b>Predicted</b> {}.</p>\n", escaped(&band.sentence()))
+    })
 }
 
 /// What was assumed, in one paragraph.

@@ -97,6 +97,7 @@ pub(crate) fn report(axes: usize, rows: usize) -> Report {
         }],
         tolerance_um: Some(10.0),
         limits: None,
+        band: None,
         runs: vec![made_up_run(HOSTILE, axes, rows, 0.03), made_up_run("corrected", axes, rows, 0.005)],
     }
 }

@@ -79,6 +79,10 @@ pub struct RunArgs {
     /// real machine so well.
     #[arg(long, conflicts_with = "model")]
     pub(crate) exact_settings: bool,
+    /// Machines, 0 to 32, that fit the recording as well as the identified one: they are cut with the same controller, and their errors make
+    /// the band of the prediction.
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u8).range(0..=32), conflicts_with_all = ["exact_settings", "model"])]
+    pub(crate) band: u8,
     /// Place of the model that the controller has at the end of the cut, with what it learned of the machine: next time the beginning is
     /// corrected as well.
     #[arg(long, value_name = "FILE.model.toml", requires = "model")]

@@ -27,7 +27,7 @@ use crate::correct::{TARGETS, TargetControl};
 use crate::fastest::FastestError;
 use crate::job::{Job, JobError, MeasuredLog};
 use crate::output::OutputError;
-use crate::recorded_model::{RecordedModel, recorded_model};
+use crate::recorded_model::{RecordedModel, fitting_machines, recorded_model};
 use files::{Files, Outputs};
 
 /// Cuts a part with controllers of a table.
@@ -44,13 +44,13 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
         ],
     )?;
     let bar = console.bar(0);
-    let exact_settings = args.exact_settings;
+    let (exact_settings, band) = (args.exact_settings, usize::from(args.band));
     let Asked { mut job, inputs, outputs } = asked(args, table, &bar)?;
     bar.begin("reading the program", 1);
     let read = job.check()?;
     let (axes, summary) = (read.axes(), read.into_summary());
     let mut files = Files::create(&outputs, inputs.iter().map(PathBuf::as_path), axes)?;
-    let doubts = if exact_settings { vec![] } else { take_recorded_model(&mut job, axes, &bar)? };
+    let doubts = if exact_settings { vec![] } else { take_recorded_model(&mut job, axes, band, &bar)? };
     let checked = job.check_read(summary)?;
     let outcome = match checked.run(&mut [&mut files], &bar) {
         Ok(outcome) => outcome,
@@ -84,14 +84,18 @@ pub fn run(args: RunArgs, table: Controllers, console: &Console) -> Result<ExitC
     printed(summary::print(&mut *table, &job, &outputs, &outcome), code)
 }
 
-/// Gives the controller the model that a log of the machine tells, where it goes by one and has none; returns what is to be said of it.
-fn take_recorded_model(job: &mut Job, axes: usize, bar: &Bar) -> Result<Vec<String>> {
+/// Gives the controller the model that a log of the machine tells, where it goes by one and has none, and the job `band` machines that fit
+/// the log as well; returns what is to be said of the model.
+fn take_recorded_model(job: &mut Job, axes: usize, band: usize, bar: &Bar) -> Result<Vec<String>> {
     if job.model.is_some() || job.controller.identifier != Some(IdentifierKind::Axes) {
         return Ok(vec![]);
     }
     let RecordedModel { model, doubts } =
         recorded_model(&job.machine, axes, (job.controller, &job.choices), today()?, bar)?;
     job.model = Some(model);
+    if band > 0 {
+        job.fitting = fitting_machines(&job.machine, axes, job.choices.seed, band, bar)?;
+    }
     Ok(doubts)
 }
 

@@ -36,6 +36,9 @@ pub(super) fn print(out: &mut dyn Write, job: &Job, outputs: &Outputs, outcome: 
     if let Some(text) = chip_load(runs) {
         say(out, &text)?;
     }
+    if let Some(band) = &outcome.report.band {
+        say(out, &ascii(&band.sentence()))?;
+    }
     writeln!(out)?;
     say(out, &assumed(&outcome.report.assumed, measured))?;
     if outcome.report.is_mostly_uncorrected() && outcome.exported.is_none() {
