@@ -174,6 +174,7 @@ fn main() -> io::Result<()> {
             circles: Vec::new(),
             tolerance_um: Some(20.0),
             limits: None,
+            band: None,
             runs: vec![run(job, "uncorrected", [0.012, 0.015, 0.012])?, run(job, "less lag", [0.006, 0.0065, 0.006])?],
         };
         let path = Path::new(&directory).join(format!("{}.report.html", job.name));

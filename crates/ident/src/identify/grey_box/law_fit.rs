@@ -63,7 +63,6 @@ pub(super) fn find(
     go_on(tell(PARTS[1]))?;
     is_law(record, &split.fit, rms_mm)?;
     let half_intervals = certain.errors.iter().map(|error| certain.factor * error).collect();
-    let uncertain = certain.root();
     let resolved = match facts.speed_window_s {
         Some(window_s) => with_window(&errors, window_s, &values, &terms, rms_mm),
         None => torque.and_then(|torque| resolve(&errors, torque, &values, &terms, &facts, rms_mm)),
@@ -81,7 +80,7 @@ pub(super) fn find(
         values,
         terms,
         half_intervals,
-        uncertain,
+        uncertain: certain.root(),
         resolved,
         facts,
         fit_um: 1e3 * rms_mm,
