@@ -2,7 +2,7 @@
 //! ahead.
 //!
 //! Each feed period the controller adapts the identifier to its last prediction error
-//! ([`adaptation`]), improves the plan by one step of [`horizon`], and
+//! (`adaptation`), improves the plan by one step of `horizon`, and
 //! commands the first step of the plan. The weights of the plan follow the quality of the
 //! predictions:
 //!
@@ -19,7 +19,7 @@
 //!
 //! The controller thus corrects gently where the identifier cannot represent a resonance. On a
 //! machine that the identifier does not know it corrects less, down to nothing
-//! ([`horizon::missed`], [`Controller::judged`]). Because of the fourth power, the small
+//! (`horizon::missed`, [`Controller::judged`]). Because of the fourth power, the small
 //! innovations of friction hardly change the weights. A machine that lags far behind has longer
 //! knots, so that the plan reaches beyond the lag. The feedrate along the path stays as planned.
 
