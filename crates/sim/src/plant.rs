@@ -141,8 +141,8 @@ impl<const N: usize> Plant<N> {
         }
     }
 
-    /// The machine becomes another one in mid-cut, as where a workpiece is loaded: angles, speeds, errors and time go on, but what
-    /// was on its way to the drive or from the encoder is lost. Leads and periods are to be the same.
+    /// The machine becomes another one in mid-cut, as where a workpiece is loaded. Its whole state goes on: angles, speeds, errors, time,
+    /// noise, and what is on its way to the drive or from the encoder. Leads and periods are to be the same.
     pub fn change_to(&mut self, machine: &Machine) {
         let before = std::mem::replace(self, Self::with_seed(machine, self.joint_mm(), self.seed));
         self.period = before.period;
@@ -150,6 +150,16 @@ impl<const N: usize> Plant<N> {
         let Some(nonideal) = &mut self.nonideal else { return };
         for (i, axis) in nonideal.iter_mut().enumerate() {
             axis.take_over(before.nonideal.as_ref().map(|nonideal| &nonideal[i]), &before.states[i]);
+        }
+    }
+
+    /// A blow: torque impulses that act at once, N m s at the motor shaft. They act on the table where the screw gives, as loads do.
+    pub fn push(&mut self, impulse_nm_s: [f64; N]) {
+        for (i, impulse_nm_s) in impulse_nm_s.into_iter().enumerate() {
+            let pushed = self.nonideal.as_mut().is_some_and(|nonideal| nonideal[i].push_table(impulse_nm_s));
+            if !pushed {
+                self.states[i].speed_rad_s += impulse_nm_s / self.laws[i].parameters.inertia_kg_m2;
+            }
         }
     }
 

@@ -103,6 +103,11 @@ impl CorrelatedNoise {
         Self { stream, keep, add: deviation * (1.0 - keep * keep).sqrt(), value: deviation * stream.normal(0) }
     }
 
+    /// Continues from the value of `before`.
+    pub(super) fn take_over(&mut self, before: &Self) {
+        self.value = before.value;
+    }
+
     /// One step on, at this moment.
     #[inline]
     pub(super) fn next(&mut self, counter: u64) -> f64 {

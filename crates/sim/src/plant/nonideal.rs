@@ -90,7 +90,8 @@ impl NonidealAxis {
             && axis.friction() == FrictionParameters::default()
     }
 
-    /// The axis goes on as another one: where its parts are and how fast, its commands, what its drive has summed up, and the disturbance's phase.
+    /// The axis goes on as another one: where its parts are and how fast, its commands, what its drive has summed up, what is on its way to and from
+    /// the drive, noise, and the disturbance's phase.
     pub(super) fn take_over(&mut self, before: Option<&Self>, motor: &AxisState) {
         let periods = self.commands.periods();
         let Some(before) = before else {
@@ -101,9 +102,26 @@ impl NonidealAxis {
         };
         self.commands = before.commands.with_periods(periods);
         (self.masses, self.drive_state) = (before.masses, before.drive_state);
+        self.delay.take_over(&before.delay);
+        if let (Some(latency), Some(before)) = (&mut self.latency, &before.latency) {
+            latency.take_over(before);
+        }
+        if let (Some(speed), Some(before)) = (&mut self.speed, &before.speed) {
+            speed.take_over(before);
+        }
+        if let (Some(broadband), Some(before)) = (&mut self.broadband, &before.broadband) {
+            broadband.take_over(before);
+        }
         if let (Some(wander), Some(before)) = (&mut self.wander, &before.wander) {
             wander.take_over(before);
         }
+    }
+
+    /// The table gains the speed that a torque impulse gives it, N m s; false where the screw is rigid, and nothing changes.
+    pub(super) fn push_table(&mut self, impulse_nm_s: f64) -> bool {
+        let Some(screw) = self.mechanics.transmission() else { return false };
+        self.masses.table.speed_rad_s += impulse_nm_s * screw.inverse_table_inertia;
+        true
     }
 
     /// The position at the start of a servo period, as the control has it, rad at the motor shaft.

@@ -82,8 +82,9 @@ impl Wander {
         })
     }
 
-    /// Continues at the phase of `before`.
+    /// Continues at the phase and the frequency of `before`.
     pub(super) fn take_over(&mut self, before: &Self) {
+        self.noise.take_over(&before.noise);
         self.ahead_rad = before.ahead_rad;
     }
 
